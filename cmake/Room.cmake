@@ -1,0 +1,42 @@
+# One set of warnings for everything that is compiled here.
+function(rift_compile_options target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+    -Wcast-qual -Wconversion -Wno-sign-conversion)
+  if(RIFT_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# rift_room(NAME [ROOMS room...] [LIBRARIES target...] [PRIVATE_LIBRARIES target...])
+# A room is src/NAME with its headers in include/rift/NAME: the static library rift_NAME, which
+# links only the rooms it may include.
+function(rift_room name)
+  cmake_parse_arguments(ARG "" "" "ROOMS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp")
+  list(TRANSFORM ARG_ROOMS PREPEND rift_)
+  if(NOT sources)  # a room of headers alone
+    add_library(rift_${name} INTERFACE)
+    target_include_directories(rift_${name} INTERFACE "${PROJECT_SOURCE_DIR}/include")
+    target_link_libraries(rift_${name} INTERFACE ${ARG_ROOMS} ${ARG_LIBRARIES})
+    return()
+  endif()
+  add_library(rift_${name} STATIC ${sources})
+  target_include_directories(rift_${name} PUBLIC "${PROJECT_SOURCE_DIR}/include")
+  target_link_libraries(rift_${name} PUBLIC ${ARG_ROOMS} ${ARG_LIBRARIES}
+                                     PRIVATE ${ARG_PRIVATE_LIBRARIES})
+  rift_compile_options(rift_${name})
+endfunction()
+
+# rift_room_test(NAME [LIBRARIES target...]): every tests/NAME/*_test.cpp in one Catch2 program,
+# each test case known to CTest by its sentence.
+function(rift_room_test name)
+  cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp")
+  add_executable(rift_${name}_test ${sources})
+  set_target_properties(rift_${name}_test PROPERTIES
+                        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  target_link_libraries(rift_${name}_test PRIVATE rift_test_support ${ARG_LIBRARIES})
+  rift_compile_options(rift_${name}_test)
+  catch_discover_tests(rift_${name}_test TEST_PREFIX "${name}: "
+                       PROPERTIES TIMEOUT 600)
+endfunction()

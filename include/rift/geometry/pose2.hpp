@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace rift::geometry {
+
+/// A planar rigid motion, read `b_from_a`: it takes point coordinates in frame a to frame b.
+/// As the pose of a body it is `world_from_body`. World frame: x right, y up, z towards the
+/// viewer; yaw counter-clockwise from +x.
+struct Pose2 {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double yaw_rad = 0.0;
+
+  Eigen::Vector2d Position() const { return {x_m, y_m}; }
+  /// Unit vector of the body's forward axis.
+  Eigen::Vector2d Forward() const;
+  bool IsFinite() const;
+
+  friend bool operator==(const Pose2&, const Pose2&) = default;
+};
+
+/// c_from_a = c_from_b * b_from_a; the yaw of the result lies in [-pi, pi].
+Pose2 operator*(const Pose2& c_from_b, const Pose2& b_from_a);
+
+/// p_in_b = b_from_a * p_in_a.
+Eigen::Vector2d operator*(const Pose2& b_from_a, const Eigen::Vector2d& p_in_a);
+
+/// a_from_b, given b_from_a.
+Pose2 Inverse(const Pose2& b_from_a);
+
+}  // namespace rift::geometry

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "rift/geometry/pose2.hpp"
+
+namespace rift::trajectory {
+
+/// One logged pose. World frame: y up, z up, metres; angles in radians, counter-clockwise.
+/// A value that the log does not hold is NaN; t_s, x_m and y_m are always finite.
+struct StampedPose {
+  static constexpr double kNotLogged = std::numeric_limits<double>::quiet_NaN();
+
+  double t_s = 0.0;
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = kNotLogged;
+  double roll_rad = kNotLogged;
+  double pitch_rad = kNotLogged;
+  double yaw_rad = kNotLogged;
+  double target_x_m = kNotLogged;  ///< the waypoint the controller drove to at this moment
+  double target_y_m = kNotLogged;
+
+  Eigen::Vector2d Position() const { return {x_m, y_m}; }
+  geometry::Pose2 Planar() const { return {x_m, y_m, yaw_rad}; }
+};
+
+/// A further column of a log, one value for each pose. Its name ends in its unit (`_m`, `_rad_s`)
+/// or has none (a power, a count).
+struct Channel {
+  std::string name;
+  std::vector<double> values;
+};
+
+/// Poses in order of strictly increasing time, at least two of them once read from a log.
+struct Trajectory {
+  std::vector<StampedPose> poses;
+  std::vector<Channel> channels;
+
+  bool HasYaw() const;
+  double Duration_s() const;
+  /// Length of the polyline through the planar positions.
+  double ArcLength_m() const;
+};
+
+/// The same trajectory seen from a point `offset_m` further forward on the body: the authors log
+/// the centre of the tag, and their published gaps use the robot's front, 0.03 m ahead of it.
+/// Throws std::invalid_argument when the offset is not zero and the yaw is not known.
+Trajectory OffsetAlongHeading(Trajectory trajectory, double offset_m);
+
+}  // namespace rift::trajectory
