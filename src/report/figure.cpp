@@ -31,19 +31,18 @@ constexpr std::string_view kStyle =
     "set tics nomirror out scale 0.5\n"
     "set grid lw 0.5 lc rgb '#DDDDDD'\n"
     "set style fill solid 0.9 noborder\n"
-    "set key outside top center horizontal samplen 1.5 spacing 1.1\n";
+    "set key outside top center horizontal Left reverse samplen 1.5 spacing 1.1 width -1\n";
 
 bool IsWhole(const std::string& image, FigureFormat format) {
   const std::string_view end = format == FigureFormat::kSvg ? "</svg>" : "IEND";
-  const std::string_view tail = std::string_view(image).substr(
-      image.size() - std::min<std::size_t>(image.size(), 16));
+  const std::string_view tail =
+      std::string_view(image).substr(image.size() - std::min<std::size_t>(image.size(), 16));
   return tail.find(end) != std::string_view::npos;
 }
 
 }  // namespace
 
-std::string GnuplotScript(const Figure& figure, FigureFormat format,
-                          const ReportOptions& options) {
+std::string GnuplotScript(const Figure& figure, FigureFormat format, const ReportOptions& options) {
   return fmt::format("set encoding utf8\n{}{}{}", Terminal(figure, format, options), kStyle,
                      figure.plot);
 }

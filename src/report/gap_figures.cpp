@@ -129,6 +129,12 @@ void AddMarks(const std::vector<ComparedPair>& pairs, std::string* data, PlotCom
   plot->Add(Mark(waypoints, "points pt 1 ps 1.2 lw 1.5 lc rgb '#777777'", "waypoints"));
 }
 
+// The samples that count: skip_start leaves out the first ones.
+std::vector<double> CountedErrors_m(const gap::ErrorProfile& profile, const gap::GapOptions& gap) {
+  const auto first = std::lower_bound(profile.u.begin(), profile.u.end(), gap.skip_start);
+  return {profile.error_m.begin() + (first - profile.u.begin()), profile.error_m.end()};
+}
+
 std::string ErrorTitle(const ComparedPair& pair, std::size_t pairs) {
   if (pairs == 1) return "error";
   return Shortened(pair.real, kLongestName);
@@ -139,8 +145,10 @@ std::string ErrorTitle(const ComparedPair& pair, std::size_t pairs) {
 ComparedPair ComparePair(std::string sim_name, const trajectory::Trajectory& sim,
                          std::string real_name, const trajectory::Trajectory& real,
                          const gap::GapOptions& gap) {
+  gap::GapOptions whole = gap;
+  whole.skip_start = 0.0;
   ComparedPair pair{std::move(sim_name), std::move(real_name), gap::Compare(sim, real, gap),
-                    gap::ProfileAlong(sim, real, gap), LoggedWaypoints(real)};
+                    gap::ProfileAlong(sim, real, whole), LoggedWaypoints(real)};
   if (pair.waypoints_m.empty()) pair.waypoints_m = LoggedWaypoints(sim);
   return pair;
 }
@@ -185,8 +193,9 @@ Figure ErrorFigure(const std::vector<ComparedPair>& pairs, const gap::GapOptions
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const gap::ErrorProfile& profile = pairs[i].profile;
     DataBlock curve(fmt::format("error_{}", i));
-    ForSomeSamples(profile.u.size(),
-                   [&](std::size_t k) { curve.Add({profile.u[k], profile.error_m[k]}); });
+    ForSomeSamples(profile.u.size(), [&](std::size_t k) {
+      curve.Add({profile.u[k], profile.error_m[k]});
+    });
     data += curve.Text();
     plot.Add(Mark(curve,
                   fmt::format("lines lw 1.8 lc rgb '{}'",
@@ -225,7 +234,7 @@ Figure ErrorCdfFigure(const std::vector<ComparedPair>& pairs, const gap::GapOpti
   PlotCommand plot;
   double largest_m = gap.threshold_m;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    std::vector<double> errors_m = pairs[i].profile.error_m;
+    std::vector<double> errors_m = CountedErrors_m(pairs[i].profile, gap);
     std::sort(errors_m.begin(), errors_m.end());
     DataBlock curve(fmt::format("cdf_{}", i));
     const double n = static_cast<double>(errors_m.size());
@@ -243,8 +252,8 @@ Figure ErrorCdfFigure(const std::vector<ComparedPair>& pairs, const gap::GapOpti
       PointBlock("threshold", {{gap.threshold_m, 0.0}, {gap.threshold_m, 100.0}});
   plot.Add(Mark(threshold, "lines lw 1.2 dt 2 lc rgb '#000000'",
                 fmt::format("threshold {} m", Number(gap.threshold_m))));
-  Figure figure{"error_cdf", "Share of the path whose error stays below a value",
-                options.width_px, options.width_px * 3 / 5};
+  Figure figure{"error_cdf", "Share of the path whose error stays below a value", options.width_px,
+                options.width_px * 3 / 5};
   figure.plot = fmt::format(
       "{}{}set xlabel 'position error (m)'\nset ylabel 'share of the path (%)'\n"
       "set xrange [0:{:.9g}]\nset yrange [0:100]\n{}",

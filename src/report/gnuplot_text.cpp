@@ -10,8 +10,8 @@
 namespace rift::report {
 namespace {
 
-constexpr std::array<std::string_view, 8> kOkabeIto = {
-    "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999"};
+constexpr std::array<std::string_view, 8> kOkabeIto = {"#0072B2", "#E69F00", "#009E73", "#CC79A7",
+                                                       "#56B4E9", "#D55E00", "#F0E442", "#999999"};
 
 constexpr std::array<std::string_view, 9> kViridis = {"#440154", "#472D7B", "#3B528B",
                                                       "#2C728E", "#21918C", "#28AE80",
@@ -77,7 +77,7 @@ std::size_t LetterCount(std::string_view text) {
 
 void DataBlock::Add(const std::vector<double>& row) {
   for (const double value : row) {
-    fmt::format_to(std::back_inserter(rows_), std::isfinite(value) ? "{:.7g} " : "NaN ", value);
+    rows_ += std::isfinite(value) ? fmt::format("{:.7g} ", value) : std::string("NaN ");
   }
   rows_ += '\n';
 }

@@ -15,7 +15,7 @@ struct Figure {
   std::string title;  ///< one sentence, for captions; not drawn
   int width_px = 480;
   int height_px = 320;
-  std::string plot;
+  std::string plot{};
 };
 
 /// A figure that makes no sense for the data at hand.

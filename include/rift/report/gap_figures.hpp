@@ -12,10 +12,10 @@ namespace rift::report {
 
 /// One simulated path against one real one, as the figures of `rift gap` need it.
 struct ComparedPair {
-  std::string sim;   ///< how the legend names it
+  std::string sim;  ///< how the legend names it
   std::string real;
   gap::Comparison comparison;
-  gap::ErrorProfile profile;
+  gap::ErrorProfile profile;  ///< of the whole path, the share left out at the start included
   std::vector<Eigen::Vector2d> waypoints_m;  ///< see LoggedWaypoints; may be empty
 };
 
