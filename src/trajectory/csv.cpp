@@ -52,8 +52,8 @@ class RowReader {
     const size_t found = table_.cells.size() - before;
     if (table_.width == 0) table_.width = static_cast<int>(found);
     if (found != static_cast<size_t>(table_.width)) {
-      throw std::runtime_error(fmt::format("{}:{}: the row has {} cells where {} are expected",
-                                           name_, line_number, found, table_.width));
+      throw std::invalid_argument(fmt::format("{}:{}: the row has {} cells where {} are expected",
+                                              name_, line_number, found, table_.width));
     }
     table_.lines.push_back(line_number);
   }
@@ -72,8 +72,8 @@ class RowReader {
   [[noreturn]] void Refuse(std::string_view cell, int line_number, size_t column) const {
     const std::string where =
         column < table_.columns.size() ? table_.columns[column] : fmt::format("{}", column + 1);
-    throw std::runtime_error(fmt::format("{}:{}: column {} is '{}': a finite number is expected",
-                                         name_, line_number, where, cell.substr(0, 40)));
+    throw std::invalid_argument(fmt::format("{}:{}: column {} is '{}': a finite number is expected",
+                                            name_, line_number, where, cell.substr(0, 40)));
   }
 
   Table& table_;

@@ -29,7 +29,7 @@ std::string_view TakeLine(std::string_view& rest);
 std::vector<std::string> SplitHeader(std::string_view line);
 
 /// Reads numbers separated by `separator` (a blank stands for any run of blanks and tabs).
-/// Throws std::runtime_error `name:line: ...`.
+/// Throws std::invalid_argument `name:line: ...`.
 Table ReadNumbers(std::string_view text, const std::string& name, bool has_header, char separator);
 
 }  // namespace rift::trajectory::csv

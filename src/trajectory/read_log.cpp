@@ -48,7 +48,7 @@ Format FormatFromHeader(std::string_view text, const std::string& name) {
       first != line.npos && line.find(',') == line.npos &&
       (line[first] == '#' || line.find_first_not_of("0123456789+-.eE \t") == line.npos);
   if (may_be_tum) return Format::kTum;
-  throw std::runtime_error(fmt::format(
+  throw std::invalid_argument(fmt::format(
       "{}:1: the header '{}' belongs to no dialect: it needs t_s,x_m,y_m (rift), t,x,y (tracker, "
       "webots) or eight columns without header (tum)",
       name, line.substr(0, 60)));
@@ -63,14 +63,14 @@ void TakeColumns(const Table& table, const std::array<std::string_view, 9>& name
     const int column = table.Column(names[i]);
     const bool required = i < 3;
     if (column < 0 && required) {
-      throw std::runtime_error(fmt::format("{}:1: column {} is missing", name, names[i]));
+      throw std::invalid_argument(fmt::format("{}:1: column {} is missing", name, names[i]));
     }
     if (column < 0) continue;
     taken[column] = true;
     for (size_t row = 0; row < table.Rows(); ++row) {
       const double value = table.At(row, column);
       if (required && std::isnan(value)) {
-        throw std::runtime_error(
+        throw std::invalid_argument(
             fmt::format("{}:{}: column {} is empty", name, table.lines[row], names[i]));
       }
       Field(trajectory.poses[row], i) = value;
@@ -89,14 +89,15 @@ void TakeColumns(const Table& table, const std::array<std::string_view, 9>& name
 
 void TakeTum(const Table& table, const std::string& name, Trajectory& trajectory) {
   if (table.width != 8 && table.Rows() > 0) {
-    throw std::runtime_error(fmt::format("{}:{}: {} columns, and tum has 8: t tx ty tz qx qy qz qw",
-                                         name, table.lines[0], table.width));
+    throw std::invalid_argument(
+        fmt::format("{}:{}: {} columns, and tum has 8: t tx ty tz qx qy qz qw", name,
+                    table.lines[0], table.width));
   }
   for (size_t row = 0; row < table.Rows(); ++row) {
     const auto at = [&](int column) { return table.At(row, column); };
     const Eigen::Quaterniond quaternion(at(7), at(4), at(5), at(6));
     if (!(quaternion.norm() > 0.0)) {
-      throw std::runtime_error(
+      throw std::invalid_argument(
           fmt::format("{}:{}: the quaternion has zero length", name, table.lines[row]));
     }
     const Eigen::Matrix3d r = quaternion.normalized().toRotationMatrix();
@@ -192,11 +193,11 @@ void SortByTime(Log& log) {
 
 void CheckMoves(const Trajectory& trajectory, const std::string& name) {
   if (trajectory.poses.size() < 2) {
-    throw std::runtime_error(fmt::format("{}: {} poses, and a trajectory needs at least 2", name,
-                                         trajectory.poses.size()));
+    throw std::invalid_argument(fmt::format("{}: {} poses, and a trajectory needs at least 2", name,
+                                            trajectory.poses.size()));
   }
   if (!(trajectory.ArcLength_m() > 0.0)) {
-    throw std::runtime_error(
+    throw std::invalid_argument(
         fmt::format("{}: the path has zero length: the robot never moved", name));
   }
 }

@@ -16,7 +16,7 @@ const std::string kAuthorsHeader = "t,x,y,z,roll,pitch,yaw,desired_x,desired_y\n
 std::string Refusal(const std::string& text, Format format = Format::kAuto) {
   try {
     ReadLog(text, "log.csv", format);
-  } catch (const std::runtime_error& error) {
+  } catch (const std::invalid_argument& error) {
     return error.what();
   }
   return "accepted";
@@ -160,7 +160,7 @@ TEST_CASE("No damaged log does anything but read or be refused") {
       for (const StampedPose& pose : log.trajectory.poses) {
         REQUIRE(std::isfinite(pose.x_m + pose.y_m + pose.t_s));
       }
-    } catch (const std::runtime_error& error) {
+    } catch (const std::invalid_argument& error) {
       REQUIRE(std::string(error.what()).starts_with("log.csv:"));
     }
   }

@@ -106,22 +106,4 @@ struct SweepResult {
   LevelSummary all;
 };
 
-/// The axis pair of figures 7, 10 and 13: the first categorical parameter (else the first) on one
-/// side and the combination of all others on the other.
-struct FactorSplit {
-  int main_factor = 0;
-  std::vector<int> others;  ///< indices of the other parameters; empty for one axis
-  std::string others_name;  ///< "[v_min, v_max]"
-};
-
-FactorSplit SplitFactors(const std::vector<Parameter>& parameters);
-
-/// "0.15" for one value, "[0.15, 0.30]" for several; numbers of one axis share their decimals.
-std::string CombinationLabel(const SweepResult& result, const std::vector<ParameterValue>& theta,
-                             const std::vector<int>& parameters);
-
-/// Rows grouped by the combination of the named parameters' values, in grid order.
-std::vector<LevelSummary> SummariseBy(const SweepResult& result,
-                                      const std::vector<int>& parameters);
-
 }  // namespace rift::sweep

@@ -32,7 +32,7 @@ struct Log {
   std::string unknown_angles;
 };
 
-/// Reads a whole log or throws std::runtime_error with one line `name:row: what is wrong`.
+/// Reads a whole log or throws std::invalid_argument with one line `name:row: what is wrong`.
 /// Rows out of order are sorted by time and of rows with equal time the last is kept, both noted.
 /// Refused: NaN or infinite values, ragged rows, fewer than two poses, a path of zero length.
 /// Accepted: a byte order mark, CRLF, blank lines, empty cells in optional columns (not logged).
