@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -70,7 +71,7 @@ void RequirePath(const sweep::PathTemplate& path, const std::string& key,
 }
 
 sweep::SweepResult Compare(const SweepRequest& request, const config::Experiment& experiment,
-                           InputHashes& hashes) {
+                           const sweep::LogSource& source) {
   RequirePath(experiment.candidate.path, "candidate.path", request.experiment);
   RequirePath(experiment.reference.path, "reference.path", request.experiment);
   const sweep::LogSweepPlan plan{.name = experiment.name,
@@ -79,7 +80,7 @@ sweep::SweepResult Compare(const SweepRequest& request, const config::Experiment
                                  .candidate_path = experiment.candidate.path.text,
                                  .reference_path = experiment.reference.path.text,
                                  .gap = experiment.gap};
-  const sweep::SweepResult result = sweep::CompareLogs(plan, LogCache(experiment, hashes));
+  sweep::SweepResult result = sweep::CompareLogs(plan, source);
   if (result.all.n == 0) {
     throw std::invalid_argument(
         fmt::format("{}: not one of {} trials could be compared; the first: {}", request.experiment,
@@ -106,13 +107,14 @@ void AddSweep(CLI::App& app, int& exit_code) {
         config::LoadExperiment(request->experiment, request->overrides,
                                [](const std::string& path) { return ReadFile(path); });
     InputHashes hashes;
-    const sweep::SweepResult result = Compare(*request, experiment, hashes);
-    const fs::path out = request->out.empty() ? fs::path("out") / experiment.name : request->out;
+    LogCache logs(experiment, hashes);
+    const sweep::SweepResult result = Compare(*request, experiment, std::ref(logs));
+    const fs::path out = request->out.empty() ? fs::path("out") / experiment.name : fs::path(request->out);
     WriteFile(out / "experiment.yaml", config::WriteExperiment(experiment));
     WriteFile(out / "inputs.txt", hashes.Text());
     WriteFile(out / "table.csv", TableCsv(result));
     WriteFile(out / "summary.json", SummaryJson(result));
-    WriteSweepReport(out, experiment, result);
+    WriteSweepReport(out, result, std::ref(logs));
     fmt::print("{}", request->json ? SummaryJson(result) : SweepText(result));
     fmt::print(stderr, "report: {}\n", (out / "report.html").string());
     exit_code = request->exit_code && result.all.failures > 0 ? kFalsified : kDone;

@@ -44,7 +44,8 @@ void ReadLevels(const Node& node, const std::string& key, sweep::Parameter& para
 void ReadRange(const Node& node, const std::string& key, sweep::Parameter& parameter) {
   for (const char* bound : {"min", "max"}) {
     const Node::Entry* entry = node.Find(bound);
-    if (entry == nullptr) Fail(node, key, fmt::format("a range needs min and max; {} is missing", bound));
+    if (entry == nullptr)
+      Fail(node, key, fmt::format("a range needs min and max; {} is missing", bound));
     const std::optional<double> number = NumberOf(entry->value);
     if (!number) Fail(entry->value, Join(key, bound), "must be a number");
     (bound[1] == 'i' ? parameter.min : parameter.max) = *number;
@@ -70,8 +71,9 @@ void CheckNames(const Node& node, const std::vector<sweep::Parameter>& parameter
   for (size_t i = 0; i < parameters.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
       if (parameters[i].Name() != parameters[j].Name()) continue;
-      Fail(node, "space", fmt::format("{} and {} have the same last name '{}'", parameters[j].key,
-                                      parameters[i].key, parameters[i].Name()));
+      Fail(node, "space",
+           fmt::format("{} and {} have the same last name '{}'", parameters[j].key,
+                       parameters[i].key, parameters[i].Name()));
     }
     if (parameters[i].Name() == "trial") {
       Fail(node, "space", "'trial' is the name of the repeats: see reference.trials");
@@ -105,7 +107,8 @@ sweep::TrialList Hook<sweep::TrialList>::FromNode(const Node& node) {
     if (!count || *count != std::floor(*count) || *count < 1 || *count > 1e6) {
       throw std::invalid_argument("must be a list of trials, or how many there are (1 or more)");
     }
-    for (int i = 1; i <= static_cast<int>(*count); ++i) trials.names.push_back(fmt::format("{}", i));
+    for (int i = 1; i <= static_cast<int>(*count); ++i)
+      trials.names.push_back(fmt::format("{}", i));
     return trials;
   }
   if (!node.IsList() || node.items.empty()) {
