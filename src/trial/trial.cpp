@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "rift/geometry/angle.hpp"
 #include "rift/trial/recorder.hpp"

@@ -50,8 +50,7 @@ struct TrialOptions {
     field("control_period_s", self.control_period_s, 1e-3, 1.0,
           "time from one decision to the next (authors: 50 Hz)");
     field("pace", self.pace, "decide every period on the newest pose, or once for each new pose");
-    field("settle_s", self.settle_s, 0.0, 60.0,
-          "zero power while the first poses come in");
+    field("settle_s", self.settle_s, 0.0, 60.0, "zero power while the first poses come in");
     field("timeout_s", self.timeout_s, 1e-2, 3600.0, "a trial ends after this long");
     field("pose_stale_s", self.pose_stale_s, 1e-3, 10.0,
           "power is zero while the newest pose was captured longer ago than this");
