@@ -168,7 +168,7 @@ Figure MeanByLevelFigure(std::string name, const std::string& factor,
   Figure figure{std::move(name), fmt::format("Mean Sim-to-Real gap by {}", factor), width_px,
                 options.width_px * 2 / 3 + LabelRoom_px(tics, levels)};
   figure.plot = fmt::format(
-      "{}{}set grid noxtics ytics\nset xlabel {} offset 0,-0.5\nset ylabel 'gap (m)'\nset xrange "
+      "{}{}set grid noxtics ytics\nset xlabel {} offset 0,-0.8\nset ylabel 'gap (m)'\nset xrange "
       "[-0.6:{:.9g}]\n"
       "set yrange [0:{:.9g}]\n{}",
       data, tics.command, Quoted(factor), static_cast<double>(levels.size()) - 0.4, end_m,
@@ -207,7 +207,7 @@ Figure FailuresByLevelFigure(std::string name, const std::string& factor,
                 fmt::format("Trials with a gap above {} m by {}", Number(threshold_m), factor),
                 width_px, options.width_px * 3 / 5 + LabelRoom_px(tics, levels)};
   figure.plot = fmt::format(
-      "{}{}{}set grid noxtics ytics\nset xlabel {} offset 0,-0.5\nset ylabel {}\nset xrange "
+      "{}{}{}set grid noxtics ytics\nset xlabel {} offset 0,-0.8\nset ylabel {}\nset xrange "
       "[-0.6:{:.9g}]\n"
       "set yrange [0:{:.9g}]\nset ytics {}\n{}",
       data, tics.command, counts, Quoted(factor),

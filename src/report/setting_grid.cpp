@@ -5,6 +5,8 @@
 #include <limits>
 #include <map>
 
+#include "rift/sweep/labels.hpp"
+
 namespace rift::report {
 namespace {
 
@@ -26,16 +28,17 @@ SettingGrid LayOut(const sweep::SweepResult& result) {
     grid.others_name = split.others_name;
     grid.others = sweep::SummariseBy(result, split.others);
   }
+  const auto continuous = [](const sweep::Parameter& p) { return p.IsContinuous(); };
+  if (std::any_of(result.parameters.begin(), result.parameters.end(), continuous)) return grid;
   grid.cells.assign(grid.mains.size(), {});
   for (auto& row : grid.cells) row.assign(grid.others.size(), nullptr);
   const auto main_place = PlaceOf(grid.mains), other_place = PlaceOf(grid.others);
   for (const sweep::SettingResult& setting : result.settings) {
     const std::size_t main =
-        main_place.at(sweep::CombinationLabel(result, setting.theta, {split.main_factor}));
+        main_place.at(sweep::CombinationLabel(setting.theta, {split.main_factor}));
     const std::size_t other =
-        split.others.empty()
-            ? 0
-            : other_place.at(sweep::CombinationLabel(result, setting.theta, split.others));
+        split.others.empty() ? 0
+                             : other_place.at(sweep::CombinationLabel(setting.theta, split.others));
     grid.cells[main][other] = &setting;
   }
   return grid;
@@ -45,9 +48,9 @@ std::string SettingLabel(const sweep::SweepResult& result,
                          const std::vector<sweep::ParameterValue>& theta) {
   if (result.parameters.empty()) return "the only setting";
   const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
-  const std::string main = sweep::CombinationLabel(result, theta, {split.main_factor});
+  const std::string main = sweep::CombinationLabel(theta, {split.main_factor});
   if (split.others.empty()) return main;
-  return main + " " + sweep::CombinationLabel(result, theta, split.others);
+  return main + " " + sweep::CombinationLabel(theta, split.others);
 }
 
 std::vector<double> GapsOf(const sweep::SweepResult& result, const sweep::SettingResult& setting) {

@@ -13,7 +13,8 @@ struct SettingGrid {
   std::string others_name;  ///< "[v_min, v_max]"; empty for a single axis
   std::vector<sweep::LevelSummary> mains;
   std::vector<sweep::LevelSummary> others;  ///< one unnamed entry for a single axis
-  /// [main][other]; null where the sweep holds no such setting.
+  /// [main][other]; null where the sweep holds no such setting; empty with a continuous axis,
+  /// where no two settings share a value.
   std::vector<std::vector<const sweep::SettingResult*>> cells;
 
   int CellCount() const { return static_cast<int>(mains.size() * others.size()); }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rift/sweep/labels.hpp"
 #include "sweep_plots.hpp"
 
 namespace rift::report {
@@ -55,7 +56,7 @@ class FigureMaker {
     Keep(GapBySettingFigure(result_, grid_, options_));
   }
 
-  void ByTrial() { Keep(GapByTrialFigure(result_, grid_, options_)); }
+  void ByTrial() { Keep(GapByTrialFigure(result_, options_)); }
 
   void AlongPath(const std::optional<ComparedPair>& worst) {
     if (!worst)

@@ -14,8 +14,7 @@ Figure GapBySettingFigure(const sweep::SweepResult& result, const SettingGrid& g
                           const ReportOptions& options);
 
 /// Figure 8: the gap of every trial, one line a setting.
-Figure GapByTrialFigure(const sweep::SweepResult& result, const SettingGrid& grid,
-                        const ReportOptions& options);
+Figure GapByTrialFigure(const sweep::SweepResult& result, const ReportOptions& options);
 
 /// Figure 10: mean gap as a heat map, the number in each cell.
 Figure HeatMapFigure(const SettingGrid& grid, const ReportOptions& options);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "gnuplot_text.hpp"
+#include "rift/sweep/labels.hpp"
 #include "sweep_plots.hpp"
 
 namespace rift::report {
@@ -14,20 +15,27 @@ constexpr std::size_t kLongestLabel = 40;
 constexpr int kRow_px = 17;
 constexpr int kMostTrialColours = 8;
 
-// Grid order when all fit; otherwise the worst.
+// Grouped by the main factor when all fit; otherwise the worst.
 std::vector<const sweep::SettingResult*> SettingsToDraw(const sweep::SweepResult& result,
-                                                        const SettingGrid& grid, int limit) {
-  std::vector<const sweep::SettingResult*> settings;
+                                                        int limit) {
   if (static_cast<int>(result.settings.size()) > limit) {
-    settings = WorstSettings(result);
+    auto settings = WorstSettings(result);
     settings.resize(limit);
     return settings;
   }
-  for (const auto& row : grid.cells) {
-    for (const sweep::SettingResult* setting : row) {
-      if (setting != nullptr) settings.push_back(setting);
-    }
+  const int main_factor = sweep::SplitFactors(result.parameters).main_factor;
+  std::vector<std::string> mains;
+  std::vector<std::pair<std::size_t, const sweep::SettingResult*>> placed;
+  for (const sweep::SettingResult& setting : result.settings) {
+    const std::string& main = setting.theta[main_factor].text;
+    const auto found = std::find(mains.begin(), mains.end(), main);
+    placed.emplace_back(found - mains.begin(), &setting);
+    if (found == mains.end()) mains.push_back(main);
   }
+  std::stable_sort(placed.begin(), placed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<const sweep::SettingResult*> settings;
+  for (const auto& [place, setting] : placed) settings.push_back(setting);
   return settings;
 }
 
@@ -107,9 +115,8 @@ std::string TrialEntries(const TrialDots& dots, const std::vector<std::string>& 
 
 }  // namespace
 
-Figure GapByTrialFigure(const sweep::SweepResult& result, const SettingGrid& grid,
-                        const ReportOptions& options) {
-  const auto settings = SettingsToDraw(result, grid, options.worst_settings);
+Figure GapByTrialFigure(const sweep::SweepResult& result, const ReportOptions& options) {
+  const auto settings = SettingsToDraw(result, options.worst_settings);
   const std::vector<std::string> names = TrialNames(result, settings);
   TrialDots dots;
   std::string tics;
