@@ -35,7 +35,7 @@ void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepRes
   for (const report::OmittedFigure& omitted : set.omitted) {
     fmt::print(stderr, "note: {} is not drawn: {}\n", omitted.name, omitted.reason);
   }
-//  WriteFile(folder / "report.html", report::RenderPage(result));
+  WriteFile(folder / "report.html", report::RenderPage(result));
 }
 
 }  // namespace rift::commands
