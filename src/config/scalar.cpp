@@ -47,7 +47,7 @@ double ParseNumber(const Node& node, const Place& place, const std::string& expe
   }
   if (!spelled) Refuse(node, place, expected);
   if (fault == std::errc::result_out_of_range) {
-    Refuse(node, place, expected + " between 1e-307 and 1e308 in size");
+    Refuse(node, place, expected + " that a double can hold");
   }
   return value;
 }

@@ -107,8 +107,8 @@ TEST_CASE("A number that is not finite is refused") {
               ": must be a number that is finite; meaning: lowest forward power");
   }
   CHECK(BindError("control: {v_min: 1e999}") ==
-        "f.yaml:1:18: key 'control.v_min' is 1e999: must be a number between 1e-307 and 1e308 in "
-        "size; meaning: lowest forward power");
+        "f.yaml:1:18: key 'control.v_min' is 1e999: must be a number that a double can hold; "
+        "meaning: lowest forward power");
 }
 
 TEST_CASE("Only a decimal number is a number") {
@@ -191,7 +191,7 @@ TEST_CASE("A rule between fields is placed at its block and at the other sources
 
 TEST_CASE("A value read by hand is checked by its own rules") {
   CHECK(BindError("trials: {}") ==
-        "f.yaml:1:9: key 'trials': must be a count or a list of numbers");
+        "f.yaml:1:9: key 'trials' is a block of keys: must be a count or a list of numbers");
   CHECK(BindError("trials: [1, 100]") == "f.yaml:1:13: key 'trials' is 100: must be in [1, 99]");
 }
 
