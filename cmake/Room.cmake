@@ -13,6 +13,7 @@ endfunction()
 # A room is src/NAME with its headers in include/rift/NAME: the static library rift_NAME, which
 # links only the rooms it may include.
 function(rift_room name)
+  set(RIFT_ROOMS ${RIFT_ROOMS} ${name} PARENT_SCOPE)
   cmake_parse_arguments(ARG "" "" "ROOMS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp")
   list(TRANSFORM ARG_ROOMS PREPEND rift_)
@@ -34,6 +35,9 @@ endfunction()
 function(rift_room_test name)
   cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp")
+  if(NOT sources)
+    return()
+  endif()
   add_executable(rift_${name}_test ${sources})
   set_target_properties(rift_${name}_test PROPERTIES
                         RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "rift/commands/command.hpp"
+#include "rift/config/error.hpp"
 #include "rift/config/suggest.hpp"
 
 namespace {
@@ -25,7 +26,9 @@ void CheckSubcommand(int argc, char** argv) {
   const std::vector<std::string> names = Names();
   if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
   throw std::invalid_argument(
-      fmt::format("'{}' is no subcommand; {}", argv[1], rift::config::Suggest(argv[1], names)));
+      fmt::format(
+      "'{}' is no subcommand{}", argv[1],
+      rift::config::Suggestion(argv[1], names, "the subcommands are")));
 }
 
 int Run(int argc, char** argv) {
@@ -59,6 +62,8 @@ int main(int argc, char** argv) {
   try {
     return Run(argc, argv);
   } catch (const std::invalid_argument& error) {
+    return Fail(error.what(), rift::commands::kBadInput);
+  } catch (const rift::config::Error& error) {
     return Fail(error.what(), rift::commands::kBadInput);
   } catch (const std::exception& error) {
     return Fail(error.what(), rift::commands::kRunTimeFailure);

@@ -35,5 +35,7 @@ std::string GapText(const GapEvidence& evidence);
 std::string GapJson(const GapEvidence& evidence);
 /// Columns real,u,error_m,yaw_error_rad,sim_x_m,sim_y_m,real_x_m,real_y_m; `real` counts from 1.
 std::string ProfileCsv(const GapEvidence& evidence);
+/// Paths, error over u and error distribution in one file, SVG or PNG by its name.
+void WriteGapFigure(const std::filesystem::path& path, const GapEvidence& evidence);
 
 }  // namespace rift::commands
