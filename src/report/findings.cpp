@@ -94,12 +94,7 @@ Finding Where(const sweep::SweepResult& result) {
 Finding Because(const sweep::SweepResult& result) {
   Finding finding{"Because of what?", {}};
   for (const sweep::Effect& effect : result.effects) {
-    std::string sentence = fmt::format("{}: {}", effect.parameter, effect.sentence);
-    if (effect.detected) {
-      sentence +=
-          fmt::format(", about {} of the variance beyond chance", Percent(effect.omega_squared));
-    }
-    finding.sentences.push_back(sentence + ".");
+    finding.sentences.push_back(fmt::format("{}: {}.", effect.parameter, effect.sentence));
   }
   if (finding.sentences.empty()) {
     finding.sentences.push_back("Not known: no parameter was varied over comparable values.");
@@ -201,8 +196,16 @@ Finding NotMeasuredFinding(const sweep::SweepResult& result) {
                          EnumNames(status)[static_cast<int>(status)]);
   }
   finding.sentences.push_back(
-      fmt::format("{} of {} have no gap: {}. They are in no mean above.", result.all.not_ok,
-                  Count(static_cast<long>(result.rows.size()), "trial"), kinds));
+      fmt::format("Without a gap: {} of {} ({}). They are in no mean on this page.",
+                  result.all.not_ok, Count(static_cast<long>(result.rows.size()), "trial"), kinds));
+  const long fewer =
+      std::count_if(result.settings.begin(), result.settings.end(), [&](const auto& setting) {
+        return setting.verdict.repeats > 0 && NotMeasured(result, setting) > 0;
+      });
+  if (fewer > 0) {
+    finding.sentences.push_back(
+        fmt::format("{} judged by fewer repeats than asked for.", Count(fewer, "setting")));
+  }
   return finding;
 }
 

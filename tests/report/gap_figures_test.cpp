@@ -1,0 +1,81 @@
+#include "rift/report/gap_figures.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <regex>
+
+#include <fmt/format.h>
+
+#include "report/png.hpp"
+#include "report/synthetic_sweep.hpp"
+
+namespace rift::report {
+namespace {
+
+using Catch::Matchers::Contains;
+
+TEST_CASE("Logged targets become waypoints in the order they were driven to") {
+  const auto waypoints_m = LoggedWaypoints(synthetic::Path(0.1));
+  REQUIRE(waypoints_m.size() == 2);
+  CHECK(waypoints_m[0].x() == 0.5);
+  CHECK(waypoints_m[1].x() == 1.0);
+}
+
+TEST_CASE("A log without targets has no waypoints") {
+  trajectory::Trajectory path = synthetic::Path(0.1);
+  for (auto& pose : path.poses) pose.target_x_m = pose.target_y_m = NAN;
+  CHECK(LoggedWaypoints(path).empty());
+}
+
+TEST_CASE("The overlay keeps one scale on both axes and joins the two points of the gap") {
+  const ComparedPair pair = synthetic::Pair(0.1);
+  const Figure figure = OverlayFigure({pair});
+  CHECK_THAT(figure.plot, Contains("set size ratio -1") && Contains("'waypoints'"));
+  const std::regex joined(R"(\$largest << EOD\n(\S+) (\S+) \n(\S+) (\S+) \nEOD)");
+  std::smatch match;
+  REQUIRE(std::regex_search(figure.plot, match, joined));
+  const double dx_m = std::stod(match[1]) - std::stod(match[3]);
+  const double dy_m = std::stod(match[2]) - std::stod(match[4]);
+  CHECK(std::hypot(dx_m, dy_m) == Approx(pair.comparison.gap_m).epsilon(1e-5));
+}
+
+TEST_CASE("The error figure marks the maximum and the threshold") {
+  const ComparedPair pair = synthetic::Pair(0.1);
+  const std::string svg = Render(ErrorFigure({pair}, {}), FigureFormat::kSvg);
+  CHECK_THAT(svg, Contains("threshold 0.06 m"));
+  CHECK_THAT(svg, Contains(fmt::format("gap {:.4f} m at u = {:.2f}", pair.comparison.gap_m,
+                                       pair.comparison.gap_u)));
+}
+
+TEST_CASE("What is left out at the start is drawn but shaded and does not count") {
+  gap::GapOptions gap;
+  gap.skip_start = 0.5;
+  const ComparedPair pair =
+      ComparePair("sim", synthetic::Path(0.0), "real", synthetic::Path(0.1), gap);
+  CHECK(pair.profile.u.front() == 0.0);
+  CHECK_THAT(ErrorFigure({pair}, gap).plot, Contains("'left out'"));
+  CHECK_THAT(ErrorFigure({pair}, {}).plot, !Contains("'left out'"));
+  CHECK(ErrorCdfFigure({pair}, gap).plot != ErrorCdfFigure({pair}, {}).plot);
+}
+
+TEST_CASE("Several real paths give several curves named after them") {
+  const std::vector<ComparedPair> pairs = {synthetic::Pair(0.05, "real_1"),
+                                           synthetic::Pair(0.1, "it's \"two\" & 50 % `date`")};
+  for (const Figure& figure : GapFigures(pairs, {})) {
+    const std::string svg = Render(figure, FigureFormat::kSvg);
+    INFO(figure.name);
+    CHECK_THAT(svg, Contains("real_1"));
+    CHECK_THAT(svg, Contains("it's") && Contains("two") && Contains("&amp; 50 % `date`"));
+    CHECK(PngSize(Render(figure, FigureFormat::kPng)).first == 3 * figure.width_px);
+  }
+}
+
+TEST_CASE("The error distribution ends at a share of one hundred percent") {
+  const Figure figure = ErrorCdfFigure({synthetic::Pair(0.1)}, {});
+  CHECK_THAT(figure.plot, Contains(" 100 \nEOD"));
+}
+
+TEST_CASE("No pair is refused") { CHECK_THROWS_AS(OverlayFigure({}), std::invalid_argument); }
+
+}  // namespace
+}  // namespace rift::report

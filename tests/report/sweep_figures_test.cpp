@@ -1,0 +1,159 @@
+#include "rift/report/sweep_figures.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "report/png.hpp"
+#include "report/synthetic_sweep.hpp"
+
+namespace rift::report {
+namespace {
+
+using Catch::Matchers::Contains;
+
+std::vector<std::string> Names(const SweepFigureSet& set) {
+  std::vector<std::string> names;
+  for (const Figure& figure : set.figures) names.push_back(figure.name);
+  return names;
+}
+
+const Figure& Named(const SweepFigureSet& set, const std::string& name) {
+  const auto found = std::find_if(set.figures.begin(), set.figures.end(),
+                                  [&](const Figure& figure) { return figure.name == name; });
+  REQUIRE(found != set.figures.end());
+  return *found;
+}
+
+std::string ReasonFor(const SweepFigureSet& set, const std::string& name) {
+  for (const OmittedFigure& omitted : set.omitted) {
+    if (omitted.name.rfind(name, 0) == 0) return omitted.reason;
+  }
+  return "drawn";
+}
+
+void CheckAllRender(const SweepFigureSet& set) {
+  for (const Figure& figure : set.figures) {
+    INFO(figure.name);
+    CHECK_THAT(Render(figure, FigureFormat::kSvg), Contains("</svg>"));
+    CHECK(PngSize(Render(figure, FigureFormat::kPng)).first == 3 * figure.width_px);
+  }
+}
+
+TEST_CASE("A grid with a categorical axis gives all figures of the paper") {
+  const SweepFigureSet set = SweepFigures(synthetic::Grid(), synthetic::Pair(0.1));
+  CHECK(Names(set) == std::vector<std::string>{"fig07_gap_by_setting", "fig08_gap_by_trial",
+                                               "fig09_error_along_path", "fig10_gap_heat_map",
+                                               "fig11_gap_by_surface", "fig12_failures_by_surface",
+                                               "fig13_failures_by_v_min_v_max"});
+  CHECK(set.omitted.empty());
+  CheckAllRender(set);
+}
+
+TEST_CASE("Names stay as they are written") {
+  const SweepFigureSet set = SweepFigures(synthetic::Grid());
+  for (const char* name : {"fig07_gap_by_setting", "fig08_gap_by_trial", "fig10_gap_heat_map",
+                           "fig11_gap_by_surface", "fig12_failures_by_surface"}) {
+    INFO(name);
+    CHECK_THAT(Render(Named(set, name), FigureFormat::kSvg), Contains("sand_fine"));
+  }
+}
+
+TEST_CASE("Hostile names are drawn and not obeyed") {
+  const std::vector<std::string> names = {"`touch hacked`", "it's \"q\" \\ 100 %d @x $y",
+                                          "Straße – über\nzwei\xff"};
+  const SweepFigureSet set = SweepFigures(synthetic::Grid(names));
+  CheckAllRender(set);
+  const std::string svg = Render(Named(set, "fig11_gap_by_surface"), FigureFormat::kSvg);
+  CHECK_THAT(svg, Contains("`touch hacked`") && Contains("100 %d @x $y") && Contains("Straße"));
+}
+
+TEST_CASE("The heat map shows the mean of each setting and says where there is none") {
+  sweep::SweepResult result = synthetic::Grid();
+  synthetic::LoseGap(&result.rows[0], "gone");
+  sweep::Summarise(result);
+  const std::string svg =
+      Render(Named(SweepFigures(result), "fig10_gap_heat_map"), FigureFormat::kSvg);
+  CHECK_THAT(svg, Contains("0.050") && Contains("0.070") && Contains("no gap"));
+}
+
+TEST_CASE("Failures are counted by level") {
+  const SweepFigureSet set = SweepFigures(synthetic::Grid());
+  const std::string& plot = Named(set, "fig12_failures_by_surface").plot;
+  CHECK_THAT(plot, Contains("$bars << EOD\n0 0 0.7 \n1 0 0.7 \n2 8 0.7 \nEOD"));
+}
+
+TEST_CASE("Trials without a gap are marked in every figure that counts trials") {
+  const SweepFigureSet set = SweepFigures(synthetic::Grid());
+  for (const Figure& figure : set.figures) {
+    if (figure.name == "fig10_gap_heat_map") continue;
+    INFO(figure.name);
+    CHECK_THAT(figure.plot, Contains("'trials without a gap'"));
+  }
+}
+
+TEST_CASE("A single axis has no combinations to group by") {
+  sweep::SweepResult result = synthetic::Grid();
+  result.parameters.resize(1);
+  for (auto& row : result.rows) row.theta.resize(1);
+  sweep::Summarise(result);
+  const SweepFigureSet set = SweepFigures(result);
+  CHECK_THAT(ReasonFor(set, "fig07"), Contains("one parameter only"));
+  CHECK_THAT(ReasonFor(set, "fig10"), Contains("one parameter only"));
+  CHECK_THAT(ReasonFor(set, "fig13"), Contains("one parameter only"));
+  CheckAllRender(set);
+}
+
+TEST_CASE("A single level and a single trial still make figures") {
+  sweep::SweepResult result = synthetic::Grid({"ice"});
+  result.rows.resize(1);
+  for (auto& parameter : result.parameters) parameter.levels.resize(1);
+  sweep::Summarise(result);
+  CheckAllRender(SweepFigures(result));
+}
+
+TEST_CASE("Forty levels are drawn as long as the bars can be told apart") {
+  std::vector<std::string> surfaces;
+  for (int i = 0; i < 40; ++i) surfaces.push_back("surface number " + std::to_string(i));
+  const SweepFigureSet set = SweepFigures(synthetic::Grid(surfaces));
+  CHECK_THAT(ReasonFor(set, "fig07"), Contains("160 bars"));
+  CHECK_THAT(Named(set, "fig08_gap_by_trial").plot, Contains("the 40 worst of 160 settings"));
+  CheckAllRender(set);
+}
+
+TEST_CASE("Continuous axes give scatter plots instead of bars") {
+  const SweepFigureSet set = SweepFigures(synthetic::Continuous(200));
+  CHECK(Names(set) ==
+        std::vector<std::string>{"fig08_gap_by_trial", "gap_over_friction", "gap_over_delay_s"});
+  for (const char* name : {"fig07", "fig10", "fig11", "fig12", "fig13"}) {
+    CHECK_THAT(ReasonFor(set, name), Contains("friction is continuous"));
+  }
+  CheckAllRender(set);
+}
+
+TEST_CASE("A scatter plot of very many trials shows their range") {
+  const SweepFigureSet set = SweepFigures(synthetic::Continuous(6000));
+  const Figure& figure = Named(set, "gap_over_friction");
+  CHECK_THAT(figure.plot, Contains("'median'") && Contains("'5 to 95 %'"));
+  CHECK(figure.plot.size() < 10'000);
+  CheckAllRender(set);
+}
+
+TEST_CASE("A sweep without a single gap draws nothing and says why") {
+  sweep::SweepResult result = synthetic::Grid();
+  for (auto& row : result.rows) synthetic::LoseGap(&row, "gone");
+  sweep::Summarise(result);
+  const SweepFigureSet set = SweepFigures(result);
+  CHECK(set.figures.empty());
+  CHECK(set.omitted.size() == 7);
+  CHECK(ReasonFor(set, "fig08") == "no trial has a gap");
+}
+
+TEST_CASE("The worst row is the largest gap among those that have one") {
+  sweep::SweepResult result = synthetic::Grid();
+  CHECK(WorstRow(result) == 17);
+  for (auto& row : result.rows) synthetic::LoseGap(&row, "gone");
+  CHECK(WorstRow(result) == std::nullopt);
+}
+
+}  // namespace
+}  // namespace rift::report
