@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <future>
 #include <memory>
 
 #include "files.hpp"
@@ -26,8 +27,9 @@ struct GapRequest {
   bool exit_code = false;
 };
 
-void SayWhyNoYawError(const trajectory::Log& log, const std::string& path,
-                      const std::string& flag) {
+/// What was mended, and why there may be no yaw errors.
+void SayNotes(const trajectory::Log& log, const std::string& path, const std::string& flag) {
+  PrintNotes(log, path);
   if (log.unknown_angles.empty()) return;
   fmt::print(stderr, "note: {}: yaw errors are left out: {}: set {}\n", path, log.unknown_angles,
              flag);
@@ -36,14 +38,21 @@ void SayWhyNoYawError(const trajectory::Log& log, const std::string& path,
 GapEvidence Measure(const GapRequest& request) {
   GapEvidence evidence{
       .options = request.options, .tag_offset_m = request.tag_offset_m, .sim_path = request.sim};
-  const trajectory::Log sim = LoadLog(request.sim, request.sim_format);
-  SayWhyNoYawError(sim, request.sim, "--sim-format");
-  evidence.sim = sim.trajectory;
+  // Reading is most of the work on long logs, and the logs do not know each other.
+  std::vector<std::future<trajectory::Log>> reals;
   for (const std::string& path : request.reals) {
-    trajectory::Log real =
-        LoadLog(path, request.real_format, request.tag_offset_m, "--real-format");
-    SayWhyNoYawError(real, path, "--real-format");
-    evidence.trials.push_back({path, gap::Compare(evidence.sim, real.trajectory, request.options)});
+    reals.push_back(std::async(std::launch::async, [&request, &path] {
+      return LoadLog(path, request.real_format, request.tag_offset_m, "--real-format");
+    }));
+  }
+  trajectory::Log sim = LoadLog(request.sim, request.sim_format);
+  SayNotes(sim, request.sim, "--sim-format");
+  evidence.sim = std::move(sim.trajectory);
+  for (size_t i = 0; i < reals.size(); ++i) {
+    trajectory::Log real = reals[i].get();
+    SayNotes(real, request.reals[i], "--real-format");
+    evidence.trials.push_back(
+        {request.reals[i], gap::Compare(evidence.sim, real.trajectory, request.options)});
     evidence.reals.push_back(std::move(real.trajectory));
   }
   Judge(evidence);

@@ -10,9 +10,11 @@
 namespace rift::commands {
 
 trajectory::Log LoadLog(const std::string& path, trajectory::Format format) {
-  trajectory::Log log = trajectory::ReadLog(ReadFile(path), path, format);
+  return trajectory::ReadLog(ReadFile(path), path, format);
+}
+
+void PrintNotes(const trajectory::Log& log, const std::string& path) {
   for (const std::string& note : log.notes) fmt::print(stderr, "note: {}: {}\n", path, note);
-  return log;
 }
 
 trajectory::Log LoadLog(const std::string& path, trajectory::Format format, double tag_offset_m,

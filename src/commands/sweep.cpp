@@ -51,6 +51,7 @@ class LogCache {
                                 ? LoadLog(path, experiment_.reference.format,
                                           experiment_.reference.tag_offset_m, "reference.format")
                                 : LoadLog(path, experiment_.candidate.format);
+      PrintNotes(log, path);
       return {sweep::TrialStatus::kOk, "", std::move(log.trajectory)};
     } catch (const std::invalid_argument& bad_log) {  // a row of its own, not the sweep's end
       return {sweep::TrialStatus::kUnreadable, bad_log.what(), {}};
@@ -109,7 +110,8 @@ void AddSweep(CLI::App& app, int& exit_code) {
     InputHashes hashes;
     LogCache logs(experiment, hashes);
     const sweep::SweepResult result = Compare(*request, experiment, std::ref(logs));
-    const fs::path out = request->out.empty() ? fs::path("out") / experiment.name : fs::path(request->out);
+    const fs::path out =
+        request->out.empty() ? fs::path("out") / experiment.name : fs::path(request->out);
     WriteFile(out / "experiment.yaml", config::WriteExperiment(experiment));
     WriteFile(out / "inputs.txt", hashes.Text());
     WriteFile(out / "table.csv", TableCsv(result));
