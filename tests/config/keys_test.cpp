@@ -116,6 +116,8 @@ TEST_CASE("A suggestion is made only when it is near") {
   CHECK(Nearest("samplse", keys) == "samples");
   CHECK(Nearest("zzzzzz", keys).empty());
   CHECK(Nearest(std::string(100'000, 'a'), keys).empty());
+  CHECK(Suggestion("samplse", keys, "known") == "; did you mean 'samples'?");
+  CHECK(Suggestion("zzzzzz", keys, "known") == "; known: period_s, samples, on");
 }
 
 }  // namespace
