@@ -1,0 +1,108 @@
+#include "rift/config/experiment.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+#include <random>
+
+#include "rift/config/error.hpp"
+#include "support/random_fill.hpp"
+
+#include "rift/config/sweep_hooks.hpp"
+
+namespace rift::config {
+namespace {
+
+/// Loads from texts by name instead of files.
+Experiment LoadTexts(const std::map<std::string, std::string>& texts,
+                     const std::vector<std::string>& overrides = {}) {
+  return LoadExperiment(texts.begin()->first, overrides,
+                        [&](const std::string& path) { return texts.at(path); });
+}
+
+sweep::Space RandomSpace(std::mt19937_64& random) {
+  sweep::Space space;
+  for (size_t i = random() % 4; i > 0; --i) {
+    sweep::Parameter parameter{.key = "block.parameter_" + std::to_string(i)};
+    if (random() % 2 == 0) {
+      parameter.min = -std::uniform_real_distribution<double>(0.0, 9.0)(random);
+      parameter.max = std::uniform_real_distribution<double>(0.1, 9.0)(random);
+    } else {
+      parameter.levels = {{"0.30", 0.3}, {"text " + test::RandomText(random), std::nullopt}};
+    }
+    space.parameters.push_back(parameter);
+  }
+  return space;
+}
+
+TEST_CASE("A waypoint file of the authors is an experiment with every default") {
+  const Experiment experiment = LoadTexts({{"task.yaml", R"(waypoints:
+  - {name: start, x: -0.2822, y: -0.0655, heading: -0.9, stop: true}
+  - {name: end, x: 0.3832, y: -0.0597, stop: true}
+)"}});
+  CHECK(experiment.name == "task");
+  REQUIRE(experiment.waypoints.size() == 2);
+  CHECK(experiment.waypoints[0].heading_deg == -0.9);
+  CHECK(experiment.waypoints[1].x_m == 0.3832);
+  CHECK(experiment.gap.samples == 2000);
+  CHECK(experiment.gap.threshold_m == 0.06);
+}
+
+TEST_CASE("A resolved experiment loads as the same experiment") {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 300; ++i) {
+    Experiment experiment;
+    test::RandomFill(experiment, random);
+    experiment.space = RandomSpace(random);
+    experiment.reference.trials.names = {"1", "02", test::RandomText(random) + "x"};
+    experiment.reference.path.text = "/logs/{surface}: " + test::RandomText(random);
+    experiment.candidate.path.text = "/a/b.csv";
+    const std::string written = WriteExperiment(experiment);
+    INFO(written);
+    Experiment loaded;
+    try {
+      loaded = LoadTexts({{"experiment.yaml", written}});
+    } catch (const Error& error) {
+      FAIL(error.what());
+    }
+    loaded.reference.path = experiment.reference.path;  // made absolute and normal on loading
+    CHECK(WriteExperiment(loaded) == written);
+  }
+}
+
+TEST_CASE("Paths of a file are relative to it and paths of an override to the shell") {
+  const std::map<std::string, std::string> texts{
+      {"/a/b/task.yaml", "candidate: {path: ../logs/{surface}.csv}\n"}};
+  CHECK_THROWS_AS(LoadTexts(texts), Error);  // braces in a flow map are YAML's own
+  const Experiment experiment =
+      LoadTexts({{"/a/b/task.yaml", "candidate:\n  path: ../logs/{surface}.csv\n"}},
+                {"reference.path=/x/../y.csv"});
+  CHECK(experiment.candidate.path.text == "/a/logs/{surface}.csv");
+  CHECK(experiment.reference.path.text == "/y.csv");
+}
+
+TEST_CASE("Nested and dotted and overridden axes are one thing") {
+  const std::string dotted = "space: {control.v_min: [0.15, 0.20]}\n";
+  const std::string nested = "space:\n  control:\n    v_min: [0.15, 0.20]\n";
+  const Experiment a = LoadTexts({{"a.yaml", dotted}}), b = LoadTexts({{"a.yaml", nested}});
+  const Experiment c = LoadTexts({{"a.yaml", "{}"}}, {"space.control.v_min=[0.15, 0.20]"});
+  CHECK(WriteExperiment(a) == WriteExperiment(b));
+  CHECK(WriteExperiment(a) == WriteExperiment(c));
+  REQUIRE(a.space.parameters.size() == 1);
+  CHECK(a.space.parameters[0].key == "control.v_min");
+  CHECK(a.space.parameters[0].levels[1].text == "0.20");
+  CHECK(a.space.parameters[0].levels[1].number == 0.2);
+}
+
+TEST_CASE("Trials are a list or a count") {
+  const auto trials = [](const std::string& text) {
+    return LoadTexts({{"a.yaml", "reference: {trials: " + text + "}"}}).reference.trials.names;
+  };
+  CHECK(trials("[1, b, 3]") == std::vector<std::string>{"1", "b", "3"});
+  CHECK(trials("3") == std::vector<std::string>{"1", "2", "3"});
+  CHECK_THROWS_AS(trials("[]"), Error);
+  CHECK_THROWS_AS(trials("2.5"), Error);
+  CHECK_THROWS_AS(trials("[1, 1]"), Error);
+}
+
+}  // namespace
+}  // namespace rift::config
