@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rift/config/load.hpp"
+#include "rift/control/waypoint.hpp"
+#include "rift/gap/options.hpp"
+#include "rift/sweep/options.hpp"
+
+namespace rift::config {
+
+/// Everything that a run depends on: the whole schema. The defaults stand in the Options structs
+/// of the rooms, and every key is optional: the authors' waypoint file is an experiment.
+struct Experiment {
+  std::string name;
+  std::vector<control::Waypoint> waypoints;
+  sweep::Goal goal = sweep::Goal::kGrid;
+  sweep::Space space;
+  sweep::CandidateOptions candidate;
+  sweep::ReferenceOptions reference;
+  gap::GapOptions gap;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("name", self.name, "what reports call it; by default the name of the file");
+    field("waypoints", self.waypoints, "the task: name, x, y, heading (of the first), stop");
+    field("goal", self.goal, "what a sweep is for: visit every combination");
+    field("space", self.space, "the parameters to vary; a list is an axis of a grid");
+    field("candidate", self.candidate, "the simulator: what is put to the test");
+    field("reference", self.reference, "the robot: what it is compared with");
+    field("gap", self.gap, "how the gap is measured");
+  }
+};
+
+/// Defaults < file (with what it includes) < overrides (`a.b=c`), checked; paths absolute.
+/// Throws Error with file:line:column, the key, its value and the rule.
+Experiment LoadExperiment(const std::string& path, const std::vector<std::string>& overrides,
+                          const FileReader& read);
+
+/// The resolved experiment as YAML; loading it gives the same experiment.
+std::string WriteExperiment(const Experiment& experiment);
+
+}  // namespace rift::config

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <deque>
+
+#include "rift/control/navigator_options.hpp"
+#include "rift/geometry/pose2.hpp"
+
+namespace rift::control {
+
+/// Makes up for a known loop delay: moves a measured pose through the commands that were sent but
+/// cannot have shown in it yet.
+class PosePredictor {
+ public:
+  /// Throws std::invalid_argument on a bad robot model.
+  explicit PosePredictor(const LatencyOptions& options);
+
+  /// A power sent at `now_s`, which holds until the next one. Times must not run backwards.
+  void NoteSent(double now_s, const robot::WheelPower& power);
+
+  /// The pose of the robot at the moment a command sent at `now_s` takes effect, given a pose
+  /// that arrived at `arrived_s`: what was sent since `arrived_s` - delay is still to be driven.
+  /// Without a delay the pose itself.
+  geometry::Pose2 Predict(const geometry::Pose2& world_from_robot, double arrived_s,
+                          double now_s) const;
+
+ private:
+  struct Sent {
+    double sent_s;
+    robot::WheelPower power;
+  };
+
+  robot::DiffDrive drive_;
+  double delay_s_;
+  std::deque<Sent> sent_;
+};
+
+}  // namespace rift::control

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "rift/gap/options.hpp"
+#include "rift/geometry/pose2.hpp"
+#include "rift/trajectory/trajectory.hpp"
+
+namespace rift::gap {
+
+inline constexpr double kNotComputed = std::numeric_limits<double>::quiet_NaN();
+
+/// The gap and everything that helps to read it. Errors are distances between the two paths at
+/// equal normalised arc length u unless a name says otherwise; NaN where it could not be computed.
+struct Comparison {
+  double gap_m = kNotComputed;        ///< largest error over the samples (paper, section 3.1)
+  double gap_u = kNotComputed;        ///< where along the path it stands, u in [0, 1]
+  double exact_gap_m = kNotComputed;  ///< supremum over the polylines, never below gap_m
+  double exact_gap_u = kNotComputed;
+
+  double mean_error_m = kNotComputed;
+  double rms_error_m = kNotComputed;
+  double median_error_m = kNotComputed;
+  double p95_error_m = kNotComputed;
+  double max_yaw_error_rad = kNotComputed;  ///< NaN when a log does not tell its yaw
+  double mean_yaw_error_rad = kNotComputed;
+
+  double sim_length_m = kNotComputed;
+  double real_length_m = kNotComputed;
+  double length_ratio = kNotComputed;    ///< sim / real
+  double start_offset_m = kNotComputed;  ///< between the first points
+  double end_error_m = kNotComputed;     ///< between the last points
+
+  double start_aligned_gap_m = kNotComputed;  ///< gap with the first points laid together
+  double shape_gap_m = kNotComputed;          ///< gap left after the best rigid motion
+  geometry::Pose2 real_from_sim;              ///< that motion
+
+  double sim_standstill_share = kNotComputed;  ///< of the arc length, logged while standing
+  double real_standstill_share = kNotComputed;
+
+  double hausdorff_m = kNotComputed;   ///< largest distance to the closest point of the other path
+  double frechet_m = kNotComputed;     ///< discrete Frechet distance
+  double dtw_m = kNotComputed;         ///< mean distance along the best time warping
+  double equal_time_m = kNotComputed;  ///< largest distance at equal time since the first row
+};
+
+/// Compares two paths of at least two poses and non-zero length.
+/// Throws std::invalid_argument when a path does not move.
+Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+                   const GapOptions& options);
+
+/// The gap alone: what Compare gives as gap_m, in about a microsecond for 80 rows.
+double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+           const GapOptions& options);
+
+/// Error along the path, one entry a sample; yaw_error_rad is NaN where a yaw is not known.
+struct ErrorProfile {
+  std::vector<double> u;
+  std::vector<double> error_m;
+  std::vector<double> yaw_error_rad;
+  std::vector<Eigen::Vector2d> sim_m;  ///< the points compared, after trimming and aligning
+  std::vector<Eigen::Vector2d> real_m;
+};
+
+ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+                          const GapOptions& options);
+
+}  // namespace rift::gap

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace rift::gap {
+
+/// What is taken away from the simulated path before it is compared.
+enum class Align {
+  kNone,   ///< nothing: the paper's definition
+  kStart,  ///< the offset of its first point
+  kSe2,    ///< the planar rigid motion that fits it best to the real one (least squares)
+};
+
+constexpr std::array<std::string_view, 3> EnumNames(Align) { return {"none", "start", "se2"}; }
+
+/// How the Sim-to-Real gap is measured; the defaults are section 3.1 of the paper.
+struct GapOptions {
+  int samples = 2000;
+  double skip_start = 0.0;
+  Align align = Align::kNone;
+  double threshold_m = 0.06;
+  bool trim_standstill = false;
+  double standstill_radius_m = 0.01;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("samples", self.samples, 2, 10'000'000,
+          "evenly spaced values of u in [0, 1] (paper, section 3.1)");
+    field("skip_start", self.skip_start, 0.0, 0.95,
+          "share of the samples left out at the start; the published numbers leave out 0.1");
+    field("align", self.align,
+          "what is removed before comparing: nothing, the start offset, the best rigid motion");
+    field("threshold_m", self.threshold_m, 0.0, 1000.0,
+          "a gap above this falsifies (paper, section 6.1)");
+    field("trim_standstill", self.trim_standstill,
+          "drop the samples logged before the robot left its place and after it came to rest");
+    field("standstill_radius_m", self.standstill_radius_m, 0.0, 1.0,
+          "within this distance of its first or last point the robot counts as standing");
+  }
+};
+
+/// The definition in force in one line, to stand beside every number.
+std::string DefinitionText(const GapOptions& options);
+
+}  // namespace rift::gap

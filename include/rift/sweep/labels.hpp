@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rift/sweep/result.hpp"
+
+namespace rift::sweep {
+
+/// The two sides of figures 7, 8, 10 and 13: the first categorical parameter (else the first)
+/// and the combination of all others.
+struct FactorSplit {
+  int main_factor = 0;
+  std::vector<int> others;  ///< indices of the other parameters; empty for one axis
+  std::string others_name;  ///< "[v_min, v_max]"
+};
+
+/// Throws std::invalid_argument for a space without parameters.
+FactorSplit SplitFactors(const std::vector<Parameter>& parameters);
+
+/// "0.15" for one parameter, "[0.15, 0.30]" for several.
+std::string CombinationLabel(const std::vector<ParameterValue>& theta,
+                             const std::vector<int>& parameters);
+
+/// Rows grouped by the combination of the named parameters' values, in the order of first rows.
+std::vector<LevelSummary> SummariseBy(const SweepResult& result,
+                                      const std::vector<int>& parameters);
+
+}  // namespace rift::sweep

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rift/trajectory/trajectory.hpp"
+
+namespace rift::trajectory {
+
+/// The CSV dialects. They differ in their units and frames, not only in their names:
+///   rift     t_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad,target_x_m,target_y_m[,more_columns]
+///   tum      evo's: no header, blanks between t tx ty tz qx qy qz qw, `#` starts a comment
+///   tracker  the authors' real logs: t,x,y,z,roll,pitch,yaw,desired_x,desired_y in the camera
+///            frame (y down, z away from the camera), angles in degrees
+///   webots   the authors' simulator: the same header, radians, yaw turned by +pi/2
+/// `auto` tells them by their header. The header of tracker and webots is the same, so their
+/// positions are read and their angles stay unknown until the dialect is named.
+enum class Format { kAuto, kRift, kTum, kTracker, kWebots };
+
+constexpr std::array<std::string_view, 5> EnumNames(Format) {
+  return {"auto", "rift", "tum", "tracker", "webots"};
+}
+
+/// A log as it was read.
+struct Log {
+  Trajectory trajectory;
+  Format format = Format::kAuto;   ///< kAuto: the authors' header, which of the two is not known
+  std::vector<std::string> notes;  ///< what was mended on the way, one line each
+  /// Why the angles are unknown and what to do; empty when they are known or not logged.
+  std::string unknown_angles;
+};
+
+/// Reads a whole log or throws std::invalid_argument with one line `name:row: what is wrong`.
+/// Rows out of order are sorted by time and of rows with equal time the last is kept, both noted.
+/// Refused: NaN or infinite values, ragged rows, fewer than two poses, a path of zero length.
+/// Accepted: a byte order mark, CRLF, blank lines, empty cells in optional columns (not logged).
+Log ReadLog(std::string_view text, const std::string& name, Format format = Format::kAuto);
+
+/// The rift dialect; doubles in the shortest form that reads back to the same bits, values that
+/// are not logged as empty cells.
+std::string WriteRift(const Trajectory& trajectory);
+
+/// evo's TUM dialect; angles and heights that are not logged are written as zero.
+std::string WriteTum(const Trajectory& trajectory);
+
+}  // namespace rift::trajectory

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rift/control/navigator.hpp"
+#include "rift/robot/robot.hpp"
+#include "rift/trajectory/trajectory.hpp"
+#include "rift/trial/trial_options.hpp"
+
+namespace rift::trial {
+
+enum class Outcome { kReached, kTimedOut, kFell, kLeftArena, kLost, kFault };
+
+constexpr std::array<std::string_view, 6> EnumNames(Outcome) {
+  return {"reached", "timed_out", "fell", "left_arena", "lost", "fault"};
+}
+
+/// How far the robot got with one waypoint.
+struct WaypointVisit {
+  std::string name;
+  std::optional<double> reached_s;  ///< robot clock; none: never
+  std::optional<double> closest_m;  ///< least distance while it was driven to; none: never tried
+};
+
+/// A power as sent, on the robot clock.
+struct SentCommand {
+  double t_s = 0.0;
+  robot::WheelPower power;
+};
+
+/// How many decisions each limit changed, and what the loops asked for at most: whether a limit
+/// such as v_max mattered in this trial.
+struct LimitCounts {
+  size_t decisions = 0;  ///< those that drove, thus neither settling, stopped nor stale
+  size_t v_min = 0;
+  size_t v_max = 0;
+  size_t cruise_cap = 0;
+  size_t through_cruise = 0;
+  size_t w_min = 0;
+  size_t w_max = 0;
+  size_t normalised = 0;
+  size_t slew = 0;
+  double largest_raw_v = 0.0;
+  double largest_raw_w = 0.0;  ///< of either sign
+};
+
+struct TrialResult {
+  Outcome outcome = Outcome::kFault;
+  std::string reason;       ///< one line for people
+  double start_s = 0.0;     ///< robot clock at the first look
+  double driving_s = -1.0;  ///< robot clock at the first non-zero power; -1: never drove
+  double end_s = 0.0;
+  std::vector<WaypointVisit> visits;  ///< one for each waypoint after the start
+  /// One row for each new believable pose, stamped with its capture time on the robot clock, with
+  /// the target and the channels power_left, power_right, v, w: what was in force when the pose
+  /// came in, thus the decision made on it where there was one.
+  trajectory::Trajectory trajectory;
+  std::vector<SentCommand> commands;  ///< every power sent, in order
+  LimitCounts limits;
+  size_t poses_refused = 0;    ///< not finite, or a jump
+  size_t stale_decisions = 0;  ///< zero power was sent since the pose was too old
+
+  double Duration_s() const { return end_s - start_s; }
+};
+
+/// The one loop for simulator and hardware: sense, decide, command, record, advance, until the
+/// last waypoint is reached or the trial fails. Deterministic in what the robot reports.
+///
+/// Robot::Stop() is called on every way out, exceptions of the robot included, and no power but
+/// zero is ever sent without a believable pose younger than pose_stale_s.
+/// Throws std::invalid_argument on bad options or waypoints, before the robot moves.
+TrialResult RunTrial(robot::Robot& robot, const std::vector<control::Waypoint>& waypoints,
+                     const control::NavigatorOptions& navigator_options,
+                     const TrialOptions& options);
+
+}  // namespace rift::trial

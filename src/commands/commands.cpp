@@ -1,0 +1,13 @@
+#include "rift/commands/command.hpp"
+
+namespace rift::commands {
+
+const std::vector<Command>& Commands() {
+  static const std::vector<Command> commands{
+      {"gap", "Measure the Sim-to-Real gap of trajectories", AddGap},
+      {"sweep", "Find where in a parameter space the gap is too large, and why", AddSweep},
+  };
+  return commands;
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,100 @@
+#include "files.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+namespace rift::commands {
+namespace {
+
+/// An open file, closed at the end of its scope.
+class Descriptor {
+ public:
+  Descriptor(const std::filesystem::path& path, int flags)
+      : number_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  bool IsOpen() const { return number_ >= 0; }
+  int Number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+[[noreturn]] void CannotRead(const std::filesystem::path& path) {
+  throw std::invalid_argument(fmt::format("cannot read {}: {}", path.string(), strerror(errno)));
+}
+
+[[noreturn]] void CannotWrite(const std::filesystem::path& path) {
+  throw std::runtime_error(fmt::format("cannot write {}: {}", path.string(), strerror(errno)));
+}
+
+bool WriteWhole(const Descriptor& file, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(file.Number(), text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    text.remove_prefix(static_cast<size_t>(written));
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string ReadFile(const std::filesystem::path& path) {
+  const Descriptor file(path, O_RDONLY);
+  if (!file.IsOpen()) CannotRead(path);
+  struct stat about {};
+  std::string text;
+  // The size is a hint: a pipe has none and a growing log has more.
+  if (::fstat(file.Number(), &about) == 0 && S_ISREG(about.st_mode))
+    text.reserve(about.st_size + 1);
+  size_t used = 0;
+  while (true) {
+    text.resize(std::max(text.capacity(), used + 65536));
+    const ssize_t got = ::read(file.Number(), text.data() + used, text.size() - used);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) CannotRead(path);
+    used += static_cast<size_t>(got);
+    if (got == 0) break;
+  }
+  text.resize(used);
+  return text;
+}
+
+void WriteFile(const std::filesystem::path& path, std::string_view text) {
+  std::error_code error;
+  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
+  if (error) {
+    throw std::runtime_error(
+        fmt::format("cannot make folder {}: {}", path.parent_path().string(), error.message()));
+  }
+  const std::filesystem::path beside = path.string() + fmt::format(".{}.part", ::getpid());
+  {
+    const Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC);
+    if (!file.IsOpen()) CannotWrite(path);
+    if (!WriteWhole(file, text)) {
+      const int reason = errno;
+      std::filesystem::remove(beside, error);
+      errno = reason;
+      CannotWrite(path);
+    }
+  }
+  std::filesystem::rename(beside, path, error);
+  if (error) {
+    const std::error_code reason = error;
+    std::filesystem::remove(beside, error);
+    throw std::runtime_error(fmt::format("cannot write {}: {}", path.string(), reason.message()));
+  }
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+namespace rift::commands {
+
+/// "threshold_m" -> "--threshold", its unit "m" for the help.
+struct FlagName {
+  explicit FlagName(std::string_view key) {
+    for (const std::string_view known : {"_m", "_s", "_rad", "_deg", "_hz"}) {
+      if (!key.ends_with(known)) continue;
+      unit = known.substr(1);
+      key.remove_suffix(known.size());
+      break;
+    }
+    flag = "--" + std::string(key);
+    std::replace(flag.begin(), flag.end(), '_', '-');
+  }
+
+  std::string flag;
+  std::string unit;  ///< empty for a pure number
+};
+
+/// Makes one flag for each field of an Options struct: the same keys, defaults, ranges and help
+/// as in the YAML file.
+class FlagMaker {
+ public:
+  explicit FlagMaker(CLI::App& app) : app_(app) {}
+
+  template <class Number>
+  void operator()(std::string_view key, Number& value, auto min, auto max, const char* help) {
+    const FlagName name(key);
+    CLI::Option* option =
+        app_.add_option(name.flag, value, help)
+            ->capture_default_str()
+            ->check(CLI::Range(static_cast<Number>(min), static_cast<Number>(max)));
+    if (!name.unit.empty()) option->type_name(name.unit);
+  }
+
+  void operator()(std::string_view key, bool& value, const char* help) {
+    app_.add_flag(FlagName(key).flag, value, help);
+  }
+
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void operator()(std::string_view key, Enum& value, const char* help) {
+    const auto names = EnumNames(Enum{});
+    std::string choices;
+    for (const std::string_view name : names)
+      choices += (choices.empty() ? "" : "|") + std::string(name);
+    app_.add_option_function<std::string>(
+            FlagName(key).flag,
+            [&value, names](const std::string& text) {
+              value =
+                  static_cast<Enum>(std::find(names.begin(), names.end(), text) - names.begin());
+            },
+            help)
+        ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
+        ->type_name(choices)
+        ->default_str(std::string(names[static_cast<size_t>(value)]));
+  }
+
+ private:
+  CLI::App& app_;
+};
+
+template <class Options>
+void AddFlags(CLI::App& app, Options& options) {
+  Options::Fields(options, FlagMaker(app));
+}
+
+}  // namespace rift::commands

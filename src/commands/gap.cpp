@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "files.hpp"
+#include "flags.hpp"
+#include "gap_output.hpp"
+#include "logs.hpp"
+#include "rift/commands/command.hpp"
+
+namespace rift::commands {
+namespace {
+
+using trajectory::Format;
+
+struct GapRequest {
+  std::string sim;
+  std::vector<std::string> reals;
+  gap::GapOptions options;
+  double tag_offset_m = 0.0;
+  Format sim_format = Format::kAuto;
+  Format real_format = Format::kAuto;
+  std::string json, profile, figure;
+  bool exit_code = false;
+};
+
+void SayWhyNoYawError(const trajectory::Log& log, const std::string& path,
+                      const std::string& flag) {
+  if (log.unknown_angles.empty()) return;
+  fmt::print(stderr, "note: {}: yaw errors are left out: {}: set {}\n", path, log.unknown_angles,
+             flag);
+}
+
+GapEvidence Measure(const GapRequest& request) {
+  GapEvidence evidence{
+      .options = request.options, .tag_offset_m = request.tag_offset_m, .sim_path = request.sim};
+  const trajectory::Log sim = LoadLog(request.sim, request.sim_format);
+  SayWhyNoYawError(sim, request.sim, "--sim-format");
+  evidence.sim = sim.trajectory;
+  for (const std::string& path : request.reals) {
+    trajectory::Log real =
+        LoadLog(path, request.real_format, request.tag_offset_m, "--real-format");
+    SayWhyNoYawError(real, path, "--real-format");
+    evidence.trials.push_back({path, gap::Compare(evidence.sim, real.trajectory, request.options)});
+    evidence.reals.push_back(std::move(real.trajectory));
+  }
+  Judge(evidence);
+  return evidence;
+}
+
+void Save(const GapRequest& request, const GapEvidence& evidence) {
+  if (!request.profile.empty()) WriteFile(request.profile, ProfileCsv(evidence));
+  if (!request.figure.empty()) WriteGapFigure(request.figure, evidence);
+  if (request.json == "-") {
+    fmt::print("{}", GapJson(evidence));
+    return;
+  }
+  if (!request.json.empty()) WriteFile(request.json, GapJson(evidence));
+  fmt::print("{}", GapText(evidence));
+}
+
+}  // namespace
+
+void AddGap(CLI::App& app, int& exit_code) {
+  const auto request = std::make_shared<GapRequest>();
+  app.add_option("SIM", request->sim, "log of the simulator (CSV)")->required();
+  app.add_option("REAL", request->reals, "logs of the robot, one a repeat")->required();
+  AddFlags(app, request->options);
+  FlagMaker flags(app);
+  flags(
+      "tag_offset_m", request->tag_offset_m, -1.0, 1.0,
+      "moves the real path forward along its yaw, from the tag to the robot's front (paper: 0.03)");
+  flags("sim_format", request->sim_format, "dialect of SIM");
+  flags("real_format", request->real_format, "dialect of REAL");
+  app.add_option("--json", request->json,
+                 "write everything as JSON; - for stdout, without the text")
+      ->type_name("FILE|-");
+  app.add_option("--profile", request->profile, "write the error along the path")
+      ->type_name("FILE.csv");
+  app.add_option("--figure", request->figure, "draw paths, error over u and its distribution")
+      ->type_name("FILE.svg|FILE.png");
+  app.add_flag("--exit-code", request->exit_code, "end with 1 when the verdict is falsified");
+  app.footer(
+      "Example: rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03");
+  app.callback([request, &exit_code] {
+    const GapEvidence evidence = Measure(*request);
+    Save(*request, evidence);
+    const bool falsified = evidence.verdict.verdict == gap::Verdict::kFalsified;
+    exit_code = request->exit_code && falsified ? kFalsified : kDone;
+  });
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "json_fields.hpp"
+#include "rift/sweep/labels.hpp"
+#include "sweep_output.hpp"
+
+namespace rift::commands {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// RFC 4180: quoted when it must be.
+std::string CsvCell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == text.npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string NumberCell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
+
+std::string RowCsv(const sweep::TrialRow& row) {
+  std::string text;
+  for (const sweep::ParameterValue& value : row.theta) text += CsvCell(value.text) + ',';
+  const std::string falsified = row.IsOk() ? fmt::format("{}", row.falsified) : "";
+  text += fmt::format("{},{},{},{}", CsvCell(row.trial), NumberCell(row.comparison.gap_m),
+                      falsified, EnumNames(row.status)[static_cast<size_t>(row.status)]);
+  const gap::Comparison& c = row.comparison;
+  for (const double value :
+       {c.gap_u, c.exact_gap_m, c.mean_error_m, c.rms_error_m, c.start_offset_m,
+        c.start_aligned_gap_m, c.shape_gap_m, c.length_ratio, c.end_error_m}) {
+    text += ',' + NumberCell(value);
+  }
+  return text + ',' + CsvCell(row.reason) + ',' + CsvCell(row.candidate) + ',' +
+         CsvCell(row.reference) + '\n';
+}
+
+ordered_json LevelJson(const sweep::LevelSummary& level) {
+  return {{"mean_gap_m", NumberOrNull(level.mean_gap_m)},
+          {"failures", level.failures},
+          {"n", level.n},
+          {"not_ok", level.not_ok},
+          {"sd_gap_m", NumberOrNull(level.sd_gap_m)}};
+}
+
+ordered_json LevelsJson(const std::vector<sweep::LevelSummary>& levels) {
+  ordered_json json = ordered_json::object();
+  for (const sweep::LevelSummary& level : levels) json[level.level] = LevelJson(level);
+  return json;
+}
+
+ordered_json EffectJson(const sweep::Effect& effect) {
+  return {{"f", NumberOrNull(effect.f)},
+          {"df", {effect.df_between, effect.df_within}},
+          {"p", NumberOrNull(effect.p)},
+          {"eta_squared", NumberOrNull(effect.eta_squared)},
+          {"omega_squared", NumberOrNull(effect.omega_squared)},
+          {"detected", effect.detected},
+          {"sentence", effect.sentence}};
+}
+
+ordered_json SettingJson(const sweep::SweepResult& result, const sweep::SettingResult& setting) {
+  ordered_json theta;
+  for (size_t i = 0; i < result.parameters.size(); ++i) {
+    const sweep::ParameterValue& value = setting.theta[i];
+    const std::string name = result.parameters[i].Name();
+    if (value.number) {
+      theta[name] = *value.number;
+    } else {
+      theta[name] = value.text;
+    }
+  }
+  const gap::RepeatVerdict& verdict = setting.verdict;
+  return {{"theta", theta},
+          {"mean_gap_m", NumberOrNull(setting.mean_gap_m)},
+          {"verdict", EnumNames(verdict.verdict)[static_cast<size_t>(verdict.verdict)]},
+          {"failures", verdict.above},
+          {"n", verdict.repeats},
+          {"share_above_low", verdict.share_low},
+          {"share_above_high", verdict.share_high},
+          {"noise_floor_m", NumberOrNull(setting.noise_floor_m)}};
+}
+
+/// Means over the trials with a gap: what alignment takes away.
+ordered_json AttributionJson(const sweep::SweepResult& result) {
+  double start_m = 0.0, aligned_m = 0.0, shape_m = 0.0;
+  for (const sweep::TrialRow& row : result.rows) {
+    if (!row.IsOk()) continue;
+    start_m += row.comparison.start_offset_m / result.all.n;
+    aligned_m += row.comparison.start_aligned_gap_m / result.all.n;
+    shape_m += row.comparison.shape_gap_m / result.all.n;
+  }
+  return {
+      {"start_offset_m", start_m}, {"start_aligned_gap_m", aligned_m}, {"shape_gap_m", shape_m}};
+}
+
+}  // namespace
+
+std::string TableCsv(const sweep::SweepResult& result) {
+  std::string text;
+  for (const sweep::Parameter& parameter : result.parameters)
+    text += CsvCell(parameter.Name()) + ',';
+  text +=
+      "trial,gap_m,falsified,status,u,exact_gap_m,mean_error_m,rms_error_m,start_offset_m,"
+      "start_aligned_gap_m,shape_gap_m,length_ratio,end_error_m,reason,candidate,reference\n";
+  for (const sweep::TrialRow& row : result.rows) text += RowCsv(row);
+  return text;
+}
+
+std::string SummaryJson(const sweep::SweepResult& result) {
+  ordered_json json;
+  json["name"] = result.name;
+  json["rift_version"] = RIFT_VERSION;
+  json["candidate"] = result.candidate_kind;
+  json["reference"] = result.reference_kind;
+  json["definition"] = FieldsToJson(result.gap);
+  json["definition"]["text"] = gap::DefinitionText(result.gap);
+  json.update(LevelJson(result.all));
+  if (result.all.n > 0) json["attribution"] = AttributionJson(result);
+  ordered_json& by = json["by"] = ordered_json::object();
+  ordered_json& effects = json["effects"] = ordered_json::object();
+  for (size_t i = 0; i < result.parameters.size(); ++i) {
+    by[result.parameters[i].Name()] = LevelsJson(sweep::SummariseBy(result, {static_cast<int>(i)}));
+  }
+  for (const sweep::Effect& effect : result.effects) effects[effect.parameter] = EffectJson(effect);
+  if (!result.parameters.empty()) {
+    const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
+    if (split.others.size() > 1) {
+      by[split.others_name] = LevelsJson(sweep::SummariseBy(result, split.others));
+    }
+  }
+  json["settings"] = ordered_json::array();
+  for (const sweep::SettingResult& setting : result.settings) {
+    json["settings"].push_back(SettingJson(result, setting));
+  }
+  return json.dump(2) + '\n';
+}
+
+}  // namespace rift::commands

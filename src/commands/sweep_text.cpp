@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rift/sweep/labels.hpp"
+#include "sweep_output.hpp"
+
+namespace rift::commands {
+namespace {
+
+std::string LevelTable(const std::string& head, const std::vector<sweep::LevelSummary>& levels) {
+  size_t width = head.size();
+  for (const sweep::LevelSummary& level : levels) width = std::max(width, level.level.size());
+  std::string text =
+      fmt::format("{:<{}}  mean_gap_m  failures  trials  without_gap\n", head, width);
+  for (const sweep::LevelSummary& level : levels) {
+    const std::string mean =
+        std::isnan(level.mean_gap_m) ? "-" : fmt::format("{:.4f}", level.mean_gap_m);
+    text += fmt::format("{:<{}}  {:>10}  {:>8}  {:>6}  {:>11}\n", level.level, width, mean,
+                        level.failures, level.n, level.not_ok);
+  }
+  return text + '\n';
+}
+
+int CountVerdict(const sweep::SweepResult& result, gap::Verdict verdict) {
+  return static_cast<int>(std::count_if(
+      result.settings.begin(), result.settings.end(),
+      [&](const sweep::SettingResult& setting) { return setting.verdict.verdict == verdict; }));
+}
+
+std::string EffectsText(const sweep::SweepResult& result) {
+  std::string text;
+  for (const sweep::Effect& effect : result.effects) {
+    text += fmt::format("{}: {}\n", effect.parameter, effect.sentence);
+  }
+  return text;
+}
+
+std::string WorstText(const sweep::SweepResult& result) {
+  const sweep::TrialRow* worst = nullptr;
+  for (const sweep::TrialRow& row : result.rows) {
+    if (!row.IsOk()) continue;
+    if (worst == nullptr || row.comparison.gap_m > worst->comparison.gap_m) worst = &row;
+  }
+  if (worst == nullptr) return "";
+  std::string setting;
+  for (size_t i = 0; i < result.parameters.size(); ++i) {
+    setting += fmt::format("{} {}, ", result.parameters[i].Name(), worst->theta[i].text);
+  }
+  return fmt::format("worst: {:.4f} m at u = {:.2f} ({}trial {})\n", worst->comparison.gap_m,
+                     worst->comparison.gap_u, setting, worst->trial);
+}
+
+std::string NotOkText(const sweep::SweepResult& result) {
+  constexpr int kMostShown = 3;
+  std::string text;
+  int shown = 0;
+  for (const sweep::TrialRow& row : result.rows) {
+    if (row.IsOk() || ++shown > kMostShown) continue;
+    text += fmt::format("without gap: {}\n", row.reason);
+  }
+  if (shown > kMostShown) text += fmt::format("without gap: {} more\n", shown - kMostShown);
+  return text;
+}
+
+}  // namespace
+
+std::string SweepText(const sweep::SweepResult& result) {
+  std::string text = fmt::format("gap: {}; above {:g} m falsifies\n\n",
+                                 gap::DefinitionText(result.gap), result.gap.threshold_m);
+  if (!result.parameters.empty()) {
+    const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
+    text += LevelTable(result.parameters[split.main_factor].Name(),
+                       sweep::SummariseBy(result, {split.main_factor}));
+    if (!split.others.empty()) {
+      text += LevelTable(split.others_name, sweep::SummariseBy(result, split.others));
+    }
+  }
+  text += LevelTable("", {result.all});
+  text += EffectsText(result) + WorstText(result) + NotOkText(result);
+  text += fmt::format("settings: {} falsified, {} not, {} undecided (their repeats disagree)\n",
+                      CountVerdict(result, gap::Verdict::kFalsified),
+                      CountVerdict(result, gap::Verdict::kNotFalsified),
+                      CountVerdict(result, gap::Verdict::kUndecided));
+  return text;
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,163 @@
+#include "rift/config/sweep_hooks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include "rift/config/scalar.hpp"
+#include "rift/config/tree.hpp"
+
+namespace rift::config {
+namespace {
+
+/// A number where the text, not quoted, reads as one.
+std::optional<double> NumberOf(const Node& scalar) {
+  double number = 0.0;
+  const char* end = scalar.text.data() + scalar.text.size();
+  const auto [stop, error] = std::from_chars(scalar.text.data(), end, number);
+  if (scalar.quoted || error != std::errc{} || stop != end || !std::isfinite(number)) return {};
+  return number;
+}
+
+sweep::ParameterValue LevelFromNode(const Node& node, const std::string& key) {
+  if (!node.IsScalar()) Fail(node, key, "every value of an axis must be a number or a text");
+  return {node.text, NumberOf(node)};
+}
+
+bool SameLevel(const sweep::ParameterValue& a, const sweep::ParameterValue& b) {
+  return a.number && b.number ? *a.number == *b.number : a.text == b.text;
+}
+
+void ReadLevels(const Node& node, const std::string& key, sweep::Parameter& parameter) {
+  if (node.items.empty()) Fail(node, key, "an axis needs at least one value");
+  for (const Node& item : node.items) {
+    const sweep::ParameterValue level = LevelFromNode(item, key);
+    for (const sweep::ParameterValue& earlier : parameter.levels) {
+      if (SameLevel(earlier, level)) Fail(item, key, "an axis has each value once");
+    }
+    parameter.levels.push_back(level);
+  }
+}
+
+void ReadRange(const Node& node, const std::string& key, sweep::Parameter& parameter) {
+  for (const char* bound : {"min", "max"}) {
+    const Node::Entry* entry = node.Find(bound);
+    if (entry == nullptr)
+      Fail(node, key, fmt::format("a range needs min and max; {} is missing", bound));
+    const std::optional<double> number = NumberOf(entry->value);
+    if (!number) Fail(entry->value, Join(key, bound), "must be a number");
+    (bound[1] == 'i' ? parameter.min : parameter.max) = *number;
+  }
+  if (!(parameter.min < parameter.max)) Fail(node, key, "min must be below max");
+}
+
+sweep::Parameter ParameterFromEntry(const FlatEntry& entry) {
+  const std::string key = Join("space", entry.key);
+  sweep::Parameter parameter{.key = entry.key};
+  if (entry.value->IsList()) {
+    ReadLevels(*entry.value, key, parameter);
+  } else if (IsContinuousAxis(*entry.value)) {
+    ReadRange(*entry.value, key, parameter);
+  } else {
+    Fail(*entry.value, key, "must be a list of values, or {min: a, max: b}");
+  }
+  return parameter;
+}
+
+/// Columns and path templates know a parameter by its last name.
+void CheckNames(const Node& node, const std::vector<sweep::Parameter>& parameters) {
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      if (parameters[i].Name() != parameters[j].Name()) continue;
+      Fail(node, "space",
+           fmt::format("{} and {} have the same last name '{}'", parameters[j].key,
+                       parameters[i].key, parameters[i].Name()));
+    }
+    if (parameters[i].Name() == "trial") {
+      Fail(node, "space", "'trial' is the name of the repeats: see reference.trials");
+    }
+  }
+}
+
+Node LevelToNode(const sweep::ParameterValue& level) {
+  return level.number ? Node::Scalar(level.text) : Node::Text(level.text);
+}
+
+}  // namespace
+
+sweep::PathTemplate Hook<sweep::PathTemplate>::FromNode(const Node& node) {
+  if (!node.IsScalar()) throw std::invalid_argument("must be a path");
+  const bool from_file = node.origin.line > 0;
+  const std::filesystem::path written = node.text;
+  if (node.text.empty() || written.is_absolute() || !from_file) return {node.text};
+  const std::filesystem::path folder = std::filesystem::path(node.origin.source).parent_path();
+  return {(folder / written).lexically_normal().string()};
+}
+
+Node Hook<sweep::PathTemplate>::ToNode(const sweep::PathTemplate& path) {
+  return Node::Text(path.text);
+}
+
+sweep::TrialList Hook<sweep::TrialList>::FromNode(const Node& node) {
+  sweep::TrialList trials{{}};
+  if (node.IsScalar()) {
+    const std::optional<double> count = NumberOf(node);
+    if (!count || *count != std::floor(*count) || *count < 1 || *count > 1e6) {
+      throw std::invalid_argument("must be a list of trials, or how many there are (1 or more)");
+    }
+    for (int i = 1; i <= static_cast<int>(*count); ++i)
+      trials.names.push_back(fmt::format("{}", i));
+    return trials;
+  }
+  if (!node.IsList() || node.items.empty()) {
+    throw std::invalid_argument("must be a list of trials, or how many there are");
+  }
+  for (const Node& item : node.items) {
+    if (!item.IsScalar()) throw std::invalid_argument("every trial must be a number or a name");
+    if (std::find(trials.names.begin(), trials.names.end(), item.text) != trials.names.end()) {
+      throw std::invalid_argument(fmt::format("trial {} stands there twice", item.text));
+    }
+    trials.names.push_back(item.text);
+  }
+  return trials;
+}
+
+Node Hook<sweep::TrialList>::ToNode(const sweep::TrialList& trials) {
+  Node list = Node::List();
+  for (const std::string& name : trials.names) {
+    Node item = Node::Scalar(name);
+    list.items.push_back(NumberOf(item) ? item : Node::Text(name));
+  }
+  return list;
+}
+
+sweep::Space Hook<sweep::Space>::FromNode(const Node& node) {
+  if (!node.IsMap()) throw std::invalid_argument("must be a map of parameters");
+  sweep::Space space;
+  for (const FlatEntry& entry : Flatten(node)) {
+    space.parameters.push_back(ParameterFromEntry(entry));
+  }
+  CheckNames(node, space.parameters);
+  return space;
+}
+
+Node Hook<sweep::Space>::ToNode(const sweep::Space& space) {
+  Node map = Node::Map();
+  for (const sweep::Parameter& parameter : space.parameters) {
+    Node axis = Node::List();
+    for (const sweep::ParameterValue& level : parameter.levels) {
+      axis.items.push_back(LevelToNode(level));
+    }
+    if (parameter.IsContinuous()) {
+      axis = Node::Map();
+      axis.Add("min", Node::Scalar(NumberText(parameter.min, parameter.key)));
+      axis.Add("max", Node::Scalar(NumberText(parameter.max, parameter.key)));
+    }
+    map.Add(parameter.key, axis);
+  }
+  return map;
+}
+
+}  // namespace rift::config

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "arc_path.hpp"
+
+namespace rift::gap {
+
+/// The translation that lays the first point of `sim` on the first point of `real`.
+geometry::Pose2 StartMotion(const ArcPath& sim, const ArcPath& real);
+
+/// The planar rigid motion that brings `sim` closest to `real`: least squares over `samples`
+/// evenly spaced u (Umeyama 1991 without scale).
+geometry::Pose2 BestRigidMotion(const ArcPath& sim, const ArcPath& real, int samples);
+
+/// The motion an option asks for; identity for Align::kNone.
+geometry::Pose2 AligningMotion(const ArcPath& sim, const ArcPath& real, Align align, int samples);
+
+}  // namespace rift::gap

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "rift/gap/options.hpp"
+#include "rift/geometry/pose2.hpp"
+#include "rift/trajectory/trajectory.hpp"
+
+namespace rift::gap {
+
+/// A planar polyline over normalised arc length u (paper, section 3.1): vertex i stands at
+/// u[i] = s_i / s_total, and the path is linear in u between vertices.
+struct ArcPath {
+  std::vector<double> u;
+  std::vector<double> x_m;
+  std::vector<double> y_m;
+  std::vector<double> yaw_rad;  ///< unwrapped; empty when the log does not tell it
+  double length_m = 0.0;
+
+  size_t Size() const { return u.size(); }
+  Eigen::Vector2d Vertex(size_t i) const { return {x_m[i], y_m[i]}; }
+};
+
+/// Throws std::invalid_argument for fewer than two poses or a path of zero length.
+ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options);
+
+/// The points at `count` evenly spaced u from 0 to 1.
+std::vector<Eigen::Vector2d> Resample(const ArcPath& path, int count);
+
+void Transform(ArcPath& path, const geometry::Pose2& b_from_a);
+
+}  // namespace rift::gap

@@ -1,0 +1,205 @@
+#include "rift/gap/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "alignment.hpp"
+#include "arc_path.hpp"
+#include "measures.hpp"
+#include "path_error.hpp"
+#include "rift/geometry/angle.hpp"
+#include "standstill.hpp"
+
+namespace rift::gap {
+namespace {
+
+/// Frechet, DTW and Hausdorff cost points squared; 256 stand 3 mm apart on the paper's path.
+constexpr int kMeasurePoints = 256;
+
+struct Paths {
+  ArcPath sim;
+  ArcPath real;
+};
+
+/// Both paths as they are to be compared, after trimming and aligning.
+Paths Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+              const GapOptions& options) {
+  Paths paths{MakeArcPath(sim, options), MakeArcPath(real, options)};
+  if (options.align != Align::kNone) {
+    Transform(paths.sim, AligningMotion(paths.sim, paths.real, options.align, options.samples));
+  }
+  return paths;
+}
+
+/// The published numbers leave out int(0.1 * 2000) samples; the margin keeps a product such as
+/// 0.29 * 100 = 28.999999999999996 from losing one.
+int FirstSample(const GapOptions& options) {
+  return std::min(static_cast<int>(options.skip_start * options.samples + 1e-9),
+                  options.samples - 1);
+}
+
+double SampleU(int k, const GapOptions& options) {
+  return static_cast<double>(k) / (options.samples - 1);
+}
+
+/// Equation (3.1): the largest error over the samples, from two of them in each interval.
+Peak SampledPeak(const Paths& paths, const GapOptions& options) {
+  Peak peak;
+  int next = FirstSample(options);
+  PathError(paths.sim, paths.real).ForEachInterval([&](double, double end, const auto& error_at) {
+    const int last =
+        std::min(static_cast<int>(end * (options.samples - 1) + 1e-9), options.samples - 1);
+    if (last < next) return;
+    for (const int k : {next, last}) {
+      const double error_m = error_at(SampleU(k, options));
+      if (error_m > peak.error_m) peak = {error_m, SampleU(k, options)};
+    }
+    next = last + 1;
+  });
+  return peak;
+}
+
+/// The supremum over the polylines from the first sample on.
+Peak ExactPeak(const Paths& paths, const GapOptions& options) {
+  Peak peak;
+  const double first_u = SampleU(FirstSample(options), options);
+  PathError(paths.sim, paths.real)
+      .ForEachInterval([&](double begin, double end, const auto& error_at) {
+        if (end < first_u) return;
+        for (const double u : {std::max(begin, first_u), end}) {
+          const double error_m = error_at(u);
+          if (error_m > peak.error_m) peak = {error_m, u};
+        }
+      });
+  return peak;
+}
+
+double GapAfter(const Paths& paths, Align align, const GapOptions& options) {
+  Paths moved = paths;
+  Transform(moved.sim, AligningMotion(paths.sim, paths.real, align, options.samples));
+  return SampledPeak(moved, options).error_m;
+}
+
+double YawAt(const ArcPath& path, double u, size_t& i) {
+  if (path.yaw_rad.empty()) return kNotComputed;
+  while (i + 2 < path.Size() && path.u[i + 1] <= u) ++i;
+  const double span = path.u[i + 1] - path.u[i];
+  const double share = span > 0.0 ? (u - path.u[i]) / span : 0.0;
+  return path.yaw_rad[i] + share * (path.yaw_rad[i + 1] - path.yaw_rad[i]);
+}
+
+ErrorProfile ProfileOf(const Paths& paths, const GapOptions& options) {
+  const std::vector<Eigen::Vector2d> sim_m = Resample(paths.sim, options.samples);
+  const std::vector<Eigen::Vector2d> real_m = Resample(paths.real, options.samples);
+  const size_t first = FirstSample(options);
+  ErrorProfile profile;
+  profile.sim_m.assign(sim_m.begin() + first, sim_m.end());
+  profile.real_m.assign(real_m.begin() + first, real_m.end());
+  size_t i = 0, j = 0;
+  for (size_t k = first; k < sim_m.size(); ++k) {
+    const double u = SampleU(static_cast<int>(k), options);
+    profile.u.push_back(u);
+    profile.error_m.push_back((real_m[k] - sim_m[k]).norm());
+    profile.yaw_error_rad.push_back(
+        geometry::WrapToPi(YawAt(paths.sim, u, i) - YawAt(paths.real, u, j)));
+  }
+  return profile;
+}
+
+double Mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Linear interpolation between order statistics, as numpy and R (type 7) do.
+double Quantile(std::vector<double>& values, double share) {
+  const double position = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<size_t>(position);
+  std::nth_element(values.begin(), values.begin() + below, values.end());
+  const double low = values[below];
+  if (below + 1 == values.size()) return low;
+  const double high = *std::min_element(values.begin() + below + 1, values.end());
+  return low + (position - static_cast<double>(below)) * (high - low);
+}
+
+void SummariseErrors(ErrorProfile profile, Comparison& result) {
+  result.mean_error_m = Mean(profile.error_m);
+  double squares = 0.0;
+  for (const double error_m : profile.error_m) squares += error_m * error_m;
+  result.rms_error_m = std::sqrt(squares / static_cast<double>(profile.error_m.size()));
+  result.median_error_m = Quantile(profile.error_m, 0.5);
+  result.p95_error_m = Quantile(profile.error_m, 0.95);
+  for (double& yaw_error_rad : profile.yaw_error_rad) yaw_error_rad = std::abs(yaw_error_rad);
+  result.mean_yaw_error_rad = Mean(profile.yaw_error_rad);
+  if (!std::isnan(result.mean_yaw_error_rad)) {
+    result.max_yaw_error_rad =
+        *std::max_element(profile.yaw_error_rad.begin(), profile.yaw_error_rad.end());
+  }
+}
+
+void MeasureShape(const Paths& paths, Comparison& result) {
+  const Points sim_m = Resample(paths.sim, kMeasurePoints);
+  const Points real_m = Resample(paths.real, kMeasurePoints);
+  result.hausdorff_m = Hausdorff_m(sim_m, real_m);
+  result.frechet_m = DiscreteFrechet_m(sim_m, real_m);
+  result.dtw_m = DynamicTimeWarping_m(sim_m, real_m);
+}
+
+}  // namespace
+
+double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+           const GapOptions& options) {
+  return SampledPeak(Prepare(sim, real, options), options).error_m;
+}
+
+ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+                          const GapOptions& options) {
+  return ProfileOf(Prepare(sim, real, options), options);
+}
+
+Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+                   const GapOptions& options) {
+  const Paths paths = Prepare(sim, real, options);
+  Comparison result;
+
+  const Peak sampled = SampledPeak(paths, options);
+  result.gap_m = sampled.error_m;
+  result.gap_u = sampled.u;
+  const Peak exact = ExactPeak(paths, options);
+  result.exact_gap_m = exact.error_m;
+  result.exact_gap_u = exact.u;
+  SummariseErrors(ProfileOf(paths, options), result);
+
+  result.sim_length_m = paths.sim.length_m;
+  result.real_length_m = paths.real.length_m;
+  result.length_ratio = paths.sim.length_m / paths.real.length_m;
+  result.start_offset_m = (paths.sim.Vertex(0) - paths.real.Vertex(0)).norm();
+  result.end_error_m =
+      (paths.sim.Vertex(paths.sim.Size() - 1) - paths.real.Vertex(paths.real.Size() - 1)).norm();
+
+  result.start_aligned_gap_m = GapAfter(paths, Align::kStart, options);
+  result.shape_gap_m = GapAfter(paths, Align::kSe2, options);
+  result.real_from_sim = BestRigidMotion(paths.sim, paths.real, options.samples);
+  result.sim_standstill_share = StandstillShare(sim.poses, options.standstill_radius_m);
+  result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);
+
+  MeasureShape(paths, result);
+  result.equal_time_m = EqualTime_m(sim, real);
+  return result;
+}
+
+std::string DefinitionText(const GapOptions& options) {
+  std::string text = fmt::format(
+      "largest distance at equal normalised arc length u over {} samples", options.samples);
+  if (options.skip_start > 0.0) {
+    text += fmt::format(", the first {:g} % left out", 100.0 * options.skip_start);
+  }
+  if (options.align == Align::kStart) text += ", first points laid together";
+  if (options.align == Align::kSe2) text += ", best rigid motion removed";
+  if (options.trim_standstill) text += ", standstill trimmed";
+  return text;
+}
+
+}  // namespace rift::gap

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "rift/trajectory/trajectory.hpp"
+
+namespace rift::gap {
+
+using Points = std::vector<Eigen::Vector2d>;
+
+/// Largest distance from a vertex of either polyline to the closest point of the other.
+double Hausdorff_m(const Points& a, const Points& b);
+
+/// Discrete Frechet distance (Eiter and Mannila 1994).
+double DiscreteFrechet_m(const Points& a, const Points& b);
+
+/// Mean distance along the warping path of least total distance (Sakoe and Chiba 1978).
+double DynamicTimeWarping_m(const Points& a, const Points& b);
+
+/// Largest distance at equal time since each first pose, over the time both last.
+double EqualTime_m(const trajectory::Trajectory& a, const trajectory::Trajectory& b);
+
+}  // namespace rift::gap

@@ -1,0 +1,36 @@
+#include "standstill.hpp"
+
+namespace rift::gap {
+namespace {
+
+double Distance_m(const trajectory::StampedPose& a, const trajectory::StampedPose& b) {
+  return (a.Position() - b.Position()).norm();
+}
+
+double ArcLength_m(std::span<const trajectory::StampedPose> poses) {
+  double length_m = 0.0;
+  for (size_t i = 1; i < poses.size(); ++i) length_m += Distance_m(poses[i], poses[i - 1]);
+  return length_m;
+}
+
+}  // namespace
+
+MovingRange FindMoving(std::span<const trajectory::StampedPose> poses, double radius_m) {
+  const size_t end = poses.size() - 1;
+  size_t first = 0;
+  while (first < end && Distance_m(poses[first + 1], poses.front()) <= radius_m) ++first;
+  size_t last = end;
+  while (last > 0 && Distance_m(poses[last - 1], poses.back()) <= radius_m) --last;
+  if (first >= last) return {0, end};
+  return {first, last};
+}
+
+double StandstillShare(std::span<const trajectory::StampedPose> poses, double radius_m) {
+  const double total_m = ArcLength_m(poses);
+  if (!(total_m > 0.0)) return 0.0;
+  const MovingRange moving = FindMoving(poses, radius_m);
+  const double driven_m = ArcLength_m(poses.subspan(moving.first, moving.last - moving.first + 1));
+  return 1.0 - driven_m / total_m;
+}
+
+}  // namespace rift::gap

@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+
+#include "rift/commands/command.hpp"
+#include "rift/config/error.hpp"
+#include "rift/config/suggest.hpp"
+
+namespace {
+
+using rift::commands::Command;
+using rift::commands::Commands;
+
+std::vector<std::string> Names() {
+  std::vector<std::string> names;
+  for (const Command& command : Commands()) names.push_back(command.name);
+  return names;
+}
+
+/// CLI11 calls a mistyped subcommand "an argument that was not expected".
+void CheckSubcommand(int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  const std::vector<std::string> names = Names();
+  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
+  throw std::invalid_argument(
+      fmt::format(
+      "'{}' is no subcommand{}", argv[1],
+      rift::config::Suggestion(argv[1], names, "the subcommands are")));
+}
+
+int Run(int argc, char** argv) {
+  CheckSubcommand(argc, argv);
+  int exit_code = rift::commands::kDone;
+  CLI::App app("rift: where a simulator and its robot part ways, and why");
+  app.set_version_flag("--version", "rift " RIFT_VERSION);
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 done, 1 falsified (with --exit-code), 2 usage or input, 3 failure.");
+  for (const Command& command : Commands()) {
+    command.add(*app.add_subcommand(command.name, command.summary), exit_code);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for_help = error.get_exit_code() == 0;
+    if (asked_for_help) return app.exit(error);
+    throw std::invalid_argument(error.what());
+  }
+  return exit_code;
+}
+
+int Fail(const char* what, int exit_code) {
+  fmt::print(stderr, "rift: {}\n", what);
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Run(argc, argv);
+  } catch (const std::invalid_argument& error) {
+    return Fail(error.what(), rift::commands::kBadInput);
+  } catch (const rift::config::Error& error) {
+    return Fail(error.what(), rift::commands::kBadInput);
+  } catch (const std::exception& error) {
+    return Fail(error.what(), rift::commands::kRunTimeFailure);
+  }
+}

@@ -1,0 +1,121 @@
+#include "rift/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <kainjow/mustache.hpp>
+#include <nlohmann/json.hpp>
+
+#include "embedded.hpp"
+#include "findings.hpp"
+#include "gnuplot_text.hpp"
+#include "page_charts.hpp"
+#include "page_tables.hpp"
+
+namespace rift::report {
+namespace {
+
+using kainjow::mustache::data;
+using kainjow::mustache::mustache;
+using nlohmann::json;
+
+// Inside <script>, "</script>" and "<!--" would end or swallow the page; `<` only occurs in
+// strings of the JSON, where an escape means the same.
+std::string JsonForScript(const json& value) {
+  std::string text;
+  for (const char c : value.dump(-1, ' ', false, json::error_handler_t::replace)) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string File(std::string_view name) { return std::string(Embedded(name)); }
+
+const char* HeadlineClass(Outcome outcome) {
+  if (outcome == Outcome::kFails) return "fail";
+  return outcome == Outcome::kHolds ? "pass" : "unknown";
+}
+
+data FindingList(const sweep::SweepResult& result) {
+  data list{data::type::list};
+  for (const Finding& finding : Findings(result)) {
+    data sentences{data::type::list};
+    for (const std::string& sentence : finding.sentences) sentences << data(PlainText(sentence));
+    data entry;
+    entry.set("question", finding.question);
+    entry.set("sentences", sentences);
+    list << entry;
+  }
+  return list;
+}
+
+data ChartList(const std::vector<PageChart>& charts) {
+  data list{data::type::list};
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    data entry;
+    entry.set("title", PlainText(charts[i].title));
+    entry.set("sentence", PlainText(charts[i].sentence));
+    entry.set("index", std::to_string(i));
+    list << entry;
+  }
+  return list;
+}
+
+// Above that many a list is no longer read, and the table holds them too.
+constexpr std::size_t kMostUnmeasuredListed = 500;
+
+void AddUnmeasured(const sweep::SweepResult& result, data* page) {
+  std::vector<std::string> lines = UnmeasuredTrials(result);
+  page->set("has_unmeasured", !lines.empty());
+  page->set("unmeasured_count", std::to_string(lines.size()));
+  if (lines.size() > kMostUnmeasuredListed) {
+    const std::size_t more = lines.size() - kMostUnmeasuredListed;
+    lines.resize(kMostUnmeasuredListed);
+    lines.push_back(fmt::format("and {} more, all of them in table.csv", more));
+  }
+  data list{data::type::list};
+  for (const std::string& line : lines) list << data(PlainText(line));
+  page->set("unmeasured", list);
+}
+
+void AddScripts(const sweep::SweepResult& result, const ReportOptions& options, data* page) {
+  const std::vector<PageChart> charts = PageCharts(result, options);
+  PageTable settings = SettingsTable(result, options), trials = TrialsTable(result, options);
+  json content = {{"charts", json::array()}};
+  for (const PageChart& chart : charts) content["charts"].push_back(chart.spec);
+  content["settings"] = std::move(settings.data);
+  content["trials"] = std::move(trials.data);
+  page->set("charts", ChartList(charts));
+  page->set("settings_note", settings.note);
+  page->set("trials_note", trials.note);
+  page->set("data", JsonForScript(content));
+  page->set("css", File("page.css"));
+  page->set("vega", File("vega_modules.js") + File("vega.js"));
+  page->set("script", File("page.js"));
+}
+
+}  // namespace
+
+std::string RenderPage(const sweep::SweepResult& result, const ReportOptions& options) {
+  const Headline headline = Summary(result);
+  data page;
+  page.set("name", PlainText(result.name));
+  page.set("kinds", PlainText(fmt::format("candidate: {}, reference: {}", result.candidate_kind,
+                                          result.reference_kind)));
+  page.set("headline", PlainText(headline.sentence));
+  page.set("headline_class", HeadlineClass(headline.outcome));
+  page.set("findings", FindingList(result));
+  page.set("definition", gap::DefinitionText(result.gap));
+  page.set("threshold", Number(result.gap.threshold_m));
+  AddUnmeasured(result, &page);
+  AddScripts(result, options, &page);
+  mustache html(File("page.html"));
+  std::string text = html.render(page);
+  if (!html.is_valid()) throw std::logic_error("page.html: " + html.error_message());
+  return text;
+}
+
+}  // namespace rift::report

@@ -1,0 +1,123 @@
+'use strict';
+const page = JSON.parse(document.getElementById('page-data').textContent);
+
+// ---- charts ----
+
+Object.assign(riftModules['vega-dataflow'].transforms, riftModules['vega-transforms'],
+  riftModules['vega-view-transforms'], riftModules['vega-encode']);
+const vega = { parse: riftModules['vega-parser'].parse, View: riftModules['vega-view'].View };
+
+// currentColor follows the theme of the page, on screen and on paper, without drawing again.
+const font = 'system-ui, "DejaVu Sans", Arial, sans-serif';
+const chartConfig = {
+  background: null,
+  axis: {
+    labelColor: 'currentColor', titleColor: 'currentColor', domainColor: '#888', tickColor: '#888',
+    gridColor: '#888', gridOpacity: 0.25, labelFont: font, titleFont: font,
+    labelFontSize: 12, titleFontSize: 12, titleFontWeight: 'normal', labelLimit: 170,
+  },
+  legend: {
+    labelColor: 'currentColor', titleColor: 'currentColor', labelFont: font, titleFont: font,
+    labelFontSize: 12, titleFontSize: 12, titleFontWeight: 'normal',
+  },
+  text: { font, fontSize: 12 },
+};
+
+const tip = document.getElementById('tip');
+
+function showTip(handler, event, item, value) {
+  tip.hidden = value == null || value === '';
+  if (tip.hidden) return;
+  tip.replaceChildren(...Object.entries(value).map(([key, text]) => {
+    const line = document.createElement('div');
+    const name = document.createElement('b');
+    name.textContent = key + ': ';
+    line.append(name, text);
+    return line;
+  }));
+  const box = tip.getBoundingClientRect();
+  const x = Math.min(event.clientX + 12, innerWidth - box.width - 6);
+  const y = event.clientY + 14 + box.height > innerHeight ? event.clientY - box.height - 10 : event.clientY + 14;
+  tip.style.left = Math.max(4, x) + 'px';
+  tip.style.top = Math.max(4, y) + 'px';
+}
+
+function drawChart(chart, index) {
+  const place = document.getElementById('chart-' + index);
+  const view = new vega.View(vega.parse(chart, chartConfig), {
+    renderer: 'svg', container: place, hover: true, tooltip: showTip,
+  });
+  const fit = () => view.width(place.clientWidth).runAsync();
+  let width = place.clientWidth;
+  new ResizeObserver(() => {
+    if (place.clientWidth === width || place.clientWidth === 0) return;
+    width = place.clientWidth;
+    fit();
+  }).observe(place);
+  return fit();
+}
+
+// ---- tables ----
+
+function cellText(value, column) {
+  if (value === null) return '–';
+  return column.digits === undefined ? String(value) : value.toFixed(column.digits);
+}
+
+// Values that are missing come last, whichever way is up.
+function compare(a, b) {
+  if (a === null || b === null) return a === b ? 0 : a === null ? Infinity : -Infinity;
+  if (typeof a === 'number' && typeof b === 'number') return a - b;
+  return String(a).localeCompare(String(b), undefined, { numeric: true });
+}
+
+function fillBody(table, data, order) {
+  const body = document.createElement('tbody');
+  for (const index of order) {
+    const row = body.insertRow();
+    row.className = data.marks[index];
+    data.columns.forEach((column, i) => {
+      const cell = row.insertCell();
+      cell.textContent = cellText(data.rows[index][i], column);
+      cell.className = (column.digits === undefined ? '' : 'number') + (column.mark ? ' mark' : '');
+    });
+  }
+  table.tBodies[0]?.remove();
+  table.append(body);
+}
+
+function sortedOrder(data, column, descending) {
+  const order = data.rows.map((_, i) => i);
+  return order.sort((i, j) => {
+    const way = compare(data.rows[i][column], data.rows[j][column]);
+    return Math.abs(way) === Infinity || !descending ? way || i - j : -way || i - j;
+  });
+}
+
+function makeTable(id) {
+  const table = document.getElementById(id);
+  const data = page[id];
+  const head = table.createTHead().insertRow();
+  data.columns.forEach((column, i) => {
+    const th = document.createElement('th');
+    th.scope = 'col';
+    th.className = column.digits === undefined ? '' : 'number';
+    th.setAttribute('aria-sort', 'none');
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.textContent = column.title;
+    button.addEventListener('click', () => {
+      const descending = th.getAttribute('aria-sort') === 'ascending';
+      for (const other of head.cells) other.setAttribute('aria-sort', 'none');
+      th.setAttribute('aria-sort', descending ? 'descending' : 'ascending');
+      fillBody(table, data, sortedOrder(data, i, descending));
+    });
+    th.append(button);
+    head.append(th);
+  });
+  fillBody(table, data, data.rows.map((_, i) => i));
+}
+
+makeTable('settings');
+makeTable('trials');
+Promise.all(page.charts.map(drawChart)).then(() => { document.body.dataset.drawn = page.charts.length; });

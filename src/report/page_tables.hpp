@@ -1,0 +1,20 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "rift/report/options.hpp"
+#include "rift/sweep/result.hpp"
+
+namespace rift::report {
+
+/// A table of the page as page.js reads it: {"columns", "rows", "marks"}, and what it holds.
+struct PageTable {
+  nlohmann::json data;
+  std::string note;
+};
+
+PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& options);
+PageTable TrialsTable(const sweep::SweepResult& result, const ReportOptions& options);
+
+}  // namespace rift::report

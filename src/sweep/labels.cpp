@@ -1,0 +1,41 @@
+#include "rift/sweep/labels.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace rift::sweep {
+
+std::string Parameter::Name() const { return key.substr(key.rfind('.') + 1); }
+
+bool Parameter::IsCategorical() const {
+  return std::any_of(levels.begin(), levels.end(),
+                     [](const ParameterValue& level) { return !level.number; });
+}
+
+FactorSplit SplitFactors(const std::vector<Parameter>& parameters) {
+  if (parameters.empty()) throw std::invalid_argument("the space has no parameters");
+  const auto categorical =
+      std::find_if(parameters.begin(), parameters.end(),
+                   [](const Parameter& parameter) { return parameter.IsCategorical(); });
+  FactorSplit split;
+  if (categorical != parameters.end()) {
+    split.main_factor = static_cast<int>(categorical - parameters.begin());
+  }
+  for (int i = 0; i < static_cast<int>(parameters.size()); ++i) {
+    if (i == split.main_factor) continue;
+    split.others.push_back(i);
+    split.others_name += (split.others_name.empty() ? "" : ", ") + parameters[i].Name();
+  }
+  if (split.others.size() > 1) split.others_name = "[" + split.others_name + "]";
+  return split;
+}
+
+std::string CombinationLabel(const std::vector<ParameterValue>& theta,
+                             const std::vector<int>& parameters) {
+  if (parameters.size() == 1) return theta[parameters.front()].text;
+  std::string label;
+  for (const int i : parameters) label += (label.empty() ? "" : ", ") + theta[i].text;
+  return "[" + label + "]";
+}
+
+}  // namespace rift::sweep

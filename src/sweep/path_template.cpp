@@ -1,0 +1,108 @@
+#include "rift/sweep/path_template.hpp"
+
+#include <fmt/args.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+namespace rift::sweep {
+namespace {
+
+using NamedValue = std::pair<std::string, ParameterValue>;
+using Arguments = fmt::dynamic_format_arg_store<fmt::format_context>;
+
+ParameterValue TrialValue(const std::string& trial) {
+  ParameterValue value{trial, std::nullopt};
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(trial.data(), trial.data() + trial.size(), number);
+  if (error == std::errc{} && end == trial.data() + trial.size()) value.number = number;
+  return value;
+}
+
+bool IsWhole(const ParameterValue& value) {
+  return value.number && *value.number == std::round(*value.number) &&
+         std::abs(*value.number) < 1e15;
+}
+
+/// Without a format specification a value stands as the experiment writes it, so texts go in for
+/// those; a specification needs the number, whole or not.
+std::string WithPlainNamesFilled(std::string text, const std::vector<NamedValue>& values) {
+  for (const auto& [name, value] : values) {
+    const std::string field = "{" + name + "}";
+    for (size_t at = text.find(field); at != text.npos; at = text.find(field, at)) {
+      text.replace(at, field.size(), value.text);
+      at += value.text.size();
+    }
+  }
+  return text;
+}
+
+Arguments MakeArguments(const std::vector<NamedValue>& values, bool whole_as_integer) {
+  Arguments arguments;
+  for (const auto& [name, value] : values) {
+    if (whole_as_integer && IsWhole(value)) {
+      arguments.push_back(fmt::arg(name.c_str(), static_cast<long long>(*value.number)));
+    } else if (value.number) {
+      arguments.push_back(fmt::arg(name.c_str(), *value.number));
+    } else {
+      arguments.push_back(fmt::arg(name.c_str(), value.text));
+    }
+  }
+  return arguments;
+}
+
+std::string KnownNames(const std::vector<NamedValue>& values) {
+  std::string names;
+  for (const auto& [name, value] : values) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> TemplateNames(const std::string& path_template) {
+  std::vector<std::string> names;
+  size_t at = 0;
+  while ((at = path_template.find_first_of("{}", at)) != path_template.npos) {
+    const size_t end = path_template.find_first_of("{}", at + 1);
+    if (path_template[at] == '}' || end == path_template.npos || path_template[end] == '{') {
+      throw std::invalid_argument(
+          fmt::format("path '{}' has a brace without its partner", path_template));
+    }
+    const std::string field = path_template.substr(at + 1, end - at - 1);
+    names.push_back(field.substr(0, field.find(':')));
+    at = end + 1;
+  }
+  return names;
+}
+
+std::string FillTemplate(const std::string& path_template, const std::vector<Parameter>& parameters,
+                         const std::vector<ParameterValue>& theta, const std::string& trial) {
+  std::vector<NamedValue> values;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    values.emplace_back(parameters[i].Name(), theta[i]);
+  }
+  values.emplace_back("trial", TrialValue(trial));
+  for (const std::string& name : TemplateNames(path_template)) {
+    const auto has_name = [&](const NamedValue& value) { return value.first == name; };
+    if (std::none_of(values.begin(), values.end(), has_name)) {
+      throw std::invalid_argument(fmt::format("path '{}' names {{{}}}, and the space has only {}",
+                                              path_template, name, KnownNames(values)));
+    }
+  }
+  const std::string text = WithPlainNamesFilled(path_template, values);
+  for (const bool whole_as_integer : {false, true}) {
+    try {
+      return fmt::vformat(text, MakeArguments(values, whole_as_integer));
+    } catch (const fmt::format_error& error) {
+      if (!whole_as_integer) continue;  // `{trial:03d}` asks for an integer: the second round
+      throw std::invalid_argument(
+          fmt::format("path '{}' cannot be filled in: {}", path_template, error.what()));
+    }
+  }
+  return text;
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,223 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "csv.hpp"
+#include "rift/geometry/angle.hpp"
+#include "rift/trajectory/log.hpp"
+
+namespace rift::trajectory {
+namespace {
+
+using csv::Table;
+using geometry::kPi;
+using geometry::RadFromDeg;
+using geometry::WrapToPi;
+
+/// Names of the pose columns of a dialect, in the order of StampedPose.
+constexpr std::array<std::string_view, 9> kRiftColumns{
+    "t_s", "x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad", "target_x_m", "target_y_m"};
+constexpr std::array<std::string_view, 9> kAuthorsColumns{
+    "t", "x", "y", "z", "roll", "pitch", "yaw", "desired_x", "desired_y"};
+
+double& Field(StampedPose& pose, size_t i) {
+  const std::array<double*, 9> fields{&pose.t_s,     &pose.x_m,        &pose.y_m,
+                                      &pose.z_m,     &pose.roll_rad,   &pose.pitch_rad,
+                                      &pose.yaw_rad, &pose.target_x_m, &pose.target_y_m};
+  return *fields[i];
+}
+
+bool Has(const std::vector<std::string>& header, std::string_view name) {
+  return std::find(header.begin(), header.end(), name) != header.end();
+}
+
+/// kAuto where the header is the authors': it is the same for their robot and their simulator.
+Format FormatFromHeader(std::string_view text, const std::string& name) {
+  std::string_view rest = csv::WithoutMark(text);
+  std::string_view line;
+  while (!rest.empty() && line.find_first_not_of(" \t") == line.npos) line = csv::TakeLine(rest);
+  const std::vector<std::string> header = csv::SplitHeader(line);
+  if (Has(header, "t_s") && Has(header, "x_m") && Has(header, "y_m")) return Format::kRift;
+  if (Has(header, "t") && Has(header, "x") && Has(header, "y")) return Format::kAuto;
+  const size_t first = line.find_first_not_of(" \t");
+  const bool may_be_tum =
+      first != line.npos && line.find(',') == line.npos &&
+      (line[first] == '#' || line.find_first_not_of("0123456789+-.eE \t") == line.npos);
+  if (may_be_tum) return Format::kTum;
+  throw std::invalid_argument(fmt::format(
+      "{}:1: the header '{}' belongs to no dialect: it needs t_s,x_m,y_m (rift), t,x,y (tracker, "
+      "webots) or eight columns without header (tum)",
+      name, line.substr(0, 60)));
+}
+
+/// Copies the named columns; further ones become channels.
+void TakeColumns(const Table& table, const std::array<std::string_view, 9>& names,
+                 const std::string& name, Trajectory& trajectory) {
+  std::vector<bool> taken(table.columns.size(), false);
+  trajectory.poses.resize(table.Rows());
+  for (size_t i = 0; i < names.size(); ++i) {
+    const int column = table.Column(names[i]);
+    const bool required = i < 3;
+    if (column < 0 && required) {
+      throw std::invalid_argument(fmt::format("{}:1: column {} is missing", name, names[i]));
+    }
+    if (column < 0) continue;
+    taken[column] = true;
+    for (size_t row = 0; row < table.Rows(); ++row) {
+      const double value = table.At(row, column);
+      if (required && std::isnan(value)) {
+        throw std::invalid_argument(
+            fmt::format("{}:{}: column {} is empty", name, table.lines[row], names[i]));
+      }
+      Field(trajectory.poses[row], i) = value;
+    }
+  }
+  for (size_t column = 0; column < taken.size(); ++column) {
+    if (taken[column]) continue;
+    Channel channel{table.columns[column], {}};
+    channel.values.reserve(table.Rows());
+    for (size_t row = 0; row < table.Rows(); ++row) {
+      channel.values.push_back(table.At(row, static_cast<int>(column)));
+    }
+    trajectory.channels.push_back(std::move(channel));
+  }
+}
+
+void TakeTum(const Table& table, const std::string& name, Trajectory& trajectory) {
+  if (table.width != 8 && table.Rows() > 0) {
+    throw std::invalid_argument(
+        fmt::format("{}:{}: {} columns, and tum has 8: t tx ty tz qx qy qz qw", name,
+                    table.lines[0], table.width));
+  }
+  for (size_t row = 0; row < table.Rows(); ++row) {
+    const auto at = [&](int column) { return table.At(row, column); };
+    const Eigen::Quaterniond quaternion(at(7), at(4), at(5), at(6));
+    if (!(quaternion.norm() > 0.0)) {
+      throw std::invalid_argument(
+          fmt::format("{}:{}: the quaternion has zero length", name, table.lines[row]));
+    }
+    const Eigen::Matrix3d r = quaternion.normalized().toRotationMatrix();
+    StampedPose pose{.t_s = at(0), .x_m = at(1), .y_m = at(2), .z_m = at(3)};
+    pose.roll_rad = std::atan2(r(2, 1), r(2, 2));
+    pose.pitch_rad = std::asin(std::clamp(-r(2, 0), -1.0, 1.0));
+    pose.yaw_rad = std::atan2(r(1, 0), r(0, 0));
+    trajectory.poses.push_back(pose);
+  }
+}
+
+/// The one place where the authors' camera frame (x right, y down, z away from the camera, yaw
+/// clockwise seen from above) becomes the frame of their waypoints. They wrote the waypoints in
+/// camera numbers and drove Webots, a y-up world, by the same numbers: their floor and their
+/// simulator are mirror images. x, y and yaw agree with each other as they stand and are kept, so
+/// that robot, simulator and waypoints can be compared; left and right of a real log are swapped.
+/// Height is measured up from the camera.
+void FromTrackerFrame(StampedPose& pose) {
+  pose.z_m = -pose.z_m;
+  pose.roll_rad = RadFromDeg(pose.roll_rad);
+  pose.pitch_rad = RadFromDeg(pose.pitch_rad);
+  pose.yaw_rad = WrapToPi(RadFromDeg(pose.yaw_rad));
+}
+
+/// The authors' robot model points along its own y axis, hence the quarter turn.
+void FromWebotsFrame(StampedPose& pose) { pose.yaw_rad = WrapToPi(pose.yaw_rad - kPi / 2.0); }
+
+/// Angles of which the unit is not known are taken out rather than guessed.
+void ForgetAngles(Log& log) {
+  double largest = 0.0;
+  bool any = false;
+  for (StampedPose& pose : log.trajectory.poses) {
+    for (double* angle : {&pose.roll_rad, &pose.pitch_rad, &pose.yaw_rad}) {
+      if (std::isnan(*angle)) continue;
+      any = true;
+      largest = std::max(largest, std::abs(*angle));
+      *angle = StampedPose::kNotLogged;
+    }
+    pose.z_m = StampedPose::kNotLogged;
+  }
+  if (!any) return;
+  log.unknown_angles = fmt::format(
+      "its header does not tell degrees (tracker) from radians (webots){}",
+      largest > 2.0 * kPi ? fmt::format("; an angle of {:.1f} looks like degrees", largest) : "");
+}
+
+void ConvertAngles(Log& log) {
+  for (StampedPose& pose : log.trajectory.poses) {
+    if (log.format == Format::kTracker) FromTrackerFrame(pose);
+    if (log.format == Format::kWebots) FromWebotsFrame(pose);
+  }
+  if (log.format == Format::kAuto) ForgetAngles(log);
+}
+
+void Reorder(Trajectory& trajectory, const std::vector<size_t>& order) {
+  Trajectory sorted;
+  for (const size_t i : order) sorted.poses.push_back(trajectory.poses[i]);
+  for (const Channel& channel : trajectory.channels) {
+    Channel copy{channel.name, {}};
+    for (const size_t i : order) copy.values.push_back(channel.values[i]);
+    sorted.channels.push_back(std::move(copy));
+  }
+  trajectory = std::move(sorted);
+}
+
+/// Makes time strictly increasing and notes what had to be done for it.
+void SortByTime(Log& log) {
+  const auto& poses = log.trajectory.poses;
+  const auto not_later = [](const StampedPose& a, const StampedPose& b) { return a.t_s >= b.t_s; };
+  if (std::adjacent_find(poses.begin(), poses.end(), not_later) == poses.end()) return;
+
+  std::vector<size_t> order(poses.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  size_t backwards = 0;
+  for (size_t i = 1; i < poses.size(); ++i) backwards += poses[i].t_s < poses[i - 1].t_s;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return poses[a].t_s < poses[b].t_s; });
+  std::vector<size_t> kept;
+  for (const size_t i : order) {
+    if (!kept.empty() && poses[kept.back()].t_s == poses[i].t_s) kept.pop_back();
+    kept.push_back(i);
+  }
+  const size_t dropped = poses.size() - kept.size();
+  Reorder(log.trajectory, kept);
+  if (backwards > 0) {
+    log.notes.push_back(fmt::format("time runs backwards {} times: rows sorted", backwards));
+  }
+  if (dropped > 0) {
+    log.notes.push_back(
+        fmt::format("{} rows share the time of another: the last is kept", dropped));
+  }
+}
+
+void CheckMoves(const Trajectory& trajectory, const std::string& name) {
+  if (trajectory.poses.size() < 2) {
+    throw std::invalid_argument(fmt::format("{}: {} poses, and a trajectory needs at least 2", name,
+                                            trajectory.poses.size()));
+  }
+  if (!(trajectory.ArcLength_m() > 0.0)) {
+    throw std::invalid_argument(
+        fmt::format("{}: the path has zero length: the robot never moved", name));
+  }
+}
+
+}  // namespace
+
+Log ReadLog(std::string_view text, const std::string& name, Format format) {
+  Log log;
+  log.format = format == Format::kAuto ? FormatFromHeader(text, name) : format;
+  if (log.format == Format::kTum) {
+    TakeTum(csv::ReadNumbers(text, name, false, ' '), name, log.trajectory);
+  } else {
+    const Table table = csv::ReadNumbers(text, name, true, ',');
+    TakeColumns(table, log.format == Format::kRift ? kRiftColumns : kAuthorsColumns, name,
+                log.trajectory);
+    ConvertAngles(log);
+  }
+  SortByTime(log);
+  CheckMoves(log.trajectory, name);
+  return log;
+}
+
+}  // namespace rift::trajectory

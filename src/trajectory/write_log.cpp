@@ -1,0 +1,61 @@
+#include <Eigen/Geometry>
+#include <charconv>
+#include <cmath>
+
+#include "rift/trajectory/log.hpp"
+
+namespace rift::trajectory {
+namespace {
+
+/// Shortest text that reads back to the same bits; nothing for a value that is not logged.
+void AppendNumber(std::string& text, double value) {
+  if (std::isnan(value)) return;
+  char buffer[32];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof(buffer), value);
+  text.append(buffer, end);
+}
+
+double ZeroIfNotLogged(double value) { return std::isnan(value) ? 0.0 : value; }
+
+}  // namespace
+
+std::string WriteRift(const Trajectory& trajectory) {
+  std::string text = "t_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad,target_x_m,target_y_m";
+  for (const Channel& channel : trajectory.channels) text += "," + channel.name;
+  text += '\n';
+  for (size_t row = 0; row < trajectory.poses.size(); ++row) {
+    const StampedPose& pose = trajectory.poses[row];
+    AppendNumber(text, pose.t_s);
+    for (const double value : {pose.x_m, pose.y_m, pose.z_m, pose.roll_rad, pose.pitch_rad,
+                               pose.yaw_rad, pose.target_x_m, pose.target_y_m}) {
+      text += ',';
+      AppendNumber(text, value);
+    }
+    for (const Channel& channel : trajectory.channels) {
+      text += ',';
+      AppendNumber(text, channel.values[row]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string WriteTum(const Trajectory& trajectory) {
+  std::string text;
+  for (const StampedPose& pose : trajectory.poses) {
+    const Eigen::Quaterniond world_from_body =
+        Eigen::AngleAxisd(ZeroIfNotLogged(pose.yaw_rad), Eigen::Vector3d::UnitZ()) *
+        Eigen::AngleAxisd(ZeroIfNotLogged(pose.pitch_rad), Eigen::Vector3d::UnitY()) *
+        Eigen::AngleAxisd(ZeroIfNotLogged(pose.roll_rad), Eigen::Vector3d::UnitX());
+    AppendNumber(text, pose.t_s);
+    for (const double value : {pose.x_m, pose.y_m, ZeroIfNotLogged(pose.z_m), world_from_body.x(),
+                               world_from_body.y(), world_from_body.z(), world_from_body.w()}) {
+      text += ' ';
+      AppendNumber(text, value);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace rift::trajectory

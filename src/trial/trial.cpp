@@ -1,0 +1,198 @@
+#include "rift/trial/trial.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "rift/geometry/angle.hpp"
+#include "rift/trial/recorder.hpp"
+
+namespace rift::trial {
+namespace {
+
+// Turns of the loop may take less time than asked, down to one part in this.
+constexpr double kSlowestClock = 20.0;
+
+// Whatever happens in between, the robot stands at the end.
+class StopGuard {
+ public:
+  explicit StopGuard(robot::Robot& robot) : robot_(robot) {}
+  ~StopGuard() { robot_.Stop(); }
+  StopGuard(const StopGuard&) = delete;
+  StopGuard& operator=(const StopGuard&) = delete;
+
+ private:
+  robot::Robot& robot_;
+};
+
+class Loop {
+ public:
+  Loop(robot::Robot& robot, const std::vector<control::Waypoint>& waypoints,
+       const control::NavigatorOptions& navigator_options, const TrialOptions& options)
+      : robot_(robot),
+        options_(options),
+        navigator_(navigator_options, waypoints),
+        recorder_(waypoints, options.log_period_s) {}
+
+  TrialResult Run();
+
+ private:
+  void Begin(const robot::Sensed& sensed);
+  bool ClockRuns(double now_s);
+  bool TakePose(const robot::Sensed& sensed);
+  bool IsOver(const robot::Sensed& sensed);
+  void Act(double now_s, bool is_new_pose);
+  control::Decision Decide(double now_s, bool is_new_pose);
+  void Send(double now_s, const robot::WheelPower& power);
+  bool End(Outcome outcome, std::string reason);
+  double PoseAge_s(double now_s) const;
+
+  robot::Robot& robot_;
+  const TrialOptions& options_;
+  control::Navigator navigator_;
+  Recorder recorder_;
+  std::optional<double> looked_at_s_;  ///< capture time of the newest pose seen, believed or not
+  robot::PoseMeasurement measured_;    ///< the newest pose believed
+  std::optional<double> decided_s_;
+  std::optional<double> tilted_since_s_;
+  control::Decision decision_;
+  double start_s_ = 0.0;
+  double last_look_s_ = 0.0;
+  double turns_ = 0.0;
+};
+
+TrialResult Loop::Run() {
+  robot::Sensed sensed = robot_.Sense();
+  Begin(sensed);
+  while (true) {
+    const bool is_new_pose = TakePose(sensed);
+    if (IsOver(sensed)) break;
+    Act(sensed.now_s, is_new_pose);
+    if (decision_.finished) {
+      End(Outcome::kReached, "the last waypoint was reached");
+      break;
+    }
+    robot_.Advance(options_.control_period_s);
+    sensed = robot_.Sense();
+  }
+  recorder_.result().end_s = sensed.now_s;
+  return std::move(recorder_.result());
+}
+
+void Loop::Begin(const robot::Sensed& sensed) {
+  start_s_ = last_look_s_ = sensed.now_s;
+  recorder_.result().start_s = start_s_;
+}
+
+// A clock that jumps back or stands still would keep the timeout from ever coming.
+bool Loop::ClockRuns(double now_s) {
+  const bool forward = now_s >= last_look_s_;
+  last_look_s_ = now_s;
+  turns_ += 1.0;
+  return forward && turns_ * options_.control_period_s <= kSlowestClock * options_.timeout_s + 1.0;
+}
+
+// True when a pose came in that had not been seen before and is believed. One from the future
+// would never grow stale.
+bool Loop::TakePose(const robot::Sensed& sensed) {
+  if (!sensed.pose || sensed.pose->captured_s == looked_at_s_) return false;
+  looked_at_s_ = sensed.pose->captured_s;
+  const bool believed = sensed.pose->captured_s <= sensed.now_s + options_.control_period_s &&
+                        navigator_.Observe({sensed.now_s, 0.0, sensed.pose->captured_s,
+                                            sensed.pose->world_from_robot});
+  if (!believed) {
+    recorder_.Refused();
+    return false;
+  }
+  measured_ = *sensed.pose;
+  const double tilt_rad = std::max(std::abs(measured_.roll_rad), std::abs(measured_.pitch_rad));
+  if (!(tilt_rad > geometry::RadFromDeg(options_.fall_angle_deg))) {
+    tilted_since_s_.reset();
+  } else if (!tilted_since_s_) {
+    tilted_since_s_ = measured_.captured_s;
+  }
+  return true;
+}
+
+bool Loop::IsOver(const robot::Sensed& sensed) {
+  if (sensed.fault) return End(Outcome::kFault, *sensed.fault);
+  if (!ClockRuns(sensed.now_s)) {
+    return End(Outcome::kFault, "the robot's clock stands still or runs backwards");
+  }
+  if (tilted_since_s_ && measured_.captured_s - *tilted_since_s_ >= options_.fall_confirm_s) {
+    return End(Outcome::kFell, fmt::format("roll or pitch stayed beyond {} deg from {:.3f} s on",
+                                           options_.fall_angle_deg, *tilted_since_s_));
+  }
+  const geometry::Pose2& pose = measured_.world_from_robot;
+  if (navigator_.pose() && !options_.arena.Contains(pose.x_m, pose.y_m)) {
+    return End(Outcome::kLeftArena,
+               fmt::format("the robot is at x {:.3f} m, y {:.3f} m, outside the arena", pose.x_m,
+                           pose.y_m));
+  }
+  if (PoseAge_s(sensed.now_s) > options_.lost_after_s) {
+    return End(Outcome::kLost,
+               fmt::format("no believable pose for {:.2f} s", PoseAge_s(sensed.now_s)));
+  }
+  if (sensed.now_s - start_s_ >= options_.timeout_s) {
+    const control::Waypoint& target = navigator_.waypoints()[navigator_.active()];
+    return End(Outcome::kTimedOut, fmt::format("waypoint '{}' was not reached within {} s",
+                                               target.name, options_.timeout_s));
+  }
+  return false;
+}
+
+// A robot that has shown no pose yet is as old as the trial.
+double Loop::PoseAge_s(double now_s) const {
+  return now_s - (navigator_.pose() ? navigator_.pose()->captured_s : start_s_);
+}
+
+void Loop::Act(double now_s, bool is_new_pose) {
+  const size_t target = navigator_.active();
+  decision_ = Decide(now_s, is_new_pose);
+  Send(now_s, decision_.power);
+  if (is_new_pose) recorder_.Pose(measured_, navigator_.waypoints()[target], decision_);
+}
+
+control::Decision Loop::Decide(double now_s, bool is_new_pose) {
+  if (!navigator_.pose() || now_s - start_s_ < options_.settle_s) return {};
+  if (PoseAge_s(now_s) > options_.pose_stale_s) {
+    recorder_.Stale();
+    return {};
+  }
+  if (options_.pace == Pace::kNewPose && !is_new_pose) return decision_;
+
+  const double dt_s = decided_s_ ? now_s - *decided_s_ : options_.control_period_s;
+  decided_s_ = now_s;
+  const control::TimedPose& pose = *navigator_.pose();
+  const control::Decision decision =
+      navigator_.Step({now_s, dt_s, pose.captured_s, pose.world_from_robot});
+  recorder_.Decided(now_s, decision, navigator_.active());
+  return decision;
+}
+
+void Loop::Send(double now_s, const robot::WheelPower& power) {
+  robot_.Command(power);
+  navigator_.NoteSent(now_s, power);
+  recorder_.Sent(now_s, power);
+}
+
+bool Loop::End(Outcome outcome, std::string reason) {
+  recorder_.result().outcome = outcome;
+  recorder_.result().reason = std::move(reason);
+  return true;
+}
+
+}  // namespace
+
+TrialResult RunTrial(robot::Robot& robot, const std::vector<control::Waypoint>& waypoints,
+                     const control::NavigatorOptions& navigator_options,
+                     const TrialOptions& options) {
+  const StopGuard stop_at_the_end(robot);
+  options.Check();
+  return Loop(robot, waypoints, navigator_options, options).Run();
+}
+
+}  // namespace rift::trial

@@ -1,0 +1,156 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "support/paths.hpp"
+#include "support/process.hpp"
+#include "support/trials.hpp"
+
+namespace rift {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::ProcessResult;
+using test::RunRift;
+using test::WriteText;
+
+const std::string kExperiment = R"(space:
+  surface: [ground, ice]
+  control.v_min: [0.15, 0.20]
+candidate: {kind: logs, path: "{surface}/v{v_min:.2f}_sim.csv"}
+reference: {kind: logs, path: "{surface}/v{v_min:.2f}_real{trial}.csv", trials: [1, 2]}
+)";
+
+/// An experiment with its logs: on ice the robot is 0.08 m beside the simulator, else 0.04 m.
+struct LogFolder {
+  LogFolder() {
+    WriteText(experiment, kExperiment);
+    const trajectory::Trajectory path = test::StraightPath(0.7, 40);
+    for (const std::string surface : {"ground", "ice"}) {
+      for (const std::string speed : {"0.15", "0.20"}) {
+        const std::string stem = folder / (surface + "/v" + speed);
+        WriteText(stem + "_sim.csv", trajectory::WriteRift(path));
+        for (const int trial : {1, 2}) {
+          const double offset_m = (surface == "ice" ? 0.08 : 0.04) + 0.002 * trial;
+          WriteText(stem + "_real" + std::to_string(trial) + ".csv",
+                    trajectory::WriteRift(test::Moved(path, {0.0, offset_m, 0.0})));
+        }
+      }
+    }
+  }
+  test::TemporaryFolder folder;
+  std::string experiment = folder / "experiment.yaml";
+  std::string out = folder / "out";
+};
+
+TEST_CASE("rift sweep over logs writes table and summary and figures and report") {
+  const LogFolder logs;
+  const ProcessResult result = RunRift({"sweep", logs.experiment, "--out", logs.out});
+  REQUIRE(result.exit_code == 0);
+  CHECK(result.out.find("surface: effect found") != std::string::npos);
+  const std::string table = test::ReadFile(logs.out + "/table.csv");
+  CHECK(table.starts_with("surface,v_min,trial,gap_m,falsified,status,"));
+  CHECK(std::count(table.begin(), table.end(), '\n') == 9);
+  const json summary = json::parse(test::ReadFile(logs.out + "/summary.json"));
+  CHECK(summary["n"] == 8);
+  CHECK(summary["failures"] == 4);
+  CHECK(summary["mean_gap_m"].get<double>() == Approx(0.063));
+  CHECK(summary["by"]["surface"]["ice"]["failures"] == 4);
+  CHECK(summary["by"]["surface"]["ground"]["mean_gap_m"].get<double>() == Approx(0.043));
+  CHECK(summary["by"]["v_min"]["0.20"]["n"] == 4);
+  CHECK(
+      summary["effects"]["v_min"]["sentence"].get<std::string>().starts_with("no effect found (p"));
+  for (const char* name : {"fig07", "fig08", "fig09", "fig10", "fig11", "fig12", "fig13"}) {
+    int found = 0;
+    for (const auto& entry : fs::directory_iterator(logs.out + "/figures")) {
+      found += entry.path().filename().string().starts_with(name);
+    }
+    INFO(name);
+    CHECK(found == 2);
+  }
+  CHECK(test::ReadFile(logs.out + "/report.html").find("</html>") != std::string::npos);
+}
+
+TEST_CASE("A resolved experiment gives the same bytes again") {
+  const LogFolder logs;
+  REQUIRE(RunRift({"sweep", logs.experiment, "--out", logs.out, "--set", "gap.skip_start=0.1"})
+              .exit_code == 0);
+  const std::string again = logs.folder / "again";
+  REQUIRE(RunRift({"sweep", logs.out + "/experiment.yaml", "--out", again}).exit_code == 0);
+  for (const auto& entry : fs::recursive_directory_iterator(logs.out)) {
+    if (!entry.is_regular_file()) continue;
+    const fs::path twin = again / fs::relative(entry.path(), logs.out);
+    INFO(twin.string());
+    CHECK(test::ReadFile(entry.path()) == test::ReadFile(twin));
+  }
+}
+
+TEST_CASE("A missing log is a row with its status and a bad one too") {
+  const LogFolder logs;
+  fs::remove(logs.folder / "ice/v0.15_real2.csv");
+  WriteText(logs.folder / "ice/v0.20_real1.csv", "t_s,x_m,y_m\n0,0,0\n1,nan,0\n");
+  const ProcessResult result = RunRift({"sweep", logs.experiment, "--out", logs.out});
+  REQUIRE(result.exit_code == 0);
+  const std::string table = test::ReadFile(logs.out + "/table.csv");
+  CHECK(std::count(table.begin(), table.end(), '\n') == 9);
+  CHECK(table.find("ice,0.15,2,,,missing,") != std::string::npos);
+  CHECK(table.find("ice,0.20,1,,,unreadable,") != std::string::npos);
+  CHECK(table.find("v0.20_real1.csv:3: column x_m is 'nan'") != std::string::npos);
+  const json summary = json::parse(test::ReadFile(logs.out + "/summary.json"));
+  CHECK(summary["n"] == 6);
+  CHECK(summary["not_ok"] == 2);
+}
+
+TEST_CASE("rift sweep says in one line what is wrong with its experiment") {
+  const LogFolder logs;
+  const std::string bad = logs.folder / "bad.yaml";
+  const auto refusal = [&](const std::string& text, const std::string& set = "") {
+    WriteText(bad, text);
+    std::vector<std::string> arguments{"sweep", bad, "--out", logs.out};
+    if (!set.empty()) arguments.insert(arguments.end(), {"--set", set});
+    const ProcessResult result = RunRift(arguments);
+    CHECK(result.exit_code == 2);
+    CHECK_FALSE(fs::exists(logs.out));
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    const size_t at = result.err.find("bad.yaml");
+    return at == std::string::npos ? result.err : result.err.substr(at);
+  };
+  CHECK(refusal("gap:\n  smaples: 5\n") ==
+        "bad.yaml:2:3: key 'gap.smaples' is not known; did you mean 'samples'?\n");
+  CHECK(refusal(kExperiment + "gap: {samples: 1}\n") ==
+        "bad.yaml:5:16: key 'gap.samples' is 1: must be in [2, 10000000]\n");
+  CHECK(refusal(kExperiment, "gap.samples=many").find("--set gap.samples") != std::string::npos);
+  CHECK(refusal("space: {v_min: []}\n") ==
+        "bad.yaml:1:16: key 'space.v_min' is []: an axis needs at least one value\n");
+  CHECK(refusal("space: {v_min: 3}\n") ==
+        "bad.yaml:1:16: key 'space.v_min' is 3: must be a list of values, or {min: a, max: b}\n");
+  CHECK(refusal("space: {a.v: [1], b.v: [2]}\n") ==
+        "bad.yaml:1:8: key 'space' is a map: a.v and b.v have the same last name 'v'\n");
+  CHECK(refusal("reference: {trials: 0}\n").find("must be a list of trials") != std::string::npos);
+  CHECK(refusal("waypoints: []\n").find("candidate.path is missing") != std::string::npos);
+  fs::remove_all(logs.folder / "ground");
+  fs::remove_all(logs.folder / "ice");
+  CHECK(refusal(kExperiment).find("not one of 8 trials could be compared") != std::string::npos);
+}
+
+TEST_CASE("The paper's table comes out of the authors' logs") {
+  RIFT_SKIP_WITHOUT_TRIALS();
+  const test::TemporaryFolder folder;
+  const ProcessResult result = RunRift(
+      {"sweep", RIFT_SOURCE_DIR "/configs/paper_webots.yaml", "--out", folder / "out", "--json"});
+  REQUIRE(result.exit_code == 0);
+  const json summary = json::parse(result.out);
+  CHECK(summary["n"] == 48);
+  CHECK(summary["not_ok"] == 0);
+  // Trials 1 and 2 of the paper's figure 12.
+  CHECK(summary["by"]["surface"]["ground"]["failures"] == 6);
+  CHECK(summary["by"]["surface"]["cardboard"]["failures"] == 0);
+  CHECK(summary["effects"]["surface"]["detected"] == true);
+  CHECK(summary["effects"]["v_max"]["detected"] == false);
+  CHECK(
+      summary["effects"]["v_max"]["sentence"].get<std::string>().starts_with("no effect found (p"));
+}
+
+}  // namespace
+}  // namespace rift

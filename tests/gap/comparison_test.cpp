@@ -1,0 +1,176 @@
+#include "rift/gap/comparison.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "rift/geometry/angle.hpp"
+#include "support/paths.hpp"
+
+namespace rift::gap {
+namespace {
+
+using test::Moved;
+using test::RandomPath;
+using test::StraightPath;
+using trajectory::Trajectory;
+
+/// The definition of section 3.1, written out as the paper does, for every sample.
+double GapByDefinition(const Trajectory& sim, const Trajectory& real, const GapOptions& options) {
+  const ErrorProfile profile = ProfileAlong(sim, real, options);
+  return *std::max_element(profile.error_m.begin(), profile.error_m.end());
+}
+
+TEST_CASE("A path has no gap to itself") {
+  std::mt19937_64 generator(1);
+  const Trajectory path = RandomPath(generator, 80);
+  const Comparison result = Compare(path, path, {});
+  CHECK(result.gap_m == 0.0);
+  CHECK(result.exact_gap_m == 0.0);
+  CHECK(result.shape_gap_m < 1e-12);
+  CHECK(result.frechet_m == 0.0);
+  CHECK(result.dtw_m == 0.0);
+  CHECK(result.length_ratio == 1.0);
+  CHECK(result.max_yaw_error_rad == 0.0);
+}
+
+TEST_CASE("The gap from two samples an interval is the gap from all of them") {
+  std::mt19937_64 generator(2);
+  for (int i = 0; i < 200; ++i) {
+    const Trajectory sim = RandomPath(generator, 3 + i), real = RandomPath(generator, 90);
+    GapOptions options;
+    options.samples = 2 + static_cast<int>(generator() % 3000);
+    options.skip_start = i % 3 == 0 ? 0.1 : 0.0;
+    options.align = static_cast<Align>(i % 3);
+    CHECK(Gap(sim, real, options) == Approx(GapByDefinition(sim, real, options)).margin(1e-14));
+  }
+}
+
+TEST_CASE("The exact gap is what ever more samples approach from below") {
+  std::mt19937_64 generator(3);
+  for (int i = 0; i < 50; ++i) {
+    const Trajectory sim = RandomPath(generator, 40), real = RandomPath(generator, 60);
+    const Comparison result = Compare(sim, real, {});
+    GapOptions many;
+    many.samples = 1'000'000;
+    CHECK(result.exact_gap_m >= result.gap_m);
+    CHECK(Gap(sim, real, many) <= result.exact_gap_m + 1e-14);
+    CHECK(Gap(sim, real, many) == Approx(result.exact_gap_m).margin(1e-5));
+  }
+}
+
+TEST_CASE("A shifted straight path has the shift as its gap and no shape left") {
+  const Trajectory sim = StraightPath(0.7, 50);
+  const Comparison result = Compare(sim, Moved(sim, {0.03, 0.04, 0.0}), {});
+  CHECK(result.gap_m == Approx(0.05));
+  CHECK(result.mean_error_m == Approx(0.05));
+  CHECK(result.p95_error_m == Approx(0.05));
+  CHECK(result.start_offset_m == Approx(0.05));
+  CHECK(result.end_error_m == Approx(0.05));
+  CHECK(result.start_aligned_gap_m == Approx(0.0).margin(1e-12));
+  CHECK(result.shape_gap_m == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("The best rigid motion undoes any rigid motion and says which") {
+  std::mt19937_64 generator(4);
+  const Trajectory sim = RandomPath(generator, 80);
+  const geometry::Pose2 moved_from_sim{0.2, -0.3, 0.4};
+  const Comparison result = Compare(sim, Moved(sim, moved_from_sim), {});
+  CHECK(result.shape_gap_m < 1e-9);
+  CHECK(result.real_from_sim.x_m == Approx(0.2));
+  CHECK(result.real_from_sim.y_m == Approx(-0.3));
+  CHECK(result.real_from_sim.yaw_rad == Approx(0.4));
+  CHECK(result.mean_yaw_error_rad == Approx(0.4));
+  CHECK(result.max_yaw_error_rad == Approx(0.4));
+}
+
+TEST_CASE("A constant heading error grows linearly and is largest at the end") {
+  const Trajectory sim = StraightPath(1.0, 30);
+  const Comparison result = Compare(sim, Moved(sim, {0.0, 0.0, 0.1}), {});
+  CHECK(result.gap_m == Approx(2.0 * std::sin(0.05)));
+  CHECK(result.gap_u == Approx(1.0));
+  CHECK(result.median_error_m == Approx(std::sin(0.05)).epsilon(1e-3));
+}
+
+TEST_CASE("Skipping the start hides an error that stands only there") {
+  Trajectory real = StraightPath(1.0, 101);
+  real.poses[2].y_m = 0.2;
+  const Trajectory sim = StraightPath(1.0, 101);
+  GapOptions options;
+  const double whole_m = Gap(sim, real, options);
+  options.skip_start = 0.5;
+  CHECK(Gap(sim, real, options) < 0.9 * whole_m);
+}
+
+TEST_CASE("Speed does not matter to the gap but does at equal time") {
+  Trajectory real = StraightPath(1.0, 50);
+  for (trajectory::StampedPose& pose : real.poses) pose.t_s *= 2.0;
+  const Comparison result = Compare(StraightPath(1.0, 50), real, {});
+  CHECK(result.gap_m == Approx(0.0).margin(1e-12));
+  CHECK(result.equal_time_m == Approx(0.5).epsilon(0.01));
+}
+
+TEST_CASE("Jitter of a standing robot is counted and can be trimmed") {
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> jitter_m(0.0, 0.0005);
+  Trajectory real = StraightPath(1.0, 50), noisy;
+  for (int i = 0; i < 100; ++i) {
+    noisy.poses.push_back({.t_s = -10.0 + 0.05 * i,
+                           .x_m = jitter_m(generator),
+                           .y_m = jitter_m(generator),
+                           .yaw_rad = 0.0});
+  }
+  noisy.poses.insert(noisy.poses.end(), real.poses.begin(), real.poses.end());
+  GapOptions options;
+  const Comparison counted = Compare(real, noisy, options);
+  CHECK(counted.real_standstill_share > 0.05);
+  CHECK(counted.sim_standstill_share == Approx(0.0).margin(1e-9));
+  options.trim_standstill = true;
+  const Comparison trimmed = Compare(real, noisy, options);
+  CHECK(trimmed.gap_m < 0.2 * counted.gap_m);
+}
+
+TEST_CASE("Hausdorff and Frechet tell a detour back and forth apart") {
+  // Forward, back and forward again along one line: every point is on the other path, but no
+  // walk along both stays close.
+  Trajectory there_and_back;
+  for (const double x_m : {0.0, 0.8, 0.2, 1.0}) {
+    there_and_back.poses.push_back(
+        {.t_s = static_cast<double>(there_and_back.poses.size()), .x_m = x_m});
+  }
+  const Comparison result = Compare(StraightPath(1.0, 50), there_and_back, {});
+  CHECK(result.hausdorff_m == Approx(0.0).margin(0.005));
+  CHECK(result.frechet_m == Approx(0.3).margin(0.01));
+}
+
+TEST_CASE("Measures that do not know the order of the paths are symmetric") {
+  std::mt19937_64 generator(6);
+  const Trajectory a = RandomPath(generator, 50), b = RandomPath(generator, 70);
+  const Comparison ab = Compare(a, b, {}), ba = Compare(b, a, {});
+  CHECK(ab.gap_m == Approx(ba.gap_m));
+  CHECK(ab.hausdorff_m == Approx(ba.hausdorff_m));
+  CHECK(ab.frechet_m == Approx(ba.frechet_m));
+  CHECK(ab.equal_time_m == Approx(ba.equal_time_m));
+  CHECK(ab.length_ratio == Approx(1.0 / ba.length_ratio));
+  CHECK(ab.hausdorff_m <= ab.frechet_m + 1e-12);
+}
+
+TEST_CASE("Repeated points do not disturb the arc length") {
+  Trajectory sim = StraightPath(1.0, 20);
+  sim.poses.insert(sim.poses.begin() + 7, sim.poses[7]);
+  sim.poses.insert(sim.poses.begin(), sim.poses[0]);
+  sim.poses.push_back(sim.poses.back());
+  CHECK(Gap(sim, StraightPath(1.0, 33), {}) == Approx(0.0).margin(1e-12));
+  CHECK(Gap(StraightPath(1.0, 33), sim, {}) == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("A path that never moves is refused") {
+  Trajectory still;
+  still.poses = {{.t_s = 0.0}, {.t_s = 1.0}};
+  CHECK_THROWS_AS(Compare(still, StraightPath(1.0, 5), {}), std::invalid_argument);
+  still.poses.pop_back();
+  CHECK_THROWS_AS(Compare(StraightPath(1.0, 5), still, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace rift::gap

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <random>
+
+#include "rift/geometry/pose2.hpp"
+#include "rift/trajectory/trajectory.hpp"
+
+namespace rift::test {
+
+/// `rows` poses along +x at 1 m/s, evenly spaced.
+trajectory::Trajectory StraightPath(double length_m, int rows);
+
+/// A wandering path of `rows` poses, 10 mm apart on average.
+trajectory::Trajectory RandomPath(std::mt19937_64& generator, int rows);
+
+trajectory::Trajectory Moved(trajectory::Trajectory path, const geometry::Pose2& b_from_a);
+
+}  // namespace rift::test

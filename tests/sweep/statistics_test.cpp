@@ -1,0 +1,136 @@
+#include "rift/sweep/statistics.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "rift/sweep/labels.hpp"
+
+namespace rift::sweep {
+namespace {
+
+Parameter Axis(const std::string& key, const std::vector<std::string>& texts, bool numbers) {
+  Parameter axis{.key = key};
+  for (const std::string& text : texts) {
+    axis.levels.push_back({text, numbers ? std::optional(std::stod(text)) : std::nullopt});
+  }
+  return axis;
+}
+
+/// Two surfaces, two speeds, two trials; the gap is 0.05 on ground and 0.07 on ice, +- 0.001.
+SweepResult TwoSurfaces() {
+  SweepResult result;
+  result.parameters = {Axis("terrain.surface", {"ground", "ice"}, false),
+                       Axis("control.v_min", {"0.15", "0.20"}, true)};
+  for (const ParameterValue& surface : result.parameters[0].levels) {
+    for (const ParameterValue& speed : result.parameters[1].levels) {
+      for (int trial = 1; trial <= 2; ++trial) {
+        TrialRow row{.theta = {surface, speed}, .trial = std::to_string(trial)};
+        row.comparison.gap_m = (surface.text == "ground" ? 0.05 : 0.07) + 0.001 * (trial * 2 - 3);
+        row.falsified = row.comparison.gap_m > result.gap.threshold_m;
+        result.rows.push_back(row);
+      }
+    }
+  }
+  return result;
+}
+
+TEST_CASE("The analysis of variance agrees with one done by hand") {
+  const AnalysisOfVariance result =
+      AnalyseVariance({{6, 8, 4, 5, 3}, {8, 12, 9, 11, 6}, {13, 9, 11, 8, 7}});
+  CHECK(result.df_between == 2.0);
+  CHECK(result.df_within == 12.0);
+  CHECK(result.f > 0.0);
+  // Group means 5.2, 9.2, 9.6, grand mean 8; between 59.2, within 14.8 + 22.8 + 23.2.
+  CHECK(result.f == Approx((59.2 / 2.0) / (60.8 / 12.0)));
+  CHECK(result.eta_squared == Approx(59.2 / 120.0));
+  CHECK(result.omega_squared == Approx((59.2 - 2.0 * 60.8 / 12.0) / (120.0 + 60.8 / 12.0)));
+}
+
+TEST_CASE("For two groups the analysis of variance is the t test squared") {
+  const std::vector<double> a{1.0, 2.0, 4.0}, b{3.0, 5.0, 7.0};
+  const AnalysisOfVariance result = AnalyseVariance({a, b});
+  const double t = (5.0 - 7.0 / 3.0) / std::sqrt((14.0 / 3.0 + 8.0) / 4.0 * (2.0 / 3.0));
+  CHECK(result.f == Approx(t * t));
+}
+
+TEST_CASE("Under no effect the p value is evenly spread") {
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> noise;
+  int below_half = 0, below_tenth = 0;
+  constexpr int kRounds = 2000;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<std::vector<double>> groups(3, std::vector<double>(6));
+    for (auto& group : groups) {
+      for (double& value : group) value = noise(generator);
+    }
+    const double p = AnalyseVariance(groups).p;
+    below_half += p < 0.5;
+    below_tenth += p < 0.1;
+  }
+  CHECK(below_half == Approx(kRounds * 0.5).margin(90));
+  CHECK(below_tenth == Approx(kRounds * 0.1).margin(55));
+}
+
+TEST_CASE("No test is made where the data allow none") {
+  CHECK(std::isnan(AnalyseVariance({{1.0, 2.0}}).p));
+  CHECK(std::isnan(AnalyseVariance({{1.0}, {2.0}}).p));
+  CHECK(std::isnan(AnalyseVariance({{1.0, 1.0}, {2.0, 2.0}}).f));
+  CHECK(std::isnan(AnalyseVariance({{1.0, 2.0}, {}}).p));
+}
+
+TEST_CASE("A planted effect is found and its absence said in words") {
+  SweepResult result = TwoSurfaces();
+  Summarise(result);
+  REQUIRE(result.effects.size() == 2);
+  CHECK(result.effects[0].parameter == "surface");
+  CHECK(result.effects[0].detected);
+  CHECK(result.effects[0].sentence.starts_with("effect found (F = "));
+  CHECK(result.effects[1].parameter == "v_min");
+  CHECK_FALSE(result.effects[1].detected);
+  CHECK(result.effects[1].sentence == "no effect found (p = 1.000)");
+}
+
+TEST_CASE("Means and failures and verdicts follow from the rows") {
+  SweepResult result = TwoSurfaces();
+  Summarise(result);
+  CHECK(result.all.n == 8);
+  CHECK(result.all.failures == 4);
+  CHECK(result.all.mean_gap_m == Approx(0.06));
+  const std::vector<LevelSummary> by_surface = SummariseBy(result, {0});
+  REQUIRE(by_surface.size() == 2);
+  CHECK(by_surface[0].level == "ground");
+  CHECK(by_surface[0].failures == 0);
+  CHECK(by_surface[1].failures == 4);
+  CHECK(by_surface[1].mean_gap_m == Approx(0.07));
+  REQUIRE(result.settings.size() == 4);
+  CHECK(result.settings[0].verdict.verdict == gap::Verdict::kNotFalsified);
+  CHECK(result.settings[3].verdict.verdict == gap::Verdict::kFalsified);
+}
+
+TEST_CASE("A trial without a gap is counted and never averaged") {
+  SweepResult result = TwoSurfaces();
+  result.rows[0].status = TrialStatus::kMissing;
+  result.rows[0].comparison = {};
+  Summarise(result);
+  CHECK(result.all.n == 7);
+  CHECK(result.all.not_ok == 1);
+  CHECK(result.effects[0].levels[0].n == 3);
+  CHECK(result.settings[0].verdict.repeats == 1);
+}
+
+TEST_CASE("The categorical parameter stands alone and the others are combined") {
+  const SweepResult result = TwoSurfaces();
+  std::vector<Parameter> parameters = result.parameters;
+  std::swap(parameters[0], parameters[1]);
+  parameters.push_back(Axis("v_max", {"0.3"}, true));
+  const FactorSplit split = SplitFactors(parameters);
+  CHECK(split.main_factor == 1);
+  CHECK(split.others == std::vector<int>{0, 2});
+  CHECK(split.others_name == "[v_min, v_max]");
+  CHECK(CombinationLabel({{"a", {}}, {"0.30", 0.3}}, {0, 1}) == "[a, 0.30]");
+  CHECK(CombinationLabel({{"a", {}}, {"0.30", 0.3}}, {1}) == "0.30");
+}
+
+}  // namespace
+}  // namespace rift::sweep

@@ -1,0 +1,190 @@
+#include "rift/trajectory/log.hpp"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "rift/geometry/angle.hpp"
+
+namespace rift::trajectory {
+namespace {
+
+using geometry::kPi;
+
+const std::string kAuthorsHeader = "t,x,y,z,roll,pitch,yaw,desired_x,desired_y\n";
+
+/// What a reader says about a text it refuses.
+std::string Refusal(const std::string& text, Format format = Format::kAuto) {
+  try {
+    ReadLog(text, "log.csv", format);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+Trajectory RandomTrajectory(std::mt19937_64& generator, bool with_angles) {
+  std::uniform_real_distribution<double> value(-1.4, 1.4);
+  Trajectory trajectory;
+  trajectory.channels.push_back({"power_left", {}});
+  for (int i = 0; i < 30; ++i) {
+    StampedPose pose{.t_s = 0.05 * i + 0.001 * value(generator)};
+    pose.x_m = value(generator);
+    pose.y_m = value(generator);
+    if (with_angles) {
+      pose.z_m = value(generator);
+      pose.roll_rad = value(generator);
+      pose.pitch_rad = value(generator);
+      pose.yaw_rad = 2.0 * value(generator);
+    }
+    trajectory.poses.push_back(pose);
+    trajectory.channels[0].values.push_back(value(generator));
+  }
+  return trajectory;
+}
+
+TEST_CASE("A trajectory written in the rift dialect reads back to the same bits") {
+  std::mt19937_64 generator(7);
+  for (const bool with_angles : {true, false}) {
+    const Trajectory written = RandomTrajectory(generator, with_angles);
+    const Log log = ReadLog(WriteRift(written), "log.csv");
+    CHECK(log.format == Format::kRift);
+    CHECK(log.trajectory.HasYaw() == with_angles);
+    CHECK(WriteRift(log.trajectory) == WriteRift(written));
+    REQUIRE(log.trajectory.channels.size() == 1);
+    CHECK(log.trajectory.channels[0].name == "power_left");
+    CHECK(log.trajectory.channels[0].values == written.channels[0].values);
+  }
+}
+
+TEST_CASE("A trajectory written for evo reads back to the same pose") {
+  std::mt19937_64 generator(8);
+  const Trajectory written = RandomTrajectory(generator, true);
+  const Log log = ReadLog(WriteTum(written), "log.tum");
+  CHECK(log.format == Format::kTum);
+  for (size_t i = 0; i < written.poses.size(); ++i) {
+    const StampedPose &a = written.poses[i], &b = log.trajectory.poses[i];
+    CHECK(b.t_s == a.t_s);
+    CHECK(b.x_m == a.x_m);
+    CHECK(b.z_m == a.z_m);
+    CHECK(b.roll_rad == Approx(a.roll_rad).margin(1e-12));
+    CHECK(b.pitch_rad == Approx(a.pitch_rad).margin(1e-12));
+    CHECK(geometry::WrapToPi(b.yaw_rad - a.yaw_rad) == Approx(0.0).margin(1e-12));
+  }
+}
+
+TEST_CASE("The tracker logs degrees and height below the camera") {
+  const Log log = ReadLog(kAuthorsHeader + "3.0,1,2,0.87,10,-20,90,5,6\n3.1,2,2,0.87,0,0,0,5,6\n",
+                          "log.csv", Format::kTracker);
+  const StampedPose& pose = log.trajectory.poses[0];
+  CHECK(pose.x_m == 1.0);
+  CHECK(pose.y_m == 2.0);
+  CHECK(pose.z_m == -0.87);
+  CHECK(pose.roll_rad == Approx(kPi / 18.0));
+  CHECK(pose.pitch_rad == Approx(-kPi / 9.0));
+  CHECK(pose.yaw_rad == Approx(kPi / 2.0));
+  CHECK(pose.target_x_m == 5.0);
+}
+
+TEST_CASE("Webots logs radians and a yaw turned by a quarter") {
+  const Log log =
+      ReadLog(kAuthorsHeader + "0,1,2,0,0,0,1.5707963267948966,5,6\n1,2,2,0,0,0,3,5,6\n", "log.csv",
+              Format::kWebots);
+  CHECK(log.trajectory.poses[0].yaw_rad == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("The authors' header alone gives positions and leaves the angles unknown") {
+  const Log log =
+      ReadLog(kAuthorsHeader + "0,1,2,0.8,0,-33,1,5,6\n1,2,2,0.8,0,0,3,5,6\n", "log.csv");
+  CHECK(log.format == Format::kAuto);
+  CHECK_FALSE(log.trajectory.HasYaw());
+  CHECK(log.unknown_angles.find("degrees") != std::string::npos);
+  CHECK(log.unknown_angles.find("33.0 looks like degrees") != std::string::npos);
+}
+
+TEST_CASE("A log without angles has none to be unsure about") {
+  const Log log = ReadLog("t,x,y\n0,0,0\n1,1,0\n", "log.csv");
+  CHECK(log.unknown_angles.empty());
+  CHECK_FALSE(log.trajectory.HasYaw());
+}
+
+TEST_CASE("A byte order mark and CRLF and blank lines change nothing") {
+  const Log log = ReadLog("\xEF\xBB\xBFt_s,x_m,y_m\r\n0,0,0\r\n\r\n1,1,0\r\n", "log.csv");
+  CHECK(log.trajectory.poses.size() == 2);
+}
+
+TEST_CASE("Rows out of order are sorted and of equal times the last is kept and both are said") {
+  const Log log = ReadLog("t_s,x_m,y_m,n\n2,2,0,20\n0,0,0,0\n1,1,0,10\n1,1.5,0,11\n", "log.csv");
+  REQUIRE(log.trajectory.poses.size() == 3);
+  CHECK(log.trajectory.poses[1].x_m == 1.5);
+  CHECK(log.trajectory.channels[0].values == std::vector<double>{0.0, 11.0, 20.0});
+  REQUIRE(log.notes.size() == 2);
+  CHECK(log.notes[0] == "time runs backwards 1 times: rows sorted");
+  CHECK(log.notes[1] == "1 rows share the time of another: the last is kept");
+}
+
+TEST_CASE("A bad log is refused with its row and its rule") {
+  const std::string good = "t_s,x_m,y_m\n0,0,0\n";
+  CHECK(Refusal(good + "1,nan,0\n") ==
+        "log.csv:3: column x_m is 'nan': a finite number is expected");
+  CHECK(Refusal(good + "1,inf,0\n") ==
+        "log.csv:3: column x_m is 'inf': a finite number is expected");
+  CHECK(Refusal(good + "1,1e999,0\n") ==
+        "log.csv:3: column x_m is '1e999': a finite number is expected");
+  CHECK(Refusal(good + "1,1.2.3,0\n") ==
+        "log.csv:3: column x_m is '1.2.3': a finite number is expected");
+  CHECK(Refusal(good + "1,,0\n") == "log.csv:3: column x_m is empty");
+  CHECK(Refusal(good + "1,2\n") == "log.csv:3: the row has 2 cells where 3 are expected");
+  CHECK(Refusal(good + "1,2,3,4\n") == "log.csv:3: the row has 4 cells where 3 are expected");
+  CHECK(Refusal(good + "1,2,3,\n") == "log.csv:3: the row has 4 cells where 3 are expected");
+  CHECK(Refusal(good) == "log.csv: 1 poses, and a trajectory needs at least 2");
+  CHECK(Refusal(good + "1,0,0\n") == "log.csv: the path has zero length: the robot never moved");
+  CHECK(Refusal("a,b\n1,2\n").find("log.csv:1: the header 'a,b' belongs to no dialect") == 0);
+  CHECK(Refusal("").find("log.csv:1: the header '' belongs to no dialect") == 0);
+  CHECK(Refusal(good, Format::kTracker) == "log.csv:1: column t is missing");
+  CHECK(Refusal("0 1 2 3\n1 2 3 4\n") ==
+        "log.csv:1: 4 columns, and tum has 8: t tx ty tz qx qy qz qw");
+  CHECK(Refusal("0 1 2 3 0 0 0 0\n") == "log.csv:1: the quaternion has zero length");
+}
+
+TEST_CASE("No damaged log does anything but read or be refused") {
+  std::mt19937_64 generator(9);
+  const std::string good = WriteRift(RandomTrajectory(generator, true));
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = good;
+    for (int k = 0; k < 1 + i % 5; ++k) {
+      text[generator() % text.size()] = static_cast<char>(generator() % 256);
+    }
+    text.resize(text.size() - (i % 3 == 0 ? generator() % text.size() : 0));
+    try {
+      const Log log = ReadLog(text, "log.csv");
+      for (const StampedPose& pose : log.trajectory.poses) {
+        REQUIRE(std::isfinite(pose.x_m + pose.y_m + pose.t_s));
+      }
+    } catch (const std::invalid_argument& error) {
+      REQUIRE(std::string(error.what()).starts_with("log.csv:"));
+    }
+  }
+}
+
+TEST_CASE("A million rows are read whole") {
+  std::string text = "t_s,x_m,y_m\n";
+  for (int i = 0; i < 1'000'000; ++i) {
+    text += std::to_string(i) + "," + std::to_string(i % 1000) + ",0.5\n";
+  }
+  CHECK(ReadLog(text, "log.csv").trajectory.poses.size() == 1'000'000);
+}
+
+TEST_CASE("A tag offset moves each point along its own heading") {
+  Trajectory trajectory;
+  trajectory.poses = {{.t_s = 0.0, .x_m = 1.0, .yaw_rad = kPi / 2.0}, {.t_s = 1.0, .yaw_rad = 0.0}};
+  const Trajectory moved = OffsetAlongHeading(trajectory, 0.03);
+  CHECK(moved.poses[0].x_m == Approx(1.0));
+  CHECK(moved.poses[0].y_m == Approx(0.03));
+  CHECK(moved.poses[1].x_m == Approx(0.03));
+  trajectory.poses[0].yaw_rad = StampedPose::kNotLogged;
+  CHECK_THROWS_AS(OffsetAlongHeading(trajectory, 0.03), std::invalid_argument);
+  CHECK_NOTHROW(OffsetAlongHeading(trajectory, 0.0));
+}
+
+}  // namespace
+}  // namespace rift::trajectory
