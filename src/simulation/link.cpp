@@ -6,6 +6,7 @@
 #include <charconv>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -34,6 +35,14 @@ std::optional<double> TakeNumber(std::string_view& text) {
 }
 
 }  // namespace
+
+void LinkOptions::Check() const {
+  constexpr double kShortestPoll_s = 1e-4;  // a listener cannot be faster, and each poll costs time
+  if (poll_s > 0.0 && poll_s < kShortestPoll_s) {
+    throw std::invalid_argument(
+        fmt::format("poll_s is {}, but it must be 0 or at least {}", poll_s, kShortestPoll_s));
+  }
+}
 
 Link::Link(const LinkOptions& options, std::uint64_t seed)
     : options_(options),

@@ -12,8 +12,16 @@ namespace {
 
 enum Stream : std::uint64_t { kPhaseStream = 20, kFrameStream = 21, kPoseStream = 22 };
 // Draws of one frame; a normal value takes two.
-enum Draw : std::uint64_t { kAcross = 0, kAlong = 2, kYaw = 4, kStamp = 6, kHeight = 8, kRoll = 10,
-                            kPitch = 12, kDropout = 14 };
+enum Draw : std::uint64_t {
+  kAcross = 0,
+  kAlong = 2,
+  kYaw = 4,
+  kStamp = 6,
+  kHeight = 8,
+  kRoll = 10,
+  kPitch = 12,
+  kDropout = 14
+};
 
 constexpr double kClockTick_s = 1e-6;
 

@@ -31,9 +31,12 @@ WheelDrive Brake(double motor_nm, double rate_rad_s, double drag_nm) {
 
 GearingData DataOf(Gearing gearing) {
   switch (gearing) {  // ratios: Pololu 0J86/6.4 and product pages; stall: Pololu 0J83/5.3
-    case Gearing::k30To1: return FromGears(29.86, 0.33);
-    case Gearing::k75To1: return FromGears(75.81, 0.64);
-    case Gearing::k15To1: return FromGears(15.25, 0.25);
+    case Gearing::k30To1:
+      return FromGears(29.86, 0.33);
+    case Gearing::k75To1:
+      return FromGears(75.81, 0.64);
+    case Gearing::k15To1:
+      return FromGears(15.25, 0.25);
   }
   assert(false);
   return {};

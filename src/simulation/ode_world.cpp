@@ -6,8 +6,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdarg>
-#include <cstdio>
+#include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "rift/simulation/touch.hpp"
 
@@ -28,7 +29,8 @@ constexpr double kSettle_s = 0.4;
 /// robot creep by less than a micrometre a second on a slope.
 constexpr double kLeastSlip_mps_per_n = 1e-6;
 
-/// Thrown by ODE's own error reports, which must not return; caught at every call that can raise it.
+/// Thrown by ODE's own error reports, which must not return; caught at every call that can raise
+/// it.
 struct OdeFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -39,8 +41,8 @@ void ThrowFailure(int number, const char* message, va_list arguments) {
   throw OdeFailure(fmt::format("ODE reports error {}: {}", number, text));
 }
 
-/// ODE's notes (a pivot of the contact solver that found no answer) cost accuracy, not the run: what
-/// they could lead to is caught by looking at the state.
+/// ODE's notes (a pivot of the contact solver that found no answer) cost accuracy, not the run:
+/// what they could lead to is caught by looking at the state.
 void IgnoreNote(int, const char*, va_list) {}
 
 /// ODE's process-wide set-up, made once; its error handlers would otherwise end the process.
@@ -86,19 +88,18 @@ struct Stance {
 };
 Stance StanceOn(const BodyOptions& body, const Vector3d& gravity_in_plane) {
   const double total_kg = body.chassis_mass_kg + 2.0 * body.wheel_mass_kg;
-  const double moment = (body.com_above_m + body.wheel_radius_m) * body.chassis_mass_kg *
-                            gravity_in_plane.x() +
-                        2.0 * body.wheel_radius_m * body.wheel_mass_kg * gravity_in_plane.x() -
-                        body.com_ahead_m * body.chassis_mass_kg * gravity_in_plane.z();
+  const double moment =
+      (body.com_above_m + body.wheel_radius_m) * body.chassis_mass_kg * gravity_in_plane.x() +
+      2.0 * body.wheel_radius_m * body.wheel_mass_kg * gravity_in_plane.x() -
+      body.com_ahead_m * body.chassis_mass_kg * gravity_in_plane.z();
   const double caster_n = std::max(0.0, moment / body.caster_ahead_m);
   const double wheel_n = -0.5 * (total_kg * gravity_in_plane.z() + caster_n);
   const double height_m = body.wheel_radius_m - wheel_n / body.contact_stiffness_n_per_m;
-  const double caster_height_m =
-      body.caster_radius_m - caster_n / body.contact_stiffness_n_per_m;
+  const double caster_height_m = body.caster_radius_m - caster_n / body.contact_stiffness_n_per_m;
   double pitch_rad = 0.0;
   for (int i = 0; i < 5; ++i) {
-    pitch_rad = std::asin((height_m - body.caster_below_m * std::cos(pitch_rad) - caster_height_m) /
-                          body.caster_ahead_m);
+    const double drop_m = height_m - body.caster_below_m * std::cos(pitch_rad) - caster_height_m;
+    pitch_rad = std::asin(std::clamp(drop_m / body.caster_ahead_m, -0.5, 0.5));
   }
   return {height_m, pitch_rad};
 }
@@ -108,18 +109,28 @@ Stance StanceOn(const BodyOptions& body, const Vector3d& gravity_in_plane) {
 void BodyOptions::Check() const {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument(what); };
   if (rim_clearance_m >= wheel_radius_m) {
-    refuse(fmt::format("rim_clearance_m is {}, but the rim must lie below the axle, wheel_radius_m {}",
-                       rim_clearance_m, wheel_radius_m));
+    refuse(
+        fmt::format("rim_clearance_m is {}, but the rim must lie below the axle, wheel_radius_m {}",
+                    rim_clearance_m, wheel_radius_m));
   }
   if (std::abs(caster_ahead_m) < 0.005) {
-    refuse(fmt::format("caster_ahead_m is {}, but the caster must be at least 0.005 m from the axle",
-                       caster_ahead_m));
+    refuse(
+        fmt::format("caster_ahead_m is {}, but the caster must be at least 0.005 m from the axle",
+                    caster_ahead_m));
+  }
+  const double sunk_m = WeightOnWheel_n() / contact_stiffness_n_per_m;
+  if (sunk_m > 0.1 * wheel_radius_m) {
+    refuse(
+        fmt::format("contact_stiffness_n_per_m is {}, so that a wheel sinks in by {} m, but it "
+                    "must be at most a tenth of its radius",
+                    contact_stiffness_n_per_m, sunk_m));
   }
   const double caster_gap_m = wheel_radius_m - caster_below_m - caster_radius_m;
   if (std::abs(caster_gap_m) > 0.3 * std::abs(caster_ahead_m)) {
-    refuse(fmt::format("caster_below_m {} and caster_radius_m {} put the ball {} m off the ground, "
-                       "but it must reach it within 0.3 of caster_ahead_m",
-                       caster_below_m, caster_radius_m, caster_gap_m));
+    refuse(
+        fmt::format("caster_below_m {} and caster_radius_m {} put the ball {} m off the ground, "
+                    "but it must reach it within 0.3 of caster_ahead_m",
+                    caster_below_m, caster_radius_m, caster_gap_m));
   }
 }
 
@@ -208,8 +219,9 @@ void OdeWorld::Bodies::Place(const geometry::Pose2& start) {
   const auto plane = terrain.PlaneNear(start.x_m, start.y_m, reach_m);
   const Vector3d ground(start.x_m, start.y_m, terrain.HeightAt(start.x_m, start.y_m));
   if (!std::isfinite(ground.z())) {
-    throw std::invalid_argument(fmt::format(
-        "the robot cannot start at ({}, {}) m, beyond the edge of the table", ground.x(), ground.y()));
+    throw std::invalid_argument(
+        fmt::format("the robot cannot start at ({}, {}) m, beyond the edge of the table",
+                    ground.x(), ground.y()));
   }
   PlaceOn(plane.value_or(Plane{ground, Vector3d::UnitZ()}), start.yaw_rad);
   if (!plane) Settle();
@@ -234,8 +246,8 @@ void OdeWorld::Bodies::PlaceOn(const Plane& plane, double yaw_rad) {
               origin + world_from_robot * Vector3d(body.com_ahead_m, 0.0, body.com_above_m));
   for (int side = 0; side < 2; ++side) {
     SetRotation(wheels[side], world_from_robot);
-    SetPosition(wheels[side], origin + (side == 0 ? 0.5 : -0.5) * body.track_m *
-                                           world_from_robot.col(1));
+    SetPosition(wheels[side],
+                origin + (side == 0 ? 0.5 : -0.5) * body.track_m * world_from_robot.col(1));
   }
   ReadState();
 }
@@ -302,9 +314,9 @@ void OdeWorld::Bodies::SetDrive(int side, const WheelDrive& drive) {
 
 void OdeWorld::Bodies::MakeContacts() {
   for (int side = 0; side < 2; ++side) TouchGround(side);
-  const Vector3d caster = state.position_m +
-                          state.world_from_robot * Vector3d(body.caster_ahead_m, 0.0,
-                                                            -body.caster_below_m);
+  const Vector3d caster =
+      state.position_m +
+      state.world_from_robot * Vector3d(body.caster_ahead_m, 0.0, -body.caster_below_m);
   if (const auto touch =
           TouchBall(terrain, caster, state.world_from_robot.col(0), body.caster_radius_m)) {
     dContact contact = Contact(*touch, settling ? dInfinity : body.caster_mu);
@@ -357,8 +369,7 @@ void OdeWorld::Bodies::Add(dContact& contact, dBodyID part) {
 
 void OdeWorld::Bodies::ReadState() {
   state.world_from_robot = Rotation(chassis);
-  const Vector3d arm =
-      state.world_from_robot * Vector3d(-body.com_ahead_m, 0.0, -body.com_above_m);
+  const Vector3d arm = state.world_from_robot * Vector3d(-body.com_ahead_m, 0.0, -body.com_above_m);
   state.position_m = Vector(dBodyGetPosition(chassis)) + arm;
   state.spin_rad_s = Vector(dBodyGetAngularVel(chassis));
   state.velocity_mps = Vector(dBodyGetLinearVel(chassis)) + state.spin_rad_s.cross(arm);
@@ -376,7 +387,8 @@ void OdeWorld::Bodies::FindFault() {
   }
   const double ground_m = terrain.HeightAt(p.x(), p.y());
   if (!std::isfinite(ground_m)) {
-    if (p.z() < -kFallen_m) fault = fmt::format("fell off the table at ({:.3f}, {:.3f}) m", p.x(), p.y());
+    if (p.z() < -kFallen_m)
+      fault = fmt::format("fell off the table at ({:.3f}, {:.3f}) m", p.x(), p.y());
   } else if (p.z() < ground_m - kThroughFloor_m) {
     fault = fmt::format("sank through the floor at ({:.3f}, {:.3f}) m", p.x(), p.y());
   }

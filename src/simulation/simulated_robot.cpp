@@ -95,9 +95,8 @@ void SimulatedRobot::Step() {
   const robot::WheelPower power = options_.sampling == Sampling::kRamped ? mean : at_start;
   const auto& rate_rad_s = world_.State().wheel_rate_rad_s;
   const std::array<Grip, 2> grip = world_.WheelGrip();
-  world_.Step(
-      {motors_[0].Drive(power.left, rate_rad_s[0], Drag_nm(grip[0]), options_.step_s),
-       motors_[1].Drive(power.right, rate_rad_s[1], Drag_nm(grip[1]), options_.step_s)});
+  world_.Step({motors_[0].Drive(power.left, rate_rad_s[0], Drag_nm(grip[0]), options_.step_s),
+               motors_[1].Drive(power.right, rate_rad_s[1], Drag_nm(grip[1]), options_.step_s)});
   const TruePose before = truth_;
   truth_ = PoseOf(world_.State(), t_s);
   mocap_.Observe(before, truth_);

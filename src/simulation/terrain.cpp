@@ -46,19 +46,24 @@ Terrain::Terrain(const TerrainOptions& options, std::shared_ptr<const HeightImag
   if (surface_.shape != Shape::kHeightfield) return;
   if (!image_ || image_->columns < 2 || image_->rows < 2 ||
       image_->samples.size() != static_cast<size_t>(image_->columns) * image_->rows) {
-    throw std::invalid_argument("surface '" + options.surface +
-                                "' is a heightfield, but no image of at least 2 x 2 pixels is given");
+    throw std::invalid_argument(
+        "surface '" + options.surface +
+        "' is a heightfield, but no image of at least 2 x 2 pixels is given");
   }
 }
 
 double Terrain::HeightAt(double x_m, double y_m) const {
   if (!OnTable(x_m, y_m, 0.0)) return -kEndless_m;
   switch (surface_.shape) {
-    case Shape::kFlat: return 0.0;
+    case Shape::kFlat:
+      return 0.0;
     case Shape::kRampUp:
-    case Shape::kRampDown: return RampHeight(x_m);
-    case Shape::kBumps: return BumpHeight(x_m, y_m);
-    case Shape::kHeightfield: return ImageHeight(x_m, y_m);
+    case Shape::kRampDown:
+      return RampHeight(x_m);
+    case Shape::kBumps:
+      return BumpHeight(x_m, y_m);
+    case Shape::kHeightfield:
+      return ImageHeight(x_m, y_m);
   }
   return 0.0;
 }

@@ -150,8 +150,8 @@ std::optional<Touch> TouchRim(const Terrain& terrain, const Vector3d& centre, co
         centre + radius_m * (std::cos(angle_rad) * forward + std::sin(angle_rad) * left);
     const double depth_m = terrain.HeightAt(point.x(), point.y()) - point.z();
     if (depth_m <= (deepest ? deepest->depth_m : 0.0)) continue;
-    const Vector3d normal = terrain.IsStepped() ? Vector3d(Vector3d::UnitZ())
-                                                : terrain.NormalAt(point.x(), point.y());
+    const Vector3d normal =
+        terrain.IsStepped() ? Vector3d(Vector3d::UnitZ()) : terrain.NormalAt(point.x(), point.y());
     deepest = Touch{point, normal, depth_m};
   }
   return deepest;

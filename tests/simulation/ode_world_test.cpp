@@ -145,8 +145,7 @@ TEST_CASE("Locked wheels hold on a slope up to tan of the angle equal to mu and 
     if (excess < 0.0) {
       CHECK(slid_m < 1e-4);
     } else {
-      const double acceleration =
-          kGravity * (std::sin(angle_rad) - mu * std::cos(angle_rad));
+      const double acceleration = kGravity * (std::sin(angle_rad) - mu * std::cos(angle_rad));
       CHECK(slid_m == Approx(0.5 * acceleration * 0.25).epsilon(0.08));
     }
   }

@@ -13,9 +13,15 @@ SimulationOptions Ideal() {
   SimulationOptions options;
   options.motor.model = MotorModel::kServo;
   options.link = {.delay_s = 0.0, .baud = 0.0, .poll_s = 0.0, .two_decimals = false};
-  options.mocap = {.rate_hz = 0.0, .noise_across_m = 0.0, .blur_across_s = 0.0,
-                   .noise_along_m = 0.0, .stamp_jitter_s = 0.0, .noise_yaw_rad = 0.0,
-                   .blur_yaw_rad_per_mps = 0.0, .noise_z_m = 0.0, .noise_tilt_rad = 0.0};
+  options.mocap = {.rate_hz = 0.0,
+                   .noise_across_m = 0.0,
+                   .blur_across_s = 0.0,
+                   .noise_along_m = 0.0,
+                   .stamp_jitter_s = 0.0,
+                   .noise_yaw_rad = 0.0,
+                   .blur_yaw_rad_per_mps = 0.0,
+                   .noise_z_m = 0.0,
+                   .noise_tilt_rad = 0.0};
   return options;
 }
 
@@ -98,8 +104,8 @@ TEST_CASE("A brushed robot speeds up with the time constant of its mass and torq
   options.terrain.surfaces["ground"].mu = 5.0;
   options.step_s = GENERATE(0.001, 0.004, 0.008);
   const BodyOptions& body = options.body;
-  const double inertia = (body.chassis_mass_kg + 3.0 * body.wheel_mass_kg) *
-                         body.wheel_radius_m * body.wheel_radius_m / 2.0;
+  const double inertia = (body.chassis_mass_kg + 3.0 * body.wheel_mass_kg) * body.wheel_radius_m *
+                         body.wheel_radius_m / 2.0;
   const double constant_s = inertia * options.motor.NoLoad_rad_s() / options.motor.StallTorque_nm();
   SimulatedRobot robot(options, {}, 1);
   robot.Command({0.2, 0.2});

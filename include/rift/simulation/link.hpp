@@ -22,10 +22,12 @@ struct LinkOptions {
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("delay_s", self.delay_s, 0.0, 2.0,
-          "from the command to the robot's serial line in s (BLE connection interval: 0.03 to 0.05)");
-    field("baud", self.baud, 0.0, 10e6,
-          "bits a second on the robot's serial line, 10 bits a byte (HM-10: 9600); 0: no line time");
+    field(
+        "delay_s", self.delay_s, 0.0, 2.0,
+        "from the command to the robot's serial line in s (BLE connection interval: 0.03 to 0.05)");
+    field(
+        "baud", self.baud, 0.0, 10e6,
+        "bits a second on the robot's serial line, 10 bits a byte (HM-10: 9600); 0: no line time");
     field("poll_s", self.poll_s, 0.0, 2.0,
           "interval in s at which the listener reads its serial line and takes the newest complete "
           "line (authors' robot: 0.1); 0: reads at once");
@@ -40,6 +42,8 @@ struct LinkOptions {
           "motors stop when no line was understood for so long, in s; 0: the last command is held "
           "for ever (authors' robot)");
   }
+  /// Rules between fields; throws std::invalid_argument naming field, value and rule.
+  void Check() const;
 };
 
 /// The way of a command from the host to the motors: radio delay, line time, a small receive buffer

@@ -36,14 +36,16 @@ struct MotorOptions {
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("model", self.model,
-          "dc: torque falls with speed, as a brushed motor; servo: holds the asked speed, as in the "
-          "authors' Webots world");
+    field(
+        "model", self.model,
+        "dc: torque falls with speed, as a brushed motor; servo: holds the asked speed, as in the "
+        "authors' Webots world");
     field("gearing", self.gearing,
           "edition of the 3pi+; sets no-load speed, stall torque and encoder counts");
-    field("no_load_rad_s", self.no_load_rad_s, 0.1, 1000.0,
-          "wheel speed at power 1 without load at 6 V; none: that of the gearing (30:1: 75.4 rad/s, "
-          "Pololu 0J83/5.3)");
+    field(
+        "no_load_rad_s", self.no_load_rad_s, 0.1, 1000.0,
+        "wheel speed at power 1 without load at 6 V; none: that of the gearing (30:1: 75.4 rad/s, "
+        "Pololu 0J83/5.3)");
     field("stall_torque_nm", self.stall_torque_nm, 1e-4, 10.0,
           "wheel torque at power 1 and standstill at 6 V; none: that of the gearing (30:1: 0.0324 "
           "N m, Pololu 0J83/5.3)");
@@ -94,8 +96,8 @@ class Motor {
   WheelDrive TorqueLine(double power, double rate_rad_s, double drag_nm) const;
 
   MotorOptions options_;
-  double no_load_rad_s_;    ///< of this side
-  double nm_per_rad_s_;     ///< steepness of the torque line
+  double no_load_rad_s_;  ///< of this side
+  double nm_per_rad_s_;   ///< steepness of the torque line
   double lagged_power_ = 0.0;
 };
 

@@ -47,7 +47,8 @@ struct BodyOptions {
     field("com_above_m", self.com_above_m, -0.05, 0.2,
           "centre of mass above the axle in m (authors' world: at its height)");
     field("wheel_mass_kg", self.wheel_mass_kg, 1e-4, 1.0, "one wheel in kg (Pololu 32x7 mm wheel)");
-    field("wheel_radius_m", self.wheel_radius_m, 0.002, 0.2, "in m (authors' world; Pololu: 32 mm)");
+    field("wheel_radius_m", self.wheel_radius_m, 0.002, 0.2,
+          "in m (authors' world; Pololu: 32 mm)");
     field("wheel_width_m", self.wheel_width_m, 0.0005, 0.1, "in m (Pololu wheel)");
     field("track_m", self.track_m, 0.01, 1.0,
           "between the wheel centres in m (authors' world: 0.083; others: 0.0845 to 0.085)");
@@ -82,11 +83,11 @@ struct WorldState {
   std::array<double, 2> wheel_rate_rad_s{};
 };
 
-/// Chassis, two wheels on hinges and a fixed caster in ODE, on a terrain. Contacts are made by hand:
-/// one for each wheel, one for the caster, one for the rim. Nothing here ends the process: what ODE
-/// objects to, a number that is not finite, and a robot that tipped over or fell becomes a fault,
-/// and a faulty world stands still.
-/// Worlds share nothing; each may live in a thread of its own.
+/// Chassis, two wheels on hinges and a fixed caster in ODE, on a terrain. Contacts are made by
+/// hand: one for each wheel, one for the caster, one for the rim. Nothing here ends the process:
+/// what ODE objects to, a number that is not finite, and a robot that tipped over or fell becomes a
+/// fault, and a faulty world stands still. Worlds share nothing; each may live in a thread of its
+/// own.
 class OdeWorld {
  public:
   /// At rest on the terrain. Throws std::runtime_error when ODE refuses the bodies.

@@ -14,7 +14,7 @@ namespace rift::simulation {
 class SimulatedRobot : public robot::Robot {
  public:
   /// At rest at `start` (middle of the axle, world frame), motors off, clock at 0. `image` is the
-  /// heightfield of the chosen surface, if that is one (ReadHeightImage reads it).
+  /// heightfield of the chosen surface, if that is one (DecodeHeightImage makes it).
   /// Throws std::invalid_argument when a value of the options breaks its rule.
   SimulatedRobot(const SimulationOptions& options, const geometry::Pose2& start, std::uint64_t seed,
                  std::shared_ptr<const HeightImage> image = nullptr);

@@ -30,9 +30,11 @@ struct SimulationOptions {
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("step_s", self.step_s, 0.0001, 0.05, "fixed physics step in s (own work-precision study)");
-    field("sampling", self.sampling,
-          "ramped: a step sees the mean of the command over it; stepped: that of its start (Webots)");
+    field("step_s", self.step_s, 0.0001, 0.05,
+          "fixed physics step in s (own work-precision study)");
+    field(
+        "sampling", self.sampling,
+        "ramped: a step sees the mean of the command over it; stepped: that of its start (Webots)");
     field("body", self.body, "masses, sizes and contacts");
     field("motor", self.motor, "both motors");
     field("encoder", self.encoder, "both encoders");

@@ -53,7 +53,8 @@ struct SurfaceOptions {
           "height of the plateau above the floor in m (z in the downhill logs: 0.24)");
     field("ramp_edge_x_m", self.ramp_edge_x_m, -10.0, 10.0,
           "x at which plateau and slope meet, in m (z in the downhill logs: 0.05)");
-    field("bump_size_m", self.bump_size_m, 0.001, 1.0, "side of a block in m (paper's board: 0.02)");
+    field("bump_size_m", self.bump_size_m, 0.001, 1.0,
+          "side of a block in m (paper's board: 0.02)");
     field("bump_pitch_m", self.bump_pitch_m, 0.002, 2.0,
           "from block to block in x and in y, in m (paper's board: 0.06)");
     field("bump_height_m", self.bump_height_m, 0.0, 0.1,

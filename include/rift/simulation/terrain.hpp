@@ -89,7 +89,8 @@ class Terrain {
   Grip GripAt(double x_m, double y_m) const;
   /// The ground when it is one plane everywhere within `reach_m` of the point in x and in y.
   std::optional<Plane> PlaneNear(double x_m, double y_m, double reach_m) const;
-  /// Whether height changes in steps (bumps, edge of a table), so that it has no useful slope there.
+  /// Whether height changes in steps (bumps, edge of a table), so that it has no useful slope
+  /// there.
   bool IsStepped() const { return surface_.shape == Shape::kBumps; }
 
  private:

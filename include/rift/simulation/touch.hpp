@@ -15,8 +15,8 @@ struct Touch {
 };
 
 /// An upright wheel as a disc: one point, the deepest. On a plane it is the lowest point of the
-/// disc; elsewhere the point of the ground's profile nearest to the centre, so that the wheel climbs
-/// an edge or a block instead of jumping onto it. `axle` is a unit vector to the left.
+/// disc; elsewhere the point of the ground's profile nearest to the centre, so that the wheel
+/// climbs an edge or a block instead of jumping onto it. `axle` is a unit vector to the left.
 std::optional<Touch> TouchWheel(const Terrain& terrain, const Eigen::Vector3d& centre,
                                 const Eigen::Vector3d& axle, double radius_m, double width_m);
 

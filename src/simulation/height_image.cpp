@@ -1,10 +1,9 @@
-#include "rift/simulation/height_image_file.hpp"
+#include "rift/simulation/height_image.hpp"
 
 #include <png.h>
 
+#include <algorithm>
 #include <csetjmp>
-#include <cstdio>
-#include <memory>
 #include <stdexcept>
 
 namespace rift::simulation {
@@ -12,24 +11,27 @@ namespace {
 
 constexpr png_uint_32 kMaxSide = 16384;
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
 void RememberError(png_structp png, png_const_charp message) {
   *static_cast<std::string*>(png_get_error_ptr(png)) = message;
   png_longjmp(png, 1);
 }
 void IgnoreWarning(png_structp, png_const_charp) {}
 
+void TakeBytes(png_structp png, png_bytep to, size_t count) {
+  auto* left = static_cast<std::string_view*>(png_get_io_ptr(png));
+  if (left->size() < count) png_error(png, "it ends too early");
+  std::copy_n(left->begin(), count, to);
+  left->remove_prefix(count);
+}
+
 /// The only user of libpng. Its errors are long jumps: every function that calls into it is entered
 /// through setjmp and owns nothing that a jump would skip.
 class PngReader {
  public:
-  explicit PngReader(std::FILE* file)
+  explicit PngReader(std::string_view bytes)
       : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &error_, RememberError, IgnoreWarning)),
         info_(png_ ? png_create_info_struct(png_) : nullptr),
-        file_(file) {}
+        bytes_(bytes) {}
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
   PngReader(const PngReader&) = delete;
   PngReader& operator=(const PngReader&) = delete;
@@ -37,7 +39,7 @@ class PngReader {
   /// Reads up to the pixels and asks for one grey sample of 16 bits a pixel.
   bool Open() {
     if (!png_ || !info_ || setjmp(png_jmpbuf(png_))) return false;
-    png_init_io(png_, file_);
+    png_set_read_fn(png_, &bytes_, TakeBytes);
     png_set_user_limits(png_, kMaxSide, kMaxSide);
     png_read_info(png_, info_);
     png_set_expand_16(png_);
@@ -64,11 +66,11 @@ class PngReader {
   std::string error_ = "no memory for libpng";
   png_structp png_;
   png_infop info_;
-  std::FILE* file_;
+  std::string_view bytes_;
 };
 
-[[noreturn]] void Fail(const std::string& path, const std::string& why) {
-  throw std::runtime_error(path + ": cannot be read as a PNG height image: " + why);
+[[noreturn]] void Fail(const std::string& why) {
+  throw std::runtime_error("not a PNG height image: " + why);
 }
 
 double BigEndian16(const png_byte* bytes) {
@@ -77,18 +79,16 @@ double BigEndian16(const png_byte* bytes) {
 
 }  // namespace
 
-HeightImage ReadHeightImage(const std::string& path) {
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
-  if (!file) Fail(path, "the file cannot be opened");
-  PngReader reader(file.get());
-  if (!reader.Open()) Fail(path, reader.Error());
+HeightImage DecodeHeightImage(std::string_view png_bytes) {
+  PngReader reader(png_bytes);
+  if (!reader.Open()) Fail(reader.Error());
 
-  if (reader.BytesPerRow() != 2u * reader.Columns()) Fail(path, "its pixels do not turn into grey");
+  if (reader.BytesPerRow() != 2u * reader.Columns()) Fail("its pixels do not turn into grey");
   HeightImage image{reader.Columns(), reader.Rows(), {}};
   std::vector<png_byte> pixels(reader.BytesPerRow() * image.rows);
   std::vector<png_bytep> rows(image.rows);
   for (int row = 0; row < image.rows; ++row) rows[row] = &pixels[row * reader.BytesPerRow()];
-  if (!reader.ReadRows(rows.data())) Fail(path, reader.Error());
+  if (!reader.ReadRows(rows.data())) Fail(reader.Error());
 
   image.samples.reserve(static_cast<size_t>(image.columns) * image.rows);
   for (const png_byte* row : rows) {
