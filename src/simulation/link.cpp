@@ -60,7 +60,7 @@ void Link::SendUrgently(double at_s, const robot::WheelPower& power) {
   in_flight_.clear();
   line_free_s_ = 0.0;
   // A newline first ends whatever half line the robot has already received.
-  Enqueue(at_s, "\n" + LineOf(power, options_.two_decimals));
+  Enqueue(at_s, fmt::format("\n{}", LineOf(power, options_.two_decimals)));
 }
 
 void Link::Enqueue(double at_s, const std::string& line) {

@@ -50,7 +50,8 @@ Motor::Motor(const MotorOptions& options, Side side)
 
 WheelDrive Motor::Drive(double power, double rate_rad_s, double drag_nm, double step_s) {
   if (options_.model == MotorModel::kServo) {
-    return {power * options_.supply_ratio * no_load_rad_s_, 0.0, options_.servo_torque_nm};
+    return {power * options_.supply_ratio * no_load_rad_s_, 0.0,
+            options_.servo_torque_nm.value_or(std::numeric_limits<double>::infinity())};
   }
   const double driven_power = std::abs(power) < options_.dead_band ? 0.0 : power;
   return TorqueLine(MeanThroughLag(driven_power, step_s), rate_rad_s, drag_nm);

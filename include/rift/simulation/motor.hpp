@@ -31,7 +31,7 @@ struct MotorOptions {
   double lag_s = 0.0;
   double mismatch = 0.0;
   double friction_torque_nm = 0.0;
-  double servo_torque_nm = 10.0;
+  std::optional<double> servo_torque_nm;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
@@ -60,7 +60,7 @@ struct MotorOptions {
     field("friction_torque_nm", self.friction_torque_nm, 0.0, 0.1,
           "Coulomb friction of gear and bearing at the wheel in N m (dc only)");
     field("servo_torque_nm", self.servo_torque_nm, 1e-3, 100.0,
-          "largest torque of the servo in N m (Webots' maxTorque: 10)");
+          "largest torque of the servo in N m; none: any (Webots' 10 is never reached here)");
   }
 
   double NoLoad_rad_s() const { return no_load_rad_s.value_or(DataOf(gearing).no_load_rad_s); }
