@@ -47,3 +47,13 @@ function(rift_room_test name)
   catch_discover_tests(rift_${name}_test TEST_PREFIX "${name}: "
                        PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "SKIPPED:")
 endfunction()
+
+# rift_benchmark(NAME target...): tests/benchmarks/NAME_benchmark.cpp with Google Benchmark.
+function(rift_benchmark name)
+  add_executable(${name}_benchmark ${name}_benchmark.cpp)
+  set_target_properties(${name}_benchmark PROPERTIES
+                        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/benchmarks")
+  target_include_directories(${name}_benchmark PRIVATE "${PROJECT_SOURCE_DIR}/tests")
+  target_link_libraries(${name}_benchmark PRIVATE benchmark::benchmark ${ARGN})
+  rift_compile_options(${name}_benchmark)
+endfunction()

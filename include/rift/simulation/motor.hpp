@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+namespace rift::simulation {
+
+enum class MotorModel { kDc, kServo };
+constexpr std::array<std::string_view, 2> EnumNames(MotorModel) { return {"dc", "servo"}; }
+
+/// The three editions of the 3pi+.
+enum class Gearing { k30To1, k75To1, k15To1 };
+constexpr std::array<std::string_view, 3> EnumNames(Gearing) { return {"30:1", "75:1", "15:1"}; }
+
+/// What a gearing brings along, at the wheel and at 6 V.
+struct GearingData {
+  double no_load_rad_s;
+  double stall_torque_nm;
+  double encoder_counts_per_rev;
+};
+GearingData DataOf(Gearing gearing);
+
+struct MotorOptions {
+  MotorModel model = MotorModel::kDc;
+  Gearing gearing = Gearing::k30To1;
+  std::optional<double> no_load_rad_s;
+  std::optional<double> stall_torque_nm;
+  double supply_ratio = 1.0;
+  double dead_band = 0.10;
+  double lag_s = 0.0;
+  double mismatch = 0.0;
+  double friction_torque_nm = 0.0;
+  std::optional<double> servo_torque_nm;
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field(
+        "model", self.model,
+        "dc: torque falls with speed, as a brushed motor; servo: holds the asked speed, as in the "
+        "authors' Webots world");
+    field("gearing", self.gearing,
+          "edition of the 3pi+; sets no-load speed, stall torque and encoder counts");
+    field(
+        "no_load_rad_s", self.no_load_rad_s, 0.1, 1000.0,
+        "wheel speed at power 1 without load at 6 V; none: that of the gearing (30:1: 75.4 rad/s, "
+        "Pololu 0J83/5.3)");
+    field("stall_torque_nm", self.stall_torque_nm, 1e-4, 10.0,
+          "wheel torque at power 1 and standstill at 6 V; none: that of the gearing (30:1: 0.0324 "
+          "N m, Pololu 0J83/5.3)");
+    field("supply_ratio", self.supply_ratio, 0.05, 3.0,
+          "battery voltage as a share of the 6 V of the data sheet");
+    field("dead_band", self.dead_band, 0.0, 0.9,
+          "powers smaller than this do not turn the wheel (others' code: about 0.10; dc only)");
+    field("lag_s", self.lag_s, 0.0, 1.0,
+          "time constant of the driver in s, on top of the motor's own inertia (dc only)");
+    field("mismatch", self.mismatch, -0.5, 0.5,
+          "left wheel faster than the right by this share of the mean at equal power");
+    field("friction_torque_nm", self.friction_torque_nm, 0.0, 0.1,
+          "Coulomb friction of gear and bearing at the wheel in N m (dc only)");
+    field("servo_torque_nm", self.servo_torque_nm, 1e-3, 100.0,
+          "largest torque of the servo in N m; none: any (Webots' 10 is never reached here)");
+  }
+
+  double NoLoad_rad_s() const { return no_load_rad_s.value_or(DataOf(gearing).no_load_rad_s); }
+  double StallTorque_nm() const {
+    return stall_torque_nm.value_or(DataOf(gearing).stall_torque_nm);
+  }
+};
+
+/// What a motor does to its wheel during one step, as the straight line
+/// torque = (target - rate) / compliance, never beyond +-limit. A compliance of zero is a servo.
+/// The physics solves the line together with the contacts, at the rate the step ends with: however
+/// steep it is and however long the step, it cannot oscillate.
+struct WheelDrive {
+  double target_rad_s = 0.0;
+  double compliance_rad_s_per_nm = 0.0;
+  double limit_nm = 0.0;
+};
+
+enum class Side { kLeft, kRight };
+
+/// One motor with its driver. The torque of a brushed motor at 6 V x supply_ratio:
+/// torque = stall (power supply - rate / no_load) - friction sign(rate).
+class Motor {
+ public:
+  Motor(const MotorOptions& options, Side side);
+
+  /// The drive for the next `step_s` seconds. `power` is the mean of the commanded power over them,
+  /// `rate_rad_s` the wheel's rate now, `drag_nm` what the ground adds to the Coulomb friction.
+  WheelDrive Drive(double power, double rate_rad_s, double drag_nm, double step_s);
+
+ private:
+  double MeanThroughLag(double power, double step_s);
+  WheelDrive TorqueLine(double power, double rate_rad_s, double drag_nm) const;
+
+  MotorOptions options_;
+  double no_load_rad_s_;  ///< of this side
+  double nm_per_rad_s_;   ///< steepness of the torque line
+  double lagged_power_ = 0.0;
+};
+
+}  // namespace rift::simulation

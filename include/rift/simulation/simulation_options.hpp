@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "rift/simulation/encoder.hpp"
+#include "rift/simulation/link.hpp"
+#include "rift/simulation/mocap.hpp"
+#include "rift/simulation/motor.hpp"
+#include "rift/simulation/ode_world.hpp"
+#include "rift/simulation/terrain.hpp"
+
+namespace rift::simulation {
+
+/// The power a step sees: the mean of the command over it, or the command at its start.
+enum class Sampling { kRamped, kStepped };
+constexpr std::array<std::string_view, 2> EnumNames(Sampling) { return {"ramped", "stepped"}; }
+
+/// Everything about the simulated robot but its start and its seed.
+struct SimulationOptions {
+  double step_s = 0.004;
+  Sampling sampling = Sampling::kRamped;
+  BodyOptions body;
+  MotorOptions motor;
+  EncoderOptions encoder;
+  LinkOptions link;
+  MocapOptions mocap;
+  TerrainOptions terrain;
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("step_s", self.step_s, 0.0001, 0.05,
+          "fixed physics step in s (own work-precision study)");
+    field(
+        "sampling", self.sampling,
+        "ramped: a step sees the mean of the command over it; stepped: that of its start (Webots)");
+    field("body", self.body, "masses, sizes and contacts");
+    field("motor", self.motor, "both motors");
+    field("encoder", self.encoder, "both encoders");
+    field("link", self.link, "from the host to the motors");
+    field("mocap", self.mocap, "the overhead camera");
+    field("terrain", self.terrain, "the ground");
+  }
+};
+
+}  // namespace rift::simulation

@@ -1,0 +1,63 @@
+#include "rift/simulation/body.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace rift::simulation {
+
+void BodyOptions::Check() const {
+  const auto refuse = [](const std::string& what) { throw std::invalid_argument(what); };
+  if (rim_clearance_m >= wheel_radius_m) {
+    refuse(
+        fmt::format("rim_clearance_m is {}, but the rim must lie below the axle, wheel_radius_m {}",
+                    rim_clearance_m, wheel_radius_m));
+  }
+  if (std::abs(caster_ahead_m) < 0.005) {
+    refuse(
+        fmt::format("caster_ahead_m is {}, but the caster must be at least 0.005 m from the axle",
+                    caster_ahead_m));
+  }
+  const double sunk_m = WeightOnWheel_n() / contact_stiffness_n_per_m;
+  if (sunk_m > 0.1 * wheel_radius_m) {
+    refuse(
+        fmt::format("contact_stiffness_n_per_m is {}, so that a wheel sinks in by {} m, but it "
+                    "must be at most a tenth of its radius",
+                    contact_stiffness_n_per_m, sunk_m));
+  }
+  const double caster_gap_m = wheel_radius_m - caster_below_m - caster_radius_m;
+  if (std::abs(caster_gap_m) > 0.3 * std::abs(caster_ahead_m)) {
+    refuse(
+        fmt::format("caster_below_m {} and caster_radius_m {} put the ball {} m off the ground, "
+                    "but it must reach it within 0.3 of caster_ahead_m",
+                    caster_below_m, caster_radius_m, caster_gap_m));
+  }
+}
+
+double BodyOptions::WeightOnWheel_n() const {
+  const double on_caster = std::clamp(com_ahead_m / caster_ahead_m, 0.0, 1.0);
+  return 0.5 * gravity_mps2 * (chassis_mass_kg * (1.0 - on_caster) + 2.0 * wheel_mass_kg);
+}
+
+Stance StanceOn(const BodyOptions& body, const Eigen::Vector3d& gravity_in_plane) {
+  const double total_kg = body.chassis_mass_kg + 2.0 * body.wheel_mass_kg;
+  const double moment =
+      (body.com_above_m + body.wheel_radius_m) * body.chassis_mass_kg * gravity_in_plane.x() +
+      2.0 * body.wheel_radius_m * body.wheel_mass_kg * gravity_in_plane.x() -
+      body.com_ahead_m * body.chassis_mass_kg * gravity_in_plane.z();
+  const double caster_n = std::max(0.0, moment / body.caster_ahead_m);
+  const double wheel_n = -0.5 * (total_kg * gravity_in_plane.z() + caster_n);
+  const double height_m = body.wheel_radius_m - wheel_n / body.contact_stiffness_n_per_m;
+  const double caster_height_m = body.caster_radius_m - caster_n / body.contact_stiffness_n_per_m;
+  double pitch_rad = 0.0;
+  for (int i = 0; i < 5; ++i) {
+    const double drop_m = height_m - body.caster_below_m * std::cos(pitch_rad) - caster_height_m;
+    pitch_rad = std::asin(std::clamp(drop_m / body.caster_ahead_m, -0.5, 0.5));
+  }
+  return {height_m, pitch_rad};
+}
+
+}  // namespace rift::simulation

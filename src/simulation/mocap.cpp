@@ -1,0 +1,126 @@
+#include "rift/simulation/mocap.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "rift/geometry/angle.hpp"
+
+namespace rift::simulation {
+namespace {
+
+enum Stream : std::uint64_t { kPhaseStream = 20, kFrameStream = 21, kPoseStream = 22 };
+// Draws of one frame; a normal value takes two.
+enum Draw : std::uint64_t {
+  kAcross = 0,
+  kAlong = 2,
+  kYaw = 4,
+  kStamp = 6,
+  kHeight = 8,
+  kRoll = 10,
+  kPitch = 12,
+  kDropout = 14
+};
+
+constexpr double kClockTick_s = 1e-6;
+
+TruePose Interpolate(const TruePose& before, const TruePose& after, double t_s) {
+  const double span_s = after.t_s - before.t_s;
+  const double share = span_s > 0.0 ? std::clamp((t_s - before.t_s) / span_s, 0.0, 1.0) : 1.0;
+  const auto between = [share](double a, double b) { return a + share * (b - a); };
+  const auto turned = [share](double a, double b) {
+    return geometry::WrapToPi(a + share * geometry::WrapToPi(b - a));
+  };
+  return {t_s,
+          between(before.x_m, after.x_m),
+          between(before.y_m, after.y_m),
+          between(before.z_m, after.z_m),
+          turned(before.roll_rad, after.roll_rad),
+          turned(before.pitch_rad, after.pitch_rad),
+          turned(before.yaw_rad, after.yaw_rad)};
+}
+
+double Speed_mps(const TruePose& before, const TruePose& after) {
+  const double span_s = after.t_s - before.t_s;
+  if (span_s <= 0.0) return 0.0;
+  return std::hypot(after.x_m - before.x_m, after.y_m - before.y_m) / span_s;
+}
+
+Eigen::Vector3d TagInWorld(const TruePose& pose, const MocapOptions& options) {
+  const Eigen::Vector3d tag_in_robot(options.tag_ahead_m, 0.0, options.tag_above_m);
+  return Eigen::Vector3d(pose.x_m, pose.y_m, pose.z_m) +
+         Eigen::AngleAxisd(pose.yaw_rad, Eigen::Vector3d::UnitZ()) *
+             (Eigen::AngleAxisd(pose.pitch_rad, Eigen::Vector3d::UnitY()) *
+              (Eigen::AngleAxisd(pose.roll_rad, Eigen::Vector3d::UnitX()) * tag_in_robot));
+}
+
+}  // namespace
+
+Mocap::Mocap(const MocapOptions& options, std::uint64_t seed)
+    : options_(options),
+      noise_(seed, kPoseStream),
+      phase_s_(options.rate_hz > 0.0 ? Noise(seed, kPhaseStream).Uniform(0, 0) / options.rate_hz
+                                     : 0.0),
+      last_stamp_s_(-std::numeric_limits<double>::infinity()) {}
+
+double Mocap::FrameTime_s(std::uint64_t frame) const {
+  // Half a frame at most, so that frames stay in order.
+  const double limit_s = 0.49 / options_.rate_hz;
+  const double jitter_s = options_.frame_jitter_s * noise_.Normal(frame, kFrameStream << 8);
+  return phase_s_ + static_cast<double>(frame) / options_.rate_hz +
+         std::clamp(jitter_s, -limit_s, limit_s);
+}
+
+void Mocap::Observe(const TruePose& before, const TruePose& after) {
+  const double speed_mps = Speed_mps(before, after);
+  if (options_.rate_hz == 0.0) {
+    newest_ = Measure(after, speed_mps, next_frame_++);
+    newest_->captured_s = after.t_s;
+    return;
+  }
+  for (double t_s = FrameTime_s(next_frame_); t_s <= after.t_s; t_s = FrameTime_s(next_frame_)) {
+    TakeFrame(Interpolate(before, after, t_s), speed_mps, next_frame_);
+    ++next_frame_;
+  }
+}
+
+void Mocap::TakeFrame(const TruePose& pose, double speed_mps, std::uint64_t frame) {
+  if (noise_.Uniform(frame, kDropout) < options_.dropout) return;
+  const double arrives_s = pose.t_s + 0.5 * options_.exposure_s + options_.processing_s;
+  robot::PoseMeasurement measurement = Measure(pose, speed_mps, frame);
+  // A stamp lies after the last one and not after the arrival, whatever its jitter.
+  measurement.captured_s =
+      std::min(std::max(measurement.captured_s, last_stamp_s_ + kClockTick_s), arrives_s);
+  last_stamp_s_ = measurement.captured_s;
+  on_the_way_.push_back({arrives_s, measurement});
+}
+
+robot::PoseMeasurement Mocap::Measure(const TruePose& pose, double speed_mps,
+                                      std::uint64_t frame) const {
+  const Eigen::Vector3d tag_in_world = TagInWorld(pose, options_);
+  const double across_m = std::hypot(options_.noise_across_m, options_.blur_across_s * speed_mps) *
+                          noise_.Normal(frame, kAcross);
+  const double along_m = options_.noise_along_m * noise_.Normal(frame, kAlong);
+  const double yaw_noise_rad =
+      std::hypot(options_.noise_yaw_rad, options_.blur_yaw_rad_per_mps * speed_mps) *
+      noise_.HeavyTailed(frame, kYaw, options_.yaw_tail_dof);
+  const geometry::Pose2 world_from_tag{tag_in_world.x(), tag_in_world.y(), pose.yaw_rad};
+  robot::PoseMeasurement measurement;
+  measurement.captured_s = pose.t_s + options_.stamp_jitter_s * noise_.Normal(frame, kStamp);
+  measurement.world_from_robot = world_from_tag * geometry::Pose2{along_m, across_m, yaw_noise_rad};
+  measurement.z_m = tag_in_world.z() + options_.noise_z_m * noise_.Normal(frame, kHeight);
+  measurement.roll_rad = pose.roll_rad + options_.noise_tilt_rad * noise_.Normal(frame, kRoll);
+  measurement.pitch_rad = pose.pitch_rad + options_.noise_tilt_rad * noise_.Normal(frame, kPitch);
+  return measurement;
+}
+
+std::optional<robot::PoseMeasurement> Mocap::Newest(double now_s) {
+  while (!on_the_way_.empty() && on_the_way_.front().at_s <= now_s) {
+    newest_ = on_the_way_.front().measurement;
+    on_the_way_.pop_front();
+  }
+  return newest_;
+}
+
+}  // namespace rift::simulation

@@ -1,0 +1,380 @@
+#include "rift/simulation/ode_world.hpp"
+
+#include <fmt/format.h>
+#include <ode/ode.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "rift/simulation/touch.hpp"
+
+// The only file that knows ODE.
+namespace rift::simulation {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kTippedOver_rad = 1.05;
+constexpr double kThroughFloor_m = 0.012;
+constexpr double kFallen_m = 0.5;
+constexpr double kWorldErp = 0.8;
+constexpr double kMaxCorrection_mps = 0.5;
+constexpr double kSettle_s = 0.4;
+/// Both wheels hold the same sideways freedom; this much give keeps the two solvable, and lets the
+/// robot creep by less than a micrometre a second on a slope.
+constexpr double kLeastSlip_mps_per_n = 1e-6;
+
+/// Thrown by ODE's own error reports, which must not return; caught at every call that can raise
+/// it.
+struct OdeFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void ThrowFailure(int number, const char* message, va_list arguments) {
+  char text[256];
+  std::vsnprintf(text, sizeof text, message, arguments);
+  throw OdeFailure(fmt::format("ODE reports error {}: {}", number, text));
+}
+
+/// ODE's notes (a pivot of the contact solver that found no answer) cost accuracy, not the run:
+/// what they could lead to is caught by looking at the state.
+void IgnoreNote(int, const char*, va_list) {}
+
+/// ODE's process-wide set-up, made once; its error handlers would otherwise end the process.
+void SetUpOde() {
+  static const bool done = [] {
+    dSetErrorHandler(ThrowFailure);
+    dSetDebugHandler(ThrowFailure);
+    dSetMessageHandler(IgnoreNote);
+    dInitODE2(0);
+    return true;
+  }();
+  static_cast<void>(done);
+}
+
+struct Deleter {
+  void operator()(dxWorld* world) const { dWorldDestroy(world); }
+  void operator()(dxJointGroup* group) const { dJointGroupDestroy(group); }
+  void operator()(dxThreadingImplementation* threading) const {
+    dThreadingFreeImplementation(threading);
+  }
+};
+
+Vector3d Vector(const dReal* values) { return Eigen::Map<const Vector3d>(values); }
+
+Matrix3d Rotation(dBodyID body) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(dBodyGetRotation(body))
+      .leftCols<3>();
+}
+
+void SetRotation(dBodyID body, const Matrix3d& rotation) {
+  dMatrix3 rows{};
+  Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows).leftCols<3>() = rotation;
+  dBodySetRotation(body, rows);
+}
+
+void SetPosition(dBodyID body, const Vector3d& p) { dBodySetPosition(body, p.x(), p.y(), p.z()); }
+
+}  // namespace
+
+struct OdeWorld::Bodies {
+  Bodies(const BodyOptions& body_options, const Terrain& ground, double step);
+
+  void AddBodies();
+  void Place(const geometry::Pose2& start);
+  void PlaceOn(const Plane& plane, double yaw_rad);
+  void Settle();
+
+  void Step(const std::array<WheelDrive, 2>& drives);
+  void Abandon();
+  void SetDrive(int side, const WheelDrive& drive);
+  void MakeContacts();
+  void TouchGround(int side);
+  dContact Contact(const Touch& touch, double mu) const;
+  void Add(dContact& contact, dBodyID body);
+  void ReadState();
+  void FindFault();
+
+  BodyOptions body;
+  Terrain terrain;
+  double step_s;
+  std::unique_ptr<dxThreadingImplementation, Deleter> threading;
+  std::unique_ptr<dxWorld, Deleter> world;
+  std::unique_ptr<dxJointGroup, Deleter> contacts;
+  dBodyID chassis = nullptr;
+  std::array<dBodyID, 2> wheels{};
+  std::array<dJointID, 2> hinges{};
+  double contact_erp, contact_cfm;
+  double wheel_load_n;
+  bool settling = false;
+  WorldState state;
+  std::optional<std::string> fault;
+};
+
+OdeWorld::Bodies::Bodies(const BodyOptions& body_options, const Terrain& ground, double step)
+    : body(body_options), terrain(ground), step_s(step), wheel_load_n(body.WeightOnWheel_n()) {
+  SetUpOde();
+  // With ODE's shared default two worlds stepped in two threads abort the process.
+  threading.reset(dThreadingAllocateSelfThreadedImplementation());
+  world.reset(dWorldCreate());
+  dWorldSetStepThreadingImplementation(
+      world.get(), dThreadingImplementationGetFunctions(threading.get()), threading.get());
+  contacts.reset(dJointGroupCreate(0));
+  dWorldSetGravity(world.get(), 0.0, 0.0, -body.gravity_mps2);
+  dWorldSetERP(world.get(), kWorldErp);
+  dWorldSetContactMaxCorrectingVel(world.get(), kMaxCorrection_mps);
+  // A spring and damper as ODE wants them [ODE manual, "How to use ERP and CFM"].
+  const double spring = step_s * body.contact_stiffness_n_per_m;
+  contact_erp = spring / (spring + body.contact_damping_ns_per_m);
+  contact_cfm = 1.0 / (spring + body.contact_damping_ns_per_m);
+  AddBodies();
+}
+
+void OdeWorld::Bodies::AddBodies() {
+  dMass mass;
+  chassis = dBodyCreate(world.get());
+  dMassSetCylinderTotal(&mass, body.chassis_mass_kg, 3, body.chassis_radius_m,
+                        body.chassis_height_m);
+  dBodySetMass(chassis, &mass);
+  dBodySetFiniteRotationMode(chassis, 1);
+  SetPosition(chassis, {body.com_ahead_m, 0.0, body.com_above_m});
+  dMassSetCylinderTotal(&mass, body.wheel_mass_kg, 2, body.wheel_radius_m, body.wheel_width_m);
+  for (int side = 0; side < 2; ++side) {
+    wheels[side] = dBodyCreate(world.get());
+    dBodySetMass(wheels[side], &mass);
+    dBodySetFiniteRotationMode(wheels[side], 1);
+    SetPosition(wheels[side], {0.0, (side == 0 ? 0.5 : -0.5) * body.track_m, 0.0});
+    hinges[side] = dJointCreateHinge(world.get(), nullptr);
+    dJointAttach(hinges[side], wheels[side], chassis);
+    const Vector3d anchor = Vector(dBodyGetPosition(wheels[side]));
+    dJointSetHingeAnchor(hinges[side], anchor.x(), anchor.y(), anchor.z());
+    dJointSetHingeAxis(hinges[side], 0.0, 1.0, 0.0);
+  }
+}
+
+void OdeWorld::Bodies::Place(const geometry::Pose2& start) {
+  const double reach_m = 1.5 * body.chassis_radius_m;
+  const auto plane = terrain.PlaneNear(start.x_m, start.y_m, reach_m);
+  const Vector3d ground(start.x_m, start.y_m, terrain.HeightAt(start.x_m, start.y_m));
+  if (!std::isfinite(ground.z())) {
+    throw std::invalid_argument(
+        fmt::format("the robot cannot start at ({:.3f}, {:.3f}) m, beyond the edge of the table",
+                    ground.x(), ground.y()));
+  }
+  PlaceOn(plane.value_or(Plane{ground, Vector3d::UnitZ()}), start.yaw_rad);
+  if (!plane) Settle();
+}
+
+/// Yaw is that of the forward axis seen from above, whatever the slope.
+void OdeWorld::Bodies::PlaceOn(const Plane& plane, double yaw_rad) {
+  const Vector3d level(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
+  Matrix3d world_from_plane;
+  world_from_plane.col(2) = plane.normal;
+  world_from_plane.col(1) = plane.normal.cross(level).normalized();
+  world_from_plane.col(0) = world_from_plane.col(1).cross(plane.normal);
+  const Stance stance =
+      StanceOn(body, world_from_plane.transpose() * Vector3d(0.0, 0.0, -body.gravity_mps2));
+  const Matrix3d world_from_robot =
+      world_from_plane * Eigen::AngleAxisd(stance.pitch_rad, Vector3d::UnitY()).matrix();
+  // The axle stands over the asked point, measured vertically.
+  Vector3d origin = plane.point;
+  origin.z() += stance.height_m / plane.normal.z();
+  SetRotation(chassis, world_from_robot);
+  SetPosition(chassis,
+              origin + world_from_robot * Vector3d(body.com_ahead_m, 0.0, body.com_above_m));
+  for (int side = 0; side < 2; ++side) {
+    SetRotation(wheels[side], world_from_robot);
+    SetPosition(wheels[side],
+                origin + (side == 0 ? 0.5 : -0.5) * body.track_m * world_from_robot.col(1));
+  }
+  ReadState();
+}
+
+/// On rough ground: drops the robot with locked wheels and endless friction until it rests.
+void OdeWorld::Bodies::Settle() {
+  const double clearance_m = body.wheel_radius_m - body.rim_clearance_m;
+  for (const dBodyID part : {chassis, wheels[0], wheels[1]}) {
+    SetPosition(part, Vector(dBodyGetPosition(part)) + clearance_m * Vector3d::UnitZ());
+  }
+  ReadState();
+  settling = true;
+  const WheelDrive locked{0.0, 0.0, std::numeric_limits<double>::infinity()};
+  for (double t_s = 0.0; t_s < kSettle_s && !fault; t_s += step_s) Step({locked, locked});
+  settling = false;
+  for (const dBodyID part : {chassis, wheels[0], wheels[1]}) {
+    dBodySetLinearVel(part, 0.0, 0.0, 0.0);
+    dBodySetAngularVel(part, 0.0, 0.0, 0.0);
+  }
+  state.wheel_angle_rad = {};
+  ReadState();
+}
+
+/// A step broken off leaves jobs behind, and ODE's destructors object to those: leak the lot.
+void OdeWorld::Bodies::Abandon() {
+  static_cast<void>(contacts.release());
+  static_cast<void>(world.release());
+  static_cast<void>(threading.release());
+}
+
+void OdeWorld::Bodies::Step(const std::array<WheelDrive, 2>& drives) {
+  if (fault) return;
+  for (const WheelDrive& drive : drives) {
+    if (!std::isfinite(drive.target_rad_s + drive.compliance_rad_s_per_nm) ||
+        std::isnan(drive.limit_nm)) {
+      fault = "a wheel drive is not a number";
+      return;
+    }
+  }
+  for (int side = 0; side < 2; ++side) SetDrive(side, drives[side]);
+  try {
+    dJointGroupEmpty(contacts.get());
+    MakeContacts();
+    dWorldStep(world.get(), step_s);
+  } catch (const OdeFailure& failure) {
+    fault = failure.what();
+    Abandon();
+    return;
+  }
+  for (int side = 0; side < 2; ++side) {
+    state.wheel_angle_rad[side] += step_s * dJointGetHingeAngleRate(hinges[side]);
+  }
+  ReadState();
+  FindFault();
+}
+
+/// ODE's hinge motor solves rate + cfm x torque = target [ODE manual, "CFM"], which is the drive's
+/// torque line at the rate the step ends with.
+void OdeWorld::Bodies::SetDrive(int side, const WheelDrive& drive) {
+  dJointSetHingeParam(hinges[side], dParamVel, drive.target_rad_s);
+  dJointSetHingeParam(hinges[side], dParamFMax, drive.limit_nm);
+  dJointSetHingeParam(hinges[side], dParamCFM, drive.compliance_rad_s_per_nm);
+}
+
+void OdeWorld::Bodies::MakeContacts() {
+  for (int side = 0; side < 2; ++side) TouchGround(side);
+  const Vector3d caster =
+      state.position_m +
+      state.world_from_robot * Vector3d(body.caster_ahead_m, 0.0, -body.caster_below_m);
+  if (const auto touch =
+          TouchBall(terrain, caster, state.world_from_robot.col(0), body.caster_radius_m)) {
+    dContact contact = Contact(*touch, settling ? dInfinity : body.caster_mu);
+    Add(contact, chassis);
+  }
+  const Vector3d up = state.world_from_robot.col(2);
+  const Vector3d rim = state.position_m - (body.wheel_radius_m - body.rim_clearance_m) * up;
+  if (const auto touch = TouchRim(terrain, rim, up, body.chassis_radius_m)) {
+    dContact contact = Contact(*touch, body.rim_mu);
+    Add(contact, chassis);
+  }
+}
+
+void OdeWorld::Bodies::TouchGround(int side) {
+  const Vector3d axle = state.world_from_robot.col(1);
+  const auto touch = TouchWheel(terrain, Vector(dBodyGetPosition(wheels[side])), axle,
+                                body.wheel_radius_m, body.wheel_width_m);
+  if (!touch) return;
+  const Grip grip = terrain.GripAt(touch->point.x(), touch->point.y());
+  dContact contact = Contact(*touch, settling ? dInfinity : grip.mu);
+  // The wheel holds its direction at the middle of the step, not the one it starts with: otherwise
+  // a turning robot drifts outwards in proportion to the step.
+  const Vector3d axle_midway = axle + 0.5 * step_s * state.spin_rad_s.cross(axle);
+  const Vector3d sideways =
+      (axle_midway - axle_midway.dot(touch->normal) * touch->normal).normalized();
+  Eigen::Map<Vector3d>(contact.fdir1) = sideways;
+  const double rim_mps = std::abs(state.wheel_rate_rad_s[side]) * body.wheel_radius_m;
+  const double creep =
+      grip.slip > 0.0 && grip.mu > 0.0 ? grip.slip * rim_mps / (grip.mu * wheel_load_n) : 0.0;
+  contact.surface.slip1 = contact.surface.slip2 = kLeastSlip_mps_per_n + creep;
+  contact.surface.mode |= dContactFDir1 | dContactSlip1 | dContactSlip2;
+  Add(contact, wheels[side]);
+}
+
+dContact OdeWorld::Bodies::Contact(const Touch& touch, double mu) const {
+  dContact contact{};
+  contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
+  contact.surface.mu = mu;
+  contact.surface.soft_erp = contact_erp;
+  contact.surface.soft_cfm = contact_cfm;
+  contact.geom.depth = touch.depth_m;
+  Eigen::Map<Vector3d>(contact.geom.pos) = touch.point;
+  Eigen::Map<Vector3d>(contact.geom.normal) = touch.normal;
+  return contact;
+}
+
+void OdeWorld::Bodies::Add(dContact& contact, dBodyID part) {
+  dJointAttach(dJointCreateContact(world.get(), contacts.get(), &contact), part, nullptr);
+}
+
+void OdeWorld::Bodies::ReadState() {
+  state.world_from_robot = Rotation(chassis);
+  const Vector3d arm = state.world_from_robot * Vector3d(-body.com_ahead_m, 0.0, -body.com_above_m);
+  state.position_m = Vector(dBodyGetPosition(chassis)) + arm;
+  state.spin_rad_s = Vector(dBodyGetAngularVel(chassis));
+  state.velocity_mps = Vector(dBodyGetLinearVel(chassis)) + state.spin_rad_s.cross(arm);
+  for (int side = 0; side < 2; ++side) {
+    state.wheel_rate_rad_s[side] = dJointGetHingeAngleRate(hinges[side]);
+  }
+}
+
+void OdeWorld::Bodies::FindFault() {
+  const Vector3d& p = state.position_m;
+  if (!p.allFinite() || !state.velocity_mps.allFinite() || !state.world_from_robot.allFinite() ||
+      !std::isfinite(state.wheel_rate_rad_s[0] + state.wheel_rate_rad_s[1])) {
+    fault = "the simulated motion is no longer finite";
+    return;
+  }
+  const double ground_m = terrain.HeightAt(p.x(), p.y());
+  if (!std::isfinite(ground_m)) {
+    if (p.z() < -kFallen_m)
+      fault = fmt::format("fell off the table at ({:.3f}, {:.3f}) m", p.x(), p.y());
+  } else if (p.z() < ground_m - kThroughFloor_m) {
+    fault = fmt::format("sank through the floor at ({:.3f}, {:.3f}) m", p.x(), p.y());
+  }
+  if (!fault && state.world_from_robot(2, 2) < std::cos(kTippedOver_rad)) {
+    fault = fmt::format("tipped over at ({:.3f}, {:.3f}) m", p.x(), p.y());
+  }
+}
+
+OdeWorld::OdeWorld(const BodyOptions& body, const Terrain& terrain, const geometry::Pose2& start,
+                   double step_s)
+    : bodies_(std::make_unique<Bodies>(body, terrain, step_s)) {
+  bodies_->Place(start);
+}
+OdeWorld::~OdeWorld() = default;
+OdeWorld::OdeWorld(OdeWorld&&) noexcept = default;
+OdeWorld& OdeWorld::operator=(OdeWorld&&) noexcept = default;
+
+void OdeWorld::Step(const std::array<WheelDrive, 2>& drives) { bodies_->Step(drives); }
+
+void OdeWorld::Launch(double speed_mps) {
+  const Matrix3d& world_from_robot = bodies_->state.world_from_robot;
+  const Vector3d velocity = speed_mps * world_from_robot.col(0);
+  const Vector3d spin = speed_mps / bodies_->body.wheel_radius_m * world_from_robot.col(1);
+  dBodySetLinearVel(bodies_->chassis, velocity.x(), velocity.y(), velocity.z());
+  for (const dBodyID wheel : bodies_->wheels) {
+    dBodySetLinearVel(wheel, velocity.x(), velocity.y(), velocity.z());
+    dBodySetAngularVel(wheel, spin.x(), spin.y(), spin.z());
+  }
+  bodies_->ReadState();
+}
+
+const WorldState& OdeWorld::State() const { return bodies_->state; }
+
+std::array<Grip, 2> OdeWorld::WheelGrip() const {
+  std::array<Grip, 2> grips;
+  for (int side = 0; side < 2; ++side) {
+    const Vector3d p = Vector(dBodyGetPosition(bodies_->wheels[side]));
+    grips[side] = bodies_->terrain.GripAt(p.x(), p.y());
+  }
+  return grips;
+}
+
+const std::optional<std::string>& OdeWorld::Fault() const { return bodies_->fault; }
+
+}  // namespace rift::simulation

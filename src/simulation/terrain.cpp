@@ -1,0 +1,143 @@
+#include "rift/simulation/terrain.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace rift::simulation {
+namespace {
+
+constexpr double kEndless_m = std::numeric_limits<double>::infinity();
+constexpr double kSlopeBase_m = 1e-4;
+
+}  // namespace
+
+void PatchOptions::Check() const {
+  if (x_min_m >= x_max_m) {
+    throw std::invalid_argument(
+        fmt::format("x_min_m is {}, but it must lie below x_max_m, {}", x_min_m, x_max_m));
+  }
+  if (y_min_m >= y_max_m) {
+    throw std::invalid_argument(
+        fmt::format("y_min_m is {}, but it must lie below y_max_m, {}", y_min_m, y_max_m));
+  }
+}
+
+void TerrainOptions::Check() const { Chosen(); }
+
+const SurfaceOptions& TerrainOptions::Chosen() const {
+  const auto found = surfaces.find(surface);
+  if (found != surfaces.end()) return found->second;
+  std::string known;
+  for (const auto& [name, options] : surfaces) known += (known.empty() ? "" : ", ") + name;
+  throw std::invalid_argument(
+      fmt::format("surface is '{}', but it must be one of: {}", surface, known));
+}
+
+Terrain::Terrain(const TerrainOptions& options, std::shared_ptr<const HeightImage> image)
+    : surface_(options.Chosen()),
+      patches_(options.patches),
+      table_half_size_m_(options.table_half_size_m.value_or(kEndless_m)),
+      image_(std::move(image)) {
+  if (surface_.shape != Shape::kHeightfield) return;
+  if (!image_ || image_->columns < 2 || image_->rows < 2 ||
+      image_->samples.size() != static_cast<size_t>(image_->columns) * image_->rows) {
+    throw std::invalid_argument(
+        "surface '" + options.surface +
+        "' is a heightfield, but no image of at least 2 x 2 pixels is given");
+  }
+}
+
+double Terrain::HeightAt(double x_m, double y_m) const {
+  if (!OnTable(x_m, y_m, 0.0)) return -kEndless_m;
+  switch (surface_.shape) {
+    case Shape::kFlat:
+      return 0.0;
+    case Shape::kRampUp:
+    case Shape::kRampDown:
+      return RampHeight(x_m);
+    case Shape::kBumps:
+      return BumpHeight(x_m, y_m);
+    case Shape::kHeightfield:
+      return ImageHeight(x_m, y_m);
+  }
+  return 0.0;
+}
+
+Eigen::Vector3d Terrain::NormalAt(double x_m, double y_m) const {
+  if (surface_.shape == Shape::kFlat || !OnTable(x_m, y_m, 2.0 * kSlopeBase_m)) {
+    return Eigen::Vector3d::UnitZ();
+  }
+  const auto slope = [](double before_m, double after_m) {
+    return (after_m - before_m) / (2.0 * kSlopeBase_m);
+  };
+  const double dz_dx = slope(HeightAt(x_m - kSlopeBase_m, y_m), HeightAt(x_m + kSlopeBase_m, y_m));
+  const double dz_dy = slope(HeightAt(x_m, y_m - kSlopeBase_m), HeightAt(x_m, y_m + kSlopeBase_m));
+  return Eigen::Vector3d(-dz_dx, -dz_dy, 1.0).normalized();
+}
+
+Grip Terrain::GripAt(double x_m, double y_m) const {
+  for (auto patch = patches_.rbegin(); patch != patches_.rend(); ++patch) {
+    if (patch->Covers(x_m, y_m)) return {patch->mu, patch->rolling_resistance, patch->slip};
+  }
+  return surface_.GripOf();
+}
+
+std::optional<Plane> Terrain::PlaneNear(double x_m, double y_m, double reach_m) const {
+  if (!OnTable(x_m, y_m, reach_m)) return std::nullopt;
+  if (surface_.shape == Shape::kFlat) {
+    return Plane{{x_m, y_m, 0.0}, Eigen::Vector3d::UnitZ()};
+  }
+  if (surface_.shape != Shape::kRampUp && surface_.shape != Shape::kRampDown) return std::nullopt;
+  const double foot_m = surface_.ramp_top_m / std::tan(surface_.ramp_rad);
+  const double sign = surface_.shape == Shape::kRampDown ? 1.0 : -1.0;
+  const double past_edge_m = sign * (x_m - surface_.ramp_edge_x_m);
+  const bool sloped = past_edge_m > reach_m && past_edge_m < foot_m - reach_m;
+  const bool level = past_edge_m < -reach_m || past_edge_m > foot_m + reach_m;
+  if (!sloped && !level) return std::nullopt;
+  const Eigen::Vector3d normal =
+      level ? Eigen::Vector3d::UnitZ()
+            : Eigen::Vector3d(sign * std::sin(surface_.ramp_rad), 0.0, std::cos(surface_.ramp_rad));
+  return Plane{{x_m, y_m, RampHeight(x_m)}, normal};
+}
+
+bool Terrain::OnTable(double x_m, double y_m, double margin_m) const {
+  return std::max(std::abs(x_m), std::abs(y_m)) + margin_m <= table_half_size_m_;
+}
+
+double Terrain::RampHeight(double x_m) const {
+  const double sign = surface_.shape == Shape::kRampDown ? 1.0 : -1.0;
+  const double past_edge_m = sign * (x_m - surface_.ramp_edge_x_m);
+  return std::clamp(surface_.ramp_top_m - past_edge_m * std::tan(surface_.ramp_rad), 0.0,
+                    surface_.ramp_top_m);
+}
+
+double Terrain::BumpHeight(double x_m, double y_m) const {
+  const auto on_block = [this](double p_m) {
+    return std::abs(std::remainder(p_m, surface_.bump_pitch_m)) <= 0.5 * surface_.bump_size_m;
+  };
+  return on_block(x_m) && on_block(y_m) ? surface_.bump_height_m : 0.0;
+}
+
+double Terrain::ImageHeight(double x_m, double y_m) const {
+  const double pixel_m = surface_.image_width_m / (image_->columns - 1);
+  const double column = (x_m - surface_.image_x_m) / pixel_m + 0.5 * (image_->columns - 1);
+  const double row = (surface_.image_y_m - y_m) / pixel_m + 0.5 * (image_->rows - 1);
+  if (!(column >= 0.0 && column <= image_->columns - 1 && row >= 0.0 && row <= image_->rows - 1)) {
+    return 0.0;
+  }
+  const int left = std::min(static_cast<int>(column), image_->columns - 2);
+  const int top = std::min(static_cast<int>(row), image_->rows - 2);
+  const double right_share = column - left, bottom_share = row - top;
+  const double* corner = &image_->samples[static_cast<size_t>(top) * image_->columns + left];
+  const double upper = corner[0] + right_share * (corner[1] - corner[0]);
+  const double* below = corner + image_->columns;
+  const double lower = below[0] + right_share * (below[1] - below[0]);
+  return surface_.image_height_m * (upper + bottom_share * (lower - upper));
+}
+
+}  // namespace rift::simulation

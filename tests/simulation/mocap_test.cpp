@@ -1,0 +1,159 @@
+#include "rift/simulation/mocap.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+namespace rift::simulation {
+namespace {
+
+MocapOptions Quiet() {
+  MocapOptions options;
+  options.frame_jitter_s = options.stamp_jitter_s = 0.0;
+  options.noise_across_m = options.noise_along_m = options.noise_yaw_rad = 0.0;
+  options.blur_across_s = options.blur_yaw_rad_per_mps = 0.0;
+  options.noise_z_m = options.noise_tilt_rad = 0.0;
+  return options;
+}
+
+constexpr double kSpeed = 0.3, kHeading = 0.5;
+
+TruePose Moving(double t_s, double speed_mps = kSpeed) {
+  TruePose pose;
+  pose.t_s = t_s;
+  pose.x_m = speed_mps * t_s * std::cos(kHeading);
+  pose.y_m = speed_mps * t_s * std::sin(kHeading);
+  pose.yaw_rad = kHeading;
+  return pose;
+}
+
+/// Every new measurement of a straight drive, looked for every `look_s`.
+std::vector<robot::PoseMeasurement> Watch(const MocapOptions& options, double duration_s,
+                                          double look_s, double speed_mps = kSpeed) {
+  Mocap mocap(options, 3);
+  std::vector<robot::PoseMeasurement> seen;
+  for (int i = 0; i < std::lround(duration_s / look_s); ++i) {
+    mocap.Observe(Moving(i * look_s, speed_mps), Moving((i + 1) * look_s, speed_mps));
+    const auto newest = mocap.Newest((i + 1) * look_s);
+    if (newest && (seen.empty() || newest->captured_s != seen.back().captured_s)) {
+      seen.push_back(*newest);
+    }
+  }
+  return seen;
+}
+
+TEST_CASE("A pose arrives after exposure and processing and is stamped with its capture") {
+  MocapOptions options = Quiet();
+  options.rate_hz = 20.0;
+  options.exposure_s = 0.010;
+  options.processing_s = 0.070;
+  Mocap mocap(options, 1);
+  mocap.Observe(Moving(0.0), Moving(1.0));
+  std::optional<robot::PoseMeasurement> newest;
+  double first_s = 0.0;
+  for (; !newest; first_s += 0.0005) newest = mocap.Newest(first_s);
+  CHECK(first_s - newest->captured_s == Approx(0.075).margin(0.001));
+  CHECK(newest->world_from_robot.x_m ==
+        Approx(kSpeed * std::cos(kHeading) * newest->captured_s).margin(1e-9));
+  CHECK(newest->world_from_robot.yaw_rad == Approx(kHeading));
+}
+
+TEST_CASE("Frames come at the rate of the camera") {
+  MocapOptions options = Quiet();
+  options.rate_hz = 20.0;
+  const auto seen = Watch(options, 10.0, 0.004);
+  REQUIRE(seen.size() > 190);
+  for (size_t i = 1; i < seen.size(); ++i) {
+    CHECK(seen[i].captured_s - seen[i - 1].captured_s == Approx(0.05).margin(1e-9));
+  }
+}
+
+TEST_CASE("Noise has the size asked for across along and in yaw") {
+  MocapOptions options = Quiet();
+  options.noise_across_m = 0.0003;
+  options.blur_across_s = 0.002;
+  options.noise_along_m = 0.001;
+  options.noise_yaw_rad = 0.01;
+  const auto seen = Watch(options, 2000.0, 0.01);
+  double across = 0.0, along = 0.0, yaw = 0.0;
+  for (const robot::PoseMeasurement& m : seen) {
+    const TruePose truth = Moving(m.captured_s);
+    const double dx = m.world_from_robot.x_m - truth.x_m, dy = m.world_from_robot.y_m - truth.y_m;
+    across += std::pow(-std::sin(kHeading) * dx + std::cos(kHeading) * dy, 2);
+    along += std::pow(std::cos(kHeading) * dx + std::sin(kHeading) * dy, 2);
+    yaw += std::pow(m.world_from_robot.yaw_rad - kHeading, 2);
+  }
+  const double n = static_cast<double>(seen.size());
+  CHECK(std::sqrt(across / n) == Approx(std::hypot(0.0003, 0.002 * kSpeed)).epsilon(0.03));
+  CHECK(std::sqrt(along / n) == Approx(0.001).epsilon(0.03));
+  CHECK(std::sqrt(yaw / n) == Approx(0.01).epsilon(0.04));
+}
+
+TEST_CASE("Time stamp jitter becomes an error along the motion and leaves stamps in order") {
+  MocapOptions options = Quiet();
+  options.stamp_jitter_s = 0.010;
+  const auto seen = Watch(options, 1000.0, 0.01);
+  double along = 0.0, last_s = -1.0;
+  for (const robot::PoseMeasurement& m : seen) {
+    const TruePose truth = Moving(m.captured_s);
+    along += std::pow(m.world_from_robot.x_m - truth.x_m, 2) +
+             std::pow(m.world_from_robot.y_m - truth.y_m, 2);
+    CHECK(m.captured_s > last_s);
+    last_s = m.captured_s;
+  }
+  CHECK(std::sqrt(along / static_cast<double>(seen.size())) ==
+        Approx(0.010 * kSpeed).epsilon(0.05));
+}
+
+TEST_CASE("What the camera sees does not depend on how often anyone looks") {
+  const auto often = Watch(MocapOptions{}, 5.0, 0.004), seldom = Watch(MocapOptions{}, 5.0, 0.02);
+  REQUIRE(often.size() == seldom.size());
+  for (size_t i = 0; i < often.size(); ++i) {
+    CHECK(often[i].captured_s == Approx(seldom[i].captured_s).margin(1e-12));
+    CHECK(often[i].world_from_robot.x_m == Approx(seldom[i].world_from_robot.x_m).margin(1e-9));
+    CHECK(often[i].world_from_robot.yaw_rad == Approx(seldom[i].world_from_robot.yaw_rad));
+  }
+}
+
+TEST_CASE("Dropped frames are missing and nothing else") {
+  MocapOptions options = Quiet();
+  const double all = static_cast<double>(Watch(options, 400.0, 0.01).size());
+  options.dropout = 0.3;
+  CHECK(static_cast<double>(Watch(options, 400.0, 0.01).size()) / all == Approx(0.7).margin(0.03));
+  options.dropout = 1.0;
+  CHECK(Watch(options, 5.0, 0.01).empty());
+}
+
+TEST_CASE("The pose is that of the tag which sits off the axle and leans with the robot") {
+  MocapOptions options = Quiet();
+  options.rate_hz = 0.0;
+  options.tag_ahead_m = 0.03;
+  options.tag_above_m = 0.02;
+  Mocap mocap(options, 1);
+  TruePose pose;
+  pose.x_m = 1.0;
+  pose.z_m = 0.016;
+  pose.yaw_rad = M_PI / 2.0;
+  mocap.Observe(pose, pose);
+  CHECK(mocap.Newest(0.0)->world_from_robot.x_m == Approx(1.0));
+  CHECK(mocap.Newest(0.0)->world_from_robot.y_m == Approx(0.03));
+  CHECK(mocap.Newest(0.0)->z_m == Approx(0.036));
+  pose.pitch_rad = 0.2;  // nose down: the tag sinks and its top leans forward
+  mocap.Observe(pose, pose);
+  CHECK(mocap.Newest(0.0)->world_from_robot.y_m ==
+        Approx(0.03 * std::cos(0.2) + 0.02 * std::sin(0.2)));
+  CHECK(mocap.Newest(0.0)->z_m == Approx(0.016 - 0.03 * std::sin(0.2) + 0.02 * std::cos(0.2)));
+}
+
+TEST_CASE("A camera without a rate shows the present pose") {
+  MocapOptions options = Quiet();
+  options.rate_hz = 0.0;
+  Mocap mocap(options, 1);
+  CHECK_FALSE(mocap.Newest(0.0));
+  mocap.Observe(Moving(0.0), Moving(0.1));
+  CHECK(mocap.Newest(0.1)->captured_s == 0.1);
+  CHECK(mocap.Newest(0.1)->world_from_robot == Moving(0.1).Planar());
+}
+
+}  // namespace
+}  // namespace rift::simulation

@@ -1,0 +1,216 @@
+#include "rift/simulation/simulated_robot.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "rift/geometry/angle.hpp"
+
+namespace rift::simulation {
+namespace {
+
+SimulationOptions Ideal() {
+  SimulationOptions options;
+  options.motor.model = MotorModel::kServo;
+  options.link = {.delay_s = 0.0, .baud = 0.0, .poll_s = 0.0, .two_decimals = false};
+  options.mocap = {.rate_hz = 0.0,
+                   .noise_across_m = 0.0,
+                   .blur_across_s = 0.0,
+                   .noise_along_m = 0.0,
+                   .stamp_jitter_s = 0.0,
+                   .noise_yaw_rad = 0.0,
+                   .blur_yaw_rad_per_mps = 0.0,
+                   .noise_z_m = 0.0,
+                   .noise_tilt_rad = 0.0};
+  return options;
+}
+
+robot::WheelPower Weave(int control_step) {
+  const double turn = 0.03 * std::sin(0.1 * control_step);
+  return {0.18 - turn, 0.18 + turn};
+}
+
+std::vector<double> Drive(const SimulationOptions& options, std::uint64_t seed) {
+  SimulatedRobot robot(options, {-0.28, -0.06, -0.02}, seed);
+  std::vector<double> log;
+  for (int i = 0; i < 150; ++i) {
+    robot.Command(Weave(i));
+    robot.Advance(0.02);
+    const robot::Sensed sensed = robot.Sense();
+    log.insert(log.end(), {robot.Truth().x_m, robot.Truth().y_m, robot.Truth().yaw_rad});
+    if (!sensed.pose) continue;
+    log.insert(log.end(), {sensed.pose->captured_s, sensed.pose->world_from_robot.x_m,
+                           sensed.pose->world_from_robot.yaw_rad});
+  }
+  return log;
+}
+
+TEST_CASE("The same seed gives the same bytes even after other runs") {
+  const std::vector<double> first = Drive(SimulationOptions{}, 5);
+  Drive(Ideal(), 1);
+  const std::vector<double> other = Drive(SimulationOptions{}, 6);
+  CHECK(Drive(SimulationOptions{}, 5) == first);
+  CHECK(other != first);
+}
+
+TEST_CASE("How the time is cut into calls does not change the motion") {
+  SimulatedRobot coarse(SimulationOptions{}, {}, 3), fine(SimulationOptions{}, {}, 3);
+  coarse.Command({0.2, 0.15});
+  fine.Command({0.2, 0.15});
+  coarse.Advance(1.0);
+  for (int i = 0; i < 1000; ++i) fine.Advance(0.001);
+  CHECK(coarse.Truth().x_m == fine.Truth().x_m);
+  CHECK(coarse.Truth().t_s == fine.Truth().t_s);
+  CHECK(coarse.Sense().now_s == fine.Sense().now_s);
+}
+
+TEST_CASE("The clock does not drift when the step does not divide the control interval") {
+  SimulationOptions options = Ideal();
+  options.step_s = 0.007;
+  SimulatedRobot robot(options, {}, 1);
+  for (int i = 0; i < 500; ++i) robot.Advance(0.02);
+  CHECK(robot.Sense().now_s == Approx(10.0).margin(1e-12));
+  CHECK(robot.Truth().t_s <= 10.0);
+  CHECK(robot.Truth().t_s > 10.0 - 0.007);
+}
+
+TEST_CASE("Without link delay a power drives the wheel at its share of the full speed") {
+  SimulatedRobot robot(Ideal(), {}, 1);
+  robot.Command({0.2, 0.2});
+  robot.Advance(2.0);
+  CHECK(robot.State().wheel_rate_rad_s[0] == Approx(0.2 * 75.4).epsilon(0.001));
+  CHECK(robot.State().velocity_mps.x() == Approx(0.2 * 1.206).epsilon(0.005));
+}
+
+TEST_CASE("A brushed motor settles where its torque meets friction and rolling resistance") {
+  SimulationOptions options = Ideal();
+  options.motor.model = MotorModel::kDc;
+  options.motor.friction_torque_nm = 0.001;
+  options.terrain.surfaces["ground"].rolling_resistance = 0.02;
+  options.terrain.surfaces["ground"].slip = 0.0;
+  SimulatedRobot robot(options, {}, 1);
+  robot.Command({0.2, 0.2});
+  robot.Advance(3.0);
+  const double drag_nm = 0.001 + 0.02 * options.body.WeightOnWheel_n() * 0.016;
+  const double stall_nm = options.motor.StallTorque_nm();
+  const double expected_rad_s = (0.2 - drag_nm / stall_nm) * options.motor.NoLoad_rad_s();
+  CHECK(robot.State().wheel_rate_rad_s[0] == Approx(expected_rad_s).epsilon(0.001));
+}
+
+TEST_CASE("A brushed robot speeds up with the time constant of its mass and torque line") {
+  SimulationOptions options = Ideal();
+  options.motor.model = MotorModel::kDc;
+  options.terrain.surfaces["ground"] = SurfaceOptions{};
+  options.terrain.surfaces["ground"].mu = 5.0;
+  options.step_s = GENERATE(0.001, 0.004, 0.008);
+  const BodyOptions& body = options.body;
+  const double inertia = (body.chassis_mass_kg + 3.0 * body.wheel_mass_kg) * body.wheel_radius_m *
+                         body.wheel_radius_m / 2.0;
+  const double constant_s = inertia * options.motor.NoLoad_rad_s() / options.motor.StallTorque_nm();
+  SimulatedRobot robot(options, {}, 1);
+  robot.Command({0.2, 0.2});
+  const double time_s = 0.16;
+  robot.Advance(time_s);
+  const double expected_mps =
+      0.2 * options.motor.NoLoad_rad_s() * 0.016 * -std::expm1(-time_s / constant_s);
+  CHECK(robot.State().velocity_mps.x() == Approx(expected_mps).epsilon(0.03));
+}
+
+TEST_CASE("A steep torque line does not oscillate at long steps") {
+  SimulationOptions options = Ideal();
+  options.motor.model = MotorModel::kDc;
+  options.motor.stall_torque_nm = 1.0;
+  options.motor.friction_torque_nm = 0.002;
+  options.step_s = 0.008;
+  SimulatedRobot robot(options, {}, 1);
+  robot.Command({0.2, 0.2});
+  robot.Advance(1.0);
+  const double steady_rad_s = robot.State().wheel_rate_rad_s[0];
+  for (int i = 0; i < 20; ++i) {
+    robot.Advance(0.008);
+    CHECK(robot.State().wheel_rate_rad_s[0] == Approx(steady_rad_s).margin(1e-3));
+  }
+  robot.Command({0.0, 0.0});
+  robot.Advance(1.0);
+  CHECK(std::abs(robot.State().wheel_rate_rad_s[0]) < 1e-6);
+  CHECK(std::abs(robot.State().velocity_mps.x()) < 1e-5);
+}
+
+TEST_CASE("Encoders count what the wheels turned") {
+  SimulatedRobot robot(Ideal(), {}, 1);
+  robot.Command({-0.1, 0.2});
+  robot.Advance(1.0);
+  const robot::EncoderCounts counts = robot.Sense().encoders.value();
+  const auto& angle_rad = robot.State().wheel_angle_rad;
+  CHECK(counts.left == std::lround(std::floor(angle_rad[0] * 358.32 / (2.0 * geometry::kPi))));
+  CHECK(counts.right == std::lround(std::floor(angle_rad[1] * 358.32 / (2.0 * geometry::kPi))));
+  CHECK(counts.left < -400);
+}
+
+TEST_CASE("A strong servo with a stepped command slips on parchment and less when ramped") {
+  SimulationOptions options = Ideal();
+  options.terrain.surface = "parchment";
+  options.step_s = 0.032;
+  options.sampling = Sampling::kStepped;
+  SimulatedRobot robot(options, {}, 1);
+  robot.Command({0.2, 0.2});
+  robot.Advance(0.032);
+  CHECK(robot.State().wheel_rate_rad_s[0] == Approx(0.2 * 75.4).epsilon(0.02));
+  CHECK(robot.State().velocity_mps.x() < 0.7 * 0.2 * 1.206);
+  robot.Advance(1.0);
+  CHECK(robot.State().velocity_mps.x() == Approx(0.2 * 1.206).epsilon(0.02));
+}
+
+TEST_CASE("A power that is no number or out of range is refused") {
+  SimulatedRobot robot(Ideal(), {}, 1);
+  CHECK_THROWS_WITH(robot.Command({std::nan(""), 0.0}), Catch::Contains("left power"));
+  CHECK_THROWS_WITH(robot.Command({0.0, 1.2}), Catch::Contains("right power is 1.2"));
+  CHECK_THROWS_WITH(robot.Advance(-1.0), Catch::Contains("-1"));
+}
+
+TEST_CASE("Options out of range are refused by name") {
+  SimulationOptions options;
+  options.body.chassis_mass_kg = 0.0;
+  CHECK_THROWS_WITH(SimulatedRobot(options, {}, 1), Catch::Contains("body.chassis_mass_kg is 0"));
+  options = {};
+  options.step_s = std::nan("");
+  CHECK_THROWS_WITH(SimulatedRobot(options, {}, 1), Catch::Contains("step_s is nan"));
+  options = {};
+  options.terrain.surfaces["ground"].mu = -0.1;
+  CHECK_THROWS_WITH(SimulatedRobot(options, {}, 1),
+                    Catch::Contains("terrain.surfaces.ground.mu is -0.1"));
+  options = {};
+  options.terrain.surface = "moss";
+  CHECK_THROWS_WITH(SimulatedRobot(options, {}, 1), Catch::Contains("'moss'"));
+}
+
+TEST_CASE("Full power in both directions at the longest step never leaves the finite") {
+  SimulationOptions options = Ideal();
+  options.step_s = 0.05;
+  options.motor.servo_torque_nm = 100.0;
+  options.terrain.surface = GENERATE("ground", "bump", "downhill");
+  SimulatedRobot robot(options, {}, 1);
+  for (int i = 0; i < 100; ++i) {
+    robot.Command(i % 2 ? robot::WheelPower{1.0, -1.0} : robot::WheelPower{-1.0, 1.0});
+    robot.Advance(0.05);
+    const robot::Sensed sensed = robot.Sense();
+    if (sensed.fault) break;
+    REQUIRE(robot.Truth().Planar().IsFinite());
+  }
+}
+
+TEST_CASE("Stopping brings the robot to rest and may be repeated") {
+  SimulatedRobot robot(SimulationOptions{}, {}, 1);
+  for (int i = 0; i < 50; ++i) {
+    robot.Command({0.2, 0.2});
+    robot.Advance(0.02);
+  }
+  CHECK(robot.State().velocity_mps.norm() > 0.1);
+  robot.Stop();
+  robot.Stop();
+  robot.Advance(1.0);
+  CHECK(robot.State().velocity_mps.norm() < 1e-4);
+}
+
+}  // namespace
+}  // namespace rift::simulation

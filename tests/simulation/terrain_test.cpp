@@ -1,0 +1,142 @@
+#include "rift/simulation/terrain.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "rift/simulation/touch.hpp"
+
+namespace rift::simulation {
+namespace {
+
+Terrain Named(const std::string& surface) {
+  TerrainOptions options;
+  options.surface = surface;
+  return Terrain(options);
+}
+
+TEST_CASE("The downhill plateau lies before the edge and its slope falls to the floor") {
+  const Terrain terrain = Named("downhill");
+  CHECK(terrain.HeightAt(-1.0, 0.3) == Approx(0.24));
+  CHECK(terrain.HeightAt(0.05, 0.0) == Approx(0.24));
+  CHECK(terrain.HeightAt(0.45, 0.0) == Approx(0.24 - 0.40 * std::tan(0.2404)));
+  CHECK(terrain.HeightAt(0.05 + 0.24 / std::tan(0.2404), 0.0) == Approx(0.0).margin(1e-12));
+  CHECK(terrain.HeightAt(2.0, 0.0) == 0.0);
+  CHECK(terrain.NormalAt(0.45, 0.0).x() == Approx(std::sin(0.2404)));
+}
+
+TEST_CASE("Uphill is the downhill board mirrored at its edge") {
+  const Terrain up = Named("uphill"), down = Named("downhill");
+  for (double off_m = -1.5; off_m < 1.5; off_m += 0.05) {
+    CHECK(up.HeightAt(0.05 + off_m, 0.0) == Approx(down.HeightAt(0.05 - off_m, 0.0)));
+  }
+  CHECK(up.HeightAt(0.0, 0.0) < up.HeightAt(0.04, 0.0));
+}
+
+TEST_CASE("Where the ground is one plane that plane is the ground") {
+  const Terrain terrain = Named("downhill");
+  int planes = 0;
+  for (double x = -0.5; x < 1.5; x += 0.013) {
+    const auto plane = terrain.PlaneNear(x, 0.1, 0.02);
+    if (!plane) continue;
+    ++planes;
+    for (const double reach : {-0.02, 0.02}) {
+      const Eigen::Vector3d p(x + reach, 0.1, terrain.HeightAt(x + reach, 0.1));
+      CHECK(plane->normal.dot(p - plane->point) == Approx(0.0).margin(1e-12));
+    }
+  }
+  CHECK(planes > 130);
+  CHECK_FALSE(terrain.PlaneNear(0.05, 0.1, 0.02));
+}
+
+TEST_CASE("Blocks stand on a grid in both directions") {
+  const Terrain terrain = Named("bump");
+  CHECK(terrain.HeightAt(0.0, 0.0) == 0.004);
+  CHECK(terrain.HeightAt(0.009, -0.009) == 0.004);
+  CHECK(terrain.HeightAt(0.011, 0.0) == 0.0);
+  CHECK(terrain.HeightAt(0.30, 0.18) == 0.004);
+  CHECK(terrain.HeightAt(0.30, 0.15) == 0.0);
+}
+
+TEST_CASE("A patch has the grip of its own and the last one counts") {
+  TerrainOptions options;
+  PatchOptions wet{-1.0, 1.0, -1.0, 1.0, 0.3, 0.0, 0.0}, ice{0.0, 0.1, 0.0, 0.1, 0.05, 0.0, 0.0};
+  options.patches = {wet, ice};
+  const Terrain terrain(options);
+  CHECK(terrain.GripAt(2.0, 0.0).mu == 0.8);
+  CHECK(terrain.GripAt(0.5, 0.5).mu == 0.3);
+  CHECK(terrain.GripAt(0.05, 0.05).mu == 0.05);
+  wet.x_max_m = -2.0;
+  CHECK_THROWS_WITH(wet.Check(), Catch::Contains("x_min_m"));
+}
+
+TerrainOptions Heightfield() {
+  TerrainOptions options;
+  SurfaceOptions& surface = options.surfaces["ground"];
+  surface.shape = Shape::kHeightfield;
+  surface.image = "slope.png";
+  surface.image_width_m = 2.0;
+  surface.image_height_m = 0.1;
+  return options;
+}
+
+TEST_CASE("A heightfield is linear between its pixels with its first row at large y") {
+  const auto image = std::make_shared<HeightImage>(HeightImage{3,
+                                                               2,
+                                                               {0.0, 0.5, 1.0,  //
+                                                                0.0, 0.0, 0.0}});
+  const Terrain terrain(Heightfield(), image);  // 2 m x 1 m about the origin
+  CHECK(terrain.HeightAt(1.0, 0.5) == Approx(0.1));
+  CHECK(terrain.HeightAt(-1.0, 0.5) == Approx(0.0));
+  CHECK(terrain.HeightAt(0.5, 0.5) == Approx(0.075));
+  CHECK(terrain.HeightAt(1.0, 0.0) == Approx(0.05));
+  CHECK(terrain.HeightAt(1.0, -0.5) == Approx(0.0));
+  CHECK(terrain.HeightAt(1.2, 0.5) == 0.0);
+  CHECK_THROWS_WITH(Terrain(Heightfield()), Catch::Contains("heightfield"));
+}
+
+TEST_CASE("A wheel on a plane touches with its lowest point along the normal") {
+  const Terrain terrain = Named("downhill");
+  const double radius_m = 0.016, sunk_m = 1e-5;
+  const Eigen::Vector3d ground(0.5, 0.0, terrain.HeightAt(0.5, 0.0));
+  const Eigen::Vector3d normal = terrain.NormalAt(0.5, 0.0);
+  const auto touch = TouchWheel(terrain, ground + (radius_m - sunk_m) * normal,
+                                Eigen::Vector3d::UnitY(), radius_m, 0.0068);
+  REQUIRE(touch);
+  CHECK(touch->depth_m == Approx(sunk_m));
+  CHECK((touch->point - (ground - sunk_m * normal)).norm() < 1e-9);
+  CHECK_FALSE(TouchWheel(terrain, ground + (radius_m + sunk_m) * normal, Eigen::Vector3d::UnitY(),
+                         radius_m, 0.0068));
+}
+
+TEST_CASE("A wheel before a block touches its edge at the angle of the step") {
+  const Terrain terrain = Named("bump");
+  const double radius_m = 0.016, height_m = 0.004;
+  // On the floor the edge of the block at x = -0.010 is reached sqrt(r^2 - (r - h)^2) before it.
+  const double reach_m =
+      std::sqrt(radius_m * radius_m - (radius_m - height_m) * (radius_m - height_m));
+  const Eigen::Vector3d centre(-0.010 - reach_m + 1e-4, 0.0, radius_m);
+  const auto touch = TouchWheel(terrain, centre, Eigen::Vector3d::UnitY(), radius_m, 0.0068);
+  REQUIRE(touch);
+  CHECK(touch->normal.z() == Approx((radius_m - height_m) / radius_m).margin(0.005));
+  CHECK(touch->normal.x() < -0.6);
+  CHECK(touch->depth_m == Approx(1e-4 * reach_m / radius_m).epsilon(0.05));
+}
+
+TEST_CASE("Away from planes the profile finds the same touch as the plane does") {
+  const auto image = std::make_shared<HeightImage>(HeightImage{2, 2, {0.0, 1.0, 0.0, 1.0}});
+  const Terrain terrain(Heightfield(), image);  // slope of 0.05 towards +x
+  const double radius_m = 0.016, sunk_m = 1e-5;
+  const Eigen::Vector3d ground(0.0, 0.0, terrain.HeightAt(0.0, 0.0));
+  const Eigen::Vector3d normal = Eigen::Vector3d(-0.05, 0.0, 1.0).normalized();
+  for (const Eigen::Vector3d& axle :
+       {Eigen::Vector3d(0.0, 1.0, 0.0), Eigen::Vector3d(0.6, 0.8, 0.0)}) {
+    const auto touch =
+        TouchWheel(terrain, ground + (radius_m - sunk_m) * normal, axle, radius_m, 0.0);
+    REQUIRE(touch);
+    CHECK((touch->normal - normal).norm() < 1e-3);
+    CHECK(touch->depth_m == Approx(sunk_m).margin(2e-5));
+  }
+}
+
+}  // namespace
+}  // namespace rift::simulation
