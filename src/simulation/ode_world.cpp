@@ -281,11 +281,7 @@ void OdeWorld::Bodies::TouchGround(int side) {
   if (!touch) return;
   const Grip grip = terrain.GripAt(touch->point.x(), touch->point.y());
   dContact contact = Contact(*touch, settling ? dInfinity : grip.mu);
-  // The wheel holds its direction at the middle of the step, not the one it starts with: otherwise
-  // a turning robot drifts outwards in proportion to the step.
-  const Vector3d axle_midway = axle + 0.5 * step_s * state.spin_rad_s.cross(axle);
-  const Vector3d sideways =
-      (axle_midway - axle_midway.dot(touch->normal) * touch->normal).normalized();
+  const Vector3d sideways = (axle - axle.dot(touch->normal) * touch->normal).normalized();
   Eigen::Map<Vector3d>(contact.fdir1) = sideways;
   const double rim_mps = std::abs(state.wheel_rate_rad_s[side]) * body.wheel_radius_m;
   const double creep =

@@ -31,7 +31,7 @@ struct SimulationOptions {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("step_s", self.step_s, 0.0001, 0.05,
-          "fixed physics step in s (own work-precision study)");
+          "fixed physics step in s (simulation_step_benchmark: 0.002 mm at 0.004 when ramped)");
     field(
         "sampling", self.sampling,
         "ramped: a step sees the mean of the command over it; stepped: that of its start (Webots)");
