@@ -1,0 +1,124 @@
+#include "rift/view/film.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "rift/geometry/angle.hpp"
+#include "stage.hpp"
+
+namespace rift::view {
+namespace {
+
+using trajectory::StampedPose;
+using trajectory::Trajectory;
+
+constexpr double kMostPictures = 100'000;
+constexpr double kSamePlace_m = 1e-6;
+
+void Check(const Run& run) {
+  if (run.truth.poses.empty()) throw std::invalid_argument("a film needs at least one true pose");
+  for (const StampedPose& pose : run.truth.poses) {
+    if (std::isfinite(pose.yaw_rad)) continue;
+    throw std::invalid_argument(fmt::format(
+        "a film needs the yaw of every true pose, but at {} s it is unknown", pose.t_s));
+  }
+}
+
+// The newest row at this time or before; -1 when there is none yet.
+int RowAt(const Trajectory& log, double t_s) {
+  const auto after =
+      std::upper_bound(log.poses.begin(), log.poses.end(), t_s,
+                       [](double time_s, const StampedPose& pose) { return time_s < pose.t_s; });
+  return static_cast<int>(after - log.poses.begin()) - 1;
+}
+
+double ChannelAt(const Trajectory& log, std::string_view name, int row) {
+  for (const trajectory::Channel& channel : log.channels) {
+    if (channel.name == name && row >= 0 && row < static_cast<int>(channel.values.size())) {
+      return channel.values[row];
+    }
+  }
+  return Scene::kUnknown;
+}
+
+double PowerAt(const Run& run, std::string_view name, double t_s) {
+  const double held = ChannelAt(run.truth, name, RowAt(run.truth, t_s));
+  return std::isfinite(held) ? held : ChannelAt(run.logged, name, RowAt(run.logged, t_s));
+}
+
+int TargetAt(const Run& run, double t_s) {
+  const int row = RowAt(run.logged, t_s);
+  if (row < 0) return -1;
+  const StampedPose& pose = run.logged.poses[row];
+  const Eigen::Vector2d target_m(pose.target_x_m, pose.target_y_m);
+  const auto place = std::find_if(run.waypoints.begin(), run.waypoints.end(), [&](const Place& p) {
+    return (p.p_in_world_m - target_m).norm() <= kSamePlace_m;
+  });
+  return place == run.waypoints.end() ? -1 : static_cast<int>(place - run.waypoints.begin());
+}
+
+double OrZero(double angle_rad) { return std::isfinite(angle_rad) ? angle_rad : 0.0; }
+
+// Axle height: as known, else with the wheels on the ground.
+double AxleHeight_m(const Run& run, const StampedPose& pose) {
+  if (std::isfinite(pose.z_m)) return pose.z_m;
+  const double ground_m = run.height_at ? run.height_at(pose.x_m, pose.y_m) : 0.0;
+  return (std::isfinite(ground_m) ? ground_m : 0.0) + run.body.wheel_radius_m;
+}
+
+double Speed_mps(const Run& run, const StampedPose& a, const StampedPose& b) {
+  if (!(b.t_s > a.t_s)) return Scene::kUnknown;
+  const double climb_m = AxleHeight_m(run, b) - AxleHeight_m(run, a);
+  return std::hypot(b.x_m - a.x_m, b.y_m - a.y_m, climb_m) / (b.t_s - a.t_s);
+}
+
+}  // namespace
+
+Scene SceneAt(const Run& run, double t_s) {
+  const auto& poses = run.truth.poses;
+  const double at_s = poses.front().t_s + t_s;
+  const int last = static_cast<int>(poses.size()) - 1;
+  const int before = std::clamp(RowAt(run.truth, at_s), 0, std::max(last - 1, 0));
+  const StampedPose& a = poses[before];
+  const StampedPose& b = poses[std::min(before + 1, last)];
+  const double share = b.t_s > a.t_s ? std::clamp((at_s - a.t_s) / (b.t_s - a.t_s), 0.0, 1.0) : 0.0;
+  const auto between = [share](double from, double to) { return from + share * (to - from); };
+  const double turn_rad = geometry::WrapToPi(b.yaw_rad - a.yaw_rad);
+  Scene scene;
+  scene.t_s = t_s;
+  scene.world_from_robot = {between(a.x_m, b.x_m), between(a.y_m, b.y_m),
+                            geometry::WrapToPi(a.yaw_rad + share * turn_rad)};
+  scene.z_m = between(AxleHeight_m(run, a), AxleHeight_m(run, b));
+  scene.roll_rad = between(OrZero(a.roll_rad), OrZero(b.roll_rad));
+  scene.pitch_rad = between(OrZero(a.pitch_rad), OrZero(b.pitch_rad));
+  scene.speed_mps = Speed_mps(run, a, b);
+  scene.power = {PowerAt(run, "power_left", at_s), PowerAt(run, "power_right", at_s)};
+  scene.target = TargetAt(run, at_s);
+  scene.trail_points = static_cast<size_t>(RowAt(Trail(run), at_s) + 1);
+  return scene;
+}
+
+Film MakeFilm(const Run& run, const ViewOptions& options) {
+  options.Check();
+  Check(run);
+  const double duration_s = run.truth.poses.back().t_s - run.truth.poses.front().t_s;
+  const double count = std::max(1.0, std::round(duration_s * options.fps));
+  if (count > kMostPictures) {
+    throw std::invalid_argument(
+        fmt::format("a film of {} s at {} pictures a second has {} pictures, but at most {} are "
+                    "possible: lower fps",
+                    duration_s, options.fps, count, kMostPictures));
+  }
+  Film film{MakeStage(run, options), {}, static_cast<double>(options.fps)};
+  for (int i = 0; i + 1 < static_cast<int>(count); ++i) {
+    film.scenes.push_back(SceneAt(run, i / film.fps));
+  }
+  film.scenes.push_back(SceneAt(run, duration_s));
+  film.scenes.back().outcome = run.outcome.empty() ? "ended" : run.outcome;
+  return film;
+}
+
+}  // namespace rift::view

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "rift/view/scene.hpp"
+
+namespace rift::view {
+
+/// Where things are on a picture: top view above side view at one scale, so that they line up in x,
+/// and a column of text on the right.
+class Layout {
+ public:
+  Layout(const Stage& stage, cv::Size size);
+
+  cv::Point2d TopPixel(const Eigen::Vector2d& p_in_world_m) const;
+  cv::Point2d SidePixel(double x_m, double z_m) const;
+  /// Letters and strokes grow with the picture; 1 at a height of 720 px.
+  double Ui() const { return ui_; }
+  int Px(double at_720) const { return static_cast<int>(at_720 * ui_ + 0.5); }
+
+  cv::Size size;
+  cv::Rect top;
+  cv::Rect side;
+  cv::Rect panel;
+  double px_per_m = 1.0;
+
+ private:
+  double ui_;
+  Eigen::Vector2d corner_m_;  ///< lower left of the top view
+};
+
+}  // namespace rift::view

@@ -1,0 +1,80 @@
+#include "window.hpp"
+
+#include <fmt/format.h>
+#include <xcb/xcb.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <opencv2/highgui.hpp>
+#include <stdexcept>
+
+#include "painter.hpp"
+#include "playback.hpp"
+
+namespace rift::view {
+namespace {
+
+constexpr const char* kWindow = "rift";
+
+class Window {
+ public:
+  Window() {
+    // The display that was looked at is the one to open: with another plugin Qt aborts when that
+    // one is missing.
+    setenv("QT_QPA_PLATFORM", "xcb", 1);
+    cv::namedWindow(kWindow, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);
+  }
+  ~Window() {
+    if (IsOpen()) cv::destroyWindow(kWindow);
+  }
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  bool IsOpen() const { return cv::getWindowProperty(kWindow, cv::WND_PROP_VISIBLE) > 0.0; }
+};
+
+std::vector<std::string> Keys(const Playback& playback) {
+  return {fmt::format("{}speed {:g} x", playback.paused ? "PAUSED, " : "", playback.speed),
+          "space: pause   arrows: speed", "r: from the start   q: quit"};
+}
+
+}  // namespace
+
+std::string MissingDisplay() {
+  const char* name = std::getenv("DISPLAY");
+  if (name == nullptr || *name == '\0') {
+    return "no window: DISPLAY is not set (on Wayland, Xwayland sets it)";
+  }
+  // Qt ends the whole process when it cannot connect, so this asks first.
+  xcb_connection_t* connection = xcb_connect(nullptr, nullptr);
+  const bool failed = xcb_connection_has_error(connection) != 0;
+  xcb_disconnect(connection);
+  return failed ? fmt::format("no window: the display {} does not answer", name) : std::string();
+}
+
+void PlayInWindow(const Film& film, const ViewOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  if (const std::string missing = MissingDisplay(); !missing.empty()) {
+    throw std::runtime_error(missing);
+  }
+  const Painter painter(film.stage, {options.width_px, options.height_px});
+  const int last = static_cast<int>(film.scenes.size()) - 1;
+  const double duration_s = last / film.fps;
+  const int wait_ms = std::max(1, static_cast<int>(500.0 / film.fps));
+  const Window window;
+  Playback playback{.speed = options.speed};
+  Clock::time_point then = Clock::now();
+  do {
+    const int index = std::min(last, static_cast<int>(std::lround(playback.t_s * film.fps)));
+    cv::imshow(kWindow, painter.Paint(film.scenes[index], Keys(playback)));
+    playback = AfterKey(playback, cv::waitKeyEx(wait_ms));
+    const Clock::time_point now = Clock::now();
+    playback = AfterTime(playback, std::chrono::duration<double>(now - then).count(), duration_s);
+    then = now;
+  } while (!playback.left && window.IsOpen() &&
+           !(playback.t_s >= duration_s && playback.over_since_s >= options.hold_s));
+}
+
+}  // namespace rift::view
