@@ -53,8 +53,9 @@ cv::Mat Painter::Paint(const Scene& scene, const std::vector<std::string>& foote
   cv::Mat top = picture(layout_.top), side = picture(layout_.side);  // nothing leaves its view
   const cv::Point2d top_corner = layout_.top.tl(), side_corner = layout_.side.tl();
   const Pen top_pen(top, layout_.Ui()), side_pen(side, layout_.Ui());
-  DrawRobot(top_pen, shape,
-            [&](const Eigen::Vector3d& p) { return layout_.TopPixel(p.head<2>()) - top_corner; });
+  DrawRobot(
+      top_pen, shape,
+      [&](const Eigen::Vector3d& p) { return layout_.TopPixel(p.head<2>()) - top_corner; }, 2.5);
   DrawRobot(
       side_pen, shape,
       [&](const Eigen::Vector3d& p) { return layout_.SidePixel(p.x(), p.z()) - side_corner; }, 1.6);

@@ -1,0 +1,183 @@
+#include "view/picture/painter.hpp"
+
+#include <catch2/catch.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "rift/geometry/angle.hpp"
+#include "rift/view/film.hpp"
+#include "view/picture/pen.hpp"
+#include "view/synthetic_run.hpp"
+
+namespace rift::view {
+namespace {
+
+using synthetic::StraightRun;
+
+constexpr double kNear_px = 2.0;
+
+cv::Mat Pixels(const cv::Mat& picture, const cv::Rect& part, const cv::Scalar& wanted) {
+  cv::Mat found;
+  cv::inRange(picture(part), wanted, wanted, found);
+  return found;
+}
+
+// Mean position of the pixels of a colour in a part of the picture.
+cv::Point2d Centre(const cv::Mat& picture, const cv::Rect& part, const cv::Scalar& wanted) {
+  const cv::Moments moments = cv::moments(Pixels(picture, part, wanted), true);
+  REQUIRE(moments.m00 > 0.0);
+  return {part.x + moments.m10 / moments.m00, part.y + moments.m01 / moments.m00};
+}
+
+struct Shot {
+  Film film;
+  Painter painter;
+  cv::Mat picture;
+
+  explicit Shot(const Run& run, size_t index = 30)
+      : film(MakeFilm(run)), painter(film.stage, {1280, 720}) {
+    picture = painter.Paint(film.scenes.at(index));
+  }
+};
+
+TEST_CASE("The green outline lies around the true position in both views") {
+  const Shot shot(StraightRun());
+  const Scene& scene = shot.film.scenes[30];
+  const Layout& layout = shot.painter.layout();
+  const cv::Rect around =
+      cv::boundingRect(Pixels(shot.picture, layout.top, colour::kGreen)) + layout.top.tl();
+  const cv::Point2d expected = layout.TopPixel(scene.world_from_robot.Position());
+  CHECK((around.tl() + around.br()).x / 2.0 == Approx(expected.x).margin(kNear_px));
+  CHECK((around.tl() + around.br()).y / 2.0 == Approx(expected.y).margin(kNear_px));
+  CHECK(around.width == Approx(2.0 * 0.0484 * layout.px_per_m).margin(2.0 * kNear_px));
+  const cv::Rect beside =
+      cv::boundingRect(Pixels(shot.picture, layout.side, colour::kGreen)) + layout.side.tl();
+  CHECK((beside.tl() + beside.br()).x / 2.0 == Approx(expected.x).margin(kNear_px));
+  const double middle_m = scene.z_m + shot.film.stage.body.chassis_bottom_m +
+                          shot.film.stage.body.chassis_height_m / 2.0;
+  CHECK((beside.tl() + beside.br()).y / 2.0 ==
+        Approx(layout.SidePixel(0.0, middle_m).y).margin(kNear_px));
+}
+
+TEST_CASE("The red arrow points along the heading") {
+  const double yaw_rad = geometry::RadFromDeg(GENERATE(0.0, 50.0, 130.0, -90.0));
+  Run run = StraightRun(yaw_rad);
+  run.logged.poses.resize(1);  // no trail beside the arrow
+  const Shot shot(run);
+  const Layout& layout = shot.painter.layout();
+  const Eigen::Vector2d at_m = shot.film.scenes[30].world_from_robot.Position();
+  const double reach_px = 2.0 * 0.0484 * layout.px_per_m;
+  const cv::Point2d at = layout.TopPixel(at_m);
+  const cv::Rect around(cvRound(at.x - reach_px), cvRound(at.y - reach_px), cvRound(2 * reach_px),
+                        cvRound(2 * reach_px));
+  const cv::Point2d arrow = Centre(shot.picture, around & layout.top, colour::kRed) - at;
+  const double error_rad = geometry::WrapToPi(std::atan2(-arrow.y, arrow.x) - yaw_rad);
+  CHECK(std::abs(geometry::DegFromRad(error_rad)) < 3.0);
+}
+
+TEST_CASE("The side view shows the pitch") {
+  Run run = StraightRun();
+  run.logged = {};
+  for (auto& pose : run.truth.poses) pose.pitch_rad = geometry::RadFromDeg(13.8);
+  const Shot shot(run);
+  const Layout& layout = shot.painter.layout();
+  const Scene& scene = shot.film.scenes[30];
+  const cv::Point2d axle = layout.SidePixel(scene.world_from_robot.x_m, scene.z_m);
+  const cv::Point2d arrow = Centre(shot.picture, layout.side, colour::kRed) - axle;
+  CHECK(arrow.x > 0.0);
+  CHECK(geometry::DegFromRad(std::atan2(arrow.y, arrow.x)) == Approx(13.8).margin(2.0));
+}
+
+TEST_CASE("Waypoints are yellow where they lie") {
+  const Shot shot(StraightRun());
+  for (const Place& place : shot.film.stage.waypoints) {
+    INFO(place.name);
+    const cv::Point at = shot.painter.layout().TopPixel(place.p_in_world_m);
+    const cv::Vec3b pixel = shot.picture.at<cv::Vec3b>(at + cv::Point(4, 0));
+    CHECK(cv::Scalar(pixel[0], pixel[1], pixel[2]) == colour::kYellow);
+  }
+}
+
+TEST_CASE("The trail is red up to now and not beyond") {
+  const Shot shot(StraightRun());
+  const auto red_at = [&](double x_m) {
+    const cv::Point at = shot.painter.layout().TopPixel({x_m, 0.0});
+    const cv::Rect around(at.x - 1, at.y - 1, 3, 3);
+    return cv::countNonZero(Pixels(shot.picture, around, colour::kRed)) > 0;
+  };
+  CHECK(red_at(0.05));
+  CHECK(red_at(0.10));
+  CHECK_FALSE(red_at(0.35));
+}
+
+TEST_CASE("The reference path is black") {
+  Run run = StraightRun();
+  run.reference_m = {{0.0, -0.1}, {0.4, -0.1}};
+  const Shot shot(run);
+  const cv::Point at = shot.painter.layout().TopPixel({0.3, -0.1});
+  CHECK(cv::countNonZero(Pixels(shot.picture, {at.x, at.y - 2, 1, 5}, colour::kBlack)) > 0);
+}
+
+TEST_CASE("The side view is filled below the ground and clear above it") {
+  Run run = StraightRun();
+  run.height_at = [](double x_m, double) { return x_m < 0.2 ? 0.0 : 0.03; };
+  const Shot shot(run, 0);
+  const auto pixel = [&](double x_m, double z_m) {
+    return shot.picture.at<cv::Vec3b>(cv::Point(shot.painter.layout().SidePixel(x_m, z_m)));
+  };
+  const cv::Vec3b earth = pixel(0.3, 0.01);
+  CHECK(pixel(0.15, -0.01) == earth);
+  CHECK(pixel(0.15, 0.015) != earth);
+  CHECK(pixel(0.3, 0.04) != earth);
+}
+
+TEST_CASE("Slopes and patches show from above") {
+  Run run = StraightRun();
+  run.patches = {{"mu 0.2", 0.1, 0.2, -0.1, 0.1}};
+  run.height_at = [](double x_m, double) { return std::max(0.0, 0.5 * (x_m - 0.25)); };
+  const Shot shot(run, 0);
+  const auto pixel = [&](double x_m) {
+    return shot.picture.at<cv::Vec3b>(cv::Point(shot.painter.layout().TopPixel({x_m, 0.07})));
+  };
+  CHECK(pixel(0.15) != pixel(0.22));
+  CHECK(pixel(0.35) != pixel(0.22));
+}
+
+// Letters are thin and smoothed, so few of their pixels have the full colour.
+int ReddishPixels(const cv::Mat& picture) {
+  std::vector<cv::Mat> channels;
+  cv::split(picture, channels);
+  cv::Mat excess;
+  cv::subtract(channels[2], cv::max(channels[0], channels[1]), excess);
+  return cv::countNonZero(excess > 60);
+}
+
+TEST_CASE("The text follows the scene and a bad end is red") {
+  const Shot shot(StraightRun());
+  const cv::Rect panel = shot.painter.layout().panel;
+  const Scene now = shot.film.scenes[30];
+  Scene later = now, reached = now, fell = now;
+  later.speed_mps = 0.7;
+  reached.outcome = "reached";
+  fell.outcome = "fell";
+  const auto text = [&](const Scene& scene) { return shot.painter.Paint(scene)(panel); };
+  CHECK(cv::norm(text(now), text(later), cv::NORM_INF) > 50.0);
+  CHECK(ReddishPixels(text(fell)) > 10);
+  CHECK(ReddishPixels(text(reached)) == 0);
+}
+
+TEST_CASE("The same scene gives the same pixels") {
+  const Shot one(StraightRun()), other(StraightRun());
+  CHECK(cv::norm(one.picture, other.picture, cv::NORM_INF) == 0.0);
+}
+
+TEST_CASE("Unknown values and names beyond ASCII are drawn all the same") {
+  Run run = StraightRun();
+  run.title = "b\xC3\xA4umchen with a title that is far too long for the column of text";
+  run.logged = {};
+  run.height_at = [](double x_m, double) { return x_m > 0.3 ? -HUGE_VAL : 0.0; };
+  const Shot shot(run);
+  CHECK(shot.picture.size() == cv::Size(1280, 720));
+}
+
+}  // namespace
+}  // namespace rift::view

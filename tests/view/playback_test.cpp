@@ -1,0 +1,49 @@
+#include "view/picture/playback.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace rift::view {
+namespace {
+
+constexpr int kRightArrow = 0xFF53, kLeftArrow = 0xFF51;
+
+TEST_CASE("A window plays at its speed up to the end") {
+  Playback playback{.speed = 2.0};
+  playback = AfterTime(playback, 0.5, 3.0);
+  CHECK(playback.t_s == 1.0);
+  CHECK(AfterTime(playback, 10.0, 3.0).t_s == 3.0);
+}
+
+TEST_CASE("Space stops the clock and starts it again") {
+  Playback playback = AfterKey({}, ' ');
+  CHECK(AfterTime(playback, 1.0, 3.0).t_s == 0.0);
+  playback = AfterKey(playback, ' ');
+  CHECK(AfterTime(playback, 1.0, 3.0).t_s == 1.0);
+}
+
+TEST_CASE("Arrows change the speed within bounds") {
+  CHECK(AfterKey({}, kRightArrow).speed == 2.0);
+  CHECK(AfterKey({}, kLeftArrow).speed == 0.5);
+  Playback playback;
+  for (int i = 0; i < 50; ++i) playback = AfterKey(playback, kLeftArrow);
+  CHECK(playback.speed > 0.0);
+}
+
+TEST_CASE("The end is held as long as it is not paused") {
+  Playback playback = AfterTime({}, 5.0, 3.0);
+  CHECK(playback.over_since_s == 0.0);
+  CHECK(AfterTime(playback, 1.5, 3.0).over_since_s == 1.5);
+  CHECK(AfterTime(AfterKey(playback, ' '), 1.5, 3.0).over_since_s == 0.0);
+}
+
+TEST_CASE("Leaving and starting over have keys and no key changes nothing") {
+  CHECK(AfterKey({}, 'q').left);
+  CHECK(AfterKey({}, 27).left);
+  CHECK_FALSE(AfterKey({}, -1).left);
+  const Playback over{.t_s = 3.0, .over_since_s = 2.0};
+  CHECK(AfterKey(over, 'r').t_s == 0.0);
+  CHECK(AfterKey(over, 'r').over_since_s == 0.0);
+}
+
+}  // namespace
+}  // namespace rift::view

@@ -1,0 +1,202 @@
+#include "rift/view/viewer.hpp"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <opencv2/videoio.hpp>
+#include <optional>
+#include <sstream>
+
+#include "rift/view/film.hpp"
+#include "support/process.hpp"
+#include "view/synthetic_run.hpp"
+
+namespace rift::view {
+namespace {
+
+using Catch::Matchers::Contains;
+using synthetic::StraightRun;
+using test::TemporaryFolder;
+
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* old = std::getenv(name)) old_ = old;
+    value == nullptr ? unsetenv(name) : setenv(name, value, 1);
+  }
+  ~Environment() { old_ ? setenv(name_, old_->c_str(), 1) : unsetenv(name_); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> old_;
+};
+
+size_t FilesIn(const std::filesystem::path& folder) {
+  size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) count += entry.exists();
+  return count;
+}
+
+TEST_CASE("A video holds every picture of the film and they change") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "run 100%d.mp4";
+  const Film film = MakeFilm(StraightRun());
+  LoadViewer()->WriteVideo(film, path, {});
+  CHECK(FilesIn(folder.Path()) == 1);
+  cv::VideoCapture video(path, cv::CAP_FFMPEG);
+  REQUIRE(video.isOpened());
+  CHECK(video.get(cv::CAP_PROP_FPS) == Approx(30.0));
+  cv::Mat first, picture;
+  REQUIRE(video.read(first));
+  CHECK(first.size() == cv::Size(1280, 720));
+  size_t count = 1;
+  for (cv::Mat next; video.read(next); ++count) next.copyTo(picture);
+  CHECK(count == film.scenes.size());
+  CHECK(cv::norm(first, picture, cv::NORM_INF) > 100.0);
+}
+
+TEST_CASE("A video replaces an older file of its name") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "run.mp4";
+  test::WriteText(path, "old");
+  Run run = StraightRun();
+  run.truth.poses.resize(3);
+  LoadViewer()->WriteVideo(MakeFilm(run), path, {});
+  CHECK(std::filesystem::file_size(path) > 1000);
+}
+
+TEST_CASE("A video that cannot be written is an error and leaves nothing behind") {
+  const TemporaryFolder folder;
+  const Film film = MakeFilm(StraightRun());
+  const auto viewer = LoadViewer();
+  CHECK_THROWS_WITH(viewer->WriteVideo(film, folder / "no/such/run.mp4", {}),
+                    Contains("cannot write") && Contains("folder"));
+  CHECK_THROWS_WITH(viewer->WriteVideo(film, folder / "run.avi", {}), Contains(".mp4"));
+  CHECK(FilesIn(folder.Path()) == 0);
+}
+
+TEST_CASE("A disk that fills up is an error and leaves nothing behind") {
+  const TemporaryFolder folder;
+  const auto viewer = LoadViewer();
+  const Film film = MakeFilm(StraightRun());
+  rlimit old{};
+  REQUIRE(getrlimit(RLIMIT_FSIZE, &old) == 0);
+  const rlimit small{8000, old.rlim_max};  // writes beyond it fail as on a full disk
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  std::string message;
+  try {
+    viewer->WriteVideo(film, folder / "run.mp4", {});
+  } catch (const std::runtime_error& error) {
+    message = error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &old);
+  std::signal(SIGXFSZ, old_handler);
+  CHECK_THAT(message, Contains("cannot write") && Contains("disk full"));
+  CHECK(FilesIn(folder.Path()) == 0);
+}
+
+TEST_CASE("A missing module is named with what to do") {
+  CHECK_THROWS_WITH(LoadViewer("/nowhere/librift_view.so"),
+                    Contains("/nowhere/librift_view.so") && Contains("libopencv-dev"));
+}
+
+TEST_CASE("A file that is no module is refused") {
+  const TemporaryFolder folder;
+  test::WriteText(folder / "librift_view.so", "no module");
+  CHECK_THROWS_WITH(LoadViewer(folder / "librift_view.so"), Contains("cannot load the viewer"));
+}
+
+TEST_CASE("Without a display there is a reason in one line and no window and no crash") {
+  const Environment wayland("WAYLAND_DISPLAY", nullptr);
+  const bool unreachable = GENERATE(false, true);
+  const Environment display("DISPLAY", unreachable ? ":9753" : nullptr);
+  const auto viewer = LoadViewer();
+  const std::string missing = viewer->MissingDisplay();
+  CHECK_THAT(missing, Contains("no window") && !Contains("\n"));
+  CHECK_THROWS_WITH(viewer->PlayInWindow(MakeFilm(StraightRun()), {}), missing);
+}
+
+// An X server of our own on a free display, ended with the object.
+class VirtualDisplay {
+ public:
+  VirtualDisplay() {
+    int ends[2];
+    if (pipe(ends) != 0) return;
+    pid_ = fork();
+    if (pid_ == 0) {
+      close(ends[0]);
+      const std::string descriptor = std::to_string(ends[1]);
+      execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", "1400x900x24",
+             "-nolisten", "tcp", static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    close(ends[1]);
+    char letter = 0;
+    while (read(ends[0], &letter, 1) == 1 && letter != '\n') number_ += letter;
+    close(ends[0]);
+  }
+  ~VirtualDisplay() {
+    if (pid_ <= 0) return;
+    kill(pid_, SIGTERM);
+    waitpid(pid_, nullptr, 0);
+  }
+  VirtualDisplay(const VirtualDisplay&) = delete;
+  VirtualDisplay& operator=(const VirtualDisplay&) = delete;
+
+  bool Runs() const { return !number_.empty(); }
+  std::string Name() const { return ":" + number_; }
+
+ private:
+  pid_t pid_ = -1;
+  std::string number_;
+};
+
+TEST_CASE("A window on a virtual display plays to its end") {
+  const VirtualDisplay server;
+  if (!server.Runs()) {
+    WARN("SKIPPED: Xvfb is not installed");
+    return;
+  }
+  const Environment display("DISPLAY", server.Name().c_str());
+  ViewOptions options;
+  options.speed = 8.0;
+  options.hold_s = 0.1;
+  // In a process of its own: Qt ends with the display, and takes the process along.
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      const auto viewer = LoadViewer();
+      if (!viewer->MissingDisplay().empty()) _exit(3);
+      viewer->PlayInWindow(MakeFilm(StraightRun(), options), options);
+      _exit(0);
+    } catch (const std::exception&) {
+      _exit(4);
+    }
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  REQUIRE(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 0);
+}
+
+TEST_CASE("The command line program does not load OpenCV by itself") {
+  std::ifstream program(RIFT_BINARY, std::ios::binary);
+  if (!program) {
+    WARN("SKIPPED: rift is not built");
+    return;
+  }
+  std::stringstream bytes;
+  bytes << program.rdbuf();
+  CHECK(bytes.str().find("libopencv_") == std::string::npos);
+}
+
+}  // namespace
+}  // namespace rift::view
