@@ -1,0 +1,90 @@
+#include "rift/report/simulation_figure.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <regex>
+#include <stdexcept>
+
+#include "report/png.hpp"
+
+namespace rift::report {
+namespace {
+
+using Catch::Matchers::Contains;
+
+/// 0.25 m/s down a slope of one in four for 2 s, after which the log starts at 10 s.
+SimulatedTrial Downhill() {
+  SimulatedTrial trial;
+  trial.name = "downhill";
+  for (int i = 0; i <= 100; ++i) {
+    const double x_m = 0.005 * i;
+    trial.truth.poses.push_back(
+        {.t_s = 10.0 + 0.02 * i, .x_m = x_m, .y_m = 0.0, .z_m = 0.2 - x_m / 4.0, .yaw_rad = 0.0});
+    if (i % 5 == 0) trial.logged.poses.push_back(trial.truth.poses.back());
+  }
+  trial.logged.channels = {{"power_left", std::vector<double>(21, 0.21)},
+                           {"power_right", std::vector<double>(21, 0.19)},
+                           {"v", std::vector<double>(21, 0.2)}};
+  trial.waypoints = {{"start", {0.0, 0.0}}, {"it's_end", {0.5, 0.0}}};
+  trial.areas = {{"slope", 0.1, 9.0, -9.0, 9.0}, {"elsewhere", 5.0, 6.0, 5.0, 6.0}};
+  trial.ground_xz_m = {{-0.05, 0.2}, {0.0, 0.184}, {0.5, 0.059}};
+  return trial;
+}
+
+TEST_CASE("A simulated trial is drawn from above and from the side and over time") {
+  const std::string svg = Render(SimulationFigure(Downhill()), FigureFormat::kSvg);
+  for (const char* text : {"true path", "logged", "start", "it's_end", "slope", "ground", "axle",
+                           "true speed", "left wheel", "right wheel"}) {
+    INFO(text);
+    CHECK_THAT(svg, Contains(text));
+  }
+  CHECK_THAT(svg, !Contains("elsewhere"));
+}
+
+TEST_CASE("Speed is the length along the slope for each second") {
+  const std::string plot = SimulationFigure(Downhill()).plot;
+  const std::regex row(R"(\$speed << EOD\n(?:\S+ \S+ \n){50}(\S+) (\S+) \n)");
+  std::smatch match;
+  REQUIRE(std::regex_search(plot, match, row));
+  CHECK(std::stod(match[2]) == Approx(0.25 * std::sqrt(1.0 + 1.0 / 16.0)).epsilon(1e-5));
+  CHECK(std::stod(match[1]) > 0.9);
+  CHECK(std::stod(match[1]) < 1.1);
+}
+
+TEST_CASE("The arrows start where the trial starts and ends and point along the heading") {
+  SimulatedTrial trial = Downhill();
+  trial.truth.poses.back().yaw_rad = M_PI / 2.0;
+  const std::string plot = SimulationFigure(trial).plot;
+  CHECK_THAT(plot, Contains("set arrow from 0,0 to 0.05,0 "));
+  CHECK_THAT(plot, Contains("set arrow from 0.5,0 to 0.5,0.05 "));
+}
+
+TEST_CASE("What is not known is left out") {
+  SimulatedTrial trial = Downhill();
+  for (auto& pose : trial.truth.poses) pose.z_m = pose.yaw_rad = NAN;
+  trial.logged = {};
+  trial.waypoints.clear();
+  trial.ground_xz_m.clear();
+  const Figure figure = SimulationFigure(trial);
+  CHECK(figure.height_px < SimulationFigure(Downhill()).height_px);
+  const std::string svg = Render(figure, FigureFormat::kSvg);
+  CHECK_THAT(svg, Contains("true path") && Contains("true speed"));
+  CHECK_THAT(svg, !Contains("axle") && !Contains("logged") && !Contains("wheel"));
+}
+
+TEST_CASE("A robot that never moved still has a figure") {
+  SimulatedTrial trial = Downhill();
+  trial.logged.poses = {trial.truth.poses.front()};
+  trial.waypoints.clear();
+  for (auto& pose : trial.truth.poses) pose.x_m = pose.y_m = pose.z_m = 0.0;
+  const Figure figure = SimulationFigure(trial);
+  CHECK(PngSize(Render(figure, FigureFormat::kPng)) ==
+        std::pair(3 * figure.width_px, 3 * figure.height_px));
+}
+
+TEST_CASE("A simulated trial without a path is refused") {
+  CHECK_THROWS_AS(SimulationFigure({}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace rift::report
