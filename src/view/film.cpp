@@ -21,9 +21,10 @@ constexpr double kSamePlace_m = 1e-6;
 void Check(const Run& run) {
   if (run.truth.poses.empty()) throw std::invalid_argument("a film needs at least one true pose");
   for (const StampedPose& pose : run.truth.poses) {
-    if (std::isfinite(pose.yaw_rad)) continue;
+    if (pose.Planar().IsFinite()) continue;
     throw std::invalid_argument(fmt::format(
-        "a film needs the yaw of every true pose, but at {} s it is unknown", pose.t_s));
+        "a film needs the place and yaw of every true pose, but at {} s they are ({}, {}, {})",
+        pose.t_s, pose.x_m, pose.y_m, pose.yaw_rad));
   }
 }
 

@@ -31,8 +31,8 @@ struct Run {
 
 /// Pictures at start, start + 1/fps, ...: as many as duration times fps (rounded, at least one),
 /// the last of them at the end of the run.
-/// Throws std::invalid_argument when truth has no pose or a yaw is missing, or when the film would
-/// be longer than 100'000 pictures.
+/// Throws std::invalid_argument when truth has no pose or one that is not finite, or when the film
+/// would be longer than 100'000 pictures.
 Film MakeFilm(const Run& run, const ViewOptions& options = {});
 
 /// The run `t_s` seconds after its start, between two poses by linear interpolation.

@@ -1,4 +1,3 @@
-#include "../module_interface.hpp"
 #include "rift/view/viewer.hpp"
 #include "video.hpp"
 #include "window.hpp"
@@ -21,7 +20,7 @@ class OpenCvViewer : public Viewer {
 }  // namespace
 }  // namespace rift::view
 
-// Its name is kMakeViewerSymbol.
+// Its name is kMakeViewerSymbol of module_interface.hpp, where the number is explained.
 extern "C" [[gnu::visibility("default")]] rift::view::Viewer* rift_view_make_viewer_1() {
   return new rift::view::OpenCvViewer;
 }

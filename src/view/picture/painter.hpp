@@ -11,6 +11,7 @@ namespace rift::view {
 /// Turns scenes of one run into pictures: 8 bits each of blue, green, red. Same scene, same pixels.
 class Painter {
  public:
+  /// Keeps a reference to the stage.
   Painter(const Stage& stage, cv::Size size);
 
   const Layout& layout() const { return layout_; }
