@@ -1,9 +1,11 @@
 #include "rift/config/block_rules.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "key_path.hpp"
 #include "rift/config/error.hpp"
 #include "rift/config/suggest.hpp"
 
@@ -20,11 +22,6 @@ std::string Prefix(const Node& node, std::string_view key) {
   const std::string where = node.origin.Text();
   return fmt::format("{}{}{}", where, where.empty() ? "" : ": ",
                      key.empty() ? "" : fmt::format("key '{}': ", key));
-}
-
-bool EndsWithKey(std::string_view full, std::string_view key) {
-  return full.size() > key.size() + 1 && full.ends_with(key) &&
-         full[full.size() - key.size() - 1] == '.';
 }
 
 }  // namespace
@@ -47,10 +44,10 @@ void FailUnknown(const Node::Entry& entry, std::string_view path, const KnownKey
   if (!nearest.empty()) {
     hint = fmt::format("did you mean '{}'?", Join(path, nearest));
   } else {
-    for (const std::string& key : known.anywhere) {
-      if (EndsWithKey(key, entry.key)) hint = fmt::format("did you mean '{}'?", key);
-      if (!hint.empty()) break;
-    }
+    const auto elsewhere =
+        std::find_if(known.anywhere.begin(), known.anywhere.end(),
+                     [&](const std::string& key) { return EndsAtPart(key, entry.key); });
+    if (elsewhere != known.anywhere.end()) hint = fmt::format("did you mean '{}'?", *elsewhere);
   }
   if (hint.empty()) hint = fmt::format("known keys here: {}", fmt::join(known.here, ", "));
   Node at_key = entry.value;

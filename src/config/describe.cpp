@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "key_path.hpp"
 #include "rift/config/error.hpp"
 #include "rift/config/suggest.hpp"
 
@@ -11,11 +12,6 @@ namespace rift::config {
 namespace {
 
 constexpr std::size_t kMostCandidates = 8;
-
-bool IsEndOf(std::string_view name, std::string_view key) {
-  return key.size() > name.size() + 1 && key.ends_with(name) &&
-         key[key.size() - name.size() - 1] == '.';
-}
 
 std::string Abridged(const std::vector<std::string>& keys) {
   const std::size_t shown = std::min(keys.size(), kMostCandidates);
@@ -44,17 +40,20 @@ std::string ResolveKey(std::string_view name, const std::vector<std::string>& ke
   }
   std::vector<std::string> candidates;
   for (const std::string& key : keys) {
-    if (!name.empty() && IsEndOf(name, key)) candidates.push_back(key);
+    if (!name.empty() && EndsAtPart(key, name)) candidates.push_back(key);
   }
   if (candidates.size() == 1) return candidates.front();
   if (candidates.size() > 1) {
     throw Error(fmt::format("key '{}' is short for {} keys: {}; write one of them in full", name,
                             candidates.size(), Abridged(candidates)));
   }
+  throw Error(fmt::format("key '{}' is unknown; {}", name, KeyHint(name, keys)));
+}
+
+std::string KeyHint(std::string_view name, const std::vector<std::string>& keys) {
   const std::string nearest = NearestKey(name, keys);
-  throw Error(fmt::format("key '{}' is unknown; {}", name,
-                          nearest.empty() ? "known keys: " + Abridged(keys)
-                                          : fmt::format("did you mean '{}'?", nearest)));
+  return nearest.empty() ? "known keys: " + Abridged(keys)
+                         : fmt::format("did you mean '{}'?", nearest);
 }
 
 std::string ListTypeText(std::string_view item) {

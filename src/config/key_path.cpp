@@ -44,6 +44,11 @@ std::vector<std::string> SplitPath(std::string_view key) {
   }
 }
 
+bool EndsAtPart(std::string_view key, std::string_view end) {
+  return key.size() > end.size() + 1 && key.ends_with(end) &&
+         key[key.size() - end.size() - 1] == '.';
+}
+
 void AddLiteral(Node& map, Node::Entry entry, const std::string& path) {
   Node::Entry* mine = map.Find(entry.key);
   if (mine == nullptr) {

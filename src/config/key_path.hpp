@@ -11,6 +11,9 @@ namespace rift::config {
 /// `a.b.c` -> a, b, c; nothing when a part is empty (then the key is no path).
 std::vector<std::string> SplitPath(std::string_view key);
 
+/// True when `key` is `<something>.<end>`.
+bool EndsAtPart(std::string_view key, std::string_view end);
+
 /// Adds an entry to a map; dots in its key open nested maps, which join those already there.
 /// `path` is that of the map, for messages. Throws Error when a value is already there.
 void AddAtPath(Node& map, Node::Entry entry, const std::string& path);

@@ -47,14 +47,13 @@ double ParseNumber(const Node& node, const Place& place, const std::string& expe
   }
   if (!spelled) Refuse(node, place, expected);
   if (fault == std::errc::result_out_of_range) {
-    Refuse(node, place, expected + " between 1e-307 and 1e308 in size");
+    Refuse(node, place, expected + " that a double can hold");
   }
   return value;
 }
 
-/// The whole text as an integer of this type; false when it is not one, or does not fit.
-template <class Integer>
-bool ParseDigits(std::string_view text, Integer& value) {
+/// The whole text as digits; false when it is not that, or does not fit.
+bool ParseDigits(std::string_view text, std::uint64_t& value) {
   text = WithoutPlus(text);
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   return fault == std::errc() && !text.empty() && end == text.data() + text.size();

@@ -4,8 +4,6 @@
 #include <cctype>
 #include <limits>
 
-#include <fmt/format.h>
-
 namespace rift::config {
 namespace {
 
@@ -61,13 +59,6 @@ std::string Nearest(std::string_view name, const std::vector<std::string>& candi
     }
   }
   return nearest;
-}
-
-std::string Suggestion(std::string_view name, const std::vector<std::string>& candidates,
-                       std::string_view otherwise) {
-  const std::string nearest = Nearest(name, candidates);
-  if (!nearest.empty()) return fmt::format("; did you mean '{}'?", nearest);
-  return fmt::format("; {}: {}", otherwise, fmt::join(candidates, ", "));
 }
 
 }  // namespace rift::config

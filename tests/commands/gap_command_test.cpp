@@ -97,10 +97,11 @@ TEST_CASE("rift gap says in one line what is wrong with its input") {
       {{logs.sim, authors, "--tag-offset", "0.03"},
        "rift: " + authors +
            ": a tag offset of 0.03 m needs the yaw, and its header does not tell degrees "
-           "(tracker) from radians (webots): set --real-format\n"},
+           "(tracker) from radians (webots); an angle of 33.0 looks like degrees: set "
+           "--real-format\n"},
       {{logs.sim}, "rift: REAL is required\n"},
       {{logs.sim, logs.real, "--samples", "1"},
-       "rift: --samples: Value 1 not in range [2 - 10000000]\n"},
+       "rift: --samples: Value 1 not in range 2 to 10000000\n"},
       {{logs.sim, logs.real, "--figure", logs.folder / "gap.pdf"},
        "rift: --figure " + (logs.folder / "gap.pdf") + ": the name must end in .svg or .png\n"},
   };

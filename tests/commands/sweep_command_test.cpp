@@ -117,16 +117,17 @@ TEST_CASE("rift sweep says in one line what is wrong with its experiment") {
     return at == std::string::npos ? result.err : result.err.substr(at);
   };
   CHECK(refusal("gap:\n  smaples: 5\n") ==
-        "bad.yaml:2:3: key 'gap.smaples' is not known; did you mean 'samples'?\n");
+        "bad.yaml:2:3: key 'gap.smaples' is 5: no such key; did you mean 'gap.samples'?\n");
   CHECK(refusal(kExperiment + "gap: {samples: 1}\n") ==
-        "bad.yaml:5:16: key 'gap.samples' is 1: must be in [2, 10000000]\n");
+        "bad.yaml:6:16: key 'gap.samples' is 1: must be in [2, 10000000]; meaning: evenly spaced "
+        "values of u in [0, 1] (paper, section 3.1)\n");
   CHECK(refusal(kExperiment, "gap.samples=many").find("--set gap.samples") != std::string::npos);
   CHECK(refusal("space: {v_min: []}\n") ==
-        "bad.yaml:1:16: key 'space.v_min' is []: an axis needs at least one value\n");
+        "bad.yaml:1:16: key 'space.v_min' is a list of 0: an axis needs at least one value\n");
   CHECK(refusal("space: {v_min: 3}\n") ==
         "bad.yaml:1:16: key 'space.v_min' is 3: must be a list of values, or {min: a, max: b}\n");
   CHECK(refusal("space: {a.v: [1], b.v: [2]}\n") ==
-        "bad.yaml:1:8: key 'space' is a map: a.v and b.v have the same last name 'v'\n");
+        "bad.yaml:1:8: key 'space' is a block of keys: a.v and b.v have the same last name 'v'\n");
   CHECK(refusal("reference: {trials: 0}\n").find("must be a list of trials") != std::string::npos);
   CHECK(refusal("waypoints: []\n").find("candidate.path is missing") != std::string::npos);
   fs::remove_all(logs.folder / "ground");

@@ -5,8 +5,39 @@
 #include "rift/config/tree.hpp"
 #include "robot_schema.hpp"
 
+namespace elsewhere {
+
+struct Span {
+  double low = 0.0;
+  double high = 1.0;
+};
+
+}  // namespace elsewhere
+
+template <>
+struct rift::config::Hook<elsewhere::Span> {
+  static constexpr std::string_view kTypeText = "[low, high]";
+  static elsewhere::Span FromNode(const Node& node) {
+    if (node.items.size() != 2) throw std::invalid_argument("must be [low, high]");
+    return {ReadDouble(node.items[0], {}), ReadDouble(node.items[1], {})};
+  }
+  static Node ToNode(const elsewhere::Span& span) {
+    return Node::List({Node::Scalar(NumberText(span.low)), Node::Scalar(NumberText(span.high))});
+  }
+};
+
 namespace rift::config::test {
 namespace {
+
+struct Plot {
+  elsewhere::Span span;
+  static constexpr std::array<std::string_view, 1> kRequired{"span"};
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("span", self.span, "what is shown");
+  }
+};
 
 Robot Bound(const std::string& text) {
   Robot robot;
@@ -107,8 +138,8 @@ TEST_CASE("A number that is not finite is refused") {
               ": must be a number that is finite; meaning: lowest forward power");
   }
   CHECK(BindError("control: {v_min: 1e999}") ==
-        "f.yaml:1:18: key 'control.v_min' is 1e999: must be a number between 1e-307 and 1e308 in "
-        "size; meaning: lowest forward power");
+        "f.yaml:1:18: key 'control.v_min' is 1e999: must be a number that a double can hold; "
+        "meaning: lowest forward power");
 }
 
 TEST_CASE("Only a decimal number is a number") {
@@ -191,8 +222,20 @@ TEST_CASE("A rule between fields is placed at its block and at the other sources
 
 TEST_CASE("A value read by hand is checked by its own rules") {
   CHECK(BindError("trials: {}") ==
-        "f.yaml:1:9: key 'trials': must be a count or a list of numbers");
+        "f.yaml:1:9: key 'trials' is a block of keys: must be a count or a list of numbers");
   CHECK(BindError("trials: [1, 100]") == "f.yaml:1:13: key 'trials' is 100: must be in [1, 99]");
+}
+
+TEST_CASE("A type of a room that knows no config is hooked from outside") {
+  Plot plot;
+  Bind(Parse("span: [0.5, 2]", "f"), plot);
+  CHECK(plot.span.high == 2.0);
+  CHECK(Emit(ToNode(plot)) == "span: [0.5, 2]\n");
+  CHECK(Describe(plot)[0].type == "[low, high]");
+  CHECK(ErrorOf([&] { Bind(Parse("span: 5", "f"), plot); }) ==
+        "f:1:7: key 'span' is 5: must be [low, high]");
+  CHECK(ErrorOf([&] { Bind(Parse("", "f"), plot); }) ==
+        "f:1:1: key 'span' is missing: must be given");
 }
 
 TEST_CASE("A message stays one line whatever the value") {

@@ -63,7 +63,6 @@ TEST_CASE("Any key that is listed can be set to its own value") {
   Robot robot;
   robot.waypoints = {{"a", 1.0, 2.0, true}, {"b", 3.0, 4.0, false}};
   const Robot before = robot;
-  const Node values = ToNode(robot);
   WalkKeys(before, "", false, [&](const std::string& key, const FieldInfo&, const auto& member) {
     INFO(key);
     SetValue(robot, key, ValueNode(member, key));
@@ -88,6 +87,20 @@ TEST_CASE("One value is set with the checks of binding") {
   CHECK(SetError("control.vmin", "0.5") ==
         "f:1:1: key 'control.vmin' is 0.5: no such key; did you mean 'control.v_min'?");
   CHECK(SetError("waypoints[0].x_m", "0.5").find("no such key") != std::string::npos);
+}
+
+TEST_CASE("Values set together are checked together") {
+  Robot robot;
+  const Node low = Parse("0.6", "f");
+  const Node high = Parse("0.7", "f");
+  CHECK(SetError("control.v_min", "0.6") == "f:1:1: key 'control': v_min must be at most v_max");
+  SetValues(robot, {{"control.v_min", low}, {"control.v_max", high}});
+  CHECK(robot.control.v_min == 0.6);
+  CHECK(robot.control.v_max == 0.7);
+  CHECK(ErrorOf([&] {
+          SetValues(robot, {{"control.v_max", low}, {"control.v_min", high}});
+        }) == "f:1:1: key 'control': v_min must be at most v_max");
+  CHECK(robot.control.v_max == 0.7);
 }
 
 TEST_CASE("Edits are counted as a person makes them") {

@@ -32,7 +32,7 @@ class Binder {
   template <class T>
   void Value(const Node& node, const Place& place, T& out) const {
     if constexpr (Hooked<T>) {
-      Hooked_(node, place, out);
+      ByHand(node, place, out);
     } else if constexpr (Block<T>) {
       BlockOf(node, place, out);
     } else if constexpr (kIsBlockMap<T>) {
@@ -74,11 +74,11 @@ class Binder {
 
  private:
   template <class T>
-  void Hooked_(const Node& node, const Place& place, T& out) const {
+  void ByHand(const Node& node, const Place& place, T& out) const {
     try {
       out = Hook<T>::FromNode(node);
     } catch (const std::invalid_argument& broken) {
-      FailRule(node, place.key, broken);
+      Fail(node, place.key, broken.what());
     }
   }
 

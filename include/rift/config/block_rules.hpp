@@ -14,7 +14,7 @@ namespace rift::config {
 /// The keys that a block knows, and where to look for one that was written in the wrong block.
 struct KnownKeys {
   std::vector<std::string> here;
-  std::vector<std::string> anywhere;  ///< full dotted keys
+  const std::vector<std::string>& anywhere;  ///< full dotted keys
 };
 
 /// Throw Error unless the node is of that kind.

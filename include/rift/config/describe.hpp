@@ -37,15 +37,15 @@ std::string ResolveKey(std::string_view name, const S& block) {
   return ResolveKey(name, ListKeys(block));
 }
 
+/// `did you mean 'gap.samples'?`, or the first known keys when none is near.
+std::string KeyHint(std::string_view name, const std::vector<std::string>& keys);
+
 std::string ListTypeText(std::string_view item);
 std::string NumberTypeText(std::string_view noun, const std::optional<Range>& range);
 
 template <class T>
 std::string TypeText(const std::optional<Range>& range) {
   if constexpr (Hooked<T>) {
-    if constexpr (requires { Hook<T>::TypeText(); }) {
-      if (!Hook<T>::TypeText().empty()) return std::string(Hook<T>::TypeText());
-    }
     if constexpr (requires { Hook<T>::kTypeText; }) return std::string(Hook<T>::kTypeText);
     return "see the documentation";
   } else if constexpr (kIsBlockMap<T>) {

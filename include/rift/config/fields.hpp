@@ -20,12 +20,10 @@
 ///     static void Fields(Self& self, Visitor&& field) {
 ///       field("samples", self.samples, 2, 10'000'000, "evenly spaced values of u");
 ///     }
-///     void Check() const;                                            // optional: rules between
-///                                                                    // fields,
-///                                                                    std::invalid_argument
-///     static constexpr std::array<std::string_view, 1> kRequired{"samples"};  // optional: keys
-///     that
-///                                                                    // a written block must have
+///     // Optional, rules between fields; throws std::invalid_argument:
+///     void Check() const;
+///     // Optional, keys that a written block must have:
+///     static constexpr std::array<std::string_view, 1> kRequired{"samples"};
 ///   };
 ///
 /// Members: double, int, std::optional<double> and std::vector<double> with (min, max, help);
@@ -42,7 +40,7 @@ struct FieldInfo {
 /// How a type that is no struct of fields is read and written by hand. Either give the type
 /// `static T FromNode(const Node&)` and `Node ToNode() const`, or, where its room may not include
 /// config, specialize Hook<T> with the same two as static functions of the specialization. What
-/// FromNode throws as std::invalid_argument gets file:line:column and the key in front; with
+/// FromNode throws as std::invalid_argument gets file:line:column, key and value in front; with
 /// Fail() it can point at a part. `static constexpr std::string_view kTypeText` describes the
 /// values in the list of keys (else "see the documentation"). A written value replaces the default.
 template <class T>
@@ -56,10 +54,10 @@ requires requires(const Node& node, const T& value) {
 struct Hook<T> {
   static T FromNode(const Node& node) { return T::FromNode(node); }
   static Node ToNode(const T& value) { return value.ToNode(); }
-  static constexpr std::string_view TypeText() {
-    if constexpr (requires { T::kTypeText; }) return T::kTypeText;
-    return {};
-  }
+  static constexpr std::string_view kTypeText = [] {
+    if constexpr (requires { T::kTypeText; }) return std::string_view(T::kTypeText);
+    return std::string_view("see the documentation");
+  }();
 };
 
 /// A member of type Node keeps its tree as written.

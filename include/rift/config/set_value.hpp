@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,11 +18,21 @@ namespace rift::config {
 template <Block S>
 void SetValue(S& out, std::string_view key, const Node& value);
 
+struct KeyValue {
+  std::string key;
+  Node value;
+};
+
+/// Sets several values before any rule between fields is checked, so that v_min and v_max can move
+/// together past each other's old value.
+template <Block S>
+void SetValues(S& out, const std::vector<KeyValue>& values);
+
 /// Looks for the member with a full key and binds it.
 class Setter {
  public:
-  Setter(const Binder& binder, std::string_view key, const Node& value)
-      : binder_(binder), key_(key), value_(value) {}
+  Setter(const Binder& binder, std::string_view key, const Node& value, bool check_rules)
+      : binder_(binder), key_(key), value_(value), check_rules_(check_rules) {}
 
   /// True when the key named something in this block, which is at `path`.
   template <Block S>
@@ -30,7 +41,7 @@ class Setter {
     VisitFields(block, [&](const FieldInfo& field, auto& member) {
       is_set = is_set || Into(member, PlaceOf(field, path));
     });
-    if (is_set) CheckRules(block, value_, path);
+    if (is_set && check_rules_) CheckRules(block, value_, path);
     return is_set;
   }
 
@@ -61,17 +72,26 @@ class Setter {
   const Binder& binder_;
   std::string_view key_;
   const Node& value_;
+  bool check_rules_;
 };
 
 template <Block S>
-void SetValue(S& out, std::string_view key, const Node& value) {
+void SetValues(S& out, const std::vector<KeyValue>& values) {
   S changed = out;
   const std::vector<std::string> keys = ListKeys(out);
   const Binder binder(keys);
-  if (!Setter(binder, key, value).IntoBlock(changed, "")) {
-    FailUnknown({std::string(key), value.origin, value, {}}, "", {keys, {}});
+  for (const bool check_rules : {false, true}) {
+    for (const auto& [key, value] : values) {
+      const bool is_set = Setter(binder, key, value, check_rules).IntoBlock(changed, "");
+      if (!is_set) Fail(value, key, "no such key; " + KeyHint(key, keys));
+    }
   }
   out = std::move(changed);
+}
+
+template <Block S>
+void SetValue(S& out, std::string_view key, const Node& value) {
+  SetValues(out, {{std::string(key), value}});
 }
 
 }  // namespace rift::config

@@ -14,8 +14,4 @@ int EditDistance(std::string_view a, std::string_view b);
 /// without its unit (`period` -> `period_s`). Empty when nothing is near.
 std::string Nearest(std::string_view name, const std::vector<std::string>& candidates);
 
-/// `; did you mean 'v_min'?`, or `; <otherwise>: a, b, c` when nothing is near.
-std::string Suggestion(std::string_view name, const std::vector<std::string>& candidates,
-                       std::string_view otherwise);
-
 }  // namespace rift::config
