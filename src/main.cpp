@@ -25,10 +25,11 @@ void CheckSubcommand(int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   const std::vector<std::string> names = Names();
   if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
+  const std::string nearest = rift::config::Nearest(argv[1], names);
   throw std::invalid_argument(
-      fmt::format(
-      "'{}' is no subcommand{}", argv[1],
-      rift::config::Suggestion(argv[1], names, "the subcommands are")));
+      nearest.empty()
+          ? fmt::format("'{}' is no subcommand; there are {}", argv[1], fmt::join(names, ", "))
+          : fmt::format("'{}' is no subcommand; did you mean '{}'?", argv[1], nearest));
 }
 
 int Run(int argc, char** argv) {

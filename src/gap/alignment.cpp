@@ -1,7 +1,7 @@
 #include "alignment.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace rift::gap {
 namespace {
@@ -9,11 +9,10 @@ namespace {
 /// A fit over more points than this moves by less than a micrometre.
 constexpr int kMostFitSamples = 2000;
 
-Eigen::Matrix2Xd SampledPoints(const ArcPath& path, int samples) {
-  const std::vector<Eigen::Vector2d> points = Resample(path, samples);
-  Eigen::Matrix2Xd columns(2, samples);
-  for (int i = 0; i < samples; ++i) columns.col(i) = points[i];
-  return columns;
+Eigen::Vector2d Centroid(const std::vector<Eigen::Vector2d>& points) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& point : points) sum += point;
+  return sum / static_cast<double>(points.size());
 }
 
 }  // namespace
@@ -25,10 +24,18 @@ geometry::Pose2 StartMotion(const ArcPath& sim, const ArcPath& real) {
 
 geometry::Pose2 BestRigidMotion(const ArcPath& sim, const ArcPath& real, int samples) {
   const int count = std::clamp(samples, 2, kMostFitSamples);
-  const Eigen::Matrix3d real_from_sim =
-      Eigen::umeyama(SampledPoints(sim, count), SampledPoints(real, count), false);
-  return {real_from_sim(0, 2), real_from_sim(1, 2),
-          std::atan2(real_from_sim(1, 0), real_from_sim(0, 0))};
+  const std::vector<Eigen::Vector2d> p_in_sim = Resample(sim, count);
+  const std::vector<Eigen::Vector2d> p_in_real = Resample(real, count);
+  const Eigen::Vector2d sim_centre = Centroid(p_in_sim), real_centre = Centroid(p_in_real);
+  double along = 0.0, across = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector2d a = p_in_sim[i] - sim_centre, b = p_in_real[i] - real_centre;
+    along += a.dot(b);
+    across += a.x() * b.y() - a.y() * b.x();
+  }
+  const geometry::Pose2 rotation{0.0, 0.0, std::atan2(across, along)};
+  const Eigen::Vector2d offset_m = real_centre - rotation * sim_centre;
+  return {offset_m.x(), offset_m.y(), rotation.yaw_rad};
 }
 
 geometry::Pose2 AligningMotion(const ArcPath& sim, const ArcPath& real, Align align, int samples) {

@@ -8,7 +8,7 @@ namespace rift::gap {
 geometry::Pose2 StartMotion(const ArcPath& sim, const ArcPath& real);
 
 /// The planar rigid motion that brings `sim` closest to `real`: least squares over `samples`
-/// evenly spaced u (Umeyama 1991 without scale).
+/// evenly spaced u; in the plane the fit of Umeyama 1991, without scale, has this closed form.
 geometry::Pose2 BestRigidMotion(const ArcPath& sim, const ArcPath& real, int samples);
 
 /// The motion an option asks for; identity for Align::kNone.

@@ -32,7 +32,8 @@ void CopyYaw(std::span<const trajectory::StampedPose> poses, ArcPath& path) {
 
 }  // namespace
 
-ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options) {
+ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options,
+                    WithYaw with_yaw) {
   std::span<const trajectory::StampedPose> poses = trajectory.poses;
   if (poses.size() < 2) {
     throw std::invalid_argument("a path of fewer than two poses has no arc length");
@@ -49,7 +50,7 @@ ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& 
     path.y_m.push_back(pose.y_m);
   }
   MeasureArcLength(path);
-  if (trajectory.HasYaw()) CopyYaw(poses, path);
+  if (with_yaw == WithYaw::kYes && trajectory.HasYaw()) CopyYaw(poses, path);
   return path;
 }
 

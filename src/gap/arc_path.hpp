@@ -22,8 +22,12 @@ struct ArcPath {
   Eigen::Vector2d Vertex(size_t i) const { return {x_m[i], y_m[i]}; }
 };
 
+/// The gap alone needs no yaw, and unwrapping it costs more than the gap.
+enum class WithYaw { kNo, kYes };
+
 /// Throws std::invalid_argument for fewer than two poses or a path of zero length.
-ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options);
+ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options,
+                    WithYaw with_yaw);
 
 /// The points at `count` evenly spaced u from 0 to 1.
 std::vector<Eigen::Vector2d> Resample(const ArcPath& path, int count);

@@ -16,8 +16,8 @@
 namespace rift::gap {
 namespace {
 
-/// Frechet, DTW and Hausdorff cost points squared; 256 stand 3 mm apart on the paper's path.
-constexpr int kMeasurePoints = 256;
+/// Frechet, DTW and Hausdorff cost points squared; 160 stand 4 mm apart on the paper's path.
+constexpr int kMeasurePoints = 160;
 
 struct Paths {
   ArcPath sim;
@@ -26,8 +26,8 @@ struct Paths {
 
 /// Both paths as they are to be compared, after trimming and aligning.
 Paths Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
-              const GapOptions& options) {
-  Paths paths{MakeArcPath(sim, options), MakeArcPath(real, options)};
+              const GapOptions& options, WithYaw with_yaw) {
+  Paths paths{MakeArcPath(sim, options, with_yaw), MakeArcPath(real, options, with_yaw)};
   if (options.align != Align::kNone) {
     Transform(paths.sim, AligningMotion(paths.sim, paths.real, options.align, options.samples));
   }
@@ -77,9 +77,10 @@ Peak ExactPeak(const Paths& paths, const GapOptions& options) {
   return peak;
 }
 
-double GapAfter(const Paths& paths, Align align, const GapOptions& options) {
+double GapAfter(const Paths& paths, const geometry::Pose2& real_from_sim,
+                const GapOptions& options) {
   Paths moved = paths;
-  Transform(moved.sim, AligningMotion(paths.sim, paths.real, align, options.samples));
+  Transform(moved.sim, real_from_sim);
   return SampledPeak(moved, options).error_m;
 }
 
@@ -151,17 +152,17 @@ void MeasureShape(const Paths& paths, Comparison& result) {
 
 double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
            const GapOptions& options) {
-  return SampledPeak(Prepare(sim, real, options), options).error_m;
+  return SampledPeak(Prepare(sim, real, options, WithYaw::kNo), options).error_m;
 }
 
 ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                           const GapOptions& options) {
-  return ProfileOf(Prepare(sim, real, options), options);
+  return ProfileOf(Prepare(sim, real, options, WithYaw::kYes), options);
 }
 
 Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                    const GapOptions& options) {
-  const Paths paths = Prepare(sim, real, options);
+  const Paths paths = Prepare(sim, real, options, WithYaw::kYes);
   Comparison result;
 
   const Peak sampled = SampledPeak(paths, options);
@@ -179,9 +180,9 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
   result.end_error_m =
       (paths.sim.Vertex(paths.sim.Size() - 1) - paths.real.Vertex(paths.real.Size() - 1)).norm();
 
-  result.start_aligned_gap_m = GapAfter(paths, Align::kStart, options);
-  result.shape_gap_m = GapAfter(paths, Align::kSe2, options);
+  result.start_aligned_gap_m = GapAfter(paths, StartMotion(paths.sim, paths.real), options);
   result.real_from_sim = BestRigidMotion(paths.sim, paths.real, options.samples);
+  result.shape_gap_m = GapAfter(paths, result.real_from_sim, options);
   result.sim_standstill_share = StandstillShare(sim.poses, options.standstill_radius_m);
   result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);
 

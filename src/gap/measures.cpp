@@ -9,24 +9,39 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double SquaredDistanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& begin,
-                                const Eigen::Vector2d& end) {
-  const Eigen::Vector2d along = end - begin;
-  const double squared_length = along.squaredNorm();
-  const double share =
-      squared_length > 0.0 ? std::clamp((p - begin).dot(along) / squared_length, 0.0, 1.0) : 0.0;
-  return (begin + share * along - p).squaredNorm();
-}
+/// The edges of a polyline, a column for each number, so that the loop over them vectorises.
+struct Edges {
+  explicit Edges(const Points& points) {
+    for (size_t i = 1; i < points.size(); ++i) {
+      const Eigen::Vector2d along = points[i] - points[i - 1];
+      const double squared_length = along.squaredNorm();
+      x.push_back(points[i - 1].x());
+      y.push_back(points[i - 1].y());
+      along_x.push_back(along.x());
+      along_y.push_back(along.y());
+      inverse_squared_length.push_back(squared_length > 0.0 ? 1.0 / squared_length : 0.0);
+    }
+  }
+
+  double SquaredDistanceTo(const Eigen::Vector2d& p) const {
+    double closest = kInfinity;
+    for (size_t i = 0; i < x.size(); ++i) {
+      const double to_x = p.x() - x[i], to_y = p.y() - y[i];
+      const double share = (to_x * along_x[i] + to_y * along_y[i]) * inverse_squared_length[i];
+      const double on_edge = std::max(0.0, std::min(1.0, share));
+      const double off_x = to_x - on_edge * along_x[i], off_y = to_y - on_edge * along_y[i];
+      closest = std::min(closest, off_x * off_x + off_y * off_y);
+    }
+    return closest;
+  }
+
+  std::vector<double> x, y, along_x, along_y, inverse_squared_length;
+};
 
 double DirectedHausdorff_m(const Points& from, const Points& to) {
+  const Edges edges(to);
   double largest = 0.0;
-  for (const Eigen::Vector2d& p : from) {
-    double closest = kInfinity;
-    for (size_t i = 1; i < to.size() && closest > largest; ++i) {
-      closest = std::min(closest, SquaredDistanceToSegment(p, to[i - 1], to[i]));
-    }
-    largest = std::max(largest, closest);
-  }
+  for (const Eigen::Vector2d& p : from) largest = std::max(largest, edges.SquaredDistanceTo(p));
   return std::sqrt(largest);
 }
 

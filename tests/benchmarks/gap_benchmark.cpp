@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "rift/gap/comparison.hpp"
+#include "rift/trajectory/log.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
@@ -56,10 +57,10 @@ double Median(std::vector<double> values) {
 }
 
 double NumpyMicroseconds(const Logs& logs) {
-  FILE* script = popen(("python3 " + kScript + " --time" + logs.files).c_str(), "r");
+  FILE* script = popen(("/usr/bin/python3 " + kScript + " --time" + logs.files).c_str(), "r");
   double microseconds = 0.0;
   if (script == nullptr || std::fscanf(script, "%lf", &microseconds) != 1 || pclose(script) != 0) {
-    throw std::runtime_error("the baseline needs python3 with numpy");
+    throw std::runtime_error("the baseline needs the packages python3 and python3-numpy");
   }
   return microseconds;
 }
@@ -86,7 +87,7 @@ BENCHMARK(BM_CompareInProcess)->Unit(benchmark::kMicrosecond);
 void BM_GapWholeProcess(benchmark::State& state) {
   const Logs logs(static_cast<int>(state.range(0)));
   const std::string rift = std::string(RIFT_BINARY) + " gap" + logs.files;
-  const std::string numpy = "python3 " + kScript + logs.files;
+  const std::string numpy = "/usr/bin/python3 " + kScript + logs.files;
   std::vector<double> ratios;
   for (auto _ : state) {
     const double rift_s = Seconds(rift);
