@@ -24,17 +24,15 @@ struct SweepRequest {
   bool exit_code = false;
 };
 
+/// A simulated sweep over nothing means the paper's grid; logs without a space are one setting.
+bool LacksSpace(const config::Experiment& experiment) {
+  return experiment.candidate.kind == sweep::CandidateKind::kSimulation &&
+         experiment.space.parameters.empty();
+}
+
 config::Experiment LoadFor(const SweepRequest& request) {
-  config::Experiment experiment =
-      config::LoadExperiment(request.experiment, request.overrides,
-                             [](const std::string& path) { return ReadFile(path); });
-  const bool is_simulated = experiment.candidate.kind == sweep::CandidateKind::kSimulation;
-  if (is_simulated && experiment.space.parameters.empty()) {
-    experiment.space = sweep::PaperSpace();
-    fmt::print(stderr, "note: {} names no space: the paper's grid of surface, v_min and v_max\n",
-               request.experiment);
-  }
-  return experiment;
+  return config::LoadExperiment(request.experiment, request.overrides,
+                                [](const std::string& path) { return ReadFile(path); });
 }
 
 sweep::SweepResult Run(const SweepRequest& request, SweepSources& sources) {
@@ -68,8 +66,14 @@ void AddSweep(CLI::App& app, int& exit_code) {
   app.add_flag("--exit-code", request->exit_code, "end with 1 when any trial is falsified");
   app.footer("Example: rift sweep configs/waypoints/paper.yaml --out out/paper");
   app.callback([request, &exit_code] {
-    const config::Experiment experiment = LoadFor(*request);
+    config::Experiment experiment = LoadFor(*request);
+    const bool lacks_space = LacksSpace(experiment);
+    if (lacks_space) experiment.space = sweep::PaperSpace();
     SweepSources sources(experiment, request->experiment);
+    if (lacks_space) {
+      fmt::print(stderr, "note: {} names no space: the paper's grid of surface, v_min and v_max\n",
+                 request->experiment);
+    }
     const sweep::SweepResult result = Run(*request, sources);
     const fs::path out =
         request->out.empty() ? fs::path("out") / experiment.name : fs::path(request->out);
