@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "files.hpp"
+#include "keys_flag.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/trajectory/log.hpp"
 #include "simulate_output.hpp"
@@ -104,6 +105,7 @@ void AddSimulate(CLI::App& app, int& exit_code) {
                  "where the log goes; its commands, true path, experiment and summary go beside it "
                  "[out/NAME]")
       ->type_name("FILE.csv|DIR");
+  AddKeysFlag(app);
   app.add_flag("--json", request->json, "print the summary as JSON instead of text");
   app.footer(
       "Ends with 1 when the robot does not reach the last waypoint.\n"

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "files.hpp"
+#include "keys_flag.hpp"
 #include "rift/commands/command.hpp"
 #include "sweep_output.hpp"
 #include "sweep_report.hpp"
@@ -62,6 +63,7 @@ void AddSweep(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   app.add_option("--out", request->out, "folder for table, summary, figures and report [out/NAME]")
       ->type_name("DIR");
+  AddKeysFlag(app);
   app.add_flag("--json", request->json, "print the summary as JSON instead of text");
   app.add_flag("--exit-code", request->exit_code, "end with 1 when any trial is falsified");
   app.footer("Example: rift sweep configs/waypoints/paper.yaml --out out/paper");

@@ -69,6 +69,16 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   return experiment;
 }
 
+std::string DescribeKeys() {
+  std::string text;
+  for (const KeyInfo& key : Describe<Experiment>()) {
+    const std::string standard =
+        key.default_text.empty() ? "" : fmt::format(" [{}]", key.default_text);
+    text += fmt::format("{}: {}{}\n    {}\n", key.key, key.type, standard, key.help);
+  }
+  return text;
+}
+
 std::string WriteExperiment(const Experiment& experiment) { return Emit(ToNode(experiment)); }
 
 }  // namespace rift::config

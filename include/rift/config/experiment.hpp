@@ -57,6 +57,9 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
 Experiment ExperimentAt(const Experiment& experiment,
                         const std::vector<sweep::ParameterValue>& theta);
 
+/// Every key of an experiment with type, default and meaning, a paragraph each.
+std::string DescribeKeys();
+
 /// The resolved experiment as YAML; loading it gives the same experiment.
 std::string WriteExperiment(const Experiment& experiment);
 
