@@ -1,22 +1,9 @@
-#include <stdexcept>
-
-#include "files.hpp"
+#include "figure_file.hpp"
 #include "gap_output.hpp"
 #include "rift/report/gap_figures.hpp"
 
 namespace rift::commands {
-namespace {
-
-report::FigureFormat FormatOf(const std::filesystem::path& path) {
-  if (path.extension() == ".svg") return report::FigureFormat::kSvg;
-  if (path.extension() == ".png") return report::FigureFormat::kPng;
-  throw std::invalid_argument("--figure " + path.string() + ": the name must end in .svg or .png");
-}
-
-}  // namespace
-
 void WriteGapFigure(const std::filesystem::path& path, const GapEvidence& evidence) {
-  const report::FigureFormat format = FormatOf(path);
   std::vector<report::ComparedPair> pairs;
   for (size_t i = 0; i < evidence.trials.size(); ++i) {
     const std::string name = std::filesystem::path(evidence.trials[i].path).stem().string();
@@ -25,7 +12,7 @@ void WriteGapFigure(const std::filesystem::path& path, const GapEvidence& eviden
   }
   const report::Figure figure = report::Stack("gap", "paths, error over u and its distribution",
                                               report::GapFigures(pairs, evidence.options));
-  WriteFile(path, report::Render(figure, format));
+  WriteFigure(path, figure);
 }
 
 }  // namespace rift::commands

@@ -13,6 +13,7 @@
 #include "rift/commands/command.hpp"
 #include "rift/trajectory/log.hpp"
 #include "simulate_output.hpp"
+#include "simulate_pictures.hpp"
 #include "simulated_runs.hpp"
 
 namespace rift::commands {
@@ -27,6 +28,7 @@ struct SimulateRequest {
   std::optional<std::uint64_t> seed;
   std::string out;
   bool json = false;
+  PictureRequest pictures;
 };
 
 /// `-0.28,-0.06,10`: metres, metres, degrees.
@@ -105,6 +107,7 @@ void AddSimulate(CLI::App& app, int& exit_code) {
                  "where the log goes; its commands, true path, experiment and summary go beside it "
                  "[out/NAME]")
       ->type_name("FILE.csv|DIR");
+  AddPictureFlags(app, request->pictures);
   AddKeysFlag(app);
   app.add_flag("--json", request->json, "print the summary as JSON instead of text");
   app.footer(
@@ -118,6 +121,7 @@ void AddSimulate(CLI::App& app, int& exit_code) {
     const fs::path out =
         request->out.empty() ? fs::path("out") / experiment.name : fs::path(request->out);
     Save(out, experiment, run);
+    MakePictures(request->pictures, experiment, trial, run);
     fmt::print("{}",
                request->json ? SimulationJson(experiment, run) : SimulationText(experiment, run));
     exit_code = run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;

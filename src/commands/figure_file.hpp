@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "rift/report/figure.hpp"
+
+namespace rift::commands {
+
+/// Writes an SVG or PNG, as the name of the file ends. Throws std::invalid_argument for another
+/// ending.
+void WriteFigure(const std::filesystem::path& path, const report::Figure& figure);
+
+}  // namespace rift::commands

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "rift/config/experiment.hpp"
+#include "rift/sweep/simulated_trial.hpp"
+
+namespace rift::commands {
+
+/// What a person wants to see of a simulated run.
+struct PictureRequest {
+  std::string figure;  ///< FILE.svg or FILE.png; empty: none
+  std::string video;   ///< FILE.mp4; empty: none
+  bool window = false;
+};
+
+/// Adds --figure, --video and --view.
+void AddPictureFlags(CLI::App& app, PictureRequest& request);
+
+/// Draws, films and shows. OpenCV is loaded only for a film or a window; a window without a display
+/// is a line on stderr and no failure.
+void MakePictures(const PictureRequest& request, const config::Experiment& experiment,
+                  const sweep::SimulatedTrial& trial, const sweep::SimulatedRun& run);
+
+}  // namespace rift::commands
