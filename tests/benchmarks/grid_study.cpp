@@ -161,7 +161,7 @@ void Simulate(const GridStudy& study, int seeds, std::vector<GridPair>& pairs) {
   }
 }
 
-GridSummary Summarise(const std::vector<GridPair>& pairs, const std::string& surface) {
+GridSummary Summarise(const std::vector<GridPair>& pairs, const std::string& group) {
   GridSummary summary;
   std::vector<PathTraits> real, runs;
   std::vector<double> gaps_m, speed_ratios, real_spreads_m, spreads_m;
@@ -169,7 +169,7 @@ GridSummary Summarise(const std::vector<GridPair>& pairs, const std::string& sur
   double longest_m = 0.0;
   for (const GridPair& pair : pairs) longest_m = std::max(longest_m, pair.real_traits.length_m);
   for (const GridPair& pair : pairs) {
-    if (!surface.empty() && pair.files.surface != surface) continue;
+    if (!group.empty() && pair.files.surface != group && pair.files.v_min != group) continue;
     settings[pair.files.webots.string()].push_back(&pair);
     real.push_back(pair.real_traits);
     runs.insert(runs.end(), pair.run_traits.begin(), pair.run_traits.end());

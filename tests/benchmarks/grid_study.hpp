@@ -83,7 +83,7 @@ struct GridSummary {
   double real_spread_m = 0.0, spread_m = 0.0;  ///< mean gap between repeats of one setting
 };
 
-/// Of the pairs on `surface`, or of all when it is empty.
-GridSummary Summarise(const std::vector<GridPair>& pairs, const std::string& surface);
+/// Of the pairs of a surface ("ground") or of a v_min ("0.15"), or of all when `group` is empty.
+GridSummary Summarise(const std::vector<GridPair>& pairs, const std::string& group);
 
 }  // namespace rift::test

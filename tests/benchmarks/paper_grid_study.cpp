@@ -89,11 +89,19 @@ int Study(const Request& request) {
   const test::GridStudy study = LoadStudy(request, {});
   std::vector<test::GridPair> pairs = test::LoadGrid(study);
   test::Simulate(study, request.seeds, pairs);
-  for (const char* surface : {"ground", "cardboard", "parchment", "downhill"}) {
+  for (const char* surface : {"ground", "cardboard", "parchment", "downhill", "0.15", "0.20"}) {
     PrintSummary(surface, test::Summarise(pairs, surface));
   }
   PrintSummary("all", test::Summarise(pairs, ""));
   if (getenv("DUMP")) {
+    for (std::string g : {"ground", "cardboard", "parchment", "downhill", "0.15", "0.20"}) {
+      double b = 0, sb = 0, n = 0, sn = 0;
+      for (auto& p : pairs) if (p.files.surface == g || p.files.v_min == g) {
+        b += p.real_traits.delay.bias_rad_s; ++n;
+        for (auto& t : p.run_traits) sb += t.delay.bias_rad_s, ++sn;
+      }
+      fmt::print("{} bias real {:.3f} sim {:.3f}\n", g, b / n, sb / sn);
+    }
     for (auto& p : pairs) {
       std::string f = fmt::format("/tmp/dump/{}_{}_{}_{}", p.files.surface, p.files.v_min, p.files.v_max, p.files.trial);
       for (int k = 0; k < 4; ++k) {
