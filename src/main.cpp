@@ -38,7 +38,7 @@ int Run(int argc, char** argv) {
   CLI::App app("rift: where a simulator and its robot part ways, and why");
   app.set_version_flag("--version", "rift " RIFT_VERSION);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 done, 1 falsified (with --exit-code), 2 usage or input, 3 failure.");
+  app.footer("Exit codes: 0 done, 1 falsified (with --exit-code) or not reached, 2 usage or input, 3 failure.");
   for (const Command& command : Commands()) {
     command.add(*app.add_subcommand(command.name, command.summary), exit_code);
   }

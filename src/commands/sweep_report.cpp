@@ -12,21 +12,23 @@ namespace rift::commands {
 namespace {
 
 std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
-                                              const sweep::LogSource& source) {
+                                              SweepSources& sources) {
   const std::optional<int> worst = report::WorstRow(result);
   if (!worst) return std::nullopt;
   const sweep::TrialRow& row = result.rows[*worst];
-  const sweep::LoadedLog sim = source(row.candidate, sweep::Side::kCandidate);
-  const sweep::LoadedLog real = source(row.reference, sweep::Side::kReference);
-  return report::ComparePair("simulator", sim.trajectory, "robot, trial " + row.trial,
-                             real.trajectory, result.gap);
+  const sweep::Recording reference = sources.Reference(row.theta, row.trial);
+  const sweep::Recording candidate = sources.Candidate(row.theta, row.trial, reference);
+  const std::string name =
+      result.reference_kind == "logs" ? "robot, trial " + row.trial : result.reference_kind;
+  return report::ComparePair("simulator", candidate.trajectory, name, reference.trajectory,
+                             result.gap);
 }
 
 }  // namespace
 
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
-                      const sweep::LogSource& source) {
-  const report::SweepFigureSet set = report::SweepFigures(result, WorstPair(result, source));
+                      SweepSources& sources) {
+  const report::SweepFigureSet set = report::SweepFigures(result, WorstPair(result, sources));
   for (const report::Figure& figure : set.figures) {
     const std::filesystem::path path = folder / "figures" / figure.name;
     WriteFile(path.string() + ".svg", report::Render(figure, report::FigureFormat::kSvg));

@@ -2,14 +2,15 @@
 
 #include <filesystem>
 
-#include "rift/config/experiment.hpp"
-#include "rift/sweep/log_sweep.hpp"
+#include "rift/sweep/result.hpp"
+#include "sweep_sources.hpp"
 
 namespace rift::commands {
 
-/// Draws the figures (SVG and PNG, in DIR/figures) and writes DIR/report.html. `source` brings the
-/// paths of the worst trial again. Figures that make no sense for this space are named on stderr.
+/// Draws the figures (SVG and PNG, in DIR/figures) and writes DIR/report.html. `sources` bring
+/// the paths of the worst trial again. Figures that make no sense for this space are named on
+/// stderr.
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
-                      const sweep::LogSource& source);
+                      SweepSources& sources);
 
 }  // namespace rift::commands

@@ -1,11 +1,18 @@
 #include "rift/config/experiment.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "rift/config/bind.hpp"
+#include "rift/config/describe.hpp"
+#include "rift/config/error.hpp"
+#include "rift/config/set_value.hpp"
 #include "rift/config/sweep_hooks.hpp"
 #include "rift/config/tree.hpp"
 #include "rift/config/write.hpp"
+#include "rift/sweep/grid.hpp"
+#include "rift/sweep/grid_sweep.hpp"
 
 namespace rift::config {
 namespace {
@@ -17,7 +24,37 @@ void MakeAbsolute(sweep::PathTemplate& path) {
   path.text = std::filesystem::absolute(path.text).lexically_normal().string();
 }
 
+/// A simulated parameter is any key of the experiment, by its full name or a short one that is
+/// unique; every value that it will take is tried now.
+void ResolveSpace(Experiment& experiment) {
+  const std::vector<std::string> keys = ListKeys(experiment);
+  for (sweep::Parameter& parameter : experiment.space.parameters) {
+    try {
+      parameter.key = ResolveKey(parameter.key, keys);
+    } catch (const Error& unknown) {
+      throw Error(fmt::format("{}: space: {}", parameter.origin, unknown.what()));
+    }
+  }
+  for (const sweep::Theta& theta : sweep::GridPoints(experiment.space.parameters)) {
+    ExperimentAt(experiment, theta);
+  }
+}
+
 }  // namespace
+
+Experiment ExperimentAt(const Experiment& experiment,
+                        const std::vector<sweep::ParameterValue>& theta) {
+  std::vector<KeyValue> values;
+  for (size_t i = 0; i < theta.size(); ++i) {
+    const sweep::Parameter& parameter = experiment.space.parameters[i];
+    Node value = theta[i].number ? Node::Scalar(theta[i].text) : Node::Text(theta[i].text);
+    value.origin.source = parameter.origin;
+    values.push_back({parameter.key, value});
+  }
+  Experiment at = experiment;
+  SetValues(at, values);
+  return at;
+}
 
 Experiment LoadExperiment(const std::string& path, const std::vector<std::string>& overrides,
                           const FileReader& read) {
@@ -28,7 +65,18 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   Bind(tree, experiment);
   MakeAbsolute(experiment.candidate.path);
   MakeAbsolute(experiment.reference.path);
+  if (experiment.candidate.kind == sweep::CandidateKind::kSimulation) ResolveSpace(experiment);
   return experiment;
+}
+
+std::string DescribeKeys() {
+  std::string text;
+  for (const KeyInfo& key : Describe<Experiment>()) {
+    const std::string standard =
+        key.default_text.empty() ? "" : fmt::format(" [{}]", key.default_text);
+    text += fmt::format("{}: {}{}\n    {}\n", key.key, key.type, standard, key.help);
+  }
+  return text;
 }
 
 std::string WriteExperiment(const Experiment& experiment) { return Emit(ToNode(experiment)); }

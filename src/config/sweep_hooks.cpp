@@ -55,7 +55,7 @@ void ReadRange(const Node& node, const std::string& key, sweep::Parameter& param
 
 sweep::Parameter ParameterFromEntry(const FlatEntry& entry) {
   const std::string key = Join("space", entry.key);
-  sweep::Parameter parameter{.key = entry.key};
+  sweep::Parameter parameter{.key = entry.key, .origin = entry.origin.Text()};
   if (entry.value->IsList()) {
     ReadLevels(*entry.value, key, parameter);
   } else if (IsContinuousAxis(*entry.value)) {

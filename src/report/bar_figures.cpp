@@ -10,7 +10,8 @@ namespace rift::report {
 namespace {
 
 constexpr std::size_t kLongestLabel = 28;
-constexpr double kGroupWidth = 0.84;  // of the distance between two groups
+constexpr std::size_t kMostSlanted = 20;  // more labels stand upright, and say the level alone
+constexpr double kGroupWidth = 0.84;      // of the distance between two groups
 
 struct TicLabels {
   std::string command;
@@ -29,11 +30,17 @@ TicLabels Categories(const std::vector<std::vector<std::string>>& labels, int wi
   std::string places;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::vector<std::string> lines = labels[i];
-    if (tics.rotated && lines.size() > 1) lines = {fmt::format("{}", fmt::join(lines, ", "))};
+    if (labels.size() > kMostSlanted) {
+      lines.resize(1);
+    } else if (tics.rotated && lines.size() > 1) {
+      lines = {fmt::format("{}", fmt::join(lines, ", "))};
+    }
     places += fmt::format("{}{} {}", i == 0 ? "" : ", ", TicLabel(lines), i);
   }
-  tics.command =
-      fmt::format("set xtics {}({})\n", tics.rotated ? "rotate by 40 right " : "", places);
+  const char* rotation = !tics.rotated                  ? ""
+                         : labels.size() > kMostSlanted ? "rotate by 90 right "
+                                                        : "rotate by 40 right ";
+  tics.command = fmt::format("set xtics {}({})\n", rotation, places);
   return tics;
 }
 
@@ -41,16 +48,17 @@ std::string LevelName(const sweep::LevelSummary& level) {
   return Shortened(level.level, kLongestLabel);
 }
 
-// Room below the axis for slanted labels.
+// Room below the axis for slanted or upright labels.
 int LabelRoom_px(const TicLabels& tics, const std::vector<sweep::LevelSummary>& levels) {
   if (!tics.rotated) return 0;
   std::size_t longest = 0;
   for (const auto& level : levels) longest = std::max(longest, LetterCount(LevelName(level)));
-  return static_cast<int>(4.2 * static_cast<double>(longest + 6));
+  const bool upright = levels.size() > kMostSlanted;
+  return static_cast<int>((upright ? 6.5 : 4.2) * static_cast<double>(longest + (upright ? 0 : 6)));
 }
 
 int BarChartWidth_px(std::size_t bars, const ReportOptions& options) {
-  return std::clamp(static_cast<int>(90 + 13 * bars), options.width_px, 2 * options.width_px);
+  return std::clamp(static_cast<int>(90 + 16 * bars), options.width_px, 2 * options.width_px);
 }
 
 void AddTrials(const sweep::SweepResult& result, const sweep::SettingResult& setting, double x,
@@ -148,7 +156,8 @@ Figure MeanByLevelFigure(std::string name, const std::string& factor,
   if (!whiskers.IsEmpty()) {
     data += whiskers.Text();
     plot.Add(whiskers.Name() +
-             " using 1:2:3 with yerrorbars ps 0 lw 1.4 lc rgb '#222222' "
+             " using 1:($2 - $3):(0):(2 * $3) with vectors heads size screen 0.008,90 lw 1.4 lc "
+             "rgb '#222222' "
              "title 'standard deviation'");
   }
   const double end_m = AxisEnd(1.03 * largest_m);

@@ -31,7 +31,6 @@ constexpr std::string_view kStyle =
     "set tics nomirror out scale 0.5\n"
     "set grid lw 0.5 lc rgb '#DDDDDD'\n"
     "set style fill solid 0.9 noborder\n"
-    "set pointintervalbox 0\n"
     "set key outside top center horizontal Left reverse samplen 2 spacing 1.1 width -1\n";
 
 bool IsWhole(const std::string& image, FigureFormat format) {

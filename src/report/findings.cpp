@@ -136,11 +136,14 @@ Finding HowSure(const sweep::SweepResult& result) {
   }
   if (verdicts.unanimous != nullptr) {
     const gap::RepeatVerdict& verdict = *verdicts.unanimous;
-    finding.sentences.push_back(fmt::format(
-        "Even where all {} agree, the share of such trials above the threshold is known only to "
-        "lie between {} and {} ({} confidence).",
-        Count(verdict.repeats, "repeat"), Percent(verdict.share_low), Percent(verdict.share_high),
-        Percent(verdict.confidence)));
+    const std::string repeats =
+        verdict.repeats == 1 ? std::string("From a single repeat,")
+                             : fmt::format("Even where all {} repeats agree,", verdict.repeats);
+    finding.sentences.push_back(
+        fmt::format("{} the share of such trials above the threshold is known only to "
+                    "lie between {} and {} ({} confidence).",
+                    repeats, Percent(verdict.share_low), Percent(verdict.share_high),
+                    Percent(verdict.confidence)));
   }
   return finding;
 }

@@ -78,7 +78,8 @@ Figure HeatMapFigure(const SettingGrid& grid, const ReportOptions& options) {
   const bool numbers = (width_px - 190) / columns >= 40;
   const bool slanted = 7.0 * static_cast<double>(longest + 1) > (width_px - 190.0) / columns;
   PlotCommand plot;
-  plot.Add(cells.filled.Name() + " using 1:2:3 with image notitle");
+  // pixels: an SVG would hold a tiny bitmap otherwise, which viewers blur.
+  plot.Add(cells.filled.Name() + " using 1:2:3 with image pixels notitle");
   std::string data = cells.filled.Text();
   for (const auto& [block, colour] :
        {std::pair{&cells.on_dark, "#FFFFFF"}, std::pair{&cells.on_light, "#000000"}}) {

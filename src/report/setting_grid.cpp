@@ -16,6 +16,16 @@ std::map<std::string, std::size_t> PlaceOf(const std::vector<sweep::LevelSummary
   return place;
 }
 
+// Numbers alone do not say what they are.
+std::string NamedValues(const sweep::SweepResult& result,
+                        const std::vector<sweep::ParameterValue>& theta) {
+  std::string label;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    label += (label.empty() ? "" : ", ") + result.parameters[i].Name() + " " + theta[i].text;
+  }
+  return label;
+}
+
 }  // namespace
 
 SettingGrid LayOut(const sweep::SweepResult& result) {
@@ -48,6 +58,7 @@ std::string SettingLabel(const sweep::SweepResult& result,
                          const std::vector<sweep::ParameterValue>& theta) {
   if (result.parameters.empty()) return "the only setting";
   const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
+  if (!result.parameters[split.main_factor].IsCategorical()) return NamedValues(result, theta);
   const std::string main = sweep::CombinationLabel(theta, {split.main_factor});
   if (split.others.empty()) return main;
   return main + " " + sweep::CombinationLabel(theta, split.others);

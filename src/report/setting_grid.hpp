@@ -22,7 +22,7 @@ struct SettingGrid {
 
 SettingGrid LayOut(const sweep::SweepResult& result);
 
-/// "ground, [0.15, 0.30]": the setting in words.
+/// "ground [0.15, 0.30]", or "friction 0.4, delay_s 0.2" where no parameter is a word.
 std::string SettingLabel(const sweep::SweepResult& result,
                          const std::vector<sweep::ParameterValue>& theta);
 

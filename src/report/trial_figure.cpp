@@ -136,11 +136,17 @@ Figure GapByTrialFigure(const sweep::SweepResult& result, const ReportOptions& o
       settings.size() < result.settings.size()
           ? fmt::format("gap (m), the {} worst of {} settings", count, result.settings.size())
           : std::string("gap (m)");
+  // Long labels push the plot to the right; a legend centred on it would leave the page.
+  const int key_lines =
+      static_cast<int>(std::min<std::size_t>(names.size(), kMostTrialColours)) / 2 + 2;
+  const std::string key = fmt::format(
+      "set key at screen 0.5, screen 0.99 top center maxcols 2\nset tmargin {}\n", key_lines + 1);
   figure.plot = fmt::format(
-      "{}set ytics ({})\nset xlabel {}\nset xrange [0:{:.9g}]\nset yrange [{:.9g}:-0.6]\n"
+      "{}{}set ytics ({})\nset xlabel {}\nset xrange [0:{:.9g}]\nset yrange "
+      "[{:.9g}:-0.6]\n"
       "set arrow from {:.9g}, graph 0 to {:.9g}, graph 1 nohead lw 1.2 dt 2 lc rgb '#000000'\n{}",
-      data, tics, Quoted(of), AxisEnd(1.03 * std::max(dots.largest_m, threshold_m)), count - 0.4,
-      threshold_m, threshold_m, plot);
+      data, key, tics, Quoted(of), AxisEnd(1.03 * std::max(dots.largest_m, threshold_m)),
+      count - 0.4, threshold_m, threshold_m, plot);
   return figure;
 }
 

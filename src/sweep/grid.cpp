@@ -4,7 +4,20 @@
 
 #include <stdexcept>
 
+#include "rift/sweep/options.hpp"
+
 namespace rift::sweep {
+
+Space PaperSpace() {
+  return {{{.key = "simulation.terrain.surface",
+            .levels = {{"ground", {}},
+                       {"cardboard", {}},
+                       {"parchment", {}},
+                       {"uphill", {}},
+                       {"downhill", {}}}},
+           {.key = "control.v_min", .levels = {{"0.15", 0.15}, {"0.20", 0.20}}},
+           {.key = "control.v_max", .levels = {{"0.30", 0.30}, {"0.40", 0.40}, {"0.50", 0.50}}}}};
+}
 
 std::vector<std::vector<ParameterValue>> GridPoints(const std::vector<Parameter>& parameters) {
   std::vector<std::vector<ParameterValue>> points{{}};

@@ -48,8 +48,9 @@ double Mean(const std::vector<double>& values) {
 
 double StandardDeviation(const std::vector<double>& values) {
   if (values.size() < 2) return gap::kNotComputed;
+  const double mean = Mean(values);
   double squares = 0.0;
-  for (const double value : values) squares += std::pow(value - Mean(values), 2);
+  for (const double value : values) squares += std::pow(value - mean, 2);
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 

@@ -4,7 +4,18 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "rift/geometry/angle.hpp"
+
 namespace rift::trajectory {
+namespace {
+
+double Median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
 
 bool Trajectory::HasYaw() const {
   return !poses.empty() && std::all_of(poses.begin(), poses.end(), [](const StampedPose& pose) {
@@ -35,6 +46,21 @@ Trajectory OffsetAlongHeading(Trajectory trajectory, double offset_m) {
     pose.y_m += offset_m * std::sin(pose.yaw_rad);
   }
   return trajectory;
+}
+
+geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m) {
+  if (!trajectory.HasYaw()) {
+    throw std::invalid_argument("the pose of the standing robot needs the yaw, which is not known");
+  }
+  const StampedPose& first = trajectory.poses.front();
+  std::vector<double> x_m, y_m, turn_rad;
+  for (const StampedPose& pose : trajectory.poses) {
+    if ((pose.Position() - first.Position()).norm() > radius_m) break;
+    x_m.push_back(pose.x_m);
+    y_m.push_back(pose.y_m);
+    turn_rad.push_back(geometry::WrapToPi(pose.yaw_rad - first.yaw_rad));
+  }
+  return {Median(x_m), Median(y_m), geometry::WrapToPi(first.yaw_rad + Median(turn_rad))};
 }
 
 }  // namespace rift::trajectory

@@ -129,10 +129,39 @@ TEST_CASE("rift sweep says in one line what is wrong with its experiment") {
   CHECK(refusal("space: {a.v: [1], b.v: [2]}\n") ==
         "bad.yaml:1:8: key 'space' is a block of keys: a.v and b.v have the same last name 'v'\n");
   CHECK(refusal("reference: {trials: 0}\n").find("must be a list of trials") != std::string::npos);
-  CHECK(refusal("waypoints: []\n").find("candidate.path is missing") != std::string::npos);
+  CHECK(refusal("candidate: {kind: logs}\n").find("candidate.path is missing") !=
+        std::string::npos);
+  CHECK(refusal("waypoints: []\n").starts_with("bad.yaml: "));
+  CHECK(refusal("waypoints: [{x: 0, y: 0}, {x: 1, y: 0}]\nstart: reference\n")
+            .starts_with("bad.yaml: start is reference, and reference.kind is path"));
   fs::remove_all(logs.folder / "ground");
   fs::remove_all(logs.folder / "ice");
   CHECK(refusal(kExperiment).find("not one of 8 trials could be compared") != std::string::npos);
+}
+
+TEST_CASE("A waypoint file alone is swept on the simulator over the paper's grid") {
+  const test::TemporaryFolder folder;
+  const ProcessResult result = RunRift({"sweep", RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml",
+                                        "--out", folder / "out", "--json"});
+  REQUIRE(result.exit_code == 0);
+  CHECK(result.err.find("names no space: the paper's grid") != std::string::npos);
+  const json summary = json::parse(result.out);
+  CHECK(summary["n"] == 30);
+  CHECK(summary["candidate"] == "simulation");
+  CHECK(summary["reference"] == "path");
+  CHECK(summary["effects"]["v_max"]["detected"] == false);
+}
+
+TEST_CASE("A simulation against its own nominal run has no gap at the nominal setting") {
+  const test::TemporaryFolder folder;
+  const ProcessResult result = RunRift(
+      {"sweep", RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", "--out", folder / "out", "--set",
+       "reference={kind: nominal, trials: 2}", "--set", "space.surface=[ground, bump]", "--json"});
+  REQUIRE(result.exit_code == 0);
+  const json summary = json::parse(result.out);
+  CHECK(summary["n"] == 4);
+  CHECK(summary["by"]["surface"]["ground"]["mean_gap_m"] == 0.0);
+  CHECK(summary["by"]["surface"]["bump"]["mean_gap_m"] > 0.001);
 }
 
 TEST_CASE("The paper's table comes out of the authors' logs") {

@@ -52,7 +52,10 @@ TEST_CASE("A resolved experiment loads as the same experiment") {
   for (int i = 0; i < 300; ++i) {
     Experiment experiment;
     test::RandomFill(experiment, random);
-    experiment.space = RandomSpace(random);
+    experiment.space = RandomSpace(random);  // of names that only logs can have
+    if (!experiment.space.parameters.empty()) {
+      experiment.candidate.kind = sweep::CandidateKind::kLogs;
+    }
     experiment.reference.trials.names = {"1", "02", test::RandomText(random) + "x"};
     experiment.reference.path.text = "/logs/{surface}: " + test::RandomText(random);
     experiment.candidate.path.text = "/a/b.csv";
@@ -87,10 +90,37 @@ TEST_CASE("Nested and dotted and overridden axes are one thing") {
   const Experiment c = LoadTexts({{"a.yaml", "{}"}}, {"space.control.v_min=[0.15, 0.20]"});
   CHECK(WriteExperiment(a) == WriteExperiment(b));
   CHECK(WriteExperiment(a) == WriteExperiment(c));
+  const Experiment d = LoadTexts({{"a.yaml", "space: {v_min: [0.15, 0.20]}"}});
+  CHECK(WriteExperiment(a) == WriteExperiment(d));  // the short name is unique
   REQUIRE(a.space.parameters.size() == 1);
   CHECK(a.space.parameters[0].key == "control.v_min");
   CHECK(a.space.parameters[0].levels[1].text == "0.20");
   CHECK(a.space.parameters[0].levels[1].number == 0.2);
+}
+
+TEST_CASE("A simulated parameter is a key of the experiment and its values are tried at once") {
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      LoadTexts({{"a.yaml", text}});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK(refusal("space: {control.v_mim: [0.1]}").find("v_min") != std::string::npos);
+  CHECK(refusal("space: {mu: [0.1]}").find("surfaces.ground.mu") != std::string::npos);
+  CHECK(refusal("space: {simulation.body.chassis_mass_kg: [0.1, 0]}").starts_with("a.yaml:1:9"));
+  CHECK(refusal("space: {v_min: [0.9]}").find("v_max") != std::string::npos);
+  CHECK(refusal("space: {v_min: [0.9], v_max: [0.95]}") == "accepted");
+}
+
+TEST_CASE("An experiment at a setting has its values and leaves the rest") {
+  const Experiment experiment =
+      LoadTexts({{"a.yaml", "space: {surface: [ground, bump], v_min: [0.1]}"}});
+  const Experiment at = ExperimentAt(experiment, {{"bump", {}}, {"0.1", 0.1}});
+  CHECK(at.simulation.terrain.surface == "bump");
+  CHECK(at.control.v_min == 0.1);
+  CHECK(at.control.v_max == experiment.control.v_max);
 }
 
 TEST_CASE("Trials are a list or a count") {

@@ -74,6 +74,7 @@ TEST_CASE("The heat map shows the mean of each setting and says where there is n
   const std::string svg =
       Render(Named(SweepFigures(result), "fig10_gap_heat_map"), FigureFormat::kSvg);
   CHECK_THAT(svg, Contains("0.050") && Contains("0.070") && Contains("no gap"));
+  CHECK_THAT(svg, !Contains("<image"));  // cells are vector graphics, not a blurred bitmap
 }
 
 TEST_CASE("Failures are counted by level") {

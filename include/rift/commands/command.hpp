@@ -12,8 +12,9 @@ namespace rift::commands {
 /// What the process ends with.
 enum ExitCode : int {
   kDone = 0,
-  kFalsified = 1,  ///< only with --exit-code
-  kBadInput = 2,   ///< usage, configuration or a log
+  kFalsified = 1,   ///< only with --exit-code
+  kNotReached = 1,  ///< a trial ended before the last waypoint
+  kBadInput = 2,    ///< usage, configuration or a log
   kRunTimeFailure = 3,
 };
 
@@ -30,6 +31,7 @@ struct Command {
 const std::vector<Command>& Commands();
 
 void AddGap(CLI::App& app, int& exit_code);
+void AddSimulate(CLI::App& app, int& exit_code);
 void AddSweep(CLI::App& app, int& exit_code);
 
 }  // namespace rift::commands

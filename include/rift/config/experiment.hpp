@@ -1,12 +1,16 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "rift/config/load.hpp"
+#include "rift/control/navigator_options.hpp"
 #include "rift/control/waypoint.hpp"
 #include "rift/gap/options.hpp"
+#include "rift/simulation/simulation_options.hpp"
 #include "rift/sweep/options.hpp"
+#include "rift/trial/trial_options.hpp"
 
 namespace rift::config {
 
@@ -18,8 +22,13 @@ struct Experiment {
   sweep::Goal goal = sweep::Goal::kGrid;
   sweep::Space space;
   sweep::CandidateOptions candidate;
+  sweep::Start start = sweep::Start::kWaypoint;
   sweep::ReferenceOptions reference;
   gap::GapOptions gap;
+  std::uint64_t seed = 1;
+  control::NavigatorOptions control;
+  trial::TrialOptions trial;
+  simulation::SimulationOptions simulation;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -28,8 +37,13 @@ struct Experiment {
     field("goal", self.goal, "what a sweep is for: visit every combination");
     field("space", self.space, "the parameters to vary; a list is an axis of a grid");
     field("candidate", self.candidate, "the simulator: what is put to the test");
+    field("start", self.start, "where a simulated trial begins: first waypoint, or as its log");
     field("reference", self.reference, "the robot: what it is compared with");
     field("gap", self.gap, "how the gap is measured");
+    field("seed", self.seed, "of all random numbers; trial i of a setting uses seed + i - 1");
+    field("control", self.control, "the waypoint controller, the same for robot and simulator");
+    field("trial", self.trial, "the trial loop: rates, time limits, when a trial has failed");
+    field("simulation", self.simulation, "the simulated robot, its radio, its camera, the floor");
   }
 };
 
@@ -37,6 +51,14 @@ struct Experiment {
 /// Throws Error with file:line:column, the key, its value and the rule.
 Experiment LoadExperiment(const std::string& path, const std::vector<std::string>& overrides,
                           const FileReader& read);
+
+/// The experiment with the parameters of its space at one setting. Throws Error, naming where the
+/// parameter was written, when a value breaks a rule.
+Experiment ExperimentAt(const Experiment& experiment,
+                        const std::vector<sweep::ParameterValue>& theta);
+
+/// Every key of an experiment with type, default and meaning, a paragraph each.
+std::string DescribeKeys();
 
 /// The resolved experiment as YAML; loading it gives the same experiment.
 std::string WriteExperiment(const Experiment& experiment);

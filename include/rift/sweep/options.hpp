@@ -13,11 +13,26 @@ namespace rift::sweep {
 enum class Goal { kGrid };
 constexpr std::array<std::string_view, 1> EnumNames(Goal) { return {"grid"}; }
 
-enum class ReferenceKind { kLogs };
-constexpr std::array<std::string_view, 1> EnumNames(ReferenceKind) { return {"logs"}; }
+enum class ReferenceKind {
+  kPath,     ///< the polyline through the waypoints
+  kNominal,  ///< a simulated run with the experiment's own values
+  kLogs,
+};
+constexpr std::array<std::string_view, 3> EnumNames(ReferenceKind) {
+  return {"path", "nominal", "logs"};
+}
 
-enum class CandidateKind { kLogs };
-constexpr std::array<std::string_view, 1> EnumNames(CandidateKind) { return {"logs"}; }
+enum class CandidateKind { kSimulation, kLogs };
+constexpr std::array<std::string_view, 2> EnumNames(CandidateKind) {
+  return {"simulation", "logs"};
+}
+
+/// Where a simulated trial begins.
+enum class Start {
+  kWaypoint,   ///< at the first waypoint
+  kReference,  ///< where the reference log shows the robot standing
+};
+constexpr std::array<std::string_view, 2> EnumNames(Start) { return {"waypoint", "reference"}; }
 
 /// A file name, or a template of one over the names of the parameters and {trial}. In a YAML file
 /// it is relative to that file.
@@ -35,9 +50,12 @@ struct Space {
   std::vector<Parameter> parameters;
 };
 
+/// The grid of the paper (section 5.1), for an experiment that names no space.
+Space PaperSpace();
+
 /// What the candidate is compared with: the truth.
 struct ReferenceOptions {
-  ReferenceKind kind = ReferenceKind::kLogs;
+  ReferenceKind kind = ReferenceKind::kPath;
   PathTemplate path;
   TrialList trials;
   trajectory::Format format = trajectory::Format::kAuto;
@@ -45,24 +63,25 @@ struct ReferenceOptions {
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("kind", self.kind, "where the reference trajectories come from");
+    field("kind", self.kind, "waypoint path, a run with nominal values, or recorded logs");
     field("path", self.path, "of the logs, such as real/{surface}_{trial}.csv");
     field("trials", self.trials, "repeats of every setting: their names, or how many");
     field("format", self.format, "dialect of the logs");
-    field("tag_offset_m", self.tag_offset_m, -1.0, 1.0,
-          "moves the logs forward along their yaw, from the tag to the robot's front (paper: 0.03)");
+    field(
+        "tag_offset_m", self.tag_offset_m, -1.0, 1.0,
+        "moves the logs forward along their yaw, from the tag to the robot's front (paper: 0.03)");
   }
 };
 
 /// What is put to the test: the simulator.
 struct CandidateOptions {
-  CandidateKind kind = CandidateKind::kLogs;
+  CandidateKind kind = CandidateKind::kSimulation;
   PathTemplate path;
   trajectory::Format format = trajectory::Format::kAuto;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("kind", self.kind, "where the candidate trajectories come from");
+    field("kind", self.kind, "the simulator of rift, or recorded logs");
     field("path", self.path, "of the logs, such as webots/{surface}.csv");
     field("format", self.format, "dialect of the logs");
   }

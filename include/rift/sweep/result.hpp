@@ -26,6 +26,7 @@ struct Parameter {
   std::vector<ParameterValue> levels;  ///< of a grid axis; empty for a continuous one
   double min = 0.0;                    ///< of a continuous axis
   double max = 0.0;
+  std::string origin{};  ///< where it was written, for messages: "file:line:column"
 
   /// The last part of the key: the column in table.csv and the name in path templates.
   std::string Name() const;
@@ -39,10 +40,15 @@ enum class TrialStatus {
   kOk,
   kMissing,     ///< a log is not there
   kUnreadable,  ///< a log is there and breaks a rule
+  kTimedOut,    ///< the simulated robot did not reach the end in time
+  kFell,
+  kLeftArena,
+  kLost,   ///< motion capture saw it no more
+  kFault,  ///< the simulation itself could not go on
 };
 
-constexpr std::array<std::string_view, 3> EnumNames(TrialStatus) {
-  return {"ok", "missing", "unreadable"};
+constexpr std::array<std::string_view, 8> EnumNames(TrialStatus) {
+  return {"ok", "missing", "unreadable", "timed_out", "fell", "left_arena", "lost", "fault"};
 }
 
 /// One candidate trajectory against one reference trajectory.

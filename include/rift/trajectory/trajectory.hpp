@@ -50,4 +50,8 @@ struct Trajectory {
 /// Throws std::invalid_argument when the offset is not zero and the yaw is not known.
 Trajectory OffsetAlongHeading(Trajectory trajectory, double offset_m);
 
+/// Where the robot stood before it drove: the median over the first rows within `radius_m` of the
+/// first one, since a tracker's first poses jump. Throws std::invalid_argument without a yaw.
+geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m = 0.01);
+
 }  // namespace rift::trajectory

@@ -1,7 +1,7 @@
-#include "rift/sweep/log_sweep.hpp"
+#include "rift/sweep/grid_sweep.hpp"
 
 #include <catch2/catch.hpp>
-#include <set>
+#include <cmath>
 
 #include "rift/sweep/grid.hpp"
 #include "rift/sweep/path_template.hpp"
@@ -14,24 +14,17 @@ const std::vector<Parameter> kParameters{
     {.key = "surface", .levels = {{"ground", {}}, {"ice", {}}}},
     {.key = "control.v_min", .levels = {{"0.15", 0.15}, {"0.2", 0.2}}}};
 
-LogSweepPlan Plan() {
-  return {.name = "test",
-          .parameters = kParameters,
-          .trials = {"1", "2"},
-          .candidate_path = "{surface}/{v_min:.2f}_sim.csv",
-          .reference_path = "{surface}/{v_min:.2f}_real{trial}.csv",
-          .gap = {}};
+GridPlan Plan() { return {.name = "test", .parameters = kParameters, .trials = {"1", "2"}}; }
+
+Recording Simulated(const Theta&, const std::string&, const Recording&) {
+  return {.source = "simulator", .trajectory = test::StraightPath(0.7, 40)};
 }
 
 /// The real path lies beside the simulated one: 0.05 m in trial 1, 0.08 m in trial 2.
-LoadedLog Logs(const std::string& path, Side side) {
-  LoadedLog log;
-  log.trajectory = test::StraightPath(0.7, 40);
-  if (side == Side::kReference) {
-    const double offset_m = path.find("real1") != path.npos ? 0.05 : 0.08;
-    log.trajectory = test::Moved(log.trajectory, {0.0, offset_m, 0.0});
-  }
-  return log;
+Recording Real(const Theta& theta, const std::string& trial) {
+  const double offset_m = trial == "1" ? 0.05 : 0.08;
+  return {.source = theta[0].text + "/" + theta[1].text + "_" + trial,
+          .trajectory = test::Moved(test::StraightPath(0.7, 40), {0.0, offset_m, 0.0})};
 }
 
 template <class Call>
@@ -77,10 +70,10 @@ TEST_CASE("A grid visits every combination once with the first parameter slowest
 }
 
 TEST_CASE("Every trial of every setting is a row with its gap") {
-  const SweepResult result = CompareLogs(Plan(), Logs);
+  const SweepResult result = CompareGrid(Plan(), Simulated, Real);
   REQUIRE(result.rows.size() == 8);
-  CHECK(result.rows[2].candidate == "ground/0.20_sim.csv");
-  CHECK(result.rows[3].reference == "ground/0.20_real2.csv");
+  CHECK(result.rows[2].candidate == "simulator");
+  CHECK(result.rows[3].reference == "ground/0.2_2");
   CHECK(result.rows[0].comparison.gap_m == Approx(0.05));
   CHECK_FALSE(result.rows[0].falsified);
   CHECK(result.rows[1].comparison.gap_m == Approx(0.08));
@@ -90,29 +83,45 @@ TEST_CASE("Every trial of every setting is a row with its gap") {
   CHECK(result.settings[0].noise_floor_m == Approx(0.03));
 }
 
-TEST_CASE("A missing log is a row with its status and not a smaller table") {
-  const auto source = [](const std::string& path, Side side) {
-    if (path == "ice/0.15_real2.csv") return LoadedLog{TrialStatus::kMissing, "no such file", {}};
-    return Logs(path, side);
+TEST_CASE("A trial without a trajectory is a row with its status and not a smaller table") {
+  const auto reference = [](const Theta& theta, const std::string& trial) {
+    Recording real = Real(theta, trial);
+    if (real.source == "ice/0.15_2")
+      real = {TrialStatus::kMissing, "no such file", real.source, {}};
+    return real;
   };
-  const SweepResult result = CompareLogs(Plan(), source);
+  const auto candidate = [](const Theta& theta, const std::string& trial, const Recording& real) {
+    Recording simulated = Simulated(theta, trial, real);
+    if (real.source == "ice/0.2_1") simulated.status = TrialStatus::kFell;
+    return simulated;
+  };
+  const SweepResult result = CompareGrid(Plan(), candidate, reference);
   REQUIRE(result.rows.size() == 8);
   CHECK(result.rows[5].status == TrialStatus::kMissing);
-  CHECK(result.rows[5].reason == "ice/0.15_real2.csv: no such file");
-  CHECK(result.all.n == 7);
-  CHECK(result.all.not_ok == 1);
+  CHECK(result.rows[5].reason == "ice/0.15_2: no such file");
+  CHECK(result.rows[6].status == TrialStatus::kFell);
+  CHECK(result.all.n == 6);
+  CHECK(result.all.not_ok == 2);
   CHECK(std::isnan(result.settings[2].noise_floor_m));
 }
 
+TEST_CASE("A candidate can start where its reference did") {
+  const auto follower = [](const Theta&, const std::string&, const Recording& real) {
+    return Recording{.source = "follower", .trajectory = real.trajectory};
+  };
+  CHECK(CompareGrid(Plan(), follower, Real).all.mean_gap_m == 0.0);
+}
+
 TEST_CASE("A parameter that no path names is refused") {
-  LogSweepPlan plan = Plan();
+  const LogPaths paths{"{surface}/{v_min}_sim.csv", "{surface}/{v_min}_{trial}.csv"};
+  CHECK_NOTHROW(CheckPaths(Plan(), paths));
+  GridPlan plan = Plan();
   plan.parameters.push_back({.key = "v_max", .levels = {{"0.3", 0.3}}});
-  CHECK(Refusal([&] { CompareLogs(plan, Logs); }) ==
+  CHECK(Refusal([&] { CheckPaths(plan, paths); }) ==
         "space.v_max is named in neither candidate.path nor reference.path as {v_max}");
-  plan = Plan();
-  plan.reference_path = "{surface}/{v_min}.csv";
-  CHECK(Refusal([&] { CompareLogs(plan, Logs); }) ==
-        "reference.trials asks for repeats, and no path names {trial} to tell them apart");
+  CHECK(Refusal([&] {
+          CheckPaths(Plan(), {paths.candidate, "{surface}/{v_min}.csv"});
+        }) == "reference.trials asks for repeats, and no path names {trial} to tell them apart");
 }
 
 }  // namespace

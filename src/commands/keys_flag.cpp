@@ -1,0 +1,18 @@
+#include "keys_flag.hpp"
+
+#include <fmt/format.h>
+
+#include "rift/config/experiment.hpp"
+
+namespace rift::commands {
+
+void AddKeysFlag(CLI::App& app) {
+  const auto list_and_end = [] {
+    fmt::print("{}", config::DescribeKeys());
+    throw CLI::Success();
+  };
+  app.add_flag_callback("--keys", list_and_end, "list every key of an experiment and end")
+      ->trigger_on_parse();
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "files.hpp"
+#include "keys_flag.hpp"
+#include "rift/commands/command.hpp"
+#include "rift/trajectory/log.hpp"
+#include "simulate_output.hpp"
+#include "simulated_runs.hpp"
+
+namespace rift::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SimulateRequest {
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::string start;
+  std::optional<std::uint64_t> seed;
+  std::string out;
+  bool json = false;
+};
+
+/// `-0.28,-0.06,10`: metres, metres, degrees.
+void PutStart(const std::string& text, control::Waypoint& start) {
+  std::array<double, 3> values{};
+  const char *at = text.data(), *end = text.data() + text.size();
+  for (size_t i = 0; i < values.size(); ++i) {
+    const auto [stop, error] = std::from_chars(at, end, values[i]);
+    const bool last = i + 1 == values.size();
+    const bool ends_well = last ? stop == end : stop != end && *stop == ',';
+    if (error != std::errc{} || !ends_well || !std::isfinite(values[i])) {
+      throw std::invalid_argument(
+          fmt::format("--start '{}': give X,Y,YAW_DEG, such as -0.28,-0.06,10", text));
+    }
+    at = stop + 1;
+  }
+  start.x_m = values[0];
+  start.y_m = values[1];
+  start.heading_deg = values[2];
+}
+
+/// The start and the seed become part of the experiment, so that what is saved is what was run.
+config::Experiment LoadFor(const SimulateRequest& request) {
+  config::Experiment experiment =
+      config::LoadExperiment(request.experiment, request.overrides,
+                             [](const std::string& path) { return ReadFile(path); });
+  if (request.seed) experiment.seed = *request.seed;
+  if (!request.start.empty()) {
+    if (experiment.waypoints.empty()) experiment.waypoints.emplace_back();
+    PutStart(request.start, experiment.waypoints.front());
+  }
+  return experiment;
+}
+
+/// DIR/trajectory.csv, DIR/summary.json ...; or, where a CSV file was named, FILE.csv with
+/// FILE.summary.json ... beside it.
+struct RunFiles {
+  explicit RunFiles(const fs::path& out) {
+    const bool is_file = out.extension() == ".csv";
+    const std::string stem = is_file ? fs::path(out).replace_extension().string() + "." : "";
+    trajectory = is_file ? out : out / "trajectory.csv";
+    for (const auto& [path, name] : {std::pair{&truth, "truth.csv"},
+                                     {&commands, "commands.csv"},
+                                     {&experiment, "experiment.yaml"},
+                                     {&summary, "summary.json"}}) {
+      *path = is_file ? fs::path(stem + name) : out / name;
+    }
+  }
+
+  fs::path trajectory, truth, commands, experiment, summary;
+};
+
+void Save(const fs::path& out, const config::Experiment& experiment,
+          const sweep::SimulatedRun& run) {
+  const RunFiles files(out);
+  WriteFile(files.experiment, config::WriteExperiment(experiment));
+  WriteFile(files.truth, trajectory::WriteRift(run.truth));
+  WriteFile(files.commands, CommandsCsv(run.result));
+  WriteFile(files.summary, SimulationJson(experiment, run));
+  WriteFile(files.trajectory, trajectory::WriteRift(run.result.trajectory));
+}
+
+}  // namespace
+
+void AddSimulate(CLI::App& app, int& exit_code) {
+  const auto request = std::make_shared<SimulateRequest>();
+  app.add_option("EXPERIMENT", request->experiment, "YAML file with at least the waypoints")
+      ->required();
+  app.add_option("--set", request->overrides, "sets one key, such as control.v_min=0.2")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--start", request->start, "where the robot stands, instead of the first waypoint")
+      ->type_name("X,Y,YAW_DEG");
+  app.add_option("--seed", request->seed, "of all random numbers, instead of the file's");
+  app.add_option("--out", request->out,
+                 "where the log goes; its commands, true path, experiment and summary go beside it "
+                 "[out/NAME]")
+      ->type_name("FILE.csv|DIR");
+  AddKeysFlag(app);
+  app.add_flag("--json", request->json, "print the summary as JSON instead of text");
+  app.footer(
+      "Ends with 1 when the robot does not reach the last waypoint.\n"
+      "Example: rift simulate configs/waypoints/paper.yaml --seed 7 --out sim.csv");
+  app.callback([request, &exit_code] {
+    const config::Experiment experiment = LoadFor(*request);
+    sweep::SimulatedTrial trial = TrialOf(experiment, {}, experiment.seed, request->experiment);
+    trial.start = control::StartPose(experiment.waypoints);
+    const sweep::SimulatedRun run = sweep::Simulate(trial);
+    const fs::path out =
+        request->out.empty() ? fs::path("out") / experiment.name : fs::path(request->out);
+    Save(out, experiment, run);
+    fmt::print("{}",
+               request->json ? SimulationJson(experiment, run) : SimulationText(experiment, run));
+    exit_code = run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;
+  });
+}
+
+}  // namespace rift::commands

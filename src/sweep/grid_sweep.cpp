@@ -1,0 +1,92 @@
+#include "rift/sweep/grid_sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "rift/sweep/grid.hpp"
+#include "rift/sweep/path_template.hpp"
+#include "rift/sweep/statistics.hpp"
+
+namespace rift::sweep {
+namespace {
+
+void Fail(TrialRow& row, const Recording& recording) {
+  row.status = recording.status;
+  // A reader's message begins with the path already.
+  const bool is_named = recording.reason.find(recording.source) != recording.reason.npos;
+  row.reason =
+      is_named ? recording.reason : fmt::format("{}: {}", recording.source, recording.reason);
+}
+
+TrialRow CompareTrial(const GridPlan& plan, TrialRow row, const Recording& candidate,
+                      const Recording& reference) {
+  row.candidate = candidate.source;
+  row.reference = reference.source;
+  if (reference.status != TrialStatus::kOk) {
+    Fail(row, reference);
+  } else if (candidate.status != TrialStatus::kOk) {
+    Fail(row, candidate);
+  } else {
+    row.comparison = gap::Compare(candidate.trajectory, reference.trajectory, plan.gap);
+    row.falsified = row.comparison.gap_m > plan.gap.threshold_m;
+  }
+  return row;
+}
+
+/// All trials of one setting, appended to the rows; returns how far its references are apart.
+double CompareSetting(const GridPlan& plan, const Theta& theta, const Candidate& candidate,
+                      const Reference& reference, std::vector<TrialRow>& rows) {
+  std::vector<trajectory::Trajectory> references;
+  for (const std::string& trial : plan.trials) {
+    Recording real = reference(theta, trial);
+    const Recording simulated = candidate(theta, trial, real);
+    rows.push_back(CompareTrial(plan, {.theta = theta, .trial = trial}, simulated, real));
+    if (real.status == TrialStatus::kOk) references.push_back(std::move(real.trajectory));
+  }
+  return gap::NoiseFloor_m(references, plan.gap);
+}
+
+bool Has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+void CheckPaths(const GridPlan& plan, const LogPaths& paths) {
+  std::vector<std::string> names = TemplateNames(paths.candidate);
+  const std::vector<std::string> more = TemplateNames(paths.reference);
+  names.insert(names.end(), more.begin(), more.end());
+  for (const Parameter& parameter : plan.parameters) {
+    if (Has(names, parameter.Name())) continue;
+    throw std::invalid_argument(
+        fmt::format("space.{} is named in neither candidate.path nor reference.path as {{{}}}",
+                    parameter.key, parameter.Name()));
+  }
+  if (plan.trials.size() > 1 && !Has(names, "trial")) {
+    throw std::invalid_argument(
+        "reference.trials asks for repeats, and no path names {trial} to tell them apart");
+  }
+}
+
+SweepResult CompareGrid(const GridPlan& plan, const Candidate& candidate,
+                        const Reference& reference) {
+  SweepResult result;
+  result.name = plan.name;
+  result.candidate_kind = plan.candidate_kind;
+  result.reference_kind = plan.reference_kind;
+  result.gap = plan.gap;
+  result.parameters = plan.parameters;
+  std::vector<double> noise_floors_m;
+  for (const Theta& theta : GridPoints(plan.parameters)) {
+    noise_floors_m.push_back(CompareSetting(plan, theta, candidate, reference, result.rows));
+  }
+  Summarise(result);
+  for (size_t i = 0; i < noise_floors_m.size(); ++i) {
+    result.settings[i].noise_floor_m = noise_floors_m[i];
+  }
+  return result;
+}
+
+}  // namespace rift::sweep

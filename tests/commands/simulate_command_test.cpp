@@ -1,0 +1,100 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "support/process.hpp"
+#include "support/trials.hpp"
+
+namespace rift {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::ProcessResult;
+using test::RunRift;
+
+const std::string kTask = RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml";
+
+TEST_CASE("rift simulate reaches the paper's waypoints and leaves a whole run behind") {
+  const test::TemporaryFolder folder;
+  const ProcessResult result = RunRift({"simulate", kTask, "--out", folder / "sim.csv", "--json"});
+  REQUIRE(result.exit_code == 0);
+  CHECK(result.err.empty());
+  const json summary = json::parse(result.out);
+  CHECK(summary["outcome"] == "reached");
+  CHECK(summary["waypoints"].size() == 3);
+  CHECK(summary["waypoints"][2]["closest_m"].get<double>() < 0.06);
+  const trajectory::Trajectory log =
+      test::LoadTrajectory(folder / "sim.csv", trajectory::Format::kRift);
+  CHECK(log.HasYaw());
+  CHECK(log.poses.size() > 30);
+  for (const char* name :
+       {"sim.truth.csv", "sim.commands.csv", "sim.experiment.yaml", "sim.summary.json"}) {
+    INFO(name);
+    CHECK(fs::file_size(folder / name) > 100);
+  }
+}
+
+TEST_CASE("The same seed gives the same bytes and another seed another log") {
+  const test::TemporaryFolder folder;
+  for (const std::string name : {"a", "b"}) {
+    REQUIRE(RunRift({"simulate", kTask, "--seed", "7", "--out", folder / name}).exit_code == 0);
+  }
+  REQUIRE(RunRift({"simulate", kTask, "--seed", "8", "--out", folder / "c"}).exit_code == 0);
+  for (const char* name :
+       {"/trajectory.csv", "/truth.csv", "/commands.csv", "/summary.json", "/experiment.yaml"}) {
+    INFO(name);
+    CHECK(test::ReadFile(folder / "a" + name) == test::ReadFile(folder / "b" + name));
+  }
+  CHECK(test::ReadFile(folder / "a/trajectory.csv") != test::ReadFile(folder / "c/trajectory.csv"));
+}
+
+TEST_CASE("A saved experiment repeats its run with start and seed and overrides") {
+  const test::TemporaryFolder folder;
+  REQUIRE(RunRift({"simulate", kTask, "--seed", "7", "--start", "-0.25,-0.05,12", "--set",
+                   "control.v_min=0.2", "--out", folder / "a"})
+              .exit_code == 0);
+  REQUIRE(RunRift({"simulate", folder / "a/experiment.yaml", "--out", folder / "b"}).exit_code ==
+          0);
+  CHECK(test::ReadFile(folder / "a/trajectory.csv") == test::ReadFile(folder / "b/trajectory.csv"));
+  const trajectory::Trajectory truth =
+      test::LoadTrajectory(folder / "a/truth.csv", trajectory::Format::kRift);
+  CHECK(truth.poses.front().x_m == Approx(-0.25));
+  CHECK(truth.poses.front().y_m == Approx(-0.05));
+}
+
+TEST_CASE("A robot that cannot get there ends with 1 and says why") {
+  const test::TemporaryFolder folder;
+  const ProcessResult result =
+      RunRift({"simulate", kTask, "--set", "trial.timeout_s=1", "--out", folder / "out", "--json"});
+  CHECK(result.exit_code == 1);
+  CHECK(json::parse(result.out)["outcome"] == "timed_out");
+  CHECK(fs::exists(folder / "out/trajectory.csv"));
+}
+
+TEST_CASE("A bad experiment is refused with its place and nothing is written") {
+  const test::TemporaryFolder folder;
+  const auto refusal = [&](const std::string& text, std::vector<std::string> more = {}) {
+    test::WriteText(folder / "bad.yaml", text);
+    std::vector<std::string> arguments{"simulate", folder / "bad.yaml", "--out", folder / "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProcessResult result = RunRift(arguments);
+    CHECK(result.exit_code == 2);
+    CHECK_FALSE(fs::exists(folder / "out"));
+    const size_t at = result.err.find("bad.yaml");
+    return at == std::string::npos ? result.err : result.err.substr(at);
+  };
+  const std::string task = "waypoints: [{x: 0, y: 0}, {x: 0.5, y: 0}]\n";
+  CHECK(refusal(task + "simulation: {body: {chassis_mass_kg: 0}}\n").starts_with("bad.yaml:2:38"));
+  CHECK(refusal(task + "simulation: {step_s: -1}\n").starts_with("bad.yaml:2:22"));
+  CHECK(refusal("waypoints: [{x: 0, y: 0}, {x: .nan, y: 0}]\n").starts_with("bad.yaml:1:31"));
+  CHECK(refusal(task + "simulation: {terrain: {surfaces: {ground: {mu: -0.1}}}}\n")
+            .starts_with("bad.yaml:2:48"));
+  CHECK(refusal(task + "simulation: {terrain: {surface: grund}}\n").starts_with("bad.yaml:2:"));
+  CHECK(refusal("{}\n").starts_with("bad.yaml: "));
+  CHECK(refusal(task, {"--start", "1,2"}).find("--start '1,2': give X,Y,YAW_DEG") !=
+        std::string::npos);
+}
+
+}  // namespace
+}  // namespace rift

@@ -1,0 +1,158 @@
+#include "rift/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "report/synthetic_sweep.hpp"
+
+namespace rift::report {
+namespace {
+
+using Catch::Matchers::Contains;
+using nlohmann::json;
+
+/// What stands before the first script: the words of the page.
+std::string Words(const std::string& page) { return page.substr(0, page.find("<script")); }
+
+std::string Escaped(std::string text) {
+  const std::size_t at = text.find('<');
+  return at == std::string::npos ? text : text.replace(at, 1, "&lt;");
+}
+
+json Data(const std::string& page) {
+  const std::string open = R"(<script type="application/json" id="page-data">)";
+  const std::size_t begin = page.find(open) + open.size();
+  return json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+TEST_CASE("The first screen answers from the data") {
+  const sweep::SweepResult result = synthetic::Grid();
+  const std::string words = Words(RenderPage(result));
+  // 24 trials, one lost; the 8 on rock have 0.066 and 0.074 m, all above 0.06.
+  CHECK_THAT(words, Contains("It fails: 8 of 23 measured trials exceed 0.06 m (35 %)"));
+  CHECK_THAT(words, Contains("Most often at surface rock (8 of 8 trials), least often at ice (0 of "
+                             "7 trials)."));
+  CHECK_THAT(words, Contains("The largest gap, 0.0740 m, is rock [0.15, 0.30], trial 2, at u = "
+                             "0.75"));
+  CHECK_THAT(words, Contains("Of 12 settings, 4 falsified, 8 not falsified and 0 undecided"));
+  CHECK_THAT(words, Contains("between 16 % and 100 %") || Contains("between 0 % and 84 %"));
+  CHECK_THAT(words, Contains("Without a gap: 1 of 24 trials (1 missing)."));
+  CHECK_THAT(words, Contains("1 setting judged by fewer repeats than asked for."));
+  CHECK_THAT(words, Contains("ice [0.15, 0.30], trial 2: missing – no file real2.csv"));
+}
+
+TEST_CASE("Each parameter's effect stands on the page in the words of the statistics") {
+  const sweep::SweepResult result = synthetic::Grid();
+  const std::string words = Words(RenderPage(result));
+  REQUIRE(result.effects.size() == 3);
+  for (const sweep::Effect& effect : result.effects) {
+    CHECK_THAT(words, Contains(effect.parameter + ": " + Escaped(effect.sentence)));
+  }
+  CHECK(result.effects[0].detected);
+  CHECK_THAT(words, Contains("v_max: no effect found (p = "));
+}
+
+TEST_CASE("The gap stands beside the noise floor and the share of the start pose") {
+  const sweep::SweepResult result = synthetic::Grid();
+  const double mean_m = result.all.mean_gap_m;
+  const std::string words = Words(RenderPage(result));
+  CHECK_THAT(words, Contains(fmt::format("0.0200 m apart from each other (noise floor, mean of 12 "
+                                         "settings); the mean gap to the candidate is {:.4f} m, "
+                                         "{:.2f} times that",
+                                         mean_m, mean_m / 0.02)));
+  CHECK_THAT(words, Contains(fmt::format("Mean gap {:.4f} m; with the first points laid together "
+                                         "{:.4f} m (-20 %); {:.4f} m is shape",
+                                         mean_m, 0.8 * mean_m, 0.5 * mean_m)));
+}
+
+TEST_CASE("Disagreeing repeats are counted as undecided") {
+  sweep::SweepResult result = synthetic::Grid();
+  for (auto& row : result.rows) {
+    if (!row.IsOk()) continue;
+    row.comparison.gap_m += 0.01;
+    row.falsified = row.comparison.gap_m > 0.06;
+  }
+  sweep::Summarise(result);
+  CHECK_THAT(Words(RenderPage(result)),
+             Contains("4 falsified, 4 not falsified and 4 undecided because the repeats disagree"));
+}
+
+TEST_CASE("A sweep that holds says so") {
+  sweep::SweepResult result = synthetic::Grid({"ice"});
+  CHECK_THAT(Words(RenderPage(result)),
+             Contains("No failure: none of 7 measured trials exceeds 0.06 m"));
+}
+
+TEST_CASE("A sweep without a single gap claims nothing") {
+  sweep::SweepResult result = synthetic::Grid();
+  for (auto& row : result.rows) synthetic::LoseGap(&row, "gone");
+  sweep::Summarise(result);
+  for (auto& setting : result.settings) setting.noise_floor_m = gap::kNotComputed;
+  const std::string page = RenderPage(result);
+  CHECK_THAT(Words(page), Contains("Not known whether it fails: no trial has a gap."));
+  CHECK_THAT(Words(page), Contains("12 settings undecided because no repeat has a gap."));
+  CHECK_THAT(Words(page), !Contains("nan"));
+  CHECK(Data(page)["charts"].empty());
+}
+
+TEST_CASE("Names cannot become markup") {
+  const std::string hostile = "</script><script>alert('x')</script><!-- \"ü\" & {{name}}";
+  sweep::SweepResult result = synthetic::Grid({"ice", hostile, "rock"});
+  result.name = hostile;
+  synthetic::LoseGap(&result.rows[9], hostile);
+  sweep::Summarise(result);
+  const std::string page = RenderPage(result);
+  CHECK_THAT(page, !Contains("<script>alert") && !Contains("<!-- \""));
+  CHECK_THAT(page, Contains("&lt;script&gt;alert"));
+  CHECK(Data(page)["trials"]["rows"][8][0] == hostile);
+}
+
+TEST_CASE("Bytes that are no text do not break the page") {
+  sweep::SweepResult result = synthetic::Grid({"ice", "bad\xff\xfe", "rock"});
+  result.name = "bad\xff";
+  CHECK_THAT(RenderPage(result), !Contains("\xff"));
+}
+
+TEST_CASE("The page asks for no other file") {
+  const std::string page = RenderPage(synthetic::Grid());
+  for (const char* reference : {"src=", "sourceMappingURL", "@import", "url(", "<iframe"}) {
+    INFO(reference);
+    CHECK_THAT(Words(page), !Contains(reference));
+  }
+  CHECK_THAT(page, !Contains("sourceMappingURL"));
+  CHECK_THAT(page, Contains("default-src 'none'"));
+}
+
+TEST_CASE("The same result gives the same page") {
+  CHECK(RenderPage(synthetic::Grid()) == RenderPage(synthetic::Grid()));
+}
+
+TEST_CASE("The tables hold every trial and setting with numbers as numbers") {
+  const sweep::SweepResult result = synthetic::Grid();
+  const json data = Data(RenderPage(result));
+  CHECK(data["trials"]["rows"].size() == result.rows.size());
+  CHECK(data["settings"]["rows"].size() == result.settings.size());
+  const json& columns = data["trials"]["columns"];
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i]["title"] != "gap (m)") continue;
+    CHECK(data["trials"]["rows"][0][i] == result.rows[0].comparison.gap_m);
+    CHECK(data["trials"]["rows"][1][i].is_null());
+  }
+}
+
+TEST_CASE("Of many thousand trials the worst are shown and the page says so") {
+  const std::string page = RenderPage(synthetic::Continuous(8000));
+  const json data = Data(page);
+  CHECK(data["trials"]["rows"].size() == 2000);
+  CHECK_THAT(Words(page), Contains("The worst 2000 of 8000 trials"));
+  CHECK(page.size() < 3'000'000);
+  double least_m = 1.0;
+  for (const json& row : data["trials"]["rows"]) least_m = std::min(least_m, row[4].get<double>());
+  CHECK(least_m == Approx(0.08 - 0.06 * 2000 / 8000).margin(1e-4));
+}
+
+}  // namespace
+}  // namespace rift::report
