@@ -57,8 +57,7 @@ double Weave_m(const std::vector<Eigen::Vector2d>& points) {
 
 double YawScatter_rad(const trajectory::Trajectory& log) {
   std::vector<double> yaw;
-  for (size_t i = FirstMoving(log); i < log.poses.size(); ++i)
-    yaw.push_back(log.poses[i].yaw_rad);
+  for (size_t i = FirstMoving(log); i < log.poses.size(); ++i) yaw.push_back(log.poses[i].yaw_rad);
   const double mean = Mean(yaw);
   for (double& value : yaw) value = (value - mean) * (value - mean);
   return std::sqrt(Mean(yaw));
@@ -96,6 +95,10 @@ bool Missed(const trial::TrialResult& run) {
                      [](const trial::WaypointVisit& visit) { return !visit.reached_s; });
 }
 
+bool BothReached(const trial::TrialResult& a, const trial::TrialResult& b) {
+  return a.outcome == trial::Outcome::kReached && b.outcome == trial::Outcome::kReached;
+}
+
 }  // namespace
 
 PathTraits TraitsOf(const trajectory::Trajectory& log,
@@ -109,17 +112,6 @@ PathTraits TraitsOf(const trajectory::Trajectory& log,
   traits.first_motion_s = log.poses[FirstMoving(log)].t_s - log.poses[0].t_s;
   traits.delay = trial::EstimateLoopDelay(log, waypoints, control);
   return traits;
-}
-
-geometry::Pose2 StartOfTag(const trajectory::Trajectory& log) {
-  std::vector<double> x, y, yaw;
-  const size_t moving = std::max<size_t>(1, FirstMoving(log));
-  for (size_t i = 0; i < moving; ++i) {
-    x.push_back(log.poses[i].x_m);
-    y.push_back(log.poses[i].y_m);
-    yaw.push_back(log.poses[i].yaw_rad);
-  }
-  return {Median(x), Median(y), Median(yaw)};
 }
 
 double GapBetween(const trajectory::Trajectory& a, const trajectory::Trajectory& b) {
@@ -150,7 +142,8 @@ void Simulate(const GridStudy& study, int seeds, std::vector<GridPair>& pairs) {
     simulation::SimulationOptions options = study.simulation;
     options.terrain.surface = pair.files.surface;
     const geometry::Pose2 tag_in_robot{options.mocap.tag_ahead_m, 0.0, 0.0};
-    const geometry::Pose2 start = StartOfTag(pair.real) * geometry::Inverse(tag_in_robot);
+    const geometry::Pose2 start =
+        trajectory::StandingPose(pair.real) * geometry::Inverse(tag_in_robot);
     for (int seed = 1; seed <= seeds; ++seed) {
       simulation::SimulatedRobot robot(options, start, 1000 * number + seed);
       pair.runs.push_back(trial::RunTrial(robot, study.waypoints, pair.control, study.trial));
@@ -172,13 +165,14 @@ GridSummary Summarise(const std::vector<GridPair>& pairs, const std::string& gro
     if (!group.empty() && pair.files.surface != group && pair.files.v_min != group) continue;
     settings[pair.files.webots.string()].push_back(&pair);
     real.push_back(pair.real_traits);
-    runs.insert(runs.end(), pair.run_traits.begin(), pair.run_traits.end());
-    gaps_m.insert(gaps_m.end(), pair.gaps_m.begin(), pair.gaps_m.end());
     for (size_t i = 0; i < pair.runs.size(); ++i) {
       ++summary.runs;
-      summary.reached += pair.runs[i].outcome == trial::Outcome::kReached;
       summary.missed += Missed(pair.runs[i]);
       summary.circled += pair.run_traits[i].length_m > 1.5 * longest_m;
+      if (pair.runs[i].outcome != trial::Outcome::kReached) continue;
+      ++summary.reached;
+      gaps_m.push_back(pair.gaps_m[i]);
+      runs.push_back(pair.run_traits[i]);
       speed_ratios.push_back(pair.run_traits[i].speed_mps / pair.real_traits.speed_mps);
     }
   }
@@ -187,6 +181,7 @@ GridSummary Summarise(const std::vector<GridPair>& pairs, const std::string& gro
       for (size_t b = a + 1; b < repeats.size(); ++b) {
         real_spreads_m.push_back(GapBetween(repeats[a]->real, repeats[b]->real));
         for (size_t i = 0; i < repeats[a]->runs.size(); ++i) {
+          if (!BothReached(repeats[a]->runs[i], repeats[b]->runs[i])) continue;
           spreads_m.push_back(
               GapBetween(repeats[a]->runs[i].trajectory, repeats[b]->runs[i].trajectory));
         }
@@ -208,7 +203,8 @@ GridSummary Summarise(const std::vector<GridPair>& pairs, const std::string& gro
   summary.real_weave_m = MeanOf(real, weave), summary.weave_m = MeanOf(runs, weave);
   summary.real_yaw_rad = MeanOf(real, yaw), summary.yaw_rad = MeanOf(runs, yaw);
   summary.real_length_m = MeanOf(real, length), summary.length_m = MeanOf(runs, length);
-  summary.real_first_motion_s = MedianOf(real, first), summary.first_motion_s = MedianOf(runs, first);
+  summary.real_first_motion_s = MedianOf(real, first),
+  summary.first_motion_s = MedianOf(runs, first);
   summary.real_spread_m = Mean(real_spreads_m), summary.spread_m = Mean(spreads_m);
   return summary;
 }

@@ -42,10 +42,6 @@ PathTraits TraitsOf(const trajectory::Trajectory& log,
                     const std::vector<control::Waypoint>& waypoints,
                     const control::NavigatorOptions& control);
 
-/// Where the log says the tag stood before the robot moved: the medians of its standing rows,
-/// since a tag seen from above flips between two poses that explain the picture equally well.
-geometry::Pose2 StartOfTag(const trajectory::Trajectory& log);
-
 /// One real trial and its simulated twins, one for each seed.
 struct GridPair {
   TrialPair files;
@@ -65,7 +61,8 @@ std::vector<GridPair> LoadGrid(const GridStudy& study);
 /// Starts the robot where each real trial started and drives it once for each seed from 1 on.
 void Simulate(const GridStudy& study, int seeds, std::vector<GridPair>& pairs);
 
-/// A group of pairs in one line.
+/// A group of pairs in one line; all but the counts are of the runs that reached the end, as all
+/// real trials did.
 struct GridSummary {
   size_t runs = 0;
   size_t reached = 0;
