@@ -8,7 +8,7 @@
 #include <cstring>
 #include <exception>
 
-#include "benchmarks/grid_study.hpp"
+#include "identification/grid_study.hpp"
 #include "rift/config/bind.hpp"
 #include "rift/config/load.hpp"
 #include "rift/config/tree.hpp"
@@ -88,7 +88,8 @@ struct Change {
 /// as a fixed delay, so that the mechanism is told from its delay.
 std::vector<Change> Changes() {
   const std::string link = "simulation.link.", motor = "simulation.motor.",
-                    mocap = "simulation.mocap.", body = "simulation.body.";
+                    mocap = "simulation.mocap.", body = "simulation.body.",
+                    terrain = "simulation.terrain.surfaces.";
   const std::vector<std::string> still{mocap + "noise_across_m=0", mocap + "blur_across_s=0",
                                        mocap + "noise_along_m=0",  mocap + "noise_yaw_rad=0",
                                        mocap + "frame_jitter_s=0", mocap + "blur_yaw_rad_per_mps=0",
@@ -104,11 +105,15 @@ std::vector<Change> Changes() {
       {"a fifth of the lines lost", {link + "line_loss=0.2"}},
       {"1 byte in 100 lost", {link + "byte_loss=0.01"}},
       {"powers not rounded", {link + "two_decimals=false"}},
-      {"motor lag 50 ms", {motor + "lag_s=0.05"}},
+      {"no motor lag", {motor + "lag_s=0"}},
+      {"motor lag 60 ms", {motor + "lag_s=0.06"}},
       {"no dead band", {motor + "dead_band=0"}},
       {"dead band 0.14", {motor + "dead_band=0.14"}},
       {"motors alike", {motor + "mismatch=0"}},
-      {"caster drags, mu 0.05", {body + "caster_mu=0.05"}},
+      {"caster without friction", {body + "caster_mu=0"}},
+      {"grip 0.3 everywhere",
+       {terrain + "ground.mu=0.3", terrain + "cardboard.mu=0.3", terrain + "parchment.mu=0.3",
+        terrain + "downhill.mu=0.3"}},
       {"caster and weight behind", {body + "caster_ahead_m=-0.0404", body + "com_ahead_m=-0.008"}},
       {"no camera noise", still},
       {"deciding every 20 ms", {"trial.pace=every_period"}}};

@@ -1,4 +1,4 @@
-#include "benchmarks/grid_study.hpp"
+#include "identification/grid_study.hpp"
 
 #include <algorithm>
 #include <cmath>
