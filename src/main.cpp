@@ -49,6 +49,9 @@ int Run(int argc, char** argv) {
     if (asked_for_help) return app.exit(error);
     throw std::invalid_argument(error.what());
   }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw std::runtime_error("cannot write to stdout: the results are lost");
+  }
   return exit_code;
 }
 

@@ -15,6 +15,8 @@ report::FigureFormat FormatOf(const std::filesystem::path& path) {
 
 }  // namespace
 
+void RequireFigureName(const std::filesystem::path& path) { FormatOf(path); }
+
 void WriteFigure(const std::filesystem::path& path, const report::Figure& figure) {
   WriteFile(path, report::Render(figure, FormatOf(path)));
 }

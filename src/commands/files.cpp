@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -48,7 +49,24 @@ bool WriteWhole(const Descriptor& file, std::string_view text) {
   return true;
 }
 
+/// A pipe or a device cannot be renamed over; what goes there goes straight through.
+void WriteThrough(const std::filesystem::path& path, std::string_view text) {
+  const Descriptor file(path, O_WRONLY);
+  if (!file.IsOpen() || !WriteWhole(file, text)) CannotWrite(path);
+}
+
 }  // namespace
+
+std::filesystem::path OutputOf(const std::string& out, const std::string& name) {
+  if (!out.empty()) return out;
+  const bool is_plain =
+      !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;
+  if (!is_plain) {
+    throw std::invalid_argument(
+        fmt::format("the name of the experiment, '{}', is no folder name: say --out DIR", name));
+  }
+  return std::filesystem::path("out") / name;
+}
 
 std::string ReadFile(const std::filesystem::path& path) {
   const Descriptor file(path, O_RDONLY);
@@ -71,8 +89,18 @@ std::string ReadFile(const std::filesystem::path& path) {
   return text;
 }
 
-void WriteFile(const std::filesystem::path& path, std::string_view text) {
+void WriteFile(const std::filesystem::path& target, std::string_view text) {
   std::error_code error;
+  // Behind a link lies the file that is meant; without one the name stays as it is.
+  const std::filesystem::path path = std::filesystem::is_symlink(target, error)
+                                         ? std::filesystem::weakly_canonical(target, error)
+                                         : target;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    WriteThrough(path, text);
+    return;
+  }
+  error.clear();
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
   if (error) {
     throw std::runtime_error(

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
@@ -24,6 +26,18 @@ struct FlagName {
   std::string unit;  ///< empty for a pure number
 };
 
+/// CLI::Range lets a NaN through.
+inline CLI::Validator InRange(double min, double max) {
+  return CLI::Validator(
+      [min, max](const std::string& text) -> std::string {
+        double value = 0.0;
+        const bool is_number = CLI::detail::lexical_cast(text, value);
+        if (is_number && value >= min && value <= max) return "";
+        return fmt::format("'{}' must be a number in [{:g}, {:g}]", text, min, max);
+      },
+      fmt::format("in [{:g}, {:g}]", min, max));
+}
+
 /// Makes one flag for each field of an Options struct: the same keys, defaults, ranges and help
 /// as in the YAML file.
 class FlagMaker {
@@ -33,10 +47,9 @@ class FlagMaker {
   template <class Number>
   void operator()(std::string_view key, Number& value, auto min, auto max, const char* help) {
     const FlagName name(key);
-    CLI::Option* option =
-        app_.add_option(name.flag, value, help)
-            ->capture_default_str()
-            ->check(CLI::Range(static_cast<Number>(min), static_cast<Number>(max)));
+    CLI::Option* option = app_.add_option(name.flag, value, help)
+                              ->capture_default_str()
+                              ->check(InRange(static_cast<double>(min), static_cast<double>(max)));
     if (!name.unit.empty()) option->type_name(name.unit);
   }
 

@@ -2,9 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <future>
 #include <memory>
 
+#include "figure_file.hpp"
 #include "files.hpp"
 #include "flags.hpp"
 #include "gap_output.hpp"
@@ -70,6 +72,21 @@ void Save(const GapRequest& request, const GapEvidence& evidence) {
   fmt::print("{}", GapText(evidence));
 }
 
+/// What can be wrong with the outputs is said before anything is computed or written.
+void CheckOutputs(const GapRequest& request) {
+  if (!request.figure.empty()) RequireFigureName(request.figure);
+  std::vector<std::string> inputs = request.reals;
+  inputs.push_back(request.sim);
+  for (const std::string& output : {request.json, request.profile, request.figure}) {
+    for (const std::string& input : inputs) {
+      std::error_code not_there;
+      if (!output.empty() && std::filesystem::equivalent(output, input, not_there)) {
+        throw std::invalid_argument(fmt::format("{} is an input: name another output", output));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void AddGap(CLI::App& app, int& exit_code) {
@@ -94,6 +111,7 @@ void AddGap(CLI::App& app, int& exit_code) {
   app.footer(
       "Example: rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03");
   app.callback([request, &exit_code] {
+    CheckOutputs(*request);
     const GapEvidence evidence = Measure(*request);
     Save(*request, evidence);
     const bool falsified = evidence.verdict.verdict == gap::Verdict::kFalsified;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "json_fields.hpp"
@@ -71,9 +72,9 @@ double MeanOf(const GapEvidence& evidence, Member member) {
 /// a simulator would have to explain by its dynamics.
 std::string AttributionText(const GapEvidence& evidence) {
   return fmt::format(
-      "made of: {:.4f} m as measured, {:.4f} m with the starts laid together, {:.4f} m of shape "
-      "after the best rigid motion\n",
-      evidence.mean_gap_m, MeanOf(evidence, &Comparison::start_aligned_gap_m),
+      "left over: {:.4f} m of it with the starts laid together, {:.4f} m of shape after the best "
+      "rigid motion\n",
+      MeanOf(evidence, &Comparison::start_aligned_gap_m),
       MeanOf(evidence, &Comparison::shape_gap_m));
 }
 
@@ -115,11 +116,8 @@ void Judge(GapEvidence& evidence) {
 }
 
 std::string GapText(const GapEvidence& evidence) {
-  std::string text = fmt::format("gap: {}\n\n", gap::DefinitionText(evidence.options));
-  if (evidence.tag_offset_m != 0.0) {
-    text.insert(text.size() - 2,
-                fmt::format(", real path {:g} m ahead of the tag", evidence.tag_offset_m));
-  }
+  std::string text =
+      fmt::format("gap: {}\n\n", gap::DefinitionText(evidence.options, evidence.tag_offset_m));
   text += Table(evidence) + '\n';
   text += fmt::format("mean gap: {:.4f} m\n", evidence.mean_gap_m);
   if (!std::isnan(evidence.noise_floor_m)) {
@@ -135,7 +133,7 @@ std::string GapJson(const GapEvidence& evidence) {
   nlohmann::ordered_json json;
   json["definition"] = FieldsToJson(evidence.options);
   json["definition"]["tag_offset_m"] = evidence.tag_offset_m;
-  json["definition"]["text"] = gap::DefinitionText(evidence.options);
+  json["definition"]["text"] = gap::DefinitionText(evidence.options, evidence.tag_offset_m);
   json["trials"] = nlohmann::ordered_json::array();
   for (const auto& trial : evidence.trials) {
     nlohmann::ordered_json row{{"sim", evidence.sim_path}, {"real", trial.path}};
@@ -151,7 +149,7 @@ std::string GapJson(const GapEvidence& evidence) {
                      {"confidence", verdict.confidence},
                      {"share_above_low", verdict.share_low},
                      {"share_above_high", verdict.share_high}};
-  return json.dump(2) + '\n';
+  return Dump(json);
 }
 
 std::string ProfileCsv(const GapEvidence& evidence) {

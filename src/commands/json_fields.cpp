@@ -2,6 +2,10 @@
 
 namespace rift::commands {
 
+std::string Dump(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
 nlohmann::ordered_json ComparisonToJson(const gap::Comparison& comparison) {
   const gap::Comparison& c = comparison;
   return {{"gap_m", NumberOrNull(c.gap_m)},

@@ -2,10 +2,14 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "rift/gap/comparison.hpp"
 
 namespace rift::commands {
+
+/// Indented text; a file name that is no UTF-8 shows replacement characters.
+std::string Dump(const nlohmann::ordered_json& json);
 
 /// JSON has no NaN: what was not computed is null.
 inline nlohmann::ordered_json NumberOrNull(double value) {

@@ -15,9 +15,10 @@ const sweep::Recording& RecordedLogs::At(const std::string& path) {
 
 sweep::Recording RecordedLogs::Load(const std::string& path) {
   sweep::Recording recording{.source = path};
-  if (!std::filesystem::exists(path)) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
     recording.status = sweep::TrialStatus::kMissing;
-    recording.reason = "no such file";
+    recording.reason = error ? error.message() : "no such file";
     return recording;
   }
   try {

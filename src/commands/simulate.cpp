@@ -2,15 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "files.hpp"
 #include "keys_flag.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/config/set_value.hpp"
 #include "rift/trajectory/log.hpp"
 #include "simulate_output.hpp"
 #include "simulate_pictures.hpp"
@@ -25,41 +24,37 @@ struct SimulateRequest {
   std::string experiment;
   std::vector<std::string> overrides;
   std::string start;
-  std::optional<std::uint64_t> seed;
+  std::string seed;
   std::string out;
+  std::string tum;
   bool json = false;
   PictureRequest pictures;
 };
 
-/// `-0.28,-0.06,10`: metres, metres, degrees.
-void PutStart(const std::string& text, control::Waypoint& start) {
-  std::array<double, 3> values{};
-  const char *at = text.data(), *end = text.data() + text.size();
-  for (size_t i = 0; i < values.size(); ++i) {
-    const auto [stop, error] = std::from_chars(at, end, values[i]);
-    const bool last = i + 1 == values.size();
-    const bool ends_well = last ? stop == end : stop != end && *stop == ',';
-    if (error != std::errc{} || !ends_well || !std::isfinite(values[i])) {
-      throw std::invalid_argument(
-          fmt::format("--start '{}': give X,Y,YAW_DEG, such as -0.28,-0.06,10", text));
-    }
-    at = stop + 1;
+/// `-0.28,-0.06,10`: metres, metres, degrees; the schema of the waypoints says what is allowed.
+void PutStart(const std::string& text, config::Experiment& experiment) {
+  const std::vector<std::string> words = CLI::detail::split(text, ',');
+  if (words.size() != 3) {
+    throw std::invalid_argument(
+        fmt::format("--start '{}': give X,Y,YAW_DEG, such as -0.28,-0.06,10", text));
   }
-  start.x_m = values[0];
-  start.y_m = values[1];
-  start.heading_deg = values[2];
+  std::vector<config::KeyValue> values;
+  for (size_t i = 0; i < words.size(); ++i) {
+    config::Node value = config::Node::Scalar(words[i]);
+    value.origin.source = "--start";
+    constexpr std::array<const char*, 3> kKeys{"x", "y", "heading"};
+    values.push_back({fmt::format("waypoints[0].{}", kKeys[i]), value});
+  }
+  config::SetValues(experiment, values);
 }
 
 /// The start and the seed become part of the experiment, so that what is saved is what was run.
 config::Experiment LoadFor(const SimulateRequest& request) {
-  config::Experiment experiment =
-      config::LoadExperiment(request.experiment, request.overrides,
-                             [](const std::string& path) { return ReadFile(path); });
-  if (request.seed) experiment.seed = *request.seed;
-  if (!request.start.empty()) {
-    if (experiment.waypoints.empty()) experiment.waypoints.emplace_back();
-    PutStart(request.start, experiment.waypoints.front());
-  }
+  std::vector<std::string> overrides = request.overrides;
+  if (!request.seed.empty()) overrides.push_back("seed=" + request.seed);
+  config::Experiment experiment = config::LoadExperiment(
+      request.experiment, overrides, [](const std::string& path) { return ReadFile(path); });
+  if (!request.start.empty()) PutStart(request.start, experiment);
   return experiment;
 }
 
@@ -102,11 +97,13 @@ void AddSimulate(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   app.add_option("--start", request->start, "where the robot stands, instead of the first waypoint")
       ->type_name("X,Y,YAW_DEG");
-  app.add_option("--seed", request->seed, "of all random numbers, instead of the file's");
+  app.add_option("--seed", request->seed, "of all random numbers, instead of the file's")
+      ->type_name("N");
   app.add_option("--out", request->out,
                  "where the log goes; its commands, true path, experiment and summary go beside it "
                  "[out/NAME]")
       ->type_name("FILE.csv|DIR");
+  app.add_option("--tum", request->tum, "write the log for evo as well")->type_name("FILE.tum");
   AddPictureFlags(app, request->pictures);
   AddKeysFlag(app);
   app.add_flag("--json", request->json, "print the summary as JSON instead of text");
@@ -118,9 +115,11 @@ void AddSimulate(CLI::App& app, int& exit_code) {
     sweep::SimulatedTrial trial = TrialOf(experiment, {}, experiment.seed, request->experiment);
     trial.start = control::StartPose(experiment.waypoints);
     const sweep::SimulatedRun run = sweep::Simulate(trial);
-    const fs::path out =
-        request->out.empty() ? fs::path("out") / experiment.name : fs::path(request->out);
+    const fs::path out = OutputOf(request->out, experiment.name);
     Save(out, experiment, run);
+    if (!request->tum.empty()) {
+      WriteFile(request->tum, trajectory::WriteTum(run.result.trajectory));
+    }
     MakePictures(request->pictures, experiment, trial, run);
     fmt::print("{}",
                request->json ? SimulationJson(experiment, run) : SimulationText(experiment, run));

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "json_fields.hpp"
+
 namespace rift::commands {
 namespace {
 
@@ -62,7 +64,7 @@ std::string SimulationJson(const config::Experiment& experiment, const sweep::Si
     json["waypoints"].push_back(VisitJson(visit));
   }
   json["limits"] = LimitsJson(result.limits);
-  return json.dump(2) + '\n';
+  return Dump(json);
 }
 
 std::string SimulationText(const config::Experiment& experiment, const sweep::SimulatedRun& run) {

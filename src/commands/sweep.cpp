@@ -36,8 +36,8 @@ config::Experiment LoadFor(const SweepRequest& request) {
                                 [](const std::string& path) { return ReadFile(path); });
 }
 
-sweep::SweepResult Run(const SweepRequest& request, SweepSources& sources) {
-  const sweep::SweepResult result = sweep::CompareGrid(
+sweep::SweepResult Run(SweepSources& sources) {
+  return sweep::CompareGrid(
       sources.Plan(),
       [&](const sweep::Theta& theta, const std::string& trial, const sweep::Recording& reference) {
         return sources.Candidate(theta, trial, reference);
@@ -45,12 +45,25 @@ sweep::SweepResult Run(const SweepRequest& request, SweepSources& sources) {
       [&](const sweep::Theta& theta, const std::string& trial) {
         return sources.Reference(theta, trial);
       });
-  if (result.all.n == 0) {
-    throw std::invalid_argument(
-        fmt::format("{}: not one of {} trials could be compared; the first: {}", request.experiment,
-                    result.rows.size(), result.rows.front().reason));
-  }
-  return result;
+}
+
+/// What the process ends with when there is nothing to report on: logs that are not there are bad
+/// input, a robot that never arrives is a result.
+int EndWithoutGap(const SweepRequest& request, const sweep::SweepResult& result) {
+  const std::string message =
+      fmt::format("{}: not one of {} trials could be compared; the first: {}", request.experiment,
+                  result.rows.size(), result.rows.front().reason);
+  if (result.candidate_kind == "logs") throw std::invalid_argument(message);
+  fmt::print(stderr, "rift: {}\n", message);
+  return kNotReached;
+}
+
+void Save(const fs::path& out, const config::Experiment& experiment, const SweepSources& sources,
+          const sweep::SweepResult& result) {
+  WriteFile(out / "experiment.yaml", config::WriteExperiment(experiment));
+  WriteFile(out / "inputs.txt", sources.InputsText());
+  WriteFile(out / "table.csv", TableCsv(result));
+  WriteFile(out / "summary.json", SummaryJson(result));
 }
 
 }  // namespace
@@ -76,13 +89,13 @@ void AddSweep(CLI::App& app, int& exit_code) {
       fmt::print(stderr, "note: {} names no space: the paper's grid of surface, v_min and v_max\n",
                  request->experiment);
     }
-    const sweep::SweepResult result = Run(*request, sources);
-    const fs::path out =
-        request->out.empty() ? fs::path("out") / experiment.name : fs::path(request->out);
-    WriteFile(out / "experiment.yaml", config::WriteExperiment(experiment));
-    WriteFile(out / "inputs.txt", sources.InputsText());
-    WriteFile(out / "table.csv", TableCsv(result));
-    WriteFile(out / "summary.json", SummaryJson(result));
+    const sweep::SweepResult result = Run(sources);
+    const fs::path out = OutputOf(request->out, experiment.name);
+    Save(out, experiment, sources, result);
+    if (result.all.n == 0) {
+      exit_code = EndWithoutGap(*request, result);
+      return;
+    }
     WriteSweepReport(out, result, sources);
     fmt::print("{}", request->json ? SummaryJson(result) : SweepText(result));
     fmt::print(stderr, "report: {}\n", (out / "report.html").string());

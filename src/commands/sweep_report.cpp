@@ -24,11 +24,23 @@ std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
                              result.gap);
 }
 
+/// Figures of an earlier sweep into the same folder, which this one may not draw again.
+void RemoveFigures(const std::filesystem::path& folder) {
+  std::error_code no_folder;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, no_folder)) {
+    const std::string extension = entry.path().extension().string();
+    const bool is_ours = entry.path().filename().string().starts_with("fig") &&
+                         (extension == ".svg" || extension == ".png");
+    if (is_ours) std::filesystem::remove(entry.path());
+  }
+}
+
 }  // namespace
 
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
                       SweepSources& sources) {
   const report::SweepFigureSet set = report::SweepFigures(result, WorstPair(result, sources));
+  RemoveFigures(folder / "figures");
   for (const report::Figure& figure : set.figures) {
     const std::filesystem::path path = folder / "figures" / figure.name;
     WriteFile(path.string() + ".svg", report::Render(figure, report::FigureFormat::kSvg));

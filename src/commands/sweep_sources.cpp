@@ -67,7 +67,8 @@ sweep::GridPlan SweepSources::Plan() const {
           .reference_kind = NameOf(experiment_.reference.kind),
           .parameters = experiment_.space.parameters,
           .trials = experiment_.reference.trials.names,
-          .gap = experiment_.gap};
+          .gap = experiment_.gap,
+          .tag_offset_m = experiment_.reference.tag_offset_m};
 }
 
 /// Every setting meets the same random numbers (common random numbers), each repeat its own.
@@ -91,8 +92,13 @@ sweep::Recording SweepSources::Candidate(const sweep::Theta& theta, const std::s
   }
   const config::Experiment at = config::ExperimentAt(experiment_, theta);
   const double tag_offset_m = experiment_.reference.tag_offset_m;
-  const bool starts_as_reference =
-      experiment_.start == sweep::Start::kReference && reference.status == sweep::TrialStatus::kOk;
+  if (reference.status != sweep::TrialStatus::kOk) return reference;  // nothing to compare with
+  const bool starts_as_reference = experiment_.start == sweep::Start::kReference;
+  if (starts_as_reference && !reference.trajectory.HasYaw()) {
+    return {.status = sweep::TrialStatus::kUnreadable,
+            .reason = "start: reference needs its yaw: set reference.format",
+            .source = reference.source};
+  }
   const geometry::Pose2 start =
       starts_as_reference ? StartFromLog(reference.trajectory, tag_offset_m, at.simulation.mocap)
                           : control::StartPose(at.waypoints);

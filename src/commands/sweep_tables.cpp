@@ -102,9 +102,7 @@ std::string TableCsv(const sweep::SweepResult& result) {
   std::string text;
   for (const sweep::Parameter& parameter : result.parameters)
     text += CsvCell(parameter.Name()) + ',';
-  text +=
-      "trial,gap_m,falsified,status,u,exact_gap_m,mean_error_m,rms_error_m,start_offset_m,"
-      "start_aligned_gap_m,shape_gap_m,length_ratio,end_error_m,reason,candidate,reference\n";
+  text += fmt::format("{}\n", fmt::join(sweep::kFixedColumns, ","));
   for (const sweep::TrialRow& row : result.rows) text += RowCsv(row);
   return text;
 }
@@ -116,7 +114,8 @@ std::string SummaryJson(const sweep::SweepResult& result) {
   json["candidate"] = result.candidate_kind;
   json["reference"] = result.reference_kind;
   json["definition"] = FieldsToJson(result.gap);
-  json["definition"]["text"] = gap::DefinitionText(result.gap);
+  json["definition"]["tag_offset_m"] = result.tag_offset_m;
+  json["definition"]["text"] = gap::DefinitionText(result.gap, result.tag_offset_m);
   json.update(LevelJson(result.all));
   if (result.all.n > 0) json["attribution"] = AttributionJson(result);
   ordered_json& by = json["by"] = ordered_json::object();
@@ -135,7 +134,7 @@ std::string SummaryJson(const sweep::SweepResult& result) {
   for (const sweep::SettingResult& setting : result.settings) {
     json["settings"].push_back(SettingJson(result, setting));
   }
-  return json.dump(2) + '\n';
+  return Dump(json);
 }
 
 }  // namespace rift::commands

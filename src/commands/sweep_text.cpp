@@ -67,8 +67,9 @@ std::string NotOkText(const sweep::SweepResult& result) {
 }  // namespace
 
 std::string SweepText(const sweep::SweepResult& result) {
-  std::string text = fmt::format("gap: {}; above {:g} m falsifies\n\n",
-                                 gap::DefinitionText(result.gap), result.gap.threshold_m);
+  std::string text =
+      fmt::format("gap: {}; above {:g} m falsifies\n\n",
+                  gap::DefinitionText(result.gap, result.tag_offset_m), result.gap.threshold_m);
   if (!result.parameters.empty()) {
     const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
     text += LevelTable(result.parameters[split.main_factor].Name(),

@@ -24,6 +24,34 @@ void MakeAbsolute(sweep::PathTemplate& path) {
   path.text = std::filesystem::absolute(path.text).lexically_normal().string();
 }
 
+/// Keys that a simulated trial reads; an axis of any other would repeat the same rows.
+void RequireEffect(const sweep::Parameter& parameter) {
+  for (const std::string_view block : {"control.", "trial.", "simulation.", "waypoints"}) {
+    if (parameter.key.starts_with(block)) return;
+  }
+  throw Error(fmt::format("{} does not change a simulated trial; {}", parameter.key,
+                          parameter.key == "seed" ? "for repeats set reference.trials"
+                                                  : "vary keys of control, trial or simulation"));
+}
+
+/// The picture of a heightfield, like every path of a file, is relative to that file.
+void ResolveImages(Node& tree) {
+  Node* node = &tree;
+  for (const char* key : {"simulation", "terrain", "surfaces"}) {
+    Node::Entry* entry = node->Find(key);
+    if (entry == nullptr) return;
+    node = &entry->value;
+  }
+  for (Node::Entry& surface : node->entries) {
+    Node::Entry* image = surface.value.Find("image");
+    if (image == nullptr || !image->value.IsScalar() || image->value.text.empty()) continue;
+    sweep::PathTemplate path = Hook<sweep::PathTemplate>::FromNode(image->value);
+    MakeAbsolute(path);
+    image->value.text = path.text;
+    image->value.quoted = true;
+  }
+}
+
 /// A simulated parameter is any key of the experiment, by its full name or a short one that is
 /// unique; every value that it will take is tried now.
 void ResolveSpace(Experiment& experiment) {
@@ -31,6 +59,7 @@ void ResolveSpace(Experiment& experiment) {
   for (sweep::Parameter& parameter : experiment.space.parameters) {
     try {
       parameter.key = ResolveKey(parameter.key, keys);
+      RequireEffect(parameter);
     } catch (const Error& unknown) {
       throw Error(fmt::format("{}: space: {}", parameter.origin, unknown.what()));
     }
@@ -62,6 +91,7 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   for (const std::string& assignment : overrides) Merge(tree, ParseOverride(assignment));
   Experiment experiment;
   experiment.name = std::filesystem::path(path).stem().string();
+  ResolveImages(tree);
   Bind(tree, experiment);
   MakeAbsolute(experiment.candidate.path);
   MakeAbsolute(experiment.reference.path);

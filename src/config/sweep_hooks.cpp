@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 
 #include "rift/config/scalar.hpp"
@@ -66,6 +67,17 @@ sweep::Parameter ParameterFromEntry(const FlatEntry& entry) {
   return parameter;
 }
 
+/// Names that table.csv, or a path template, has for something else.
+void CheckIsNoColumn(const Node& node, const std::string& name) {
+  if (name == "trial") {
+    Fail(node, "space", "'trial' is the name of the repeats: see reference.trials");
+  }
+  for (const std::string_view column : sweep::kFixedColumns) {
+    if (name != column) continue;
+    Fail(node, "space", fmt::format("'{}' is a column of table.csv already", name));
+  }
+}
+
 /// Columns and path templates know a parameter by its last name.
 void CheckNames(const Node& node, const std::vector<sweep::Parameter>& parameters) {
   for (size_t i = 0; i < parameters.size(); ++i) {
@@ -75,9 +87,7 @@ void CheckNames(const Node& node, const std::vector<sweep::Parameter>& parameter
            fmt::format("{} and {} have the same last name '{}'", parameters[j].key,
                        parameters[i].key, parameters[i].Name()));
     }
-    if (parameters[i].Name() == "trial") {
-      Fail(node, "space", "'trial' is the name of the repeats: see reference.trials");
-    }
+    CheckIsNoColumn(node, parameters[i].Name());
   }
 }
 

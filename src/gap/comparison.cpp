@@ -191,7 +191,7 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
   return result;
 }
 
-std::string DefinitionText(const GapOptions& options) {
+std::string DefinitionText(const GapOptions& options, double tag_offset_m) {
   std::string text = fmt::format(
       "largest distance at equal normalised arc length u over {} samples", options.samples);
   if (options.skip_start > 0.0) {
@@ -200,6 +200,7 @@ std::string DefinitionText(const GapOptions& options) {
   if (options.align == Align::kStart) text += ", first points laid together";
   if (options.align == Align::kSe2) text += ", best rigid motion removed";
   if (options.trim_standstill) text += ", standstill trimmed";
+  if (tag_offset_m != 0.0) text += fmt::format(", real path {:g} m ahead of the tag", tag_offset_m);
   return text;
 }
 

@@ -108,7 +108,7 @@ std::string RenderPage(const sweep::SweepResult& result, const ReportOptions& op
   page.set("headline", PlainText(headline.sentence));
   page.set("headline_class", HeadlineClass(headline.outcome));
   page.set("findings", FindingList(result));
-  page.set("definition", gap::DefinitionText(result.gap));
+  page.set("definition", gap::DefinitionText(result.gap, result.tag_offset_m));
   page.set("threshold", Number(result.gap.threshold_m));
   AddUnmeasured(result, &page);
   AddScripts(result, options, &page);

@@ -8,6 +8,25 @@
 
 namespace rift::sweep {
 
+namespace {
+
+/// Each setting is at least a trial; more than these would not end in a lifetime of a laptop.
+constexpr double kMostSettings = 1e6;
+
+void CheckSize(const std::vector<Parameter>& parameters) {
+  double settings = 1.0;
+  for (const Parameter& parameter : parameters) {
+    settings *= static_cast<double>(parameter.levels.size());
+  }
+  if (settings > kMostSettings) {
+    throw std::invalid_argument(fmt::format(
+        "space is a grid of {:.3g} settings: at most {:.0e} are possible; shorten its lists",
+        settings, kMostSettings));
+  }
+}
+
+}  // namespace
+
 Space PaperSpace() {
   return {{{.key = "simulation.terrain.surface",
             .levels = {{"ground", {}},
@@ -20,12 +39,13 @@ Space PaperSpace() {
 }
 
 std::vector<std::vector<ParameterValue>> GridPoints(const std::vector<Parameter>& parameters) {
+  CheckSize(parameters);
   std::vector<std::vector<ParameterValue>> points{{}};
   for (const Parameter& parameter : parameters) {
     if (parameter.IsContinuous()) {
       throw std::invalid_argument(
-          fmt::format("space.{} is a range, and a grid needs the values to visit: write a list",
-                      parameter.key));
+          fmt::format("{}: space.{} is a range, and a grid needs the values to visit: write a list",
+                      parameter.origin, parameter.key));
     }
     std::vector<std::vector<ParameterValue>> longer;
     longer.reserve(points.size() * parameter.levels.size());

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
+#include <set>
 #include <stdexcept>
 
 #include "rift/sweep/grid.hpp"
@@ -20,6 +22,18 @@ void Fail(TrialRow& row, const Recording& recording) {
       is_named ? recording.reason : fmt::format("{}: {}", recording.source, recording.reason);
 }
 
+/// A path that never moves is a row of its own, not the sweep's end.
+void Measure(const GridPlan& plan, const Recording& candidate, const Recording& reference,
+             TrialRow& row) {
+  try {
+    row.comparison = gap::Compare(candidate.trajectory, reference.trajectory, plan.gap);
+  } catch (const std::invalid_argument& no_path) {
+    row.status = TrialStatus::kUnreadable;
+    row.reason =
+        fmt::format("{} against {}: {}", candidate.source, reference.source, no_path.what());
+  }
+}
+
 TrialRow CompareTrial(const GridPlan& plan, TrialRow row, const Recording& candidate,
                       const Recording& reference) {
   row.candidate = candidate.source;
@@ -29,7 +43,7 @@ TrialRow CompareTrial(const GridPlan& plan, TrialRow row, const Recording& candi
   } else if (candidate.status != TrialStatus::kOk) {
     Fail(row, candidate);
   } else {
-    row.comparison = gap::Compare(candidate.trajectory, reference.trajectory, plan.gap);
+    Measure(plan, candidate, reference, row);
     row.falsified = row.comparison.gap_m > plan.gap.threshold_m;
   }
   return row;
@@ -39,11 +53,15 @@ TrialRow CompareTrial(const GridPlan& plan, TrialRow row, const Recording& candi
 double CompareSetting(const GridPlan& plan, const Theta& theta, const Candidate& candidate,
                       const Reference& reference, std::vector<TrialRow>& rows) {
   std::vector<trajectory::Trajectory> references;
+  std::set<std::string> sources;
   for (const std::string& trial : plan.trials) {
     Recording real = reference(theta, trial);
     const Recording simulated = candidate(theta, trial, real);
     rows.push_back(CompareTrial(plan, {.theta = theta, .trial = trial}, simulated, real));
-    if (real.status == TrialStatus::kOk) references.push_back(std::move(real.trajectory));
+    const bool is_new = sources.insert(real.source).second;  // one path twice is no repeat
+    if (real.status == TrialStatus::kOk && is_new) {
+      references.push_back(std::move(real.trajectory));
+    }
   }
   return gap::NoiseFloor_m(references, plan.gap);
 }
@@ -77,12 +95,14 @@ SweepResult CompareGrid(const GridPlan& plan, const Candidate& candidate,
   result.candidate_kind = plan.candidate_kind;
   result.reference_kind = plan.reference_kind;
   result.gap = plan.gap;
+  result.tag_offset_m = plan.tag_offset_m;
   result.parameters = plan.parameters;
   std::vector<double> noise_floors_m;
   for (const Theta& theta : GridPoints(plan.parameters)) {
     noise_floors_m.push_back(CompareSetting(plan, theta, candidate, reference, result.rows));
   }
   Summarise(result);
+  assert(noise_floors_m.size() == result.settings.size());
   for (size_t i = 0; i < noise_floors_m.size(); ++i) {
     result.settings[i].noise_floor_m = noise_floors_m[i];
   }

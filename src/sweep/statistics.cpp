@@ -17,15 +17,21 @@ struct Groups {
   std::vector<std::vector<int>> rows;
 };
 
-template <class LabelOf>
-Groups GroupRows(const SweepResult& result, const LabelOf& label_of) {
+/// Values of a row that tell its group; labels would not do, since one may contain another's comma.
+std::vector<std::string> KeyOf(const TrialRow& row, const std::vector<int>& parameters) {
+  std::vector<std::string> key;
+  for (const int i : parameters) key.push_back(row.theta[i].text);
+  return key;
+}
+
+Groups GroupBy(const SweepResult& result, const std::vector<int>& parameters) {
   Groups groups;
-  std::map<std::string, size_t> index_of;
+  std::map<std::vector<std::string>, size_t> index_of;
   for (size_t row = 0; row < result.rows.size(); ++row) {
-    const std::string label = label_of(result.rows[row]);
-    const auto [found, is_new] = index_of.emplace(label, groups.labels.size());
+    const auto [found, is_new] =
+        index_of.emplace(KeyOf(result.rows[row], parameters), groups.labels.size());
     if (is_new) {
-      groups.labels.push_back(label);
+      groups.labels.push_back(CombinationLabel(result.rows[row].theta, parameters));
       groups.rows.emplace_back();
     }
     groups.rows[found->second].push_back(static_cast<int>(row));
@@ -67,12 +73,10 @@ LevelSummary SummariseRows(const SweepResult& result, const std::string& level,
   return summary;
 }
 
-Groups GroupBy(const SweepResult& result, const std::vector<int>& parameters) {
-  return GroupRows(result,
-                   [&](const TrialRow& row) { return CombinationLabel(row.theta, parameters); });
-}
-
 std::string EffectSentence(const Effect& effect) {
+  if (std::isnan(effect.p) && effect.df_within >= 1.0 && effect.df_between >= 1.0) {
+    return "no test possible: the trials of each value do not differ";
+  }
   if (std::isnan(effect.p)) return "no test possible: too few trials with a gap";
   const std::string p = effect.p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", effect.p);
   if (!effect.detected) return fmt::format("no effect found ({})", p);

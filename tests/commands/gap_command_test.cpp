@@ -101,7 +101,9 @@ TEST_CASE("rift gap says in one line what is wrong with its input") {
            "--real-format\n"},
       {{logs.sim}, "rift: REAL is required\n"},
       {{logs.sim, logs.real, "--samples", "1"},
-       "rift: --samples: Value 1 not in range 2 to 10000000\n"},
+       "rift: --samples: '1' must be a number in [2, 1e+07]\n"},
+      {{logs.sim, logs.real, "--threshold", "nan"},
+       "rift: --threshold: 'nan' must be a number in [0, 1000]\n"},
       {{logs.sim, logs.real, "--figure", logs.folder / "gap.pdf"},
        "rift: --figure " + (logs.folder / "gap.pdf") + ": the name must end in .svg or .png\n"},
   };

@@ -19,7 +19,7 @@ TEST_CASE("rift simulate reaches the paper's waypoints and leaves a whole run be
   const test::TemporaryFolder folder;
   const ProcessResult result = RunRift({"simulate", kTask, "--out", folder / "sim.csv", "--json"});
   REQUIRE(result.exit_code == 0);
-  CHECK(result.err.empty());
+  CHECK(result.err == "log: " + (folder / "sim.csv") + "\n");
   const json summary = json::parse(result.out);
   CHECK(summary["outcome"] == "reached");
   CHECK(summary["waypoints"].size() == 3);
@@ -94,6 +94,35 @@ TEST_CASE("A bad experiment is refused with its place and nothing is written") {
   CHECK(refusal("{}\n").starts_with("bad.yaml: "));
   CHECK(refusal(task, {"--start", "1,2"}).find("--start '1,2': give X,Y,YAW_DEG") !=
         std::string::npos);
+  CHECK(refusal(task, {"--start=0,0,1e300"}).find("waypoints[0].heading") != std::string::npos);
+  CHECK(refusal(task, {"--seed=-1"}).find("seed") != std::string::npos);
+}
+
+TEST_CASE("A picture of a heightfield is found from the file that names it") {
+  const test::TemporaryFolder folder;
+  // 2 x 2 grey pixels.
+  const std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\2\0\0\0\2\b\0\0\0\0", 29);
+  test::WriteText(folder / "maps/h.png", png);
+  test::WriteText(
+      folder / "e.yaml",
+      "waypoints: [{x: 0, y: 0}, {x: 0.2, y: 0}]\nsimulation:\n  terrain:\n    surface: "
+      "hill\n    surfaces:\n      hill: {shape: heightfield, image: maps/h.png}\n");
+  const ProcessResult result = RunRift({"simulate", folder / "e.yaml", "--out", folder / "out"});
+  CHECK(result.exit_code == 2);  // found, and found to be no whole picture
+  CHECK(result.err.find(folder / "maps/h.png") != std::string::npos);
+  CHECK(result.err.find("No such file") == std::string::npos);
+}
+
+TEST_CASE("rift simulate draws its run and films it") {
+  const test::TemporaryFolder folder;
+  const ProcessResult result =
+      RunRift({"simulate", kTask, "--out", folder / "out", "--figure", folder / "run.svg",
+               "--video", folder / "run.mp4", "--tum", folder / "run.tum"});
+  REQUIRE(result.exit_code == 0);
+  CHECK(test::ReadFile(folder / "run.svg").find("</svg>") != std::string::npos);
+  CHECK(fs::file_size(folder / "run.mp4") > 10'000);
+  CHECK(trajectory::ReadLog(test::ReadFile(folder / "run.tum"), "run.tum").format ==
+        trajectory::Format::kTum);
 }
 
 }  // namespace

@@ -134,9 +134,49 @@ TEST_CASE("rift sweep says in one line what is wrong with its experiment") {
   CHECK(refusal("waypoints: []\n").starts_with("bad.yaml: "));
   CHECK(refusal("waypoints: [{x: 0, y: 0}, {x: 1, y: 0}]\nstart: reference\n")
             .starts_with("bad.yaml: start is reference, and reference.kind is path"));
+  const std::string simulated = "waypoints: [{x: 0, y: 0}, {x: 1, y: 0}]\n";
+  CHECK(refusal(simulated + "space: {seed: [1, 2]}\n")
+            .starts_with("bad.yaml:2:9: space: seed does not change a simulated trial"));
+  CHECK(refusal(simulated + "space: {gap.threshold_m: [1, 2]}\n").starts_with("bad.yaml:2:9"));
+  CHECK(refusal("space: {gap_m: [1]}\n").find("is a column of table.csv") != std::string::npos);
+}
+
+TEST_CASE("A sweep in which nothing could be compared still leaves its rows") {
+  const LogFolder logs;
   fs::remove_all(logs.folder / "ground");
   fs::remove_all(logs.folder / "ice");
-  CHECK(refusal(kExperiment).find("not one of 8 trials could be compared") != std::string::npos);
+  const ProcessResult result = RunRift({"sweep", logs.experiment, "--out", logs.out});
+  CHECK(result.exit_code == 2);
+  CHECK(result.err.find("not one of 8 trials could be compared") != std::string::npos);
+  const std::string table = test::ReadFile(logs.out + "/table.csv");
+  CHECK(std::count(table.begin(), table.end(), '\n') == 9);
+}
+
+TEST_CASE("Robots that never arrive are rows and end with 1") {
+  const test::TemporaryFolder folder;
+  const ProcessResult result =
+      RunRift({"sweep", RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", "--out", folder / "out",
+               "--set", "trial.timeout_s=1", "--set", "space.v_min=[0.15]"});
+  CHECK(result.exit_code == 1);
+  CHECK(test::ReadFile(folder / "out/table.csv").find("0.15,1,,,timed_out,") != std::string::npos);
+}
+
+TEST_CASE("Settings whose labels would read alike stay apart") {
+  const LogFolder logs;
+  for (const std::string name : {"x|y, z", "x, y|z", "x|z", "x, y|y, z"}) {
+    const trajectory::Trajectory path = test::StraightPath(0.7, 40);
+    WriteText(logs.folder / (name + "_1.csv"), trajectory::WriteRift(path));
+    WriteText(logs.folder / (name + "_2.csv"), trajectory::WriteRift(path));
+  }
+  WriteText(logs.experiment, R"(space:
+  a: [x, "x, y"]
+  b: ["y, z", z]
+candidate: {kind: logs, path: "{a}|{b}_1.csv"}
+reference: {kind: logs, path: "{a}|{b}_{trial}.csv", trials: 2}
+)");
+  const ProcessResult result = RunRift({"sweep", logs.experiment, "--out", logs.out, "--json"});
+  REQUIRE(result.exit_code == 0);
+  CHECK(json::parse(result.out)["settings"].size() == 4);
 }
 
 TEST_CASE("A waypoint file alone is swept on the simulator over the paper's grid") {

@@ -65,8 +65,9 @@ TEST_CASE("A grid visits every combination once with the first parameter slowest
   CHECK(points[1][1].text == "0.2");
   CHECK(points[2][0].text == "ice");
   CHECK(GridPoints({}).size() == 1);
-  CHECK(Refusal([] { GridPoints({{.key = "a.b", .min = 0.0, .max = 1.0}}); }) ==
-        "space.a.b is a range, and a grid needs the values to visit: write a list");
+  CHECK(Refusal(
+            [] { GridPoints({{.key = "a.b", .min = 0.0, .max = 1.0, .origin = "e.yaml:2:3"}}); }) ==
+        "e.yaml:2:3: space.a.b is a range, and a grid needs the values to visit: write a list");
 }
 
 TEST_CASE("Every trial of every setting is a row with its gap") {

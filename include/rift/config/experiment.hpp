@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "rift/config/load.hpp"
+#include "rift/config/sweep_hooks.hpp"
 #include "rift/control/navigator_options.hpp"
 #include "rift/control/waypoint.hpp"
 #include "rift/gap/options.hpp"

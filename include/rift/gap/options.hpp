@@ -42,6 +42,7 @@ struct GapOptions {
 };
 
 /// The definition in force in one line, to stand beside every number.
-std::string DefinitionText(const GapOptions& options);
+/// `tag_offset_m`: how far ahead of the tag the real path was taken.
+std::string DefinitionText(const GapOptions& options, double tag_offset_m = 0.0);
 
 }  // namespace rift::gap

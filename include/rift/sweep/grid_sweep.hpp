@@ -34,6 +34,7 @@ struct GridPlan {
   std::vector<Parameter> parameters;  ///< grid axes
   std::vector<std::string> trials;    ///< repeats of each setting
   gap::GapOptions gap;
+  double tag_offset_m = 0.0;  ///< already in the references; for the record
 };
 
 /// Compares candidate and reference in every trial of every setting. A trial without one of them is

@@ -35,6 +35,13 @@ struct Parameter {
   bool IsCategorical() const;
 };
 
+/// Columns of table.csv behind those of the parameters; a parameter cannot be called so.
+inline constexpr std::array<std::string_view, 16> kFixedColumns{
+    "trial",       "gap_m",        "falsified",   "status",         "u",
+    "exact_gap_m", "mean_error_m", "rms_error_m", "start_offset_m", "start_aligned_gap_m",
+    "shape_gap_m", "length_ratio", "end_error_m", "reason",         "candidate",
+    "reference"};
+
 /// How a trial ended; every one that was asked for is a row.
 enum class TrialStatus {
   kOk,
@@ -105,6 +112,7 @@ struct SweepResult {
   std::string candidate_kind;  ///< "logs", "simulation"
   std::string reference_kind;  ///< "logs", "nominal", "path"
   gap::GapOptions gap;
+  double tag_offset_m = 0.0;  ///< how far ahead of the tag the reference logs were taken
   std::vector<Parameter> parameters;
   std::vector<TrialRow> rows;
   std::vector<SettingResult> settings;

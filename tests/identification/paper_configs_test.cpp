@@ -1,0 +1,87 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "identification/grid_study.hpp"
+#include "rift/config/bind.hpp"
+#include "rift/config/load.hpp"
+#include "rift/config/tree.hpp"
+#include "support/process.hpp"
+
+namespace rift {
+namespace {
+
+const std::string kConfigs = RIFT_SOURCE_DIR "/configs/";
+
+nlohmann::json Sweep(const std::string& config) {
+  test::TemporaryFolder folder;
+  const test::ProcessResult result =
+      test::RunRift({"sweep", kConfigs + config, "--out", folder / "out"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  return nlohmann::json::parse(test::ReadFile(folder / "out/summary.json"));
+}
+
+test::GridStudy LoadStudy(const std::string& changed = "") {
+  config::Node tree = config::Load(kConfigs + "waypoints/paper.yaml", test::ReadFile);
+  config::Merge(tree, config::Load(kConfigs + "robots/3pi_2040.yaml", test::ReadFile));
+  if (changed != "") config::Merge(tree, config::ParseOverride(changed));
+  test::GridStudy study;
+  config::Bind(tree, study);
+  return study;
+}
+
+std::vector<test::GridPair> Drive(const test::GridStudy& study, int seeds) {
+  std::vector<test::GridPair> pairs = test::LoadGrid(study);
+  test::Simulate(study, seeds, pairs);
+  return pairs;
+}
+
+TEST_CASE("The Webots twin follows the authors' Webots logs") {
+  RIFT_SKIP_WITHOUT_TRIALS();
+  const nlohmann::json summary = Sweep("webots_twin.yaml");
+  const nlohmann::json& by = summary["by"]["surface"];
+  CHECK(summary["n"] == 18);
+  CHECK(by["ground"]["mean_gap_m"].get<double>() < 0.005);
+  CHECK(by["cardboard"]["mean_gap_m"].get<double>() < 0.005);
+  CHECK(by["parchment"]["mean_gap_m"].get<double>() < 0.015);
+}
+
+TEST_CASE("The paper grid on the simulator finishes every trial close to the robot") {
+  RIFT_SKIP_WITHOUT_TRIALS();
+  const nlohmann::json summary = Sweep("paper.yaml");
+  CHECK(summary["n"] == 48);
+  CHECK(summary["not_ok"] == 0);
+  CHECK(summary["mean_gap_m"].get<double>() < 0.042);
+}
+
+TEST_CASE("The simulated robot drives and answers and weaves like the real one over many seeds") {
+  RIFT_SKIP_WITHOUT_TRIALS();
+  const std::vector<test::GridPair> pairs = Drive(LoadStudy(), 10);
+  const test::GridSummary all = test::Summarise(pairs, "");
+  INFO("gap " << all.gap_m << ", weave " << all.weave_m << " of " << all.real_weave_m << ", spread "
+              << all.spread_m << " of " << all.real_spread_m << ", delay " << all.delay_s << " of "
+              << all.real_delay_s << ", missed " << all.missed << " of " << all.runs);
+  CHECK(all.runs == 480);
+  CHECK(all.gap_m < 0.043);
+  CHECK(all.missed <= 8);
+  CHECK(all.delay_s == Approx(0.32).margin(0.05));
+  CHECK(all.r2 == Approx(all.real_r2).margin(0.05));
+  CHECK(all.weave_m > 0.65 * all.real_weave_m);
+  CHECK(all.spread_m > 0.7 * all.real_spread_m);
+  CHECK(all.spread_m < 1.2 * all.real_spread_m);
+  for (const char* surface : {"ground", "cardboard", "parchment", "downhill"}) {
+    INFO(surface);
+    CHECK(test::Summarise(pairs, surface).speed_ratio == Approx(1.0).margin(0.08));
+  }
+}
+
+TEST_CASE("Without the delays of link and listener the robot hardly weaves") {
+  RIFT_SKIP_WITHOUT_TRIALS();
+  const test::GridSummary all =
+      test::Summarise(Drive(LoadStudy("simulation.link={delay_s: 0, poll_s: 0}"), 3), "");
+  CHECK(all.weave_m < 0.55 * all.real_weave_m);
+  CHECK(all.spread_m < 0.5 * all.real_spread_m);
+}
+
+}  // namespace
+}  // namespace rift
