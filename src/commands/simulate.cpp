@@ -121,6 +121,7 @@ void AddSimulate(CLI::App& app, int& exit_code) {
       WriteFile(request->tum, trajectory::WriteTum(run.result.trajectory));
     }
     MakePictures(request->pictures, experiment, trial, run);
+    fmt::print(stderr, "log: {}\n", RunFiles(out).trajectory.string());
     fmt::print("{}",
                request->json ? SimulationJson(experiment, run) : SimulationText(experiment, run));
     exit_code = run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;

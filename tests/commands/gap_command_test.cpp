@@ -141,6 +141,16 @@ TEST_CASE("A mistyped subcommand is met with the nearest one") {
   CHECK(RunRift({"gap", "--help"}).out.find("Example: rift gap") != std::string::npos);
 }
 
+TEST_CASE("The README's recipe works on the recordings of this repository") {
+  const std::string folder = RIFT_SOURCE_DIR "/data/example/";
+  const ProcessResult result =
+      RunRift({"gap", folder + "simulator.csv", folder + "robot1.csv", folder + "robot2.csv"});
+  CHECK(result.exit_code == 0);
+  CHECK(result.err.empty());
+  CHECK(result.out.find("yaw error: ") != std::string::npos);
+  CHECK(result.out.find("verdict: ") != std::string::npos);
+}
+
 TEST_CASE("The command line reproduces the published gaps") {
   RIFT_SKIP_WITHOUT_TRIALS();
   for (const test::TrialPair& pair : test::PublishedPairs()) {

@@ -59,6 +59,9 @@ TEST_CASE("A resolved experiment loads as the same experiment") {
     experiment.reference.trials.names = {"1", "02", test::RandomText(random) + "x"};
     experiment.reference.path.text = "/logs/{surface}: " + test::RandomText(random);
     experiment.candidate.path.text = "/a/b.csv";
+    for (auto& [name, surface] : experiment.simulation.terrain.surfaces) {
+      if (!surface.image.empty()) surface.image = "/maps/hill.png";  // absolute, as once loaded
+    }
     const std::string written = WriteExperiment(experiment);
     INFO(written);
     Experiment loaded;
