@@ -1,5 +1,7 @@
 #include "arc_path.hpp"
 
+#include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "rift/geometry/angle.hpp"
@@ -15,8 +17,11 @@ void MeasureArcLength(ArcPath& path) {
     path.u[i] = path.u[i - 1] + (path.Vertex(i) - path.Vertex(i - 1)).norm();
   }
   path.length_m = path.u.back();
-  if (!(path.length_m > 0.0)) {
+  if (path.length_m == 0.0) {
     throw std::invalid_argument("the path has zero length: the robot never moved");
+  }
+  if (!std::isfinite(path.length_m)) {
+    throw std::invalid_argument("the length of the path is not finite: a position is NaN or huge");
   }
   for (double& u : path.u) u /= path.length_m;
 }

@@ -25,7 +25,7 @@ struct ArcPath {
 /// The gap alone needs no yaw, and unwrapping it costs more than the gap.
 enum class WithYaw { kNo, kYes };
 
-/// Throws std::invalid_argument for fewer than two poses or a path of zero length.
+/// Throws std::invalid_argument for fewer than two poses or a length that is zero or not finite.
 ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options,
                     WithYaw with_yaw);
 

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "alignment.hpp"
 #include "arc_path.hpp"
@@ -59,6 +62,7 @@ Peak SampledPeak(const Paths& paths, const GapOptions& options) {
     }
     next = last + 1;
   });
+  assert(peak.error_m >= 0.0);
   return peak;
 }
 
@@ -74,6 +78,7 @@ Peak ExactPeak(const Paths& paths, const GapOptions& options) {
           if (error_m > peak.error_m) peak = {error_m, u};
         }
       });
+  assert(peak.error_m >= 0.0);
   return peak;
 }
 

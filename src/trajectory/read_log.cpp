@@ -2,11 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
 #include "csv.hpp"
+#include "plausibility.hpp"
 #include "rift/geometry/angle.hpp"
 #include "rift/trajectory/log.hpp"
 
@@ -207,14 +209,17 @@ void CheckMoves(const Trajectory& trajectory, const std::string& name) {
 Log ReadLog(std::string_view text, const std::string& name, Format format) {
   Log log;
   log.format = format == Format::kAuto ? FormatFromHeader(text, name) : format;
-  if (log.format == Format::kTum) {
-    TakeTum(csv::ReadNumbers(text, name, false, ' '), name, log.trajectory);
+  const bool is_tum = log.format == Format::kTum;
+  const Table table = csv::ReadNumbers(text, name, !is_tum, is_tum ? ' ' : ',');
+  if (is_tum) {
+    TakeTum(table, name, log.trajectory);
   } else {
-    const Table table = csv::ReadNumbers(text, name, true, ',');
     TakeColumns(table, log.format == Format::kRift ? kRiftColumns : kAuthorsColumns, name,
                 log.trajectory);
-    ConvertAngles(log);
   }
+  CheckMagnitudes(log.trajectory, table.lines, name);
+  NoteDoubtfulAngles(log);
+  ConvertAngles(log);
   SortByTime(log);
   CheckMoves(log.trajectory, name);
   return log;

@@ -164,6 +164,16 @@ TEST_CASE("Repeated points do not disturb the arc length") {
   CHECK(Gap(StraightPath(1.0, 33), sim, {}) == Approx(0.0).margin(1e-12));
 }
 
+TEST_CASE("A path without a finite length is refused") {
+  Trajectory huge = StraightPath(1.0, 5);
+  huge.poses[1].x_m = 1e308;
+  huge.poses[2].x_m = -1e308;
+  CHECK_THROWS_AS(Gap(huge, StraightPath(1.0, 5), {}), std::invalid_argument);
+  CHECK_THROWS_AS(Compare(StraightPath(1.0, 5), huge, {}), std::invalid_argument);
+  huge.poses[1].x_m = kNotComputed;
+  CHECK_THROWS_AS(Gap(huge, StraightPath(1.0, 5), {}), std::invalid_argument);
+}
+
 TEST_CASE("A path that never moves is refused") {
   Trajectory still;
   still.poses = {{.t_s = 0.0}, {.t_s = 1.0}};

@@ -1,7 +1,10 @@
 #include "rift/trajectory/log.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
+#include <stdexcept>
+#include <string>
 
 #include "rift/geometry/angle.hpp"
 
@@ -144,6 +147,17 @@ TEST_CASE("A bad log is refused with its row and its rule") {
   CHECK(Refusal("0 1 2 3\n1 2 3 4\n") ==
         "log.csv:1: 4 columns, and tum has 8: t tx ty tz qx qy qz qw");
   CHECK(Refusal("0 1 2 3 0 0 0 0\n") == "log.csv:1: the quaternion has zero length");
+}
+
+TEST_CASE("A position or a time that no robot logs is refused with its row") {
+  const std::string good = "t_s,x_m,y_m,z_m\n0,0,0,0\n";
+  CHECK(Refusal(good + "1,1e308,0,0\n") ==
+        "log.csv:3: x is 1e+308, beyond +-1e+06: is the log in metres and seconds?");
+  CHECK(Refusal(good + "1,0,-1.1e6,0\n").starts_with("log.csv:3: y is -1.1e+06, beyond"));
+  CHECK(Refusal(good + "1,1,0,-2e6\n").starts_with("log.csv:3: z is -2e+06, beyond"));
+  CHECK(Refusal(good + "1.7e18,1,0,0\n").starts_with("log.csv:3: t is 1.7e+18, beyond"));
+  CHECK(Refusal(good + "1e12,1e6,-1e6,1e6\n") == "accepted");
+  CHECK(Refusal("0 0 0 0 0 0 0 1\n\n1 0 -1e7 0 0 0 0 1\n").starts_with("log.csv:3: y is -1e+07"));
 }
 
 TEST_CASE("No damaged log does anything but read or be refused") {

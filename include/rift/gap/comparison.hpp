@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <limits>
 #include <vector>
 
@@ -46,7 +47,7 @@ struct Comparison {
 };
 
 /// Compares two paths of at least two poses and non-zero length.
-/// Throws std::invalid_argument when a path does not move.
+/// Throws std::invalid_argument when a path does not move or its length is not finite.
 Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                    const GapOptions& options);
 

@@ -27,14 +27,16 @@ constexpr std::array<std::string_view, 5> EnumNames(Format) {
 struct Log {
   Trajectory trajectory;
   Format format = Format::kAuto;   ///< kAuto: the authors' header, which of the two is not known
-  std::vector<std::string> notes;  ///< what was mended on the way, one line each
+  std::vector<std::string> notes;  ///< what was mended or looks odd, one line each
   /// Why the angles are unknown and what to do; empty when they are known or not logged.
   std::string unknown_angles;
 };
 
 /// Reads a whole log or throws std::invalid_argument with one line `name:row: what is wrong`.
 /// Rows out of order are sorted by time and of rows with equal time the last is kept, both noted.
-/// Refused: NaN or infinite values, ragged rows, fewer than two poses, a path of zero length.
+/// Refused: NaN or infinite values, |x|, |y| or |z| above 1e6 m, |t| above 1e12 s, ragged rows,
+/// fewer than two poses, a path of zero length.
+/// Noted: degrees where the dialect has radians, and the other way round.
 /// Accepted: a byte order mark, CRLF, blank lines, empty cells in optional columns (not logged).
 Log ReadLog(std::string_view text, const std::string& name, Format format = Format::kAuto);
 
