@@ -38,7 +38,7 @@ void CopyYaw(std::span<const trajectory::StampedPose> poses, ArcPath& path) {
 }  // namespace
 
 ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options,
-                    WithYaw with_yaw) {
+                    Columns columns) {
   std::span<const trajectory::StampedPose> poses = trajectory.poses;
   if (poses.size() < 2) {
     throw std::invalid_argument("a path of fewer than two poses has no arc length");
@@ -55,7 +55,9 @@ ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& 
     path.y_m.push_back(pose.y_m);
   }
   MeasureArcLength(path);
-  if (with_yaw == WithYaw::kYes && trajectory.HasYaw()) CopyYaw(poses, path);
+  if (columns == Columns::kPositions) return path;
+  for (const trajectory::StampedPose& pose : poses) path.t_s.push_back(pose.t_s);
+  if (trajectory.HasYaw()) CopyYaw(poses, path);
   return path;
 }
 
