@@ -1,5 +1,7 @@
 #include "arc_path.hpp"
 
+#include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "rift/geometry/angle.hpp"
@@ -15,8 +17,11 @@ void MeasureArcLength(ArcPath& path) {
     path.u[i] = path.u[i - 1] + (path.Vertex(i) - path.Vertex(i - 1)).norm();
   }
   path.length_m = path.u.back();
-  if (!(path.length_m > 0.0)) {
+  if (path.length_m == 0.0) {
     throw std::invalid_argument("the path has zero length: the robot never moved");
+  }
+  if (!std::isfinite(path.length_m)) {
+    throw std::invalid_argument("the length of the path is not finite: a position is NaN or huge");
   }
   for (double& u : path.u) u /= path.length_m;
 }
@@ -33,7 +38,7 @@ void CopyYaw(std::span<const trajectory::StampedPose> poses, ArcPath& path) {
 }  // namespace
 
 ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options,
-                    WithYaw with_yaw) {
+                    Columns columns) {
   std::span<const trajectory::StampedPose> poses = trajectory.poses;
   if (poses.size() < 2) {
     throw std::invalid_argument("a path of fewer than two poses has no arc length");
@@ -50,7 +55,9 @@ ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& 
     path.y_m.push_back(pose.y_m);
   }
   MeasureArcLength(path);
-  if (with_yaw == WithYaw::kYes && trajectory.HasYaw()) CopyYaw(poses, path);
+  if (columns == Columns::kPositions) return path;
+  for (const trajectory::StampedPose& pose : poses) path.t_s.push_back(pose.t_s);
+  if (trajectory.HasYaw()) CopyYaw(poses, path);
   return path;
 }
 

@@ -15,19 +15,20 @@ struct ArcPath {
   std::vector<double> u;
   std::vector<double> x_m;
   std::vector<double> y_m;
-  std::vector<double> yaw_rad;  ///< unwrapped; empty when the log does not tell it
+  std::vector<double> t_s;      ///< empty when only the positions were asked for
+  std::vector<double> yaw_rad;  ///< unwrapped; empty when the log does not tell it either
   double length_m = 0.0;
 
   size_t Size() const { return u.size(); }
   Eigen::Vector2d Vertex(size_t i) const { return {x_m[i], y_m[i]}; }
 };
 
-/// The gap alone needs no yaw, and unwrapping it costs more than the gap.
-enum class WithYaw { kNo, kYes };
+/// The gap alone needs neither time nor yaw, and unwrapping the yaw costs more than the gap.
+enum class Columns { kPositions, kAll };
 
-/// Throws std::invalid_argument for fewer than two poses or a path of zero length.
+/// Throws std::invalid_argument for fewer than two poses or a length that is zero or not finite.
 ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options,
-                    WithYaw with_yaw);
+                    Columns columns);
 
 /// The points at `count` evenly spaced u from 0 to 1.
 std::vector<Eigen::Vector2d> Resample(const ArcPath& path, int count);

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "alignment.hpp"
 #include "arc_path.hpp"
@@ -16,8 +19,11 @@
 namespace rift::gap {
 namespace {
 
-/// Frechet, DTW and Hausdorff cost points squared; 160 stand 4 mm apart on the paper's path.
+/// Frechet and DTW cost points squared; 160 stand 4 mm apart on the paper's path.
 constexpr int kMeasurePoints = 160;
+
+/// Hausdorff costs the product of the rows; up to this many pairs every vertex is looked at.
+constexpr size_t kMostHausdorffPairs = 65536;
 
 struct Paths {
   ArcPath sim;
@@ -26,8 +32,8 @@ struct Paths {
 
 /// Both paths as they are to be compared, after trimming and aligning.
 Paths Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
-              const GapOptions& options, WithYaw with_yaw) {
-  Paths paths{MakeArcPath(sim, options, with_yaw), MakeArcPath(real, options, with_yaw)};
+              const GapOptions& options, Columns columns) {
+  Paths paths{MakeArcPath(sim, options, columns), MakeArcPath(real, options, columns)};
   if (options.align != Align::kNone) {
     Transform(paths.sim, AligningMotion(paths.sim, paths.real, options.align, options.samples));
   }
@@ -59,6 +65,7 @@ Peak SampledPeak(const Paths& paths, const GapOptions& options) {
     }
     next = last + 1;
   });
+  assert(peak.error_m >= 0.0);
   return peak;
 }
 
@@ -74,6 +81,7 @@ Peak ExactPeak(const Paths& paths, const GapOptions& options) {
           if (error_m > peak.error_m) peak = {error_m, u};
         }
       });
+  assert(peak.error_m >= 0.0);
   return peak;
 }
 
@@ -140,10 +148,19 @@ void SummariseErrors(ErrorProfile profile, Comparison& result) {
   }
 }
 
+Points Vertices(const ArcPath& path) {
+  Points points;
+  points.reserve(path.Size());
+  for (size_t i = 0; i < path.Size(); ++i) points.push_back(path.Vertex(i));
+  return points;
+}
+
 void MeasureShape(const Paths& paths, Comparison& result) {
   const Points sim_m = Resample(paths.sim, kMeasurePoints);
   const Points real_m = Resample(paths.real, kMeasurePoints);
-  result.hausdorff_m = Hausdorff_m(sim_m, real_m);
+  const bool all_vertices = paths.sim.Size() * paths.real.Size() <= kMostHausdorffPairs;
+  result.hausdorff_m = all_vertices ? Hausdorff_m(Vertices(paths.sim), Vertices(paths.real))
+                                    : Hausdorff_m(sim_m, real_m);
   result.frechet_m = DiscreteFrechet_m(sim_m, real_m);
   result.dtw_m = DynamicTimeWarping_m(sim_m, real_m);
 }
@@ -152,17 +169,17 @@ void MeasureShape(const Paths& paths, Comparison& result) {
 
 double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
            const GapOptions& options) {
-  return SampledPeak(Prepare(sim, real, options, WithYaw::kNo), options).error_m;
+  return SampledPeak(Prepare(sim, real, options, Columns::kPositions), options).error_m;
 }
 
 ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                           const GapOptions& options) {
-  return ProfileOf(Prepare(sim, real, options, WithYaw::kYes), options);
+  return ProfileOf(Prepare(sim, real, options, Columns::kAll), options);
 }
 
 Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                    const GapOptions& options) {
-  const Paths paths = Prepare(sim, real, options, WithYaw::kYes);
+  const Paths paths = Prepare(sim, real, options, Columns::kAll);
   Comparison result;
 
   const Peak sampled = SampledPeak(paths, options);
@@ -187,7 +204,7 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
   result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);
 
   MeasureShape(paths, result);
-  result.equal_time_m = EqualTime_m(sim, real);
+  result.equal_time_m = EqualTime_m(paths.sim, paths.real);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "measures.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -45,13 +46,14 @@ double DirectedHausdorff_m(const Points& from, const Points& to) {
   return std::sqrt(largest);
 }
 
-Eigen::Vector2d PositionAt(const trajectory::Trajectory& path, double since_start_s, size_t& row) {
-  const auto& poses = path.poses;
-  const double t_s = poses.front().t_s + since_start_s;
-  while (row + 2 < poses.size() && poses[row + 1].t_s <= t_s) ++row;
-  const auto &before = poses[row], &after = poses[row + 1];
-  const double share = std::clamp((t_s - before.t_s) / (after.t_s - before.t_s), 0.0, 1.0);
-  return before.Position() + share * (after.Position() - before.Position());
+double Duration_s(const ArcPath& path) { return path.t_s.back() - path.t_s.front(); }
+
+Eigen::Vector2d PositionAt(const ArcPath& path, double since_start_s, size_t& i) {
+  const double t_s = path.t_s.front() + since_start_s;
+  while (i + 2 < path.Size() && path.t_s[i + 1] <= t_s) ++i;
+  const double span_s = path.t_s[i + 1] - path.t_s[i];
+  const double share = span_s > 0.0 ? std::clamp((t_s - path.t_s[i]) / span_s, 0.0, 1.0) : 0.0;
+  return path.Vertex(i) + share * (path.Vertex(i + 1) - path.Vertex(i));
 }
 
 }  // namespace
@@ -94,16 +96,17 @@ double DynamicTimeWarping_m(const Points& a, const Points& b) {
   return row.back().total_m / row.back().steps;
 }
 
-double EqualTime_m(const trajectory::Trajectory& a, const trajectory::Trajectory& b) {
-  const double end_s = std::min(a.Duration_s(), b.Duration_s());
+double EqualTime_m(const ArcPath& a, const ArcPath& b) {
+  assert(a.t_s.size() == a.Size() && b.t_s.size() == b.Size());
+  const double end_s = std::min(Duration_s(a), Duration_s(b));
   double largest_m = 0.0;
   // The distance is convex between merged time stamps, so they alone need a look.
-  const auto visit = [&](const trajectory::Trajectory& stamps) {
-    size_t row_a = 0, row_b = 0;
-    for (const trajectory::StampedPose& pose : stamps.poses) {
-      const double since_start_s = std::min(pose.t_s - stamps.poses.front().t_s, end_s);
+  const auto visit = [&](const ArcPath& stamps) {
+    size_t i = 0, j = 0;
+    for (const double t_s : stamps.t_s) {
+      const double since_start_s = std::min(t_s - stamps.t_s.front(), end_s);
       const Eigen::Vector2d difference_m =
-          PositionAt(a, since_start_s, row_a) - PositionAt(b, since_start_s, row_b);
+          PositionAt(a, since_start_s, i) - PositionAt(b, since_start_s, j);
       largest_m = std::max(largest_m, difference_m.norm());
     }
   };

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "rift/trajectory/trajectory.hpp"
+#include "arc_path.hpp"
 
 namespace rift::gap {
 
@@ -18,7 +18,8 @@ double DiscreteFrechet_m(const Points& a, const Points& b);
 /// Mean distance along the warping path of least total distance (Sakoe and Chiba 1978).
 double DynamicTimeWarping_m(const Points& a, const Points& b);
 
-/// Largest distance at equal time since each first pose, over the time both last.
-double EqualTime_m(const trajectory::Trajectory& a, const trajectory::Trajectory& b);
+/// Largest distance at equal time since each first vertex, over the time both last. Both paths
+/// hold their times.
+double EqualTime_m(const ArcPath& a, const ArcPath& b);
 
 }  // namespace rift::gap

@@ -43,7 +43,7 @@ class PathError {
   }
 
  private:
-  /// One edge of a path as a function of u; an edge without length stands at its end.
+  /// One edge of a path as a function of u; an edge too short to move u stands at its start.
   struct Segment {
     Segment(const ArcPath& path, size_t i) : u0(path.u[i]), x0(path.x_m[i]), y0(path.y_m[i]) {
       const double span = path.u[i + 1] - path.u[i];

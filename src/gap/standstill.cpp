@@ -7,12 +7,6 @@ double Distance_m(const trajectory::StampedPose& a, const trajectory::StampedPos
   return (a.Position() - b.Position()).norm();
 }
 
-double ArcLength_m(std::span<const trajectory::StampedPose> poses) {
-  double length_m = 0.0;
-  for (size_t i = 1; i < poses.size(); ++i) length_m += Distance_m(poses[i], poses[i - 1]);
-  return length_m;
-}
-
 }  // namespace
 
 MovingRange FindMoving(std::span<const trajectory::StampedPose> poses, double radius_m) {
@@ -26,10 +20,11 @@ MovingRange FindMoving(std::span<const trajectory::StampedPose> poses, double ra
 }
 
 double StandstillShare(std::span<const trajectory::StampedPose> poses, double radius_m) {
-  const double total_m = ArcLength_m(poses);
+  const double total_m = trajectory::ArcLength_m(poses);
   if (!(total_m > 0.0)) return 0.0;
   const MovingRange moving = FindMoving(poses, radius_m);
-  const double driven_m = ArcLength_m(poses.subspan(moving.first, moving.last - moving.first + 1));
+  const double driven_m =
+      trajectory::ArcLength_m(poses.subspan(moving.first, moving.last - moving.first + 1));
   return 1.0 - driven_m / total_m;
 }
 

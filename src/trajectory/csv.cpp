@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <system_error>
 
 namespace rift::trajectory::csv {
 namespace {
@@ -31,6 +32,35 @@ std::string_view TakeCell(std::string_view& line, char separator) {
   const std::string_view cell = Trim(line.substr(0, end));
   line.remove_prefix(std::min(end + 1, line.size()));
   return cell;
+}
+
+/// Takes a cell in double quotes off the line, in which two of them stand for one. A quote that is
+/// not closed ends with the line.
+std::string TakeQuoted(std::string_view& line) {
+  std::string cell;
+  line.remove_prefix(1);
+  while (!line.empty()) {
+    const bool quote = line.front() == '"';
+    if (quote && !line.starts_with("\"\"")) break;
+    cell += line.front();
+    line.remove_prefix(quote ? 2 : 1);
+  }
+  if (!line.empty()) line.remove_prefix(1);
+  return cell;
+}
+
+/// A number may begin with a plus, which std::from_chars does not know.
+std::string_view WithoutPlus(std::string_view cell) {
+  const bool plus = cell.size() > 1 && cell[0] == '+' && cell[1] != '-' && cell[1] != '+';
+  return plus ? cell.substr(1) : cell;
+}
+
+void RefuseRepeatedColumns(const std::vector<std::string>& columns, const std::string& where) {
+  for (auto column = columns.begin(); column != columns.end(); ++column) {
+    if (column->empty() || std::find(columns.begin(), column, *column) == column) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: the header has two columns '{}': rename or remove one of them", where, *column));
+  }
 }
 
 /// Cells of one row, appended to the table.
@@ -86,8 +116,10 @@ class RowReader {
   void Append(std::string_view cell, int line_number, size_t column) {
     double value = std::numeric_limits<double>::quiet_NaN();
     if (!cell.empty()) {
-      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-      const bool is_number = error == std::errc{} && end == cell.data() + cell.size();
+      const std::string_view digits = WithoutPlus(cell);
+      const char* const digits_end = digits.data() + digits.size();
+      const auto [end, error] = std::from_chars(digits.data(), digits_end, value);
+      const bool is_number = error == std::errc{} && end == digits_end;
       if (!is_number || !std::isfinite(value)) Refuse(cell, line_number, column);
     }
     table_.cells.push_back(value);
@@ -135,8 +167,11 @@ std::string_view TakeLine(std::string_view& rest) {
 std::vector<std::string> SplitHeader(std::string_view line) {
   std::vector<std::string> cells;
   while (true) {
+    line = Trim(line);
+    std::string quoted;
+    if (line.starts_with('"')) quoted = TakeQuoted(line);
     const bool last = line.find(',') == line.npos;
-    cells.emplace_back(TakeCell(line, ','));
+    cells.push_back(quoted + std::string(TakeCell(line, ',')));
     if (last) return cells;
   }
 }
@@ -150,6 +185,7 @@ Table ReadNumbers(std::string_view text, const std::string& name, bool has_heade
     if (Trim(line).empty() || (!has_header && Trim(line).starts_with('#'))) continue;
     if (has_header && table.columns.empty()) {
       table.columns = SplitHeader(line);
+      RefuseRepeatedColumns(table.columns, fmt::format("{}:{}", name, line_number));
       table.width = static_cast<int>(table.columns.size());
       continue;
     }

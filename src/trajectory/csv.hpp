@@ -25,10 +25,11 @@ std::string_view WithoutMark(std::string_view text);
 /// Takes the next line off `rest`, without its CR LF or LF.
 std::string_view TakeLine(std::string_view& rest);
 
-/// Cells between commas, blanks around them removed.
+/// Cells between commas, without the blanks or the double quotes around them.
 std::vector<std::string> SplitHeader(std::string_view line);
 
-/// Reads numbers separated by `separator` (a blank stands for any run of blanks and tabs).
+/// Reads numbers separated by `separator` (a blank stands for any run of blanks and tabs). No two
+/// columns of a header may share a name.
 /// Throws std::invalid_argument `name:line: ...`.
 Table ReadNumbers(std::string_view text, const std::string& name, bool has_header, char separator);
 

@@ -2,11 +2,16 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "csv.hpp"
+#include "plausibility.hpp"
 #include "rift/geometry/angle.hpp"
 #include "rift/trajectory/log.hpp"
 
@@ -35,19 +40,32 @@ bool Has(const std::vector<std::string>& header, std::string_view name) {
   return std::find(header.begin(), header.end(), name) != header.end();
 }
 
+bool IsBlankLine(std::string_view line) { return line.find_first_not_of(" \t") == line.npos; }
+
+bool IsComment(std::string_view line) {
+  return !IsBlankLine(line) && line[line.find_first_not_of(" \t")] == '#';
+}
+
+/// True when the first line that is no comment holds numbers between blanks, and for comments only.
+bool LooksLikeTum(std::string_view line, std::string_view rest) {
+  bool commented = false;
+  while (IsComment(line) || (IsBlankLine(line) && !rest.empty())) {
+    commented = commented || IsComment(line);
+    line = csv::TakeLine(rest);
+  }
+  if (IsBlankLine(line)) return commented;
+  return line.find_first_not_of("0123456789+-.eE \t") == line.npos;
+}
+
 /// kAuto where the header is the authors': it is the same for their robot and their simulator.
 Format FormatFromHeader(std::string_view text, const std::string& name) {
   std::string_view rest = csv::WithoutMark(text);
   std::string_view line;
-  while (!rest.empty() && line.find_first_not_of(" \t") == line.npos) line = csv::TakeLine(rest);
+  while (!rest.empty() && IsBlankLine(line)) line = csv::TakeLine(rest);
   const std::vector<std::string> header = csv::SplitHeader(line);
   if (Has(header, "t_s") && Has(header, "x_m") && Has(header, "y_m")) return Format::kRift;
   if (Has(header, "t") && Has(header, "x") && Has(header, "y")) return Format::kAuto;
-  const size_t first = line.find_first_not_of(" \t");
-  const bool may_be_tum =
-      first != line.npos && line.find(',') == line.npos &&
-      (line[first] == '#' || line.find_first_not_of("0123456789+-.eE \t") == line.npos);
-  if (may_be_tum) return Format::kTum;
+  if (LooksLikeTum(line, rest)) return Format::kTum;
   throw std::invalid_argument(fmt::format(
       "{}:1: the header '{}' belongs to no dialect: it needs t_s,x_m,y_m (rift), t,x,y (tracker, "
       "webots) or eight columns without header (tum)",
@@ -152,8 +170,11 @@ void ConvertAngles(Log& log) {
   if (log.format == Format::kAuto) ForgetAngles(log);
 }
 
-void Reorder(Trajectory& trajectory, const std::vector<size_t>& order) {
+void Reorder(Trajectory& trajectory, std::vector<int>& lines, const std::vector<size_t>& order) {
   Trajectory sorted;
+  std::vector<int> sorted_lines;
+  for (const size_t i : order) sorted_lines.push_back(lines[i]);
+  lines = std::move(sorted_lines);
   for (const size_t i : order) sorted.poses.push_back(trajectory.poses[i]);
   for (const Channel& channel : trajectory.channels) {
     Channel copy{channel.name, {}};
@@ -164,7 +185,7 @@ void Reorder(Trajectory& trajectory, const std::vector<size_t>& order) {
 }
 
 /// Makes time strictly increasing and notes what had to be done for it.
-void SortByTime(Log& log) {
+void SortByTime(Log& log, std::vector<int>& lines) {
   const auto& poses = log.trajectory.poses;
   const auto not_later = [](const StampedPose& a, const StampedPose& b) { return a.t_s >= b.t_s; };
   if (std::adjacent_find(poses.begin(), poses.end(), not_later) == poses.end()) return;
@@ -181,7 +202,7 @@ void SortByTime(Log& log) {
     kept.push_back(i);
   }
   const size_t dropped = poses.size() - kept.size();
-  Reorder(log.trajectory, kept);
+  Reorder(log.trajectory, lines, kept);
   if (backwards > 0) {
     log.notes.push_back(fmt::format("time runs backwards {} times: rows sorted", backwards));
   }
@@ -189,6 +210,16 @@ void SortByTime(Log& log) {
     log.notes.push_back(
         fmt::format("{} rows share the time of another: the last is kept", dropped));
   }
+}
+
+std::optional<int> LineWithoutYaw(const Trajectory& trajectory, const std::vector<int>& lines) {
+  const auto has_none = [](const StampedPose& pose) { return std::isnan(pose.yaw_rad); };
+  const auto& poses = trajectory.poses;
+  const auto found = std::find_if(poses.begin(), poses.end(), has_none);
+  if (found == poses.end() || std::all_of(poses.begin(), poses.end(), has_none)) {
+    return std::nullopt;
+  }
+  return lines[found - poses.begin()];
 }
 
 void CheckMoves(const Trajectory& trajectory, const std::string& name) {
@@ -207,15 +238,19 @@ void CheckMoves(const Trajectory& trajectory, const std::string& name) {
 Log ReadLog(std::string_view text, const std::string& name, Format format) {
   Log log;
   log.format = format == Format::kAuto ? FormatFromHeader(text, name) : format;
-  if (log.format == Format::kTum) {
-    TakeTum(csv::ReadNumbers(text, name, false, ' '), name, log.trajectory);
+  const bool is_tum = log.format == Format::kTum;
+  Table table = csv::ReadNumbers(text, name, !is_tum, is_tum ? ' ' : ',');
+  if (is_tum) {
+    TakeTum(table, name, log.trajectory);
   } else {
-    const Table table = csv::ReadNumbers(text, name, true, ',');
     TakeColumns(table, log.format == Format::kRift ? kRiftColumns : kAuthorsColumns, name,
                 log.trajectory);
-    ConvertAngles(log);
   }
-  SortByTime(log);
+  CheckMagnitudes(log.trajectory, table.lines, name);
+  NoteDoubtfulAngles(log);
+  ConvertAngles(log);
+  SortByTime(log, table.lines);
+  log.line_without_yaw = LineWithoutYaw(log.trajectory, table.lines);
   CheckMoves(log.trajectory, name);
   return log;
 }

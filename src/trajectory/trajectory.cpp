@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "rift/geometry/angle.hpp"
 
@@ -27,7 +28,9 @@ double Trajectory::Duration_s() const {
   return poses.empty() ? 0.0 : poses.back().t_s - poses.front().t_s;
 }
 
-double Trajectory::ArcLength_m() const {
+double Trajectory::ArcLength_m() const { return trajectory::ArcLength_m(poses); }
+
+double ArcLength_m(std::span<const StampedPose> poses) {
   double length_m = 0.0;
   for (size_t i = 1; i < poses.size(); ++i) {
     length_m += (poses[i].Position() - poses[i - 1].Position()).norm();

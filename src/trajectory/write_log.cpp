@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <charconv>
 #include <cmath>
+#include <string>
 
 #include "rift/trajectory/log.hpp"
 
@@ -15,13 +16,21 @@ void AppendNumber(std::string& text, double value) {
   text.append(buffer, end);
 }
 
+/// In double quotes where a comma, a quote or a blank would not survive reading.
+std::string HeaderCell(const std::string& name) {
+  if (name.find_first_of(", \t\"") == name.npos) return name;
+  std::string cell = "\"";
+  for (const char c : name) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return cell + '"';
+}
+
 double ZeroIfNotLogged(double value) { return std::isnan(value) ? 0.0 : value; }
 
 }  // namespace
 
 std::string WriteRift(const Trajectory& trajectory) {
   std::string text = "t_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad,target_x_m,target_y_m";
-  for (const Channel& channel : trajectory.channels) text += "," + channel.name;
+  for (const Channel& channel : trajectory.channels) text += "," + HeaderCell(channel.name);
   text += '\n';
   for (size_t row = 0; row < trajectory.poses.size(); ++row) {
     const StampedPose& pose = trajectory.poses[row];

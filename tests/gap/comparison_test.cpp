@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "rift/geometry/angle.hpp"
 #include "support/paths.hpp"
@@ -15,12 +16,6 @@ using test::RandomPath;
 using test::StraightPath;
 using trajectory::Trajectory;
 
-/// The definition of section 3.1, written out as the paper does, for every sample.
-double GapByDefinition(const Trajectory& sim, const Trajectory& real, const GapOptions& options) {
-  const ErrorProfile profile = ProfileAlong(sim, real, options);
-  return *std::max_element(profile.error_m.begin(), profile.error_m.end());
-}
-
 TEST_CASE("A path has no gap to itself") {
   std::mt19937_64 generator(1);
   const Trajectory path = RandomPath(generator, 80);
@@ -32,18 +27,6 @@ TEST_CASE("A path has no gap to itself") {
   CHECK(result.dtw_m == 0.0);
   CHECK(result.length_ratio == 1.0);
   CHECK(result.max_yaw_error_rad == 0.0);
-}
-
-TEST_CASE("The gap from two samples an interval is the gap from all of them") {
-  std::mt19937_64 generator(2);
-  for (int i = 0; i < 200; ++i) {
-    const Trajectory sim = RandomPath(generator, 3 + i), real = RandomPath(generator, 90);
-    GapOptions options;
-    options.samples = 2 + static_cast<int>(generator() % 3000);
-    options.skip_start = i % 3 == 0 ? 0.1 : 0.0;
-    options.align = static_cast<Align>(i % 3);
-    CHECK(Gap(sim, real, options) == Approx(GapByDefinition(sim, real, options)).margin(1e-14));
-  }
 }
 
 TEST_CASE("The exact gap is what ever more samples approach from below") {
@@ -110,6 +93,39 @@ TEST_CASE("Speed does not matter to the gap but does at equal time") {
   CHECK(result.equal_time_m == Approx(0.5).epsilon(0.01));
 }
 
+TEST_CASE("Aligning and trimming reach the distance at equal time") {
+  std::mt19937_64 generator(11);
+  const Trajectory sim = RandomPath(generator, 60);
+  const Trajectory shifted = Moved(sim, {0.3, -0.4, 0.0});
+  GapOptions options;
+  CHECK(Compare(sim, shifted, options).equal_time_m == Approx(0.5));
+  options.align = Align::kStart;
+  CHECK(Compare(sim, shifted, options).equal_time_m == Approx(0.0).margin(1e-12));
+  options.align = Align::kSe2;
+  const Trajectory moved = Moved(sim, {0.3, -0.4, 1.0});
+  CHECK(Compare(sim, moved, options).equal_time_m == Approx(0.0).margin(1e-9));
+
+  Trajectory waiting = StraightPath(1.0, 50);
+  waiting.poses.insert(waiting.poses.begin(), {.t_s = -2.0, .yaw_rad = 0.0});
+  options = {};
+  CHECK(Compare(StraightPath(1.0, 50), waiting, options).equal_time_m == Approx(1.0));
+  options.trim_standstill = true;
+  CHECK(Compare(StraightPath(1.0, 50), waiting, options).equal_time_m == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("Hausdorff sees a spike between the resampled points") {
+  Trajectory real = StraightPath(1.0, 101);
+  real.poses[50].y_m = 0.0123;
+  const Comparison result = Compare(StraightPath(1.0, 101), real, {});
+  CHECK(result.hausdorff_m == Approx(0.0123));
+}
+
+TEST_CASE("Hausdorff of long logs is close to that of all their vertices") {
+  const Trajectory sim = StraightPath(1.0, 2000);
+  const Comparison result = Compare(sim, Moved(sim, {0.0, 0.05, 0.0}), {});
+  CHECK(result.hausdorff_m == Approx(0.05));
+}
+
 TEST_CASE("Jitter of a standing robot is counted and can be trimmed") {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> jitter_m(0.0, 0.0005);
@@ -152,7 +168,8 @@ TEST_CASE("Measures that do not know the order of the paths are symmetric") {
   CHECK(ab.frechet_m == Approx(ba.frechet_m));
   CHECK(ab.equal_time_m == Approx(ba.equal_time_m));
   CHECK(ab.length_ratio == Approx(1.0 / ba.length_ratio));
-  CHECK(ab.hausdorff_m <= ab.frechet_m + 1e-12);
+  const double spacing_m = (ab.sim_length_m + ab.real_length_m) / 159;  // Frechet's points
+  CHECK(ab.hausdorff_m <= ab.frechet_m + spacing_m);
 }
 
 TEST_CASE("Repeated points do not disturb the arc length") {
@@ -162,6 +179,16 @@ TEST_CASE("Repeated points do not disturb the arc length") {
   sim.poses.push_back(sim.poses.back());
   CHECK(Gap(sim, StraightPath(1.0, 33), {}) == Approx(0.0).margin(1e-12));
   CHECK(Gap(StraightPath(1.0, 33), sim, {}) == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("A path without a finite length is refused") {
+  Trajectory huge = StraightPath(1.0, 5);
+  huge.poses[1].x_m = 1e308;
+  huge.poses[2].x_m = -1e308;
+  CHECK_THROWS_AS(Gap(huge, StraightPath(1.0, 5), {}), std::invalid_argument);
+  CHECK_THROWS_AS(Compare(StraightPath(1.0, 5), huge, {}), std::invalid_argument);
+  huge.poses[1].x_m = kNotComputed;
+  CHECK_THROWS_AS(Gap(huge, StraightPath(1.0, 5), {}), std::invalid_argument);
 }
 
 TEST_CASE("A path that never moves is refused") {

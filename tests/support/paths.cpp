@@ -1,6 +1,7 @@
 #include "support/paths.hpp"
 
 #include <cmath>
+#include <string_view>
 
 namespace rift::test {
 
@@ -38,6 +39,17 @@ trajectory::Trajectory Moved(trajectory::Trajectory path, const geometry::Pose2&
     pose.yaw_rad = moved.yaw_rad;
   }
   return path;
+}
+
+std::string Damaged(std::string text, std::mt19937_64& generator) {
+  constexpr std::string_view kLikely = "0123456789.-+eE, \n";
+  const bool any_byte = generator() % 2 == 0, cut = generator() % 4 == 0;
+  for (size_t k = 1 + generator() % 3; k > 0; --k) {
+    text[generator() % text.size()] =
+        any_byte ? static_cast<char>(generator() % 256) : kLikely[generator() % kLikely.size()];
+  }
+  if (cut) text.resize(generator() % text.size() + 1);
+  return text;
 }
 
 }  // namespace rift::test

@@ -1,9 +1,15 @@
 #include "rift/trajectory/log.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "rift/geometry/angle.hpp"
+#include "support/paths.hpp"
 
 namespace rift::trajectory {
 namespace {
@@ -112,6 +118,38 @@ TEST_CASE("A byte order mark and CRLF and blank lines change nothing") {
   CHECK(log.trajectory.poses.size() == 2);
 }
 
+TEST_CASE("Header cells in double quotes and numbers with a plus are read") {
+  const Log log =
+      ReadLog("\"t_s\", \"x_m\" ,y_m,\"a, \"\"b\"\"\"\n0,0,0,1\n+1,+1.5,+.5,+2e0\n", "log.csv");
+  CHECK(log.format == Format::kRift);
+  CHECK(log.trajectory.poses[1].x_m == 1.5);
+  CHECK(log.trajectory.poses[1].y_m == 0.5);
+  REQUIRE(log.trajectory.channels.size() == 1);
+  CHECK(log.trajectory.channels[0].name == "a, \"b\"");
+  CHECK(ReadLog(WriteRift(log.trajectory), "log.csv").trajectory.channels[0].name == "a, \"b\"");
+  for (const std::string cell : {"+", "+-1", "++1", "-+1", "+inf", "+ 1"}) {
+    CHECK(
+        Refusal("t_s,x_m,y_m\n0,0,0\n1," + cell + ",0\n").ends_with("a finite number is expected"));
+  }
+}
+
+TEST_CASE("A comment before a log for evo may hold commas") {
+  const std::string rows = "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n";
+  CHECK(ReadLog("# t, x, y of a robot\n\n# more\n" + rows, "log.tum").format == Format::kTum);
+  CHECK(Refusal("# t, x, y\n1,2,3\n").find("belongs to no dialect") != std::string::npos);
+  CHECK(Refusal("# nothing, else\n") == "log.csv: 0 poses, and a trajectory needs at least 2");
+}
+
+TEST_CASE("The line of the first missing yaw is known") {
+  const std::string header = "t_s,x_m,y_m,yaw_rad\n";
+  CHECK(ReadLog(header + "0,0,0,1\n\n1,1,0,\n2,2,0,\n", "log.csv").line_without_yaw == 4);
+  CHECK(ReadLog(header + "2,0,0,1\n1,1,0,\n0,2,0,\n", "log.csv").line_without_yaw == 4);
+  CHECK(ReadLog(header + "0,0,0,\n1,1,0,1\n", "log.csv").line_without_yaw == 2);
+  CHECK_FALSE(ReadLog(header + "0,0,0,\n0,0,0,1\n1,1,0,1\n", "log.csv").line_without_yaw);
+  CHECK_FALSE(ReadLog(header + "0,0,0,\n1,1,0,\n", "log.csv").line_without_yaw);
+  CHECK_FALSE(ReadLog(header + "0,0,0,1\n1,1,0,1\n", "log.csv").line_without_yaw);
+}
+
 TEST_CASE("Rows out of order are sorted and of equal times the last is kept and both are said") {
   const Log log = ReadLog("t_s,x_m,y_m,n\n2,2,0,20\n0,0,0,0\n1,1,0,10\n1,1.5,0,11\n", "log.csv");
   REQUIRE(log.trajectory.poses.size() == 3);
@@ -139,6 +177,9 @@ TEST_CASE("A bad log is refused with its row and its rule") {
   CHECK(Refusal(good) == "log.csv: 1 poses, and a trajectory needs at least 2");
   CHECK(Refusal(good + "1,0,0\n") == "log.csv: the path has zero length: the robot never moved");
   CHECK(Refusal("a,b\n1,2\n").find("log.csv:1: the header 'a,b' belongs to no dialect") == 0);
+  CHECK(Refusal("t_s,x_m,y_m,x_m\n") ==
+        "log.csv:1: the header has two columns 'x_m': rename or remove one of them");
+  CHECK(Refusal("t_s,x_m,y_m,,\n0,0,0,,\n1,1,0,,\n") == "accepted");
   CHECK(Refusal("").find("log.csv:1: the header '' belongs to no dialect") == 0);
   CHECK(Refusal(good, Format::kTracker) == "log.csv:1: column t is missing");
   CHECK(Refusal("0 1 2 3\n1 2 3 4\n") ==
@@ -146,23 +187,51 @@ TEST_CASE("A bad log is refused with its row and its rule") {
   CHECK(Refusal("0 1 2 3 0 0 0 0\n") == "log.csv:1: the quaternion has zero length");
 }
 
-TEST_CASE("No damaged log does anything but read or be refused") {
+TEST_CASE("A position or a time that no robot logs is refused with its row") {
+  const std::string good = "t_s,x_m,y_m,z_m\n0,0,0,0\n";
+  CHECK(Refusal(good + "1,1e308,0,0\n") ==
+        "log.csv:3: x is 1e+308, beyond +-1e+06: is the log in metres and seconds?");
+  CHECK(Refusal(good + "1,0,-1.1e6,0\n").starts_with("log.csv:3: y is -1.1e+06, beyond"));
+  CHECK(Refusal(good + "1,1,0,-2e6\n").starts_with("log.csv:3: z is -2e+06, beyond"));
+  CHECK(Refusal(good + "1.7e18,1,0,0\n").starts_with("log.csv:3: t is 1.7e+18, beyond"));
+  CHECK(Refusal(good + "1e12,1e6,-1e6,1e6\n") == "accepted");
+  CHECK(Refusal("0 0 0 0 0 0 0 1\n\n1 0 -1e7 0 0 0 0 1\n").starts_with("log.csv:3: y is -1e+07"));
+}
+
+/// True when it was read.
+bool ReadsOrIsRefused(const std::string& text, Format format) {
+  try {
+    const Log log = ReadLog(text, "log.csv", format);
+    for (const StampedPose& pose : log.trajectory.poses) {
+      REQUIRE(std::isfinite(pose.x_m + pose.y_m + pose.t_s));
+    }
+    REQUIRE(log.trajectory.poses.size() >= 2);
+    return true;
+  } catch (const std::invalid_argument& error) {
+    REQUIRE(std::string(error.what()).starts_with("log.csv:"));
+    return false;
+  }
+}
+
+TEST_CASE("No damaged log of any dialect does anything but read or be refused") {
   std::mt19937_64 generator(9);
-  const std::string good = WriteRift(RandomTrajectory(generator, true));
-  for (int i = 0; i < 3000; ++i) {
-    std::string text = good;
-    for (int k = 0; k < 1 + i % 5; ++k) {
-      text[generator() % text.size()] = static_cast<char>(generator() % 256);
-    }
-    text.resize(text.size() - (i % 3 == 0 ? generator() % text.size() : 0));
-    try {
-      const Log log = ReadLog(text, "log.csv");
-      for (const StampedPose& pose : log.trajectory.poses) {
-        REQUIRE(std::isfinite(pose.x_m + pose.y_m + pose.t_s));
-      }
-    } catch (const std::invalid_argument& error) {
-      REQUIRE(std::string(error.what()).starts_with("log.csv:"));
-    }
+  Trajectory written = RandomTrajectory(generator, true);
+  const std::string rift = WriteRift(written);
+  written.channels.clear();
+  const std::string rows = WriteRift(written);
+  const std::string authors = kAuthorsHeader + rows.substr(rows.find('\n') + 1);
+  const std::vector<std::pair<std::string, Format>> logs{{rift, Format::kAuto},
+                                                         {rift, Format::kRift},
+                                                         {WriteTum(written), Format::kTum},
+                                                         {WriteTum(written), Format::kAuto},
+                                                         {authors, Format::kTracker},
+                                                         {authors, Format::kWebots},
+                                                         {authors, Format::kAuto}};
+  for (const auto& [text, format] : logs) {
+    int read = 0;
+    for (int i = 0; i < 1000; ++i) read += ReadsOrIsRefused(test::Damaged(text, generator), format);
+    CHECK(read > 50);
+    CHECK(read < 950);
   }
 }
 
@@ -184,6 +253,28 @@ TEST_CASE("A tag offset moves each point along its own heading") {
   trajectory.poses[0].yaw_rad = StampedPose::kNotLogged;
   CHECK_THROWS_AS(OffsetAlongHeading(trajectory, 0.03), std::invalid_argument);
   CHECK_NOTHROW(OffsetAlongHeading(trajectory, 0.0));
+}
+
+TEST_CASE("The standing pose is the median of the first rows and shrugs off a jump") {
+  Trajectory trajectory;
+  for (int i = 0; i < 9; ++i) {
+    trajectory.poses.push_back({.t_s = 0.1 * i,
+                                .x_m = 1.0 + 0.001 * (i % 3),
+                                .y_m = 2.0 - 0.001 * (i % 3),
+                                .yaw_rad = kPi - 0.01 + 0.01 * (i % 3)});
+  }
+  trajectory.poses[1].x_m += 0.006;  // within the radius, and far from the rest
+  trajectory.poses[1].yaw_rad = 0.5;
+  for (int i = 0; i < 20; ++i) {
+    trajectory.poses.push_back({.t_s = 1.0 + i, .x_m = 1.1 + i, .y_m = 5.0, .yaw_rad = 0.0});
+  }
+  trajectory.poses.push_back({.t_s = 30.0, .x_m = 1.0, .y_m = 2.0, .yaw_rad = 0.0});
+  const geometry::Pose2 pose = StandingPose(trajectory);
+  CHECK(pose.x_m == Approx(1.001));
+  CHECK(pose.y_m == Approx(1.999));
+  CHECK(std::abs(geometry::WrapToPi(pose.yaw_rad - kPi)) < 1e-12);
+  trajectory.poses[4].yaw_rad = StampedPose::kNotLogged;
+  CHECK_THROWS_AS(StandingPose(trajectory), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <limits>
 #include <vector>
 
@@ -13,6 +14,13 @@ inline constexpr double kNotComputed = std::numeric_limits<double>::quiet_NaN();
 
 /// The gap and everything that helps to read it. Errors are distances between the two paths at
 /// equal normalised arc length u unless a name says otherwise; NaN where it could not be computed.
+/// What the options change:
+///   skip_start       the gaps (all four) and the errors (mean to p95, yaw); nothing else
+///   align            everything but the lengths and the standstill shares; real_from_sim and the
+///                    two gaps computed with a motion of their own start from the aligned path
+///   trim_standstill  everything but the standstill shares, which are of the whole log
+/// So start offset, end error, lengths, Hausdorff, Frechet, DTW and equal time see the whole path
+/// whatever skip_start is.
 struct Comparison {
   double gap_m = kNotComputed;        ///< largest error over the samples (paper, section 3.1)
   double gap_u = kNotComputed;        ///< where along the path it stands, u in [0, 1]
@@ -39,14 +47,16 @@ struct Comparison {
   double sim_standstill_share = kNotComputed;  ///< of the arc length, logged while standing
   double real_standstill_share = kNotComputed;
 
-  double hausdorff_m = kNotComputed;   ///< largest distance to the closest point of the other path
-  double frechet_m = kNotComputed;     ///< discrete Frechet distance
-  double dtw_m = kNotComputed;         ///< mean distance along the best time warping
+  /// Largest distance of a vertex to the closest point of the other path; of 160 evenly spaced
+  /// points instead of the vertices when the product of the rows exceeds 65536.
+  double hausdorff_m = kNotComputed;
+  double frechet_m = kNotComputed;     ///< discrete Frechet distance of 160 evenly spaced points
+  double dtw_m = kNotComputed;         ///< mean distance of them along the best time warping
   double equal_time_m = kNotComputed;  ///< largest distance at equal time since the first row
 };
 
 /// Compares two paths of at least two poses and non-zero length.
-/// Throws std::invalid_argument when a path does not move.
+/// Throws std::invalid_argument when a path does not move or its length is not finite.
 Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                    const GapOptions& options);
 

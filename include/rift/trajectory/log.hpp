@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,15 +28,20 @@ constexpr std::array<std::string_view, 5> EnumNames(Format) {
 struct Log {
   Trajectory trajectory;
   Format format = Format::kAuto;   ///< kAuto: the authors' header, which of the two is not known
-  std::vector<std::string> notes;  ///< what was mended on the way, one line each
+  std::vector<std::string> notes;  ///< what was mended or looks odd, one line each
   /// Why the angles are unknown and what to do; empty when they are known or not logged.
   std::string unknown_angles;
+  /// The line in the file of the first pose without a yaw when others have one; else nothing.
+  std::optional<int> line_without_yaw;
 };
 
 /// Reads a whole log or throws std::invalid_argument with one line `name:row: what is wrong`.
 /// Rows out of order are sorted by time and of rows with equal time the last is kept, both noted.
-/// Refused: NaN or infinite values, ragged rows, fewer than two poses, a path of zero length.
-/// Accepted: a byte order mark, CRLF, blank lines, empty cells in optional columns (not logged).
+/// Refused: NaN or infinite values, |x|, |y| or |z| above 1e6 m, |t| above 1e12 s, ragged rows,
+/// two columns of one name, fewer than two poses, a path of zero length.
+/// Noted: degrees where the dialect has radians, and the other way round.
+/// Accepted: a byte order mark, CRLF, blank lines, header cells in double quotes, `+1.0`, empty
+/// cells in optional columns (not logged).
 Log ReadLog(std::string_view text, const std::string& name, Format format = Format::kAuto);
 
 /// The rift dialect; doubles in the shortest form that reads back to the same bits, values that

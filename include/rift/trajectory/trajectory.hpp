@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,9 +43,11 @@ struct Trajectory {
 
   bool HasYaw() const;
   double Duration_s() const;
-  /// Length of the polyline through the planar positions.
   double ArcLength_m() const;
 };
+
+/// Length of the polyline through the planar positions.
+double ArcLength_m(std::span<const StampedPose> poses);
 
 /// The same trajectory seen from a point `offset_m` further forward on the body: the authors log
 /// the centre of the tag, and their published gaps use the robot's front, 0.03 m ahead of it.

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "rift/geometry/angle.hpp"
+#include "rift/trajectory/log.hpp"
+#include "support/trials.hpp"
+
+namespace rift::trajectory {
+namespace {
+
+using geometry::kPi;
+
+/// Three turns of a circle in the authors' columns, or a straight drive.
+std::string Drive(bool turning, double yaw_unit, double pitch) {
+  std::string text = "t,x,y,z,roll,pitch,yaw\n";
+  for (int i = 0; i < 90; ++i) {
+    const double yaw_rad = turning ? 0.2 * i : 0.01;
+    const double x_m = turning ? std::sin(yaw_rad) : 0.02 * i;
+    text += fmt::format("{},{},{},0.8,0,{},{}\n", 0.05 * i, x_m, turning ? std::cos(yaw_rad) : 0.0,
+                        pitch, geometry::WrapToPi(yaw_rad) * yaw_unit);
+  }
+  return text;
+}
+
+std::vector<std::string> Notes(const std::string& text, Format format) {
+  return ReadLog(text, "log.csv", format).notes;
+}
+
+TEST_CASE("Degrees in a log of radians are noted") {
+  const std::vector<std::string> of_pitch = Notes(Drive(false, 1.0, -33.7), Format::kWebots);
+  REQUIRE(of_pitch.size() == 1);
+  CHECK(of_pitch[0] == "a pitch of 33.7 rad looks like degrees: is it a tracker log?");
+  const std::vector<std::string> of_yaw = Notes(Drive(true, 180.0 / kPi, 0.0), Format::kWebots);
+  REQUIRE(of_yaw.size() == 1);
+  CHECK(of_yaw[0].starts_with("a yaw of 17"));
+  const std::string rift = "t_s,x_m,y_m,roll_rad\n0,0,0,6\n1,1,0,";
+  CHECK(Notes(rift + "7\n", Format::kAuto).size() == 1);
+  CHECK(Notes(rift + "6.2\n", Format::kAuto).empty());
+}
+
+TEST_CASE("An unwrapped yaw in radians is not taken for degrees") {
+  std::string text = "t_s,x_m,y_m,yaw_rad\n";
+  for (int i = 0; i < 200; ++i) text += fmt::format("{},{},0,{}\n", i, i, 0.5 * i);
+  CHECK(Notes(text, Format::kRift).empty());
+  CHECK(Notes(Drive(true, 1.0, 0.0), Format::kWebots).empty());
+}
+
+TEST_CASE("Radians in a log of degrees are noted when the path turns") {
+  const std::vector<std::string> notes = Notes(Drive(true, 1.0, 0.1), Format::kTracker);
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].ends_with("looks like radians: is it a webots log?"));
+  CHECK(Notes(Drive(true, 180.0 / kPi, 0.1), Format::kTracker).empty());
+  CHECK(Notes(Drive(false, 180.0 / kPi, 0.1), Format::kTracker).empty());
+}
+
+TEST_CASE("Every published log is noted in the wrong dialect and not in its own") {
+  RIFT_SKIP_WITHOUT_TRIALS();
+  for (const test::TrialPair& pair : test::PublishedPairs()) {
+    INFO(pair.real.string());
+    const std::string real = test::ReadFile(pair.real), webots = test::ReadFile(pair.webots);
+    CHECK(Notes(real, Format::kTracker).empty());
+    CHECK(Notes(webots, Format::kWebots).empty());
+    CHECK(Notes(real, Format::kWebots).size() == 1);
+    CHECK(Notes(webots, Format::kTracker).size() == 1);
+  }
+}
+
+}  // namespace
+}  // namespace rift::trajectory
