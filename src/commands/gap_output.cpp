@@ -7,6 +7,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "enum_name.hpp"
 #include "json_fields.hpp"
 
 namespace rift::commands {
@@ -100,9 +101,8 @@ std::string VerdictText(const GapEvidence& evidence) {
   return fmt::format(
       "verdict: {} ({} of {} above {:g} m; at {:g} % confidence {:.0f} to {:.0f} % of such trials "
       "are)\n",
-      EnumNames(verdict.verdict)[static_cast<size_t>(verdict.verdict)], verdict.above,
-      verdict.repeats, evidence.options.threshold_m, 100.0 * verdict.confidence,
-      100.0 * verdict.share_low, 100.0 * verdict.share_high);
+      NameOf(verdict.verdict), verdict.above, verdict.repeats, evidence.options.threshold_m,
+      100.0 * verdict.confidence, 100.0 * verdict.share_low, 100.0 * verdict.share_high);
 }
 
 }  // namespace
@@ -143,7 +143,7 @@ std::string GapJson(const GapEvidence& evidence) {
   }
   json["mean_gap_m"] = evidence.mean_gap_m;
   json["noise_floor_m"] = NumberOrNull(evidence.noise_floor_m);
-  json["verdict"] = EnumNames(verdict.verdict)[static_cast<size_t>(verdict.verdict)];
+  json["verdict"] = NameOf(verdict.verdict);
   json["repeats"] = {{"n", verdict.repeats},
                      {"above_threshold", verdict.above},
                      {"confidence", verdict.confidence},

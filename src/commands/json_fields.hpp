@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "enum_name.hpp"
 #include "rift/gap/comparison.hpp"
 
 namespace rift::commands {
@@ -22,7 +23,7 @@ nlohmann::ordered_json FieldsToJson(const Options& options) {
   nlohmann::ordered_json json;
   Options::Fields(options, [&](const char* key, const auto& value, const auto&...) {
     if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(value)>>) {
-      json[key] = EnumNames(value)[static_cast<size_t>(value)];
+      json[key] = NameOf(value);
     } else {
       json[key] = value;
     }

@@ -4,16 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "enum_name.hpp"
 #include "json_fields.hpp"
 
 namespace rift::commands {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::string_view OutcomeName(const trial::TrialResult& result) {
-  return EnumNames(result.outcome)[static_cast<size_t>(result.outcome)];
-}
 
 ordered_json VisitJson(const trial::WaypointVisit& visit) {
   ordered_json json{{"name", visit.name}, {"reached_s", nullptr}, {"closest_m", nullptr}};
@@ -51,7 +48,7 @@ std::string SimulationJson(const config::Experiment& experiment, const sweep::Si
   ordered_json json{{"name", experiment.name},
                     {"rift_version", RIFT_VERSION},
                     {"seed", experiment.seed},
-                    {"outcome", OutcomeName(result)},
+                    {"outcome", NameOf(result.outcome)},
                     {"reason", result.reason},
                     {"duration_s", result.Duration_s()},
                     {"path_length_m", result.trajectory.ArcLength_m()},
@@ -70,7 +67,7 @@ std::string SimulationJson(const config::Experiment& experiment, const sweep::Si
 std::string SimulationText(const config::Experiment& experiment, const sweep::SimulatedRun& run) {
   const trial::TrialResult& result = run.result;
   std::string text =
-      fmt::format("{}: {}\n", OutcomeName(result), result.reason) +
+      fmt::format("{}: {}\n", NameOf(result.outcome), result.reason) +
       fmt::format("{:.2f} s, {:.3f} m, {} poses logged, seed {}\n", result.Duration_s(),
                   run.truth.ArcLength_m(), result.trajectory.poses.size(), experiment.seed);
   for (const trial::WaypointVisit& visit : result.visits) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "enum_name.hpp"
 #include "rift/sweep/path_template.hpp"
 #include "simulated_runs.hpp"
 
@@ -13,11 +14,6 @@ namespace {
 
 using sweep::CandidateKind;
 using sweep::ReferenceKind;
-
-template <class Enum>
-std::string NameOf(Enum value) {
-  return std::string(EnumNames(value)[static_cast<size_t>(value)]);
-}
 
 /// The polyline through the waypoints, a second from each to the next.
 trajectory::Trajectory WaypointPath(const std::vector<control::Waypoint>& waypoints) {
@@ -63,8 +59,8 @@ void SweepSources::RequirePath(const sweep::PathTemplate& path, const std::strin
 
 sweep::GridPlan SweepSources::Plan() const {
   return {.name = experiment_.name,
-          .candidate_kind = NameOf(experiment_.candidate.kind),
-          .reference_kind = NameOf(experiment_.reference.kind),
+          .candidate_kind = std::string(NameOf(experiment_.candidate.kind)),
+          .reference_kind = std::string(NameOf(experiment_.reference.kind)),
           .parameters = experiment_.space.parameters,
           .trials = experiment_.reference.trials.names,
           .gap = experiment_.gap,

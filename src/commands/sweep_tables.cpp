@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "enum_name.hpp"
 #include "json_fields.hpp"
 #include "rift/sweep/labels.hpp"
 #include "sweep_output.hpp"
@@ -26,7 +27,7 @@ std::string RowCsv(const sweep::TrialRow& row) {
   for (const sweep::ParameterValue& value : row.theta) text += CsvCell(value.text) + ',';
   const std::string falsified = row.IsOk() ? fmt::format("{}", row.falsified) : "";
   text += fmt::format("{},{},{},{}", CsvCell(row.trial), NumberCell(row.comparison.gap_m),
-                      falsified, EnumNames(row.status)[static_cast<size_t>(row.status)]);
+                      falsified, NameOf(row.status));
   const gap::Comparison& c = row.comparison;
   for (const double value :
        {c.gap_u, c.exact_gap_m, c.mean_error_m, c.rms_error_m, c.start_offset_m,
@@ -75,7 +76,7 @@ ordered_json SettingJson(const sweep::SweepResult& result, const sweep::SettingR
   const gap::RepeatVerdict& verdict = setting.verdict;
   return {{"theta", theta},
           {"mean_gap_m", NumberOrNull(setting.mean_gap_m)},
-          {"verdict", EnumNames(verdict.verdict)[static_cast<size_t>(verdict.verdict)]},
+          {"verdict", NameOf(verdict.verdict)},
           {"failures", verdict.above},
           {"n", verdict.repeats},
           {"share_above_low", verdict.share_low},

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "rift/report/sweep_figures.hpp"
 #include "rift/sweep/labels.hpp"
 #include "sweep_output.hpp"
 
@@ -38,18 +40,15 @@ std::string EffectsText(const sweep::SweepResult& result) {
 }
 
 std::string WorstText(const sweep::SweepResult& result) {
-  const sweep::TrialRow* worst = nullptr;
-  for (const sweep::TrialRow& row : result.rows) {
-    if (!row.IsOk()) continue;
-    if (worst == nullptr || row.comparison.gap_m > worst->comparison.gap_m) worst = &row;
-  }
-  if (worst == nullptr) return "";
+  const std::optional<int> index = report::WorstRow(result);
+  if (!index) return "";
+  const sweep::TrialRow& worst = result.rows[*index];
   std::string setting;
   for (size_t i = 0; i < result.parameters.size(); ++i) {
-    setting += fmt::format("{} {}, ", result.parameters[i].Name(), worst->theta[i].text);
+    setting += fmt::format("{} {}, ", result.parameters[i].Name(), worst.theta[i].text);
   }
-  return fmt::format("worst: {:.4f} m at u = {:.2f} ({}trial {})\n", worst->comparison.gap_m,
-                     worst->comparison.gap_u, setting, worst->trial);
+  return fmt::format("worst: {:.4f} m at u = {:.2f} ({}trial {})\n", worst.comparison.gap_m,
+                     worst.comparison.gap_u, setting, worst.trial);
 }
 
 std::string NotOkText(const sweep::SweepResult& result) {
