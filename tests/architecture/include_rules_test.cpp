@@ -26,15 +26,17 @@ const std::map<std::string, Rooms> kRooms{
     {"trial", {"robot", "control", "trajectory"}},
     {"simulation", {"robot"}},
     {"hardware", {"robot", "vision"}},
-    {"sweep", {"trial", "simulation", "gap", "trajectory"}},
+    {"twin", {"simulation", "hardware", "vision", "trial"}},
+    {"search", {}},
+    {"sweep", {"trial", "simulation", "gap", "trajectory", "search"}},
     {"report", {"gap", "sweep", "trajectory"}},
     {"view", {"geometry", "trajectory", "robot"}},
     {"config",
      {"geometry", "trajectory", "robot", "vision", "gap", "control", "trial", "simulation",
-      "hardware", "sweep", "report"}},
+      "hardware", "twin", "search", "sweep", "report"}},
     {"commands",
      {"geometry", "trajectory", "robot", "vision", "gap", "control", "trial", "simulation",
-      "hardware", "sweep", "report", "config", "view"}},
+      "hardware", "twin", "search", "sweep", "report", "config", "view"}},
 };
 
 /// Headers that only one room may see, so that a library can be exchanged in one place, and
@@ -49,10 +51,12 @@ const std::vector<Reserved> kReserved{
     {"apriltag.*", {"vision"}},
     {"opencv2/(videoio|imgcodecs|highgui).*", {"vision", "commands", "view"}},
     {"CLI/.*", {"commands"}},
+    {"pagmo/.*|nlopt.*", {"search"}},
+    {"turbojpeg.h", {"vision"}},
     {"sqlite3.*|SQLiteCpp/.*", {"sweep"}},
-    {"termios.h|boost/asio.*", {"hardware"}},
-    {"fstream|iostream|cstdio", {"commands", "hardware", "vision", "report"}},
-    {"thread|mutex|condition_variable", {"commands", "hardware", "vision", "sweep"}},
+    {"termios.h|boost/asio.*", {"hardware", "twin"}},
+    {"fstream|iostream|cstdio", {"commands", "hardware", "vision", "twin", "report"}},
+    {"thread|mutex|condition_variable", {"commands", "hardware", "vision", "twin", "sweep"}},
 };
 
 struct Include {

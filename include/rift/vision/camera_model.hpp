@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rift::vision {
+
+/// How the lens bends light, in the words of ROS camera_info.
+enum class Lens {
+  kPlumbBob,     ///< OpenCV's k1 k2 p1 p2 [k3 [k4 k5 k6]]
+  kEquidistant,  ///< OpenCV's fisheye k1 k2 k3 k4
+};
+constexpr std::array<std::string_view, 2> EnumNames(Lens) { return {"plumb_bob", "equidistant"}; }
+
+/// The floor's frame as this camera sees it: z up, y up in the picture's sense of a map, metres.
+struct WorldFrame {
+  Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
+  double residual_m = 0.0;  ///< RMS on the floor of the points that set it
+  std::string origin;       ///< what set it, for people: "4 reference tags", "first pose"
+};
+
+/// A calibrated camera. The camera's own frame is OpenCV's: x right, y down, z forward.
+struct CameraModel {
+  std::string name;
+  int width_px = 0;
+  int height_px = 0;
+  Lens lens = Lens::kPlumbBob;
+  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();  ///< pixels from rays
+  std::vector<double> distortion;                   ///< in the lens's order
+  double rms_px = 0.0;                              ///< of the calibration; 0 where unknown
+  std::optional<WorldFrame> world;
+};
+
+}  // namespace rift::vision
