@@ -76,7 +76,7 @@ bool TakeInteger(std::string_view& text, char end, Integer& value) {
   return true;
 }
 
-std::uint8_t Crc8(std::string_view text) {
+std::uint8_t Crc8Of(std::string_view text) {
   return Crc8(Bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
@@ -165,7 +165,7 @@ std::optional<Answer> DecodeAnswer(Bytes bytes) {
 std::string AnswerLine(const Answer& answer) {
   const std::string text =
       fmt::format("{}{} {} {}", kHello, answer.left, answer.right, answer.battery_mv);
-  return fmt::format("{}*{:02x}\n", text, Crc8(text));
+  return fmt::format("{}*{:02x}\n", text, Crc8Of(text));
 }
 
 std::optional<Answer> ParseAnswerLine(std::string_view line) {
@@ -174,7 +174,7 @@ std::optional<Answer> ParseAnswerLine(std::string_view line) {
   std::string_view rest = line.substr(kHello.size());
   Answer answer;
   if (!TakeInteger(rest, ' ', answer.left) || !TakeInteger(rest, ' ', answer.right) ||
-      !TakeInteger(rest, '*', answer.battery_mv) || rest != fmt::format("{:02x}", Crc8(sealed))) {
+      !TakeInteger(rest, '*', answer.battery_mv) || rest != fmt::format("{:02x}", Crc8Of(sealed))) {
     return std::nullopt;
   }
   return answer;
