@@ -125,8 +125,7 @@ TEST_CASE("Of all frames with four wrong bits hardly any changes a power unseen"
           changed += taken && !(taken->power == MilliPower{123, -456});
         }
   CHECK(patterns == 2'331'890);
-  CHECK(changed <= 63);
-  WARN("four wrong bits, power changed unseen: " << changed);
+  CHECK(changed * 50'000 < patterns);
 }
 
 TEST_CASE("No frame of random bytes is taken as a command") {

@@ -17,9 +17,9 @@
 ///                      counts: int32 LE, battery: uint16 LE in mV, stops and rejected modulo 256
 ///
 /// crc is CRC-8 (x^8 + x^2 + x + 1, start 0) over all bytes before it: up to three wrong bits in a
-/// frame are always seen. The complements have the same to say about the powers, so that of the
-/// patterns of four wrong bits 63 in 2,331,890 change a power unseen, and random bytes pass as a
-/// command once in 2^58 (start, complements, crc, range).
+/// frame are always seen. With the complements, fewer than 1 in 50,000 of the patterns of four
+/// wrong bits change a power unseen, and random bytes pass as a command once in about 2^58 (start,
+/// complements, crc, range).
 namespace rift::hardware {
 
 using Bytes = std::span<const std::uint8_t>;
