@@ -40,7 +40,18 @@ void DriveGuard::Stop(StopReason reason, std::string text, double now_s) {
   stop_ = DriveStop{reason, std::move(text), now_s};
 }
 
+// Before anything else is looked at: after a standstill everything is old.
+void DriveGuard::NoteTime(double now_s) {
+  const double since_s = ticked_s_ ? now_s - *ticked_s_ : 0.0;
+  ticked_s_ = now_s;
+  if (state_ == DriveState::kArmed && (since_s > options_.host_stall_s || since_s < 0.0)) {
+    Stop(StopReason::kHostStalled, fmt::format("rift itself stood still for {:.2f} s", since_s),
+         now_s);
+  }
+}
+
 void DriveGuard::SeePose(const PoseNews& news, double now_s) {
+  NoteTime(now_s);
   if (news.fault) Stop(StopReason::kCameraGone, *news.fault, now_s);
   if (news.looked_s) looked_s_ = news.looked_s;
   if (!news.newest) return;
@@ -73,6 +84,7 @@ void DriveGuard::CheckJump(const robot::PoseMeasurement& before, const robot::Po
 
 void DriveGuard::Command(const robot::WheelPower& power, double now_s) {
   const double largest = std::max(std::abs(power.left), std::abs(power.right));
+  NoteTime(now_s);
   commanded_s_ = now_s;
   if (!std::isfinite(power.left) || !std::isfinite(power.right) || largest > options_.max_power) {
     return Stop(StopReason::kPowerRefused,
@@ -115,17 +127,12 @@ void DriveGuard::HearRobot(std::uint8_t stops, double battery_v, double now_s) {
   }
 }
 
-void DriveGuard::Tick(double now_s, std::optional<double> link_lag_s) {
-  const double since_s = ticked_s_ ? now_s - *ticked_s_ : 0.0;
-  ticked_s_ = now_s;
+void DriveGuard::Tick(double now_s, double link_lag_s) {
+  NoteTime(now_s);
   if (state_ != DriveState::kArmed) return;
-  if (since_s > options_.host_stall_s || since_s < 0.0) {
-    return Stop(StopReason::kHostStalled,
-                fmt::format("rift itself stood still for {:.2f} s", since_s), now_s);
-  }
-  if (link_lag_s && *link_lag_s > options_.link_lag_s) {
+  if (link_lag_s > options_.link_lag_s) {
     return Stop(StopReason::kLinkLagging,
-                fmt::format("the robot has not answered for {:.2f} s", *link_lag_s), now_s);
+                fmt::format("the robot has not answered for {:.2f} s", link_lag_s), now_s);
   }
   if (power_ == robot::WheelPower{}) return;
   if (!RequireFreshPose(now_s)) return;

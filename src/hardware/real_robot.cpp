@@ -113,8 +113,7 @@ void RealRobot::Core::LookAround(double now_s) {
 }
 
 void RealRobot::Core::Exchange(double now_s) {
-  const bool can_lag = link_.protocol() == Protocol::kFramed || link_.last_sent();
-  guard_.Tick(now_s, can_lag ? std::optional(link_.Lag_s(now_s)) : std::nullopt);
+  guard_.Tick(now_s, line_is_dead_ ? 0.0 : link_.Lag_s(now_s));
   if (line_is_dead_) return;
   if (guard_.state() == DriveState::kStopped && !stopped_at_s_) stopped_at_s_ = now_s;
   if (guard_.state() != DriveState::kStopped) stopped_at_s_.reset();

@@ -64,7 +64,7 @@ class DriveGuard {
   void Command(const robot::WheelPower& power, double now_s);
   void HearRobot(std::uint8_t stops, double battery_v, double now_s);
   /// To be called often: what has grown too old, or whether this process stood still.
-  void Tick(double now_s, std::optional<double> link_lag_s);
+  void Tick(double now_s, double link_lag_s);
 
   /// What may be sent now: the last command while all is well, else zero.
   robot::WheelPower Allowed() const;
@@ -74,6 +74,7 @@ class DriveGuard {
  private:
   void CheckJump(const robot::PoseMeasurement& before, const robot::PoseMeasurement& pose,
                  double now_s);
+  void NoteTime(double now_s);
   bool RequireFreshPose(double now_s);
 
   GuardOptions options_;
