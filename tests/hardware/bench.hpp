@@ -28,6 +28,7 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   std::function<std::vector<std::uint8_t>(std::uint8_t)> spoil = [](std::uint8_t byte) {
     return std::vector<std::uint8_t>{byte};
   };
+  std::function<bool()> lose_command = [] { return false; };
   std::function<double()> extra_delay_s = [] { return 0.0; };
   // The camera.
   bool camera_is_frozen = false;
@@ -52,7 +53,7 @@ class Bench : public ByteLine, public Clock, public PoseSource {
     RequireLine();
     if (const auto frame = DecodeCommand(bytes))
       written.insert({frame->power.left, frame->power.right});
-    if (to_robot_is_cut) return true;
+    if (to_robot_is_cut || lose_command()) return true;
     Carry(bytes, to_robot_, to_robot_free_s_);
     return true;
   }

@@ -112,7 +112,7 @@ const std::vector<Fault> kFaults{
        RunAlone(s.bench, 0.001);
        s.bench.robot_is_on = true;
      }},
-    {"robot that lost its radio partner", StopReason::kRobotStopped, 0.01,
+    {"robot that lost its radio partner", StopReason::kRobotStopped, 0.05,
      [](Scene& s) {
        s.bench.Chatter("OK+LOST");
        RunAlone(s.bench, 0.001);
