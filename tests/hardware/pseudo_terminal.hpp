@@ -37,7 +37,6 @@ class PseudoTerminal {
       throw std::runtime_error("cannot write to the pseudo terminal");
     }
   }
-  void Write(const std::string& text) { Write({text.begin(), text.end()}); }
 
   /// What comes within `timeout_ms`; empty when nothing does or the port is closed.
   std::vector<std::uint8_t> Read(int timeout_ms) {

@@ -60,10 +60,11 @@ int DriveForEver(const std::string& path) {
 }
 
 struct Host {
-  explicit Host(const std::string& path) : pid(::fork()) {
+  explicit Host(PseudoTerminal& terminal) : pid(::fork()) {
     if (pid != 0) return;
+    terminal.Close();  // else its own copy would keep the port open
     try {
-      ::_exit(DriveForEver(path));
+      ::_exit(DriveForEver(terminal.path()));
     } catch (const std::exception&) {
       ::_exit(99);
     }
@@ -108,7 +109,7 @@ constexpr double kScheduling_s = 0.2;  // a loaded machine may look away that lo
 
 TEST_CASE("The listener alone stops the motors of a host that was killed") {
   RobotEnd robot;
-  Host host(robot.terminal.path());
+  Host host(robot.terminal);
   REQUIRE(robot.Until([&] { return robot.Moves(); }) < 8.0);
   ::kill(host.pid, SIGKILL);
   CHECK(robot.Until([&] { return !robot.Moves(); }) < 0.3 + kScheduling_s);
@@ -116,7 +117,7 @@ TEST_CASE("The listener alone stops the motors of a host that was killed") {
 
 TEST_CASE("A host that was stopped and continued has been stopped for good") {
   RobotEnd robot;
-  Host host(robot.terminal.path());
+  Host host(robot.terminal);
   REQUIRE(robot.Until([&] { return robot.Moves(); }) < 8.0);
   ::kill(host.pid, SIGSTOP);
   CHECK(robot.Until([&] { return !robot.Moves(); }) < 0.3 + kScheduling_s);
@@ -135,7 +136,7 @@ TEST_CASE("A host that was stopped and continued has been stopped for good") {
 TEST_CASE("A signal stops the robot before the program ends and the stop is acknowledged") {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     RobotEnd robot;
-    Host host(robot.terminal.path());
+    Host host(robot.terminal);
     REQUIRE(robot.Until([&] { return robot.Moves(); }) < 8.0);
     ::kill(host.pid, signal);
     CHECK(robot.Until([&] { return !robot.Moves(); }) < 0.1 + kScheduling_s);
@@ -147,7 +148,7 @@ TEST_CASE("A signal stops the robot before the program ends and the stop is ackn
 
 TEST_CASE("A pseudo terminal that closes is a port that went away") {
   RobotEnd robot;
-  Host host(robot.terminal.path());
+  Host host(robot.terminal);
   REQUIRE(robot.Until([&] { return robot.Moves(); }) < 8.0);
   robot.terminal.Close();
   CHECK(host.ExitCode() == static_cast<int>(StopReason::kPortGone));
