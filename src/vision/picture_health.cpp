@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 #include <string_view>
+
+#include "picture.hpp"
 
 namespace rift::vision {
 namespace {
@@ -17,33 +18,12 @@ std::size_t HashOf(const Frame& frame) {
       {reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size()});
 }
 
-// Small and grey; empty when it cannot be decoded.
-cv::Mat Glance(const Frame& frame) {
-  auto* data = const_cast<std::uint8_t*>(frame.bytes.data());
-  const cv::Size size(frame.width_px, frame.height_px);
-  cv::Mat grey;
-  switch (frame.format) {
-    case PixelFormat::kJpeg:
-      return cv::imdecode(cv::Mat(1, static_cast<int>(frame.bytes.size()), CV_8U, data),
-                          cv::IMREAD_REDUCED_GRAYSCALE_8);
-    case PixelFormat::kGrey:
-      return {size, CV_8UC1, data};
-    case PixelFormat::kBgr:
-      cv::cvtColor(cv::Mat(size, CV_8UC3, data), grey, cv::COLOR_BGR2GRAY);
-      return grey;
-    case PixelFormat::kYuyv:
-      cv::extractChannel(cv::Mat(size, CV_8UC2, data), grey, 0);
-      return grey;
-  }
-  return grey;
-}
-
 }  // namespace
 
 void PictureHealth::LookForLight(const Frame& frame) {
   if (frame.arrived_s - looked_s_ < options_.look_s) return;
   looked_s_ = frame.arrived_s;
-  const cv::Mat grey = Glance(frame);
+  const cv::Mat grey = GlanceAt(frame);
   if (grey.empty()) {
     if (++undecodable_ < kMostUndecodable) return;
     throw CameraError(CameraState::kWrongFormat,
