@@ -105,6 +105,7 @@ class SubsetSimulation {
         if (sample.robustness <= level) seeds.push_back(sample);
       }
     }
+    SetReach(seeds);
     std::vector<Chain> next;
     const size_t wanted = static_cast<size_t>(options_.samples_per_level);
     for (size_t i = 0; i < seeds.size() && i < wanted; ++i) {
@@ -116,9 +117,26 @@ class SubsetSimulation {
     return next;
   }
 
+  /// Moves as wide as the samples of the level lie apart, coordinate by coordinate: the deeper the
+  /// level, the smaller it is.
+  void SetReach(const std::vector<Sample>& seeds) {
+    const double n = static_cast<double>(seeds.size());
+    reach_.assign(static_cast<size_t>(dimensions_), 0.0);
+    for (size_t i = 0; i < reach_.size(); ++i) {
+      double sum = 0.0, squares = 0.0;
+      for (const Sample& seed : seeds) {
+        sum += seed.point[i];
+        squares += seed.point[i] * seed.point[i];
+      }
+      reach_[i] = options_.step * std::sqrt(std::max(0.0, squares / n - sum * sum / n / n));
+    }
+  }
+
   Sample Step(const Sample& from, double level) {
     std::vector<double> point = from.point;
-    for (double& x : point) x = Reflected(x + options_.step * (2.0 * Uniform(random_) - 1.0));
+    for (size_t i = 0; i < point.size(); ++i) {
+      point[i] = Reflected(point[i] + reach_[i] * (2.0 * Uniform(random_) - 1.0));
+    }
     Sample to = Evaluated(std::move(point));
     return to.robustness <= level ? to : from;
   }
@@ -139,6 +157,7 @@ class SubsetSimulation {
   const UnitRobustness& robustness_;
   std::mt19937_64 random_;
   RareEventOptions options_;
+  std::vector<double> reach_;
   RareEvent event_;
 };
 

@@ -28,7 +28,7 @@ struct RareEventOptions {
   int samples_per_level = 500;
   double level_share = 0.1;
   int most_levels = 10;
-  double step = 0.4;
+  double step = 2.0;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -37,7 +37,8 @@ struct RareEventOptions {
     field("level_share", self.level_share, 0.01, 0.5,
           "share of a level's samples that lie in the next one");
     field("most_levels", self.most_levels, 1, 50, "levels after which it gives up");
-    field("step", self.step, 0.01, 1.0, "largest move of a coordinate, as a share of its range");
+    field("step", self.step, 0.01, 10.0,
+          "largest move of a coordinate, in standard deviations of the level's samples");
   }
 };
 

@@ -29,8 +29,8 @@ struct Sensitivity {
 };
 
 struct SensitivityOptions {
-  int most_trials = 3000;  ///< of more, evenly picked ones are used
-  int most_terms = 100;
+  int most_trials = 2000;  ///< of more, evenly picked ones are used
+  int most_terms = 60;
   int most_degree = 8;
   int bootstraps = 100;
   std::uint64_t seed = 1;
