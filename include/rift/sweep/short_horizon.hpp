@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "rift/sweep/simulated_trial.hpp"
+#include "rift/trajectory/trajectory.hpp"
+
+namespace rift::sweep {
+
+struct ShortHorizonOptions {
+  int most_frames = 5;
+  int phases = 8;
+  double moved_m = 0.02;
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("most_frames", self.most_frames, 1, 100,
+          "motions over 1 to this many frames are predicted; less than the loop delay, so that the "
+          "log alone decides what the robot was told");
+    field("phases", self.phases, 1, 1000,
+          "replays of a log whose mean is the prediction: nobody knows the phase of the robot's "
+          "listener");
+    field("moved_m", self.moved_m, 0.0, 10.0,
+          "a log counts from where the robot is this far from its start");
+  }
+};
+
+/// What the robot did from one logged pose to a later one, and what the simulator says it would
+/// have done, both seen from the first: predicted minus logged.
+struct HorizonError {
+  size_t from = 0;  ///< row of the log
+  int frames = 1;
+  double ahead_m = 0.0;
+  double left_m = 0.0;
+  double turned_rad = 0.0;
+};
+
+/// The simulated robot under the commands that the controller gave in the log: the one trial loop
+/// sees the logged poses, at the times they arrived, and drives the simulated robot. So the state
+/// of controller, radio and motors is rebuilt at every row, and nothing the simulated robot does
+/// comes back to the controller: no error of the model can grow into chaos. Returns the path of the
+/// tag on the clock of the log (t_s of its first row is that of the log's).
+trajectory::Trajectory Replay(const SimulatedTrial& trial, const trajectory::Trajectory& log);
+
+/// Motions over 1 to most_frames frames from every row while the robot moved, in order of rows,
+/// each the mean of the replays with the seeds trial.seed, trial.seed + 1 and so on.
+/// `trial.start` is where the log stands. Throws std::invalid_argument on a log without yaw.
+std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial,
+                                             const trajectory::Trajectory& log,
+                                             const ShortHorizonOptions& options);
+
+}  // namespace rift::sweep

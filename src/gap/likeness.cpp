@@ -1,0 +1,249 @@
+#include "rift/gap/likeness.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "energy_test.hpp"
+#include "path_shape.hpp"
+#include "rift/gap/verdict.hpp"
+
+namespace rift::gap {
+namespace {
+
+using trajectory::Trajectory;
+
+constexpr int kWavelengths = 60;
+
+/// A mean that is NaN of nothing.
+class Mean {
+ public:
+  void Add(double value) {
+    if (std::isnan(value)) return;
+    sum_ += value;
+    ++count_;
+  }
+  double Value() const { return count_ > 0 ? sum_ / count_ : kNotComputed; }
+
+ private:
+  double sum_ = 0.0;
+  int count_ = 0;
+};
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return kNotComputed;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double Speed_mps(const Trajectory& path, const LikenessOptions& options) {
+  std::vector<double> speeds;
+  const size_t stride = static_cast<size_t>(options.speed_stride);
+  for (size_t i = 0; i + stride < path.poses.size(); ++i) {
+    const auto &from = path.poses[i], &to = path.poses[i + stride];
+    const double speed = (to.Position() - from.Position()).norm() / (to.t_s - from.t_s);
+    if (speed > options.moving_mps) speeds.push_back(speed);
+  }
+  return Median(std::move(speeds));
+}
+
+/// Power of evenly spaced values at a wavelength, as share of 1 for a sine of amplitude 2.
+double PowerAt(const std::vector<double>& values, double length_m, double wavelength_m) {
+  double in_phase = 0.0, in_quadrature = 0.0;
+  const double step_rad =
+      2.0 * std::numbers::pi * length_m / wavelength_m / static_cast<double>(values.size() - 1);
+  for (size_t i = 0; i < values.size(); ++i) {
+    in_phase += values[i] * std::cos(step_rad * static_cast<double>(i));
+    in_quadrature += values[i] * std::sin(step_rad * static_cast<double>(i));
+  }
+  const double n = static_cast<double>(values.size());
+  return (in_phase * in_phase + in_quadrature * in_quadrature) / (n * n);
+}
+
+void AddSpread(const RepeatedSetting& setting, const GapOptions& gap, Mean& sim, Mean& real) {
+  real.Add(NoiseFloor_m(setting.reals, gap));
+  if (setting.sims.size() == 1) {
+    sim.Add(NoiseFloor_m(setting.sims.front(), gap));
+    return;
+  }
+  Mean spread_m;  // run i of one real trial and of the other: repeats as the reals are
+  for (size_t a = 0; a < setting.sims.size(); ++a) {
+    for (size_t b = 0; b < a; ++b) {
+      const size_t runs = std::min(setting.sims[a].size(), setting.sims[b].size());
+      for (size_t i = 0; i < runs; ++i) {
+        spread_m.Add(Gap(setting.sims[a][i], setting.sims[b][i], gap));
+      }
+    }
+  }
+  sim.Add(spread_m.Value());
+}
+
+/// The runs that a real path is held against.
+const std::vector<Trajectory>& SimsOf(const RepeatedSetting& setting, size_t real) {
+  return setting.IsMatched() ? setting.sims[real] : setting.sims.front();
+}
+
+Trajectory AsPath(const Shape& shape) {
+  Trajectory path;
+  for (const Eigen::Vector2d& point : shape) {
+    path.poses.push_back(
+        {.t_s = static_cast<double>(path.poses.size()), .x_m = point.x(), .y_m = point.y()});
+  }
+  return path;
+}
+
+/// Furthest distance of a run from the mean of the others.
+double BandWidth_m(const std::vector<Shape>& sims) {
+  double width_m = 0.0;
+  for (size_t i = 0; i < sims.size(); ++i) {
+    std::vector<Shape> others = sims;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    width_m = std::max(width_m, Distance_m(sims[i], MeanShape(others)));
+  }
+  return width_m;
+}
+
+/// What is measured of one real path and its runs, gathered over all.
+class Closeness {
+ public:
+  Closeness(const GapOptions& gap, const LikenessOptions& options) : gap_(gap), options_(options) {}
+
+  void Add(const Trajectory& real, const std::vector<Trajectory>& sims) {
+    if (sims.empty()) return;
+    std::vector<Shape> shapes;
+    for (const Trajectory& sim : sims) {
+      gap_m_.Add(Gap(sim, real, gap_));
+      shapes.push_back(ShapeOf(sim, options_.points));
+    }
+    const Shape mean = MeanShape(shapes);
+    mean_path_gap_m_.Add(Gap(AsPath(mean), real, gap_));
+    if (shapes.size() < 2) return;
+    const bool is_inside = Distance_m(ShapeOf(real, options_.points), mean) <= BandWidth_m(shapes);
+    inside_.Add(is_inside ? 1.0 : 0.0);
+    const double k = static_cast<double>(shapes.size());
+    inside_expected_.Add(k / (k + 1.0));
+  }
+
+  void Put(Likeness& likeness) const {
+    likeness.mean_gap_m = gap_m_.Value();
+    likeness.mean_path_gap_m = mean_path_gap_m_.Value();
+    likeness.inside_share = inside_.Value();
+    likeness.inside_expected = inside_expected_.Value();
+  }
+
+ private:
+  const GapOptions& gap_;
+  const LikenessOptions& options_;
+  Mean gap_m_, mean_path_gap_m_, inside_, inside_expected_;
+};
+
+std::vector<Shape> ShapesOf(std::span<const Trajectory> paths, int points) {
+  std::vector<Shape> shapes;
+  for (const Trajectory& path : paths) shapes.push_back(ShapeOf(path, points));
+  return shapes;
+}
+
+void AddGroups(const RepeatedSetting& setting, int points, std::vector<ShuffleGroup>& groups) {
+  if (!setting.IsMatched()) {
+    groups.push_back({ShapesOf(setting.reals, points), ShapesOf(setting.sims.front(), points)});
+    return;
+  }
+  for (size_t i = 0; i < setting.reals.size(); ++i) {
+    groups.push_back({ShapesOf({&setting.reals[i], 1}, points), ShapesOf(setting.sims[i], points)});
+  }
+}
+
+struct AllPaths {
+  std::vector<Trajectory> sims, reals;
+};
+
+AllPaths Gather(std::span<const RepeatedSetting> settings) {
+  AllPaths all;
+  for (const RepeatedSetting& setting : settings) {
+    all.reals.insert(all.reals.end(), setting.reals.begin(), setting.reals.end());
+    for (const std::vector<Trajectory>& sims : setting.sims) {
+      all.sims.insert(all.sims.end(), sims.begin(), sims.end());
+    }
+  }
+  return all;
+}
+
+template <class Value>
+BothSides MeanOf(const AllPaths& all, Value value) {
+  Mean sim, real;
+  for (const Trajectory& path : all.sims) sim.Add(value(path));
+  for (const Trajectory& path : all.reals) real.Add(value(path));
+  return {sim.Value(), real.Value()};
+}
+
+void Check(std::span<const RepeatedSetting> settings) {
+  for (const RepeatedSetting& setting : settings) {
+    if (setting.IsMatched() || setting.sims.size() == 1) continue;
+    throw std::invalid_argument(
+        fmt::format("a setting has {} real paths and {} lists of runs, and must have one list, or "
+                    "one for each real path",
+                    setting.reals.size(), setting.sims.size()));
+  }
+}
+
+}  // namespace
+
+PathTraits TraitsOf(const Trajectory& path, const LikenessOptions& options) {
+  double squares_m2 = 0.0;
+  for (const double residual_m : LateralResiduals_m(ShapeOf(path, options.points))) {
+    squares_m2 += residual_m * residual_m;
+  }
+  return {Speed_mps(path, options), std::sqrt(squares_m2 / options.points)};
+}
+
+double DominantWavelength_m(std::span<const Trajectory> paths, const LikenessOptions& options) {
+  double longest_m = 0.0;
+  for (const Trajectory& path : paths) longest_m = std::max(longest_m, path.ArcLength_m());
+  if (!(longest_m > options.wavelength_min_m)) return kNotComputed;
+  const double growth = std::pow(longest_m / options.wavelength_min_m, 1.0 / (kWavelengths - 1));
+  std::vector<double> power(kWavelengths, 0.0);
+  for (const Trajectory& path : paths) {
+    const std::vector<double> residuals_m = LateralResiduals_m(ShapeOf(path, options.points));
+    for (int k = 0; k < kWavelengths; ++k) {
+      power[k] +=
+          PowerAt(residuals_m, path.ArcLength_m(), options.wavelength_min_m * std::pow(growth, k));
+    }
+  }
+  const auto strongest = std::max_element(power.begin(), power.end()) - power.begin();
+  return options.wavelength_min_m * std::pow(growth, static_cast<double>(strongest));
+}
+
+Likeness MeasureLikeness(std::span<const RepeatedSetting> settings, const GapOptions& gap,
+                         const LikenessOptions& options, std::mt19937_64& generator) {
+  Check(settings);
+  const AllPaths all = Gather(settings);
+  Likeness likeness{.reals = all.reals.size(), .sims = all.sims.size()};
+  likeness.weave_m =
+      MeanOf(all, [&](const Trajectory& path) { return TraitsOf(path, options).weave_m; });
+  likeness.speed_mps =
+      MeanOf(all, [&](const Trajectory& path) { return TraitsOf(path, options).speed_mps; });
+  likeness.wavelength_m = {DominantWavelength_m(all.sims, options),
+                           DominantWavelength_m(all.reals, options)};
+  Mean sim_spread_m, real_spread_m;
+  Closeness closeness(gap, options);
+  std::vector<ShuffleGroup> groups;
+  for (const RepeatedSetting& setting : settings) {
+    AddSpread(setting, gap, sim_spread_m, real_spread_m);
+    AddGroups(setting, options.points, groups);
+    for (size_t i = 0; i < setting.reals.size(); ++i) {
+      closeness.Add(setting.reals[i], SimsOf(setting, i));
+    }
+  }
+  likeness.spread_m = {sim_spread_m.Value(), real_spread_m.Value()};
+  closeness.Put(likeness);
+  const EnergyTest test = TestEnergy(groups, options.shuffles, generator);
+  likeness.energy_m = test.energy_m;
+  likeness.energy_p = test.p;
+  return likeness;
+}
+
+}  // namespace rift::gap
