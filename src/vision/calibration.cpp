@@ -127,6 +127,7 @@ void TakeFit(Calibration& calibration, const LensFit& fit, const CalibrationOpti
   calibration.rms_px = fit.camera.rms_px;
   TakeErrors(Used(calibration), fit);
   const BentFit bent = FitBentBoard(InputOf(Used(calibration), calibration.board));
+  calibration.flat_px = bent.flat_px;
   calibration.bent_px = bent.rms_px;
   calibration.bend_m = bent.bend_m;
   calibration.cross_check_m = CrossCheck_m(calibration, options);

@@ -80,12 +80,12 @@ void JudgeErrors(Judgement& judgement, const Calibration& calibration,
 
 void JudgeBoard(Judgement& judgement, const Calibration& calibration,
                 const CalibrationOptions& options) {
-  const bool bent = calibration.bent_px < options.bent_gain * calibration.rms_px;
+  const bool bent = calibration.bent_px < options.bent_gain * calibration.flat_px;
   if (!bent) return;
   judgement.AtMostUsable(
       fmt::format("the board is not flat: the error falls from {:.2f} to {:.2f} px when it may bend, "
                   "by {:.1f} mm: glue it to glass or a plate",
-                  calibration.rms_px, calibration.bent_px, 1e3 * calibration.bend_m));
+                  calibration.flat_px, calibration.bent_px, 1e3 * calibration.bend_m));
 }
 
 void JudgeCoverage(Judgement& judgement, const Coverage& coverage,

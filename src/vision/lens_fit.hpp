@@ -33,6 +33,7 @@ std::optional<LensFit> FitLens(const FitInput& input, Lens lens);
 
 /// The same with corners that may leave the board's plane (Strobl and Hirzinger 2011).
 struct BentFit {
+  double flat_px = kNotComputed;  ///< RMS of the same corners on a flat board
   double rms_px = kNotComputed;
   double bend_m = kNotComputed;  ///< from the lowest to the highest corner
 };

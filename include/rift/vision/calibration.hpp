@@ -92,7 +92,8 @@ struct Calibration {
   double rms_px = kNotComputed;
   double plumb_bob_px = kNotComputed;
   double equidistant_px = kNotComputed;
-  double bent_px = kNotComputed;        ///< error when the board may bend
+  double flat_px = kNotComputed;        ///< error of some corners on a flat board ...
+  double bent_px = kNotComputed;        ///< ... and on one that may bend
   double bend_m = kNotComputed;         ///< how far its corners then leave their plane
   double cross_check_m = kNotComputed;  ///< on the floor, odd views against even ones, RMS
   double floor_error_m = kNotComputed;  ///< that the calibration implies, RMS over the picture
