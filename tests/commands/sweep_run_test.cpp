@@ -33,7 +33,7 @@ const std::string kSearch = kTask + R"(goal: falsify
 space:
   surface: [ground, parchment]
   v_min: {min: 0.12, max: 0.2}
-  gain_left: {min: 0.85, max: 1.15}
+  mismatch: {min: -0.15, max: 0.15}
 search: {budget: 24}
 falsify: {until: budget, most_repeats: 4}
 )";

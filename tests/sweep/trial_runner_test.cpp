@@ -61,7 +61,7 @@ std::string KeyOf(const TrialRequest& request) {
 double NoFloor(const Theta&) { return gap::kNotComputed; }
 
 SweepResult SweepWith(int workers, Journal* journal, const Watch& watch = {}) {
-  TrialRunner runner(Evaluated, KeyOf, journal, workers, {.timeout_s = 0.4, .memory_mb = 64},
+  TrialRunner runner(Evaluated, KeyOf, journal, workers, {.timeout_s = 2.0, .memory_mb = 32},
                      watch);
   const auto run = [&](std::vector<TrialRequest> all) { return runner.Run(std::move(all)); };
   std::optional<SweepResult> result = SweepGrid(Plan(), run, NoFloor);
@@ -94,13 +94,13 @@ TEST_CASE("A sweep with planted trouble ends and each trouble is a row with its 
   CHECK(row(0).comparison.gap_m == Approx(0.007));
   CHECK(result.rows[1].comparison.gap_m == Approx(0.008));
   CHECK(row(1).status == TrialStatus::kHung);
-  CHECK(row(1).reason == "had not ended after 0.4 s, twice");
+  CHECK(row(1).reason == "had not ended after 2 s, twice");
   CHECK(row(2).status == TrialStatus::kCrashed);
   CHECK(row(2).reason == "ended by signal 11 (Segmentation fault), twice");
   CHECK(row(3).status == TrialStatus::kNan);
   CHECK(row(3).reason == "simulation: a position is not finite");
   CHECK(row(4).status == TrialStatus::kOutOfMemory);
-  CHECK(row(4).reason == "wanted more than 64 MB of memory, twice");
+  CHECK(row(4).reason == "wanted more than 32 MB of memory, twice");
   CHECK(row(5).status == TrialStatus::kFault);
   CHECK(row(5).reason == "the wheel came off");
   CHECK(row(6).falsified);
@@ -147,7 +147,7 @@ TEST_CASE("A sweep that is stopped goes on with the trials that are missing") {
       if (!from_journal) CHECK(computed.insert(row.theta[0].text + row.trial).second);
     };
     watch.go_on = [&] { return computed.size() < enough; };
-    TrialRunner runner(Evaluated, KeyOf, &journal, 2, {.timeout_s = 0.4, .memory_mb = 64}, watch);
+    TrialRunner runner(Evaluated, KeyOf, &journal, 2, {.timeout_s = 2.0, .memory_mb = 32}, watch);
     return SweepGrid(
         Plan(), [&](auto all) { return runner.Run(std::move(all)); }, NoFloor);
   };
