@@ -15,6 +15,11 @@ void InputHashes::Add(const std::string& path) {
   hash_of_[path] = fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+std::string InputHashes::Of(const std::string& path) const {
+  const auto found = hash_of_.find(path);
+  return found == hash_of_.end() ? "" : found->second;
+}
+
 std::string InputHashes::Text() const {
   std::string text;
   for (const auto& [path, hash] : hash_of_) text += fmt::format("{}  {}\n", hash, path);

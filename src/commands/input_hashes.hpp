@@ -9,6 +9,8 @@ namespace rift::commands {
 class InputHashes {
  public:
   void Add(const std::string& path);
+  /// Of a file that was added; empty for any other.
+  std::string Of(const std::string& path) const;
   /// `hash  path` a line, sorted by path; 128-bit XXH3 in hexadecimal, as `xxhsum -H2` prints it.
   std::string Text() const;
 

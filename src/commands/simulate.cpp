@@ -8,6 +8,7 @@
 
 #include "files.hpp"
 #include "keys_flag.hpp"
+#include "replay.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/config/set_value.hpp"
 #include "rift/trajectory/log.hpp"
@@ -27,6 +28,7 @@ struct SimulateRequest {
   std::string seed;
   std::string out;
   std::string tum;
+  std::vector<std::string> replay;  ///< folder of a sweep and id of a row
   bool json = false;
   PictureRequest pictures;
 };
@@ -86,12 +88,46 @@ void Save(const fs::path& out, const config::Experiment& experiment,
   WriteFile(files.trajectory, trajectory::WriteRift(run.result.trajectory));
 }
 
+struct Run {
+  fs::path out;
+  config::Experiment experiment;
+  sweep::SimulatedTrial trial;
+  sweep::SimulatedRun run;
+};
+
+Run SimulateFile(const SimulateRequest& request) {
+  if (request.experiment.empty()) {
+    throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
+  }
+  Run made{.experiment = LoadFor(request)};
+  const config::Experiment& experiment = made.experiment;
+  made.trial = TrialOf(experiment, {}, experiment.seed, request.experiment);
+  made.trial.start = control::StartPose(experiment.waypoints);
+  made.run = sweep::Simulate(made.trial);
+  made.out = OutputOf(request.out, experiment.name);
+  return made;
+}
+
+Run ReplayFor(const SimulateRequest& request) {
+  const bool is_changed = !request.experiment.empty() || !request.overrides.empty() ||
+                          !request.start.empty() || !request.seed.empty();
+  if (is_changed) {
+    throw std::invalid_argument(
+        "--replay takes everything from the sweep: leave EXPERIMENT, --set, --start, --seed out");
+  }
+  const fs::path folder = request.replay[0];
+  const std::string& id = request.replay[1];
+  Replay replay = ReplayRow(folder, id);
+  fmt::print(stderr, "{}\n", replay.verdict);
+  const fs::path out = request.out.empty() ? folder / "replay" / id : fs::path(request.out);
+  return {out, std::move(replay.experiment), std::move(replay.trial), std::move(replay.run)};
+}
+
 }  // namespace
 
 void AddSimulate(CLI::App& app, int& exit_code) {
   const auto request = std::make_shared<SimulateRequest>();
-  app.add_option("EXPERIMENT", request->experiment, "YAML file with at least the waypoints")
-      ->required();
+  app.add_option("EXPERIMENT", request->experiment, "YAML file with at least the waypoints");
   app.add_option("--set", request->overrides, "sets one key, such as control.v_min=0.2")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -104,27 +140,29 @@ void AddSimulate(CLI::App& app, int& exit_code) {
                  "[out/NAME]")
       ->type_name("FILE.csv|DIR");
   app.add_option("--tum", request->tum, "write the log for evo as well")->type_name("FILE.tum");
+  app.add_option("--replay", request->replay,
+                 "simulate a row of a sweep's table again, bit for bit: the sweep's folder and the "
+                 "row's id")
+      ->type_name("DIR ID")
+      ->expected(2);
   AddPictureFlags(app, request->pictures);
   AddKeysFlag(app);
   app.add_flag("--json", request->json, "print the summary as JSON instead of text");
   app.footer(
       "Ends with 1 when the robot does not reach the last waypoint.\n"
-      "Example: rift simulate configs/waypoints/paper.yaml --seed 7 --out sim.csv");
+      "Example: rift simulate configs/waypoints/paper.yaml --seed 7 --out sim.csv\n"
+      "         rift simulate --replay out/paper 17 --video 17.mp4");
   app.callback([request, &exit_code] {
-    const config::Experiment experiment = LoadFor(*request);
-    sweep::SimulatedTrial trial = TrialOf(experiment, {}, experiment.seed, request->experiment);
-    trial.start = control::StartPose(experiment.waypoints);
-    const sweep::SimulatedRun run = sweep::Simulate(trial);
-    const fs::path out = OutputOf(request->out, experiment.name);
-    Save(out, experiment, run);
+    const Run made = request->replay.empty() ? SimulateFile(*request) : ReplayFor(*request);
+    Save(made.out, made.experiment, made.run);
     if (!request->tum.empty()) {
-      WriteFile(request->tum, trajectory::WriteTum(run.result.trajectory));
+      WriteFile(request->tum, trajectory::WriteTum(made.run.result.trajectory));
     }
-    MakePictures(request->pictures, experiment, trial, run);
-    fmt::print(stderr, "log: {}\n", RunFiles(out).trajectory.string());
-    fmt::print("{}",
-               request->json ? SimulationJson(experiment, run) : SimulationText(experiment, run));
-    exit_code = run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;
+    MakePictures(request->pictures, made.experiment, made.trial, made.run);
+    fmt::print(stderr, "log: {}\n", RunFiles(made.out).trajectory.string());
+    fmt::print("{}", request->json ? SimulationJson(made.experiment, made.run)
+                                   : SimulationText(made.experiment, made.run));
+    exit_code = made.run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;
   });
 }
 

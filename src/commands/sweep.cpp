@@ -4,13 +4,17 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "files.hpp"
+#include "folder_lock.hpp"
 #include "keys_flag.hpp"
 #include "rift/commands/command.hpp"
 #include "sweep_output.hpp"
 #include "sweep_report.hpp"
+#include "sweep_run.hpp"
 #include "sweep_sources.hpp"
+#include "sweep_status.hpp"
 
 namespace rift::commands {
 namespace {
@@ -21,8 +25,15 @@ struct SweepRequest {
   std::string experiment;
   std::vector<std::string> overrides;
   std::string out;
+  std::string budget;
+  std::string seconds;
+  int jobs = CoresToUse();
+  bool fresh = false;
+  bool quiet = false;
+  bool json_progress = false;
   bool json = false;
   bool exit_code = false;
+  std::string status;
 };
 
 /// A simulated sweep over nothing means the paper's grid; logs without a space are one setting.
@@ -31,20 +42,13 @@ bool LacksSpace(const config::Experiment& experiment) {
          experiment.space.parameters.empty();
 }
 
+/// Budgets become part of the experiment, so that what is saved is what was run.
 config::Experiment LoadFor(const SweepRequest& request) {
-  return config::LoadExperiment(request.experiment, request.overrides,
+  std::vector<std::string> overrides = request.overrides;
+  if (!request.budget.empty()) overrides.push_back("search.budget=" + request.budget);
+  if (!request.seconds.empty()) overrides.push_back("search.max_s=" + request.seconds);
+  return config::LoadExperiment(request.experiment, overrides,
                                 [](const std::string& path) { return ReadFile(path); });
-}
-
-sweep::SweepResult Run(SweepSources& sources) {
-  return sweep::CompareGrid(
-      sources.Plan(),
-      [&](const sweep::Theta& theta, const std::string& trial, const sweep::Recording& reference) {
-        return sources.Candidate(theta, trial, reference);
-      },
-      [&](const sweep::Theta& theta, const std::string& trial) {
-        return sources.Reference(theta, trial);
-      });
 }
 
 /// What the process ends with when there is nothing to report on: logs that are not there are bad
@@ -66,40 +70,84 @@ void Save(const fs::path& out, const config::Experiment& experiment, const Sweep
   WriteFile(out / "summary.json", SummaryJson(result));
 }
 
+bool IsFalsified(const sweep::SweepResult& result) {
+  if (!result.falsification) return result.all.failures > 0;
+  return result.falsification->verdict == gap::Verdict::kFalsified;
+}
+
+int Sweep(const SweepRequest& request) {
+  config::Experiment experiment = LoadFor(request);
+  const bool lacks_space = LacksSpace(experiment);
+  if (lacks_space) experiment.space = sweep::PaperSpace();
+  SweepSources sources(experiment, request.experiment);
+  if (lacks_space) {
+    fmt::print(stderr, "note: {} names no space: the paper's grid of surface, v_min and v_max\n",
+               request.experiment);
+  }
+  const fs::path out = OutputOf(request.out, experiment.name);
+  const FolderLock lock(out);
+  const std::optional<sweep::SweepResult> result =
+      RunSweep(experiment, sources,
+               {.out = out,
+                .jobs = request.jobs,
+                .fresh = request.fresh,
+                .progress = StyleFor(request.quiet, request.json_progress)});
+  if (!result) {
+    fmt::print(stderr, "stopped; the same command goes on where it was (rift sweep --status {})\n",
+               out.string());
+    return kStopped;
+  }
+  Save(out, experiment, sources, *result);
+  if (result->all.n == 0) return EndWithoutGap(request, *result);
+  WriteSweepReport(out, *result, sources);
+  fmt::print("{}", request.json ? SummaryJson(*result) : SweepText(*result));
+  if (!request.quiet) fmt::print(stderr, "report: {}\n", (out / "report.html").string());
+  return request.exit_code && IsFalsified(*result) ? kFalsified : kDone;
+}
+
+void AddOptions(CLI::App& app, SweepRequest& request) {
+  app.add_option("EXPERIMENT", request.experiment, "YAML file of the experiment");
+  app.add_option("--set", request.overrides, "sets one key, such as gap.skip_start=0.1")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--out", request.out,
+                 "folder for journal, table, summary, figures and report [out/NAME]")
+      ->type_name("DIR");
+  app.add_option("--budget", request.budget, "settings that a search may try (search.budget)")
+      ->type_name("N");
+  app.add_option("--seconds", request.seconds, "time that a search may take (search.max_s)")
+      ->type_name("S");
+  app.add_option("--jobs", request.jobs, "worker processes; the results are the same for any")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  app.add_flag("--fresh", request.fresh, "start over instead of going on with an earlier journal");
+  app.add_option("--status", request.status, "tell how far the sweep in a folder is, and end")
+      ->type_name("DIR");
+  AddKeysFlag(app);
+  app.add_flag("--quiet", request.quiet, "no progress");
+  app.add_flag("--json-progress", request.json_progress, "progress as lines of JSON on stderr");
+  app.add_flag("--json", request.json, "print the summary (or status) as JSON instead of text");
+  app.add_flag("--exit-code", request.exit_code,
+               "end with 1 when any trial of a grid is falsified, or a search falsifies");
+  app.footer(
+      "Ctrl-C stops a sweep, and the same command goes on with it, also after a crash.\n"
+      "Example: rift sweep configs/waypoints/paper.yaml --out out/paper");
+}
+
 }  // namespace
 
 void AddSweep(CLI::App& app, int& exit_code) {
   const auto request = std::make_shared<SweepRequest>();
-  app.add_option("EXPERIMENT", request->experiment, "YAML file of the experiment")->required();
-  app.add_option("--set", request->overrides, "sets one key, such as gap.skip_start=0.1")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  app.add_option("--out", request->out, "folder for table, summary, figures and report [out/NAME]")
-      ->type_name("DIR");
-  AddKeysFlag(app);
-  app.add_flag("--json", request->json, "print the summary as JSON instead of text");
-  app.add_flag("--exit-code", request->exit_code, "end with 1 when any trial is falsified");
-  app.footer("Example: rift sweep configs/waypoints/paper.yaml --out out/paper");
+  AddOptions(app, *request);
   app.callback([request, &exit_code] {
-    config::Experiment experiment = LoadFor(*request);
-    const bool lacks_space = LacksSpace(experiment);
-    if (lacks_space) experiment.space = sweep::PaperSpace();
-    SweepSources sources(experiment, request->experiment);
-    if (lacks_space) {
-      fmt::print(stderr, "note: {} names no space: the paper's grid of surface, v_min and v_max\n",
-                 request->experiment);
-    }
-    const sweep::SweepResult result = Run(sources);
-    const fs::path out = OutputOf(request->out, experiment.name);
-    Save(out, experiment, sources, result);
-    if (result.all.n == 0) {
-      exit_code = EndWithoutGap(*request, result);
+    if (!request->status.empty()) {
+      fmt::print("{}", SweepStatus(request->status, request->json));
       return;
     }
-    WriteSweepReport(out, result, sources);
-    fmt::print("{}", request->json ? SummaryJson(result) : SweepText(result));
-    fmt::print(stderr, "report: {}\n", (out / "report.html").string());
-    exit_code = request->exit_code && result.all.failures > 0 ? kFalsified : kDone;
+    if (request->experiment.empty()) {
+      throw std::invalid_argument("EXPERIMENT is missing: name the YAML file of the experiment");
+    }
+    exit_code = Sweep(*request);
   });
 }
 

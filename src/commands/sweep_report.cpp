@@ -16,8 +16,9 @@ std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
   const std::optional<int> worst = report::WorstRow(result);
   if (!worst) return std::nullopt;
   const sweep::TrialRow& row = result.rows[*worst];
-  const sweep::Recording reference = sources.Reference(row.theta, row.trial);
-  const sweep::Recording candidate = sources.Candidate(row.theta, row.trial, reference);
+  const sweep::TrialRequest request{.theta = row.theta, .trial = row.trial, .seed = row.seed};
+  const sweep::Recording reference = sources.Reference(request);
+  const sweep::Recording candidate = sources.Candidate(request, reference);
   const std::string name =
       result.reference_kind == "logs" ? "robot, trial " + row.trial : result.reference_kind;
   return report::ComparePair("simulator", candidate.trajectory, name, reference.trajectory,

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "recorded_logs.hpp"
 #include "rift/config/experiment.hpp"
 #include "rift/sweep/grid_sweep.hpp"
+#include "rift/sweep/simulated_trial.hpp"
 
 namespace rift::commands {
 
@@ -15,24 +17,37 @@ class SweepSources {
   /// kinds of candidate and reference need.
   SweepSources(const config::Experiment& experiment, std::string experiment_file);
 
-  sweep::Recording Candidate(const sweep::Theta& theta, const std::string& trial,
-                             const sweep::Recording& reference);
-  sweep::Recording Reference(const sweep::Theta& theta, const std::string& trial);
+  /// One trial as its row. A setting that breaks a rule of the experiment is a row that says so.
+  sweep::TrialRow Evaluate(const sweep::TrialRequest& request);
+  sweep::Recording Candidate(const sweep::TrialRequest& request, const sweep::Recording& reference);
+  /// The simulated trial of a request; throws config::Error when the setting breaks a rule.
+  sweep::SimulatedTrial TrialFor(const sweep::TrialRequest& request,
+                                 const sweep::Recording& reference) const;
+  sweep::Recording Reference(const sweep::TrialRequest& request);
+  /// How far the references of a setting are apart. Nominal runs are simulated in a process of
+  /// their own.
+  double NoiseFloor_m(const sweep::Theta& theta);
 
   sweep::GridPlan Plan() const;
+  /// Reads every log that some setting names, so that worker processes find them loaded.
+  void LoadLogs();
+  /// Everything that a trial depends on beside the experiment itself, as one line.
+  std::string KeyOf(const sweep::TrialRequest& request) const;
   /// Fingerprints of every log that was read.
   std::string InputsText() const;
 
  private:
   void RequirePath(const sweep::PathTemplate& path, const std::string& key) const;
-  std::uint64_t SeedOf(const std::string& trial) const;
-  sweep::Recording Simulate(const config::Experiment& at, const std::string& trial,
-                            const geometry::Pose2& start) const;
+  std::string ReferencePath(const sweep::Theta& theta, const std::string& trial) const;
+  const sweep::Recording& Nominal(const sweep::TrialRequest& request);
+  double NominalNoiseFloor_m();
 
   const config::Experiment& experiment_;
   std::string experiment_file_;
   RecordedLogs candidate_logs_;
   RecordedLogs reference_logs_;
+  std::map<std::uint64_t, sweep::Recording> nominal_runs_;  ///< by seed
+  std::map<std::string, double> noise_floors_m_;            ///< by the references' sources
 };
 
 }  // namespace rift::commands

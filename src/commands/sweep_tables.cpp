@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "enum_name.hpp"
@@ -22,10 +23,10 @@ std::string CsvCell(const std::string& text) {
 
 std::string NumberCell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
-std::string RowCsv(const sweep::TrialRow& row) {
+std::string RowCsv(const sweep::TrialRow& row, size_t id) {
   std::string text;
   for (const sweep::ParameterValue& value : row.theta) text += CsvCell(value.text) + ',';
-  const std::string falsified = row.IsOk() ? fmt::format("{}", row.falsified) : "";
+  const std::string falsified = row.IsOk() || row.falsified ? fmt::format("{}", row.falsified) : "";
   text += fmt::format("{},{},{},{}", CsvCell(row.trial), NumberCell(row.comparison.gap_m),
                       falsified, NameOf(row.status));
   const gap::Comparison& c = row.comparison;
@@ -35,7 +36,8 @@ std::string RowCsv(const sweep::TrialRow& row) {
     text += ',' + NumberCell(value);
   }
   return text + ',' + CsvCell(row.reason) + ',' + CsvCell(row.candidate) + ',' +
-         CsvCell(row.reference) + '\n';
+         CsvCell(row.reference) + ',' + (row.seed ? fmt::format("{}", *row.seed) : "") +
+         fmt::format(",{}\n", id);
 }
 
 ordered_json LevelJson(const sweep::LevelSummary& level) {
@@ -84,6 +86,46 @@ ordered_json SettingJson(const sweep::SweepResult& result, const sweep::SettingR
           {"noise_floor_m", NumberOrNull(setting.noise_floor_m)}};
 }
 
+ordered_json FalsificationJson(const sweep::SweepResult& result,
+                               const sweep::Falsification& found) {
+  ordered_json json{{"verdict", NameOf(found.verdict)},
+                    {"strategy", found.strategy},
+                    {"evaluations", found.evaluations},
+                    {"budget", found.budget},
+                    {"ended_by", found.ended},
+                    {"confidence", found.confidence},
+                    {"share", found.share},
+                    {"falsified", found.falsified},
+                    {"undecided", found.undecided},
+                    {"first_evaluation", nullptr},
+                    {"worst", nullptr}};
+  if (found.first_evaluation) json["first_evaluation"] = *found.first_evaluation;
+  if (found.worst_setting) {
+    json["worst"] = SettingJson(result, result.settings.at(*found.worst_setting));
+  }
+  return json;
+}
+
+/// Of a large sweep only the settings with the largest mean gaps: the file is to be read whole.
+void AddSettings(const sweep::SweepResult& result, ordered_json& json) {
+  constexpr size_t kMostSettings = 10'000;
+  std::vector<const sweep::SettingResult*> settings;
+  for (const sweep::SettingResult& setting : result.settings) settings.push_back(&setting);
+  if (settings.size() > kMostSettings) {
+    const auto is_worse = [](const auto* a, const auto* b) {
+      const auto rank = [](double gap_m) { return std::isnan(gap_m) ? -1.0 : gap_m; };
+      return rank(a->mean_gap_m) > rank(b->mean_gap_m);
+    };
+    std::stable_sort(settings.begin(), settings.end(), is_worse);
+    json["settings_omitted"] = settings.size() - kMostSettings;
+    settings.resize(kMostSettings);
+  }
+  json["settings"] = ordered_json::array();
+  for (const sweep::SettingResult* setting : settings) {
+    json["settings"].push_back(SettingJson(result, *setting));
+  }
+}
+
 /// Means over the trials with a gap: what alignment takes away.
 ordered_json AttributionJson(const sweep::SweepResult& result) {
   double start_m = 0.0, aligned_m = 0.0, shape_m = 0.0;
@@ -104,7 +146,8 @@ std::string TableCsv(const sweep::SweepResult& result) {
   for (const sweep::Parameter& parameter : result.parameters)
     text += CsvCell(parameter.Name()) + ',';
   text += fmt::format("{}\n", fmt::join(sweep::kFixedColumns, ","));
-  for (const sweep::TrialRow& row : result.rows) text += RowCsv(row);
+  size_t id = 0;
+  for (const sweep::TrialRow& row : result.rows) text += RowCsv(row, ++id);
   return text;
 }
 
@@ -119,22 +162,25 @@ std::string SummaryJson(const sweep::SweepResult& result) {
   json["definition"]["text"] = gap::DefinitionText(result.gap, result.tag_offset_m);
   json.update(LevelJson(result.all));
   if (result.all.n > 0) json["attribution"] = AttributionJson(result);
+  if (result.falsification) {
+    json["falsification"] = FalsificationJson(result, *result.falsification);
+  }
   ordered_json& by = json["by"] = ordered_json::object();
   ordered_json& effects = json["effects"] = ordered_json::object();
   for (size_t i = 0; i < result.parameters.size(); ++i) {
+    if (result.parameters[i].IsContinuous()) continue;  // every setting would be its own level
     by[result.parameters[i].Name()] = LevelsJson(sweep::SummariseBy(result, {static_cast<int>(i)}));
   }
   for (const sweep::Effect& effect : result.effects) effects[effect.parameter] = EffectJson(effect);
   if (!result.parameters.empty()) {
     const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
-    if (split.others.size() > 1) {
+    const bool has_range = std::any_of(split.others.begin(), split.others.end(),
+                                       [&](int i) { return result.parameters[i].IsContinuous(); });
+    if (split.others.size() > 1 && !has_range) {
       by[split.others_name] = LevelsJson(sweep::SummariseBy(result, split.others));
     }
   }
-  json["settings"] = ordered_json::array();
-  for (const sweep::SettingResult& setting : result.settings) {
-    json["settings"].push_back(SettingJson(result, setting));
-  }
+  AddSettings(result, json);
   return Dump(json);
 }
 

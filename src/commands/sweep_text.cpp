@@ -63,22 +63,60 @@ std::string NotOkText(const sweep::SweepResult& result) {
   return text;
 }
 
+std::string SettingText(const sweep::SweepResult& result, const sweep::SettingResult& setting) {
+  std::string text;
+  for (size_t i = 0; i < result.parameters.size(); ++i) {
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", result.parameters[i].Name(),
+                        setting.theta[i].text);
+  }
+  return text;
+}
+
+std::string FalsificationText(const sweep::SweepResult& result, const sweep::Falsification& found) {
+  std::string text = fmt::format(
+      "{}: {} settings falsified and {} undecided of {} tried ({}, ended by {}); falsified: more "
+      "than {:.0f} % of its trials would fail, at {:g} % confidence\n",
+      EnumNames(found.verdict)[static_cast<size_t>(found.verdict)], found.falsified,
+      found.undecided, found.evaluations, found.strategy, found.ended, 100.0 * found.share,
+      100.0 * found.confidence);
+  if (found.first_evaluation) {
+    text += fmt::format("first falsified setting: number {}\n", *found.first_evaluation);
+  }
+  if (found.worst_setting) {
+    const sweep::SettingResult& worst = result.settings.at(*found.worst_setting);
+    text += fmt::format("worst setting: mean gap {:.4f} m in {} trials, {} of them failed ({})\n",
+                        worst.mean_gap_m, worst.rows.size(), worst.verdict.above,
+                        SettingText(result, worst));
+  }
+  return text;
+}
+
+/// The table of a parameter, unless every setting has a value of its own.
+std::string LevelTables(const sweep::SweepResult& result) {
+  const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
+  const auto is_range = [&](int i) { return result.parameters[i].IsContinuous(); };
+  std::string text;
+  if (!is_range(split.main_factor)) {
+    text += LevelTable(result.parameters[split.main_factor].Name(),
+                       sweep::SummariseBy(result, {split.main_factor}));
+  }
+  const bool has_range = std::any_of(split.others.begin(), split.others.end(), is_range);
+  if (!split.others.empty() && !has_range) {
+    text += LevelTable(split.others_name, sweep::SummariseBy(result, split.others));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string SweepText(const sweep::SweepResult& result) {
   std::string text =
       fmt::format("gap: {}; above {:g} m falsifies\n\n",
                   gap::DefinitionText(result.gap, result.tag_offset_m), result.gap.threshold_m);
-  if (!result.parameters.empty()) {
-    const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
-    text += LevelTable(result.parameters[split.main_factor].Name(),
-                       sweep::SummariseBy(result, {split.main_factor}));
-    if (!split.others.empty()) {
-      text += LevelTable(split.others_name, sweep::SummariseBy(result, split.others));
-    }
-  }
+  if (!result.parameters.empty()) text += LevelTables(result);
   text += LevelTable("", {result.all});
   text += EffectsText(result) + WorstText(result) + NotOkText(result);
+  if (result.falsification) return text + FalsificationText(result, *result.falsification);
   text += fmt::format("settings: {} falsified, {} not, {} undecided (their repeats disagree)\n",
                       CountVerdict(result, gap::Verdict::kFalsified),
                       CountVerdict(result, gap::Verdict::kNotFalsified),

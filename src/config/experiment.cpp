@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "rift/config/bind.hpp"
@@ -52,8 +53,60 @@ void ResolveImages(Node& tree) {
   }
 }
 
+/// Values to try a parameter with: its levels, or the ends of its range.
+std::vector<sweep::ParameterValue> ValuesToTry(const sweep::Parameter& parameter) {
+  if (!parameter.IsContinuous()) return parameter.levels;
+  std::vector<sweep::ParameterValue> ends;
+  for (const double end : {parameter.min, parameter.max}) {
+    ends.push_back({NumberText(end, parameter.key), end});
+  }
+  return ends;
+}
+
+/// A rule between keys, such as v_min <= v_max, is broken for good only when no other values of
+/// the other parameters keep it: their first, their last and those of the experiment are tried.
+void TryValue(const Experiment& experiment, size_t parameter, const sweep::ParameterValue& value) {
+  const std::vector<sweep::Parameter>& parameters = experiment.space.parameters;
+  Experiment alone = experiment;
+  alone.space.parameters = {parameters[parameter]};
+  std::vector<sweep::Theta> around(2);
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const std::vector<sweep::ParameterValue> others = ValuesToTry(parameters[i]);
+    around[0].push_back(i == parameter ? value : others.front());
+    around[1].push_back(i == parameter ? value : others.back());
+  }
+  for (const sweep::Theta& theta : around) {
+    try {
+      ExperimentAt(experiment, theta);
+      return;
+    } catch (const Error&) {  // the last try tells
+    }
+  }
+  ExperimentAt(alone, {value});
+}
+
+/// A setting of a small grid that breaks a rule is refused at once. Of a large one, and of ranges,
+/// every value is tried once; a setting that still breaks a rule becomes a row that says so.
+void TrySpace(const Experiment& experiment) {
+  constexpr double kMostTried = 2000;
+  const std::vector<sweep::Parameter>& parameters = experiment.space.parameters;
+  double settings = 1.0;
+  for (const sweep::Parameter& parameter : parameters) {
+    settings *= parameter.IsContinuous() ? HUGE_VAL : static_cast<double>(parameter.levels.size());
+  }
+  if (experiment.goal == sweep::Goal::kGrid && settings <= kMostTried) {
+    for (const sweep::Theta& theta : sweep::GridPoints(parameters)) ExperimentAt(experiment, theta);
+    return;
+  }
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    for (const sweep::ParameterValue& value : ValuesToTry(parameters[i])) {
+      TryValue(experiment, i, value);
+    }
+  }
+}
+
 /// A simulated parameter is any key of the experiment, by its full name or a short one that is
-/// unique; every value that it will take is tried now.
+/// unique.
 void ResolveSpace(Experiment& experiment) {
   const std::vector<std::string> keys = ListKeys(experiment);
   for (sweep::Parameter& parameter : experiment.space.parameters) {
@@ -64,9 +117,8 @@ void ResolveSpace(Experiment& experiment) {
       throw Error(fmt::format("{}: space: {}", parameter.origin, unknown.what()));
     }
   }
-  for (const sweep::Theta& theta : sweep::GridPoints(experiment.space.parameters)) {
-    ExperimentAt(experiment, theta);
-  }
+  if (experiment.goal == sweep::Goal::kGrid) sweep::CheckGrid(experiment.space.parameters);
+  TrySpace(experiment);
 }
 
 }  // namespace
@@ -107,6 +159,24 @@ std::string DescribeKeys() {
     text += fmt::format("{}: {}{}\n    {}\n", key.key, key.type, standard, key.help);
   }
   return text;
+}
+
+std::map<std::string, std::string> FlatValues(const Experiment& experiment) {
+  std::map<std::string, std::string> values;
+  const Node tree = ToNode(experiment);
+  for (const FlatEntry& entry : Flatten(tree)) {
+    std::string line;
+    for (const char c : Emit(*entry.value)) {
+      const bool is_gap = c == '\n' || c == ' ';
+      if (!is_gap)
+        line += c;
+      else if (!line.empty() && line.back() != ' ')
+        line += ' ';
+    }
+    if (line.ends_with(' ')) line.pop_back();
+    values[entry.key] = line;
+  }
+  return values;
 }
 
 std::string WriteExperiment(const Experiment& experiment) { return Emit(ToNode(experiment)); }

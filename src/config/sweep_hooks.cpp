@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -42,6 +43,23 @@ void ReadLevels(const Node& node, const std::string& key, sweep::Parameter& para
   }
 }
 
+void ReadRangeKind(const Node& node, const std::string& key, sweep::Parameter& parameter) {
+  const auto is_whole = [](double value) { return value == std::floor(value); };
+  if (const Node::Entry* entry = node.Find("integer")) {
+    parameter.is_integer = ReadBool(entry->value, {Join(key, "integer"), {}, ""});
+  }
+  if (const Node::Entry* entry = node.Find("scale")) {
+    constexpr std::array<std::string_view, 2> kScales{"linear", "log"};
+    parameter.is_logarithmic = ReadName(entry->value, {Join(key, "scale"), {}, ""}, kScales) == 1;
+  }
+  if (parameter.is_logarithmic && (parameter.is_integer || parameter.min <= 0.0)) {
+    Fail(node, key, "scale: log needs min above 0, and no integers");
+  }
+  if (parameter.is_integer && !(is_whole(parameter.min) && is_whole(parameter.max))) {
+    Fail(node, key, "min and max of integers must be whole");
+  }
+}
+
 void ReadRange(const Node& node, const std::string& key, sweep::Parameter& parameter) {
   for (const char* bound : {"min", "max"}) {
     const Node::Entry* entry = node.Find(bound);
@@ -52,6 +70,7 @@ void ReadRange(const Node& node, const std::string& key, sweep::Parameter& param
     (bound[1] == 'i' ? parameter.min : parameter.max) = *number;
   }
   if (!(parameter.min < parameter.max)) Fail(node, key, "min must be below max");
+  ReadRangeKind(node, key, parameter);
 }
 
 sweep::Parameter ParameterFromEntry(const FlatEntry& entry) {
@@ -71,6 +90,9 @@ sweep::Parameter ParameterFromEntry(const FlatEntry& entry) {
 void CheckIsNoColumn(const Node& node, const std::string& name) {
   if (name == "trial") {
     Fail(node, "space", "'trial' is the name of the repeats: see reference.trials");
+  }
+  if (name == "seed") {
+    Fail(node, "space", "seed does not change a trial's kind; for repeats set reference.trials");
   }
   for (const std::string_view column : sweep::kFixedColumns) {
     if (name != column) continue;
@@ -164,6 +186,8 @@ Node Hook<sweep::Space>::ToNode(const sweep::Space& space) {
       axis = Node::Map();
       axis.Add("min", Node::Scalar(NumberText(parameter.min, parameter.key)));
       axis.Add("max", Node::Scalar(NumberText(parameter.max, parameter.key)));
+      if (parameter.is_integer) axis.Add("integer", Node::Scalar("true"));
+      if (parameter.is_logarithmic) axis.Add("scale", Node::Scalar("log"));
     }
     map.Add(parameter.key, axis);
   }

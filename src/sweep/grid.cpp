@@ -13,18 +13,6 @@ namespace {
 /// Each setting is at least a trial; more than these would not end in a lifetime of a laptop.
 constexpr double kMostSettings = 1e6;
 
-void CheckSize(const std::vector<Parameter>& parameters) {
-  double settings = 1.0;
-  for (const Parameter& parameter : parameters) {
-    settings *= static_cast<double>(parameter.levels.size());
-  }
-  if (settings > kMostSettings) {
-    throw std::invalid_argument(fmt::format(
-        "space is a grid of {:.3g} settings: at most {:.0e} are possible; shorten its lists",
-        settings, kMostSettings));
-  }
-}
-
 }  // namespace
 
 Space PaperSpace() {
@@ -38,15 +26,28 @@ Space PaperSpace() {
            {.key = "control.v_max", .levels = {{"0.30", 0.30}, {"0.40", 0.40}, {"0.50", 0.50}}}}};
 }
 
-std::vector<std::vector<ParameterValue>> GridPoints(const std::vector<Parameter>& parameters) {
-  CheckSize(parameters);
-  std::vector<std::vector<ParameterValue>> points{{}};
+void CheckGrid(const std::vector<Parameter>& parameters) {
+  double settings = 1.0;
   for (const Parameter& parameter : parameters) {
     if (parameter.IsContinuous()) {
       throw std::invalid_argument(
-          fmt::format("{}: space.{} is a range, and a grid needs the values to visit: write a list",
+          fmt::format("{}: space.{} is a range, and a grid needs the values to visit: write a "
+                      "list, or set goal: falsify",
                       parameter.origin, parameter.key));
     }
+    settings *= static_cast<double>(parameter.levels.size());
+  }
+  if (settings > kMostSettings) {
+    throw std::invalid_argument(fmt::format(
+        "space is a grid of {:.3g} settings: at most {:.0e} are possible; shorten its lists",
+        settings, kMostSettings));
+  }
+}
+
+std::vector<std::vector<ParameterValue>> GridPoints(const std::vector<Parameter>& parameters) {
+  CheckGrid(parameters);
+  std::vector<std::vector<ParameterValue>> points{{}};
+  for (const Parameter& parameter : parameters) {
     std::vector<std::vector<ParameterValue>> longer;
     longer.reserve(points.size() * parameter.levels.size());
     for (const auto& point : points) {

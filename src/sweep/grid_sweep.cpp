@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
-#include <set>
+#include <cmath>
 #include <stdexcept>
 
 #include "rift/sweep/grid.hpp"
@@ -22,9 +21,20 @@ void Fail(TrialRow& row, const Recording& recording) {
       is_named ? recording.reason : fmt::format("{}: {}", recording.source, recording.reason);
 }
 
+bool IsFinite(const trajectory::Trajectory& path) {
+  return std::all_of(path.poses.begin(), path.poses.end(), [](const auto& pose) {
+    return std::isfinite(pose.x_m) && std::isfinite(pose.y_m);
+  });
+}
+
 /// A path that never moves is a row of its own, not the sweep's end.
 void Measure(const GridPlan& plan, const Recording& candidate, const Recording& reference,
              TrialRow& row) {
+  if (!IsFinite(candidate.trajectory)) {
+    row.status = TrialStatus::kNan;
+    row.reason = fmt::format("{}: a position is not finite", candidate.source);
+    return;
+  }
   try {
     row.comparison = gap::Compare(candidate.trajectory, reference.trajectory, plan.gap);
     row.evidence.fingerprint = Fingerprint(candidate.trajectory);
@@ -34,40 +44,6 @@ void Measure(const GridPlan& plan, const Recording& candidate, const Recording& 
     row.reason =
         fmt::format("{} against {}: {}", candidate.source, reference.source, no_path.what());
   }
-}
-
-TrialRow CompareTrial(const GridPlan& plan, TrialRow row, const Recording& candidate,
-                      const Recording& reference) {
-  row.candidate = candidate.source;
-  row.reference = reference.source;
-  row.evidence.candidate_limits = candidate.limits;
-  row.evidence.reference_limits = reference.limits;
-  if (reference.status != TrialStatus::kOk) {
-    Fail(row, reference);
-  } else if (candidate.status != TrialStatus::kOk) {
-    Fail(row, candidate);
-  } else {
-    Measure(plan, candidate, reference, row);
-    row.falsified = row.comparison.gap_m > plan.gap.threshold_m;
-  }
-  return row;
-}
-
-/// All trials of one setting, appended to the rows; returns how far its references are apart.
-double CompareSetting(const GridPlan& plan, const Theta& theta, const Candidate& candidate,
-                      const Reference& reference, std::vector<TrialRow>& rows) {
-  std::vector<trajectory::Trajectory> references;
-  std::set<std::string> sources;
-  for (const std::string& trial : plan.trials) {
-    Recording real = reference(theta, trial);
-    const Recording simulated = candidate(theta, trial, real);
-    rows.push_back(CompareTrial(plan, {.theta = theta, .trial = trial}, simulated, real));
-    const bool is_new = sources.insert(real.source).second;  // one path twice is no repeat
-    if (real.status == TrialStatus::kOk && is_new) {
-      references.push_back(std::move(real.trajectory));
-    }
-  }
-  return gap::NoiseFloor_m(references, plan.gap);
 }
 
 bool Has(const std::vector<std::string>& names, const std::string& name) {
@@ -92,8 +68,42 @@ void CheckPaths(const GridPlan& plan, const LogPaths& paths) {
   }
 }
 
-SweepResult CompareGrid(const GridPlan& plan, const Candidate& candidate,
-                        const Reference& reference) {
+TrialRow CompareTrial(const GridPlan& plan, const TrialRequest& request, const Candidate& candidate,
+                      const Reference& reference) {
+  TrialRow row{.theta = request.theta,
+               .trial = request.trial,
+               .seed = request.seed,
+               .is_random_draw = request.is_random_draw};
+  const Recording real = reference(request);
+  const Recording simulated = candidate(request, real);
+  row.candidate = simulated.source;
+  row.reference = real.source;
+  row.evidence.candidate_limits = simulated.limits;
+  row.evidence.reference_limits = real.limits;
+  if (real.status != TrialStatus::kOk) {
+    Fail(row, real);
+  } else if (simulated.status != TrialStatus::kOk) {
+    Fail(row, simulated);
+    row.falsified = plan.falls_count && simulated.status == TrialStatus::kFell;
+  } else {
+    Measure(plan, simulated, real, row);
+    row.falsified = row.comparison.gap_m > plan.gap.threshold_m;
+  }
+  return row;
+}
+
+std::vector<TrialRequest> TrialsAt(const GridPlan& plan, const Theta& theta, int repeat) {
+  std::vector<TrialRequest> requests;
+  const size_t first = plan.trials.size() * static_cast<size_t>(repeat);
+  for (size_t i = 0; i < plan.trials.size(); ++i) {
+    TrialRequest request{.theta = theta, .trial = plan.trials[i]};
+    if (plan.seed) request.seed = *plan.seed + first + i;
+    requests.push_back(std::move(request));
+  }
+  return requests;
+}
+
+SweepResult EmptyResult(const GridPlan& plan) {
   SweepResult result;
   result.name = plan.name;
   result.candidate_kind = plan.candidate_kind;
@@ -101,15 +111,27 @@ SweepResult CompareGrid(const GridPlan& plan, const Candidate& candidate,
   result.gap = plan.gap;
   result.tag_offset_m = plan.tag_offset_m;
   result.parameters = plan.parameters;
-  std::vector<double> noise_floors_m;
-  for (const Theta& theta : GridPoints(plan.parameters)) {
-    noise_floors_m.push_back(CompareSetting(plan, theta, candidate, reference, result.rows));
-  }
+  return result;
+}
+
+void Conclude(SweepResult& result, const NoiseFloor& noise_floor_m) {
   Summarise(result);
-  assert(noise_floors_m.size() == result.settings.size());
-  for (size_t i = 0; i < noise_floors_m.size(); ++i) {
-    result.settings[i].noise_floor_m = noise_floors_m[i];
+  for (SettingResult& setting : result.settings) {
+    setting.noise_floor_m = noise_floor_m(setting.theta);
   }
+}
+
+std::optional<SweepResult> SweepGrid(const GridPlan& plan, const RunTrials& run,
+                                     const NoiseFloor& noise_floor_m) {
+  std::vector<TrialRequest> requests;
+  for (const Theta& theta : GridPoints(plan.parameters)) {
+    for (TrialRequest& request : TrialsAt(plan, theta)) requests.push_back(std::move(request));
+  }
+  std::optional<std::vector<TrialRow>> rows = run(std::move(requests));
+  if (!rows) return std::nullopt;
+  SweepResult result = EmptyResult(plan);
+  result.rows = std::move(*rows);
+  Conclude(result, noise_floor_m);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -47,6 +48,16 @@ std::vector<double> GapsOf(const SweepResult& result, const std::vector<int>& ro
   return gaps_m;
 }
 
+/// A fall that counts is above any threshold.
+std::vector<double> GapsToJudge(const SweepResult& result, const std::vector<int>& rows) {
+  std::vector<double> gaps_m = GapsOf(result, rows);
+  for (const int row : rows) {
+    const bool is_fall = !result.rows[row].IsOk() && result.rows[row].falsified;
+    if (is_fall) gaps_m.push_back(std::numeric_limits<double>::infinity());
+  }
+  return gaps_m;
+}
+
 double Mean(const std::vector<double>& values) {
   if (values.empty()) return gap::kNotComputed;
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -65,7 +76,7 @@ LevelSummary SummariseRows(const SweepResult& result, const std::string& level,
   const std::vector<double> gaps_m = GapsOf(result, rows);
   LevelSummary summary{.level = level, .n = static_cast<int>(gaps_m.size())};
   for (const int row : rows) {
-    summary.failures += result.rows[row].IsOk() && result.rows[row].falsified;
+    summary.failures += result.rows[row].falsified;
     summary.not_ok += !result.rows[row].IsOk();
   }
   summary.mean_gap_m = Mean(gaps_m);
@@ -107,10 +118,11 @@ std::vector<SettingResult> SettingsOf(const SweepResult& result) {
   std::iota(all.begin(), all.end(), 0);
   std::vector<SettingResult> settings;
   for (std::vector<int>& rows : GroupBy(result, all).rows) {
-    const std::vector<double> gaps_m = GapsOf(result, rows);
+    const double mean_gap_m = Mean(GapsOf(result, rows));
+    const std::vector<double> gaps_m = GapsToJudge(result, rows);
     SettingResult setting{.theta = result.rows[rows.front()].theta,
                           .rows = std::move(rows),
-                          .mean_gap_m = Mean(gaps_m),
+                          .mean_gap_m = mean_gap_m,
                           .verdict = gap::JudgeRepeats(gaps_m, result.gap.threshold_m)};
     settings.push_back(std::move(setting));
   }

@@ -16,6 +16,7 @@ enum ExitCode : int {
   kNotReached = 1,  ///< a trial ended before the last waypoint
   kBadInput = 2,    ///< usage, configuration or a log
   kRunTimeFailure = 3,
+  kStopped = 130,  ///< by Ctrl-C, as shells have it
 };
 
 /// One subcommand of rift.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,9 @@
 #include "rift/gap/options.hpp"
 #include "rift/hardware/options.hpp"
 #include "rift/simulation/simulation_options.hpp"
+#include "rift/sweep/falsify_options.hpp"
 #include "rift/sweep/options.hpp"
+#include "rift/sweep/run_options.hpp"
 #include "rift/trial/trial_options.hpp"
 
 namespace rift::config {
@@ -23,6 +26,9 @@ struct Experiment {
   std::vector<control::Waypoint> waypoints;
   sweep::Goal goal = sweep::Goal::kGrid;
   sweep::Space space;
+  sweep::SearchPlan search;
+  sweep::FalsifyOptions falsify;
+  sweep::RunOptions run;
   sweep::CandidateOptions candidate;
   sweep::Start start = sweep::Start::kWaypoint;
   sweep::ReferenceOptions reference;
@@ -37,8 +43,11 @@ struct Experiment {
   static void Fields(Self& self, Visitor&& field) {
     field("name", self.name, "what reports call it; by default the name of the file");
     field("waypoints", self.waypoints, "the task: name, x, y, heading (of the first), stop");
-    field("goal", self.goal, "what a sweep is for: visit every combination");
-    field("space", self.space, "the parameters to vary; a list is an axis of a grid");
+    field("goal", self.goal, "what a sweep is for: visit every combination, or look for failures");
+    field("space", self.space, "the parameters to vary: a list of values, or a range to search");
+    field("search", self.search, "how a sweep that is no grid looks for its goal");
+    field("falsify", self.falsify, "what counts as a failure, and how sure it must be");
+    field("run", self.run, "what a trial may cost; no part of what it computes");
     field("candidate", self.candidate, "the simulator: what is put to the test");
     field("start", self.start, "where a simulated trial begins: first waypoint, or as its log");
     field("reference", self.reference, "the robot: what it is compared with");
@@ -63,6 +72,9 @@ Experiment ExperimentAt(const Experiment& experiment,
 
 /// Every key of an experiment with type, default and meaning, a paragraph each.
 std::string DescribeKeys();
+
+/// Every value of the resolved experiment under its dotted key, as one line of YAML.
+std::map<std::string, std::string> FlatValues(const Experiment& experiment);
 
 /// The resolved experiment as YAML; loading it gives the same experiment.
 std::string WriteExperiment(const Experiment& experiment);

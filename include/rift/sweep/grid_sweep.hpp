@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "rift/sweep/result.hpp"
+#include "rift/sweep/trial_runner.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
 namespace rift::sweep {
-
-using Theta = std::vector<ParameterValue>;
 
 /// A trajectory as a sweep gets it, or why there is none.
 struct Recording {
@@ -21,12 +20,14 @@ struct Recording {
   std::optional<trial::LimitCounts> limits{};  ///< what its controller asked for, where known
 };
 
-/// Brings the reference trajectory of one trial of one setting.
-using Reference = std::function<Recording(const Theta& theta, const std::string& trial)>;
+/// Brings the reference trajectory of a trial.
+using Reference = std::function<Recording(const TrialRequest&)>;
 
 /// Brings the candidate trajectory, which may start where the reference did.
-using Candidate = std::function<Recording(const Theta& theta, const std::string& trial,
-                                          const Recording& reference)>;
+using Candidate = std::function<Recording(const TrialRequest&, const Recording& reference)>;
+
+/// How far the reference trajectories of a setting are apart: gap::NoiseFloor_m.
+using NoiseFloor = std::function<double(const Theta& theta)>;
 
 /// What a sweep over a grid compares.
 struct GridPlan {
@@ -35,14 +36,28 @@ struct GridPlan {
   std::string reference_kind;
   std::vector<Parameter> parameters;  ///< grid axes
   std::vector<std::string> trials;    ///< repeats of each setting
+  std::optional<std::uint64_t> seed;  ///< of the first trial, the next has the next; none for logs
   gap::GapOptions gap;
   double tag_offset_m = 0.0;  ///< already in the references; for the record
+  bool falls_count = false;   ///< a trial in which the robot fell is falsified
 };
 
-/// Compares candidate and reference in every trial of every setting. A trial without one of them is
-/// a row with its status.
-SweepResult CompareGrid(const GridPlan& plan, const Candidate& candidate,
-                        const Reference& reference);
+/// One trial: its candidate against its reference. Without one of them it is a row with its status.
+TrialRow CompareTrial(const GridPlan& plan, const TrialRequest& request, const Candidate& candidate,
+                      const Reference& reference);
+
+/// All trials of a setting. Every setting meets the same random numbers (common random numbers);
+/// `repeat` > 0 asks for further trials of the same kind with seeds of their own.
+std::vector<TrialRequest> TrialsAt(const GridPlan& plan, const Theta& theta, int repeat = 0);
+
+/// Runs every trial of every setting. Nothing when it was told to stop.
+std::optional<SweepResult> SweepGrid(const GridPlan& plan, const RunTrials& run,
+                                     const NoiseFloor& noise_floor_m);
+
+/// A result without rows, its head filled in from the plan.
+SweepResult EmptyResult(const GridPlan& plan);
+/// Fills in all that follows from the rows.
+void Conclude(SweepResult& result, const NoiseFloor& noise_floor_m);
 
 /// Logs named by path templates over the parameters and {trial}.
 struct LogPaths {

@@ -10,8 +10,11 @@
 
 namespace rift::sweep {
 
-enum class Goal { kGrid };
-constexpr std::array<std::string_view, 1> EnumNames(Goal) { return {"grid"}; }
+enum class Goal {
+  kGrid,     ///< every combination of the levels
+  kFalsify,  ///< where the gap is largest
+};
+constexpr std::array<std::string_view, 2> EnumNames(Goal) { return {"grid", "falsify"}; }
 
 enum class ReferenceKind {
   kPath,     ///< the polyline through the waypoints

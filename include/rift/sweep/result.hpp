@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,7 +28,9 @@ struct Parameter {
   std::vector<ParameterValue> levels;  ///< of a grid axis; empty for a continuous one
   double min = 0.0;                    ///< of a continuous axis
   double max = 0.0;
-  std::string origin{};  ///< where it was written, for messages: "file:line:column"
+  bool is_integer = false;      ///< of a range: whole numbers only
+  bool is_logarithmic = false;  ///< of a range: even in the logarithm
+  std::string origin{};         ///< where it was written, for messages: "file:line:column"
 
   /// The last part of the key: the column in table.csv and the name in path templates.
   std::string Name() const;
@@ -37,11 +40,11 @@ struct Parameter {
 };
 
 /// Columns of table.csv behind those of the parameters; a parameter cannot be called so.
-inline constexpr std::array<std::string_view, 16> kFixedColumns{
+inline constexpr std::array<std::string_view, 18> kFixedColumns{
     "trial",       "gap_m",        "falsified",   "status",         "u",
     "exact_gap_m", "mean_error_m", "rms_error_m", "start_offset_m", "start_aligned_gap_m",
     "shape_gap_m", "length_ratio", "end_error_m", "reason",         "candidate",
-    "reference"};
+    "reference",   "seed",         "id"};
 
 /// How a trial ended; every one that was asked for is a row.
 enum class TrialStatus {
@@ -51,24 +54,31 @@ enum class TrialStatus {
   kTimedOut,    ///< the simulated robot did not reach the end in time
   kFell,
   kLeftArena,
-  kLost,   ///< motion capture saw it no more
-  kFault,  ///< the simulation itself could not go on
+  kLost,         ///< motion capture saw it no more
+  kFault,        ///< the simulation itself could not go on
+  kInvalid,      ///< the setting breaks a rule of the experiment
+  kNan,          ///< the simulation gave numbers that are none
+  kHung,         ///< its process did not end in time
+  kCrashed,      ///< its process died
+  kOutOfMemory,  ///< its process wanted more than it may have
 };
 
-constexpr std::array<std::string_view, 8> EnumNames(TrialStatus) {
-  return {"ok", "missing", "unreadable", "timed_out", "fell", "left_arena", "lost", "fault"};
+constexpr std::array<std::string_view, 13> EnumNames(TrialStatus) {
+  return {"ok",    "missing", "unreadable", "timed_out", "fell",    "left_arena",   "lost",
+          "fault", "invalid", "nan",        "hung",      "crashed", "out_of_memory"};
 }
 
 /// One candidate trajectory against one reference trajectory.
 struct TrialRow {
   std::vector<ParameterValue> theta;  ///< one value for each parameter, in their order
   std::string trial;                  ///< which repeat of the reference
+  std::optional<std::uint64_t> seed;  ///< of a simulated candidate
   TrialStatus status = TrialStatus::kOk;
   std::string reason;     ///< one line; empty when ok
   std::string candidate;  ///< file of the candidate trajectory
   std::string reference;
   gap::Comparison comparison;  ///< all NaN unless ok
-  bool falsified = false;      ///< gap_m > threshold
+  bool falsified = false;      ///< gap_m > threshold, or it fell where falls count
   TrialEvidence evidence;
   /// Theta was drawn independently of all other rows, evenly over the space. Only such rows tell
   /// how often it fails; a grid and a search go where they like.
@@ -111,6 +121,21 @@ struct Effect {
   std::string sentence;
 };
 
+/// How a search for failures ended.
+struct Falsification {
+  std::string strategy;
+  gap::Verdict verdict = gap::Verdict::kNotFalsified;  ///< of the whole search
+  double confidence = 0.95;
+  double share = 0.5;   ///< falsified: more than this share of a setting's trials would fail
+  int evaluations = 0;  ///< settings tried
+  int budget = 0;
+  int falsified = 0;                    ///< settings, at that confidence
+  int undecided = 0;                    ///< settings with failures, too few to be sure
+  std::optional<int> first_evaluation;  ///< the first falsified setting, counted from 1
+  std::optional<int> worst_setting;     ///< index into settings: the falsified one, else the worst
+  std::string ended;                    ///< why: "the first falsified setting", "the budget"
+};
+
 /// Everything a sweep found out.
 struct SweepResult {
   std::string name;            ///< of the experiment
@@ -123,6 +148,7 @@ struct SweepResult {
   std::vector<SettingResult> settings;
   std::vector<Effect> effects;  ///< one for each parameter with more than one value
   LevelSummary all;
+  std::optional<Falsification> falsification;  ///< of a search
 };
 
 }  // namespace rift::sweep

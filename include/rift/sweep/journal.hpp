@@ -1,0 +1,71 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace rift::sweep {
+
+/// What the rows of a journal were made from: keys of the experiment and versions, each with its
+/// value as text.
+using Facts = std::map<std::string, std::string>;
+
+/// A finished trial as the journal keeps it: the bytes bring the row back, the rest is for people.
+struct JournalEntry {
+  std::string status;
+  double gap_m = 0.0;  ///< NaN: none
+  bool falsified = false;
+  std::string bytes;
+};
+
+/// Finished trials in an SQLite file, which survive a `kill -9` of the process at any moment: what
+/// is lost is what was added in the last kCommitEvery_s. One process writes; others may read.
+///
+/// Whatever SQLite reports (a full disk, a folder that cannot be written, a damaged file) is thrown
+/// as std::runtime_error that names the file and what to do; what was committed stays.
+class Journal {
+ public:
+  static constexpr double kCommitEvery_s = 0.2;
+
+  /// Opens the journal or makes an empty one, in a folder that exists.
+  /// Throws std::invalid_argument for a journal made from other facts, naming those that differ.
+  Journal(const std::filesystem::path& file, const Facts& made_from);
+  /// Commits; what cannot be committed any more is lost silently: call Close before.
+  ~Journal();
+
+  std::optional<std::string> Find(const std::string& key);
+  /// Adding a key again replaces it.
+  void Add(const std::string& key, const JournalEntry& entry);
+  /// Commits when the last commit was long ago.
+  void Tick();
+  void Commit();
+  /// A word about the sweep as a whole, for readers and for later runs: "state", "total".
+  void SetNote(const std::string& name, const std::string& value);
+  std::optional<std::string> Note(const std::string& name);
+  /// Commits and leaves one plain file without a log beside it.
+  void Close();
+
+  /// Removes a journal with its log. Throws std::runtime_error when it cannot.
+  static void Remove(const std::filesystem::path& file);
+
+ private:
+  struct Store;
+  std::unique_ptr<Store> store_;
+};
+
+/// What a journal tells about a sweep while it runs or afterwards.
+struct JournalSummary {
+  std::map<std::string, std::string> notes;
+  std::map<std::string, int> trials_by_status;
+  int falsified = 0;
+  std::optional<double> largest_gap_m;
+  std::string largest_key;  ///< of the trial with that gap
+};
+
+/// Reads without writing. Throws std::invalid_argument when there is no journal, and
+/// std::runtime_error as Journal does.
+JournalSummary ReadJournal(const std::filesystem::path& file);
+
+}  // namespace rift::sweep

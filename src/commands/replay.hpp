@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "rift/config/experiment.hpp"
+#include "rift/sweep/simulated_trial.hpp"
+#include "table_row.hpp"
+
+namespace rift::commands {
+
+/// A row of a sweep's table made again.
+struct Replay {
+  config::Experiment experiment;  ///< at the setting and with the seed of the row
+  sweep::SimulatedTrial trial;
+  sweep::SimulatedRun run;
+  std::string verdict;  ///< one line: that the row came out the same
+};
+
+/// Simulates the trial of row `id` in the folder of a sweep again and holds it against the table.
+/// Throws std::invalid_argument when the folder holds no such row or its candidates are logs, and
+/// std::runtime_error when the row comes out different: another version made it.
+Replay ReplayRow(const std::filesystem::path& folder, const std::string& id);
+
+}  // namespace rift::commands

@@ -1,0 +1,158 @@
+#include "sweep_run.hpp"
+
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <chrono>
+#include <cstdlib>
+
+#include "files.hpp"
+#include "rift/sweep/falsify.hpp"
+#include "rift/sweep/journal.hpp"
+#include "rift/sweep/physics_version.hpp"
+#include "stop_signal.hpp"
+
+namespace rift::commands {
+namespace {
+
+using sweep::Journal;
+using MayStart = std::function<bool(const std::vector<sweep::TrialRequest>&)>;
+
+/// Keys that say when a sweep ends and not what a trial is: a journal goes on with others.
+bool IsFree(const std::string& key) {
+  if (key.starts_with("run.")) return true;
+  for (const char* free : {"name", "search.budget", "search.max_s", "falsify.until"}) {
+    if (key == free) return true;
+  }
+  return false;
+}
+
+sweep::Facts FactsOf(const config::Experiment& experiment) {
+  sweep::Facts facts;
+  for (const auto& [key, value] : config::FlatValues(experiment)) {
+    if (!IsFree(key)) facts[key] = value;
+  }
+  facts["the version of rift"] = fmt::format("{} ({})", RIFT_VERSION, sweep::PhysicsVersion());
+  return facts;
+}
+
+int TrialsAtMost(const config::Experiment& experiment, const sweep::GridPlan& plan) {
+  double settings = 1.0;
+  for (const sweep::Parameter& parameter : plan.parameters) {
+    if (!parameter.IsContinuous()) settings *= static_cast<double>(parameter.levels.size());
+  }
+  if (experiment.goal != sweep::Goal::kGrid) settings = experiment.search.budget;
+  return static_cast<int>(settings * static_cast<double>(plan.trials.size()));
+}
+
+std::optional<sweep::SweepResult> RunGoal(const config::Experiment& experiment,
+                                          SweepSources& sources, const sweep::RunTrials& run,
+                                          const MayStart& may_start) {
+  const auto noise_floor_m = [&](const sweep::Theta& theta) { return sources.NoiseFloor_m(theta); };
+  switch (experiment.goal) {
+    case sweep::Goal::kGrid:
+      return sweep::SweepGrid(sources.Plan(), run, noise_floor_m);
+    case sweep::Goal::kFalsify:
+      return sweep::Falsify(sources.Plan(), experiment.search, experiment.falsify, run, may_start,
+                            noise_floor_m);
+  }
+  throw std::logic_error("a goal without a search");
+}
+
+/// Wall-clock time of a sweep over all its runs, so that one that goes on keeps to its limit.
+class Stopwatch {
+ public:
+  explicit Stopwatch(Journal& journal) : journal_(journal) {
+    if (const auto note = journal.Note("elapsed_s"))
+      before_s_ = std::strtod(note->c_str(), nullptr);
+  }
+
+  double Elapsed_s() const {
+    const std::chrono::duration<double> since = Clock::now() - begun_;
+    return before_s_ + since.count();
+  }
+
+  void Note(bool now = false) {
+    if (!now && Clock::now() - noted_ < std::chrono::seconds(1)) return;
+    noted_ = Clock::now();
+    journal_.SetNote("elapsed_s", fmt::format("{:.3f}", Elapsed_s()));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Journal& journal_;
+  double before_s_ = 0.0;
+  Clock::time_point begun_ = Clock::now();
+  Clock::time_point noted_ = begun_;
+};
+
+std::optional<sweep::SweepResult> RunSimulated(const config::Experiment& experiment,
+                                               SweepSources& sources,
+                                               const SweepRunRequest& request,
+                                               SweepProgress& progress, const StopSignal& stop) {
+  const std::filesystem::path file = request.out / kJournalName;
+  if (request.fresh) Journal::Remove(file);
+  Journal journal(file, FactsOf(experiment));
+  WriteFile(request.out / "experiment.yaml", config::WriteExperiment(experiment));
+  sources.LoadLogs();  // now, since workers are copies of what is there when they start
+  journal.SetNote("name", experiment.name);
+  journal.SetNote("most_trials", std::to_string(TrialsAtMost(experiment, sources.Plan())));
+  journal.SetNote("state", "running");
+  journal.Commit();
+  Stopwatch watch(journal);
+  sweep::TrialRunner runner(
+      [&](const sweep::TrialRequest& trial) { return sources.Evaluate(trial); },
+      [&](const sweep::TrialRequest& trial) { return sources.KeyOf(trial); }, &journal,
+      request.jobs, experiment.run,
+      {[&](const sweep::TrialRow& row, bool from_journal) { progress.Seen(row, from_journal); },
+       [&] {
+         progress.Tick();
+         watch.Note();
+         return !stop.IsAsked();
+       }});
+  const MayStart may_start = [&](const std::vector<sweep::TrialRequest>& trials) {
+    const double limit_s = experiment.search.max_s;
+    return limit_s == 0.0 || watch.Elapsed_s() < limit_s || runner.HasAll(trials);
+  };
+  std::optional<sweep::SweepResult> result = RunGoal(
+      experiment, sources,
+      [&](std::vector<sweep::TrialRequest> trials) { return runner.Run(std::move(trials)); },
+      may_start);
+  watch.Note(true);
+  journal.SetNote("state", result ? "done" : "stopped");
+  journal.Close();
+  return result;
+}
+
+}  // namespace
+
+int CoresToUse() {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  return ::sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
+}
+
+std::optional<sweep::SweepResult> RunSweep(const config::Experiment& experiment,
+                                           SweepSources& sources, const SweepRunRequest& request) {
+  const StopSignal stop;
+  SweepProgress progress(request.progress, TrialsAtMost(experiment, sources.Plan()),
+                         experiment.goal != sweep::Goal::kGrid);
+  std::optional<sweep::SweepResult> result;
+  if (experiment.candidate.kind == sweep::CandidateKind::kSimulation) {
+    result = RunSimulated(experiment, sources, request, progress, stop);
+  } else {
+    const sweep::RunTrials run =
+        sweep::RunHere([&](const sweep::TrialRequest& trial) { return sources.Evaluate(trial); },
+                       {[&](const sweep::TrialRow& row, bool) { progress.Seen(row, false); },
+                        [&] {
+                          progress.Tick();
+                          return !stop.IsAsked();
+                        }});
+    result = RunGoal(experiment, sources, run, [](const auto&) { return true; });
+  }
+  progress.End(result ? "done" : "stopped");
+  return result;
+}
+
+}  // namespace rift::commands

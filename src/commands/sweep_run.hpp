@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "sweep_progress.hpp"
+#include "sweep_sources.hpp"
+
+namespace rift::commands {
+
+/// How a sweep is run, none of which its results depend on.
+struct SweepRunRequest {
+  std::filesystem::path out;
+  int jobs = 1;
+  bool fresh = false;  ///< forget an earlier journal
+  ProgressStyle progress = ProgressStyle::kQuiet;
+};
+
+inline constexpr const char* kJournalName = "journal.sqlite";
+
+/// Cores that this process may use.
+int CoresToUse();
+
+/// Runs what the experiment asks for; simulated trials go through worker processes and the journal
+/// in the folder. Nothing when it was stopped: the same call goes on.
+std::optional<sweep::SweepResult> RunSweep(const config::Experiment& experiment,
+                                           SweepSources& sources, const SweepRunRequest& request);
+
+}  // namespace rift::commands

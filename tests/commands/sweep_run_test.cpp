@@ -1,0 +1,197 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "support/process.hpp"
+#include "support/running_rift.hpp"
+#include "support/trials.hpp"
+
+namespace rift {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::ProcessResult;
+using test::ReadFile;
+using test::RunRift;
+using test::WriteText;
+
+// A short task, so that a trial takes milliseconds.
+const std::string kTask = R"(waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]
+gap: {threshold_m: 0.01}
+reference: {kind: nominal, trials: 2}
+)";
+const std::string kGrid = kTask + R"(space:
+  surface: [ground, parchment]
+  v_min: [0.14, 0.16, 0.18]
+)";
+const std::string kSearch = kTask + R"(goal: falsify
+space:
+  surface: [ground, parchment]
+  v_min: {min: 0.12, max: 0.2}
+  mismatch: {min: -0.15, max: 0.15}
+search: {budget: 24}
+falsify: {until: budget, most_repeats: 4}
+)";
+
+struct Sweep {
+  explicit Sweep(const std::string& text) { WriteText(file, text); }
+  std::vector<std::string> Command(const std::string& out,
+                                   const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"sweep", file, "--out", folder / out};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  std::string Table(const std::string& out) const {
+    return ReadFile(folder / (out + "/table.csv"));
+  }
+  std::string Summary(const std::string& out) const {
+    return ReadFile(folder / (out + "/summary.json"));
+  }
+
+  test::TemporaryFolder folder;
+  std::string file = folder / "experiment.yaml";
+};
+
+TEST_CASE("A sweep gives the same bytes for one worker and for two") {
+  for (const std::string& text : {kGrid, kSearch}) {
+    const Sweep sweep(text);
+    REQUIRE(RunRift(sweep.Command("one", {"--jobs", "1"})).exit_code == 0);
+    REQUIRE(RunRift(sweep.Command("two", {"--jobs", "2"})).exit_code == 0);
+    CHECK(sweep.Table("one") == sweep.Table("two"));
+    CHECK(sweep.Summary("one") == sweep.Summary("two"));
+    CHECK(sweep.Table("one").find(",ok,") != std::string::npos);
+  }
+}
+
+TEST_CASE("A sweep killed again and again ends with the bytes of one that was not") {
+  std::mt19937_64 generator(20261121);
+  for (const std::string& text : {kGrid, kSearch}) {
+    const Sweep sweep(text);
+    REQUIRE(RunRift(sweep.Command("whole")).exit_code == 0);
+    const test::KilledSweep killed =
+        test::SweepUnderFire(sweep.Command("killed"), 6, 0.3, generator);
+    REQUIRE(killed.last.exit_code == 0);
+    CHECK(killed.coordinator_kills + killed.worker_kills > 0);
+    CHECK(sweep.Table("killed") == sweep.Table("whole"));
+    CHECK(sweep.Summary("killed") == sweep.Summary("whole"));
+  }
+}
+
+TEST_CASE("A folder with the journal of another experiment is refused with the keys named") {
+  const Sweep sweep(kGrid);
+  REQUIRE(RunRift(sweep.Command("out")).exit_code == 0);
+  const std::string table = sweep.Table("out");
+  const ProcessResult refused = RunRift(sweep.Command("out", {"--set", "gap.threshold_m=0.02"}));
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.err.find("gap.threshold_m was 0.01 and is 0.02") != std::string::npos);
+  CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
+  CHECK(sweep.Table("out") == table);
+  CHECK(RunRift(sweep.Command("out", {"--set", "run.timeout_s=30"})).exit_code == 0);
+  CHECK(RunRift(sweep.Command("out", {"--set", "gap.threshold_m=0.02", "--fresh"})).exit_code == 0);
+  CHECK(sweep.Table("out").find("fals") != std::string::npos);
+}
+
+TEST_CASE("A finished sweep runs nothing again and a larger budget goes on with it") {
+  const Sweep sweep(kSearch);
+  REQUIRE(RunRift(sweep.Command("out")).exit_code == 0);
+  const auto last_progress = [](const ProcessResult& result) {
+    const size_t at = result.err.rfind("{\"state\"");
+    return json::parse(result.err.substr(at, result.err.find('\n', at) - at));
+  };
+  const ProcessResult again = RunRift(sweep.Command("out", {"--json-progress"}));
+  REQUIRE(again.exit_code == 0);
+  const json progress = last_progress(again);
+  CHECK(progress["state"] == "done");
+  CHECK(progress["done"] == progress["from_journal"]);
+  const ProcessResult more = RunRift(sweep.Command("out", {"--json-progress", "--budget", "30"}));
+  REQUIRE(more.exit_code == 0);
+  CHECK(last_progress(more)["from_journal"] > 0);
+  CHECK(json::parse(sweep.Summary("out"))["falsification"]["evaluations"] == 30);
+}
+
+TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes on later") {
+  const Sweep sweep(kGrid + "run: {timeout_s: 50}\n");
+  const std::vector<std::string> command =
+      sweep.Command("out", {"--set", "reference.trials=200", "--jobs", "1"});
+  test::RunningRift first(command);
+  while (!fs::exists(sweep.folder / "out/experiment.yaml")) ::usleep(1000);
+  ::usleep(300'000);
+  const ProcessResult second = RunRift(command);
+  CHECK(second.exit_code == 3);
+  CHECK(second.err.find("another sweep is at work in") != std::string::npos);
+  const ProcessResult status = RunRift({"sweep", "--status", sweep.folder / "out", "--json"});
+  REQUIRE(status.exit_code == 0);
+  CHECK(json::parse(status.out)["state"] == "running");
+  first.Signal(SIGINT);
+  const ProcessResult stopped = first.Wait();
+  CHECK(stopped.exit_code == 130);
+  CHECK(stopped.err.find("the same command goes on") != std::string::npos);
+  CHECK_FALSE(fs::exists(sweep.folder / "out/table.csv"));
+  const json after =
+      json::parse(RunRift({"sweep", "--status", sweep.folder / "out", "--json"}).out);
+  CHECK(after["state"] == "stopped");
+  CHECK(after["done"] > 0);
+  CHECK(after["done"] < 1200);
+}
+
+TEST_CASE("Folders and journals that cannot be used end with one line") {
+  const Sweep sweep(kGrid);
+  const auto refusal = [&](const std::string& out) {
+    const ProcessResult result = RunRift({"sweep", sweep.file, "--out", out});
+    CHECK(result.exit_code == 3);
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    return result.err;
+  };
+  CHECK(refusal("/proc/nowhere").find("cannot make folder /proc/nowhere") != std::string::npos);
+  CHECK(refusal("/proc/self").find("cannot be written here") != std::string::npos);
+  WriteText(sweep.folder / "bad/journal.sqlite", std::string(10'000, 'x'));
+  CHECK(refusal(sweep.folder / "bad").find("it is damaged") != std::string::npos);
+  if (::geteuid() != 0) {
+    fs::create_directory(sweep.folder / "read_only");
+    ::chmod((sweep.folder / "read_only").c_str(), 0500);
+    CHECK(refusal(sweep.folder / "read_only").find("cannot be written") != std::string::npos);
+  }
+  CHECK(RunRift({"sweep", "--status", sweep.folder / "none"}).exit_code == 2);
+}
+
+TEST_CASE("A row of a sweep is replayed bit for bit with its trajectory and figure") {
+  const Sweep sweep(kSearch);
+  REQUIRE(RunRift(sweep.Command("out")).exit_code == 0);
+  const std::string out = sweep.folder / "replay";
+  const ProcessResult result = RunRift({"simulate", "--replay", sweep.folder / "out", "7", "--out",
+                                        out, "--figure", sweep.folder / "seven.svg"});
+  REQUIRE(result.exit_code == 0);
+  CHECK(result.err.find("row 7: status ok") != std::string::npos);
+  CHECK(fs::exists(out + "/trajectory.csv"));
+  CHECK(fs::exists(sweep.folder / "seven.svg"));
+  const ProcessResult none = RunRift({"simulate", "--replay", sweep.folder / "out", "7000"});
+  CHECK(none.exit_code == 2);
+  CHECK(none.err.find("its ids are 1 to") != std::string::npos);
+  std::string table = sweep.Table("out");
+  const size_t gap = table.find("\n") + 1;
+  const size_t at = table.find(",ok,", gap);
+  table[table.rfind("0.", at) + 4] ^= 1;
+  WriteText(sweep.folder / "out/table.csv", table);
+  const ProcessResult differs = RunRift({"simulate", "--replay", sweep.folder / "out", "1"});
+  CHECK(differs.exit_code == 3);
+  CHECK(differs.err.find("row 1 comes out different") != std::string::npos);
+}
+
+TEST_CASE("A setting that breaks a rule is a row of a search and refused in a grid") {
+  const std::string space =
+      "space:\n  v_min: {min: 0.1, max: 0.4}\n  v_max: {min: 0.2, max: 0.5}\n";
+  const Sweep search(kTask + "goal: falsify\nsearch: {budget: 16}\nfalsify: {until: budget}\n" +
+                     space);
+  REQUIRE(RunRift(search.Command("out")).exit_code == 0);
+  CHECK(search.Table("out").find(",invalid,") != std::string::npos);
+  const Sweep grid(kTask + "space: {v_min: [0.1, 0.4], v_max: [0.2]}\n");
+  CHECK(RunRift(grid.Command("out")).exit_code == 2);
+}
+
+}  // namespace
+}  // namespace rift

@@ -1,0 +1,163 @@
+#include "rift/sweep/trial_runner.hpp"
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <csignal>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "rift/sweep/grid_sweep.hpp"
+#include "support/paths.hpp"
+#include "support/process.hpp"
+
+namespace rift::sweep {
+namespace {
+
+GridPlan Plan() {
+  return {.name = "trouble",
+          .candidate_kind = "simulation",
+          .reference_kind = "path",
+          .parameters = {{.key = "case",
+                          .levels = {{"fine", {}},
+                                     {"hangs", {}},
+                                     {"segfaults", {}},
+                                     {"nan", {}},
+                                     {"eats", {}},
+                                     {"throws", {}},
+                                     {"wide", {}}}}},
+          .trials = {"1", "2"},
+          .seed = 7};
+}
+
+Recording Straight(const TrialRequest&) {
+  return {.source = "path", .trajectory = test::StraightPath(0.7, 40)};
+}
+
+Recording Troubled(const TrialRequest& request, const Recording&) {
+  const std::string& what = request.theta[0].text;
+  if (what == "hangs") ::sleep(1000);
+  if (what == "segfaults") std::raise(SIGSEGV);
+  if (what == "throws") throw std::runtime_error("the wheel came off");
+  std::vector<std::vector<char>> eaten;
+  while (what == "eats") eaten.emplace_back(1 << 20, 'x');
+  Recording path{.source = "simulation", .trajectory = test::StraightPath(0.7, 40)};
+  if (what == "nan") path.trajectory.poses[7].x_m = std::numeric_limits<double>::quiet_NaN();
+  const double offset_m = what == "wide" ? 0.08 : 0.001 * static_cast<double>(*request.seed);
+  path.trajectory = test::Moved(std::move(path.trajectory), {0.0, offset_m, 0.0});
+  return path;
+}
+
+TrialRow Evaluated(const TrialRequest& request) {
+  return CompareTrial(Plan(), request, Troubled, Straight);
+}
+
+std::string KeyOf(const TrialRequest& request) {
+  return request.theta[0].text + " " + request.trial + " " + std::to_string(*request.seed);
+}
+
+double NoFloor(const Theta&) { return gap::kNotComputed; }
+
+SweepResult SweepWith(int workers, Journal* journal, const Watch& watch = {}) {
+  TrialRunner runner(Evaluated, KeyOf, journal, workers, {.timeout_s = 2.0, .memory_mb = 32},
+                     watch);
+  const auto run = [&](std::vector<TrialRequest> all) { return runner.Run(std::move(all)); };
+  std::optional<SweepResult> result = SweepGrid(Plan(), run, NoFloor);
+  REQUIRE(result);
+  return *result;
+}
+
+bool SameRows(const SweepResult& a, const SweepResult& b) {
+  REQUIRE(a.rows.size() == b.rows.size());
+  for (size_t i = 0; i < a.rows.size(); ++i) {
+    const TrialRow &x = a.rows[i], &y = b.rows[i];
+    const bool same_gap = x.comparison.gap_m == y.comparison.gap_m ||
+                          (std::isnan(x.comparison.gap_m) && std::isnan(y.comparison.gap_m));
+    const bool same = x.theta == y.theta && x.trial == y.trial && x.seed == y.seed &&
+                      x.status == y.status && x.reason == y.reason && same_gap &&
+                      x.falsified == y.falsified && x.candidate == y.candidate &&
+                      x.reference == y.reference &&
+                      x.evidence.fingerprint == y.evidence.fingerprint &&
+                      x.evidence.errors_m == y.evidence.errors_m;
+    if (!same) return false;
+  }
+  return true;
+}
+
+TEST_CASE("A sweep with planted trouble ends and each trouble is a row with its reason") {
+  const SweepResult result = SweepWith(2, nullptr);
+  REQUIRE(result.rows.size() == 14);
+  const auto row = [&](int setting) -> const TrialRow& { return result.rows[2 * setting]; };
+  CHECK(row(0).IsOk());
+  CHECK(row(0).comparison.gap_m == Approx(0.007));
+  CHECK(result.rows[1].comparison.gap_m == Approx(0.008));
+  CHECK(row(1).status == TrialStatus::kHung);
+  CHECK(row(1).reason == "had not ended after 2 s, twice");
+  CHECK(row(2).status == TrialStatus::kCrashed);
+  CHECK(row(2).reason == "ended by signal 11 (Segmentation fault), twice");
+  CHECK(row(3).status == TrialStatus::kNan);
+  CHECK(row(3).reason == "simulation: a position is not finite");
+  CHECK(row(4).status == TrialStatus::kOutOfMemory);
+  CHECK(row(4).reason == "wanted more than 32 MB of memory, twice");
+  CHECK(row(5).status == TrialStatus::kFault);
+  CHECK(row(5).reason == "the wheel came off");
+  CHECK(row(6).falsified);
+  CHECK(result.all.n == 4);
+  CHECK(result.all.not_ok == 10);
+}
+
+TEST_CASE("The rows of a sweep are the same for one worker and for two and for none") {
+  GridPlan plan = Plan();
+  plan.parameters[0].levels = {{"fine", {}}, {"wide", {}}};
+  const auto sweep_of = [&](int workers) {
+    TrialRunner runner(Evaluated, KeyOf, nullptr, workers, {}, {});
+    return *SweepGrid(
+        plan, [&](auto all) { return runner.Run(std::move(all)); }, NoFloor);
+  };
+  const SweepResult here = *SweepGrid(plan, RunHere(Evaluated, {}), NoFloor);
+  CHECK(SameRows(sweep_of(1), here));
+  CHECK(SameRows(sweep_of(2), here));
+  CHECK(SameRows(SweepWith(1, nullptr), SweepWith(2, nullptr)));
+}
+
+TEST_CASE("What the journal holds is not computed again and gives the same rows") {
+  const test::TemporaryFolder folder;
+  Journal journal(folder / "journal.sqlite", {{"version", "1"}});
+  int computed = 0, remembered = 0;
+  Watch watch;
+  watch.seen = [&](const TrialRow&, bool from_journal) {
+    ++(from_journal ? remembered : computed);
+  };
+  const SweepResult first = SweepWith(2, &journal, watch);
+  CHECK(computed == 14);
+  CHECK(SameRows(first, SweepWith(2, &journal, watch)));
+  CHECK(computed == 14);
+  CHECK(remembered == 14);
+}
+
+TEST_CASE("A sweep that is stopped goes on with the trials that are missing") {
+  const test::TemporaryFolder folder;
+  Journal journal(folder / "journal.sqlite", {{"version", "1"}});
+  std::set<std::string> computed;
+  const auto run_until = [&](size_t enough) {
+    Watch watch;
+    watch.seen = [&](const TrialRow& row, bool from_journal) {
+      if (!from_journal) CHECK(computed.insert(row.theta[0].text + row.trial).second);
+    };
+    watch.go_on = [&] { return computed.size() < enough; };
+    TrialRunner runner(Evaluated, KeyOf, &journal, 2, {.timeout_s = 2.0, .memory_mb = 32}, watch);
+    return SweepGrid(
+        Plan(), [&](auto all) { return runner.Run(std::move(all)); }, NoFloor);
+  };
+  CHECK_FALSE(run_until(3));
+  CHECK(computed.size() >= 3);
+  const std::optional<SweepResult> whole = run_until(100);
+  REQUIRE(whole);
+  CHECK(computed.size() == 14);
+  CHECK(SameRows(*whole, SweepWith(1, nullptr)));
+}
+
+}  // namespace
+}  // namespace rift::sweep

@@ -1,0 +1,136 @@
+#include "rift/sweep/worker_pool.hpp"
+
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+#include "support/process.hpp"
+
+namespace rift::sweep {
+namespace {
+
+/// Runs `count` jobs whose bytes are their indices.
+std::map<int, JobResult> RunAll(WorkerPool& pool, int count) {
+  std::map<int, JobResult> results;
+  const bool is_whole = pool.Run(
+      {count, [](int i) { return std::to_string(i); },
+       [&](int i, JobResult result) { REQUIRE(results.emplace(i, std::move(result)).second); },
+       [] { return true; }});
+  REQUIRE(is_whole);
+  return results;
+}
+
+[[gnu::noinline]] std::string Devour() {
+  std::vector<std::vector<char>> eaten;
+  while (true) eaten.emplace_back(1 << 20, 'x');
+}
+
+/// Job 1 hangs, 2 segfaults, 3 eats memory, 4 throws, 5 aborts with a word.
+std::string Trouble(const std::string& job) {
+  if (job == "1") ::sleep(1000);
+  if (job == "2") std::raise(SIGSEGV);
+  if (job == "3") return Devour();
+  if (job == "4") throw std::runtime_error("no such setting");
+  if (job == "5") {
+    const std::string words = "ODE INTERNAL ERROR 1\n";
+    [[maybe_unused]] const auto n = ::write(2, words.data(), words.size());
+    std::abort();
+  }
+  return "answer to " + job;
+}
+
+TEST_CASE("Every job of a batch is answered once by processes of their own") {
+  const pid_t here = ::getpid();
+  WorkerPool pool(
+      [here](const std::string& job) {
+        return ::getpid() == here ? "same process" : job + " " + std::to_string(::getpid());
+      },
+      2, {});
+  std::set<std::string> processes;
+  for (const auto& [index, result] : RunAll(pool, 100)) {
+    REQUIRE(result.end == JobEnd::kDone);
+    CHECK(result.bytes.starts_with(std::to_string(index) + " "));
+    processes.insert(result.bytes.substr(result.bytes.find(' ')));
+  }
+  CHECK(processes.size() == 2);
+}
+
+TEST_CASE("A job that hangs or crashes or eats memory is a result with its reason") {
+  for (const int workers : {1, 2}) {
+    WorkerPool pool(Trouble, workers, {.timeout_s = 2.0, .memory_mb = 32});
+    const std::map<int, JobResult> results = RunAll(pool, 8);
+    REQUIRE(results.size() == 8);
+    CHECK(results.at(0).bytes == "answer to 0");
+    CHECK(results.at(1).end == JobEnd::kHung);
+    CHECK(results.at(1).bytes == "had not ended after 2 s, twice");
+    CHECK(results.at(2).end == JobEnd::kCrashed);
+    CHECK(results.at(2).bytes == "ended by signal 11 (Segmentation fault), twice");
+    CHECK(results.at(3).end == JobEnd::kOutOfMemory);
+    CHECK(results.at(3).bytes == "wanted more than 32 MB of memory, twice");
+    CHECK(results.at(4).end == JobEnd::kThrew);
+    CHECK(results.at(4).bytes == "no such setting");
+    CHECK(results.at(5).end == JobEnd::kCrashed);
+    CHECK(results.at(5).bytes == "ended by signal 6 (Aborted): ODE INTERNAL ERROR 1, twice");
+    CHECK(results.at(6).bytes == "answer to 6");
+    CHECK(results.at(7).bytes == "answer to 7");
+  }
+}
+
+TEST_CASE("A job whose worker is killed from outside is done by the next worker") {
+  const test::TemporaryFolder folder;
+  const std::string mark = folder / "killed";
+  WorkerPool pool(
+      [&mark](const std::string& job) {
+        if (job == "3" && !std::ifstream(mark)) {
+          std::ofstream(mark) << "once";
+          ::kill(::getpid(), SIGKILL);
+        }
+        return job;
+      },
+      2, {.retries = 0});
+  for (const auto& [index, result] : RunAll(pool, 8)) {
+    CHECK(result.end == JobEnd::kDone);
+    CHECK(result.bytes == std::to_string(index));
+  }
+}
+
+TEST_CASE("A batch that is told to stop kills what is under way and the pool goes on") {
+  WorkerPool pool(
+      [](const std::string& job) {
+        if (job == "stuck") ::sleep(1000);
+        return job;
+      },
+      2, {});
+  int asked = 0;
+  const bool is_whole = pool.Run({4, [](int) { return std::string("stuck"); },
+                                  [](int, const JobResult&) { FAIL("nothing can have ended"); },
+                                  [&] { return ++asked < 3; }});
+  CHECK_FALSE(is_whole);
+  CHECK(RunAll(pool, 4).size() == 4);
+}
+
+TEST_CASE("A worker sees what was loaded before it started") {
+  const std::vector<int> loaded{7, 8, 9};
+  WorkerPool pool([&](const std::string& job) { return std::to_string(loaded.at(std::stoi(job))); },
+                  1, {});
+  CHECK(RunAll(pool, 3).at(2).bytes == "9");
+}
+
+TEST_CASE("A long answer comes through whole") {
+  WorkerPool pool([](const std::string& job) { return std::string(3'000'000, job[0]); }, 2, {});
+  for (const auto& [index, result] : RunAll(pool, 3)) {
+    CHECK(result.bytes == std::string(3'000'000, static_cast<char>('0' + index)));
+  }
+}
+
+}  // namespace
+}  // namespace rift::sweep
