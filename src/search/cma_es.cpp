@@ -13,7 +13,11 @@ namespace {
 constexpr double kLeastOfCell = 0.3;
 /// Least probability of all other levels together, as a share of an even draw.
 constexpr double kLeastOfLevel = 0.2;
-constexpr double kSmallestStep = 1e-13;
+/// A generation whose losses differ by less than this share of what they once did tells nothing.
+constexpr double kFlat = 1e-12;
+/// What a run may still gain is about what its generation differs by; one that is so many times as
+/// far behind another's result ends early.
+constexpr double kHopeless = 100.0;
 constexpr double kLargestCondition = 1e14;
 
 std::vector<int> RankOrder(const std::vector<double>& losses) {
@@ -177,24 +181,29 @@ void CmaEs::AdaptCategories(const std::vector<int>& order) {
 }
 
 void CmaEs::NoteProgress(double best, double spread) {
-  const bool is_better = best < best_ - 1e-12 * std::abs(best_) || std::isinf(best_);
-  if (is_better && std::isfinite(best)) {
+  const bool is_better = best < best_ - 1e-12 * std::abs(best_);
+  if (is_better || (std::isinf(best_) && std::isfinite(best))) {
     best_ = best;
     improved_at_ = generation_;
   }
-  is_flat_ = !(spread > 0.0) || spread < 1e-12 * std::abs(best_);
+  spread_ = spread;
+  if (std::isfinite(spread)) first_spread_ = std::max(first_spread_, spread);
 }
 
-bool CmaEs::IsDone(int stall_generations) const {
-  const int patience = stall_generations + 10 * space_.Size() * 8 / population_;
-  if (generation_ - improved_at_ > patience) return true;
-  if (generation_ < 1 || mean_.size() == 0) return false;
+bool CmaEs::IsFlat() const {
   const bool has_continuous = std::any_of(numeric_.begin(), numeric_.end(),
                                           [this](int axis) { return space_.IsContinuous(axis); });
-  if (is_flat_ && has_continuous) return true;
+  return has_continuous && !(spread_ > kFlat * first_spread_);
+}
+
+bool CmaEs::IsDone(const CmaEsOptions& options, double best_known) const {
+  const int patience = options.stall_generations + 80 * space_.Size() / population_;
+  if (generation_ - improved_at_ > patience) return true;
+  if (mean_.size() == 0) return false;
+  if (IsFlat() || best_ - best_known > kHopeless * spread_) return true;
   const double largest = sigma_ * std::sqrt(covariance_.diagonal().maxCoeff());
   const double condition = std::pow(lengths_.maxCoeff() / lengths_.minCoeff(), 2);
-  return largest < kSmallestStep || condition > kLargestCondition;
+  return largest < options.last_step || condition > kLargestCondition;
 }
 
 }  // namespace rift::search

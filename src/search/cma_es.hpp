@@ -28,8 +28,9 @@ class CmaEs {
   std::vector<Eigen::VectorXd> Sample(Random& random);
   /// The losses of that generation, in its order; +infinity where there is none.
   void Learn(const std::vector<double>& losses);
-  /// Nothing more to gain: the spread or the differences vanished, or no progress for long.
-  bool IsDone(int stall_generations) const;
+  /// Nothing more to gain: the spread or the differences vanished, no progress for long, or it
+  /// settles at losses far above `best_known`.
+  bool IsDone(const CmaEsOptions& options, double best_known) const;
 
  private:
   struct Draw {
@@ -45,6 +46,7 @@ class CmaEs {
   void AdaptShape(const Eigen::VectorXd& mean_step, const std::vector<int>& order);
   void AdaptCategories(const std::vector<int>& order);
   void NoteProgress(double best, double spread);
+  bool IsFlat() const;
 
   const Space& space_;
   std::vector<int> numeric_, categorical_;  ///< axes
@@ -64,7 +66,7 @@ class CmaEs {
   int decomposed_at_ = 0;
   int improved_at_ = 0;
   double best_ = std::numeric_limits<double>::infinity();
-  bool is_flat_ = false;
+  double first_spread_ = 0.0, spread_ = 0.0;  ///< of the losses in a generation
 };
 
 }  // namespace rift::search

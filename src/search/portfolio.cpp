@@ -30,8 +30,10 @@ Portfolio::Member Portfolio::Explorer() const {
 }
 
 bool Portfolio::MayPropose(Member member) const {
-  const auto evaluations = static_cast<int>(known_.archive.Size());
-  return member != kSurrogate || evaluations < options_.surrogate_most;
+  const auto evaluations = static_cast<double>(known_.archive.Size());
+  if (member == kSurrogate) return evaluations < options_.surrogate_most;
+  if (member == kPolish) return polish_points_ < options_.polish_share * evaluations;
+  return true;
 }
 
 Portfolio::Member Portfolio::Choose() const {
@@ -75,6 +77,7 @@ double Portfolio::RewardOf(std::span<const Evaluation> batch) const {
 void Portfolio::Tell(std::span<const Evaluation> batch) {
   members_[active_]->Tell(batch);
   if (active_ == kCorners) corner_points_ += static_cast<double>(batch.size());
+  if (active_ == kPolish) polish_points_ += static_cast<double>(batch.size());
   if (active_ == kSobol || active_ == kCorners) return;
   for (Record& record : records_) {
     record.gain *= kMemory;

@@ -39,7 +39,7 @@ class Portfolio : public Strategy {
   const Known& known_;
   PortfolioOptions options_;
   int explore_;  ///< evaluations
-  double corner_points_ = 0.0;
+  double corner_points_ = 0.0, polish_points_ = 0.0;
   std::array<std::unique_ptr<Strategy>, kMembers> members_;
   std::array<Record, kMembers> records_;
   Member active_ = kSobol;

@@ -79,7 +79,7 @@ void Restarts::FinishGeneration() {
   run_->Learn(losses_);
   generation_.clear();
   losses_.clear();
-  if (run_->IsDone(options_.stall_generations)) run_.reset();
+  if (run_->IsDone(options_, known_.archive.BestLoss())) run_.reset();
 }
 
 }  // namespace rift::search

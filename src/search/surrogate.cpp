@@ -12,8 +12,13 @@ namespace {
 constexpr std::uint64_t kStream = 0x400;
 /// The scales are looked for again when there are so many times the evaluations of the last time.
 constexpr double kRefitGrowth = 1.25;
+/// What a trial without a loss counts as: worse than the middle, so that it is not sought, and no
+/// catastrophe, since trials often break just beside where the gap is widest.
+constexpr double kScoreWithoutLoss = 0.5;
 /// Share of the candidates that lies anywhere.
 constexpr double kAnywhere = 0.3;
+/// Probability of an axis to differ from the centre, beside one that does.
+constexpr double kAxisMoves = 0.3;
 /// The best evaluations that candidates are drawn around.
 constexpr std::size_t kCentres = 8;
 /// Standard deviations below the mean that the points of a batch hope for, in turn.
@@ -81,7 +86,8 @@ void Surrogate::FitModel() {
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     points.row(row) = known_.space.ToUnit(known_.archive[chosen[i]].point);
-    values[row] = NormalScore(i, chosen.size());
+    const bool has_loss = std::isfinite(known_.archive[chosen[i]].loss);
+    values[row] = has_loss ? NormalScore(i, chosen.size()) : kScoreWithoutLoss;
   }
   const double grown = kRefitGrowth * static_cast<double>(fitted_at_);
   const bool is_due = static_cast<double>(known_.archive.Size()) >= grown;
@@ -92,9 +98,10 @@ void Surrogate::FitModel() {
 Eigen::VectorXd Surrogate::Near(const Eigen::VectorXd& centre) {
   Eigen::VectorXd unit = centre;
   const double size = std::pow(10.0, -2.0 * random_.Uniform());
-  const double share = std::max(0.3, 1.0 / static_cast<double>(unit.size()));
+  const auto axes = static_cast<std::uint64_t>(unit.size());
+  const auto surely = static_cast<int>(random_.Below(axes));
   for (int axis = 0; axis < known_.space.Size(); ++axis) {
-    if (random_.Uniform() > share) continue;
+    if (axis != surely && random_.Uniform() > kAxisMoves) continue;
     if (known_.space.IsCategorical(axis)) {
       unit[axis] = random_.Uniform();
     } else if (random_.Uniform() < 0.1) {

@@ -29,6 +29,7 @@ struct CmaEsOptions {
   double sigma = 0.25;
   int population = 0;
   int stall_generations = 20;
+  double last_step = 1e-7;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -36,7 +37,9 @@ struct CmaEsOptions {
     field("population", self.population, 0, 10'000,
           "points in a generation of the first run; 0: 4 + 3 ln(axes) (Hansen 2016)");
     field("stall_generations", self.stall_generations, 5, 10'000,
-          "a run without progress for so many generations and 10 an axis ends, and another begins");
+          "a run without progress for so many generations and 80 evaluations an axis ends");
+    field("last_step", self.last_step, 1e-15, 1.0,
+          "a run whose spread fell below this on every axis ends, and another begins");
   }
 };
 
@@ -85,6 +88,7 @@ struct PortfolioOptions {
   int explore_most = 100;
   double corner_share = 0.5;
   int surrogate_most = 600;
+  double polish_share = 0.1;
   double curiosity = 0.3;
 
   template <class Self, class Visitor>
@@ -96,6 +100,8 @@ struct PortfolioOptions {
     field("surrogate_most", self.surrogate_most, 0, 1'000'000,
           "evaluations after which the surrogate proposes no more: its model keeps its size while "
           "the others sharpen");
+    field("polish_share", self.polish_share, 0.0, 1.0,
+          "share of all evaluations that polishing gets at most");
     field("curiosity", self.curiosity, 0.0, 10.0,
           "weight of trying a method that was tried little against one that found much");
   }

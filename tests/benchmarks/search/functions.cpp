@@ -1,0 +1,128 @@
+#include "search/functions.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+
+namespace rift::test {
+namespace {
+
+using Vector = Eigen::Matrix<double, kDimensions, 1>;
+using Matrix = Eigen::Matrix<double, kDimensions, kDimensions>;
+
+constexpr double kHalfWidth = 5.0;
+constexpr int kPeaks = 101;
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : engine_(seed) {}
+  double Between(double low, double high) {
+    return low + (high - low) * 0x1p-64 * static_cast<double>(engine_());
+  }
+  Vector Place(double half_width) {
+    return Vector::NullaryExpr([&] { return Between(-half_width, half_width); });
+  }
+  Matrix Rotation() {
+    std::normal_distribution<double> normal;
+    const Matrix any = Matrix::NullaryExpr([&] { return normal(engine_); });
+    return Eigen::HouseholderQR<Matrix>(any).householderQ();
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+Vector AsVector(const search::Point& point) { return Vector(point.data()); }
+
+Task On(std::string name, std::function<double(const search::Point&)> loss) {
+  Task task{std::move(name), {}, std::move(loss)};
+  for (int i = 0; i < kDimensions; ++i) {
+    task.axes.push_back(
+        {"x" + std::to_string(i), search::AxisKind::kContinuous, -kHalfWidth, kHalfWidth});
+  }
+  return task;
+}
+
+Task Rastrigin(Dice dice) {
+  const Vector best = dice.Place(4.0);
+  return On("rastrigin", [best](const search::Point& point) {
+    const Eigen::Array<double, kDimensions, 1> z = AsVector(point) - best;
+    return (z.square() + 10.0 * (1.0 - (2.0 * std::numbers::pi * z).cos())).sum();
+  });
+}
+
+Task Rosenbrock(Dice dice) {
+  const Vector best = dice.Place(4.0);
+  return On("rosenbrock", [best](const search::Point& point) {
+    const Vector z = (AsVector(point) - best).array() + 1.0;
+    double sum = 0.0;
+    for (int i = 0; i + 1 < kDimensions; ++i) {
+      sum += 100.0 * std::pow(z[i] * z[i] - z[i + 1], 2) + std::pow(z[i] - 1.0, 2);
+    }
+    return sum;
+  });
+}
+
+Task Ellipsoid(Dice dice) {
+  const Vector best = dice.Place(4.0);
+  const Matrix rotation = dice.Rotation();
+  return On("ellipsoid", [best, rotation](const search::Point& point) {
+    const Vector z = rotation * (AsVector(point) - best);
+    double sum = 0.0;
+    for (int i = 0; i < kDimensions; ++i) {
+      sum += std::pow(1e6, i / (kDimensions - 1.0)) * z[i] * z[i];
+    }
+    return sum;
+  });
+}
+
+struct Peak {
+  Vector place;
+  double height;
+  Matrix shape;
+};
+
+/// Heights 10 and 1.1 to 9.1; each peak an ellipsoid turned alike, of its own widths up to a ratio
+/// of 1000^(1/2) between them.
+std::vector<Peak> Peaks(Dice& dice) {
+  const Matrix rotation = dice.Rotation();
+  std::vector<Peak> peaks;
+  for (int i = 0; i < kPeaks; ++i) {
+    const double height = i == 0 ? 10.0 : 1.1 + 8.0 * (i - 1) / (kPeaks - 2.0);
+    const double condition = i == 0 ? 1000.0 : std::pow(1000.0, dice.Between(0.0, 2.0));
+    Vector stretch;
+    for (int k = 0; k < kDimensions; ++k) {
+      const int at = (k + i) % kDimensions;
+      stretch[at] = std::pow(condition, 0.5 * k / (kDimensions - 1.0)) / std::pow(condition, 0.25);
+    }
+    peaks.push_back({dice.Place(i == 0 ? 4.0 : 4.9), height,
+                     rotation.transpose() * stretch.asDiagonal() * rotation});
+  }
+  return peaks;
+}
+
+Task ManyPeaks(Dice dice) {
+  const auto peaks = std::make_shared<const std::vector<Peak>>(Peaks(dice));
+  return On("peaks", [peaks](const search::Point& point) {
+    const Vector x = AsVector(point);
+    double highest = 0.0;
+    for (const Peak& peak : *peaks) {
+      const Vector off = x - peak.place;
+      const double fall = off.dot(peak.shape * off) / (2.0 * kDimensions);
+      highest = std::max(highest, peak.height * std::exp(-fall));
+    }
+    return std::pow(10.0 - highest, 2);
+  });
+}
+
+}  // namespace
+
+std::vector<Task> Functions(std::uint64_t seed) {
+  return {Rastrigin(Dice(4 * seed)), Rosenbrock(Dice(4 * seed + 1)), Ellipsoid(Dice(4 * seed + 2)),
+          ManyPeaks(Dice(4 * seed + 3))};
+}
+
+}  // namespace rift::test

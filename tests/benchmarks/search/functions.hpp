@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "rift/search/strategy.hpp"
+
+namespace rift::test {
+
+/// A function to be minimised whose least value is 0.
+struct Task {
+  std::string name;
+  std::vector<search::Axis> axes;
+  std::function<double(const search::Point&)> loss;
+};
+
+inline constexpr int kDimensions = 5;
+
+/// The functions of the study, on [-5, 5]^5, each seed with an optimum of its own in [-4, 4]^5 and,
+/// for the ellipsoid and the peaks, a rotation of its own.
+///   rastrigin    sum z^2 + 10 (1 - cos 2 pi z)
+///   rosenbrock   sum 100 (z_i^2 - z_i+1)^2 + (z_i - 1)^2, z = 1 at the optimum
+///   ellipsoid    axes of 1 to 1e3 (squared 1e6), rotated
+///   peaks        the highest of 101 Gaussian peaks of different heights and widths, rotated (as
+///                Gallagher's, BBOB f21)
+std::vector<Task> Functions(std::uint64_t seed);
+
+}  // namespace rift::test
