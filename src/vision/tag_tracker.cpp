@@ -143,7 +143,7 @@ TrackResult TagTracker::Search::Believe(const FittedSquare& square, const ReadBi
       SolveTagPoses(camera_, square.rays, options_.size_m, options_.corner_sigma_px);
   if (!poses) return {std::nullopt, Miss::kNoPose};
   const TagPose& pose =
-      LikelierPose(*poses, ExpectedUp(*poses), options_.corner_sigma_px, options_.tilt_sigma_rad);
+      LikelierPose(*poses, ExpectedUp(*poses), options_.lens_sigma_px, options_.tilt_sigma_rad);
   if (pose.reprojection_px > options_.max_fit_px) return {std::nullopt, Miss::kNoPose};
   Sighting sighting;
   sighting.camera_from_tag = pose.camera_from_tag;

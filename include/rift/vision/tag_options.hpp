@@ -13,7 +13,8 @@ struct TagOptions {
   double region_margin = 0.55;
   int recheck_every = 150;
   double lost_after_s = 0.25;
-  double corner_sigma_px = 0.05;
+  double corner_sigma_px = 0.02;
+  double lens_sigma_px = 0.1;
   double tilt_sigma_rad = 0.25;
   double max_fit_px = 0.6;
 
@@ -37,7 +38,11 @@ struct TagOptions {
     field("lost_after_s", self.lost_after_s, 0.0, 10.0,
           "no prediction from a sighting older than this");
     field("corner_sigma_px", self.corner_sigma_px, 0.001, 5.0,
-          "scatter of a corner (rendered truth: 0.03 to 0.05 px); the covariance scales with it");
+          "scatter of a corner along each axis (rendered truth: 0.015 to 0.02 px); the covariance "
+          "scales with its square");
+    field("lens_sigma_px", self.lens_sigma_px, 0.001, 5.0,
+          "what the calibration may be wrong by within one tag: weighs the corners against the "
+          "floor's normal where two poses fit");
     field("tilt_sigma_rad", self.tilt_sigma_rad, 0.01, 3.2,
           "how far the tag may lean from the floor's normal (the trials' ramp: 0.24)");
     field("max_fit_px", self.max_fit_px, 0.05, 10.0,
