@@ -38,7 +38,7 @@ cv::Rect ToRect(const Region& region) {
 
 /// Paper: fibres about a pixel wide and clouds about twenty, each with half of the variance.
 cv::Mat1f Grain(const CameraModel& camera, double sigma_grey) {
-  cv::Mat1f sum = cv::Mat1f::zeros(camera.height_px, camera.width_px);
+  cv::Mat1f sum(camera.height_px, camera.width_px, 0.0F);
   cv::RNG random(kGrainSeed);
   for (const double width_px : {1.0, 20.0}) {
     cv::Mat1f layer(sum.size());
@@ -185,7 +185,7 @@ void SyntheticCamera::State::DrawRobot(const RobotMotion& robot, cv::Mat1b& pict
   touched = Grown(touched, reach_px, camera);
   const Region region = Grown(touched, reach_px, camera);
   const int moments = options.shutter_s > 0.0 ? kMoments : 1;
-  cv::Mat1f light = cv::Mat1f::zeros(region.height_px, region.width_px);
+  cv::Mat1f light(region.height_px, region.width_px, 0.0F);
   for (int i = 0; i < moments; ++i) {
     cv::Mat1f moment = floor(ToRect(region)).clone();
     PaintRobot(robot, options.shutter_s * ((i + 0.5) / moments - 0.5), region, moment);
