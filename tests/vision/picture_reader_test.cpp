@@ -48,8 +48,8 @@ TEST_CASE("A region is cut to the picture and none is left outside") {
 
 TEST_CASE("Compressed and raw frames show the same picture") {
   PictureReader reader;
-  const auto jpeg = reader.Read(Render(PixelFormat::kJpeg));
-  const auto grey = reader.Read(Render(PixelFormat::kGrey));
+  auto jpeg = reader.Read(Render(PixelFormat::kJpeg));
+  auto grey = reader.Read(Render(PixelFormat::kGrey));
   const cv::Mat a(1080, 1920, CV_8UC1, jpeg->pixels.data());
   const cv::Mat b(1080, 1920, CV_8UC1, grey->pixels.data());
   CHECK(cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total()) < 2.0);
