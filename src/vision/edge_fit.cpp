@@ -13,8 +13,6 @@ namespace {
 constexpr double kCellsPerSide = 8.0;
 /// Below this a cell is too small for a plateau on both sides of the edge.
 constexpr double kLeastCell_px = 2.0;
-/// Least grey step from black to white.
-constexpr double kLeastStep_grey = 20.0;
 
 /// One side of the square in the picture, its normal pointing out of the black.
 struct Side {
@@ -45,8 +43,9 @@ void WalkAlong(const Side& side, double step_px, Visit&& visit) {
 
 /// The steepest rise along the normal within `reach_px` of the point, to half a pixel.
 std::optional<Eigen::Vector2d> SteepestRise(const GreyPatch& patch, const Eigen::Vector2d& point,
-                                            const Eigen::Vector2d& normal, double reach_px) {
-  double best = kLeastStep_grey * 0.5;
+                                            const Eigen::Vector2d& normal, double reach_px,
+                                            double least_contrast) {
+  double best = least_contrast * 0.5;
   std::optional<double> where;
   const auto at = [&](double s) {
     return patch.At(point.x() + s * normal.x(), point.y() + s * normal.y());
@@ -63,14 +62,16 @@ std::optional<Eigen::Vector2d> SteepestRise(const GreyPatch& patch, const Eigen:
 }
 
 /// The guess moved onto the edges, good to about 0.3 px.
-std::optional<TagCorners> Approach(const GreyPatch& patch, const TagCorners& guess) {
+std::optional<TagCorners> Approach(const GreyPatch& patch, const TagCorners& guess,
+                                   double least_contrast) {
   std::vector<EdgeLine> lines;
   for (int i = 0; i < 4; ++i) {
     const Side side(guess[i], guess[(i + 1) % 4]);
     if (side.Cell_px() < kLeastCell_px) return std::nullopt;
     std::vector<Eigen::Vector2d> points;
     WalkAlong(side, 3.0, [&](const Eigen::Vector2d& point) {
-      if (auto edge = SteepestRise(patch, point, side.normal, 0.8 * side.Cell_px())) {
+      if (auto edge =
+              SteepestRise(patch, point, side.normal, 0.8 * side.Cell_px(), least_contrast)) {
         points.push_back(*edge);
       }
     });
@@ -163,8 +164,8 @@ bool JoinCorners(const CameraModel& camera, const std::array<EdgeLine, 4>& lines
 }  // namespace
 
 std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch& patch,
-                                      const TagCorners& guess) {
-  const std::optional<TagCorners> near = Approach(patch, guess);
+                                      const TagCorners& guess, double least_contrast) {
+  const std::optional<TagCorners> near = Approach(patch, guess, least_contrast);
   if (!near) return std::nullopt;
   FittedSquare square;
   std::array<EdgeLine, 4> lines;
@@ -173,7 +174,7 @@ std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch
     if (side.Cell_px() < kLeastCell_px) return std::nullopt;
     const Profiles profiles = Sample(patch, side);
     // NaN, from outside the patch, fails here too.
-    if (!(profiles.white - profiles.black > kLeastStep_grey)) return std::nullopt;
+    if (!(profiles.white - profiles.black > least_contrast)) return std::nullopt;
     const auto line = FitLine(Straightened(camera, EdgePoints(profiles, side)), 0.05);
     if (!line) return std::nullopt;
     lines[i] = *line;

@@ -22,8 +22,9 @@ struct FittedSquare {
 /// Sub-pixel corners from a guess that is off by up to half a cell of the tag: on each side the
 /// steps from black to white are located along its normal, freed of the lens, and joined by a line;
 /// the corners are where the lines meet. A straight edge is straight only without the lens, which
-/// is worth a third of the error. None where an edge is missing, too short or leaves the patch.
+/// is worth a third of the error. None where an edge is
+/// missing, too short, leaves the patch or has less than `least_contrast` grey values.
 std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch& patch,
-                                      const TagCorners& guess);
+                                      const TagCorners& guess, double least_contrast);
 
 }  // namespace rift::vision

@@ -38,10 +38,12 @@ struct TagDetector::State {
   std::unique_ptr<apriltag_detector_t, DetectorDeleter> detector{apriltag_detector_create()};
 };
 
-TagDetector::TagDetector(int decimate, int max_hamming) : state_(std::make_unique<State>()) {
+TagDetector::TagDetector(int decimate, int max_hamming, int least_contrast)
+    : state_(std::make_unique<State>()) {
   apriltag_detector_add_family_bits(state_->detector.get(), state_->family.get(), max_hamming);
   state_->detector->quad_decimate = static_cast<float>(decimate);
   state_->detector->nthreads = 1;
+  state_->detector->qtp.min_white_black_diff = least_contrast;
 }
 
 TagDetector::~TagDetector() = default;

@@ -111,11 +111,11 @@ bool IsSeenFromTheFront(const Eigen::Isometry3d& camera_from_tag) {
          camera_from_tag.linear().col(2).dot(camera_from_tag.translation()) < 0.0;
 }
 
-double Misfit(const TagPose& pose, const Eigen::Vector3d& up_in_camera, double corner_sigma_px,
+double Misfit(const TagPose& pose, const Eigen::Vector3d& up_in_camera, double lens_sigma_px,
               double tilt_sigma_rad) {
   const Eigen::Vector3d normal = pose.camera_from_tag.linear().col(2);
   const double tilt_rad = std::atan2(normal.cross(up_in_camera).norm(), normal.dot(up_in_camera));
-  return 4.0 * std::pow(pose.reprojection_px / corner_sigma_px, 2) +
+  return 4.0 * std::pow(pose.reprojection_px / lens_sigma_px, 2) +
          std::pow(tilt_rad / tilt_sigma_rad, 2);
 }
 
@@ -140,10 +140,10 @@ std::optional<TagPoses> SolveTagPoses(const CameraModel& camera,
 }
 
 const TagPose& LikelierPose(const TagPoses& poses, const Eigen::Vector3d& up_in_camera,
-                            double corner_sigma_px, double tilt_sigma_rad) {
+                            double lens_sigma_px, double tilt_sigma_rad) {
   if (!poses.other) return poses.best;
-  const double best = Misfit(poses.best, up_in_camera, corner_sigma_px, tilt_sigma_rad);
-  const double other = Misfit(*poses.other, up_in_camera, corner_sigma_px, tilt_sigma_rad);
+  const double best = Misfit(poses.best, up_in_camera, lens_sigma_px, tilt_sigma_rad);
+  const double other = Misfit(*poses.other, up_in_camera, lens_sigma_px, tilt_sigma_rad);
   return other < best ? *poses.other : poses.best;
 }
 

@@ -29,8 +29,8 @@ class TagTracker::Search {
         now_s_(std::move(now_s)),
         map_from_camera_(MapFromCamera(camera)),
         cells_(CellsOfTag(options.id)),
-        in_picture_(options.acquire_decimate, options.max_hamming),
-        in_region_(options.region_decimate, options.max_hamming) {}
+        in_picture_(options.acquire_decimate, options.max_hamming, options.least_contrast),
+        in_region_(options.region_decimate, options.max_hamming, options.least_contrast) {}
 
   TrackResult Track(const Frame& frame);
   void Forget() { motion_.Forget(); }
@@ -128,7 +128,8 @@ const TagDetection* TagTracker::Search::Choose(const std::vector<TagDetection>& 
 
 TrackResult TagTracker::Search::Measure(const GreyPatch& patch, const TagCorners& guess,
                                         TrackMode mode) {
-  const std::optional<FittedSquare> square = FitSquare(camera_, patch, guess);
+  const std::optional<FittedSquare> square =
+      FitSquare(camera_, patch, guess, options_.least_contrast);
   if (!square || square->rms_px > options_.max_fit_px) return {std::nullopt, Miss::kNoEdges};
   const ReadBits bits = CompareBits(camera_, patch, *square, cells_);
   if (bits.wrong > options_.max_hamming || bits.margin < options_.min_margin) {
@@ -143,7 +144,7 @@ TrackResult TagTracker::Search::Believe(const FittedSquare& square, const ReadBi
       SolveTagPoses(camera_, square.rays, options_.size_m, options_.corner_sigma_px);
   if (!poses) return {std::nullopt, Miss::kNoPose};
   const TagPose& pose =
-      LikelierPose(*poses, ExpectedUp(*poses), options_.corner_sigma_px, options_.tilt_sigma_rad);
+      LikelierPose(*poses, ExpectedUp(*poses), options_.lens_sigma_px, options_.tilt_sigma_rad);
   if (pose.reprojection_px > options_.max_fit_px) return {std::nullopt, Miss::kNoPose};
   Sighting sighting;
   sighting.camera_from_tag = pose.camera_from_tag;

@@ -30,7 +30,9 @@ struct TagDetection {
 class TagDetector {
  public:
   /// decimate: quads are sought in every n-th pixel; max_hamming: 0 to 2 bits are corrected.
-  TagDetector(int decimate, int max_hamming);
+  /// least_contrast: grey values between black and white nearby; what has less is not looked at.
+  /// AprilTag's 5 is below the noise of a webcam, and most of its time goes into the noise's edges.
+  TagDetector(int decimate, int max_hamming, int least_contrast = 5);
   ~TagDetector();
   TagDetector(TagDetector&&) noexcept;
   TagDetector& operator=(TagDetector&&) noexcept;

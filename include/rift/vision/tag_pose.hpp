@@ -31,9 +31,9 @@ std::optional<TagPoses> SolveTagPoses(const CameraModel& camera,
                                       const std::array<Eigen::Vector2d, 4>& rays, double size_m,
                                       double corner_sigma_px);
 
-/// The pose that is likelier when corners scatter by corner_sigma_px and the tag's normal by
-/// tilt_sigma_rad about `up_in_camera`.
+/// The pose that is likelier when corners are wrong by lens_sigma_px and the tag's normal scatters
+/// by tilt_sigma_rad about `up_in_camera`.
 const TagPose& LikelierPose(const TagPoses& poses, const Eigen::Vector3d& up_in_camera,
-                            double corner_sigma_px, double tilt_sigma_rad);
+                            double lens_sigma_px, double tilt_sigma_rad);
 
 }  // namespace rift::vision

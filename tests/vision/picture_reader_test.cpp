@@ -1,0 +1,102 @@
+#include "rift/vision/picture_reader.hpp"
+
+#include <catch2/catch.hpp>
+#include <opencv2/core.hpp>
+
+#include "rendered_tags.hpp"
+
+namespace rift::vision {
+namespace {
+
+Frame Render(PixelFormat format) {
+  std::mt19937_64 generator(1);
+  return SyntheticCamera(test::PaperCamera(), {})
+      .Render(test::RobotAt(0.1, 0.1, 0.5), format, generator);
+}
+
+TEST_CASE("A region holds the very pixels of the whole picture in every format") {
+  const PixelFormat format =
+      GENERATE(PixelFormat::kJpeg, PixelFormat::kGrey, PixelFormat::kBgr, PixelFormat::kYuyv);
+  const Frame frame = Render(format);
+  PictureReader reader;
+  const auto whole = reader.Read(frame);
+  REQUIRE(whole);
+  // The first is not at the blocks of a JPEG; the others touch the picture's borders.
+  for (const Region& region : {Region{935, 441, 163, 117}, {0, 0, 40, 40}, {1900, 1050, 20, 30}}) {
+    const auto part = reader.Read(frame, region);
+    REQUIRE(part);
+    REQUIRE(part->region == region);
+    int different = 0;
+    for (int y = 0; y < region.height_px; ++y) {
+      for (int x = 0; x < region.width_px; ++x) {
+        const double a = part->At(region.x_px + x, region.y_px + y);
+        if (a != whole->At(region.x_px + x, region.y_px + y)) ++different;
+      }
+    }
+    CHECK(different == 0);
+  }
+}
+
+TEST_CASE("A region is cut to the picture and none is left outside") {
+  PictureReader reader;
+  const Frame frame = Render(PixelFormat::kJpeg);
+  CHECK(reader.Read(frame, {-50, -20, 100, 100})->region == Region{0, 0, 50, 80});
+  CHECK(reader.Read(frame, {1900, 1000, 400, 400})->region == Region{1900, 1000, 20, 80});
+  CHECK_FALSE(reader.Read(frame, {2000, 0, 100, 100}));
+  CHECK_FALSE(reader.Read(frame, {0, -200, 100, 100}));
+}
+
+TEST_CASE("Compressed and raw frames show the same picture") {
+  PictureReader reader;
+  auto jpeg = reader.Read(Render(PixelFormat::kJpeg));
+  auto grey = reader.Read(Render(PixelFormat::kGrey));
+  const cv::Mat a(1080, 1920, CV_8UC1, jpeg->pixels.data());
+  const cv::Mat b(1080, 1920, CV_8UC1, grey->pixels.data());
+  CHECK(cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total()) < 2.0);
+  CHECK(cv::norm(a, b, cv::NORM_INF) < 25.0);
+}
+
+TEST_CASE("Damaged frames are told from whole ones") {
+  PictureReader reader;
+  const Frame whole = Render(PixelFormat::kJpeg);
+  const Region low{900, 900, 100, 100};
+  Frame cut = whole;
+  cut.bytes.resize(cut.bytes.size() / 2);
+  CHECK_FALSE(reader.Read(cut));
+  CHECK_FALSE(reader.Read(cut, low));
+  Frame text = whole;
+  text.bytes.assign({'n', 'o', 't', ' ', 'a', ' ', 'j', 'p', 'e', 'g'});
+  CHECK_FALSE(reader.Read(text));
+  Frame empty = whole;
+  empty.bytes.clear();
+  CHECK_FALSE(reader.Read(empty));
+  Frame other_size = whole;
+  other_size.width_px = 1280;
+  other_size.height_px = 720;
+  CHECK_FALSE(reader.Read(other_size));
+  Frame short_raw = Render(PixelFormat::kGrey);
+  short_raw.bytes.pop_back();
+  CHECK_FALSE(reader.Read(short_raw));
+  // And the reader still works after all of them.
+  CHECK(reader.Read(whole, low));
+}
+
+TEST_CASE("Random bytes in a compressed frame never crash the reader") {
+  PictureReader reader;
+  const Frame whole = Render(PixelFormat::kJpeg);
+  std::mt19937_64 generator(3);
+  for (int i = 0; i < 100; ++i) {
+    Frame frame = whole;
+    for (int k = 0; k < 1 + i % 20; ++k) {
+      // Mostly in the headers, where a wrong byte does most.
+      const std::size_t end = k % 2 == 0 ? 700 : frame.bytes.size();
+      frame.bytes[generator() % end] = static_cast<std::uint8_t>(generator());
+    }
+    const auto patch = reader.Read(frame, {800, 400, 160, 160});
+    if (patch) CHECK(patch->pixels.size() == 160 * 160);
+  }
+  CHECK(reader.Read(whole));
+}
+
+}  // namespace
+}  // namespace rift::vision

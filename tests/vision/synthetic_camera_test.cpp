@@ -1,0 +1,165 @@
+#include "rift/vision/synthetic_camera.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "rendered_tags.hpp"
+#include "rift/vision/picture_reader.hpp"
+#include "vision/edge_fit.hpp"
+
+namespace rift::vision {
+namespace {
+
+/// Nothing that hides where the edges are.
+SyntheticCameraOptions Clean() {
+  SyntheticCameraOptions options;
+  options.noise_grey = options.grain_grey = options.falloff = 0.0;
+  return options;
+}
+
+TEST_CASE("Rendered chessboard corners lie where OpenCV projects them") {
+  const CameraModel camera = test::PaperCamera();
+  Scene scene;
+  PlacedBoard board;
+  board.world_from_board.linear() =
+      (Eigen::AngleAxisd(0.4, Eigen::Vector3d(0.3, 1.0, 0.2).normalized()) *
+       Eigen::Matrix3d(Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal()));
+  board.world_from_board.translation() = Eigen::Vector3d(-0.25, 0.15, 0.1);
+  scene.boards.push_back(board);
+  std::mt19937_64 generator(1);
+  Frame frame = SyntheticCamera(camera, Clean(), scene).Render({}, PixelFormat::kGrey, generator);
+
+  const Eigen::Isometry3d camera_from_board =
+      camera.world->world_from_camera.inverse() * board.world_from_board;
+  std::vector<cv::Point3d> points;
+  for (int row = 0; row < board.rows; ++row) {
+    for (int column = 0; column < board.columns; ++column) {
+      points.emplace_back(column * board.square_m, row * board.square_m, 0.0);
+    }
+  }
+  cv::Mat k, rotation, turn;
+  cv::eigen2cv(camera.k, k);
+  cv::eigen2cv(Eigen::Matrix3d(camera_from_board.linear()), rotation);
+  cv::Rodrigues(rotation, turn);
+  const Eigen::Vector3d t = camera_from_board.translation();
+  std::vector<cv::Point2d> projected;
+  cv::projectPoints(points, turn, cv::Vec3d(t.x(), t.y(), t.z()), k, camera.distortion, projected);
+
+  std::vector<cv::Point2f> seen(projected.begin(), projected.end());
+  const cv::Mat picture(frame.height_px, frame.width_px, CV_8UC1, frame.bytes.data());
+  cv::cornerSubPix(picture, seen, {5, 5}, {-1, -1}, {cv::TermCriteria::COUNT, 60, 0.0});
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  double worst = 0.0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const Eigen::Vector2d error(seen[i].x - projected[i].x, seen[i].y - projected[i].y);
+    mean += error / static_cast<double>(seen.size());
+    worst = std::max(worst, error.norm());
+  }
+  CHECK(mean.norm() < 0.005);
+  CHECK(worst < 0.05);
+}
+
+TEST_CASE("The robot is drawn where its pose says and the right way round") {
+  const CameraModel camera = test::PaperCamera();
+  SyntheticCamera renderer(camera, Clean());
+  std::mt19937_64 generator(1);
+  const RobotMotion robot = test::RobotAt(-0.3, 0.1, 2.5);
+  const auto picture = PictureReader().Read(renderer.Render(robot, PixelFormat::kGrey, generator));
+  const TagCorners truth = test::TrueCorners(camera, robot);
+  const std::vector<TagDetection> found = TagDetector(1, 0).Detect(*picture);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].id == 0);
+  for (int i = 0; i < 4; ++i) CHECK((found[0].corners[i] - truth[i]).norm() < 0.3);
+}
+
+TEST_CASE("The same generator gives the same bytes and another one does not") {
+  const CameraModel camera = test::PaperCamera();
+  SyntheticCamera renderer(camera, {});
+  SyntheticCamera again(camera, {});
+  std::mt19937_64 first(1), second(1), third(2);
+  const auto robot = test::RobotAt(0.0, 0.0, 1.0);
+  const Frame frame = renderer.Render(robot, PixelFormat::kJpeg, first);
+  CHECK(frame.bytes == again.Render(robot, PixelFormat::kJpeg, second).bytes);
+  CHECK(frame.bytes != again.Render(robot, PixelFormat::kJpeg, third).bytes);
+}
+
+TEST_CASE("Sensor noise has the asked scatter and no memory") {
+  SyntheticCamera renderer(test::PaperCamera(), {});
+  std::mt19937_64 generator(1);
+  const Frame a = renderer.Render({}, PixelFormat::kGrey, generator);
+  const Frame b = renderer.Render({}, PixelFormat::kGrey, generator);
+  double sum = 0.0, square = 0.0;
+  for (std::size_t i = 0; i < a.bytes.size(); ++i) {
+    const double difference = static_cast<double>(a.bytes[i]) - b.bytes[i];
+    sum += difference;
+    square += difference * difference;
+  }
+  const double count = static_cast<double>(a.bytes.size());
+  CHECK(sum / count == Approx(0.0).margin(0.02));
+  // Rounding to whole grey values adds 1/12.
+  CHECK(std::sqrt(square / count) == Approx(std::sqrt(2.0 * (9.0 + 1.0 / 12.0))).epsilon(0.01));
+}
+
+/// Mean x of the tag's upper and lower edge in the picture, the robot standing upright in it.
+std::array<double, 2> EdgeColumns(const CameraModel& camera, const SyntheticCameraOptions& options,
+                                  const RobotMotion& robot) {
+  std::mt19937_64 generator(1);
+  SyntheticCamera renderer(camera, options);
+  const auto picture = PictureReader().Read(renderer.Render(robot, PixelFormat::kGrey, generator));
+  const auto square = FitSquare(camera, *picture, test::TrueCorners(camera, robot), 30.0);
+  REQUIRE(square);
+  return {0.5 * (square->pixels[2].x() + square->pixels[3].x()),
+          0.5 * (square->pixels[0].x() + square->pixels[1].x())};
+}
+
+TEST_CASE("A rolling shutter sees the lower rows of a moving robot later") {
+  const CameraModel camera = test::PaperCamera();
+  RobotMotion robot = test::RobotAt(0.0, 0.0, 0.0);
+  const std::array<double, 2> still = EdgeColumns(camera, Clean(), robot);
+  robot.velocity_mps = {1.0, 0.0, 0.0};
+  SyntheticCameraOptions rolling = Clean();
+  rolling.readout_s = 0.03;
+  const std::array<double, 2> moved = EdgeColumns(camera, rolling, robot);
+  const TagCorners corners = test::TrueCorners(camera, robot);
+  const double rows = corners[0].y() - corners[3].y();
+  const double expected_px = 1.0 * 0.03 * rows / camera.height_px * camera.k(0, 0) / 0.84;
+  CHECK(moved[1] - moved[0] - (still[1] - still[0]) == Approx(expected_px).epsilon(0.1));
+}
+
+TEST_CASE("An open shutter smears a moving robot without moving its middle") {
+  const CameraModel camera = test::PaperCamera();
+  RobotMotion robot = test::RobotAt(0.0, 0.0, 0.0);
+  const std::array<double, 2> still = EdgeColumns(camera, Clean(), robot);
+  robot.velocity_mps = {0.2, 0.0, 0.0};
+  SyntheticCameraOptions open = Clean();
+  open.shutter_s = 0.01;
+  std::mt19937_64 generator(1);
+  CHECK(SyntheticCamera(camera, open).Render(robot, PixelFormat::kGrey, generator).bytes !=
+        SyntheticCamera(camera, Clean()).Render(robot, PixelFormat::kGrey, generator).bytes);
+  const std::array<double, 2> smeared = EdgeColumns(camera, open, robot);
+  CHECK(smeared[0] == Approx(still[0]).margin(0.05));
+  CHECK(smeared[1] == Approx(still[1]).margin(0.05));
+}
+
+TEST_CASE("A robot outside the picture leaves the floor as it is") {
+  SyntheticCamera renderer(test::PaperCamera(), Clean());
+  std::mt19937_64 generator(1);
+  const Frame floor = renderer.Render({}, PixelFormat::kGrey, generator);
+  CHECK(floor.bytes ==
+        renderer.Render(test::RobotAt(3.0, 0.0, 0.0), PixelFormat::kGrey, generator).bytes);
+  CHECK(floor.bytes ==
+        renderer.Render(test::RobotAt(0.0, 0.0, 0.0, 2.0), PixelFormat::kGrey, generator).bytes);
+}
+
+TEST_CASE("A camera without a place in the world cannot be rendered") {
+  CameraModel camera = test::PaperCamera();
+  camera.world.reset();
+  CHECK_THROWS_WITH(SyntheticCamera(camera, {}), Catch::Contains("camera paper"));
+}
+
+}  // namespace
+}  // namespace rift::vision
