@@ -71,8 +71,8 @@ bool DropWorst(const std::vector<ViewResult*>& used, const CalibrationOptions& o
       [](const ViewResult* a, const ViewResult* b) { return a->rms_px < b->rms_px; });
   if (worst.rms_px < std::max(options.outlier_px, options.outlier_factor * median_px)) return false;
   worst.used = false;
-  worst.dropped = fmt::format("outlier: its error is {:.2f} px, the median {:.2f} px",
-                              worst.rms_px, median_px);
+  worst.dropped =
+      fmt::format("outlier: its error is {:.2f} px, the median {:.2f} px", worst.rms_px, median_px);
   return true;
 }
 

@@ -24,8 +24,9 @@ void Text(cv::Mat& picture, const cv::Point& at, const std::string& text, const 
 }
 
 cv::Scalar ColourOf(std::size_t view, std::size_t count) {
-  const cv::Mat hsv(1, 1, CV_8UC3,
-                    cv::Scalar(180.0 * static_cast<double>(view) / static_cast<double>(count), 170, 190));
+  const cv::Mat hsv(
+      1, 1, CV_8UC3,
+      cv::Scalar(180.0 * static_cast<double>(view) / static_cast<double>(count), 170, 190));
   cv::Mat bgr;
   cv::cvtColor(hsv, bgr, cv::COLOR_HSV2BGR);
   const cv::Vec3b c = bgr.at<cv::Vec3b>(0, 0);

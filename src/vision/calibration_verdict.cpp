@@ -48,8 +48,8 @@ void JudgeViews(Judgement& judgement, const Calibration& calibration,
     judgement.Refuse(fmt::format("only {} of {} views can be used, at least {} are needed", used,
                                  calibration.views.size(), options.least_views));
   } else if (used < options.good_views) {
-    judgement.AtMostUsable(fmt::format("only {} views are used, good ones have {} or more", used,
-                                       options.good_views));
+    judgement.AtMostUsable(
+        fmt::format("only {} views are used, good ones have {} or more", used, options.good_views));
   }
 }
 
@@ -82,10 +82,10 @@ void JudgeBoard(Judgement& judgement, const Calibration& calibration,
                 const CalibrationOptions& options) {
   const bool bent = calibration.bent_px < options.bent_gain * calibration.flat_px;
   if (!bent) return;
-  judgement.AtMostUsable(
-      fmt::format("the board is not flat: the error falls from {:.2f} to {:.2f} px when it may bend, "
-                  "by {:.1f} mm: glue it to glass or a plate",
-                  calibration.flat_px, calibration.bent_px, 1e3 * calibration.bend_m));
+  judgement.AtMostUsable(fmt::format(
+      "the board is not flat: the error falls from {:.2f} to {:.2f} px when it may bend, "
+      "by {:.1f} mm: glue it to glass or a plate",
+      calibration.flat_px, calibration.bent_px, 1e3 * calibration.bend_m));
 }
 
 void JudgeCoverage(Judgement& judgement, const Coverage& coverage,

@@ -39,9 +39,7 @@ class Span {
     low_ = std::min(low_, value);
     high_ = std::max(high_, value);
   }
-  double ShareOf(double plenty) const {
-    return std::clamp((high_ - low_) / plenty, 0.0, 1.0);
-  }
+  double ShareOf(double plenty) const { return std::clamp((high_ - low_) / plenty, 0.0, 1.0); }
 
  private:
   double low_ = HUGE_VAL, high_ = -HUGE_VAL;

@@ -10,7 +10,8 @@
 namespace rift::vision {
 namespace {
 
-constexpr std::array<const char*, 9> kPlumbBob{"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
+constexpr std::array<const char*, 9> kPlumbBob{"fx", "fy", "cx", "cy", "k1",
+                                               "k2", "p1", "p2", "k3"};
 constexpr std::array<const char*, 8> kEquidistant{"fx", "fy", "cx", "cy", "k1", "k2", "k3", "k4"};
 
 struct Poses {
@@ -84,8 +85,9 @@ LensFit FitEquidistant(const FitInput& input) {
       input.BoardPoints(), input.Pixels(), input.Size(), k, distortion, poses.rotations,
       poses.translations, cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW,
       {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 200, 1e-10});
-  LensFit fit = FitOf(input, ModelOf(input, Lens::kEquidistant, k, distortion.reshape(1, 1), rms_px),
-                      k, distortion, poses);
+  LensFit fit =
+      FitOf(input, ModelOf(input, Lens::kEquidistant, k, distortion.reshape(1, 1), rms_px), k,
+            distortion, poses);
   Name(fit, kEquidistant, {});
   return fit;
 }
@@ -97,7 +99,8 @@ bool IsPlausible(const LensFit& fit) {
          k(1, 1) > 0.1 * longest_px && std::isfinite(fit.camera.rms_px);
 }
 
-/// Every corner of a bent board is an unknown: all of them and 24 views take a minute, these do not.
+/// Every corner of a bent board is an unknown: all of them and 24 views take a minute, these do
+/// not.
 struct Thinned {
   explicit Thinned(const FitInput& input) {
     const auto all_points = input.BoardPoints();

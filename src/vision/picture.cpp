@@ -24,11 +24,13 @@ cv::Mat Decoded(const Frame& frame, int how) {
 cv::Mat BgrOf(const Frame& frame) {
   cv::Mat picture;
   switch (frame.format) {
-    case PixelFormat::kJpeg: return Decoded(frame, cv::IMREAD_COLOR);
+    case PixelFormat::kJpeg:
+      return Decoded(frame, cv::IMREAD_COLOR);
     case PixelFormat::kGrey:
       cv::cvtColor(Raw(frame, CV_8UC1), picture, cv::COLOR_GRAY2BGR);
       break;
-    case PixelFormat::kBgr: return Raw(frame, CV_8UC3).clone();
+    case PixelFormat::kBgr:
+      return Raw(frame, CV_8UC3).clone();
     case PixelFormat::kYuyv:
       cv::cvtColor(Raw(frame, CV_8UC2), picture, cv::COLOR_YUV2BGR_YUYV);
       break;
@@ -39,10 +41,16 @@ cv::Mat BgrOf(const Frame& frame) {
 cv::Mat GlanceAt(const Frame& frame) {
   cv::Mat grey;
   switch (frame.format) {
-    case PixelFormat::kJpeg: return Decoded(frame, cv::IMREAD_REDUCED_GRAYSCALE_8);
-    case PixelFormat::kGrey: return Raw(frame, CV_8UC1);
-    case PixelFormat::kBgr: cv::cvtColor(Raw(frame, CV_8UC3), grey, cv::COLOR_BGR2GRAY); break;
-    case PixelFormat::kYuyv: cv::extractChannel(Raw(frame, CV_8UC2), grey, 0); break;
+    case PixelFormat::kJpeg:
+      return Decoded(frame, cv::IMREAD_REDUCED_GRAYSCALE_8);
+    case PixelFormat::kGrey:
+      return Raw(frame, CV_8UC1);
+    case PixelFormat::kBgr:
+      cv::cvtColor(Raw(frame, CV_8UC3), grey, cv::COLOR_BGR2GRAY);
+      break;
+    case PixelFormat::kYuyv:
+      cv::extractChannel(Raw(frame, CV_8UC2), grey, 0);
+      break;
   }
   return grey;
 }

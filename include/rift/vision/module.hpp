@@ -1,0 +1,79 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rift/vision/calibration.hpp"
+#include "rift/vision/capture_options.hpp"
+#include "rift/vision/capture_thread.hpp"
+#include "rift/vision/tag_tracker.hpp"
+#include "rift/vision/track_scene.hpp"
+#include "rift/vision/world_frame.hpp"
+
+namespace rift::vision {
+
+/// TagTracker behind the module.
+class PoseTracker {
+ public:
+  virtual ~PoseTracker() = default;
+  virtual TrackResult Track(const Frame& frame) = 0;
+  virtual void Forget() = 0;
+};
+
+/// All of the camera side, in a module of its own, since OpenCV's libraries would cost every start
+/// of rift 0.1 s. Each function is documented where the class or function of its name is.
+class Vision {
+ public:
+  virtual ~Vision() = default;
+
+  virtual std::unique_ptr<Capture> OpenCapture(const std::string& camera,
+                                               const CaptureOptions& options) = 0;
+  virtual std::unique_ptr<PoseTracker> MakeTracker(const CameraModel& camera,
+                                                   const TagOptions& options) = 0;
+  /// Every tag of the family in a picture; see TagDetector for the decimation.
+  virtual std::vector<TagDetection> FindTags(const Frame& frame, int decimate,
+                                             int max_hamming) = 0;
+
+  virtual std::vector<std::string> ImageFiles(const std::string& pattern) = 0;
+  virtual BoardView FindBoard(const std::string& path, const Board& board) = 0;
+  virtual BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name) = 0;
+  virtual ViewPlace PlaceOf(const BoardView& view, const Board& board) = 0;
+  virtual Calibration Calibrate(const std::vector<BoardView>& views, const Board& board,
+                                const CalibrationOptions& options) = 0;
+  virtual void DrawCalibration(const Calibration& calibration,
+                               const std::filesystem::path& path) = 0;
+
+  virtual WorldFrame WorldFromPoints(const CameraModel& camera,
+                                     const std::vector<WorldPoint>& points,
+                                     const std::string& origin) = 0;
+  virtual WorldFrame WorldFromTags(const CameraModel& camera,
+                                   const std::vector<ReferenceMark>& tags,
+                                   const std::vector<TagDetection>& seen) = 0;
+  virtual WorldFrame WorldFromFirstPose(const std::vector<Eigen::Isometry3d>& camera_from_tag,
+                                        double tag_height_m) = 0;
+  virtual std::optional<double> MovedBy_m(const CameraModel& camera,
+                                          const std::vector<TagDetection>& seen) = 0;
+  virtual std::optional<Eigen::Vector2d> MapFromPixel(const CameraModel& camera,
+                                                      const Eigen::Vector2d& pixel,
+                                                      double z_m) = 0;
+
+  /// Why no window can be opened here, in one line for people; empty when one can.
+  virtual std::string MissingDisplay() = 0;
+  virtual std::unique_ptr<TrackWindow> OpenWindow(const std::string& title) = 0;
+};
+
+/// Where the module lies relative to this program: lib/rift/ beside it (build tree) or beside its
+/// folder (install tree).
+std::filesystem::path VisionModulePath();
+
+/// Loads the module. Throws std::runtime_error when it is not there or does not fit.
+std::unique_ptr<Vision> LoadVision(const std::filesystem::path& module = VisionModulePath());
+
+/// The one symbol the module exports: `Vision* ()`, the caller owns the result. The number goes up
+/// whenever the interface or a struct in it changes, so that a stale module is refused by name.
+inline constexpr const char* kMakeVisionSymbol = "rift_vision_make_1";
+
+}  // namespace rift::vision
