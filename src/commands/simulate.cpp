@@ -15,6 +15,7 @@
 #include "simulate_output.hpp"
 #include "simulate_pictures.hpp"
 #include "simulated_runs.hpp"
+#include "trial_output.hpp"
 
 namespace rift::commands {
 namespace {

@@ -7,9 +7,6 @@
 
 namespace rift::commands {
 
-/// Columns t_s,power_left,power_right: every command as it was sent.
-std::string CommandsCsv(const trial::TrialResult& result);
-
 /// Outcome, times, waypoints, which limits of the controller were binding, seed and version.
 std::string SimulationJson(const config::Experiment& experiment, const sweep::SimulatedRun& run);
 

@@ -31,6 +31,7 @@ struct Command {
 /// Every subcommand that works, in the order of `rift --help`.
 const std::vector<Command>& Commands();
 
+void AddDrive(CLI::App& app, int& exit_code);
 void AddGap(CLI::App& app, int& exit_code);
 void AddSimulate(CLI::App& app, int& exit_code);
 void AddSweep(CLI::App& app, int& exit_code);

@@ -1,0 +1,19 @@
+#include "drive_files.hpp"
+
+#include "drive_output.hpp"
+#include "files.hpp"
+#include "rift/trajectory/log.hpp"
+#include "trial_output.hpp"
+
+namespace rift::commands {
+
+void SaveDrive(const std::filesystem::path& folder, const config::Experiment& experiment,
+               const DriveRun& run) {
+  WriteFile(folder / "experiment.yaml", config::WriteExperiment(experiment));
+  WriteFile(folder / "commands.csv", CommandsCsv(run.trial));
+  WriteFile(folder / "stages.csv", StagesCsv(run.evidence));
+  WriteFile(folder / "summary.json", DriveJson(experiment, run));
+  WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.trial.trajectory));
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,174 @@
+#include "drive_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "enum_name.hpp"
+#include "json_fields.hpp"
+#include "trial_output.hpp"
+
+namespace rift::commands {
+namespace {
+
+using hardware::PoseStages;
+using nlohmann::ordered_json;
+
+ordered_json TimeOrNull(double time_s) {
+  return time_s < 0.0 ? ordered_json(nullptr) : ordered_json(time_s);
+}
+
+ordered_json PingBlock(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
+  ordered_json json{{"protocol", NameOf(ping.protocol)},
+                    {"sent", ping.sent},
+                    {"answered", ping.answered},
+                    {"loss", ping.loss},
+                    {"longest_burst", ping.longest_burst},
+                    {"p50_s", TimeOrNull(ping.p50_s)},
+                    {"p95_s", TimeOrNull(ping.p95_s)},
+                    {"p99_s", TimeOrNull(ping.p99_s)},
+                    {"max_s", TimeOrNull(ping.max_s)},
+                    {"jitter_s", TimeOrNull(ping.jitter_s)},
+                    {"battery_v", TimeOrNull(ping.battery_v)}};
+  json["broken_budget"] = hardware::BrokenBudget(ping, options.ping);
+  if (ping.IsMeasured()) {
+    json["set"] = {{"hardware.stopping.delay_s", ping.OneWay_s()},
+                   {"simulation.link.delay_s", ping.OneWay_s()},
+                   {"simulation.link.line_loss", ping.loss}};
+  }
+  return json;
+}
+
+/// A stage of a pose's way from light to wheels.
+struct Stage {
+  const char* name;
+  double PoseStages::*from;
+  double PoseStages::*to;
+};
+constexpr std::array<Stage, 7> kStages{{
+    {"camera", &PoseStages::captured_s, &PoseStages::arrived_s},
+    {"tag", &PoseStages::arrived_s, &PoseStages::ready_s},
+    {"waiting", &PoseStages::ready_s, &PoseStages::sensed_s},
+    {"decision", &PoseStages::sensed_s, &PoseStages::commanded_s},
+    {"line", &PoseStages::commanded_s, &PoseStages::written_s},
+    {"capture_to_command", &PoseStages::captured_s, &PoseStages::written_s},
+    {"capture_to_answer", &PoseStages::captured_s, &PoseStages::answered_s},
+}};
+
+ordered_json StageJson(const std::vector<PoseStages>& poses, const Stage& stage) {
+  std::vector<double> times_s;
+  for (const PoseStages& pose : poses) {
+    if (pose.*stage.from >= 0.0 && pose.*stage.to >= 0.0) {
+      times_s.push_back(pose.*stage.to - pose.*stage.from);
+    }
+  }
+  ordered_json json{{"n", times_s.size()}, {"p50_s", nullptr}, {"p99_s", nullptr}};
+  if (times_s.empty()) return json;
+  std::sort(times_s.begin(), times_s.end());
+  const auto quantile = [&](double share) {
+    return times_s[static_cast<size_t>(std::ceil(share * static_cast<double>(times_s.size()))) - 1];
+  };
+  json["p50_s"] = quantile(0.5);
+  json["p99_s"] = quantile(0.99);
+  return json;
+}
+
+ordered_json StopJson(const hardware::DriveEvidence& evidence) {
+  ordered_json json{{"reason", nullptr}, {"text", nullptr}, {"at_s", nullptr}};
+  if (evidence.stop) {
+    json = {{"reason", NameOf(evidence.stop->reason)},
+            {"text", evidence.stop->text},
+            {"at_s", evidence.stop->at_s}};
+  }
+  json["acknowledged"] = nullptr;
+  if (evidence.stop_acknowledged) json["acknowledged"] = *evidence.stop_acknowledged;
+  return json;
+}
+
+std::string Cell(double time_s) { return time_s < 0.0 ? "" : fmt::format("{:.6f}", time_s); }
+
+}  // namespace
+
+std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
+  return Dump(PingBlock(ping, options));
+}
+
+std::string PingText(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
+  if (ping.protocol == hardware::Protocol::kPlain) {
+    return "the robot speaks plain and does not answer, so its link cannot be measured: copy "
+           "src/firmware to it\n";
+  }
+  std::string text = fmt::format("{} of {} commands answered, {:.1f} % lost, {} in a row at most\n",
+                                 ping.answered, ping.sent, 100.0 * ping.loss, ping.longest_burst);
+  if (ping.IsMeasured()) {
+    text +=
+        fmt::format("round trip p50 {:.1f} ms, p95 {:.1f}, p99 {:.1f}, max {:.1f}, jitter {:.1f}\n",
+                    1e3 * ping.p50_s, 1e3 * ping.p95_s, 1e3 * ping.p99_s, 1e3 * ping.max_s,
+                    1e3 * ping.jitter_s);
+    text += fmt::format("battery {:.2f} V\n", ping.battery_v);
+    text += fmt::format(
+        "for the experiment: --set hardware.stopping.delay_s={0:.3f} --set "
+        "simulation.link.delay_s={0:.3f}\n",
+        ping.OneWay_s());
+  }
+  for (const std::string& broken : hardware::BrokenBudget(ping, options.ping)) {
+    text += fmt::format("over budget: {}\n", broken);
+  }
+  return text;
+}
+
+std::string DriveJson(const config::Experiment& experiment, const DriveRun& run) {
+  const trial::TrialResult& result = run.trial;
+  ordered_json json{{"name", experiment.name},
+                    {"rift_version", RIFT_VERSION},
+                    {"outcome", NameOf(result.outcome)},
+                    {"reason", result.reason},
+                    {"duration_s", result.Duration_s()},
+                    {"path_length_m", result.trajectory.ArcLength_m()},
+                    {"poses", result.trajectory.poses.size()},
+                    {"poses_refused", result.poses_refused},
+                    {"stale_decisions", result.stale_decisions}};
+  json["stop"] = StopJson(run.evidence);
+  json["stopping_distance_m"] = run.stopping_distance_m;
+  json["latency"] = ordered_json::object();
+  for (const Stage& stage : kStages)
+    json["latency"][stage.name] = StageJson(run.evidence.poses, stage);
+  json["link"] = {{"sent", run.evidence.sent},
+                  {"answered", run.evidence.answered},
+                  {"rejected_by_robot", run.evidence.rejected_by_robot}};
+  json["ping"] = PingBlock(run.ping, experiment.hardware);
+  json["waypoints"] = WaypointsJson(result);
+  json["limits"] = LimitsJson(result.limits);
+  return Dump(json);
+}
+
+std::string DriveText(const DriveRun& run) {
+  const trial::TrialResult& result = run.trial;
+  std::string text =
+      fmt::format("{}: {}\n{:.2f} s, {} poses logged\n", NameOf(result.outcome), result.reason,
+                  result.Duration_s(), result.trajectory.poses.size());
+  const std::optional<bool>& acknowledged = run.evidence.stop_acknowledged;
+  text += !acknowledged   ? "the robot cannot say whether it stands: look at it\n"
+          : *acknowledged ? "the robot acknowledged the stop\n"
+                          : "THE ROBOT DID NOT ACKNOWLEDGE THE STOP: switch it off\n";
+  return text;
+}
+
+std::string StagesCsv(const hardware::DriveEvidence& evidence) {
+  std::string text =
+      "captured_s,arrived_s,ready_s,sensed_s,commanded_s,written_s,answered_s,encoder_left,"
+      "encoder_right\n";
+  for (const PoseStages& pose : evidence.poses) {
+    for (const double time_s : {pose.captured_s, pose.arrived_s, pose.ready_s, pose.sensed_s,
+                                pose.commanded_s, pose.written_s, pose.answered_s}) {
+      text += Cell(time_s) + ",";
+    }
+    const auto counts = hardware::CountsAt(evidence.encoders, pose.captured_s);
+    text += counts ? fmt::format("{:.1f},{:.1f}\n", counts->first, counts->second) : ",\n";
+  }
+  return text;
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "drive_run.hpp"
+
+namespace rift::commands {
+
+/// Loss, round trips, battery, which part of the budget is broken, and the keys of an experiment
+/// that the measurement sets.
+std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareOptions& options);
+std::string PingText(const hardware::PingResult& ping, const hardware::HardwareOptions& options);
+
+/// As a simulated run's, with protocol, link, latency by stage, and how the drive was stopped.
+std::string DriveJson(const config::Experiment& experiment, const DriveRun& run);
+std::string DriveText(const DriveRun& run);
+
+/// One row a pose: when it went through each stage, and the encoder counts at its capture time.
+/// Cells of stages never reached and of counts not known are empty.
+std::string StagesCsv(const hardware::DriveEvidence& evidence);
+
+}  // namespace rift::commands

@@ -1,0 +1,109 @@
+#include "drive_run.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "enum_name.hpp"
+
+namespace rift::commands {
+namespace {
+
+constexpr double kTurn_s = 0.02;
+constexpr double kFirstPose_s = 10.0;
+constexpr double kConfirm_s = 1.0;
+constexpr double kNearStart_m = 0.1;  // by hand, the authors were up to 0.07 m off
+
+void RequireBudget(const hardware::PingResult& ping, const hardware::PingOptions& options) {
+  const std::vector<std::string> broken = hardware::BrokenBudget(ping, options);
+  if (broken.empty()) return;
+  throw std::runtime_error(
+      fmt::format("not armed, the link breaks its budget: {}", fmt::join(broken, "; ")));
+}
+
+double PrintStoppingDistance(const DriveParts& parts, const config::Experiment& experiment,
+                             const hardware::PingResult& ping) {
+  hardware::StoppingOptions options = experiment.hardware.stopping;
+  if (ping.IsMeasured()) options.delay_s = ping.OneWay_s();
+  const double distance_m = hardware::StoppingDistance_m(options, experiment.control.v_max);
+  parts.say(fmt::format(
+      "worst stopping distance {:.3f} m: at power {:g}, {:.2f} m/s x ({:.3f} s watchdog + {:.3f} s "
+      "delay) + braking",
+      distance_m, experiment.control.v_max, options.full_power_speed_mps * experiment.control.v_max,
+      options.robot_watchdog_s, options.delay_s));
+  if (!ping.IsMeasured()) {
+    parts.say(
+        "the robot speaks plain and does not answer: it cannot be measured, a stop cannot be "
+        "acknowledged, and without rift's listener the last command holds for ever if the link "
+        "breaks");
+  }
+  return distance_m;
+}
+
+/// Lets the link run until `is_so`; throws when the drive was stopped meanwhile.
+void WaitUntil(hardware::RealRobot& robot, const std::function<bool()>& is_so) {
+  while (!is_so()) {
+    robot.Advance(kTurn_s);
+    if (robot.state() == hardware::DriveState::kStopped) {
+      throw std::runtime_error(
+          fmt::format("stopped before the start: {}", robot.Evidence().stop->text));
+    }
+  }
+}
+
+void WaitForFirstPose(hardware::RealRobot& robot) {
+  const double start_s = robot.Sense().now_s;
+  WaitUntil(robot, [&] {
+    const robot::Sensed sensed = robot.Sense();
+    if (!sensed.pose && sensed.now_s - start_s > kFirstPose_s) {
+      throw std::runtime_error(fmt::format(
+          "the robot was not seen within {} s: is its tag in the picture, flat and well "
+          "lit?",
+          kFirstPose_s));
+    }
+    return sensed.pose.has_value();
+  });
+}
+
+void SayWhereItStands(const DriveParts& parts, hardware::RealRobot& robot,
+                      const config::Experiment& experiment) {
+  const geometry::Pose2 pose = robot.Sense().pose->world_from_robot;
+  const geometry::Pose2 start = control::StartPose(experiment.waypoints);
+  const double off_m = (pose.Position() - start.Position()).norm();
+  parts.say(
+      fmt::format("the robot stands at x {:.3f} m, y {:.3f} m, {:.3f} m from the first "
+                  "waypoint{}",
+                  pose.x_m, pose.y_m, off_m,
+                  off_m > kNearStart_m ? ": far off, is the world frame right?" : ""));
+}
+
+}  // namespace
+
+hardware::PingResult MeasureLink(hardware::ByteLine& line, hardware::Clock& clock,
+                                 const hardware::HardwareOptions& options) {
+  const hardware::Protocol protocol = hardware::FindProtocol(line, clock, options.line);
+  return hardware::Ping(line, clock, options.line, protocol, options.ping);
+}
+
+DriveRun Drive(const DriveParts& parts, const config::Experiment& experiment) {
+  control::CheckWaypoints(experiment.waypoints);
+  DriveRun run;
+  run.ping = MeasureLink(parts.line, parts.clock, experiment.hardware);
+  parts.say(fmt::format("the robot speaks {}", NameOf(run.ping.protocol)));
+  RequireBudget(run.ping, experiment.hardware.ping);
+  run.stopping_distance_m = PrintStoppingDistance(parts, experiment, run.ping);
+
+  hardware::RealRobot robot(parts.line, parts.poses, parts.clock,
+                            {experiment.hardware, run.ping.protocol, parts.threads});
+  for (const hardware::Stopper& stopper : parts.stoppers) robot.AddStopper(stopper);
+  WaitForFirstPose(robot);
+  SayWhereItStands(parts, robot, experiment);
+  WaitUntil(robot, parts.may_arm);
+  robot.Arm();
+  run.trial = trial::RunTrial(robot, experiment.waypoints, experiment.control, experiment.trial);
+  robot.ConfirmStop(kConfirm_s);
+  run.evidence = robot.Evidence();
+  return run;
+}
+
+}  // namespace rift::commands

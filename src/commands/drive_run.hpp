@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rift/config/experiment.hpp"
+#include "rift/hardware/byte_line.hpp"
+#include "rift/hardware/ping.hpp"
+#include "rift/hardware/pose_source.hpp"
+#include "rift/hardware/real_robot.hpp"
+#include "rift/trial/trial.hpp"
+
+namespace rift::commands {
+
+/// What a drive is made of and whom it talks to.
+struct DriveParts {
+  hardware::ByteLine& line;
+  hardware::PoseSource& poses;
+  hardware::Clock& clock;
+  /// Asked many times a second: a key, a signal.
+  std::vector<hardware::Stopper> stoppers;
+  /// One line for the operator.
+  std::function<void(const std::string&)> say;
+  /// Asked until it is true: may the robot move now?
+  std::function<bool()> may_arm;
+  bool threads = true;  ///< false where `clock` is no real one
+};
+
+struct DriveRun {
+  hardware::PingResult ping;
+  trial::TrialResult trial;
+  hardware::DriveEvidence evidence;
+  double stopping_distance_m = 0.0;
+};
+
+/// Hello, ping, stopping distance, the first pose, the operator's yes, the trial, the stop.
+/// Throws std::runtime_error when the drive cannot begin (link over its budget, robot not seen) or
+/// was stopped before it began; std::invalid_argument when the experiment has no task.
+DriveRun Drive(const DriveParts& parts, const config::Experiment& experiment);
+
+/// The link alone: hello and ping, with the motors at zero.
+hardware::PingResult MeasureLink(hardware::ByteLine& line, hardware::Clock& clock,
+                                 const hardware::HardwareOptions& options);
+
+}  // namespace rift::commands

@@ -1,0 +1,64 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "hardware/pseudo_terminal.hpp"
+#include "rift/hardware/byte_line.hpp"
+#include "rift/hardware/listener.hpp"
+#include "support/process.hpp"
+
+namespace rift {
+namespace {
+
+/// A robot behind a pseudo terminal, answering until its scope ends.
+class RobotBehindTerminal {
+ public:
+  explicit RobotBehindTerminal(bool answers)
+      : thread_([this, answers](const std::stop_token& stop) {
+          hardware::Listener listener;
+          hardware::SteadyClock clock;
+          while (!stop.stop_requested()) {
+            const auto said = listener.Poll(static_cast<std::uint32_t>(1000.0 * clock.Now_s()),
+                                            terminal_.Read(5), {10, 20, 4800});
+            if (answers) terminal_.Write(said);
+          }
+        }) {}
+  const std::string& path() const { return terminal_.path(); }
+
+ private:
+  hardware::PseudoTerminal terminal_;
+  std::jthread thread_;
+};
+
+TEST_CASE("Ping tells how the link is and which keys it sets") {
+  const RobotBehindTerminal robot(true);
+  const test::ProcessResult result =
+      test::RunRift({"drive", "--ping", "--port", robot.path(), "--json"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  const auto json = nlohmann::json::parse(result.out);
+  CHECK(json["protocol"] == "framed");
+  CHECK(json["sent"] > 60);
+  CHECK(json["loss"] < 0.05);
+  CHECK(json["battery_v"] == Approx(4.8));
+  CHECK(json["p50_s"] < 0.02);
+  CHECK(json["set"].contains("hardware.stopping.delay_s"));
+}
+
+TEST_CASE("Ping of a robot that never answers says that it cannot be measured") {
+  const RobotBehindTerminal robot(false);
+  const test::ProcessResult result = test::RunRift({"drive", "--ping", "--port", robot.path()});
+  CHECK(result.exit_code == 1);
+  CHECK_THAT(result.out, Catch::Contains("copy src/firmware to it"));
+}
+
+TEST_CASE("A port that is not there is a failure of one clear line") {
+  const test::ProcessResult result =
+      test::RunRift({"drive", "--ping", "--port", "/dev/no_such_port"});
+  CHECK(result.exit_code == 3);
+  CHECK_THAT(result.err, Catch::StartsWith("rift: there is no serial port /dev/no_such_port"));
+  CHECK(test::RunRift({"drive", "--ping"}).exit_code == 2);
+}
+
+}  // namespace
+}  // namespace rift
