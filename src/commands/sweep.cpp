@@ -6,8 +6,11 @@
 #include <memory>
 
 #include "files.hpp"
+#include "json_fields.hpp"
 #include "keys_flag.hpp"
+#include "likeness_output.hpp"
 #include "rift/commands/command.hpp"
+#include "sweep_likeness.hpp"
 #include "sweep_output.hpp"
 #include "sweep_report.hpp"
 #include "sweep_sources.hpp"
@@ -97,7 +100,10 @@ void AddSweep(CLI::App& app, int& exit_code) {
       return;
     }
     WriteSweepReport(out, result, sources);
+    const std::vector<LikenessRow> likeness = MeasureSweepLikeness(experiment, sources);
+    if (!likeness.empty()) WriteFile(out / "likeness.json", Dump(LikenessJson(likeness)));
     fmt::print("{}", request->json ? SummaryJson(result) : SweepText(result));
+    if (!likeness.empty() && !request->json) fmt::print("\n{}", LikenessText(likeness));
     fmt::print(stderr, "report: {}\n", (out / "report.html").string());
     exit_code = request->exit_code && result.all.failures > 0 ? kFalsified : kDone;
   });
