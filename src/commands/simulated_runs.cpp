@@ -66,7 +66,8 @@ geometry::Pose2 StartFromLog(const trajectory::Trajectory& log, double tag_offse
 
 sweep::Recording RecordingOf(sweep::SimulatedRun run, std::uint64_t seed) {
   sweep::Recording recording{.status = StatusOf(run.result.outcome),
-                             .source = fmt::format("simulation with seed {}", seed)};
+                             .source = fmt::format("simulation with seed {}", seed),
+                             .limits = run.result.limits};
   if (recording.status != sweep::TrialStatus::kOk) recording.reason = run.result.reason;
   recording.trajectory = std::move(run.result.trajectory);
   return recording;

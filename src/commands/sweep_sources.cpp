@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "enum_name.hpp"
+#include "rebuilt_limits.hpp"
 #include "rift/sweep/path_template.hpp"
 #include "simulated_runs.hpp"
 
@@ -83,8 +84,9 @@ sweep::Recording SweepSources::Simulate(const config::Experiment& at, const std:
 sweep::Recording SweepSources::Candidate(const sweep::Theta& theta, const std::string& trial,
                                          const sweep::Recording& reference) {
   if (experiment_.candidate.kind == CandidateKind::kLogs) {
-    return candidate_logs_.At(sweep::FillTemplate(experiment_.candidate.path.text,
-                                                  experiment_.space.parameters, theta, trial));
+    const std::string path = sweep::FillTemplate(experiment_.candidate.path.text,
+                                                 experiment_.space.parameters, theta, trial);
+    return WithLimits(candidate_logs_.At(path), experiment_, theta, 0.0);
   }
   const config::Experiment at = config::ExperimentAt(experiment_, theta);
   const double tag_offset_m = experiment_.reference.tag_offset_m;
@@ -110,9 +112,12 @@ sweep::Recording SweepSources::Candidate(const sweep::Theta& theta, const std::s
 
 sweep::Recording SweepSources::Reference(const sweep::Theta& theta, const std::string& trial) {
   switch (experiment_.reference.kind) {
-    case ReferenceKind::kLogs:
-      return reference_logs_.At(sweep::FillTemplate(experiment_.reference.path.text,
-                                                    experiment_.space.parameters, theta, trial));
+    case ReferenceKind::kLogs: {
+      const std::string path = sweep::FillTemplate(experiment_.reference.path.text,
+                                                   experiment_.space.parameters, theta, trial);
+      return WithLimits(reference_logs_.At(path), experiment_, theta,
+                        experiment_.reference.tag_offset_m);
+    }
     case ReferenceKind::kNominal:
       return Simulate(experiment_, trial, control::StartPose(experiment_.waypoints));
     case ReferenceKind::kPath:

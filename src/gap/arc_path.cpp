@@ -56,6 +56,7 @@ ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& 
   }
   MeasureArcLength(path);
   if (columns == Columns::kPositions) return path;
+  path.t_s.reserve(poses.size());
   for (const trajectory::StampedPose& pose : poses) path.t_s.push_back(pose.t_s);
   if (trajectory.HasYaw()) CopyYaw(poses, path);
   return path;
@@ -76,8 +77,9 @@ std::vector<Eigen::Vector2d> Resample(const ArcPath& path, int count) {
 }
 
 void Transform(ArcPath& path, const geometry::Pose2& b_from_a) {
+  const geometry::PointMotion motion(b_from_a);
   for (size_t i = 0; i < path.Size(); ++i) {
-    const Eigen::Vector2d p_in_b = b_from_a * path.Vertex(i);
+    const Eigen::Vector2d p_in_b = motion * path.Vertex(i);
     path.x_m[i] = p_in_b.x();
     path.y_m[i] = p_in_b.y();
   }

@@ -52,13 +52,14 @@ double SampleU(int k, const GapOptions& options) {
 }
 
 /// Equation (3.1): the largest error over the samples, from two of them in each interval.
-Peak SampledPeak(const Paths& paths, const GapOptions& options) {
+Peak SampledPeak(const PathError& error, const GapOptions& options) {
   Peak peak;
   int next = FirstSample(options);
-  PathError(paths.sim, paths.real).ForEachInterval([&](double, double end, const auto& error_at) {
+  error.ForEachInterval([&](double, double end, const auto& make_error_at) {
     const int last =
         std::min(static_cast<int>(end * (options.samples - 1) + 1e-9), options.samples - 1);
     if (last < next) return;
+    const auto error_at = make_error_at();
     for (const int k : {next, last}) {
       const double error_m = error_at(SampleU(k, options));
       if (error_m > peak.error_m) peak = {error_m, SampleU(k, options)};
@@ -70,26 +71,24 @@ Peak SampledPeak(const Paths& paths, const GapOptions& options) {
 }
 
 /// The supremum over the polylines from the first sample on.
-Peak ExactPeak(const Paths& paths, const GapOptions& options) {
+Peak ExactPeak(const PathError& error, const GapOptions& options) {
   Peak peak;
   const double first_u = SampleU(FirstSample(options), options);
-  PathError(paths.sim, paths.real)
-      .ForEachInterval([&](double begin, double end, const auto& error_at) {
-        if (end < first_u) return;
-        for (const double u : {std::max(begin, first_u), end}) {
-          const double error_m = error_at(u);
-          if (error_m > peak.error_m) peak = {error_m, u};
-        }
-      });
+  error.ForEachInterval([&](double begin, double end, const auto& make_error_at) {
+    if (end < first_u) return;
+    const auto error_at = make_error_at();
+    for (const double u : {std::max(begin, first_u), end}) {
+      const double error_m = error_at(u);
+      if (error_m > peak.error_m) peak = {error_m, u};
+    }
+  });
   assert(peak.error_m >= 0.0);
   return peak;
 }
 
 double GapAfter(const Paths& paths, const geometry::Pose2& real_from_sim,
                 const GapOptions& options) {
-  Paths moved = paths;
-  Transform(moved.sim, real_from_sim);
-  return SampledPeak(moved, options).error_m;
+  return SampledPeak(PathError(paths.sim, paths.real, real_from_sim), options).error_m;
 }
 
 double YawAt(const ArcPath& path, double u, size_t& i) {
@@ -169,7 +168,8 @@ void MeasureShape(const Paths& paths, Comparison& result) {
 
 double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
            const GapOptions& options) {
-  return SampledPeak(Prepare(sim, real, options, Columns::kPositions), options).error_m;
+  const Paths paths = Prepare(sim, real, options, Columns::kPositions);
+  return SampledPeak(PathError(paths.sim, paths.real), options).error_m;
 }
 
 ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
@@ -182,10 +182,11 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
   const Paths paths = Prepare(sim, real, options, Columns::kAll);
   Comparison result;
 
-  const Peak sampled = SampledPeak(paths, options);
+  const PathError error(paths.sim, paths.real);
+  const Peak sampled = SampledPeak(error, options);
   result.gap_m = sampled.error_m;
   result.gap_u = sampled.u;
-  const Peak exact = ExactPeak(paths, options);
+  const Peak exact = ExactPeak(error, options);
   result.exact_gap_m = exact.error_m;
   result.exact_gap_u = exact.u;
   SummariseErrors(ProfileOf(paths, options), result);

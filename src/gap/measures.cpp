@@ -46,6 +46,23 @@ double DirectedHausdorff_m(const Points& from, const Points& to) {
   return std::sqrt(largest);
 }
 
+/// Squared distances from one point to each of a row of points, all at once.
+class SquaredDistances {
+ public:
+  explicit SquaredDistances(const Points& points) : x_(points.size()), y_(points.size()) {
+    for (size_t i = 0; i < points.size(); ++i) {
+      x_[i] = points[i].x();
+      y_[i] = points[i].y();
+    }
+  }
+  auto From(const Eigen::Vector2d& p) const {
+    return (p.x() - x_).square() + (p.y() - y_).square();
+  }
+
+ private:
+  Eigen::ArrayXd x_, y_;
+};
+
 double Duration_s(const ArcPath& path) { return path.t_s.back() - path.t_s.front(); }
 
 Eigen::Vector2d PositionAt(const ArcPath& path, double since_start_s, size_t& i) {
@@ -64,14 +81,17 @@ double Hausdorff_m(const Points& a, const Points& b) {
 
 double DiscreteFrechet_m(const Points& a, const Points& b) {
   // Squared distances: the order of maxima and minima is the same, one root at the end.
+  const SquaredDistances to_b(b);
+  Eigen::ArrayXd distance(b.size());
   std::vector<double> row(b.size() + 1, kInfinity);
   for (size_t i = 0; i < a.size(); ++i) {
+    distance = to_b.From(a[i]);
     double diagonal = i == 0 ? 0.0 : kInfinity;
     row[0] = kInfinity;
     for (size_t j = 1; j <= b.size(); ++j) {
-      const double reach = std::min({diagonal, row[j], row[j - 1]});
+      const double reach = std::min(std::min(diagonal, row[j]), row[j - 1]);
       diagonal = row[j];
-      row[j] = std::max(reach, (a[i] - b[j - 1]).squaredNorm());
+      row[j] = std::max(reach, distance[j - 1]);
     }
   }
   return std::sqrt(row.back());
@@ -81,16 +101,23 @@ double DynamicTimeWarping_m(const Points& a, const Points& b) {
   struct Cost {
     double total_m = kInfinity;
     int steps = 0;
-    bool operator<(const Cost& other) const { return total_m < other.total_m; }
   };
+  // Two selections, not one branch: which way the walk goes is as good as random.
+  const auto cheaper = [](const Cost& one, const Cost& other) {
+    return Cost{std::min(one.total_m, other.total_m),
+                other.total_m < one.total_m ? other.steps : one.steps};
+  };
+  const SquaredDistances to_b(b);
+  Eigen::ArrayXd distance_m(b.size());
   std::vector<Cost> row(b.size() + 1);
   for (size_t i = 0; i < a.size(); ++i) {
+    distance_m = to_b.From(a[i]).sqrt();
     Cost diagonal = i == 0 ? Cost{0.0, 0} : Cost{};
     row[0] = Cost{};
     for (size_t j = 1; j <= b.size(); ++j) {
-      const Cost best = std::min({diagonal, row[j], row[j - 1]});
+      const Cost best = cheaper(cheaper(diagonal, row[j]), row[j - 1]);
       diagonal = row[j];
-      row[j] = {best.total_m + (a[i] - b[j - 1]).norm(), best.steps + 1};
+      row[j] = {best.total_m + distance_m[j - 1], best.steps + 1};
     }
   }
   return row.back().total_m / row.back().steps;

@@ -14,42 +14,51 @@ struct Peak {
   double u = 0.0;
 };
 
-/// The error vector real - sim as a function of u. Between two neighbouring breakpoints of either
-/// path it is affine in u, so its length is convex there: the largest value over any set of u
-/// within such an interval stands at the first or the last of them.
+/// The error vector real - sim as a function of u, the sim path moved first by `real_from_sim`.
+/// Between two neighbouring breakpoints of either path it is affine in u, so its length is convex
+/// there: the largest value over any set of u within such an interval stands at the first or the
+/// last of them.
 class PathError {
  public:
-  PathError(const ArcPath& sim, const ArcPath& real) : sim_(sim), real_(real) {}
+  PathError(const ArcPath& sim, const ArcPath& real, const geometry::Pose2& real_from_sim = {})
+      : sim_(sim), real_(real), motion_(real_from_sim) {}
 
-  /// Calls visit(u_begin, u_end, error_at) for each interval between merged breakpoints, where
-  /// error_at(u) is the error for u within it.
+  /// Calls visit(u_begin, u_end, make_error_at) for each interval between merged breakpoints, where
+  /// make_error_at()(u) is the error for u within it: most intervals of a long log hold no sample,
+  /// and their edges need not be worked out.
   template <class Visit>
   void ForEachInterval(Visit&& visit) const {
+    const size_t sim_last = sim_.Size() - 2, real_last = real_.Size() - 2;
     size_t i = 0, j = 0;
     double begin = 0.0;
     while (true) {
       const double end = std::min(sim_.u[i + 1], real_.u[j + 1]);
-      const Segment sim(sim_, i), real(real_, j);
-      const auto error_at = [&](double u) {
-        return std::sqrt(Square(real.X(u) - sim.X(u)) + Square(real.Y(u) - sim.Y(u)));
-      };
-      visit(begin, end, error_at);
+      visit(begin, end, [&] {
+        return [sim = Segment(sim_, i, motion_), real = Segment(real_, j)](double u) {
+          return std::sqrt(Square(real.X(u) - sim.X(u)) + Square(real.Y(u) - sim.Y(u)));
+        };
+      });
       begin = end;
-      if (real_.u[j + 1] <= end && j + 2 < real_.Size()) ++j;
-      if (sim_.u[i + 1] > end) continue;
-      if (i + 2 == sim_.Size()) return;
-      ++i;
+      const bool sim_ends = sim_.u[i + 1] <= end;
+      if (sim_ends && i == sim_last) return;
+      // Sums, not branches: which of the two paths goes on is as good as random.
+      i += sim_ends;
+      j += (real_.u[j + 1] <= end) & (j < real_last);
     }
   }
 
  private:
   /// One edge of a path as a function of u; an edge too short to move u stands at its start.
   struct Segment {
-    Segment(const ArcPath& path, size_t i) : u0(path.u[i]), x0(path.x_m[i]), y0(path.y_m[i]) {
+    Segment(const ArcPath& path, size_t i) : Segment(path, i, path.Vertex(i), path.Vertex(i + 1)) {}
+    Segment(const ArcPath& path, size_t i, const geometry::PointMotion& motion)
+        : Segment(path, i, motion * path.Vertex(i), motion * path.Vertex(i + 1)) {}
+    Segment(const ArcPath& path, size_t i, const Eigen::Vector2d& from, const Eigen::Vector2d& to)
+        : u0(path.u[i]), x0(from.x()), y0(from.y()) {
       const double span = path.u[i + 1] - path.u[i];
       if (span > 0.0) {
-        slope_x = (path.x_m[i + 1] - x0) / span;
-        slope_y = (path.y_m[i + 1] - y0) / span;
+        slope_x = (to.x() - x0) / span;
+        slope_y = (to.y() - y0) / span;
       }
     }
     double X(double u) const { return x0 + slope_x * (u - u0); }
@@ -63,6 +72,7 @@ class PathError {
 
   const ArcPath& sim_;
   const ArcPath& real_;
+  geometry::PointMotion motion_;
 };
 
 }  // namespace rift::gap

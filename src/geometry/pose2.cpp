@@ -13,9 +13,7 @@ bool Pose2::IsFinite() const {
 }
 
 Eigen::Vector2d operator*(const Pose2& b_from_a, const Eigen::Vector2d& p_in_a) {
-  const Eigen::Vector2d forward = b_from_a.Forward();
-  return {b_from_a.x_m + forward.x() * p_in_a.x() - forward.y() * p_in_a.y(),
-          b_from_a.y_m + forward.y() * p_in_a.x() + forward.x() * p_in_a.y()};
+  return PointMotion(b_from_a) * p_in_a;
 }
 
 Pose2 operator*(const Pose2& c_from_b, const Pose2& b_from_a) {

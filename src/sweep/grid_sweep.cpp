@@ -27,6 +27,8 @@ void Measure(const GridPlan& plan, const Recording& candidate, const Recording& 
              TrialRow& row) {
   try {
     row.comparison = gap::Compare(candidate.trajectory, reference.trajectory, plan.gap);
+    row.evidence.fingerprint = Fingerprint(candidate.trajectory);
+    row.evidence.errors_m = ErrorsAlong(candidate.trajectory, reference.trajectory, plan.gap);
   } catch (const std::invalid_argument& no_path) {
     row.status = TrialStatus::kUnreadable;
     row.reason =
@@ -38,6 +40,8 @@ TrialRow CompareTrial(const GridPlan& plan, TrialRow row, const Recording& candi
                       const Recording& reference) {
   row.candidate = candidate.source;
   row.reference = reference.source;
+  row.evidence.candidate_limits = candidate.limits;
+  row.evidence.reference_limits = reference.limits;
   if (reference.status != TrialStatus::kOk) {
     Fail(row, reference);
   } else if (candidate.status != TrialStatus::kOk) {

@@ -63,93 +63,7 @@ void RefuseRepeatedColumns(const std::vector<std::string>& columns, const std::s
   }
 }
 
-/// Cells of one row, appended to the table.
-class RowReader {
- public:
-  RowReader(Table& table, const std::string& name, char separator)
-      : table_(table), name_(name), separator_(separator) {}
-
-  void Read(std::string_view line, int line_number) {
-    if (!ReadPlain(line)) ReadAny(line, line_number);
-    table_.lines.push_back(line_number);
-  }
-
- private:
-  /// The row of a large log, numbers and commas only, straight through. False for any other, of
-  /// which nothing is kept.
-  bool ReadPlain(std::string_view line) {
-    const size_t before = table_.cells.size();
-    const char *at = line.data(), *end = line.data() + line.size();
-    while (separator_ == ',') {
-      double value = 0.0;
-      const auto [stop, error] = std::from_chars(at, end, value);
-      if (error != std::errc{} || !std::isfinite(value)) break;
-      table_.cells.push_back(value);
-      if (stop == end && table_.cells.size() - before == static_cast<size_t>(table_.width)) {
-        return true;
-      }
-      if (stop == end || *stop != ',') break;
-      at = stop + 1;
-    }
-    table_.cells.resize(before);
-    return false;
-  }
-
-  void ReadAny(std::string_view line, int line_number) {
-    const size_t before = table_.cells.size();
-    bool more = true;
-    while (more) {
-      const bool ends_here = IsBlank(separator_) ? false : line.find(separator_) == line.npos;
-      const std::string_view cell = TakeCell(line, separator_);
-      if (IsBlank(separator_) && cell.empty()) break;
-      Append(cell, line_number, table_.cells.size() - before);
-      more = IsBlank(separator_) ? !line.empty() : !ends_here;
-    }
-    const size_t found = table_.cells.size() - before;
-    if (table_.width == 0) table_.width = static_cast<int>(found);
-    if (found != static_cast<size_t>(table_.width)) {
-      throw std::invalid_argument(fmt::format("{}:{}: the row has {} cells where {} are expected",
-                                              name_, line_number, found, table_.width));
-    }
-  }
-
-  void Append(std::string_view cell, int line_number, size_t column) {
-    double value = std::numeric_limits<double>::quiet_NaN();
-    if (!cell.empty()) {
-      const std::string_view digits = WithoutPlus(cell);
-      const char* const digits_end = digits.data() + digits.size();
-      const auto [end, error] = std::from_chars(digits.data(), digits_end, value);
-      const bool is_number = error == std::errc{} && end == digits_end;
-      if (!is_number || !std::isfinite(value)) Refuse(cell, line_number, column);
-    }
-    table_.cells.push_back(value);
-  }
-
-  [[noreturn]] void Refuse(std::string_view cell, int line_number, size_t column) const {
-    const std::string where =
-        column < table_.columns.size() ? table_.columns[column] : fmt::format("{}", column + 1);
-    throw std::invalid_argument(fmt::format("{}:{}: column {} is '{}': a finite number is expected",
-                                            name_, line_number, where, cell.substr(0, 40)));
-  }
-
-  Table& table_;
-  const std::string& name_;
-  char separator_;
-};
-
-/// Room for the rest, were its rows like the first one, and a fifth more.
-void Reserve(Table& table, size_t first_line_size, size_t rest_size) {
-  const size_t rows = 2 + rest_size * 6 / (5 * (first_line_size + 1));
-  table.cells.reserve(rows * table.width);
-  table.lines.reserve(rows);
-}
-
 }  // namespace
-
-int Table::Column(std::string_view name) const {
-  const auto found = std::find(columns.begin(), columns.end(), name);
-  return found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
-}
 
 std::string_view WithoutMark(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -176,23 +90,91 @@ std::vector<std::string> SplitHeader(std::string_view line) {
   }
 }
 
-Table ReadNumbers(std::string_view text, const std::string& name, bool has_header, char separator) {
-  Table table;
-  std::string_view rest = WithoutMark(text);
-  RowReader reader(table, name, separator);
-  for (int line_number = 1; !rest.empty(); ++line_number) {
-    const std::string_view line = TakeLine(rest);
-    if (Trim(line).empty() || (!has_header && Trim(line).starts_with('#'))) continue;
-    if (has_header && table.columns.empty()) {
-      table.columns = SplitHeader(line);
-      RefuseRepeatedColumns(table.columns, fmt::format("{}:{}", name, line_number));
-      table.width = static_cast<int>(table.columns.size());
-      continue;
-    }
-    reader.Read(line, line_number);
-    if (table.Rows() == 1) Reserve(table, line.size(), rest.size());
+RowReader::RowReader(std::string_view text, const std::string& name, bool has_header,
+                     char separator)
+    : rest_(WithoutMark(text)), name_(name), has_header_(has_header), separator_(separator) {
+  if (has_header_) ReadHeader();
+}
+
+void RowReader::ReadHeader() {
+  while (!rest_.empty() && columns_.empty()) {
+    ++line_number_;
+    const std::string_view line = TakeLine(rest_);
+    if (IsSkipped(line)) continue;
+    columns_ = SplitHeader(line);
+    RefuseRepeatedColumns(columns_, fmt::format("{}:{}", name_, line_number_));
+    cells_.resize(columns_.size());
   }
-  return table;
+}
+
+bool RowReader::Next() {
+  while (!rest_.empty()) {
+    ++line_number_;
+    const std::string_view line = TakeLine(rest_);
+    line_size_ = line.size();
+    if (ReadPlain(line)) return true;
+    if (IsSkipped(line)) continue;
+    ReadAny(line);
+    return true;
+  }
+  return false;
+}
+
+size_t RowReader::RowsToExpect() const { return 2 + rest_.size() * 6 / (5 * (line_size_ + 1)); }
+
+bool RowReader::IsSkipped(std::string_view line) const {
+  const std::string_view trimmed = Trim(line);
+  return trimmed.empty() || (!has_header_ && trimmed.starts_with('#'));
+}
+
+/// The row of a large log, numbers and commas only, straight through. False for any other.
+bool RowReader::ReadPlain(std::string_view line) {
+  if (separator_ != ',') return false;
+  const char *at = line.data(), *const end = at + line.size();
+  for (double& cell : cells_) {
+    const auto [stop, error] = std::from_chars(at, end, cell);
+    if (error != std::errc{} || !std::isfinite(cell)) return false;
+    const bool is_last = &cell == &cells_.back();
+    if (is_last || stop == end) return is_last && stop == end;
+    if (*stop != ',') return false;
+    at = stop + 1;
+  }
+  return false;
+}
+
+void RowReader::ReadAny(std::string_view line) {
+  const size_t width = cells_.size();
+  cells_.clear();
+  bool more = true;
+  while (more) {
+    const bool ends_here = IsBlank(separator_) ? false : line.find(separator_) == line.npos;
+    const std::string_view cell = TakeCell(line, separator_);
+    if (IsBlank(separator_) && cell.empty()) break;
+    cells_.push_back(Number(cell, cells_.size()));
+    more = IsBlank(separator_) ? !line.empty() : !ends_here;
+  }
+  if (width != 0 && cells_.size() != width) {
+    throw std::invalid_argument(fmt::format("{}:{}: the row has {} cells where {} are expected",
+                                            name_, line_number_, cells_.size(), width));
+  }
+}
+
+double RowReader::Number(std::string_view cell, size_t column) const {
+  if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const std::string_view digits = WithoutPlus(cell);
+  const char* const digits_end = digits.data() + digits.size();
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(digits.data(), digits_end, value);
+  const bool is_number = error == std::errc{} && end == digits_end;
+  if (!is_number || !std::isfinite(value)) Refuse(cell, column);
+  return value;
+}
+
+void RowReader::Refuse(std::string_view cell, size_t column) const {
+  const std::string where =
+      column < columns_.size() ? columns_[column] : fmt::format("{}", column + 1);
+  throw std::invalid_argument(fmt::format("{}:{}: column {} is '{}': a finite number is expected",
+                                          name_, line_number_, where, cell.substr(0, 40)));
 }
 
 }  // namespace rift::trajectory::csv

@@ -1,23 +1,11 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace rift::trajectory::csv {
-
-/// Numbers of a text table, row by row; a cell that was empty is NaN, any other is finite.
-struct Table {
-  std::vector<std::string> columns;  ///< header cells; empty for a table without header
-  int width = 0;
-  std::vector<double> cells;  ///< row-major, width per row
-  std::vector<int> lines;     ///< 1-based line of each row in the file
-
-  size_t Rows() const { return lines.size(); }
-  double At(size_t row, int column) const { return cells[row * width + column]; }
-  /// Position of the named column, -1 when there is none.
-  int Column(std::string_view name) const;
-};
 
 /// The text without its byte order mark.
 std::string_view WithoutMark(std::string_view text);
@@ -28,9 +16,41 @@ std::string_view TakeLine(std::string_view& rest);
 /// Cells between commas, without the blanks or the double quotes around them.
 std::vector<std::string> SplitHeader(std::string_view line);
 
-/// Reads numbers separated by `separator` (a blank stands for any run of blanks and tabs). No two
-/// columns of a header may share a name.
-/// Throws std::invalid_argument `name:line: ...`.
-Table ReadNumbers(std::string_view text, const std::string& name, bool has_header, char separator);
+/// The numbers of a text table, one row after the other: a long log is not held twice. Separated by
+/// `separator` (a blank stands for any run of blanks and tabs). No two columns of a header may
+/// share a name. Everything throws std::invalid_argument `name:line: ...`.
+class RowReader {
+ public:
+  RowReader(std::string_view text, const std::string& name, bool has_header, char separator);
+
+  /// Header cells; empty for a table without header.
+  const std::vector<std::string>& Columns() const { return columns_; }
+
+  /// Goes on to the next row; false after the last.
+  bool Next();
+  /// The row as numbers; a cell that was empty is NaN, any other is finite.
+  std::span<const double> Cells() const { return cells_; }
+  /// 1-based line of the row in the file.
+  int Line() const { return line_number_; }
+  /// This row and those to come, were they as long as this one, and a fifth more.
+  size_t RowsToExpect() const;
+
+ private:
+  void ReadHeader();
+  bool IsSkipped(std::string_view line) const;
+  bool ReadPlain(std::string_view line);
+  void ReadAny(std::string_view line);
+  double Number(std::string_view cell, size_t column) const;
+  [[noreturn]] void Refuse(std::string_view cell, size_t column) const;
+
+  std::string_view rest_;
+  const std::string& name_;
+  const bool has_header_;
+  const char separator_;
+  std::vector<std::string> columns_;
+  std::vector<double> cells_;  ///< as many as the first row had, or the header
+  size_t line_size_ = 0;
+  int line_number_ = 0;
+};
 
 }  // namespace rift::trajectory::csv

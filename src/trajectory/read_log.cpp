@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "csv.hpp"
+#include "log_rows.hpp"
 #include "plausibility.hpp"
 #include "rift/geometry/angle.hpp"
 #include "rift/trajectory/log.hpp"
@@ -18,23 +17,9 @@
 namespace rift::trajectory {
 namespace {
 
-using csv::Table;
 using geometry::kPi;
 using geometry::RadFromDeg;
 using geometry::WrapToPi;
-
-/// Names of the pose columns of a dialect, in the order of StampedPose.
-constexpr std::array<std::string_view, 9> kRiftColumns{
-    "t_s", "x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad", "target_x_m", "target_y_m"};
-constexpr std::array<std::string_view, 9> kAuthorsColumns{
-    "t", "x", "y", "z", "roll", "pitch", "yaw", "desired_x", "desired_y"};
-
-double& Field(StampedPose& pose, size_t i) {
-  const std::array<double*, 9> fields{&pose.t_s,     &pose.x_m,        &pose.y_m,
-                                      &pose.z_m,     &pose.roll_rad,   &pose.pitch_rad,
-                                      &pose.yaw_rad, &pose.target_x_m, &pose.target_y_m};
-  return *fields[i];
-}
 
 bool Has(const std::vector<std::string>& header, std::string_view name) {
   return std::find(header.begin(), header.end(), name) != header.end();
@@ -70,61 +55,6 @@ Format FormatFromHeader(std::string_view text, const std::string& name) {
       "{}:1: the header '{}' belongs to no dialect: it needs t_s,x_m,y_m (rift), t,x,y (tracker, "
       "webots) or eight columns without header (tum)",
       name, line.substr(0, 60)));
-}
-
-/// Copies the named columns; further ones become channels.
-void TakeColumns(const Table& table, const std::array<std::string_view, 9>& names,
-                 const std::string& name, Trajectory& trajectory) {
-  std::vector<bool> taken(table.columns.size(), false);
-  trajectory.poses.resize(table.Rows());
-  for (size_t i = 0; i < names.size(); ++i) {
-    const int column = table.Column(names[i]);
-    const bool required = i < 3;
-    if (column < 0 && required) {
-      throw std::invalid_argument(fmt::format("{}:1: column {} is missing", name, names[i]));
-    }
-    if (column < 0) continue;
-    taken[column] = true;
-    for (size_t row = 0; row < table.Rows(); ++row) {
-      const double value = table.At(row, column);
-      if (required && std::isnan(value)) {
-        throw std::invalid_argument(
-            fmt::format("{}:{}: column {} is empty", name, table.lines[row], names[i]));
-      }
-      Field(trajectory.poses[row], i) = value;
-    }
-  }
-  for (size_t column = 0; column < taken.size(); ++column) {
-    if (taken[column]) continue;
-    Channel channel{table.columns[column], {}};
-    channel.values.reserve(table.Rows());
-    for (size_t row = 0; row < table.Rows(); ++row) {
-      channel.values.push_back(table.At(row, static_cast<int>(column)));
-    }
-    trajectory.channels.push_back(std::move(channel));
-  }
-}
-
-void TakeTum(const Table& table, const std::string& name, Trajectory& trajectory) {
-  if (table.width != 8 && table.Rows() > 0) {
-    throw std::invalid_argument(
-        fmt::format("{}:{}: {} columns, and tum has 8: t tx ty tz qx qy qz qw", name,
-                    table.lines[0], table.width));
-  }
-  for (size_t row = 0; row < table.Rows(); ++row) {
-    const auto at = [&](int column) { return table.At(row, column); };
-    const Eigen::Quaterniond quaternion(at(7), at(4), at(5), at(6));
-    if (!(quaternion.norm() > 0.0)) {
-      throw std::invalid_argument(
-          fmt::format("{}:{}: the quaternion has zero length", name, table.lines[row]));
-    }
-    const Eigen::Matrix3d r = quaternion.normalized().toRotationMatrix();
-    StampedPose pose{.t_s = at(0), .x_m = at(1), .y_m = at(2), .z_m = at(3)};
-    pose.roll_rad = std::atan2(r(2, 1), r(2, 2));
-    pose.pitch_rad = std::asin(std::clamp(-r(2, 0), -1.0, 1.0));
-    pose.yaw_rad = std::atan2(r(1, 0), r(0, 0));
-    trajectory.poses.push_back(pose);
-  }
 }
 
 /// The one place where the authors' camera frame (x right, y down, z away from the camera, yaw
@@ -238,19 +168,13 @@ void CheckMoves(const Trajectory& trajectory, const std::string& name) {
 Log ReadLog(std::string_view text, const std::string& name, Format format) {
   Log log;
   log.format = format == Format::kAuto ? FormatFromHeader(text, name) : format;
-  const bool is_tum = log.format == Format::kTum;
-  Table table = csv::ReadNumbers(text, name, !is_tum, is_tum ? ' ' : ',');
-  if (is_tum) {
-    TakeTum(table, name, log.trajectory);
-  } else {
-    TakeColumns(table, log.format == Format::kRift ? kRiftColumns : kAuthorsColumns, name,
-                log.trajectory);
-  }
-  CheckMagnitudes(log.trajectory, table.lines, name);
+  auto [trajectory, lines] = ReadRows(text, name, log.format);
+  log.trajectory = std::move(trajectory);
+  CheckMagnitudes(log.trajectory, lines, name);
   NoteDoubtfulAngles(log);
   ConvertAngles(log);
-  SortByTime(log, table.lines);
-  log.line_without_yaw = LineWithoutYaw(log.trajectory, table.lines);
+  SortByTime(log, lines);
+  log.line_without_yaw = LineWithoutYaw(log.trajectory, lines);
   CheckMoves(log.trajectory, name);
   return log;
 }

@@ -54,7 +54,7 @@ const std::vector<Reserved> kReserved{
     {"pagmo/.*|nlopt.*", {"search"}},
     {"turbojpeg.h", {"vision"}},
     {"sqlite3.*|SQLiteCpp/.*", {"sweep"}},
-    {"termios.h|boost/asio.*", {"hardware", "twin"}},
+    {"termios.h|asm/termbits.h|boost/asio.*", {"hardware", "twin"}},
     {"fstream|iostream|cstdio", {"commands", "hardware", "vision", "twin", "report"}},
     {"thread|mutex|condition_variable", {"commands", "hardware", "vision", "twin", "sweep"}},
 };

@@ -10,6 +10,7 @@
 #include "rift/control/waypoint.hpp"
 #include "rift/gap/likeness.hpp"
 #include "rift/gap/options.hpp"
+#include "rift/hardware/options.hpp"
 #include "rift/simulation/simulation_options.hpp"
 #include "rift/sweep/options.hpp"
 #include "rift/trial/trial_options.hpp"
@@ -32,6 +33,7 @@ struct Experiment {
   control::NavigatorOptions control;
   trial::TrialOptions trial;
   simulation::SimulationOptions simulation;
+  hardware::HardwareOptions hardware;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -49,6 +51,7 @@ struct Experiment {
     field("control", self.control, "the waypoint controller, the same for robot and simulator");
     field("trial", self.trial, "the trial loop: rates, time limits, when a trial has failed");
     field("simulation", self.simulation, "the simulated robot, its radio, its camera, the floor");
+    field("hardware", self.hardware, "the real robot: its line, when it is stopped, its link");
   }
 };
 

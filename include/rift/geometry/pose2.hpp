@@ -26,6 +26,22 @@ Pose2 operator*(const Pose2& c_from_b, const Pose2& b_from_a);
 /// p_in_b = b_from_a * p_in_a.
 Eigen::Vector2d operator*(const Pose2& b_from_a, const Eigen::Vector2d& p_in_a);
 
+/// The same motion for many points: sine and cosine are taken once.
+class PointMotion {
+ public:
+  explicit PointMotion(const Pose2& b_from_a)
+      : offset_(b_from_a.Position()), forward_(b_from_a.Forward()) {}
+
+  Eigen::Vector2d operator*(const Eigen::Vector2d& p_in_a) const {
+    return {offset_.x() + forward_.x() * p_in_a.x() - forward_.y() * p_in_a.y(),
+            offset_.y() + forward_.y() * p_in_a.x() + forward_.x() * p_in_a.y()};
+  }
+
+ private:
+  Eigen::Vector2d offset_;
+  Eigen::Vector2d forward_;
+};
+
 /// a_from_b, given b_from_a.
 Pose2 Inverse(const Pose2& b_from_a);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Recording {
   std::string reason;
   std::string source;  ///< a file, or what made it
   trajectory::Trajectory trajectory;
+  std::optional<trial::LimitCounts> limits{};  ///< what its controller asked for, where known
 };
 
 /// Brings the reference trajectory of one trial of one setting.

@@ -9,6 +9,7 @@
 #include "rift/gap/comparison.hpp"
 #include "rift/gap/options.hpp"
 #include "rift/gap/verdict.hpp"
+#include "rift/sweep/evidence.hpp"
 
 namespace rift::sweep {
 
@@ -68,6 +69,10 @@ struct TrialRow {
   std::string reference;
   gap::Comparison comparison;  ///< all NaN unless ok
   bool falsified = false;      ///< gap_m > threshold
+  TrialEvidence evidence;
+  /// Theta was drawn independently of all other rows, evenly over the space. Only such rows tell
+  /// how often it fails; a grid and a search go where they like.
+  bool is_random_draw = false;
 
   bool IsOk() const { return status == TrialStatus::kOk; }
 };

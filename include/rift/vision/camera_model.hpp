@@ -17,11 +17,19 @@ enum class Lens {
 };
 constexpr std::array<std::string_view, 2> EnumNames(Lens) { return {"plumb_bob", "equidistant"}; }
 
+/// A reference tag that set the world frame: when it is seen elsewhere, the camera was moved.
+struct ReferenceMark {
+  int tag_id = 0;
+  Eigen::Vector3d p_in_world = Eigen::Vector3d::Zero();  ///< middle of the tag
+  Eigen::Vector2d seen_px = Eigen::Vector2d::Zero();     ///< where it was seen then
+};
+
 /// The floor's frame as this camera sees it: z up, y up in the picture's sense of a map, metres.
 struct WorldFrame {
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
-  double residual_m = 0.0;  ///< RMS on the floor of the points that set it
-  std::string origin;       ///< what set it, for people: "4 reference tags", "first pose"
+  double residual_m = 0.0;           ///< RMS on the floor of the points that set it
+  std::string origin;                ///< what set it, for people: "4 reference tags", "first pose"
+  std::vector<ReferenceMark> marks;  ///< none unless tags set it
 };
 
 /// A calibrated camera. The camera's own frame is OpenCV's: x right, y down, z forward.

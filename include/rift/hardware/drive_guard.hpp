@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "rift/hardware/options.hpp"
+#include "rift/hardware/pose_source.hpp"
+
+namespace rift::hardware {
+
+enum class DriveState { kDisarmed, kArmed, kStopped };
+constexpr std::array<std::string_view, 3> EnumNames(DriveState) {
+  return {"disarmed", "armed", "stopped"};
+}
+
+enum class StopReason {
+  kFinished,
+  kOperator,
+  kSignal,
+  kException,
+  kPoseStale,
+  kTagLost,
+  kPoseNotFinite,
+  kPoseJump,
+  kCameraGone,
+  kPortGone,
+  kLinkLagging,
+  kControlStale,
+  kHostStalled,
+  kPowerRefused,
+  kNotArmed,
+  kRobotStopped,
+  kBatteryLow,
+};
+constexpr std::array<std::string_view, 17> EnumNames(StopReason) {
+  return {"finished",      "operator",        "signal",       "exception",     "pose_stale",
+          "tag_lost",      "pose_not_finite", "pose_jump",    "camera_gone",   "port_gone",
+          "link_lagging",  "control_stale",   "host_stalled", "power_refused", "not_armed",
+          "robot_stopped", "battery_low"};
+}
+
+struct DriveStop {
+  StopReason reason = StopReason::kFinished;
+  std::string text;  ///< one line for people
+  double at_s = 0.0;
+};
+
+/// Keeps the promise: no power without a fresh pose and a fresh control step. The first thing that
+/// goes wrong stops the drive for good; only Arm() starts it again. Commands are allowed as they
+/// are or not at all. Knows no clock and no line.
+class DriveGuard {
+ public:
+  explicit DriveGuard(const GuardOptions& options) : options_(options) {}
+
+  /// Throws std::runtime_error unless there is a fresh pose; clears an earlier stop.
+  void Arm(double now_s);
+  /// The first one counts.
+  void Stop(StopReason reason, std::string text, double now_s);
+
+  void SeePose(const PoseNews& news, double now_s);
+  /// A control step and what it wants.
+  void Command(const robot::WheelPower& power, double now_s);
+  void HearRobot(std::uint8_t stops, double battery_v, double now_s);
+  /// To be called often: what has grown too old, or whether this process stood still.
+  void Tick(double now_s, double link_lag_s);
+
+  /// What may be sent now: the last command while all is well, else zero.
+  robot::WheelPower Allowed() const;
+  DriveState state() const { return state_; }
+  const std::optional<DriveStop>& stop() const { return stop_; }
+
+ private:
+  void CheckJump(const robot::PoseMeasurement& before, const robot::PoseMeasurement& pose,
+                 double now_s);
+  void NoteTime(double now_s);
+  bool RequireFreshPose(double now_s);
+
+  GuardOptions options_;
+  DriveState state_ = DriveState::kDisarmed;
+  std::optional<DriveStop> stop_;
+  std::optional<robot::PoseMeasurement> pose_;
+  std::optional<double> looked_s_;
+  robot::WheelPower power_;
+  double commanded_s_ = 0.0;
+  std::optional<double> ticked_s_;
+  std::optional<std::uint8_t> robot_stops_;
+};
+
+}  // namespace rift::hardware

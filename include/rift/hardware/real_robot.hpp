@@ -1,0 +1,96 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rift/hardware/byte_line.hpp"
+#include "rift/hardware/drive_guard.hpp"
+#include "rift/hardware/options.hpp"
+#include "rift/hardware/pose_source.hpp"
+#include "rift/hardware/robot_link.hpp"
+#include "rift/robot/robot.hpp"
+
+namespace rift::hardware {
+
+/// A pose and when it went through each stage; times on the robot's clock (RealRobot::Sense), -1
+/// where the stage was never reached.
+struct PoseStages {
+  double captured_s = -1.0;
+  double arrived_s = -1.0;    ///< picture in memory
+  double ready_s = -1.0;      ///< tag found
+  double sensed_s = -1.0;     ///< taken by the trial loop
+  double commanded_s = -1.0;  ///< decided on
+  double written_s = -1.0;    ///< on the line
+  double answered_s = -1.0;   ///< the robot said it obeys
+};
+
+/// The wheels as the robot told, at the middle of the round trip of the command it answered.
+struct EncoderReading {
+  double t_s = 0.0;
+  robot::EncoderCounts counts;
+  double battery_v = 0.0;
+};
+
+/// What a drive leaves behind beside its trial.
+struct DriveEvidence {
+  Protocol protocol = Protocol::kAuto;
+  std::optional<DriveStop> stop;
+  /// Whether the robot said that it stands; none: it speaks plain and cannot say.
+  std::optional<bool> stop_acknowledged;
+  std::vector<PoseStages> poses;
+  std::vector<EncoderReading> encoders;
+  std::vector<double> round_trips_s;
+  size_t sent = 0;
+  size_t answered = 0;
+  unsigned rejected_by_robot = 0;  ///< modulo 256
+};
+
+/// Counts at `t_s` between two readings; none outside of them.
+std::optional<std::pair<double, double>> CountsAt(const std::vector<EncoderReading>& readings,
+                                                  double t_s);
+
+/// Why a drive is to be stopped from outside, when that is so: a key, a signal.
+using Stopper = std::function<std::optional<std::pair<StopReason, std::string>>()>;
+
+struct RealRobotOptions {
+  HardwareOptions hardware;
+  Protocol protocol = Protocol::kFramed;  ///< plain or framed, as FindProtocol said
+  /// Link and guard run in a thread of their own, so that zeros go out even while the trial loop
+  /// hangs; without it they run in Advance(), which fake clocks need.
+  bool thread = true;
+};
+
+/// The robot on the floor behind the interface of the simulated one: camera poses in, powers out,
+/// with a DriveGuard between. `line`, `poses` and `clock` must outlive it.
+class RealRobot : public robot::Robot {
+ public:
+  RealRobot(ByteLine& line, PoseSource& poses, Clock& clock, const RealRobotOptions& options);
+  /// Sends zeros for a while, whatever happened before.
+  ~RealRobot() override;
+
+  void AddStopper(Stopper stopper);
+  /// Throws std::runtime_error unless the robot is seen and answers; see DriveGuard::Arm.
+  void Arm();
+
+  /// fault: why the guard has stopped the drive.
+  robot::Sensed Sense() override;
+  /// A power that is refused stops the drive; it is never made to fit.
+  void Command(const robot::WheelPower& power) override;
+  /// Waits in real time; returns early when there is a new pose to decide on.
+  void Advance(double dt_s) override;
+  void Stop() noexcept override;
+
+  /// After Stop(): sends zeros until the robot says that it stands, `timeout_s` at most.
+  void ConfirmStop(double timeout_s);
+  DriveState state() const;
+  DriveEvidence Evidence() const;
+
+ private:
+  class Core;
+  std::unique_ptr<Core> core_;
+};
+
+}  // namespace rift::hardware

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rift/hardware/byte_line.hpp"
+#include "rift/hardware/options.hpp"
+#include "rift/hardware/wire.hpp"
+
+namespace rift::hardware {
+
+/// Finds answers in what comes back, between the chatter of radio modules (`OK+LOST`, `OK+CONN`).
+class AnswerDecoder {
+ public:
+  std::vector<Answer> Take(Bytes bytes);
+
+ private:
+  void TakeText(std::uint8_t byte, std::vector<Answer>& answers);
+
+  std::vector<std::uint8_t> buffer_;
+  std::string line_;
+};
+
+/// When the line may carry the next command: at most `share` of its bytes are used, each way.
+class LinkPacer {
+ public:
+  LinkPacer(int baud, double share) : byte_s_(10.0 / baud / share) {}
+
+  bool MayWrite(double now_s) const { return now_s >= free_s_; }
+  void Wrote(double now_s, size_t bytes) { free_s_ = now_s + byte_s_ * static_cast<double>(bytes); }
+
+ private:
+  double byte_s_;  // 8N1: ten bits a byte
+  double free_s_ = 0.0;
+};
+
+/// Hands the newest command to the robot as often as the line allows, and hears its answers. There
+/// is no queue: a command that waits is replaced by a newer one. Knows no clock of its own.
+class RobotLink {
+ public:
+  struct Sent {
+    std::uint8_t sequence = 0;
+    double at_s = 0.0;
+    MilliPower power;
+  };
+  struct Heard {
+    Answer answer;
+    double at_s = 0.0;
+    std::optional<Sent> sent;  ///< the command answered; none for a plain line
+  };
+
+  /// `protocol` is plain or framed; FindProtocol tells which.
+  RobotLink(ByteLine& line, const LineOptions& options, Protocol protocol);
+
+  /// The command from now on. `at_once`: also when it is the one in force already.
+  void Put(const robot::WheelPower& power, bool at_once);
+  /// Reads what has come, writes what is due. Throws LineGone.
+  void Tick(double now_s);
+  /// Reads alone. Throws LineGone.
+  void Listen(double now_s);
+
+  Protocol protocol() const { return protocol_; }
+  /// What was heard since the last call.
+  std::vector<Heard> TakeHeard();
+  /// Age of the oldest command that waits for its answer, or for the line to take it.
+  double Lag_s(double now_s) const;
+  /// The last command written; none before the first.
+  const std::optional<Sent>& last_sent() const { return last_sent_; }
+  size_t sent_count() const { return sent_count_; }
+  size_t answered_count() const { return answered_count_; }
+
+ private:
+  void Match(Heard& heard);
+  void WriteCommand(double now_s);
+
+  ByteLine& line_;
+  LineOptions options_;
+  Protocol protocol_;
+  LinkPacer pacer_;
+  AnswerDecoder decoder_;
+  robot::WheelPower power_;
+  bool is_due_ = true;
+  std::uint8_t next_sequence_ = 1;
+  std::optional<Sent> last_sent_;
+  std::deque<Sent> unanswered_;
+  std::optional<double> blocked_since_s_;
+  std::vector<Heard> heard_;
+  size_t sent_count_ = 0;
+  size_t answered_count_ = 0;
+};
+
+/// Says hello, which to every listener is the plain command to stand still, and waits for an answer
+/// as long as options.hello_s; without one the robot speaks plain. Throws LineGone.
+Protocol FindProtocol(ByteLine& line, Clock& clock, const LineOptions& options);
+
+}  // namespace rift::hardware

@@ -1,0 +1,281 @@
+#include "rift/hardware/real_robot.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+namespace rift::hardware {
+namespace {
+
+constexpr double kTick_s = 0.001;
+constexpr double kVoltPerMillivolt = 1e-3;
+constexpr double kLastZeros_s = 0.3;
+
+}  // namespace
+
+/// All that the trial loop and the thread share; every public function holds the lock.
+class RealRobot::Core {
+ public:
+  Core(ByteLine& line, PoseSource& poses, Clock& clock, const RealRobotOptions& options)
+      : clock_(clock),
+        poses_(poses),
+        is_threaded_(options.thread),
+        start_s_(clock.Now_s()),
+        guard_(options.hardware.guard),
+        link_(line, options.hardware.line, options.protocol) {
+    options.hardware.Check();
+    if (is_threaded_) thread_ = std::jthread([this](std::stop_token stop) { Run(stop); });
+  }
+
+  void AddStopper(Stopper stopper) {
+    const std::lock_guard lock(mutex_);
+    stoppers_.push_back(std::move(stopper));
+  }
+
+  void Arm();
+  robot::Sensed Sense();
+  void Command(const robot::WheelPower& power);
+  void Stop() noexcept;
+  bool HasNewPose() {
+    const std::lock_guard lock(mutex_);
+    return news_.newest && news_.newest->measured.captured_s != sensed_captured_s_;
+  }
+  void Wait(double dt_s);
+  bool StopIsAnswered();
+  DriveState state() {
+    const std::lock_guard lock(mutex_);
+    return guard_.state();
+  }
+  DriveEvidence Evidence();
+  double Now_s() { return clock_.Now_s(); }
+
+ private:
+  void Run(const std::stop_token& stop);
+  void Pump();
+  void LookAround(double now_s);
+  void Exchange(double now_s);
+  void Hear(const RobotLink::Heard& heard, double now_s);
+  void NoteWritten();
+
+  Clock& clock_;
+  PoseSource& poses_;
+  bool is_threaded_;
+  double start_s_;
+  std::mutex mutex_;
+  DriveGuard guard_;
+  RobotLink link_;
+  bool line_is_dead_ = false;
+  std::vector<Stopper> stoppers_;
+  PoseNews news_;
+  std::optional<double> sensed_captured_s_;
+  std::optional<robot::EncoderCounts> counts_;
+  std::optional<double> stopped_at_s_;  ///< when zeros began for good
+  bool stop_is_answered_ = false;
+  bool waits_for_write_ =
+      false;  ///< the newest command, which belongs to the last of evidence_.poses
+  std::optional<double> written_s_;
+  DriveEvidence evidence_;
+  std::jthread thread_;  // last: it ends before what it uses
+};
+
+void RealRobot::Core::Run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    Pump();
+    clock_.Wait(kTick_s);
+  }
+}
+
+void RealRobot::Core::Wait(double dt_s) {
+  clock_.Wait(dt_s);
+  if (!is_threaded_) Pump();
+}
+
+void RealRobot::Core::Pump() {
+  const std::lock_guard lock(mutex_);
+  const double now_s = clock_.Now_s();
+  LookAround(now_s);
+  Exchange(now_s);
+}
+
+// What throws here ends the drive, not the process: the zeros must still be sent.
+void RealRobot::Core::LookAround(double now_s) {
+  try {
+    for (const Stopper& stopper : stoppers_) {
+      if (const auto stop = stopper()) guard_.Stop(stop->first, stop->second, now_s);
+    }
+    PoseNews news = poses_.Newest();
+    guard_.SeePose(news, now_s);
+    if (guard_.state() != DriveState::kStopped || news.newest) news_ = std::move(news);
+  } catch (const std::exception& error) {
+    guard_.Stop(StopReason::kException, error.what(), now_s);
+  }
+}
+
+void RealRobot::Core::Exchange(double now_s) {
+  guard_.Tick(now_s, line_is_dead_ ? 0.0 : link_.Lag_s(now_s));
+  if (line_is_dead_) return;
+  if (guard_.state() == DriveState::kStopped && !stopped_at_s_) stopped_at_s_ = now_s;
+  if (guard_.state() != DriveState::kStopped) stopped_at_s_.reset();
+  link_.Put(guard_.Allowed(), false);
+  try {
+    link_.Tick(now_s);
+  } catch (const LineGone& gone) {
+    line_is_dead_ = true;
+    guard_.Stop(StopReason::kPortGone, gone.what(), now_s);
+    return;
+  }
+  NoteWritten();
+  for (const RobotLink::Heard& heard : link_.TakeHeard()) Hear(heard, now_s);
+}
+
+void RealRobot::Core::NoteWritten() {
+  if (!link_.last_sent() || link_.last_sent()->at_s == written_s_) return;
+  written_s_ = link_.last_sent()->at_s;
+  if (!waits_for_write_) return;
+  evidence_.poses.back().written_s = *written_s_ - start_s_;
+  waits_for_write_ = false;
+}
+
+void RealRobot::Core::Hear(const RobotLink::Heard& heard, double now_s) {
+  counts_ = robot::EncoderCounts{heard.answer.left, heard.answer.right};
+  const double battery_v = kVoltPerMillivolt * heard.answer.battery_mv;
+  const double sent_s = heard.sent ? heard.sent->at_s : heard.at_s;
+  evidence_.encoders.push_back({0.5 * (sent_s + heard.at_s) - start_s_, *counts_, battery_v});
+  if (!heard.sent) return;  // a plain answer says neither to what nor how often the robot stopped
+  evidence_.rejected_by_robot = heard.answer.rejected;
+  evidence_.round_trips_s.push_back(heard.at_s - sent_s);
+  for (auto pose = evidence_.poses.rbegin(); pose != evidence_.poses.rend(); ++pose) {
+    if (pose->written_s >= 0.0 && pose->written_s <= sent_s - start_s_) {
+      if (pose->answered_s < 0.0) pose->answered_s = heard.at_s - start_s_;
+      break;
+    }
+  }
+  guard_.HearRobot(heard.answer.stops, battery_v, now_s);
+  if (stopped_at_s_ && heard.sent->power.IsZero() && sent_s >= *stopped_at_s_) {
+    stop_is_answered_ = true;
+  }
+}
+
+void RealRobot::Core::Arm() {
+  const std::lock_guard lock(mutex_);
+  if (line_is_dead_) throw std::runtime_error("cannot arm: the serial port went away");
+  guard_.Arm(clock_.Now_s());
+  stop_is_answered_ = false;
+  stopped_at_s_.reset();
+}
+
+robot::Sensed RealRobot::Core::Sense() {
+  const std::lock_guard lock(mutex_);
+  robot::Sensed sensed;
+  sensed.now_s = clock_.Now_s() - start_s_;
+  sensed.encoders = counts_;
+  if (guard_.stop()) sensed.fault = guard_.stop()->text;
+  if (!news_.newest) return sensed;
+  sensed.pose = news_.newest->measured;
+  sensed.pose->captured_s -= start_s_;
+  if (sensed_captured_s_ != news_.newest->measured.captured_s) {
+    sensed_captured_s_ = news_.newest->measured.captured_s;
+    waits_for_write_ = false;
+    evidence_.poses.push_back({sensed.pose->captured_s, news_.newest->arrived_s - start_s_,
+                               news_.newest->ready_s - start_s_, sensed.now_s});
+  }
+  return sensed;
+}
+
+void RealRobot::Core::Command(const robot::WheelPower& power) {
+  const std::lock_guard lock(mutex_);
+  const double now_s = clock_.Now_s();
+  guard_.Command(power, now_s);
+  const bool is_first = !evidence_.poses.empty() && evidence_.poses.back().commanded_s < 0.0;
+  if (is_first) {
+    evidence_.poses.back().commanded_s = now_s - start_s_;
+    waits_for_write_ = true;
+  }
+  link_.Put(guard_.Allowed(), is_first);
+  Exchange(now_s);
+}
+
+void RealRobot::Core::Stop() noexcept {
+  try {
+    const std::lock_guard lock(mutex_);
+    const double now_s = clock_.Now_s();
+    if (std::uncaught_exceptions() > 0) {
+      guard_.Stop(StopReason::kException, "the trial ended with an error", now_s);
+    } else {
+      guard_.Stop(StopReason::kFinished, "the trial is over", now_s);
+    }
+    Exchange(now_s);
+  } catch (...) {  // out of memory while a reason was written: the state is stopped all the same
+  }
+}
+
+bool RealRobot::Core::StopIsAnswered() {
+  const std::lock_guard lock(mutex_);
+  return stop_is_answered_;
+}
+
+DriveEvidence RealRobot::Core::Evidence() {
+  const std::lock_guard lock(mutex_);
+  DriveEvidence evidence = evidence_;
+  evidence.protocol = link_.protocol();
+  evidence.stop = guard_.stop();
+  if (evidence.stop) evidence.stop->at_s -= start_s_;
+  if (link_.protocol() == Protocol::kFramed) evidence.stop_acknowledged = stop_is_answered_;
+  evidence.sent = link_.sent_count();
+  evidence.answered = link_.answered_count();
+  return evidence;
+}
+
+RealRobot::RealRobot(ByteLine& line, PoseSource& poses, Clock& clock,
+                     const RealRobotOptions& options)
+    : core_(std::make_unique<Core>(line, poses, clock, options)) {}
+
+RealRobot::~RealRobot() {
+  Stop();
+  if (!core_->StopIsAnswered()) ConfirmStop(kLastZeros_s);
+}
+
+void RealRobot::AddStopper(Stopper stopper) { core_->AddStopper(std::move(stopper)); }
+void RealRobot::Arm() { core_->Arm(); }
+robot::Sensed RealRobot::Sense() { return core_->Sense(); }
+void RealRobot::Command(const robot::WheelPower& power) { core_->Command(power); }
+void RealRobot::Stop() noexcept { core_->Stop(); }
+DriveState RealRobot::state() const { return core_->state(); }
+DriveEvidence RealRobot::Evidence() const { return core_->Evidence(); }
+
+void RealRobot::Advance(double dt_s) {
+  const double end_s = core_->Now_s() + dt_s;
+  for (double now_s = core_->Now_s(); now_s < end_s; now_s = core_->Now_s()) {
+    core_->Wait(std::min(kTick_s, end_s - now_s));
+    if (core_->HasNewPose()) return;
+  }
+}
+
+void RealRobot::ConfirmStop(double timeout_s) {
+  const double end_s = core_->Now_s() + timeout_s;
+  while (core_->Now_s() < end_s && !core_->StopIsAnswered()) core_->Wait(kTick_s);
+}
+
+std::optional<std::pair<double, double>> CountsAt(const std::vector<EncoderReading>& readings,
+                                                  double t_s) {
+  const auto after =
+      std::lower_bound(readings.begin(), readings.end(), t_s,
+                       [](const EncoderReading& reading, double t) { return reading.t_s < t; });
+  if (after == readings.end() || (after == readings.begin() && after->t_s > t_s)) {
+    return std::nullopt;
+  }
+  if (after == readings.begin()) {
+    return std::pair(static_cast<double>(after->counts.left),
+                     static_cast<double>(after->counts.right));
+  }
+  const EncoderReading& before = *(after - 1);
+  const double share = (t_s - before.t_s) / (after->t_s - before.t_s);
+  const auto between = [share](std::int64_t low, std::int64_t high) {
+    return static_cast<double>(low) + share * static_cast<double>(high - low);
+  };
+  return std::pair(between(before.counts.left, after->counts.left),
+                   between(before.counts.right, after->counts.right));
+}
+
+}  // namespace rift::hardware

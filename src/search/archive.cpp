@@ -1,0 +1,54 @@
+#include "archive.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace rift::search {
+namespace {
+
+/// FNV-1a over 64-bit words with the finish of splitmix64.
+std::uint64_t HashOf(const Point& point) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const double value : point) {
+    hash = (hash ^ std::bit_cast<std::uint64_t>(value + 0.0)) * 0x100000001b3ULL;
+    hash ^= hash >> 31;
+  }
+  return hash;
+}
+
+}  // namespace
+
+void Archive::Add(const Evaluation& evaluation) {
+  evaluations_.push_back(evaluation);
+  Evaluation& kept = evaluations_.back();
+  if (!std::isfinite(kept.loss)) kept.loss = std::numeric_limits<double>::infinity();
+  by_hash_.emplace(HashOf(kept.point), evaluations_.size() - 1);
+  best_loss_ = std::min(best_loss_, kept.loss);
+}
+
+std::optional<std::size_t> Archive::Find(const Point& point) const {
+  const auto [begin, end] = by_hash_.equal_range(HashOf(point));
+  for (auto entry = begin; entry != end; ++entry) {
+    if (evaluations_[entry->second].point == point) return entry->second;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::size_t> Archive::Best(std::size_t most) const {
+  std::vector<std::size_t> order(evaluations_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(std::min(most, order.size()));
+  std::partial_sort(order.begin(), middle, order.end(), [this](std::size_t a, std::size_t b) {
+    if (evaluations_[a].loss != evaluations_[b].loss) {
+      return evaluations_[a].loss < evaluations_[b].loss;
+    }
+    return a < b;
+  });
+  order.erase(middle, order.end());
+  return order;
+}
+
+}  // namespace rift::search

@@ -1,0 +1,200 @@
+#include "cma_es.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace rift::search {
+namespace {
+
+/// Least standard deviation on an integer axis as a share of its cell: the next cell is then still
+/// reached from the middle of a cell in one of ten samples.
+constexpr double kLeastOfCell = 0.3;
+/// Least probability of all other levels together, as a share of an even draw.
+constexpr double kLeastOfLevel = 0.2;
+constexpr double kSmallestStep = 1e-13;
+constexpr double kLargestCondition = 1e14;
+
+std::vector<int> RankOrder(const std::vector<double>& losses) {
+  std::vector<int> order(losses.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return losses[a] < losses[b]; });
+  return order;
+}
+
+Eigen::VectorXd LogWeights(int population) {
+  const int mu = std::max(1, population / 2);
+  Eigen::VectorXd weights(mu);
+  for (int i = 0; i < mu; ++i) weights[i] = std::log(0.5 * (population + 1.0)) - std::log(i + 1.0);
+  return weights / weights.sum();
+}
+
+}  // namespace
+
+CmaEs::CmaEs(const Space& space, const Eigen::VectorXd& mean, double sigma, int population)
+    : space_(space), population_(population), weights_(LogWeights(population)), sigma_(sigma) {
+  for (int axis = 0; axis < space.Size(); ++axis) {
+    (space.IsCategorical(axis) ? categorical_ : numeric_).push_back(axis);
+  }
+  mean_ = mean(numeric_);
+  for (const int axis : categorical_) {
+    // Half of the draws keep the level of the start.
+    const auto levels = static_cast<Eigen::Index>(space.Levels(axis));
+    Eigen::VectorXd p = Eigen::VectorXd::Constant(levels, 0.5 / static_cast<double>(levels));
+    p[std::min(static_cast<Eigen::Index>(mean[axis] * static_cast<double>(levels)), levels - 1)] +=
+        0.5;
+    probabilities_.push_back(p);
+  }
+  // Table 1 of Hansen 2016; n counts the numeric axes.
+  const double n = std::max<double>(1.0, static_cast<double>(numeric_.size()));
+  mu_eff_ = 1.0 / weights_.squaredNorm();
+  c_sigma_ = (mu_eff_ + 2.0) / (n + mu_eff_ + 5.0);
+  d_sigma_ = 1.0 + 2.0 * std::max(0.0, std::sqrt((mu_eff_ - 1.0) / (n + 1.0)) - 1.0) + c_sigma_;
+  c_c_ = (4.0 + mu_eff_ / n) / (n + 4.0 + 2.0 * mu_eff_ / n);
+  c_1_ = 2.0 / ((n + 1.3) * (n + 1.3) + mu_eff_);
+  c_mu_ = std::min(1.0 - c_1_,
+                   2.0 * (mu_eff_ - 2.0 + 1.0 / mu_eff_) / ((n + 2.0) * (n + 2.0) + mu_eff_));
+  c_mu_ = std::max(0.0, c_mu_);
+  chi_n_ = std::sqrt(n) * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
+  const auto size = static_cast<Eigen::Index>(numeric_.size());
+  covariance_ = axes_ = Eigen::MatrixXd::Identity(size, size);
+  lengths_ = Eigen::VectorXd::Ones(size);
+  path_sigma_ = path_c_ = Eigen::VectorXd::Zero(size);
+}
+
+std::vector<Eigen::VectorXd> CmaEs::Sample(Random& random) {
+  draws_.clear();
+  std::vector<Eigen::VectorXd> units;
+  for (int i = 0; i < population_; ++i) {
+    draws_.push_back(DrawOne(random));
+    units.push_back(UnitOf(draws_.back()));
+  }
+  return units;
+}
+
+CmaEs::Draw CmaEs::DrawOne(Random& random) const {
+  Draw draw;
+  Eigen::VectorXd z(mean_.size());
+  for (double& value : z) value = random.Normal();
+  draw.step = axes_ * lengths_.cwiseProduct(z);
+  Eigen::VectorXd x = mean_ + sigma_ * draw.step;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const int axis = numeric_[i];
+    if (!space_.IsContinuous(axis)) {
+      const double least = kLeastOfCell / space_.Levels(axis);
+      const double variance = sigma_ * sigma_ * covariance_(i, i);
+      x[i] += std::sqrt(std::max(0.0, least * least - variance)) * random.Normal();
+    }
+    const double inside = std::clamp(x[i], 0.0, 1.0);
+    draw.step[i] += (inside - x[i]) / sigma_;
+    x[i] = inside;
+  }
+  draw.moved = x;
+  for (const Eigen::VectorXd& p : probabilities_) {
+    double left = random.Uniform();
+    int level = 0;
+    while (level + 1 < p.size() && left >= p[level]) left -= p[level++];
+    draw.categories.push_back(level);
+  }
+  return draw;
+}
+
+Eigen::VectorXd CmaEs::UnitOf(const Draw& draw) const {
+  Eigen::VectorXd unit(space_.Size());
+  unit(numeric_) = draw.moved;
+  for (std::size_t i = 0; i < categorical_.size(); ++i) {
+    unit[categorical_[i]] = (draw.categories[i] + 0.5) / space_.Levels(categorical_[i]);
+  }
+  return unit;
+}
+
+void CmaEs::Learn(const std::vector<double>& losses) {
+  const std::vector<int> order = RankOrder(losses);
+  NoteProgress(losses[order.front()], losses[order.back()] - losses[order.front()]);
+  MoveMean(order);
+  AdaptCategories(order);
+  ++generation_;
+}
+
+void CmaEs::MoveMean(const std::vector<int>& order) {
+  if (mean_.size() == 0) return;
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(mean_.size());
+  Eigen::VectorXd moved = step;
+  for (Eigen::Index i = 0; i < weights_.size(); ++i) {
+    step += weights_[i] * draws_[order[i]].step;
+    moved += weights_[i] * draws_[order[i]].moved;
+  }
+  mean_ = moved;
+  AdaptShape(step, order);
+}
+
+/// Equations 43 to 47 of Hansen 2016, without negative weights.
+void CmaEs::AdaptShape(const Eigen::VectorXd& mean_step, const std::vector<int>& order) {
+  const double n = static_cast<double>(mean_.size());
+  const Eigen::VectorXd whitened = axes_ * (axes_.transpose() * mean_step).cwiseQuotient(lengths_);
+  path_sigma_ =
+      (1.0 - c_sigma_) * path_sigma_ + std::sqrt(c_sigma_ * (2.0 - c_sigma_) * mu_eff_) * whitened;
+  const double norm = path_sigma_.norm();
+  const double settled = std::sqrt(1.0 - std::pow(1.0 - c_sigma_, 2.0 * (generation_ + 1)));
+  const bool is_steady = norm / settled < (1.4 + 2.0 / (n + 1.0)) * chi_n_;
+  path_c_ *= 1.0 - c_c_;
+  if (is_steady) path_c_ += std::sqrt(c_c_ * (2.0 - c_c_) * mu_eff_) * mean_step;
+  const double lost = is_steady ? 0.0 : c_1_ * c_c_ * (2.0 - c_c_);
+  covariance_ *= 1.0 - c_1_ - c_mu_ + lost;
+  covariance_ += c_1_ * path_c_ * path_c_.transpose();
+  for (Eigen::Index i = 0; i < weights_.size(); ++i) {
+    const Eigen::VectorXd& step = draws_[order[i]].step;
+    covariance_ += c_mu_ * weights_[i] * step * step.transpose();
+  }
+  sigma_ *= std::exp(std::min(1.0, c_sigma_ / d_sigma_ * (norm / chi_n_ - 1.0)));
+  sigma_ = std::min(sigma_, 1.0);
+  Decompose();
+}
+
+void CmaEs::Decompose() {
+  const double n = static_cast<double>(mean_.size());
+  const double every = 1.0 / ((c_1_ + c_mu_) * n * 10.0);  // Hansen 2016, B.2
+  if (generation_ - decomposed_at_ < every) return;
+  decomposed_at_ = generation_;
+  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance_);
+  axes_ = solver.eigenvectors();
+  lengths_ = solver.eigenvalues().cwiseMax(1e-30).cwiseSqrt();
+}
+
+void CmaEs::AdaptCategories(const std::vector<int>& order) {
+  const double rate = std::min(0.5, mu_eff_ / static_cast<double>(population_));
+  for (std::size_t k = 0; k < probabilities_.size(); ++k) {
+    Eigen::VectorXd& p = probabilities_[k];
+    p *= 1.0 - rate;
+    for (Eigen::Index i = 0; i < weights_.size(); ++i) {
+      p[draws_[order[i]].categories[k]] += rate * weights_[i];
+    }
+    p = p.cwiseMax(kLeastOfLevel / static_cast<double>(p.size()));
+    p /= p.sum();
+  }
+}
+
+void CmaEs::NoteProgress(double best, double spread) {
+  const bool is_better = best < best_ - 1e-12 * std::abs(best_) || std::isinf(best_);
+  if (is_better && std::isfinite(best)) {
+    best_ = best;
+    improved_at_ = generation_;
+  }
+  is_flat_ = !(spread > 0.0) || spread < 1e-12 * std::abs(best_);
+}
+
+bool CmaEs::IsDone(int stall_generations) const {
+  const int patience = stall_generations + 10 * space_.Size() * 8 / population_;
+  if (generation_ - improved_at_ > patience) return true;
+  if (generation_ < 1 || mean_.size() == 0) return false;
+  const bool has_continuous = std::any_of(numeric_.begin(), numeric_.end(),
+                                          [this](int axis) { return space_.IsContinuous(axis); });
+  if (is_flat_ && has_continuous) return true;
+  const double largest = sigma_ * std::sqrt(covariance_.diagonal().maxCoeff());
+  const double condition = std::pow(lengths_.maxCoeff() / lengths_.minCoeff(), 2);
+  return largest < kSmallestStep || condition > kLargestCondition;
+}
+
+}  // namespace rift::search

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rift/trajectory/log.hpp"
+
+namespace rift::trajectory {
+
+/// The poses of a log, as they stand in the file, and the line of each.
+struct LogRows {
+  Trajectory trajectory;
+  std::vector<int> lines;
+};
+
+/// Reads the rows of a dialect; kAuto stands for the authors' header.
+/// Throws std::invalid_argument `name:line: ...`.
+LogRows ReadRows(std::string_view text, const std::string& name, Format format);
+
+}  // namespace rift::trajectory

@@ -1,0 +1,215 @@
+#include "rift/hardware/listener.hpp"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <sstream>
+
+#include "rift/hardware/wire.hpp"
+#include "support/process.hpp"
+
+namespace rift::hardware {
+namespace {
+
+using Chunk = std::vector<std::uint8_t>;
+
+struct Turn {
+  std::uint32_t now_ms = 0;
+  Chunk bytes;
+};
+
+/// How main.py ended, and what it did in each turn: "LEFT RIGHT HEX".
+struct Run {
+  std::vector<std::string> turns;
+  std::map<std::string, std::string> end;
+};
+
+std::string Hex(const Chunk& bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
+  return text.empty() ? "-" : text;
+}
+
+std::string ScriptOf(const std::vector<Turn>& turns) {
+  std::string script;
+  for (const Turn& turn : turns) script += fmt::format("{} {}\n", turn.now_ms, Hex(turn.bytes));
+  return script;
+}
+
+bool CanRun() {
+  if (std::filesystem::exists(RIFT_MICROPYTHON "/installed")) return true;
+  WARN("SKIPPED: npm did not bring MicroPython when this was built");
+  return false;
+}
+
+/// The firmware as it is copied to the robot, under MicroPython.
+Run RunFirmware(const std::string& script) {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "script", script);
+  const std::string source = RIFT_SOURCE_DIR;
+  const std::string command = fmt::format(
+      "node '{0}/tests/firmware/run_firmware.mjs' '{1}' '{0}/src/firmware' "
+      "'{0}/tests/firmware/stand_in' '{2}' > '{3}' 2>&1",
+      source, RIFT_MICROPYTHON, folder / "script", folder / "out");
+  const int status = std::system(command.c_str());
+  std::ifstream out(folder / "out");
+  Run run;
+  for (std::string line; std::getline(out, line);) {
+    if (line.empty()) continue;
+    if (std::isdigit(line[0]) || line[0] == '-') {
+      run.turns.push_back(line);
+    } else {
+      const size_t blank = line.find(' ');
+      run.end[line.substr(0, blank)] = blank == std::string::npos ? "" : line.substr(blank + 1);
+    }
+  }
+  INFO(fmt::format("exit status {}, {} turns", status, run.turns.size()));
+  REQUIRE(status == 0);
+  return run;
+}
+
+/// The same turns through the model of the listener.
+std::vector<std::string> RunModel(const std::vector<Turn>& turns) {
+  constexpr int kSpeedPerMilli = 6;  // Pololu's full speed is 6000
+  Listener listener;
+  std::vector<std::string> trace;
+  for (size_t i = 0; i < turns.size(); ++i) {
+    const Listener::Senses senses{static_cast<std::int32_t>(3 * i),
+                                  -static_cast<std::int32_t>(5 * i),
+                                  static_cast<std::uint16_t>(4000 + i % 1000)};
+    const Chunk said = listener.Poll(turns[i].now_ms, turns[i].bytes, senses);
+    trace.push_back(fmt::format("{} {} {}", kSpeedPerMilli * listener.Motors().left,
+                                kSpeedPerMilli * listener.Motors().right, Hex(said)));
+  }
+  return trace;
+}
+
+Chunk Text(const std::string& text) { return {text.begin(), text.end()}; }
+
+/// What may come in over a bad radio, good commands among it.
+class Babble {
+ public:
+  explicit Babble(std::uint64_t seed) : random_(seed) {}
+
+  std::vector<Turn> Turns(size_t count) {
+    std::vector<Turn> turns;
+    std::uint32_t now_ms = 0;
+    for (size_t i = 0; i < count; ++i) {
+      now_ms += Below(20) == 0 ? Below(700) : Below(40);
+      Chunk bytes;
+      for (unsigned pieces = Below(3); pieces > 0; --pieces) {
+        const Chunk piece = Spoiled(Piece());
+        bytes.insert(bytes.end(), piece.begin(), piece.end());
+      }
+      turns.push_back({now_ms, bytes});
+    }
+    return turns;
+  }
+
+ private:
+  unsigned Below(unsigned end) { return static_cast<unsigned>(random_() % end); }
+  int Milli() { return static_cast<int>(Below(2001)) - 1000; }
+
+  Chunk Piece() {
+    switch (Below(8)) {
+      case 0: {
+        Chunk noise(Below(30));
+        for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random_());
+        return noise;
+      }
+      case 1:
+        return Text(Below(2) ? "OK+LOST" : "OK+CONN");
+      case 2:
+        return Text(PlainLine({}));
+      case 3:
+        return Text(PlainLine({0.001 * Milli(), 0.001 * Milli()}));
+      case 4:
+        return Text(fmt::format("{:.{}f} {:.2f}\n", 0.002 * Milli(), Below(4), 0.002 * Milli()));
+      default: {
+        if (Below(10) == 0) sequence_ = static_cast<std::uint8_t>(random_());
+        const MilliPower power = Below(3) ? MilliPower{Milli(), Milli()} : MilliPower{};
+        const CommandBytes bytes = Encode(CommandFrame{sequence_++, power});
+        return {bytes.begin(), bytes.end()};
+      }
+    }
+  }
+
+  Chunk Spoiled(Chunk bytes) {
+    if (bytes.empty() || Below(4) != 0) return bytes;
+    const size_t at = Below(static_cast<unsigned>(bytes.size()));
+    switch (Below(3)) {
+      case 0:
+        bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(at));
+        break;
+      case 1:
+        bytes[at] ^= static_cast<std::uint8_t>(1u << Below(8));
+        break;
+      default:
+        bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes[at]);
+    }
+    return bytes;
+  }
+
+  std::mt19937_64 random_;
+  std::uint8_t sequence_ = 1;
+};
+
+TEST_CASE("The robot does with random bytes exactly what its model does") {
+  if (!CanRun()) return;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const std::vector<Turn> turns = Babble(seed).Turns(4000);
+    const Run run = RunFirmware(ScriptOf(turns));
+    CHECK(run.end.at("end") == "over");
+    const std::vector<std::string> model = RunModel(turns);
+    REQUIRE(run.turns.size() == model.size());
+    size_t moving = 0;
+    for (size_t i = 0; i < model.size(); ++i) {
+      INFO("turn " << i << " of seed " << seed << ": " << Hex(turns[i].bytes));
+      REQUIRE(run.turns[i] == model[i]);
+      moving += !model[i].starts_with("0 0 ");
+    }
+    CHECK(moving > 500);
+    CHECK(moving < 3500);
+  }
+}
+
+TEST_CASE("The robot's watchdog works across the wrap of its clock") {
+  if (!CanRun()) return;
+  constexpr std::uint32_t kWrap_ms = 0x4000'0000;
+  const std::string script = fmt::format("{} {}\n{} -\n{} -\n", kWrap_ms - 100,
+                                         Hex(Text("0.50 0.50\n")), kWrap_ms + 199, kWrap_ms + 200);
+  const Run run = RunFirmware(script);
+  REQUIRE(run.turns.size() == 3);
+  CHECK(run.turns[1] == "3000 3000 -");
+  CHECK(run.turns[2] == "0 0 -");
+}
+
+TEST_CASE("The robot starts at zero and whatever ends its program stops the motors") {
+  if (!CanRun()) return;
+  const Run broken = RunFirmware(fmt::format("0 -\n10 {}\n20 !\n", Hex(Text("0.50 0.50\n"))));
+  REQUIRE(broken.turns.size() == 2);
+  CHECK(broken.turns[0] == "0 0 -");
+  CHECK(broken.turns[1].starts_with("3000 3000 "));
+  CHECK(broken.end.at("speeds") == "0 0");
+  CHECK(broken.end.at("screen").starts_with("rift FAILED|"));
+
+  const Run unplugged = RunFirmware(fmt::format("0 -\n10 {}\n", Hex(Text("0.50 0.50\n"))));
+  CHECK(unplugged.end.at("end") == "over");
+  CHECK(unplugged.end.at("speeds") == "0 0");
+}
+
+TEST_CASE("The robot shows what it does while it stands") {
+  if (!CanRun()) return;
+  CHECK(RunFirmware("0 -\n").end.at("screen") == "rift waiting|L 0 R 0|stops 0|rejected 0|4000 mV");
+  const std::string script =
+      fmt::format("0 -\n10 {}\n400 -\n600 -\n", Hex(Text("0.50 0.50\n85 0.90\n")));
+  CHECK(RunFirmware(script).end.at("screen") == "rift STOPPED|L 0 R 0|stops 1|rejected 1|4003 mV");
+  CHECK(RunFirmware("0 -\n").end.at("uart") == "0 9600 28 29");
+}
+
+}  // namespace
+}  // namespace rift::hardware

@@ -1,0 +1,70 @@
+#include "rift/hardware/ping.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "bench.hpp"
+
+namespace rift::hardware {
+namespace {
+
+TEST_CASE("Ping measures the round trip of a link whose delay is known") {
+  Bench bench;
+  bench.line_delay_s = 0.03;
+  const PingResult result = Ping(bench, bench, {}, Protocol::kFramed, {});
+  // Twice the radio and the bytes of command and answer at 9600 baud.
+  const double expected_s = 2 * 0.03 + (11 + 15) * 10.0 / 9600.0;
+  CHECK(result.p50_s == Approx(expected_s).margin(0.003));
+  CHECK(result.max_s == Approx(expected_s).margin(0.004));
+  CHECK(result.jitter_s < 0.002);
+  CHECK(result.loss == 0.0);
+  CHECK(result.longest_burst == 0);
+  CHECK(result.sent == Approx(3.0 / 0.03125).margin(4));
+  CHECK(result.battery_v == Approx(5.0));
+  CHECK(BrokenBudget(result, {}).empty());
+  CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
+}
+
+TEST_CASE("Ping counts what was lost and for how long in a row") {
+  Bench lossy;
+  int commands = 0;
+  lossy.lose_command = [&] { return ++commands % 20 < 4; };
+  const PingResult result = Ping(lossy, lossy, {}, Protocol::kFramed, {});
+  CHECK(result.loss == Approx(0.2).margin(0.03));
+  CHECK(result.longest_burst == 4);
+  CHECK(BrokenBudget(result, {}).size() == 2);
+}
+
+TEST_CASE("A link without an answer breaks the budget and a plain robot is not measured") {
+  Bench deaf;
+  deaf.to_robot_is_cut = true;
+  const PingResult result = Ping(deaf, deaf, {}, Protocol::kFramed, {.duration_s = 1.0});
+  CHECK_FALSE(result.IsMeasured());
+  REQUIRE(BrokenBudget(result, {}).size() == 1);
+  CHECK_THAT(BrokenBudget(result, {})[0], Catch::Contains("is the robot on"));
+  CHECK(Ping(deaf, deaf, {}, Protocol::kPlain, {}).sent == 0);
+}
+
+TEST_CASE("The hello finds frames on a listener of ours and plain where nothing is said") {
+  Bench ours;
+  CHECK(FindProtocol(ours, ours, {}) == Protocol::kFramed);
+  Bench silent;
+  silent.from_robot_is_cut = true;
+  CHECK(FindProtocol(silent, silent, {}) == Protocol::kPlain);
+  CHECK(FindProtocol(silent, silent, {.protocol = Protocol::kFramed}) == Protocol::kFramed);
+}
+
+TEST_CASE("At most half of the line is used whatever is commanded") {
+  Bench bench;
+  RobotLink link(bench, {}, Protocol::kFramed);
+  for (int i = 0; i < 10'000; ++i) {
+    link.Put({0.0001 * (i % 100), 0.0}, true);
+    link.Tick(bench.Now_s());
+    bench.Wait(0.001);
+  }
+  const size_t bytes = link.sent_count() * Answer::kSize;
+  CHECK(bytes <= 4800 + Answer::kSize);  // half of ten seconds at 960 bytes a second
+  CHECK(bytes >= 4300);
+}
+
+}  // namespace
+}  // namespace rift::hardware

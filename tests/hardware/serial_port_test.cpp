@@ -1,0 +1,78 @@
+#include "rift/hardware/serial_port.hpp"
+
+#include <asm/termbits.h>
+#include <sys/ioctl.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <numeric>
+
+#include "pseudo_terminal.hpp"
+#include "support/process.hpp"
+
+namespace rift::hardware {
+namespace {
+
+TEST_CASE("Every byte value passes through the port unchanged both ways") {
+  PseudoTerminal terminal;
+  SerialPort port(terminal.path(), 9600, 0.1);
+  std::vector<std::uint8_t> all(256);
+  std::iota(all.begin(), all.end(), std::uint8_t{0});
+  CHECK(port.Read().empty());
+  CHECK(port.Write(all));
+  CHECK(terminal.Read(1000) == all);
+  terminal.Write(all);
+  std::vector<std::uint8_t> got;
+  for (int i = 0; i < 1000 && got.size() < all.size(); ++i) {
+    const auto more = port.Read();
+    got.insert(got.end(), more.begin(), more.end());
+    ::usleep(1000);
+  }
+  CHECK(got == all);
+  CHECK(port.Unsent() == 0);
+}
+
+TEST_CASE("A port is set to any baud rate") {
+  PseudoTerminal terminal;
+  for (const int baud : {9600, 115200, 12345, 3'000'000}) {
+    SerialPort port(terminal.path(), baud, 0.1);
+    const int other = ::open(terminal.path().c_str(), O_RDWR | O_NOCTTY);
+    termios2 set{};
+    if (other >= 0) {  // root is let in although the port is claimed
+      REQUIRE(::ioctl(other, TCGETS2, &set) == 0);
+      CHECK(set.c_ospeed == static_cast<unsigned>(baud));
+      ::close(other);
+    }
+  }
+}
+
+TEST_CASE("A port that cannot be had is refused with what to do") {
+  CHECK_THROWS_WITH(SerialPort("/dev/no_such_port", 9600, 0.1),
+                    Catch::Contains("no serial port /dev/no_such_port"));
+  CHECK_THROWS_WITH(SerialPort("/dev/null", 9600, 0.1), Catch::Contains("is no serial port"));
+  PseudoTerminal terminal;
+  const SerialPort first(terminal.path(), 9600, 0.1);
+  CHECK_THROWS_WITH(SerialPort(terminal.path(), 9600, 0.1),
+                    Catch::Contains("in use by another program"));
+}
+
+TEST_CASE("A port closed at the other end is gone for reading and writing") {
+  PseudoTerminal terminal;
+  SerialPort port(terminal.path(), 9600, 0.1);
+  terminal.Close();
+  CHECK_THROWS_AS(port.Read(), LineGone);
+  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  CHECK_THROWS_AS(port.Write(bytes), LineGone);
+}
+
+TEST_CASE("A write to a port that nobody reads gives up in time") {
+  PseudoTerminal terminal;
+  SerialPort port(terminal.path(), 9600, 0.05);
+  const std::vector<std::uint8_t> much(1'000'000, 'x');
+  const auto start = std::chrono::steady_clock::now();
+  CHECK_FALSE(port.Write(much));
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::milliseconds(500));
+}
+
+}  // namespace
+}  // namespace rift::hardware

@@ -1,0 +1,164 @@
+#include "rift/hardware/wire.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+
+namespace rift::hardware {
+namespace {
+
+void Flip(CommandBytes& bytes, size_t bit) {
+  bytes[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
+}
+
+constexpr size_t kBits = 8 * CommandFrame::kSize;
+
+TEST_CASE("A plain line is what the authors' format string prints for every hundredth") {
+  for (int left = -1000; left <= 1000; left += 7) {
+    for (int right = -1000; right <= 1000; right += 61) {
+      char expected[32];
+      std::snprintf(expected, sizeof expected, "%.2f %.2f\n", left / 1000.0, right / 1000.0);
+      REQUIRE(PlainLine({left / 1000.0, right / 1000.0}) == expected);
+    }
+  }
+}
+
+TEST_CASE("A power outside of its range is refused and never made to fit") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {1.0000001, -1.01, 85.0, nan, HUGE_VAL, -HUGE_VAL}) {
+    CHECK_THROWS_AS(PlainLine({bad, 0.0}), std::invalid_argument);
+    CHECK_THROWS_AS(PlainLine({0.0, bad}), std::invalid_argument);
+    CHECK_THROWS_AS(MilliOf({0.0, bad}), std::invalid_argument);
+  }
+}
+
+TEST_CASE("A plain line that lost one byte is understood only where it lost its sign") {
+  for (const std::string line : {"0.85 0.90", "-0.85 0.90", "1.00 -1.00", "0.00 0.00"}) {
+    REQUIRE(ParsePlainLine(line));
+    for (size_t lost = 0; lost < line.size(); ++lost) {
+      std::string cut = line;
+      cut.erase(lost, 1);
+      INFO(cut);
+      CHECK(ParsePlainLine(cut).has_value() == (line[lost] == '-'));
+    }
+  }
+}
+
+TEST_CASE("What is not exactly two numbers of two decimals in range is no plain line") {
+  for (const char* bad : {"",
+                          " ",
+                          "85 0.90",
+                          "0.8 0.90",
+                          "0.850.90",
+                          "1.01 0.00",
+                          "9.99 0.00",
+                          "nan nan",
+                          "inf 0.00",
+                          "0.85  0.90",
+                          "0.85 0.90 ",
+                          " 0.85 0.90",
+                          "0.85 0.90\r",
+                          "+0.85 0.90",
+                          "0.85,0.90",
+                          "--0.85 0.90",
+                          "0.85 0.900",
+                          "1e-1 0.00",
+                          "0.85",
+                          "0.85 ",
+                          "OK+LOST",
+                          "0.85 0.900.80 0.9"}) {
+    INFO(bad);
+    CHECK_FALSE(ParsePlainLine(bad));
+  }
+  CHECK(ParsePlainLine("-0.85 1.00") == MilliPower{-850, 1000});
+}
+
+TEST_CASE("Every command comes out of its frame as it went in") {
+  for (int left = -1000; left <= 1000; left += 13) {
+    for (int right = -1000; right <= 1000; right += 17) {
+      const CommandFrame frame{static_cast<std::uint8_t>(left * right), {left, right}};
+      const auto decoded = DecodeCommand(Encode(frame));
+      REQUIRE(decoded);
+      REQUIRE(decoded->power == frame.power);
+      REQUIRE(decoded->sequence == frame.sequence);
+    }
+  }
+}
+
+TEST_CASE("CRC-8 gives the check value of its catalogue entry") {
+  const std::string digits = "123456789";
+  CHECK(Crc8(Bytes(reinterpret_cast<const std::uint8_t*>(digits.data()), digits.size())) == 0xF4);
+}
+
+TEST_CASE("No command frame with up to three wrong bits is taken") {
+  const CommandBytes good = Encode(CommandFrame{77, {123, -456}});
+  for (size_t a = 0; a < kBits; ++a) {
+    CommandBytes one = good;
+    Flip(one, a);
+    REQUIRE_FALSE(DecodeCommand(one));
+    for (size_t b = a + 1; b < kBits; ++b) {
+      CommandBytes two = one;
+      Flip(two, b);
+      REQUIRE_FALSE(DecodeCommand(two));
+      for (size_t c = b + 1; c < kBits; ++c) {
+        CommandBytes three = two;
+        Flip(three, c);
+        REQUIRE_FALSE(DecodeCommand(three));
+      }
+    }
+  }
+}
+
+TEST_CASE("Of all frames with four wrong bits hardly any changes a power unseen") {
+  const CommandBytes good = Encode(CommandFrame{77, {123, -456}});
+  size_t changed = 0, patterns = 0;
+  for (size_t a = 0; a < kBits; ++a)
+    for (size_t b = a + 1; b < kBits; ++b)
+      for (size_t c = b + 1; c < kBits; ++c)
+        for (size_t d = c + 1; d < kBits; ++d) {
+          CommandBytes bytes = good;
+          for (const size_t bit : {a, b, c, d}) Flip(bytes, bit);
+          ++patterns;
+          const auto taken = DecodeCommand(bytes);
+          changed += taken && !(taken->power == MilliPower{123, -456});
+        }
+  CHECK(patterns == 2'331'890);
+  CHECK(changed * 50'000 < patterns);
+}
+
+TEST_CASE("No frame of random bytes is taken as a command") {
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 1'000'000; ++i) {
+    CommandBytes bytes;
+    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+    bytes[0] = CommandFrame::kStart;
+    REQUIRE_FALSE(DecodeCommand(bytes));
+  }
+}
+
+TEST_CASE("An answer comes back as it was said in both languages") {
+  const Answer answer{9, 3, -123456, 2147483647, 5021, 255};
+  CHECK(DecodeAnswer(Encode(answer)) == answer);
+  const std::string line = AnswerLine(answer);
+  const auto said = ParseAnswerLine(std::string_view(line).substr(0, line.size() - 1));
+  REQUIRE(said);
+  CHECK(said->left == answer.left);
+  CHECK(said->right == answer.right);
+  CHECK(said->battery_mv == answer.battery_mv);
+}
+
+TEST_CASE("An answer with one wrong character is not believed") {
+  const std::string line = AnswerLine(Answer{{}, 0, 12, -7, 5021, 0});
+  for (size_t i = 0; i + 1 < line.size(); ++i) {
+    std::string wrong = line.substr(0, line.size() - 1);
+    wrong[i] ^= 1;
+    INFO(wrong);
+    CHECK_FALSE(ParseAnswerLine(wrong));
+    CHECK_FALSE(ParseAnswerLine(line.substr(0, i)));
+  }
+}
+
+}  // namespace
+}  // namespace rift::hardware

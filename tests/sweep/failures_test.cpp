@@ -1,0 +1,250 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "rift/sweep/clusters.hpp"
+#include "rift/sweep/failure_probability.hpp"
+#include "rift/sweep/shrink.hpp"
+#include "rift/sweep/statistics.hpp"
+#include "rift/sweep/suggest.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using Catch::Matchers::Contains;
+
+ParameterValue Numeric(double number) { return {std::to_string(number), number}; }
+
+TrialRow Row(const ParameterValue& value, double gap_m, const std::string& trial = "1") {
+  TrialRow row;
+  row.theta = {value};
+  row.trial = trial;
+  row.comparison.gap_m = gap_m;
+  row.comparison.gap_u = 0.9;
+  row.falsified = gap_m > 0.06;
+  return row;
+}
+
+/// `left` failures that end to the left on ice, `right` that end to the right on rock, some passes.
+SweepResult TwoKinds(int left, int right) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0.0, 0.004);
+  SweepResult result;
+  result.parameters = {{.key = "surface", .levels = {{"ice", {}}, {"rock", {}}}}};
+  for (int i = 0; i < left + right + 20; ++i) {
+    const bool fails = i < left + right;
+    const double side = i < left ? 1.0 : -1.0;
+    TrialRow row =
+        Row(result.parameters[0].levels[i < left ? 0 : 1], fails ? 0.08 : 0.02, std::to_string(i));
+    for (int k = 1; k <= 8; ++k) {
+      row.evidence.errors_m.push_back({noise(random), side * 0.01 * k + noise(random)});
+    }
+    result.rows.push_back(row);
+  }
+  Summarise(result);
+  return result;
+}
+
+TEST_CASE("Failures of two kinds are told apart with a typical one each") {
+  const SweepResult result = TwoKinds(12, 5);
+  const std::vector<FailureCluster> clusters = ClusterFailures(result);
+  REQUIRE(clusters.size() == 2);
+  CHECK(clusters[0].rows.size() == 12);
+  CHECK(clusters[1].rows.size() == 5);
+  for (const int row : clusters[0].rows) CHECK(row < 12);
+  CHECK(clusters[0].end_error_m.y() == Approx(0.08).margin(0.01));
+  CHECK_THAT(clusters[0].sentence, Contains("12 with a mean gap of 0.080 m at u = 0.90") &&
+                                       Contains("mostly at surface ice (12 of 12)"));
+}
+
+TEST_CASE("Failures of one kind stay together") {
+  CHECK(ClusterFailures(TwoKinds(30, 0)).size() == 1);
+  CHECK(ClusterFailures(TwoKinds(1, 0)).size() == 1);
+  CHECK(ClusterFailures(TwoKinds(0, 0)).empty());
+}
+
+TEST_CASE("Robots that fell are a kind of their own and missing logs are none") {
+  SweepResult result = TwoKinds(3, 0);
+  result.rows[5].status = TrialStatus::kFell;
+  result.rows[6].status = TrialStatus::kMissing;
+  const std::vector<FailureCluster> clusters = ClusterFailures(result);
+  REQUIRE(clusters.size() == 2);
+  CHECK_THAT(clusters[1].sentence, Contains("1 ended as 'fell'"));
+}
+
+const std::vector<Parameter> kSpace{{.key = "delay", .min = 0.0, .max = 1.0},
+                                    {.key = "friction", .min = 0.0, .max = 1.0},
+                                    {.key = "level", .levels = {{"1", 1}, {"2", 2}, {"3", 3}}},
+                                    {.key = "surface", .levels = {{"ice", {}}, {"rock", {}}}}};
+const Theta kNominal{Numeric(0.1), Numeric(0.8), {"1", 1.0}, {"rock", {}}};
+
+void CheckMinimal(const ShrunkFailure& shrunk, const Robustness& robustness) {
+  CHECK(robustness(shrunk.theta) < 0.0);
+  for (const int i : shrunk.changed) {
+    Theta without = shrunk.theta;
+    without[i] = kNominal[i];
+    CHECK_FALSE(robustness(without) < 0.0);
+  }
+}
+
+TEST_CASE("A failure shrinks to the changes that cause it and each is as small as can be") {
+  // Fails by a delay above 0.42 together with level 2 or more; the rest is decoration.
+  const Robustness robustness = [](const Theta& theta) {
+    return *theta[0].number > 0.42 && *theta[2].number >= 2.0 ? -0.01 : 0.01;
+  };
+  const Theta failing{Numeric(0.9), Numeric(0.2), {"3", 3.0}, {"ice", {}}};
+  const ShrunkFailure shrunk = Shrink(kSpace, kNominal, failing, robustness);
+  CHECK(shrunk.changed == std::vector<int>{0, 2});
+  CHECK(*shrunk.theta[0].number == Approx(0.42).margin(0.02));
+  CHECK(shrunk.theta[2].text == "2");
+  CHECK(shrunk.theta[3].text == "rock");
+  CHECK(shrunk.is_minimal);
+  CHECK(shrunk.is_fewest);
+  CheckMinimal(shrunk, robustness);
+}
+
+TEST_CASE("Shrinking random conjunctions always ends with a minimal failure") {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (int round = 0; round < 200; ++round) {
+    const double least_delay = 0.1 + 0.5 * share(random), most_friction = 0.8 * share(random);
+    const unsigned needed = random() % 16;
+    const Robustness robustness = [&](const Theta& theta) {
+      const bool holds[4] = {*theta[0].number > least_delay,
+                             *theta[1].number<most_friction, *theta[2].number> 1.5,
+                             theta[3].text == "ice"};
+      for (unsigned i = 0; i < 4; ++i) {
+        if ((needed >> i & 1) != 0 && !holds[i]) return 0.01;
+      }
+      return -0.01;
+    };
+    const Theta failing{Numeric(0.95), Numeric(-0.01), {"3", 3.0}, {"ice", {}}};
+    const ShrunkFailure shrunk = Shrink(kSpace, kNominal, failing, robustness);
+    CHECK(static_cast<int>(shrunk.changed.size()) == __builtin_popcount(needed));
+    CHECK(shrunk.is_minimal);
+    CheckMinimal(shrunk, robustness);
+  }
+}
+
+TEST_CASE("What does not fail is not shrunk and a spent budget is told") {
+  const Theta failing{Numeric(0.9), Numeric(0.2), {"3", 3.0}, {"ice", {}}};
+  CHECK_THROWS_WITH(Shrink(kSpace, kNominal, failing, [](const Theta&) { return 0.02; }),
+                    Contains("nothing to shrink") && Contains("0.02"));
+  CHECK_THROWS(Shrink(kSpace, kNominal, failing, [](const Theta&) { return NAN; }));
+  const Robustness any = [](const Theta& theta) { return theta[3].text == "ice" ? -1.0 : 1.0; };
+  const ShrunkFailure cut = Shrink(kSpace, kNominal, failing, any, {.max_evaluations = 2});
+  CHECK(any(cut.theta) < 0.0);
+  CHECK_FALSE(cut.is_minimal);
+  CHECK_FALSE(cut.is_fewest);
+}
+
+TEST_CASE("Only rows drawn at random tell how often it fails") {
+  SweepResult result;
+  result.parameters = {{.key = "x", .min = 0.0, .max = 1.0}};
+  for (int i = 0; i < 100; ++i) {
+    result.rows.push_back(Row(Numeric(0.01 * i), i < 12 ? 0.08 : 0.02));
+    result.rows.back().is_random_draw = i % 2 == 0;
+  }
+  Summarise(result);
+  const FailureProbability estimate = EstimateFailureProbability(result);
+  CHECK(estimate.draws == 50);
+  CHECK(estimate.failures == 6);
+  CHECK(estimate.low == Approx(0.0453).margin(1e-3));  // R: binom.test(6, 50)
+  CHECK(estimate.high == Approx(0.2431).margin(1e-3));
+  for (TrialRow& row : result.rows) row.is_random_draw = false;
+  CHECK_THAT(EstimateFailureProbability(result).sentence, Contains("chosen, not drawn"));
+}
+
+TEST_CASE("A rare failure is found with its probability and an interval that holds it") {
+  // x0 + x1 > 2 - d on the unit square has probability d^2 / 2.
+  const double d = 0.02, truth = d * d / 2.0;
+  const UnitRobustness robustness = [&](std::span<const double> x) {
+    return (2.0 - d) - (x[0] + x[1]);
+  };
+  int held = 0;
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const RareEvent event = EstimateRareEvent(2, robustness, seed);
+    REQUIRE(event.is_reached);
+    held += event.low <= truth && truth <= event.high;
+    sum += event.probability;
+    CHECK(event.evaluations < 3000);
+  }
+  CHECK(held >= 34);
+  CHECK(sum / 40.0 == Approx(truth).epsilon(0.15));
+}
+
+TEST_CASE("What never fails is bounded and what fails often needs one level") {
+  const RareEvent never = EstimateRareEvent(1, [](std::span<const double> x) { return 1.0 + x[0]; },
+                                            1, {.most_levels = 4});
+  CHECK_FALSE(never.is_reached);
+  CHECK(never.low == 0.0);
+  CHECK(never.high < 1e-2);
+  const RareEvent often = EstimateRareEvent(
+      1, [](std::span<const double> x) { return x[0] - 0.5; }, 1);
+  CHECK(often.levels == 1);
+  CHECK(often.probability == Approx(0.5).margin(0.07));
+  CHECK(EstimateRareEvent(
+            1, [](std::span<const double>) { return NAN; }, 1)
+            .is_reached == false);
+}
+
+/// Settings with three trials each around given means.
+SweepResult Repeated(const std::vector<double>& means_m) {
+  SweepResult result;
+  result.parameters = {{.key = "x", .levels = {}}};
+  for (size_t i = 0; i < means_m.size(); ++i) {
+    result.parameters[0].levels.push_back(Numeric(static_cast<double>(i)));
+    for (const double offset_m : {-0.008, 0.0, 0.008}) {
+      result.rows.push_back(
+          Row(result.parameters[0].levels[i], means_m[i] + offset_m, std::to_string(offset_m)));
+    }
+  }
+  Summarise(result);
+  return result;
+}
+
+TEST_CASE("The settings next to the threshold are suggested and the clear ones are not") {
+  const SweepResult result = Repeated({0.02, 0.058, 0.12, 0.064});
+  const std::vector<Suggestion> suggestions = SuggestExperiments(result, {.experiments = 2});
+  REQUIRE_FALSE(suggestions.empty());
+  for (const Suggestion& suggestion : suggestions) {
+    CHECK((suggestion.setting == 1 || suggestion.setting == 3));
+    CHECK(suggestion.wrong_after < suggestion.wrong_now);
+    CHECK(suggestion.width_after < suggestion.width_now);
+    CHECK_THAT(suggestion.sentence, Contains("is its mean gap above 0.06 m?"));
+  }
+  CHECK(RepeatScatter_m(result) == Approx(0.008));
+  // n = ((1.96 + 0.84) 0.008 / 0.002)^2 and over 0.004.
+  CHECK(SuggestExperiments(Repeated({0.058}))[0].trials_to_decide == 126);
+  CHECK(SuggestExperiments(Repeated({0.064}))[0].trials_to_decide == 32);
+}
+
+TEST_CASE("The risk expected after more trials is what simulation finds") {
+  const Suggestion suggestion = SuggestExperiments(Repeated({0.064}), {.experiments = 1})[0];
+  REQUIRE(suggestion.repeats == 3);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  const int rounds = 40'000;
+  int wrong = 0, flips = 0;
+  for (int i = 0; i < rounds; ++i) {
+    const double truth_m = 0.064 + 0.008 / std::sqrt(3.0) * normal(random);
+    const double seen_m = truth_m + 0.008 / std::sqrt(3.0) * normal(random);
+    const bool says_above = 0.5 * (0.064 + seen_m) > 0.06;
+    wrong += says_above != (truth_m > 0.06);
+    flips += !says_above;
+  }
+  CHECK(suggestion.wrong_after == Approx(double(wrong) / rounds).margin(0.01));
+  CHECK(suggestion.flip == Approx(double(flips) / rounds).margin(0.01));
+}
+
+TEST_CASE("Without repeats that differ nothing can be suggested") {
+  SweepResult result;
+  result.parameters = {{.key = "x", .levels = {Numeric(1.0)}}};
+  result.rows = {Row(Numeric(1.0), 0.05)};
+  Summarise(result);
+  CHECK(SuggestExperiments(result).empty());
+}
+
+}  // namespace
+}  // namespace rift::sweep

@@ -1,0 +1,119 @@
+#include "rift/sweep/inert.hpp"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "rift/sweep/anatomy.hpp"
+#include "rift/sweep/statistics.hpp"
+#include "support/paths.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using Catch::Matchers::Contains;
+
+/// v_max 0.3, 0.4, 0.5 on two surfaces, 4 trials; the path depends on the surface and on whether
+/// v_max is above 0.35; the controller asks for 0.39.
+SweepResult Table() {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal(0.0, 0.01);
+  SweepResult result;
+  result.parameters = {
+      {.key = "surface", .levels = {{"ice", {}}, {"rock", {}}}},
+      {.key = "control.v_max", .levels = {{"0.3", 0.3}, {"0.4", 0.4}, {"0.5", 0.5}}}};
+  for (const ParameterValue& surface : result.parameters[0].levels) {
+    for (const ParameterValue& v_max : result.parameters[1].levels) {
+      for (const char* trial : {"1", "2", "3", "4"}) {
+        TrialRow row;
+        row.theta = {surface, v_max};
+        row.trial = trial;
+        row.comparison.gap_m = (surface.text == "ice" ? 0.03 : 0.06) + normal(random);
+        row.evidence.fingerprint = (surface.text == "ice" ? 10 : 20) + (*v_max.number > 0.35);
+        row.evidence.candidate_limits = trial::LimitCounts{
+            .decisions = 60, .v_max = *v_max.number < 0.39 ? 1u : 0u, .largest_raw_v = 0.39};
+        result.rows.push_back(row);
+      }
+    }
+  }
+  Summarise(result);
+  return result;
+}
+
+TEST_CASE("A limit that never binds is named with the most it was asked for") {
+  const SweepResult result = Table();
+  const std::vector<Inertness> inert = FindInert(result, AnalyseFactors(result));
+  REQUIRE(inert.size() == 2);
+  CHECK(inert[0].is_detected);
+  CHECK_FALSE(inert[0].IsInert());
+  CHECK(inert[1].IsInert());
+  CHECK_FALSE(inert[1].NeverChangedAPath());
+  REQUIRE(inert[1].pairs.size() == 2);
+  CHECK(inert[1].pairs[0].identical == 0);
+  CHECK(inert[1].pairs[1].identical == 8);
+  REQUIRE(inert[1].sentences.size() == 3);
+  CHECK_THAT(inert[1].sentences[0], Contains("no effect of v_max on the gap is seen (p = ") &&
+                                        Contains("would have been seen with 80 % probability"));
+  CHECK(inert[1].sentences[1] ==
+        "with v_max 0.4 and 0.5 the candidate drove the same path to the last bit in all 8 pairs "
+        "of trials");
+  CHECK(inert[1].sentences[2] ==
+        "the candidate's controller never asked for more than 0.39, so v_max 0.4 and 0.5 never "
+        "bound; 0.3 bound in 8 of 480 decisions of 8 runs");
+}
+
+TEST_CASE("A parameter that never changed a path is inert to the last bit") {
+  SweepResult result = Table();
+  for (TrialRow& row : result.rows) row.evidence.fingerprint = row.theta[0].text == "ice" ? 1 : 2;
+  const Inertness inert = FindInert(result, AnalyseFactors(result))[1];
+  CHECK(inert.NeverChangedAPath());
+  CHECK_THAT(inert.sentences[1], Contains("never changed the candidate's path: in all 16 pairs"));
+}
+
+TEST_CASE("A path keeps its fingerprint with its clock and loses it with one bit") {
+  const trajectory::Trajectory path = test::StraightPath(0.7, 40);
+  trajectory::Trajectory later = path, moved = path;
+  for (trajectory::StampedPose& pose : later.poses) pose.t_s += 3.0;
+  moved.poses[20].y_m = std::nextafter(moved.poses[20].y_m, 1.0);
+  CHECK(Fingerprint(path) == Fingerprint(later));
+  CHECK(Fingerprint(path) != Fingerprint(moved));
+  CHECK(Fingerprint(path) != 0);
+}
+
+TEST_CASE("The controller is rebuilt from a log with targets and from no other") {
+  trajectory::Trajectory log = test::StraightPath(0.4, 41);
+  for (trajectory::StampedPose& pose : log.poses) pose.yaw_rad = 0.0;
+  CHECK_FALSE(RebuildLimits(log, {}).has_value());
+  for (trajectory::StampedPose& pose : log.poses) {
+    pose.target_x_m = pose.x_m < 0.15 ? 0.2 : 0.4;
+    pose.target_y_m = 0.0;
+  }
+  const auto limits = RebuildLimits(log, {.v_max = 0.35});
+  REQUIRE(limits.has_value());
+  CHECK(limits->decisions > 20);
+  CHECK(limits->largest_raw_v > 0.2);
+  CHECK(limits->v_max > 0);  // the kick of each leg
+}
+
+TEST_CASE("The parts of the gap add up and the noise floor bounds what can be removed") {
+  SweepResult result = Table();
+  for (TrialRow& row : result.rows) {
+    row.comparison.start_aligned_gap_m = row.comparison.gap_m - 0.01;
+    row.comparison.shape_gap_m = row.comparison.gap_m - 0.015;
+    row.comparison.frechet_m = row.comparison.gap_m - 0.002;
+    row.comparison.equal_time_m = row.comparison.gap_m + 0.05;
+  }
+  Summarise(result);
+  for (SettingResult& setting : result.settings) setting.noise_floor_m = 0.02;
+  const Anatomy anatomy = Dissect(result);
+  CHECK(anatomy.gap_m.n == 6);
+  CHECK(anatomy.start_m.mean == Approx(0.01));
+  CHECK(anatomy.frame_m.mean == Approx(0.005));
+  CHECK(anatomy.start_m.mean + anatomy.frame_m.mean + anatomy.shape_m.mean ==
+        Approx(anatomy.gap_m.mean));
+  CHECK(anatomy.removable_m.mean == Approx(anatomy.gap_m.mean - 0.02));
+  CHECK(IsClear(anatomy.start_m));
+  CHECK(anatomy.timing_m.mean == Approx(0.05));
+}
+
+}  // namespace
+}  // namespace rift::sweep

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <regex>
+
+#include "rift/vision/camera_source.hpp"
+#include "support/process.hpp"
+
+namespace rift::vision {
+namespace {
+
+using Catch::Matchers::Contains;
+
+/// What capture_probe printed about the shim's camera.
+struct Probed {
+  std::string text;
+
+  double Number(const std::string& name) const {
+    std::smatch match;
+    const std::regex line("(^|\n)" + name + " ([-0-9.]+)");
+    return std::regex_search(text, match, line) ? std::stod(match[2]) : -1.0;
+  }
+  /// Seconds without a picture until this state was named; -1 when it never was.
+  double NamedAfter_s(const std::string& state) const {
+    std::smatch match;
+    const std::regex line("state " + state + " after ([0-9.]+) s");
+    return std::regex_search(text, match, line) ? std::stod(match[1]) : -1.0;
+  }
+};
+
+Probed Probe(const std::map<std::string, std::string>& shim, const std::string& arguments) {
+  std::string command = "env LD_PRELOAD=" RIFT_V4L2_SHIM;
+  for (const auto& [name, value] : shim) command += fmt::format(" RIFT_SHIM_{}='{}'", name, value);
+  command += " timeout 30 " RIFT_CAPTURE_PROBE " " + arguments + " 2>&1";
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  Probed probed;
+  std::array<char, 512> line{};
+  while (std::fgets(line.data(), line.size(), pipe.get()) != nullptr) probed.text += line.data();
+  return probed;
+}
+
+/// JPEGs with something to see in them, or black ones.
+class JpegFolder {
+ public:
+  JpegFolder(int width_px, int height_px, bool black = false) {
+    for (int i = 0; i < 6; ++i) {
+      cv::Mat picture(height_px, width_px, CV_8UC3, cv::Scalar::all(black ? 3 : 120));
+      if (!black) cv::circle(picture, {60 + 20 * i, 100}, 40, {255, 255, 255}, cv::FILLED);
+      cv::imwrite(folder_ / ("f" + std::to_string(i) + ".jpg"), picture);
+    }
+  }
+  std::string Path() const { return folder_.Path().string(); }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_CASE("A V4L2 camera runs at the rate asked for in MJPG and in YUYV") {
+  const int fps = GENERATE(30, 60);
+  const bool mjpg = GENERATE(true, false);
+  const JpegFolder jpegs(640, 480);
+  const Probed probed = Probe({{"JPEGS", jpegs.Path()}},
+                              fmt::format("/dev/video0 2.5 {} {} 640 480", mjpg ? "mjpg" : "yuyv", fps));
+  INFO(probed.text);
+  CHECK_THAT(probed.text, Contains(mjpg ? "first jpeg 640 480" : "first yuyv 640 480"));
+  CHECK(probed.Number("rate") == Approx(fps).epsilon(0.08));
+  CHECK(probed.NamedAfter_s("frozen") < 0.0);
+  // The shim stamps the light 12 ms before it hands out the buffer.
+  CHECK(probed.Number("latency") > 0.011);
+  CHECK(probed.Number("latency") < 0.100);
+}
+
+TEST_CASE("A fault of a V4L2 camera is named within a second and nothing hangs") {
+  struct Fault {
+    std::string name, state;
+  };
+  const Fault fault = GENERATE(Fault{"unplug", "unplugged"}, Fault{"eio", "frozen"},
+                               Fault{"hang", "frozen"}, Fault{"busy", "busy"});
+  const bool mjpg = GENERATE(true, false);
+  const JpegFolder jpegs(640, 480);
+  const Probed probed = Probe({{"JPEGS", jpegs.Path()}, {"FAULT", fault.name}},
+                              fmt::format("/dev/video0 3 {} 30 640 480", mjpg ? "mjpg" : "yuyv"));
+  INFO(fault.name << (mjpg ? " mjpg\n" : " yuyv\n") << probed.text);
+  CHECK(probed.NamedAfter_s(fault.state) >= 0.0);
+  CHECK(probed.NamedAfter_s(fault.state) < 1.0);
+  CHECK(probed.Number("left") >= 0.0);
+  CHECK(probed.Number("left") < 1.0);
+}
+
+TEST_CASE("Pictures that repeat or that see no light are named while they keep coming") {
+  const bool mjpg = GENERATE(true, false);
+  const JpegFolder light(320, 240), dark(320, 240, true);
+  const std::string camera = fmt::format("/dev/video0 2.5 {} 30 320 240", mjpg ? "mjpg" : "yuyv");
+  const Probed frozen = Probe({{"JPEGS", light.Path()}, {"FAULT", "freeze"}}, camera);
+  INFO(frozen.text);
+  CHECK(frozen.NamedAfter_s("frozen") >= 0.0);
+  CHECK(frozen.Number("rate") > 20.0);
+  const Probed black =
+      Probe({{"JPEGS", dark.Path()}, {"FAULT", "black"}, {"AFTER", "10"}}, camera);
+  INFO(black.text);
+  CHECK(black.NamedAfter_s("black") >= 0.0);
+  CHECK(black.Number("rate") > 20.0);
+}
+
+TEST_CASE("A camera without a format that is understood is named with those it has") {
+  const Probed probed = Probe({{"FORMATS", "H264,NV12"}}, "/dev/video0 2 mjpg 30 640 480");
+  CHECK_THAT(probed.text, Contains("state wrong format") && Contains("gives H264, NV12"));
+}
+
+TEST_CASE("A device that is not there is named with what to do") {
+  try {
+    OpenCamera("/dev/video93", {});
+    FAIL("it was opened");
+  } catch (const CameraError& error) {
+    CHECK(error.state == CameraState::kUnplugged);
+    CHECK_THAT(error.what(), Contains("/dev/video93") && Contains("ls /dev/video*"));
+  }
+}
+
+TEST_CASE("A device that may not be opened names the group") {
+  const Probed probed = Probe({{"FAULT", "denied"}}, "/dev/video0 1 mjpg 30 640 480");
+  CHECK_THAT(probed.text, Contains("group 'video'"));
+}
+
+}  // namespace
+}  // namespace rift::vision

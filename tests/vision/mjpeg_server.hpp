@@ -1,0 +1,104 @@
+#pragma once
+
+#include <atomic>
+#include <boost/asio.hpp>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace rift::vision::synthetic {
+
+/// How a server sends, or fails to.
+struct ServerOptions {
+  double fps = 30.0;
+  bool content_length = true;
+  std::string content_type = "multipart/x-mixed-replace; boundary=frame";
+  int pictures = 1'000'000;  ///< then it closes the connection ...
+  bool then_silent = false;  ///< ... or stays there without a word
+};
+
+/// An http camera for one client on a free port of this machine. Every JPEG carries the time at
+/// which it was sent in a comment segment.
+class MjpegServer {
+ public:
+  MjpegServer(std::vector<std::uint8_t> jpeg, ServerOptions options)
+      : jpeg_(std::move(jpeg)), options_(std::move(options)), thread_([this] { Serve(); }) {}
+  ~MjpegServer() {
+    stop_ = true;
+    boost::system::error_code ignored;
+    boost::asio::ip::tcp::socket waker(context_);  // accept() waits for somebody
+    waker.connect(acceptor_.local_endpoint(), ignored);
+    if (client_) client_->shutdown(boost::asio::ip::tcp::socket::shutdown_both, ignored);
+    thread_.join();
+  }
+  MjpegServer(const MjpegServer&) = delete;
+  MjpegServer& operator=(const MjpegServer&) = delete;
+
+  std::string Url() const {
+    return "http://127.0.0.1:" + std::to_string(acceptor_.local_endpoint().port()) + "/video";
+  }
+
+  static double Now_s() {
+    using std::chrono::duration;
+    return duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+  /// When a picture of this server was sent.
+  static double SentAt_s(const std::vector<std::uint8_t>& jpeg) {
+    double sent_s = 0.0;
+    std::memcpy(&sent_s, jpeg.data() + 6, sizeof sent_s);
+    return sent_s;
+  }
+
+ private:
+  std::vector<std::uint8_t> Stamped() const {
+    std::vector<std::uint8_t> jpeg = jpeg_;
+    std::vector<std::uint8_t> comment{0xFF, 0xFE, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0};
+    const double now_s = Now_s();
+    std::memcpy(comment.data() + 4, &now_s, sizeof now_s);
+    jpeg.insert(jpeg.begin() + 2, comment.begin(), comment.end());
+    return jpeg;
+  }
+
+  void Send(const std::string& head, const std::vector<std::uint8_t>& body) {
+    boost::asio::write(*client_, boost::asio::buffer(head));
+    boost::asio::write(*client_, boost::asio::buffer(body));
+  }
+
+  void Serve() {
+    try {
+      client_.emplace(acceptor_.accept());
+      std::string request;
+      boost::asio::read_until(*client_, boost::asio::dynamic_buffer(request), "\r\n\r\n");
+      Send("HTTP/1.0 200 OK\r\nContent-Type: " + options_.content_type + "\r\n\r\n", {});
+      for (int i = 0; i < options_.pictures && !stop_; ++i) {
+        const std::vector<std::uint8_t> jpeg = Stamped();
+        std::string head = "\r\n--frame\r\nContent-Type: image/jpeg\r\n";
+        if (options_.content_length) {
+          head += "Content-Length: " + std::to_string(jpeg.size()) + "\r\n";
+        }
+        Send(head + "\r\n", jpeg);
+        std::this_thread::sleep_for(std::chrono::duration<double>(1.0 / options_.fps));
+      }
+      while (options_.then_silent && !stop_) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+      client_->close();
+    } catch (const boost::system::system_error&) {  // the client went away: what else is there to do
+    }
+  }
+
+  boost::asio::io_context context_;
+  boost::asio::ip::tcp::acceptor acceptor_{
+      context_, {boost::asio::ip::address_v4::loopback(), 0}};
+  std::vector<std::uint8_t> jpeg_;
+  ServerOptions options_;
+  std::optional<boost::asio::ip::tcp::socket> client_;
+  std::atomic<bool> stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace rift::vision::synthetic
