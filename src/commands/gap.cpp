@@ -21,6 +21,9 @@ using trajectory::Format;
 struct GapRequest {
   std::string sim;
   std::vector<std::string> reals;
+  std::vector<std::string> sim_repeats;
+  gap::LikenessOptions likeness;
+  std::uint64_t seed = 1;
   gap::GapOptions options;
   double tag_offset_m = 0.0;
   Format sim_format = Format::kAuto;
@@ -61,6 +64,18 @@ GapEvidence Measure(const GapRequest& request) {
   return evidence;
 }
 
+/// Every simulated run is held against every real one: nothing says that they belong together.
+gap::Likeness MeasureRepeats(const GapRequest& request, const GapEvidence& evidence) {
+  gap::RepeatedSetting setting{.reals = evidence.reals, .sims = {{evidence.sim}}};
+  for (const std::string& path : request.sim_repeats) {
+    trajectory::Log sim = LoadLog(path, request.sim_format);
+    SayNotes(sim, path, "--sim-format");
+    setting.sims.front().push_back(std::move(sim.trajectory));
+  }
+  std::mt19937_64 generator(request.seed);
+  return gap::MeasureLikeness({&setting, 1}, request.options, request.likeness, generator);
+}
+
 void Save(const GapRequest& request, const GapEvidence& evidence) {
   if (!request.profile.empty()) WriteFile(request.profile, ProfileCsv(evidence));
   if (!request.figure.empty()) WriteGapFigure(request.figure, evidence);
@@ -77,6 +92,7 @@ void CheckOutputs(const GapRequest& request) {
   if (!request.figure.empty()) RequireFigureName(request.figure);
   std::vector<std::string> inputs = request.reals;
   inputs.push_back(request.sim);
+  inputs.insert(inputs.end(), request.sim_repeats.begin(), request.sim_repeats.end());
   for (const std::string& output : {request.json, request.profile, request.figure}) {
     for (const std::string& input : inputs) {
       std::error_code not_there;
@@ -100,6 +116,9 @@ void AddGap(CLI::App& app, int& exit_code) {
       "moves the real path forward along its yaw, from the tag to the robot's front (paper: 0.03)");
   flags("sim_format", request->sim_format, "dialect of SIM");
   flags("real_format", request->real_format, "dialect of REAL");
+  app.add_option("--sim-repeats", request->sim_repeats,
+                 "further runs of the simulator: adds how like the robot they are")
+      ->type_name("SIM...");
   app.add_option("--json", request->json,
                  "write everything as JSON; - for stdout, without the text")
       ->type_name("FILE|-");
@@ -112,7 +131,8 @@ void AddGap(CLI::App& app, int& exit_code) {
       "Example: rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03");
   app.callback([request, &exit_code] {
     CheckOutputs(*request);
-    const GapEvidence evidence = Measure(*request);
+    GapEvidence evidence = Measure(*request);
+    if (!request->sim_repeats.empty()) evidence.likeness = MeasureRepeats(*request, evidence);
     Save(*request, evidence);
     const bool falsified = evidence.verdict.verdict == gap::Verdict::kFalsified;
     exit_code = request->exit_code && falsified ? kFalsified : kDone;

@@ -9,6 +9,7 @@
 
 #include "enum_name.hpp"
 #include "json_fields.hpp"
+#include "likeness_output.hpp"
 
 namespace rift::commands {
 namespace {
@@ -124,8 +125,9 @@ std::string GapText(const GapEvidence& evidence) {
     text += fmt::format("noise floor: the real trials are {:.4f} m apart from each other\n",
                         evidence.noise_floor_m);
   }
-  return text + AttributionText(evidence) + YawText(evidence) + StandstillText(evidence) +
-         VerdictText(evidence);
+  text += AttributionText(evidence) + YawText(evidence) + StandstillText(evidence) +
+          VerdictText(evidence);
+  return evidence.likeness ? text + LikenessText(*evidence.likeness) : text;
 }
 
 std::string GapJson(const GapEvidence& evidence) {
@@ -149,6 +151,7 @@ std::string GapJson(const GapEvidence& evidence) {
                      {"confidence", verdict.confidence},
                      {"share_above_low", verdict.share_low},
                      {"share_above_high", verdict.share_high}};
+  if (evidence.likeness) json["likeness"] = LikenessJson(*evidence.likeness);
   return Dump(json);
 }
 

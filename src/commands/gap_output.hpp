@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rift/gap/comparison.hpp"
+#include "rift/gap/likeness.hpp"
 #include "rift/gap/verdict.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
@@ -26,6 +28,7 @@ struct GapEvidence {
   double mean_gap_m = gap::kNotComputed;
   double noise_floor_m = gap::kNotComputed;  ///< NaN for one real log
   gap::RepeatVerdict verdict;
+  std::optional<gap::Likeness> likeness;  ///< only with repeats of the simulator
 };
 
 /// Fills in the mean, the noise floor and the verdict from the trials.

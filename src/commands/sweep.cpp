@@ -8,8 +8,11 @@
 
 #include "files.hpp"
 #include "folder_lock.hpp"
+#include "json_fields.hpp"
 #include "keys_flag.hpp"
+#include "likeness_output.hpp"
 #include "rift/commands/command.hpp"
+#include "sweep_likeness.hpp"
 #include "sweep_output.hpp"
 #include "sweep_report.hpp"
 #include "sweep_run.hpp"
@@ -100,7 +103,10 @@ int Sweep(const SweepRequest& request) {
   Save(out, experiment, sources, *result);
   if (result->all.n == 0) return EndWithoutGap(request, *result);
   WriteSweepReport(out, *result, sources);
+  const std::vector<LikenessRow> likeness = MeasureSweepLikeness(experiment, sources);
+  if (!likeness.empty()) WriteFile(out / "likeness.json", Dump(LikenessJson(likeness)));
   fmt::print("{}", request.json ? SummaryJson(*result) : SweepText(*result));
+  if (!likeness.empty() && !request.json) fmt::print("\n{}", LikenessText(likeness));
   if (!request.quiet) fmt::print(stderr, "report: {}\n", (out / "report.html").string());
   return request.exit_code && IsFalsified(*result) ? kFalsified : kDone;
 }

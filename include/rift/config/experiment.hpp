@@ -9,6 +9,7 @@
 #include "rift/config/sweep_hooks.hpp"
 #include "rift/control/navigator_options.hpp"
 #include "rift/control/waypoint.hpp"
+#include "rift/gap/likeness.hpp"
 #include "rift/gap/options.hpp"
 #include "rift/hardware/options.hpp"
 #include "rift/simulation/simulation_options.hpp"
@@ -33,6 +34,7 @@ struct Experiment {
   sweep::Start start = sweep::Start::kWaypoint;
   sweep::ReferenceOptions reference;
   gap::GapOptions gap;
+  gap::LikenessOptions likeness;
   std::uint64_t seed = 1;
   control::NavigatorOptions control;
   trial::TrialOptions trial;
@@ -52,6 +54,8 @@ struct Experiment {
     field("start", self.start, "where a simulated trial begins: first waypoint, or as its log");
     field("reference", self.reference, "the robot: what it is compared with");
     field("gap", self.gap, "how the gap is measured");
+    field("likeness", self.likeness,
+          "how repeats of simulator and robot are held against each other");
     field("seed", self.seed, "of all random numbers; trial i of a setting uses seed + i - 1");
     field("control", self.control, "the waypoint controller, the same for robot and simulator");
     field("trial", self.trial, "the trial loop: rates, time limits, when a trial has failed");

@@ -1,0 +1,94 @@
+#include "sweep_likeness.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "rift/sweep/grid.hpp"
+#include "rift/sweep/labels.hpp"
+
+namespace rift::commands {
+namespace {
+
+using sweep::RepeatedTrial;
+using sweep::TrialStatus;
+
+struct Labelled {
+  std::string level;
+  RepeatedTrial trial;
+};
+
+bool HasRepeatedLogs(const config::Experiment& experiment) {
+  const auto& parameters = experiment.space.parameters;
+  return experiment.reference.kind == sweep::ReferenceKind::kLogs &&
+         experiment.reference.trials.names.size() > 1 &&
+         std::none_of(parameters.begin(), parameters.end(),
+                      [](const sweep::Parameter& axis) { return axis.IsContinuous(); });
+}
+
+std::string LevelOf(const std::vector<sweep::Parameter>& parameters, const sweep::Theta& theta) {
+  return parameters.empty() ? "" : theta[sweep::SplitFactors(parameters).main_factor].text;
+}
+
+std::string SettingOf(const sweep::Theta& theta) {
+  std::string setting;
+  for (const sweep::ParameterValue& value : theta) setting += value.text + '\n';
+  return setting;
+}
+
+/// The trials of one setting. A candidate log that serves all repeats is one run, not several.
+void AddSetting(const config::Experiment& experiment, const sweep::Theta& theta,
+                SweepSources& sources, std::vector<Labelled>& trials) {
+  const bool is_simulated = experiment.candidate.kind == sweep::CandidateKind::kSimulation;
+  const config::Experiment at = is_simulated ? config::ExperimentAt(experiment, theta) : experiment;
+  std::set<std::string> logs;
+  for (const std::string& name : experiment.reference.trials.names) {
+    const sweep::Recording real = sources.Reference(theta, name);
+    if (real.status != TrialStatus::kOk) continue;
+    Labelled labelled{LevelOf(experiment.space.parameters, theta),
+                      {.setting = SettingOf(theta),
+                       .real = real.trajectory,
+                       .waypoints = at.waypoints,
+                       .control = at.control}};
+    sweep::Recording run = sources.Candidate(theta, name, real);
+    const bool is_new = is_simulated || logs.insert(run.source).second;
+    if (run.status != TrialStatus::kOk) {
+      ++labelled.trial.failed_runs;
+    } else if (is_new) {
+      labelled.trial.runs.push_back(std::move(run.trajectory));
+    }
+    trials.push_back(std::move(labelled));
+  }
+}
+
+}  // namespace
+
+std::vector<LikenessRow> MeasureSweepLikeness(const config::Experiment& experiment,
+                                              SweepSources& sources) {
+  if (!HasRepeatedLogs(experiment)) return {};
+  std::vector<Labelled> trials;
+  for (const sweep::Theta& theta : sweep::GridPoints(experiment.space.parameters)) {
+    AddSetting(experiment, theta, sources, trials);
+  }
+  std::vector<std::string> levels;
+  for (const Labelled& trial : trials) {
+    if (std::find(levels.begin(), levels.end(), trial.level) == levels.end()) {
+      levels.push_back(trial.level);
+    }
+  }
+  levels.push_back("all");
+  const bool is_matched = experiment.start == sweep::Start::kReference;
+  std::vector<LikenessRow> rows;
+  for (const std::string& level : levels) {
+    const bool is_all = &level == &levels.back();
+    std::vector<RepeatedTrial> group;
+    for (const Labelled& trial : trials) {
+      if (is_all || trial.level == level) group.push_back(trial.trial);
+    }
+    std::mt19937_64 generator(experiment.seed);
+    rows.push_back({level, sweep::MeasureDriveLikeness(group, is_matched, experiment.gap,
+                                                       experiment.likeness, generator)});
+  }
+  return rows;
+}
+
+}  // namespace rift::commands
