@@ -10,6 +10,7 @@
 #include "gnuplot_text.hpp"
 #include "page_charts.hpp"
 #include "page_tables.hpp"
+#include "why_charts.hpp"
 
 namespace rift::report {
 namespace {
@@ -39,15 +40,38 @@ const char* HeadlineClass(Outcome outcome) {
   return outcome == Outcome::kHolds ? "pass" : "unknown";
 }
 
-data FindingList(const sweep::SweepResult& result) {
+data PieceList(const Sentence& sentence) {
   data list{data::type::list};
-  for (const Finding& finding : Findings(result)) {
+  for (const Piece& piece : sentence.pieces()) {
+    data entry;
+    entry.set("text", PlainText(piece.text));
+    if (!piece.query.empty()) entry.set("query", piece.query);
+    list << entry;
+  }
+  return list;
+}
+
+data FindingList(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+  data list{data::type::list};
+  for (const Finding& finding : Findings(result, explanation)) {
     data sentences{data::type::list};
-    for (const std::string& sentence : finding.sentences) sentences << data(PlainText(sentence));
+    for (const Sentence& sentence : finding.sentences) {
+      data entry;
+      entry.set("pieces", PieceList(sentence));
+      sentences << entry;
+    }
     data entry;
     entry.set("question", finding.question);
     entry.set("sentences", sentences);
     list << entry;
+  }
+  return list;
+}
+
+data SuggestionList(const sweep::Explanation& explanation) {
+  data list{data::type::list};
+  for (const sweep::Suggestion& suggestion : explanation.suggestions) {
+    list << data(PlainText(suggestion.sentence));
   }
   return list;
 }
@@ -81,8 +105,8 @@ void AddUnmeasured(const sweep::SweepResult& result, data* page) {
   page->set("unmeasured", list);
 }
 
-void AddScripts(const sweep::SweepResult& result, const ReportOptions& options, data* page) {
-  const std::vector<PageChart> charts = PageCharts(result, options);
+void AddScripts(const sweep::SweepResult& result, std::vector<PageChart> charts,
+                const ReportOptions& options, data* page) {
   PageTable settings = SettingsTable(result, options), trials = TrialsTable(result, options);
   json content = {{"charts", json::array()}};
   for (const PageChart& chart : charts) content["charts"].push_back(chart.spec);
@@ -100,18 +124,29 @@ void AddScripts(const sweep::SweepResult& result, const ReportOptions& options, 
 }  // namespace
 
 std::string RenderPage(const sweep::SweepResult& result, const ReportOptions& options) {
+  return RenderPage(result, sweep::Explain(result), {}, options);
+}
+
+std::string RenderPage(const sweep::SweepResult& result, const sweep::Explanation& explanation,
+                       const std::vector<TypicalFailure>& failures, const ReportOptions& options) {
   const Headline headline = Summary(result);
   data page;
   page.set("name", PlainText(result.name));
   page.set("kinds", PlainText(fmt::format("candidate: {}, reference: {}", result.candidate_kind,
                                           result.reference_kind)));
-  page.set("headline", PlainText(headline.sentence));
+  page.set("headline", PieceList(headline.sentence));
   page.set("headline_class", HeadlineClass(headline.outcome));
-  page.set("findings", FindingList(result));
+  page.set("findings", FindingList(result, explanation));
+  page.set("has_suggestions", !explanation.suggestions.empty());
+  page.set("suggestions", SuggestionList(explanation));
   page.set("definition", gap::DefinitionText(result.gap, result.tag_offset_m));
   page.set("threshold", Number(result.gap.threshold_m));
   AddUnmeasured(result, &page);
-  AddScripts(result, options, &page);
+  std::vector<PageChart> charts = PageCharts(result, options);
+  for (PageChart& chart : WhyCharts(result, explanation, failures)) {
+    charts.push_back(std::move(chart));
+  }
+  AddScripts(result, std::move(charts), options, &page);
   mustache html(File("page.html"));
   std::string text = html.render(page);
   if (!html.is_valid()) throw std::logic_error("page.html: " + html.error_message());

@@ -61,8 +61,9 @@ const char* MarkOf(gap::Verdict verdict) {
   return verdict == gap::Verdict::kUndecided ? "unknown" : "";
 }
 
-json TrialCells(const sweep::TrialRow& row) {
+json TrialCells(const sweep::TrialRow& row, std::ptrdiff_t number) {
   json cells = Theta(row.theta);
+  cells.insert(cells.begin(), number);
   const gap::Comparison& c = row.comparison;
   const std::string_view status = EnumNames(row.status)[static_cast<int>(row.status)];
   cells.push_back(row.trial);
@@ -72,6 +73,7 @@ json TrialCells(const sweep::TrialRow& row) {
     cells.push_back(Value(value));
   }
   cells.push_back(row.reason);
+  cells.push_back(number);
   return cells;
 }
 
@@ -108,18 +110,21 @@ PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& o
 
 PageTable TrialsTable(const sweep::SweepResult& result, const ReportOptions& options) {
   json table = EmptyTable(result);
+  table["columns"].insert(table["columns"].begin(), Number("row", 0));
   for (json column :
        {Text("trial"), Mark("result"), Number("gap (m)", 4), Number("at u", 3),
         Number("exact gap (m)", 4), Number("mean error (m)", 4), Number("start offset (m)", 4),
         Number("start-aligned gap (m)", 4), Number("shape gap (m)", 4), Number("end error (m)", 4),
-        Number("length ratio", 3), Text("reason")}) {
+        Number("length ratio", 3), Text("reason"),
+        json{{"title", "drive it again"}, {"replay", true}}}) {
     table["columns"].push_back(std::move(column));
   }
   const auto rows = RowsToShow(result, options.table_rows);
   for (const sweep::TrialRow* row : rows) {
-    table["rows"].push_back(TrialCells(*row));
+    table["rows"].push_back(TrialCells(*row, row - result.rows.data() + 1));
     table["marks"].push_back(row->IsOk() ? (row->falsified ? "fail" : "") : "unknown");
   }
+  table["complete"] = rows.size() == result.rows.size();
   return {std::move(table), Note(rows.size(), result.rows.size(), "trials")};
 }
 

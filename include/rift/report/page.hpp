@@ -2,13 +2,30 @@
 
 #include <string>
 
+#include <vector>
+
+#include "rift/report/gap_figures.hpp"
 #include "rift/report/options.hpp"
+#include "rift/sweep/explanation.hpp"
 #include "rift/sweep/result.hpp"
 
 namespace rift::report {
 
 /// The report of a sweep as one HTML page that needs nothing else: no network, no second file.
-/// First screen: the findings in words. Then charts (Vega), then tables that sort.
+/// First screen: the findings in words; their numbers lead to their rows, and each row shows the
+/// command that drives it again. Then charts (Vega), then tables that sort.
 std::string RenderPage(const sweep::SweepResult& result, const ReportOptions& options = {});
+
+/// The paths of a typical failure of one kind.
+struct TypicalFailure {
+  int row = 0;   ///< index into SweepResult::rows
+  int kind = 0;  ///< index into Explanation::clusters
+  ComparedPair paths;
+};
+
+/// The same with an explanation at hand, and failures to draw.
+std::string RenderPage(const sweep::SweepResult& result, const sweep::Explanation& explanation,
+                       const std::vector<TypicalFailure>& failures,
+                       const ReportOptions& options = {});
 
 }  // namespace rift::report

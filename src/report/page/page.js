@@ -71,6 +71,18 @@ function compare(a, b) {
   return String(a).localeCompare(String(b), undefined, { numeric: true });
 }
 
+// A page opened from a disk knows its folder, which is that of the sweep.
+const folder = location.protocol === 'file:' ? decodeURIComponent(location.pathname.replace(/\/[^/]*$/, '')) : 'DIR';
+const quoted = /^[\w./-]+$/.test(folder) ? folder : "'" + folder.replaceAll("'", "'\\''") + "'";
+
+function replayButton(row) {
+  const button = document.createElement('button');
+  button.type = 'button';
+  button.textContent = `rift simulate --replay ${quoted} ${row}`;
+  button.addEventListener('click', () => navigator.clipboard?.writeText(button.textContent));
+  return button;
+}
+
 function fillBody(table, data, order) {
   const body = document.createElement('tbody');
   for (const index of order) {
@@ -78,6 +90,10 @@ function fillBody(table, data, order) {
     row.className = data.marks[index];
     data.columns.forEach((column, i) => {
       const cell = row.insertCell();
+      if (column.replay) {
+        cell.append(replayButton(data.rows[index][i]));
+        return;
+      }
       cell.textContent = cellText(data.rows[index][i], column);
       cell.className = (column.digits === undefined ? '' : 'number') + (column.mark ? ' mark' : '');
     });
@@ -94,10 +110,46 @@ function sortedOrder(data, column, descending) {
   });
 }
 
+// ---- from a number to its rows: #trials?surface=ground&row=3,5 ----
+
+const shown = { trials: () => true, settings: () => true };
+
+function matcher(data, query) {
+  const wanted = [];
+  for (const [title, text] of query) {
+    const i = data.columns.findIndex(column => column.title === title);
+    if (i < 0) return null;
+    const values = new Set(title === 'row' ? text.split(',') : [text]);
+    wanted.push(row => values.has(String(row[i])));
+  }
+  return index => wanted.every(holds => holds(data.rows[index]));
+}
+
+function followHash() {
+  const [id, text] = location.hash.slice(1).split('?');
+  if (id !== 'trials') return;
+  const data = page.trials, query = [...new URLSearchParams(text ?? '')];
+  const holds = matcher(data, query);
+  if (!holds) return;
+  shown.trials = holds;
+  const count = data.rows.filter((_, i) => holds(i)).length;
+  const bar = document.getElementById('filter');
+  bar.hidden = query.length === 0;
+  const words = query.map(([title, value]) => `${title} ${value.replaceAll(',', ', ')}`).join(' and ');
+  bar.querySelector('span').textContent = `${count} of the ${data.rows.length} trials on this page have ${words}.` +
+    (data.complete ? '' : ' table.csv has all trials.');
+  refill.trials();
+  if (query.length > 0) document.getElementById('rows').scrollIntoView();
+}
+
+const refill = {};
+
 function makeTable(id) {
   const table = document.getElementById(id);
   const data = page[id];
   const head = table.createTHead().insertRow();
+  let order = data.rows.map((_, i) => i);
+  refill[id] = () => fillBody(table, data, order.filter(index => shown[id](index)));
   data.columns.forEach((column, i) => {
     const th = document.createElement('th');
     th.scope = 'col';
@@ -110,14 +162,18 @@ function makeTable(id) {
       const descending = th.getAttribute('aria-sort') === 'ascending';
       for (const other of head.cells) other.setAttribute('aria-sort', 'none');
       th.setAttribute('aria-sort', descending ? 'descending' : 'ascending');
-      fillBody(table, data, sortedOrder(data, i, descending));
+      order = sortedOrder(data, i, descending);
+      refill[id]();
     });
     th.append(button);
     head.append(th);
   });
-  fillBody(table, data, data.rows.map((_, i) => i));
+  refill[id]();
 }
 
 makeTable('settings');
 makeTable('trials');
+document.querySelector('#filter button').addEventListener('click', () => { location.hash = '#trials?'; });
+addEventListener('hashchange', followHash);
+followHash();
 Promise.all(page.charts.map(drawChart)).then(() => { document.body.dataset.drawn = page.charts.length; });
