@@ -40,7 +40,10 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("Exit codes: 0 done, 1 falsified (with --exit-code) or not reached, 2 usage or input, 3 failure.");
   for (const Command& command : Commands()) {
-    command.add(*app.add_subcommand(command.name, command.summary), exit_code);
+    CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
+    // A word that is not there chooses no subcommand, and options take time to make.
+    if (std::find(argv, argv + argc, std::string_view(command.name)) == argv + argc) continue;
+    command.add(subcommand, exit_code);
   }
   try {
     app.parse(argc, argv);

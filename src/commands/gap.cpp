@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <future>
@@ -40,13 +41,21 @@ void SayNotes(const trajectory::Log& log, const std::string& path, const std::st
              flag);
 }
 
+/// Reading is most of the work on long logs, and the logs do not know each other. A short one is
+/// read before a thread has started.
+std::launch LaunchFor(const std::string& path) {
+  constexpr std::uintmax_t kShort_bytes = 100'000;
+  std::error_code unknown;
+  const std::uintmax_t size_bytes = std::filesystem::file_size(path, unknown);
+  return !unknown && size_bytes < kShort_bytes ? std::launch::deferred : std::launch::async;
+}
+
 GapEvidence Measure(const GapRequest& request) {
   GapEvidence evidence{
       .options = request.options, .tag_offset_m = request.tag_offset_m, .sim_path = request.sim};
-  // Reading is most of the work on long logs, and the logs do not know each other.
   std::vector<std::future<trajectory::Log>> reals;
   for (const std::string& path : request.reals) {
-    reals.push_back(std::async(std::launch::async, [&request, &path] {
+    reals.push_back(std::async(LaunchFor(path), [&request, &path] {
       return LoadLog(path, request.real_format, request.tag_offset_m, "--real-format");
     }));
   }
