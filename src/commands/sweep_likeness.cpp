@@ -41,15 +41,15 @@ void AddSetting(const config::Experiment& experiment, const sweep::Theta& theta,
   const bool is_simulated = experiment.candidate.kind == sweep::CandidateKind::kSimulation;
   const config::Experiment at = is_simulated ? config::ExperimentAt(experiment, theta) : experiment;
   std::set<std::string> logs;
-  for (const std::string& name : experiment.reference.trials.names) {
-    const sweep::Recording real = sources.Reference(theta, name);
+  for (const sweep::TrialRequest& request : sweep::TrialsAt(sources.Plan(), theta)) {
+    const sweep::Recording real = sources.Reference(request);
     if (real.status != TrialStatus::kOk) continue;
     Labelled labelled{LevelOf(experiment.space.parameters, theta),
                       {.setting = SettingOf(theta),
                        .real = real.trajectory,
                        .waypoints = at.waypoints,
                        .control = at.control}};
-    sweep::Recording run = sources.Candidate(theta, name, real);
+    sweep::Recording run = sources.Candidate(request, real);
     const bool is_new = is_simulated || logs.insert(run.source).second;
     if (run.status != TrialStatus::kOk) {
       ++labelled.trial.failed_runs;
