@@ -147,7 +147,7 @@ TEST_CASE("A robot that is put elsewhere is found again in the same frame") {
   TagTracker tracker(camera, {});
   tracker.Track(film.Next(test::RobotAt(0.0, 0.0, 0.0)));
   CHECK(tracker.Track(film.Next(test::RobotAt(0.0, 0.0, 0.0))).sighting->mode == TrackMode::kEdges);
-  const TrackResult nudged = tracker.Track(film.Next(test::RobotAt(0.02, 0.01, 0.4)));
+  const TrackResult nudged = tracker.Track(film.Next(test::RobotAt(0.008, 0.004, 0.4)));
   REQUIRE(nudged.sighting);
   CHECK(nudged.sighting->mode == TrackMode::kRegion);
   const TrackResult carried = tracker.Track(film.Next(test::RobotAt(0.3, 0.2, 2.0)));
