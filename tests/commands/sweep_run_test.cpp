@@ -82,6 +82,26 @@ TEST_CASE("A sweep killed again and again ends with the bytes of one that was no
   }
 }
 
+// Takes minutes: run by name. The sweeps last long enough to be hit fifty times.
+TEST_CASE("Fifty kills of coordinator and workers leave the bytes of a sweep as they are",
+          "[.][long]") {
+  std::mt19937_64 generator(4);
+  const std::vector<std::pair<std::string, std::vector<std::string>>> sweeps{
+      {kGrid, {"--set", "reference.trials=150"}}, {kSearch, {"--budget", "160"}}};
+  for (const auto& [text, more] : sweeps) {
+    const Sweep sweep(text);
+    REQUIRE(RunRift(sweep.Command("whole", more)).exit_code == 0);
+    const test::KilledSweep killed =
+        test::SweepUnderFire(sweep.Command("killed", more), 50, 1.0, generator);
+    REQUIRE(killed.last.exit_code == 0);
+    WARN(killed.coordinator_kills << " kills of the coordinator and " << killed.worker_kills
+                                  << " of workers in " << killed.starts << " starts");
+    CHECK(killed.coordinator_kills + killed.worker_kills == 50);
+    CHECK(sweep.Table("killed") == sweep.Table("whole"));
+    CHECK(sweep.Summary("killed") == sweep.Summary("whole"));
+  }
+}
+
 TEST_CASE("A folder with the journal of another experiment is refused with the keys named") {
   const Sweep sweep(kGrid);
   REQUIRE(RunRift(sweep.Command("out")).exit_code == 0);
@@ -119,7 +139,10 @@ TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes o
   const std::vector<std::string> command =
       sweep.Command("out", {"--set", "reference.trials=200", "--jobs", "1"});
   test::RunningRift first(command);
-  while (!fs::exists(sweep.folder / "out/experiment.yaml")) ::usleep(1000);
+  while (!fs::exists(sweep.folder / "out/experiment.yaml")) {
+    REQUIRE(first.IsRunning());
+    ::usleep(1000);
+  }
   ::usleep(300'000);
   const ProcessResult second = RunRift(command);
   CHECK(second.exit_code == 3);

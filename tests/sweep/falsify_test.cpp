@@ -20,7 +20,10 @@ GridPlan Plan() { return {.name = "test", .parameters = kSpace, .trials = {"1"},
 
 /// Fails on ice at a high v_min, by a margin above the noise only near the corner.
 TrialRow Simulated(const TrialRequest& request) {
-  TrialRow row{.theta = request.theta, .trial = request.trial, .seed = request.seed};
+  TrialRow row{.theta = request.theta,
+               .trial = request.trial,
+               .seed = request.seed,
+               .is_random_draw = request.is_random_draw};
   const double noise_m = 0.001 * static_cast<double>(*request.seed % 3);
   const double v_min = *request.theta[0].number;
   row.comparison.gap_m = (request.theta[4].text == "ice" ? 0.08 : 0.02) * v_min + noise_m;
