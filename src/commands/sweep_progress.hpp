@@ -37,6 +37,7 @@ class SweepProgress {
   ProgressStyle style_;
   int most_;
   bool is_limit_;
+  bool is_over_ = false;
   int done_ = 0;
   int from_journal_ = 0;
   int falsified_ = 0;

@@ -216,5 +216,20 @@ TEST_CASE("A setting that breaks a rule is a row of a search and refused in a gr
   CHECK(RunRift(grid.Command("out")).exit_code == 2);
 }
 
+TEST_CASE("A range of a key of whole numbers is searched in whole numbers") {
+  const auto search_over = [](const std::string& range) {
+    return kTask + "goal: falsify\nsearch: {budget: 8}\nfalsify: {until: budget}\n" +
+           "space: {simulation.link.uart_bytes: " + range + "}\n";
+  };
+  const Sweep whole(search_over("{min: 20, max: 60}"));
+  REQUIRE(RunRift(whole.Command("out")).exit_code == 0);
+  CHECK(whole.Table("out").find(",ok,") != std::string::npos);
+  CHECK(whole.Table("out").find(",invalid,") == std::string::npos);
+  const Sweep broken(search_over("{min: 20.5, max: 60}"));
+  const ProcessResult refused = RunRift(broken.Command("out"));
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.err.find("uart_bytes holds whole numbers") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace rift
