@@ -46,6 +46,11 @@ ProgressStyle StyleFor(bool quiet, bool json) {
 SweepProgress::SweepProgress(ProgressStyle style, int most, bool is_limit)
     : style_(style), most_(most), is_limit_(is_limit) {}
 
+SweepProgress::~SweepProgress() {
+  const bool is_open = style_ == ProgressStyle::kBar && printed_ != begun_ && !is_over_;
+  if (is_open) fmt::print(stderr, "\n");
+}
+
 void SweepProgress::Seen(const sweep::TrialRow& row, bool from_journal) {
   ++done_;
   most_ = std::max(most_, done_);  // repeats near the threshold come on top

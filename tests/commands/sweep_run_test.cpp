@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "support/process.hpp"
 #include "support/running_rift.hpp"
@@ -160,6 +161,35 @@ TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes o
   CHECK(after["state"] == "stopped");
   CHECK(after["done"] > 0);
   CHECK(after["done"] < 1200);
+}
+
+TEST_CASE("A worker that stands still or crashes costs its trial and the sweep ends") {
+  const Sweep sweep(kGrid);
+  test::RunningRift running(
+      sweep.Command("out", {"--set", "reference.trials=40", "--set", "run.timeout_s=4", "--set",
+                            "run.retries=0", "--jobs", "1"}));
+  std::mt19937_64 generator(1);
+  while (!running.SignalWorker(SIGSEGV, generator)) REQUIRE(running.IsRunning());
+  ::usleep(200'000);
+  while (!running.SignalWorker(SIGSTOP, generator)) REQUIRE(running.IsRunning());
+  REQUIRE(running.Wait().exit_code == 0);
+  const std::string table = sweep.Table("out");
+  CHECK(table.find(",crashed,") != std::string::npos);
+  CHECK(table.find("ended by signal 11 (Segmentation fault)") != std::string::npos);
+  CHECK(table.find(",hung,") != std::string::npos);
+  CHECK(table.find("had not ended after 4 s") != std::string::npos);
+  const json summary = json::parse(sweep.Summary("out"));
+  CHECK(summary["not_ok"] == 2);
+  CHECK(summary["n"] == 238);
+}
+
+TEST_CASE("Limits of a search are refused by a grid") {
+  const Sweep sweep(kGrid);
+  for (const char* flag : {"--budget", "--seconds"}) {
+    const ProcessResult refused = RunRift(sweep.Command("out", {flag, "5"}));
+    CHECK(refused.exit_code == 2);
+    CHECK(refused.err.find("goal is grid") != std::string::npos);
+  }
 }
 
 TEST_CASE("Folders and journals that cannot be used end with one line") {
