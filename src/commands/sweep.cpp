@@ -12,6 +12,7 @@
 #include "keys_flag.hpp"
 #include "likeness_output.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/sweep/falsify.hpp"
 #include "sweep_likeness.hpp"
 #include "sweep_output.hpp"
 #include "sweep_report.hpp"
@@ -78,8 +79,30 @@ bool IsFalsified(const sweep::SweepResult& result) {
   return result.falsification->verdict == gap::Verdict::kFalsified;
 }
 
+void RefuseLimitsOfGrid(const SweepRequest& request, sweep::Goal goal) {
+  const bool has_limits = !request.budget.empty() || !request.seconds.empty();
+  if (goal != sweep::Goal::kGrid || !has_limits) return;
+  throw std::invalid_argument(
+      fmt::format("{}: goal is grid, which visits every setting: --budget and --seconds limit a "
+                  "search (goal: falsify)",
+                  request.experiment));
+}
+
+void NoteTooFewRepeats(const config::Experiment& experiment) {
+  const double needed = sweep::TrialsToFalsify(experiment.falsify);
+  const bool is_enough =
+      experiment.goal != sweep::Goal::kFalsify || experiment.falsify.most_repeats >= needed;
+  if (is_enough) return;
+  fmt::print(
+      stderr,
+      "note: falsify.most_repeats is {}, and it takes {} failing trials to falsify a setting "
+      "at {:g} % confidence: settings that fail stay undecided\n",
+      experiment.falsify.most_repeats, needed, 100.0 * experiment.falsify.confidence);
+}
+
 int Sweep(const SweepRequest& request) {
   config::Experiment experiment = LoadFor(request);
+  RefuseLimitsOfGrid(request, experiment.goal);
   const bool lacks_space = LacksSpace(experiment);
   if (lacks_space) experiment.space = sweep::PaperSpace();
   SweepSources sources(experiment, request.experiment);
@@ -87,6 +110,7 @@ int Sweep(const SweepRequest& request) {
     fmt::print(stderr, "note: {} names no space: the paper's grid of surface, v_min and v_max\n",
                request.experiment);
   }
+  NoteTooFewRepeats(experiment);
   const fs::path out = OutputOf(request.out, experiment.name);
   const FolderLock lock(out);
   const std::optional<sweep::SweepResult> result =

@@ -46,6 +46,11 @@ ProgressStyle StyleFor(bool quiet, bool json) {
 SweepProgress::SweepProgress(ProgressStyle style, int most, bool is_limit)
     : style_(style), most_(most), is_limit_(is_limit) {}
 
+SweepProgress::~SweepProgress() {
+  const bool is_open = style_ == ProgressStyle::kBar && printed_ != begun_ && !is_over_;
+  if (is_open) fmt::print(stderr, "\n");
+}
+
 void SweepProgress::Seen(const sweep::TrialRow& row, bool from_journal) {
   ++done_;
   most_ = std::max(most_, done_);  // repeats near the threshold come on top
@@ -70,7 +75,8 @@ std::optional<double> SweepProgress::Left_s() const {
 
 std::string SweepProgress::Text() const {
   std::string text = fmt::format("{}/{} trials, {:.1f}/s", done_, most_, Rate());
-  if (const std::optional<double> left_s = Left_s()) {
+  const std::optional<double> left_s = Left_s();
+  if (left_s && !is_over_) {
     text += fmt::format(", {}{} left", is_limit_ ? "at most " : "", DurationText(*left_s));
   }
   if (largest_gap_m_) text += fmt::format(", largest gap {:.4f} m", *largest_gap_m_);
@@ -93,7 +99,7 @@ void SweepProgress::Print(const std::string& state) {
                                   {"trials_per_s", Rate()},   {"left_s", nullptr},
                                   {"largest_gap_m", nullptr}, {"falsified", falsified_},
                                   {"failed", failed_}};
-      if (Left_s()) json["left_s"] = *Left_s();
+      if (Left_s() && !is_over_) json["left_s"] = *Left_s();
       if (largest_gap_m_) json["largest_gap_m"] = *largest_gap_m_;
       fmt::print(stderr, "{}\n", json.dump());
       break;
@@ -111,6 +117,7 @@ void SweepProgress::Tick() {
 
 void SweepProgress::End(const std::string& state) {
   const bool has_spoken = printed_ != begun_;
+  is_over_ = true;
   if (style_ == ProgressStyle::kLines && !has_spoken) return;  // too short to be worth a line
   Print(state);
   if (style_ == ProgressStyle::kBar) fmt::print(stderr, "\n");

@@ -19,6 +19,10 @@ class SweepProgress {
  public:
   /// `most` is how many trials there will be; with `is_limit` at most.
   SweepProgress(ProgressStyle style, int most, bool is_limit);
+  /// Ends the line of a bar that an error cut short.
+  ~SweepProgress();
+  SweepProgress(const SweepProgress&) = delete;
+  SweepProgress& operator=(const SweepProgress&) = delete;
 
   void Seen(const sweep::TrialRow& row, bool from_journal);
   /// Prints when it is time to; cheap otherwise.
@@ -37,6 +41,7 @@ class SweepProgress {
   ProgressStyle style_;
   int most_;
   bool is_limit_;
+  bool is_over_ = false;
   int done_ = 0;
   int from_journal_ = 0;
   int falsified_ = 0;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "rift/config/bind.hpp"
 #include "rift/config/describe.hpp"
@@ -33,6 +34,14 @@ void RequireEffect(const sweep::Parameter& parameter) {
   throw Error(fmt::format("{} does not change a simulated trial; {}", parameter.key,
                           parameter.key == "seed" ? "for repeats set reference.trials"
                                                   : "vary keys of control, trial or simulation"));
+}
+
+std::set<std::string> WholeNumberKeys(const Experiment& experiment) {
+  std::set<std::string> keys;
+  for (const KeyInfo& key : Describe(experiment)) {
+    if (key.type.starts_with("whole number")) keys.insert(key.key);
+  }
+  return keys;
 }
 
 /// The picture of a heightfield, like every path of a file, is relative to that file.
@@ -105,14 +114,27 @@ void TrySpace(const Experiment& experiment) {
   }
 }
 
+/// A range of a key that holds whole numbers is one of whole numbers, said or not.
+void RequireWhole(sweep::Parameter& parameter) {
+  parameter.is_integer = true;
+  const bool is_whole = parameter.min == std::floor(parameter.min) &&
+                        parameter.max == std::floor(parameter.max) && !parameter.is_logarithmic;
+  if (is_whole) return;
+  throw Error(fmt::format("{} holds whole numbers: its range needs whole bounds and a linear scale",
+                          parameter.key));
+}
+
 /// A simulated parameter is any key of the experiment, by its full name or a short one that is
 /// unique.
 void ResolveSpace(Experiment& experiment) {
   const std::vector<std::string> keys = ListKeys(experiment);
+  const std::set<std::string> whole_keys = WholeNumberKeys(experiment);
   for (sweep::Parameter& parameter : experiment.space.parameters) {
     try {
       parameter.key = ResolveKey(parameter.key, keys);
       RequireEffect(parameter);
+      const bool is_whole = parameter.IsContinuous() && whole_keys.contains(parameter.key);
+      if (is_whole) RequireWhole(parameter);
     } catch (const Error& unknown) {
       throw Error(fmt::format("{}: space: {}", parameter.origin, unknown.what()));
     }

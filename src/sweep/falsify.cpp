@@ -1,6 +1,7 @@
 #include "rift/sweep/falsify.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -65,8 +66,36 @@ SearchGoal GoalOf(const GridPlan& plan, const SearchPlan& search, const FalsifyO
   return goal;
 }
 
-Falsification Judge(const SearchOutcome& outcome, const SearchPlan& search,
-                    const FalsifyOptions& options) {
+/// Each row as a number above or below 0.5: it was judged by the threshold already.
+gap::RepeatVerdict CountFailures(std::span<const TrialRow> rows, double confidence) {
+  std::vector<double> failures;
+  for (const TrialRow& row : rows) {
+    if (row.IsOk() || row.falsified) failures.push_back(row.falsified ? 1.0 : 0.0);
+  }
+  return gap::JudgeRepeats(failures, 0.5, confidence);
+}
+
+gap::Verdict Decide(const gap::RepeatVerdict& repeats, double share) {
+  if (repeats.repeats == 0) return gap::Verdict::kUndecided;
+  if (repeats.share_low > share) return gap::Verdict::kFalsified;
+  if (repeats.share_high < share) return gap::Verdict::kNotFalsified;
+  return gap::Verdict::kUndecided;
+}
+
+/// A setting far from the threshold had one trial, which proves little, but nothing speaks against
+/// it either: only failures leave a doubt.
+std::vector<gap::RepeatVerdict> JudgeAll(const SearchOutcome& outcome,
+                                         const FalsifyOptions& options) {
+  std::vector<gap::RepeatVerdict> verdicts;
+  for (const TriedPoint& tried : outcome.points) {
+    verdicts.push_back(CountFailures(tried.rows, options.confidence));
+    if (verdicts.back().above > 0) verdicts.back().verdict = Decide(verdicts.back(), options.share);
+  }
+  return verdicts;
+}
+
+Falsification Judge(const SearchOutcome& outcome, const std::vector<gap::RepeatVerdict>& verdicts,
+                    const SearchPlan& search, const FalsifyOptions& options) {
   Falsification found{.confidence = options.confidence,
                       .share = options.share,
                       .evaluations = static_cast<int>(outcome.points.size()),
@@ -76,9 +105,9 @@ Falsification Judge(const SearchOutcome& outcome, const SearchPlan& search,
   double worst_loss = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < outcome.points.size(); ++i) {
     const TriedPoint& tried = outcome.points[i];
-    const bool is_falsified = JudgeSetting(tried.rows, options) == gap::Verdict::kFalsified;
+    const bool is_falsified = verdicts[i].verdict == gap::Verdict::kFalsified;
     found.falsified += is_falsified;
-    found.undecided += !is_falsified && HasFailure(tried.rows);
+    found.undecided += verdicts[i].verdict == gap::Verdict::kUndecided && verdicts[i].above > 0;
     if (is_falsified && !found.first_evaluation) {
       found.first_evaluation = static_cast<int>(i) + 1;
       worst_loss = std::numeric_limits<double>::infinity();  // only falsified ones from here on
@@ -97,16 +126,14 @@ Falsification Judge(const SearchOutcome& outcome, const SearchPlan& search,
 }  // namespace
 
 gap::Verdict JudgeSetting(std::span<const TrialRow> rows, const FalsifyOptions& options) {
-  // Any number above the threshold, which a row was judged by already.
-  std::vector<double> failures;
-  for (const TrialRow& row : rows) {
-    if (row.IsOk() || row.falsified) failures.push_back(row.falsified ? 1.0 : 0.0);
-  }
-  const gap::RepeatVerdict repeats = gap::JudgeRepeats(failures, 0.5, options.confidence);
-  if (repeats.repeats == 0) return gap::Verdict::kUndecided;
-  if (repeats.share_low > options.share) return gap::Verdict::kFalsified;
-  if (repeats.share_high < options.share) return gap::Verdict::kNotFalsified;
-  return gap::Verdict::kUndecided;
+  return Decide(CountFailures(rows, options.confidence), options.share);
+}
+
+double TrialsToFalsify(const FalsifyOptions& options) {
+  if (options.share >= 1.0) return std::numeric_limits<double>::infinity();
+  const double tail = (1.0 - options.confidence) / 2.0;
+  // n failures of n: the lower bound is tail^(1/n) (Clopper and Pearson 1934).
+  return std::floor(std::log(tail) / std::log(options.share)) + 1.0;
 }
 
 double Robustness_m(std::span<const TrialRow> rows, double threshold_m) {
@@ -134,11 +161,14 @@ std::optional<SweepResult> Falsify(
       Search(*strategy, GoalOf(plan, search, options), run, may_start);
   if (!outcome) return std::nullopt;
   SweepResult result = EmptyResult(plan);
-  result.falsification = Judge(*outcome, search, options);
+  const std::vector<gap::RepeatVerdict> verdicts = JudgeAll(*outcome, options);
+  result.falsification = Judge(*outcome, verdicts, search, options);
   for (TriedPoint& tried : outcome->points) {
     std::move(tried.rows.begin(), tried.rows.end(), std::back_inserter(result.rows));
   }
   Conclude(result, noise_floor_m);
+  assert(result.settings.size() == verdicts.size());  // no point is proposed twice
+  for (size_t i = 0; i < verdicts.size(); ++i) result.settings[i].verdict = verdicts[i];
   return result;
 }
 

@@ -58,12 +58,14 @@ bool WorkerPool::Run(const Batch& batch) {
   return true;
 }
 
-/// Level by level, so that the last jobs of a batch are spread over the workers.
+/// Level by level, and the last jobs of a batch only to workers that are free, so that none of them
+/// stands in line while another worker has nothing to do.
 void WorkerPool::Feed(const Batch& batch) {
   for (size_t depth = 0; depth < kDepth; ++depth) {
     for (Seat& seat : seats_) {
       if (seat.jobs.size() > depth) continue;
-      if (again_.empty() && next_ >= batch.count) return;
+      const size_t left = again_.size() + static_cast<size_t>(batch.count - next_);
+      if (left == 0 || (depth > 0 && left <= seats_.size())) return;
       if (again_.empty()) {
         again_.push_back({next_, batch.job(next_)});
         ++next_;

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "support/process.hpp"
 #include "support/running_rift.hpp"
@@ -82,6 +83,26 @@ TEST_CASE("A sweep killed again and again ends with the bytes of one that was no
   }
 }
 
+// Takes minutes: run by name. The sweeps last long enough to be hit fifty times.
+TEST_CASE("Fifty kills of coordinator and workers leave the bytes of a sweep as they are",
+          "[.][long]") {
+  std::mt19937_64 generator(4);
+  const std::vector<std::pair<std::string, std::vector<std::string>>> sweeps{
+      {kGrid, {"--set", "reference.trials=150"}}, {kSearch, {"--budget", "160"}}};
+  for (const auto& [text, more] : sweeps) {
+    const Sweep sweep(text);
+    REQUIRE(RunRift(sweep.Command("whole", more)).exit_code == 0);
+    const test::KilledSweep killed =
+        test::SweepUnderFire(sweep.Command("killed", more), 50, 1.0, generator);
+    REQUIRE(killed.last.exit_code == 0);
+    WARN(killed.coordinator_kills << " kills of the coordinator and " << killed.worker_kills
+                                  << " of workers in " << killed.starts << " starts");
+    CHECK(killed.coordinator_kills + killed.worker_kills == 50);
+    CHECK(sweep.Table("killed") == sweep.Table("whole"));
+    CHECK(sweep.Summary("killed") == sweep.Summary("whole"));
+  }
+}
+
 TEST_CASE("A folder with the journal of another experiment is refused with the keys named") {
   const Sweep sweep(kGrid);
   REQUIRE(RunRift(sweep.Command("out")).exit_code == 0);
@@ -119,7 +140,10 @@ TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes o
   const std::vector<std::string> command =
       sweep.Command("out", {"--set", "reference.trials=200", "--jobs", "1"});
   test::RunningRift first(command);
-  while (!fs::exists(sweep.folder / "out/experiment.yaml")) ::usleep(1000);
+  while (!fs::exists(sweep.folder / "out/experiment.yaml")) {
+    REQUIRE(first.IsRunning());
+    ::usleep(1000);
+  }
   ::usleep(300'000);
   const ProcessResult second = RunRift(command);
   CHECK(second.exit_code == 3);
@@ -137,6 +161,35 @@ TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes o
   CHECK(after["state"] == "stopped");
   CHECK(after["done"] > 0);
   CHECK(after["done"] < 1200);
+}
+
+TEST_CASE("A worker that stands still or crashes costs its trial and the sweep ends") {
+  const Sweep sweep(kGrid);
+  test::RunningRift running(
+      sweep.Command("out", {"--set", "reference.trials=40", "--set", "run.timeout_s=4", "--set",
+                            "run.retries=0", "--jobs", "1"}));
+  std::mt19937_64 generator(1);
+  while (!running.SignalWorker(SIGSEGV, generator)) REQUIRE(running.IsRunning());
+  ::usleep(200'000);
+  while (!running.SignalWorker(SIGSTOP, generator)) REQUIRE(running.IsRunning());
+  REQUIRE(running.Wait().exit_code == 0);
+  const std::string table = sweep.Table("out");
+  CHECK(table.find(",crashed,") != std::string::npos);
+  CHECK(table.find("ended by signal 11 (Segmentation fault)") != std::string::npos);
+  CHECK(table.find(",hung,") != std::string::npos);
+  CHECK(table.find("had not ended after 4 s") != std::string::npos);
+  const json summary = json::parse(sweep.Summary("out"));
+  CHECK(summary["not_ok"] == 2);
+  CHECK(summary["n"] == 238);
+}
+
+TEST_CASE("Limits of a search are refused by a grid") {
+  const Sweep sweep(kGrid);
+  for (const char* flag : {"--budget", "--seconds"}) {
+    const ProcessResult refused = RunRift(sweep.Command("out", {flag, "5"}));
+    CHECK(refused.exit_code == 2);
+    CHECK(refused.err.find("goal is grid") != std::string::npos);
+  }
 }
 
 TEST_CASE("Folders and journals that cannot be used end with one line") {
@@ -191,6 +244,21 @@ TEST_CASE("A setting that breaks a rule is a row of a search and refused in a gr
   CHECK(search.Table("out").find(",invalid,") != std::string::npos);
   const Sweep grid(kTask + "space: {v_min: [0.1, 0.4], v_max: [0.2]}\n");
   CHECK(RunRift(grid.Command("out")).exit_code == 2);
+}
+
+TEST_CASE("A range of a key of whole numbers is searched in whole numbers") {
+  const auto search_over = [](const std::string& range) {
+    return kTask + "goal: falsify\nsearch: {budget: 8}\nfalsify: {until: budget}\n" +
+           "space: {simulation.link.uart_bytes: " + range + "}\n";
+  };
+  const Sweep whole(search_over("{min: 20, max: 60}"));
+  REQUIRE(RunRift(whole.Command("out")).exit_code == 0);
+  CHECK(whole.Table("out").find(",ok,") != std::string::npos);
+  CHECK(whole.Table("out").find(",invalid,") == std::string::npos);
+  const Sweep broken(search_over("{min: 20.5, max: 60}"));
+  const ProcessResult refused = RunRift(broken.Command("out"));
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.err.find("uart_bytes holds whole numbers") != std::string::npos);
 }
 
 }  // namespace

@@ -56,10 +56,10 @@ RunningRift::~RunningRift() {
 
 void RunningRift::Signal(int signal) const { ::kill(pid_, signal); }
 
-bool RunningRift::KillWorker(std::mt19937_64& generator) const {
+bool RunningRift::SignalWorker(int signal, std::mt19937_64& generator) const {
   const std::vector<pid_t> workers = ChildrenOf(pid_);
   if (workers.empty()) return false;
-  return ::kill(workers[generator() % workers.size()], SIGKILL) == 0;
+  return ::kill(workers[generator() % workers.size()], signal) == 0;
 }
 
 bool RunningRift::IsRunning() {
@@ -85,7 +85,7 @@ KilledSweep SweepUnderFire(const std::vector<std::string>& arguments, int kills,
       Pause(longest_pause_s, generator);
       if (!running.IsRunning()) break;
       if (generator() % 2 == 0) {
-        sweep.worker_kills += running.KillWorker(generator);
+        sweep.worker_kills += running.SignalWorker(SIGKILL, generator);
       } else {
         running.Signal(SIGKILL);
         ++sweep.coordinator_kills;

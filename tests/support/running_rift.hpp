@@ -20,8 +20,8 @@ class RunningRift {
   RunningRift& operator=(const RunningRift&) = delete;
 
   void Signal(int signal) const;
-  /// Kills one of its worker processes at random; false when there is none.
-  bool KillWorker(std::mt19937_64& generator) const;
+  /// Signals one of its worker processes at random; false when there is none.
+  bool SignalWorker(int signal, std::mt19937_64& generator) const;
   bool IsRunning();
   ProcessResult Wait();
 

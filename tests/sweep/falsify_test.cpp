@@ -20,7 +20,10 @@ GridPlan Plan() { return {.name = "test", .parameters = kSpace, .trials = {"1"},
 
 /// Fails on ice at a high v_min, by a margin above the noise only near the corner.
 TrialRow Simulated(const TrialRequest& request) {
-  TrialRow row{.theta = request.theta, .trial = request.trial, .seed = request.seed};
+  TrialRow row{.theta = request.theta,
+               .trial = request.trial,
+               .seed = request.seed,
+               .is_random_draw = request.is_random_draw};
   const double noise_m = 0.001 * static_cast<double>(*request.seed % 3);
   const double v_min = *request.theta[0].number;
   row.comparison.gap_m = (request.theta[4].text == "ice" ? 0.08 : 0.02) * v_min + noise_m;
@@ -125,6 +128,38 @@ TEST_CASE("A verdict needs enough repeats that agree") {
   CHECK(JudgeSetting(rows, {}) == gap::Verdict::kNotFalsified);
   for (TrialRow& row : rows) row.status = TrialStatus::kCrashed;
   CHECK(JudgeSetting(rows, {}) == gap::Verdict::kUndecided);
+}
+
+TEST_CASE("As many failing trials falsify as are said to be needed") {
+  for (const double share : {0.0, 0.1, 0.5, 0.9}) {
+    for (const double confidence : {0.8, 0.95, 0.99}) {
+      const FalsifyOptions options{.share = share, .confidence = confidence};
+      std::vector<TrialRow> rows(static_cast<size_t>(TrialsToFalsify(options)));
+      for (TrialRow& row : rows) row.falsified = true;
+      CHECK(JudgeSetting(rows, options) == gap::Verdict::kFalsified);
+      rows.pop_back();
+      CHECK(JudgeSetting(rows, options) == gap::Verdict::kUndecided);
+    }
+  }
+  CHECK(TrialsToFalsify({}) == 6.0);
+  CHECK(std::isinf(TrialsToFalsify({.share = 1.0})));
+}
+
+TEST_CASE("Settings carry the verdicts that the search counts") {
+  FalsifyOptions options{.until = Until::kBudget, .most_repeats = 8, .confidence = 0.8};
+  const SweepResult result = *Search(Budget(120), options);
+  int falsified = 0, undecided = 0;
+  for (const SettingResult& setting : result.settings) {
+    CHECK(setting.verdict.confidence == 0.8);
+    falsified += setting.verdict.verdict == gap::Verdict::kFalsified;
+    undecided += setting.verdict.verdict == gap::Verdict::kUndecided && setting.verdict.above > 0;
+    if (setting.verdict.above == 0 && setting.verdict.repeats > 0) {
+      CHECK(setting.verdict.verdict == gap::Verdict::kNotFalsified);
+    }
+  }
+  CHECK(falsified == result.falsification->falsified);
+  CHECK(undecided == result.falsification->undecided);
+  CHECK(falsified > 0);
 }
 
 TEST_CASE("A fall tells only where falls count") {

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "rift/sweep/falsify.hpp"
 #include "rift/sweep/grid_sweep.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
@@ -106,6 +107,33 @@ TEST_CASE("A sweep with planted trouble ends and each trouble is a row with its 
   CHECK(row(6).falsified);
   CHECK(result.all.n == 4);
   CHECK(result.all.not_ok == 10);
+}
+
+TEST_CASE("A search with planted trouble ends and trouble is neither a failure nor a pass") {
+  TrialRunner runner(Evaluated, KeyOf, nullptr, 2, {.timeout_s = 1.0, .memory_mb = 32}, {});
+  SearchPlan search;
+  search.budget = 20;  // the space has 7 settings
+  const std::optional<SweepResult> result = Falsify(
+      Plan(), search, {.until = Until::kBudget},
+      [&](std::vector<TrialRequest> all) { return runner.Run(std::move(all)); },
+      [](const auto&) { return true; }, NoFloor);
+  REQUIRE(result);
+  REQUIRE(result->settings.size() == 7);
+  const Falsification& found = *result->falsification;
+  CHECK(found.verdict == gap::Verdict::kFalsified);
+  CHECK(found.falsified == 1);
+  CHECK(found.undecided == 0);
+  CHECK(found.ended == "every point of the space");
+  CHECK(result->settings[*found.worst_setting].theta[0].text == "wide");
+  std::set<TrialStatus> seen;
+  for (const TrialRow& row : result->rows) {
+    seen.insert(row.status);
+    CHECK(row.reason.empty() == row.IsOk());
+    CHECK(row.falsified == (row.theta[0].text == "wide"));
+  }
+  CHECK(seen == std::set<TrialStatus>{TrialStatus::kOk, TrialStatus::kHung, TrialStatus::kCrashed,
+                                      TrialStatus::kNan, TrialStatus::kOutOfMemory,
+                                      TrialStatus::kFault});
 }
 
 TEST_CASE("The rows of a sweep are the same for one worker and for two and for none") {

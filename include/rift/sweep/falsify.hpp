@@ -16,6 +16,10 @@ namespace rift::sweep {
 /// below; in between, and without a trial that tells, undecided.
 gap::Verdict JudgeSetting(std::span<const TrialRow> rows, const FalsifyOptions& options);
 
+/// How many trials of a setting, all of them failing, it takes to falsify it; infinite for a share
+/// of 1.
+double TrialsToFalsify(const FalsifyOptions& options);
+
 /// Threshold minus mean gap: below zero is a failure. A fall that counts is as bad as twice the
 /// threshold. NaN when no row tells.
 double Robustness_m(std::span<const TrialRow> rows, double threshold_m);
