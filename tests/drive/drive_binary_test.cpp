@@ -27,7 +27,8 @@ hardware:
 
 /// A floor with the robot on the first waypoint, and what rift drive needs to be told.
 struct Scene {
-  Scene() {
+  explicit Scene(int pictures = 1'000'000)
+      : floor(control::StartPose(test::PaperWaypoints()), pictures) {
     test::WriteText(folder / "cam.yaml", config::WriteCamera(test::SmallCamera()));
     test::WriteText(folder / "task.yaml", "include: " RIFT_SOURCE_DIR
                                           "/configs/waypoints/paper.yaml\n" +
@@ -43,7 +44,7 @@ struct Scene {
   }
 
   test::TemporaryFolder folder;
-  test::Floor floor{control::StartPose(test::PaperWaypoints())};
+  test::Floor floor;
 };
 
 TEST_CASE("The binary drives a robot under a camera to the last waypoint") {
@@ -98,6 +99,16 @@ TEST_CASE("The robot of a killed binary stops by itself") {
   CHECK(rift.Wait().exit_code == 128 + SIGKILL);
   for (int i = 0; i < 1000 && scene.floor.Moves(); ++i) scene.floor.Pause();
   CHECK_FALSE(scene.floor.Moves());
+}
+
+TEST_CASE("A camera that goes away in the middle stops the robot") {
+  Scene scene(90);
+  const test::ProcessResult result = test::RunRift(scene.Arguments());
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 1);
+  CHECK_FALSE(scene.floor.Moves());
+  CHECK(scene.Summary()["stop"]["reason"] == "camera_gone");
+  CHECK(scene.Summary()["stop"]["acknowledged"] == true);
 }
 
 TEST_CASE("Nobody to press a key and no yes is refused before the port is opened") {

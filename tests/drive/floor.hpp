@@ -28,13 +28,14 @@ inline vision::CameraModel SmallCamera() {
 /// takes for one, so a slow machine makes a slow world and no other path.
 class Floor {
  public:
-  explicit Floor(const geometry::Pose2& start)
+  /// `pictures`: then the camera is gone.
+  explicit Floor(const geometry::Pose2& start, int pictures = 1'000'000)
       : pose_(start),
         camera_(SmallCamera(), vision::SyntheticCameraOptions{}),
         listening_([this](const std::stop_token& stop) {
           while (!stop.stop_requested()) Listen();
         }),
-        server_([this] { return NextPicture(); }, {.fps = kPictures_hz}) {}
+        server_([this] { return NextPicture(); }, {.fps = kPictures_hz, .pictures = pictures}) {}
 
   const std::string& Port() const { return terminal_.path(); }
   std::string Camera() const { return server_.Url(); }
