@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -101,12 +102,17 @@ TEST_CASE("The robot of a killed binary stops by itself") {
   CHECK_FALSE(scene.floor.Moves());
 }
 
-TEST_CASE("A camera that goes away in the middle stops the robot") {
+TEST_CASE("A camera that goes away in the middle stops the robot even without a display") {
+  ::unsetenv("DISPLAY");
   Scene scene(90);
-  const test::ProcessResult result = test::RunRift(scene.Arguments());
+  std::vector<std::string> arguments = scene.Arguments();
+  arguments.push_back("--view");
+  const test::ProcessResult result = test::RunRift(arguments);
   INFO(result.out << result.err);
   CHECK(result.exit_code == 1);
   CHECK_FALSE(scene.floor.Moves());
+  CHECK_THAT(result.err,
+             Catch::Contains("DISPLAY is not set") && Catch::Contains("driving without --view"));
   CHECK(scene.Summary()["stop"]["reason"] == "camera_gone");
   CHECK(scene.Summary()["stop"]["acknowledged"] == true);
 }
