@@ -5,7 +5,8 @@ namespace rift::commands {
 const std::vector<Command>& Commands() {
   static const std::vector<Command> commands{
       {"simulate", "Drive the simulated robot through a waypoint task", AddSimulate},
-      {"drive", "Measure the radio link of the real robot", AddDrive},
+      {"drive", "Drive the real robot through a waypoint task, or measure its radio link",
+       AddDrive},
       {"gap", "Measure the Sim-to-Real gap of trajectories", AddGap},
       {"sweep", "Find where in a parameter space the gap is too large, and why", AddSweep},
   };

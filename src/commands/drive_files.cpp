@@ -2,16 +2,23 @@
 
 #include "drive_output.hpp"
 #include "files.hpp"
+#include "rift/config/camera_file.hpp"
 #include "rift/trajectory/log.hpp"
 #include "trial_output.hpp"
 
 namespace rift::commands {
 
+void BeginDriveFolder(const std::filesystem::path& folder, const config::Experiment& experiment,
+                      const vision::CameraModel& camera) {
+  WriteFile(folder / "experiment.yaml", config::WriteExperiment(experiment));
+  WriteFile(folder / "camera.yaml", config::WriteCamera(camera));
+}
+
 void SaveDrive(const std::filesystem::path& folder, const config::Experiment& experiment,
                const DriveRun& run) {
-  WriteFile(folder / "experiment.yaml", config::WriteExperiment(experiment));
   WriteFile(folder / "commands.csv", CommandsCsv(run.trial));
   WriteFile(folder / "stages.csv", StagesCsv(run.evidence));
+  WriteFile(folder / "encoders.csv", EncodersCsv(run.evidence));
   WriteFile(folder / "summary.json", DriveJson(experiment, run));
   WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.trial.trajectory));
 }

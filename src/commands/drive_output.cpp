@@ -47,31 +47,42 @@ struct Stage {
   double PoseStages::*from;
   double PoseStages::*to;
 };
+constexpr Stage kCaptureToCommand{"capture_to_command", &PoseStages::captured_s,
+                                  &PoseStages::written_s};
 constexpr std::array<Stage, 7> kStages{{
     {"camera", &PoseStages::captured_s, &PoseStages::arrived_s},
     {"tag", &PoseStages::arrived_s, &PoseStages::ready_s},
     {"waiting", &PoseStages::ready_s, &PoseStages::sensed_s},
     {"decision", &PoseStages::sensed_s, &PoseStages::commanded_s},
     {"line", &PoseStages::commanded_s, &PoseStages::written_s},
-    {"capture_to_command", &PoseStages::captured_s, &PoseStages::written_s},
+    kCaptureToCommand,
     {"capture_to_answer", &PoseStages::captured_s, &PoseStages::answered_s},
 }};
 
-ordered_json StageJson(const std::vector<PoseStages>& poses, const Stage& stage) {
+/// Sorted.
+std::vector<double> Times_s(const std::vector<PoseStages>& poses, const Stage& stage) {
   std::vector<double> times_s;
   for (const PoseStages& pose : poses) {
     if (pose.*stage.from >= 0.0 && pose.*stage.to >= 0.0) {
       times_s.push_back(pose.*stage.to - pose.*stage.from);
     }
   }
-  ordered_json json{{"n", times_s.size()}, {"p50_s", nullptr}, {"p99_s", nullptr}};
-  if (times_s.empty()) return json;
   std::sort(times_s.begin(), times_s.end());
-  const auto quantile = [&](double share) {
-    return times_s[static_cast<size_t>(std::ceil(share * static_cast<double>(times_s.size()))) - 1];
-  };
-  json["p50_s"] = quantile(0.5);
-  json["p99_s"] = quantile(0.99);
+  return times_s;
+}
+
+double Quantile(const std::vector<double>& sorted, double share) {
+  return sorted[static_cast<size_t>(std::ceil(share * static_cast<double>(sorted.size()))) - 1];
+}
+
+ordered_json StageJson(const std::vector<PoseStages>& poses, const Stage& stage) {
+  const std::vector<double> times_s = Times_s(poses, stage);
+  ordered_json json{
+      {"n", times_s.size()}, {"p50_s", nullptr}, {"p95_s", nullptr}, {"p99_s", nullptr}};
+  if (times_s.empty()) return json;
+  json["p50_s"] = Quantile(times_s, 0.5);
+  json["p95_s"] = Quantile(times_s, 0.95);
+  json["p99_s"] = Quantile(times_s, 0.99);
   return json;
 }
 
@@ -149,6 +160,12 @@ std::string DriveText(const DriveRun& run) {
   std::string text =
       fmt::format("{}: {}\n{:.2f} s, {} poses logged\n", NameOf(result.outcome), result.reason,
                   result.Duration_s(), result.trajectory.poses.size());
+  const std::vector<double> latency_s = Times_s(run.evidence.poses, kCaptureToCommand);
+  if (!latency_s.empty()) {
+    text += fmt::format("capture to command p50 {:.1f} ms, p95 {:.1f}, p99 {:.1f}\n",
+                        1e3 * Quantile(latency_s, 0.5), 1e3 * Quantile(latency_s, 0.95),
+                        1e3 * Quantile(latency_s, 0.99));
+  }
   const std::optional<bool>& acknowledged = run.evidence.stop_acknowledged;
   text += !acknowledged   ? "the robot cannot say whether it stands: look at it\n"
           : *acknowledged ? "the robot acknowledged the stop\n"
@@ -157,16 +174,24 @@ std::string DriveText(const DriveRun& run) {
 }
 
 std::string StagesCsv(const hardware::DriveEvidence& evidence) {
-  std::string text =
-      "captured_s,arrived_s,ready_s,sensed_s,commanded_s,written_s,answered_s,encoder_left,"
-      "encoder_right\n";
+  std::string text = "captured_s,arrived_s,ready_s,sensed_s,commanded_s,written_s,answered_s\n";
   for (const PoseStages& pose : evidence.poses) {
-    for (const double time_s : {pose.captured_s, pose.arrived_s, pose.ready_s, pose.sensed_s,
-                                pose.commanded_s, pose.written_s, pose.answered_s}) {
-      text += Cell(time_s) + ",";
+    text += Cell(pose.captured_s);
+    for (const double time_s : {pose.arrived_s, pose.ready_s, pose.sensed_s, pose.commanded_s,
+                                pose.written_s, pose.answered_s}) {
+      text += "," + Cell(time_s);
     }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string EncodersCsv(const hardware::DriveEvidence& evidence) {
+  std::string text = "t_s,left,right\n";
+  for (const PoseStages& pose : evidence.poses) {
     const auto counts = hardware::CountsAt(evidence.encoders, pose.captured_s);
-    text += counts ? fmt::format("{:.1f},{:.1f}\n", counts->first, counts->second) : ",\n";
+    if (!counts) continue;
+    text += fmt::format("{},{:.1f},{:.1f}\n", Cell(pose.captured_s), counts->first, counts->second);
   }
   return text;
 }

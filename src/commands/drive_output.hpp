@@ -15,8 +15,10 @@ std::string PingText(const hardware::PingResult& ping, const hardware::HardwareO
 std::string DriveJson(const config::Experiment& experiment, const DriveRun& run);
 std::string DriveText(const DriveRun& run);
 
-/// One row a pose: when it went through each stage, and the encoder counts at its capture time.
-/// Cells of stages never reached and of counts not known are empty.
+/// One row a pose: when it went through each stage. Cells of stages never reached are empty.
 std::string StagesCsv(const hardware::DriveEvidence& evidence);
+/// The wheels in step with the camera: at the capture time of each pose, between two readings.
+/// Poses before the first reading or after the last have no row.
+std::string EncodersCsv(const hardware::DriveEvidence& evidence);
 
 }  // namespace rift::commands

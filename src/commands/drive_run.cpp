@@ -40,20 +40,25 @@ double PrintStoppingDistance(const DriveParts& parts, const config::Experiment& 
   return distance_m;
 }
 
-/// Lets the link run until `is_so`; throws when the drive was stopped meanwhile.
-void WaitUntil(hardware::RealRobot& robot, const std::function<bool()>& is_so) {
+/// Lets the link run until `is_so`; false when a person stopped the drive meanwhile. Throws when
+/// anything else did.
+bool WaitUntil(hardware::RealRobot& robot, const std::function<bool()>& is_so) {
   while (!is_so()) {
     robot.Advance(kTurn_s);
-    if (robot.state() == hardware::DriveState::kStopped) {
-      throw std::runtime_error(
-          fmt::format("stopped before the start: {}", robot.Evidence().stop->text));
+    if (robot.state() != hardware::DriveState::kStopped) continue;
+    const hardware::DriveStop stop = *robot.Evidence().stop;
+    if (stop.reason == hardware::StopReason::kOperator ||
+        stop.reason == hardware::StopReason::kSignal) {
+      return false;
     }
+    throw std::runtime_error(fmt::format("stopped before the start: {}", stop.text));
   }
+  return true;
 }
 
-void WaitForFirstPose(hardware::RealRobot& robot) {
+bool WaitForFirstPose(hardware::RealRobot& robot) {
   const double start_s = robot.Sense().now_s;
-  WaitUntil(robot, [&] {
+  return WaitUntil(robot, [&] {
     const robot::Sensed sensed = robot.Sense();
     if (!sensed.pose && sensed.now_s - start_s > kFirstPose_s) {
       throw std::runtime_error(fmt::format(
@@ -96,11 +101,16 @@ DriveRun Drive(const DriveParts& parts, const config::Experiment& experiment) {
   hardware::RealRobot robot(parts.line, parts.poses, parts.clock,
                             {experiment.hardware, run.ping.protocol, parts.threads});
   for (const hardware::Stopper& stopper : parts.stoppers) robot.AddStopper(stopper);
-  WaitForFirstPose(robot);
-  SayWhereItStands(parts, robot, experiment);
-  WaitUntil(robot, parts.may_arm);
-  robot.Arm();
-  run.trial = trial::RunTrial(robot, experiment.waypoints, experiment.control, experiment.trial);
+  if (WaitForFirstPose(robot)) {
+    SayWhereItStands(parts, robot, experiment);
+    run.has_begun = WaitUntil(robot, parts.may_arm);
+  }
+  if (run.has_begun) {
+    robot.Arm();
+    run.trial = trial::RunTrial(robot, experiment.waypoints, experiment.control, experiment.trial);
+  } else {
+    run.trial.reason = "stopped before the start: " + robot.Evidence().stop->text;
+  }
   robot.ConfirmStop(kConfirm_s);
   run.evidence = robot.Evidence();
   return run;

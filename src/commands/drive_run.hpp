@@ -29,6 +29,7 @@ struct DriveParts {
 };
 
 struct DriveRun {
+  bool has_begun = false;  ///< false: a person stopped it before the start
   hardware::PingResult ping;
   trial::TrialResult trial;
   hardware::DriveEvidence evidence;
@@ -36,8 +37,8 @@ struct DriveRun {
 };
 
 /// Hello, ping, stopping distance, the first pose, the operator's yes, the trial, the stop.
-/// Throws std::runtime_error when the drive cannot begin (link over its budget, robot not seen) or
-/// was stopped before it began; std::invalid_argument when the experiment has no task.
+/// Throws std::runtime_error when the drive cannot begin (link over its budget, robot not seen,
+/// camera or port gone); std::invalid_argument when the experiment has no task.
 DriveRun Drive(const DriveParts& parts, const config::Experiment& experiment);
 
 /// The link alone: hello and ping, with the motors at zero.

@@ -7,7 +7,9 @@
 #include "drive_output.hpp"
 #include "files.hpp"
 #include "hardware/bench.hpp"
+#include "rift/config/camera_file.hpp"
 #include "rift/trajectory/log.hpp"
+#include "support/paper_camera.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/process.hpp"
 
@@ -54,6 +56,7 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   CHECK_THAT(person.told[1], Catch::StartsWith("worst stopping distance 0.2"));
 
   const test::TemporaryFolder folder;
+  BeginDriveFolder(folder.Path(), experiment, test::PaperCamera());
   SaveDrive(folder.Path(), experiment, run);
   const auto summary = nlohmann::json::parse(ReadFile(folder / "summary.json"));
   CHECK(summary["outcome"] == "reached");
@@ -64,6 +67,9 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   const std::string stages = ReadFile(folder / "stages.csv");
   const auto rows = std::count(stages.begin(), stages.end(), '\n');
   CHECK(rows == 1 + static_cast<long>(run.evidence.poses.size()));
+  const std::string encoders = ReadFile(folder / "encoders.csv");
+  CHECK(std::count(encoders.begin(), encoders.end(), '\n') > rows - 5);
+  CHECK(config::ReadCamera(ReadFile(folder / "camera.yaml"), "camera").world);
   const trajectory::Log log = trajectory::ReadLog(ReadFile(folder / "trajectory.csv"), "trajectory",
                                                   trajectory::Format::kAuto);
   CHECK(log.trajectory.poses.size() == run.trial.trajectory.poses.size());
@@ -89,8 +95,9 @@ TEST_CASE("Nothing moves until the operator says yes") {
     if (++asked == 50) person.stop = {StopReason::kOperator, "q was pressed"};
     return false;
   };
-  CHECK_THROWS_WITH(Drive(parts, PaperExperiment()),
-                    Catch::Contains("stopped before the start: q was pressed"));
+  const DriveRun run = Drive(parts, PaperExperiment());
+  CHECK_FALSE(run.has_begun);
+  CHECK(run.trial.reason == "stopped before the start: q was pressed");
   CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
 }
 

@@ -34,11 +34,14 @@ class StillCamera : public PoseSource {
 int DriveForEver(const std::string& path) {
   SteadyClock clock;
   StillCamera camera(clock);
-  const HardwareOptions hardware;
+  HardwareOptions hardware;
+  hardware.line.baud = 115200;
+  // A loaded machine must not look like a fault; SIGSTOP lasts longer.
+  hardware.guard.host_stall_s = hardware.guard.link_lag_s = hardware.guard.control_stale_s = 0.6;
   SerialPort port(path, 115200, 0.05);
   const SignalWatch signals;
   RealRobotOptions options;
-  options.hardware.line.baud = 115200;
+  options.hardware = hardware;
   options.protocol = FindProtocol(port, clock, hardware.line);
   RealRobot robot(port, camera, clock, options);
   robot.AddStopper([&]() -> std::optional<std::pair<StopReason, std::string>> {

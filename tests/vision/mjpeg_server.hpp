@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <optional>
 #include <string>
 #include <thread>
@@ -25,13 +26,19 @@ struct ServerOptions {
 /// which it was sent in a comment segment.
 class MjpegServer {
  public:
+  using Camera = std::function<std::vector<std::uint8_t>()>;
+
   MjpegServer(std::vector<std::uint8_t> jpeg, ServerOptions options)
-      : jpeg_(std::move(jpeg)), options_(std::move(options)), thread_([this] { Serve(); }) {}
+      : MjpegServer([jpeg = std::move(jpeg)] { return jpeg; }, std::move(options)) {}
+  /// `camera` is asked for each picture, by a thread of the server.
+  MjpegServer(Camera camera, ServerOptions options)
+      : camera_(std::move(camera)), options_(std::move(options)), thread_([this] { Serve(); }) {}
   ~MjpegServer() {
     stop_ = true;
     boost::system::error_code ignored;
     boost::asio::ip::tcp::socket waker(context_);  // accept() waits for somebody
     waker.connect(acceptor_.local_endpoint(), ignored);
+    waker.close(ignored);  // it will never ask for anything
     if (client_) client_->shutdown(boost::asio::ip::tcp::socket::shutdown_both, ignored);
     thread_.join();
   }
@@ -55,7 +62,7 @@ class MjpegServer {
 
  private:
   std::vector<std::uint8_t> Stamped() const {
-    std::vector<std::uint8_t> jpeg = jpeg_;
+    std::vector<std::uint8_t> jpeg = camera_();
     std::vector<std::uint8_t> comment{0xFF, 0xFE, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0};
     const double now_s = Now_s();
     std::memcpy(comment.data() + 4, &now_s, sizeof now_s);
@@ -87,14 +94,14 @@ class MjpegServer {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
       }
       client_->close();
-    } catch (const boost::system::system_error&) {  // the client went away: what else is there to do
+    } catch (
+        const boost::system::system_error&) {  // the client went away: what else is there to do
     }
   }
 
   boost::asio::io_context context_;
-  boost::asio::ip::tcp::acceptor acceptor_{
-      context_, {boost::asio::ip::address_v4::loopback(), 0}};
-  std::vector<std::uint8_t> jpeg_;
+  boost::asio::ip::tcp::acceptor acceptor_{context_, {boost::asio::ip::address_v4::loopback(), 0}};
+  Camera camera_;
   ServerOptions options_;
   std::optional<boost::asio::ip::tcp::socket> client_;
   std::atomic<bool> stop_ = false;

@@ -17,6 +17,7 @@
 #include "rift/sweep/options.hpp"
 #include "rift/sweep/run_options.hpp"
 #include "rift/trial/trial_options.hpp"
+#include "rift/vision/track_options.hpp"
 
 namespace rift::config {
 
@@ -40,6 +41,7 @@ struct Experiment {
   trial::TrialOptions trial;
   simulation::SimulationOptions simulation;
   hardware::HardwareOptions hardware;
+  vision::TrackOptions track;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -61,6 +63,7 @@ struct Experiment {
     field("trial", self.trial, "the trial loop: rates, time limits, when a trial has failed");
     field("simulation", self.simulation, "the simulated robot, its radio, its camera, the floor");
     field("hardware", self.hardware, "the real robot: its line, when it is stopped, its link");
+    field("track", self.track, "the overhead camera: what it is asked for, the tag, calibration");
   }
 };
 

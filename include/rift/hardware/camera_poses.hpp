@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "rift/hardware/byte_line.hpp"
+#include "rift/hardware/pose_source.hpp"
+#include "rift/vision/module.hpp"
+
+namespace rift::hardware {
+
+/// The overhead camera as the source of poses. A thread of its own takes the newest picture and
+/// finds the tag in it, so that nothing ever waits for a picture. The pose is that of the tag, as
+/// the simulated motion capture gives it (MocapOptions::tag_ahead_m) and as the authors' logs hold
+/// it: simulator, robot and logs speak of the same point.
+class CameraPoses : public PoseSource {
+ public:
+  /// What the camera saw last, for people.
+  struct View {
+    std::shared_ptr<const vision::Frame> frame;  ///< none before the first
+    vision::TrackResult found;
+  };
+
+  /// `tracker` must give poses in the world. `clock` must be the frames' (SteadyClock) and outlive
+  /// this.
+  CameraPoses(std::unique_ptr<vision::Capture> capture,
+              std::unique_ptr<vision::PoseTracker> tracker, Clock& clock);
+  CameraPoses(const CameraPoses&) = delete;
+  CameraPoses& operator=(const CameraPoses&) = delete;
+
+  PoseNews Newest() override;
+  View Seen() const;
+  vision::CaptureStatus Status() const { return capture_->Status(); }
+
+ private:
+  void Run(const std::stop_token& stop);
+  void TakePicture();
+
+  std::unique_ptr<vision::Capture> capture_;
+  std::unique_ptr<vision::PoseTracker> tracker_;
+  Clock& clock_;
+  mutable std::mutex mutex_;  // guards what follows
+  PoseNews news_;
+  View view_;
+  std::jthread thread_;  // last: it ends before what it uses
+};
+
+}  // namespace rift::hardware

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <future>
+
+#include "drive_operator.hpp"
+#include "drive_run.hpp"
+#include "rift/hardware/camera_poses.hpp"
+
+namespace rift::commands {
+
+/// The camera's picture with tag, trail and waypoints in a window, until `drive` is over; closing
+/// it stops the robot.
+void ShowUntilOver(const std::future<DriveRun>& drive, vision::TrackWindow& window,
+                   const hardware::CameraPoses& poses, const vision::CameraModel& camera,
+                   const config::Experiment& experiment, DriveOperator& person);
+
+}  // namespace rift::commands

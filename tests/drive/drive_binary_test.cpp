@@ -1,0 +1,167 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "files.hpp"
+#include "floor.hpp"
+#include "rift/control/waypoint.hpp"
+#include "rift/trajectory/log.hpp"
+#include "support/paper_waypoints.hpp"
+#include "support/running_rift.hpp"
+
+namespace rift {
+namespace {
+
+using commands::ReadFile;
+
+// Limits that a loaded machine keeps as well; those of a real drive are tested on a fake clock.
+constexpr const char* kPatient = R"(
+track: {tag: {acquire_decimate: 1, lost_after_s: 5}, capture: {silent_s: 20, same_s: 20, open_timeout_s: 60}}
+trial: {pose_stale_s: 5, lost_after_s: 20, timeout_s: 300}
+hardware:
+  line: {baud: 115200, hello_s: 20}
+  guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
+  ping: {duration_s: 0.5, max_p99_s: 10, max_loss: 1, max_burst: 1000}
+)";
+
+/// A floor with the robot on the first waypoint, and what rift drive needs to be told.
+struct Scene {
+  explicit Scene(int pictures = 1'000'000)
+      : floor(control::StartPose(test::PaperWaypoints()), pictures) {
+    test::WriteText(folder / "cam.yaml", config::WriteCamera(test::SmallCamera()));
+    test::WriteText(folder / "task.yaml", "include: " RIFT_SOURCE_DIR
+                                          "/configs/waypoints/paper.yaml\n" +
+                                              std::string(kPatient));
+  }
+  std::vector<std::string> Arguments() const {
+    return {"drive",    folder / "task.yaml", "--port",        floor.Port(),
+            "--camera", floor.Camera(),       "--calibration", folder / "cam.yaml",
+            "--out",    folder / "run",       "--yes"};
+  }
+  nlohmann::json Summary() const {
+    return nlohmann::json::parse(ReadFile(folder / "run/summary.json"));
+  }
+
+  test::TemporaryFolder folder;
+  test::Floor floor;
+};
+
+TEST_CASE("The binary drives a robot under a camera to the last waypoint") {
+  Scene scene;
+  const test::ProcessResult result = test::RunRift(scene.Arguments());
+  INFO(result.out << result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.err, Catch::Contains("worst stopping distance"));
+  CHECK_THAT(result.out, Catch::Contains("the robot acknowledged the stop"));
+  const auto summary = scene.Summary();
+  CHECK(summary["outcome"] == "reached");
+  CHECK(summary["stop"]["acknowledged"] == true);
+  CHECK(summary["latency"]["capture_to_command"]["p99_s"] > 0.0);
+  const std::string path = scene.folder / "run/trajectory.csv";
+  const auto poses =
+      trajectory::ReadLog(ReadFile(path), path, trajectory::Format::kAuto).trajectory.poses;
+  REQUIRE(poses.size() > 50);
+  const geometry::Pose2 end = scene.floor.Pose();
+  CHECK((end.Position() - test::PaperWaypoints().back().Position()).norm() < 0.08);
+  CHECK(std::hypot(poses.back().x_m - end.x_m, poses.back().y_m - end.y_m) < 0.03);
+  for (const char* name : {"experiment.yaml", "camera.yaml", "stages.csv", "encoders.csv"}) {
+    CHECK(std::filesystem::exists(scene.folder.Path() / "run" / name));
+  }
+
+  const test::ProcessResult again = test::RunRift(scene.Arguments());
+  CHECK(again.exit_code == 2);
+  CHECK_THAT(again.err, Catch::Contains("holds a run already"));
+}
+
+TEST_CASE("A signal to the binary stops the robot and the run is saved with its reason") {
+  for (const auto& [signal, name] :
+       {std::pair{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}) {
+    Scene scene;
+    test::RunningRift rift(scene.Arguments());
+    while (rift.IsRunning() && !scene.floor.Moves()) scene.floor.Pause();
+    rift.Signal(signal);
+    const test::ProcessResult result = rift.Wait();
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 1);
+    CHECK_FALSE(scene.floor.Moves());
+    CHECK(scene.Summary()["stop"]["reason"] == "signal");
+    CHECK(scene.Summary()["stop"]["acknowledged"] == true);
+    CHECK_THAT(scene.Summary()["reason"].get<std::string>(), Catch::Contains(name));
+  }
+}
+
+TEST_CASE("The robot of a killed binary stops by itself") {
+  Scene scene;
+  test::RunningRift rift(scene.Arguments());
+  while (rift.IsRunning() && !scene.floor.Moves()) scene.floor.Pause();
+  rift.Signal(SIGKILL);
+  CHECK(rift.Wait().exit_code == 128 + SIGKILL);
+  for (int i = 0; i < 1000 && scene.floor.Moves(); ++i) scene.floor.Pause();
+  CHECK_FALSE(scene.floor.Moves());
+}
+
+TEST_CASE("A camera that goes away in the middle stops the robot even without a display") {
+  ::unsetenv("DISPLAY");
+  Scene scene(90);
+  std::vector<std::string> arguments = scene.Arguments();
+  arguments.push_back("--view");
+  const test::ProcessResult result = test::RunRift(arguments);
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 1);
+  CHECK_FALSE(scene.floor.Moves());
+  CHECK_THAT(result.err,
+             Catch::Contains("DISPLAY is not set") && Catch::Contains("driving without --view"));
+  CHECK(scene.Summary()["stop"]["reason"] == "camera_gone");
+  CHECK(scene.Summary()["stop"]["acknowledged"] == true);
+}
+
+TEST_CASE("Nobody to press a key and no yes is refused before the port is opened") {
+  Scene scene;
+  std::vector<std::string> arguments = scene.Arguments();
+  arguments.pop_back();
+  const test::ProcessResult result = test::RunRift(arguments);
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.err, Catch::Contains("give --yes"));
+  CHECK_FALSE(std::filesystem::exists(scene.folder.Path() / "run"));
+}
+
+TEST_CASE("Wrong inputs of a drive are answered with one line that says what to do") {
+  const Scene scene;
+  const auto replaced = [&scene](const std::string& flag, const std::string& value) {
+    std::vector<std::string> arguments = scene.Arguments();
+    *(std::find(arguments.begin(), arguments.end(), flag) + 1) = value;
+    return test::RunRift(arguments);
+  };
+  vision::CameraModel camera = test::SmallCamera();
+  camera.width_px = 640;
+  test::WriteText(scene.folder / "size.yaml", config::WriteCamera(camera));
+  camera.world.reset();
+  test::WriteText(scene.folder / "nowhere.yaml", config::WriteCamera(camera));
+  test::WriteText(scene.folder / "picture", "");
+  struct Wrong {
+    std::string flag, value;
+    int exit_code;
+    std::string says;
+  };
+  for (const Wrong& wrong : {
+           Wrong{"--port", "/dev/no_such_port", 3, "there is no serial port /dev/no_such_port"},
+           Wrong{"--port", "/dev/null", 3, "is no serial port"},
+           Wrong{"--calibration", scene.folder / "nowhere.yaml", 2, "has no world frame"},
+           Wrong{"--calibration", scene.folder / "none.yaml", 2, "No such file"},
+           Wrong{"--calibration", scene.folder / "size.yaml", 2, "960x540 pixels and its"},
+           Wrong{"--camera", "/dev/video99", 3, "/dev/video99"},
+           Wrong{"--camera", "http://127.0.0.1:1/video", 3, "http://127.0.0.1:1/video"},
+           Wrong{"drive", scene.folder / "none.yaml", 2, "No such file"},
+       }) {
+    const test::ProcessResult result = replaced(wrong.flag, wrong.value);
+    INFO(wrong.flag << " " << wrong.value << ": " << result.err);
+    CHECK(result.exit_code == wrong.exit_code);
+    CHECK_THAT(result.err, Catch::StartsWith("rift: ") && Catch::Contains(wrong.says));
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  }
+}
+
+}  // namespace
+}  // namespace rift

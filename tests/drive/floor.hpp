@@ -1,0 +1,94 @@
+#pragma once
+
+#include <mutex>
+#include <thread>
+
+#include "hardware/pseudo_terminal.hpp"
+#include "rift/config/camera_file.hpp"
+#include "rift/hardware/byte_line.hpp"
+#include "rift/hardware/listener.hpp"
+#include "rift/robot/diff_drive.hpp"
+#include "support/paper_camera.hpp"
+#include "vision/mjpeg_server.hpp"
+#include "vision/rendered_tags.hpp"
+
+namespace rift::test {
+
+/// The paper's camera with half its pixels.
+inline vision::CameraModel SmallCamera() {
+  vision::CameraModel camera = PaperCamera();
+  camera.width_px /= 2;
+  camera.height_px /= 2;
+  camera.k.topRows<2>() *= 0.5;
+  return camera;
+}
+
+/// A robot on a floor under a camera, for the rift binary: the listener behind a pseudo terminal,
+/// and an http camera. The robot moves by a fixed time with every picture, however long the machine
+/// takes for one, so a slow machine makes a slow world and no other path.
+class Floor {
+ public:
+  /// `pictures`: then the camera is gone.
+  explicit Floor(const geometry::Pose2& start, int pictures = 1'000'000)
+      : pose_(start),
+        camera_(SmallCamera(), vision::SyntheticCameraOptions{}),
+        listening_([this](const std::stop_token& stop) {
+          while (!stop.stop_requested()) Listen();
+        }),
+        server_([this] { return NextPicture(); }, {.fps = kPictures_hz, .pictures = pictures}) {}
+
+  const std::string& Port() const { return terminal_.path(); }
+  std::string Camera() const { return server_.Url(); }
+  geometry::Pose2 Pose() {
+    const std::lock_guard lock(mutex_);
+    return pose_;
+  }
+  bool Moves() {
+    const std::lock_guard lock(mutex_);
+    return !listener_.Motors().IsZero();
+  }
+
+  /// Lets a little time pass.
+  void Pause() { clock_.Wait(0.01); }
+
+ private:
+  static constexpr double kPictures_hz = 20.0;
+  static constexpr double kStep_s = 1.0 / 60.0;
+
+  void Listen() {
+    const std::vector<std::uint8_t> heard = terminal_.Read(2);
+    const std::lock_guard lock(mutex_);
+    const auto counts = static_cast<std::int32_t>(3564.0 * travelled_m_);
+    terminal_.Write(listener_.Poll(static_cast<std::uint32_t>(1000.0 * clock_.Now_s()), heard,
+                                   {counts, counts, 4800}));
+  }
+
+  std::vector<std::uint8_t> NextPicture() {
+    geometry::Pose2 pose;
+    {
+      const std::lock_guard lock(mutex_);
+      const hardware::MilliPower motors = listener_.Motors();
+      const geometry::Pose2 before = pose_;
+      pose_ = drive_.Drive(pose_, {1e-3 * motors.left, 1e-3 * motors.right}, kStep_s);
+      travelled_m_ += (pose_.Position() - before.Position()).norm();
+      pose = pose_;
+    }
+    return camera_
+        .Render(RobotAt(pose.x_m, pose.y_m, pose.yaw_rad), vision::PixelFormat::kJpeg, generator_)
+        .bytes;
+  }
+
+  std::mutex mutex_;
+  geometry::Pose2 pose_;
+  double travelled_m_ = 0.0;
+  robot::DiffDrive drive_;
+  hardware::Listener listener_;
+  hardware::SteadyClock clock_;
+  hardware::PseudoTerminal terminal_;
+  vision::SyntheticCamera camera_;
+  std::mt19937_64 generator_{1};
+  std::jthread listening_;
+  vision::synthetic::MjpegServer server_;
+};
+
+}  // namespace rift::test

@@ -1,0 +1,158 @@
+#include "rift/hardware/camera_poses.hpp"
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+
+namespace rift::hardware {
+namespace {
+
+/// What the test and the camera's thread share.
+struct Stage {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::optional<vision::Frame> frame;
+  vision::CaptureStatus status{.state = vision::CameraState::kRunning};
+
+  void Put(double captured_s) {
+    const std::lock_guard lock(mutex);
+    frame = vision::Frame{.captured_s = captured_s, .arrived_s = captured_s + 0.004};
+    ++status.delivered;
+    changed.notify_all();
+  }
+  void Become(vision::CameraState state, const std::string& reason) {
+    const std::lock_guard lock(mutex);
+    status.state = state;
+    status.reason = reason;
+  }
+};
+
+class StagedCapture : public vision::Capture {
+ public:
+  explicit StagedCapture(std::shared_ptr<Stage> stage) : stage_(std::move(stage)) {}
+  std::optional<vision::Frame> Next(double timeout_s) override {
+    std::unique_lock lock(stage_->mutex);
+    stage_->changed.wait_for(lock, std::chrono::duration<double>(timeout_s),
+                             [this] { return stage_->frame.has_value(); });
+    return std::exchange(stage_->frame, std::nullopt);
+  }
+  vision::CaptureStatus Status() const override {
+    const std::lock_guard lock(stage_->mutex);
+    return stage_->status;
+  }
+  bool IsRecording() const override { return false; }
+
+ private:
+  std::shared_ptr<Stage> stage_;
+};
+
+/// Sees whatever it was told to see, or throws.
+class StagedTracker : public vision::PoseTracker {
+ public:
+  using Answer = std::function<vision::TrackResult(const vision::Frame&)>;
+  explicit StagedTracker(Answer answer) : answer_(std::move(answer)) {}
+  vision::TrackResult Track(const vision::Frame& frame) override { return answer_(frame); }
+  void Forget() override {}
+
+ private:
+  Answer answer_;
+};
+
+vision::TrackResult LeaningTag(const vision::Frame& frame) {
+  vision::Sighting sighting;
+  sighting.captured_s = frame.captured_s;
+  sighting.in_world = true;
+  sighting.map_from_tag = Eigen::Translation3d(0.3, -0.2, 0.03) *
+                          Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ()) *
+                          Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()) *
+                          Eigen::AngleAxisd(-0.1, Eigen::Vector3d::UnitX());
+  return {.sighting = sighting};
+}
+
+struct Scene {
+  explicit Scene(StagedTracker::Answer answer)
+      : poses(std::make_unique<StagedCapture>(stage), std::make_unique<StagedTracker>(answer),
+              clock) {}
+
+  /// The news once they are so, or those after 10 s.
+  PoseNews NewsWhen(const std::function<bool(const PoseNews&)>& is_so) {
+    const double end_s = clock.Now_s() + 10.0;
+    PoseNews news = poses.Newest();
+    while (!is_so(news) && clock.Now_s() < end_s) {
+      clock.Wait(1e-3);
+      news = poses.Newest();
+    }
+    return news;
+  }
+
+  std::shared_ptr<Stage> stage = std::make_shared<Stage>();
+  SteadyClock clock;
+  CameraPoses poses;
+};
+
+TEST_CASE("A sighting becomes a pose on the floor with the times of its picture") {
+  Scene scene(LeaningTag);
+  CHECK_FALSE(scene.poses.Newest().newest);
+  const double captured_s = scene.clock.Now_s();
+  scene.stage->Put(captured_s);
+  const PoseNews news = scene.NewsWhen([](const PoseNews& n) { return n.newest.has_value(); });
+  REQUIRE(news.newest);
+  const robot::PoseMeasurement& pose = news.newest->measured;
+  CHECK(pose.captured_s == captured_s);
+  CHECK(news.newest->arrived_s == captured_s + 0.004);
+  CHECK(news.newest->ready_s >= captured_s);
+  CHECK(news.looked_s == captured_s);
+  CHECK(pose.world_from_robot.x_m == Approx(0.3));
+  CHECK(pose.world_from_robot.y_m == Approx(-0.2));
+  CHECK(pose.world_from_robot.yaw_rad == Approx(2.0));
+  CHECK(pose.z_m == Approx(0.03));
+  CHECK(pose.roll_rad == Approx(-0.1));
+  CHECK(pose.pitch_rad == Approx(0.2));
+  CHECK(scene.poses.Seen().frame->captured_s == captured_s);
+}
+
+TEST_CASE("A picture without a tag leaves the last pose and tells that somebody looked") {
+  bool is_hidden = false;
+  Scene scene([&is_hidden](const vision::Frame& frame) {
+    return is_hidden ? vision::TrackResult{.miss = vision::Miss::kNoTag} : LeaningTag(frame);
+  });
+  scene.stage->Put(1.0);
+  scene.NewsWhen([](const PoseNews& n) { return n.looked_s == 1.0; });
+  is_hidden = true;
+  scene.stage->Put(2.0);
+  const PoseNews news = scene.NewsWhen([](const PoseNews& n) { return n.looked_s == 2.0; });
+  CHECK(news.looked_s == 2.0);
+  REQUIRE(news.newest);
+  CHECK(news.newest->measured.captured_s == 1.0);
+}
+
+TEST_CASE("A camera that will give no more pictures is a fault and one that pauses is none") {
+  Scene scene(LeaningTag);
+  scene.stage->Put(1.0);
+  scene.NewsWhen([](const PoseNews& n) { return n.newest.has_value(); });
+  scene.stage->Become(vision::CameraState::kFrozen, "no picture for 0.6 s");
+  scene.clock.Wait(0.15);
+  CHECK_FALSE(scene.poses.Newest().fault);
+  scene.stage->Become(vision::CameraState::kUnplugged, "the device is gone");
+  const PoseNews news = scene.NewsWhen([](const PoseNews& n) { return n.fault.has_value(); });
+  CHECK(news.fault == "the camera is unplugged: the device is gone");
+}
+
+TEST_CASE("A camera that never gave a picture is a fault") {
+  Scene scene(LeaningTag);
+  scene.stage->Become(vision::CameraState::kFrozen, "no first picture within 5.0 s");
+  CHECK(scene.NewsWhen([](const PoseNews& n) { return n.fault.has_value(); }).fault);
+}
+
+TEST_CASE("A tracker that throws is a fault with its words") {
+  Scene scene([](const vision::Frame&) -> vision::TrackResult {
+    throw std::runtime_error("out of memory");
+  });
+  scene.stage->Put(1.0);
+  CHECK(scene.NewsWhen([](const PoseNews& n) { return n.fault.has_value(); }).fault ==
+        "out of memory");
+}
+
+}  // namespace
+}  // namespace rift::hardware
