@@ -8,7 +8,6 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <stdexcept>
 
 #include "picture.hpp"
 
@@ -17,11 +16,22 @@ namespace {
 
 constexpr int kColour = 90;  // saturation of 255 that no grey cast of a lamp reaches
 
+// A board whose squares are too small at this width is too far away to calibrate with, and the
+// search of a whole 1080p picture takes ten times as long.
+constexpr double kSearchWidth_px = 960.0;
+
 std::vector<cv::Point2f> FindSector(const cv::Mat& grey, cv::Size size) {
   std::vector<cv::Point2f> corners;
   const bool found = cv::findChessboardCornersSB(
+      grey, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
+  return found ? corners : std::vector<cv::Point2f>{};
+}
+
+std::vector<cv::Point2f> FindClassic(const cv::Mat& grey, cv::Size size) {
+  std::vector<cv::Point2f> corners;
+  const bool found = cv::findChessboardCorners(
       grey, size, corners,
-      cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY);
+      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK);
   return found ? corners : std::vector<cv::Point2f>{};
 }
 
@@ -34,16 +44,15 @@ int HalfWindow_px(const std::vector<cv::Point2f>& corners) {
   return std::clamp(static_cast<int>(nearest_px / 3.0), 2, 11);
 }
 
-std::vector<cv::Point2f> FindClassic(const cv::Mat& grey, cv::Size size) {
-  std::vector<cv::Point2f> corners;
-  const bool found = cv::findChessboardCorners(
-      grey, size, corners,
-      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK);
-  if (!found) return {};
+/// From corners of a picture `scale` times as large to those of the whole one.
+void Refine(const cv::Mat& grey, double scale, std::vector<cv::Point2f>& corners) {
+  for (cv::Point2f& corner : corners) {
+    corner.x = static_cast<float>((corner.x + 0.5) / scale - 0.5);
+    corner.y = static_cast<float>((corner.y + 0.5) / scale - 0.5);
+  }
   const int half_px = HalfWindow_px(corners);
   cv::cornerSubPix(grey, corners, {half_px, half_px}, {-1, -1},
                    {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-3});
-  return corners;
 }
 
 // With odd numbers of corners both ways the board looks the same when turned by half a turn.
@@ -65,30 +74,37 @@ double ColouredShare(const cv::Mat& picture, const std::vector<cv::Point2f>& cor
   return static_cast<double>(cv::countNonZero(coloured)) / std::max(1, cv::countNonZero(inside));
 }
 
-std::string WhyNot(const cv::Mat& grey, const Board& board) {
+bool IsBlack(const cv::Mat& grey) {
   cv::Scalar mean, deviation;
   cv::meanStdDev(grey, mean, deviation);
-  if (mean[0] + 3.0 * deviation[0] < 40.0) return "the picture is black";
-  return fmt::format("no chessboard of {} x {} inner corners in it", board.columns, board.rows);
+  return mean[0] + 3.0 * deviation[0] < 40.0;
 }
 
 BoardView FindIn(const cv::Mat& picture, const Board& board, const std::string& name) {
   board.Check();
   BoardView view{.name = name, .width_px = picture.cols, .height_px = picture.rows};
-  cv::Mat grey;
+  cv::Mat grey, small;
   cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+  if (IsBlack(grey)) {
+    view.problem = "the picture is black";
+    return view;
+  }
+  const double scale = std::min(1.0, kSearchWidth_px / grey.cols);
+  cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
   const cv::Size size(board.columns, board.rows);
-  std::vector<cv::Point2f> corners = FindSector(grey, size);
+  std::vector<cv::Point2f> corners = FindSector(small, size);
   view.method = BoardMethod::kSector;
   if (corners.empty()) {
-    corners = FindClassic(grey, size);
+    corners = FindClassic(small, size);
     view.method = BoardMethod::kClassic;
   }
   if (corners.empty()) {
     view.method = BoardMethod::kNone;
-    view.problem = WhyNot(grey, board);
+    view.problem =
+        fmt::format("no chessboard of {} x {} inner corners in it", board.columns, board.rows);
     return view;
   }
+  Refine(grey, scale, corners);
   StartAtUpperLeft(corners);
   for (const cv::Point2f& corner : corners) view.corners.emplace_back(corner.x, corner.y);
   view.coloured = ColouredShare(picture, corners);
@@ -102,19 +118,6 @@ BoardView Undecodable(const std::string& name) {
 }
 
 }  // namespace
-
-void Board::Check() const {
-  if (columns < 3 || rows < 3 || columns > 100 || rows > 100) {
-    throw std::invalid_argument(
-        fmt::format("a board of {} x {} inner corners: there must be 3 to 100 both ways (squares "
-                    "less one)",
-                    columns, rows));
-  }
-  if (!(square_m > 0.0) || square_m > 10.0) {
-    throw std::invalid_argument(
-        fmt::format("squares of {} m: the side of one square in metres is needed", square_m));
-  }
-}
 
 BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name) {
   const cv::Mat picture = BgrOf(frame);

@@ -15,12 +15,6 @@
 
 namespace rift::vision {
 
-geometry::Pose2 Sighting::Planar() const {
-  const Eigen::Vector3d forward = map_from_tag.linear().col(0);
-  return {map_from_tag.translation().x(), map_from_tag.translation().y(),
-          std::atan2(forward.y(), forward.x())};
-}
-
 class TagTracker::Search {
  public:
   Search(const CameraModel& camera, const TagOptions& options, std::function<double()> now_s)
@@ -88,7 +82,10 @@ TrackResult TagTracker::Search::Track(const Frame& frame) {
 
 TrackResult TagTracker::Search::TrackInRegion(const Frame& frame, const TagCorners& expected) {
   ++since_picture_;
-  const auto patch = reader_.Read(frame, Around(expected, options_.region_margin));
+  const Region region =
+      Clipped(Around(expected, options_.region_margin), frame.width_px, frame.height_px);
+  if (region.empty()) return {std::nullopt, Miss::kNoTag};  // it should have left the picture
+  const auto patch = reader_.Read(frame, region);
   if (!patch) return {std::nullopt, Miss::kDamagedFrame};
   const TrackResult result = Measure(*patch, expected, TrackMode::kEdges);
   return result.sighting ? result : Detect(in_region_, *patch, TrackMode::kRegion);

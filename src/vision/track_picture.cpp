@@ -33,18 +33,20 @@ class MapPen {
 
   cv::Point FromPixel(const Eigen::Vector2d& pixel) const {
     const Eigen::Vector2d shown = ((pixel.array() + 0.5) * scale_ - 0.5).matrix();
-    const auto fixed = [](double v) {
-      return cvRound(std::clamp(v, -1e4, 1e4) * (1 << kShift));
-    };
+    const auto fixed = [](double v) { return cvRound(std::clamp(v, -1e4, 1e4) * (1 << kShift)); };
     return {fixed(shown.x()), fixed(shown.y())};
   }
 
   /// What lies behind the camera is left out.
   std::vector<cv::Point> FromMap(const std::vector<Eigen::Vector2d>& points_m) const {
+    std::vector<Eigen::Vector3d> in_plane;
+    for (const Eigen::Vector2d& p : points_m) in_plane.emplace_back(p.x(), p.y(), scene_.plane_z_m);
+    return FromSpace(in_plane);
+  }
+  std::vector<cv::Point> FromSpace(const std::vector<Eigen::Vector3d>& points_in_map) const {
     std::vector<Eigen::Vector3d> ahead;
-    for (const Eigen::Vector2d& p : points_m) {
-      const Eigen::Vector3d p_in_camera =
-          camera_from_map_ * Eigen::Vector3d(p.x(), p.y(), scene_.plane_z_m);
+    for (const Eigen::Vector3d& p : points_in_map) {
+      const Eigen::Vector3d p_in_camera = camera_from_map_ * p;
       if (p_in_camera.z() > kNearest_m) ahead.push_back(p_in_camera);
     }
     std::vector<cv::Point> points;
@@ -114,7 +116,7 @@ void DrawTag(const MapPen& pen, const Sighting& sighting) {
   const Eigen::Vector3d middle = sighting.map_from_tag.translation();
   const Eigen::Vector3d nose =
       middle + kArrow_m * sighting.map_from_tag.linear().col(0).normalized();
-  const std::vector<cv::Point> arrow = pen.FromMap({middle.head<2>(), nose.head<2>()});
+  const std::vector<cv::Point> arrow = pen.FromSpace({middle, nose});
   if (arrow.size() == 2) pen.Arrow(arrow[0], arrow[1], kRed);
 }
 
@@ -134,9 +136,12 @@ std::vector<std::string> PoseText(const TrackScene& scene) {
     lines.emplace_back("no tag");
   }
   const auto state = static_cast<std::size_t>(scene.status.state);
-  lines.push_back(fmt::format("{}   {:.1f} Hz   latency {:.0f} ms   dropped {}",
-                              EnumNames(scene.status.state)[state], scene.status.rate_hz,
-                              1e3 * scene.latency_s, scene.status.dropped));
+  const std::string latency = std::isnan(scene.latency_s)
+                                  ? "recording"
+                                  : fmt::format("latency {:.0f} ms", 1e3 * scene.latency_s);
+  lines.push_back(fmt::format("{}   {:.1f} Hz   {}   dropped {}",
+                              EnumNames(scene.status.state)[state], scene.status.rate_hz, latency,
+                              scene.status.dropped));
   if (!scene.status.reason.empty()) lines.push_back(scene.status.reason);
   return lines;
 }
@@ -148,8 +153,8 @@ void DrawLines(cv::Mat& picture, const std::vector<std::string>& lines, bool at_
   int width = 0;
   for (const std::string& line : lines) {
     int base = 0;
-    width = std::max(width,
-                     cv::getTextSize(line, cv::FONT_HERSHEY_SIMPLEX, 0.5, 1, &base).width + 16);
+    width =
+        std::max(width, cv::getTextSize(line, cv::FONT_HERSHEY_SIMPLEX, 0.5, 1, &base).width + 16);
   }
   width = std::min(width, picture.cols);
   const int y = at_top ? 0 : picture.rows - height;
@@ -186,7 +191,8 @@ TrackPicture DrawTrack(const TrackScene& scene) {
   if (scene.sighting) DrawTag(pen, *scene.sighting);
   DrawLines(shown.bgr, PoseText(scene), true);
   std::vector<std::string> foot = scene.prompts;
-  foot.emplace_back("click: waypoint   w: waypoint here   s: stop or pass   u: undo   c: clear trail   q: quit");
+  foot.emplace_back(
+      "click: waypoint   w: waypoint here   s: stop or pass   u: undo   c: clear trail   q: quit");
   DrawLines(shown.bgr, foot, false);
   return shown;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -49,6 +50,12 @@ class MjpegServer {
     return "http://127.0.0.1:" + std::to_string(acceptor_.local_endpoint().port()) + "/video";
   }
 
+  /// When each picture was sent so far.
+  std::vector<double> SentTimes_s() {
+    const std::lock_guard lock(mutex_);
+    return sent_s_;
+  }
+
   static double Now_s() {
     using std::chrono::duration;
     return duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -83,6 +90,10 @@ class MjpegServer {
       Send("HTTP/1.0 200 OK\r\nContent-Type: " + options_.content_type + "\r\n\r\n", {});
       for (int i = 0; i < options_.pictures && !stop_; ++i) {
         const std::vector<std::uint8_t> jpeg = Stamped();
+        {
+          const std::lock_guard lock(mutex_);
+          sent_s_.push_back(SentAt_s(jpeg));
+        }
         std::string head = "\r\n--frame\r\nContent-Type: image/jpeg\r\n";
         if (options_.content_length) {
           head += "Content-Length: " + std::to_string(jpeg.size()) + "\r\n";
@@ -104,6 +115,8 @@ class MjpegServer {
   Camera camera_;
   ServerOptions options_;
   std::optional<boost::asio::ip::tcp::socket> client_;
+  std::mutex mutex_;
+  std::vector<double> sent_s_;
   std::atomic<bool> stop_ = false;
   std::thread thread_;
 };

@@ -35,5 +35,6 @@ void AddDrive(CLI::App& app, int& exit_code);
 void AddGap(CLI::App& app, int& exit_code);
 void AddSimulate(CLI::App& app, int& exit_code);
 void AddSweep(CLI::App& app, int& exit_code);
+void AddTrack(CLI::App& app, int& exit_code);
 
 }  // namespace rift::commands

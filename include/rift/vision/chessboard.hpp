@@ -22,8 +22,8 @@ struct Board {
 /// How a corner list was found.
 enum class BoardMethod {
   kNone,     ///< it was not
-  kSector,   ///< OpenCV's findChessboardCornersSB (Duda and Frese 2018)
-  kClassic,  ///< findChessboardCorners with cornerSubPix
+  kSector,   ///< OpenCV's findChessboardCornersSB (Duda and Frese 2018), refined by cornerSubPix
+  kClassic,  ///< findChessboardCorners, refined the same way
 };
 
 /// One picture of the board.
@@ -38,8 +38,8 @@ struct BoardView {
   std::string problem;    ///< why there are no corners; empty otherwise
 };
 
-/// Looks for the whole board in a picture. A picture that cannot be decoded or does not show it
-/// gives a view that says so.
+/// Looks for the whole board in a picture; a large one is searched at 960 px width. A picture that
+/// cannot be decoded or does not show it gives a view that says so.
 BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name);
 BoardView FindBoard(const std::string& path, const Board& board);
 

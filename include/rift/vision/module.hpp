@@ -41,6 +41,7 @@ class Vision {
   virtual BoardView FindBoard(const std::string& path, const Board& board) = 0;
   virtual BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name) = 0;
   virtual ViewPlace PlaceOf(const BoardView& view, const Board& board) = 0;
+  virtual Coverage CoverageOf(const std::vector<ViewResult>& views, const Board& board) = 0;
   virtual Calibration Calibrate(const std::vector<BoardView>& views, const Board& board,
                                 const CalibrationOptions& options) = 0;
   virtual void DrawCalibration(const Calibration& calibration,
@@ -74,6 +75,6 @@ std::unique_ptr<Vision> LoadVision(const std::filesystem::path& module = VisionM
 
 /// The one symbol the module exports: `Vision* ()`, the caller owns the result. The number goes up
 /// whenever the interface or a struct in it changes, so that a stale module is refused by name.
-inline constexpr const char* kMakeVisionSymbol = "rift_vision_make_1";
+inline constexpr const char* kMakeVisionSymbol = "rift_vision_make_2";
 
 }  // namespace rift::vision

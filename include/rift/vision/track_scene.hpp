@@ -28,7 +28,7 @@ struct TrackScene {
   std::vector<MapPlace> waypoints;
   double plane_z_m = 0.0;  ///< of the map: path, waypoints and trail lie in it
   CaptureStatus status;
-  double latency_s = 0.0;            ///< from the light to the pose
+  double latency_s = 0.0;            ///< from the light to the pose; NaN of a recording
   std::vector<std::string> prompts;  ///< what the user is asked or told, lines at the foot
 };
 

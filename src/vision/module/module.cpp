@@ -46,6 +46,9 @@ class OpenCvVision : public Vision {
   ViewPlace PlaceOf(const BoardView& view, const Board& board) override {
     return vision::PlaceOf(view, board);
   }
+  Coverage CoverageOf(const std::vector<ViewResult>& views, const Board& board) override {
+    return vision::CoverageOf(views, board);
+  }
   Calibration Calibrate(const std::vector<BoardView>& views, const Board& board,
                         const CalibrationOptions& options) override {
     return vision::Calibrate(views, board, options);
@@ -83,6 +86,6 @@ class OpenCvVision : public Vision {
 }  // namespace rift::vision
 
 // Its name is kMakeVisionSymbol of module.hpp, where the number is explained.
-extern "C" [[gnu::visibility("default")]] rift::vision::Vision* rift_vision_make_1() {
+extern "C" [[gnu::visibility("default")]] rift::vision::Vision* rift_vision_make_2() {
   return new rift::vision::OpenCvVision;
 }

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "rift/vision/module.hpp"
+#include "rift/vision/track_options.hpp"
+#include "track_request.hpp"
+
+namespace rift::commands {
+
+/// Calibrates from pictures of the board, or from a camera before which it is moved about: views
+/// unlike those there are already are taken until they cover everything, the user ends it, or the
+/// recording does. Throws std::invalid_argument for no pictures, std::runtime_error when the camera
+/// fails before there was anything to calibrate from.
+vision::Calibration CalibrateFor(vision::Vision& vision, const TrackRequest& request,
+                                 const vision::TrackOptions& options,
+                                 const std::function<bool()>& is_stopped,
+                                 const std::function<void(const std::string&)>& say);
+
+}  // namespace rift::commands

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "rift/vision/tag_tracker.hpp"
+
+namespace rift::commands {
+
+/// Writes sightings as they come in the rift dialect, so that what was seen until a power cut is
+/// there; the file appears with the first of them. The nine columns of the dialect (the target
+/// empty), then latency, quality and the 6 x 6 covariance's upper triangle in the map's axes.
+class TrackLog {
+ public:
+  explicit TrackLog(std::filesystem::path path) : path_(std::move(path)) {}
+
+  /// `t_s` must be later than that of the row before; a sighting at or before it is left out.
+  /// Throws std::runtime_error when the file cannot be written.
+  bool Add(double t_s, const vision::Sighting& sighting);
+  void Close();
+
+  int Rows() const { return rows_; }
+  const std::filesystem::path& Path() const { return path_; }
+
+ private:
+  void Open();
+
+  std::filesystem::path path_;
+  std::ofstream file_;
+  double last_t_s_ = -std::numeric_limits<double>::infinity();
+  double flushed_t_s_ = 0.0;
+  int rows_ = 0;
+};
+
+}  // namespace rift::commands

@@ -1,0 +1,158 @@
+#include "track_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "enum_name.hpp"
+#include "input_hashes.hpp"
+#include "json_fields.hpp"
+
+namespace rift::commands {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// NaN of none.
+double Quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::nan("");
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+double RowsPerSecond(const TrackRun& run, int rows) {
+  const double span_s = run.last_t_s - run.first_t_s;
+  return rows > 1 && span_s > 0.0 ? (rows - 1) / span_s : std::nan("");
+}
+
+ordered_json MissesJson(const TrackRun& run) {
+  ordered_json json = ordered_json::object();
+  for (std::size_t i = 1; i < run.misses.size(); ++i) {
+    if (run.misses[i] > 0) json[std::string(NameOf(static_cast<vision::Miss>(i)))] = run.misses[i];
+  }
+  return json;
+}
+
+std::string MissesText(const TrackRun& run) {
+  std::string kinds;
+  int all = 0;
+  for (std::size_t i = 1; i < run.misses.size(); ++i) {
+    if (run.misses[i] == 0) continue;
+    all += run.misses[i];
+    kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", run.misses[i],
+                         NameOf(static_cast<vision::Miss>(i)));
+  }
+  return all == 0 ? "the tag in every one" : fmt::format("{} without the tag ({})", all, kinds);
+}
+
+ordered_json FrameJson(const vision::CameraModel& camera) {
+  if (!camera.world) {
+    return {{"name", "camera"},
+            {"meaning",
+             "no world frame is set: the camera's own place, x right, y up in the picture, z "
+             "towards the camera"}};
+  }
+  return {{"name", "world"},
+          {"meaning", "z up, y up, metres, from the floor"},
+          {"origin", camera.world->origin},
+          {"residual_m", camera.world->residual_m}};
+}
+
+ordered_json SpanJson(const std::vector<double>& values) {
+  return {{"p50", NumberOrNull(Quantile(values, 0.5))},
+          {"p95", NumberOrNull(Quantile(values, 0.95))},
+          {"max", NumberOrNull(Quantile(values, 1.0))}};
+}
+
+}  // namespace
+
+std::string TrackJson(const TrackRequest& request, const vision::CameraModel& camera,
+                      const vision::TrackOptions& options, const TrackRun& run, int rows) {
+  InputHashes hashes;
+  hashes.Add(request.calibration);
+  ordered_json json{
+      {"rift_version", RIFT_VERSION},
+      {"camera", request.camera},
+      {"recording", run.is_recording},
+      {"calibration", request.calibration},
+      {"calibration_hash", hashes.Of(request.calibration)},
+      {"width_px", camera.width_px},
+      {"height_px", camera.height_px},
+      {"frame", FrameJson(camera)},
+      {"state", NameOf(run.state)},
+      {"reason", run.reason},
+      {"rows", rows},
+      {"rows_per_s", NumberOrNull(RowsPerSecond(run, rows))},
+      {"pictures", run.frames},
+      {"delivered", run.status.delivered},
+      {"dropped", run.status.dropped},
+      {"misses", MissesJson(run)},
+      {"repeated_times", run.repeated},
+      {"most_tags_of_this_id", run.most_tags_of_this_id},
+      {"latency_s", SpanJson(run.latencies_s)},
+      {"finding_s", SpanJson(run.costs_s)},
+      {"reference_tags_off_m", run.moved_m ? ordered_json(*run.moved_m) : ordered_json(nullptr)}};
+  json["track"] = {{"capture", FieldsToJson(options.capture)},
+                   {"tag", FieldsToJson(options.tag)},
+                   {"session", FieldsToJson(request.session)}};
+  return Dump(json);
+}
+
+std::string TrackText(const TrackRun& run, int rows) {
+  std::string text = fmt::format("{} rows", rows);
+  const double rate = RowsPerSecond(run, rows);
+  if (!std::isnan(rate)) {
+    text += fmt::format(" in {:.1f} s, {:.1f} a second", run.last_t_s - run.first_t_s, rate);
+  }
+  text += fmt::format("; {} pictures, {}, {} dropped\n", run.frames, MissesText(run),
+                      run.status.dropped);
+  if (!run.latencies_s.empty()) {
+    text +=
+        fmt::format("latency from light to pose: p50 {:.0f} ms, p95 {:.0f} ms\n",
+                    1e3 * Quantile(run.latencies_s, 0.5), 1e3 * Quantile(run.latencies_s, 0.95));
+  }
+  if (!run.costs_s.empty()) {
+    text += fmt::format("finding the tag: p50 {:.1f} ms, p95 {:.1f} ms\n",
+                        1e3 * Quantile(run.costs_s, 0.5), 1e3 * Quantile(run.costs_s, 0.95));
+  }
+  if (run.most_tags_of_this_id > 1) {
+    text += fmt::format("{} tags of this id were in the picture: take the others away\n",
+                        run.most_tags_of_this_id);
+  }
+  return text;
+}
+
+std::string CalibrationText(const vision::Calibration& c) {
+  std::string text = fmt::format("verdict: {}\n", NameOf(c.verdict));
+  for (const std::string& reason : c.reasons) text += fmt::format("  {}\n", reason);
+  if (c.camera.width_px == 0) return text;
+  text += fmt::format("{} {}x{}, error {:.3f} px RMS (plumb_bob {:.3f}, equidistant {:.3f})\n",
+                      NameOf(c.camera.lens), c.camera.width_px, c.camera.height_px, c.rms_px,
+                      c.plumb_bob_px, c.equidistant_px);
+  text += fmt::format("on the floor: {:.2f} mm; odd views against even ones: {:.2f} mm\n",
+                      1e3 * c.floor_error_m, 1e3 * c.cross_check_m);
+  text += fmt::format("coverage: x {:.0f} %, y {:.0f} %, size {:.0f} %, skew {:.0f} %\n",
+                      100 * c.coverage.x, 100 * c.coverage.y, 100 * c.coverage.size,
+                      100 * c.coverage.skew);
+  for (const vision::ParameterEstimate& p : c.parameters) {
+    text += fmt::format("  {:<4} {:12.5g} +- {:.2g}\n", p.name, p.value, p.deviation);
+  }
+  for (const vision::ViewResult& view : c.views) {
+    if (view.used) text += fmt::format("  {}: {:.3f} px\n", view.view.name, view.rms_px);
+  }
+  return text;
+}
+
+std::string CalibrationComment(const vision::Calibration& c) {
+  std::string text = fmt::format(
+      "# rift track --calibrate, board {}x{} of {:g} m squares: {}.\n"
+      "# {:.2f} px RMS, {:.1f} mm on the floor; odd views against even ones {:.1f} mm.\n",
+      c.board.columns, c.board.rows, c.board.square_m, NameOf(c.verdict), c.rms_px,
+      1e3 * c.floor_error_m, 1e3 * c.cross_check_m);
+  for (const std::string& reason : c.reasons) text += fmt::format("# - {}\n", reason);
+  return text;
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,165 @@
+#include "track_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "enum_name.hpp"
+
+namespace rift::commands {
+namespace {
+
+using vision::CameraState;
+
+constexpr double kTick_s = 0.02;
+constexpr double kRedraw_s = 0.1;
+
+double Now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class Session {
+ public:
+  explicit Session(const TrackParts& parts)
+      : parts_(parts),
+        tracker_(parts.vision.MakeTracker(parts.camera, parts.options.tag)),
+        started_s_(Now_s()) {}
+
+  TrackRun Run();
+
+ private:
+  void Take(vision::Frame frame);
+  void Keep(const vision::Sighting& sighting);
+  /// A recording's times begin at zero and are rounded, so that the same recording gives the same
+  /// bytes.
+  void Rebase(vision::Frame& frame);
+  void WatchState();
+  void WatchReferences(const vision::Frame& frame);
+  void Show();
+  bool IsOver() const;
+
+  const TrackParts& parts_;
+  std::unique_ptr<vision::PoseTracker> tracker_;
+  double started_s_;
+  TrackRun run_;
+  std::optional<double> first_captured_s_;
+  std::optional<vision::Frame> frame_;
+  std::optional<vision::Sighting> sighting_;
+  std::optional<double> failing_since_s_;
+  double checked_s_ = -1e9;
+  std::optional<std::uint64_t> shown_index_;
+  double shown_s_ = 0.0;
+  bool quit_ = false;
+};
+
+void Session::Rebase(vision::Frame& frame) {
+  if (!first_captured_s_) run_.zero_s = frame.captured_s;
+  if (!first_captured_s_) first_captured_s_ = frame.captured_s;
+  if (run_.is_recording) {
+    frame.captured_s = std::round((frame.captured_s - *first_captured_s_) * 1e6) / 1e6;
+  }
+}
+
+void Session::Keep(const vision::Sighting& sighting) {
+  const double t_s = run_.is_recording
+                         ? sighting.captured_s
+                         : std::round((sighting.captured_s - *first_captured_s_) * 1e6) / 1e6;
+  if (!parts_.log.Add(t_s, sighting)) {
+    ++run_.repeated;
+    return;
+  }
+  if (parts_.log.Rows() == 1) run_.first_t_s = t_s;
+  run_.last_t_s = t_s;
+  if (!run_.is_recording) run_.latencies_s.push_back(sighting.latency_s);
+  run_.most_tags_of_this_id = std::max(run_.most_tags_of_this_id, sighting.tags_of_this_id);
+}
+
+void Session::Take(vision::Frame frame) {
+  if (run_.frames++ == 0) run_.is_recording = parts_.capture.IsRecording();
+  Rebase(frame);
+  const double begin_s = Now_s();
+  const vision::TrackResult result = tracker_->Track(frame);
+  run_.costs_s.push_back(Now_s() - begin_s);
+  ++run_.misses[static_cast<std::size_t>(result.miss)];
+  sighting_ = result.sighting;
+  if (sighting_ && run_.is_recording) sighting_->latency_s = std::nan("");  // its clock is its own
+  if (sighting_) Keep(*sighting_);
+  WatchReferences(frame);
+  frame_ = std::move(frame);
+}
+
+void Session::WatchReferences(const vision::Frame& frame) {
+  const SessionOptions& options = parts_.session;
+  const bool has_marks = parts_.camera.world && !parts_.camera.world->marks.empty();
+  if (!has_marks || frame.captured_s - checked_s_ < options.check_every_s) return;
+  checked_s_ = frame.captured_s;
+  const auto moved_m = parts_.vision.MovedBy_m(
+      parts_.camera,
+      parts_.vision.FindTags(frame, options.check_decimate, parts_.options.tag.max_hamming));
+  if (!moved_m) return;
+  if (*moved_m > options.moved_m && run_.moved_m.value_or(0.0) <= options.moved_m) {
+    parts_.say(fmt::format(
+        "the camera was moved: the reference tags lie {:.1f} mm off; set the world frame again",
+        1e3 * *moved_m));
+  }
+  run_.moved_m = std::max(run_.moved_m.value_or(0.0), *moved_m);
+}
+
+void Session::WatchState() {
+  const CameraState before = run_.status.state;
+  run_.status = parts_.capture.Status();
+  const CameraState state = run_.status.state;
+  const bool fails = state != CameraState::kOpening && state != CameraState::kRunning &&
+                     state != CameraState::kEnded;
+  if (!fails) failing_since_s_.reset();
+  if (fails && !failing_since_s_) failing_since_s_ = Now_s();
+  const bool starts = before == CameraState::kOpening && state == CameraState::kRunning;
+  if (state == before || starts || state == CameraState::kEnded) return;
+  const std::string reason =
+      run_.status.reason.empty() ? "" : fmt::format(": {}", run_.status.reason);
+  parts_.say(fmt::format("camera {}{}", NameOf(state), reason));
+}
+
+bool Session::IsOver() const {
+  if (quit_ || parts_.is_stopped() || vision::IsFinal(run_.status.state)) return true;
+  if (parts_.duration_s && Now_s() - started_s_ > *parts_.duration_s) return true;
+  return failing_since_s_ && Now_s() - *failing_since_s_ > parts_.session.give_up_s;
+}
+
+void Session::Show() {
+  if (parts_.view == nullptr) return;
+  // The same picture is drawn again only to answer clicks and keys.
+  const bool is_new = frame_ && frame_->index != shown_index_;
+  if (!is_new && Now_s() - shown_s_ < kRedraw_s) return;
+  if (frame_) shown_index_ = frame_->index;
+  // A recording is shown at the speed at which it was made.
+  while (run_.is_recording && frame_ && Now_s() - started_s_ < frame_->captured_s && !quit_) {
+    quit_ = !parts_.view->Show(frame_, sighting_, run_.status, run_.moved_m) || IsOver();
+    std::this_thread::sleep_for(std::chrono::duration<double>(kTick_s / 4));
+  }
+  quit_ = quit_ || !parts_.view->Show(frame_, sighting_, run_.status, run_.moved_m);
+  shown_s_ = Now_s();
+}
+
+TrackRun Session::Run() {
+  while (!IsOver()) {
+    std::optional<vision::Frame> frame = parts_.capture.Next(kTick_s);
+    if (frame) Take(std::move(*frame));
+    WatchState();
+    Show();
+  }
+  parts_.log.Close();
+  run_.state = run_.status.state;
+  run_.reason = run_.status.reason;
+  run_.has_failed = failing_since_s_.has_value() && !quit_ && !parts_.is_stopped();
+  return run_;
+}
+
+}  // namespace
+
+TrackRun Track(const TrackParts& parts) { return Session(parts).Run(); }
+
+}  // namespace rift::commands

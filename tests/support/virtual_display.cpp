@@ -1,0 +1,33 @@
+#include "support/virtual_display.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+namespace rift::test {
+
+VirtualDisplay::VirtualDisplay() {
+  int ends[2];
+  if (pipe(ends) != 0) return;
+  pid_ = fork();
+  if (pid_ == 0) {
+    close(ends[0]);
+    const std::string descriptor = std::to_string(ends[1]);
+    execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", "1400x900x24",
+           "-nolisten", "tcp", static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  close(ends[1]);
+  char letter = 0;
+  while (read(ends[0], &letter, 1) == 1 && letter != '\n') number_ += letter;
+  close(ends[0]);
+}
+
+VirtualDisplay::~VirtualDisplay() {
+  if (pid_ <= 0) return;
+  kill(pid_, SIGTERM);
+  waitpid(pid_, nullptr, 0);
+}
+
+}  // namespace rift::test

@@ -1,0 +1,116 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "rift/config/camera_file.hpp"
+#include "rift/vision/synthetic_camera.hpp"
+#include "support/process.hpp"
+#include "support/trials.hpp"
+
+namespace rift {
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using test::ProcessResult;
+using test::RunRift;
+
+/// A camera that looks at a board of 7 x 5 corners held before it in many ways.
+vision::CameraModel SmallCamera() {
+  vision::CameraModel camera;
+  camera.width_px = 640;
+  camera.height_px = 480;
+  camera.k << 610.0, 0.0, 322.0, 0.0, 612.0, 236.0, 0.0, 0.0, 1.0;
+  camera.distortion = {-0.15, 0.05, 0.001, -0.0005, 0.0};
+  vision::WorldFrame world;
+  world.world_from_camera.linear() = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+  world.world_from_camera.translation() = Eigen::Vector3d(0.0, 0.0, 1.0);
+  camera.world = world;
+  return camera;
+}
+
+/// Renders one picture a pose into the folder.
+void RenderViews(const vision::CameraModel& camera, int count,
+                 const test::TemporaryFolder& folder) {
+  std::mt19937_64 generator(3);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(generator);
+  };
+  for (int i = 0; i < count; ++i) {
+    vision::PlacedBoard board{.columns = 7, .rows = 5, .square_m = 0.03};
+    // Board frame: z into the paper; its middle at p, turned about it.
+    const double distance_m = uniform(0.3, 0.6);
+    const Eigen::Vector3d p_in_camera(uniform(-0.22, 0.22) * distance_m,
+                                      uniform(-0.15, 0.15) * distance_m, distance_m);
+    const Eigen::Matrix3d turn = (Eigen::AngleAxisd(uniform(-0.3, 0.3), Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(uniform(-0.6, 0.6), Eigen::Vector3d::UnitY()) *
+                                  Eigen::AngleAxisd(uniform(-0.6, 0.6), Eigen::Vector3d::UnitX()))
+                                     .toRotationMatrix();
+    Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
+    camera_from_board.linear() = turn;
+    camera_from_board.translation() =
+        p_in_camera - turn * Eigen::Vector3d(0.5 * 6 * 0.03, 0.5 * 4 * 0.03, 0.0);
+    board.world_from_board = camera.world->world_from_camera * camera_from_board;
+    vision::SyntheticCamera renderer(camera, {.noise_grey = 1.5}, {.boards = {board}});
+    const vision::Frame frame = renderer.Render({}, vision::PixelFormat::kJpeg, generator);
+    std::ofstream(folder / ("view" + std::to_string(100 + i) + ".jpg"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(frame.bytes.data()),
+               static_cast<std::streamsize>(frame.bytes.size()));
+  }
+}
+
+TEST_CASE("A camera is calibrated from a folder of pictures and from a recording of them") {
+  const vision::CameraModel truth = SmallCamera();
+  const test::TemporaryFolder photos, out;
+  RenderViews(truth, 16, photos);
+  for (const bool from_camera : {false, true}) {
+    const std::string name = out / (from_camera ? "recording.yaml" : "photos.yaml");
+    const std::string images = photos / "*.jpg";
+    const ProcessResult result =
+        RunRift({"track", "--calibrate", "--board", "7x5", "--square", "0.03",
+                 from_camera ? "--camera" : "--images", images, "--out", name});
+    INFO(result.out << result.err);
+    REQUIRE(result.exit_code == 0);
+    CHECK_THAT(result.out, Contains("verdict: ") && Contains("on the floor"));
+    CHECK(fs::file_size(fs::path(name).replace_extension(".png")) > 10'000);
+    const std::string text = test::ReadFile(name);
+    CHECK_THAT(text, Contains("# rift track --calibrate, board 7x5"));
+    const vision::CameraModel found = config::ReadCamera(text, name);
+    CHECK(found.width_px == 640);
+    CHECK(found.k(0, 0) == Approx(610.0).epsilon(0.01));
+    CHECK(found.rms_px < 0.3);
+  }
+}
+
+TEST_CASE("Pictures without a board are refused with their names and no file") {
+  const test::TemporaryFolder out;
+  const ProcessResult result =
+      RunRift({"track", "--calibrate", "--board", "5x4", "--square", "0.03", "--images",
+               RIFT_SOURCE_DIR "/data/camera/frames/00[0-3].jpg", "--out", out / "cam.yaml"});
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 1);
+  CHECK_THAT(result.out, Contains("verdict: refuse") && Contains("000.jpg is left out"));
+  CHECK_THAT(result.err, Contains("is not written"));
+  CHECK_FALSE(fs::exists(out / "cam.yaml"));
+}
+
+TEST_CASE("The photographs of the paper's camera are not called good and why is named") {
+  const fs::path folder = fs::path(RIFT_SOURCE_DIR) / "../shared/calibration/victure";
+  if (!fs::exists(folder)) {
+    WARN("SKIPPED: the photographs are not beside this clone (../shared/calibration)");
+    return;
+  }
+  const test::TemporaryFolder out;
+  const ProcessResult result =
+      RunRift({"track", "--calibrate", "--board", "13x9", "--square", "0.025", "--images",
+               folder.string(), "--out", out / "cam.yaml"});
+  INFO(result.out << result.err);
+  CHECK(result.exit_code <= 1);
+  CHECK_THAT(result.out, Contains("verdict: ") && !Contains("verdict: good"));
+  CHECK_THAT(result.out, Contains("calibration_00.jpg is left out: the picture is black"));
+  CHECK_THAT(result.out, Contains("drawn over") && Contains("not flat"));
+}
+
+}  // namespace
+}  // namespace rift

@@ -1,0 +1,252 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "rift/config/camera_file.hpp"
+#include "support/environment.hpp"
+#include "support/process.hpp"
+#include "support/trials.hpp"
+
+namespace rift {
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using nlohmann::json;
+using test::ProcessResult;
+using test::RunRift;
+
+const std::string kData = RIFT_SOURCE_DIR "/data/camera";
+const std::string kFrames = kData + "/frames/*.jpg";
+const std::string kCamera = kData + "/camera.yaml";
+
+std::vector<std::string> Tracking(const std::string& out,
+                                  const std::string& calibration = kCamera) {
+  return {"track", "--camera", kFrames, "--fps", "15", "--calibration", calibration, "--out", out};
+}
+
+std::vector<std::string> With(std::vector<std::string> words, std::vector<std::string> more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+const std::vector<double>& Column(const trajectory::Trajectory& log, const std::string& name) {
+  for (const trajectory::Channel& channel : log.channels) {
+    if (channel.name == name) return channel.values;
+  }
+  throw std::runtime_error("no column " + name);
+}
+
+TEST_CASE("The recording is tracked to within half a millimetre of its truth in every row") {
+  const test::TemporaryFolder folder;
+  const ProcessResult result = RunRift(Tracking(folder / "log.csv"));
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.out, Contains("30 rows") && Contains("15.0 a second"));
+  const auto log = test::LoadTrajectory(folder / "log.csv", trajectory::Format::kRift);
+  const auto truth = test::LoadTrajectory(kData + "/truth.csv", trajectory::Format::kRift);
+  REQUIRE(log.poses.size() == truth.poses.size());
+  double worst_m = 0.0, worst_z_m = 0.0, worst_rad = 0.0;
+  for (std::size_t i = 0; i < truth.poses.size(); ++i) {
+    CHECK(log.poses[i].t_s == Approx(truth.poses[i].t_s).margin(1e-9));
+    worst_m = std::max(worst_m, (log.poses[i].Position() - truth.poses[i].Position()).norm());
+    worst_z_m = std::max(worst_z_m, std::abs(log.poses[i].z_m - truth.poses[i].z_m));
+    worst_rad = std::max(worst_rad, std::abs(log.poses[i].yaw_rad - truth.poses[i].yaw_rad));
+  }
+  INFO("position " << worst_m << " m, height " << worst_z_m << " m, yaw " << worst_rad << " rad");
+  CHECK(worst_m < 0.5e-3);
+  CHECK(worst_z_m < 2e-3);
+  CHECK(worst_rad < 2e-3);
+  // The covariance is that of what is left: neither far too small nor far too large.
+  const auto& xx = Column(log, "cov_x_x_m2");
+  const auto& yy = Column(log, "cov_y_y_m2");
+  double squares = 0.0;
+  for (std::size_t i = 0; i < xx.size(); ++i) {
+    const Eigen::Vector2d off = log.poses[i].Position() - truth.poses[i].Position();
+    squares += off.x() * off.x() / xx[i] + off.y() * off.y() / yy[i];
+  }
+  CHECK(squares / (2.0 * static_cast<double>(xx.size())) < 16.0);
+  CHECK(squares / (2.0 * static_cast<double>(xx.size())) > 1.0 / 16.0);
+}
+
+TEST_CASE("The same recording gives the same bytes") {
+  const test::TemporaryFolder folder;
+  REQUIRE(RunRift(Tracking(folder / "a.csv")).exit_code == 0);
+  REQUIRE(RunRift(Tracking(folder / "b.csv")).exit_code == 0);
+  CHECK(test::ReadFile(folder / "a.csv") == test::ReadFile(folder / "b.csv"));
+}
+
+TEST_CASE("rift gap reads a tracked log against its truth") {
+  const test::TemporaryFolder folder;
+  REQUIRE(RunRift(Tracking(folder / "log.csv")).exit_code == 0);
+  const ProcessResult gap =
+      RunRift({"gap", kData + "/truth.csv", folder / "log.csv", "--json", "-"});
+  INFO(gap.err);
+  REQUIRE(gap.exit_code == 0);
+  CHECK(json::parse(gap.out)["trials"][0]["gap_m"].get<double>() < 1e-3);
+}
+
+TEST_CASE("The run file says what the poses mean and what they were made from") {
+  const test::TemporaryFolder folder;
+  REQUIRE(
+      RunRift(With(Tracking(folder / "log.csv"), {"--set", "track.tag.max_hamming=0"})).exit_code ==
+      0);
+  const json run = json::parse(test::ReadFile(folder / "log.run.json"));
+  CHECK(run["frame"]["name"] == "world");
+  CHECK(run["rows"] == 30);
+  CHECK(run["state"] == "ended");
+  CHECK(run["track"]["tag"]["max_hamming"] == 0);
+  CHECK(run["latency_s"]["p50"].is_null());
+  CHECK(run["finding_s"]["p50"].get<double>() > 0.0);
+  CHECK(run["calibration_hash"].get<std::string>().size() == 32);
+}
+
+TEST_CASE("Without a world frame the poses are the camera's turned y up and the run file says so") {
+  const test::TemporaryFolder folder;
+  vision::CameraModel camera = config::ReadCamera(test::ReadFile(kCamera), kCamera);
+  const Eigen::Isometry3d world_from_camera = camera.world->world_from_camera;
+  camera.world.reset();
+  test::WriteText(folder / "cam.yaml", config::WriteCamera(camera));
+  REQUIRE(RunRift(Tracking(folder / "log.csv", folder / "cam.yaml")).exit_code == 0);
+  const json run = json::parse(test::ReadFile(folder / "log.run.json"));
+  CHECK(run["frame"]["name"] == "camera");
+  const auto log = test::LoadTrajectory(folder / "log.csv", trajectory::Format::kRift);
+  const auto truth = test::LoadTrajectory(kData + "/truth.csv", trajectory::Format::kRift);
+  for (std::size_t i = 0; i < log.poses.size(); i += 7) {
+    const auto& pose = log.poses[i];
+    const Eigen::Vector3d p_in_camera(pose.x_m, -pose.y_m, -pose.z_m);
+    const Eigen::Vector3d p = world_from_camera * p_in_camera;
+    // Along the line of sight a tag of 44 px is good to some millimetres.
+    CHECK((p.head<2>() - truth.poses[i].Position()).norm() < 2e-3);
+  }
+}
+
+TEST_CASE("Reference tags set the world frame and it is kept in the calibration") {
+  const test::TemporaryFolder folder;
+  vision::CameraModel camera = config::ReadCamera(test::ReadFile(kCamera), kCamera);
+  const Eigen::Isometry3d truth = camera.world->world_from_camera;
+  camera.world.reset();
+  test::WriteText(folder / "cam.yaml", "# hung over the table\n" + config::WriteCamera(camera));
+  const ProcessResult set = RunRift({"track", "--camera", kFrames, "--calibration",
+                                     folder / "cam.yaml", "--world", kData + "/tags.yaml"});
+  INFO(set.err);
+  REQUIRE(set.exit_code == 0);
+  CHECK_THAT(set.err, Contains("4 reference tags") && Contains("mm off at its points"));
+  const std::string text = test::ReadFile(folder / "cam.yaml");
+  CHECK_THAT(text, Catch::Matchers::StartsWith("# hung over the table\n"));
+  camera = config::ReadCamera(text, "cam.yaml");
+  REQUIRE(camera.world);
+  CHECK(camera.world->marks.size() == 4);
+  CHECK(camera.world->residual_m < 1e-3);
+  CHECK((camera.world->world_from_camera.translation() - truth.translation()).norm() < 5e-3);
+
+  // The same camera, pushed: its reference tags are no longer where they were.
+  for (vision::ReferenceMark& mark : camera.world->marks) mark.seen_px.x() += 20.0;
+  test::WriteText(folder / "cam.yaml", config::WriteCamera(camera));
+  const ProcessResult moved = RunRift(Tracking(folder / "log.csv", folder / "cam.yaml"));
+  CHECK_THAT(moved.err, Contains("the camera was moved"));
+  const json run = json::parse(test::ReadFile(folder / "log.run.json"));
+  CHECK(run["reference_tags_off_m"].get<double>() == Approx(0.022).epsilon(0.15));
+}
+
+TEST_CASE("The robot's first pose can be the origin of the world") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "cam.yaml", test::ReadFile(kCamera));
+  const ProcessResult result =
+      RunRift(With(Tracking(folder / "log.csv", folder / "cam.yaml"),
+                   {"--world", "first", "--world-average", "0"}));
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  const auto log = test::LoadTrajectory(folder / "log.csv", trajectory::Format::kRift);
+  REQUIRE(log.poses.size() == 30);
+  CHECK(log.poses[0].Position().norm() < 2e-3);
+  CHECK(std::abs(log.poses[0].yaw_rad) < 0.01);
+}
+
+TEST_CASE("A calibration of another size than the stream is refused") {
+  const test::TemporaryFolder folder;
+  vision::CameraModel camera = config::ReadCamera(test::ReadFile(kCamera), kCamera);
+  camera.width_px = 1920;
+  camera.height_px = 1080;
+  test::WriteText(folder / "cam.yaml", config::WriteCamera(camera));
+  const ProcessResult result = RunRift(Tracking(folder / "log.csv", folder / "cam.yaml"));
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.err, Contains("640 x 480") && Contains("1920 x 1080"));
+  CHECK_FALSE(fs::exists(folder / "log.csv"));
+}
+
+TEST_CASE("Without a display the view says so and the tracking goes on") {
+  const test::TemporaryFolder folder;
+  const test::Environment display("DISPLAY", "");
+  const ProcessResult result = RunRift(With(Tracking(folder / "log.csv"), {"--view"}));
+  CHECK(result.exit_code == 0);
+  CHECK_THAT(result.err, Contains("no window: DISPLAY is not set"));
+  CHECK_THAT(result.out, Contains("30 rows"));
+}
+
+TEST_CASE("What is wrong with a request for tracking is said in one line") {
+  const test::TemporaryFolder folder;
+  struct Wrong {
+    std::vector<std::string> words;
+    std::string says;
+    int exit_code;
+  };
+  test::WriteText(folder / "bad.yaml", "camera_matrix: 3\n");
+  test::WriteText(folder / "none.yaml", "tags: []\n");
+  const std::string log = folder / "log.csv";
+  const std::vector<Wrong> wrongs{
+      {{"track"}, "--camera is missing", 2},
+      {{"track", "--camera", kFrames}, "--calibration is missing", 2},
+      {{"track", "--camera", kFrames, "--calibration", kCamera}, "--out", 2},
+      {Tracking(log, folder / "nowhere.yaml"), "nowhere.yaml", 2},
+      {Tracking(log, folder / "bad.yaml"), "bad.yaml:1", 2},
+      {With(Tracking(log), {"--set", "track.tag.idd=3"}), "track.tag.id", 2},
+      {With(Tracking(log), {"--world", folder / "none.yaml"}), "`tags:` or `points:`", 2},
+      {With(Tracking(log), {"--path", folder / "nowhere.yaml"}), "nowhere.yaml", 2},
+      {{"track", "--camera", folder / "none*.jpg", "--calibration", kCamera, "--out", log},
+       "matches no picture",
+       2},
+      {{"track", "--camera", "/dev/video93", "--calibration", kCamera, "--out", log},
+       "unplugged: /dev/video93",
+       3},
+      {{"track", "--calibrate", "--out", folder / "cam.yaml"}, "--images DIR or --camera", 2},
+      {{"track", "--calibrate", "--board", "13by9", "--images", kData + "/frames", "--out", log},
+       "such as 13x9",
+       2},
+  };
+  for (const Wrong& wrong : wrongs) {
+    const ProcessResult result = RunRift(wrong.words);
+    INFO(wrong.says << ": " << result.err);
+    CHECK(result.exit_code == wrong.exit_code);
+    CHECK_THAT(result.err, Contains(wrong.says));
+  }
+  const ProcessResult other = RunRift(With(Tracking(log), {"--set", "track.tag.id=77"}));
+  CHECK(other.exit_code == 1);
+  CHECK_THAT(other.err, Contains("the tag was never seen"));
+  CHECK_THAT(other.out, Contains("only other tags"));
+  CHECK_FALSE(fs::exists(log));
+}
+
+TEST_CASE("Help and the gap load no camera library") {
+  const test::TemporaryFolder folder;
+  for (const bool gap : {false, true}) {
+    const test::Environment debug("LD_DEBUG", "files");
+    const test::Environment into("LD_DEBUG_OUTPUT", folder / (gap ? "gap" : "help"));
+    const std::vector<std::string> words =
+        gap ? std::vector<std::string>{"gap", kData + "/truth.csv", kData + "/truth.csv"}
+            : std::vector<std::string>{"track", "--help"};
+    REQUIRE(RunRift(words).exit_code == 0);
+  }
+  int files = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.Path())) {
+    const std::string text = test::ReadFile(entry.path().string());
+    ++files;
+    CHECK_THAT(text, Contains("libc.so.6"));
+    CHECK_THAT(text, !Contains("opencv") && !Contains("apriltag"));
+  }
+  CHECK(files == 2);
+}
+
+}  // namespace
+}  // namespace rift
