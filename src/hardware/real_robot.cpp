@@ -1,6 +1,7 @@
 #include "rift/hardware/real_robot.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -11,6 +12,7 @@ namespace {
 constexpr double kTick_s = 0.001;
 constexpr double kVoltPerMillivolt = 1e-3;
 constexpr double kLastZeros_s = 0.3;
+constexpr double kLongestPeriod_s = 0.1;  // of pictures; a pause is none
 
 }  // namespace
 
@@ -57,6 +59,7 @@ class RealRobot::Core {
   void Exchange(double now_s);
   void Hear(const RobotLink::Heard& heard, double now_s);
   void NoteWritten();
+  void Hand(const robot::WheelPower& power, bool is_first, double now_s);
 
   Clock& clock_;
   PoseSource& poses_;
@@ -69,6 +72,7 @@ class RealRobot::Core {
   std::vector<Stopper> stoppers_;
   PoseNews news_;
   std::optional<double> sensed_captured_s_;
+  double next_pose_s_ = 0.0;  ///< when it is expected
   std::optional<robot::EncoderCounts> counts_;
   std::optional<double> stopped_at_s_;  ///< when zeros began for good
   bool stop_is_answered_ = false;
@@ -175,6 +179,9 @@ robot::Sensed RealRobot::Core::Sense() {
   sensed.pose = news_.newest->measured;
   sensed.pose->captured_s -= start_s_;
   if (sensed_captured_s_ != news_.newest->measured.captured_s) {
+    const double period_s =
+        news_.newest->measured.captured_s - sensed_captured_s_.value_or(-INFINITY);
+    next_pose_s_ = clock_.Now_s() + std::min(period_s, kLongestPeriod_s);
     sensed_captured_s_ = news_.newest->measured.captured_s;
     waits_for_write_ = false;
     evidence_.poses.push_back({sensed.pose->captured_s, news_.newest->arrived_s - start_s_,
@@ -192,8 +199,19 @@ void RealRobot::Core::Command(const robot::WheelPower& power) {
     evidence_.poses.back().commanded_s = now_s - start_s_;
     waits_for_write_ = true;
   }
-  link_.Put(guard_.Allowed(), is_first);
+  Hand(guard_.Allowed(), is_first, now_s);
   Exchange(now_s);
+}
+
+// At 9600 baud the line carries hardly more than one command for each picture: a second thought
+// about an old pose must not keep it from the first one about the next.
+void RealRobot::Core::Hand(const robot::WheelPower& power, bool is_first, double now_s) {
+  const bool is_zero = power == robot::WheelPower{};
+  if (is_first || is_zero || now_s + link_.Occupied_s() <= next_pose_s_) {
+    link_.Put(power, is_first);
+  } else {
+    link_.PutForLater(power);
+  }
 }
 
 void RealRobot::Core::Stop() noexcept {

@@ -76,21 +76,22 @@ void RobotLink::Tick(double now_s) {
   WriteCommand(now_s);
 }
 
+// Of a command or of its answer, whichever is longer.
+size_t RobotLink::LineBytes() const {
+  return protocol_ == Protocol::kFramed ? Answer::kSize : PlainLine({-1.0, -1.0}).size();
+}
+
 void RobotLink::WriteCommand(double now_s) {
   const Sent sent{next_sequence_++, now_s, MilliOf(power_)};
   bool taken = false;
-  size_t size = 0;
   if (protocol_ == Protocol::kFramed) {
     const CommandBytes bytes = Encode(CommandFrame{sent.sequence, sent.power});
     taken = line_.Write(bytes);
-    size = Answer::kSize;  // the answer is the longer one
     unanswered_.push_back(sent);
   } else {
-    const std::string text = PlainLine(power_);
-    taken = line_.Write(BytesOf(text));
-    size = text.size();
+    taken = line_.Write(BytesOf(PlainLine(power_)));
   }
-  pacer_.Wrote(now_s, size);
+  pacer_.Wrote(now_s, LineBytes());
   if (taken) {
     blocked_since_s_.reset();
   } else if (!blocked_since_s_) {

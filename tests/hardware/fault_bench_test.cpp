@@ -321,6 +321,20 @@ TEST_CASE("The trial loop of the simulator drives the robot to the last waypoint
   CHECK(CountsAt(evidence.encoders, evidence.poses[20].captured_s));
 }
 
+TEST_CASE("Second thoughts about a pose do not hold up the command for the next one") {
+  Bench bench;
+  bench.line_delay_s = 0.005;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  Trial(robot, {.pace = trial::Pace::kEveryPeriod});
+  std::vector<double> waits_s;
+  for (const PoseStages& pose : robot.Evidence().poses) {
+    if (pose.written_s >= 0.0) waits_s.push_back(pose.written_s - pose.ready_s);
+  }
+  REQUIRE(waits_s.size() > 30);
+  std::sort(waits_s.begin(), waits_s.end());
+  CHECK(waits_s[waits_s.size() / 2] < 0.005);
+}
+
 TEST_CASE("Leaving the arena and running out of time stop the robot") {
   trial::TrialOptions small;
   small.arena.x_max_m = 0.0;

@@ -30,7 +30,9 @@ class LinkPacer {
   LinkPacer(int baud, double share) : byte_s_(10.0 / baud / share) {}
 
   bool MayWrite(double now_s) const { return now_s >= free_s_; }
-  void Wrote(double now_s, size_t bytes) { free_s_ = now_s + byte_s_ * static_cast<double>(bytes); }
+  void Wrote(double now_s, size_t bytes) { free_s_ = now_s + Time_s(bytes); }
+  /// For which so many bytes keep the line.
+  double Time_s(size_t bytes) const { return byte_s_ * static_cast<double>(bytes); }
 
  private:
   double byte_s_;  // 8N1: ten bits a byte
@@ -57,6 +59,10 @@ class RobotLink {
 
   /// The command from now on. `at_once`: also when it is the one in force already.
   void Put(const robot::WheelPower& power, bool at_once);
+  /// The same, but it goes out only with the next command that is due, a heartbeat at the latest.
+  void PutForLater(const robot::WheelPower& power) { power_ = power; }
+  /// How long a command keeps the line from the next one.
+  double Occupied_s() const { return pacer_.Time_s(LineBytes()); }
   /// Reads what has come, writes what is due. Throws LineGone.
   void Tick(double now_s);
   /// Reads alone. Throws LineGone.
@@ -75,6 +81,7 @@ class RobotLink {
  private:
   void Match(Heard& heard);
   void WriteCommand(double now_s);
+  size_t LineBytes() const;
 
   ByteLine& line_;
   LineOptions options_;
