@@ -56,10 +56,12 @@ RunningRift::~RunningRift() {
 
 void RunningRift::Signal(int signal) const { ::kill(pid_, signal); }
 
-bool RunningRift::SignalWorker(int signal, std::mt19937_64& generator) const {
-  const std::vector<pid_t> workers = ChildrenOf(pid_);
-  if (workers.empty()) return false;
-  return ::kill(workers[generator() % workers.size()], signal) == 0;
+pid_t RunningRift::SignalWorker(int signal, std::mt19937_64& generator, pid_t spared) const {
+  std::vector<pid_t> workers = ChildrenOf(pid_);
+  std::erase(workers, spared);
+  if (workers.empty()) return 0;
+  const pid_t worker = workers[generator() % workers.size()];
+  return ::kill(worker, signal) == 0 ? worker : 0;
 }
 
 bool RunningRift::IsRunning() {
@@ -85,7 +87,7 @@ KilledSweep SweepUnderFire(const std::vector<std::string>& arguments, int kills,
       Pause(longest_pause_s, generator);
       if (!running.IsRunning()) break;
       if (generator() % 2 == 0) {
-        sweep.worker_kills += running.SignalWorker(SIGKILL, generator);
+        sweep.worker_kills += running.SignalWorker(SIGKILL, generator) != 0;
       } else {
         running.Signal(SIGKILL);
         ++sweep.coordinator_kills;

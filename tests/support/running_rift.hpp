@@ -20,8 +20,8 @@ class RunningRift {
   RunningRift& operator=(const RunningRift&) = delete;
 
   void Signal(int signal) const;
-  /// Signals one of its worker processes at random; false when there is none.
-  bool SignalWorker(int signal, std::mt19937_64& generator) const;
+  /// Signals one of its worker processes at random, but not `spared`; 0 when there is none.
+  pid_t SignalWorker(int signal, std::mt19937_64& generator, pid_t spared = 0) const;
   bool IsRunning();
   ProcessResult Wait();
 
