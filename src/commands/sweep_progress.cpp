@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 namespace rift::commands {
@@ -29,8 +30,15 @@ std::string DurationText(double duration_s) {
   return fmt::format("{}:{:02}:{:02}", whole_s / 3600, whole_s / 60 % 60, whole_s % 60);
 }
 
+std::size_t HashOf(const std::vector<sweep::ParameterValue>& theta) {
+  std::string text;
+  for (const sweep::ParameterValue& value : theta) text += value.text + '\n';
+  return std::hash<std::string>()(text);
+}
+
 std::string BarText(int done, int most) {
-  const int full = most > 0 ? static_cast<int>(static_cast<long>(kBarWidth) * done / most) : 0;
+  const int full =
+      most > 0 ? static_cast<int>(static_cast<long>(kBarWidth) * std::min(done, most) / most) : 0;
   return fmt::format("[{}{}]", std::string(static_cast<size_t>(full), '#'),
                      std::string(static_cast<size_t>(kBarWidth - full), '.'));
 }
@@ -43,8 +51,8 @@ ProgressStyle StyleFor(bool quiet, bool json) {
   return ::isatty(2) == 1 ? ProgressStyle::kBar : ProgressStyle::kLines;
 }
 
-SweepProgress::SweepProgress(ProgressStyle style, int most, bool is_limit)
-    : style_(style), most_(most), is_limit_(is_limit) {}
+SweepProgress::SweepProgress(ProgressStyle style, const SweepSize& size)
+    : style_(style), size_(size) {}
 
 SweepProgress::~SweepProgress() {
   const bool is_open = style_ == ProgressStyle::kBar && printed_ != begun_ && !is_over_;
@@ -52,9 +60,11 @@ SweepProgress::~SweepProgress() {
 }
 
 void SweepProgress::Seen(const sweep::TrialRow& row, bool from_journal) {
+  const int before = Steps();
   ++done_;
-  most_ = std::max(most_, done_);  // repeats near the threshold come on top
+  if (size_.is_settings) settings_.insert(HashOf(row.theta));
   from_journal_ += from_journal;
+  if (from_journal) steps_from_journal_ += Steps() - before;
   falsified_ += row.falsified;
   failed_ += !row.IsOk();
   if (row.IsOk() && row.comparison.gap_m > largest_gap_m_.value_or(-1.0)) {
@@ -62,22 +72,32 @@ void SweepProgress::Seen(const sweep::TrialRow& row, bool from_journal) {
   }
 }
 
+int SweepProgress::Steps() const {
+  return size_.is_settings ? static_cast<int>(settings_.size()) : done_;
+}
+
+double SweepProgress::Elapsed_s() const {
+  return std::chrono::duration<double>(Clock::now() - begun_).count();
+}
+
 double SweepProgress::Rate() const {
-  const std::chrono::duration<double> since = Clock::now() - begun_;
-  return since.count() > 0.0 ? (done_ - from_journal_) / since.count() : 0.0;
+  const double elapsed_s = Elapsed_s();
+  return elapsed_s > 0.0 ? (done_ - from_journal_) / elapsed_s : 0.0;
 }
 
 std::optional<double> SweepProgress::Left_s() const {
-  const double rate = Rate();
-  if (rate <= 0.0) return std::nullopt;
-  return (most_ - done_) / rate;
+  const int steps = Steps() - steps_from_journal_;
+  if (steps <= 0 || is_over_) return std::nullopt;
+  return std::max(0, size_.most - Steps()) * Elapsed_s() / steps;
 }
 
 std::string SweepProgress::Text() const {
-  std::string text = fmt::format("{}/{} trials, {:.1f}/s", done_, most_, Rate());
-  const std::optional<double> left_s = Left_s();
-  if (left_s && !is_over_) {
-    text += fmt::format(", {}{} left", is_limit_ ? "at most " : "", DurationText(*left_s));
+  std::string text =
+      size_.is_settings
+          ? fmt::format("{}/{} settings, {} trials, {:.1f}/s", Steps(), size_.most, done_, Rate())
+          : fmt::format("{}/{} trials, {:.1f}/s", done_, size_.most, Rate());
+  if (const std::optional<double> left_s = Left_s()) {
+    text += fmt::format(", {}{} left", size_.is_settings ? "at most " : "", DurationText(*left_s));
   }
   if (largest_gap_m_) text += fmt::format(", largest gap {:.4f} m", *largest_gap_m_);
   return text + fmt::format(", {} falsified, {} failed", falsified_, failed_);
@@ -88,18 +108,19 @@ void SweepProgress::Print(const std::string& state) {
     case ProgressStyle::kQuiet:
       return;
     case ProgressStyle::kBar:
-      fmt::print(stderr, "\r\x1b[K{} {}", BarText(done_, most_), Text());
+      fmt::print(stderr, "\r\x1b[K{} {}", BarText(Steps(), size_.most), Text());
       break;
     case ProgressStyle::kLines:
       fmt::print(stderr, "{}: {}\n", state, Text());
       break;
     case ProgressStyle::kJson: {
-      nlohmann::ordered_json json{{"state", state},           {"done", done_},
-                                  {"total", most_},           {"from_journal", from_journal_},
-                                  {"trials_per_s", Rate()},   {"left_s", nullptr},
-                                  {"largest_gap_m", nullptr}, {"falsified", falsified_},
-                                  {"failed", failed_}};
-      if (Left_s() && !is_over_) json["left_s"] = *Left_s();
+      nlohmann::ordered_json json{
+          {"state", state},          {"done", done_},     {"from_journal", from_journal_},
+          {"trials_per_s", Rate()},  {"left_s", nullptr}, {"largest_gap_m", nullptr},
+          {"falsified", falsified_}, {"failed", failed_}};
+      json[size_.is_settings ? "most_settings" : "total"] = size_.most;
+      if (size_.is_settings) json["settings"] = Steps();
+      if (const std::optional<double> left_s = Left_s()) json["left_s"] = *left_s;
       if (largest_gap_m_) json["largest_gap_m"] = *largest_gap_m_;
       fmt::print(stderr, "{}\n", json.dump());
       break;

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <unordered_set>
 
 #include "rift/sweep/result.hpp"
 
@@ -13,12 +14,18 @@ enum class ProgressStyle { kQuiet, kBar, kLines, kJson };
 /// A bar for a terminal, lines for anything else.
 ProgressStyle StyleFor(bool quiet, bool json);
 
-/// How far a sweep is, on stderr: trials done and to be done, their rate, the time left, the
+/// What a sweep will have done when it ends.
+struct SweepSize {
+  int most = 0;
+  /// A search: `most` settings at most, each of them with as many trials as it turns out to need.
+  bool is_settings = false;
+};
+
+/// How far a sweep is, on stderr: what is done and to be done, trials a second, the time left, the
 /// largest gap so far, failures.
 class SweepProgress {
  public:
-  /// `most` is how many trials there will be; with `is_limit` at most.
-  SweepProgress(ProgressStyle style, int most, bool is_limit);
+  SweepProgress(ProgressStyle style, const SweepSize& size);
   /// Ends the line of a bar that an error cut short.
   ~SweepProgress();
   SweepProgress(const SweepProgress&) = delete;
@@ -33,14 +40,17 @@ class SweepProgress {
  private:
   using Clock = std::chrono::steady_clock;
 
+  int Steps() const;
+  double Elapsed_s() const;
   double Rate() const;
   std::optional<double> Left_s() const;
   std::string Text() const;
   void Print(const std::string& state);
 
   ProgressStyle style_;
-  int most_;
-  bool is_limit_;
+  SweepSize size_;
+  std::unordered_set<std::size_t> settings_;  ///< hashes: a collision only shows one less
+  int steps_from_journal_ = 0;
   bool is_over_ = false;
   int done_ = 0;
   int from_journal_ = 0;

@@ -36,13 +36,13 @@ sweep::Facts FactsOf(const config::Experiment& experiment) {
   return facts;
 }
 
-int TrialsAtMost(const config::Experiment& experiment, const sweep::GridPlan& plan) {
-  double settings = 1.0;
+SweepSize SizeOf(const config::Experiment& experiment, const sweep::GridPlan& plan) {
+  if (experiment.goal != sweep::Goal::kGrid) return {experiment.search.budget, true};
+  double trials = static_cast<double>(plan.trials.size());
   for (const sweep::Parameter& parameter : plan.parameters) {
-    if (!parameter.IsContinuous()) settings *= static_cast<double>(parameter.levels.size());
+    trials *= static_cast<double>(parameter.levels.size());
   }
-  if (experiment.goal != sweep::Goal::kGrid) settings = experiment.search.budget;
-  return static_cast<int>(settings * static_cast<double>(plan.trials.size()));
+  return {static_cast<int>(trials), false};
 }
 
 std::optional<sweep::SweepResult> RunGoal(const config::Experiment& experiment,
@@ -97,7 +97,8 @@ std::optional<sweep::SweepResult> RunSimulated(const config::Experiment& experim
   WriteFile(request.out / "experiment.yaml", config::WriteExperiment(experiment));
   sources.LoadLogs();  // now, since workers are copies of what is there when they start
   journal.SetNote("name", experiment.name);
-  journal.SetNote("most_trials", std::to_string(TrialsAtMost(experiment, sources.Plan())));
+  const SweepSize size = SizeOf(experiment, sources.Plan());
+  journal.SetNote(size.is_settings ? "most_settings" : "most_trials", std::to_string(size.most));
   journal.SetNote("state", "running");
   journal.Commit();
   Stopwatch watch(journal);
@@ -136,8 +137,7 @@ int CoresToUse() {
 std::optional<sweep::SweepResult> RunSweep(const config::Experiment& experiment,
                                            SweepSources& sources, const SweepRunRequest& request) {
   const StopSignal stop;
-  SweepProgress progress(request.progress, TrialsAtMost(experiment, sources.Plan()),
-                         experiment.goal != sweep::Goal::kGrid);
+  SweepProgress progress(request.progress, SizeOf(experiment, sources.Plan()));
   std::optional<sweep::SweepResult> result;
   if (experiment.candidate.kind == sweep::CandidateKind::kSimulation) {
     result = RunSimulated(experiment, sources, request, progress, stop);

@@ -23,6 +23,11 @@ std::string NoteOf(const sweep::JournalSummary& summary, const std::string& name
   return found == summary.notes.end() ? "0" : found->second;
 }
 
+std::string PlanText(const sweep::JournalSummary& summary) {
+  if (!summary.notes.contains("most_settings")) return NoteOf(summary, "most_trials");
+  return "at most " + NoteOf(summary, "most_settings") + " settings";
+}
+
 }  // namespace
 
 std::string SweepStatus(const std::filesystem::path& folder, bool json) {
@@ -34,7 +39,8 @@ std::string SweepStatus(const std::filesystem::path& folder, bool json) {
     nlohmann::ordered_json report{{"state", state},
                                   {"name", NoteOf(summary, "name")},
                                   {"done", done},
-                                  {"most", std::stoi(NoteOf(summary, "most_trials"))},
+                                  {"most_trials", std::stoi(NoteOf(summary, "most_trials"))},
+                                  {"most_settings", std::stoi(NoteOf(summary, "most_settings"))},
                                   {"elapsed_s", std::stod(NoteOf(summary, "elapsed_s"))},
                                   {"falsified", summary.falsified},
                                   {"largest_gap_m", nullptr},
@@ -43,9 +49,9 @@ std::string SweepStatus(const std::filesystem::path& folder, bool json) {
     if (summary.largest_gap_m) report["largest_gap_m"] = *summary.largest_gap_m;
     return Dump(report);
   }
-  std::string text = fmt::format(
-      "{}: {}, {} trials done (planned: {}) in {} s, {} falsified\n", NoteOf(summary, "name"),
-      state, done, NoteOf(summary, "most_trials"), NoteOf(summary, "elapsed_s"), summary.falsified);
+  std::string text = fmt::format("{}: {}, {} trials done (planned: {}) in {} s, {} falsified\n",
+                                 NoteOf(summary, "name"), state, done, PlanText(summary),
+                                 NoteOf(summary, "elapsed_s"), summary.falsified);
   for (const auto& [status, count] : summary.trials_by_status) {
     if (status != "ok") text += fmt::format("{}: {}\n", status, count);
   }

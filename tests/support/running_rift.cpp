@@ -16,12 +16,20 @@ extern char** environ;
 namespace rift::test {
 namespace {
 
-std::vector<pid_t> ChildrenOf(pid_t pid) {
+/// Gnuplot, which draws the figures, is a child as well.
+bool IsRift(pid_t pid) {
+  std::string name;
+  return std::ifstream("/proc/" + std::to_string(pid) + "/comm") >> name && name == "rift";
+}
+
+std::vector<pid_t> WorkersOf(pid_t pid) {
   const std::string task = "/proc/" + std::to_string(pid) + "/task/" + std::to_string(pid);
   std::ifstream file(task + "/children");
-  std::vector<pid_t> children;
-  for (pid_t child = 0; file >> child;) children.push_back(child);
-  return children;
+  std::vector<pid_t> workers;
+  for (pid_t child = 0; file >> child;) {
+    if (IsRift(child)) workers.push_back(child);
+  }
+  return workers;
 }
 
 void Pause(double longest_s, std::mt19937_64& generator) {
@@ -57,7 +65,7 @@ RunningRift::~RunningRift() {
 void RunningRift::Signal(int signal) const { ::kill(pid_, signal); }
 
 pid_t RunningRift::SignalWorker(int signal, std::mt19937_64& generator, pid_t spared) const {
-  std::vector<pid_t> workers = ChildrenOf(pid_);
+  std::vector<pid_t> workers = WorkersOf(pid_);
   std::erase(workers, spared);
   if (workers.empty()) return 0;
   const pid_t worker = workers[generator() % workers.size()];
