@@ -18,6 +18,18 @@ class SteadyTracker : public PoseTracker {
   TagTracker tracker_;
 };
 
+class SyntheticPictures : public PictureMaker {
+ public:
+  SyntheticPictures(const CameraModel& camera, const SyntheticCameraOptions& options)
+      : camera_(camera, options) {}
+  std::vector<std::uint8_t> Jpeg(const RobotMotion& robot, std::mt19937_64& generator) override {
+    return camera_.Render(robot, PixelFormat::kJpeg, generator).bytes;
+  }
+
+ private:
+  SyntheticCamera camera_;
+};
+
 class OpenCvVision : public Vision {
  public:
   std::unique_ptr<Capture> OpenCapture(const std::string& camera,
@@ -73,6 +85,10 @@ class OpenCvVision : public Vision {
                                               const Eigen::Vector2d& pixel, double z_m) override {
     return vision::MapFromPixel(camera, pixel, z_m);
   }
+  std::unique_ptr<PictureMaker> MakePictures(const CameraModel& camera,
+                                             const SyntheticCameraOptions& options) override {
+    return std::make_unique<SyntheticPictures>(camera, options);
+  }
   std::string MissingDisplay() override { return vision::MissingDisplay(); }
   std::unique_ptr<TrackWindow> OpenWindow(const std::string& title) override {
     return vision::OpenTrackWindow(title);
@@ -83,6 +99,6 @@ class OpenCvVision : public Vision {
 }  // namespace rift::vision
 
 // Its name is kMakeVisionSymbol of module.hpp, where the number is explained.
-extern "C" [[gnu::visibility("default")]] rift::vision::Vision* rift_vision_make_1() {
+extern "C" [[gnu::visibility("default")]] rift::vision::Vision* rift_vision_make_2() {
   return new rift::vision::OpenCvVision;
 }
