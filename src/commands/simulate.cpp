@@ -14,6 +14,7 @@
 #include "rift/trajectory/log.hpp"
 #include "simulate_output.hpp"
 #include "simulate_pictures.hpp"
+#include "simulate_twin.hpp"
 #include "simulated_runs.hpp"
 #include "trial_output.hpp"
 
@@ -31,6 +32,7 @@ struct SimulateRequest {
   std::string tum;
   std::vector<std::string> replay;  ///< folder of a sweep and id of a row
   bool json = false;
+  bool twin = false;
   PictureRequest pictures;
 };
 
@@ -124,6 +126,14 @@ Run ReplayFor(const SimulateRequest& request) {
   return {out, std::move(replay.experiment), std::move(replay.trial), std::move(replay.run)};
 }
 
+int ServeTwin(const SimulateRequest& request) {
+  if (request.experiment.empty()) {
+    throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
+  }
+  const config::Experiment experiment = LoadFor(request);
+  return RunTwin(request.experiment, experiment, OutputOf(request.out, experiment.name));
+}
+
 }  // namespace
 
 void AddSimulate(CLI::App& app, int& exit_code) {
@@ -147,13 +157,23 @@ void AddSimulate(CLI::App& app, int& exit_code) {
       ->type_name("DIR ID")
       ->expected(2);
   AddPictureFlags(app, request->pictures);
+  app.add_flag(
+      "--twin", request->twin,
+      "run the robot in real time, behind a serial port and an http camera that rift drive "
+      "can open; prints where they are");
   AddKeysFlag(app);
   app.add_flag("--json", request->json, "print the summary as JSON instead of text");
   app.footer(
       "Ends with 1 when the robot does not reach the last waypoint.\n"
       "Example: rift simulate configs/waypoints/paper.yaml --seed 7 --out sim.csv\n"
-      "         rift simulate --replay out/paper 17 --video 17.mp4");
+      "         rift simulate --replay out/paper 17 --video 17.mp4\n"
+      "         rift simulate configs/twin.yaml --twin --out out/twin");
+  ExcludeFromTwin(app);
   app.callback([request, &exit_code] {
+    if (request->twin) {
+      exit_code = ServeTwin(*request);
+      return;
+    }
     const Run made = request->replay.empty() ? SimulateFile(*request) : ReplayFor(*request);
     Save(made.out, made.experiment, made.run);
     if (!request->tum.empty()) {

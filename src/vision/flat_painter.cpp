@@ -8,8 +8,6 @@
 namespace rift::vision {
 namespace {
 
-constexpr int kFine = 8;
-
 /// Points around the box, many on each side: the lens bends its outline.
 std::vector<Eigen::Vector3d> Outline(const FlatPattern& pattern,
                                      const Eigen::Isometry3d& camera_from_pattern) {
@@ -30,20 +28,20 @@ std::vector<Eigen::Vector3d> Outline(const FlatPattern& pattern,
 
 /// The mean over a pixel whose corners lie at these points of the plane; `under` shines through.
 double Mean(const FlatPattern& pattern, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-            const Eigen::Vector2d& c, const Eigen::Vector2d& d, double under) {
+            const Eigen::Vector2d& c, const Eigen::Vector2d& d, double under, int fine) {
   double sum = 0.0;
-  for (int j = 0; j < kFine; ++j) {
-    const double v = (j + 0.5) / kFine;
+  for (int j = 0; j < fine; ++j) {
+    const double v = (j + 0.5) / fine;
     const Eigen::Vector2d left = a + v * (c - a);
-    const Eigen::Vector2d step = (b + v * (d - b) - left) / kFine;
+    const Eigen::Vector2d step = (b + v * (d - b) - left) / fine;
     double x = left.x() + 0.5 * step.x();
     double y = left.y() + 0.5 * step.y();
-    for (int i = 0; i < kFine; ++i, x += step.x(), y += step.y()) {
+    for (int i = 0; i < fine; ++i, x += step.x(), y += step.y()) {
       const double grey = pattern.Grey(pattern.Cell(x, y));
       sum += std::isnan(grey) ? under : grey;
     }
   }
-  return sum / (kFine * kFine);
+  return sum / (fine * fine);
 }
 
 }  // namespace
@@ -88,7 +86,8 @@ void FlatPainter::MeetPlane(const FlatPattern& pattern,
 }
 
 void FlatPainter::Paint(const FlatPattern& pattern, const PoseOfRow& camera_from_pattern,
-                        const Region& where, const Region& canvas_region, cv::Mat1f& canvas) {
+                        const Region& where, const Region& canvas_region, cv::Mat1f& canvas,
+                        int fine) {
   if (where.empty()) return;
   MeetPlane(pattern, camera_from_pattern(where.y_px - 0.5), where.y_px, where, above_);
   for (int y = where.y_px; y < where.y_px + where.height_px; ++y) {
@@ -100,7 +99,8 @@ void FlatPainter::Paint(const FlatPattern& pattern, const PoseOfRow& camera_from
         const double grey = pattern.Grey(a.cell);
         if (!std::isnan(grey)) row[i] = static_cast<float>(grey);
       } else {
-        row[i] = static_cast<float>(Mean(pattern, a.point, b.point, c.point, d.point, row[i]));
+        row[i] =
+            static_cast<float>(Mean(pattern, a.point, b.point, c.point, d.point, row[i], fine));
       }
     }
     std::swap(above_, below_);

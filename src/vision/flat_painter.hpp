@@ -19,13 +19,15 @@ Region Footprint(const CameraModel& camera, const FlatPattern& pattern,
                  const Eigen::Isometry3d& camera_from_pattern);
 
 /// Paints patterns over a canvas of floats that shows `canvas_region` of the picture. A pixel is
-/// the mean over its square: exact where one cell covers it, of 8 x 8 points where an edge runs
-/// through.
+/// the mean over its square: exact where one cell covers it, of `fine` x `fine` points where an
+/// edge runs through.
 class FlatPainter {
  public:
+  static constexpr int kFine = 8;
+
   explicit FlatPainter(const CameraModel& camera) : rays_(camera) {}
   void Paint(const FlatPattern& pattern, const PoseOfRow& camera_from_pattern, const Region& where,
-             const Region& canvas_region, cv::Mat1f& canvas);
+             const Region& canvas_region, cv::Mat1f& canvas, int fine = kFine);
 
  private:
   struct Corner {

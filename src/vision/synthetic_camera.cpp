@@ -2,21 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "flat_painter.hpp"
-#include "jpeg_writer.hpp"
 #include "sensor_noise.hpp"
+#include "still_jpeg.hpp"
 
 namespace rift::vision {
 namespace {
 
 constexpr std::uint64_t kGrainSeed = 0xf1008;
-/// Exposures that are averaged where the shutter is open for a while.
-constexpr int kMoments = 8;
+/// Exposures that are averaged where the shutter is open for a while: one a pixel of smear. So many
+/// edges need fewer points each.
+constexpr int kMostMoments = 8;
+constexpr int kFineOfMoments = 4;
 
 Region Union(const Region& a, const Region& b) {
   if (a.empty()) return b;
@@ -85,10 +88,13 @@ struct SyntheticCamera::State {
   Eigen::Isometry3d CameraFromLayer(const Layer& layer, const RobotMotion& robot,
                                     double by_s) const;
   Region RobotFootprint(const Layer& layer, const RobotMotion& robot) const;
-  void PaintRobot(const RobotMotion& robot, double by_s, const Region& region, cv::Mat1f& canvas);
+  int Moments(const RobotMotion& robot) const;
+  void PaintRobot(const RobotMotion& robot, double by_s, const Region& region, int fine,
+                  cv::Mat1f& canvas);
   /// Everything that light and lens do, sensor noise not yet.
   cv::Mat1b Expose(const cv::Mat1f& light) const;
-  void DrawRobot(const RobotMotion& robot, cv::Mat1b& picture);
+  /// Returns what of the picture it changed.
+  Region DrawRobot(const RobotMotion& robot, cv::Mat1b& picture);
   std::vector<std::uint8_t> Pack(const cv::Mat1b& picture, PixelFormat format);
 
   CameraModel camera;
@@ -96,10 +102,10 @@ struct SyntheticCamera::State {
   Eigen::Isometry3d camera_from_world;
   FlatPainter painter;
   SensorNoise noise;
-  JpegWriter jpeg;
+  StillJpeg still_jpeg;
   std::vector<Layer> robot_layers;
   cv::Mat1f floor;  ///< before the lens
-  cv::Mat1b still;  ///< the picture without a robot
+  cv::Mat1b still;  ///< the picture without a robot and without noise
 };
 
 SyntheticCamera::State::State(const CameraModel& model, const SyntheticCameraOptions& given,
@@ -109,7 +115,7 @@ SyntheticCamera::State::State(const CameraModel& model, const SyntheticCameraOpt
       camera_from_world(model.world->world_from_camera.inverse()),
       painter(model),
       noise(given.noise_grey),
-      jpeg(given.jpeg_quality, given.jpeg_colour) {
+      still_jpeg(model.width_px, model.height_px, given.jpeg_quality, given.jpeg_colour) {
   floor = Grain(camera, options.grain_grey);
   floor += options.floor_grey;
   for (const PlacedBoard& board : scene.boards) {
@@ -155,8 +161,16 @@ Region SyntheticCamera::State::RobotFootprint(const Layer& layer, const RobotMot
   return region;
 }
 
+int SyntheticCamera::State::Moments(const RobotMotion& robot) const {
+  const double depth_m = (camera_from_world * robot.world_from_tag.translation()).z();
+  const double speed_mps =
+      robot.velocity_mps.norm() + std::abs(robot.yaw_rate_radps) * options.body_radius_m;
+  const double smear_px = speed_mps * options.shutter_s * camera.k(0, 0) / depth_m;
+  return static_cast<int>(std::clamp(std::ceil(smear_px), 1.0, double{kMostMoments}));
+}
+
 void SyntheticCamera::State::PaintRobot(const RobotMotion& robot, double by_s, const Region& region,
-                                        cv::Mat1f& canvas) {
+                                        int fine, cv::Mat1f& canvas) {
   for (const Layer& layer : robot_layers) {
     const Eigen::Isometry3d still_pose = CameraFromLayer(layer, robot, by_s);
     const auto pose_of_row = [&](double row) {
@@ -164,7 +178,7 @@ void SyntheticCamera::State::PaintRobot(const RobotMotion& robot, double by_s, c
       return CameraFromLayer(layer, robot,
                              by_s + options.readout_s * (row / camera.height_px - 0.5));
     };
-    painter.Paint(*layer.pattern, pose_of_row, RobotFootprint(layer, robot), region, canvas);
+    painter.Paint(*layer.pattern, pose_of_row, RobotFootprint(layer, robot), region, canvas, fine);
   }
 }
 
@@ -176,29 +190,30 @@ cv::Mat1b SyntheticCamera::State::Expose(const cv::Mat1f& light) const {
   return picture;
 }
 
-void SyntheticCamera::State::DrawRobot(const RobotMotion& robot, cv::Mat1b& picture) {
+Region SyntheticCamera::State::DrawRobot(const RobotMotion& robot, cv::Mat1b& picture) {
   Region touched;
   for (const Layer& layer : robot_layers) touched = Union(touched, RobotFootprint(layer, robot));
-  if (touched.empty()) return;
+  if (touched.empty()) return touched;
   // The blur reaches this far; what it makes at the rim of the canvas is not used.
   const int reach_px = static_cast<int>(std::ceil(4.0 * options.blur_px)) + 1;
   touched = Grown(touched, reach_px, camera);
   const Region region = Grown(touched, reach_px, camera);
-  const int moments = options.shutter_s > 0.0 ? kMoments : 1;
+  const int moments = Moments(robot);
+  const int fine = moments > 1 ? kFineOfMoments : FlatPainter::kFine;
   cv::Mat1f light(cv::Mat1f::zeros(region.height_px, region.width_px));
   for (int i = 0; i < moments; ++i) {
     cv::Mat1f moment = floor(ToRect(region)).clone();
-    PaintRobot(robot, options.shutter_s * ((i + 0.5) / moments - 0.5), region, moment);
+    PaintRobot(robot, options.shutter_s * ((i + 0.5) / moments - 0.5), region, fine, moment);
     cv::scaleAdd(moment, 1.0 / moments, light, light);
   }
   const cv::Rect inner(touched.x_px - region.x_px, touched.y_px - region.y_px, touched.width_px,
                        touched.height_px);
   Expose(light)(inner).copyTo(picture(ToRect(touched)));
+  return touched;
 }
 
 std::vector<std::uint8_t> SyntheticCamera::State::Pack(const cv::Mat1b& picture,
                                                        PixelFormat format) {
-  if (format == PixelFormat::kJpeg) return jpeg.Write(picture);
   cv::Mat packed = picture;
   if (format == PixelFormat::kBgr) cv::cvtColor(picture, packed, cv::COLOR_GRAY2BGR);
   if (format == PixelFormat::kYuyv) {
@@ -226,14 +241,19 @@ SyntheticCamera& SyntheticCamera::operator=(SyntheticCamera&&) noexcept = defaul
 
 Frame SyntheticCamera::Render(const std::optional<RobotMotion>& robot, PixelFormat format,
                               std::mt19937_64& generator) {
-  cv::Mat1b picture = state_->still.clone();
-  if (robot) state_->DrawRobot(*robot, picture);
-  state_->noise.AddTo(picture, generator);
   Frame frame;
   frame.width_px = state_->camera.width_px;
   frame.height_px = state_->camera.height_px;
   frame.format = format;
-  frame.bytes = state_->Pack(picture, format);
+  cv::Mat1b picture = state_->still.clone();
+  const Region touched = robot ? state_->DrawRobot(*robot, picture) : Region{};
+  if (format == PixelFormat::kJpeg) {
+    frame.bytes =
+        state_->still_jpeg.Write(state_->still, picture, touched, state_->noise, generator);
+  } else {
+    state_->noise.AddTo(picture, generator);
+    frame.bytes = state_->Pack(picture, format);
+  }
   return frame;
 }
 

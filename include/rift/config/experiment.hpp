@@ -17,6 +17,7 @@
 #include "rift/sweep/options.hpp"
 #include "rift/sweep/run_options.hpp"
 #include "rift/trial/trial_options.hpp"
+#include "rift/twin/options.hpp"
 #include "rift/vision/track_options.hpp"
 
 namespace rift::config {
@@ -42,6 +43,7 @@ struct Experiment {
   simulation::SimulationOptions simulation;
   hardware::HardwareOptions hardware;
   vision::TrackOptions track;
+  twin::TwinOptions twin;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -64,6 +66,7 @@ struct Experiment {
     field("simulation", self.simulation, "the simulated robot, its radio, its camera, the floor");
     field("hardware", self.hardware, "the real robot: its line, when it is stopped, its link");
     field("track", self.track, "the overhead camera: what it is asked for, the tag, calibration");
+    field("twin", self.twin, "the simulated robot in real time, behind a port and a camera");
   }
 };
 

@@ -3,12 +3,14 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "rift/vision/calibration.hpp"
 #include "rift/vision/capture_options.hpp"
 #include "rift/vision/capture_thread.hpp"
+#include "rift/vision/synthetic_camera.hpp"
 #include "rift/vision/tag_tracker.hpp"
 #include "rift/vision/track_scene.hpp"
 #include "rift/vision/world_frame.hpp"
@@ -23,6 +25,13 @@ class PoseTracker {
   virtual void Forget() = 0;
 };
 
+/// SyntheticCamera behind the module: a stream's pictures of one scene, compressed.
+class PictureMaker {
+ public:
+  virtual ~PictureMaker() = default;
+  virtual std::vector<std::uint8_t> Jpeg(const RobotMotion& robot, std::mt19937_64& generator) = 0;
+};
+
 /// All of the camera side, in a module of its own, since OpenCV's libraries would cost every start
 /// of rift 0.1 s. Each function is documented where the class or function of its name is.
 class Vision {
@@ -34,8 +43,7 @@ class Vision {
   virtual std::unique_ptr<PoseTracker> MakeTracker(const CameraModel& camera,
                                                    const TagOptions& options) = 0;
   /// Every tag of the family in a picture; see TagDetector for the decimation.
-  virtual std::vector<TagDetection> FindTags(const Frame& frame, int decimate,
-                                             int max_hamming) = 0;
+  virtual std::vector<TagDetection> FindTags(const Frame& frame, int decimate, int max_hamming) = 0;
 
   virtual std::vector<std::string> ImageFiles(const std::string& pattern) = 0;
   virtual BoardView FindBoard(const std::string& path, const Board& board) = 0;
@@ -58,8 +66,10 @@ class Vision {
   virtual std::optional<double> MovedBy_m(const CameraModel& camera,
                                           const std::vector<TagDetection>& seen) = 0;
   virtual std::optional<Eigen::Vector2d> MapFromPixel(const CameraModel& camera,
-                                                      const Eigen::Vector2d& pixel,
-                                                      double z_m) = 0;
+                                                      const Eigen::Vector2d& pixel, double z_m) = 0;
+
+  virtual std::unique_ptr<PictureMaker> MakePictures(const CameraModel& camera,
+                                                     const SyntheticCameraOptions& options) = 0;
 
   /// Why no window can be opened here, in one line for people; empty when one can.
   virtual std::string MissingDisplay() = 0;

@@ -18,6 +18,18 @@ class SteadyTracker : public PoseTracker {
   TagTracker tracker_;
 };
 
+class SyntheticPictures : public PictureMaker {
+ public:
+  SyntheticPictures(const CameraModel& camera, const SyntheticCameraOptions& options)
+      : camera_(camera, options) {}
+  std::vector<std::uint8_t> Jpeg(const RobotMotion& robot, std::mt19937_64& generator) override {
+    return camera_.Render(robot, PixelFormat::kJpeg, generator).bytes;
+  }
+
+ private:
+  SyntheticCamera camera_;
+};
+
 class OpenCvVision : public Vision {
  public:
   std::unique_ptr<Capture> OpenCapture(const std::string& camera,
@@ -75,6 +87,10 @@ class OpenCvVision : public Vision {
   std::optional<Eigen::Vector2d> MapFromPixel(const CameraModel& camera,
                                               const Eigen::Vector2d& pixel, double z_m) override {
     return vision::MapFromPixel(camera, pixel, z_m);
+  }
+  std::unique_ptr<PictureMaker> MakePictures(const CameraModel& camera,
+                                             const SyntheticCameraOptions& options) override {
+    return std::make_unique<SyntheticPictures>(camera, options);
   }
   std::string MissingDisplay() override { return vision::MissingDisplay(); }
   std::unique_ptr<TrackWindow> OpenWindow(const std::string& title) override {

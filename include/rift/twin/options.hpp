@@ -1,0 +1,50 @@
+#pragma once
+
+#include "rift/simulation/simulation_options.hpp"
+#include "rift/vision/synthetic_camera.hpp"
+
+namespace rift::twin {
+
+/// A webcam's stream: 1080p MJPEG of 100 to 200 kB a picture.
+inline vision::SyntheticCameraOptions WebcamOptions() {
+  vision::SyntheticCameraOptions options;
+  options.noise_grey = 2.0;
+  options.jpeg_quality = 80;
+  return options;
+}
+
+/// What the twin adds to the simulated robot: a camera that can be looked through, and when it
+/// ends.
+struct TwinOptions {
+  double fps = 30.0;
+  double camera_height_m = 0.87;
+  double host_share_s = 0.015;
+  int http_port = 0;
+  double battery_v = 5.0;
+  double still_s = 5.0;
+  vision::SyntheticCameraOptions camera = WebcamOptions();
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("fps", self.fps, 1.0, 120.0, "pictures a second");
+    field("camera_height_m", self.camera_height_m, 0.3, 5.0,
+          "above the floor in m (trials: 0.87), above the middle of the waypoints");
+    field("host_share_s", self.host_share_s, 0.0, 0.5,
+          "the part of simulation.mocap.processing_s that a host spends for real on reading a "
+          "picture and finding the tag; the twin holds a picture back for the rest only");
+    field("http_port", self.http_port, 0, 65535, "of the stream on 127.0.0.1; 0: a free one");
+    field("battery_v", self.battery_v, 0.0, 30.0, "what the robot says of its battery");
+    field("still_s", self.still_s, 0.5, 3600.0,
+          "the twin ends when the robot has driven and its motors were then off for so long, in s");
+    field("camera", self.camera, "what the pictures look like");
+  }
+};
+
+/// The simulated robot as the twin runs it, for `simulate` to run the same: rift's own listener
+/// (src/firmware) reads its line at once, has 512 bytes of buffer and a watchdog of 0.3 s, and
+/// takes exact powers; the camera takes options.fps pictures a second.
+simulation::SimulationOptions AsTwin(simulation::SimulationOptions simulation,
+                                     const TwinOptions& options);
+
+}  // namespace rift::twin

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "rift/twin/options.hpp"
+#include "rift/twin/true_path.hpp"
+#include "rift/twin/twin_robot.hpp"
+#include "rift/vision/module.hpp"
+
+namespace rift::twin {
+
+/// Everything one twin depends on.
+struct TwinSetup {
+  simulation::SimulationOptions simulation;  ///< as AsTwin makes it
+  TwinOptions twin;
+  geometry::Pose2 start;  ///< world_from_robot, middle of the axle
+  std::uint64_t seed = 1;
+  std::shared_ptr<const simulation::HeightImage> image;
+  vision::CameraModel camera;
+};
+
+/// Where it can be reached.
+struct TwinAddress {
+  std::string port;    ///< of the serial line
+  std::string camera;  ///< URL of the stream
+};
+
+/// What was seen at the moment of each picture.
+struct TwinRun {
+  bool is_over =
+      false;  ///< the robot drove and stood still again; else it was stopped from outside
+  bool has_driven = false;
+  trajectory::Trajectory truth;  ///< middle of the axle; times since the twin began
+  trajectory::Trajectory tag;    ///< its tag at the moment of every picture since the first client
+  double began_s = 0.0;          ///< on the steady clock
+  double skipped_s = 0.0;        ///< of real time, since the process stood still
+  std::size_t pictures = 0;
+  double picture_cpu_s = 0.0;       ///< of one core for each of them
+  double picture_late_p99_s = 0.0;  ///< how much later than planned a picture was published
+  unsigned stops = 0;               ///< of the robot by itself, modulo 256
+  unsigned rejected = 0;            ///< frames and lines that it did not obey, modulo 256
+};
+
+/// Runs the robot in real time behind a serial port and an http camera. `announce` is called once
+/// both can be opened; `is_stopped` is asked many times a second. Throws what goes wrong in any of
+/// its threads.
+TwinRun RunTwin(const TwinSetup& setup, std::unique_ptr<vision::PictureMaker> pictures,
+                const std::function<void(const TwinAddress&)>& announce,
+                const std::function<bool()>& is_stopped);
+
+}  // namespace rift::twin

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "rift/hardware/listener.hpp"
+#include "rift/simulation/simulated_robot.hpp"
+#include "rift/twin/byte_channel.hpp"
+
+namespace rift::twin {
+
+/// The simulated robot with rift's listener between its radio and its motors: bytes in, bytes out.
+/// Knows no clock; the same bytes at the same times move it the same way.
+class TwinRobot {
+ public:
+  /// Every physics step, the pose at its end and the power at the motors.
+  using Witness = std::function<void(const simulation::TruePose&, const robot::WheelPower&)>;
+
+  /// At rest at `start`; see SimulatedRobot.
+  TwinRobot(const simulation::SimulationOptions& options, double battery_v,
+            const geometry::Pose2& start, std::uint64_t seed,
+            std::shared_ptr<const simulation::HeightImage> image = nullptr);
+
+  /// The host wrote these bytes at `at_s`.
+  void Hear(double at_s, std::span<const std::uint8_t> bytes) { to_robot_.Put(at_s, bytes); }
+  /// Runs up to `to_s`.
+  void Advance(double to_s, const Witness& witness);
+  /// What has reached the host by then.
+  std::vector<std::uint8_t> Say(double now_s) { return to_host_.Take(now_s); }
+
+  robot::WheelPower Motors() const;
+  double Now_s() const { return kTurn_s * static_cast<double>(turns_); }
+  simulation::TruePose Truth() const { return robot_.Truth(); }
+  const hardware::Listener& Listener() const { return listener_; }
+
+ private:
+  static constexpr double kTurn_s = 0.001;  ///< of the listener's loop
+
+  hardware::Listener::Senses Senses();
+
+  simulation::SimulatedRobot robot_;
+  hardware::Listener listener_;
+  ByteChannel to_robot_;
+  ByteChannel to_host_;
+  std::uint16_t battery_mv_;
+  std::int64_t turns_ = 0;
+  robot::WheelPower commanded_;
+  double witnessed_s_ = 0.0;
+};
+
+}  // namespace rift::twin

@@ -1,0 +1,101 @@
+#include "simulate_twin.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "files.hpp"
+#include "json_fields.hpp"
+#include "rift/commands/command.hpp"
+#include "rift/config/camera_file.hpp"
+#include "rift/trajectory/log.hpp"
+#include "rift/twin/overhead_camera.hpp"
+#include "rift/twin/twin.hpp"
+#include "simulated_runs.hpp"
+#include "stop_signal.hpp"
+
+namespace rift::commands {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+/// One line, at once: whoever started the twin waits for it.
+void Announce(const twin::TwinAddress& address, const fs::path& calibration) {
+  const ordered_json json{{"port", address.port},
+                          {"camera", address.camera},
+                          {"calibration", fs::absolute(calibration).string()}};
+  fmt::print("{}\n", json.dump());
+  if (std::fflush(stdout) != 0) {
+    throw std::runtime_error("cannot write to stdout: nobody can learn where the twin is");
+  }
+}
+
+std::string Ending(const twin::TwinRun& run) {
+  if (run.is_over) return "the robot drove and stood still again";
+  return run.has_driven ? "ended from outside while the robot drove or shortly after"
+                        : "ended from outside before the robot drove";
+}
+
+std::string TwinJson(const config::Experiment& experiment, const twin::TwinRun& run) {
+  return Dump({{"name", experiment.name},
+               {"rift_version", RIFT_VERSION},
+               {"seed", experiment.seed},
+               {"ending", Ending(run)},
+               {"has_driven", run.has_driven},
+               {"true_path_length_m", run.truth.ArcLength_m()},
+               {"began_steady_s", run.began_s},
+               {"skipped_s", run.skipped_s},
+               {"pictures", run.pictures},
+               {"picture_cpu_s", run.picture_cpu_s},
+               {"picture_late_p99_s", run.picture_late_p99_s},
+               {"robot_stopped_by_itself", run.stops},
+               {"robot_rejected", run.rejected}});
+}
+
+void Save(const fs::path& folder, const config::Experiment& experiment, const twin::TwinRun& run) {
+  WriteFile(folder / "truth.csv", trajectory::WriteRift(run.truth));
+  WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.tag));
+  WriteFile(folder / "summary.json", TwinJson(experiment, run));
+}
+
+}  // namespace
+
+void ExcludeFromTwin(CLI::App& app) {
+  CLI::Option* twin = app.get_option("--twin");
+  for (const char* other : {"--replay", "--tum", "--json", "--video", "--figure", "--view"}) {
+    twin->excludes(app.get_option(other));
+  }
+}
+
+int RunTwin(const std::string& experiment_file, const config::Experiment& experiment,
+            const fs::path& folder) {
+  config::Experiment as_twin = experiment;
+  as_twin.simulation = twin::AsTwin(experiment.simulation, experiment.twin);
+  const sweep::SimulatedTrial trial = TrialOf(as_twin, {}, experiment.seed, experiment_file);
+  vision::SyntheticCameraOptions look = experiment.twin.camera;
+  look.shutter_s = as_twin.simulation.mocap.exposure_s;
+  const twin::TwinSetup setup{as_twin.simulation,
+                              experiment.twin,
+                              control::StartPose(experiment.waypoints),
+                              experiment.seed,
+                              trial.image,
+                              twin::OverheadCamera(experiment.waypoints, experiment.twin)};
+  const fs::path calibration = folder / "camera.yaml";
+  WriteFile(calibration, config::WriteCamera(setup.camera));
+  WriteFile(folder / "experiment.yaml", config::WriteExperiment(as_twin));
+
+  const StopSignal stop;
+  const std::unique_ptr<vision::Vision> camera_side = vision::LoadVision();
+  const twin::TwinRun run = twin::RunTwin(
+      setup, camera_side->MakePictures(setup.camera, look),
+      [&](const twin::TwinAddress& address) { Announce(address, calibration); },
+      [&] { return stop.IsAsked(); });
+  Save(folder, as_twin, run);
+  fmt::print(stderr, "{}; {} pictures at {:.1f} ms of one core each; true path: {}\n", Ending(run),
+             run.pictures, 1e3 * run.picture_cpu_s, (folder / "truth.csv").string());
+  return kDone;
+}
+
+}  // namespace rift::commands

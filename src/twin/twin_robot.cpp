@@ -1,0 +1,62 @@
+#include "rift/twin/twin_robot.hpp"
+
+#include <cmath>
+
+namespace rift::twin {
+namespace {
+
+constexpr double kRounding_s = 1e-9;
+
+/// The listener sets the motors directly: the radio lies before it, in the byte channels.
+simulation::SimulationOptions WithoutRadio(simulation::SimulationOptions options) {
+  options.link = {
+      .delay_s = 0.0, .baud = 0.0, .poll_s = 0.0, .uart_bytes = 0, .two_decimals = false};
+  options.encoder.reported = true;
+  return options;
+}
+
+/// Seeds that a simulated run does not use for anything else.
+std::uint64_t SeedOf(std::uint64_t seed, std::uint64_t stream) {
+  return (seed + 1) * 0x9E3779B97F4A7C15ULL + stream;
+}
+
+}  // namespace
+
+TwinRobot::TwinRobot(const simulation::SimulationOptions& options, double battery_v,
+                     const geometry::Pose2& start, std::uint64_t seed,
+                     std::shared_ptr<const simulation::HeightImage> image)
+    : robot_(WithoutRadio(options), start, seed, std::move(image)),
+      to_robot_(options.link, SeedOf(seed, 1)),
+      to_host_(options.link, SeedOf(seed, 2)),
+      battery_mv_(static_cast<std::uint16_t>(std::lround(1e3 * battery_v))) {}
+
+hardware::Listener::Senses TwinRobot::Senses() {
+  const robot::EncoderCounts counts = robot_.Sense().encoders.value_or(robot::EncoderCounts{});
+  return {static_cast<std::int32_t>(counts.left), static_cast<std::int32_t>(counts.right),
+          battery_mv_};
+}
+
+robot::WheelPower TwinRobot::Motors() const {
+  return {1e-3 * listener_.Motors().left, 1e-3 * listener_.Motors().right};
+}
+
+void TwinRobot::Advance(double to_s, const Witness& witness) {
+  while (Now_s() + kTurn_s <= to_s + kRounding_s) {
+    const std::vector<std::uint8_t> heard = to_robot_.Take(Now_s());
+    const auto now_ms = static_cast<std::uint32_t>(turns_);  // a turn is a millisecond
+    to_host_.Put(Now_s(), listener_.Poll(now_ms, heard, Senses()));
+    if (const robot::WheelPower power = Motors(); !(power == commanded_)) {
+      robot_.Command(power);
+      commanded_ = power;
+    }
+    robot_.Advance(kTurn_s);
+    ++turns_;
+    const simulation::TruePose pose = robot_.Truth();
+    if (pose.t_s > witnessed_s_) {
+      witnessed_s_ = pose.t_s;
+      witness(pose, commanded_);
+    }
+  }
+}
+
+}  // namespace rift::twin

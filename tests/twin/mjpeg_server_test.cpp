@@ -1,0 +1,127 @@
+#include "rift/twin/mjpeg_server.hpp"
+
+#include <arpa/inet.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <string>
+#include <thread>
+
+namespace rift::twin {
+namespace {
+
+int PortOf(const std::string& url) { return std::stoi(url.substr(url.rfind(':') + 1)); }
+
+/// A client in plain sockets.
+class Client {
+ public:
+  explicit Client(int port, int receive_buffer = 0) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    if (receive_buffer > 0) {
+      ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
+    }
+    sockaddr_in there{};
+    there.sin_family = AF_INET;
+    there.sin_port = htons(static_cast<std::uint16_t>(port));
+    there.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    REQUIRE(::connect(socket_, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0);
+  }
+  ~Client() { ::close(socket_); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  void Ask(const std::string& path) {
+    const std::string request = "GET " + path + " HTTP/1.1\r\nHost: here\r\n\r\n";
+    REQUIRE(::send(socket_, request.data(), request.size(), MSG_NOSIGNAL) ==
+            static_cast<ssize_t>(request.size()));
+  }
+  /// Everything until `text` was seen, 10 s at most.
+  std::string Until(const std::string& text) {
+    std::string got;
+    std::array<char, 65536> chunk;
+    while (got.find(text) == std::string::npos) {
+      pollfd wanted{socket_, POLLIN, 0};
+      if (::poll(&wanted, 1, 10'000) <= 0) return got;
+      const ssize_t n = ::recv(socket_, chunk.data(), chunk.size(), 0);
+      if (n <= 0) return got;
+      got.append(chunk.data(), static_cast<size_t>(n));
+    }
+    return got;
+  }
+
+ private:
+  int socket_;
+};
+
+std::vector<std::uint8_t> Picture(const std::string& name, size_t size = 0) {
+  std::vector<std::uint8_t> bytes(size, 'x');
+  bytes.insert(bytes.end(), name.begin(), name.end());
+  return bytes;
+}
+
+void WaitForClients(const MjpegServer& server, int count) {
+  for (int i = 0; i < 1000 && server.Clients() != count; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  REQUIRE(server.Clients() == count);
+}
+
+TEST_CASE("Every client of the stream is given the picture") {
+  MjpegServer server(0);
+  Client one(PortOf(server.Url())), other(PortOf(server.Url()));
+  one.Ask("/stream.mjpg");
+  other.Ask("/stream.mjpg");
+  WaitForClients(server, 2);
+  server.Publish(Picture("[first]"));
+  for (Client* client : {&one, &other}) {
+    const std::string got = client->Until("[first]");
+    CHECK(got.starts_with("HTTP/1.1 200 OK\r\n"));
+    CHECK(got.find("multipart/x-mixed-replace; boundary=frame") != std::string::npos);
+    CHECK(got.find("Content-Length: 7\r\n") != std::string::npos);
+  }
+}
+
+TEST_CASE("A client that does not read holds up no other and then sees the newest picture") {
+  MjpegServer server(0);
+  Client slow(PortOf(server.Url()), 4096), quick(PortOf(server.Url()));
+  slow.Ask("/stream.mjpg");
+  quick.Ask("/stream.mjpg");
+  WaitForClients(server, 2);
+  constexpr size_t kMegabyte = 1 << 20;
+  constexpr int kPictures = 40;
+  for (int i = 1; i <= kPictures; ++i) {
+    const std::string name = "[" + std::to_string(i) + "]";
+    server.Publish(Picture(name, kMegabyte));
+    CHECK(quick.Until(name).ends_with(name + "\r\n"));
+  }
+  const std::string late = slow.Until("[" + std::to_string(kPictures) + "]");
+  CHECK(late.find("[1]") != std::string::npos);
+  CHECK(late.ends_with("[40]\r\n"));
+  // The one it was being sent, what the system holds, and the newest.
+  CHECK(late.size() < 12 * kMegabyte);
+}
+
+TEST_CASE("Clients that go away are forgotten and do not end the server") {
+  MjpegServer server(0);
+  for (int i = 0; i < 3; ++i) {
+    Client client(PortOf(server.Url()));
+    client.Ask("/stream.mjpg");
+    WaitForClients(server, 1);
+    server.Publish(Picture("half", 8 << 20));  // more than is taken before it goes
+  }
+  WaitForClients(server, 0);
+  Client client(PortOf(server.Url()));
+  client.Ask("/other");
+  CHECK(client.Until("/stream.mjpg").starts_with("HTTP/1.1 404"));
+}
+
+TEST_CASE("A port that is taken is refused in one line") {
+  MjpegServer server(0);
+  CHECK_THROWS_WITH(MjpegServer(PortOf(server.Url())), Catch::Contains("twin.http_port"));
+}
+
+}  // namespace
+}  // namespace rift::twin
