@@ -11,7 +11,16 @@
 namespace rift::commands {
 namespace {
 
-std::string LevelTable(const std::string& head, const std::vector<sweep::LevelSummary>& levels) {
+/// Of a long table the values with the largest means, since a terminal is not for thousands.
+std::string LevelTable(const std::string& head, std::vector<sweep::LevelSummary> levels) {
+  constexpr size_t kMostLevels = 40;
+  const size_t omitted = levels.size() - std::min(levels.size(), kMostLevels);
+  if (omitted > 0) {
+    std::stable_sort(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
+      return std::isnan(b.mean_gap_m) ? !std::isnan(a.mean_gap_m) : a.mean_gap_m > b.mean_gap_m;
+    });
+    levels.resize(kMostLevels);
+  }
   size_t width = head.size();
   for (const sweep::LevelSummary& level : levels) width = std::max(width, level.level.size());
   std::string text =
@@ -22,6 +31,7 @@ std::string LevelTable(const std::string& head, const std::vector<sweep::LevelSu
     text += fmt::format("{:<{}}  {:>10}  {:>8}  {:>6}  {:>11}\n", level.level, width, mean,
                         level.failures, level.n, level.not_ok);
   }
+  if (omitted > 0) text += fmt::format("and {} more, all of them in summary.json\n", omitted);
   return text + '\n';
 }
 

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include <chrono>
+#include <filesystem>
 
 #include "rift/sweep/grid_sweep.hpp"
 #include "rift/sweep/journal.hpp"
@@ -13,7 +14,6 @@
 #include "rift/sweep/trial_runner.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/paths.hpp"
-#include "support/process.hpp"
 
 namespace rift {
 namespace {
@@ -70,8 +70,9 @@ struct Cost {
 };
 
 Cost CostOf(const sweep::Evaluate& evaluate, int trials, int workers) {
-  const test::TemporaryFolder folder;
-  sweep::Journal journal(folder / "journal.sqlite", {});
+  const auto file = std::filesystem::temp_directory_path() / "rift_sweep_run_benchmark.sqlite";
+  sweep::Journal::Remove(file);
+  sweep::Journal journal(file, {});
   sweep::TrialRunner runner(evaluate, KeyOf, &journal, workers, {}, {});
   const double wall_s = WallSeconds(), cpu_s = CpuSeconds();
   runner.Run(Requests(trials));

@@ -11,7 +11,7 @@ struct ReportOptions {
   int max_cells = 1600;
   int worst_settings = 40;
   int max_points = 5000;
-  int table_rows = 2000;
+  int table_rows = 500;
 
   /// Calls field(key, member, min, max, help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
