@@ -13,7 +13,6 @@ simulation::SimulationOptions AsTwin(simulation::SimulationOptions simulation,
                                      const TwinOptions& options) {
   simulation.link.poll_s = 0.0;
   simulation.link.uart_bytes = kReceiveBuffer;
-  simulation.link.two_decimals = false;
   simulation.link.watchdog_s = 1e-3 * hardware::Listener::kWatchdog_ms;
   simulation.mocap.rate_hz = options.fps;
   simulation.mocap.frame_jitter_s = 0.0;

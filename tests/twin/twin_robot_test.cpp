@@ -153,6 +153,15 @@ TEST_CASE("The tag sits where the mocap has it and moves with the robot") {
   CHECK((tag.velocity_mps - Eigen::Vector3d(0.06, 0.0, 0.0)).norm() < 1e-12);
 }
 
+TEST_CASE("What the twin saves for simulate keeps up with the line") {
+  // A line of two decimals takes 10 ms at 9600 baud, of all decimals up to 40, longer than a step.
+  const simulation::SimulationOptions options = AsTwin({}, {});
+  CHECK(options.link.two_decimals);
+  CHECK(options.link.poll_s == 0.0);
+  CHECK(options.link.watchdog_s == 0.3);
+  CHECK(options.mocap.rate_hz == 30.0);
+}
+
 TEST_CASE("The camera hangs over the middle of the task and refuses one it cannot see") {
   const std::vector<control::Waypoint> task{{"a", -0.2, 0.1}, {"b", 0.4, 0.3}};
   const vision::CameraModel camera = OverheadCamera(task, {});
