@@ -76,10 +76,12 @@ void RobotLink::Tick(double now_s) {
   WriteCommand(now_s);
 }
 
-// Of a command or of its answer, whichever is longer.
-size_t RobotLink::LineBytes() const {
-  return protocol_ == Protocol::kFramed ? Answer::kSize : PlainLine({-1.0, -1.0}).size();
+size_t RobotLink::CommandSize() const {
+  return protocol_ == Protocol::kFramed ? CommandFrame::kSize : PlainLine({-1.0, -1.0}).size();
 }
+
+// A plain line is answered so rarely that it does not count.
+size_t RobotLink::AnswerSize() const { return protocol_ == Protocol::kFramed ? Answer::kSize : 0; }
 
 void RobotLink::WriteCommand(double now_s) {
   const Sent sent{next_sequence_++, now_s, MilliOf(power_)};
@@ -91,7 +93,7 @@ void RobotLink::WriteCommand(double now_s) {
   } else {
     taken = line_.Write(BytesOf(PlainLine(power_)));
   }
-  pacer_.Wrote(now_s, LineBytes());
+  pacer_.Wrote(now_s, CommandSize(), AnswerSize());
   if (taken) {
     blocked_since_s_.reset();
   } else if (!blocked_since_s_) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -24,19 +25,25 @@ class AnswerDecoder {
   std::string line_;
 };
 
-/// When the line may carry the next command: at most `share` of its bytes are used, each way.
+/// When the line may carry the next command: at most `share` of its bytes are used, each way. Of
+/// commands that holds at any time; of the longer answers on average, so that a command that was a
+/// little late does not make all later ones late.
 class LinkPacer {
  public:
   LinkPacer(int baud, double share) : byte_s_(10.0 / baud / share) {}
 
   bool MayWrite(double now_s) const { return now_s >= free_s_; }
-  void Wrote(double now_s, size_t bytes) { free_s_ = now_s + Time_s(bytes); }
+  void Wrote(double now_s, size_t command_bytes, size_t answer_bytes) {
+    answers_end_s_ = std::max(answers_end_s_, now_s) + Time_s(answer_bytes);
+    free_s_ = std::max(now_s, answers_end_s_ - Time_s(answer_bytes)) + Time_s(command_bytes);
+  }
   /// For which so many bytes keep the line.
   double Time_s(size_t bytes) const { return byte_s_ * static_cast<double>(bytes); }
 
  private:
   double byte_s_;  // 8N1: ten bits a byte
   double free_s_ = 0.0;
+  double answers_end_s_ = 0.0;
 };
 
 /// Hands the newest command to the robot as often as the line allows, and hears its answers. There
@@ -62,7 +69,7 @@ class RobotLink {
   /// The same, but it goes out only with the next command that is due, a heartbeat at the latest.
   void PutForLater(const robot::WheelPower& power) { power_ = power; }
   /// How long a command keeps the line from the next one.
-  double Occupied_s() const { return pacer_.Time_s(LineBytes()); }
+  double Occupied_s() const { return pacer_.Time_s(std::max(CommandSize(), AnswerSize())); }
   /// Reads what has come, writes what is due. Throws LineGone.
   void Tick(double now_s);
   /// Reads alone. Throws LineGone.
@@ -81,7 +88,8 @@ class RobotLink {
  private:
   void Match(Heard& heard);
   void WriteCommand(double now_s);
-  size_t LineBytes() const;
+  size_t CommandSize() const;
+  size_t AnswerSize() const;
 
   ByteLine& line_;
   LineOptions options_;
