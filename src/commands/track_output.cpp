@@ -36,6 +36,7 @@ ordered_json MissesJson(const TrackRun& run) {
 }
 
 std::string MissesText(const TrackRun& run) {
+  if (run.frames == 0) return "none came";
   std::string kinds;
   int all = 0;
   for (std::size_t i = 1; i < run.misses.size(); ++i) {
