@@ -84,6 +84,7 @@ std::string TrackJson(const TrackRequest& request, const vision::CameraModel& ca
       {"frame", FrameJson(camera)},
       {"state", NameOf(run.state)},
       {"reason", run.reason},
+      {"zero_of_t_s_on_the_steady_clock", run.zero_s},
       {"rows", rows},
       {"rows_per_s", NumberOrNull(RowsPerSecond(run, rows))},
       {"pictures", run.frames},
