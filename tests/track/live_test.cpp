@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -75,8 +77,6 @@ TEST_CASE("A camera that fails ends the tracking with its state and exit code 3"
   const Fault fault =
       GENERATE(Fault{"unplug", "unplugged"}, Fault{"eio", "frozen"}, Fault{"hang", "frozen"},
                Fault{"freeze", "frozen"}, Fault{"black", "black"}, Fault{"busy", "busy"});
-  // The shim's own pictures, in which there is no tag, are those that it can darken.
-  const std::string format = fault.name == "black" ? "yuyv" : "mjpg";
   const test::TemporaryFolder folder;
   const Environment shim("LD_PRELOAD", RIFT_V4L2_SHIM);
   const Environment jpegs("RIFT_SHIM_JPEGS", kData + "/frames");
