@@ -36,6 +36,7 @@ ordered_json MissesJson(const TrackRun& run) {
 }
 
 std::string MissesText(const TrackRun& run) {
+  if (run.frames == 0) return "none came";
   std::string kinds;
   int all = 0;
   for (std::size_t i = 1; i < run.misses.size(); ++i) {
@@ -83,6 +84,7 @@ std::string TrackJson(const TrackRequest& request, const vision::CameraModel& ca
       {"frame", FrameJson(camera)},
       {"state", NameOf(run.state)},
       {"reason", run.reason},
+      {"zero_of_t_s_on_the_steady_clock", run.zero_s},
       {"rows", rows},
       {"rows_per_s", NumberOrNull(RowsPerSecond(run, rows))},
       {"pictures", run.frames},

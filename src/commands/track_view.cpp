@@ -15,6 +15,7 @@ using config::Node;
 
 constexpr double kTrailStep_m = 0.002;
 constexpr std::size_t kTrailLength = 4000;
+constexpr double kLifted_m = 0.15;  // no robot drives that far between pictures
 
 /// Tenths of a millimetre: finer than anybody clicks.
 Node Metres(double value) { return Node::Scalar(fmt::format("{:.4f}", value)); }
@@ -72,6 +73,9 @@ bool TrackView::Show(const std::optional<vision::Frame>& frame,
   if (sighting) {
     const Eigen::Vector3d middle = sighting->map_from_tag.translation();
     if (!plane_z_m_) plane_z_m_ = middle.z();
+    const bool lifted =
+        !trail_m_.empty() && (middle.head<2>() - trail_m_.back()).norm() > kLifted_m;
+    if (lifted) trail_m_.clear();
     const bool moved =
         trail_m_.empty() || (middle.head<2>() - trail_m_.back()).norm() > kTrailStep_m;
     if (moved) trail_m_.push_back(middle.head<2>());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/calib3d.hpp>
@@ -16,9 +17,9 @@ namespace {
 
 constexpr int kColour = 90;  // saturation of 255 that no grey cast of a lamp reaches
 
-// A board whose squares are too small at this width is too far away to calibrate with, and the
-// search of a whole 1080p picture takes ten times as long.
-constexpr double kSearchWidth_px = 960.0;
+// Tried in turn: what one width misses the next may find. A board whose squares are too small at
+// these is too far away to calibrate with, and a whole 1080p picture takes ten times as long.
+constexpr std::array<double, 3> kSearchWidths_px{960.0, 1280.0, 720.0};
 
 std::vector<cv::Point2f> FindSector(const cv::Mat& grey, cv::Size size) {
   std::vector<cv::Point2f> corners;
@@ -89,14 +90,17 @@ BoardView FindIn(const cv::Mat& picture, const Board& board, const std::string& 
     view.problem = "the picture is black";
     return view;
   }
-  const double scale = std::min(1.0, kSearchWidth_px / grey.cols);
-  cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
   const cv::Size size(board.columns, board.rows);
-  std::vector<cv::Point2f> corners = FindSector(small, size);
-  view.method = BoardMethod::kSector;
-  if (corners.empty()) {
-    corners = FindClassic(small, size);
-    view.method = BoardMethod::kClassic;
+  std::vector<cv::Point2f> corners;
+  double scale = 1.0;
+  for (const BoardMethod method : {BoardMethod::kSector, BoardMethod::kClassic}) {
+    for (const double width_px : kSearchWidths_px) {
+      if (!corners.empty()) break;
+      scale = std::min(1.0, width_px / grey.cols);
+      cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
+      corners = method == BoardMethod::kSector ? FindSector(small, size) : FindClassic(small, size);
+      view.method = method;
+    }
   }
   if (corners.empty()) {
     view.method = BoardMethod::kNone;
