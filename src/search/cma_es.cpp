@@ -13,8 +13,8 @@ namespace {
 constexpr double kLeastOfCell = 0.3;
 /// Least probability of all other levels together, as a share of an even draw.
 constexpr double kLeastOfLevel = 0.2;
-/// A generation whose losses differ by less than this share of what they once did tells nothing.
-constexpr double kFlat = 1e-12;
+/// A generation whose losses differ by less than this share of themselves tells of rounding only.
+constexpr double kFlat = 1e-13;
 /// What a run may still gain is about what its generation differs by; one that is so many times as
 /// far behind another's result ends early.
 constexpr double kHopeless = 100.0;
@@ -187,13 +187,12 @@ void CmaEs::NoteProgress(double best, double spread) {
     improved_at_ = generation_;
   }
   spread_ = spread;
-  if (std::isfinite(spread)) first_spread_ = std::max(first_spread_, spread);
 }
 
 bool CmaEs::IsFlat() const {
   const bool has_continuous = std::any_of(numeric_.begin(), numeric_.end(),
                                           [this](int axis) { return space_.IsContinuous(axis); });
-  return has_continuous && !(spread_ > kFlat * first_spread_);
+  return has_continuous && !(spread_ > kFlat * std::abs(best_));
 }
 
 bool CmaEs::IsDone(const CmaEsOptions& options, double best_known) const {

@@ -66,7 +66,7 @@ class CmaEs {
   int decomposed_at_ = 0;
   int improved_at_ = 0;
   double best_ = std::numeric_limits<double>::infinity();
-  double first_spread_ = 0.0, spread_ = 0.0;  ///< of the losses in a generation
+  double spread_ = 0.0;  ///< of the losses in the last generation
 };
 
 }  // namespace rift::search

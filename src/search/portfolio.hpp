@@ -15,7 +15,8 @@ namespace rift::search {
 
 /// The default: corners and Sobol points in turn for a share of the budget, then batch by batch the
 /// method that found most for its evaluations, with an allowance for what was tried little (UCB1,
-/// Auer 2002, over forgetting averages).
+/// Auer 2002, over forgetting averages). While the surrogate may propose, every third point still
+/// explores.
 class Portfolio : public Strategy {
  public:
   Portfolio(const Known& known, const SearchOptions& options, int budget, std::uint64_t seed);
@@ -31,6 +32,7 @@ class Portfolio : public Strategy {
   };
 
   Member Choose() const;
+  bool IsExploring() const;
   Member Explorer() const;
   bool MayPropose(Member member) const;
   /// 1 for a new best, less for points among the best, 0 for none.
@@ -39,7 +41,7 @@ class Portfolio : public Strategy {
   const Known& known_;
   PortfolioOptions options_;
   int explore_;  ///< evaluations
-  double corner_points_ = 0.0, polish_points_ = 0.0;
+  double explored_points_ = 0.0, corner_points_ = 0.0, polish_points_ = 0.0;
   std::array<std::unique_ptr<Strategy>, kMembers> members_;
   std::array<Record, kMembers> records_;
   Member active_ = kSobol;

@@ -1,28 +1,29 @@
 // How many evaluations the strategies need to reach a target: four functions of five dimensions,
 // and failures of the simulated 3pi+ in a space of six parameters.
 //
-//   search_study [--seeds N] [--only TASK[,TASK...]] [--with STRATEGY[,STRATEGY...]] [--measure]
+//   search_study [--seeds N] [--first-seed N] [--only TASK[,TASK...]]
+//                [--with STRATEGY[,STRATEGY...]] [--measure]
 //
-// TASK: rastrigin, rosenbrock, ellipsoid, peaks, robot. --measure finds the targets anew instead.
+// TASK: rastrigin, rosenbrock, ellipsoid, peaks, robot, cost (of the strategies themselves).
+// --measure finds the targets anew instead.
 //
 // Reported for each strategy: successes, mean evaluations of the successful runs, and the expected
-// running time ERT = all evaluations / successes (Hansen 2010, BBOB), which charges a strategy for
-// its failures and is what restarting it until it succeeds would cost.
+// running time (run_until.hpp). Results: README.md beside this file.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <exception>
+#include <functional>
 #include <map>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 
 #include "rift/search/options.hpp"
 #include "search/functions.hpp"
 #include "search/robot_space.hpp"
+#include "search/run_until.hpp"
 
 namespace rift {
 namespace {
@@ -37,87 +38,27 @@ const std::map<std::string, double> kTargets{
     {"rastrigin", 11.5}, {"rosenbrock", 28.0}, {"ellipsoid", 802.0}, {"peaks", 0.258}};
 /// The others are given a tenth of that, and told so.
 constexpr int kBudget = 10'000;
-/// A target that random search has no hope to reach: where a smooth function counts as solved.
+/// Where a function counts as solved. Random search is not run for it: what it would need follows
+/// from the volume (functions.hpp).
 constexpr double kSolved = 1e-6;
+constexpr int kSolvedBudget = 100'000;
 
 constexpr int kRobotBudget = 500;
 
 struct Request {
-  int seeds = 21;
+  int seeds = 20;
+  int first_seed = 1;
   bool measure = false;
-  std::vector<std::string> only{"rastrigin", "rosenbrock", "ellipsoid", "peaks", "robot"};
+  std::vector<std::string> only{"rastrigin", "rosenbrock", "ellipsoid", "peaks", "robot", "cost"};
   std::vector<std::string> with;
 };
-
-struct RunResult {
-  int evaluations = 0;
-  std::optional<int> reached_at;  ///< evaluations until the target
-  double best = INFINITY;
-  double overhead_s = 0.0;  ///< in Ask and Tell
-};
-
-/// Of this process, whatever else the machine does.
-double CpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
-/// Until the loss is at most the target or the budget is spent.
-RunResult RunUntil(const test::Task& task, Method method, int budget, double target,
-                   std::uint64_t seed) {
-  search::SearchOptions options;
-  options.strategy = method;
-  const auto strategy = search::MakeStrategy(options, task.axes, budget, seed);
-  RunResult run;
-  while (run.evaluations < budget && !run.reached_at) {
-    double begin = CpuSeconds();
-    const std::vector<search::Point> points = strategy->Ask(budget - run.evaluations);
-    run.overhead_s += CpuSeconds() - begin;
-    if (points.empty()) break;
-    std::vector<search::Evaluation> batch;
-    for (const search::Point& point : points) {
-      batch.push_back({point, task.loss(point)});
-      ++run.evaluations;
-      if (batch.back().loss < run.best) run.best = batch.back().loss;
-      if (run.best <= target && !run.reached_at) run.reached_at = run.evaluations;
-    }
-    begin = CpuSeconds();
-    strategy->Tell(batch);
-    run.overhead_s += CpuSeconds() - begin;
-  }
-  return run;
-}
-
-struct Summary {
-  int runs = 0;
-  int successes = 0;
-  double mean = NAN;  ///< evaluations of the successful runs
-  double ert = INFINITY;
-  double overhead_ms = 0.0;  ///< an evaluation
-};
-
-Summary Summarise(const std::vector<RunResult>& runs) {
-  Summary summary;
-  double all = 0.0, of_successes = 0.0, asked = 0.0;
-  for (const RunResult& run : runs) {
-    ++summary.runs;
-    all += run.reached_at.value_or(run.evaluations);
-    asked += run.evaluations;
-    summary.overhead_ms += 1e3 * run.overhead_s;
-    if (!run.reached_at) continue;
-    ++summary.successes;
-    of_successes += *run.reached_at;
-  }
-  summary.overhead_ms /= asked;
-  if (summary.successes == 0) return summary;
-  summary.mean = of_successes / summary.successes;
-  summary.ert = all / summary.successes;
-  return summary;
-}
 
 void PrintHeader(const std::string& title) {
   fmt::print("\n{}\n{:<10} {:>10} {:>10} {:>12} {:>12} {:>14}\n", title, "strategy", "budget",
              "successes", "mean", "ERT", "overhead ms");
 }
 
-void PrintRow(const std::string& name, int budget, const Summary& summary) {
+void PrintRow(const std::string& name, int budget, const test::Summary& summary) {
   fmt::print("{:<10} {:>10} {:>7}/{:<2} {:>12.0f} {:>12.0f} {:>14.3f}\n", name, budget,
              summary.successes, summary.runs, summary.mean, summary.ert, summary.overhead_ms);
   std::fflush(stdout);
@@ -142,27 +83,36 @@ test::Task FunctionOf(const std::string& name, std::uint64_t seed) {
   throw std::invalid_argument(name + ": no such task");
 }
 
-void StudyFunction(const Request& request, const std::string& name, double target, bool is_easy) {
-  PrintHeader(fmt::format("{} to {:.3g}", name, target));
-  std::vector<std::string> all{"random",    "sobol",  "lhs",      "cmaes",
-                               "surrogate", "polish", "portfolio"};
-  if (!is_easy) all = {"cmaes", "polish", "portfolio"};
-  double random_ert = NAN;
-  for (const std::string& strategy : Strategies(request, all)) {
+std::vector<test::RunResult> RunSeeds(const Request& request, Method method, int budget,
+                                      double target,
+                                      const std::function<test::Task(std::uint64_t)>& task) {
+  std::vector<test::RunResult> runs;
+  for (int i = 0; i < request.seeds; ++i) {
+    const auto seed = static_cast<std::uint64_t>(request.first_seed + i);
+    runs.push_back(test::RunUntil(task(seed), method, budget, target, 1000 + seed));
+  }
+  return runs;
+}
+
+void StudyFunction(const Request& request, const std::string& name) {
+  PrintHeader(fmt::format("{} to {}", name, kTargets.at(name)));
+  for (const std::string& strategy :
+       Strategies(request, {"random", "sobol", "cmaes", "surrogate", "polish", "portfolio"})) {
     const bool learns_nothing = strategy == "random" || strategy == "sobol" || strategy == "lhs";
     const int budget = learns_nothing ? kRandomBudget : kBudget;
-    std::vector<RunResult> runs;
-    for (int seed = 1; seed <= request.seeds; ++seed) {
-      runs.push_back(
-          RunUntil(FunctionOf(name, seed), MethodOf(strategy), budget, target, 1000 + seed));
-    }
-    const Summary summary = Summarise(runs);
-    PrintRow(strategy, budget, summary);
-    if (strategy == "random") random_ert = summary.ert;
-    if (strategy == "portfolio" && !std::isnan(random_ert)) {
-      fmt::print("random needs {:.1f} times the evaluations of the default\n",
-                 random_ert / summary.ert);
-    }
+    PrintRow(strategy, budget,
+             test::Summarise(RunSeeds(request, MethodOf(strategy), budget, kTargets.at(name),
+                                      [&](std::uint64_t seed) { return FunctionOf(name, seed); })));
+  }
+}
+
+void StudySolved(const Request& request, const std::string& name) {
+  PrintHeader(fmt::format("{} to {} (random by volume: ERT {:.1e})", name, kSolved,
+                          FunctionOf(name, 1).random_evaluations(kSolved)));
+  for (const std::string& strategy : Strategies(request, {"cmaes", "portfolio"})) {
+    PrintRow(strategy, kSolvedBudget,
+             test::Summarise(RunSeeds(request, MethodOf(strategy), kSolvedBudget, kSolved,
+                                      [&](std::uint64_t seed) { return FunctionOf(name, seed); })));
   }
 }
 
@@ -174,11 +124,22 @@ void StudyRobot(const Request& request) {
   PrintHeader(fmt::format("robot: a gap above {} m", test::RobotSpace::kThreshold_m));
   for (const std::string& strategy :
        Strategies(request, {"portfolio", "random", "sobol", "cmaes", "surrogate", "polish"})) {
-    std::vector<RunResult> runs;
-    for (int seed = 1; seed <= request.seeds; ++seed) {
-      runs.push_back(RunUntil(task, MethodOf(strategy), kRobotBudget, 0.0, 1000 + seed));
-    }
-    PrintRow(strategy, kRobotBudget, Summarise(runs));
+    PrintRow(strategy, kRobotBudget,
+             test::Summarise(RunSeeds(request, MethodOf(strategy), kRobotBudget, 0.0,
+                                      [&](std::uint64_t) { return task; })));
+  }
+}
+
+/// What a strategy itself takes over a whole budget, on a space of the robot's shape.
+void StudyCost(const Request& request) {
+  test::Task task = FunctionOf("rastrigin", 1);
+  task.axes.push_back({"surface", search::AxisKind::kCategorical, 0, 4});
+  PrintHeader(fmt::format("cost of Ask and Tell over {} evaluations", kRobotBudget));
+  for (const std::string& strategy :
+       Strategies(request, {"portfolio", "random", "sobol", "cmaes", "surrogate", "polish"})) {
+    PrintRow(strategy, kRobotBudget,
+             test::Summarise(RunSeeds(request, MethodOf(strategy), kRobotBudget, -INFINITY,
+                                      [&](std::uint64_t) { return task; })));
   }
 }
 
@@ -186,7 +147,7 @@ void MeasureFunction(const std::string& name) {
   std::vector<double> best;
   for (int seed = 1; seed <= kMeasureSeeds; ++seed) {
     const test::Task task = FunctionOf(name, 100'000 + seed);
-    best.push_back(RunUntil(task, Method::kRandom, kRandomBudget, -1.0, seed).best);
+    best.push_back(test::RunUntil(task, Method::kRandom, kRandomBudget, -1.0, seed).best);
   }
   std::sort(best.begin(), best.end());
   fmt::print("{}: random search reaches {:.4g} in the median of {} seeds\n", name,
@@ -203,7 +164,7 @@ void MeasureRobot() {
                           gaps_m.push_back(std::isnan(gap_m) ? -1.0 : gap_m);
                           return -gap_m;
                         }};
-  RunUntil(task, Method::kRandom, kSamples, -INFINITY, 1);
+  test::RunUntil(task, Method::kRandom, kSamples, -INFINITY, 1);
   std::sort(gaps_m.begin(), gaps_m.end(), std::greater<>());
   const auto arrived = std::count_if(gaps_m.begin(), gaps_m.end(), [](double g) { return g >= 0; });
   const auto above = std::count_if(gaps_m.begin(), gaps_m.end(),
@@ -229,6 +190,8 @@ Request ParseArguments(int count, char** arguments) {
     };
     if (argument == "--seeds") {
       request.seeds = std::stoi(value());
+    } else if (argument == "--first-seed") {
+      request.first_seed = std::stoi(value());
     } else if (argument == "--only") {
       request.only = Split(value());
     } else if (argument == "--with") {
@@ -246,11 +209,13 @@ void Study(const Request& request) {
   for (const std::string& name : request.only) {
     if (name == "robot") {
       request.measure ? MeasureRobot() : StudyRobot(request);
+    } else if (name == "cost") {
+      StudyCost(request);
     } else if (request.measure) {
       MeasureFunction(name);
     } else {
-      StudyFunction(request, name, kTargets.at(name), true);
-      StudyFunction(request, name, kSolved, false);
+      StudyFunction(request, name);
+      StudySolved(request, name);
     }
   }
 }

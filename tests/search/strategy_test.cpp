@@ -46,7 +46,10 @@ std::vector<NamedSpace> Spaces() {
           {"one category", {surface}},
           {"categories alone", {surface, pace}},
           {"integers and categories", {count, surface}},
+          {"integers alone", {count, {"steps", AxisKind::kInteger, -2, 2}}},
           {"an axis without width", {fixed, speed}},
+          {"an integer and a category without choice",
+           {speed, {"one", AxisKind::kInteger, 4, 4}, {"only", AxisKind::kCategorical, 0, 0}}},
           {"wide", {{"huge", AxisKind::kContinuous, -1e308, 1e308}, speed}}};
 }
 
@@ -183,13 +186,53 @@ TEST_CASE("A finite space is visited point by point and then nothing is asked") 
   }
 }
 
-TEST_CASE("A search in which every trial fails goes on to its end") {
+TEST_CASE("A space of one point is tried once") {
+  const std::vector<Axis> axes{{"fixed", AxisKind::kContinuous, 2.5, 2.5},
+                               {"one", AxisKind::kInteger, -4, -4},
+                               {"only", AxisKind::kCategorical, 0, 0}};
   for (const Method method : AllMethods()) {
     INFO(NameOf(method));
-    const auto strategy = MakeStrategy(With(method), Spaces().front().axes, 300, 11);
-    const auto batches =
-        Run(*strategy, 300, [](const Point&) { return std::numeric_limits<double>::quiet_NaN(); });
-    CHECK(Flat(batches).size() == 300);
+    const auto strategy = MakeStrategy(With(method), axes, 50, 5);
+    const auto tried = Flat(Run(*strategy, 50, Bowl));
+    REQUIRE(tried.size() == 1);
+    CHECK(tried.front().point == Point{2.5, -4.0, 0.0});
+  }
+}
+
+TEST_CASE("Budgets below the first design are spent to the last evaluation") {
+  for (const Method method : AllMethods()) {
+    for (const NamedSpace& space : Spaces()) {
+      for (const int budget : {1, 2, 3, 5}) {
+        INFO(NameOf(method) << " in " << space.name << " with " << budget);
+        const auto strategy = MakeStrategy(With(method), space.axes, budget, 13);
+        CHECK(Flat(Run(*strategy, budget, Bowl)).size() == static_cast<std::size_t>(budget));
+        CHECK(Run(*strategy, 1, Bowl).size() <= 1);  // more than promised is no fault
+      }
+    }
+  }
+}
+
+TEST_CASE("A search in which every trial fails goes on to its end") {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::vector<Loss> failures{
+      [](const Point&) { return std::numeric_limits<double>::quiet_NaN(); },
+      [](const Point&) { return kInfinity; }, [](const Point&) { return -kInfinity; },
+      [](const Point& p) { return p.front() < 0.1 ? kInfinity : -kInfinity; }};
+  for (const Method method : AllMethods()) {
+    for (std::size_t i = 0; i < failures.size(); ++i) {
+      INFO(NameOf(method) << " with failures of kind " << i);
+      const auto strategy = MakeStrategy(With(method), Spaces().front().axes, 200, 11);
+      CHECK(Flat(Run(*strategy, 200, failures[i])).size() == 200);
+    }
+  }
+}
+
+TEST_CASE("Losses as large as numbers get are taken") {
+  for (const Method method : AllMethods()) {
+    INFO(NameOf(method));
+    const auto strategy = MakeStrategy(With(method), Spaces().front().axes, 200, 11);
+    const Loss loss = [](const Point& p) { return p.front() < 0.1 ? 1.7e308 : -1.7e308; };
+    CHECK(Flat(Run(*strategy, 200, loss)).size() == 200);
   }
 }
 

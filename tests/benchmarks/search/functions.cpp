@@ -1,5 +1,6 @@
 #include "search/functions.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -37,8 +38,17 @@ class Dice {
 
 Vector AsVector(const search::Point& point) { return Vector(point.data()); }
 
-Task On(std::string name, std::function<double(const search::Point&)> loss) {
-  Task task{std::move(name), {}, std::move(loss)};
+/// One over the share that z' H z <= level takes of the space, given det H.
+double EvaluationsInto(double level, double determinant) {
+  const double half = 0.5 * kDimensions;
+  const double ball = std::pow(std::numbers::pi, half) / std::tgamma(half + 1.0);
+  const double volume = ball * std::pow(level, half) / std::sqrt(determinant);
+  return std::pow(2.0 * kHalfWidth, kDimensions) / volume;
+}
+
+Task On(std::string name, std::function<double(const search::Point&)> loss,
+        std::function<double(double)> random_evaluations) {
+  Task task{std::move(name), {}, std::move(loss), std::move(random_evaluations)};
   for (int i = 0; i < kDimensions; ++i) {
     task.axes.push_back(
         {"x" + std::to_string(i), search::AxisKind::kContinuous, -kHalfWidth, kHalfWidth});
@@ -48,35 +58,50 @@ Task On(std::string name, std::function<double(const search::Point&)> loss) {
 
 Task Rastrigin(Dice dice) {
   const Vector best = dice.Place(4.0);
-  return On("rastrigin", [best](const search::Point& point) {
+  const auto loss = [best](const search::Point& point) {
     const Eigen::Array<double, kDimensions, 1> z = AsVector(point) - best;
     return (z.square() + 10.0 * (1.0 - (2.0 * std::numbers::pi * z).cos())).sum();
+  };
+  return On("rastrigin", loss, [](double target) {
+    const double curvature = 1.0 + 20.0 * std::numbers::pi * std::numbers::pi;
+    return EvaluationsInto(target, std::pow(curvature, kDimensions));
   });
 }
 
 Task Rosenbrock(Dice dice) {
   const Vector best = dice.Place(4.0);
-  return On("rosenbrock", [best](const search::Point& point) {
+  const auto loss = [best](const search::Point& point) {
     const Vector z = (AsVector(point) - best).array() + 1.0;
     double sum = 0.0;
     for (int i = 0; i + 1 < kDimensions; ++i) {
       sum += 100.0 * std::pow(z[i] * z[i] - z[i + 1], 2) + std::pow(z[i] - 1.0, 2);
     }
     return sum;
+  };
+  return On("rosenbrock", loss, [](double target) {
+    Matrix form = Matrix::Zero();  // of 100 (2 d_i - d_i+1)^2 + d_i^2, d = z - 1
+    for (int i = 0; i + 1 < kDimensions; ++i) {
+      const Vector slope = 2.0 * Vector::Unit(i) - Vector::Unit(i + 1);
+      form += 100.0 * slope * slope.transpose();
+      form(i, i) += 1.0;
+    }
+    return EvaluationsInto(target, form.determinant());
   });
 }
 
 Task Ellipsoid(Dice dice) {
   const Vector best = dice.Place(4.0);
   const Matrix rotation = dice.Rotation();
-  return On("ellipsoid", [best, rotation](const search::Point& point) {
+  const auto loss = [best, rotation](const search::Point& point) {
     const Vector z = rotation * (AsVector(point) - best);
     double sum = 0.0;
     for (int i = 0; i < kDimensions; ++i) {
       sum += std::pow(1e6, i / (kDimensions - 1.0)) * z[i] * z[i];
     }
     return sum;
-  });
+  };
+  return On("ellipsoid", loss,
+            [](double target) { return EvaluationsInto(target, std::pow(1e3, kDimensions)); });
 }
 
 struct Peak {
@@ -106,7 +131,7 @@ std::vector<Peak> Peaks(Dice& dice) {
 
 Task ManyPeaks(Dice dice) {
   const auto peaks = std::make_shared<const std::vector<Peak>>(Peaks(dice));
-  return On("peaks", [peaks](const search::Point& point) {
+  const auto loss = [peaks](const search::Point& point) {
     const Vector x = AsVector(point);
     double highest = 0.0;
     for (const Peak& peak : *peaks) {
@@ -115,7 +140,9 @@ Task ManyPeaks(Dice dice) {
       highest = std::max(highest, peak.height * std::exp(-fall));
     }
     return std::pow(10.0 - highest, 2);
-  });
+  };
+  // The highest falls by its form, of determinant 1, and the loss is the square of the fall.
+  return On("peaks", loss, [](double target) { return EvaluationsInto(std::sqrt(target), 1.0); });
 }
 
 }  // namespace

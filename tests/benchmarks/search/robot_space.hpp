@@ -9,12 +9,14 @@
 
 namespace rift::test {
 
-/// A falsification task on the identified 3pi+: six parameters, two of them categories, each within
-/// what the logs leave open, against the run with nominal values.
+/// A falsification task on the identified 3pi+, against its nominal run: where it drives (surface),
+/// how the controller is set (pace, v_min, w_min), and what may drift (motors, radio delay). The
+/// first two are categories.
 class RobotSpace {
  public:
-  /// Exceeded in 0.1 % of the volume.
-  static constexpr double kThreshold_m = 0.33;
+  /// Exceeded in 0.1 % of the volume: by 20 of 20,000 uniform points, of which 19,285 arrive; all
+  /// of them drive downhill. search_study --only robot --measure counts anew.
+  static constexpr double kThreshold_m = 0.51;
 
   RobotSpace();
 
@@ -24,8 +26,7 @@ class RobotSpace {
   double Gap_m(const search::Point& point) const;
 
  private:
-  trajectory::Trajectory Drive(const config::Experiment& experiment,
-                               const geometry::Pose2& start) const;
+  trajectory::Trajectory Drive(const config::Experiment& experiment) const;
 
   std::vector<search::Axis> axes_;
   config::Experiment nominal_;
