@@ -94,16 +94,21 @@ struct Journal::Store {
   explicit Store(const fs::path& path)
       : file(path), database(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
     database.setBusyTimeout(2000);
-    SQLite::Statement check(database, "PRAGMA quick_check(1)");
-    if (check.executeStep() && check.getColumn(0).getString() != "ok") {
-      throw SQLite::Exception(check.getColumn(0).getString(), SQLITE_CORRUPT);
-    }
+    Check();
     // NORMAL: a commit survives the process, and after a loss of power the journal is whole but
     // may lack the last commits.
     database.exec("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL;");
     database.exec(kSchema);
     find.emplace(database, "SELECT row FROM trial WHERE key = ?");
     add.emplace(database, "INSERT OR REPLACE INTO trial VALUES (?, ?, ?, ?, ?)");
+  }
+
+  /// A statement of its own, since one that has not ended keeps the journal from WAL mode.
+  void Check() {
+    SQLite::Statement check(database, "PRAGMA quick_check(1)");
+    if (check.executeStep() && check.getColumn(0).getString() != "ok") {
+      throw SQLite::Exception(check.getColumn(0).getString(), SQLITE_CORRUPT);
+    }
   }
 
   void Begin() {
