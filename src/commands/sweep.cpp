@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "explanation_output.hpp"
 #include "files.hpp"
 #include "folder_lock.hpp"
 #include "json_fields.hpp"
@@ -13,6 +14,7 @@
 #include "likeness_output.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/sweep/falsify.hpp"
+#include "sweep_explain.hpp"
 #include "sweep_likeness.hpp"
 #include "sweep_output.hpp"
 #include "sweep_report.hpp"
@@ -38,6 +40,7 @@ struct SweepRequest {
   bool json = false;
   bool exit_code = false;
   std::string status;
+  ExplainRequest explain;
 };
 
 /// A simulated sweep over nothing means the paper's grid; logs without a space are one setting.
@@ -105,6 +108,7 @@ int Sweep(const SweepRequest& request) {
   RefuseLimitsOfGrid(request, experiment.goal);
   const bool lacks_space = LacksSpace(experiment);
   if (lacks_space) experiment.space = sweep::PaperSpace();
+  CheckRequest(request.explain, experiment);
   SweepSources sources(experiment, request.experiment);
   if (lacks_space) {
     fmt::print(stderr, "note: {} names no space: the paper's grid of surface, v_min and v_max\n",
@@ -126,11 +130,22 @@ int Sweep(const SweepRequest& request) {
   }
   Save(out, experiment, sources, *result);
   if (result->all.n == 0) return EndWithoutGap(request, *result);
-  WriteSweepReport(out, *result, sources);
+  const sweep::Explanation explanation =
+      sweep::Explain(*result, OptionsFor(request.explain));
+  WriteFile(out / "explanation.json", ExplanationJson(*result, explanation));
+  WriteSweepReport(out, *result, explanation, experiment, sources);
   const std::vector<LikenessRow> likeness = MeasureSweepLikeness(experiment, sources);
   if (!likeness.empty()) WriteFile(out / "likeness.json", Dump(LikenessJson(likeness)));
   fmt::print("{}", request.json ? SummaryJson(*result) : SweepText(*result));
   if (!likeness.empty() && !request.json) fmt::print("\n{}", LikenessText(likeness));
+  if (!request.json) {
+    fmt::print("{}", ExplanationText(*result, explanation, request.explain.suggest > 0));
+  }
+  const std::optional<std::string> further =
+      SpendTrials(out, experiment, *result, request.explain, sources,
+                  {request.jobs, StyleFor(request.quiet, request.json_progress)});
+  if (!further) return kStopped;
+  if (!request.json) fmt::print("{}", *further);
   if (!request.quiet) fmt::print(stderr, "report: {}\n", (out / "report.html").string());
   return request.exit_code && IsFalsified(*result) ? kFalsified : kDone;
 }
@@ -153,6 +168,7 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
   app.add_flag("--fresh", request.fresh, "start over instead of going on with an earlier journal");
   app.add_option("--status", request.status, "tell how far the sweep in a folder is, and end")
       ->type_name("DIR");
+  AddExplainFlags(app, request.explain);
   AddKeysFlag(app);
   app.add_flag("--quiet", request.quiet, "no progress");
   app.add_flag("--json-progress", request.json_progress, "progress as lines of JSON on stderr");
@@ -161,7 +177,9 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
                "end with 1 when any trial of a grid is falsified, or a search falsifies");
   app.footer(
       "Ctrl-C stops a sweep, and the same command goes on with it, also after a crash.\n"
-      "Example: rift sweep configs/waypoints/paper.yaml --out out/paper");
+      "Example: rift sweep configs/waypoints/paper.yaml --out out/paper\n"
+      "         rift sweep configs/waypoints/paper.yaml --out out/paper --suggest 3 --shrink "
+      "worst");
 }
 
 }  // namespace

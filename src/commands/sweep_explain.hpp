@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "further_trials.hpp"
 #include "rift/report/page.hpp"
 #include "rift/sweep/explanation.hpp"
 #include "rift/sweep/shrink.hpp"
@@ -14,8 +16,8 @@ namespace rift::commands {
 
 /// What of a sweep's explanation is asked for on the command line.
 struct ExplainRequest {
-  int suggest = 0;             ///< experiments to print; 0: none
-  std::string shrink;          ///< number of a row in table.csv, or "worst"; empty: none
+  int suggest = 0;     ///< experiments to print; 0: none
+  std::string shrink;  ///< id of a row in table.csv, or "worst"; empty: none
   bool rare_event = false;
   sweep::ExplainOptions options;
   sweep::ShrinkOptions shrink_options;
@@ -27,18 +29,26 @@ void AddExplainFlags(CLI::App& app, ExplainRequest& request);
 /// Throws std::invalid_argument when a request cannot be met, before a trial is run.
 void CheckRequest(const ExplainRequest& request, const config::Experiment& experiment);
 
-/// The words of the explanation for the terminal.
-std::string ExplanationText(const sweep::Explanation& explanation, const ExplainRequest& request);
+/// The options with what the command line says on top.
+sweep::ExplainOptions OptionsFor(const ExplainRequest& request);
 
 /// Paths of a typical failure of each kind, for the page.
 std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& result,
                                                     const sweep::Explanation& explanation,
                                                     SweepSources& sources);
 
-/// Does what costs further trials: shrinks a failure into shrunk.json, estimates a rare event into
-/// rare_event.json; prints both.
-void SpendTrials(const std::filesystem::path& folder, const config::Experiment& experiment,
-                 const sweep::SweepResult& result, const ExplainRequest& request,
-                 SweepSources& sources);
+/// How a row of recorded logs is measured again: the flags of `rift gap` behind the two logs. Empty
+/// for simulated candidates, whose rows `rift simulate --replay` drives again.
+std::string GapFlags(const config::Experiment& experiment);
+
+/// Does what costs further trials, and returns what it found as text. Shrinks a failure into
+/// shrunk.json and the folder shrunk, whose table holds each trial that the claims rest on;
+/// estimates a rare event into rare_event.json. Nothing when it was told to stop.
+/// Throws std::invalid_argument when there is no such row, or it does not fail.
+std::optional<std::string> SpendTrials(const std::filesystem::path& folder,
+                                       const config::Experiment& experiment,
+                                       const sweep::SweepResult& result,
+                                       const ExplainRequest& request, SweepSources& sources,
+                                       const FurtherTrials::Style& style);
 
 }  // namespace rift::commands

@@ -7,6 +7,7 @@
 #include "files.hpp"
 #include "rift/report/page.hpp"
 #include "rift/report/sweep_figures.hpp"
+#include "sweep_explain.hpp"
 
 namespace rift::commands {
 namespace {
@@ -39,6 +40,7 @@ void RemoveFigures(const std::filesystem::path& folder) {
 }  // namespace
 
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
+                      const sweep::Explanation& explanation, const config::Experiment& experiment,
                       SweepSources& sources) {
   const report::SweepFigureSet set = report::SweepFigures(result, WorstPair(result, sources));
   RemoveFigures(folder / "figures");
@@ -50,7 +52,10 @@ void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepRes
   for (const report::OmittedFigure& omitted : set.omitted) {
     fmt::print(stderr, "note: {} is not drawn: {}\n", omitted.name, omitted.reason);
   }
-  WriteFile(folder / "report.html", report::RenderPage(result));
+  WriteFile(
+      folder / "report.html",
+      report::RenderPage(result, explanation,
+                         {TypicalFailures(result, explanation, sources), GapFlags(experiment)}));
 }
 
 }  // namespace rift::commands

@@ -2,15 +2,16 @@
 
 #include <filesystem>
 
-#include "rift/sweep/result.hpp"
+#include "rift/sweep/explanation.hpp"
 #include "sweep_sources.hpp"
 
 namespace rift::commands {
 
 /// Draws the figures (SVG and PNG, in DIR/figures) and writes DIR/report.html. `sources` bring
-/// the paths of the worst trial again. Figures that make no sense for this space are named on
-/// stderr.
+/// the paths of the worst trial and of a typical failure of each kind again. Figures that make no
+/// sense for this space are named on stderr.
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
+                      const sweep::Explanation& explanation, const config::Experiment& experiment,
                       SweepSources& sources);
 
 }  // namespace rift::commands

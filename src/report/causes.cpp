@@ -26,22 +26,28 @@ std::string Between(double low, double high, double unit, int digits) {
 /// The terms of the linear model that are seen, the largest first.
 void SayFactors(const sweep::Explanation& explanation, Finding* finding) {
   std::vector<const sweep::FactorialTerm*> seen;
-  bool has_interaction = false;
   for (const sweep::FactorialTerm& term : explanation.factors.terms) {
     if (!(term.p < 0.05)) continue;
     seen.push_back(&term);
-    has_interaction = has_interaction || term.IsInteraction();
   }
   std::stable_sort(seen.begin(), seen.end(),
                    [](const auto* a, const auto* b) { return a->share > b->share; });
   for (const sweep::FactorialTerm* term : seen) {
     finding->sentences.push_back(
-        fmt::format("{} matters: {:.0f} % of the gap's variance beside the others, {} with 95 % "
+        fmt::format("{} matters: {:.0f} % of the gap's variance beside the others, {} % with 95 % "
                     "confidence ({}).",
                     term->name, 100.0 * term->share,
                     Between(term->share_low, term->share_high, 100.0, 0), P(term->p)));
   }
-  if (explanation.factors.has_interactions && !has_interaction && !seen.empty()) {
+}
+
+void SayInteractions(const sweep::Explanation& explanation, Finding* finding) {
+  bool is_any_seen = false;
+  for (const sweep::FactorialTerm& term : explanation.factors.terms) {
+    if (term.p < 0.05 && term.IsInteraction()) return;
+    is_any_seen = is_any_seen || term.p < 0.05;
+  }
+  if (explanation.factors.has_interactions && is_any_seen) {
     finding->sentences.push_back(Sentence("No two parameters are seen to act together."));
   }
 }
@@ -66,14 +72,21 @@ void SayIndices(const sweep::Explanation& explanation, Finding* finding) {
   if (!sensitivity.note.empty()) finding->sentences.push_back(Capital(sensitivity.note) + ".");
 }
 
-void SayInert(const sweep::Explanation& explanation, Finding* finding) {
+/// Of an inert parameter first why it is, which is what the controller or the paths tell.
+std::string InertText(const sweep::Inertness& inert) {
+  std::string text = inert.parameter + " is inert: ";
+  for (std::size_t i = 1; i < inert.sentences.size(); ++i) text += inert.sentences[i] + "; ";
+  return text + inert.sentences.front();
+}
+
+void SayInert(const sweep::Explanation& explanation, bool is_inert, Finding* finding) {
   for (const sweep::Inertness& inert : explanation.inert) {
-    if (inert.is_detected || inert.sentences.empty()) continue;
-    std::string text = inert.IsInert() ? inert.parameter + " is inert: " : "";
-    for (std::size_t i = 0; i < inert.sentences.size(); ++i) {
-      text += (i == 0 ? "" : "; ") + inert.sentences[i];
+    if (inert.is_detected || inert.sentences.empty() || inert.IsInert() != is_inert) continue;
+    std::string text = is_inert ? InertText(inert) : "";
+    for (std::size_t i = 0; !is_inert && i < inert.sentences.size(); ++i) {
+      text += i == 0 ? Capital(inert.sentences[i]) : "; " + inert.sentences[i];
     }
-    finding->sentences.push_back(Capital(text) + ".");
+    finding->sentences.push_back(text + ".");
   }
 }
 
@@ -103,7 +116,9 @@ Finding Because(const sweep::SweepResult& result, const sweep::Explanation& expl
   SayFactors(explanation, &finding);
   SayIndices(explanation, &finding);
   SayStart(explanation, &finding);
-  SayInert(explanation, &finding);
+  SayInert(explanation, true, &finding);
+  SayInert(explanation, false, &finding);
+  SayInteractions(explanation, &finding);
   if (finding.sentences.empty()) {
     finding.sentences.push_back(Sentence(
         result.effects.empty() ? "Not known: no parameter was varied over comparable values."

@@ -169,6 +169,13 @@ Finding Next(const sweep::SweepResult& result, const sweep::Explanation& explana
   for (std::size_t i = 0; i < std::min(kMostShown, suggestions.size()); ++i) {
     const sweep::Suggestion& suggestion = suggestions[i];
     const sweep::SettingResult& setting = result.settings[suggestion.setting];
+    if (std::isnan(suggestion.wrong_now)) {
+      finding.sentences.push_back(
+          Sentence()
+              .Link(SettingLabel(result, setting.theta), TrialsOf(result, setting.theta))
+              .Say(": " + suggestion.sentence + "."));
+      continue;
+    }
     Sentence sentence(Count(suggestion.repeats, "trial") + " of ");
     sentence.Link(SettingLabel(result, setting.theta), TrialsOf(result, setting.theta))
         .Say(fmt::format(": its mean gap is {:.4f} m so far, above {:g} m with {} probability; the "
@@ -179,9 +186,7 @@ Finding Next(const sweep::SweepResult& result, const sweep::Explanation& explana
     finding.sentences.push_back(sentence);
   }
   if (suggestions.empty()) {
-    finding.sentences.push_back(Sentence(
-        "Nothing can be said: no setting has repeats that differ, so more of the same decide "
-        "nothing. Repeat the worst setting on the robot."));
+    finding.sentences.push_back(Sentence("Nothing can be said: no setting has a gap."));
   }
   return finding;
 }

@@ -51,18 +51,23 @@ data PieceList(const Sentence& sentence) {
   return list;
 }
 
+// What a person reads first; the rest of an answer unfolds, or one screen would not hold them all.
+constexpr std::size_t kLeadSentences = 3;
+
 data FindingList(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
   data list{data::type::list};
   for (const Finding& finding : Findings(result, explanation)) {
-    data sentences{data::type::list};
-    for (const Sentence& sentence : finding.sentences) {
+    data leads{data::type::list}, others{data::type::list};
+    for (std::size_t i = 0; i < finding.sentences.size(); ++i) {
       data entry;
-      entry.set("pieces", PieceList(sentence));
-      sentences << entry;
+      entry.set("pieces", PieceList(finding.sentences[i]));
+      (i < kLeadSentences ? leads : others) << entry;
     }
     data entry;
     entry.set("question", finding.question);
-    entry.set("sentences", sentences);
+    entry.set("sentences", leads);
+    entry.set("has_more", finding.sentences.size() > kLeadSentences);
+    entry.set("more", others);
     list << entry;
   }
   return list;
@@ -106,8 +111,9 @@ void AddUnmeasured(const sweep::SweepResult& result, data* page) {
 }
 
 void AddScripts(const sweep::SweepResult& result, std::vector<PageChart> charts,
-                const ReportOptions& options, data* page) {
-  PageTable settings = SettingsTable(result, options), trials = TrialsTable(result, options);
+                const PageEvidence& evidence, const ReportOptions& options, data* page) {
+  PageTable settings = SettingsTable(result, options);
+  PageTable trials = TrialsTable(result, evidence.gap_flags, options);
   json content = {{"charts", json::array()}};
   for (const PageChart& chart : charts) content["charts"].push_back(chart.spec);
   content["settings"] = std::move(settings.data);
@@ -128,7 +134,7 @@ std::string RenderPage(const sweep::SweepResult& result, const ReportOptions& op
 }
 
 std::string RenderPage(const sweep::SweepResult& result, const sweep::Explanation& explanation,
-                       const std::vector<TypicalFailure>& failures, const ReportOptions& options) {
+                       const PageEvidence& evidence, const ReportOptions& options) {
   const Headline headline = Summary(result);
   data page;
   page.set("name", PlainText(result.name));
@@ -142,11 +148,9 @@ std::string RenderPage(const sweep::SweepResult& result, const sweep::Explanatio
   page.set("definition", gap::DefinitionText(result.gap, result.tag_offset_m));
   page.set("threshold", Number(result.gap.threshold_m));
   AddUnmeasured(result, &page);
-  std::vector<PageChart> charts = PageCharts(result, options);
-  for (PageChart& chart : WhyCharts(result, explanation, failures)) {
-    charts.push_back(std::move(chart));
-  }
-  AddScripts(result, std::move(charts), options, &page);
+  std::vector<PageChart> charts = WhyCharts(result, explanation, evidence.failures);
+  for (PageChart& chart : PageCharts(result, options)) charts.push_back(std::move(chart));
+  AddScripts(result, std::move(charts), evidence, options, &page);
   mustache html(File("page.html"));
   std::string text = html.render(page);
   if (!html.is_valid()) throw std::logic_error("page.html: " + html.error_message());

@@ -80,20 +80,27 @@ PageChart TrialsChart(const sweep::SweepResult& result, const ReportOptions& opt
   auto settings = WorstSettings(result);
   const bool all = static_cast<int>(settings.size()) <= options.worst_settings;
   if (!all) settings.resize(options.worst_settings);
+  // Of very many repeats every k-th: a page with a hundred thousand dots opens slowly.
+  std::size_t dots = 0;
+  for (const sweep::SettingResult* setting : settings) dots += setting->rows.size();
+  const std::size_t step = 1 + dots / (options.table_rows + 1);
   json values = json::array();
   for (const sweep::SettingResult* setting : settings) {
-    for (const int row : setting->rows) {
-      json point = TrialPoint(result, result.rows[row]);
+    for (std::size_t i = 0; i < setting->rows.size(); i += step) {
+      json point = TrialPoint(result, result.rows[setting->rows[i]]);
       point["label"] = Shortened(SettingLabel(result, setting->theta), kLongestLabel);
       values.push_back(std::move(point));
     }
   }
   PageChart chart{"Gap of every trial",
-                  fmt::format("One dot a trial, in metres, {}; diamonds are above the threshold "
+                  fmt::format("One dot a trial, in metres, {}{}; diamonds are above the threshold "
                               "(dashed), crosses have no gap.",
                               all ? "the worst setting first"
                                   : fmt::format("the {} worst of {} settings", settings.size(),
-                                                result.settings.size())),
+                                                result.settings.size()),
+                              step == 1 ? ""
+                                        : fmt::format(", {} of {} trials evenly picked",
+                                                      values.size(), dots)),
                   Template("dots.json")};
   chart.spec["height"] = 19 * settings.size() + 10;
   SetSignal(chart.spec, "threshold", result.gap.threshold_m);

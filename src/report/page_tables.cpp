@@ -42,6 +42,16 @@ std::string Note(std::size_t shown, std::size_t all, std::string_view what) {
                      all, what);
 }
 
+/// A file name as a shell takes it for one word.
+std::string ShellWord(const std::string& text) {
+  static constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=+,:@";
+  if (!text.empty() && text.find_first_not_of(kPlain) == text.npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
 // Trials without a gap are worst: nothing is known of them.
 std::vector<const sweep::TrialRow*> RowsToShow(const sweep::SweepResult& result, int limit) {
   std::vector<const sweep::TrialRow*> rows;
@@ -61,7 +71,14 @@ const char* MarkOf(gap::Verdict verdict) {
   return verdict == gap::Verdict::kUndecided ? "unknown" : "";
 }
 
-json TrialCells(const sweep::TrialRow& row, std::ptrdiff_t number) {
+/// How the row comes about again: its number for the replay, or what follows `rift gap`.
+json AgainCell(const sweep::TrialRow& row, std::ptrdiff_t number, const std::string& gap_flags) {
+  if (gap_flags.empty()) return number;
+  if (!row.IsOk()) return nullptr;
+  return ShellWord(row.candidate) + " " + ShellWord(row.reference) + gap_flags;
+}
+
+json TrialCells(const sweep::TrialRow& row, std::ptrdiff_t number, const std::string& gap_flags) {
   json cells = Theta(row.theta);
   cells.insert(cells.begin(), number);
   const gap::Comparison& c = row.comparison;
@@ -73,7 +90,7 @@ json TrialCells(const sweep::TrialRow& row, std::ptrdiff_t number) {
     cells.push_back(Value(value));
   }
   cells.push_back(row.reason);
-  cells.push_back(number);
+  cells.push_back(AgainCell(row, number, gap_flags));
   return cells;
 }
 
@@ -108,7 +125,8 @@ PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& o
               " \"share\" is the interval for the share of such trials above the threshold."};
 }
 
-PageTable TrialsTable(const sweep::SweepResult& result, const ReportOptions& options) {
+PageTable TrialsTable(const sweep::SweepResult& result, const std::string& gap_flags,
+                      const ReportOptions& options) {
   json table = EmptyTable(result);
   table["columns"].insert(table["columns"].begin(), Number("row", 0));
   for (json column :
@@ -116,16 +134,21 @@ PageTable TrialsTable(const sweep::SweepResult& result, const ReportOptions& opt
         Number("exact gap (m)", 4), Number("mean error (m)", 4), Number("start offset (m)", 4),
         Number("start-aligned gap (m)", 4), Number("shape gap (m)", 4), Number("end error (m)", 4),
         Number("length ratio", 3), Text("reason"),
-        json{{"title", "drive it again"}, {"replay", true}}}) {
+        json{{"title", gap_flags.empty() ? "drive it again" : "measure it again"},
+             {"again", gap_flags.empty() ? "replay" : "gap"}}}) {
     table["columns"].push_back(std::move(column));
   }
   const auto rows = RowsToShow(result, options.table_rows);
   for (const sweep::TrialRow* row : rows) {
-    table["rows"].push_back(TrialCells(*row, row - result.rows.data() + 1));
+    table["rows"].push_back(TrialCells(*row, row - result.rows.data() + 1, gap_flags));
     table["marks"].push_back(row->IsOk() ? (row->falsified ? "fail" : "") : "unknown");
   }
   table["complete"] = rows.size() == result.rows.size();
-  return {std::move(table), Note(rows.size(), result.rows.size(), "trials")};
+  const char* again =
+      gap_flags.empty()
+          ? " The command beside a trial drives it again, bit for bit; a click copies it."
+          : " The command beside a trial measures its logs again; a click copies it.";
+  return {std::move(table), Note(rows.size(), result.rows.size(), "trials") + again};
 }
 
 }  // namespace rift::report

@@ -15,6 +15,8 @@ struct PageTable {
 };
 
 PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& options);
-PageTable TrialsTable(const sweep::SweepResult& result, const ReportOptions& options);
+/// `gap_flags`: see PageEvidence.
+PageTable TrialsTable(const sweep::SweepResult& result, const std::string& gap_flags,
+                      const ReportOptions& options);
 
 }  // namespace rift::report

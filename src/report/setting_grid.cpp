@@ -1,5 +1,7 @@
 #include "setting_grid.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -55,7 +57,13 @@ SettingGrid LayOut(const sweep::SweepResult& result) {
 }
 
 std::string SettingLabel(const sweep::SweepResult& result,
-                         const std::vector<sweep::ParameterValue>& theta) {
+                         const std::vector<sweep::ParameterValue>& exact) {
+  // A value drawn from a range has 17 digits, which nobody reads; table.csv has them.
+  std::vector<sweep::ParameterValue> theta = exact;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const bool is_drawn = result.parameters[i].IsContinuous() && theta[i].number;
+    if (is_drawn) theta[i].text = fmt::format("{:.4g}", *theta[i].number);
+  }
   if (result.parameters.empty()) return "the only setting";
   const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
   if (!result.parameters[split.main_factor].IsCategorical()) return NamedValues(result, theta);

@@ -176,7 +176,13 @@ double LargestNoncentrality(const std::function<bool(double)>& holds) {
 }
 
 double CdfOfF(double f, double df1, double df2, double lambda) {
+  constexpr double kSeriesIsSlow = 200.0;
   if (lambda <= 0.0) return boost::math::cdf(boost::math::fisher_f(df1, df2), f);
+  if (lambda > kSeriesIsSlow) {  // Patnaik 1949: a central F with the same first two moments
+    const double scale = (df1 + lambda) / df1;
+    const double df = std::pow(df1 + lambda, 2) / (df1 + 2.0 * lambda);
+    return boost::math::cdf(boost::math::fisher_f(df, df2), f / scale);
+  }
   return boost::math::cdf(boost::math::non_central_f(df1, df2, lambda), f);
 }
 

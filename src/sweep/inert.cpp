@@ -111,13 +111,12 @@ void SayPaths(Inertness& inert) {
 
 /// What the controller of one side tells about the limit.
 void SayLimit(Inertness& inert, const std::vector<LimitUse>& uses, std::string_view side) {
-  std::vector<std::string> never;
+  std::vector<std::string> never, most;
   std::string rarely;
-  double most = 0.0;
   for (const LimitUse& use : uses) {
-    most = std::max(most, use.largest_raw);
     if (use.bound == 0) {
       never.push_back(use.level);
+      most.push_back(fmt::format("{:.3g}", use.largest_raw));
     } else {
       rarely += fmt::format("; {} bound in {} of {} decisions of {} runs", use.level, use.bound,
                             use.decisions, use.runs);
@@ -126,9 +125,8 @@ void SayLimit(Inertness& inert, const std::vector<LimitUse>& uses, std::string_v
   if (never.empty()) return;
   inert.is_explained = true;
   inert.sentences.push_back(
-      fmt::format("the {}'s controller never asked for more than {:.3g}, so "
-                  "{} {} never bound{}",
-                  side, most, inert.parameter, Joined(never), rarely));
+      fmt::format("{} {} never bound: the {}'s controller asked for {} at most{}", inert.parameter,
+                  Joined(never), side, Joined(most), rarely));
 }
 
 void SayEffect(Inertness& inert) {

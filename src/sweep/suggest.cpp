@@ -91,11 +91,11 @@ Suggestion Describe(const SweepResult& result, int setting_index, int more, doub
   suggestion.width_after = WidthAfter(setting.verdict, knowledge, more);
   suggestion.trials_to_decide = TrialsToDecide(knowledge);
   suggestion.sentence = fmt::format(
-      "{} more of {}: is its mean gap above {:g} m? So far {:.4f} m from {}, above with {:.0f} % "
+      "{} of {}: is its mean gap above {:g} m? So far {:.4f} m from {}, above with {:.0f} % "
       "probability; the risk of calling it wrongly falls from {:.0f} to {:.0f} %, the call flips "
       "with {:.0f} %, and the interval for the share above narrows from {:.0f} to {:.0f} points",
-      more == 1 ? "1 trial" : fmt::format("{} trials", more), SettingText(result, setting),
-      result.gap.threshold_m, setting.mean_gap_m,
+      more == 1 ? "1 more trial" : fmt::format("{} more trials", more),
+      SettingText(result, setting), result.gap.threshold_m, setting.mean_gap_m,
       setting.verdict.repeats == 1 ? "1 trial" : fmt::format("{} trials", setting.verdict.repeats),
       100.0 * suggestion.above_now, 100.0 * suggestion.wrong_now, 100.0 * suggestion.wrong_after,
       100.0 * suggestion.flip, 100.0 * suggestion.width_now, 100.0 * suggestion.width_after);
@@ -104,6 +104,39 @@ Suggestion Describe(const SweepResult& result, int setting_index, int more, doub
           ? fmt::format("; too near the threshold to be decided by {} trials", kMostTrials)
           : fmt::format("; about {} trials in all decide it", suggestion.trials_to_decide);
   return suggestion;
+}
+
+/// Without a scatter no risk can be told. The worst setting first, where the robot would have to
+/// fail most surely; then those next to the threshold, where it may do either.
+std::vector<Suggestion> FirstTrials(const SweepResult& result, const SuggestOptions& options) {
+  const auto above_m = [&](int setting) {
+    return result.settings[setting].mean_gap_m - result.gap.threshold_m;
+  };
+  std::vector<int> order;
+  for (int i = 0; i < static_cast<int>(result.settings.size()); ++i) {
+    if (result.settings[i].verdict.repeats > 0) order.push_back(i);
+  }
+  if (order.empty()) return {};
+  std::iter_swap(order.begin(), std::max_element(order.begin(), order.end(), [&](int a, int b) {
+                   return above_m(a) < above_m(b);
+                 }));
+  std::stable_sort(order.begin() + 1, order.end(),
+                   [&](int a, int b) { return std::abs(above_m(a)) < std::abs(above_m(b)); });
+  order.resize(std::min(order.size(), static_cast<size_t>(options.experiments)));
+  std::vector<Suggestion> suggestions;
+  for (const int i : order) {
+    const double gap_m = result.settings[i].mean_gap_m;
+    Suggestion suggestion{.setting = i, .repeats = options.repeats, .mean_gap_m = gap_m};
+    suggestion.sentence = fmt::format(
+        "{} of {}: does the robot go with the {:.4f} m that this sweep found there, {} {:g} m? "
+        "Repeats on the robot also give its scatter, without which no risk can be told",
+        options.repeats == 1 ? "1 trial" : fmt::format("{} trials", options.repeats),
+        SettingText(result, result.settings[i]), gap_m,
+        i == order.front() ? "the most of all settings, against" : "next to the threshold of",
+        result.gap.threshold_m);
+    suggestions.push_back(suggestion);
+  }
+  return suggestions;
 }
 
 }  // namespace
@@ -125,7 +158,7 @@ double RepeatScatter_m(const SweepResult& result) {
 std::vector<Suggestion> SuggestExperiments(const SweepResult& result,
                                            const SuggestOptions& options) {
   const double scatter_m = RepeatScatter_m(result);
-  if (!(scatter_m > 0.0)) return {};
+  if (!(scatter_m > 0.0)) return FirstTrials(result, options);
   std::vector<int> more(result.settings.size(), 0);
   std::vector<int> order;
   for (int experiment = 0; experiment < options.experiments; ++experiment) {

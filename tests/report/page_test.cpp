@@ -147,6 +147,18 @@ TEST_CASE("The tables hold every trial and setting with numbers as numbers") {
   }
 }
 
+TEST_CASE("A row of recorded logs shows how it is measured again") {
+  sweep::SweepResult result = synthetic::Grid();
+  result.rows[0].candidate = "/logs/sim ice.csv";
+  result.rows[0].reference = "/logs/real1.csv";
+  const json data = Data(RenderPage(result, {}, {{}, " --real-format tracker"}));
+  CHECK(data["trials"]["columns"].back()["again"] == "gap");
+  CHECK(data["trials"]["rows"][0].back() ==
+        "'/logs/sim ice.csv' /logs/real1.csv --real-format tracker");
+  CHECK(data["trials"]["rows"][1].back().is_null());  // it has no gap
+  CHECK(Data(RenderPage(result))["trials"]["rows"][0].back() == 1);
+}
+
 TEST_CASE("Of many thousand trials the worst are shown and the page says so") {
   const std::string page = RenderPage(synthetic::Continuous(8000));
   const json data = Data(page);

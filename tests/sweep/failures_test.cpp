@@ -238,12 +238,21 @@ TEST_CASE("The risk expected after more trials is what simulation finds") {
   CHECK(suggestion.flip == Approx(double(flips) / rounds).margin(0.01));
 }
 
-TEST_CASE("Without repeats that differ nothing can be suggested") {
+TEST_CASE(
+    "Without repeats that differ the worst setting is suggested and those near the threshold") {
   SweepResult result;
-  result.parameters = {{.key = "x", .levels = {Numeric(1.0)}}};
-  result.rows = {Row(Numeric(1.0), 0.05)};
+  result.parameters = {{.key = "x", .levels = {Numeric(1.0), Numeric(2.0), Numeric(3.0)}}};
+  for (const auto& [x, gap_m] : {std::pair{1.0, 0.02}, {2.0, 0.058}, {3.0, 0.09}}) {
+    result.rows.push_back(Row(Numeric(x), gap_m));
+  }
   Summarise(result);
-  CHECK(SuggestExperiments(result).empty());
+  const std::vector<Suggestion> suggestions = SuggestExperiments(result, {.experiments = 2});
+  REQUIRE(suggestions.size() == 2);
+  CHECK(suggestions[0].setting == 2);
+  CHECK(suggestions[1].setting == 1);
+  CHECK(suggestions[0].repeats == 3);
+  CHECK(std::isnan(suggestions[0].wrong_now));
+  CHECK_THAT(suggestions[0].sentence, Contains("0.0900 m that this sweep found there"));
 }
 
 }  // namespace

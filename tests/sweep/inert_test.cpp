@@ -57,8 +57,8 @@ TEST_CASE("A limit that never binds is named with the most it was asked for") {
         "with v_max 0.4 and 0.5 the candidate drove the same path to the last bit in all 8 pairs "
         "of trials");
   CHECK(inert[1].sentences[2] ==
-        "the candidate's controller never asked for more than 0.39, so v_max 0.4 and 0.5 never "
-        "bound; 0.3 bound in 8 of 480 decisions of 8 runs");
+        "v_max 0.4 and 0.5 never bound: the candidate's controller asked for 0.39 and 0.39 at "
+        "most; 0.3 bound in 8 of 480 decisions of 8 runs");
 }
 
 TEST_CASE("A parameter that never changed a path is inert to the last bit") {

@@ -23,9 +23,16 @@ struct TypicalFailure {
   ComparedPair paths;
 };
 
-/// The same with an explanation at hand, and failures to draw.
+/// What the page shows and the result does not hold.
+struct PageEvidence {
+  std::vector<TypicalFailure> failures;
+  /// Of `rift gap`, behind the two logs of a row, so that it comes out as in the table; where the
+  /// candidates are simulated, `rift simulate --replay` drives a row again.
+  std::string gap_flags;
+};
+
+/// The same with an explanation at hand.
 std::string RenderPage(const sweep::SweepResult& result, const sweep::Explanation& explanation,
-                       const std::vector<TypicalFailure>& failures,
-                       const ReportOptions& options = {});
+                       const PageEvidence& evidence, const ReportOptions& options = {});
 
 }  // namespace rift::report

@@ -38,8 +38,8 @@ struct Suggestion {
 
 /// The trials from which most is learnt, the best first: each choice is the one that takes most
 /// away from the risk of calling a setting wrongly, given the choices before it. Gaps of a setting
-/// are taken for normal with one scatter for all settings, that of the repeats. Empty when no
-/// setting has repeats that differ.
+/// are taken for normal with one scatter for all settings, that of the repeats. Where no repeats
+/// differ, risks are NaN: then the worst setting, and those next to the threshold.
 std::vector<Suggestion> SuggestExperiments(const SweepResult& result,
                                            const SuggestOptions& options = {});
 

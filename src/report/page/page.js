@@ -75,10 +75,11 @@ function compare(a, b) {
 const folder = location.protocol === 'file:' ? decodeURIComponent(location.pathname.replace(/\/[^/]*$/, '')) : 'DIR';
 const quoted = /^[\w./-]+$/.test(folder) ? folder : "'" + folder.replaceAll("'", "'\\''") + "'";
 
-function replayButton(row) {
+// A row of the sweep is driven again by its number; recorded logs are named.
+function againButton(kind, value) {
   const button = document.createElement('button');
   button.type = 'button';
-  button.textContent = `rift simulate --replay ${quoted} ${row}`;
+  button.textContent = kind === 'gap' ? `rift gap ${value}` : `rift simulate --replay ${quoted} ${value}`;
   button.addEventListener('click', () => navigator.clipboard?.writeText(button.textContent));
   return button;
 }
@@ -90,8 +91,8 @@ function fillBody(table, data, order) {
     row.className = data.marks[index];
     data.columns.forEach((column, i) => {
       const cell = row.insertCell();
-      if (column.replay) {
-        cell.append(replayButton(data.rows[index][i]));
+      if (column.again && data.rows[index][i] !== null) {
+        cell.append(againButton(column.again, data.rows[index][i]));
         return;
       }
       cell.textContent = cellText(data.rows[index][i], column);

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rift/config/experiment.hpp"
+#include "rift/sweep/trial_runner.hpp"
+#include "stop_signal.hpp"
+#include "sweep_progress.hpp"
+#include "sweep_sources.hpp"
+
+namespace rift::commands {
+
+/// Trials of a sweep beyond its own, in worker processes; they enter neither its journal nor its
+/// table.
+class FurtherTrials {
+ public:
+  struct Stopped {};  ///< thrown by Run when the user asked for an end
+  struct Style {
+    int jobs = 1;
+    ProgressStyle progress = ProgressStyle::kQuiet;
+  };
+
+  FurtherTrials(SweepSources& sources, const config::Experiment& experiment, const Style& style,
+                const StopSignal& stop);
+
+  std::vector<sweep::TrialRow> Run(std::vector<sweep::TrialRequest> requests);
+
+  /// Between these, what was run is shown as progress towards `most` trials.
+  void Begin(int most);
+  void End();
+
+  const sweep::GridPlan& plan() const { return plan_; }
+
+ private:
+  sweep::GridPlan plan_;
+  Style style_;
+  std::optional<SweepProgress> progress_;
+  sweep::TrialRunner runner_;
+};
+
+/// The experiment's own values of its space's parameters.
+sweep::Theta NominalTheta(const config::Experiment& experiment);
+
+/// "simulation.terrain.surface parchment, control.v_min 0.15" by the parameters' short names.
+std::string ThetaText(const std::vector<sweep::Parameter>& parameters, const sweep::Theta& theta);
+
+/// Those of the gap's options that are not the defaults, as flags of `rift gap`.
+std::string ChangedGapFlags(const gap::GapOptions& options);
+
+}  // namespace rift::commands

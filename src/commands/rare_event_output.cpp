@@ -1,0 +1,88 @@
+#include "rare_event_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "files.hpp"
+#include "json_fields.hpp"
+#include "rift/sweep/failure_probability.hpp"
+#include "rift/sweep/falsify.hpp"
+#include "rift/sweep/search_space.hpp"
+
+namespace rift::commands {
+namespace {
+
+/// Whole numbers and lists get equal shares of the unit interval for each of their values.
+double CoordinateOf(const search::Axis& axis, double x) {
+  if (axis.kind == search::AxisKind::kContinuous) return axis.min + x * (axis.max - axis.min);
+  return std::min(axis.max, axis.min + std::floor(x * (axis.max - axis.min + 1.0)));
+}
+
+sweep::Theta ThetaAtUnit(const std::vector<sweep::Parameter>& parameters,
+                         const std::vector<search::Axis>& axes, std::span<const double> unit) {
+  search::Point point;
+  for (size_t i = 0; i < axes.size(); ++i) point.push_back(CoordinateOf(axes[i], unit[i]));
+  return sweep::ThetaAt(parameters, point);
+}
+
+/// Of the worst trial; NaN when none tells.
+double WorstRobustness_m(std::span<const sweep::TrialRow> rows, double threshold_m) {
+  double worst_m = std::numeric_limits<double>::quiet_NaN();
+  for (size_t i = 0; i < rows.size(); ++i) {
+    worst_m = std::fmin(worst_m, sweep::Robustness_m(rows.subspan(i, 1), threshold_m));
+  }
+  return worst_m;
+}
+
+std::string SentenceOf(const sweep::RareEvent& event) {
+  if (!event.is_reached) {
+    return fmt::format(
+        "no failure was reached in {} levels: a setting drawn at random fails with a probability "
+        "of about {:.2g} at most",
+        event.levels, event.high);
+  }
+  return fmt::format(
+      "a setting drawn at random fails with a probability of {:.2g}, between {:.2g} and {:.2g} "
+      "with 95 % confidence ({} settings in {})",
+      event.probability, event.low, event.high, event.evaluations,
+      event.levels == 1 ? std::string("1 level: it is not rare")
+                        : fmt::format("{} levels of subset simulation", event.levels));
+}
+
+}  // namespace
+
+std::string RareEventInto(const std::filesystem::path& folder, const config::Experiment& experiment,
+                          const sweep::RareEventOptions& options, FurtherTrials& trials) {
+  const std::vector<sweep::Parameter>& parameters = trials.plan().parameters;
+  const std::vector<search::Axis> axes = sweep::AxesOf(parameters);
+  const double threshold_m = trials.plan().gap.threshold_m;
+  const auto robustness_m = [&](std::span<const double> unit) {
+    const sweep::Theta theta = ThetaAtUnit(parameters, axes, unit);
+    return WorstRobustness_m(trials.Run(sweep::TrialsAt(trials.plan(), theta)), threshold_m);
+  };
+  trials.Begin(options.samples_per_level * options.most_levels *
+               static_cast<int>(trials.plan().trials.size()));
+  const sweep::RareEvent event = sweep::EstimateRareEvent(static_cast<int>(parameters.size()),
+                                                          robustness_m, experiment.seed, options);
+  trials.End();
+  const std::string sentence = SentenceOf(event);
+  nlohmann::ordered_json json{
+      {"probability", NumberOrNull(event.probability)},
+      {"low", event.low},
+      {"high", event.high},
+      {"confidence", 0.95},
+      {"coefficient_of_variation", NumberOrNull(event.coefficient_of_variation)},
+      {"is_reached", event.is_reached},
+      {"levels", event.levels},
+      {"settings", event.evaluations},
+      {"trials_per_setting", trials.plan().trials.size()},
+      {"options", FieldsToJson(options)},
+      {"sentence", sentence}};
+  WriteFile(folder / "rare_event.json", Dump(json));
+  return fmt::format("\nrare event: {}\n", sentence);
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,129 @@
+#include "sweep_explain.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <stdexcept>
+
+#include "enum_name.hpp"
+#include "further_trials.hpp"
+#include "rare_event_output.hpp"
+#include "shrink_output.hpp"
+#include "stop_signal.hpp"
+
+namespace rift::commands {
+namespace {
+
+sweep::Recording Finished(sweep::Recording recording) {
+  if (recording.status != sweep::TrialStatus::kOk) {
+    throw std::runtime_error(fmt::format("a row that had a gap has none now: {}: {}",
+                                         recording.source, recording.reason));
+  }
+  return recording;
+}
+
+}  // namespace
+
+void AddExplainFlags(CLI::App& app, ExplainRequest& request) {
+  app.add_option("--suggest", request.suggest,
+                 "print the next N experiments on the robot and what each would decide")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--shrink", request.shrink,
+                 "bring a failing row of table.csv down to the fewest and smallest changes from "
+                 "the experiment's own values that still fail, by further trials")
+      ->type_name("ROW|worst");
+  app.add_flag("--rare-event", request.rare_event,
+               "estimate a small failure probability over the space by further trials (subset "
+               "simulation)");
+}
+
+void CheckRequest(const ExplainRequest& request, const config::Experiment& experiment) {
+  const bool costs_trials = !request.shrink.empty() || request.rare_event;
+  if (!costs_trials) return;
+  const char* flag = request.rare_event ? "--rare-event" : "--shrink";
+  if (experiment.candidate.kind == sweep::CandidateKind::kLogs) {
+    throw std::invalid_argument(
+        fmt::format("{} drives further trials, and candidate.kind is logs: recorded runs cannot be "
+                    "driven at other settings; set candidate.kind=simulation",
+                    flag));
+  }
+  if (experiment.space.parameters.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "{} needs a space: name the parameters to vary, such as space.v_min: [0.15, 0.2]", flag));
+  }
+  const bool is_row = !request.shrink.empty() &&
+                      request.shrink.find_first_not_of("0123456789") == std::string::npos;
+  if (!request.shrink.empty() && request.shrink != "worst" && !is_row) {
+    throw std::invalid_argument(
+        fmt::format("--shrink {}: must be the id of a row in table.csv (a whole number), or worst",
+                    request.shrink));
+  }
+}
+
+sweep::ExplainOptions OptionsFor(const ExplainRequest& request) {
+  sweep::ExplainOptions options = request.options;
+  if (request.suggest > 0) options.suggest.experiments = request.suggest;
+  return options;
+}
+
+std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& result,
+                                                    const sweep::Explanation& explanation,
+                                                    SweepSources& sources) {
+  std::vector<report::TypicalFailure> failures;
+  for (size_t kind = 0; kind < explanation.clusters.size(); ++kind) {
+    const int index = explanation.clusters[kind].rows.front();
+    const sweep::TrialRow& row = result.rows.at(index);
+    if (!row.IsOk()) continue;  // it ended early: there is no path to hold against the other
+    const sweep::TrialRequest request{.theta = row.theta, .trial = row.trial, .seed = row.seed};
+    const sweep::Recording reference = Finished(sources.Reference(request));
+    const sweep::Recording candidate = Finished(sources.Candidate(request, reference));
+    const std::string name = result.reference_kind == "logs"      ? "robot"
+                             : result.reference_kind == "nominal" ? "nominal run"
+                                                                  : "waypoint path";
+    failures.push_back({index, static_cast<int>(kind),
+                        report::ComparePair("simulator", candidate.trajectory, name,
+                                            reference.trajectory, result.gap)});
+  }
+  return failures;
+}
+
+std::string GapFlags(const config::Experiment& experiment) {
+  if (experiment.candidate.kind != sweep::CandidateKind::kLogs) return "";
+  if (experiment.reference.kind != sweep::ReferenceKind::kLogs) return "";
+  std::string flags;
+  const auto add = [&flags](const std::string& flag, const std::string& value) {
+    flags += fmt::format(" {} {}", flag, value);
+  };
+  add("--sim-format", std::string(NameOf(experiment.candidate.format)));
+  add("--real-format", std::string(NameOf(experiment.reference.format)));
+  if (experiment.reference.tag_offset_m != 0.0) {
+    add("--tag-offset", fmt::format("{}", experiment.reference.tag_offset_m));
+  }
+  return flags + ChangedGapFlags(experiment.gap);
+}
+
+std::optional<std::string> SpendTrials(const std::filesystem::path& folder,
+                                       const config::Experiment& experiment,
+                                       const sweep::SweepResult& result,
+                                       const ExplainRequest& request, SweepSources& sources,
+                                       const FurtherTrials::Style& style) {
+  const bool is_asked = !request.shrink.empty() || request.rare_event;
+  if (!is_asked) return "";
+  const StopSignal stop;
+  FurtherTrials trials(sources, experiment, style, stop);
+  std::string text;
+  try {
+    if (!request.shrink.empty()) {
+      text +=
+          ShrinkInto(folder, experiment, result, request.shrink, request.shrink_options, trials);
+    }
+    if (request.rare_event)
+      text += RareEventInto(folder, experiment, request.rare_event_options, trials);
+  } catch (const FurtherTrials::Stopped&) {
+    return std::nullopt;
+  }
+  return text;
+}
+
+}  // namespace rift::commands
