@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "calibrate.hpp"
 #include "explanation_output.hpp"
 #include "files.hpp"
 #include "folder_lock.hpp"
@@ -41,6 +42,7 @@ struct SweepRequest {
   bool exit_code = false;
   std::string status;
   ExplainRequest explain;
+  std::string write_robot;
 };
 
 /// A simulated sweep over nothing means the paper's grid; logs without a space are one setting.
@@ -106,6 +108,16 @@ void NoteTooFewRepeats(const config::Experiment& experiment) {
 int Sweep(const SweepRequest& request) {
   config::Experiment experiment = LoadFor(request);
   RefuseLimitsOfGrid(request, experiment.goal);
+  if (experiment.goal == sweep::Goal::kCalibrate) {
+    const fs::path folder = OutputOf(request.out, experiment.name);
+    const FolderLock alone(folder);
+    return Calibrate(experiment, {request.experiment, folder, request.write_robot, request.jobs,
+                                  request.quiet, request.json});
+  }
+  if (!request.write_robot.empty()) {
+    throw std::invalid_argument(request.experiment +
+                                ": --write-robot needs goal: calibrate (configs/calibrate.yaml)");
+  }
   const bool lacks_space = LacksSpace(experiment);
   if (lacks_space) experiment.space = sweep::PaperSpace();
   CheckRequest(request.explain, experiment);
@@ -173,10 +185,14 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
   app.add_flag("--quiet", request.quiet, "no progress");
   app.add_flag("--json-progress", request.json_progress, "progress as lines of JSON on stderr");
   app.add_flag("--json", request.json, "print the summary (or status) as JSON instead of text");
+  app.add_option("--write-robot", request.write_robot,
+                 "goal: calibrate: write the fitted robot, to be used as include:")
+      ->type_name("FILE.yaml");
   app.add_flag("--exit-code", request.exit_code,
                "end with 1 when any trial of a grid is falsified, or a search falsifies");
   app.footer(
       "Ctrl-C stops a sweep, and the same command goes on with it, also after a crash.\n"
+      "goal: calibrate fits the simulator to logs (configs/calibrate.yaml).\n"
       "Example: rift sweep configs/waypoints/paper.yaml --out out/paper\n"
       "         rift sweep configs/waypoints/paper.yaml --out out/paper --suggest 3 --shrink "
       "worst");

@@ -52,6 +52,8 @@ std::optional<sweep::SweepResult> RunGoal(const config::Experiment& experiment,
   switch (experiment.goal) {
     case sweep::Goal::kGrid:
       return sweep::SweepGrid(sources.Plan(), run, noise_floor_m);
+    case sweep::Goal::kCalibrate:
+      break;  // has no trials to run one by one: commands/calibrate.cpp
     case sweep::Goal::kFalsify:
       return sweep::Falsify(sources.Plan(), experiment.search, experiment.falsify, run, may_start,
                             noise_floor_m);

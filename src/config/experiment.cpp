@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "calibrate_keys.hpp"
 #include "rift/config/bind.hpp"
 #include "rift/config/describe.hpp"
 #include "rift/config/error.hpp"
@@ -103,7 +104,7 @@ void TrySpace(const Experiment& experiment) {
   for (const sweep::Parameter& parameter : parameters) {
     settings *= parameter.IsContinuous() ? HUGE_VAL : static_cast<double>(parameter.levels.size());
   }
-  if (experiment.goal == sweep::Goal::kGrid && settings <= kMostTried) {
+  if (experiment.goal != sweep::Goal::kFalsify && settings <= kMostTried) {
     for (const sweep::Theta& theta : sweep::GridPoints(parameters)) ExperimentAt(experiment, theta);
     return;
   }
@@ -139,7 +140,7 @@ void ResolveSpace(Experiment& experiment) {
       throw Error(fmt::format("{}: space: {}", parameter.origin, unknown.what()));
     }
   }
-  if (experiment.goal == sweep::Goal::kGrid) sweep::CheckGrid(experiment.space.parameters);
+  if (experiment.goal != sweep::Goal::kFalsify) sweep::CheckGrid(experiment.space.parameters);
   TrySpace(experiment);
 }
 
@@ -159,6 +160,19 @@ Experiment ExperimentAt(const Experiment& experiment,
   return at;
 }
 
+Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>& values) {
+  std::vector<KeyValue> pairs;
+  for (size_t i = 0; i < values.size(); ++i) {
+    const sweep::FreeParameter& free = experiment.calibrate.fit.list[i];
+    Node value = Node::Scalar(NumberText(values[i], free.key));
+    value.origin.source = free.origin;
+    pairs.push_back({free.key, value});
+  }
+  Experiment at = experiment;
+  SetValues(at, pairs);
+  return at;
+}
+
 Experiment LoadExperiment(const std::string& path, const std::vector<std::string>& overrides,
                           const FileReader& read) {
   Node tree = Load(path, read);
@@ -170,6 +184,7 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   MakeAbsolute(experiment.candidate.path);
   MakeAbsolute(experiment.reference.path);
   if (experiment.candidate.kind == sweep::CandidateKind::kSimulation) ResolveSpace(experiment);
+  if (experiment.goal == sweep::Goal::kCalibrate) ResolveCalibrate(experiment, path);
   return experiment;
 }
 

@@ -165,6 +165,46 @@ Node Hook<sweep::TrialList>::ToNode(const sweep::TrialList& trials) {
   return list;
 }
 
+sweep::HeldOutTrials Hook<sweep::HeldOutTrials>::FromNode(const Node& node) {
+  if (!node.IsList()) throw std::invalid_argument("must be a list of trials, [] for none");
+  if (node.items.empty()) return {};
+  return {Hook<sweep::TrialList>::FromNode(node).names};
+}
+
+Node Hook<sweep::HeldOutTrials>::ToNode(const sweep::HeldOutTrials& trials) {
+  return Hook<sweep::TrialList>::ToNode({trials.names});
+}
+
+sweep::FreeParameters Hook<sweep::FreeParameters>::FromNode(const Node& node) {
+  if (!node.IsMap()) throw std::invalid_argument("must be a map of keys, each with {min, max}");
+  sweep::FreeParameters fit;
+  for (const FlatEntry& entry : Flatten(node)) {
+    const std::string key = Join("calibrate.fit", entry.key);
+    if (!IsContinuousAxis(*entry.value) || entry.value->entries.size() != 2) {
+      Fail(*entry.value, key, "must be {min: a, max: b}");
+    }
+    sweep::Parameter range;
+    ReadRange(*entry.value, key, range);
+    fit.list.push_back({.key = entry.key,
+                        .min = range.min,
+                        .max = range.max,
+                        .start = range.min,
+                        .origin = entry.origin.Text()});
+  }
+  return fit;
+}
+
+Node Hook<sweep::FreeParameters>::ToNode(const sweep::FreeParameters& fit) {
+  Node map = Node::Map();
+  for (const sweep::FreeParameter& free : fit.list) {
+    Node range = Node::Map();
+    range.Add("min", Node::Scalar(NumberText(free.min, free.key)));
+    range.Add("max", Node::Scalar(NumberText(free.max, free.key)));
+    map.Add(free.key, range);
+  }
+  return map;
+}
+
 sweep::Space Hook<sweep::Space>::FromNode(const Node& node) {
   if (!node.IsMap()) throw std::invalid_argument("must be a map of parameters");
   sweep::Space space;

@@ -17,13 +17,16 @@ namespace {
 constexpr double kConverged = 1e-3;  // of the range, for the largest change of a parameter
 constexpr double kRidge = 1e-9;      // keeps a parameter without effect where it is
 constexpr double kLargestDamping = 1e6;
+// Whole runs of a delayed bang-bang loop are chaotic: over a small step the scatter of their
+// statistics is many times their slope.
+constexpr double kWiderForRuns = 5.0;
 
 /// Values as shares of their ranges, which makes steps and ridge mean the same for each.
 class Fit {
  public:
   Fit(const std::vector<FreeParameter>& parameters, const std::vector<CalibrationLog>& logs,
-      const TwinAt& twin, const CalibrationOptions& options)
-      : parameters_(parameters), logs_(logs), twin_(twin), options_(options) {
+      const TwinAt& twin, const CalibrationOptions& options, int threads)
+      : parameters_(parameters), logs_(logs), twin_(twin), options_(options), threads_(threads) {
     shares_.resize(static_cast<Eigen::Index>(parameters.size()));
     for (size_t i = 0; i < parameters.size(); ++i) {
       const FreeParameter& p = parameters[i];
@@ -32,14 +35,15 @@ class Fit {
     traits_ = TraitsOfLogs(logs, twin, ValuesAt(shares_));
   }
 
-  Calibration Run(std::mt19937_64& generator);
+  Calibration Run(std::mt19937_64& generator, const CalibrationStep& on_step);
 
  private:
   using Blocks = std::vector<Eigen::VectorXd>;  ///< weighted errors of each log
 
   std::vector<double> ValuesAt(const Eigen::VectorXd& shares) const;
-  std::vector<LogErrors> Errors(const Eigen::VectorXd& shares);
-  Blocks WeightedAt(const Eigen::VectorXd& shares);
+  std::vector<LogErrors> Errors(const Eigen::VectorXd& shares, const CalibrationOptions& options);
+  Blocks WeightedAt(const Eigen::VectorXd& shares, const CalibrationOptions& options);
+  Blocks Slope(Eigen::Index parameter, double step, const CalibrationOptions& options);
   void Linearise();
   bool Descend();
   Eigen::VectorXd StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
@@ -51,6 +55,7 @@ class Fit {
   const std::vector<CalibrationLog>& logs_;
   const TwinAt& twin_;
   const CalibrationOptions& options_;
+  int threads_;
   LoggedTraits traits_;
   Eigen::VectorXd shares_;
   Eigen::MatrixXd scale_;
@@ -59,7 +64,7 @@ class Fit {
   std::vector<Eigen::VectorXd> gradients_;
   double damping_ = 1e-2;
   double last_change_ = 1.0;
-  size_t evaluations_ = 0;
+  size_t trials_simulated_ = 0;
 };
 
 double SquaredSum(const std::vector<Eigen::VectorXd>& blocks) {
@@ -83,33 +88,51 @@ std::vector<double> Fit::ValuesAt(const Eigen::VectorXd& shares) const {
   return values;
 }
 
-std::vector<LogErrors> Fit::Errors(const Eigen::VectorXd& shares) {
-  ++evaluations_;
-  return ErrorsAt(logs_, traits_, twin_, ValuesAt(shares), options_);
+std::vector<LogErrors> Fit::Errors(const Eigen::VectorXd& shares,
+                                   const CalibrationOptions& options) {
+  trials_simulated_ += logs_.size() * static_cast<size_t>(options.horizon.phases + options.runs);
+  return ErrorsAt(logs_, traits_, twin_, ValuesAt(shares), options, threads_);
 }
 
-Fit::Blocks Fit::WeightedAt(const Eigen::VectorXd& shares) {
+Fit::Blocks Fit::WeightedAt(const Eigen::VectorXd& shares, const CalibrationOptions& options) {
   Blocks blocks;
-  for (const LogErrors& errors : Errors(shares)) {
+  for (const LogErrors& errors : Errors(shares, options)) {
     blocks.push_back(Weighted(errors, scale_, options_));
   }
   return blocks;
 }
 
-/// Slopes by central differences, one-sided at a bound, summed up log by log.
+/// Of every error of each log, by central differences, one-sided at a bound.
+Fit::Blocks Fit::Slope(Eigen::Index parameter, double step, const CalibrationOptions& options) {
+  Eigen::VectorXd below = shares_, above = shares_;
+  below[parameter] = std::max(0.0, shares_[parameter] - step);
+  above[parameter] = std::min(1.0, shares_[parameter] + step);
+  Blocks slopes = WeightedAt(above, options);
+  const Blocks at_below = WeightedAt(below, options);
+  for (size_t i = 0; i < slopes.size(); ++i) {
+    slopes[i] = (slopes[i] - at_below[i]) / (above[parameter] - below[parameter]);
+  }
+  return slopes;
+}
+
+/// Slopes of the predicted motions over a small step, of the statistics of runs over a wide one,
+/// summed up log by log.
 void Fit::Linearise() {
   const Eigen::Index n = shares_.size();
+  CalibrationOptions motions_only = options_, runs_mostly = options_;
+  motions_only.runs = 0;
+  runs_mostly.horizon.phases = 1;
   std::vector<Eigen::MatrixXd> slopes;
   for (const Eigen::VectorXd& block : errors_) {
     slopes.push_back(Eigen::MatrixXd::Zero(block.size(), n));
   }
   for (Eigen::Index k = 0; k < n; ++k) {
-    Eigen::VectorXd below = shares_, above = shares_;
-    below[k] = std::max(0.0, shares_[k] - options_.step);
-    above[k] = std::min(1.0, shares_[k] + options_.step);
-    const Blocks at_below = WeightedAt(below), at_above = WeightedAt(above);
+    const Blocks near = Slope(k, options_.step, motions_only);
+    for (size_t i = 0; i < slopes.size(); ++i) slopes[i].col(k) = near[i];
+    if (options_.runs == 0) continue;
+    const Blocks wide = Slope(k, kWiderForRuns * options_.step, runs_mostly);
     for (size_t i = 0; i < slopes.size(); ++i) {
-      slopes[i].col(k) = (at_above[i] - at_below[i]) / (above[k] - below[k]);
+      slopes[i].col(k).tail(kTraits + 1) = wide[i].tail(kTraits + 1);
     }
   }
   hessians_.clear();
@@ -154,7 +177,7 @@ bool Fit::Descend() {
         (shares_ + StepFor(hessian, gradient, damping_)).cwiseMax(0.0).cwiseMin(1.0);
     last_change_ = (tried - shares_).cwiseAbs().maxCoeff();
     if (last_change_ < kConverged) return false;
-    Blocks errors = WeightedAt(tried);
+    Blocks errors = WeightedAt(tried, options_);
     if (SquaredSum(errors) >= loss) continue;
     shares_ = tried;
     errors_ = std::move(errors);
@@ -226,27 +249,29 @@ void Fit::Judge(const Eigen::MatrixXd& draws, Calibration& result) const {
   }
 }
 
-Calibration Fit::Run(std::mt19937_64& generator) {
+Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step) {
   Calibration result;
   const Eigen::VectorXd start = shares_;
   bool goes_on = true;
   while (goes_on && result.steps < options_.iterations) {
-    const std::vector<LogErrors> errors = Errors(shares_);
+    const std::vector<LogErrors> errors = Errors(shares_, options_);
     scale_ = ScaleOf(errors, options_);
     errors_.clear();
     for (const LogErrors& log : errors) errors_.push_back(Weighted(log, scale_, options_));
     Linearise();
     goes_on = Descend();
     result.steps += goes_on;
+    if (on_step) {
+      on_step(result.steps, SquaredSum(errors_) / static_cast<double>(Count(errors_)));
+    }
   }
   result.has_converged = !goes_on;
   if (goes_on) Linearise();  // the last step moved on from where the slopes were taken
   Judge(Draws(generator), result);
   const double count = static_cast<double>(Count(errors_));
   result.loss_after = SquaredSum(errors_) / count;
-  result.loss_before = SquaredSum(WeightedAt(start)) / count;
-  result.trials_simulated =
-      evaluations_ * logs_.size() * static_cast<size_t>(options_.horizon.phases + options_.runs);
+  result.loss_before = SquaredSum(WeightedAt(start, options_)) / count;
+  result.trials_simulated = trials_simulated_;
   return result;
 }
 
@@ -267,9 +292,10 @@ void Check(const std::vector<FreeParameter>& parameters, const std::vector<Calib
 
 Calibration Calibrate(const std::vector<FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, const TwinAt& twin,
-                      const CalibrationOptions& options, std::mt19937_64& generator) {
+                      const CalibrationOptions& options, std::mt19937_64& generator, int threads,
+                      const CalibrationStep& on_step) {
   Check(parameters, logs);
-  return Fit(parameters, logs, twin, options).Run(generator);
+  return Fit(parameters, logs, twin, options, threads).Run(generator, on_step);
 }
 
 }  // namespace rift::sweep

@@ -93,15 +93,15 @@ Raw Evaluate(const CalibrationLog& log, const Traits& logged, const LoggedTraits
 /// Evaluates every log; which thread does it changes nothing.
 std::vector<Raw> EvaluateAll(const std::vector<CalibrationLog>& logs, const LoggedTraits& traits,
                              const TwinAt& twin, const std::vector<double>& values,
-                             const CalibrationOptions& options) {
+                             const CalibrationOptions& options, int threads) {
   std::vector<Raw> raws(logs.size());
   const auto work = [&](size_t first) {
-    for (size_t i = first; i < logs.size(); i += static_cast<size_t>(options.threads)) {
+    for (size_t i = first; i < logs.size(); i += static_cast<size_t>(threads)) {
       raws[i] = Evaluate(logs[i], traits.of_log[i], traits, twin(i, values), options);
     }
   };
   std::vector<std::future<void>> workers;
-  for (int i = 1; i < options.threads; ++i) {
+  for (int i = 1; i < threads; ++i) {
     workers.push_back(std::async(std::launch::async, work, static_cast<size_t>(i)));
   }
   work(0);
@@ -149,8 +149,8 @@ LoggedTraits TraitsOfLogs(const std::vector<CalibrationLog>& logs, const TwinAt&
 
 std::vector<LogErrors> ErrorsAt(const std::vector<CalibrationLog>& logs, const LoggedTraits& traits,
                                 const TwinAt& twin, const std::vector<double>& values,
-                                const CalibrationOptions& options) {
-  std::vector<Raw> raws = EvaluateAll(logs, traits, twin, values, options);
+                                const CalibrationOptions& options, int threads) {
+  std::vector<Raw> raws = EvaluateAll(logs, traits, twin, values, options, threads);
   std::vector<LogErrors> errors;
   for (size_t i = 0; i < raws.size(); ++i) {
     if (traits.partner[i] >= 0) {

@@ -35,7 +35,7 @@ struct LogErrors {
 
 std::vector<LogErrors> ErrorsAt(const std::vector<CalibrationLog>& logs, const LoggedTraits& traits,
                                 const TwinAt& twin, const std::vector<double>& values,
-                                const CalibrationOptions& options);
+                                const CalibrationOptions& options, int threads);
 
 /// Root mean square of each kind of motion error over all logs, (frames - 1) x 3; outliers cut.
 Eigen::MatrixXd ScaleOf(const std::vector<LogErrors>& errors, const CalibrationOptions& options);

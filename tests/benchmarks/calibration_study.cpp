@@ -39,7 +39,6 @@ sweep::FreeParameter ParseFree(const std::string& text) {
 
 Request ParseArguments(int count, char** arguments) {
   Request request;
-  request.options.threads = 2;
   for (int i = 1; i < count; ++i) {
     const std::string argument = arguments[i];
     if (argument == "--bumps") {
@@ -131,7 +130,7 @@ int Study(Request request) {
         return test::TwinOf(StudyAt(study, request.free, values), trials[log],
                             1 + 1000 * static_cast<std::uint64_t>(log));
       },
-      request.options, generator));
+      request.options, generator, 2));
   return 0;
 }
 

@@ -13,6 +13,7 @@
 #include "rift/gap/options.hpp"
 #include "rift/hardware/options.hpp"
 #include "rift/simulation/simulation_options.hpp"
+#include "rift/sweep/calibrate_options.hpp"
 #include "rift/sweep/falsify_options.hpp"
 #include "rift/sweep/options.hpp"
 #include "rift/sweep/run_options.hpp"
@@ -44,15 +45,18 @@ struct Experiment {
   hardware::HardwareOptions hardware;
   vision::TrackOptions track;
   twin::TwinOptions twin;
+  sweep::CalibrateOptions calibrate;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("name", self.name, "what reports call it; by default the name of the file");
     field("waypoints", self.waypoints, "the task: name, x, y, heading (of the first), stop");
-    field("goal", self.goal, "what a sweep is for: visit every combination, or look for failures");
+    field("goal", self.goal,
+          "what a sweep is for: visit every combination, look for failures, or fit the simulator");
     field("space", self.space, "the parameters to vary: a list of values, or a range to search");
     field("search", self.search, "how a sweep that is no grid looks for its goal");
     field("falsify", self.falsify, "what counts as a failure, and how sure it must be");
+    field("calibrate", self.calibrate, "what is fitted to which logs");
     field("run", self.run, "what a trial may cost; no part of what it computes");
     field("candidate", self.candidate, "the simulator: what is put to the test");
     field("start", self.start, "where a simulated trial begins: first waypoint, or as its log");
@@ -79,6 +83,10 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
 /// parameter was written, when a value breaks a rule.
 Experiment ExperimentAt(const Experiment& experiment,
                         const std::vector<sweep::ParameterValue>& theta);
+
+/// The experiment with its free parameters (calibrate.fit) at these values, in their order. Throws
+/// Error, naming where the parameter was written, when a value breaks a rule.
+Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>& values);
 
 /// Every key of an experiment with type, default and meaning, a paragraph each.
 std::string DescribeKeys();

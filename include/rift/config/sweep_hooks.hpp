@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "rift/config/fields.hpp"
+#include "rift/sweep/calibrate_options.hpp"
 #include "rift/sweep/options.hpp"
 
 /// How the values of a sweep that are no plain fields stand in YAML.
@@ -27,6 +28,20 @@ struct Hook<sweep::Space> {
   static constexpr std::string_view kTypeText = "parameter: [values], or {min, max}";
   static sweep::Space FromNode(const Node& node);
   static Node ToNode(const sweep::Space& space);
+};
+
+template <>
+struct Hook<sweep::HeldOutTrials> {
+  static constexpr std::string_view kTypeText = "list of names";
+  static sweep::HeldOutTrials FromNode(const Node& node);
+  static Node ToNode(const sweep::HeldOutTrials& trials);
+};
+
+template <>
+struct Hook<sweep::FreeParameters> {
+  static constexpr std::string_view kTypeText = "key: {min, max}";
+  static sweep::FreeParameters FromNode(const Node& node);
+  static Node ToNode(const sweep::FreeParameters& fit);
 };
 
 }  // namespace rift::config

@@ -21,7 +21,6 @@ struct CalibrationOptions {
   int resamples = 1000;
   double confidence = 0.95;
   double identified_share = 0.25;
-  int threads = 1;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
@@ -45,7 +44,6 @@ struct CalibrationOptions {
     field("identified_share", self.identified_share, 0.001, 1.0,
           "an interval that reaches further than this share of the range to either side says that "
           "the logs do not tell the parameter");
-    field("threads", self.threads, 1, 256, "logs evaluated at once; changes no result");
   }
 };
 
@@ -55,6 +53,7 @@ struct FreeParameter {
   double min = 0.0;
   double max = 1.0;
   double start = 0.5;
+  std::string origin{};  ///< where it was written, for messages
 };
 
 /// A log to fit. Logs of one setting repeat each other.
@@ -67,6 +66,9 @@ struct CalibrationLog {
 /// The simulated twin of a log, with one value for each free parameter. It starts where the robot
 /// stood, and its seed is that log's own.
 using TwinAt = std::function<SimulatedTrial(size_t log, const std::vector<double>& values)>;
+
+/// Told after each step of the fit: how many there were, and the loss (of that step's own scale).
+using CalibrationStep = std::function<void(int steps, double loss)>;
 
 struct CalibratedParameter {
   FreeParameter parameter;
@@ -94,8 +96,10 @@ struct Calibration {
 /// bang-bang loop they are chaotic. Intervals and correlations: bootstrap over logs, each draw
 /// fitted by one Gauss-Newton step. Throws std::invalid_argument for no logs, no parameters or a
 /// start out of range.
+/// `threads` evaluate logs at once and change no result.
 Calibration Calibrate(const std::vector<FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, const TwinAt& twin,
-                      const CalibrationOptions& options, std::mt19937_64& generator);
+                      const CalibrationOptions& options, std::mt19937_64& generator,
+                      int threads = 1, const CalibrationStep& on_step = {});
 
 }  // namespace rift::sweep

@@ -11,10 +11,13 @@
 namespace rift::sweep {
 
 enum class Goal {
-  kGrid,     ///< every combination of the levels
-  kFalsify,  ///< where the gap is largest
+  kGrid,       ///< every combination of the levels
+  kFalsify,    ///< where the gap is largest
+  kCalibrate,  ///< the simulator that predicts the logs
 };
-constexpr std::array<std::string_view, 2> EnumNames(Goal) { return {"grid", "falsify"}; }
+constexpr std::array<std::string_view, 3> EnumNames(Goal) {
+  return {"grid", "falsify", "calibrate"};
+}
 
 enum class ReferenceKind {
   kPath,     ///< the polyline through the waypoints
