@@ -142,8 +142,7 @@ int Sweep(const SweepRequest& request) {
   }
   Save(out, experiment, sources, *result);
   if (result->all.n == 0) return EndWithoutGap(request, *result);
-  const sweep::Explanation explanation =
-      sweep::Explain(*result, OptionsFor(request.explain));
+  const sweep::Explanation explanation = sweep::Explain(*result, OptionsFor(request.explain));
   WriteFile(out / "explanation.json", ExplanationJson(*result, explanation));
   WriteSweepReport(out, *result, explanation, experiment, sources);
   const std::vector<LikenessRow> likeness = MeasureSweepLikeness(experiment, sources);
