@@ -65,7 +65,7 @@ std::vector<sweep::TrialRow> FurtherTrials::Run(std::vector<sweep::TrialRequest>
   return *std::move(rows);
 }
 
-void FurtherTrials::Begin(int most) { progress_.emplace(style_.progress, most, true); }
+void FurtherTrials::Begin(int most) { progress_.emplace(style_.progress, SweepSize{.most = most}); }
 
 void FurtherTrials::End() {
   progress_->End("done");

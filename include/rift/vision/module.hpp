@@ -85,6 +85,6 @@ std::unique_ptr<Vision> LoadVision(const std::filesystem::path& module = VisionM
 
 /// The one symbol the module exports: `Vision* ()`, the caller owns the result. The number goes up
 /// whenever the interface or a struct in it changes, so that a stale module is refused by name.
-inline constexpr const char* kMakeVisionSymbol = "rift_vision_make_2";
+inline constexpr const char* kMakeVisionSymbol = "rift_vision_make_3";
 
 }  // namespace rift::vision

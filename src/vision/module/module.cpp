@@ -102,6 +102,6 @@ class OpenCvVision : public Vision {
 }  // namespace rift::vision
 
 // Its name is kMakeVisionSymbol of module.hpp, where the number is explained.
-extern "C" [[gnu::visibility("default")]] rift::vision::Vision* rift_vision_make_2() {
+extern "C" [[gnu::visibility("default")]] rift::vision::Vision* rift_vision_make_3() {
   return new rift::vision::OpenCvVision;
 }
