@@ -73,13 +73,15 @@ class Patience {
  public:
   explicit Patience(double limit_s) : limit_s_(limit_s) {}
   bool IsOver(const vision::Frame& frame) {
-    if (!begin_s_) begin_s_ = frame.captured_s;
-    return frame.captured_s - *begin_s_ >= limit_s_;
+    if (!has_begun_) begin_s_ = frame.captured_s;
+    has_begun_ = true;
+    return frame.captured_s - begin_s_ >= limit_s_;
   }
 
  private:
   double limit_s_;
-  std::optional<double> begin_s_;
+  bool has_begun_ = false;
+  double begin_s_ = 0.0;
 };
 
 vision::WorldFrame FromFirstPose(const WorldParts& parts, vision::CameraModel camera) {
@@ -108,7 +110,9 @@ vision::WorldFrame FromFirstPose(const WorldParts& parts, vision::CameraModel ca
 vision::WorldFrame FromTags(const WorldParts& parts, const vision::CameraModel& camera,
                             const std::vector<PlaceBlock>& tags) {
   std::vector<vision::ReferenceMark> marks;
-  for (const PlaceBlock& tag : tags) marks.push_back({tag.id, {tag.x_m, tag.y_m, tag.z_m}, {}});
+  for (const PlaceBlock& tag : tags) {
+    marks.push_back({tag.id, {tag.x_m, tag.y_m, tag.z_m}, Eigen::Vector2d::Zero()});
+  }
   Patience patience(parts.session.world_patience_s);
   for (;;) {
     ThrowIfOver(parts);
