@@ -57,9 +57,9 @@ class Client {
 };
 
 std::vector<std::uint8_t> Picture(const std::string& name, size_t size = 0) {
-  std::vector<std::uint8_t> bytes(size, 'x');
-  bytes.insert(bytes.end(), name.begin(), name.end());
-  return bytes;
+  std::string bytes(size, 'x');
+  bytes += name;
+  return {bytes.begin(), bytes.end()};
 }
 
 void WaitForClients(const MjpegServer& server, int count) {
