@@ -19,7 +19,7 @@ constexpr std::uint64_t kGrainSeed = 0xf1008;
 /// Exposures that are averaged where the shutter is open for a while: one a pixel of smear. So many
 /// edges need fewer points each.
 constexpr int kMostMoments = 8;
-constexpr int kFineOfMoments = 4;
+constexpr int kFineOfMoments = 6;
 
 Region Union(const Region& a, const Region& b) {
   if (a.empty()) return b;

@@ -1,5 +1,6 @@
 #include "rift/config/experiment.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <random>
@@ -47,6 +48,20 @@ TEST_CASE("A waypoint file of the authors is an experiment with every default") 
   CHECK(experiment.gap.threshold_m == 0.06);
 }
 
+/// What a fit asks of the rest of its experiment.
+void MakeFit(Experiment& experiment) {
+  experiment.space.parameters.clear();
+  experiment.candidate.kind = sweep::CandidateKind::kSimulation;
+  experiment.reference.kind = sweep::ReferenceKind::kLogs;
+  experiment.reference.tag_offset_m = 0.0;
+  const double start = experiment.simulation.motor.mismatch;
+  experiment.calibrate.fit.list = {{.key = "simulation.motor.mismatch",
+                                    .min = std::max(start - 0.1, -0.5),
+                                    .max = std::min(start + 0.1, 0.5),
+                                    .start = start}};
+  experiment.calibrate.holdout.names = {"02"};
+}
+
 TEST_CASE("A resolved experiment loads as the same experiment") {
   std::mt19937_64 random(1);
   for (int i = 0; i < 300; ++i) {
@@ -59,6 +74,7 @@ TEST_CASE("A resolved experiment loads as the same experiment") {
     experiment.reference.trials.names = {"1", "02", test::RandomText(random) + "x"};
     experiment.reference.path.text = "/logs/{surface}: " + test::RandomText(random);
     experiment.candidate.path.text = "/a/b.csv";
+    if (experiment.goal == sweep::Goal::kCalibrate) MakeFit(experiment);
     for (auto& [name, surface] : experiment.simulation.terrain.surfaces) {
       if (!surface.image.empty()) surface.image = "/maps/hill.png";  // absolute, as once loaded
     }

@@ -208,7 +208,7 @@ TEST_CASE("A page of many thousand trials opens") {
   const BrowserVisit visit = Visit(RenderPage(synthetic::Continuous(8000)));
   SKIP_WITHOUT_BROWSER(visit);
   CHECK(visit.console == "");
-  CHECK_THAT(visit.dom, Contains("data-drawn=\"6\""));
+  CHECK_THAT(visit.dom, Contains("data-drawn=\"7\""));
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
   CHECK_THAT(yaml, Contains("start") && Contains("wp2") && !Contains("wp3"));
   CHECK_THAT(yaml, Contains("stop: false"));
   const ProcessResult simulated = test::RunRift(
-      {"simulate", waypoints, "--out", folder / "sim", "--set", "trial.max_duration_s=20"});
+      {"simulate", waypoints, "--out", folder / "sim", "--set", "trial.timeout_s=20"});
   INFO(simulated.err);
   CHECK(simulated.exit_code <= 1);
   CHECK(std::filesystem::exists(folder / "sim/trajectory.csv"));
