@@ -36,7 +36,8 @@ bool Portfolio::IsExploring() const {
 }
 
 Portfolio::Member Portfolio::Explorer() const {
-  return corner_points_ < options_.corner_share * explored_points_ ? kCorners : kSobol;
+  const double corners_due = options_.corner_share * static_cast<double>(known_.archive.Size());
+  return corner_points_ < corners_due ? kCorners : kSobol;
 }
 
 bool Portfolio::MayPropose(Member member) const {
