@@ -109,7 +109,7 @@ TEST_CASE("The photographs of the paper's camera are not called good and why is 
   CHECK(result.exit_code <= 1);
   CHECK_THAT(result.out, Contains("verdict: ") && !Contains("verdict: good"));
   CHECK_THAT(result.out, Contains("calibration_00.jpg is left out: the picture is black"));
-  CHECK_THAT(result.out, Contains("drawn over") && Contains("px RMS"));
+  CHECK_THAT(result.out, Contains("drawn over") && Contains("px RMS") && Contains("not flat"));
 }
 
 }  // namespace
