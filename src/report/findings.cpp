@@ -14,7 +14,11 @@ namespace rift::report {
 namespace {
 
 std::string Metres(double value_m) { return fmt::format("{:.4f} m", value_m); }
-std::string Percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
+/// Rare is not never: shares below a per cent keep their digits.
+std::string Percent(double share) {
+  const double percent = 100.0 * share;
+  return fmt::format("{:.{}f} %", percent, percent > 0.0 && percent < 1.0 ? 2 : 0);
+}
 
 std::string Count(long n, std::string_view noun) {
   return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
