@@ -88,12 +88,12 @@ TEST_CASE("Fifty kills of coordinator and workers leave the bytes of a sweep as 
           "[.][long]") {
   std::mt19937_64 generator(4);
   const std::vector<std::pair<std::string, std::vector<std::string>>> sweeps{
-      {kGrid, {"--set", "reference.trials=150"}}, {kSearch, {"--budget", "160"}}};
+      {kGrid, {"--set", "reference.trials=1000"}}, {kSearch, {"--budget", "500"}}};
   for (const auto& [text, more] : sweeps) {
     const Sweep sweep(text);
     REQUIRE(RunRift(sweep.Command("whole", more)).exit_code == 0);
     const test::KilledSweep killed =
-        test::SweepUnderFire(sweep.Command("killed", more), 50, 1.0, generator);
+        test::SweepUnderFire(sweep.Command("killed", more), 50, 0.4, generator);
     REQUIRE(killed.last.exit_code == 0);
     WARN(killed.coordinator_kills << " kills of the coordinator and " << killed.worker_kills
                                   << " of workers in " << killed.starts << " starts");
