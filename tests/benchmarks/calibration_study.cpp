@@ -8,8 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <exception>
-
+#include "benchmarks/run_study.hpp"
 #include "identification/trial_grid.hpp"
 #include "rift/config/bind.hpp"
 #include "rift/config/load.hpp"
@@ -138,14 +137,5 @@ int Study(Request request) {
 }  // namespace rift
 
 int main(int count, char** arguments) {
-  try {
-    if (rift::test::TrialsFolder().empty()) {
-      fmt::print("SKIPPED: the authors' trials are not beside this clone (../shared/trials)\n");
-      return 0;
-    }
-    return rift::Study(rift::ParseArguments(count, arguments));
-  } catch (const std::exception& fault) {
-    fmt::print(stderr, "{}\n", fault.what());
-    return 1;
-  }
+  return rift::test::RunStudy([&] { return rift::Study(rift::ParseArguments(count, arguments)); });
 }

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <exception>
 #include <map>
 
+#include "benchmarks/run_study.hpp"
 #include "identification/trial_grid.hpp"
 #include "rift/config/bind.hpp"
 #include "rift/config/load.hpp"
@@ -149,14 +149,5 @@ int Study(const Request& request) {
 }  // namespace rift
 
 int main(int count, char** arguments) {
-  try {
-    if (rift::test::TrialsFolder().empty()) {
-      fmt::print("SKIPPED: the authors' trials are not beside this clone (../shared/trials)\n");
-      return 0;
-    }
-    return rift::Study(rift::ParseArguments(count, arguments));
-  } catch (const std::exception& fault) {
-    fmt::print(stderr, "{}\n", fault.what());
-    return 1;
-  }
+  return rift::test::RunStudy([&] { return rift::Study(rift::ParseArguments(count, arguments)); });
 }

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <exception>
 
+#include "benchmarks/run_study.hpp"
 #include "identification/grid_study.hpp"
 #include "rift/config/bind.hpp"
 #include "rift/config/load.hpp"
@@ -146,14 +146,5 @@ int Study(const Request& request) {
 }  // namespace rift
 
 int main(int count, char** arguments) {
-  try {
-    if (rift::test::TrialsFolder().empty()) {
-      fmt::print("SKIPPED: the authors' trials are not beside this clone (../shared/trials)\n");
-      return 0;
-    }
-    return rift::Study(rift::ParseArguments(count, arguments));
-  } catch (const std::exception& fault) {
-    fmt::print(stderr, "{}\n", fault.what());
-    return 1;
-  }
+  return rift::test::RunStudy([&] { return rift::Study(rift::ParseArguments(count, arguments)); });
 }

@@ -14,6 +14,7 @@
 
 #include "rift/view/film.hpp"
 #include "support/process.hpp"
+#include "support/virtual_display.hpp"
 #include "view/synthetic_run.hpp"
 
 namespace rift::view {
@@ -124,41 +125,6 @@ TEST_CASE("Without a display there is a reason in one line and no window and no 
   CHECK_THROWS_WITH(viewer->PlayInWindow(MakeFilm(StraightRun()), {}), missing);
 }
 
-// An X server of our own on a free display, ended with the object.
-class VirtualDisplay {
- public:
-  VirtualDisplay() {
-    int ends[2];
-    if (pipe(ends) != 0) return;
-    pid_ = fork();
-    if (pid_ == 0) {
-      close(ends[0]);
-      const std::string descriptor = std::to_string(ends[1]);
-      execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", "1400x900x24",
-             "-nolisten", "tcp", static_cast<char*>(nullptr));
-      _exit(127);
-    }
-    close(ends[1]);
-    char letter = 0;
-    while (read(ends[0], &letter, 1) == 1 && letter != '\n') number_ += letter;
-    close(ends[0]);
-  }
-  ~VirtualDisplay() {
-    if (pid_ <= 0) return;
-    kill(pid_, SIGTERM);
-    waitpid(pid_, nullptr, 0);
-  }
-  VirtualDisplay(const VirtualDisplay&) = delete;
-  VirtualDisplay& operator=(const VirtualDisplay&) = delete;
-
-  bool Runs() const { return !number_.empty(); }
-  std::string Name() const { return ":" + number_; }
-
- private:
-  pid_t pid_ = -1;
-  std::string number_;
-};
-
 // Set in the process that opens the window: one of its own, since Qt takes its process along when
 // the display ends.
 constexpr const char* kShows = "RIFT_TEST_SHOWS_WINDOW";
@@ -175,7 +141,7 @@ void ShowWindow() {
 
 TEST_CASE(kWindowCase) {
   if (std::getenv(kShows) != nullptr) return ShowWindow();
-  const VirtualDisplay server;
+  const test::VirtualDisplay server;
   if (!server.Runs()) {
     WARN("SKIPPED: Xvfb is not installed");
     return;
