@@ -14,8 +14,9 @@ VirtualDisplay::VirtualDisplay() {
   if (pid_ == 0) {
     close(ends[0]);
     const std::string descriptor = std::to_string(ends[1]);
+    // Without -noreset the server starts over when its last client goes, and refuses the next.
     execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", "1400x900x24",
-           "-nolisten", "tcp", static_cast<char*>(nullptr));
+           "-nolisten", "tcp", "-noreset", static_cast<char*>(nullptr));
     _exit(127);
   }
   close(ends[1]);
