@@ -33,12 +33,6 @@ struct Entry {
   sweep::CalibrationLog log;
 };
 
-std::string SettingOf(const sweep::Theta& theta) {
-  std::string setting;
-  for (const sweep::ParameterValue& value : theta) setting += value.text + ' ';
-  return setting;
-}
-
 class Calibrator {
  public:
   Calibrator(const config::Experiment& experiment, const CalibrateRequest& request)
@@ -94,8 +88,6 @@ void Calibrator::Load() {
   for (const sweep::Theta& theta : sweep::GridPoints(parameters)) {
     for (const sweep::TrialRequest& request : sweep::TrialsAt(sources_.Plan(), theta)) {
       sweep::Recording real = sources_.Reference(request);
-      const std::string level =
-          parameters.empty() ? "" : theta[sweep::SplitFactors(parameters).main_factor].text;
       if (real.status == sweep::TrialStatus::kOk && !real.trajectory.HasYaw()) {
         real.status = sweep::TrialStatus::kUnreadable;
         real.reason = "its yaw is needed: set reference.format";
@@ -106,11 +98,11 @@ void Calibrator::Load() {
       }
       entries_.push_back(
           {theta,
-           {.level = level,
+           {.level = sweep::MainLevel(parameters, theta),
             .trial = request.trial,
             .source = real.source,
             .is_held_out = IsHeldOut(request.trial)},
-           {.name = real.source, .setting = SettingOf(theta), .log = real.trajectory}});
+           {.name = real.source, .setting = sweep::SettingKey(theta), .log = real.trajectory}});
     }
   }
   if (Side(false).size() >= 2) return;

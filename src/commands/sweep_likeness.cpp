@@ -25,16 +25,6 @@ bool HasRepeatedLogs(const config::Experiment& experiment) {
                       [](const sweep::Parameter& axis) { return axis.IsContinuous(); });
 }
 
-std::string LevelOf(const std::vector<sweep::Parameter>& parameters, const sweep::Theta& theta) {
-  return parameters.empty() ? "" : theta[sweep::SplitFactors(parameters).main_factor].text;
-}
-
-std::string SettingOf(const sweep::Theta& theta) {
-  std::string setting;
-  for (const sweep::ParameterValue& value : theta) setting += value.text + '\n';
-  return setting;
-}
-
 /// The trials of one setting. A candidate log that serves all repeats is one run, not several.
 void AddSetting(const config::Experiment& experiment, const sweep::Theta& theta,
                 SweepSources& sources, std::vector<Labelled>& trials) {
@@ -44,8 +34,8 @@ void AddSetting(const config::Experiment& experiment, const sweep::Theta& theta,
   for (const sweep::TrialRequest& request : sweep::TrialsAt(sources.Plan(), theta)) {
     const sweep::Recording real = sources.Reference(request);
     if (real.status != TrialStatus::kOk) continue;
-    Labelled labelled{LevelOf(experiment.space.parameters, theta),
-                      {.setting = SettingOf(theta),
+    Labelled labelled{sweep::MainLevel(experiment.space.parameters, theta),
+                      {.setting = sweep::SettingKey(theta),
                        .real = real.trajectory,
                        .waypoints = at.waypoints,
                        .control = at.control}};

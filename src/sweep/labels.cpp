@@ -38,4 +38,15 @@ std::string CombinationLabel(const std::vector<ParameterValue>& theta,
   return "[" + label + "]";
 }
 
+std::string MainLevel(const std::vector<Parameter>& parameters,
+                      const std::vector<ParameterValue>& theta) {
+  return parameters.empty() ? "" : theta[SplitFactors(parameters).main_factor].text;
+}
+
+std::string SettingKey(const std::vector<ParameterValue>& theta) {
+  std::string key;
+  for (const ParameterValue& value : theta) key += value.text + '\n';
+  return key;
+}
+
 }  // namespace rift::sweep

@@ -22,6 +22,13 @@ FactorSplit SplitFactors(const std::vector<Parameter>& parameters);
 std::string CombinationLabel(const std::vector<ParameterValue>& theta,
                              const std::vector<int>& parameters);
 
+/// The value of the main factor; empty in a space without parameters.
+std::string MainLevel(const std::vector<Parameter>& parameters,
+                      const std::vector<ParameterValue>& theta);
+
+/// A text that is the same for two settings only when all their values are written the same.
+std::string SettingKey(const std::vector<ParameterValue>& theta);
+
 /// Rows grouped by the combination of the named parameters' values, in the order of first rows.
 std::vector<LevelSummary> SummariseBy(const SweepResult& result,
                                       const std::vector<int>& parameters);
