@@ -69,6 +69,8 @@ pid_t RunningRift::SignalWorker(int signal, std::mt19937_64& generator, pid_t sp
   std::erase(workers, spared);
   if (workers.empty()) return 0;
   const pid_t worker = workers[generator() % workers.size()];
+  ::usleep(20'000);  // a child that is about to become gnuplot is called rift until then
+  if (!IsRift(worker)) return 0;
   return ::kill(worker, signal) == 0 ? worker : 0;
 }
 
