@@ -72,13 +72,13 @@ std::string ReadFile(const std::filesystem::path& path) {
   const Descriptor file(path, O_RDONLY);
   if (!file.IsOpen()) CannotRead(path);
   struct stat about {};
-  std::string text;
-  // The size is a hint: a pipe has none and a growing log has more.
-  if (::fstat(file.Number(), &about) == 0 && S_ISREG(about.st_mode))
-    text.reserve(about.st_size + 1);
+  // The size is a hint: a pipe has none and a growing log has more. One byte more finds the end of
+  // the file without another, larger block.
+  const bool has_size = ::fstat(file.Number(), &about) == 0 && S_ISREG(about.st_mode);
+  std::string text(std::max<size_t>(has_size ? about.st_size + 1 : 0, 4096), '\0');
   size_t used = 0;
   while (true) {
-    text.resize(std::max(text.capacity(), used + 65536));
+    if (used == text.size()) text.resize(2 * used);
     const ssize_t got = ::read(file.Number(), text.data() + used, text.size() - used);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) CannotRead(path);

@@ -6,9 +6,6 @@
 namespace rift::gap {
 namespace {
 
-/// A fit over more points than this moves by less than a micrometre.
-constexpr int kMostFitSamples = 2000;
-
 Eigen::Vector2d Centroid(const std::vector<Eigen::Vector2d>& points) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& point : points) sum += point;
@@ -24,11 +21,14 @@ geometry::Pose2 StartMotion(const ArcPath& sim, const ArcPath& real) {
 
 geometry::Pose2 BestRigidMotion(const ArcPath& sim, const ArcPath& real, int samples) {
   const int count = std::clamp(samples, 2, kMostFitSamples);
-  const std::vector<Eigen::Vector2d> p_in_sim = Resample(sim, count);
-  const std::vector<Eigen::Vector2d> p_in_real = Resample(real, count);
+  return BestRigidMotion(Resample(sim, count), Resample(real, count));
+}
+
+geometry::Pose2 BestRigidMotion(const std::vector<Eigen::Vector2d>& p_in_sim,
+                                const std::vector<Eigen::Vector2d>& p_in_real) {
   const Eigen::Vector2d sim_centre = Centroid(p_in_sim), real_centre = Centroid(p_in_real);
   double along = 0.0, across = 0.0;
-  for (int i = 0; i < count; ++i) {
+  for (size_t i = 0; i < p_in_sim.size(); ++i) {
     const Eigen::Vector2d a = p_in_sim[i] - sim_centre, b = p_in_real[i] - real_centre;
     along += a.dot(b);
     across += a.x() * b.y() - a.y() * b.x();

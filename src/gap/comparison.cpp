@@ -92,29 +92,42 @@ double GapAfter(const Paths& paths, const geometry::Pose2& real_from_sim,
 }
 
 double YawAt(const ArcPath& path, double u, size_t& i) {
-  if (path.yaw_rad.empty()) return kNotComputed;
   while (i + 2 < path.Size() && path.u[i + 1] <= u) ++i;
   const double span = path.u[i + 1] - path.u[i];
   const double share = span > 0.0 ? (u - path.u[i]) / span : 0.0;
   return path.yaw_rad[i] + share * (path.yaw_rad[i + 1] - path.yaw_rad[i]);
 }
 
-ErrorProfile ProfileOf(const Paths& paths, const GapOptions& options) {
-  const std::vector<Eigen::Vector2d> sim_m = Resample(paths.sim, options.samples);
-  const std::vector<Eigen::Vector2d> real_m = Resample(paths.real, options.samples);
-  const size_t first = FirstSample(options);
-  ErrorProfile profile;
-  profile.sim_m.assign(sim_m.begin() + first, sim_m.end());
-  profile.real_m.assign(real_m.begin() + first, real_m.end());
-  size_t i = 0, j = 0;
-  for (size_t k = first; k < sim_m.size(); ++k) {
-    const double u = SampleU(static_cast<int>(k), options);
-    profile.u.push_back(u);
-    profile.error_m.push_back((real_m[k] - sim_m[k]).norm());
-    profile.yaw_error_rad.push_back(
-        geometry::WrapToPi(YawAt(paths.sim, u, i) - YawAt(paths.real, u, j)));
+/// The points of both paths at the samples, those left out at the start included.
+struct SampledPaths {
+  SampledPaths(const Paths& paths, const GapOptions& options)
+      : sim_m(Resample(paths.sim, options.samples)),
+        real_m(Resample(paths.real, options.samples)) {}
+
+  Points sim_m;
+  Points real_m;
+};
+
+std::vector<double> Errors_m(const SampledPaths& samples, const GapOptions& options) {
+  std::vector<double> errors_m;
+  errors_m.reserve(samples.sim_m.size());
+  for (size_t k = FirstSample(options); k < samples.sim_m.size(); ++k) {
+    errors_m.push_back((samples.real_m[k] - samples.sim_m[k]).norm());
   }
-  return profile;
+  return errors_m;
+}
+
+/// Empty when one of the yaws is not known.
+std::vector<double> YawErrors_rad(const Paths& paths, const GapOptions& options) {
+  std::vector<double> errors_rad;
+  if (paths.sim.yaw_rad.empty() || paths.real.yaw_rad.empty()) return errors_rad;
+  errors_rad.reserve(options.samples);
+  size_t i = 0, j = 0;
+  for (int k = FirstSample(options); k < options.samples; ++k) {
+    const double u = SampleU(k, options);
+    errors_rad.push_back(geometry::WrapToPi(YawAt(paths.sim, u, i) - YawAt(paths.real, u, j)));
+  }
+  return errors_rad;
 }
 
 double Mean(const std::vector<double>& values) {
@@ -132,19 +145,26 @@ double Quantile(std::vector<double>& values, double share) {
   return low + (position - static_cast<double>(below)) * (high - low);
 }
 
-void SummariseErrors(ErrorProfile profile, Comparison& result) {
-  result.mean_error_m = Mean(profile.error_m);
+void SummariseErrors(std::vector<double> errors_m, Comparison& result) {
+  result.mean_error_m = Mean(errors_m);
   double squares = 0.0;
-  for (const double error_m : profile.error_m) squares += error_m * error_m;
-  result.rms_error_m = std::sqrt(squares / static_cast<double>(profile.error_m.size()));
-  result.median_error_m = Quantile(profile.error_m, 0.5);
-  result.p95_error_m = Quantile(profile.error_m, 0.95);
-  for (double& yaw_error_rad : profile.yaw_error_rad) yaw_error_rad = std::abs(yaw_error_rad);
-  result.mean_yaw_error_rad = Mean(profile.yaw_error_rad);
-  if (!std::isnan(result.mean_yaw_error_rad)) {
-    result.max_yaw_error_rad =
-        *std::max_element(profile.yaw_error_rad.begin(), profile.yaw_error_rad.end());
-  }
+  for (const double error_m : errors_m) squares += error_m * error_m;
+  result.rms_error_m = std::sqrt(squares / static_cast<double>(errors_m.size()));
+  result.median_error_m = Quantile(errors_m, 0.5);
+  result.p95_error_m = Quantile(errors_m, 0.95);
+}
+
+void SummariseYawErrors(std::vector<double> errors_rad, Comparison& result) {
+  if (errors_rad.empty()) return;
+  for (double& error_rad : errors_rad) error_rad = std::abs(error_rad);
+  result.mean_yaw_error_rad = Mean(errors_rad);
+  result.max_yaw_error_rad = *std::max_element(errors_rad.begin(), errors_rad.end());
+}
+
+/// The same to the bit as from the paths, of which the samples are at hand in the usual case.
+geometry::Pose2 BestMotion(const Paths& paths, const SampledPaths& samples, int count) {
+  return count <= kMostFitSamples ? BestRigidMotion(samples.sim_m, samples.real_m)
+                                  : BestRigidMotion(paths.sim, paths.real, count);
 }
 
 Points Vertices(const ArcPath& path) {
@@ -174,7 +194,17 @@ double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real
 
 ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                           const GapOptions& options) {
-  return ProfileOf(Prepare(sim, real, options, Columns::kAll), options);
+  const Paths paths = Prepare(sim, real, options, Columns::kAll);
+  const SampledPaths samples(paths, options);
+  const int first = FirstSample(options);
+  ErrorProfile profile;
+  for (int k = first; k < options.samples; ++k) profile.u.push_back(SampleU(k, options));
+  profile.error_m = Errors_m(samples, options);
+  profile.yaw_error_rad = YawErrors_rad(paths, options);
+  if (profile.yaw_error_rad.empty()) profile.yaw_error_rad.assign(profile.u.size(), kNotComputed);
+  profile.sim_m.assign(samples.sim_m.begin() + first, samples.sim_m.end());
+  profile.real_m.assign(samples.real_m.begin() + first, samples.real_m.end());
+  return profile;
 }
 
 Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
@@ -189,7 +219,9 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
   const Peak exact = ExactPeak(error, options);
   result.exact_gap_m = exact.error_m;
   result.exact_gap_u = exact.u;
-  SummariseErrors(ProfileOf(paths, options), result);
+  const SampledPaths samples(paths, options);
+  SummariseErrors(Errors_m(samples, options), result);
+  SummariseYawErrors(YawErrors_rad(paths, options), result);
 
   result.sim_length_m = paths.sim.length_m;
   result.real_length_m = paths.real.length_m;
@@ -199,7 +231,7 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
       (paths.sim.Vertex(paths.sim.Size() - 1) - paths.real.Vertex(paths.real.Size() - 1)).norm();
 
   result.start_aligned_gap_m = GapAfter(paths, StartMotion(paths.sim, paths.real), options);
-  result.real_from_sim = BestRigidMotion(paths.sim, paths.real, options.samples);
+  result.real_from_sim = BestMotion(paths, samples, options.samples);
   result.shape_gap_m = GapAfter(paths, result.real_from_sim, options);
   result.sim_standstill_share = StandstillShare(sim.poses, options.standstill_radius_m);
   result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);

@@ -10,57 +10,83 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The edges of a polyline, a column for each number, so that the loop over them vectorises.
-struct Edges {
-  explicit Edges(const Points& points) {
-    for (size_t i = 1; i < points.size(); ++i) {
-      const Eigen::Vector2d along = points[i] - points[i - 1];
-      const double squared_length = along.squaredNorm();
-      x.push_back(points[i - 1].x());
-      y.push_back(points[i - 1].y());
-      along_x.push_back(along.x());
-      along_y.push_back(along.y());
-      inverse_squared_length.push_back(squared_length > 0.0 ? 1.0 / squared_length : 0.0);
+/// The coordinates of a row of points, a column each, for arithmetic on all of them at once.
+struct Coordinates {
+  explicit Coordinates(const Points& points) : x(points.size()), y(points.size()) {
+    for (size_t i = 0; i < points.size(); ++i) {
+      x[i] = points[i].x();
+      y[i] = points[i].y();
     }
   }
-
-  double SquaredDistanceTo(const Eigen::Vector2d& p) const {
-    double closest = kInfinity;
-    for (size_t i = 0; i < x.size(); ++i) {
-      const double to_x = p.x() - x[i], to_y = p.y() - y[i];
-      const double share = (to_x * along_x[i] + to_y * along_y[i]) * inverse_squared_length[i];
-      const double on_edge = std::max(0.0, std::min(1.0, share));
-      const double off_x = to_x - on_edge * along_x[i], off_y = to_y - on_edge * along_y[i];
-      closest = std::min(closest, off_x * off_x + off_y * off_y);
-    }
-    return closest;
-  }
-
-  std::vector<double> x, y, along_x, along_y, inverse_squared_length;
+  Eigen::ArrayXd x, y;
 };
 
 double DirectedHausdorff_m(const Points& from, const Points& to) {
-  const Edges edges(to);
+  const Coordinates vertices(to);
+  const Eigen::Index edges = vertices.x.size() - 1;
+  const auto x = vertices.x.head(edges), y = vertices.y.head(edges);
+  const Eigen::ArrayXd along_x = vertices.x.tail(edges) - x, along_y = vertices.y.tail(edges) - y;
+  const Eigen::ArrayXd squared_length = along_x.square() + along_y.square();
+  const Eigen::ArrayXd inverse =
+      squared_length.unaryExpr([](double square) { return square > 0.0 ? 1.0 / square : 0.0; });
+  Eigen::ArrayXd to_x(edges), to_y(edges), on_edge(edges);
   double largest = 0.0;
-  for (const Eigen::Vector2d& p : from) largest = std::max(largest, edges.SquaredDistanceTo(p));
+  for (const Eigen::Vector2d& p : from) {
+    to_x = p.x() - x;
+    to_y = p.y() - y;
+    on_edge = ((to_x * along_x + to_y * along_y) * inverse).min(1.0).max(0.0);
+    const double closest =
+        ((to_x - on_edge * along_x).square() + (to_y - on_edge * along_y).square()).minCoeff();
+    largest = std::max(largest, closest);
+  }
   return std::sqrt(largest);
 }
 
-/// Squared distances from one point to each of a row of points, all at once.
-class SquaredDistances {
+/// Squared distances between the points of two rows that a table of both has on one diagonal: its
+/// cells do not depend on each other, so that whole diagonals are computed at once.
+class DiagonalDistances {
  public:
-  explicit SquaredDistances(const Points& points) : x_(points.size()), y_(points.size()) {
-    for (size_t i = 0; i < points.size(); ++i) {
-      x_[i] = points[i].x();
-      y_[i] = points[i].y();
+  DiagonalDistances(const Points& a, const Points& b) : a_(a), b_(Points(b.rbegin(), b.rend())) {}
+
+  /// Calls visit(first, squared_distances) for the diagonals i + j = 0, 1, ..., of which the first
+  /// cell has i = first.
+  template <class Visit>
+  void ForEach(Visit&& visit) const {
+    const Eigen::Index rows = a_.x.size(), columns = b_.x.size();
+    for (Eigen::Index sum = 0; sum < rows + columns - 1; ++sum) {
+      const Eigen::Index first = std::max<Eigen::Index>(0, sum - columns + 1);
+      const Eigen::Index size = std::min(rows, sum + 1) - first;
+      const Eigen::Index in_b = first + columns - 1 - sum;
+      visit(first, (a_.x.segment(first, size) - b_.x.segment(in_b, size)).square() +
+                       (a_.y.segment(first, size) - b_.y.segment(in_b, size)).square());
     }
-  }
-  auto From(const Eigen::Vector2d& p) const {
-    return (p.x() - x_).square() + (p.y() - y_).square();
   }
 
  private:
-  Eigen::ArrayXd x_, y_;
+  Coordinates a_, b_;  ///< b from its last point on
+};
+
+/// One number for each cell of the diagonal that is being filled and of the two before it. Cell
+/// (i, j) stands at i + 1; what lies outside the table is infinite.
+struct Diagonals {
+  explicit Diagonals(size_t rows)
+      : cells(Eigen::ArrayXd::Constant(rows + 1, kInfinity)), last(cells), before_last(cells) {}
+
+  auto Cells(Eigen::Index first, Eigen::Index size) { return cells.segment(first + 1, size); }
+  auto FromAbove(Eigen::Index first, Eigen::Index size) const { return last.segment(first, size); }
+  auto FromLeft(Eigen::Index first, Eigen::Index size) const {
+    return last.segment(first + 1, size);
+  }
+  auto FromCorner(Eigen::Index first, Eigen::Index size) const {
+    return before_last.segment(first, size);
+  }
+  void GoOn() {
+    before_last[0] = kInfinity;
+    before_last.swap(last);
+    last.swap(cells);
+  }
+
+  Eigen::ArrayXd cells, last, before_last;
 };
 
 double Duration_s(const ArcPath& path) { return path.t_s.back() - path.t_s.front(); }
@@ -81,46 +107,40 @@ double Hausdorff_m(const Points& a, const Points& b) {
 
 double DiscreteFrechet_m(const Points& a, const Points& b) {
   // Squared distances: the order of maxima and minima is the same, one root at the end.
-  const SquaredDistances to_b(b);
-  Eigen::ArrayXd distance(b.size());
-  std::vector<double> row(b.size() + 1, kInfinity);
-  for (size_t i = 0; i < a.size(); ++i) {
-    distance = to_b.From(a[i]);
-    double diagonal = i == 0 ? 0.0 : kInfinity;
-    row[0] = kInfinity;
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const double reach = std::min(std::min(diagonal, row[j]), row[j - 1]);
-      diagonal = row[j];
-      row[j] = std::max(reach, distance[j - 1]);
-    }
-  }
-  return std::sqrt(row.back());
+  Diagonals leash(a.size());
+  leash.before_last[0] = 0.0;
+  DiagonalDistances(a, b).ForEach([&](Eigen::Index first, const auto& squared_distances) {
+    const Eigen::Index size = squared_distances.size();
+    leash.Cells(first, size) = leash.FromCorner(first, size)
+                                   .min(leash.FromAbove(first, size))
+                                   .min(leash.FromLeft(first, size))
+                                   .max(squared_distances);
+    leash.GoOn();
+  });
+  return std::sqrt(leash.last[a.size()]);
 }
 
 double DynamicTimeWarping_m(const Points& a, const Points& b) {
-  struct Cost {
-    double total_m = kInfinity;
-    int steps = 0;
-  };
-  // Two selections, not one branch: which way the walk goes is as good as random.
-  const auto cheaper = [](const Cost& one, const Cost& other) {
-    return Cost{std::min(one.total_m, other.total_m),
-                other.total_m < one.total_m ? other.steps : one.steps};
-  };
-  const SquaredDistances to_b(b);
-  Eigen::ArrayXd distance_m(b.size());
-  std::vector<Cost> row(b.size() + 1);
-  for (size_t i = 0; i < a.size(); ++i) {
-    distance_m = to_b.From(a[i]).sqrt();
-    Cost diagonal = i == 0 ? Cost{0.0, 0} : Cost{};
-    row[0] = Cost{};
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const Cost best = cheaper(cheaper(diagonal, row[j]), row[j - 1]);
-      diagonal = row[j];
-      row[j] = {best.total_m + distance_m[j - 1], best.steps + 1};
+  Diagonals total_m(a.size()), steps(a.size());
+  total_m.before_last[0] = steps.before_last[0] = 0.0;
+  Eigen::ArrayXd distances_m(a.size());
+  DiagonalDistances(a, b).ForEach([&](Eigen::Index first, const auto& squared_distances) {
+    const Eigen::Index size = squared_distances.size();
+    distances_m.head(size) = squared_distances.sqrt();
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const Eigen::Index i = first + k;
+      // Selections, not branches: which way the walk goes is as good as random.
+      const bool above = total_m.last[i] < total_m.before_last[i];
+      const double two_m = above ? total_m.last[i] : total_m.before_last[i];
+      const double two_steps = above ? steps.last[i] : steps.before_last[i];
+      const bool left = total_m.last[i + 1] < two_m;
+      total_m.cells[i + 1] = (left ? total_m.last[i + 1] : two_m) + distances_m[k];
+      steps.cells[i + 1] = (left ? steps.last[i + 1] : two_steps) + 1.0;
     }
-  }
-  return row.back().total_m / row.back().steps;
+    total_m.GoOn();
+    steps.GoOn();
+  });
+  return total_m.last[a.size()] / steps.last[a.size()];
 }
 
 double EqualTime_m(const ArcPath& a, const ArcPath& b) {
