@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <system_error>
+
+#include "number.hpp"
 
 namespace rift::trajectory::csv {
 namespace {
@@ -110,36 +111,40 @@ void RowReader::ReadHeader() {
 bool RowReader::Next() {
   while (!rest_.empty()) {
     ++line_number_;
-    const std::string_view line = TakeLine(rest_);
-    line_size_ = line.size();
-    if (ReadPlain(line)) return true;
-    if (IsSkipped(line)) continue;
-    ReadAny(line);
+    const size_t before = rest_.size();
+    if (!TakePlain()) {
+      const std::string_view line = TakeLine(rest_);
+      if (IsSkipped(line)) continue;
+      ReadAny(line);
+    }
+    line_size_ = before - rest_.size();
     return true;
   }
   return false;
 }
 
-size_t RowReader::RowsToExpect() const { return 2 + rest_.size() * 6 / (5 * (line_size_ + 1)); }
+size_t RowReader::RowsToExpect() const { return 2 + rest_.size() * 6 / (5 * line_size_); }
 
 bool RowReader::IsSkipped(std::string_view line) const {
   const std::string_view trimmed = Trim(line);
   return trimmed.empty() || (!has_header_ && trimmed.starts_with('#'));
 }
 
-/// The row of a large log, numbers and commas only, straight through. False for any other.
-bool RowReader::ReadPlain(std::string_view line) {
-  if (separator_ != ',') return false;
-  const char *at = line.data(), *const end = at + line.size();
+/// Takes off the row of a large log, numbers and commas only, in one go. False for any other, which
+/// is left where it is.
+bool RowReader::TakePlain() {
+  if (separator_ != ',' || cells_.empty()) return false;
+  const char *at = rest_.data(), *const end = at + rest_.size();
   for (double& cell : cells_) {
-    const auto [stop, error] = std::from_chars(at, end, cell);
+    if (&cell != &cells_.front() && (at == end || *at++ != ',')) return false;
+    const auto [stop, error] = FromChars(at, end, cell);
     if (error != std::errc{} || !std::isfinite(cell)) return false;
-    const bool is_last = &cell == &cells_.back();
-    if (is_last || stop == end) return is_last && stop == end;
-    if (*stop != ',') return false;
-    at = stop + 1;
+    at = stop;
   }
-  return false;
+  if (at != end && *at == '\r') ++at;
+  if (at != end && *at != '\n') return false;
+  rest_.remove_prefix(at - rest_.data() + (at != end));
+  return true;
 }
 
 void RowReader::ReadAny(std::string_view line) {
@@ -164,7 +169,7 @@ double RowReader::Number(std::string_view cell, size_t column) const {
   const std::string_view digits = WithoutPlus(cell);
   const char* const digits_end = digits.data() + digits.size();
   double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits_end, value);
+  const auto [end, error] = FromChars(digits.data(), digits_end, value);
   const bool is_number = error == std::errc{} && end == digits_end;
   if (!is_number || !std::isfinite(value)) Refuse(cell, column);
   return value;

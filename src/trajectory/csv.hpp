@@ -38,7 +38,7 @@ class RowReader {
  private:
   void ReadHeader();
   bool IsSkipped(std::string_view line) const;
-  bool ReadPlain(std::string_view line);
+  bool TakePlain();
   void ReadAny(std::string_view line);
   double Number(std::string_view cell, size_t column) const;
   [[noreturn]] void Refuse(std::string_view cell, size_t column) const;
@@ -49,7 +49,7 @@ class RowReader {
   const char separator_;
   std::vector<std::string> columns_;
   std::vector<double> cells_;  ///< as many as the first row had, or the header
-  size_t line_size_ = 0;
+  size_t line_size_ = 0;  ///< of the last row, its end included
   int line_number_ = 0;
 };
 

@@ -35,7 +35,7 @@ void CheckValue(double value, double limit, std::string_view column, const std::
 double Largest(const Trajectory& trajectory, double StampedPose::*angle) {
   double largest = 0.0;
   for (const StampedPose& pose : trajectory.poses) {
-    largest = std::fmax(largest, std::abs(pose.*angle));
+    if (std::abs(pose.*angle) > largest) largest = std::abs(pose.*angle);
   }
   return largest;
 }

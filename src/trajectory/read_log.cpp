@@ -93,6 +93,7 @@ void ForgetAngles(Log& log) {
 }
 
 void ConvertAngles(Log& log) {
+  if (log.format == Format::kRift || log.format == Format::kTum) return;
   for (StampedPose& pose : log.trajectory.poses) {
     if (log.format == Format::kTracker) FromTrackerFrame(pose);
     if (log.format == Format::kWebots) FromWebotsFrame(pose);
@@ -157,7 +158,11 @@ void CheckMoves(const Trajectory& trajectory, const std::string& name) {
     throw std::invalid_argument(fmt::format("{}: {} poses, and a trajectory needs at least 2", name,
                                             trajectory.poses.size()));
   }
-  if (!(trajectory.ArcLength_m() > 0.0)) {
+  const auto moves = [](const StampedPose& a, const StampedPose& b) {
+    return (b.Position() - a.Position()).norm() > 0.0;
+  };
+  const auto& poses = trajectory.poses;
+  if (std::adjacent_find(poses.begin(), poses.end(), moves) == poses.end()) {
     throw std::invalid_argument(
         fmt::format("{}: the path has zero length: the robot never moved", name));
   }
