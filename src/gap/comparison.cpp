@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <future>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "alignment.hpp"
@@ -25,15 +27,36 @@ constexpr int kMeasurePoints = 160;
 /// Hausdorff costs the product of the rows; up to this many pairs every vertex is looked at.
 constexpr size_t kMostHausdorffPairs = 65536;
 
+/// From this many rows on a second thread costs less than it saves.
+constexpr size_t kManyRows = 10'000;
+
+/// Does both, at the same time where `rows` are many.
+template <class One, class Other>
+void DoBoth(size_t rows, One&& one, Other&& other) {
+  if (rows < kManyRows) {
+    one();
+    other();
+    return;
+  }
+  std::future<void> beside = std::async(std::launch::async, std::forward<Other>(other));
+  one();
+  beside.get();
+}
+
 struct Paths {
   ArcPath sim;
   ArcPath real;
+
+  size_t Rows() const { return sim.Size() + real.Size(); }
 };
 
 /// Both paths as they are to be compared, after trimming and aligning.
 Paths Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
               const GapOptions& options, Columns columns) {
-  Paths paths{MakeArcPath(sim, options, columns), MakeArcPath(real, options, columns)};
+  Paths paths;
+  DoBoth(
+      sim.poses.size() + real.poses.size(), [&] { paths.sim = MakeArcPath(sim, options, columns); },
+      [&] { paths.real = MakeArcPath(real, options, columns); });
   if (options.align != Align::kNone) {
     Transform(paths.sim, AligningMotion(paths.sim, paths.real, options.align, options.samples));
   }
@@ -167,6 +190,31 @@ geometry::Pose2 BestMotion(const Paths& paths, const SampledPaths& samples, int 
                                   : BestRigidMotion(paths.sim, paths.real, count);
 }
 
+void MeasureErrors(const Paths& paths, const GapOptions& options, Comparison& result) {
+  const PathError error(paths.sim, paths.real);
+  const Peak sampled = SampledPeak(error, options);
+  result.gap_m = sampled.error_m;
+  result.gap_u = sampled.u;
+  const Peak exact = ExactPeak(error, options);
+  result.exact_gap_m = exact.error_m;
+  result.exact_gap_u = exact.u;
+  const SampledPaths samples(paths, options);
+  SummariseErrors(Errors_m(samples, options), result);
+  SummariseYawErrors(YawErrors_rad(paths, options), result);
+  result.start_aligned_gap_m = GapAfter(paths, StartMotion(paths.sim, paths.real), options);
+  result.real_from_sim = BestMotion(paths, samples, options.samples);
+  result.shape_gap_m = GapAfter(paths, result.real_from_sim, options);
+}
+
+void MeasureEnds(const Paths& paths, Comparison& result) {
+  result.sim_length_m = paths.sim.length_m;
+  result.real_length_m = paths.real.length_m;
+  result.length_ratio = paths.sim.length_m / paths.real.length_m;
+  result.start_offset_m = (paths.sim.Vertex(0) - paths.real.Vertex(0)).norm();
+  result.end_error_m =
+      (paths.sim.Vertex(paths.sim.Size() - 1) - paths.real.Vertex(paths.real.Size() - 1)).norm();
+}
+
 Points Vertices(const ArcPath& path) {
   Points points;
   points.reserve(path.Size());
@@ -211,33 +259,15 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
                    const GapOptions& options) {
   const Paths paths = Prepare(sim, real, options, Columns::kAll);
   Comparison result;
-
-  const PathError error(paths.sim, paths.real);
-  const Peak sampled = SampledPeak(error, options);
-  result.gap_m = sampled.error_m;
-  result.gap_u = sampled.u;
-  const Peak exact = ExactPeak(error, options);
-  result.exact_gap_m = exact.error_m;
-  result.exact_gap_u = exact.u;
-  const SampledPaths samples(paths, options);
-  SummariseErrors(Errors_m(samples, options), result);
-  SummariseYawErrors(YawErrors_rad(paths, options), result);
-
-  result.sim_length_m = paths.sim.length_m;
-  result.real_length_m = paths.real.length_m;
-  result.length_ratio = paths.sim.length_m / paths.real.length_m;
-  result.start_offset_m = (paths.sim.Vertex(0) - paths.real.Vertex(0)).norm();
-  result.end_error_m =
-      (paths.sim.Vertex(paths.sim.Size() - 1) - paths.real.Vertex(paths.real.Size() - 1)).norm();
-
-  result.start_aligned_gap_m = GapAfter(paths, StartMotion(paths.sim, paths.real), options);
-  result.real_from_sim = BestMotion(paths, samples, options.samples);
-  result.shape_gap_m = GapAfter(paths, result.real_from_sim, options);
-  result.sim_standstill_share = StandstillShare(sim.poses, options.standstill_radius_m);
-  result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);
-
-  MeasureShape(paths, result);
-  result.equal_time_m = EqualTime_m(paths.sim, paths.real);
+  DoBoth(
+      paths.Rows(), [&] { MeasureErrors(paths, options, result); },
+      [&] {
+        MeasureEnds(paths, result);
+        MeasureShape(paths, result);
+        result.equal_time_m = EqualTime_m(paths.sim, paths.real);
+        result.sim_standstill_share = StandstillShare(sim.poses, options.standstill_radius_m);
+        result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);
+      });
   return result;
 }
 
