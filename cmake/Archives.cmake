@@ -24,3 +24,14 @@ function(rift_archive name target)
     $<TARGET_PROPERTY:${target},INTERFACE_COMPILE_DEFINITIONS>)
   target_link_libraries(${name} INTERFACE ${files})
 endfunction()
+
+# Of fmt Debian has none: src/fmt.cpp makes it from fmt's headers.
+function(rift_fmt_archive)
+  add_library(rift_fmt STATIC "${PROJECT_SOURCE_DIR}/src/fmt.cpp")
+  set_target_properties(rift_fmt PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(rift_fmt PUBLIC
+    $<TARGET_PROPERTY:fmt::fmt,INTERFACE_INCLUDE_DIRECTORIES>)
+  target_compile_definitions(rift_fmt PUBLIC
+    $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
+  rift_compile_options(rift_fmt)
+endfunction()

@@ -9,7 +9,7 @@ function(rift_view_module)
   target_include_directories(rift_view_picture PUBLIC "${PROJECT_SOURCE_DIR}/include")
   target_link_libraries(rift_view_picture
     PUBLIC Eigen3::Eigen opencv_core
-    PRIVATE fmt::fmt opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
+    PRIVATE rift_fmt opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
   rift_compile_options(rift_view_picture)
 
   add_library(rift_view_module MODULE "${PROJECT_SOURCE_DIR}/src/view/picture/module.cpp")
