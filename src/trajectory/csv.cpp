@@ -131,25 +131,34 @@ bool RowReader::IsSkipped(std::string_view line) const {
 }
 
 /// Takes off the row of a large log, numbers and commas only, in one go. False for any other, which
-/// is left where it is.
+/// is left where it is. A cell that repeats the one above it, such as the waypoint of hundreds of
+/// rows, is not read again.
 bool RowReader::TakePlain() {
   if (separator_ != ',' || cells_.empty()) return false;
+  above_.resize(cells_.size());
   const char *at = rest_.data(), *const end = at + rest_.size();
-  for (double& cell : cells_) {
-    if (&cell != &cells_.front() && (at == end || *at++ != ',')) return false;
-    const auto [stop, error] = FromChars(at, end, cell);
-    if (error != std::errc{} || !std::isfinite(cell)) return false;
-    at = stop;
+  for (size_t i = 0; i < cells_.size(); ++i) {
+    const bool is_last = i + 1 == cells_.size();
+    if (!above_[i].empty() && std::string_view(at, end).starts_with(above_[i])) {
+      at += above_[i].size();
+      continue;
+    }
+    const char* const begin = at;
+    const auto [stop, error] = FromChars(begin, end, cells_[i]);
+    if (error != std::errc{} || !std::isfinite(cells_[i])) return false;
+    at = stop + (is_last && stop != end && *stop == '\r');
+    if (at == end ? !is_last : *at != (is_last ? '\n' : ',')) return false;
+    at += at != end;
+    above_[i] = {begin, at};
   }
-  if (at != end && *at == '\r') ++at;
-  if (at != end && *at != '\n') return false;
-  rest_.remove_prefix(at - rest_.data() + (at != end));
+  rest_.remove_prefix(at - rest_.data());
   return true;
 }
 
 void RowReader::ReadAny(std::string_view line) {
   const size_t width = cells_.size();
   cells_.clear();
+  above_.clear();
   bool more = true;
   while (more) {
     const bool ends_here = IsBlank(separator_) ? false : line.find(separator_) == line.npos;

@@ -48,8 +48,9 @@ class RowReader {
   const bool has_header_;
   const char separator_;
   std::vector<std::string> columns_;
-  std::vector<double> cells_;  ///< as many as the first row had, or the header
-  size_t line_size_ = 0;  ///< of the last row, its end included
+  std::vector<double> cells_;            ///< as many as the first row had, or the header
+  std::vector<std::string_view> above_;  ///< their text with what ends it, where it was plain
+  size_t line_size_ = 0;                 ///< of the last row, its end included
   int line_number_ = 0;
 };
 

@@ -14,6 +14,12 @@ constexpr int kMostDigits = 19;  // more need not fit 64 bits
 constexpr std::array<std::uint64_t, 9> kPowersOfTen{
     1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
 
+/// Exact as doubles, as are whole numbers up to 2^53: one division rounds correctly (Clinger 1990).
+constexpr std::array<double, kMostDigits + 1> kExactPowersOfTen{
+    1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,
+    1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19};
+constexpr std::uint64_t kMostExact = std::uint64_t{1} << 53;
+
 bool IsDigit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
 
 /// The highest bit of each byte that is no digit, exact up to the first of them.
@@ -65,6 +71,11 @@ std::from_chars_result FromChars(const char* begin, const char* end, double& val
   }
   const bool exponent = at != end && (*at == 'e' || *at == 'E');
   if (count == 0 || count > kMostDigits || exponent) return std::from_chars(begin, end, value);
+  if (digits <= kMostExact) {
+    const double number = static_cast<double>(digits) / kExactPowersOfTen[after_point];
+    value = negative ? -number : number;
+    return {at, std::errc{}};
+  }
   using Double = fast_float::binary_format<double>;
   const auto binary = fast_float::compute_float<Double>(-after_point, digits);
   if (binary.power2 < 0) return std::from_chars(begin, end, value);  // too close to call
