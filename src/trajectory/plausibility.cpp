@@ -31,21 +31,28 @@ void CheckValue(double value, double limit, std::string_view column, const std::
                   value, limit));
 }
 
-/// Largest absolute value that is logged; zero without any.
-double Largest(const Trajectory& trajectory, double StampedPose::*angle) {
-  double largest = 0.0;
-  for (const StampedPose& pose : trajectory.poses) {
-    if (std::abs(pose.*angle) > largest) largest = std::abs(pose.*angle);
+/// Largest absolute values that are logged; zero without any.
+struct LargestAngles {
+  explicit LargestAngles(const Trajectory& trajectory) {
+    for (const StampedPose& pose : trajectory.poses) {
+      Raise(roll_rad, pose.roll_rad);
+      Raise(pitch_rad, pose.pitch_rad);
+      Raise(yaw_rad, pose.yaw_rad);
+    }
   }
-  return largest;
-}
+  static void Raise(double& largest, double angle) {
+    if (std::abs(angle) > largest) largest = std::abs(angle);
+  }
+
+  double roll_rad = 0.0, pitch_rad = 0.0, yaw_rad = 0.0;
+};
 
 /// Largest step of the yaw between two rows.
 double LargestYawStep(const Trajectory& trajectory) {
   double largest = 0.0;
   for (size_t i = 1; i < trajectory.poses.size(); ++i) {
-    largest =
-        std::fmax(largest, std::abs(trajectory.poses[i].yaw_rad - trajectory.poses[i - 1].yaw_rad));
+    const double step = std::abs(trajectory.poses[i].yaw_rad - trajectory.poses[i - 1].yaw_rad);
+    if (step > largest) largest = step;
   }
   return largest;
 }
@@ -69,8 +76,7 @@ double PathTurn_rad(const Trajectory& trajectory) {
 }
 
 /// A yaw beyond a turn must have been unwrapped, and then it cannot step by more than half a turn.
-bool YawLooksLikeDegrees(const Trajectory& trajectory) {
-  const double largest = Largest(trajectory, &StampedPose::yaw_rad);
+bool YawLooksLikeDegrees(const Trajectory& trajectory, double largest) {
   return largest > kLargestYaw_rad || (largest > kTurn_rad && LargestYawStep(trajectory) > kPi);
 }
 
@@ -79,13 +85,10 @@ void NoteDegrees(Log& log) {
     log.notes.push_back(
         fmt::format("a {} of {:.1f} rad looks like degrees: is it a tracker log?", angle, largest));
   };
-  const double roll = Largest(log.trajectory, &StampedPose::roll_rad);
-  const double pitch = Largest(log.trajectory, &StampedPose::pitch_rad);
-  if (roll > kTurn_rad) return note("roll", roll);
-  if (pitch > kTurn_rad) return note("pitch", pitch);
-  if (YawLooksLikeDegrees(log.trajectory)) {
-    note("yaw", Largest(log.trajectory, &StampedPose::yaw_rad));
-  }
+  const LargestAngles largest(log.trajectory);
+  if (largest.roll_rad > kTurn_rad) return note("roll", largest.roll_rad);
+  if (largest.pitch_rad > kTurn_rad) return note("pitch", largest.pitch_rad);
+  if (YawLooksLikeDegrees(log.trajectory, largest.yaw_rad)) note("yaw", largest.yaw_rad);
 }
 
 /// A yaw within +-pi degrees spans 0.11 rad, so a path that turns by more was not logged in
@@ -94,9 +97,8 @@ void NoteRadians(Log& log) {
   constexpr size_t kFewestRows = 20;
   constexpr double kTurning_rad = 0.15;
   const Trajectory& trajectory = log.trajectory;
-  const double largest = std::max({Largest(trajectory, &StampedPose::roll_rad),
-                                   Largest(trajectory, &StampedPose::pitch_rad),
-                                   Largest(trajectory, &StampedPose::yaw_rad)});
+  const LargestAngles angles(trajectory);
+  const double largest = std::max({angles.roll_rad, angles.pitch_rad, angles.yaw_rad});
   if (largest == 0.0 || largest > kPi || trajectory.poses.size() <= kFewestRows) return;
   if (PathTurn_rad(trajectory) < kTurning_rad) return;
   log.notes.push_back(
