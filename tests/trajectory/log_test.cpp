@@ -118,6 +118,21 @@ TEST_CASE("A byte order mark and CRLF and blank lines change nothing") {
   CHECK(log.trajectory.poses.size() == 2);
 }
 
+TEST_CASE("Cells that repeat the ones above them are read right after any kind of row") {
+  const Log log = ReadLog(
+      "t_s,x_m,y_m,z_m\n0,1.5,2,0.25\n1,1.5,3,0.25\n2,+7,4,\n3,1.5,5,0.25\r\n\n4,1.50,5,0.25",
+      "log");
+  const std::vector<StampedPose>& poses = log.trajectory.poses;
+  REQUIRE(poses.size() == 5);
+  for (const size_t row : {0, 1, 3, 4}) {
+    CHECK(poses[row].x_m == 1.5);
+    CHECK(poses[row].z_m == 0.25);
+  }
+  CHECK(poses[2].x_m == 7.0);
+  CHECK(std::isnan(poses[2].z_m));
+  CHECK(poses[4].y_m == 5.0);
+}
+
 TEST_CASE("Header cells in double quotes and numbers with a plus are read") {
   const Log log =
       ReadLog("\"t_s\", \"x_m\" ,y_m,\"a, \"\"b\"\"\"\n0,0,0,1\n+1,+1.5,+.5,+2e0\n", "log.csv");
