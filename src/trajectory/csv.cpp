@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <system_error>
@@ -91,6 +92,21 @@ std::vector<std::string> SplitHeader(std::string_view line) {
   }
 }
 
+ShortText::ShortText(const char* begin, const char* end) {
+  const size_t size = end - begin;
+  if (size > sizeof(bytes_)) return;
+  size_ = size;
+  std::memset(&mask_, 0xFF, size);
+  std::memcpy(&bytes_, begin, size);
+}
+
+bool ShortText::IsAt(const char* at, const char* end) const {
+  std::uint64_t bytes = 0;
+  if (size_ == 0 || static_cast<size_t>(end - at) < sizeof(bytes)) return false;
+  std::memcpy(&bytes, at, sizeof(bytes));
+  return (bytes & mask_) == bytes_;
+}
+
 RowReader::RowReader(std::string_view text, const std::string& name, bool has_header,
                      char separator)
     : rest_(WithoutMark(text)), name_(name), has_header_(has_header), separator_(separator) {
@@ -139,8 +155,8 @@ bool RowReader::TakePlain() {
   const char *at = rest_.data(), *const end = at + rest_.size();
   for (size_t i = 0; i < cells_.size(); ++i) {
     const bool is_last = i + 1 == cells_.size();
-    if (!above_[i].empty() && std::string_view(at, end).starts_with(above_[i])) {
-      at += above_[i].size();
+    if (above_[i].IsAt(at, end)) {
+      at += above_[i].Size();
       continue;
     }
     const char* const begin = at;
@@ -149,7 +165,7 @@ bool RowReader::TakePlain() {
     at = stop + (is_last && stop != end && *stop == '\r');
     if (at == end ? !is_last : *at != (is_last ? '\n' : ',')) return false;
     at += at != end;
-    above_[i] = {begin, at};
+    above_[i] = ShortText(begin, at);
   }
   rest_.remove_prefix(at - rest_.data());
   return true;

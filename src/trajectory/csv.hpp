@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,21 @@ std::string_view TakeLine(std::string_view& rest);
 
 /// Cells between commas, without the blanks or the double quotes around them.
 std::vector<std::string> SplitHeader(std::string_view line);
+
+/// Up to eight bytes that are looked for again. No text at all repeats a longer one.
+class ShortText {
+ public:
+  ShortText() = default;
+  ShortText(const char* begin, const char* end);
+
+  /// True when the bytes from `at` on begin with this text.
+  bool IsAt(const char* at, const char* end) const;
+  size_t Size() const { return size_; }
+
+ private:
+  size_t size_ = 0;  ///< 0: not to be found
+  std::uint64_t bytes_ = 0, mask_ = 0;
+};
 
 /// The numbers of a text table, one row after the other: a long log is not held twice. Separated by
 /// `separator` (a blank stands for any run of blanks and tabs). No two columns of a header may
@@ -48,9 +64,9 @@ class RowReader {
   const bool has_header_;
   const char separator_;
   std::vector<std::string> columns_;
-  std::vector<double> cells_;            ///< as many as the first row had, or the header
-  std::vector<std::string_view> above_;  ///< their text with what ends it, where it was plain
-  size_t line_size_ = 0;                 ///< of the last row, its end included
+  std::vector<double> cells_;     ///< as many as the first row had, or the header
+  std::vector<ShortText> above_;  ///< their text with what ends it, where it was plain
+  size_t line_size_ = 0;          ///< of the last row, its end included
   int line_number_ = 0;
 };
 
