@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <future>
@@ -74,32 +75,41 @@ double SampleU(int k, const GapOptions& options) {
   return static_cast<double>(k) / (options.samples - 1);
 }
 
-/// Equation (3.1): the largest error over the samples, from two of them in each interval.
-Peak SampledPeak(const PathError& error, const GapOptions& options) {
-  Peak peak;
+/// Equation (3.1): the largest error over the samples, from two of them in each interval, with the
+/// sim path moved by each of the motions.
+template <size_t kMotions>
+std::array<Peak, kMotions> SampledPeaks(const Paths& paths,
+                                        const std::array<geometry::Pose2, kMotions>& motions,
+                                        const GapOptions& options) {
+  std::vector<PathError> errors;
+  for (const geometry::Pose2& motion : motions) errors.emplace_back(paths.sim, paths.real, motion);
+  std::array<Peak, kMotions> peaks;
   int next = FirstSample(options);
-  error.ForEachInterval([&](double, double end, const auto& make_error_at) {
+  ForEachInterval(paths.sim, paths.real, [&](double, double end, size_t i, size_t j) {
     const int last =
         std::min(static_cast<int>(end * (options.samples - 1) + 1e-9), options.samples - 1);
-    if (last < next) return;
-    const auto error_at = make_error_at();
-    for (const int k : {next, last}) {
-      const double error_m = error_at(SampleU(k, options));
-      if (error_m > peak.error_m) peak = {error_m, SampleU(k, options)};
+    if (last < next) return;  // most intervals of a long log hold no sample
+    for (size_t m = 0; m < kMotions; ++m) {
+      const auto error_at = errors[m].OnEdges(i, j);
+      for (const int k : {next, last}) {
+        const double error_m = error_at(SampleU(k, options));
+        if (error_m > peaks[m].error_m) peaks[m] = {error_m, SampleU(k, options)};
+      }
     }
     next = last + 1;
   });
-  assert(peak.error_m >= 0.0);
-  return peak;
+  assert(peaks[0].error_m >= 0.0);
+  return peaks;
 }
 
 /// The supremum over the polylines from the first sample on.
-Peak ExactPeak(const PathError& error, const GapOptions& options) {
+Peak ExactPeak(const Paths& paths, const GapOptions& options) {
+  const PathError error(paths.sim, paths.real);
   Peak peak;
   const double first_u = SampleU(FirstSample(options), options);
-  error.ForEachInterval([&](double begin, double end, const auto& make_error_at) {
+  ForEachInterval(paths.sim, paths.real, [&](double begin, double end, size_t i, size_t j) {
     if (end < first_u) return;
-    const auto error_at = make_error_at();
+    const auto error_at = error.OnEdges(i, j);
     for (const double u : {std::max(begin, first_u), end}) {
       const double error_m = error_at(u);
       if (error_m > peak.error_m) peak = {error_m, u};
@@ -107,11 +117,6 @@ Peak ExactPeak(const PathError& error, const GapOptions& options) {
   });
   assert(peak.error_m >= 0.0);
   return peak;
-}
-
-double GapAfter(const Paths& paths, const geometry::Pose2& real_from_sim,
-                const GapOptions& options) {
-  return SampledPeak(PathError(paths.sim, paths.real, real_from_sim), options).error_m;
 }
 
 double YawAt(const ArcPath& path, double u, size_t& i) {
@@ -191,19 +196,20 @@ geometry::Pose2 BestMotion(const Paths& paths, const SampledPaths& samples, int 
 }
 
 void MeasureErrors(const Paths& paths, const GapOptions& options, Comparison& result) {
-  const PathError error(paths.sim, paths.real);
-  const Peak sampled = SampledPeak(error, options);
-  result.gap_m = sampled.error_m;
-  result.gap_u = sampled.u;
-  const Peak exact = ExactPeak(error, options);
-  result.exact_gap_m = exact.error_m;
-  result.exact_gap_u = exact.u;
   const SampledPaths samples(paths, options);
   SummariseErrors(Errors_m(samples, options), result);
   SummariseYawErrors(YawErrors_rad(paths, options), result);
-  result.start_aligned_gap_m = GapAfter(paths, StartMotion(paths.sim, paths.real), options);
+  const Peak exact = ExactPeak(paths, options);
+  result.exact_gap_m = exact.error_m;
+  result.exact_gap_u = exact.u;
   result.real_from_sim = BestMotion(paths, samples, options.samples);
-  result.shape_gap_m = GapAfter(paths, result.real_from_sim, options);
+  const auto [as_it_is, start_aligned, shape] = SampledPeaks<3>(
+      paths, {geometry::Pose2{}, StartMotion(paths.sim, paths.real), result.real_from_sim},
+      options);
+  result.gap_m = as_it_is.error_m;
+  result.gap_u = as_it_is.u;
+  result.start_aligned_gap_m = start_aligned.error_m;
+  result.shape_gap_m = shape.error_m;
 }
 
 void MeasureEnds(const Paths& paths, Comparison& result) {
@@ -237,7 +243,7 @@ void MeasureShape(const Paths& paths, Comparison& result) {
 double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
            const GapOptions& options) {
   const Paths paths = Prepare(sim, real, options, Columns::kPositions);
-  return SampledPeak(PathError(paths.sim, paths.real), options).error_m;
+  return SampledPeaks<1>(paths, {geometry::Pose2{}}, options)[0].error_m;
 }
 
 ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,

@@ -14,37 +14,38 @@ struct Peak {
   double u = 0.0;
 };
 
+/// Calls visit(u_begin, u_end, i, j) for each interval between neighbouring breakpoints of either
+/// path: in it `sim` stands on its edge i and `real` on its edge j.
+template <class Visit>
+void ForEachInterval(const ArcPath& sim, const ArcPath& real, Visit&& visit) {
+  const size_t sim_last = sim.Size() - 2, real_last = real.Size() - 2;
+  size_t i = 0, j = 0;
+  double begin = 0.0;
+  while (true) {
+    const double end = std::min(sim.u[i + 1], real.u[j + 1]);
+    visit(begin, end, i, j);
+    begin = end;
+    const bool sim_ends = sim.u[i + 1] <= end;
+    if (sim_ends && i == sim_last) return;
+    // Sums, not branches: which of the two paths goes on is as good as random.
+    i += sim_ends;
+    j += (real.u[j + 1] <= end) & (j < real_last);
+  }
+}
+
 /// The error vector real - sim as a function of u, the sim path moved first by `real_from_sim`.
-/// Between two neighbouring breakpoints of either path it is affine in u, so its length is convex
-/// there: the largest value over any set of u within such an interval stands at the first or the
-/// last of them.
+/// In each interval it is affine in u, so its length is convex there: the largest value over any
+/// set of u within the interval stands at the first or the last of them.
 class PathError {
  public:
   PathError(const ArcPath& sim, const ArcPath& real, const geometry::Pose2& real_from_sim = {})
       : sim_(sim), real_(real), motion_(real_from_sim) {}
 
-  /// Calls visit(u_begin, u_end, make_error_at) for each interval between merged breakpoints, where
-  /// make_error_at()(u) is the error for u within it: most intervals of a long log hold no sample,
-  /// and their edges need not be worked out.
-  template <class Visit>
-  void ForEachInterval(Visit&& visit) const {
-    const size_t sim_last = sim_.Size() - 2, real_last = real_.Size() - 2;
-    size_t i = 0, j = 0;
-    double begin = 0.0;
-    while (true) {
-      const double end = std::min(sim_.u[i + 1], real_.u[j + 1]);
-      visit(begin, end, [&] {
-        return [sim = Segment(sim_, i, motion_), real = Segment(real_, j)](double u) {
-          return std::sqrt(Square(real.X(u) - sim.X(u)) + Square(real.Y(u) - sim.Y(u)));
-        };
-      });
-      begin = end;
-      const bool sim_ends = sim_.u[i + 1] <= end;
-      if (sim_ends && i == sim_last) return;
-      // Sums, not branches: which of the two paths goes on is as good as random.
-      i += sim_ends;
-      j += (real_.u[j + 1] <= end) & (j < real_last);
-    }
+  /// Its length for u on edge i of the sim and edge j of the real path.
+  auto OnEdges(size_t i, size_t j) const {
+    return [sim = Segment(sim_, i, motion_), real = Segment(real_, j)](double u) {
+      return std::sqrt(Square(real.X(u) - sim.X(u)) + Square(real.Y(u) - sim.Y(u)));
+    };
   }
 
  private:
