@@ -44,7 +44,7 @@ class PathError {
   /// Its length for u on edge i of the sim and edge j of the real path.
   auto OnEdges(size_t i, size_t j) const {
     return [sim = Segment(sim_, i, motion_), real = Segment(real_, j)](double u) {
-      return std::sqrt(Square(real.X(u) - sim.X(u)) + Square(real.Y(u) - sim.Y(u)));
+      return (real.At(u) - sim.At(u)).norm();
     };
   }
 
@@ -55,21 +55,16 @@ class PathError {
     Segment(const ArcPath& path, size_t i, const geometry::PointMotion& motion)
         : Segment(path, i, motion * path.Vertex(i), motion * path.Vertex(i + 1)) {}
     Segment(const ArcPath& path, size_t i, const Eigen::Vector2d& from, const Eigen::Vector2d& to)
-        : u0(path.u[i]), x0(from.x()), y0(from.y()) {
+        : u0(path.u[i]), p0(from) {
       const double span = path.u[i + 1] - path.u[i];
-      if (span > 0.0) {
-        slope_x = (to.x() - x0) / span;
-        slope_y = (to.y() - y0) / span;
-      }
+      if (span > 0.0) slope = (to - from) / span;
     }
-    double X(double u) const { return x0 + slope_x * (u - u0); }
-    double Y(double u) const { return y0 + slope_y * (u - u0); }
+    Eigen::Vector2d At(double u) const { return p0 + slope * (u - u0); }
 
-    double u0, x0, y0;
-    double slope_x = 0.0, slope_y = 0.0;
+    double u0;
+    Eigen::Vector2d p0;
+    Eigen::Vector2d slope = Eigen::Vector2d::Zero();
   };
-
-  static double Square(double value) { return value * value; }
 
   const ArcPath& sim_;
   const ArcPath& real_;
