@@ -6,10 +6,8 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <future>
 #include <numeric>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "alignment.hpp"
@@ -28,36 +26,15 @@ constexpr int kMeasurePoints = 160;
 /// Hausdorff costs the product of the rows; up to this many pairs every vertex is looked at.
 constexpr size_t kMostHausdorffPairs = 65536;
 
-/// From this many rows on a second thread costs less than it saves.
-constexpr size_t kManyRows = 10'000;
-
-/// Does both, at the same time where `rows` are many.
-template <class One, class Other>
-void DoBoth(size_t rows, One&& one, Other&& other) {
-  if (rows < kManyRows) {
-    one();
-    other();
-    return;
-  }
-  std::future<void> beside = std::async(std::launch::async, std::forward<Other>(other));
-  one();
-  beside.get();
-}
-
 struct Paths {
   ArcPath sim;
   ArcPath real;
-
-  size_t Rows() const { return sim.Size() + real.Size(); }
 };
 
 /// Both paths as they are to be compared, after trimming and aligning.
 Paths Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
               const GapOptions& options, Columns columns) {
-  Paths paths;
-  DoBoth(
-      sim.poses.size() + real.poses.size(), [&] { paths.sim = MakeArcPath(sim, options, columns); },
-      [&] { paths.real = MakeArcPath(real, options, columns); });
+  Paths paths{MakeArcPath(sim, options, columns), MakeArcPath(real, options, columns)};
   if (options.align != Align::kNone) {
     Transform(paths.sim, AligningMotion(paths.sim, paths.real, options.align, options.samples));
   }
@@ -265,15 +242,12 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
                    const GapOptions& options) {
   const Paths paths = Prepare(sim, real, options, Columns::kAll);
   Comparison result;
-  DoBoth(
-      paths.Rows(), [&] { MeasureErrors(paths, options, result); },
-      [&] {
-        MeasureEnds(paths, result);
-        MeasureShape(paths, result);
-        result.equal_time_m = EqualTime_m(paths.sim, paths.real);
-        result.sim_standstill_share = StandstillShare(sim.poses, options.standstill_radius_m);
-        result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);
-      });
+  MeasureErrors(paths, options, result);
+  MeasureEnds(paths, result);
+  MeasureShape(paths, result);
+  result.equal_time_m = EqualTime_m(paths.sim, paths.real);
+  result.sim_standstill_share = StandstillShare(sim.poses, options.standstill_radius_m);
+  result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);
   return result;
 }
 
