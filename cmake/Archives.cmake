@@ -1,6 +1,6 @@
-# Archives instead of shared objects where Debian has them: finding the symbols of yaml-cpp, ODE and
-# libpng at every start took 0.7 of the 2.7 ms of `rift --version`. libstdc++ and fmt stay shared:
-# exceptions and strings cross the border to the module of rift_view_module().
+# Archives instead of shared objects: finding the symbols of yaml-cpp, ODE and libpng at every start
+# took 0.7 of the 2.7 ms of `rift --version`, those of fmt 0.2. libstdc++ stays shared: exceptions
+# and strings cross the border to the module of rift_view_module().
 
 # rift_archive(NAME TARGET LIBRARIES library...): the interface library NAME is TARGET with these
 # archives and libraries in the place of its shared object, or TARGET as it is if one is missing.
@@ -25,7 +25,7 @@ function(rift_archive name target)
   target_link_libraries(${name} INTERFACE ${files})
 endfunction()
 
-# Of fmt Debian has none: src/fmt.cpp makes it from fmt's headers.
+# rift_fmt: of fmt Debian has no archive, and src/fmt.cpp makes one from its headers. In modules too.
 function(rift_fmt_archive)
   add_library(rift_fmt STATIC "${PROJECT_SOURCE_DIR}/src/fmt.cpp")
   set_target_properties(rift_fmt PROPERTIES POSITION_INDEPENDENT_CODE ON)
