@@ -1,4 +1,5 @@
-// What of fmt is not in format.h alone, as fmt's own src/format.cc has it (cmake/Archives.cmake).
+// What of fmt is not in its headers alone, as fmt's own src/format.cc has it: a shared object costs
+// every start of rift 0.3 ms.
 #include <fmt/format-inl.h>
 
 FMT_BEGIN_NAMESPACE
