@@ -2,11 +2,14 @@
 // to the authors' trials by surface, beside Webots and a robot made of facts alone.
 //
 //   identification_study [--runs N] [--trial 1|2] [--robot FILE.yaml] [--facts] [--webots]
-//                        [--horizon] [key=value ...]
+//                        [--horizon | --each] [key=value ...]
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <cstdlib>
+#include "rift/sweep/short_horizon.hpp"
 #include <map>
 
 #include "benchmarks/run_study.hpp"
@@ -22,7 +25,7 @@ namespace {
 struct Request {
   int runs = 20;
   int trial = 0;
-  bool facts = false, webots = false, horizon = false;
+  bool facts = false, webots = false, horizon = false, each = false;
   std::string robot = RIFT_SOURCE_DIR "/configs/robots/3pi_2040.yaml";
   std::vector<std::string> overrides;
 };
@@ -41,6 +44,8 @@ Request ParseArguments(int count, char** arguments) {
       request.facts = true;
     } else if (argument == "--webots") {
       request.webots = true;
+    } else if (argument == "--each") {
+      request.each = true;
     } else if (argument == "--horizon") {
       request.horizon = true;
     } else {
@@ -129,11 +134,66 @@ void PrintHorizons(const test::GridStudy& study, const std::vector<test::GridTri
   }
 }
 
+void PrintTraits(const sweep::RepeatedTrial& trial, const char* side,
+                 const trajectory::Trajectory& path) {
+  const gap::PathTraits shape = gap::TraitsOf(path, {});
+  const trial::LoopDelay d = trial::EstimateLoopDelay(path, trial.waypoints, trial.control);
+  fmt::print("{},{},{:.5f},{:.5f},{:.4f},{:.3f},{:.4f},{:.3f},{:.3f}\n", trial.setting, side,
+             shape.speed_mps, shape.weave_m, d.lag_s, d.gain_rad_s, d.bias_rad_s, d.r2,
+             path.Duration_s());
+}
+
+/// What each path tells by itself, real and simulated, as CSV.
+void PrintEach(const std::vector<sweep::RepeatedTrial>& trials) {
+  fmt::print("setting,side,speed_mps,weave_m,loop_delay_s,gain_rad_s,bias_rad_s,r2,duration_s\n");
+  for (const sweep::RepeatedTrial& trial : trials) {
+    PrintTraits(trial, "real", trial.real);
+    for (const trajectory::Trajectory& run : trial.runs) PrintTraits(trial, "simulated", run);
+  }
+}
+
+void PrintPhases(const test::GridStudy& study, const std::vector<test::GridTrial>& trials, bool simulated, int phases) {
+  double mean = 0, single = 0, best = 0; std::map<std::string, std::array<double,3>> by;
+  for (test::GridTrial trial : trials) {
+    if (trial.surface == "bump") continue;
+    auto twin = test::TwinOf(study, trial, 1);
+    if (simulated) { twin.seed = 1 + std::hash<std::string>{}(trial.setting) + trial.trial; trial.real = sweep::Simulate(twin).result.trajectory; twin.seed = 77; }
+    std::vector<std::vector<double>> turned;
+    for (int p = 0; p < phases; ++p) {
+      twin.simulation.link.poll_phase = (p + 0.5) / phases;
+      auto log = trial.real;
+      auto path = sweep::Replay(twin, log);
+      std::vector<double> e;
+      std::vector<double> yaws;
+      size_t i = 0;
+      for (const auto& row : log.poses) {
+        while (i + 2 < path.poses.size() && path.poses[i + 1].t_s < row.t_s) ++i;
+        const auto &a = path.poses[i], &b = path.poses[i + 1];
+        yaws.push_back(a.yaw_rad + std::clamp((row.t_s - a.t_s) / (b.t_s - a.t_s), 0.0, 1.0) * std::remainder(b.yaw_rad - a.yaw_rad, 6.283185307));
+      }
+      for (size_t k = 10; k + 3 < yaws.size(); ++k) e.push_back(std::remainder(yaws[k + 3] - yaws[k] - log.poses[k + 3].yaw_rad + log.poses[k].yaw_rad, 6.283185307));
+      turned.push_back(e);
+    }
+    double m = 0, s = 0, b = 1e9;
+    for (size_t k = 0; k < turned[0].size(); ++k) { double x = 0; for (auto& e : turned) x += e[k] / phases; m += x * x; }
+    for (auto& e : turned) { double q = 0; for (double x : e) q += x * x; s += q / phases; b = std::min(b, q); }
+    mean += m; single += s; best += b;
+    auto& o = by[trial.surface]; o[0] += m; o[1] += s; o[2] += b;
+  }
+  for (auto& [k, o] : by) fmt::print("{}: mean {:.4f} single {:.3f} best {:.3f} (of mean)\n", k, o[0], o[1] / o[0], o[2] / o[0]);
+  fmt::print("mean {:.4f} single {:.3f} best {:.3f}\n", mean, single / mean, best / mean);
+}
+
 int Study(const Request& request) {
   const test::GridStudy study = LoadStudy(request);
   const std::vector<test::GridTrial> trials = test::LoadTrialGrid(study, request.trial);
   if (request.horizon) {
     PrintHorizons(study, trials);
+    return 0;
+  }
+  if (getenv("PHASES")) { PrintPhases(study, trials, getenv("SIMULATED"), atoi(getenv("PHASES"))); return 0; }
+  if (request.each) {
+    PrintEach(test::DriveGrid(study, trials, request.runs));
     return 0;
   }
   PrintHeader();
