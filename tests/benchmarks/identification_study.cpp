@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -192,6 +193,16 @@ int Study(const Request& request) {
     return 0;
   }
   if (getenv("PHASES")) { PrintPhases(study, trials, getenv("SIMULATED"), atoi(getenv("PHASES"))); return 0; }
+  if (const char* dir = getenv("DUMP")) {
+    for (const auto& t : test::DriveGrid(study, trials, request.runs)) {
+      std::string name = t.setting; std::replace(name.begin(), name.end(), '/', '_');
+      static std::map<std::string, int> n; 
+      std::FILE* f = std::fopen(fmt::format("{}/{}_{}.dat", dir, name, ++n[name]).c_str(), "w");
+      for (const auto& r : t.runs) { for (const auto& q : r.poses) fmt::print(f, "{} {} {} {}\n", q.t_s - r.poses[0].t_s, q.x_m, q.y_m, q.yaw_rad); fmt::print(f, "\n"); }
+      std::fclose(f);
+    }
+    return 0;
+  }
   if (request.each) {
     PrintEach(test::DriveGrid(study, trials, request.runs));
     return 0;
