@@ -16,6 +16,9 @@ namespace {
 constexpr double kConverged = 5e-3;  // of the range, for the largest change of a parameter
 constexpr double kRidge = 1e-9;      // keeps a parameter without effect where it is
 constexpr double kFirstDamping = 1e-2;
+// A correction scatters as much as an estimate: in directions that the logs hardly tell it is
+// noise.
+constexpr double kDampingOfCorrection = 0.3;
 constexpr double kLargestDamping = 1e6;
 
 /// First down to the least errors, then on to where the errors are those of logs that the simulator
@@ -115,8 +118,7 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
     const bool helped = Improve();
     result.steps += helped;
     if (on_step) {
-      on_step(result.steps,
-              SquaredSum(at_.errors) / static_cast<double>(Count(at_.errors)));
+      on_step(result.steps, SquaredSum(at_.errors) / static_cast<double>(Count(at_.errors)));
     }
     if (helped) continue;
     result.has_converged = step_ <= options_.step;
@@ -140,7 +142,7 @@ void Fit::Correct() {
   }
   Eigen::VectorXd gradient = Sum(at_.gradients);
   if (!simulated_.empty()) gradient -= Sum(simulated_) / options_.simulated_logs;
-  const Eigen::VectorXd step = StepFor(Sum(at_.hessians), gradient, kFirstDamping);
+  const Eigen::VectorXd step = StepFor(Sum(at_.hessians), gradient, kDampingOfCorrection);
   shares_ = Moved(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step));
 }
 

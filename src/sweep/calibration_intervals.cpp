@@ -53,8 +53,8 @@ void Judge(const std::vector<FreeParameter>& parameters, const CalibrationOption
   const auto logs = static_cast<double>(at.gradients.size());
   const Eigen::MatrixXd covariance =
       Covariance(Draws(at, simulated, options.resamples, generator), logs);
-  const double quantile = boost::math::quantile(
-      boost::math::students_t(std::max(1.0, logs - 1.0)), 0.5 + 0.5 * options.confidence);
+  const double quantile = boost::math::quantile(boost::math::students_t(std::max(1.0, logs - 1.0)),
+                                                0.5 + 0.5 * options.confidence);
   const std::vector<double> values = ValuesAt(parameters, estimate);
   const Eigen::Index n = estimate.size();
   std::vector<bool> has_effect;

@@ -127,8 +127,8 @@ std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial, const 
   SimulatedTrial phase = trial;
   const double offset = simulation::Noise(trial.seed, kOffsetStream).Uniform(0, 0);
   for (int i = 0; i < options.phases; ++i, ++phase.seed) {
-    // Even phases: over drawn ones the mean would change by leaps with a delay. Each log has its own
-    // offset, so that many logs see many phases.
+    // Even phases: over drawn ones the mean would change by leaps with a delay. Each log has its
+    // own offset, so that many logs see many phases.
     phase.simulation.link.poll_phase = (i + offset) / options.phases;
     const auto errors = ErrorsOf(PosesAt(Replay(phase, log), log), log, options);
     mean.resize(errors.size());

@@ -6,11 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
-#include "rift/sweep/short_horizon.hpp"
 #include <map>
 
 #include "benchmarks/run_study.hpp"
@@ -153,54 +149,11 @@ void PrintEach(const std::vector<sweep::RepeatedTrial>& trials) {
   }
 }
 
-void PrintPhases(const test::GridStudy& study, const std::vector<test::GridTrial>& trials, bool simulated, int phases) {
-  double mean = 0, single = 0, best = 0; std::map<std::string, std::array<double,3>> by;
-  for (test::GridTrial trial : trials) {
-    if (trial.surface == "bump") continue;
-    auto twin = test::TwinOf(study, trial, 1);
-    if (simulated) { twin.seed = 1 + std::hash<std::string>{}(trial.setting) + trial.trial; trial.real = sweep::Simulate(twin).result.trajectory; twin.seed = 77; }
-    std::vector<std::vector<double>> turned;
-    for (int p = 0; p < phases; ++p) {
-      twin.simulation.link.poll_phase = (p + 0.5) / phases;
-      auto log = trial.real;
-      auto path = sweep::Replay(twin, log);
-      std::vector<double> e;
-      std::vector<double> yaws;
-      size_t i = 0;
-      for (const auto& row : log.poses) {
-        while (i + 2 < path.poses.size() && path.poses[i + 1].t_s < row.t_s) ++i;
-        const auto &a = path.poses[i], &b = path.poses[i + 1];
-        yaws.push_back(a.yaw_rad + std::clamp((row.t_s - a.t_s) / (b.t_s - a.t_s), 0.0, 1.0) * std::remainder(b.yaw_rad - a.yaw_rad, 6.283185307));
-      }
-      for (size_t k = 10; k + 3 < yaws.size(); ++k) e.push_back(std::remainder(yaws[k + 3] - yaws[k] - log.poses[k + 3].yaw_rad + log.poses[k].yaw_rad, 6.283185307));
-      turned.push_back(e);
-    }
-    double m = 0, s = 0, b = 1e9;
-    for (size_t k = 0; k < turned[0].size(); ++k) { double x = 0; for (auto& e : turned) x += e[k] / phases; m += x * x; }
-    for (auto& e : turned) { double q = 0; for (double x : e) q += x * x; s += q / phases; b = std::min(b, q); }
-    mean += m; single += s; best += b;
-    auto& o = by[trial.surface]; o[0] += m; o[1] += s; o[2] += b;
-  }
-  for (auto& [k, o] : by) fmt::print("{}: mean {:.4f} single {:.3f} best {:.3f} (of mean)\n", k, o[0], o[1] / o[0], o[2] / o[0]);
-  fmt::print("mean {:.4f} single {:.3f} best {:.3f}\n", mean, single / mean, best / mean);
-}
-
 int Study(const Request& request) {
   const test::GridStudy study = LoadStudy(request);
   const std::vector<test::GridTrial> trials = test::LoadTrialGrid(study, request.trial);
   if (request.horizon) {
     PrintHorizons(study, trials);
-    return 0;
-  }
-  if (getenv("PHASES")) { PrintPhases(study, trials, getenv("SIMULATED"), atoi(getenv("PHASES"))); return 0; }
-  if (const char* dir = getenv("DUMP")) {
-    for (const auto& t : test::DriveGrid(study, trials, request.runs)) {
-      std::string name = t.setting; std::replace(name.begin(), name.end(), '/', '_');
-      static std::map<std::string, int> n; 
-      std::FILE* f = std::fopen(fmt::format("{}/{}_{}.dat", dir, name, ++n[name]).c_str(), "w");
-      for (const auto& r : t.runs) { for (const auto& q : r.poses) fmt::print(f, "{} {} {} {}\n", q.t_s - r.poses[0].t_s, q.x_m, q.y_m, q.yaw_rad); fmt::print(f, "\n"); }
-      std::fclose(f);
-    }
     return 0;
   }
   if (request.each) {

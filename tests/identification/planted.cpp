@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdlib>
 #include <random>
 
 #include "rift/config/set_value.hpp"
@@ -91,32 +89,3 @@ sweep::Calibration FindPlanted(const GridStudy& robot, const std::vector<Planted
 }
 
 }  // namespace rift::test
-namespace rift::test {
-void Probe(const GridStudy& robot, const std::vector<Planted>& planted, std::uint64_t repeat, int logs, int phases) {
-  std::vector<double> truth;
-  for (const Planted& p : planted) truth.push_back(p.truth);
-  const GridStudy real = RobotAt(robot, planted, truth);
-  std::mt19937_64 random(1000 + repeat);
-  for (int frames : {1, 3, 5}) {
-  random.seed(1000 + repeat);
-  double n = 0, a = 0, l = 0, t = 0, t2 = 0, logn = 0, lt=0, lt2=0, yt=0;
-  for (int i = 0; i < logs; ++i) {
-    const double v = i % 2 == 0 ? 0.15 : 0.20;
-    const std::uint64_t seed = random();
-    const auto run = sweep::Simulate(TrialOf(real, v, PutDown(real, random), seed));
-    const auto& log = run.result.trajectory;
-    const geometry::Pose2 tag{real.simulation.mocap.tag_ahead_m, 0.0, 0.0};
-    auto twin = TrialOf(real, v, trajectory::StandingPose(log) * geometry::Inverse(tag), getenv("SAMESEED") ? seed : 7 + 1000 * i);
-    sweep::ShortHorizonOptions o; o.phases = phases;
-    double s = 0, c = 0;
-    for (const auto& e : sweep::ShortHorizonErrors(twin, log, o)) {
-      if (e.frames != frames) continue;
-      ++n; ++c; a += e.ahead_m; l += e.left_m; t += e.turned_rad; t2 += e.turned_rad * e.turned_rad; s += e.turned_rad;
-    }
-    lt += s / c; lt2 += s / c * s / c; ++logn; yt += log.poses.back().yaw_rad - log.poses.front().yaw_rad;
-  }
-  fmt::print("  frames {}: ahead {:.3f} mm left {:.3f} mm turned {:.4f} deg (se over logs {:.4f}) rms {:.3f} deg; net turn {:.3f}\n", frames, 1e3 * a / n, 1e3 * l / n,
-             57.3 * t / n, 57.3 * std::sqrt((lt2 / logn - lt / logn * lt / logn) / logn), 57.3 * std::sqrt(t2 / n), yt / logn);
-  }
-}
-}

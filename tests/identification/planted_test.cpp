@@ -27,8 +27,7 @@ TEST_CASE("A planted mismatch is found again and a friction that never acts is f
   options.iterations = 3;
   options.horizon.phases = 1;
   const sweep::Calibration found = test::FindPlanted(Robot(), planted, 3, 4, options, 1);
-  const sweep::CalibratedParameter &mismatch = found.parameters[0],
-                                   &unseen = found.parameters[1];
+  const sweep::CalibratedParameter &mismatch = found.parameters[0], &unseen = found.parameters[1];
   INFO("mismatch " << mismatch.value << " in [" << mismatch.low << ", " << mismatch.high << "], "
                    << planted[0].truth << " was planted");
   CHECK(mismatch.low < planted[0].truth);
@@ -40,6 +39,43 @@ TEST_CASE("A planted mismatch is found again and a friction that never acts is f
   CHECK_FALSE(unseen.is_identified);
   CHECK(unseen.value == planted[1].start);
   CHECK(found.loss_after < found.loss_before);
+}
+
+TEST_CASE("A planted radio delay is found from below and from above") {
+  for (const double start : {0.05, 0.17}) {
+    std::vector<test::Planted> planted = {test::PlantAt(5)[0]};
+    planted[0].start = start;
+    sweep::CalibrationOptions options;
+    options.runs = 0;
+    options.horizon.phases = 4;
+    options.corrections = 1;
+    options.simulated_logs = 1;
+    const sweep::Calibration found = test::FindPlanted(Robot(), planted, 5, 6, options, 2);
+    const sweep::CalibratedParameter& delay = found.parameters[0];
+    INFO("from " << start << ": " << delay.value << " in [" << delay.low << ", " << delay.high
+                 << "], " << planted[0].truth << " was planted");
+    CHECK(delay.value == Approx(planted[0].truth).margin(0.02));
+    CHECK(delay.low < planted[0].truth);
+    CHECK(planted[0].truth < delay.high);
+    CHECK(delay.is_identified);
+  }
+}
+
+TEST_CASE("A calibration without a simulated log of the fit is the least error and says less") {
+  std::vector<test::Planted> planted = {test::PlantAt(6)[1]};
+  sweep::CalibrationOptions options;
+  options.runs = 0;
+  options.iterations = 2;
+  options.horizon.phases = 2;
+  options.simulated_logs = 1;
+  const sweep::Calibration corrected = test::FindPlanted(Robot(), planted, 6, 3, options, 2);
+  options.corrections = 0;
+  const sweep::Calibration least = test::FindPlanted(Robot(), planted, 6, 3, options, 2);
+  CHECK(least.trials_simulated < corrected.trials_simulated);
+  CHECK(least.parameters[0].value != corrected.parameters[0].value);
+  // What simulated logs tell scatters too.
+  CHECK(least.parameters[0].high - least.parameters[0].low <
+        corrected.parameters[0].high - corrected.parameters[0].low);
 }
 
 TEST_CASE("Threads change no byte of a calibration") {

@@ -40,10 +40,12 @@ struct CalibrationOptions {
           "change of a parameter that its effect is read from at first, as a share of its range: "
           "long, to see past the leaps that a polled link makes");
     field("step", self.step, 1e-6, 0.5, "the same at the end");
-    field("corrections", self.corrections, 0, 100,
-          "steps after the fit, to where the logs look like those the simulator makes itself; 0: the "
-          "least errors, whose delay and mismatch are biased");
-    field("simulated_logs", self.simulated_logs, 0, 100, "simulated logs for each real one in them");
+    field(
+        "corrections", self.corrections, 0, 100,
+        "steps after the fit, to where the logs look like those the simulator makes itself; 0: the "
+        "least errors, whose delay and mismatch are biased");
+    field("simulated_logs", self.simulated_logs, 0, 100,
+          "simulated logs for each real one in them");
     field("outlier_sd", self.outlier_sd, 1.0, 1e6,
           "errors beyond this many standard deviations count in proportion (Huber 1964)");
     field("resamples", self.resamples, 20, 1'000'000,

@@ -43,9 +43,9 @@ struct HorizonError {
 /// tag on the clock of the log (t_s of its first row is that of the log's).
 trajectory::Trajectory Replay(const SimulatedTrial& trial, const trajectory::Trajectory& log);
 
-/// Motions over 1 to most_frames frames from every row while the robot moved, in order of rows, each
-/// the mean over even phases of the robot's listener (seeds trial.seed, trial.seed + 1 and so on).
-/// `trial.start` is where the log stands. Throws std::invalid_argument on a log without yaw.
+/// Motions over 1 to most_frames frames from every row while the robot moved, in order of rows,
+/// each the mean over even phases of the robot's listener (seeds trial.seed, trial.seed + 1 and so
+/// on). `trial.start` is where the log stands. Throws std::invalid_argument on a log without yaw.
 std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial,
                                              const trajectory::Trajectory& log,
                                              const ShortHorizonOptions& options);
