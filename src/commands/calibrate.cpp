@@ -159,7 +159,7 @@ std::vector<RepeatedTrial> Calibrator::Drive(const std::vector<double>& values) 
     }
     trials.push_back(std::move(trial));
   }
-  return trials;
+  return sweep::WithoutDetours(std::move(trials), experiment_.likeness.longest_run);
 }
 
 sweep::DriveLikeness Calibrator::LikenessOf(const std::vector<RepeatedTrial>& trials,

@@ -263,7 +263,8 @@ void OdeWorld::Bodies::MakeContacts() {
       state.world_from_robot * Vector3d(body.caster_ahead_m, 0.0, -body.caster_below_m);
   if (const auto touch =
           TouchBall(terrain, caster, state.world_from_robot.col(0), body.caster_radius_m)) {
-    dContact contact = Contact(*touch, settling ? dInfinity : body.caster_mu);
+    const Grip grip = terrain.GripAt(touch->point.x(), touch->point.y());
+    dContact contact = Contact(*touch, settling ? dInfinity : grip.caster_factor * body.caster_mu);
     Add(contact, chassis);
   }
   const Vector3d up = state.world_from_robot.col(2);

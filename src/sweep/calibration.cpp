@@ -4,143 +4,74 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
-#include "calibration_errors.hpp"
+#include "calibration_intervals.hpp"
+#include "calibration_model.hpp"
 
 namespace rift::sweep {
 namespace {
 
-constexpr double kConverged = 1e-3;  // of the range, for the largest change of a parameter
+constexpr double kConverged = 5e-3;  // of the range, for the largest change of a parameter
 constexpr double kRidge = 1e-9;      // keeps a parameter without effect where it is
+constexpr double kFirstDamping = 1e-2;
+// A correction scatters as much as an estimate: in directions that the logs hardly tell it is
+// noise.
+constexpr double kDampingOfCorrection = 0.3;
 constexpr double kLargestDamping = 1e6;
-// Whole runs of a delayed bang-bang loop are chaotic: over a small step the scatter of their
-// statistics is many times their slope.
-constexpr double kWiderForRuns = 5.0;
 
-/// Values as shares of their ranges, which makes steps and ridge mean the same for each.
+/// First down to the least errors, then on to where the errors are those of logs that the simulator
+/// makes itself.
 class Fit {
  public:
   Fit(const std::vector<FreeParameter>& parameters, const std::vector<CalibrationLog>& logs,
       const TwinAt& twin, const CalibrationOptions& options, int threads)
-      : parameters_(parameters), logs_(logs), twin_(twin), options_(options), threads_(threads) {
-    shares_.resize(static_cast<Eigen::Index>(parameters.size()));
-    for (size_t i = 0; i < parameters.size(); ++i) {
-      const FreeParameter& p = parameters[i];
-      shares_[static_cast<Eigen::Index>(i)] = (p.start - p.min) / (p.max - p.min);
-    }
-    traits_ = TraitsOfLogs(logs, twin, ValuesAt(shares_));
-  }
+      : parameters_(parameters),
+        options_(options),
+        shares_(StartOf(parameters)),
+        model_(parameters, logs, twin, options, threads, shares_),
+        step_(std::max(options.step, options.first_step)) {}
 
   Calibration Run(std::mt19937_64& generator, const CalibrationStep& on_step);
 
  private:
-  using Blocks = std::vector<Eigen::VectorXd>;  ///< weighted errors of each log
-
-  std::vector<double> ValuesAt(const Eigen::VectorXd& shares) const;
-  std::vector<LogErrors> Errors(const Eigen::VectorXd& shares, const CalibrationOptions& options);
-  Blocks WeightedAt(const Eigen::VectorXd& shares, const CalibrationOptions& options);
-  Blocks Slope(Eigen::Index parameter, double step, const CalibrationOptions& options);
-  void Linearise();
-  bool Descend();
+  static Eigen::VectorXd StartOf(const std::vector<FreeParameter>& parameters);
+  void Descend(Calibration& result, const CalibrationStep& on_step);
+  bool Improve();
+  void Correct();
   Eigen::VectorXd StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
                           double damping) const;
-  Eigen::MatrixXd Draws(std::mt19937_64& generator) const;
-  void Judge(const Eigen::MatrixXd& draws, Calibration& result) const;
+  Eigen::VectorXd Moved(const Eigen::VectorXd& by) const {
+    return (shares_ + by).cwiseMax(0.0).cwiseMin(1.0);
+  }
 
   const std::vector<FreeParameter>& parameters_;
-  const std::vector<CalibrationLog>& logs_;
-  const TwinAt& twin_;
   const CalibrationOptions& options_;
-  int threads_;
-  LoggedTraits traits_;
   Eigen::VectorXd shares_;
+  ErrorModel model_;
+  double step_;
+  double damping_ = kFirstDamping;
   Eigen::MatrixXd scale_;
-  Blocks errors_;                          ///< at shares_
-  std::vector<Eigen::MatrixXd> hessians_;  ///< of each log: transposed slopes times slopes
-  std::vector<Eigen::VectorXd> gradients_;
-  double damping_ = 1e-2;
-  double last_change_ = 1.0;
-  size_t trials_simulated_ = 0;
+  Linearised at_;                           ///< the logs at shares_
+  std::vector<Eigen::VectorXd> simulated_;  ///< gradients of simulated logs there
+  size_t trials_of_simulated_ = 0;
 };
 
-double SquaredSum(const std::vector<Eigen::VectorXd>& blocks) {
-  double sum = 0.0;
-  for (const Eigen::VectorXd& block : blocks) sum += block.squaredNorm();
+template <class T>
+T Sum(const std::vector<T>& parts) {
+  T sum = parts.front();
+  for (size_t i = 1; i < parts.size(); ++i) sum += parts[i];
   return sum;
 }
 
-size_t Count(const std::vector<Eigen::VectorXd>& blocks) {
-  size_t count = 0;
-  for (const Eigen::VectorXd& block : blocks) count += static_cast<size_t>(block.size());
-  return count;
-}
-
-std::vector<double> Fit::ValuesAt(const Eigen::VectorXd& shares) const {
-  std::vector<double> values;
-  for (size_t i = 0; i < parameters_.size(); ++i) {
-    const FreeParameter& p = parameters_[i];
-    values.push_back(p.min + shares[static_cast<Eigen::Index>(i)] * (p.max - p.min));
+Eigen::VectorXd Fit::StartOf(const std::vector<FreeParameter>& parameters) {
+  Eigen::VectorXd shares(static_cast<Eigen::Index>(parameters.size()));
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const FreeParameter& p = parameters[i];
+    shares[static_cast<Eigen::Index>(i)] = (p.start - p.min) / (p.max - p.min);
   }
-  return values;
-}
-
-std::vector<LogErrors> Fit::Errors(const Eigen::VectorXd& shares,
-                                   const CalibrationOptions& options) {
-  trials_simulated_ += logs_.size() * static_cast<size_t>(options.horizon.phases + options.runs);
-  return ErrorsAt(logs_, traits_, twin_, ValuesAt(shares), options, threads_);
-}
-
-Fit::Blocks Fit::WeightedAt(const Eigen::VectorXd& shares, const CalibrationOptions& options) {
-  Blocks blocks;
-  for (const LogErrors& errors : Errors(shares, options)) {
-    blocks.push_back(Weighted(errors, scale_, options_));
-  }
-  return blocks;
-}
-
-/// Of every error of each log, by central differences, one-sided at a bound.
-Fit::Blocks Fit::Slope(Eigen::Index parameter, double step, const CalibrationOptions& options) {
-  Eigen::VectorXd below = shares_, above = shares_;
-  below[parameter] = std::max(0.0, shares_[parameter] - step);
-  above[parameter] = std::min(1.0, shares_[parameter] + step);
-  Blocks slopes = WeightedAt(above, options);
-  const Blocks at_below = WeightedAt(below, options);
-  for (size_t i = 0; i < slopes.size(); ++i) {
-    slopes[i] = (slopes[i] - at_below[i]) / (above[parameter] - below[parameter]);
-  }
-  return slopes;
-}
-
-/// Slopes of the predicted motions over a small step, of the statistics of runs over a wide one,
-/// summed up log by log.
-void Fit::Linearise() {
-  const Eigen::Index n = shares_.size();
-  CalibrationOptions motions_only = options_, runs_mostly = options_;
-  motions_only.runs = 0;
-  runs_mostly.horizon.phases = 1;
-  std::vector<Eigen::MatrixXd> slopes;
-  for (const Eigen::VectorXd& block : errors_) {
-    slopes.push_back(Eigen::MatrixXd::Zero(block.size(), n));
-  }
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Blocks near = Slope(k, options_.step, motions_only);
-    for (size_t i = 0; i < slopes.size(); ++i) slopes[i].col(k) = near[i];
-    if (options_.runs == 0) continue;
-    const Blocks wide = Slope(k, kWiderForRuns * options_.step, runs_mostly);
-    for (size_t i = 0; i < slopes.size(); ++i) {
-      slopes[i].col(k).tail(kTraits + 1) = wide[i].tail(kTraits + 1);
-    }
-  }
-  hessians_.clear();
-  gradients_.clear();
-  for (size_t i = 0; i < slopes.size(); ++i) {
-    hessians_.push_back(slopes[i].transpose() * slopes[i]);
-    gradients_.push_back(slopes[i].transpose() * errors_[i]);
-  }
+  return shares;
 }
 
 /// A Gauss-Newton step that leaves alone what a bound stops.
@@ -163,115 +94,70 @@ Eigen::VectorXd Fit::StepFor(const Eigen::MatrixXd& hessian, const Eigen::Vector
 }
 
 /// One step of Levenberg and Marquardt, damped until it helps; false when none does.
-bool Fit::Descend() {
-  const Eigen::Index n = shares_.size();
-  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-  for (size_t i = 0; i < hessians_.size(); ++i) {
-    hessian += hessians_[i];
-    gradient += gradients_[i];
-  }
-  const double loss = SquaredSum(errors_);
+bool Fit::Improve() {
+  const Eigen::MatrixXd hessian = Sum(at_.hessians);
+  const Eigen::VectorXd gradient = Sum(at_.gradients);
+  const double loss = SquaredSum(at_.errors);
   for (; damping_ < kLargestDamping; damping_ *= 10.0) {
-    const Eigen::VectorXd tried =
-        (shares_ + StepFor(hessian, gradient, damping_)).cwiseMax(0.0).cwiseMin(1.0);
-    last_change_ = (tried - shares_).cwiseAbs().maxCoeff();
-    if (last_change_ < kConverged) return false;
-    Blocks errors = WeightedAt(tried, options_);
-    if (SquaredSum(errors) >= loss) continue;
+    const Eigen::VectorXd tried = Moved(StepFor(hessian, gradient, damping_));
+    if ((tried - shares_).cwiseAbs().maxCoeff() < kConverged) return false;
+    if (SquaredSum(model_.ErrorsAt(tried, scale_)) >= loss) continue;
     shares_ = tried;
-    errors_ = std::move(errors);
     damping_ = std::max(1e-4, 0.1 * damping_);
     return true;
   }
   return false;
 }
 
-/// Estimates from logs drawn anew with replacement, one row each.
-Eigen::MatrixXd Fit::Draws(std::mt19937_64& generator) const {
-  const Eigen::Index n = shares_.size();
-  Eigen::MatrixXd draws(options_.resamples, n);
-  for (Eigen::Index row = 0; row < draws.rows(); ++row) {
-    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-    for (size_t i = 0; i < logs_.size(); ++i) {
-      const size_t drawn = generator() % logs_.size();
-      hessian += hessians_[drawn];
-      gradient += gradients_[drawn];
+/// The loss has leaps, as a command that just misses one look of the listener waits for the next:
+/// slopes over long steps see past them, shorter ones tell the place.
+void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
+  while (result.steps < options_.iterations) {
+    scale_ = model_.Scale(shares_);
+    at_ = model_.LinearisedAt(shares_, scale_, step_);
+    const bool helped = Improve();
+    result.steps += helped;
+    if (on_step) {
+      on_step(result.steps, SquaredSum(at_.errors) / static_cast<double>(Count(at_.errors)));
     }
-    hessian.diagonal().array() += kRidge + kRidge * hessian.diagonal().maxCoeff();
-    draws.row(row) = shares_ - hessian.ldlt().solve(gradient);
+    if (helped) continue;
+    result.has_converged = step_ <= options_.step;
+    if (result.has_converged) return;
+    step_ = std::max(options_.step, 0.5 * step_);
+    damping_ = kFirstDamping;
   }
-  return draws;
 }
 
-void Fit::Judge(const Eigen::MatrixXd& draws, Calibration& result) const {
-  const Eigen::RowVectorXd mean = draws.colwise().mean();
-  const Eigen::MatrixXd centred = draws.rowwise() - mean;
-  const double n = static_cast<double>(logs_.size());
-  // A sample of n varies less about its own mean than about the truth.
-  const double small_sample = n > 1.0 ? n / (n - 1.0) : 1.0;
-  const Eigen::MatrixXd covariance =
-      small_sample * centred.transpose() * centred / static_cast<double>(draws.rows() - 1);
-  const double quantile = boost::math::quantile(boost::math::students_t(std::max(1.0, n - 1.0)),
-                                                0.5 + 0.5 * options_.confidence);
-  const std::vector<double> values = ValuesAt(shares_);
-  result.correlation = Eigen::MatrixXd::Constant(shares_.size(), shares_.size(),
-                                                 std::numeric_limits<double>::quiet_NaN());
-  std::vector<bool> has_effect;
-  for (Eigen::Index k = 0; k < shares_.size(); ++k) {
-    const FreeParameter& p = parameters_[static_cast<size_t>(k)];
-    const double reach = quantile * std::sqrt(covariance(k, k));
-    double slope = 0.0, effect = 0.0;
-    for (size_t i = 0; i < hessians_.size(); ++i) {
-      slope += gradients_[i][k];
-      effect += hessians_[i](k, k);
-    }
-    has_effect.push_back(effect > 0.0);
-    CalibratedParameter one{.parameter = p, .value = values[static_cast<size_t>(k)]};
-    one.has_effect = effect > 0.0;
-    one.low = one.has_effect
-                  ? std::max(p.min, values[static_cast<size_t>(k)] - reach * (p.max - p.min))
-                  : p.min;
-    one.high = one.has_effect
-                   ? std::min(p.max, values[static_cast<size_t>(k)] + reach * (p.max - p.min))
-                   : p.max;
-    one.is_at_bound = one.has_effect &&
-                      ((shares_[k] <= 0.0 && slope > 0.0) || (shares_[k] >= 1.0 && slope < 0.0));
-    one.is_identified = one.has_effect && reach <= options_.identified_share;
-    result.parameters.push_back(one);
+/// Least errors are not at the truth: what the robot did went into the log, so its luck went into
+/// the commands that are replayed. Logs of the simulator have the same bias, and there the truth is
+/// known (indirect inference, Gourieroux, Monfort and Renault 1993).
+void Fit::Correct() {
+  at_ = model_.LinearisedAt(shares_, scale_, step_);
+  simulated_.clear();
+  for (int i = 0; i < options_.simulated_logs; ++i) {
+    ErrorModel model = model_.OfSimulatedLogs(shares_, i);
+    const Linearised made = model.LinearisedAt(shares_, scale_, step_);
+    simulated_.insert(simulated_.end(), made.gradients.begin(), made.gradients.end());
+    trials_of_simulated_ += model.TrialsSimulated();
   }
-  for (Eigen::Index a = 0; a < shares_.size(); ++a) {
-    for (Eigen::Index b = 0; b < shares_.size(); ++b) {
-      if (!has_effect[static_cast<size_t>(a)] || !has_effect[static_cast<size_t>(b)]) continue;
-      result.correlation(a, b) = covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
-    }
-  }
+  Eigen::VectorXd gradient = Sum(at_.gradients);
+  if (!simulated_.empty()) gradient -= Sum(simulated_) / options_.simulated_logs;
+  const Eigen::VectorXd step = StepFor(Sum(at_.hessians), gradient, kDampingOfCorrection);
+  shares_ = Moved(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step));
 }
 
 Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step) {
   Calibration result;
   const Eigen::VectorXd start = shares_;
-  bool goes_on = true;
-  while (goes_on && result.steps < options_.iterations) {
-    const std::vector<LogErrors> errors = Errors(shares_, options_);
-    scale_ = ScaleOf(errors, options_);
-    errors_.clear();
-    for (const LogErrors& log : errors) errors_.push_back(Weighted(log, scale_, options_));
-    Linearise();
-    goes_on = Descend();
-    result.steps += goes_on;
-    if (on_step) {
-      on_step(result.steps, SquaredSum(errors_) / static_cast<double>(Count(errors_)));
-    }
-  }
-  result.has_converged = !goes_on;
-  if (goes_on) Linearise();  // the last step moved on from where the slopes were taken
-  Judge(Draws(generator), result);
-  const double count = static_cast<double>(Count(errors_));
-  result.loss_after = SquaredSum(errors_) / count;
-  result.loss_before = SquaredSum(WeightedAt(start, options_)) / count;
-  result.trials_simulated = trials_simulated_;
+  Descend(result, on_step);
+  step_ = options_.step;
+  for (int i = 0; i < options_.corrections; ++i) Correct();
+  if (options_.corrections == 0) at_ = model_.LinearisedAt(shares_, scale_, step_);
+  Judge(parameters_, options_, shares_, at_, simulated_, generator, result);
+  const auto count = static_cast<double>(Count(at_.errors));
+  result.loss_after = SquaredSum(model_.ErrorsAt(shares_, scale_)) / count;
+  result.loss_before = SquaredSum(model_.ErrorsAt(start, scale_)) / count;
+  result.trials_simulated = model_.TrialsSimulated() + trials_of_simulated_;
   return result;
 }
 

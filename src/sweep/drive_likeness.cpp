@@ -33,7 +33,40 @@ struct Answers {
   }
 };
 
+/// In strides, so that jitter adds little.
+double Length_m(const Trajectory& path) {
+  constexpr double kStride_m = 0.02;
+  double length_m = 0.0;
+  Eigen::Vector2d last = path.poses.front().Position();
+  for (const trajectory::StampedPose& pose : path.poses) {
+    const double moved_m = (pose.Position() - last).norm();
+    if (moved_m < kStride_m) continue;
+    length_m += moved_m;
+    last = pose.Position();
+  }
+  return length_m;
+}
+
+std::map<std::string, double> LongestReal_m(const std::vector<RepeatedTrial>& trials) {
+  std::map<std::string, double> longest_m;
+  for (const RepeatedTrial& trial : trials) {
+    double& longest = longest_m[trial.setting];
+    longest = std::max(longest, Length_m(trial.real));
+  }
+  return longest_m;
+}
+
 }  // namespace
+
+std::vector<RepeatedTrial> WithoutDetours(std::vector<RepeatedTrial> trials, double longest_run) {
+  const std::map<std::string, double> longest_m = LongestReal_m(trials);
+  for (RepeatedTrial& trial : trials) {
+    const double limit_m = longest_run * longest_m.at(trial.setting);
+    const auto is_detour = [&](const Trajectory& run) { return Length_m(run) > limit_m; };
+    trial.failed_runs += static_cast<int>(std::erase_if(trial.runs, is_detour));
+  }
+  return trials;
+}
 
 DriveLikeness MeasureDriveLikeness(const std::vector<RepeatedTrial>& trials, bool is_matched,
                                    const gap::GapOptions& gap, const gap::LikenessOptions& options,
@@ -41,13 +74,13 @@ DriveLikeness MeasureDriveLikeness(const std::vector<RepeatedTrial>& trials, boo
   DriveLikeness likeness;
   Answers sim, real;
   std::map<std::string, gap::RepeatedSetting> settings;
-  for (const RepeatedTrial& trial : trials) {
+  for (const RepeatedTrial& trial : WithoutDetours(trials, options.longest_run)) {
     likeness.failed_runs += trial.failed_runs;
     real.Add(trial.real, trial);
-    for (const Trajectory& run : trial.runs) sim.Add(run, trial);
     gap::RepeatedSetting& setting = settings[trial.setting];
     setting.reals.push_back(trial.real);
     if (is_matched || setting.sims.empty()) setting.sims.emplace_back();
+    for (const Trajectory& run : trial.runs) sim.Add(run, trial);
     setting.sims.back().insert(setting.sims.back().end(), trial.runs.begin(), trial.runs.end());
   }
   std::vector<gap::RepeatedSetting> in_order;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "rift/geometry/angle.hpp"
+#include "rift/simulation/noise.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -12,6 +13,7 @@ using geometry::Pose2;
 using trajectory::StampedPose;
 using trajectory::Trajectory;
 
+constexpr std::uint64_t kOffsetStream = 40;
 /// How long the loop runs on after the last pose of the log has arrived.
 constexpr double kRunOut_s = 0.1;
 
@@ -89,6 +91,25 @@ size_t FirstMoving(const Trajectory& log, double moved_m) {
   return i;
 }
 
+std::vector<HorizonError> ErrorsOf(const std::vector<Pose2>& replay, const Trajectory& log,
+                                   const ShortHorizonOptions& options) {
+  std::vector<HorizonError> errors;
+  const size_t rows = log.poses.size();
+  for (size_t i = FirstMoving(log, options.moved_m); i < rows; ++i) {
+    for (int frames = 1; frames <= options.most_frames && i + frames < rows; ++frames) {
+      const Pose2 logged =
+          geometry::Inverse(log.poses[i].Planar()) * log.poses[i + frames].Planar();
+      const Pose2 motion = geometry::Inverse(replay[i]) * replay[i + frames];
+      errors.push_back({.from = i,
+                        .frames = frames,
+                        .ahead_m = motion.x_m - logged.x_m,
+                        .left_m = motion.y_m - logged.y_m,
+                        .turned_rad = geometry::WrapToPi(motion.yaw_rad - logged.yaw_rad)});
+    }
+  }
+  return errors;
+}
+
 }  // namespace
 
 Trajectory Replay(const SimulatedTrial& trial, const Trajectory& log) {
@@ -102,28 +123,24 @@ Trajectory Replay(const SimulatedTrial& trial, const Trajectory& log) {
 std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial, const Trajectory& log,
                                              const ShortHorizonOptions& options) {
   if (!log.HasYaw()) throw std::invalid_argument("a replay needs the yaw of the log");
-  std::vector<std::vector<Pose2>> replays;
+  std::vector<HorizonError> mean;
   SimulatedTrial phase = trial;
+  const double offset = simulation::Noise(trial.seed, kOffsetStream).Uniform(0, 0);
   for (int i = 0; i < options.phases; ++i, ++phase.seed) {
-    replays.push_back(PosesAt(Replay(phase, log), log));
-  }
-  std::vector<HorizonError> errors;
-  const size_t rows = log.poses.size();
-  for (size_t i = FirstMoving(log, options.moved_m); i < rows; ++i) {
-    for (int frames = 1; frames <= options.most_frames && i + frames < rows; ++frames) {
-      const Pose2 logged =
-          geometry::Inverse(log.poses[i].Planar()) * log.poses[i + frames].Planar();
-      HorizonError error{.from = i, .frames = frames};
-      for (const std::vector<Pose2>& replay : replays) {
-        const Pose2 motion = geometry::Inverse(replay[i]) * replay[i + frames];
-        error.ahead_m += (motion.x_m - logged.x_m) / options.phases;
-        error.left_m += (motion.y_m - logged.y_m) / options.phases;
-        error.turned_rad += geometry::WrapToPi(motion.yaw_rad - logged.yaw_rad) / options.phases;
-      }
-      errors.push_back(error);
+    // Even phases: over drawn ones the mean would change by leaps with a delay. Each log has its
+    // own offset, so that many logs see many phases.
+    phase.simulation.link.poll_phase = (i + offset) / options.phases;
+    const auto errors = ErrorsOf(PosesAt(Replay(phase, log), log), log, options);
+    mean.resize(errors.size());
+    for (size_t k = 0; k < mean.size(); ++k) {
+      mean[k].from = errors[k].from;
+      mean[k].frames = errors[k].frames;
+      mean[k].ahead_m += errors[k].ahead_m / options.phases;
+      mean[k].left_m += errors[k].left_m / options.phases;
+      mean[k].turned_rad += errors[k].turned_rad / options.phases;
     }
   }
-  return errors;
+  return mean;
 }
 
 }  // namespace rift::sweep

@@ -2,7 +2,7 @@
 // to the authors' trials by surface, beside Webots and a robot made of facts alone.
 //
 //   identification_study [--runs N] [--trial 1|2] [--robot FILE.yaml] [--facts] [--webots]
-//                        [--horizon] [key=value ...]
+//                        [--horizon | --each] [key=value ...]
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ namespace {
 struct Request {
   int runs = 20;
   int trial = 0;
-  bool facts = false, webots = false, horizon = false;
+  bool facts = false, webots = false, horizon = false, each = false;
   std::string robot = RIFT_SOURCE_DIR "/configs/robots/3pi_2040.yaml";
   std::vector<std::string> overrides;
 };
@@ -41,6 +41,8 @@ Request ParseArguments(int count, char** arguments) {
       request.facts = true;
     } else if (argument == "--webots") {
       request.webots = true;
+    } else if (argument == "--each") {
+      request.each = true;
     } else if (argument == "--horizon") {
       request.horizon = true;
     } else {
@@ -129,11 +131,33 @@ void PrintHorizons(const test::GridStudy& study, const std::vector<test::GridTri
   }
 }
 
+void PrintTraits(const sweep::RepeatedTrial& trial, const char* side,
+                 const trajectory::Trajectory& path) {
+  const gap::PathTraits shape = gap::TraitsOf(path, {});
+  const trial::LoopDelay d = trial::EstimateLoopDelay(path, trial.waypoints, trial.control);
+  fmt::print("{},{},{:.5f},{:.5f},{:.4f},{:.3f},{:.4f},{:.3f},{:.3f}\n", trial.setting, side,
+             shape.speed_mps, shape.weave_m, d.lag_s, d.gain_rad_s, d.bias_rad_s, d.r2,
+             path.Duration_s());
+}
+
+/// What each path tells by itself, real and simulated, as CSV.
+void PrintEach(const std::vector<sweep::RepeatedTrial>& trials) {
+  fmt::print("setting,side,speed_mps,weave_m,loop_delay_s,gain_rad_s,bias_rad_s,r2,duration_s\n");
+  for (const sweep::RepeatedTrial& trial : trials) {
+    PrintTraits(trial, "real", trial.real);
+    for (const trajectory::Trajectory& run : trial.runs) PrintTraits(trial, "simulated", run);
+  }
+}
+
 int Study(const Request& request) {
   const test::GridStudy study = LoadStudy(request);
   const std::vector<test::GridTrial> trials = test::LoadTrialGrid(study, request.trial);
   if (request.horizon) {
     PrintHorizons(study, trials);
+    return 0;
+  }
+  if (request.each) {
+    PrintEach(test::DriveGrid(study, trials, request.runs));
     return 0;
   }
   PrintHeader();

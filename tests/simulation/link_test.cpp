@@ -92,6 +92,19 @@ TEST_CASE("A listener that polls holds its command until the next poll") {
   }
 }
 
+TEST_CASE("The phase of a listener can be given instead of drawn") {
+  LinkOptions options = Direct();
+  options.poll_s = 0.1;
+  for (const double phase : {0.0, 0.25, 0.999}) {
+    options.poll_phase = phase;
+    for (const std::uint64_t seed : {1, 2}) {
+      Link link(options, seed);
+      link.Send(0.0, {0.2, 0.2});
+      CHECK(HeldFrom_s(link, 0.2, 0.2) == Approx(0.1 * phase).margin(0.001));
+    }
+  }
+}
+
 /// A line every 20 ms, its left power counting up by 0.01; what is held after 0.9 s.
 double AgeOfHeld_s(const LinkOptions& options, std::uint64_t seed) {
   Link link(options, seed);

@@ -79,6 +79,24 @@ TEST_CASE("A coasting robot stops after v squared over twice its deceleration") 
         Approx(speed_mps * speed_mps / (2.0 * deceleration)).epsilon(0.003));
 }
 
+TEST_CASE("The caster brakes by its load times its friction times what the ground makes of it") {
+  BodyOptions body;
+  body.caster_mu = 0.02;
+  const auto lost_mps = [&](double caster_factor) {
+    TerrainOptions options;
+    options.surfaces["ground"] = SurfaceOptions{};
+    options.surfaces["ground"].caster_factor = caster_factor;
+    OdeWorld world(body, Terrain(options), {}, 0.001);
+    world.Launch(0.3);
+    Run(world, 1.0, 0.001, {Drag(kFree), Drag(kFree)});
+    return 0.3 - world.State().velocity_mps.norm();
+  };
+  const double load_n = body.chassis_mass_kg * kGravity * body.com_ahead_m / body.caster_ahead_m;
+  CHECK(lost_mps(0.0) == Approx(0.0).margin(1e-6));
+  CHECK(lost_mps(1.0) == Approx(body.caster_mu * load_n / EffectiveMass_kg(body)).epsilon(0.05));
+  CHECK(lost_mps(3.0) == Approx(3.0 * lost_mps(1.0)).epsilon(0.05));
+}
+
 TEST_CASE("A robot with locked wheels stops after v squared over twice mu times the wheel load") {
   BodyOptions body;
   body.com_ahead_m = 0.0;  // all weight on the wheels but what braking itself moves to the rim

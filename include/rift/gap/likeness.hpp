@@ -18,6 +18,7 @@ struct LikenessOptions {
   int speed_stride = 3;
   double moving_mps = 0.1;
   double wavelength_min_m = 0.06;
+  double longest_run = 1.5;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
@@ -29,6 +30,10 @@ struct LikenessOptions {
     field("moving_mps", self.moving_mps, 0.0, 100.0, "slower than this counts as standing");
     field("wavelength_min_m", self.wavelength_min_m, 1e-4, 1e3,
           "shortest wavelength of the weave that is looked for");
+    field(
+        "longest_run", self.longest_run, 1.0, 1e6,
+        "a run longer than this many times the longest real path of its setting passed a waypoint "
+        "and circled: it counts as failed, as no log shows what became of such trials");
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 
 #include "rift/robot/robot.hpp"
@@ -13,6 +14,7 @@ struct LinkOptions {
   double delay_s = 0.040;
   double baud = 9600.0;
   double poll_s = 0.100;
+  std::optional<double> poll_phase;
   int uart_bytes = 32;
   bool two_decimals = true;
   double line_loss = 0.0;
@@ -31,6 +33,10 @@ struct LinkOptions {
     field("poll_s", self.poll_s, 0.0, 2.0,
           "interval in s at which the listener reads its serial line and takes the newest complete "
           "line (authors' robot: 0.1); 0: reads at once");
+    field(
+        "poll_phase", self.poll_phase, 0.0, 1.0,
+        "when the listener first looks, as a share of poll_s; absent: each run draws its own, for "
+        "its clock knows nothing of the host's");
     field("uart_bytes", self.uart_bytes, 0, 1'000'000,
           "bytes the serial line keeps between two reads, the rest are lost (RP2040: 32); 0: all");
     field("two_decimals", self.two_decimals,

@@ -17,6 +17,7 @@ struct Grip {
   double mu = 0.8;
   double rolling_resistance = 0.0;
   double slip = 0.0;
+  double caster_factor = 1.0;
 };
 
 struct SurfaceOptions {
@@ -24,6 +25,7 @@ struct SurfaceOptions {
   double mu = 0.8;
   double rolling_resistance = 0.0;
   double slip = 0.0;
+  double caster_factor = 1.0;
   double ramp_rad = 0.2404;
   double ramp_top_m = 0.24;
   double ramp_edge_x_m = 0.05;
@@ -47,6 +49,8 @@ struct SurfaceOptions {
           "resistance to rolling as a share of the load on the wheel");
     field("slip", self.slip, 0.0, 0.5,
           "creep of a wheel at the limit of its friction, as a share of its speed");
+    field("caster_factor", self.caster_factor, 0.0, 20.0,
+          "friction of the caster's ball here as a multiple of body.caster_mu");
     field("ramp_rad", self.ramp_rad, 0.001, 0.7,
           "inclination of the board in rad (z in the downhill logs: 0.2404)");
     field("ramp_top_m", self.ramp_top_m, 0.0, 2.0,
@@ -69,7 +73,7 @@ struct SurfaceOptions {
   /// Rules between fields; throws std::invalid_argument naming field, value and rule.
   void Check() const;
 
-  Grip GripOf() const { return {mu, rolling_resistance, slip}; }
+  Grip GripOf() const { return {mu, rolling_resistance, slip, caster_factor}; }
 };
 
 /// The surfaces of the paper by name: ground, cardboard, parchment, wet_parchment, uphill, downhill

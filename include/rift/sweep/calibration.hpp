@@ -16,7 +16,10 @@ struct CalibrationOptions {
   int runs = 4;
   double likeness_weight = 4.0;
   int iterations = 12;
-  double step = 0.04;
+  double first_step = 0.2;
+  double step = 0.1;
+  int corrections = 2;
+  int simulated_logs = 2;
   double outlier_sd = 3.0;
   int resamples = 1000;
   double confidence = 0.95;
@@ -33,9 +36,16 @@ struct CalibrationOptions {
         "likeness_weight", self.likeness_weight, 0.0, 1e6,
         "how much weave, spread, speed and loop delay of a run count beside one predicted motion");
     field("iterations", self.iterations, 1, 1000, "most steps of the fit (Levenberg-Marquardt)");
-    field("step", self.step, 1e-6, 0.5,
-          "change of a parameter that its effect is read from, as a share of its range; delays act "
-          "in steps of a control period, so not too small");
+    field("first_step", self.first_step, 1e-6, 0.5,
+          "change of a parameter that its effect is read from at first, as a share of its range: "
+          "long, to see past the leaps that a polled link makes");
+    field("step", self.step, 1e-6, 0.5, "the same at the end");
+    field(
+        "corrections", self.corrections, 0, 100,
+        "steps after the fit, to where the logs look like those the simulator makes itself; 0: the "
+        "least errors, whose delay and mismatch are biased");
+    field("simulated_logs", self.simulated_logs, 0, 100,
+          "simulated logs for each real one in them");
     field("outlier_sd", self.outlier_sd, 1.0, 1e6,
           "errors beyond this many standard deviations count in proportion (Huber 1964)");
     field("resamples", self.resamples, 20, 1'000'000,

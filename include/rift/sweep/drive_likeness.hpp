@@ -16,8 +16,12 @@ struct RepeatedTrial {
   std::vector<trajectory::Trajectory> runs;  ///< those that reached the end
   std::vector<control::Waypoint> waypoints;
   control::NavigatorOptions control;
-  int failed_runs = 0;  ///< those that did not
+  int failed_runs = 0;  ///< those that did not, or only on a detour
 };
+
+/// Runs longer than `longest_run` times the longest real path of their setting passed a waypoint
+/// and circled: they move to the failed ones.
+std::vector<RepeatedTrial> WithoutDetours(std::vector<RepeatedTrial> trials, double longest_run);
 
 /// Likeness of paths, and of what only the controller's side can tell.
 struct DriveLikeness {

@@ -44,8 +44,8 @@ struct HorizonError {
 trajectory::Trajectory Replay(const SimulatedTrial& trial, const trajectory::Trajectory& log);
 
 /// Motions over 1 to most_frames frames from every row while the robot moved, in order of rows,
-/// each the mean of the replays with the seeds trial.seed, trial.seed + 1 and so on.
-/// `trial.start` is where the log stands. Throws std::invalid_argument on a log without yaw.
+/// each the mean over even phases of the robot's listener (seeds trial.seed, trial.seed + 1 and so
+/// on). `trial.start` is where the log stands. Throws std::invalid_argument on a log without yaw.
 std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial,
                                              const trajectory::Trajectory& log,
                                              const ShortHorizonOptions& options);

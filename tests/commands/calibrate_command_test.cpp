@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "support/process.hpp"
+#include "support/trials.hpp"
+
+namespace rift {
+namespace {
+
+using nlohmann::json;
+using test::ProcessResult;
+using test::ReadFile;
+using test::RunRift;
+using test::WriteText;
+
+const std::string kTask = R"(waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.4, y: 0.05, stop: true}]
+simulation: {motor: {dead_band: 0.05}}
+trial: {pace: new_pose}
+)";
+const std::string kCalibrate = kTask + R"(goal: calibrate
+reference: {kind: logs, path: "log{trial}.csv", trials: [1, 2, 3, 4]}
+calibrate:
+  holdout: [4]
+  fit: {motor.mismatch: {min: -0.1, max: 0.1}, surfaces.bump.mu: {min: 0.5, max: 1.2}}
+  judge_runs: 2
+  method: {runs: 1, iterations: 2, horizon: {phases: 1}, resamples: 100}
+likeness: {shuffles: 19}
+)";
+
+/// A folder with the logs of a robot whose left wheel is 5 % faster.
+struct Bench {
+  Bench() {
+    WriteText(task, kTask);
+    for (int i = 1; i <= 4; ++i) {
+      const std::string n = std::to_string(i);
+      REQUIRE(RunRift({"simulate", task, "--set", "simulation.motor.mismatch=0.05", "--seed", n,
+                       "--out", folder / ("log" + n + ".csv")})
+                  .exit_code == 0);
+    }
+  }
+  ProcessResult Run(const std::string& experiment, const std::vector<std::string>& more = {}) {
+    WriteText(file, experiment);
+    std::vector<std::string> words{"sweep", file, "--out", folder / "out"};
+    words.insert(words.end(), more.begin(), more.end());
+    return RunRift(words);
+  }
+
+  test::TemporaryFolder folder;
+  std::string task = folder / "task.yaml";
+  std::string file = folder / "calibrate.yaml";
+};
+
+std::string Replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST_CASE("A calibration finds the mismatch and its robot file is used as an include") {
+  Bench bench;
+  const std::string robot = bench.folder / "robot.yaml";
+  const ProcessResult run = bench.Run(kCalibrate, {"--write-robot", robot, "--jobs", "2"});
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const json found = json::parse(ReadFile(bench.folder / "out/calibration.json"));
+  const json& fitted = found["fit"]["parameters"];
+  CHECK(fitted["simulation.motor.mismatch"]["value"].get<double>() == Approx(0.05).margin(0.02));
+  CHECK(fitted["simulation.terrain.surfaces.bump.mu"]["has_effect"] == false);
+  CHECK(run.out.find("no effect") != std::string::npos);
+  CHECK(found["judged"]["all"].contains("held out"));
+  CHECK(std::filesystem::exists(bench.folder / "out/figures/calibration.png"));
+
+  const std::string text = ReadFile(robot);
+  CHECK(text.find("interval") != std::string::npos);
+  CHECK(text.find("log1.csv") != std::string::npos);
+  WriteText(bench.task, "include: robot.yaml\n" +
+                            Replaced(kTask, "simulation: {motor: {dead_band: 0.05}}\n", ""));
+  const ProcessResult drive =
+      RunRift({"simulate", bench.task, "--out", bench.folder / "again.csv", "--json"});
+  INFO(drive.err);
+  CHECK(drive.exit_code == 0);
+  CHECK(ReadFile(bench.folder / "again.experiment.yaml").find("mismatch: 0.0") !=
+        std::string::npos);
+
+  const std::string first = ReadFile(bench.folder / "out/calibration.json");
+  REQUIRE(bench.Run(kCalibrate, {"--jobs", "1"}).exit_code == 0);
+  CHECK(ReadFile(bench.folder / "out/calibration.json") == first);
+}
+
+TEST_CASE("What held-out logs hold changes nothing that is fitted") {
+  Bench bench;
+  REQUIRE(bench.Run(kCalibrate).exit_code == 0);
+  const json before = json::parse(ReadFile(bench.folder / "out/calibration.json"));
+  std::filesystem::copy_file(bench.folder / "log1.csv", bench.folder / "log4.csv",
+                             std::filesystem::copy_options::overwrite_existing);
+  REQUIRE(bench.Run(kCalibrate).exit_code == 0);
+  const json after = json::parse(ReadFile(bench.folder / "out/calibration.json"));
+  CHECK(before["fit"] == after["fit"]);
+  CHECK(before["judged"]["all"]["held out"] != after["judged"]["all"]["held out"]);
+}
+
+TEST_CASE("A calibration that cannot be is refused with one line that says why") {
+  test::TemporaryFolder folder;
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    WriteText(folder / "bad.yaml", Replaced(kCalibrate, from, to));
+    const ProcessResult run = RunRift({"sweep", folder / "bad.yaml", "--out", folder / "out"});
+    CHECK(run.exit_code == 2);
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    return run.err;
+  };
+  using Catch::Contains;
+  CHECK_THAT(refused("motor.mismatch", "motor.mismtach"), Contains("is unknown"));
+  CHECK_THAT(refused("min: -0.1, max: 0.1", "min: -0.1"), Contains("{min: a, max: b}"));
+  CHECK_THAT(refused("min: -0.1, max: 0.1", "min: -0.1, max: 7"), Contains("7"));
+  CHECK_THAT(refused("min: -0.1, max: 0.1", "min: 0.01, max: 0.1"), Contains("starts at 0"));
+  CHECK_THAT(refused("motor.mismatch", "motor.model"), Contains("only a number can be fitted"));
+  CHECK_THAT(refused("motor.mismatch", "\"surfaces.{surface}.mu\""),
+             Contains("'surface' of space"));
+  CHECK_THAT(refused("holdout: [4]", "holdout: [5]"), Contains("calibrate.holdout names trial 5"));
+  CHECK_THAT(refused("holdout: [4]", "holdout: [1, 2, 3, 4]"), Contains("none is left to fit"));
+  CHECK_THAT(refused("kind: logs, path: \"log{trial}.csv\"", "kind: nominal"),
+             Contains("reference.kind is not logs"));
+  CHECK_THAT(refused("log{trial}.csv", "none{trial}.csv"), Contains("at least 2 logs"));
+}
+
+TEST_CASE("Writing a robot without a calibration is refused") {
+  test::TemporaryFolder folder;
+  WriteText(folder / "task.yaml", kTask);
+  const ProcessResult run = RunRift({"sweep", folder / "task.yaml", "--out", folder / "out",
+                                     "--write-robot", folder / "robot.yaml"});
+  CHECK(run.exit_code == 2);
+  CHECK(run.err.find("goal: calibrate") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace rift

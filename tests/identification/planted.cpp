@@ -1,0 +1,91 @@
+#include "identification/planted.hpp"
+
+#include <fmt/format.h>
+
+#include <random>
+
+#include "rift/config/set_value.hpp"
+#include "rift/control/waypoint.hpp"
+#include "rift/sweep/simulated_trial.hpp"
+
+namespace rift::test {
+namespace {
+
+GridStudy RobotAt(const GridStudy& robot, const std::vector<Planted>& planted,
+                  const std::vector<double>& values) {
+  std::vector<config::KeyValue> pairs;
+  for (size_t i = 0; i < planted.size(); ++i) {
+    pairs.push_back({planted[i].key, config::Node::Scalar(fmt::format("{}", values[i]))});
+  }
+  GridStudy at = robot;
+  config::SetValues(at, pairs);
+  return at;
+}
+
+geometry::Pose2 PutDown(const GridStudy& robot, std::mt19937_64& random) {
+  std::normal_distribution<double> aside_m(0.0, 0.02), turned_rad(0.0, 0.06);
+  geometry::Pose2 start = control::StartPose(robot.waypoints);
+  start.x_m += aside_m(random);
+  start.y_m += aside_m(random);
+  start.yaw_rad += turned_rad(random);
+  return start;
+}
+
+sweep::SimulatedTrial TrialOf(const GridStudy& robot, double v_min, const geometry::Pose2& start,
+                              std::uint64_t seed) {
+  sweep::SimulatedTrial trial{.waypoints = robot.waypoints,
+                              .control = robot.control,
+                              .trial = robot.trial,
+                              .simulation = robot.simulation,
+                              .start = start,
+                              .seed = seed};
+  trial.control.v_min = v_min;
+  trial.simulation.terrain.surface = "parchment";
+  return trial;
+}
+
+}  // namespace
+
+std::vector<Planted> PlantAt(std::uint64_t repeat) {
+  std::mt19937_64 random(repeat);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  return {{"simulation.link.delay_s", 0.02, 0.20, 0.06, between(0.08, 0.14)},
+          {"simulation.motor.mismatch", -0.10, 0.10, 0.0, between(-0.06, 0.06)},
+          {"simulation.terrain.surfaces.parchment.mu", 0.04, 0.30, 0.20, between(0.07, 0.13)},
+          {"simulation.terrain.surfaces.bump.mu", 0.5, 1.2, 0.85, 0.85, true}};
+}
+
+sweep::Calibration FindPlanted(const GridStudy& robot, const std::vector<Planted>& planted,
+                               std::uint64_t repeat, int logs,
+                               const sweep::CalibrationOptions& options, int threads) {
+  std::vector<double> truth;
+  std::vector<sweep::FreeParameter> free;
+  for (const Planted& p : planted) {
+    truth.push_back(p.truth);
+    free.push_back({p.key, p.min, p.max, p.start});
+  }
+  const GridStudy real = RobotAt(robot, planted, truth);
+  std::mt19937_64 random(1000 + repeat);
+  std::vector<sweep::CalibrationLog> recorded;
+  std::vector<double> v_min;
+  for (int i = 0; i < logs; ++i) {
+    v_min.push_back(i % 2 == 0 ? 0.15 : 0.20);
+    const std::uint64_t seed = random();
+    const auto run = sweep::Simulate(TrialOf(real, v_min.back(), PutDown(real, random), seed));
+    recorded.push_back(
+        {fmt::format("log {}", i), fmt::format("{}", v_min.back()), run.result.trajectory});
+  }
+  const sweep::TwinAt twin = [&](size_t log, const std::vector<double>& values) {
+    const GridStudy at = RobotAt(robot, planted, values);
+    const geometry::Pose2 tag{at.simulation.mocap.tag_ahead_m, 0.0, 0.0};
+    return TrialOf(at, v_min[log],
+                   trajectory::StandingPose(recorded[log].log) * geometry::Inverse(tag),
+                   7 + 1000 * static_cast<std::uint64_t>(log));
+  };
+  std::mt19937_64 generator(1);
+  return sweep::Calibrate(free, recorded, twin, options, generator, threads);
+}
+
+}  // namespace rift::test

@@ -1,0 +1,96 @@
+#include "identification/planted.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "rift/config/bind.hpp"
+#include "rift/config/load.hpp"
+#include "rift/config/tree.hpp"
+#include "support/process.hpp"
+
+namespace rift {
+namespace {
+
+test::GridStudy Robot() {
+  const std::string configs = RIFT_SOURCE_DIR "/configs/";
+  config::Node tree = config::Load(configs + "waypoints/paper.yaml", test::ReadFile);
+  config::Merge(tree, config::Load(configs + "robots/3pi_2040.yaml", test::ReadFile));
+  test::GridStudy study;
+  config::Bind(tree, study);
+  return study;
+}
+
+TEST_CASE("A planted mismatch is found again and a friction that never acts is flagged") {
+  std::vector<test::Planted> planted = test::PlantAt(3);
+  planted = {planted[1], planted[3]};
+  sweep::CalibrationOptions options;
+  options.runs = 0;
+  options.iterations = 3;
+  options.horizon.phases = 1;
+  const sweep::Calibration found = test::FindPlanted(Robot(), planted, 3, 4, options, 1);
+  const sweep::CalibratedParameter &mismatch = found.parameters[0], &unseen = found.parameters[1];
+  INFO("mismatch " << mismatch.value << " in [" << mismatch.low << ", " << mismatch.high << "], "
+                   << planted[0].truth << " was planted");
+  CHECK(mismatch.low < planted[0].truth);
+  CHECK(planted[0].truth < mismatch.high);
+  CHECK(mismatch.is_identified);
+  CHECK(mismatch.high - mismatch.low < 0.05);
+  CHECK_FALSE(mismatch.is_at_bound);
+  CHECK_FALSE(unseen.has_effect);
+  CHECK_FALSE(unseen.is_identified);
+  CHECK(unseen.value == planted[1].start);
+  CHECK(found.loss_after < found.loss_before);
+}
+
+TEST_CASE("A planted radio delay is found from below and from above") {
+  for (const double start : {0.05, 0.17}) {
+    std::vector<test::Planted> planted = {test::PlantAt(5)[0]};
+    planted[0].start = start;
+    sweep::CalibrationOptions options;
+    options.runs = 0;
+    options.horizon.phases = 4;
+    options.corrections = 1;
+    options.simulated_logs = 1;
+    const sweep::Calibration found = test::FindPlanted(Robot(), planted, 5, 6, options, 2);
+    const sweep::CalibratedParameter& delay = found.parameters[0];
+    INFO("from " << start << ": " << delay.value << " in [" << delay.low << ", " << delay.high
+                 << "], " << planted[0].truth << " was planted");
+    CHECK(delay.value == Approx(planted[0].truth).margin(0.02));
+    CHECK(delay.low < planted[0].truth);
+    CHECK(planted[0].truth < delay.high);
+    CHECK(delay.is_identified);
+  }
+}
+
+TEST_CASE("A calibration without a simulated log of the fit is the least error and says less") {
+  std::vector<test::Planted> planted = {test::PlantAt(6)[1]};
+  sweep::CalibrationOptions options;
+  options.runs = 0;
+  options.iterations = 2;
+  options.horizon.phases = 2;
+  options.simulated_logs = 1;
+  const sweep::Calibration corrected = test::FindPlanted(Robot(), planted, 6, 3, options, 2);
+  options.corrections = 0;
+  const sweep::Calibration least = test::FindPlanted(Robot(), planted, 6, 3, options, 2);
+  CHECK(least.trials_simulated < corrected.trials_simulated);
+  CHECK(least.parameters[0].value != corrected.parameters[0].value);
+  // What simulated logs tell scatters too.
+  CHECK(least.parameters[0].high - least.parameters[0].low <
+        corrected.parameters[0].high - corrected.parameters[0].low);
+}
+
+TEST_CASE("Threads change no byte of a calibration") {
+  std::vector<test::Planted> planted = test::PlantAt(4);
+  planted = {planted[1]};
+  sweep::CalibrationOptions options;
+  options.runs = 1;
+  options.iterations = 1;
+  options.horizon.phases = 1;
+  const sweep::Calibration alone = test::FindPlanted(Robot(), planted, 4, 3, options, 1);
+  const sweep::Calibration together = test::FindPlanted(Robot(), planted, 4, 3, options, 3);
+  CHECK(alone.parameters[0].value == together.parameters[0].value);
+  CHECK(alone.parameters[0].low == together.parameters[0].low);
+  CHECK(alone.loss_after == together.loss_after);
+}
+
+}  // namespace
+}  // namespace rift
