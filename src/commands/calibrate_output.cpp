@@ -59,12 +59,13 @@ std::string CorrelationText(const sweep::Calibration& fit) {
 std::string JudgedText(const std::vector<JudgedGroup>& judged) {
   std::string text = fmt::format(
       "before > after the fit, whole paths; ratios are simulated / real, 1 is like the robot\n"
-      "{:<10} {:<8}  {:>13}  {:>8}  {:>13}  {:>12}  {:>12}  {:>22}  {:>14}\n",
-      "", "", "gap_mm", "real_mm", "mean_path_mm", "spread", "weave", "delay_s (real)", "speed");
+      "{:<10} {:<8}  {:>13}  {:>8}  {:>13}  {:>12}  {:>12}  {:>22}  {:>14}  {:>9}\n",
+      "", "", "gap_mm", "real_mm", "mean_path_mm", "spread", "weave", "delay_s (real)", "speed",
+      "missed");
   for (const JudgedGroup& group : judged) {
     const gap::Likeness &before = group.before.path, &after = group.after.path;
     text += fmt::format(
-        "{:<10} {:<8}  {:>13}  {:>8}  {:>13}  {:>12}  {:>12}  {:>22}  {:>14}\n", group.level,
+        "{:<10} {:<8}  {:>13}  {:>8}  {:>13}  {:>12}  {:>12}  {:>22}  {:>14}  {:>9}\n", group.level,
         group.side, Change(1e3 * before.mean_gap_m, 1e3 * after.mean_gap_m, 1),
         Number(1e3 * after.spread_m.real, 1),
         Change(1e3 * before.mean_path_gap_m, 1e3 * after.mean_path_gap_m, 1),
@@ -73,9 +74,11 @@ std::string JudgedText(const std::vector<JudgedGroup>& judged) {
         fmt::format("{} ({})",
                     Change(group.before.loop_delay_s.sim, group.after.loop_delay_s.sim, 3),
                     Number(group.after.loop_delay_s.real, 3)),
-        Change(before.speed_mps.Ratio(), after.speed_mps.Ratio(), 3));
+        Change(before.speed_mps.Ratio(), after.speed_mps.Ratio(), 3),
+        fmt::format("{} > {}", group.before.failed_runs, group.after.failed_runs));
   }
-  return text;
+  return text +
+         "missed: runs that did not reach the end, or only after circling about a waypoint\n";
 }
 
 std::string ErrorText(const CalibrationReport::Errors& errors) {
