@@ -134,14 +134,17 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
 void Fit::Correct() {
   at_ = model_.LinearisedAt(shares_, scale_, step_);
   simulated_.clear();
-  for (int i = 0; i < options_.simulated_logs; ++i) {
+  // Few logs repeat more: what the simulated ones scatter by goes into the estimate.
+  const int logs = static_cast<int>(model_.LogCount());
+  const int repeats = (options_.simulated_logs + logs - 1) / logs;
+  for (int i = 0; i < repeats; ++i) {
     ErrorModel model = model_.OfSimulatedLogs(shares_, i);
     const Linearised made = model.LinearisedAt(shares_, scale_, step_);
     simulated_.insert(simulated_.end(), made.gradients.begin(), made.gradients.end());
     trials_of_simulated_ += model.TrialsSimulated();
   }
   Eigen::VectorXd gradient = Sum(at_.gradients);
-  if (!simulated_.empty()) gradient -= Sum(simulated_) / options_.simulated_logs;
+  if (!simulated_.empty()) gradient -= Sum(simulated_) / repeats;
   const Eigen::VectorXd step = StepFor(Sum(at_.hessians), gradient, kDampingOfCorrection);
   shares_ = Moved(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step));
 }

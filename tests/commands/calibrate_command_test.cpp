@@ -25,7 +25,7 @@ calibrate:
   holdout: [4]
   fit: {motor.mismatch: {min: -0.1, max: 0.1}, surfaces.bump.mu: {min: 0.5, max: 1.2}}
   judge_runs: 2
-  method: {runs: 1, iterations: 2, horizon: {phases: 1}, resamples: 100}
+  method: {runs: 1, iterations: 2, horizon: {phases: 2}, simulated_logs: 6, resamples: 100}
 likeness: {shuffles: 19}
 )";
 
@@ -64,7 +64,10 @@ TEST_CASE("A calibration finds the mismatch and its robot file is used as an inc
   REQUIRE(run.exit_code == 0);
   const json found = json::parse(ReadFile(bench.folder / "out/calibration.json"));
   const json& fitted = found["fit"]["parameters"];
-  CHECK(fitted["simulation.motor.mismatch"]["value"].get<double>() == Approx(0.05).margin(0.02));
+  const json& mismatch = fitted["simulation.motor.mismatch"];
+  CHECK(mismatch["value"].get<double>() == Approx(0.05).margin(0.03));
+  CHECK(mismatch["low"].get<double>() < 0.05);
+  CHECK(mismatch["high"].get<double>() > 0.05);
   CHECK(fitted["simulation.terrain.surfaces.bump.mu"]["has_effect"] == false);
   CHECK(run.out.find("no effect") != std::string::npos);
   CHECK(found["judged"]["all"].contains("held out"));

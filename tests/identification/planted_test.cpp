@@ -24,20 +24,21 @@ TEST_CASE("A planted mismatch is found again and a friction that never acts is f
   planted = {planted[1], planted[3]};
   sweep::CalibrationOptions options;
   options.runs = 0;
-  options.iterations = 3;
-  options.horizon.phases = 1;
-  const sweep::Calibration found = test::FindPlanted(Robot(), planted, 3, 4, options, 1);
+  options.iterations = 4;
+  options.horizon.phases = 3;
+  options.simulated_logs = 8;
+  const sweep::Calibration found = test::FindPlanted(Robot(), planted, 3, 8, options, 2);
   const sweep::CalibratedParameter &mismatch = found.parameters[0], &unseen = found.parameters[1];
   INFO("mismatch " << mismatch.value << " in [" << mismatch.low << ", " << mismatch.high << "], "
                    << planted[0].truth << " was planted");
   CHECK(mismatch.low < planted[0].truth);
   CHECK(planted[0].truth < mismatch.high);
   CHECK(mismatch.is_identified);
-  CHECK(mismatch.high - mismatch.low < 0.05);
+  CHECK(mismatch.high - mismatch.low < 0.08);
   CHECK_FALSE(mismatch.is_at_bound);
   CHECK_FALSE(unseen.has_effect);
   CHECK_FALSE(unseen.is_identified);
-  CHECK(unseen.value == planted[1].start);
+  CHECK(unseen.value == Approx(planted[1].start));
   CHECK(found.loss_after < found.loss_before);
 }
 
@@ -64,7 +65,7 @@ TEST_CASE("A calibration without a simulated log of the fit is the least error a
   options.runs = 0;
   options.iterations = 2;
   options.horizon.phases = 2;
-  options.simulated_logs = 1;
+  options.simulated_logs = 3;
   const sweep::Calibration corrected = test::FindPlanted(Robot(), planted, 6, 3, options, 2);
   options.corrections = 0;
   const sweep::Calibration least = test::FindPlanted(Robot(), planted, 6, 3, options, 2);

@@ -19,7 +19,7 @@ struct CalibrationOptions {
   double first_step = 0.2;
   double step = 0.1;
   int corrections = 2;
-  int simulated_logs = 2;
+  int simulated_logs = 24;
   double outlier_sd = 3.0;
   int resamples = 1000;
   double confidence = 0.95;
@@ -44,8 +44,8 @@ struct CalibrationOptions {
         "corrections", self.corrections, 0, 100,
         "steps after the fit, to where the logs look like those the simulator makes itself; 0: the "
         "least errors, whose delay and mismatch are biased");
-    field("simulated_logs", self.simulated_logs, 0, 100,
-          "simulated logs for each real one in them");
+    field("simulated_logs", self.simulated_logs, 0, 10'000,
+          "simulated logs in them at least: every real one is repeated equally often");
     field("outlier_sd", self.outlier_sd, 1.0, 1e6,
           "errors beyond this many standard deviations count in proportion (Huber 1964)");
     field("resamples", self.resamples, 20, 1'000'000,
