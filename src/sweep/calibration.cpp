@@ -16,9 +16,6 @@ namespace {
 constexpr double kConverged = 5e-3;  // of the range, for the largest change of a parameter
 constexpr double kRidge = 1e-9;      // keeps a parameter without effect where it is
 constexpr double kFirstDamping = 1e-2;
-// A correction scatters as much as an estimate: in directions that the logs hardly tell it is
-// noise.
-constexpr double kDampingOfCorrection = 0.3;
 constexpr double kLargestDamping = 1e6;
 
 /// First down to the least errors, then on to where the errors are those of logs that the simulator
@@ -145,7 +142,7 @@ void Fit::Correct() {
   }
   Eigen::VectorXd gradient = Sum(at_.gradients);
   if (!simulated_.empty()) gradient -= Sum(simulated_) / repeats;
-  const Eigen::VectorXd step = StepFor(Sum(at_.hessians), gradient, kDampingOfCorrection);
+  const Eigen::VectorXd step = StepFor(Sum(at_.hessians), gradient, kFirstDamping);
   shares_ = Moved(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step));
 }
 
