@@ -2,7 +2,7 @@
 // to the authors' trials by surface, beside Webots and a robot made of facts alone.
 //
 //   identification_study [--runs N] [--trial 1|2] [--robot FILE.yaml] [--facts] [--webots]
-//                        [--horizon | --each] [key=value ...]
+//                        [--horizon | --each] [--longest-run RATIO] [key=value ...]
 
 #include <fmt/format.h>
 
@@ -24,6 +24,7 @@ struct Request {
   int trial = 0;
   bool facts = false, webots = false, horizon = false, each = false;
   std::string robot = RIFT_SOURCE_DIR "/configs/robots/3pi_2040.yaml";
+  gap::LikenessOptions likeness;
   std::vector<std::string> overrides;
 };
 
@@ -41,6 +42,8 @@ Request ParseArguments(int count, char** arguments) {
       request.facts = true;
     } else if (argument == "--webots") {
       request.webots = true;
+    } else if (argument == "--longest-run" && i + 1 < count) {
+      request.likeness.longest_run = std::stod(arguments[++i]);
     } else if (argument == "--each") {
       request.each = true;
     } else if (argument == "--horizon") {
@@ -87,7 +90,8 @@ void Print(const std::string& name, const sweep::DriveLikeness& d) {
       l.inside_share, d.failed_runs);
 }
 
-void PrintTable(const std::vector<sweep::RepeatedTrial>& trials, bool is_matched) {
+void PrintTable(const std::vector<sweep::RepeatedTrial>& trials, bool is_matched,
+                const gap::LikenessOptions& likeness) {
   gap::GapOptions gap;
   gap.skip_start = 0.1;
   std::map<std::string, std::vector<sweep::RepeatedTrial>> groups;
@@ -99,7 +103,7 @@ void PrintTable(const std::vector<sweep::RepeatedTrial>& trials, bool is_matched
   for (const char* name : {"ground", "cardboard", "parchment", "downhill", "the grid", "bump"}) {
     if (!groups.contains(name)) continue;
     std::mt19937_64 generator(1);
-    Print(name, sweep::MeasureDriveLikeness(groups[name], is_matched, gap, {}, generator));
+    Print(name, sweep::MeasureDriveLikeness(groups[name], is_matched, gap, likeness, generator));
   }
 }
 
@@ -162,9 +166,9 @@ int Study(const Request& request) {
   }
   PrintHeader();
   if (request.webots) {
-    PrintTable(test::WebotsGrid(trials), false);
+    PrintTable(test::WebotsGrid(trials), false, request.likeness);
   } else {
-    PrintTable(test::DriveGrid(study, trials, request.runs), true);
+    PrintTable(test::DriveGrid(study, trials, request.runs), true, request.likeness);
   }
   return 0;
 }

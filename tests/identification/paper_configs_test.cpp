@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "identification/grid_study.hpp"
+#include "identification/trial_grid.hpp"
 #include "rift/config/bind.hpp"
 #include "rift/config/load.hpp"
 #include "rift/config/tree.hpp"
@@ -56,23 +56,28 @@ TEST_CASE("The paper grid on the simulator finishes every trial close to the rob
 
 TEST_CASE("The simulated robot drives and answers and weaves like the real one over many seeds") {
   RIFT_SKIP_WITHOUT_TRIALS();
-  const std::vector<test::GridPair> pairs = Drive(LoadStudy(), 10);
-  const test::GridSummary all = test::Summarise(pairs, "");
-  INFO("gap " << all.gap_m << ", weave " << all.weave_m << " of " << all.real_weave_m << ", spread "
-              << all.spread_m << " of " << all.real_spread_m << ", delay " << all.delay_s << " of "
-              << all.real_delay_s << ", missed " << all.missed << " of " << all.runs);
-  CHECK(all.runs == 480);
-  CHECK(all.gap_m < 0.042);
-  CHECK(all.missed <= 8);
-  CHECK(all.delay_s == Approx(0.32).margin(0.05));
-  CHECK(all.r2 == Approx(all.real_r2).margin(0.05));
-  CHECK(all.weave_m > 0.75 * all.real_weave_m);
-  CHECK(all.spread_m > 0.7 * all.real_spread_m);
-  CHECK(all.spread_m < 1.2 * all.real_spread_m);
-  for (const char* surface : {"ground", "cardboard", "parchment", "downhill"}) {
-    INFO(surface);
-    CHECK(test::Summarise(pairs, surface).speed_ratio == Approx(1.0).margin(0.08));
+  const test::GridStudy study = LoadStudy();
+  std::vector<test::GridTrial> trials = test::LoadTrialGrid(study, 0);
+  std::erase_if(trials, [](const test::GridTrial& trial) { return trial.surface == "bump"; });
+  REQUIRE(trials.size() == 48);
+  gap::GapOptions gap;
+  gap.skip_start = 0.1;
+  std::mt19937_64 generator(1);
+  const sweep::DriveLikeness found = sweep::MeasureDriveLikeness(
+      test::DriveGrid(study, trials, 10), true, gap, {.shuffles = 19}, generator);
+  const gap::Likeness& path = found.path;
+  INFO("gap " << path.mean_gap_m << " m, mean path " << path.mean_path_gap_m << " m, delay "
+              << found.loop_delay_s.sim << " s, missed " << found.failed_runs);
+  CHECK(path.mean_gap_m < 1.1 * path.spread_m.real);
+  CHECK(path.mean_path_gap_m < 0.036);
+  CHECK(found.loop_delay_s.sim == Approx(found.loop_delay_s.real).margin(0.05));
+  CHECK(found.loop_r2.sim == Approx(found.loop_r2.real).margin(0.05));
+  CHECK(path.speed_mps.Ratio() == Approx(1.0).margin(0.08));
+  for (const double ratio : {path.weave_m.Ratio(), path.spread_m.Ratio()}) {
+    CHECK(ratio > 0.75);
+    CHECK(ratio < 1.33);
   }
+  CHECK(found.failed_runs < 40);
 }
 
 TEST_CASE("Without the delays of link and listener the robot hardly weaves") {
