@@ -14,7 +14,6 @@ namespace rift::sweep {
 namespace {
 
 constexpr double kConverged = 5e-3;  // of the range, for the largest change of a parameter
-constexpr double kRidge = 1e-9;      // keeps a parameter without effect where it is
 constexpr double kFirstDamping = 1e-2;
 constexpr double kLargestDamping = 1e6;
 
@@ -76,7 +75,7 @@ Eigen::VectorXd Fit::StepFor(const Eigen::MatrixXd& hessian, const Eigen::Vector
                              double damping) const {
   Eigen::MatrixXd matrix = hessian;
   matrix.diagonal() *= 1.0 + damping;
-  matrix.diagonal().array() += kRidge + kRidge * hessian.diagonal().maxCoeff();
+  matrix.diagonal().array() += RidgeOf(hessian);
   Eigen::VectorXd slope = gradient;
   for (Eigen::Index k = 0; k < slope.size(); ++k) {
     const bool is_stopped =
@@ -110,8 +109,9 @@ bool Fit::Improve() {
 /// slopes over long steps see past them, shorter ones tell the place.
 void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
   while (result.steps < options_.iterations) {
-    scale_ = model_.Scale(shares_);
-    at_ = model_.LinearisedAt(shares_, scale_, step_);
+    const std::vector<LogErrors> raw = model_.RawErrorsAt(shares_);
+    scale_ = ScaleOf(raw, options_);
+    at_ = model_.LinearisedAt(shares_, raw, scale_, step_);
     const bool helped = Improve();
     result.steps += helped;
     if (on_step) {
@@ -129,14 +129,14 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
 /// the commands that are replayed. Logs of the simulator have the same bias, and there the truth is
 /// known (indirect inference, Gourieroux, Monfort and Renault 1993).
 void Fit::Correct() {
-  at_ = model_.LinearisedAt(shares_, scale_, step_);
+  at_ = model_.LinearisedAt(shares_, model_.RawErrorsAt(shares_), scale_, step_);
   simulated_.clear();
   // Few logs repeat more: what the simulated ones scatter by goes into the estimate.
   const int logs = static_cast<int>(model_.LogCount());
   const int repeats = (options_.simulated_logs + logs - 1) / logs;
   for (int i = 0; i < repeats; ++i) {
     ErrorModel model = model_.OfSimulatedLogs(shares_, i);
-    const Linearised made = model.LinearisedAt(shares_, scale_, step_);
+    const Linearised made = model.LinearisedAt(shares_, model.RawErrorsAt(shares_), scale_, step_);
     simulated_.insert(simulated_.end(), made.gradients.begin(), made.gradients.end());
     trials_of_simulated_ += model.TrialsSimulated();
   }
@@ -152,7 +152,9 @@ Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step)
   Descend(result, on_step);
   step_ = options_.step;
   for (int i = 0; i < options_.corrections; ++i) Correct();
-  if (options_.corrections == 0) at_ = model_.LinearisedAt(shares_, scale_, step_);
+  if (options_.corrections == 0) {
+    at_ = model_.LinearisedAt(shares_, model_.RawErrorsAt(shares_), scale_, step_);
+  }
   Judge(parameters_, options_, shares_, at_, simulated_, generator, result);
   const auto count = static_cast<double>(Count(at_.errors));
   result.loss_after = SquaredSum(model_.ErrorsAt(shares_, scale_)) / count;

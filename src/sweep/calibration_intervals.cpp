@@ -9,8 +9,6 @@
 namespace rift::sweep {
 namespace {
 
-constexpr double kRidge = 1e-9;  // keeps a parameter without effect where it is
-
 /// How far estimates from logs drawn anew with replacement lie from the point of linearisation,
 /// one row each. The simulated logs that a correction came from are drawn anew as well.
 Eigen::MatrixXd Draws(const Linearised& at, const std::vector<Eigen::VectorXd>& simulated,
@@ -30,7 +28,7 @@ Eigen::MatrixXd Draws(const Linearised& at, const std::vector<Eigen::VectorXd>& 
     for (size_t i = 0; i < simulated.size(); ++i) {
       gradient -= share * simulated[generator() % simulated.size()];
     }
-    hessian.diagonal().array() += kRidge + kRidge * hessian.diagonal().maxCoeff();
+    hessian.diagonal().array() += RidgeOf(hessian);
     draws.row(row) = -hessian.ldlt().solve(gradient);
   }
   return draws;

@@ -35,6 +35,11 @@ size_t Count(const Blocks& blocks) {
   return count;
 }
 
+double RidgeOf(const Eigen::MatrixXd& hessian) {
+  constexpr double kRidge = 1e-9;
+  return kRidge + kRidge * hessian.diagonal().maxCoeff();
+}
+
 ErrorModel::ErrorModel(const std::vector<FreeParameter>& parameters,
                        std::vector<CalibrationLog> logs, const TwinAt& twin,
                        const CalibrationOptions& options, int threads, const Eigen::VectorXd& start)
@@ -64,23 +69,24 @@ std::vector<LogErrors> ErrorModel::Errors(const Eigen::VectorXd& shares,
   return sweep::ErrorsAt(logs_, traits_, twin_, ValuesAt(parameters_, shares), options, threads_);
 }
 
-Eigen::MatrixXd ErrorModel::Scale(const Eigen::VectorXd& shares) {
-  CalibrationOptions motions_only = options_;
-  motions_only.runs = 0;
-  return ScaleOf(Errors(shares, motions_only), options_);
+std::vector<LogErrors> ErrorModel::RawErrorsAt(const Eigen::VectorXd& shares) {
+  return Errors(shares, options_);
 }
 
 Blocks ErrorModel::ErrorsAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale) {
   return WeightedAt(shares, scale, options_);
 }
 
+Blocks ErrorModel::WeightedBlocks(const std::vector<LogErrors>& raw,
+                                  const Eigen::MatrixXd& scale) const {
+  Blocks blocks;
+  for (const LogErrors& errors : raw) blocks.push_back(Weighted(errors, scale, options_));
+  return blocks;
+}
+
 Blocks ErrorModel::WeightedAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale,
                               const CalibrationOptions& options) {
-  Blocks blocks;
-  for (const LogErrors& errors : Errors(shares, options)) {
-    blocks.push_back(Weighted(errors, scale, options_));
-  }
-  return blocks;
+  return WeightedBlocks(Errors(shares, options), scale);
 }
 
 /// Of every error of each log, by central differences, one-sided at a bound.
@@ -97,12 +103,13 @@ Blocks ErrorModel::Slope(const Eigen::VectorXd& shares, const Eigen::MatrixXd& s
   return slopes;
 }
 
-Linearised ErrorModel::LinearisedAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale,
+Linearised ErrorModel::LinearisedAt(const Eigen::VectorXd& shares,
+                                    const std::vector<LogErrors>& raw, const Eigen::MatrixXd& scale,
                                     double step) {
   CalibrationOptions motions_only = options_, runs_mostly = options_;
   motions_only.runs = 0;
   runs_mostly.horizon.phases = 1;
-  Linearised at{.errors = ErrorsAt(shares, scale)};
+  Linearised at{.errors = WeightedBlocks(raw, scale)};
   std::vector<Eigen::MatrixXd> slopes;
   for (const Eigen::VectorXd& block : at.errors) {
     slopes.push_back(Eigen::MatrixXd::Zero(block.size(), shares.size()));

@@ -24,6 +24,9 @@ struct Linearised {
   std::vector<Eigen::VectorXd> gradients;  ///< of each log: transposed slopes times errors
 };
 
+/// What is added to the diagonal of a Hessian to keep parameters without effect where they are.
+double RidgeOf(const Eigen::MatrixXd& hessian);
+
 /// Errors of a set of logs as a function of the shares.
 class ErrorModel {
  public:
@@ -36,16 +39,19 @@ class ErrorModel {
   /// traits are told in the scatter of the real logs.
   ErrorModel OfSimulatedLogs(const Eigen::VectorXd& shares, int repeat) const;
 
-  Eigen::MatrixXd Scale(const Eigen::VectorXd& shares);
+  std::vector<LogErrors> RawErrorsAt(const Eigen::VectorXd& shares);
   Blocks ErrorsAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale);
-  /// Slopes over `step` to either side, of a run's traits over a wide one.
-  Linearised LinearisedAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale, double step);
+  /// Slopes over `step` to either side, of a run's traits over a wide one; `raw`:
+  /// RawErrorsAt(shares).
+  Linearised LinearisedAt(const Eigen::VectorXd& shares, const std::vector<LogErrors>& raw,
+                          const Eigen::MatrixXd& scale, double step);
 
   size_t LogCount() const { return logs_.size(); }
   size_t TrialsSimulated() const { return trials_simulated_; }
 
  private:
   std::vector<LogErrors> Errors(const Eigen::VectorXd& shares, const CalibrationOptions& options);
+  Blocks WeightedBlocks(const std::vector<LogErrors>& raw, const Eigen::MatrixXd& scale) const;
   Blocks WeightedAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale,
                     const CalibrationOptions& options);
   Blocks Slope(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale, Eigen::Index parameter,

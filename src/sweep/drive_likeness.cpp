@@ -33,8 +33,18 @@ struct Answers {
   }
 };
 
-/// In strides, so that jitter adds little.
-double Length_m(const Trajectory& path) {
+std::map<std::string, double> LongestReal_m(const std::vector<RepeatedTrial>& trials) {
+  std::map<std::string, double> longest_m;
+  for (const RepeatedTrial& trial : trials) {
+    double& longest = longest_m[trial.setting];
+    longest = std::max(longest, LengthByStrides_m(trial.real));
+  }
+  return longest_m;
+}
+
+}  // namespace
+
+double LengthByStrides_m(const Trajectory& path) {
   constexpr double kStride_m = 0.02;
   double length_m = 0.0;
   Eigen::Vector2d last = path.poses.front().Position();
@@ -47,22 +57,11 @@ double Length_m(const Trajectory& path) {
   return length_m;
 }
 
-std::map<std::string, double> LongestReal_m(const std::vector<RepeatedTrial>& trials) {
-  std::map<std::string, double> longest_m;
-  for (const RepeatedTrial& trial : trials) {
-    double& longest = longest_m[trial.setting];
-    longest = std::max(longest, Length_m(trial.real));
-  }
-  return longest_m;
-}
-
-}  // namespace
-
 std::vector<RepeatedTrial> WithoutDetours(std::vector<RepeatedTrial> trials, double longest_run) {
   const std::map<std::string, double> longest_m = LongestReal_m(trials);
   for (RepeatedTrial& trial : trials) {
     const double limit_m = longest_run * longest_m.at(trial.setting);
-    const auto is_detour = [&](const Trajectory& run) { return Length_m(run) > limit_m; };
+    const auto is_detour = [&](const Trajectory& run) { return LengthByStrides_m(run) > limit_m; };
     trial.failed_runs += static_cast<int>(std::erase_if(trial.runs, is_detour));
   }
   return trials;

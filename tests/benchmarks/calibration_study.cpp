@@ -10,8 +10,6 @@
 
 #include "benchmarks/run_study.hpp"
 #include "identification/trial_grid.hpp"
-#include "rift/config/bind.hpp"
-#include "rift/config/load.hpp"
 #include "rift/config/set_value.hpp"
 #include "rift/config/tree.hpp"
 #include "rift/config/write.hpp"
@@ -23,7 +21,7 @@ namespace {
 struct Request {
   int trial = 0;
   bool bumps = false;
-  std::string robot = RIFT_SOURCE_DIR "/configs/robots/3pi_2040.yaml";
+  std::string robot = test::kAuthorsRobot;
   std::vector<sweep::FreeParameter> free;
   std::vector<std::string> overrides;
   sweep::CalibrationOptions options;
@@ -59,15 +57,6 @@ Request ParseArguments(int count, char** arguments) {
     }
   }
   return request;
-}
-
-test::GridStudy LoadStudy(const Request& request) {
-  config::Node tree = config::Load(RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", test::ReadFile);
-  config::Merge(tree, config::Load(request.robot, test::ReadFile));
-  for (const std::string& set : request.overrides) config::Merge(tree, config::ParseOverride(set));
-  test::GridStudy study;
-  config::Bind(tree, study);
-  return study;
 }
 
 test::GridStudy StudyAt(const test::GridStudy& study, const std::vector<sweep::FreeParameter>& free,
@@ -112,7 +101,7 @@ void Print(const sweep::Calibration& found) {
 }
 
 int Study(Request request) {
-  const test::GridStudy study = LoadStudy(request);
+  const test::GridStudy study = test::LoadGridStudy(request.robot, request.overrides);
   std::vector<test::GridTrial> trials;
   for (test::GridTrial& trial : test::LoadTrialGrid(study, request.trial)) {
     if ((trial.surface == "bump") == request.bumps) trials.push_back(std::move(trial));

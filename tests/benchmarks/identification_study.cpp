@@ -11,9 +11,6 @@
 
 #include "benchmarks/run_study.hpp"
 #include "identification/trial_grid.hpp"
-#include "rift/config/bind.hpp"
-#include "rift/config/load.hpp"
-#include "rift/config/tree.hpp"
 #include "rift/sweep/short_horizon.hpp"
 
 namespace rift {
@@ -23,7 +20,7 @@ struct Request {
   int runs = 20;
   int trial = 0;
   bool facts = false, webots = false, horizon = false, each = false;
-  std::string robot = RIFT_SOURCE_DIR "/configs/robots/3pi_2040.yaml";
+  std::string robot = test::kAuthorsRobot;
   gap::LikenessOptions likeness;
   std::vector<std::string> overrides;
 };
@@ -53,15 +50,6 @@ Request ParseArguments(int count, char** arguments) {
     }
   }
   return request;
-}
-
-test::GridStudy LoadStudy(const Request& request) {
-  config::Node tree = config::Load(RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", test::ReadFile);
-  if (!request.facts) config::Merge(tree, config::Load(request.robot, test::ReadFile));
-  for (const std::string& set : request.overrides) config::Merge(tree, config::ParseOverride(set));
-  test::GridStudy study;
-  config::Bind(tree, study);
-  return study;
 }
 
 void PrintHeader() {
@@ -154,7 +142,8 @@ void PrintEach(const std::vector<sweep::RepeatedTrial>& trials) {
 }
 
 int Study(const Request& request) {
-  const test::GridStudy study = LoadStudy(request);
+  const test::GridStudy study =
+      test::LoadGridStudy(request.facts ? "" : request.robot, request.overrides);
   const std::vector<test::GridTrial> trials = test::LoadTrialGrid(study, request.trial);
   if (request.horizon) {
     PrintHorizons(study, trials);

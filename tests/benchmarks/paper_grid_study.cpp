@@ -9,9 +9,6 @@
 
 #include "benchmarks/run_study.hpp"
 #include "identification/grid_study.hpp"
-#include "rift/config/bind.hpp"
-#include "rift/config/load.hpp"
-#include "rift/config/tree.hpp"
 
 namespace rift {
 namespace {
@@ -20,7 +17,7 @@ struct Request {
   int seeds = 5;
   bool ablate = false;
   bool brief = false;
-  std::string robot = RIFT_SOURCE_DIR "/configs/robots/3pi_2040.yaml";
+  std::string robot = test::kAuthorsRobot;
   std::vector<std::string> overrides;
 };
 
@@ -43,18 +40,10 @@ Request ParseArguments(int count, char** arguments) {
   return request;
 }
 
-test::GridStudy LoadStudy(const Request& request, const std::vector<std::string>& further) {
-  config::Node tree = config::Load(RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", test::ReadFile);
-  config::Merge(tree, config::Load(request.robot, test::ReadFile));
-  for (const std::string& set : request.overrides) config::Merge(tree, config::ParseOverride(set));
-  for (const std::string& set : further) config::Merge(tree, config::ParseOverride(set));
-  test::GridStudy study;
-  config::Bind(tree, study);
-  return study;
-}
-
 test::GridSummary RunOnce(const Request& request, const std::vector<std::string>& further) {
-  const test::GridStudy study = LoadStudy(request, further);
+  std::vector<std::string> overrides = request.overrides;
+  overrides.insert(overrides.end(), further.begin(), further.end());
+  const test::GridStudy study = test::LoadGridStudy(request.robot, overrides);
   std::vector<test::GridPair> pairs = test::LoadGrid(study);
   test::Simulate(study, request.seeds, pairs);
   return test::Summarise(pairs, "");
@@ -131,7 +120,7 @@ int Study(const Request& request) {
     return 0;
   }
   PrintHeader();
-  const test::GridStudy study = LoadStudy(request, {});
+  const test::GridStudy study = test::LoadGridStudy(request.robot, request.overrides);
   std::vector<test::GridPair> pairs = test::LoadGrid(study);
   test::Simulate(study, request.seeds, pairs);
   for (const char* surface : {"ground", "cardboard", "parchment", "downhill", "0.15", "0.20"}) {

@@ -9,19 +9,12 @@
 #include <map>
 
 #include "identification/planted.hpp"
-#include "rift/config/bind.hpp"
-#include "rift/config/load.hpp"
-#include "rift/config/tree.hpp"
 
 namespace rift {
 namespace {
 
 int Study(std::map<std::string, int> asked) {
-  config::Node tree = config::Load(RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", test::ReadFile);
-  config::Merge(tree,
-                config::Load(RIFT_SOURCE_DIR "/configs/robots/3pi_2040.yaml", test::ReadFile));
-  test::GridStudy robot;
-  config::Bind(tree, robot);
+  const test::GridStudy robot = test::LoadGridStudy();
   sweep::CalibrationOptions options;
   options.runs = asked["--runs"];
   options.iterations = asked["--iterations"];

@@ -5,8 +5,12 @@
 #include <map>
 #include <stdexcept>
 
+#include "rift/config/bind.hpp"
+#include "rift/config/load.hpp"
+#include "rift/config/tree.hpp"
 #include "rift/gap/comparison.hpp"
 #include "rift/simulation/simulated_robot.hpp"
+#include "rift/sweep/drive_likeness.hpp"
 
 namespace rift::test {
 namespace {
@@ -63,19 +67,6 @@ double YawScatter_rad(const trajectory::Trajectory& log) {
   return std::sqrt(Mean(yaw));
 }
 
-double LengthBySteps_m(const trajectory::Trajectory& log) {
-  constexpr double kStep_m = 0.02;
-  double length_m = 0.0;
-  Eigen::Vector2d last = log.poses[0].Position();
-  for (const trajectory::StampedPose& pose : log.poses) {
-    const double step_m = (pose.Position() - last).norm();
-    if (step_m < kStep_m) continue;
-    length_m += step_m;
-    last = pose.Position();
-  }
-  return length_m;
-}
-
 template <class Value>
 double MedianOf(const std::vector<PathTraits>& traits, Value value) {
   std::vector<double> values;
@@ -101,6 +92,15 @@ bool BothReached(const trial::TrialResult& a, const trial::TrialResult& b) {
 
 }  // namespace
 
+GridStudy LoadGridStudy(const std::string& robot, const std::vector<std::string>& overrides) {
+  config::Node tree = config::Load(RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", ReadFile);
+  if (!robot.empty()) config::Merge(tree, config::Load(robot, ReadFile));
+  for (const std::string& set : overrides) config::Merge(tree, config::ParseOverride(set));
+  GridStudy study;
+  config::Bind(tree, study);
+  return study;
+}
+
 PathTraits TraitsOf(const trajectory::Trajectory& log,
                     const std::vector<control::Waypoint>& waypoints,
                     const control::NavigatorOptions& control) {
@@ -108,7 +108,7 @@ PathTraits TraitsOf(const trajectory::Trajectory& log,
   traits.speed_mps = Speed_mps(log);
   traits.weave_m = Weave_m(gap::ProfileAlong(log, log, {}).sim_m);
   traits.yaw_scatter_rad = YawScatter_rad(log);
-  traits.length_m = LengthBySteps_m(log);
+  traits.length_m = sweep::LengthByStrides_m(log);
   traits.first_motion_s = log.poses[FirstMoving(log)].t_s - log.poses[0].t_s;
   traits.delay = trial::EstimateLoopDelay(log, waypoints, control);
   return traits;

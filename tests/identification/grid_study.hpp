@@ -28,6 +28,13 @@ struct GridStudy {
   }
 };
 
+inline const std::string kAuthorsRobot = RIFT_SOURCE_DIR "/configs/robots/3pi_2040.yaml";
+
+/// The paper's waypoints and a robot file (none: the defaults, which are facts alone), with
+/// overrides "a.b=c".
+GridStudy LoadGridStudy(const std::string& robot = kAuthorsRobot,
+                        const std::vector<std::string>& overrides = {});
+
 /// How a logged path looks, whoever drove it; NaN where a log cannot tell.
 struct PathTraits {
   double speed_mps = 0.0;        ///< median over three frames, of those faster than 0.1 m/s

@@ -2,9 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/trial_grid.hpp"
-#include "rift/config/bind.hpp"
-#include "rift/config/load.hpp"
-#include "rift/config/tree.hpp"
 #include "support/process.hpp"
 
 namespace rift {
@@ -19,15 +16,6 @@ nlohmann::json Sweep(const std::string& config) {
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   return nlohmann::json::parse(test::ReadFile(folder / "out/summary.json"));
-}
-
-test::GridStudy LoadStudy(const std::string& changed = "") {
-  config::Node tree = config::Load(kConfigs + "waypoints/paper.yaml", test::ReadFile);
-  config::Merge(tree, config::Load(kConfigs + "robots/3pi_2040.yaml", test::ReadFile));
-  if (changed != "") config::Merge(tree, config::ParseOverride(changed));
-  test::GridStudy study;
-  config::Bind(tree, study);
-  return study;
 }
 
 std::vector<test::GridPair> Drive(const test::GridStudy& study, int seeds) {
@@ -56,7 +44,7 @@ TEST_CASE("The paper grid on the simulator finishes every trial close to the rob
 
 TEST_CASE("The simulated robot drives and answers and weaves like the real one over many seeds") {
   RIFT_SKIP_WITHOUT_TRIALS();
-  const test::GridStudy study = LoadStudy();
+  const test::GridStudy study = test::LoadGridStudy();
   std::vector<test::GridTrial> trials = test::LoadTrialGrid(study, 0);
   std::erase_if(trials, [](const test::GridTrial& trial) { return trial.surface == "bump"; });
   REQUIRE(trials.size() == 48);
@@ -82,8 +70,10 @@ TEST_CASE("The simulated robot drives and answers and weaves like the real one o
 
 TEST_CASE("Without the delays of link and listener the robot hardly weaves") {
   RIFT_SKIP_WITHOUT_TRIALS();
-  const test::GridSummary all =
-      test::Summarise(Drive(LoadStudy("simulation.link={delay_s: 0, poll_s: 0}"), 3), "");
+  const test::GridSummary all = test::Summarise(
+      Drive(test::LoadGridStudy(test::kAuthorsRobot, {"simulation.link={delay_s: 0, poll_s: 0}"}),
+            3),
+      "");
   CHECK(all.weave_m < 0.55 * all.real_weave_m);
   CHECK(all.spread_m < 0.5 * all.real_spread_m);
 }

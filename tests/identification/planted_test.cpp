@@ -2,22 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "rift/config/bind.hpp"
-#include "rift/config/load.hpp"
-#include "rift/config/tree.hpp"
-#include "support/process.hpp"
-
 namespace rift {
 namespace {
-
-test::GridStudy Robot() {
-  const std::string configs = RIFT_SOURCE_DIR "/configs/";
-  config::Node tree = config::Load(configs + "waypoints/paper.yaml", test::ReadFile);
-  config::Merge(tree, config::Load(configs + "robots/3pi_2040.yaml", test::ReadFile));
-  test::GridStudy study;
-  config::Bind(tree, study);
-  return study;
-}
 
 TEST_CASE("A planted mismatch is found again and a friction that never acts is flagged") {
   std::vector<test::Planted> planted = test::PlantAt(3);
@@ -27,7 +13,8 @@ TEST_CASE("A planted mismatch is found again and a friction that never acts is f
   options.iterations = 4;
   options.horizon.phases = 3;
   options.simulated_logs = 8;
-  const sweep::Calibration found = test::FindPlanted(Robot(), planted, 3, 8, options, 2);
+  const sweep::Calibration found =
+      test::FindPlanted(test::LoadGridStudy(), planted, 3, 8, options, 2);
   const sweep::CalibratedParameter &mismatch = found.parameters[0], &unseen = found.parameters[1];
   INFO("mismatch " << mismatch.value << " in [" << mismatch.low << ", " << mismatch.high << "], "
                    << planted[0].truth << " was planted");
@@ -49,7 +36,8 @@ TEST_CASE("A planted radio delay is found from below and from above") {
     options.runs = 0;
     options.horizon.phases = 6;
     options.corrections = 0;
-    const sweep::Calibration found = test::FindPlanted(Robot(), planted, 5, 8, options, 2);
+    const sweep::Calibration found =
+        test::FindPlanted(test::LoadGridStudy(), planted, 5, 8, options, 2);
     const sweep::CalibratedParameter& delay = found.parameters[0];
     INFO("from " << start << ": " << delay.value << " in [" << delay.low << ", " << delay.high
                  << "], " << planted[0].truth << " was planted");
@@ -65,9 +53,11 @@ TEST_CASE("A calibration without a simulated log of the fit is the least error a
   options.iterations = 2;
   options.horizon.phases = 2;
   options.simulated_logs = 3;
-  const sweep::Calibration corrected = test::FindPlanted(Robot(), planted, 6, 3, options, 2);
+  const sweep::Calibration corrected =
+      test::FindPlanted(test::LoadGridStudy(), planted, 6, 3, options, 2);
   options.corrections = 0;
-  const sweep::Calibration least = test::FindPlanted(Robot(), planted, 6, 3, options, 2);
+  const sweep::Calibration least =
+      test::FindPlanted(test::LoadGridStudy(), planted, 6, 3, options, 2);
   CHECK(least.trials_simulated < corrected.trials_simulated);
   CHECK(least.parameters[0].value != corrected.parameters[0].value);
   // What simulated logs tell scatters too.
@@ -82,8 +72,10 @@ TEST_CASE("Threads change no byte of a calibration") {
   options.runs = 1;
   options.iterations = 1;
   options.horizon.phases = 1;
-  const sweep::Calibration alone = test::FindPlanted(Robot(), planted, 4, 3, options, 1);
-  const sweep::Calibration together = test::FindPlanted(Robot(), planted, 4, 3, options, 3);
+  const sweep::Calibration alone =
+      test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 1);
+  const sweep::Calibration together =
+      test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 3);
   CHECK(alone.parameters[0].value == together.parameters[0].value);
   CHECK(alone.parameters[0].low == together.parameters[0].low);
   CHECK(alone.loss_after == together.loss_after);

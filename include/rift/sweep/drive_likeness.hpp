@@ -19,6 +19,9 @@ struct RepeatedTrial {
   int failed_runs = 0;  ///< those that did not, or only on a detour
 };
 
+/// Length of a path in strides of 20 mm, so that jitter adds little.
+double LengthByStrides_m(const trajectory::Trajectory& path);
+
 /// Runs longer than `longest_run` times the longest real path of their setting passed a waypoint
 /// and circled: they move to the failed ones.
 std::vector<RepeatedTrial> WithoutDetours(std::vector<RepeatedTrial> trials, double longest_run);
