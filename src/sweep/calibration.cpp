@@ -49,16 +49,14 @@ class Fit {
   double step_;
   double damping_ = kFirstDamping;
   Eigen::MatrixXd scale_;
-  Linearised at_;                           ///< the logs at shares_
-  std::vector<Eigen::VectorXd> simulated_;  ///< gradients of simulated logs there
+  Linearised at_;                      ///< the logs at shares_
+  std::vector<Linearised> simulated_;  ///< simulated logs where each correction set out from
   size_t trials_of_simulated_ = 0;
 };
 
-template <class T>
-T Sum(const std::vector<T>& parts) {
-  T sum = parts.front();
-  for (size_t i = 1; i < parts.size(); ++i) sum += parts[i];
-  return sum;
+void Append(Linearised& logs, const Linearised& more) {
+  logs.hessians.insert(logs.hessians.end(), more.hessians.begin(), more.hessians.end());
+  logs.gradients.insert(logs.gradients.end(), more.gradients.begin(), more.gradients.end());
 }
 
 Eigen::VectorXd Fit::StartOf(const std::vector<FreeParameter>& parameters) {
@@ -130,18 +128,20 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
 /// known (indirect inference, Gourieroux, Monfort and Renault 1993).
 void Fit::Correct() {
   at_ = model_.LinearisedAt(shares_, model_.RawErrorsAt(shares_), scale_, step_);
-  simulated_.clear();
   // Few logs repeat more: what the simulated ones scatter by goes into the estimate.
   const int logs = static_cast<int>(model_.LogCount());
   const int repeats = (options_.simulated_logs + logs - 1) / logs;
+  Linearised made;
   for (int i = 0; i < repeats; ++i) {
     ErrorModel model = model_.OfSimulatedLogs(shares_, i);
-    const Linearised made = model.LinearisedAt(shares_, model.RawErrorsAt(shares_), scale_, step_);
-    simulated_.insert(simulated_.end(), made.gradients.begin(), made.gradients.end());
+    Append(made, model.LinearisedAt(shares_, model.RawErrorsAt(shares_), scale_, step_));
     trials_of_simulated_ += model.TrialsSimulated();
   }
   Eigen::VectorXd gradient = Sum(at_.gradients);
-  if (!simulated_.empty()) gradient -= Sum(simulated_) / repeats;
+  if (repeats > 0) {
+    gradient -= Sum(made.gradients) / repeats;
+    simulated_.push_back(std::move(made));
+  }
   const Eigen::VectorXd step = StepFor(Sum(at_.hessians), gradient, kFirstDamping);
   shares_ = Moved(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step));
 }

@@ -9,48 +9,78 @@
 namespace rift::sweep {
 namespace {
 
-/// How far estimates from logs drawn anew with replacement lie from the point of linearisation,
-/// one row each. The simulated logs that a correction came from are drawn anew as well.
-Eigen::MatrixXd Draws(const Linearised& at, const std::vector<Eigen::VectorXd>& simulated,
-                      int resamples, std::mt19937_64& generator) {
-  const size_t logs = at.gradients.size();
+/// Logs to draw from with replacement: the gradient of each about the mean of its set.
+struct Pool {
+  void Add(const Linearised& set) {
+    const auto n = static_cast<double>(set.gradients.size());
+    const Eigen::VectorXd mean = Sum(set.gradients) / n;
+    // A sample of n varies less about its own mean than about the truth.
+    const double small_sample = n > 1.0 ? std::sqrt(n / (n - 1.0)) : 1.0;
+    for (const Eigen::VectorXd& gradient : set.gradients) {
+      scatter.push_back(small_sample * (gradient - mean));
+    }
+    hessians.insert(hessians.end(), set.hessians.begin(), set.hessians.end());
+  }
+
+  std::vector<Eigen::MatrixXd> hessians;
+  std::vector<Eigen::VectorXd> scatter;
+};
+
+/// Covariance of estimates from as many logs drawn anew out of `real`, the simulated logs that a
+/// correction came from drawn anew out of `simulated` as well.
+Eigen::MatrixXd Covariance(const Linearised& at, const Linearised& corrected_by, const Pool& real,
+                           const Pool& simulated, int resamples, std::mt19937_64& generator) {
+  const size_t logs = at.gradients.size(), made = corrected_by.gradients.size();
   const Eigen::Index n = at.gradients.front().size();
+  const double share = made > 0 ? static_cast<double>(logs) / static_cast<double>(made) : 0.0;
+  Eigen::VectorXd mean = Sum(at.gradients);
+  if (made > 0) mean -= share * Sum(corrected_by.gradients);
   Eigen::MatrixXd draws(resamples, n);
   for (Eigen::Index row = 0; row < draws.rows(); ++row) {
     Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+    Eigen::VectorXd gradient = mean;
     for (size_t i = 0; i < logs; ++i) {
-      const size_t drawn = generator() % logs;
-      hessian += at.hessians[drawn];
-      gradient += at.gradients[drawn];
+      const size_t drawn = generator() % real.hessians.size();
+      hessian += real.hessians[drawn];
+      gradient += real.scatter[drawn];
     }
-    const double share = static_cast<double>(logs) / static_cast<double>(simulated.size());
-    for (size_t i = 0; i < simulated.size(); ++i) {
-      gradient -= share * simulated[generator() % simulated.size()];
+    for (size_t i = 0; i < made; ++i) {
+      gradient -= share * simulated.scatter[generator() % simulated.scatter.size()];
     }
     hessian.diagonal().array() += RidgeOf(hessian);
     draws.row(row) = -hessian.ldlt().solve(gradient);
   }
-  return draws;
+  const Eigen::MatrixXd centred = draws.rowwise() - draws.colwise().mean();
+  return centred.transpose() * centred / static_cast<double>(draws.rows() - 1);
 }
 
-Eigen::MatrixXd Covariance(const Eigen::MatrixXd& draws, double logs) {
-  const Eigen::RowVectorXd mean = draws.colwise().mean();
-  const Eigen::MatrixXd centred = draws.rowwise() - mean;
-  // A sample of n varies less about its own mean than about the truth.
-  const double small_sample = logs > 1.0 ? logs / (logs - 1.0) : 1.0;
-  return small_sample * centred.transpose() * centred / static_cast<double>(draws.rows() - 1);
+/// From the logs alone, and from logs and simulated ones drawn together: a dozen logs often scatter
+/// much less than the next dozen would, and simulated ones do not know what the model lacks. The
+/// wider of the two, parameter by parameter, with the correlations of the larger pool.
+Eigen::MatrixXd Covariance(const Linearised& at, const std::vector<Linearised>& simulated,
+                           int resamples, std::mt19937_64& generator) {
+  Pool real;
+  real.Add(at);
+  if (simulated.empty()) return Covariance(at, {}, real, {}, resamples, generator);
+  Pool made, all = real;
+  made.Add(simulated.back());
+  for (const Linearised& set : simulated) all.Add(set);
+  const Eigen::MatrixXd apart = Covariance(at, simulated.back(), real, made, resamples, generator);
+  const Eigen::MatrixXd together = Covariance(at, simulated.back(), all, all, resamples, generator);
+  const Eigen::ArrayXd apart_sd = apart.diagonal().array().sqrt();
+  const Eigen::ArrayXd sd = together.diagonal().array().sqrt();
+  const Eigen::VectorXd wider = (sd > 0.0).select(apart_sd.max(sd) / sd, 1.0);
+  return wider.asDiagonal() * together * wider.asDiagonal();
 }
 
 }  // namespace
 
 void Judge(const std::vector<FreeParameter>& parameters, const CalibrationOptions& options,
            const Eigen::VectorXd& estimate, const Linearised& at,
-           const std::vector<Eigen::VectorXd>& simulated, std::mt19937_64& generator,
+           const std::vector<Linearised>& simulated, std::mt19937_64& generator,
            Calibration& result) {
   const auto logs = static_cast<double>(at.gradients.size());
-  const Eigen::MatrixXd covariance =
-      Covariance(Draws(at, simulated, options.resamples, generator), logs);
+  const Eigen::MatrixXd covariance = Covariance(at, simulated, options.resamples, generator);
   const double quantile = boost::math::quantile(boost::math::students_t(std::max(1.0, logs - 1.0)),
                                                 0.5 + 0.5 * options.confidence);
   const std::vector<double> values = ValuesAt(parameters, estimate);

@@ -17,6 +17,14 @@ using Blocks = std::vector<Eigen::VectorXd>;  ///< weighted errors of each log
 double SquaredSum(const Blocks& blocks);
 size_t Count(const Blocks& blocks);
 
+/// Of at least one part.
+template <class T>
+T Sum(const std::vector<T>& parts) {
+  T sum = parts.front();
+  for (size_t i = 1; i < parts.size(); ++i) sum += parts[i];
+  return sum;
+}
+
 /// Weighted errors at some shares, and their slopes summed up log by log.
 struct Linearised {
   Blocks errors;
