@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <future>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -26,15 +27,33 @@ constexpr int kMeasurePoints = 160;
 /// Hausdorff costs the product of the rows; up to this many pairs every vertex is looked at.
 constexpr size_t kMostHausdorffPairs = 65536;
 
+/// From this many rows on a second thread is worth its start.
+constexpr size_t kManyRows = 20'000;
+
 struct Paths {
   ArcPath sim;
   ArcPath real;
+
+  bool AreLong() const { return sim.Size() + real.Size() >= kManyRows; }
 };
+
+/// Calls both, at once if told to. What `first` throws comes before what `second` does.
+template <class First, class Second>
+void CallBoth(bool at_once, First&& first, Second&& second) {
+  std::future<void> other;
+  if (at_once) other = std::async(std::launch::async, second);
+  first();
+  at_once ? other.get() : second();
+}
 
 /// Both paths as they are to be compared, after trimming and aligning.
 Paths Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
               const GapOptions& options, Columns columns) {
-  Paths paths{MakeArcPath(sim, options, columns), MakeArcPath(real, options, columns)};
+  Paths paths;
+  CallBoth(
+      sim.poses.size() + real.poses.size() >= kManyRows,
+      [&] { paths.sim = MakeArcPath(sim, options, columns); },
+      [&] { paths.real = MakeArcPath(real, options, columns); });
   if (options.align != Align::kNone) {
     Transform(paths.sim, AligningMotion(paths.sim, paths.real, options.align, options.samples));
   }
@@ -242,12 +261,15 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
                    const GapOptions& options) {
   const Paths paths = Prepare(sim, real, options, Columns::kAll);
   Comparison result;
-  MeasureErrors(paths, options, result);
-  MeasureEnds(paths, result);
-  MeasureShape(paths, result);
-  result.equal_time_m = EqualTime_m(paths.sim, paths.real);
-  result.sim_standstill_share = StandstillShare(sim.poses, options.standstill_radius_m);
-  result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);
+  CallBoth(
+      paths.AreLong(), [&] { MeasureErrors(paths, options, result); },
+      [&] {
+        MeasureEnds(paths, result);
+        MeasureShape(paths, result);
+        result.equal_time_m = EqualTime_m(paths.sim, paths.real);
+        result.sim_standstill_share = StandstillShare(sim.poses, options.standstill_radius_m);
+        result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);
+      });
   return result;
 }
 
