@@ -11,8 +11,6 @@
 #include <stdexcept>
 
 namespace rift::commands {
-namespace {
-
 /// An open file, closed at the end of its scope.
 class Descriptor {
  public:
@@ -31,8 +29,26 @@ class Descriptor {
   int number_;
 };
 
+namespace {
+
 [[noreturn]] void CannotRead(const std::filesystem::path& path) {
   throw std::invalid_argument(fmt::format("cannot read {}: {}", path.string(), strerror(errno)));
+}
+
+size_t ReadSome(const Descriptor& file, char* into, size_t most,
+                const std::filesystem::path& path) {
+  while (true) {
+    const ssize_t got = ::read(file.Number(), into, most);
+    if (got >= 0) return static_cast<size_t>(got);
+    if (errno != EINTR) CannotRead(path);
+  }
+}
+
+/// A hint only: a pipe has no size and a growing log has more.
+size_t SizeOf(const Descriptor& file) {
+  struct stat about {};
+  const bool has_size = ::fstat(file.Number(), &about) == 0 && S_ISREG(about.st_mode);
+  return has_size ? static_cast<size_t>(about.st_size) : 0;
 }
 
 [[noreturn]] void CannotWrite(const std::filesystem::path& path) {
@@ -71,22 +87,53 @@ std::filesystem::path OutputOf(const std::string& out, const std::string& name) 
 std::string ReadFile(const std::filesystem::path& path) {
   const Descriptor file(path, O_RDONLY);
   if (!file.IsOpen()) CannotRead(path);
-  struct stat about {};
-  // The size is a hint: a pipe has none and a growing log has more. One byte more finds the end of
-  // the file without another, larger block.
-  const bool has_size = ::fstat(file.Number(), &about) == 0 && S_ISREG(about.st_mode);
-  std::string text(std::max<size_t>(has_size ? about.st_size + 1 : 0, 4096), '\0');
+  // One byte more finds the end of the file without another, larger block.
+  std::string text(std::max<size_t>(SizeOf(file) + 1, 4096), '\0');
   size_t used = 0;
   while (true) {
     if (used == text.size()) text.resize(2 * used);
-    const ssize_t got = ::read(file.Number(), text.data() + used, text.size() - used);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) CannotRead(path);
-    used += static_cast<size_t>(got);
+    const size_t got = ReadSome(file, text.data() + used, text.size() - used, path);
+    used += got;
     if (got == 0) break;
   }
   text.resize(used);
   return text;
+}
+
+LinesOfFile::LinesOfFile(const std::filesystem::path& path)
+    : path_(path), file_(std::make_unique<Descriptor>(path, O_RDONLY)) {
+  constexpr size_t kPiece_bytes = 1 << 18;
+  if (!file_->IsOpen()) CannotRead(path);
+  size_bytes_ = SizeOf(*file_);
+  buffer_.resize(std::clamp<size_t>(size_bytes_ + 1, 4096, kPiece_bytes));
+}
+
+LinesOfFile::~LinesOfFile() = default;
+
+/// False at the end of the file, where a log that grows on is left alone.
+bool LinesOfFile::ReadOn() {
+  if (has_ended_) return false;
+  if (used_ == buffer_.size()) buffer_.resize(2 * used_);
+  const size_t got = ReadSome(*file_, buffer_.data() + used_, buffer_.size() - used_, path_);
+  used_ += got;
+  has_ended_ = got == 0;
+  return !has_ended_;
+}
+
+std::string_view LinesOfFile::Next() {
+  // The line that was cut off begins the next piece.
+  std::copy(buffer_.begin() + given_, buffer_.begin() + used_, buffer_.begin());
+  size_t searched = used_ - given_;
+  used_ = searched;
+  given_ = 0;
+  while (given_ == 0 && ReadOn()) {
+    const std::string_view fresh(buffer_.data() + searched, used_ - searched);
+    const size_t last = fresh.rfind('\n');
+    if (last != fresh.npos) given_ = searched + last + 1;
+    searched = used_;
+  }
+  if (given_ == 0) given_ = used_;
+  return {buffer_.data(), given_};
 }
 
 void WriteFile(const std::filesystem::path& target, std::string_view text) {

@@ -1,10 +1,8 @@
 #include "arc_path.hpp"
 
 #include <cmath>
-#include <span>
 #include <stdexcept>
 
-#include "rift/geometry/angle.hpp"
 #include "standstill.hpp"
 
 namespace rift::gap {
@@ -26,19 +24,9 @@ void MeasureArcLength(ArcPath& path) {
   for (double& u : path.u) u /= path.length_m;
 }
 
-void CopyYaw(std::span<const trajectory::StampedPose> poses, ArcPath& path) {
-  path.yaw_rad.reserve(poses.size());
-  double yaw_rad = poses.front().yaw_rad;
-  for (const trajectory::StampedPose& pose : poses) {
-    yaw_rad += geometry::WrapToPi(pose.yaw_rad - yaw_rad);
-    path.yaw_rad.push_back(yaw_rad);
-  }
-}
-
 }  // namespace
 
-ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options,
-                    Columns columns) {
+ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options) {
   std::span<const trajectory::StampedPose> poses = trajectory.poses;
   if (poses.size() < 2) {
     throw std::invalid_argument("a path of fewer than two poses has no arc length");
@@ -48,17 +36,14 @@ ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& 
     poses = poses.subspan(moving.first, moving.last - moving.first + 1);
   }
   ArcPath path;
-  path.x_m.reserve(poses.size());
-  path.y_m.reserve(poses.size());
-  for (const trajectory::StampedPose& pose : poses) {
-    path.x_m.push_back(pose.x_m);
-    path.y_m.push_back(pose.y_m);
+  path.poses = poses;
+  path.x_m.resize(poses.size());
+  path.y_m.resize(poses.size());
+  for (size_t i = 0; i < poses.size(); ++i) {
+    path.x_m[i] = poses[i].x_m;
+    path.y_m[i] = poses[i].y_m;
   }
   MeasureArcLength(path);
-  if (columns == Columns::kPositions) return path;
-  path.t_s.reserve(poses.size());
-  for (const trajectory::StampedPose& pose : poses) path.t_s.push_back(pose.t_s);
-  if (trajectory.HasYaw()) CopyYaw(poses, path);
   return path;
 }
 
@@ -83,7 +68,7 @@ void Transform(ArcPath& path, const geometry::Pose2& b_from_a) {
     path.x_m[i] = p_in_b.x();
     path.y_m[i] = p_in_b.y();
   }
-  for (double& yaw_rad : path.yaw_rad) yaw_rad += b_from_a.yaw_rad;
+  path.turned_rad += b_from_a.yaw_rad;
 }
 
 }  // namespace rift::gap

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "rift/gap/options.hpp"
@@ -10,25 +11,22 @@
 namespace rift::gap {
 
 /// A planar polyline over normalised arc length u (paper, section 3.1): vertex i stands at
-/// u[i] = s_i / s_total, and the path is linear in u between vertices.
+/// u[i] = s_i / s_total, and the path is linear in u between vertices. The trajectory it is made of
+/// must outlive it: time and yaw are not copied.
 struct ArcPath {
   std::vector<double> u;
   std::vector<double> x_m;
   std::vector<double> y_m;
-  std::vector<double> t_s;      ///< empty when only the positions were asked for
-  std::vector<double> yaw_rad;  ///< unwrapped; empty when the log does not tell it either
+  std::span<const trajectory::StampedPose> poses;  ///< where it was logged, one for each vertex
+  double turned_rad = 0.0;                         ///< by how much it was turned since
   double length_m = 0.0;
 
   size_t Size() const { return u.size(); }
   Eigen::Vector2d Vertex(size_t i) const { return {x_m[i], y_m[i]}; }
 };
 
-/// The gap alone needs neither time nor yaw, and unwrapping the yaw costs more than the gap.
-enum class Columns { kPositions, kAll };
-
 /// Throws std::invalid_argument for fewer than two poses or a length that is zero or not finite.
-ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options,
-                    Columns columns);
+ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& options);
 
 /// The points at `count` evenly spaced u from 0 to 1.
 std::vector<Eigen::Vector2d> Resample(const ArcPath& path, int count);

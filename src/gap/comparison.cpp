@@ -48,12 +48,12 @@ void CallBoth(bool at_once, First&& first, Second&& second) {
 
 /// Both paths as they are to be compared, after trimming and aligning.
 Paths Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
-              const GapOptions& options, Columns columns) {
+              const GapOptions& options) {
   Paths paths;
   CallBoth(
       sim.poses.size() + real.poses.size() >= kManyRows,
-      [&] { paths.sim = MakeArcPath(sim, options, columns); },
-      [&] { paths.real = MakeArcPath(real, options, columns); });
+      [&] { paths.sim = MakeArcPath(sim, options); },
+      [&] { paths.real = MakeArcPath(real, options); });
   if (options.align != Align::kNone) {
     Transform(paths.sim, AligningMotion(paths.sim, paths.real, options.align, options.samples));
   }
@@ -115,11 +115,18 @@ Peak ExactPeak(const Paths& paths, const GapOptions& options) {
   return peak;
 }
 
+bool HasYaw(const ArcPath& path) {
+  return std::all_of(path.poses.begin(), path.poses.end(),
+                     [](const auto& pose) { return std::isfinite(pose.yaw_rad); });
+}
+
 double YawAt(const ArcPath& path, double u, size_t& i) {
   while (i + 2 < path.Size() && path.u[i + 1] <= u) ++i;
   const double span = path.u[i + 1] - path.u[i];
   const double share = span > 0.0 ? (u - path.u[i]) / span : 0.0;
-  return path.yaw_rad[i] + share * (path.yaw_rad[i + 1] - path.yaw_rad[i]);
+  const double yaw_rad = path.poses[i].yaw_rad;
+  const double step_rad = geometry::WrapToPi(path.poses[i + 1].yaw_rad - yaw_rad);
+  return path.turned_rad + yaw_rad + share * step_rad;
 }
 
 /// The points of both paths at the samples, those left out at the start included.
@@ -144,7 +151,7 @@ std::vector<double> Errors_m(const SampledPaths& samples, const GapOptions& opti
 /// Empty when one of the yaws is not known.
 std::vector<double> YawErrors_rad(const Paths& paths, const GapOptions& options) {
   std::vector<double> errors_rad;
-  if (paths.sim.yaw_rad.empty() || paths.real.yaw_rad.empty()) return errors_rad;
+  if (!HasYaw(paths.sim) || !HasYaw(paths.real)) return errors_rad;
   errors_rad.reserve(options.samples);
   size_t i = 0, j = 0;
   for (int k = FirstSample(options); k < options.samples; ++k) {
@@ -238,13 +245,13 @@ void MeasureShape(const Paths& paths, Comparison& result) {
 
 double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
            const GapOptions& options) {
-  const Paths paths = Prepare(sim, real, options, Columns::kPositions);
+  const Paths paths = Prepare(sim, real, options);
   return SampledPeaks<1>(paths, {geometry::Pose2{}}, options)[0].error_m;
 }
 
 ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                           const GapOptions& options) {
-  const Paths paths = Prepare(sim, real, options, Columns::kAll);
+  const Paths paths = Prepare(sim, real, options);
   const SampledPaths samples(paths, options);
   const int first = FirstSample(options);
   ErrorProfile profile;
@@ -259,7 +266,7 @@ ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::T
 
 Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                    const GapOptions& options) {
-  const Paths paths = Prepare(sim, real, options, Columns::kAll);
+  const Paths paths = Prepare(sim, real, options);
   Comparison result;
   CallBoth(
       paths.AreLong(), [&] { MeasureErrors(paths, options, result); },

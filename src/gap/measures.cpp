@@ -1,7 +1,6 @@
 #include "measures.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -89,13 +88,14 @@ struct Diagonals {
   Eigen::ArrayXd cells, last, before_last;
 };
 
-double Duration_s(const ArcPath& path) { return path.t_s.back() - path.t_s.front(); }
+double Duration_s(const ArcPath& path) { return path.poses.back().t_s - path.poses.front().t_s; }
 
 Eigen::Vector2d PositionAt(const ArcPath& path, double since_start_s, size_t& i) {
-  const double t_s = path.t_s.front() + since_start_s;
-  while (i + 2 < path.Size() && path.t_s[i + 1] <= t_s) ++i;
-  const double span_s = path.t_s[i + 1] - path.t_s[i];
-  const double share = span_s > 0.0 ? std::clamp((t_s - path.t_s[i]) / span_s, 0.0, 1.0) : 0.0;
+  const double t_s = path.poses.front().t_s + since_start_s;
+  while (i + 2 < path.Size() && path.poses[i + 1].t_s <= t_s) ++i;
+  const double span_s = path.poses[i + 1].t_s - path.poses[i].t_s;
+  const double share =
+      span_s > 0.0 ? std::clamp((t_s - path.poses[i].t_s) / span_s, 0.0, 1.0) : 0.0;
   return path.Vertex(i) + share * (path.Vertex(i + 1) - path.Vertex(i));
 }
 
@@ -144,21 +144,21 @@ double DynamicTimeWarping_m(const Points& a, const Points& b) {
 }
 
 double EqualTime_m(const ArcPath& a, const ArcPath& b) {
-  assert(a.t_s.size() == a.Size() && b.t_s.size() == b.Size());
   const double end_s = std::min(Duration_s(a), Duration_s(b));
   double largest_m = 0.0;
-  // The distance is convex between merged time stamps, so they alone need a look.
-  const auto visit = [&](const ArcPath& stamps) {
-    size_t i = 0, j = 0;
-    for (const double t_s : stamps.t_s) {
-      const double since_start_s = std::min(t_s - stamps.t_s.front(), end_s);
-      const Eigen::Vector2d difference_m =
-          PositionAt(a, since_start_s, i) - PositionAt(b, since_start_s, j);
+  // The distance is convex between merged time stamps, so they alone need a look. The end of the
+  // shorter path is one of them.
+  const auto visit = [&](const ArcPath& stamps, const ArcPath& other) {
+    size_t j = 0;
+    for (size_t i = 0; i < stamps.Size(); ++i) {
+      const double since_start_s = stamps.poses[i].t_s - stamps.poses.front().t_s;
+      if (since_start_s > end_s) return;
+      const Eigen::Vector2d difference_m = stamps.Vertex(i) - PositionAt(other, since_start_s, j);
       largest_m = std::max(largest_m, difference_m.norm());
     }
   };
-  visit(a);
-  visit(b);
+  visit(a, b);
+  visit(b, a);
   return largest_m;
 }
 

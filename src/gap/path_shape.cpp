@@ -8,7 +8,7 @@
 namespace rift::gap {
 
 Shape ShapeOf(const trajectory::Trajectory& path, int points) {
-  return Resample(MakeArcPath(path, {}, Columns::kPositions), points);
+  return Resample(MakeArcPath(path, {}), points);
 }
 
 Shape MeanShape(std::span<const Shape> shapes) {

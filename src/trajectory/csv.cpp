@@ -107,14 +107,26 @@ bool ShortText::IsAt(const char* at, const char* end) const {
   return (bytes & mask_) == bytes_;
 }
 
-RowReader::RowReader(std::string_view text, const std::string& name, bool has_header,
-                     char separator)
-    : rest_(WithoutMark(text)), name_(name), has_header_(has_header), separator_(separator) {
+RowReader::RowReader(std::string_view head, const TextPieces& pieces, const std::string& name,
+                     bool has_header, char separator)
+    : rest_(WithoutMark(head)),
+      pieces_(pieces),
+      seen_bytes_(head.size()),
+      name_(name),
+      has_header_(has_header),
+      separator_(separator) {
   if (has_header_) ReadHeader();
 }
 
+bool RowReader::HasMore() {
+  if (!rest_.empty()) return true;
+  rest_ = pieces_.next();
+  seen_bytes_ += rest_.size();
+  return !rest_.empty();
+}
+
 void RowReader::ReadHeader() {
-  while (!rest_.empty() && columns_.empty()) {
+  while (columns_.empty() && HasMore()) {
     ++line_number_;
     const std::string_view line = TakeLine(rest_);
     if (IsSkipped(line)) continue;
@@ -125,7 +137,7 @@ void RowReader::ReadHeader() {
 }
 
 bool RowReader::Next() {
-  while (!rest_.empty()) {
+  while (HasMore()) {
     ++line_number_;
     const size_t before = rest_.size();
     if (!TakePlain()) {
@@ -139,7 +151,10 @@ bool RowReader::Next() {
   return false;
 }
 
-size_t RowReader::RowsToExpect() const { return 2 + rest_.size() * 6 / (5 * line_size_); }
+size_t RowReader::RowsToExpect() const {
+  const size_t unseen = std::max(pieces_.size_bytes, seen_bytes_) - seen_bytes_;
+  return 2 + (rest_.size() + unseen) * 6 / (5 * line_size_);
+}
 
 bool RowReader::IsSkipped(std::string_view line) const {
   const std::string_view trimmed = Trim(line);

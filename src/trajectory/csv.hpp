@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "rift/trajectory/log.hpp"
+
 namespace rift::trajectory::csv {
 
 /// The text without its byte order mark.
@@ -37,7 +39,9 @@ class ShortText {
 /// share a name. Everything throws std::invalid_argument `name:line: ...`.
 class RowReader {
  public:
-  RowReader(std::string_view text, const std::string& name, bool has_header, char separator);
+  /// `head`: the piece before the next one. `pieces` and `name` must outlive the reader.
+  RowReader(std::string_view head, const TextPieces& pieces, const std::string& name,
+            bool has_header, char separator);
 
   /// Header cells; empty for a table without header.
   const std::vector<std::string>& Columns() const { return columns_; }
@@ -52,6 +56,7 @@ class RowReader {
   size_t RowsToExpect() const;
 
  private:
+  bool HasMore();
   void ReadHeader();
   bool IsSkipped(std::string_view line) const;
   bool TakePlain();
@@ -59,7 +64,9 @@ class RowReader {
   double Number(std::string_view cell, size_t column) const;
   [[noreturn]] void Refuse(std::string_view cell, size_t column) const;
 
-  std::string_view rest_;
+  std::string_view rest_;  ///< of the piece
+  const TextPieces& pieces_;
+  size_t seen_bytes_;  ///< of all pieces so far
   const std::string& name_;
   const bool has_header_;
   const char separator_;

@@ -83,9 +83,8 @@ void Add(LogRows& rows, const StampedPose& pose, int line) {
   rows.lines.push_back(line);
 }
 
-LogRows ReadColumns(std::string_view text, const std::array<std::string_view, 9>& names,
+LogRows ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& names,
                     const std::string& name) {
-  csv::RowReader row(text, name, true, ',');
   const ColumnMap columns(row.Columns(), names, name);
   LogRows rows;
   for (const size_t column : columns.Channels()) {
@@ -121,9 +120,8 @@ StampedPose TumPose(const csv::RowReader& row, const std::string& name) {
   return pose;
 }
 
-LogRows ReadTum(std::string_view text, const std::string& name) {
+LogRows ReadTum(csv::RowReader row, const std::string& name) {
   LogRows rows;
-  csv::RowReader row(text, name, false, ' ');
   while (row.Next()) {
     if (rows.lines.empty()) Reserve(rows, row.RowsToExpect());
     Add(rows, TumPose(row, name), row.Line());
@@ -133,9 +131,13 @@ LogRows ReadTum(std::string_view text, const std::string& name) {
 
 }  // namespace
 
-LogRows ReadRows(std::string_view text, const std::string& name, Format format) {
-  if (format == Format::kTum) return ReadTum(text, name);
-  return ReadColumns(text, format == Format::kRift ? kRiftColumns : kAuthorsColumns, name);
+LogRows ReadRows(std::string_view head, const TextPieces& pieces, const std::string& name,
+                 Format format) {
+  if (format == Format::kTum) {
+    return ReadTum(csv::RowReader(head, pieces, name, false, ' '), name);
+  }
+  return ReadColumns(csv::RowReader(head, pieces, name, true, ','),
+                     format == Format::kRift ? kRiftColumns : kAuthorsColumns, name);
 }
 
 }  // namespace rift::trajectory

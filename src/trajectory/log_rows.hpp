@@ -14,8 +14,9 @@ struct LogRows {
   std::vector<int> lines;
 };
 
-/// Reads the rows of a dialect; kAuto stands for the authors' header.
-/// Throws std::invalid_argument `name:line: ...`.
-LogRows ReadRows(std::string_view text, const std::string& name, Format format);
+/// Reads the rows of a dialect, those of `head` and of the pieces after it; kAuto stands for the
+/// authors' header. Throws std::invalid_argument `name:line: ...`.
+LogRows ReadRows(std::string_view head, const TextPieces& pieces, const std::string& name,
+                 Format format);
 
 }  // namespace rift::trajectory

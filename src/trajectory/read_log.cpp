@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "csv.hpp"
@@ -171,9 +172,15 @@ void CheckMoves(const Trajectory& trajectory, const std::string& name) {
 }  // namespace
 
 Log ReadLog(std::string_view text, const std::string& name, Format format) {
+  const auto next = [&] { return std::exchange(text, {}); };
+  return ReadLog(TextPieces{next, text.size()}, name, format);
+}
+
+Log ReadLog(const TextPieces& pieces, const std::string& name, Format format) {
   Log log;
-  log.format = format == Format::kAuto ? FormatFromHeader(text, name) : format;
-  auto [trajectory, lines] = ReadRows(text, name, log.format);
+  const std::string_view head = pieces.next();
+  log.format = format == Format::kAuto ? FormatFromHeader(head, name) : format;
+  auto [trajectory, lines] = ReadRows(head, pieces, name, log.format);
   log.trajectory = std::move(trajectory);
   CheckMagnitudes(log.trajectory, lines, name);
   NoteDoubtfulAngles(log);
