@@ -215,6 +215,13 @@ void MeasureErrors(const Paths& paths, const GapOptions& options, Comparison& re
   result.shape_gap_m = shape.error_m;
 }
 
+/// Of the whole log, whether the path was trimmed or not.
+double StandstillShare(const trajectory::Trajectory& log, const ArcPath& path,
+                       const GapOptions& options) {
+  const double standing_m = StandingLength_m(log.poses, options.standstill_radius_m);
+  return standing_m / (path.length_m + (options.trim_standstill ? standing_m : 0.0));
+}
+
 void MeasureEnds(const Paths& paths, Comparison& result) {
   result.sim_length_m = paths.sim.length_m;
   result.real_length_m = paths.real.length_m;
@@ -274,8 +281,8 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
         MeasureEnds(paths, result);
         MeasureShape(paths, result);
         result.equal_time_m = EqualTime_m(paths.sim, paths.real);
-        result.sim_standstill_share = StandstillShare(sim.poses, options.standstill_radius_m);
-        result.real_standstill_share = StandstillShare(real.poses, options.standstill_radius_m);
+        result.sim_standstill_share = StandstillShare(sim, paths.sim, options);
+        result.real_standstill_share = StandstillShare(real, paths.real, options);
       });
   return result;
 }

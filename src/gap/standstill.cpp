@@ -19,14 +19,10 @@ MovingRange FindMoving(std::span<const trajectory::StampedPose> poses, double ra
   return {first, last};
 }
 
-double StandstillShare(std::span<const trajectory::StampedPose> poses, double radius_m) {
+double StandingLength_m(std::span<const trajectory::StampedPose> poses, double radius_m) {
   const MovingRange moving = FindMoving(poses, radius_m);
-  if (moving.first == 0 && moving.last == poses.size() - 1) return 0.0;
-  const double total_m = trajectory::ArcLength_m(poses);
-  if (!(total_m > 0.0)) return 0.0;
-  const double driven_m =
-      trajectory::ArcLength_m(poses.subspan(moving.first, moving.last - moving.first + 1));
-  return 1.0 - driven_m / total_m;
+  return trajectory::ArcLength_m(poses.first(moving.first + 1)) +
+         trajectory::ArcLength_m(poses.subspan(moving.last));
 }
 
 }  // namespace rift::gap

@@ -15,7 +15,7 @@ struct MovingRange {
 
 MovingRange FindMoving(std::span<const trajectory::StampedPose> poses, double radius_m);
 
-/// Share of the arc length that was logged outside that range: jitter of a standing robot.
-double StandstillShare(std::span<const trajectory::StampedPose> poses, double radius_m);
+/// Arc length that was logged outside that range: jitter of a standing robot.
+double StandingLength_m(std::span<const trajectory::StampedPose> poses, double radius_m);
 
 }  // namespace rift::gap

@@ -1,6 +1,11 @@
+#include <sys/stat.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "support/paths.hpp"
 #include "support/process.hpp"
@@ -65,6 +70,34 @@ TEST_CASE("rift gap writes its evidence as JSON with nothing else on stdout") {
   }
   CHECK(evidence["noise_floor_m"] == 0.0);
   CHECK(evidence["verdict"] == "not falsified");
+}
+
+TEST_CASE("rift gap reads logs longer than one look at the file and through a pipe") {
+  const trajectory::Trajectory path = test::StraightPath(0.7, 20'000);
+  std::string text = trajectory::WriteRift(path);
+  const TwoLogs logs(0.05);
+  REQUIRE(text.size() > 600'000);
+  WriteText(logs.sim, text);
+  const std::string long_line = "# " + std::string(600'000, '-') + "\n";
+  WriteText(logs.folder / "real.tum",
+            long_line + trajectory::WriteTum(test::Moved(path, {0.0, 0.05, 0.0})));
+  const std::string tum = logs.folder / "real.tum";
+  const ProcessResult files = RunRift({"gap", logs.sim, tum});
+  CHECK(files.out.find("mean gap: 0.0500 m") != std::string::npos);
+  const std::string pipe = logs.folder / "pipe.csv";
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  std::thread writer([&] { std::ofstream(pipe) << text; });
+  const ProcessResult piped = RunRift({"gap", pipe, tum});
+  writer.join();
+  CHECK(piped.out.substr(piped.out.find("mean gap")) ==
+        files.out.substr(files.out.find("mean gap")));
+  text.insert(text.find("\n", 500'000) + 1, "spoilt\n");
+  WriteText(logs.sim, text);
+  const auto line = 1 + std::count(text.begin(), text.begin() + text.find("spoilt"), '\n');
+  const ProcessResult spoilt = RunRift({"gap", logs.sim, tum});
+  CHECK(spoilt.exit_code == 2);
+  CHECK(spoilt.err.find("sim.csv:" + std::to_string(line) + ": column t_s is 'spoilt'") !=
+        std::string::npos);
 }
 
 TEST_CASE("rift gap writes a profile and figures beside its text") {
