@@ -1,13 +1,11 @@
 #include "track_window.hpp"
 
-#include <fmt/format.h>
-#include <xcb/xcb.h>
-
 #include <cstdlib>
 #include <opencv2/highgui.hpp>
 #include <stdexcept>
 #include <utility>
 
+#include "rift/module/display.hpp"
 #include "track_picture.hpp"
 
 namespace rift::vision {
@@ -55,20 +53,8 @@ class HighguiWindow : public TrackWindow {
 
 }  // namespace
 
-std::string MissingDisplay() {
-  const char* name = std::getenv("DISPLAY");
-  if (name == nullptr || *name == '\0') {
-    return "no window: DISPLAY is not set (on Wayland, Xwayland sets it)";
-  }
-  // Qt ends the whole process when it cannot connect, so this asks first.
-  xcb_connection_t* connection = xcb_connect(nullptr, nullptr);
-  const bool failed = xcb_connection_has_error(connection) != 0;
-  xcb_disconnect(connection);
-  return failed ? fmt::format("no window: the display {} does not answer", name) : std::string();
-}
-
 std::unique_ptr<TrackWindow> OpenTrackWindow(const std::string& title) {
-  if (const std::string missing = MissingDisplay(); !missing.empty()) {
+  if (const std::string missing = module::MissingDisplay(); !missing.empty()) {
     throw std::runtime_error(missing);
   }
   return std::make_unique<HighguiWindow>(title);
@@ -78,12 +64,23 @@ void TakeKey(int key, TrackInput& input) {
   if (key < 0) return;
   switch (key & 0xFF) {
     case 'q':
-    case kEscape: input.quit = true; break;
-    case 'u': input.undo = true; break;
-    case 'w': input.here = true; break;
-    case 's': input.toggle_stop = true; break;
-    case 'c': input.clear_trail = true; break;
-    default: break;
+    case kEscape:
+      input.quit = true;
+      break;
+    case 'u':
+      input.undo = true;
+      break;
+    case 'w':
+      input.here = true;
+      break;
+    case 's':
+      input.toggle_stop = true;
+      break;
+    case 'c':
+      input.clear_trail = true;
+      break;
+    default:
+      break;
   }
 }
 

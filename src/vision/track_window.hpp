@@ -7,10 +7,7 @@
 
 namespace rift::vision {
 
-/// See Vision::MissingDisplay.
-std::string MissingDisplay();
-
-/// Throws std::runtime_error with MissingDisplay() where that is not empty.
+/// Throws std::runtime_error with module::MissingDisplay() where that is not empty.
 std::unique_ptr<TrackWindow> OpenTrackWindow(const std::string& title);
 
 /// What a key does, as cv::waitKeyEx reports it; -1 is no key.

@@ -112,7 +112,7 @@ TEST_CASE("A missing module is named with what to do") {
 TEST_CASE("A file that is no module is refused") {
   const TemporaryFolder folder;
   test::WriteText(folder / "librift_view.so", "no module");
-  CHECK_THROWS_WITH(LoadViewer(folder / "librift_view.so"), Contains("cannot load the viewer"));
+  CHECK_THROWS_WITH(LoadViewer(folder / "librift_view.so"), Contains("cannot load a module of rift"));
 }
 
 TEST_CASE("Without a display there is a reason in one line and no window and no crash") {

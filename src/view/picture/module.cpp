@@ -1,3 +1,4 @@
+#include "rift/module/display.hpp"
 #include "rift/view/viewer.hpp"
 #include "video.hpp"
 #include "window.hpp"
@@ -7,7 +8,7 @@ namespace {
 
 class OpenCvViewer : public Viewer {
  public:
-  std::string MissingDisplay() const override { return view::MissingDisplay(); }
+  std::string MissingDisplay() const override { return module::MissingDisplay(); }
   void PlayInWindow(const Film& film, const ViewOptions& options) override {
     view::PlayInWindow(film, options);
   }

@@ -1,7 +1,6 @@
 #include "window.hpp"
 
 #include <fmt/format.h>
-#include <xcb/xcb.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,6 +11,7 @@
 
 #include "painter.hpp"
 #include "playback.hpp"
+#include "rift/module/display.hpp"
 
 namespace rift::view {
 namespace {
@@ -42,21 +42,9 @@ std::vector<std::string> Keys(const Playback& playback) {
 
 }  // namespace
 
-std::string MissingDisplay() {
-  const char* name = std::getenv("DISPLAY");
-  if (name == nullptr || *name == '\0') {
-    return "no window: DISPLAY is not set (on Wayland, Xwayland sets it)";
-  }
-  // Qt ends the whole process when it cannot connect, so this asks first.
-  xcb_connection_t* connection = xcb_connect(nullptr, nullptr);
-  const bool failed = xcb_connection_has_error(connection) != 0;
-  xcb_disconnect(connection);
-  return failed ? fmt::format("no window: the display {} does not answer", name) : std::string();
-}
-
 void PlayInWindow(const Film& film, const ViewOptions& options) {
   using Clock = std::chrono::steady_clock;
-  if (const std::string missing = MissingDisplay(); !missing.empty()) {
+  if (const std::string missing = module::MissingDisplay(); !missing.empty()) {
     throw std::runtime_error(missing);
   }
   const Painter painter(film.stage, {options.width_px, options.height_px});

@@ -7,9 +7,6 @@
 
 namespace rift::view {
 
-/// See Viewer::MissingDisplay.
-std::string MissingDisplay();
-
 /// See Viewer::PlayInWindow.
 void PlayInWindow(const Film& film, const ViewOptions& options);
 

@@ -1,6 +1,7 @@
 #include "rift/vision/module.hpp"
 
 #include "../track_window.hpp"
+#include "rift/module/display.hpp"
 #include "rift/vision/image_files.hpp"
 #include "rift/vision/picture_reader.hpp"
 
@@ -92,7 +93,7 @@ class OpenCvVision : public Vision {
                                              const SyntheticCameraOptions& options) override {
     return std::make_unique<SyntheticPictures>(camera, options);
   }
-  std::string MissingDisplay() override { return vision::MissingDisplay(); }
+  std::string MissingDisplay() override { return module::MissingDisplay(); }
   std::unique_ptr<TrackWindow> OpenWindow(const std::string& title) override {
     return vision::OpenTrackWindow(title);
   }
