@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "calibrate_output.hpp"
 #include "files.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/sweep/drive_likeness.hpp"
 #include "rift/sweep/grid.hpp"
 #include "rift/sweep/labels.hpp"
 #include "robot_file.hpp"
@@ -135,9 +137,18 @@ sweep::TwinAt Calibrator::TwinsOf(const std::vector<const Entry*>& entries) cons
   };
 }
 
-std::vector<sweep::CalibrationLog> LogsOf(const std::vector<const Entry*>& entries) {
+std::vector<sweep::CalibrationLog> LogsOf(const std::vector<const Entry*>& entries,
+                                          double longest_run) {
+  std::map<std::string, double> longest_m;
+  for (const Entry* entry : entries) {
+    double& longest = longest_m[entry->log.setting];
+    longest = std::max(longest, longest_run * sweep::LengthByStrides_m(entry->log.log));
+  }
   std::vector<sweep::CalibrationLog> logs;
-  for (const Entry* entry : entries) logs.push_back(entry->log);
+  for (const Entry* entry : entries) {
+    logs.push_back(entry->log);
+    logs.back().longest_m = longest_m[entry->log.setting];
+  }
   return logs;
 }
 
@@ -236,8 +247,8 @@ void Calibrator::JudgeErrors(CalibrationReport& report) const {
     const std::vector<const Entry*> side = Side(held_out);
     if (side.empty()) continue;
     const auto structure = [&](const std::vector<double>& values) {
-      return sweep::StructureOfErrors(LogsOf(side), TwinsOf(side), values,
-                                      experiment_.calibrate.method.horizon);
+      return sweep::StructureOfErrors(LogsOf(side, experiment_.likeness.longest_run), TwinsOf(side),
+                                      values, experiment_.calibrate.method.horizon);
     };
     report.errors.push_back(
         {held_out ? "held out" : "fitted", structure(StartValues()), structure(report.values)});
@@ -255,8 +266,8 @@ CalibrationReport Calibrator::Run() {
   std::mt19937_64 generator(experiment_.seed);
   CalibrationReport report;
   report.calibration = sweep::Calibrate(
-      experiment_.calibrate.fit.list, LogsOf(fitted), TwinsOf(fitted), experiment_.calibrate.method,
-      generator, request_.jobs,
+      experiment_.calibrate.fit.list, LogsOf(fitted, experiment_.likeness.longest_run),
+      TwinsOf(fitted), experiment_.calibrate.method, generator, request_.jobs,
       [&](int steps, double loss) { say(fmt::format("step {}: loss {:.4f}", steps, loss)); });
   for (const sweep::CalibratedParameter& parameter : report.calibration.parameters) {
     report.values.push_back(parameter.value);

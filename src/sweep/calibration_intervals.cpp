@@ -2,9 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace rift::sweep {
 namespace {
@@ -26,10 +28,10 @@ struct Pool {
   std::vector<Eigen::VectorXd> scatter;
 };
 
-/// Covariance of estimates from as many logs drawn anew out of `real`, the simulated logs that a
-/// correction came from drawn anew out of `simulated` as well.
-Eigen::MatrixXd Covariance(const Linearised& at, const Linearised& corrected_by, const Pool& real,
-                           const Pool& simulated, int resamples, std::mt19937_64& generator) {
+/// Estimates from as many logs drawn anew out of `real`, the simulated logs that a correction came
+/// from drawn anew out of `simulated` as well; one row each.
+Eigen::MatrixXd Draws(const Linearised& at, const Linearised& corrected_by, const Pool& real,
+                      const Pool& simulated, int resamples, std::mt19937_64& generator) {
   const size_t logs = at.gradients.size(), made = corrected_by.gradients.size();
   const Eigen::Index n = at.gradients.front().size();
   const double share = made > 0 ? static_cast<double>(logs) / static_cast<double>(made) : 0.0;
@@ -50,27 +52,53 @@ Eigen::MatrixXd Covariance(const Linearised& at, const Linearised& corrected_by,
     hessian.diagonal().array() += RidgeOf(hessian);
     draws.row(row) = -hessian.ldlt().solve(gradient);
   }
+  return draws;
+}
+
+/// How far estimates scatter, and how together.
+struct Scatter {
+  Eigen::VectorXd reach;  ///< half the width of the central draws
+  Eigen::MatrixXd correlation;
+};
+
+/// From the central draws alone: one that happens to hold no log of a surface tells nothing of its
+/// friction and may say anything.
+Scatter ScatterOf(Eigen::MatrixXd draws, double confidence) {
+  Scatter scatter{.reach = Eigen::VectorXd(draws.cols())};
+  for (Eigen::Index k = 0; k < draws.cols(); ++k) {
+    std::vector<double> sorted(draws.col(k).begin(), draws.col(k).end());
+    std::sort(sorted.begin(), sorted.end());
+    const auto last = static_cast<double>(sorted.size() - 1);
+    const double low = sorted[static_cast<size_t>(std::lround(0.5 * (1.0 - confidence) * last))];
+    const double high = sorted[static_cast<size_t>(std::lround(0.5 * (1.0 + confidence) * last))];
+    scatter.reach[k] = 0.5 * (high - low);
+    draws.col(k) = draws.col(k).cwiseMax(low).cwiseMin(high);
+  }
   const Eigen::MatrixXd centred = draws.rowwise() - draws.colwise().mean();
-  return centred.transpose() * centred / static_cast<double>(draws.rows() - 1);
+  const Eigen::MatrixXd covariance = centred.transpose() * centred;
+  const Eigen::VectorXd inverse_sd = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  scatter.correlation = inverse_sd.asDiagonal() * covariance * inverse_sd.asDiagonal();
+  return scatter;
 }
 
 /// From the logs alone, and from logs and simulated ones drawn together: a dozen logs often scatter
 /// much less than the next dozen would, and simulated ones do not know what the model lacks. The
 /// wider of the two, parameter by parameter, with the correlations of the larger pool.
-Eigen::MatrixXd Covariance(const Linearised& at, const std::vector<Linearised>& simulated,
-                           int resamples, std::mt19937_64& generator) {
+Scatter ScatterOf(const Linearised& at, const std::vector<Linearised>& simulated,
+                  const CalibrationOptions& options, std::mt19937_64& generator) {
+  const auto from = [&](const Linearised& by, const Pool& real, const Pool& made) {
+    return ScatterOf(Draws(at, by, real, made, options.resamples, generator), options.confidence);
+  };
   Pool real;
   real.Add(at);
-  if (simulated.empty()) return Covariance(at, {}, real, {}, resamples, generator);
+  if (simulated.empty()) return from(Linearised{}, real, Pool{});
   Pool made, all = real;
   made.Add(simulated.back());
   for (const Linearised& set : simulated) all.Add(set);
-  const Eigen::MatrixXd apart = Covariance(at, simulated.back(), real, made, resamples, generator);
-  const Eigen::MatrixXd together = Covariance(at, simulated.back(), all, all, resamples, generator);
-  const Eigen::ArrayXd apart_sd = apart.diagonal().array().sqrt();
-  const Eigen::ArrayXd sd = together.diagonal().array().sqrt();
-  const Eigen::VectorXd wider = (sd > 0.0).select(apart_sd.max(sd) / sd, 1.0);
-  return wider.asDiagonal() * together * wider.asDiagonal();
+  const Scatter apart = from(simulated.back(), real, made);
+  Scatter together = from(simulated.back(), all, all);
+  together.reach = together.reach.cwiseMax(apart.reach);
+  return together;
 }
 
 }  // namespace
@@ -80,16 +108,19 @@ void Judge(const std::vector<FreeParameter>& parameters, const CalibrationOption
            const std::vector<Linearised>& simulated, std::mt19937_64& generator,
            Calibration& result) {
   const auto logs = static_cast<double>(at.gradients.size());
-  const Eigen::MatrixXd covariance = Covariance(at, simulated, options.resamples, generator);
-  const double quantile = boost::math::quantile(boost::math::students_t(std::max(1.0, logs - 1.0)),
-                                                0.5 + 0.5 * options.confidence);
+  const Scatter scatter = ScatterOf(at, simulated, options, generator);
+  // Few logs tell their own scatter badly.
+  const double upper = 0.5 + 0.5 * options.confidence;
+  const double few_logs =
+      boost::math::quantile(boost::math::students_t(std::max(1.0, logs - 1.0)), upper) /
+      boost::math::quantile(boost::math::normal(), upper);
   const std::vector<double> values = ValuesAt(parameters, estimate);
   const Eigen::Index n = estimate.size();
   std::vector<bool> has_effect;
   for (Eigen::Index k = 0; k < n; ++k) {
     const FreeParameter& p = parameters[static_cast<size_t>(k)];
     const double value = values[static_cast<size_t>(k)];
-    const double reach = quantile * std::sqrt(covariance(k, k));
+    const double reach = few_logs * scatter.reach[k];
     double effect = 0.0;
     for (const Eigen::MatrixXd& hessian : at.hessians) effect += hessian(k, k);
     has_effect.push_back(effect > 0.0);
@@ -108,7 +139,7 @@ void Judge(const std::vector<FreeParameter>& parameters, const CalibrationOption
   for (Eigen::Index a = 0; a < n; ++a) {
     for (Eigen::Index b = 0; b < n; ++b) {
       if (!has_effect[static_cast<size_t>(a)] || !has_effect[static_cast<size_t>(b)]) continue;
-      result.correlation(a, b) = covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
+      result.correlation(a, b) = scatter.correlation(a, b);
     }
   }
 }

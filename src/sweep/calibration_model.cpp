@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "rift/sweep/drive_likeness.hpp"
+
 namespace rift::sweep {
 namespace {
 
@@ -10,6 +12,18 @@ namespace {
 constexpr double kStepOfRuns = 0.2;
 // Runs that stand for real logs are none of those that predict.
 constexpr std::uint64_t kSeedsOfRepeat = 20'000;
+constexpr std::uint64_t kSeedsOfTry = 1'000'000;
+
+/// A run no longer than that, or the last one tried.
+trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin) {
+  constexpr int kMostTries = 10;
+  trajectory::Trajectory run = Simulate(twin).result.trajectory;
+  for (int i = 1; i < kMostTries && LengthByStrides_m(run) > longest_m; ++i) {
+    twin.seed += kSeedsOfTry;
+    run = Simulate(twin).result.trajectory;
+  }
+  return run;
+}
 
 }  // namespace
 
@@ -55,7 +69,7 @@ ErrorModel ErrorModel::OfSimulatedLogs(const Eigen::VectorXd& shares, int repeat
   for (size_t i = 0; i < logs_.size(); ++i) {
     SimulatedTrial twin = twin_(i, ValuesAt(parameters_, shares));
     twin.seed += static_cast<std::uint64_t>(repeat + 1) * kSeedsOfRepeat;
-    logs.push_back({logs_[i].name, logs_[i].setting, Simulate(twin).result.trajectory});
+    logs.push_back({logs_[i].name, logs_[i].setting, RunWithin(logs_[i].longest_m, twin)});
   }
   ErrorModel model(parameters_, std::move(logs), twin_, options_, threads_, shares);
   model.traits_.scatter = traits_.scatter;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -71,6 +72,9 @@ struct CalibrationLog {
   std::string name;
   std::string setting;
   trajectory::Trajectory log;
+  /// No simulated log that stands for this one is longer, by strides: such a run circled about a
+  /// waypoint, as no log here does, and would count more than all the others.
+  double longest_m = std::numeric_limits<double>::infinity();
 };
 
 /// The simulated twin of a log, with one value for each free parameter. It starts where the robot
@@ -104,9 +108,9 @@ struct Calibration {
 /// their standard deviation, and how the runs of each log differ from it in weave, spread, speed
 /// and loop delay over the scatter of these among the logs. Whole paths have no say: of a delayed
 /// bang-bang loop they are chaotic. Intervals and correlations: bootstrap over logs, each draw
-/// fitted by one Gauss-Newton step. Throws std::invalid_argument for no logs, no parameters or a
-/// start out of range.
-/// `threads` evaluate logs at once and change no result.
+/// fitted by one Gauss-Newton step; over the logs alone and over logs and the simulated ones of the
+/// corrections together, whichever is wider. Throws std::invalid_argument for no logs, no
+/// parameters or a start out of range. `threads` evaluate logs at once and change no result.
 Calibration Calibrate(const std::vector<FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                       const CalibrationOptions& options, std::mt19937_64& generator,
