@@ -86,14 +86,6 @@ sweep::Theta NominalTheta(const config::Experiment& experiment) {
   return theta;
 }
 
-std::string ThetaText(const std::vector<sweep::Parameter>& parameters, const sweep::Theta& theta) {
-  std::string text;
-  for (size_t i = 0; i < theta.size(); ++i) {
-    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", parameters[i].Name(), theta[i].text);
-  }
-  return text;
-}
-
 std::string ChangedGapFlags(const gap::GapOptions& options) {
   const gap::GapOptions standard;
   std::vector<std::string> defaults;

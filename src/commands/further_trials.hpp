@@ -43,9 +43,6 @@ class FurtherTrials {
 /// The experiment's own values of its space's parameters.
 sweep::Theta NominalTheta(const config::Experiment& experiment);
 
-/// "simulation.terrain.surface parchment, control.v_min 0.15" by the parameters' short names.
-std::string ThetaText(const std::vector<sweep::Parameter>& parameters, const sweep::Theta& theta);
-
 /// Those of the gap's options that are not the defaults, as flags of `rift gap`.
 std::string ChangedGapFlags(const gap::GapOptions& options);
 

@@ -10,6 +10,7 @@
 #include "json_fields.hpp"
 #include "rift/report/sweep_figures.hpp"
 #include "rift/sweep/falsify.hpp"
+#include "rift/sweep/labels.hpp"
 #include "rift/sweep/shrink.hpp"
 #include "sweep_output.hpp"
 
@@ -143,7 +144,7 @@ std::string ShrunkText(const std::filesystem::path& folder,
   std::string text = fmt::format(
       "\nshrunk: row {} ({}; {}) still fails with {} of its {} changes from the experiment's own "
       "values ({}, above {:g} m; {} trials)\n",
-      found.id, ThetaText(parameters, failing.theta), OutcomeText(failing),
+      found.id, sweep::SettingText(parameters, failing.theta), OutcomeText(failing),
       found.shrunk.changed.size(), parameters.size(), OutcomeText(least), threshold_m,
       found.shrunk.evaluations);
   if (found.shrunk.changed.empty()) {

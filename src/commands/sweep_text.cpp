@@ -53,12 +53,9 @@ std::string WorstText(const sweep::SweepResult& result) {
   const std::optional<int> index = report::WorstRow(result);
   if (!index) return "";
   const sweep::TrialRow& worst = result.rows[*index];
-  std::string setting;
-  for (size_t i = 0; i < result.parameters.size(); ++i) {
-    setting += fmt::format("{} {}, ", result.parameters[i].Name(), worst.theta[i].text);
-  }
-  return fmt::format("worst: {:.4f} m at u = {:.2f} ({}trial {})\n", worst.comparison.gap_m,
-                     worst.comparison.gap_u, setting, worst.trial);
+  return fmt::format("worst: {:.4f} m at u = {:.2f} ({}, trial {})\n", worst.comparison.gap_m,
+                     worst.comparison.gap_u, sweep::SettingText(result.parameters, worst.theta),
+                     worst.trial);
 }
 
 std::string NotOkText(const sweep::SweepResult& result) {
@@ -70,15 +67,6 @@ std::string NotOkText(const sweep::SweepResult& result) {
     text += fmt::format("without gap: {}\n", row.reason);
   }
   if (shown > kMostShown) text += fmt::format("without gap: {} more\n", shown - kMostShown);
-  return text;
-}
-
-std::string SettingText(const sweep::SweepResult& result, const sweep::SettingResult& setting) {
-  std::string text;
-  for (size_t i = 0; i < result.parameters.size(); ++i) {
-    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", result.parameters[i].Name(),
-                        setting.theta[i].text);
-  }
   return text;
 }
 
@@ -96,7 +84,7 @@ std::string FalsificationText(const sweep::SweepResult& result, const sweep::Fal
     const sweep::SettingResult& worst = result.settings.at(*found.worst_setting);
     text += fmt::format("worst setting: mean gap {:.4f} m in {} trials, {} of them failed ({})\n",
                         worst.mean_gap_m, worst.rows.size(), worst.verdict.above,
-                        SettingText(result, worst));
+                        sweep::SettingText(result.parameters, worst.theta));
   }
   return text;
 }

@@ -18,16 +18,6 @@ std::map<std::string, std::size_t> PlaceOf(const std::vector<sweep::LevelSummary
   return place;
 }
 
-// Numbers alone do not say what they are.
-std::string NamedValues(const sweep::SweepResult& result,
-                        const std::vector<sweep::ParameterValue>& theta) {
-  std::string label;
-  for (std::size_t i = 0; i < theta.size(); ++i) {
-    label += (label.empty() ? "" : ", ") + result.parameters[i].Name() + " " + theta[i].text;
-  }
-  return label;
-}
-
 }  // namespace
 
 SettingGrid LayOut(const sweep::SweepResult& result) {
@@ -58,15 +48,16 @@ SettingGrid LayOut(const sweep::SweepResult& result) {
 
 std::string SettingLabel(const sweep::SweepResult& result,
                          const std::vector<sweep::ParameterValue>& exact) {
-  // A value drawn from a range has 17 digits, which nobody reads; table.csv has them.
   std::vector<sweep::ParameterValue> theta = exact;
   for (std::size_t i = 0; i < theta.size(); ++i) {
-    const bool is_drawn = result.parameters[i].IsContinuous() && theta[i].number;
-    if (is_drawn) theta[i].text = fmt::format("{:.4g}", *theta[i].number);
+    theta[i].text = sweep::ShortText(result.parameters[i], theta[i]);
   }
   if (result.parameters.empty()) return "the only setting";
   const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
-  if (!result.parameters[split.main_factor].IsCategorical()) return NamedValues(result, theta);
+  // Numbers alone do not say what they are.
+  if (!result.parameters[split.main_factor].IsCategorical()) {
+    return sweep::SettingText(result.parameters, exact);
+  }
   const std::string main = sweep::CombinationLabel(theta, {split.main_factor});
   if (split.others.empty()) return main;
   return main + " " + sweep::CombinationLabel(theta, split.others);

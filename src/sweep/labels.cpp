@@ -1,5 +1,7 @@
 #include "rift/sweep/labels.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -28,6 +30,21 @@ FactorSplit SplitFactors(const std::vector<Parameter>& parameters) {
   }
   if (split.others.size() > 1) split.others_name = "[" + split.others_name + "]";
   return split;
+}
+
+std::string ShortText(const Parameter& parameter, const ParameterValue& value) {
+  const bool is_drawn = parameter.IsContinuous() && value.number;
+  return is_drawn ? fmt::format("{:.4g}", *value.number) : value.text;
+}
+
+std::string SettingText(const std::vector<Parameter>& parameters,
+                        const std::vector<ParameterValue>& theta) {
+  std::string text;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", parameters[i].Name(),
+                        ShortText(parameters[i], theta[i]));
+  }
+  return text.empty() ? "the only setting" : text;
 }
 
 std::string CombinationLabel(const std::vector<ParameterValue>& theta,

@@ -7,6 +7,8 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
+#include "rift/sweep/labels.hpp"
+
 namespace rift::sweep {
 namespace {
 
@@ -69,14 +71,6 @@ int TrialsToDecide(const Knowledge& knowledge) {
   return trials <= kMostTrials ? static_cast<int>(std::ceil(trials)) : -1;
 }
 
-std::string SettingText(const SweepResult& result, const SettingResult& setting) {
-  std::string text;
-  for (size_t i = 0; i < setting.theta.size(); ++i) {
-    text += (i == 0 ? "" : ", ") + result.parameters[i].Name() + " " + setting.theta[i].text;
-  }
-  return text.empty() ? "the only setting" : text;
-}
-
 Suggestion Describe(const SweepResult& result, int setting_index, int more, double scatter_m) {
   const SettingResult& setting = result.settings[setting_index];
   const Knowledge knowledge{setting.mean_gap_m - result.gap.threshold_m, scatter_m,
@@ -95,7 +89,7 @@ Suggestion Describe(const SweepResult& result, int setting_index, int more, doub
       "probability; the risk of calling it wrongly falls from {:.0f} to {:.0f} %, the call flips "
       "with {:.0f} %, and the interval for the share above narrows from {:.0f} to {:.0f} points",
       more == 1 ? "1 more trial" : fmt::format("{} more trials", more),
-      SettingText(result, setting), result.gap.threshold_m, setting.mean_gap_m,
+      SettingText(result.parameters, setting.theta), result.gap.threshold_m, setting.mean_gap_m,
       setting.verdict.repeats == 1 ? "1 trial" : fmt::format("{} trials", setting.verdict.repeats),
       100.0 * suggestion.above_now, 100.0 * suggestion.wrong_now, 100.0 * suggestion.wrong_after,
       100.0 * suggestion.flip, 100.0 * suggestion.width_now, 100.0 * suggestion.width_after);
@@ -131,7 +125,7 @@ std::vector<Suggestion> FirstTrials(const SweepResult& result, const SuggestOpti
         "{} of {}: does the robot go with the {:.4f} m that this sweep found there, {} {:g} m? "
         "Repeats on the robot also give its scatter, without which no risk can be told",
         options.repeats == 1 ? "1 trial" : fmt::format("{} trials", options.repeats),
-        SettingText(result, result.settings[i]), gap_m,
+        SettingText(result.parameters, result.settings[i].theta), gap_m,
         i == order.front() ? "the most of all settings, against" : "next to the threshold of",
         result.gap.threshold_m);
     suggestions.push_back(suggestion);

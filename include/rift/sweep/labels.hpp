@@ -18,6 +18,14 @@ struct FactorSplit {
 /// Throws std::invalid_argument for a space without parameters.
 FactorSplit SplitFactors(const std::vector<Parameter>& parameters);
 
+/// The value for people: one drawn from a range has 17 digits, which nobody reads; table.csv has
+/// them.
+std::string ShortText(const Parameter& parameter, const ParameterValue& value);
+
+/// "surface parchment, v_min 0.15", by the parameters' last names and for people as well.
+std::string SettingText(const std::vector<Parameter>& parameters,
+                        const std::vector<ParameterValue>& theta);
+
 /// "0.15" for one parameter, "[0.15, 0.30]" for several.
 std::string CombinationLabel(const std::vector<ParameterValue>& theta,
                              const std::vector<int>& parameters);
