@@ -202,9 +202,6 @@ void MeasureErrors(const Paths& paths, const GapOptions& options, Comparison& re
   const SampledPaths samples(paths, options);
   SummariseErrors(Errors_m(samples, options), result);
   SummariseYawErrors(YawErrors_rad(paths, options), result);
-  const Peak exact = ExactPeak(paths, options);
-  result.exact_gap_m = exact.error_m;
-  result.exact_gap_u = exact.u;
   result.real_from_sim = BestMotion(paths, samples, options.samples);
   const auto [as_it_is, start_aligned, shape] = SampledPeaks<3>(
       paths, {geometry::Pose2{}, StartMotion(paths.sim, paths.real), result.real_from_sim},
@@ -275,9 +272,13 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
                    const GapOptions& options) {
   const Paths paths = Prepare(sim, real, options);
   Comparison result;
+  // Each half takes about as long as the other.
   CallBoth(
       paths.AreLong(), [&] { MeasureErrors(paths, options, result); },
       [&] {
+        const Peak exact = ExactPeak(paths, options);
+        result.exact_gap_m = exact.error_m;
+        result.exact_gap_u = exact.u;
         MeasureEnds(paths, result);
         MeasureShape(paths, result);
         result.equal_time_m = EqualTime_m(paths.sim, paths.real);
