@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 
 #include "calibrate_output.hpp"
 #include "files.hpp"
@@ -137,18 +136,18 @@ sweep::TwinAt Calibrator::TwinsOf(const std::vector<const Entry*>& entries) cons
   };
 }
 
-std::vector<sweep::CalibrationLog> LogsOf(const std::vector<const Entry*>& entries,
-                                          double longest_run) {
-  std::map<std::string, double> longest_m;
-  for (const Entry* entry : entries) {
-    double& longest = longest_m[entry->log.setting];
-    longest = std::max(longest, longest_run * sweep::LengthByStrides_m(entry->log.log));
-  }
+std::vector<sweep::CalibrationLog> LogsOf(const std::vector<const Entry*>& entries) {
   std::vector<sweep::CalibrationLog> logs;
-  for (const Entry* entry : entries) {
-    logs.push_back(entry->log);
-    logs.back().longest_m = longest_m[entry->log.setting];
-  }
+  for (const Entry* entry : entries) logs.push_back(entry->log);
+  return logs;
+}
+
+/// No simulated log makes a detour that the likeness would leave out.
+std::vector<sweep::CalibrationLog> LogsToFit(const std::vector<const Entry*>& entries,
+                                             double longest_run) {
+  std::vector<sweep::CalibrationLog> logs = LogsOf(entries);
+  const auto longest_m = sweep::LongestBySetting_m(logs, &sweep::CalibrationLog::log);
+  for (sweep::CalibrationLog& log : logs) log.longest_m = longest_run * longest_m.at(log.setting);
   return logs;
 }
 
@@ -247,8 +246,8 @@ void Calibrator::JudgeErrors(CalibrationReport& report) const {
     const std::vector<const Entry*> side = Side(held_out);
     if (side.empty()) continue;
     const auto structure = [&](const std::vector<double>& values) {
-      return sweep::StructureOfErrors(LogsOf(side, experiment_.likeness.longest_run), TwinsOf(side),
-                                      values, experiment_.calibrate.method.horizon);
+      return sweep::StructureOfErrors(LogsOf(side), TwinsOf(side), values,
+                                      experiment_.calibrate.method.horizon);
     };
     report.errors.push_back(
         {held_out ? "held out" : "fitted", structure(StartValues()), structure(report.values)});
@@ -266,7 +265,7 @@ CalibrationReport Calibrator::Run() {
   std::mt19937_64 generator(experiment_.seed);
   CalibrationReport report;
   report.calibration = sweep::Calibrate(
-      experiment_.calibrate.fit.list, LogsOf(fitted, experiment_.likeness.longest_run),
+      experiment_.calibrate.fit.list, LogsToFit(fitted, experiment_.likeness.longest_run),
       TwinsOf(fitted), experiment_.calibrate.method, generator, request_.jobs,
       [&](int steps, double loss) { say(fmt::format("step {}: loss {:.4f}", steps, loss)); });
   for (const sweep::CalibratedParameter& parameter : report.calibration.parameters) {

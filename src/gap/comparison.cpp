@@ -7,12 +7,12 @@
 #include <cassert>
 #include <cmath>
 #include <future>
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include "alignment.hpp"
 #include "arc_path.hpp"
+#include "error_summary.hpp"
 #include "measures.hpp"
 #include "path_error.hpp"
 #include "rift/geometry/angle.hpp"
@@ -159,37 +159,6 @@ std::vector<double> YawErrors_rad(const Paths& paths, const GapOptions& options)
     errors_rad.push_back(geometry::WrapToPi(YawAt(paths.sim, u, i) - YawAt(paths.real, u, j)));
   }
   return errors_rad;
-}
-
-double Mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// Linear interpolation between order statistics, as numpy and R (type 7) do.
-double Quantile(std::vector<double>& values, double share) {
-  const double position = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<size_t>(position);
-  std::nth_element(values.begin(), values.begin() + below, values.end());
-  const double low = values[below];
-  if (below + 1 == values.size()) return low;
-  const double high = *std::min_element(values.begin() + below + 1, values.end());
-  return low + (position - static_cast<double>(below)) * (high - low);
-}
-
-void SummariseErrors(std::vector<double> errors_m, Comparison& result) {
-  result.mean_error_m = Mean(errors_m);
-  double squares = 0.0;
-  for (const double error_m : errors_m) squares += error_m * error_m;
-  result.rms_error_m = std::sqrt(squares / static_cast<double>(errors_m.size()));
-  result.median_error_m = Quantile(errors_m, 0.5);
-  result.p95_error_m = Quantile(errors_m, 0.95);
-}
-
-void SummariseYawErrors(std::vector<double> errors_rad, Comparison& result) {
-  if (errors_rad.empty()) return;
-  for (double& error_rad : errors_rad) error_rad = std::abs(error_rad);
-  result.mean_yaw_error_rad = Mean(errors_rad);
-  result.max_yaw_error_rad = *std::max_element(errors_rad.begin(), errors_rad.end());
 }
 
 /// The same to the bit as from the paths, of which the samples are at hand in the usual case.

@@ -33,15 +33,6 @@ struct Answers {
   }
 };
 
-std::map<std::string, double> LongestReal_m(const std::vector<RepeatedTrial>& trials) {
-  std::map<std::string, double> longest_m;
-  for (const RepeatedTrial& trial : trials) {
-    double& longest = longest_m[trial.setting];
-    longest = std::max(longest, LengthByStrides_m(trial.real));
-  }
-  return longest_m;
-}
-
 }  // namespace
 
 double LengthByStrides_m(const Trajectory& path) {
@@ -58,7 +49,7 @@ double LengthByStrides_m(const Trajectory& path) {
 }
 
 std::vector<RepeatedTrial> WithoutDetours(std::vector<RepeatedTrial> trials, double longest_run) {
-  const std::map<std::string, double> longest_m = LongestReal_m(trials);
+  const auto longest_m = LongestBySetting_m(trials, &RepeatedTrial::real);
   for (RepeatedTrial& trial : trials) {
     const double limit_m = longest_run * longest_m.at(trial.setting);
     const auto is_detour = [&](const Trajectory& run) { return LengthByStrides_m(run) > limit_m; };

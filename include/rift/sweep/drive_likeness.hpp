@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,18 @@ struct RepeatedTrial {
 
 /// Length of a path in strides of 20 mm, so that jitter adds little.
 double LengthByStrides_m(const trajectory::Trajectory& path);
+
+/// Of things with a setting and a path: the longest path of each setting, by strides.
+template <class T>
+std::map<std::string, double> LongestBySetting_m(const std::vector<T>& things,
+                                                 trajectory::Trajectory T::*path) {
+  std::map<std::string, double> longest_m;
+  for (const T& thing : things) {
+    double& longest = longest_m[thing.setting];
+    longest = std::max(longest, LengthByStrides_m(thing.*path));
+  }
+  return longest_m;
+}
 
 /// Runs longer than `longest_run` times the longest real path of their setting passed a waypoint
 /// and circled: they move to the failed ones.
