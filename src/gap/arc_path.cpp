@@ -9,7 +9,7 @@ namespace rift::gap {
 namespace {
 
 void MeasureArcLength(ArcPath& path) {
-  path.u.resize(path.x_m.size());
+  path.u.resize(path.poses.size());
   path.u[0] = 0.0;
   for (size_t i = 1; i < path.u.size(); ++i) {
     path.u[i] = path.u[i - 1] + (path.Vertex(i) - path.Vertex(i - 1)).norm();
@@ -37,12 +37,6 @@ ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOptions& 
   }
   ArcPath path;
   path.poses = poses;
-  path.x_m.resize(poses.size());
-  path.y_m.resize(poses.size());
-  for (size_t i = 0; i < poses.size(); ++i) {
-    path.x_m[i] = poses[i].x_m;
-    path.y_m[i] = poses[i].y_m;
-  }
   MeasureArcLength(path);
   return path;
 }
@@ -63,12 +57,14 @@ std::vector<Eigen::Vector2d> Resample(const ArcPath& path, int count) {
 
 void Transform(ArcPath& path, const geometry::Pose2& b_from_a) {
   const geometry::PointMotion motion(b_from_a);
-  for (size_t i = 0; i < path.Size(); ++i) {
-    const Eigen::Vector2d p_in_b = motion * path.Vertex(i);
-    path.x_m[i] = p_in_b.x();
-    path.y_m[i] = p_in_b.y();
+  path.moved.assign(path.poses.begin(), path.poses.end());
+  for (trajectory::StampedPose& pose : path.moved) {
+    const Eigen::Vector2d p_in_b = motion * pose.Position();
+    pose.x_m = p_in_b.x();
+    pose.y_m = p_in_b.y();
+    pose.yaw_rad += b_from_a.yaw_rad;
   }
-  path.turned_rad += b_from_a.yaw_rad;
+  path.poses = path.moved;
 }
 
 }  // namespace rift::gap

@@ -103,21 +103,18 @@ Peak ExactPeak(const Paths& paths, const GapOptions& options) {
   const PathError error(paths.sim, paths.real);
   Peak peak;
   const double first_u = SampleU(FirstSample(options), options);
+  const auto look_at = [&peak](double u, double error_m) {
+    if (error_m > peak.error_m) peak = {error_m, u};
+  };
   ForEachInterval(paths.sim, paths.real, [&](double begin, double end, size_t i, size_t j) {
     if (end < first_u) return;
     const auto error_at = error.OnEdges(i, j);
-    for (const double u : {std::max(begin, first_u), end}) {
-      const double error_m = error_at(u);
-      if (error_m > peak.error_m) peak = {error_m, u};
-    }
+    // The other begins are ends, since the error is continuous.
+    if (begin <= first_u) look_at(first_u, error_at(first_u));
+    look_at(end, error_at(end));
   });
   assert(peak.error_m >= 0.0);
   return peak;
-}
-
-bool HasYaw(const ArcPath& path) {
-  return std::all_of(path.poses.begin(), path.poses.end(),
-                     [](const auto& pose) { return std::isfinite(pose.yaw_rad); });
 }
 
 double YawAt(const ArcPath& path, double u, size_t& i) {
@@ -126,7 +123,7 @@ double YawAt(const ArcPath& path, double u, size_t& i) {
   const double share = span > 0.0 ? (u - path.u[i]) / span : 0.0;
   const double yaw_rad = path.poses[i].yaw_rad;
   const double step_rad = geometry::WrapToPi(path.poses[i + 1].yaw_rad - yaw_rad);
-  return path.turned_rad + yaw_rad + share * step_rad;
+  return yaw_rad + share * step_rad;
 }
 
 /// The points of both paths at the samples, those left out at the start included.
@@ -148,15 +145,15 @@ std::vector<double> Errors_m(const SampledPaths& samples, const GapOptions& opti
   return errors_m;
 }
 
-/// Empty when one of the yaws is not known.
+/// Empty when one of the yaws is needed and not known.
 std::vector<double> YawErrors_rad(const Paths& paths, const GapOptions& options) {
   std::vector<double> errors_rad;
-  if (!HasYaw(paths.sim) || !HasYaw(paths.real)) return errors_rad;
   errors_rad.reserve(options.samples);
   size_t i = 0, j = 0;
   for (int k = FirstSample(options); k < options.samples; ++k) {
     const double u = SampleU(k, options);
     errors_rad.push_back(geometry::WrapToPi(YawAt(paths.sim, u, i) - YawAt(paths.real, u, j)));
+    if (std::isnan(errors_rad.back())) return {};
   }
   return errors_rad;
 }

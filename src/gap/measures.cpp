@@ -88,14 +88,14 @@ struct Diagonals {
   Eigen::ArrayXd cells, last, before_last;
 };
 
-double Duration_s(const ArcPath& path) { return path.poses.back().t_s - path.poses.front().t_s; }
+double SinceStart_s(const ArcPath& path, size_t i) {
+  return path.poses[i].t_s - path.poses.front().t_s;
+}
 
-Eigen::Vector2d PositionAt(const ArcPath& path, double since_start_s, size_t& i) {
-  const double t_s = path.poses.front().t_s + since_start_s;
-  while (i + 2 < path.Size() && path.poses[i + 1].t_s <= t_s) ++i;
+/// On edge i of the path.
+Eigen::Vector2d PositionAt(const ArcPath& path, double since_start_s, size_t i) {
   const double span_s = path.poses[i + 1].t_s - path.poses[i].t_s;
-  const double share =
-      span_s > 0.0 ? std::clamp((t_s - path.poses[i].t_s) / span_s, 0.0, 1.0) : 0.0;
+  const double share = span_s > 0.0 ? (since_start_s - SinceStart_s(path, i)) / span_s : 0.0;
   return path.Vertex(i) + share * (path.Vertex(i + 1) - path.Vertex(i));
 }
 
@@ -144,21 +144,18 @@ double DynamicTimeWarping_m(const Points& a, const Points& b) {
 }
 
 double EqualTime_m(const ArcPath& a, const ArcPath& b) {
-  const double end_s = std::min(Duration_s(a), Duration_s(b));
-  double largest_m = 0.0;
-  // The distance is convex between merged time stamps, so they alone need a look. The end of the
-  // shorter path is one of them.
-  const auto visit = [&](const ArcPath& stamps, const ArcPath& other) {
-    size_t j = 0;
-    for (size_t i = 0; i < stamps.Size(); ++i) {
-      const double since_start_s = stamps.poses[i].t_s - stamps.poses.front().t_s;
-      if (since_start_s > end_s) return;
-      const Eigen::Vector2d difference_m = stamps.Vertex(i) - PositionAt(other, since_start_s, j);
-      largest_m = std::max(largest_m, difference_m.norm());
-    }
-  };
-  visit(a, b);
-  visit(b, a);
+  double largest_m = (a.Vertex(0) - b.Vertex(0)).norm();
+  // The distance is convex between merged time stamps, so they alone need a look.
+  size_t i = 0, j = 0;
+  while (i + 1 < a.Size() && j + 1 < b.Size()) {
+    const double a_s = SinceStart_s(a, i + 1), b_s = SinceStart_s(b, j + 1);
+    const double now_s = std::min(a_s, b_s);
+    const Eigen::Vector2d difference_m = PositionAt(a, now_s, i) - PositionAt(b, now_s, j);
+    largest_m = std::max(largest_m, difference_m.norm());
+    // Sums, not branches: which of the two paths goes on is as good as random.
+    i += a_s <= now_s;
+    j += b_s <= now_s;
+  }
   return largest_m;
 }
 

@@ -74,13 +74,7 @@ class ColumnMap {
 
 void Reserve(LogRows& rows, size_t count) {
   rows.trajectory.poses.reserve(count);
-  rows.lines.reserve(count);
   for (Channel& channel : rows.trajectory.channels) channel.values.reserve(count);
-}
-
-void Add(LogRows& rows, const StampedPose& pose, int line) {
-  rows.trajectory.poses.push_back(pose);
-  rows.lines.push_back(line);
 }
 
 LogRows ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& names,
@@ -91,8 +85,8 @@ LogRows ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& n
     rows.trajectory.channels.push_back({row.Columns()[column], {}});
   }
   while (row.Next()) {
-    if (rows.lines.empty()) Reserve(rows, row.RowsToExpect());
-    Add(rows, columns.PoseOf(row), row.Line());
+    if (rows.trajectory.poses.empty()) Reserve(rows, row.RowsToExpect());
+    rows.Add(columns.PoseOf(row), name, row.Line());
     for (size_t i = 0; i < columns.Channels().size(); ++i) {
       rows.trajectory.channels[i].values.push_back(row.Cells()[columns.Channels()[i]]);
     }
@@ -123,13 +117,22 @@ StampedPose TumPose(const csv::RowReader& row, const std::string& name) {
 LogRows ReadTum(csv::RowReader row, const std::string& name) {
   LogRows rows;
   while (row.Next()) {
-    if (rows.lines.empty()) Reserve(rows, row.RowsToExpect());
-    Add(rows, TumPose(row, name), row.Line());
+    if (rows.trajectory.poses.empty()) Reserve(rows, row.RowsToExpect());
+    rows.Add(TumPose(row, name), name, row.Line());
   }
   return rows;
 }
 
 }  // namespace
+
+void LogRows::Add(const StampedPose& pose, const std::string& name, int line) {
+  CheckMagnitudes(pose, name, line);
+  largest_angles.Add(pose);
+  std::vector<StampedPose>& poses = trajectory.poses;
+  if (!poses.empty() && pose.t_s <= poses.back().t_s) time_rises = false;
+  if (std::isnan(pose.yaw_rad) && !first_line_without_yaw) first_line_without_yaw = line;
+  poses.push_back(pose);
+}
 
 LogRows ReadRows(std::string_view head, const TextPieces& pieces, const std::string& name,
                  Format format) {

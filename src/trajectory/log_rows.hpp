@@ -1,17 +1,24 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "plausibility.hpp"
 #include "rift/trajectory/log.hpp"
 
 namespace rift::trajectory {
 
-/// The poses of a log, as they stand in the file, and the line of each.
+/// The poses of a log, as they stand in the file, and what can be told of them while they pass: a
+/// long log is not walked through again for each of these.
 struct LogRows {
+  /// Throws std::invalid_argument `name:line: ...` for a pose that no robot logs.
+  void Add(const StampedPose& pose, const std::string& name, int line);
+
   Trajectory trajectory;
-  std::vector<int> lines;
+  LargestAngles largest_angles;
+  bool time_rises = true;  ///< from each row to the next
+  std::optional<int> first_line_without_yaw;
 };
 
 /// Reads the rows of a dialect, those of `head` and of the pieces after it; kAuto stands for the

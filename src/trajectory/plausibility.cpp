@@ -31,21 +31,9 @@ void CheckValue(double value, double limit, std::string_view column, const std::
                   value, limit));
 }
 
-/// Largest absolute values that are logged; zero without any.
-struct LargestAngles {
-  explicit LargestAngles(const Trajectory& trajectory) {
-    for (const StampedPose& pose : trajectory.poses) {
-      Raise(roll_rad, pose.roll_rad);
-      Raise(pitch_rad, pose.pitch_rad);
-      Raise(yaw_rad, pose.yaw_rad);
-    }
-  }
-  static void Raise(double& largest, double angle) {
-    if (std::abs(angle) > largest) largest = std::abs(angle);
-  }
-
-  double roll_rad = 0.0, pitch_rad = 0.0, yaw_rad = 0.0;
-};
+void Raise(double& largest, double angle) {
+  if (std::abs(angle) > largest) largest = std::abs(angle);
+}
 
 /// Largest step of the yaw between two rows.
 double LargestYawStep(const Trajectory& trajectory) {
@@ -80,24 +68,22 @@ bool YawLooksLikeDegrees(const Trajectory& trajectory, double largest) {
   return largest > kLargestYaw_rad || (largest > kTurn_rad && LargestYawStep(trajectory) > kPi);
 }
 
-void NoteDegrees(Log& log) {
+void NoteDegrees(Log& log, const LargestAngles& angles) {
   const auto note = [&](std::string_view angle, double largest) {
     log.notes.push_back(
         fmt::format("a {} of {:.1f} rad looks like degrees: is it a tracker log?", angle, largest));
   };
-  const LargestAngles largest(log.trajectory);
-  if (largest.roll_rad > kTurn_rad) return note("roll", largest.roll_rad);
-  if (largest.pitch_rad > kTurn_rad) return note("pitch", largest.pitch_rad);
-  if (YawLooksLikeDegrees(log.trajectory, largest.yaw_rad)) note("yaw", largest.yaw_rad);
+  if (angles.roll_rad > kTurn_rad) return note("roll", angles.roll_rad);
+  if (angles.pitch_rad > kTurn_rad) return note("pitch", angles.pitch_rad);
+  if (YawLooksLikeDegrees(log.trajectory, angles.yaw_rad)) note("yaw", angles.yaw_rad);
 }
 
 /// A yaw within +-pi degrees spans 0.11 rad, so a path that turns by more was not logged in
 /// degrees. The threshold is above that and below the 0.25 rad by which the paper's path turns.
-void NoteRadians(Log& log) {
+void NoteRadians(Log& log, const LargestAngles& angles) {
   constexpr size_t kFewestRows = 20;
   constexpr double kTurning_rad = 0.15;
   const Trajectory& trajectory = log.trajectory;
-  const LargestAngles angles(trajectory);
   const double largest = std::max({angles.roll_rad, angles.pitch_rad, angles.yaw_rad});
   if (largest == 0.0 || largest > kPi || trajectory.poses.size() <= kFewestRows) return;
   if (PathTurn_rad(trajectory) < kTurning_rad) return;
@@ -109,25 +95,27 @@ void NoteRadians(Log& log) {
 
 }  // namespace
 
-void CheckMagnitudes(const Trajectory& trajectory, const std::vector<int>& lines,
-                     const std::string& name) {
-  for (size_t row = 0; row < trajectory.poses.size(); ++row) {
-    const StampedPose& pose = trajectory.poses[row];
-    const double farthest_m = std::max(std::abs(pose.x_m), std::abs(pose.y_m));
-    const bool near = farthest_m <= kFarthest_m && !(std::abs(pose.z_m) > kFarthest_m);
-    if (near && std::abs(pose.t_s) <= kLatest_s) continue;
-    const std::string where = fmt::format("{}:{}", name, lines[row]);
-    CheckValue(pose.t_s, kLatest_s, "t", where);
-    CheckValue(pose.x_m, kFarthest_m, "x", where);
-    CheckValue(pose.y_m, kFarthest_m, "y", where);
-    CheckValue(pose.z_m, kFarthest_m, "z", where);
-  }
+void CheckMagnitudes(const StampedPose& pose, const std::string& name, int line) {
+  const double farthest_m = std::max(std::abs(pose.x_m), std::abs(pose.y_m));
+  const bool near = farthest_m <= kFarthest_m && !(std::abs(pose.z_m) > kFarthest_m);
+  if (near && std::abs(pose.t_s) <= kLatest_s) return;
+  const std::string where = fmt::format("{}:{}", name, line);
+  CheckValue(pose.t_s, kLatest_s, "t", where);
+  CheckValue(pose.x_m, kFarthest_m, "x", where);
+  CheckValue(pose.y_m, kFarthest_m, "y", where);
+  CheckValue(pose.z_m, kFarthest_m, "z", where);
 }
 
-void NoteDoubtfulAngles(Log& log) {
+void LargestAngles::Add(const StampedPose& pose) {
+  Raise(roll_rad, pose.roll_rad);
+  Raise(pitch_rad, pose.pitch_rad);
+  Raise(yaw_rad, pose.yaw_rad);
+}
+
+void NoteDoubtfulAngles(Log& log, const LargestAngles& largest) {
   if (log.trajectory.poses.empty()) return;
-  if (log.format == Format::kRift || log.format == Format::kWebots) NoteDegrees(log);
-  if (log.format == Format::kTracker) NoteRadians(log);
+  if (log.format == Format::kRift || log.format == Format::kWebots) NoteDegrees(log, largest);
+  if (log.format == Format::kTracker) NoteRadians(log, largest);
 }
 
 }  // namespace rift::trajectory

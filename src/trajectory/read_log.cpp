@@ -102,11 +102,8 @@ void ConvertAngles(Log& log) {
   if (log.format == Format::kAuto) ForgetAngles(log);
 }
 
-void Reorder(Trajectory& trajectory, std::vector<int>& lines, const std::vector<size_t>& order) {
+void Reorder(Trajectory& trajectory, const std::vector<size_t>& order) {
   Trajectory sorted;
-  std::vector<int> sorted_lines;
-  for (const size_t i : order) sorted_lines.push_back(lines[i]);
-  lines = std::move(sorted_lines);
   for (const size_t i : order) sorted.poses.push_back(trajectory.poses[i]);
   for (const Channel& channel : trajectory.channels) {
     Channel copy{channel.name, {}};
@@ -117,11 +114,8 @@ void Reorder(Trajectory& trajectory, std::vector<int>& lines, const std::vector<
 }
 
 /// Makes time strictly increasing and notes what had to be done for it.
-void SortByTime(Log& log, std::vector<int>& lines) {
+void SortByTime(Log& log) {
   const auto& poses = log.trajectory.poses;
-  const auto not_later = [](const StampedPose& a, const StampedPose& b) { return a.t_s >= b.t_s; };
-  if (std::adjacent_find(poses.begin(), poses.end(), not_later) == poses.end()) return;
-
   std::vector<size_t> order(poses.size());
   std::iota(order.begin(), order.end(), size_t{0});
   size_t backwards = 0;
@@ -134,7 +128,7 @@ void SortByTime(Log& log, std::vector<int>& lines) {
     kept.push_back(i);
   }
   const size_t dropped = poses.size() - kept.size();
-  Reorder(log.trajectory, lines, kept);
+  Reorder(log.trajectory, kept);
   if (backwards > 0) {
     log.notes.push_back(fmt::format("time runs backwards {} times: rows sorted", backwards));
   }
@@ -144,14 +138,11 @@ void SortByTime(Log& log, std::vector<int>& lines) {
   }
 }
 
-std::optional<int> LineWithoutYaw(const Trajectory& trajectory, const std::vector<int>& lines) {
-  const auto has_none = [](const StampedPose& pose) { return std::isnan(pose.yaw_rad); };
-  const auto& poses = trajectory.poses;
-  const auto found = std::find_if(poses.begin(), poses.end(), has_none);
-  if (found == poses.end() || std::all_of(poses.begin(), poses.end(), has_none)) {
-    return std::nullopt;
-  }
-  return lines[found - poses.begin()];
+/// Of the poses that were kept some have a yaw and some have none.
+bool LacksSomeYaw(const Trajectory& trajectory) {
+  const auto has_one = [](const StampedPose& pose) { return !std::isnan(pose.yaw_rad); };
+  return !trajectory.HasYaw() &&
+         std::any_of(trajectory.poses.begin(), trajectory.poses.end(), has_one);
 }
 
 void CheckMoves(const Trajectory& trajectory, const std::string& name) {
@@ -180,13 +171,14 @@ Log ReadLog(const TextPieces& pieces, const std::string& name, Format format) {
   Log log;
   const std::string_view head = pieces.next();
   log.format = format == Format::kAuto ? FormatFromHeader(head, name) : format;
-  auto [trajectory, lines] = ReadRows(head, pieces, name, log.format);
-  log.trajectory = std::move(trajectory);
-  CheckMagnitudes(log.trajectory, lines, name);
-  NoteDoubtfulAngles(log);
+  LogRows rows = ReadRows(head, pieces, name, log.format);
+  log.trajectory = std::move(rows.trajectory);
+  NoteDoubtfulAngles(log, rows.largest_angles);
   ConvertAngles(log);
-  SortByTime(log, lines);
-  log.line_without_yaw = LineWithoutYaw(log.trajectory, lines);
+  if (!rows.time_rises) SortByTime(log);
+  if (rows.first_line_without_yaw && LacksSomeYaw(log.trajectory)) {
+    log.line_without_yaw = rows.first_line_without_yaw;
+  }
   CheckMoves(log.trajectory, name);
   return log;
 }

@@ -1,5 +1,6 @@
 #include "rift/gap/comparison.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -111,6 +112,64 @@ TEST_CASE("Aligning and trimming reach the distance at equal time") {
   CHECK(Compare(StraightPath(1.0, 50), waiting, options).equal_time_m == Approx(1.0));
   options.trim_standstill = true;
   CHECK(Compare(StraightPath(1.0, 50), waiting, options).equal_time_m == Approx(0.0).margin(1e-12));
+}
+
+/// Where the path was that long after its start, straight from the definition.
+Eigen::Vector2d PositionAfter(const Trajectory& path, double since_start_s) {
+  const double t_s = path.poses.front().t_s + since_start_s;
+  size_t i = 1;
+  while (i + 1 < path.poses.size() && path.poses[i].t_s < t_s) ++i;
+  const trajectory::StampedPose &from = path.poses[i - 1], &to = path.poses[i];
+  const double share = (t_s - from.t_s) / (to.t_s - from.t_s);
+  return (1.0 - share) * from.Position() + share * to.Position();
+}
+
+void SetRandomTimes(Trajectory& path, std::mt19937_64& generator) {
+  std::uniform_real_distribution<double> step_s(0.01, 0.5);
+  double t_s = step_s(generator);
+  for (trajectory::StampedPose& pose : path.poses) pose.t_s = t_s += step_s(generator);
+}
+
+TEST_CASE("The distance at equal time is the largest at any stamp of either path") {
+  std::mt19937_64 generator(12);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    Trajectory sim = RandomPath(generator, 30), real = RandomPath(generator, 20 + repeat);
+    SetRandomTimes(sim, generator);
+    SetRandomTimes(real, generator);
+    const double end_s = std::min(sim.Duration_s(), real.Duration_s());
+    double largest_m = 0.0;
+    for (const Trajectory* path : {&sim, &real}) {
+      for (const trajectory::StampedPose& pose : path->poses) {
+        const double since_start_s = pose.t_s - path->poses.front().t_s;
+        if (since_start_s > end_s) break;
+        largest_m = std::max(
+            largest_m,
+            (PositionAfter(sim, since_start_s) - PositionAfter(real, since_start_s)).norm());
+      }
+    }
+    CHECK(Compare(sim, real, {}).equal_time_m == Approx(largest_m));
+  }
+}
+
+TEST_CASE("Aligning turns the yaw with the path") {
+  std::mt19937_64 generator(13);
+  const Trajectory sim = RandomPath(generator, 80);
+  const Trajectory real = Moved(sim, {0.2, -0.3, 0.4});
+  GapOptions options;
+  options.align = Align::kSe2;
+  CHECK(Compare(sim, real, options).max_yaw_error_rad == Approx(0.0).margin(1e-9));
+  options.align = Align::kStart;
+  CHECK(Compare(sim, real, options).max_yaw_error_rad == Approx(0.4));
+}
+
+TEST_CASE("Yaw errors are left out where a yaw is needed and missing") {
+  Trajectory real = StraightPath(1.0, 100);
+  real.poses[20].yaw_rad = trajectory::StampedPose::kNotLogged;
+  const Trajectory sim = StraightPath(1.0, 100);
+  GapOptions options;
+  CHECK(std::isnan(Compare(sim, real, options).max_yaw_error_rad));
+  options.skip_start = 0.5;
+  CHECK(Compare(sim, real, options).max_yaw_error_rad == 0.0);
 }
 
 TEST_CASE("Hausdorff sees a spike between the resampled points") {

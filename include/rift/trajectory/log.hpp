@@ -32,7 +32,7 @@ struct Log {
   std::vector<std::string> notes;  ///< what was mended or looks odd, one line each
   /// Why the angles are unknown and what to do; empty when they are known or not logged.
   std::string unknown_angles;
-  /// The line in the file of the first pose without a yaw when others have one; else nothing.
+  /// The first line of the file without a yaw when others have one; else nothing.
   std::optional<int> line_without_yaw;
 };
 
