@@ -11,7 +11,7 @@
 namespace rift::trajectory::csv {
 namespace {
 
-void CheckLikeTheStandard(const std::string& text) {
+void CheckOnce(const std::string& text) {
   INFO('\'' << text << '\'');
   double value = 7.0, expected = 7.0;
   const char *const begin = text.data(), *const end = begin + text.size();
@@ -20,6 +20,12 @@ void CheckLikeTheStandard(const std::string& text) {
   REQUIRE(error == expected_error);
   REQUIRE(stop - begin == expected_stop - begin);
   REQUIRE(std::bit_cast<std::uint64_t>(value) == std::bit_cast<std::uint64_t>(expected));
+}
+
+/// At the end of a text and in the midst of one, which takes another way.
+void CheckLikeTheStandard(const std::string& text) {
+  CheckOnce(text);
+  CheckOnce(text + ",0.25\n0.3832,0.1,2,-0.0757,12345678901234567890");
 }
 
 TEST_CASE("A number is read as the standard library reads it to the bit") {
@@ -57,6 +63,20 @@ TEST_CASE("A number is read as the standard library reads it to the bit") {
                            "0.000000000000000000000001",
                            "00000000000000000000000.5",
                            "9999999999999999999",
+                           "18446744073709551616",
+                           "0.9999999999999999999",
+                           "0.18446744073709551616",
+                           "123456789.1234567890",
+                           "123456789.12345678901",
+                           "1234567890.5",
+                           "-0.0000000000000000001",
+                           "0.1234567e3",
+                           "0.12345678E-3",
+                           "0.123456789012345678901234567890",
+                           "0.12345678/",
+                           "0.1234567:",
+                           "-.",
+                           "1..2",
                            "99999999999999999999",
                            "0.30000000000000004,0.1"}) {
     CheckLikeTheStandard(text);
