@@ -4,14 +4,14 @@
 #include <ode/ode.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
-#include "rift/simulation/touch.hpp"
+#include "contacts.hpp"
+#include "world_fault.hpp"
 
 // The only file that knows ODE.
 namespace rift::simulation {
@@ -20,15 +20,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kTippedOver_rad = 1.05;
-constexpr double kThroughFloor_m = 0.012;
-constexpr double kFallen_m = 0.5;
 constexpr double kWorldErp = 0.8;
 constexpr double kMaxCorrection_mps = 0.5;
 constexpr double kSettle_s = 0.4;
-/// Both wheels hold the same sideways freedom; this much give keeps the two solvable, and lets the
-/// robot creep by less than a micrometre a second on a slope.
-constexpr double kLeastSlip_mps_per_n = 1e-6;
 
 /// Thrown by ODE's own error reports, which must not return; caught at every call that can raise
 /// it.
@@ -95,11 +89,8 @@ struct OdeWorld::Bodies {
   void Abandon();
   void SetDrive(int side, const WheelDrive& drive);
   void MakeContacts();
-  void TouchGround(int side);
-  dContact Contact(const Touch& touch, double mu) const;
-  void Add(dContact& contact, dBodyID body);
+  void Add(const std::optional<GroundContact>& ground, dBodyID part, bool sticks);
   void ReadState();
-  void FindFault();
 
   BodyOptions body;
   Terrain terrain;
@@ -245,7 +236,7 @@ void OdeWorld::Bodies::Step(const std::array<WheelDrive, 2>& drives) {
     state.wheel_angle_rad[side] += step_s * dJointGetHingeAngleRate(hinges[side]);
   }
   ReadState();
-  FindFault();
+  fault = FaultOf(state, terrain);
 }
 
 /// ODE's hinge motor solves rate + cfm x torque = target [ODE manual, "CFM"], which is the drive's
@@ -257,54 +248,30 @@ void OdeWorld::Bodies::SetDrive(int side, const WheelDrive& drive) {
 }
 
 void OdeWorld::Bodies::MakeContacts() {
-  for (int side = 0; side < 2; ++side) TouchGround(side);
-  const Vector3d caster =
-      state.position_m +
-      state.world_from_robot * Vector3d(body.caster_ahead_m, 0.0, -body.caster_below_m);
-  if (const auto touch =
-          TouchBall(terrain, caster, state.world_from_robot.col(0), body.caster_radius_m)) {
-    const Grip grip = terrain.GripAt(touch->point.x(), touch->point.y());
-    dContact contact = Contact(*touch, settling ? dInfinity : grip.caster_factor * body.caster_mu);
-    Add(contact, chassis);
+  for (int side = 0; side < 2; ++side) {
+    const Vector3d centre = Vector(dBodyGetPosition(wheels[side]));
+    Add(WheelContact(body, terrain, state, side, centre, wheel_load_n), wheels[side], settling);
   }
-  const Vector3d up = state.world_from_robot.col(2);
-  const Vector3d rim = state.position_m - (body.wheel_radius_m - body.rim_clearance_m) * up;
-  if (const auto touch = TouchRim(terrain, rim, up, body.chassis_radius_m)) {
-    dContact contact = Contact(*touch, body.rim_mu);
-    Add(contact, chassis);
-  }
+  Add(CasterContact(body, terrain, state), chassis, settling);
+  Add(RimContact(body, terrain, state), chassis, false);
 }
 
-void OdeWorld::Bodies::TouchGround(int side) {
-  const Vector3d axle = state.world_from_robot.col(1);
-  const auto touch = TouchWheel(terrain, Vector(dBodyGetPosition(wheels[side])), axle,
-                                body.wheel_radius_m, body.wheel_width_m);
-  if (!touch) return;
-  const Grip grip = terrain.GripAt(touch->point.x(), touch->point.y());
-  dContact contact = Contact(*touch, settling ? dInfinity : grip.mu);
-  const Vector3d sideways = (axle - axle.dot(touch->normal) * touch->normal).normalized();
-  Eigen::Map<Vector3d>(contact.fdir1) = sideways;
-  const double rim_mps = std::abs(state.wheel_rate_rad_s[side]) * body.wheel_radius_m;
-  const double creep =
-      grip.slip > 0.0 && grip.mu > 0.0 ? grip.slip * rim_mps / (grip.mu * wheel_load_n) : 0.0;
-  contact.surface.slip1 = contact.surface.slip2 = kLeastSlip_mps_per_n + creep;
-  contact.surface.mode |= dContactFDir1 | dContactSlip1 | dContactSlip2;
-  Add(contact, wheels[side]);
-}
-
-dContact OdeWorld::Bodies::Contact(const Touch& touch, double mu) const {
+/// `sticks`: whatever the friction.
+void OdeWorld::Bodies::Add(const std::optional<GroundContact>& ground, dBodyID part, bool sticks) {
+  if (!ground) return;
   dContact contact{};
   contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
-  contact.surface.mu = mu;
+  contact.surface.mu = sticks ? dInfinity : ground->mu;
   contact.surface.soft_erp = contact_erp;
   contact.surface.soft_cfm = contact_cfm;
-  contact.geom.depth = touch.depth_m;
-  Eigen::Map<Vector3d>(contact.geom.pos) = touch.point;
-  Eigen::Map<Vector3d>(contact.geom.normal) = touch.normal;
-  return contact;
-}
-
-void OdeWorld::Bodies::Add(dContact& contact, dBodyID part) {
+  contact.geom.depth = ground->touch.depth_m;
+  Eigen::Map<Vector3d>(contact.geom.pos) = ground->touch.point;
+  Eigen::Map<Vector3d>(contact.geom.normal) = ground->touch.normal;
+  if (ground->sideways) {
+    Eigen::Map<Vector3d>(contact.fdir1) = *ground->sideways;
+    contact.surface.slip1 = contact.surface.slip2 = ground->slip_mps_per_n;
+    contact.surface.mode |= dContactFDir1 | dContactSlip1 | dContactSlip2;
+  }
   dJointAttach(dJointCreateContact(world.get(), contacts.get(), &contact), part, nullptr);
 }
 
@@ -316,25 +283,6 @@ void OdeWorld::Bodies::ReadState() {
   state.velocity_mps = Vector(dBodyGetLinearVel(chassis)) + state.spin_rad_s.cross(arm);
   for (int side = 0; side < 2; ++side) {
     state.wheel_rate_rad_s[side] = dJointGetHingeAngleRate(hinges[side]);
-  }
-}
-
-void OdeWorld::Bodies::FindFault() {
-  const Vector3d& p = state.position_m;
-  if (!p.allFinite() || !state.velocity_mps.allFinite() || !state.world_from_robot.allFinite() ||
-      !std::isfinite(state.wheel_rate_rad_s[0] + state.wheel_rate_rad_s[1])) {
-    fault = "the simulated motion is no longer finite";
-    return;
-  }
-  const double ground_m = terrain.HeightAt(p.x(), p.y());
-  if (!std::isfinite(ground_m)) {
-    if (p.z() < -kFallen_m)
-      fault = fmt::format("fell off the table at ({:.3f}, {:.3f}) m", p.x(), p.y());
-  } else if (p.z() < ground_m - kThroughFloor_m) {
-    fault = fmt::format("sank through the floor at ({:.3f}, {:.3f}) m", p.x(), p.y());
-  }
-  if (!fault && state.world_from_robot(2, 2) < std::cos(kTippedOver_rad)) {
-    fault = fmt::format("tipped over at ({:.3f}, {:.3f}) m", p.x(), p.y());
   }
 }
 
