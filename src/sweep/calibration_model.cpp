@@ -14,7 +14,8 @@ constexpr double kStepOfRuns = 0.2;
 constexpr std::uint64_t kSeedsOfRepeat = 20'000;
 constexpr std::uint64_t kSeedsOfTry = 1'000'000;
 
-/// A run no longer than that, or the last one tried.
+}  // namespace
+
 trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin) {
   constexpr int kMostTries = 10;
   trajectory::Trajectory run = Simulate(twin).result.trajectory;
@@ -24,8 +25,6 @@ trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin) {
   }
   return run;
 }
-
-}  // namespace
 
 std::vector<double> ValuesAt(const std::vector<FreeParameter>& parameters,
                              const Eigen::VectorXd& shares) {

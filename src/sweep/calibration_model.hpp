@@ -12,6 +12,10 @@ namespace rift::sweep {
 std::vector<double> ValuesAt(const std::vector<FreeParameter>& parameters,
                              const Eigen::VectorXd& shares);
 
+/// A run of the twin that is no longer than that by strides: with its own seed, else with one of
+/// the next nine; without any such run the last of them.
+trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin);
+
 using Blocks = std::vector<Eigen::VectorXd>;  ///< weighted errors of each log
 
 double SquaredSum(const Blocks& blocks);

@@ -59,6 +59,7 @@ const std::vector<Reserved> kReserved{
     {"termios.h|asm/termbits.h|boost/asio.*", {"hardware", "twin"}},
     {"fstream|iostream|cstdio", {"commands", "hardware", "vision", "twin", "report"}},
     {"thread|mutex|condition_variable", {"commands", "hardware", "vision", "twin", "sweep"}},
+    {"future", {"commands", "hardware", "vision", "twin", "sweep", "gap"}},
 };
 
 struct Include {
