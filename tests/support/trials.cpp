@@ -1,10 +1,18 @@
 #include "support/trials.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
 namespace rift::test {
+namespace {
+
+double NumberAfter(const std::string& name, const std::string& key) {
+  return std::stod(name.substr(name.find(key) + key.size(), 4));
+}
+
+}  // namespace
 
 std::filesystem::path TrialsFolder() {
   const std::filesystem::path folder =
@@ -47,6 +55,20 @@ std::vector<TrialPair> PublishedPairs() {
 trajectory::Trajectory LoadTrajectory(const std::filesystem::path& path,
                                       trajectory::Format format) {
   return trajectory::ReadLog(ReadFile(path), path.string(), format).trajectory;
+}
+
+std::vector<TrialLog> LogsOn(const std::string& surface, trajectory::Format format) {
+  std::vector<TrialLog> logs;
+  for (const auto& entry : std::filesystem::directory_iterator(TrialsFolder() / surface)) {
+    const std::string file = entry.path().filename().string();
+    const bool is_webots = file.find("webots") != std::string::npos;
+    if (is_webots != (format == trajectory::Format::kWebots)) continue;
+    logs.push_back({surface + "/" + file, NumberAfter(file, "vmin"), NumberAfter(file, "vmax"),
+                    LoadTrajectory(entry.path(), format)});
+  }
+  std::sort(logs.begin(), logs.end(),
+            [](const TrialLog& a, const TrialLog& b) { return a.name < b.name; });
+  return logs;
 }
 
 }  // namespace rift::test

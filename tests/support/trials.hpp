@@ -22,6 +22,18 @@ std::filesystem::path TrialsFolder();
 /// The 48 pairs of published_gaps.csv.
 std::vector<TrialPair> PublishedPairs();
 
+/// One of the authors' logs, and how fast it was to be driven.
+struct TrialLog {
+  std::string name;  ///< "<surface>/<file>"
+  double v_min = 0.0;
+  double v_max = 0.0;
+  trajectory::Trajectory log;
+};
+
+/// The authors' logs of a surface, `format` being their robot's or their simulator's, in order of
+/// their names.
+std::vector<TrialLog> LogsOn(const std::string& surface, trajectory::Format format);
+
 /// A log read from a file. Throws when it cannot be read.
 trajectory::Trajectory LoadTrajectory(const std::filesystem::path& path, trajectory::Format format);
 

@@ -8,7 +8,7 @@
 #include "rift/trial/trial.hpp"
 #include "support/fake_robot.hpp"
 #include "support/paper_waypoints.hpp"
-#include "support/trial_files.hpp"
+#include "support/trials.hpp"
 
 namespace rift::trial {
 namespace {
@@ -63,22 +63,15 @@ TEST_CASE("A log without yaw or without motion is refused") {
   CHECK_THROWS_WITH(Estimate(log), Catch::Contains("without yaw"));
 }
 
-LoopDelay EstimateFile(const test::TrialFile& trial, double row_period_s) {
+/// The Webots rows carry wall-clock times of an unsteady host; their steps are all alike.
+LoopDelay EstimateTrial(test::TrialLog trial, double row_period_s) {
   control::NavigatorOptions options;
   options.v_min = trial.v_min;
   options.v_max = trial.v_max;
-  trajectory::Trajectory log;
-  for (size_t i = 0; i < trial.rows.size(); ++i) {
-    const test::TrialRow& row = trial.rows[i];
-    trajectory::StampedPose pose;
-    // The Webots rows carry wall-clock times of an unsteady host; their steps are all alike.
-    pose.t_s = row_period_s > 0.0 ? row_period_s * static_cast<double>(i) : row.t_s;
-    pose.x_m = row.x_m;
-    pose.y_m = row.y_m;
-    pose.yaw_rad = row.yaw_rad;
-    log.poses.push_back(pose);
+  for (size_t i = 0; row_period_s > 0.0 && i < trial.log.poses.size(); ++i) {
+    trial.log.poses[i].t_s = row_period_s * static_cast<double>(i);
   }
-  return EstimateLoopDelay(log, test::PaperWaypoints(), options);
+  return EstimateLoopDelay(trial.log, test::PaperWaypoints(), options);
 }
 
 struct Medians {
@@ -91,10 +84,10 @@ double Median(std::vector<double> values) {
   return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
-Medians SurfaceMedians(const std::vector<test::TrialFile>& trials, double row_period_s) {
+Medians SurfaceMedians(const std::vector<test::TrialLog>& trials, double row_period_s) {
   std::vector<double> lags_s, r2, r2_at_zero, gains_rad_s;
-  for (const test::TrialFile& trial : trials) {
-    const LoopDelay delay = EstimateFile(trial, row_period_s);
+  for (const test::TrialLog& trial : trials) {
+    const LoopDelay delay = EstimateTrial(trial, row_period_s);
     lags_s.push_back(delay.lag_s);
     r2.push_back(delay.r2);
     r2_at_zero.push_back(delay.r2_at_lag[0]);
@@ -104,9 +97,9 @@ Medians SurfaceMedians(const std::vector<test::TrialFile>& trials, double row_pe
 }
 
 TEST_CASE("The authors' robot answers its steering about 0.32 s late on every surface") {
+  RIFT_SKIP_WITHOUT_TRIALS();
   for (const std::string surface : {"ground", "cardboard", "parchment", "downhill", "bump"}) {
-    const auto trials = test::LoadTrials(surface, test::TrialKind::kReal);
-    if (trials.empty()) return;
+    const auto trials = test::LogsOn(surface, trajectory::Format::kTracker);
     const Medians medians = SurfaceMedians(trials, 0.0);
     INFO(surface << ": lag " << medians.lag_s << " s, R2 " << medians.r2 << ", at zero "
                  << medians.r2_at_zero << ", gain " << medians.gain_rad_s);
@@ -117,9 +110,9 @@ TEST_CASE("The authors' robot answers its steering about 0.32 s late on every su
 }
 
 TEST_CASE("The authors' simulator answers its steering at once") {
+  RIFT_SKIP_WITHOUT_TRIALS();
   for (const std::string surface : {"ground", "cardboard", "parchment"}) {
-    const auto trials = test::LoadTrials(surface, test::TrialKind::kWebots);
-    if (trials.empty()) return;
+    const auto trials = test::LogsOn(surface, trajectory::Format::kWebots);
     const Medians medians = SurfaceMedians(trials, 0.032);
     INFO(surface << ": lag " << medians.lag_s << " s, R2 " << medians.r2 << ", gain "
                  << medians.gain_rad_s);
