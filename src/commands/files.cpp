@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 
@@ -55,9 +56,9 @@ size_t SizeOf(const Descriptor& file) {
   throw std::runtime_error(fmt::format("cannot write {}: {}", path.string(), strerror(errno)));
 }
 
-bool WriteWhole(const Descriptor& file, std::string_view text) {
+bool WriteWhole(int file, std::string_view text) {
   while (!text.empty()) {
-    const ssize_t written = ::write(file.Number(), text.data(), text.size());
+    const ssize_t written = ::write(file, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) return false;
     text.remove_prefix(static_cast<size_t>(written));
@@ -68,7 +69,38 @@ bool WriteWhole(const Descriptor& file, std::string_view text) {
 /// A pipe or a device cannot be renamed over; what goes there goes straight through.
 void WriteThrough(const std::filesystem::path& path, std::string_view text) {
   const Descriptor file(path, O_WRONLY);
-  if (!file.IsOpen() || !WriteWhole(file, text)) CannotWrite(path);
+  if (!file.IsOpen() || !WriteWhole(file.Number(), text)) CannotWrite(path);
+}
+
+/// The stream of this process that writes to that file, as /dev/stdout does, if any.
+std::FILE* StreamTo(const std::filesystem::path& path) {
+  struct stat target {};
+  if (::stat(path.c_str(), &target) != 0) return nullptr;
+  for (std::FILE* stream : {stdout, stderr}) {
+    struct stat own {};
+    const bool is_open = ::fstat(::fileno(stream), &own) == 0;
+    if (is_open && own.st_dev == target.st_dev && own.st_ino == target.st_ino) return stream;
+  }
+  return nullptr;
+}
+
+/// To where the stream is by now, after what was printed before.
+void WriteOn(std::FILE* stream, const std::filesystem::path& path, std::string_view text) {
+  if (std::fflush(stream) != 0 || !WriteWhole(::fileno(stream), text)) CannotWrite(path);
+}
+
+/// The file behind a link, there or not.
+std::filesystem::path Followed(const std::filesystem::path& link) {
+  constexpr int kMostLinks = 40;
+  std::error_code error;
+  std::filesystem::path path = link;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(path, error); ++i) {
+    const std::filesystem::path next = std::filesystem::read_symlink(path, error);
+    path = path.parent_path() / next;  // of an absolute one the first part is dropped
+  }
+  if (!std::filesystem::is_symlink(path, error)) return path;
+  errno = ELOOP;
+  CannotWrite(link);
 }
 
 }  // namespace
@@ -137,16 +169,13 @@ std::string_view LinesOfFile::Next() {
 }
 
 void WriteFile(const std::filesystem::path& target, std::string_view text) {
+  if (std::FILE* const stream = StreamTo(target)) return WriteOn(stream, target, text);
   std::error_code error;
-  // Behind a link lies the file that is meant; without one the name stays as it is.
-  const std::filesystem::path path = std::filesystem::is_symlink(target, error)
-                                         ? std::filesystem::weakly_canonical(target, error)
-                                         : target;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  const std::filesystem::file_status status = std::filesystem::status(target, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    WriteThrough(path, text);
-    return;
+    return WriteThrough(target, text);
   }
+  const std::filesystem::path path = Followed(target);
   error.clear();
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
   if (error) {
@@ -157,7 +186,7 @@ void WriteFile(const std::filesystem::path& target, std::string_view text) {
   {
     const Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC);
     if (!file.IsOpen()) CannotWrite(path);
-    if (!WriteWhole(file, text)) {
+    if (!WriteWhole(file.Number(), text)) {
       const int reason = errno;
       std::filesystem::remove(beside, error);
       errno = reason;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -36,6 +37,10 @@ struct GapRequest {
 /// What was mended, and why there may be no yaw errors.
 void SayNotes(const trajectory::Log& log, const std::string& path, const std::string& flag) {
   PrintNotes(log, path);
+  if (log.line_without_yaw) {
+    fmt::print(stderr, "note: {}:{}: has no yaw: yaw errors are told where it is logged\n", path,
+               *log.line_without_yaw);
+  }
   if (log.unknown_angles.empty()) return;
   fmt::print(stderr, "note: {}: yaw errors are left out: {}: set {}\n", path, log.unknown_angles,
              flag);
@@ -96,19 +101,55 @@ void Save(const GapRequest& request, const GapEvidence& evidence) {
   fmt::print("{}", GapText(evidence));
 }
 
+bool IsSameFile(const std::string& a, const std::string& b) {
+  std::error_code not_there;
+  return std::filesystem::path(a).lexically_normal() ==
+             std::filesystem::path(b).lexically_normal() ||
+         std::filesystem::equivalent(a, b, not_there);
+}
+
+/// A log that counts twice would pass for a repeat.
+void RefuseTwins(const std::vector<std::string>& logs) {
+  for (auto log = logs.begin(); log != logs.end(); ++log) {
+    const auto twin =
+        std::find_if(logs.begin(), log, [&](const auto& other) { return IsSameFile(*log, other); });
+    if (twin == log) continue;
+    throw std::invalid_argument(fmt::format(
+        "{} and {} are one log, and each repeat is a run of its own: name it once", *twin, *log));
+  }
+}
+
+void CheckInputs(const GapRequest& request) {
+  RefuseTwins(request.reals);
+  std::vector<std::string> sims = request.sim_repeats;
+  sims.insert(sims.begin(), request.sim);
+  RefuseTwins(sims);
+}
+
+void CheckOutput(const std::string& output, const std::vector<std::string>& taken) {
+  if (output == "-") throw std::invalid_argument("- is stdout for --json only: name a file");
+  std::error_code not_there;
+  if (std::filesystem::is_directory(output, not_there)) {
+    throw std::invalid_argument(output + " is a folder: name a file");
+  }
+  for (const std::string& other : taken) {
+    if (!IsSameFile(output, other)) continue;
+    throw std::invalid_argument(
+        fmt::format("{} is an input or another output: name another file", output));
+  }
+}
+
 /// What can be wrong with the outputs is said before anything is computed or written.
 void CheckOutputs(const GapRequest& request) {
   if (!request.figure.empty()) RequireFigureName(request.figure);
-  std::vector<std::string> inputs = request.reals;
-  inputs.push_back(request.sim);
-  inputs.insert(inputs.end(), request.sim_repeats.begin(), request.sim_repeats.end());
-  for (const std::string& output : {request.json, request.profile, request.figure}) {
-    for (const std::string& input : inputs) {
-      std::error_code not_there;
-      if (!output.empty() && std::filesystem::equivalent(output, input, not_there)) {
-        throw std::invalid_argument(fmt::format("{} is an input: name another output", output));
-      }
-    }
+  std::vector<std::string> taken = request.reals;
+  taken.push_back(request.sim);
+  taken.insert(taken.end(), request.sim_repeats.begin(), request.sim_repeats.end());
+  const std::string json = request.json == "-" ? "" : request.json;
+  for (const std::string& output : {json, request.profile, request.figure}) {
+    if (output.empty()) continue;
+    CheckOutput(output, taken);
+    taken.push_back(output);
   }
 }
 
@@ -139,6 +180,7 @@ void AddGap(CLI::App& app, int& exit_code) {
   app.footer(
       "Example: rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03");
   app.callback([request, &exit_code] {
+    CheckInputs(*request);
     CheckOutputs(*request);
     GapEvidence evidence = Measure(*request);
     if (!request->sim_repeats.empty()) evidence.likeness = MeasureRepeats(*request, evidence);

@@ -80,13 +80,19 @@ std::string AttributionText(const GapEvidence& evidence) {
       MeanOf(evidence, &Comparison::shape_gap_m));
 }
 
+/// Of the trials that tell their yaw.
 std::string YawText(const GapEvidence& evidence) {
-  const double mean_rad = MeanOf(evidence, &Comparison::mean_yaw_error_rad);
-  if (std::isnan(mean_rad)) return "";
-  return fmt::format("yaw error: {:.3f} rad in the mean, {:.3f} rad at most\n", mean_rad,
-                     std::ranges::max(evidence.trials, {}, [](const auto& trial) {
-                       return trial.comparison.max_yaw_error_rad;
-                     }).comparison.max_yaw_error_rad);
+  double sum_rad = 0.0, largest_rad = 0.0;
+  int told = 0;
+  for (const auto& [path, comparison] : evidence.trials) {
+    if (std::isnan(comparison.mean_yaw_error_rad)) continue;
+    ++told;
+    sum_rad += comparison.mean_yaw_error_rad;
+    largest_rad = std::max(largest_rad, comparison.max_yaw_error_rad);
+  }
+  if (told == 0) return "";
+  return fmt::format("yaw error: {:.3f} rad in the mean, {:.3f} rad at most\n", sum_rad / told,
+                     largest_rad);
 }
 
 std::string StandstillText(const GapEvidence& evidence) {

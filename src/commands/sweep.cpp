@@ -79,6 +79,13 @@ void Save(const fs::path& out, const config::Experiment& experiment, const Sweep
   WriteFile(out / "summary.json", SummaryJson(result));
 }
 
+/// An earlier run's report beside a table without a gap would tell of other trials.
+void RemoveReport(const fs::path& out) {
+  for (const char* name : {"report.html", "explanation.json", "likeness.json", "figures"}) {
+    fs::remove_all(out / name);
+  }
+}
+
 bool IsFalsified(const sweep::SweepResult& result) {
   if (!result.falsification) return result.all.failures > 0;
   return result.falsification->verdict == gap::Verdict::kFalsified;
@@ -103,6 +110,16 @@ void NoteTooFewRepeats(const config::Experiment& experiment) {
       "note: falsify.most_repeats is {}, and it takes {} failing trials to falsify a setting "
       "at {:g} % confidence: settings that fail stay undecided\n",
       experiment.falsify.most_repeats, needed, 100.0 * experiment.falsify.confidence);
+}
+
+/// Logs are compared in seconds and keep no journal.
+void SayStopped(const config::Experiment& experiment, const fs::path& out) {
+  if (experiment.candidate.kind == sweep::CandidateKind::kLogs) {
+    fmt::print(stderr, "stopped; nothing was written, and the same command starts over\n");
+    return;
+  }
+  fmt::print(stderr, "stopped; the same command goes on where it was (rift sweep --status {})\n",
+             out.string());
 }
 
 int Sweep(const SweepRequest& request) {
@@ -136,12 +153,14 @@ int Sweep(const SweepRequest& request) {
                 .fresh = request.fresh,
                 .progress = StyleFor(request.quiet, request.json_progress)});
   if (!result) {
-    fmt::print(stderr, "stopped; the same command goes on where it was (rift sweep --status {})\n",
-               out.string());
+    SayStopped(experiment, out);
     return kStopped;
   }
   Save(out, experiment, sources, *result);
-  if (result->all.n == 0) return EndWithoutGap(request, *result);
+  if (result->all.n == 0) {
+    RemoveReport(out);
+    return EndWithoutGap(request, *result);
+  }
   const sweep::Explanation explanation = sweep::Explain(*result, OptionsFor(request.explain));
   WriteFile(out / "explanation.json", ExplanationJson(*result, explanation));
   WriteSweepReport(out, *result, explanation, experiment, sources);

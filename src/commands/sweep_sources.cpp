@@ -30,6 +30,16 @@ trajectory::Trajectory WaypointPath(const std::vector<control::Waypoint>& waypoi
   return path;
 }
 
+/// What is wrong with the paths of an experiment is said with its file.
+template <class Call>
+auto InFile(const std::string& experiment_file, Call&& call) {
+  try {
+    return call();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", experiment_file, error.what()));
+  }
+}
+
 }  // namespace
 
 SweepSources::SweepSources(const config::Experiment& experiment, std::string experiment_file)
@@ -43,7 +53,9 @@ SweepSources::SweepSources(const config::Experiment& experiment, std::string exp
   if (candidate_is_logs) RequirePath(experiment.candidate.path, "candidate.path");
   if (reference_is_logs) RequirePath(experiment.reference.path, "reference.path");
   if (candidate_is_logs && reference_is_logs) {
-    sweep::CheckPaths(Plan(), {experiment.candidate.path.text, experiment.reference.path.text});
+    InFile(experiment_file_, [&] {
+      sweep::CheckPaths(Plan(), {experiment.candidate.path.text, experiment.reference.path.text});
+    });
   }
   if (!candidate_is_logs || !reference_is_logs) {
     TrialOf(experiment, {}, experiment.seed, experiment_file_);  // complains now, not in trial 1
@@ -77,8 +89,10 @@ sweep::GridPlan SweepSources::Plan() const {
 }
 
 std::string SweepSources::ReferencePath(const sweep::Theta& theta, const std::string& trial) const {
-  return sweep::FillTemplate(experiment_.reference.path.text, experiment_.space.parameters, theta,
-                             trial);
+  return InFile(experiment_file_, [&] {
+    return sweep::FillTemplate(experiment_.reference.path.text, experiment_.space.parameters, theta,
+                               trial);
+  });
 }
 
 sweep::SimulatedTrial SweepSources::TrialFor(const sweep::TrialRequest& request,

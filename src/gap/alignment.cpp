@@ -1,6 +1,5 @@
 #include "alignment.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace rift::gap {
@@ -20,8 +19,7 @@ geometry::Pose2 StartMotion(const ArcPath& sim, const ArcPath& real) {
 }
 
 geometry::Pose2 BestRigidMotion(const ArcPath& sim, const ArcPath& real, int samples) {
-  const int count = std::clamp(samples, 2, kMostFitSamples);
-  return BestRigidMotion(Resample(sim, count), Resample(real, count));
+  return BestRigidMotion(Resample(sim, samples), Resample(real, samples));
 }
 
 geometry::Pose2 BestRigidMotion(const std::vector<Eigen::Vector2d>& p_in_sim,

@@ -7,12 +7,8 @@ namespace rift::gap {
 /// The translation that lays the first point of `sim` on the first point of `real`.
 geometry::Pose2 StartMotion(const ArcPath& sim, const ArcPath& real);
 
-/// A fit over more points than this moves by less than a micrometre.
-inline constexpr int kMostFitSamples = 2000;
-
 /// The planar rigid motion that brings `sim` closest to `real`: least squares over `samples`
-/// evenly spaced u, kMostFitSamples at most; in the plane the fit of Umeyama 1991, without scale,
-/// has this closed form.
+/// evenly spaced u; in the plane the fit of Umeyama 1991, without scale, has this closed form.
 geometry::Pose2 BestRigidMotion(const ArcPath& sim, const ArcPath& real, int samples);
 
 /// The same from points that stand at the same u of both.

@@ -145,7 +145,7 @@ std::vector<double> Errors_m(const SampledPaths& samples, const GapOptions& opti
   return errors_m;
 }
 
-/// Empty when one of the yaws is needed and not known.
+/// NaN where one of the yaws is not known.
 std::vector<double> YawErrors_rad(const Paths& paths, const GapOptions& options) {
   std::vector<double> errors_rad;
   errors_rad.reserve(options.samples);
@@ -153,22 +153,15 @@ std::vector<double> YawErrors_rad(const Paths& paths, const GapOptions& options)
   for (int k = FirstSample(options); k < options.samples; ++k) {
     const double u = SampleU(k, options);
     errors_rad.push_back(geometry::WrapToPi(YawAt(paths.sim, u, i) - YawAt(paths.real, u, j)));
-    if (std::isnan(errors_rad.back())) return {};
   }
   return errors_rad;
-}
-
-/// The same to the bit as from the paths, of which the samples are at hand in the usual case.
-geometry::Pose2 BestMotion(const Paths& paths, const SampledPaths& samples, int count) {
-  return count <= kMostFitSamples ? BestRigidMotion(samples.sim_m, samples.real_m)
-                                  : BestRigidMotion(paths.sim, paths.real, count);
 }
 
 void MeasureErrors(const Paths& paths, const GapOptions& options, Comparison& result) {
   const SampledPaths samples(paths, options);
   SummariseErrors(Errors_m(samples, options), result);
   SummariseYawErrors(YawErrors_rad(paths, options), result);
-  result.real_from_sim = BestMotion(paths, samples, options.samples);
+  result.real_from_sim = BestRigidMotion(samples.sim_m, samples.real_m);
   const auto [as_it_is, start_aligned, shape] = SampledPeaks<3>(
       paths, {geometry::Pose2{}, StartMotion(paths.sim, paths.real), result.real_from_sim},
       options);
@@ -228,7 +221,6 @@ ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::T
   for (int k = first; k < options.samples; ++k) profile.u.push_back(SampleU(k, options));
   profile.error_m = Errors_m(samples, options);
   profile.yaw_error_rad = YawErrors_rad(paths, options);
-  if (profile.yaw_error_rad.empty()) profile.yaw_error_rad.assign(profile.u.size(), kNotComputed);
   profile.sim_m.assign(samples.sim_m.begin() + first, samples.sim_m.end());
   profile.real_m.assign(samples.real_m.begin() + first, samples.real_m.end());
   return profile;

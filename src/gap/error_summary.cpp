@@ -34,6 +34,7 @@ void SummariseErrors(std::vector<double> errors_m, Comparison& result) {
 }
 
 void SummariseYawErrors(std::vector<double> errors_rad, Comparison& result) {
+  std::erase_if(errors_rad, [](double error_rad) { return std::isnan(error_rad); });
   if (errors_rad.empty()) return;
   for (double& error_rad : errors_rad) error_rad = std::abs(error_rad);
   result.mean_yaw_error_rad = Mean(errors_rad);

@@ -18,6 +18,9 @@ using trajectory::Trajectory;
 
 constexpr int kWavelengths = 60;
 
+/// Of a weave by 2 micrometres: less is rounding.
+constexpr double kLeastPower_m2 = 1e-12;
+
 /// A mean that is NaN of nothing.
 class Mean {
  public:
@@ -213,8 +216,10 @@ double DominantWavelength_m(std::span<const Trajectory> paths, const LikenessOpt
           PowerAt(residuals_m, path.ArcLength_m(), options.wavelength_min_m * std::pow(growth, k));
     }
   }
-  const auto strongest = std::max_element(power.begin(), power.end()) - power.begin();
-  return options.wavelength_min_m * std::pow(growth, static_cast<double>(strongest));
+  const auto strongest = std::max_element(power.begin(), power.end());
+  if (!(*strongest > kLeastPower_m2)) return kNotComputed;
+  return options.wavelength_min_m *
+         std::pow(growth, static_cast<double>(strongest - power.begin()));
 }
 
 Likeness MeasureLikeness(std::span<const RepeatedSetting> settings, const GapOptions& gap,

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <stdexcept>
 
 #include "rift/sweep/grid.hpp"
+#include "rift/sweep/labels.hpp"
 #include "rift/sweep/path_template.hpp"
 #include "rift/sweep/statistics.hpp"
 
@@ -50,6 +53,32 @@ bool Has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+std::string InBraces(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "{" : ", {") + name + "}";
+  return text.empty() ? "nothing" : text;
+}
+
+/// One log under two settings would be counted twice.
+void RefuseSharedLogs(const GridPlan& plan, const LogPaths& paths) {
+  const auto is_continuous = [](const Parameter& parameter) { return parameter.IsContinuous(); };
+  if (std::any_of(plan.parameters.begin(), plan.parameters.end(), is_continuous)) return;
+  std::map<std::pair<std::string, std::string>, Theta> seen;
+  for (const Theta& theta : GridPoints(plan.parameters)) {
+    const std::string& trial = plan.trials.front();
+    const auto fill = [&](const std::string& path) {
+      return FillTemplate(path, plan.parameters, theta, trial);
+    };
+    const auto [first, is_new] =
+        seen.try_emplace({fill(paths.candidate), fill(paths.reference)}, theta);
+    if (is_new) continue;
+    throw std::invalid_argument(fmt::format(
+        "two settings name the same logs, {} and {}: give the path templates more digits ({})",
+        SettingText(plan.parameters, first->second), SettingText(plan.parameters, theta),
+        first->first.second));
+  }
+}
+
 }  // namespace
 
 void CheckPaths(const GridPlan& plan, const LogPaths& paths) {
@@ -58,14 +87,16 @@ void CheckPaths(const GridPlan& plan, const LogPaths& paths) {
   names.insert(names.end(), more.begin(), more.end());
   for (const Parameter& parameter : plan.parameters) {
     if (Has(names, parameter.Name())) continue;
-    throw std::invalid_argument(
-        fmt::format("space.{} is named in neither candidate.path nor reference.path as {{{}}}",
-                    parameter.key, parameter.Name()));
+    throw std::invalid_argument(fmt::format(
+        "{}space.{} is in neither candidate.path nor reference.path as {{{}}}: they name {}",
+        parameter.origin.empty() ? "" : parameter.origin + ": ", parameter.key, parameter.Name(),
+        InBraces({names.begin(), names.end()})));
   }
   if (plan.trials.size() > 1 && !Has(names, "trial")) {
     throw std::invalid_argument(
         "reference.trials asks for repeats, and no path names {trial} to tell them apart");
   }
+  RefuseSharedLogs(plan, paths);
 }
 
 TrialRow CompareTrial(const GridPlan& plan, const TrialRequest& request, const Candidate& candidate,

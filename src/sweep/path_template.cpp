@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 namespace rift::sweep {
@@ -60,10 +61,9 @@ std::string KnownNames(const std::vector<NamedValue>& values) {
   return names;
 }
 
-}  // namespace
-
-std::vector<std::string> TemplateNames(const std::string& path_template) {
-  std::vector<std::string> names;
+/// What stands between the braces: `v_min:.2f`.
+std::vector<std::string> Fields(const std::string& path_template) {
+  std::vector<std::string> fields;
   size_t at = 0;
   while ((at = path_template.find_first_of("{}", at)) != path_template.npos) {
     const size_t end = path_template.find_first_of("{}", at + 1);
@@ -71,10 +71,43 @@ std::vector<std::string> TemplateNames(const std::string& path_template) {
       throw std::invalid_argument(
           fmt::format("path '{}' has a brace without its partner", path_template));
     }
-    const std::string field = path_template.substr(at + 1, end - at - 1);
-    names.push_back(field.substr(0, field.find(':')));
+    fields.push_back(path_template.substr(at + 1, end - at - 1));
     at = end + 1;
   }
+  return fields;
+}
+
+std::string NameOf(const std::string& field) { return field.substr(0, field.find(':')); }
+
+/// Nothing when its specification does not fit the value.
+std::optional<std::string> Filled(const std::string& text, const std::vector<NamedValue>& values) {
+  // `{trial:03d}` asks for an integer: the second round.
+  for (const bool whole_as_integer : {false, true}) {
+    try {
+      return fmt::vformat(text, MakeArguments(values, whole_as_integer));
+    } catch (const fmt::format_error&) {
+    }
+  }
+  return std::nullopt;
+}
+
+/// The field that does not fit its value, and that value, for a message.
+std::string Culprit(const std::string& path_template, const std::vector<NamedValue>& values) {
+  for (const std::string& field : Fields(path_template)) {
+    if (Filled("{" + field + "}", values)) continue;
+    const auto named = std::find_if(values.begin(), values.end(), [&](const auto& value) {
+      return value.first == NameOf(field);
+    });
+    return fmt::format("{{{}}} does not fit '{}'", field, named->second.text);
+  }
+  return "its fields do not go together";
+}
+
+}  // namespace
+
+std::vector<std::string> TemplateNames(const std::string& path_template) {
+  std::vector<std::string> names;
+  for (const std::string& field : Fields(path_template)) names.push_back(NameOf(field));
   return names;
 }
 
@@ -92,17 +125,11 @@ std::string FillTemplate(const std::string& path_template, const std::vector<Par
                                               path_template, name, KnownNames(values)));
     }
   }
-  const std::string text = WithPlainNamesFilled(path_template, values);
-  for (const bool whole_as_integer : {false, true}) {
-    try {
-      return fmt::vformat(text, MakeArguments(values, whole_as_integer));
-    } catch (const fmt::format_error& error) {
-      if (!whole_as_integer) continue;  // `{trial:03d}` asks for an integer: the second round
-      throw std::invalid_argument(
-          fmt::format("path '{}' cannot be filled in: {}", path_template, error.what()));
-    }
-  }
-  return text;
+  const std::optional<std::string> path =
+      Filled(WithPlainNamesFilled(path_template, values), values);
+  if (path) return *path;
+  throw std::invalid_argument(fmt::format("path '{}' cannot be filled in: {}", path_template,
+                                          Culprit(path_template, values)));
 }
 
 }  // namespace rift::sweep

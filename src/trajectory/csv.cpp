@@ -60,8 +60,9 @@ std::string_view WithoutPlus(std::string_view cell) {
 void RefuseRepeatedColumns(const std::vector<std::string>& columns, const std::string& where) {
   for (auto column = columns.begin(); column != columns.end(); ++column) {
     if (column->empty() || std::find(columns.begin(), column, *column) == column) continue;
-    throw std::invalid_argument(fmt::format(
-        "{}: the header has two columns '{}': rename or remove one of them", where, *column));
+    throw std::invalid_argument(
+        fmt::format("{}: the header has two columns '{}': rename or remove one of them", where,
+                    Shown(*column)));
   }
 }
 
@@ -78,6 +79,17 @@ std::string_view TakeLine(std::string_view& rest) {
   rest.remove_prefix(std::min(end + 1, rest.size()));
   if (line.ends_with('\r')) line.remove_suffix(1);
   return line;
+}
+
+std::string Shown(std::string_view text) {
+  constexpr size_t kMost = 60;
+  std::string shown;
+  for (const char c : text.substr(0, kMost)) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_visible = byte >= 0x20 && byte != 0x7F && byte < 0xF8;
+    shown += is_visible ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
+  }
+  return shown;
 }
 
 std::vector<std::string> SplitHeader(std::string_view line) {
@@ -219,7 +231,7 @@ void RowReader::Refuse(std::string_view cell, size_t column) const {
   const std::string where =
       column < columns_.size() ? columns_[column] : fmt::format("{}", column + 1);
   throw std::invalid_argument(fmt::format("{}:{}: column {} is '{}': a finite number is expected",
-                                          name_, line_number_, where, cell.substr(0, 40)));
+                                          name_, line_number_, Shown(where), Shown(cell)));
 }
 
 }  // namespace rift::trajectory::csv

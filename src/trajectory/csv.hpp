@@ -16,6 +16,9 @@ std::string_view WithoutMark(std::string_view text);
 /// Takes the next line off `rest`, without its CR LF or LF.
 std::string_view TakeLine(std::string_view& rest);
 
+/// At most 60 bytes of it for a message, those that no terminal shows written as \xNN.
+std::string Shown(std::string_view text);
+
 /// Cells between commas, without the blanks or the double quotes around them.
 std::vector<std::string> SplitHeader(std::string_view line);
 

@@ -29,13 +29,14 @@ constexpr std::array<double StampedPose::*, 9> kFields{
 class ColumnMap {
  public:
   ColumnMap(const std::vector<std::string>& header, const std::array<std::string_view, 9>& names,
-            const std::string& name)
+            const std::string& name, int header_line)
       : names_(names), name_(name) {
     std::vector<bool> taken(header.size(), false);
     for (size_t i = 0; i < names.size(); ++i) {
       const auto found = std::find(header.begin(), header.end(), names[i]);
       if (found == header.end() && i < kRequired) {
-        throw std::invalid_argument(fmt::format("{}:1: column {} is missing", name, names[i]));
+        throw std::invalid_argument(
+            fmt::format("{}:{}: column {} is missing", name, header_line, names[i]));
       }
       if (found == header.end()) continue;
       taken[found - header.begin()] = true;
@@ -79,7 +80,7 @@ void Reserve(LogRows& rows, size_t count) {
 
 LogRows ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& names,
                     const std::string& name) {
-  const ColumnMap columns(row.Columns(), names, name);
+  const ColumnMap columns(row.Columns(), names, name, row.Line());
   LogRows rows;
   for (const size_t column : columns.Channels()) {
     rows.trajectory.channels.push_back({row.Columns()[column], {}});
@@ -101,12 +102,14 @@ StampedPose TumPose(const csv::RowReader& row, const std::string& name) {
         fmt::format("{}:{}: {} columns, and tum has 8: t tx ty tz qx qy qz qw", name, row.Line(),
                     cells.size()));
   }
-  const Eigen::Quaterniond quaternion(cells[7], cells[4], cells[5], cells[6]);
+  Eigen::Quaterniond quaternion(cells[7], cells[4], cells[5], cells[6]);
+  // Neither the squares of large numbers nor those of small ones may be lost.
+  quaternion.coeffs().stableNormalize();
   if (!(quaternion.norm() > 0.0)) {
     throw std::invalid_argument(
         fmt::format("{}:{}: the quaternion has zero length", name, row.Line()));
   }
-  const Eigen::Matrix3d r = quaternion.normalized().toRotationMatrix();
+  const Eigen::Matrix3d r = quaternion.toRotationMatrix();
   StampedPose pose{.t_s = cells[0], .x_m = cells[1], .y_m = cells[2], .z_m = cells[3]};
   pose.roll_rad = std::atan2(r(2, 1), r(2, 2));
   pose.pitch_rad = std::asin(std::clamp(-r(2, 0), -1.0, 1.0));

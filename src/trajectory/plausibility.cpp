@@ -16,7 +16,8 @@ namespace {
 using geometry::kPi;
 
 constexpr double kFarthest_m = 1e6;
-constexpr double kLatest_s = 1e12;  // also tells the nanoseconds of a Unix clock
+constexpr double kLatest_s = 1e12;     // also tells the nanoseconds of a Unix clock
+constexpr double kLargestAngle = 1e6;  // degrees or radians, unwrapped ones too
 
 /// No robot rolls over, and a yaw that was not unwrapped stays within a turn, Webots' quarter
 /// turn included.
@@ -24,11 +25,11 @@ constexpr double kTurn_rad = 2.0 * kPi;
 /// An unwrapped yaw may be large, but not 159 turns; three turns in degrees are more.
 constexpr double kLargestYaw_rad = 1000.0;
 
-void CheckValue(double value, double limit, std::string_view column, const std::string& where) {
+void CheckValue(double value, double limit, std::string_view column, const std::string& where,
+                std::string_view question = "is the log in metres and seconds?") {
   if (!(std::abs(value) > limit)) return;
   throw std::invalid_argument(
-      fmt::format("{}: {} is {:g}, beyond +-{:g}: is the log in metres and seconds?", where, column,
-                  value, limit));
+      fmt::format("{}: {} is {:g}, beyond +-{:g}: {}", where, column, value, limit, question));
 }
 
 void Raise(double& largest, double angle) {
@@ -98,12 +99,19 @@ void NoteRadians(Log& log, const LargestAngles& angles) {
 void CheckMagnitudes(const StampedPose& pose, const std::string& name, int line) {
   const double farthest_m = std::max(std::abs(pose.x_m), std::abs(pose.y_m));
   const bool near = farthest_m <= kFarthest_m && !(std::abs(pose.z_m) > kFarthest_m);
-  if (near && std::abs(pose.t_s) <= kLatest_s) return;
+  const bool turns = std::abs(pose.roll_rad) > kLargestAngle ||
+                     std::abs(pose.pitch_rad) > kLargestAngle ||
+                     std::abs(pose.yaw_rad) > kLargestAngle;
+  if (near && !turns && std::abs(pose.t_s) <= kLatest_s) return;
+  constexpr std::string_view kAngle = "is it an angle?";
   const std::string where = fmt::format("{}:{}", name, line);
   CheckValue(pose.t_s, kLatest_s, "t", where);
   CheckValue(pose.x_m, kFarthest_m, "x", where);
   CheckValue(pose.y_m, kFarthest_m, "y", where);
   CheckValue(pose.z_m, kFarthest_m, "z", where);
+  CheckValue(pose.roll_rad, kLargestAngle, "roll", where, kAngle);
+  CheckValue(pose.pitch_rad, kLargestAngle, "pitch", where, kAngle);
+  CheckValue(pose.yaw_rad, kLargestAngle, "yaw", where, kAngle);
 }
 
 void LargestAngles::Add(const StampedPose& pose) {

@@ -6,7 +6,8 @@
 
 namespace rift::trajectory {
 
-/// Throws std::invalid_argument `name:line: ...` for a position or a time that no robot logs.
+/// Throws std::invalid_argument `name:line: ...` for a position, an angle or a time that no robot
+/// logs.
 /// Without the limit their squares overflow.
 void CheckMagnitudes(const StampedPose& pose, const std::string& name, int line);
 

@@ -47,15 +47,16 @@ bool LooksLikeTum(std::string_view line, std::string_view rest) {
 Format FormatFromHeader(std::string_view text, const std::string& name) {
   std::string_view rest = csv::WithoutMark(text);
   std::string_view line;
-  while (!rest.empty() && IsBlankLine(line)) line = csv::TakeLine(rest);
+  int number = 0;
+  for (; !rest.empty() && IsBlankLine(line); ++number) line = csv::TakeLine(rest);
   const std::vector<std::string> header = csv::SplitHeader(line);
   if (Has(header, "t_s") && Has(header, "x_m") && Has(header, "y_m")) return Format::kRift;
   if (Has(header, "t") && Has(header, "x") && Has(header, "y")) return Format::kAuto;
   if (LooksLikeTum(line, rest)) return Format::kTum;
   throw std::invalid_argument(fmt::format(
-      "{}:1: the header '{}' belongs to no dialect: it needs t_s,x_m,y_m (rift), t,x,y (tracker, "
+      "{}:{}: the header '{}' belongs to no dialect: it needs t_s,x_m,y_m (rift), t,x,y (tracker, "
       "webots) or eight columns without header (tum)",
-      name, line.substr(0, 60)));
+      name, number, csv::Shown(line)));
 }
 
 /// The one place where the authors' camera frame (x right, y down, z away from the camera, yaw
@@ -160,6 +161,19 @@ void CheckMoves(const Trajectory& trajectory, const std::string& name) {
   }
 }
 
+/// Files whose lines no reader finds, each with what to do.
+void RefuseNoText(std::string_view head, const std::string& name) {
+  if (csv::WithoutMark(head).find_first_not_of(" \t\r\n") == head.npos) {
+    throw std::invalid_argument(name + ": the file is empty");
+  }
+  if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF")) {
+    throw std::invalid_argument(name + ": is UTF-16: save it as UTF-8 text");
+  }
+  if (head.find('\n') == head.npos && head.find('\r') < head.size() - 1) {
+    throw std::invalid_argument(name + ": its lines end with CR alone: save it with LF or CRLF");
+  }
+}
+
 }  // namespace
 
 Log ReadLog(std::string_view text, const std::string& name, Format format) {
@@ -170,6 +184,7 @@ Log ReadLog(std::string_view text, const std::string& name, Format format) {
 Log ReadLog(const TextPieces& pieces, const std::string& name, Format format) {
   Log log;
   const std::string_view head = pieces.next();
+  RefuseNoText(head, name);
   log.format = format == Format::kAuto ? FormatFromHeader(head, name) : format;
   LogRows rows = ReadRows(head, pieces, name, log.format);
   log.trajectory = std::move(rows.trajectory);

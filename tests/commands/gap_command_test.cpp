@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -52,8 +53,10 @@ TEST_CASE("rift gap ends with 1 for a falsified verdict only when asked to") {
 
 TEST_CASE("rift gap writes its evidence as JSON with nothing else on stdout") {
   const TwoLogs logs(0.05);
+  const std::string again = logs.folder / "again.csv";
+  std::filesystem::copy(logs.real, again);
   const ProcessResult result =
-      RunRift({"gap", logs.sim, logs.real, logs.real, "--json", "-", "--align", "start"});
+      RunRift({"gap", logs.sim, logs.real, again, "--json", "-", "--align", "start"});
   REQUIRE(result.exit_code == 0);
   const json evidence = json::parse(result.out);
   CHECK(evidence["definition"]["samples"] == 2000);
@@ -163,6 +166,59 @@ TEST_CASE("rift gap that cannot write ends with 3 and leaves nothing half writte
     ++files;
   }
   CHECK(files == 3);
+}
+
+TEST_CASE("rift gap counts a log once and writes each output to a file of its own") {
+  const TwoLogs logs(0.05);
+  const std::string one = logs.folder / "one.svg";
+  const auto refused = [](const std::vector<std::string>& arguments, const std::string& rule) {
+    const ProcessResult result = RunRift(arguments);
+    INFO(result.err);
+    CHECK(result.exit_code == 2);
+    CHECK(result.err.find(rule) != std::string::npos);
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  };
+  refused({"gap", logs.sim, logs.real, logs.real}, "are one log");
+  refused({"gap", logs.sim, logs.real, "--sim-repeats", logs.sim}, "are one log");
+  refused({"gap", logs.sim, logs.real, "--figure", one, "--profile", one}, "another output");
+  refused({"gap", logs.sim, logs.real, "--profile", "-"}, "name a file");
+  refused({"gap", logs.sim, logs.real, "--profile", one, "--json", logs.folder / ""},
+          "is a folder");
+  CHECK_FALSE(std::filesystem::exists(one));
+}
+
+TEST_CASE("An output goes through a link and is put behind what its stream holds already") {
+  const TwoLogs logs(0.05);
+  const std::string log = logs.folder / "log.txt", link = logs.folder / "link.csv";
+  WriteText(log, "precious\n");
+  const std::string command = std::string(RIFT_BINARY) + " gap " + logs.sim + " " + logs.real;
+  REQUIRE(std::system((command + " --json /dev/stdout >> " + log).c_str()) == 0);
+  const std::string text = test::ReadFile(log);
+  CHECK(text.starts_with("precious\n{"));
+  CHECK(text.find("}\ngap: largest") != std::string::npos);
+
+  std::filesystem::create_symlink("behind.csv", link);
+  REQUIRE(RunRift({"gap", logs.sim, logs.real, "--profile", link}).exit_code == 0);
+  CHECK(std::filesystem::is_symlink(link));
+  CHECK(test::ReadFile(logs.folder / "behind.csv").starts_with("real,u,error_m"));
+
+  std::filesystem::create_symlink("loop.csv", logs.folder / "loop.csv");
+  const ProcessResult loop =
+      RunRift({"gap", logs.sim, logs.real, "--profile", logs.folder / "loop.csv"});
+  CHECK(loop.exit_code == 3);
+  CHECK(loop.err.find("loop.csv: Too many levels") != std::string::npos);
+}
+
+TEST_CASE("rift gap says which row has no yaw and tells the errors of the others") {
+  const TwoLogs logs(0.05);
+  trajectory::Trajectory real = trajectory::ReadLog(test::ReadFile(logs.real), "real").trajectory;
+  real.poses[20].yaw_rad = trajectory::StampedPose::kNotLogged;
+  WriteText(logs.real, trajectory::WriteRift(real));
+  const ProcessResult result = RunRift({"gap", logs.sim, logs.real});
+  CHECK(result.exit_code == 0);
+  CHECK(result.out.find("yaw error: 0.000 rad in the mean") != std::string::npos);
+  CHECK(result.err ==
+        "note: " + logs.real + ":22: has no yaw: yaw errors are told where it is logged\n");
 }
 
 TEST_CASE("A mistyped subcommand is met with the nearest one") {

@@ -152,6 +152,19 @@ TEST_CASE("A sweep in which nothing could be compared still leaves its rows") {
   CHECK(std::count(table.begin(), table.end(), '\n') == 9);
 }
 
+TEST_CASE("A sweep in which nothing could be compared leaves no report of an earlier one") {
+  const LogFolder logs;
+  REQUIRE(RunRift({"sweep", logs.experiment, "--out", logs.out}).exit_code == 0);
+  fs::remove_all(logs.folder / "ground");
+  fs::remove_all(logs.folder / "ice");
+  CHECK(RunRift({"sweep", logs.experiment, "--out", logs.out}).exit_code == 2);
+  CHECK(fs::exists(logs.out + "/table.csv"));
+  for (const char* name : {"report.html", "explanation.json", "likeness.json", "figures"}) {
+    INFO(name);
+    CHECK_FALSE(fs::exists(logs.out + "/" + name));
+  }
+}
+
 TEST_CASE("Robots that never arrive are rows and end with 1") {
   const test::TemporaryFolder folder;
   const ProcessResult result =

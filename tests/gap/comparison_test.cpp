@@ -162,14 +162,45 @@ TEST_CASE("Aligning turns the yaw with the path") {
   CHECK(Compare(sim, real, options).max_yaw_error_rad == Approx(0.4));
 }
 
-TEST_CASE("Yaw errors are left out where a yaw is needed and missing") {
-  Trajectory real = StraightPath(1.0, 100);
+TEST_CASE("Yaw errors are told where both yaws are known") {
+  Trajectory real = StraightPath(1.0, 101);
+  for (trajectory::StampedPose& pose : real.poses) pose.yaw_rad = pose.x_m < 0.3 ? 0.1 : 0.3;
   real.poses[20].yaw_rad = trajectory::StampedPose::kNotLogged;
-  const Trajectory sim = StraightPath(1.0, 100);
+  const Trajectory sim = StraightPath(1.0, 101);
+  const Comparison result = Compare(sim, real, {});
+  CHECK(result.max_yaw_error_rad == Approx(0.3));
+  CHECK(result.mean_yaw_error_rad == Approx(0.3 * 0.1 + 0.7 * 0.3).margin(0.005));
+  const ErrorProfile profile = ProfileAlong(sim, real, {});
+  for (size_t i = 0; i < profile.u.size(); ++i) {
+    const bool is_told = !std::isnan(profile.yaw_error_rad[i]);
+    if (std::abs(profile.u[i] - 0.2) > 0.0101) CHECK(is_told);
+    if (std::abs(profile.u[i] - 0.2) < 0.0099) CHECK_FALSE(is_told);
+  }
+  for (trajectory::StampedPose& pose : real.poses) {
+    pose.yaw_rad = trajectory::StampedPose::kNotLogged;
+  }
+  CHECK(std::isnan(Compare(sim, real, {}).max_yaw_error_rad));
+}
+
+TEST_CASE("The best rigid motion is the best one over as many points as were asked for") {
+  std::mt19937_64 generator(14);
+  const Trajectory sim = RandomPath(generator, 80), real = RandomPath(generator, 80);
   GapOptions options;
-  CHECK(std::isnan(Compare(sim, real, options).max_yaw_error_rad));
-  options.skip_start = 0.5;
-  CHECK(Compare(sim, real, options).max_yaw_error_rad == 0.0);
+  options.samples = 20'001;
+  const geometry::Pose2 best = Compare(sim, real, options).real_from_sim;
+  // The mean square over those points has its least value there.
+  const auto mean_square = [&](const geometry::Pose2& motion) {
+    const double rms_m = Compare(Moved(sim, motion), real, options).rms_error_m;
+    return rms_m * rms_m;
+  };
+  constexpr double kStep = 1e-5;
+  for (double geometry::Pose2::*field :
+       {&geometry::Pose2::x_m, &geometry::Pose2::y_m, &geometry::Pose2::yaw_rad}) {
+    geometry::Pose2 more = best, less = best;
+    more.*field += kStep;
+    less.*field -= kStep;
+    CHECK(std::abs(mean_square(more) - mean_square(less)) / (2.0 * kStep) < 1e-8);
+  }
 }
 
 TEST_CASE("Hausdorff sees a spike between the resampled points") {

@@ -62,8 +62,11 @@ TEST_CASE("A path template that cannot be filled in is refused with the reason")
         "path '{vmin}.csv' names {vmin}, and the space has only surface, v_min, trial");
   CHECK(fill("{surface.csv") == "path '{surface.csv' has a brace without its partner");
   CHECK(fill("surface}.csv") == "path 'surface}.csv' has a brace without its partner");
-  CHECK(fill("{surface:.2f}.csv").starts_with("path '{surface:.2f}.csv' cannot be filled in"));
-  CHECK(fill("{v_min:03d}.csv").starts_with("path '{v_min:03d}.csv' cannot be filled in"));
+  CHECK(fill("{v_min:.2f}{surface:.2f}.csv") ==
+        "path '{v_min:.2f}{surface:.2f}.csv' cannot be filled in: {surface:.2f} does not fit "
+        "'ground'");
+  CHECK(fill("{v_min:03d}.csv") ==
+        "path '{v_min:03d}.csv' cannot be filled in: {v_min:03d} does not fit '0.2'");
 }
 
 TEST_CASE("A grid visits every combination once with the first parameter slowest") {
@@ -121,13 +124,26 @@ TEST_CASE("A candidate can start where its reference did") {
   CHECK(CompareGrid(Plan(), follower, Real).all.mean_gap_m == 0.0);
 }
 
+TEST_CASE("Two settings that name the same logs are refused") {
+  GridPlan plan = Plan();
+  plan.parameters[1].levels = {{"0.15", 0.15}, {"0.151", 0.151}};
+  CHECK(Refusal([&] {
+          CheckPaths(plan, {"{surface}/{v_min:.2f}_sim.csv", "{surface}/{v_min:.2f}_{trial}.csv"});
+        }) ==
+        "two settings name the same logs, surface ground, v_min 0.15 and surface ground, v_min "
+        "0.151: give the path templates more digits (ground/0.15_1.csv)");
+  CHECK_NOTHROW(
+      CheckPaths(plan, {"{surface}/{v_min:.2f}_sim.csv", "{surface}/{v_min}_{trial}.csv"}));
+}
+
 TEST_CASE("A parameter that no path names is refused") {
   const LogPaths paths{"{surface}/{v_min}_sim.csv", "{surface}/{v_min}_{trial}.csv"};
   CHECK_NOTHROW(CheckPaths(Plan(), paths));
   GridPlan plan = Plan();
   plan.parameters.push_back({.key = "v_max", .levels = {{"0.3", 0.3}}});
   CHECK(Refusal([&] { CheckPaths(plan, paths); }) ==
-        "space.v_max is named in neither candidate.path nor reference.path as {v_max}");
+        "space.v_max is in neither candidate.path nor reference.path as {v_max}: they name "
+        "{surface}, {trial}, {v_min}");
   CHECK(Refusal([&] {
           CheckPaths(Plan(), {paths.candidate, "{surface}/{v_min}.csv"});
         }) == "reference.trials asks for repeats, and no path names {trial} to tell them apart");

@@ -31,7 +31,7 @@ struct Comparison {
   double rms_error_m = kNotComputed;
   double median_error_m = kNotComputed;
   double p95_error_m = kNotComputed;
-  double max_yaw_error_rad = kNotComputed;  ///< NaN when a log does not tell its yaw
+  double max_yaw_error_rad = kNotComputed;  ///< where both yaws are known; NaN: nowhere
   double mean_yaw_error_rad = kNotComputed;
 
   double sim_length_m = kNotComputed;

@@ -45,7 +45,8 @@ struct PathTraits {
 
 PathTraits TraitsOf(const trajectory::Trajectory& path, const LikenessOptions& options);
 
-/// Wavelength of the strongest weave in the mean spectrum of the paths, in m; NaN without a path.
+/// Wavelength of the strongest weave in the mean spectrum of the paths, in m; NaN without a path
+/// and when none weaves.
 /// A path is taken as its distance from its best straight line over the length along it.
 double DominantWavelength_m(std::span<const trajectory::Trajectory> paths,
                             const LikenessOptions& options);

@@ -45,8 +45,9 @@ struct TextPieces {
 
 /// Reads a whole log or throws std::invalid_argument with one line `name:row: what is wrong`.
 /// Rows out of order are sorted by time and of rows with equal time the last is kept, both noted.
-/// Refused: NaN or infinite values, |x|, |y| or |z| above 1e6 m, |t| above 1e12 s, ragged rows,
-/// two columns of one name, fewer than two poses, a path of zero length.
+/// Refused: NaN or infinite values, |x|, |y| or |z| above 1e6 m, |t| above 1e12 s, angles above 1e6
+/// (degrees or radians), ragged rows, two columns of one name, fewer than two poses, a path of zero
+/// length.
 /// Noted: degrees where the dialect has radians, and the other way round.
 /// Accepted: a byte order mark, CRLF, blank lines, header cells in double quotes, `+1.0`, empty
 /// cells in optional columns (not logged).
