@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -13,6 +15,19 @@
 
 namespace rift::trajectory::csv {
 namespace {
+
+/// The first 0 to 8 bytes of a word, wherever its first byte stands.
+constexpr std::array<std::uint64_t, 9> MakeMasks() {
+  std::array<std::uint64_t, 9> masks{};
+  for (size_t size = 1; size <= 8; ++size) {
+    const std::uint64_t all = ~std::uint64_t{0};
+    const size_t unused_bits = 8 * (8 - size);
+    masks[size] =
+        std::endian::native == std::endian::little ? all >> unused_bits : all << unused_bits;
+  }
+  return masks;
+}
+constexpr std::array<std::uint64_t, 9> kMasks = MakeMasks();
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
 
@@ -104,12 +119,12 @@ std::vector<std::string> SplitHeader(std::string_view line) {
   }
 }
 
-ShortText::ShortText(const char* begin, const char* end) {
-  const size_t size = end - begin;
-  if (size > sizeof(bytes_)) return;
+ShortText::ShortText(const char* begin, size_t size, const char* end) {
+  if (size > sizeof(bytes_) || static_cast<size_t>(end - begin) < sizeof(bytes_)) return;
   size_ = size;
-  std::memset(&mask_, 0xFF, size);
-  std::memcpy(&bytes_, begin, size);
+  mask_ = kMasks[size];
+  std::memcpy(&bytes_, begin, sizeof(bytes_));
+  bytes_ &= mask_;
 }
 
 bool ShortText::IsAt(const char* at, const char* end) const {
@@ -192,7 +207,7 @@ bool RowReader::TakePlain() {
     at = stop + (is_last && stop != end && *stop == '\r');
     if (at == end ? !is_last : *at != (is_last ? '\n' : ',')) return false;
     at += at != end;
-    above_[i] = ShortText(begin, at);
+    above_[i] = ShortText(begin, static_cast<size_t>(at - begin), end);
   }
   rest_.remove_prefix(at - rest_.data());
   return true;

@@ -26,7 +26,8 @@ std::vector<std::string> SplitHeader(std::string_view line);
 class ShortText {
  public:
   ShortText() = default;
-  ShortText(const char* begin, const char* end);
+  /// Nothing either where fewer than eight bytes are left before `end`.
+  ShortText(const char* begin, size_t size, const char* end);
 
   /// True when the bytes from `at` on begin with this text.
   bool IsAt(const char* at, const char* end) const;
