@@ -13,6 +13,7 @@
 #include "flags.hpp"
 #include "gap_output.hpp"
 #include "logs.hpp"
+#include "outputs.hpp"
 #include "rift/commands/command.hpp"
 
 namespace rift::commands {
@@ -101,13 +102,6 @@ void Save(const GapRequest& request, const GapEvidence& evidence) {
   fmt::print("{}", GapText(evidence));
 }
 
-bool IsSameFile(const std::string& a, const std::string& b) {
-  std::error_code not_there;
-  return std::filesystem::path(a).lexically_normal() ==
-             std::filesystem::path(b).lexically_normal() ||
-         std::filesystem::equivalent(a, b, not_there);
-}
-
 /// A log that counts twice would pass for a repeat.
 void RefuseTwins(const std::vector<std::string>& logs) {
   for (auto log = logs.begin(); log != logs.end(); ++log) {
@@ -126,31 +120,18 @@ void CheckInputs(const GapRequest& request) {
   RefuseTwins(sims);
 }
 
-void CheckOutput(const std::string& output, const std::vector<std::string>& taken) {
-  if (output == "-") throw std::invalid_argument("- is stdout for --json only: name a file");
-  std::error_code not_there;
-  if (std::filesystem::is_directory(output, not_there)) {
-    throw std::invalid_argument(output + " is a folder: name a file");
-  }
-  for (const std::string& other : taken) {
-    if (!IsSameFile(output, other)) continue;
-    throw std::invalid_argument(
-        fmt::format("{} is an input or another output: name another file", output));
-  }
-}
-
-/// What can be wrong with the outputs is said before anything is computed or written.
-void CheckOutputs(const GapRequest& request) {
+void CheckNames(const GapRequest& request) {
   if (!request.figure.empty()) RequireFigureName(request.figure);
-  std::vector<std::string> taken = request.reals;
-  taken.push_back(request.sim);
-  taken.insert(taken.end(), request.sim_repeats.begin(), request.sim_repeats.end());
+  std::vector<std::filesystem::path> inputs{request.sim}, outputs;
+  for (const auto* logs : {&request.reals, &request.sim_repeats}) {
+    inputs.insert(inputs.end(), logs->begin(), logs->end());
+  }
   const std::string json = request.json == "-" ? "" : request.json;
   for (const std::string& output : {json, request.profile, request.figure}) {
-    if (output.empty()) continue;
-    CheckOutput(output, taken);
-    taken.push_back(output);
+    if (output == "-") throw std::invalid_argument("- is stdout for --json only: name a file");
+    if (!output.empty()) outputs.emplace_back(output);
   }
+  CheckOutputs(inputs, outputs);
 }
 
 }  // namespace
@@ -181,7 +162,7 @@ void AddGap(CLI::App& app, int& exit_code) {
       "Example: rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03");
   app.callback([request, &exit_code] {
     CheckInputs(*request);
-    CheckOutputs(*request);
+    CheckNames(*request);
     GapEvidence evidence = Measure(*request);
     if (!request->sim_repeats.empty()) evidence.likeness = MeasureRepeats(*request, evidence);
     Save(*request, evidence);

@@ -8,6 +8,7 @@
 
 #include "files.hpp"
 #include "keys_flag.hpp"
+#include "outputs.hpp"
 #include "replay.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/config/set_value.hpp"
@@ -54,11 +55,14 @@ void PutStart(const std::string& text, config::Experiment& experiment) {
 }
 
 /// The start and the seed become part of the experiment, so that what is saved is what was run.
-config::Experiment LoadFor(const SimulateRequest& request) {
+config::Experiment LoadFor(const SimulateRequest& request, std::vector<fs::path>& inputs) {
   std::vector<std::string> overrides = request.overrides;
   if (!request.seed.empty()) overrides.push_back("seed=" + request.seed);
-  config::Experiment experiment = config::LoadExperiment(
-      request.experiment, overrides, [](const std::string& path) { return ReadFile(path); });
+  const auto read = [&inputs](const std::string& path) {
+    inputs.emplace_back(path);
+    return ReadFile(path);
+  };
+  config::Experiment experiment = config::LoadExperiment(request.experiment, overrides, read);
   if (!request.start.empty()) PutStart(request.start, experiment);
   return experiment;
 }
@@ -81,6 +85,26 @@ struct RunFiles {
   fs::path trajectory, truth, commands, experiment, summary;
 };
 
+/// The same text again in the file it was read from does no harm.
+bool IsUnchanged(const fs::path& path, const std::string& text) {
+  return fs::is_regular_file(path) && ReadFile(path) == text;
+}
+
+void CheckNames(const SimulateRequest& request, const fs::path& out,
+                const config::Experiment& experiment, const std::vector<fs::path>& inputs) {
+  CheckPictureNames(request.pictures);
+  RefuseSweepFolder(out);
+  const RunFiles files(out);
+  std::vector<fs::path> outputs{files.trajectory, files.truth, files.commands, files.summary};
+  if (!IsUnchanged(files.experiment, config::WriteExperiment(experiment))) {
+    outputs.push_back(files.experiment);
+  }
+  for (const std::string& name : {request.tum, request.pictures.figure, request.pictures.video}) {
+    if (!name.empty()) outputs.emplace_back(name);
+  }
+  CheckOutputs(inputs, outputs);
+}
+
 void Save(const fs::path& out, const config::Experiment& experiment,
           const sweep::SimulatedRun& run) {
   const RunFiles files(out);
@@ -102,12 +126,14 @@ Run SimulateFile(const SimulateRequest& request) {
   if (request.experiment.empty()) {
     throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
   }
-  Run made{.experiment = LoadFor(request)};
+  std::vector<fs::path> inputs;
+  Run made{.experiment = LoadFor(request, inputs)};
   const config::Experiment& experiment = made.experiment;
+  made.out = OutputOf(request.out, experiment.name);
+  CheckNames(request, made.out, experiment, inputs);
   made.trial = TrialOf(experiment, {}, experiment.seed, request.experiment);
   made.trial.start = control::StartPose(experiment.waypoints);
   made.run = sweep::Simulate(made.trial);
-  made.out = OutputOf(request.out, experiment.name);
   return made;
 }
 
@@ -123,6 +149,9 @@ Run ReplayFor(const SimulateRequest& request) {
   Replay replay = ReplayRow(folder, id);
   fmt::print(stderr, "{}\n", replay.verdict);
   const fs::path out = request.out.empty() ? folder / "replay" / id : fs::path(request.out);
+  CheckNames(request, out, replay.experiment,
+             {folder / "table.csv", folder / "experiment.yaml", folder / "journal.sqlite",
+              folder / "inputs.txt", folder / "summary.json"});
   return {out, std::move(replay.experiment), std::move(replay.trial), std::move(replay.run)};
 }
 
@@ -130,8 +159,12 @@ int ServeTwin(const SimulateRequest& request) {
   if (request.experiment.empty()) {
     throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
   }
-  const config::Experiment experiment = LoadFor(request);
-  return RunTwin(request.experiment, experiment, OutputOf(request.out, experiment.name));
+  std::vector<fs::path> inputs;
+  const config::Experiment experiment = LoadFor(request, inputs);
+  const fs::path out = OutputOf(request.out, experiment.name);
+  RefuseSweepFolder(out);
+  CheckOutputs(inputs, {out / "experiment.yaml", out / "camera.yaml"});
+  return RunTwin(request.experiment, experiment, out);
 }
 
 }  // namespace

@@ -103,6 +103,12 @@ void AddPictureFlags(CLI::App& app, PictureRequest& request) {
   app.add_flag("--view", request.window, "play that film in a window");
 }
 
+void CheckPictureNames(const PictureRequest& request) {
+  if (!request.figure.empty()) RequireFigureName(request.figure);
+  if (request.video.empty() || request.video.ends_with(".mp4")) return;
+  throw std::invalid_argument(fmt::format("--video {}: the name must end in .mp4", request.video));
+}
+
 void MakePictures(const PictureRequest& request, const config::Experiment& experiment,
                   const sweep::SimulatedTrial& trial, const sweep::SimulatedRun& run) {
   if (!request.figure.empty()) DrawFigure(request.figure, experiment, trial, run);

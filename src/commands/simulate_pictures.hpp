@@ -18,6 +18,9 @@ struct PictureRequest {
 /// Adds --figure, --video and --view.
 void AddPictureFlags(CLI::App& app, PictureRequest& request);
 
+/// Throws std::invalid_argument for names that say no format.
+void CheckPictureNames(const PictureRequest& request);
+
 /// Draws, films and shows. OpenCV is loaded only for a film or a window; a window without a display
 /// is a line on stderr and no failure.
 void MakePictures(const PictureRequest& request, const config::Experiment& experiment,

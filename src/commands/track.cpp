@@ -10,6 +10,7 @@
 #include "flags.hpp"
 #include "keys_flag.hpp"
 #include "logs.hpp"
+#include "outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/config/camera_file.hpp"
 #include "rift/config/experiment.hpp"
@@ -92,6 +93,39 @@ vision::CaptureOptions CaptureFor(const vision::CameraModel& camera,
   return options;
 }
 
+/// Beside the log.
+fs::path RunFileOf(const fs::path& log) {
+  return fs::path(log).replace_extension().string() + ".run.json";
+}
+
+/// `frames/*.jpg` is a camera too, and frames/000.jpg one of its pictures.
+void RefuseAmongPictures(const fs::path& camera, const fs::path& log) {
+  const bool is_pattern = camera.filename().string().find('*') != std::string::npos;
+  const bool is_among =
+      is_pattern && log.extension() == camera.extension() &&
+      IsSameFile(fs::absolute(log).parent_path(), fs::absolute(camera).parent_path());
+  if (!is_among) return;
+  throw std::invalid_argument(
+      fmt::format("--out {} is one of the camera's pictures: name a log", log.string()));
+}
+
+void CheckLogName(const TrackRequest& request) {
+  std::error_code not_there;
+  if (fs::exists(request.out, not_there) && !fs::is_regular_file(request.out, not_there)) {
+    throw std::invalid_argument(fmt::format(
+        "--out {}: the log needs a file, since its run file stands beside it", request.out));
+  }
+  std::vector<fs::path> inputs{request.calibration};
+  for (const std::string& input : {request.world, request.path, request.experiment}) {
+    if (!input.empty()) inputs.emplace_back(input);
+  }
+  if (fs::exists(request.camera, not_there)) inputs.emplace_back(request.camera);
+  RefuseAmongPictures(request.camera, request.out);
+  std::vector<fs::path> outputs{request.out, RunFileOf(request.out)};
+  if (!request.record_waypoints.empty()) outputs.emplace_back(request.record_waypoints);
+  CheckOutputs(inputs, outputs);
+}
+
 void CheckTracking(const TrackRequest& request) {
   if (request.camera.empty()) throw std::invalid_argument("--camera is missing");
   if (request.calibration.empty()) {
@@ -101,11 +135,7 @@ void CheckTracking(const TrackRequest& request) {
   if (request.out.empty() && request.world.empty()) {
     throw std::invalid_argument("--out LOG.csv is missing: where shall the poses go?");
   }
-  std::error_code not_there;
-  if (fs::equivalent(request.out, request.calibration, not_there)) {
-    throw std::invalid_argument(
-        fmt::format("--out {} is the calibration: name a log", request.out));
-  }
+  if (!request.out.empty()) CheckLogName(request);
   if (!request.images.empty() || !request.picture.empty()) {
     throw std::invalid_argument("--images and --picture belong to --calibrate");
   }
@@ -126,11 +156,6 @@ void SetAndStoreWorld(const TrackRequest& request, const WorldParts& parts,
             HeadOf(ReadFile(request.calibration)) + config::WriteCamera(camera));
   Say(fmt::format("world frame from {}, {:.2f} mm off at its points, is now in {}",
                   camera.world->origin, 1e3 * camera.world->residual_m, request.calibration));
-}
-
-/// Beside the log.
-fs::path RunFileOf(const fs::path& log) {
-  return fs::path(log).replace_extension().string() + ".run.json";
 }
 
 int Report(const TrackRequest& request, const vision::CameraModel& camera,

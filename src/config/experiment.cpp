@@ -146,12 +146,23 @@ void ResolveSpace(Experiment& experiment) {
 
 }  // namespace
 
+namespace {
+
+/// A text that was quoted for it would otherwise be taken for a number or for nothing.
+Node LevelNode(const sweep::ParameterValue& level) {
+  const Node plain = Node::Scalar(level.text);
+  const bool reads_as_number = level.text.find_first_of("0123456789+-.") == 0;
+  return !level.number && (reads_as_number || plain.IsNull()) ? Node::Text(level.text) : plain;
+}
+
+}  // namespace
+
 Experiment ExperimentAt(const Experiment& experiment,
                         const std::vector<sweep::ParameterValue>& theta) {
   std::vector<KeyValue> values;
   for (size_t i = 0; i < theta.size(); ++i) {
     const sweep::Parameter& parameter = experiment.space.parameters[i];
-    Node value = theta[i].number ? Node::Scalar(theta[i].text) : Node::Text(theta[i].text);
+    Node value = LevelNode(theta[i]);
     value.origin.source = parameter.origin;
     values.push_back({parameter.key, value});
   }

@@ -92,10 +92,37 @@ TEST_CASE("A bad experiment is refused with its place and nothing is written") {
             .starts_with("bad.yaml:2:48"));
   CHECK(refusal(task + "simulation: {terrain: {surface: grund}}\n").starts_with("bad.yaml:2:"));
   CHECK(refusal("{}\n").starts_with("bad.yaml: "));
+  CHECK(refusal("waypoints: [{x: 0, y: 0}, {y: 0.3}]\n")
+            .starts_with("bad.yaml:1:27: key 'waypoints[1].x' is missing"));
   CHECK(refusal(task, {"--start", "1,2"}).find("--start '1,2': give X,Y,YAW_DEG") !=
         std::string::npos);
   CHECK(refusal(task, {"--start=0,0,1e300"}).find("waypoints[0].heading") != std::string::npos);
   CHECK(refusal(task, {"--seed=-1"}).find("seed") != std::string::npos);
+}
+
+TEST_CASE("rift simulate overwrites no input and no other output and no sweep") {
+  const test::TemporaryFolder folder;
+  const std::string task = folder / "task.yaml", text = test::ReadFile(kTask);
+  test::WriteText(task, text);
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& rule) {
+    std::vector<std::string> arguments{"simulate", task};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProcessResult result = RunRift(arguments);
+    INFO(result.err);
+    CHECK(result.exit_code == 2);
+    CHECK(result.err.find(rule) != std::string::npos);
+    CHECK_FALSE(fs::exists(folder / "sim.csv"));
+    CHECK(test::ReadFile(task) == text);
+  };
+  const std::string out = folder / "sim.csv";
+  refused({"--out", out, "--tum", task}, "is an input");
+  refused({"--out", out, "--tum", out}, "another output");
+  refused({"--out", out, "--tum", folder / "sim.truth.csv"}, "another output");
+  refused({"--out", out, "--figure", folder / "run.txt"}, ".svg or .png");
+  refused({"--out", out, "--video", folder / "run.avi"}, ".mp4");
+  fs::create_directory(folder / "swept");
+  test::WriteText(folder / "swept/table.csv", "id\n");
+  refused({"--out", folder / "swept"}, "holds a sweep");
 }
 
 TEST_CASE("A picture of a heightfield is found from the file that names it") {

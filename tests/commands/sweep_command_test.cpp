@@ -174,6 +174,17 @@ TEST_CASE("Robots that never arrive are rows and end with 1") {
   CHECK(test::ReadFile(folder / "out/table.csv").find("0.15,1,,,timed_out,") != std::string::npos);
 }
 
+TEST_CASE("A key that is true or false can be an axis") {
+  const test::TemporaryFolder folder;
+  WriteText(folder / "bool.yaml",
+            "waypoints: [{x: 0, y: 0}, {x: 0.4, y: 0}]\n"
+            "space: {simulation.link.two_decimals: [true, false]}\n");
+  REQUIRE(RunRift({"sweep", folder / "bool.yaml", "--out", folder / "out"}).exit_code == 0);
+  const std::string table = test::ReadFile(folder / "out/table.csv");
+  CHECK(table.find("\ntrue,") != std::string::npos);
+  CHECK(table.find("\nfalse,") != std::string::npos);
+}
+
 TEST_CASE("Settings whose labels would read alike stay apart") {
   const LogFolder logs;
   for (const std::string name : {"x|y, z", "x, y|z", "x|z", "x, y|y, z"}) {

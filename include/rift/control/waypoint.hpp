@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rift/geometry/pose2.hpp"
@@ -20,6 +22,9 @@ struct Waypoint {
   bool stop = true;
 
   Eigen::Vector2d Position() const { return {x_m, y_m}; }
+
+  /// A real robot must not drive to a place that was forgotten.
+  static constexpr std::array<std::string_view, 2> kRequired{"x", "y"};
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
