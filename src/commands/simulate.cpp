@@ -86,8 +86,8 @@ struct RunFiles {
 };
 
 /// The same text again in the file it was read from does no harm.
-bool IsUnchanged(const fs::path& path, const std::string& text) {
-  return fs::is_regular_file(path) && ReadFile(path) == text;
+bool IsSaved(const config::Experiment& experiment, const fs::path& path) {
+  return fs::is_regular_file(path) && ReadFile(path) == config::WriteExperiment(experiment);
 }
 
 void CheckNames(const SimulateRequest& request, const fs::path& out,
@@ -96,9 +96,7 @@ void CheckNames(const SimulateRequest& request, const fs::path& out,
   RefuseSweepFolder(out);
   const RunFiles files(out);
   std::vector<fs::path> outputs{files.trajectory, files.truth, files.commands, files.summary};
-  if (!IsUnchanged(files.experiment, config::WriteExperiment(experiment))) {
-    outputs.push_back(files.experiment);
-  }
+  if (!IsSaved(experiment, files.experiment)) outputs.push_back(files.experiment);
   for (const std::string& name : {request.tum, request.pictures.figure, request.pictures.video}) {
     if (!name.empty()) outputs.emplace_back(name);
   }

@@ -88,11 +88,15 @@ sweep::GridPlan SweepSources::Plan() const {
           .falls_count = experiment_.falsify.falls_count};
 }
 
-std::string SweepSources::ReferencePath(const sweep::Theta& theta, const std::string& trial) const {
+std::string SweepSources::Filled(const sweep::PathTemplate& path, const sweep::Theta& theta,
+                                 const std::string& trial) const {
   return InFile(experiment_file_, [&] {
-    return sweep::FillTemplate(experiment_.reference.path.text, experiment_.space.parameters, theta,
-                               trial);
+    return sweep::FillTemplate(path.text, experiment_.space.parameters, theta, trial);
   });
+}
+
+std::string SweepSources::ReferencePath(const sweep::Theta& theta, const std::string& trial) const {
+  return Filled(experiment_.reference.path, theta, trial);
 }
 
 sweep::SimulatedTrial SweepSources::TrialFor(const sweep::TrialRequest& request,
@@ -109,9 +113,7 @@ sweep::SimulatedTrial SweepSources::TrialFor(const sweep::TrialRequest& request,
 sweep::Recording SweepSources::Candidate(const sweep::TrialRequest& request,
                                          const sweep::Recording& reference) {
   if (experiment_.candidate.kind == CandidateKind::kLogs) {
-    const std::string path =
-        sweep::FillTemplate(experiment_.candidate.path.text, experiment_.space.parameters,
-                            request.theta, request.trial);
+    const std::string path = Filled(experiment_.candidate.path, request.theta, request.trial);
     return WithLimits(candidate_logs_.At(path), experiment_, request.theta, 0.0);
   }
   if (reference.status != sweep::TrialStatus::kOk) return reference;  // nothing to compare with

@@ -38,6 +38,8 @@ class SweepSources {
 
  private:
   void RequirePath(const sweep::PathTemplate& path, const std::string& key) const;
+  std::string Filled(const sweep::PathTemplate& path, const sweep::Theta& theta,
+                     const std::string& trial) const;
   std::string ReferencePath(const sweep::Theta& theta, const std::string& trial) const;
   const sweep::Recording& Nominal(const sweep::TrialRequest& request);
   double NominalNoiseFloor_m();

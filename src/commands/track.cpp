@@ -10,12 +10,12 @@
 #include "flags.hpp"
 #include "keys_flag.hpp"
 #include "logs.hpp"
-#include "outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/config/camera_file.hpp"
 #include "rift/config/experiment.hpp"
 #include "stop_signal.hpp"
 #include "track_calibrate.hpp"
+#include "track_names.hpp"
 #include "track_output.hpp"
 #include "track_request.hpp"
 #include "track_run.hpp"
@@ -91,39 +91,6 @@ vision::CaptureOptions CaptureFor(const vision::CameraModel& camera,
   if (camera.width_px > 0) options.width_px = camera.width_px;
   if (camera.height_px > 0) options.height_px = camera.height_px;
   return options;
-}
-
-/// Beside the log.
-fs::path RunFileOf(const fs::path& log) {
-  return fs::path(log).replace_extension().string() + ".run.json";
-}
-
-/// `frames/*.jpg` is a camera too, and frames/000.jpg one of its pictures.
-void RefuseAmongPictures(const fs::path& camera, const fs::path& log) {
-  const bool is_pattern = camera.filename().string().find('*') != std::string::npos;
-  const bool is_among =
-      is_pattern && log.extension() == camera.extension() &&
-      IsSameFile(fs::absolute(log).parent_path(), fs::absolute(camera).parent_path());
-  if (!is_among) return;
-  throw std::invalid_argument(
-      fmt::format("--out {} is one of the camera's pictures: name a log", log.string()));
-}
-
-void CheckLogName(const TrackRequest& request) {
-  std::error_code not_there;
-  if (fs::exists(request.out, not_there) && !fs::is_regular_file(request.out, not_there)) {
-    throw std::invalid_argument(fmt::format(
-        "--out {}: the log needs a file, since its run file stands beside it", request.out));
-  }
-  std::vector<fs::path> inputs{request.calibration};
-  for (const std::string& input : {request.world, request.path, request.experiment}) {
-    if (!input.empty()) inputs.emplace_back(input);
-  }
-  if (fs::exists(request.camera, not_there)) inputs.emplace_back(request.camera);
-  RefuseAmongPictures(request.camera, request.out);
-  std::vector<fs::path> outputs{request.out, RunFileOf(request.out)};
-  if (!request.record_waypoints.empty()) outputs.emplace_back(request.record_waypoints);
-  CheckOutputs(inputs, outputs);
 }
 
 void CheckTracking(const TrackRequest& request) {

@@ -144,10 +144,6 @@ void ResolveSpace(Experiment& experiment) {
   TrySpace(experiment);
 }
 
-}  // namespace
-
-namespace {
-
 /// A text that was quoted for it would otherwise be taken for a number or for nothing.
 Node LevelNode(const sweep::ParameterValue& level) {
   const Node plain = Node::Scalar(level.text);

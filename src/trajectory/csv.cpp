@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -15,19 +14,6 @@
 
 namespace rift::trajectory::csv {
 namespace {
-
-/// The first 0 to 8 bytes of a word, wherever its first byte stands.
-constexpr std::array<std::uint64_t, 9> MakeMasks() {
-  std::array<std::uint64_t, 9> masks{};
-  for (size_t size = 1; size <= 8; ++size) {
-    const std::uint64_t all = ~std::uint64_t{0};
-    const size_t unused_bits = 8 * (8 - size);
-    masks[size] =
-        std::endian::native == std::endian::little ? all >> unused_bits : all << unused_bits;
-  }
-  return masks;
-}
-constexpr std::array<std::uint64_t, 9> kMasks = MakeMasks();
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
 
@@ -122,7 +108,9 @@ std::vector<std::string> SplitHeader(std::string_view line) {
 ShortText::ShortText(const char* begin, size_t size, const char* end) {
   if (size > sizeof(bytes_) || static_cast<size_t>(end - begin) < sizeof(bytes_)) return;
   size_ = size;
-  mask_ = kMasks[size];
+  // A look at these from `size` before their middle on keeps the first `size` bytes of a word.
+  constexpr std::array<unsigned char, 16> kMask{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
+  std::memcpy(&mask_, kMask.data() + kMask.size() / 2 - size, sizeof(mask_));
   std::memcpy(&bytes_, begin, sizeof(bytes_));
   bytes_ &= mask_;
 }
