@@ -1,12 +1,12 @@
 # Files that the program carries inside, so that a report needs nothing beside the binary.
 
-# What report.html is made of: the files of src/report/page and Vega.
+# What report.html is made of: the files of src/report/page/assets and Vega.
 function(rift_embed_report_page)
   rift_join_vega("${PROJECT_BINARY_DIR}/generated/vega.js")
-  file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/report/page/*.*"
-       "${PROJECT_SOURCE_DIR}/src/report/page/charts/*.json")
-  rift_embed(rift_report ${files} "${PROJECT_BINARY_DIR}/generated/vega.js")
-  target_include_directories(rift_report PRIVATE "${PROJECT_SOURCE_DIR}/src/report")
+  file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/report/page/assets/*.*"
+       "${PROJECT_SOURCE_DIR}/src/report/page/assets/charts/*.json")
+  rift_embed(rift_report_page ${files} "${PROJECT_BINARY_DIR}/generated/vega.js")
+  target_include_directories(rift_report_page PRIVATE "${PROJECT_SOURCE_DIR}/src/report/page")
 endfunction()
 
 # rift_embed(TARGET FILE...): each file becomes an entry of Embedded(), named by its file name.

@@ -10,25 +10,24 @@ function(rift_compile_options target)
   endif()
 endfunction()
 
-# rift_room(NAME [ROOMS room...] [LIBRARIES target...] [PRIVATE_LIBRARIES target...])
-# A room is src/NAME with its headers in include/rift/NAME: the static library rift_NAME, which
-# links only the rooms it may include.
+# rift_room(NAME [ROOMS room...] [OPTIONS room...] [LIBRARIES target...] [PRIVATE_LIBRARIES target...])
+# A room is src/NAME with its public headers in include/rift/NAME: the static library rift_NAME
+# (with _ for /), which links the rooms it may include.
 function(rift_room name)
+  cmake_parse_arguments(ARG "" "" "ROOMS;OPTIONS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
   set(RIFT_ROOMS ${RIFT_ROOMS} ${name} PARENT_SCOPE)
-  cmake_parse_arguments(ARG "" "" "ROOMS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  list(JOIN ARG_ROOMS " " rooms)
+  list(JOIN ARG_OPTIONS " " options)
+  file(APPEND "${PROJECT_BINARY_DIR}/generated/rooms.txt" "${name}: ${rooms}; ${options}\n")
+  string(REPLACE "/" "_" target "rift_${name}")
+  set(linked ${ARG_ROOMS} ${ARG_OPTIONS})
+  list(TRANSFORM linked PREPEND rift_)
+  list(TRANSFORM linked REPLACE "/" "_")
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp")
-  list(TRANSFORM ARG_ROOMS PREPEND rift_)
-  if(NOT sources)  # a room of headers alone
-    add_library(rift_${name} INTERFACE)
-    target_include_directories(rift_${name} INTERFACE "${PROJECT_SOURCE_DIR}/include")
-    target_link_libraries(rift_${name} INTERFACE ${ARG_ROOMS} ${ARG_LIBRARIES})
-    return()
-  endif()
-  add_library(rift_${name} STATIC ${sources})
-  target_include_directories(rift_${name} PUBLIC "${PROJECT_SOURCE_DIR}/include")
-  target_link_libraries(rift_${name} PUBLIC ${ARG_ROOMS} ${ARG_LIBRARIES}
-                                     PRIVATE ${ARG_PRIVATE_LIBRARIES})
-  rift_compile_options(rift_${name})
+  add_library(${target} STATIC ${sources})
+  target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}/include")
+  target_link_libraries(${target} PUBLIC ${linked} ${ARG_LIBRARIES} PRIVATE ${ARG_PRIVATE_LIBRARIES})
+  rift_compile_options(${target})
 endfunction()
 
 # rift_room_test(NAME [LIBRARIES target...]): every tests/NAME/*_test.cpp in one Catch2 program,

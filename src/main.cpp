@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "rift/commands/command.hpp"
-#include "rift/config/error.hpp"
-#include "rift/config/suggest.hpp"
+#include "rift/yaml/error.hpp"
+#include "rift/yaml/suggest.hpp"
 
 namespace {
 
@@ -25,7 +25,7 @@ void CheckSubcommand(int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   const std::vector<std::string> names = Names();
   if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
-  const std::string nearest = rift::config::Nearest(argv[1], names);
+  const std::string nearest = rift::yaml::Nearest(argv[1], names);
   throw std::invalid_argument(
       nearest.empty()
           ? fmt::format("'{}' is no subcommand; there are {}", argv[1], fmt::join(names, ", "))
@@ -38,7 +38,9 @@ int Run(int argc, char** argv) {
   CLI::App app("rift: where a simulator and its robot part ways, and why");
   app.set_version_flag("--version", "rift " RIFT_VERSION);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 done, 1 falsified (with --exit-code) or not reached, 2 usage or input, 3 failure.");
+  app.footer(
+      "Exit codes: 0 done, 1 falsified (with --exit-code) or not reached, 2 usage or input, 3 "
+      "failure.");
   for (const Command& command : Commands()) {
     CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
     // A word that is not there chooses no subcommand, and options take time to make.
@@ -70,7 +72,7 @@ int main(int argc, char** argv) {
     return Run(argc, argv);
   } catch (const std::invalid_argument& error) {
     return Fail(error.what(), rift::commands::kBadInput);
-  } catch (const rift::config::Error& error) {
+  } catch (const rift::yaml::Error& error) {
     return Fail(error.what(), rift::commands::kBadInput);
   } catch (const std::exception& error) {
     return Fail(error.what(), rift::commands::kRunTimeFailure);

@@ -9,9 +9,9 @@
 #include "calibrate_output.hpp"
 #include "files.hpp"
 #include "rift/commands/command.hpp"
-#include "rift/sweep/drive_likeness.hpp"
-#include "rift/sweep/grid.hpp"
-#include "rift/sweep/labels.hpp"
+#include "rift/experiment/parameter.hpp"
+#include "rift/sweep/calibrate/drive_likeness.hpp"
+#include "rift/sweep/falsify/labels.hpp"
 #include "robot_file.hpp"
 #include "simulated_runs.hpp"
 #include "sweep_sources.hpp"
@@ -29,14 +29,14 @@ constexpr std::uint64_t kJudgeSeeds = 50'000;
 
 /// A log with its setting; its place in the list gives its seeds.
 struct Entry {
-  sweep::Theta theta;
+  experiment::Theta theta;
   CalibrationTrial trial;
   sweep::CalibrationLog log;
 };
 
 class Calibrator {
  public:
-  Calibrator(const config::Experiment& experiment, const CalibrateRequest& request)
+  Calibrator(const experiment::Experiment& experiment, const CalibrateRequest& request)
       : experiment_(experiment),
         request_(request),
         sources_(experiment, request.experiment_file),
@@ -63,7 +63,7 @@ class Calibrator {
   sweep::DriveLikeness LikenessOf(const std::vector<RepeatedTrial>& trials,
                                   const std::vector<size_t>& chosen) const;
 
-  const config::Experiment& experiment_;
+  const experiment::Experiment& experiment_;
   const CalibrateRequest& request_;
   SweepSources sources_;
   std::vector<Entry> entries_;
@@ -73,7 +73,7 @@ class Calibrator {
 
 std::vector<double> Calibrator::StartValues() const {
   std::vector<double> values;
-  for (const sweep::FreeParameter& free : experiment_.calibrate.fit.list) {
+  for (const experiment::FreeParameter& free : experiment_.calibrate.fit.list) {
     values.push_back(free.start);
   }
   return values;
@@ -85,8 +85,8 @@ bool Calibrator::IsHeldOut(const std::string& trial) const {
 }
 
 void Calibrator::Load() {
-  const std::vector<sweep::Parameter>& parameters = experiment_.space.parameters;
-  for (const sweep::Theta& theta : sweep::GridPoints(parameters)) {
+  const std::vector<experiment::Parameter>& parameters = experiment_.space.parameters;
+  for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
     for (const sweep::TrialRequest& request : sweep::TrialsAt(sources_.Plan(), theta)) {
       sweep::Recording real = sources_.Reference(request);
       if (real.status == sweep::TrialStatus::kOk && !real.trajectory.HasYaw()) {
@@ -122,8 +122,8 @@ std::vector<const Entry*> Calibrator::Side(bool held_out) const {
 
 sweep::SimulatedTrial Calibrator::TwinOf(const Entry& entry, const std::vector<double>& values,
                                          std::uint64_t seed) const {
-  const config::Experiment at =
-      config::ExperimentAt(config::CalibratedAt(experiment_, values), entry.theta);
+  const experiment::Experiment at =
+      experiment::ExperimentAt(experiment::CalibratedAt(experiment_, values), entry.theta);
   const geometry::Pose2 start = StartFromLog(entry.log.log, 0.0, at.simulation.mocap);
   const auto number = static_cast<std::uint64_t>(&entry - entries_.data());
   return TrialOf(at, start, experiment_.seed + number * kSeedsOfLog + seed,
@@ -280,10 +280,10 @@ CalibrationReport Calibrator::Run() {
 
 }  // namespace
 
-int Calibrate(const config::Experiment& experiment, const CalibrateRequest& request) {
+int Calibrate(const experiment::Experiment& experiment, const CalibrateRequest& request) {
   Calibrator calibrator(experiment, request);
   const CalibrationReport report = calibrator.Run();
-  WriteFile(request.out / "experiment.yaml", config::WriteExperiment(experiment));
+  WriteFile(request.out / "experiment.yaml", experiment::WriteExperiment(experiment));
   WriteFile(request.out / "inputs.txt", calibrator.Sources().InputsText());
   const std::string json = CalibrationJson(experiment, report);
   WriteFile(request.out / "calibration.json", json);

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "rift/config/experiment.hpp"
-#include "rift/sweep/drive_likeness.hpp"
-#include "rift/sweep/error_structure.hpp"
+#include "rift/experiment/experiment.hpp"
+#include "rift/sweep/calibrate/drive_likeness.hpp"
+#include "rift/sweep/calibrate/error_structure.hpp"
 
 namespace rift::commands {
 
@@ -55,6 +55,6 @@ struct CalibrateRequest {
 
 /// Fits, judges, writes calibration.json, experiment.yaml, inputs.txt, figures and the robot's
 /// file, and prints the table; returns the exit code.
-int Calibrate(const config::Experiment& experiment, const CalibrateRequest& request);
+int Calibrate(const experiment::Experiment& experiment, const CalibrateRequest& request);
 
 }  // namespace rift::commands

@@ -9,7 +9,7 @@
 #include "files.hpp"
 #include "json_fields.hpp"
 #include "likeness_output.hpp"
-#include "rift/report/calibration_figure.hpp"
+#include "rift/report/figures/calibration_figure.hpp"
 
 namespace rift::commands {
 namespace {
@@ -178,7 +178,8 @@ std::string CalibrationText(const CalibrationReport& report) {
   return text;
 }
 
-std::string CalibrationJson(const config::Experiment& experiment, const CalibrationReport& report) {
+std::string CalibrationJson(const experiment::Experiment& experiment,
+                            const CalibrationReport& report) {
   ordered_json json = {{"name", experiment.name},
                        {"confidence", experiment.calibrate.method.confidence},
                        {"fit", FitJson(report.calibration)}};
@@ -204,7 +205,7 @@ std::string CalibrationJson(const config::Experiment& experiment, const Calibrat
 }
 
 void WriteCalibrationFigures(const std::filesystem::path& folder,
-                             const config::Experiment& experiment,
+                             const experiment::Experiment& experiment,
                              const CalibrationReport& report) {
   const bool has_gaps =
       std::any_of(report.trials.begin(), report.trials.end(), [](const CalibrationTrial& trial) {

@@ -12,12 +12,14 @@ namespace rift::commands {
 std::string CalibrationText(const CalibrationReport& report);
 
 /// Everything as JSON; the same report gives the same bytes.
-std::string CalibrationJson(const config::Experiment& experiment, const CalibrationReport& report);
+std::string CalibrationJson(const experiment::Experiment& experiment,
+                            const CalibrationReport& report);
 
 /// figures/calibration.svg and .png below `folder`: gap of each trial before and after the fit, and
 /// the paths of one trial.
 void WriteCalibrationFigures(const std::filesystem::path& folder,
-                             const config::Experiment& experiment, const CalibrationReport& report);
+                             const experiment::Experiment& experiment,
+                             const CalibrationReport& report);
 
 /// "at a bound", "not identifiable" or "no effect"; empty when there is nothing to warn of.
 std::string FlagOf(const sweep::CalibratedParameter& parameter);

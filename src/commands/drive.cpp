@@ -36,9 +36,9 @@ struct DriveRequest {
 
 void Say(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
-config::Experiment LoadFor(const DriveRequest& request) {
-  return config::LoadExperiment(request.experiment, request.overrides,
-                                [](const std::string& path) { return ReadFile(path); });
+experiment::Experiment LoadFor(const DriveRequest& request) {
+  return experiment::LoadExperiment(request.experiment, request.overrides,
+                                    [](const std::string& path) { return ReadFile(path); });
 }
 
 int PingRobot(const DriveRequest& request) {
@@ -67,8 +67,8 @@ void RequireAll(const DriveRequest& request) {
   }
 }
 
-config::Experiment LoadTask(const DriveRequest& request) {
-  config::Experiment experiment = LoadFor(request);
+experiment::Experiment LoadTask(const DriveRequest& request) {
+  experiment::Experiment experiment = LoadFor(request);
   try {
     control::CheckWaypoints(experiment.waypoints);
   } catch (const std::invalid_argument& no_task) {
@@ -78,7 +78,7 @@ config::Experiment LoadTask(const DriveRequest& request) {
 }
 
 // A robot's run cannot be repeated to the byte as a simulated one can.
-fs::path NewFolder(const DriveRequest& request, const config::Experiment& experiment) {
+fs::path NewFolder(const DriveRequest& request, const experiment::Experiment& experiment) {
   fs::path folder =
       request.out.empty() ? OutputOf("", experiment.name + "_drive") : fs::path(request.out);
   if (!fs::exists(folder / "trajectory.csv")) return folder;
@@ -90,7 +90,7 @@ fs::path NewFolder(const DriveRequest& request, const config::Experiment& experi
 /// All that a drive is made of, opened in the order in which it is cheap to fail.
 class Drivers {
  public:
-  Drivers(const DriveRequest& request, const config::Experiment& experiment,
+  Drivers(const DriveRequest& request, const experiment::Experiment& experiment,
           const vision::CameraModel& camera)
       : experiment_(experiment),
         person_(request.yes),
@@ -130,7 +130,7 @@ class Drivers {
   const vision::CameraModel& camera() const { return camera_.model; }
 
  private:
-  const config::Experiment& experiment_;
+  const experiment::Experiment& experiment_;
   DriveOperator person_;
   hardware::SteadyClock clock_;
   hardware::SerialPort port_;
@@ -141,7 +141,7 @@ class Drivers {
 
 int DriveRobot(const DriveRequest& request) {
   RequireAll(request);
-  const config::Experiment experiment = LoadTask(request);
+  const experiment::Experiment experiment = LoadTask(request);
   const fs::path folder = NewFolder(request, experiment);
   Drivers drivers(request, experiment, ReadDriveCamera(request.calibration));
   BeginDriveFolder(folder, experiment, drivers.camera());

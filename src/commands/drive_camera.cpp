@@ -7,7 +7,7 @@
 
 #include "enum_name.hpp"
 #include "files.hpp"
-#include "rift/config/camera_file.hpp"
+#include "rift/vision/camera/camera_file.hpp"
 
 namespace rift::commands {
 namespace {
@@ -41,7 +41,7 @@ void CheckSize(const vision::Frame& frame, const std::string& camera, vision::Ca
 }  // namespace
 
 vision::CameraModel ReadDriveCamera(const std::string& calibration) {
-  vision::CameraModel model = config::ReadCamera(ReadFile(calibration), calibration);
+  vision::CameraModel model = vision::ReadCamera(ReadFile(calibration), calibration);
   if (model.world) return model;
   throw std::invalid_argument(fmt::format(
       "{}: the calibration has no world frame, so nobody knows where on the floor the waypoints "
@@ -50,7 +50,7 @@ vision::CameraModel ReadDriveCamera(const std::string& calibration) {
 }
 
 DriveCamera OpenDriveCamera(vision::Vision& vision, const std::string& camera,
-                            vision::CameraModel model, const config::Experiment& experiment) {
+                            vision::CameraModel model, const experiment::Experiment& experiment) {
   const vision::TagOptions& tag = experiment.track.tag;
   DriveCamera opened{.capture = vision.OpenCapture(camera, experiment.track.capture),
                      .model = std::move(model)};

@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "rift/config/experiment.hpp"
+#include "rift/experiment/experiment.hpp"
 #include "rift/hardware/camera_poses.hpp"
-#include "rift/vision/module.hpp"
+#include "rift/vision/module/module.hpp"
 
 namespace rift::commands {
 
@@ -25,7 +25,7 @@ struct DriveCamera {
 /// and for pictures of another size than the calibration's; std::runtime_error when no picture
 /// comes, or two tags have the robot's id.
 DriveCamera OpenDriveCamera(vision::Vision& vision, const std::string& camera,
-                            vision::CameraModel model, const config::Experiment& experiment);
+                            vision::CameraModel model, const experiment::Experiment& experiment);
 
 /// What the operator should know before the start, one line each.
 std::vector<std::string> WarningsOf(const DriveCamera& camera);

@@ -2,19 +2,19 @@
 
 #include "drive_output.hpp"
 #include "files.hpp"
-#include "rift/config/camera_file.hpp"
 #include "rift/trajectory/log.hpp"
+#include "rift/vision/camera/camera_file.hpp"
 #include "trial_output.hpp"
 
 namespace rift::commands {
 
-void BeginDriveFolder(const std::filesystem::path& folder, const config::Experiment& experiment,
+void BeginDriveFolder(const std::filesystem::path& folder, const experiment::Experiment& experiment,
                       const vision::CameraModel& camera) {
-  WriteFile(folder / "experiment.yaml", config::WriteExperiment(experiment));
-  WriteFile(folder / "camera.yaml", config::WriteCamera(camera));
+  WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(experiment));
+  WriteFile(folder / "camera.yaml", vision::WriteCamera(camera));
 }
 
-void SaveDrive(const std::filesystem::path& folder, const config::Experiment& experiment,
+void SaveDrive(const std::filesystem::path& folder, const experiment::Experiment& experiment,
                const DriveRun& run) {
   WriteFile(folder / "commands.csv", CommandsCsv(run.trial));
   WriteFile(folder / "stages.csv", StagesCsv(run.evidence));

@@ -130,7 +130,7 @@ std::string PingText(const hardware::PingResult& ping, const hardware::HardwareO
   return text;
 }
 
-std::string DriveJson(const config::Experiment& experiment, const DriveRun& run) {
+std::string DriveJson(const experiment::Experiment& experiment, const DriveRun& run) {
   const trial::TrialResult& result = run.trial;
   ordered_json json{{"name", experiment.name},
                     {"rift_version", RIFT_VERSION},

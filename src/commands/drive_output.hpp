@@ -12,7 +12,7 @@ std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareO
 std::string PingText(const hardware::PingResult& ping, const hardware::HardwareOptions& options);
 
 /// As a simulated run's, with protocol, link, latency by stage, and how the drive was stopped.
-std::string DriveJson(const config::Experiment& experiment, const DriveRun& run);
+std::string DriveJson(const experiment::Experiment& experiment, const DriveRun& run);
 std::string DriveText(const DriveRun& run);
 
 /// One row a pose: when it went through each stage. Cells of stages never reached are empty.

@@ -21,7 +21,7 @@ void RequireBudget(const hardware::PingResult& ping, const hardware::PingOptions
       fmt::format("not armed, the link breaks its budget: {}", fmt::join(broken, "; ")));
 }
 
-double PrintStoppingDistance(const DriveParts& parts, const config::Experiment& experiment,
+double PrintStoppingDistance(const DriveParts& parts, const experiment::Experiment& experiment,
                              const hardware::PingResult& ping) {
   hardware::StoppingOptions options = experiment.hardware.stopping;
   if (ping.IsMeasured()) options.delay_s = ping.OneWay_s();
@@ -59,7 +59,7 @@ bool WaitUntil(hardware::RealRobot& robot, const std::function<bool()>& is_so) {
 bool WaitForFirstPose(hardware::RealRobot& robot) {
   const double start_s = robot.Sense().now_s;
   return WaitUntil(robot, [&] {
-    const robot::Sensed sensed = robot.Sense();
+    const trial::Sensed sensed = robot.Sense();
     if (!sensed.pose && sensed.now_s - start_s > kFirstPose_s) {
       throw std::runtime_error(fmt::format(
           "the robot was not seen within {} s: is its tag in the picture, flat and well "
@@ -71,7 +71,7 @@ bool WaitForFirstPose(hardware::RealRobot& robot) {
 }
 
 void SayWhereItStands(const DriveParts& parts, hardware::RealRobot& robot,
-                      const config::Experiment& experiment) {
+                      const experiment::Experiment& experiment) {
   const geometry::Pose2 pose = robot.Sense().pose->world_from_robot;
   const geometry::Pose2 start = control::StartPose(experiment.waypoints);
   const double off_m = (pose.Position() - start.Position()).norm();
@@ -90,7 +90,7 @@ hardware::PingResult MeasureLink(hardware::ByteLine& line, hardware::Clock& cloc
   return hardware::Ping(line, clock, options.line, protocol, options.ping);
 }
 
-DriveRun Drive(const DriveParts& parts, const config::Experiment& experiment) {
+DriveRun Drive(const DriveParts& parts, const experiment::Experiment& experiment) {
   control::CheckWaypoints(experiment.waypoints);
   DriveRun run;
   run.ping = MeasureLink(parts.line, parts.clock, experiment.hardware);

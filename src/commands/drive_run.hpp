@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/config/experiment.hpp"
+#include "rift/experiment/experiment.hpp"
 #include "rift/hardware/byte_line.hpp"
 #include "rift/hardware/ping.hpp"
 #include "rift/hardware/pose_source.hpp"
@@ -39,7 +39,7 @@ struct DriveRun {
 /// Hello, ping, stopping distance, the first pose, the operator's yes, the trial, the stop.
 /// Throws std::runtime_error when the drive cannot begin (link over its budget, robot not seen,
 /// camera or port gone); std::invalid_argument when the experiment has no task.
-DriveRun Drive(const DriveParts& parts, const config::Experiment& experiment);
+DriveRun Drive(const DriveParts& parts, const experiment::Experiment& experiment);
 
 /// The link alone: hello and ping, with the motors at zero.
 hardware::PingResult MeasureLink(hardware::ByteLine& line, hardware::Clock& clock,

@@ -10,7 +10,7 @@ constexpr std::chrono::milliseconds kPicture{100};
 constexpr double kTrailStep_m = 0.002;
 
 vision::TrackScene SceneOf(const vision::CameraModel& camera,
-                           const config::Experiment& experiment) {
+                           const experiment::Experiment& experiment) {
   vision::TrackScene scene{.camera = &camera};
   for (const control::Waypoint& waypoint : experiment.waypoints) {
     scene.path_m.push_back(waypoint.Position());
@@ -32,7 +32,7 @@ void Follow(const vision::Sighting& sighting, vision::TrackScene& scene) {
 
 void ShowUntilOver(const std::future<DriveRun>& drive, vision::TrackWindow& window,
                    const hardware::CameraPoses& poses, const vision::CameraModel& camera,
-                   const config::Experiment& experiment, DriveOperator& person) {
+                   const experiment::Experiment& experiment, DriveOperator& person) {
   vision::TrackScene scene = SceneOf(camera, experiment);
   scene.prompts = {"close the window or press q in it to stop the robot"};
   while (drive.wait_for(kPicture) != std::future_status::ready) {

@@ -12,6 +12,6 @@ namespace rift::commands {
 /// it stops the robot.
 void ShowUntilOver(const std::future<DriveRun>& drive, vision::TrackWindow& window,
                    const hardware::CameraPoses& poses, const vision::CameraModel& camera,
-                   const config::Experiment& experiment, DriveOperator& person);
+                   const experiment::Experiment& experiment, DriveOperator& person);
 
 }  // namespace rift::commands

@@ -9,11 +9,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json ThetaJson(const sweep::SweepResult& result,
-                       const std::vector<sweep::ParameterValue>& theta) {
+ordered_json ThetaJson(const sweep::SweepResult& result, const experiment::Theta& theta) {
   ordered_json json = ordered_json::object();
   for (size_t i = 0; i < theta.size(); ++i) {
-    const sweep::ParameterValue& value = theta[i];
+    const experiment::ParameterValue& value = theta[i];
     json[result.parameters[i].Name()] =
         value.number ? ordered_json(*value.number) : ordered_json(value.text);
   }

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "rift/sweep/explanation.hpp"
+#include "rift/sweep/explain/explanation.hpp"
 
 namespace rift::commands {
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "explanation_output.hpp"
-#include "rift/report/answers.hpp"
+#include "rift/report/text/answers.hpp"
 
 namespace rift::commands {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "rift/report/figure.hpp"
+#include "rift/report/figures/figure.hpp"
 
 namespace rift::commands {
 

@@ -42,7 +42,7 @@ class ChangedFlags {
 
 }  // namespace
 
-FurtherTrials::FurtherTrials(SweepSources& sources, const config::Experiment& experiment,
+FurtherTrials::FurtherTrials(SweepSources& sources, const experiment::Experiment& experiment,
                              const Style& style, const StopSignal& stop)
     : plan_(sources.Plan()),
       style_(style),
@@ -72,10 +72,10 @@ void FurtherTrials::End() {
   progress_.reset();
 }
 
-sweep::Theta NominalTheta(const config::Experiment& experiment) {
-  const std::map<std::string, std::string> values = config::FlatValues(experiment);
-  sweep::Theta theta;
-  for (const sweep::Parameter& parameter : experiment.space.parameters) {
+experiment::Theta NominalTheta(const experiment::Experiment& experiment) {
+  const std::map<std::string, std::string> values = experiment::FlatValues(experiment);
+  experiment::Theta theta;
+  for (const experiment::Parameter& parameter : experiment.space.parameters) {
     const std::string& text = values.at(parameter.key);
     double number = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "rift/config/experiment.hpp"
-#include "rift/sweep/trial_runner.hpp"
+#include "rift/experiment/experiment.hpp"
+#include "rift/sweep/falsify/trial_runner.hpp"
 #include "stop_signal.hpp"
 #include "sweep_progress.hpp"
 #include "sweep_sources.hpp"
@@ -22,7 +22,7 @@ class FurtherTrials {
     ProgressStyle progress = ProgressStyle::kQuiet;
   };
 
-  FurtherTrials(SweepSources& sources, const config::Experiment& experiment, const Style& style,
+  FurtherTrials(SweepSources& sources, const experiment::Experiment& experiment, const Style& style,
                 const StopSignal& stop);
 
   std::vector<sweep::TrialRow> Run(std::vector<sweep::TrialRequest> requests);
@@ -41,7 +41,7 @@ class FurtherTrials {
 };
 
 /// The experiment's own values of its space's parameters.
-sweep::Theta NominalTheta(const config::Experiment& experiment);
+experiment::Theta NominalTheta(const experiment::Experiment& experiment);
 
 /// Those of the gap's options that are not the defaults, as flags of `rift gap`.
 std::string ChangedGapFlags(const gap::GapOptions& options);

@@ -1,6 +1,6 @@
 #include "figure_file.hpp"
 #include "gap_output.hpp"
-#include "rift/report/gap_figures.hpp"
+#include "rift/report/figures/gap_figures.hpp"
 
 namespace rift::commands {
 void WriteGapFigure(const std::filesystem::path& path, const GapEvidence& evidence) {

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "rift/config/experiment.hpp"
+#include "rift/experiment/experiment.hpp"
 
 namespace rift::commands {
 
 void AddKeysFlag(CLI::App& app) {
   const auto list_and_end = [] {
-    fmt::print("{}", config::DescribeKeys());
+    fmt::print("{}", experiment::DescribeKeys());
     throw CLI::Success();
   };
   app.add_flag_callback("--keys", list_and_end, "list every key of an experiment and end")

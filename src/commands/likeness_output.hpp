@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "rift/gap/likeness.hpp"
-#include "rift/sweep/drive_likeness.hpp"
+#include "rift/sweep/calibrate/drive_likeness.hpp"
 
 namespace rift::commands {
 

@@ -8,9 +8,9 @@
 
 #include "files.hpp"
 #include "json_fields.hpp"
-#include "rift/sweep/failure_probability.hpp"
-#include "rift/sweep/falsify.hpp"
-#include "rift/sweep/search_space.hpp"
+#include "rift/sweep/explain/failure_probability.hpp"
+#include "rift/sweep/falsify/falsify.hpp"
+#include "rift/sweep/falsify/search_space.hpp"
 
 namespace rift::commands {
 namespace {
@@ -21,8 +21,8 @@ double CoordinateOf(const search::Axis& axis, double x) {
   return std::min(axis.max, axis.min + std::floor(x * (axis.max - axis.min + 1.0)));
 }
 
-sweep::Theta ThetaAtUnit(const std::vector<sweep::Parameter>& parameters,
-                         const std::vector<search::Axis>& axes, std::span<const double> unit) {
+experiment::Theta ThetaAtUnit(const std::vector<experiment::Parameter>& parameters,
+                              const std::vector<search::Axis>& axes, std::span<const double> unit) {
   search::Point point;
   for (size_t i = 0; i < axes.size(); ++i) point.push_back(CoordinateOf(axes[i], unit[i]));
   return sweep::ThetaAt(parameters, point);
@@ -54,13 +54,14 @@ std::string SentenceOf(const sweep::RareEvent& event) {
 
 }  // namespace
 
-std::string RareEventInto(const std::filesystem::path& folder, const config::Experiment& experiment,
+std::string RareEventInto(const std::filesystem::path& folder,
+                          const experiment::Experiment& experiment,
                           const sweep::RareEventOptions& options, FurtherTrials& trials) {
-  const std::vector<sweep::Parameter>& parameters = trials.plan().parameters;
+  const std::vector<experiment::Parameter>& parameters = trials.plan().parameters;
   const std::vector<search::Axis> axes = sweep::AxesOf(parameters);
   const double threshold_m = trials.plan().gap.threshold_m;
   const auto robustness_m = [&](std::span<const double> unit) {
-    const sweep::Theta theta = ThetaAtUnit(parameters, axes, unit);
+    const experiment::Theta theta = ThetaAtUnit(parameters, axes, unit);
     return WorstRobustness_m(trials.Run(sweep::TrialsAt(trials.plan(), theta)), threshold_m);
   };
   trials.Begin(options.samples_per_level * options.most_levels *

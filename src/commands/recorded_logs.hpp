@@ -4,7 +4,7 @@
 #include <string>
 
 #include "input_hashes.hpp"
-#include "rift/sweep/grid_sweep.hpp"
+#include "rift/sweep/falsify/grid_sweep.hpp"
 #include "rift/trajectory/log.hpp"
 
 namespace rift::commands {

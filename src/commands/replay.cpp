@@ -14,20 +14,20 @@
 namespace rift::commands {
 namespace {
 
-sweep::TrialRequest RequestOf(const config::Experiment& experiment, const TableRow& row) {
+sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row) {
   sweep::TrialRequest request{.trial = row.at("trial")};
   std::uint64_t seed = 0;
   const std::string& text = row.at("seed");
   std::from_chars(text.data(), text.data() + text.size(), seed);
   request.seed = seed;
-  for (const sweep::Parameter& parameter : experiment.space.parameters) {
+  for (const experiment::Parameter& parameter : experiment.space.parameters) {
     const std::string& cell = row.at(parameter.Name());
     double number = 0.0;
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
     const bool is_number =
         !parameter.IsCategorical() && error == std::errc{} && end == cell.data() + cell.size();
     request.theta.push_back({cell, is_number ? std::optional(number) : std::nullopt});
-    for (const sweep::ParameterValue& level : parameter.levels) {
+    for (const experiment::ParameterValue& level : parameter.levels) {
       if (level.text == cell) request.theta.back() = level;
     }
   }
@@ -48,16 +48,16 @@ std::string Evidence(const TableRow& row) {
 Replay ReplayRow(const std::filesystem::path& folder, const std::string& id) {
   const TableRow row = ReadTableRow(folder / "table.csv", id);
   const std::string file = (folder / "experiment.yaml").string();
-  const config::Experiment experiment =
-      config::LoadExperiment(file, {}, [](const std::string& path) { return ReadFile(path); });
-  if (experiment.candidate.kind != sweep::CandidateKind::kSimulation) {
+  const experiment::Experiment experiment =
+      experiment::LoadExperiment(file, {}, [](const std::string& path) { return ReadFile(path); });
+  if (experiment.candidate.kind != experiment::CandidateKind::kSimulation) {
     throw std::invalid_argument(
         fmt::format("{}: candidate.kind is logs: there is nothing to simulate again", file));
   }
   SweepSources sources(experiment, file);
   sources.LoadLogs();
   const sweep::TrialRequest request = RequestOf(experiment, row);
-  Replay replay{.experiment = config::ExperimentAt(experiment, request.theta)};
+  Replay replay{.experiment = experiment::ExperimentAt(experiment, request.theta)};
   replay.experiment.seed = *request.seed;
   replay.trial = sources.TrialFor(request, sources.Reference(request));
   replay.run = sweep::Simulate(replay.trial);

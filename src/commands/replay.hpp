@@ -3,15 +3,15 @@
 #include <filesystem>
 #include <string>
 
-#include "rift/config/experiment.hpp"
-#include "rift/sweep/simulated_trial.hpp"
+#include "rift/experiment/experiment.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
 #include "table_row.hpp"
 
 namespace rift::commands {
 
 /// A row of a sweep's table made again.
 struct Replay {
-  config::Experiment experiment;  ///< at the setting and with the seed of the row
+  experiment::Experiment experiment;  ///< at the setting and with the seed of the row
   sweep::SimulatedTrial trial;
   sweep::SimulatedRun run;
   std::string verdict;  ///< one line: that the row came out the same

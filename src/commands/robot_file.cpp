@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "calibrate_output.hpp"
-#include "rift/config/tree.hpp"
-#include "rift/config/write.hpp"
+#include "rift/yaml/tree.hpp"
+#include "rift/yaml/write.hpp"
 
 namespace rift::commands {
 namespace {
 
-using config::Node;
 using sweep::CalibratedParameter;
+using yaml::Node;
 
 std::string CommentOf(const CalibratedParameter& p, double confidence) {
   const std::string flag = FlagOf(p);
@@ -30,7 +30,7 @@ Node Different(const Node& node, const Node& standard, const std::string& path,
                const std::map<std::string, std::string>& fitted) {
   Node kept = Node::Map();
   for (const Node::Entry& entry : node.entries) {
-    const std::string key = config::Join(path, entry.key);
+    const std::string key = yaml::Join(path, entry.key);
     if (key == "simulation.terrain.surface") continue;  // of the trial, not of the robot
     const Node::Entry* other = standard.Find(entry.key);
     const auto comment = fitted.find(key);
@@ -38,7 +38,7 @@ Node Different(const Node& node, const Node& standard, const std::string& path,
       const Node inner = Different(entry.value, other->value, key, fitted);
       if (!inner.entries.empty()) kept.Add(entry.key, inner);
     } else if (comment != fitted.end() || other == nullptr ||
-               config::Emit(entry.value) != config::Emit(other->value)) {
+               yaml::Emit(entry.value) != yaml::Emit(other->value)) {
       kept.Add(entry.key, entry.value);
       if (comment != fitted.end()) kept.entries.back().comment = comment->second;
     }
@@ -53,7 +53,7 @@ std::string Indented(const std::string& lines) {
   return text;
 }
 
-std::string Head(const config::Experiment& experiment, const CalibrationReport& report,
+std::string Head(const experiment::Experiment& experiment, const CalibrationReport& report,
                  const std::string& inputs, const std::string& experiment_file) {
   const sweep::Calibration& fit = report.calibration;
   size_t held = 0;
@@ -90,21 +90,21 @@ std::string Head(const config::Experiment& experiment, const CalibrationReport& 
 
 }  // namespace
 
-std::string RobotYaml(const config::Experiment& experiment, const CalibrationReport& report,
+std::string RobotYaml(const experiment::Experiment& experiment, const CalibrationReport& report,
                       const std::string& inputs, const std::string& experiment_file) {
   std::map<std::string, std::string> fitted;
   for (const CalibratedParameter& p : report.calibration.parameters) {
     fitted[p.parameter.key] = CommentOf(p, experiment.calibrate.method.confidence);
   }
-  const config::Experiment at = config::CalibratedAt(experiment, report.values);
-  const Node tree = config::ToNode(at), standard = config::ToNode(config::Experiment{});
+  const experiment::Experiment at = experiment::CalibratedAt(experiment, report.values);
+  const Node tree = yaml::ToNode(at), standard = yaml::ToNode(experiment::Experiment{});
   Node robot = Node::Map();
   for (const char* block : {"trial", "simulation"}) {
     const Node kept =
         Different(tree.Find(block)->value, standard.Find(block)->value, block, fitted);
     if (!kept.entries.empty()) robot.Add(block, kept);
   }
-  return Head(experiment, report, inputs, experiment_file) + config::Emit(robot);
+  return Head(experiment, report, inputs, experiment_file) + yaml::Emit(robot);
 }
 
 }  // namespace rift::commands

@@ -8,10 +8,10 @@
 #include "enum_name.hpp"
 #include "files.hpp"
 #include "json_fields.hpp"
-#include "rift/report/sweep_figures.hpp"
-#include "rift/sweep/falsify.hpp"
-#include "rift/sweep/labels.hpp"
-#include "rift/sweep/shrink.hpp"
+#include "rift/report/figures/sweep_figures.hpp"
+#include "rift/sweep/explain/shrink.hpp"
+#include "rift/sweep/falsify/falsify.hpp"
+#include "rift/sweep/falsify/labels.hpp"
 #include "sweep_output.hpp"
 
 namespace rift::commands {
@@ -22,7 +22,7 @@ using nlohmann::ordered_json;
 /// Everything that shrunk.json tells.
 struct ShrunkRow {
   int id = 0;  ///< of the row in the sweep's table
-  sweep::Theta nominal;
+  experiment::Theta nominal;
   sweep::ShrunkFailure shrunk;
   /// The row, the shrunk one, and that without each of its changes: the table of DIR/shrunk.
   std::vector<sweep::TrialRow> rows;
@@ -47,7 +47,7 @@ int IndexOf(const sweep::SweepResult& result, const std::string& id) {
 }
 
 /// The row's trial at another setting: the same repeat and random numbers.
-sweep::TrialRequest At(const sweep::TrialRow& row, const sweep::Theta& theta) {
+sweep::TrialRequest At(const sweep::TrialRow& row, const experiment::Theta& theta) {
   return {.theta = theta, .trial = row.trial, .seed = row.seed};
 }
 
@@ -63,10 +63,10 @@ void RequireFailure(const sweep::SweepResult& result, int index, const std::stri
                                 : "; --shrink worst takes the worst"));
 }
 
-ShrunkRow ShrinkRow(const config::Experiment& experiment, const sweep::SweepResult& result,
+ShrunkRow ShrinkRow(const experiment::Experiment& experiment, const sweep::SweepResult& result,
                     int index, const sweep::ShrinkOptions& options, FurtherTrials& trials) {
   const sweep::TrialRow& row = result.rows[index];
-  const auto robustness_m = [&](const sweep::Theta& theta) {
+  const auto robustness_m = [&](const experiment::Theta& theta) {
     const std::vector<sweep::TrialRow> rows = trials.Run({At(row, theta)});
     return sweep::Robustness_m(rows, result.gap.threshold_m);
   };
@@ -74,7 +74,7 @@ ShrunkRow ShrinkRow(const config::Experiment& experiment, const sweep::SweepResu
   found.shrunk = sweep::Shrink(result.parameters, found.nominal, row.theta, robustness_m, options);
   std::vector<sweep::TrialRequest> requests{At(row, row.theta), At(row, found.shrunk.theta)};
   for (const int i : found.shrunk.changed) {
-    sweep::Theta without = found.shrunk.theta;
+    experiment::Theta without = found.shrunk.theta;
     without[i] = found.nominal[i];
     requests.push_back(At(row, without));
   }
@@ -82,10 +82,11 @@ ShrunkRow ShrinkRow(const config::Experiment& experiment, const sweep::SweepResu
   return found;
 }
 
-ordered_json ThetaJson(const std::vector<sweep::Parameter>& parameters, const sweep::Theta& theta) {
+ordered_json ThetaJson(const std::vector<experiment::Parameter>& parameters,
+                       const experiment::Theta& theta) {
   ordered_json json = ordered_json::object();
   for (size_t i = 0; i < theta.size(); ++i) {
-    const sweep::ParameterValue& value = theta[i];
+    const experiment::ParameterValue& value = theta[i];
     json[parameters[i].key] = value.number ? ordered_json(*value.number) : ordered_json(value.text);
   }
   return json;
@@ -96,7 +97,7 @@ std::string ReplayCommand(const std::filesystem::path& folder, size_t row) {
 }
 
 ordered_json TrialJson(const std::filesystem::path& folder,
-                       const std::vector<sweep::Parameter>& parameters, const ShrunkRow& found,
+                       const std::vector<experiment::Parameter>& parameters, const ShrunkRow& found,
                        size_t i) {
   const sweep::TrialRow& row = found.rows[i];
   return {{"theta", ThetaJson(parameters, row.theta)},
@@ -107,7 +108,7 @@ ordered_json TrialJson(const std::filesystem::path& folder,
 }
 
 std::string ShrunkJson(const std::filesystem::path& folder,
-                       const std::vector<sweep::Parameter>& parameters, double threshold_m,
+                       const std::vector<experiment::Parameter>& parameters, double threshold_m,
                        const ShrunkRow& found) {
   const sweep::TrialRow& failing = found.rows.front();
   ordered_json json{{"row", found.id}, {"trial", failing.trial}};
@@ -137,7 +138,7 @@ std::string OutcomeText(const sweep::TrialRow& row) {
 }
 
 std::string ShrunkText(const std::filesystem::path& folder,
-                       const std::vector<sweep::Parameter>& parameters, double threshold_m,
+                       const std::vector<experiment::Parameter>& parameters, double threshold_m,
                        const ShrunkRow& found) {
   const sweep::TrialRow& failing = found.rows[0];
   const sweep::TrialRow& least = found.rows[1];
@@ -165,15 +166,16 @@ std::string ShrunkText(const std::filesystem::path& folder,
 
 }  // namespace
 
-std::string ShrinkInto(const std::filesystem::path& folder, const config::Experiment& experiment,
-                       const sweep::SweepResult& result, const std::string& row,
-                       const sweep::ShrinkOptions& options, FurtherTrials& trials) {
+std::string ShrinkInto(const std::filesystem::path& folder,
+                       const experiment::Experiment& experiment, const sweep::SweepResult& result,
+                       const std::string& row, const sweep::ShrinkOptions& options,
+                       FurtherTrials& trials) {
   const int index = IndexOf(result, row);
   RequireFailure(result, index, row);
   const ShrunkRow found = ShrinkRow(experiment, result, index, options, trials);
   sweep::SweepResult table = sweep::EmptyResult(trials.plan());
   table.rows = found.rows;
-  WriteFile(folder / "shrunk" / "experiment.yaml", config::WriteExperiment(experiment));
+  WriteFile(folder / "shrunk" / "experiment.yaml", experiment::WriteExperiment(experiment));
   WriteFile(folder / "shrunk" / "table.csv", TableCsv(table));
   const double threshold_m = result.gap.threshold_m;
   WriteFile(folder / "shrunk.json", ShrunkJson(folder, result.parameters, threshold_m, found));

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "further_trials.hpp"
-#include "rift/sweep/shrink.hpp"
+#include "rift/sweep/explain/shrink.hpp"
 
 namespace rift::commands {
 
@@ -13,8 +13,9 @@ namespace rift::commands {
 /// what it shrank to, and that with each of its changes taken back, for `rift simulate --replay`.
 /// Returns what a person wants to know. Throws std::invalid_argument when there is no such row, or
 /// it does not fail.
-std::string ShrinkInto(const std::filesystem::path& folder, const config::Experiment& experiment,
-                       const sweep::SweepResult& result, const std::string& row,
-                       const sweep::ShrinkOptions& options, FurtherTrials& trials);
+std::string ShrinkInto(const std::filesystem::path& folder,
+                       const experiment::Experiment& experiment, const sweep::SweepResult& result,
+                       const std::string& row, const sweep::ShrinkOptions& options,
+                       FurtherTrials& trials);
 
 }  // namespace rift::commands

@@ -11,8 +11,8 @@
 #include "outputs.hpp"
 #include "replay.hpp"
 #include "rift/commands/command.hpp"
-#include "rift/config/set_value.hpp"
 #include "rift/trajectory/log.hpp"
+#include "rift/yaml/set_value.hpp"
 #include "simulate_output.hpp"
 #include "simulate_pictures.hpp"
 #include "simulate_twin.hpp"
@@ -38,31 +38,32 @@ struct SimulateRequest {
 };
 
 /// `-0.28,-0.06,10`: metres, metres, degrees; the schema of the waypoints says what is allowed.
-void PutStart(const std::string& text, config::Experiment& experiment) {
+void PutStart(const std::string& text, experiment::Experiment& experiment) {
   const std::vector<std::string> words = CLI::detail::split(text, ',');
   if (words.size() != 3) {
     throw std::invalid_argument(
         fmt::format("--start '{}': give X,Y,YAW_DEG, such as -0.28,-0.06,10", text));
   }
-  std::vector<config::KeyValue> values;
+  std::vector<yaml::KeyValue> values;
   for (size_t i = 0; i < words.size(); ++i) {
-    config::Node value = config::Node::Scalar(words[i]);
+    yaml::Node value = yaml::Node::Scalar(words[i]);
     value.origin.source = "--start";
     constexpr std::array<const char*, 3> kKeys{"x", "y", "heading"};
     values.push_back({fmt::format("waypoints[0].{}", kKeys[i]), value});
   }
-  config::SetValues(experiment, values);
+  yaml::SetValues(experiment, values);
 }
 
 /// The start and the seed become part of the experiment, so that what is saved is what was run.
-config::Experiment LoadFor(const SimulateRequest& request, std::vector<fs::path>& inputs) {
+experiment::Experiment LoadFor(const SimulateRequest& request, std::vector<fs::path>& inputs) {
   std::vector<std::string> overrides = request.overrides;
   if (!request.seed.empty()) overrides.push_back("seed=" + request.seed);
   const auto read = [&inputs](const std::string& path) {
     inputs.emplace_back(path);
     return ReadFile(path);
   };
-  config::Experiment experiment = config::LoadExperiment(request.experiment, overrides, read);
+  experiment::Experiment experiment =
+      experiment::LoadExperiment(request.experiment, overrides, read);
   if (!request.start.empty()) PutStart(request.start, experiment);
   return experiment;
 }
@@ -86,12 +87,12 @@ struct RunFiles {
 };
 
 /// The same text again in the file it was read from does no harm.
-bool IsSaved(const config::Experiment& experiment, const fs::path& path) {
-  return fs::is_regular_file(path) && ReadFile(path) == config::WriteExperiment(experiment);
+bool IsSaved(const experiment::Experiment& experiment, const fs::path& path) {
+  return fs::is_regular_file(path) && ReadFile(path) == experiment::WriteExperiment(experiment);
 }
 
 void CheckNames(const SimulateRequest& request, const fs::path& out,
-                const config::Experiment& experiment, const std::vector<fs::path>& inputs) {
+                const experiment::Experiment& experiment, const std::vector<fs::path>& inputs) {
   CheckPictureNames(request.pictures);
   RefuseSweepFolder(out);
   const RunFiles files(out);
@@ -103,10 +104,10 @@ void CheckNames(const SimulateRequest& request, const fs::path& out,
   CheckOutputs(inputs, outputs);
 }
 
-void Save(const fs::path& out, const config::Experiment& experiment,
+void Save(const fs::path& out, const experiment::Experiment& experiment,
           const sweep::SimulatedRun& run) {
   const RunFiles files(out);
-  WriteFile(files.experiment, config::WriteExperiment(experiment));
+  WriteFile(files.experiment, experiment::WriteExperiment(experiment));
   WriteFile(files.truth, trajectory::WriteRift(run.truth));
   WriteFile(files.commands, CommandsCsv(run.result));
   WriteFile(files.summary, SimulationJson(experiment, run));
@@ -115,7 +116,7 @@ void Save(const fs::path& out, const config::Experiment& experiment,
 
 struct Run {
   fs::path out;
-  config::Experiment experiment;
+  experiment::Experiment experiment;
   sweep::SimulatedTrial trial;
   sweep::SimulatedRun run;
 };
@@ -126,7 +127,7 @@ Run SimulateFile(const SimulateRequest& request) {
   }
   std::vector<fs::path> inputs;
   Run made{.experiment = LoadFor(request, inputs)};
-  const config::Experiment& experiment = made.experiment;
+  const experiment::Experiment& experiment = made.experiment;
   made.out = OutputOf(request.out, experiment.name);
   CheckNames(request, made.out, experiment, inputs);
   made.trial = TrialOf(experiment, {}, experiment.seed, request.experiment);
@@ -158,7 +159,7 @@ int ServeTwin(const SimulateRequest& request) {
     throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
   }
   std::vector<fs::path> inputs;
-  const config::Experiment experiment = LoadFor(request, inputs);
+  const experiment::Experiment experiment = LoadFor(request, inputs);
   const fs::path out = OutputOf(request.out, experiment.name);
   RefuseSweepFolder(out);
   CheckOutputs(inputs, {out / "experiment.yaml", out / "camera.yaml"});

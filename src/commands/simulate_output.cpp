@@ -11,7 +11,8 @@
 namespace rift::commands {
 using nlohmann::ordered_json;
 
-std::string SimulationJson(const config::Experiment& experiment, const sweep::SimulatedRun& run) {
+std::string SimulationJson(const experiment::Experiment& experiment,
+                           const sweep::SimulatedRun& run) {
   const trial::TrialResult& result = run.result;
   ordered_json json{{"name", experiment.name},
                     {"rift_version", RIFT_VERSION},
@@ -29,7 +30,8 @@ std::string SimulationJson(const config::Experiment& experiment, const sweep::Si
   return Dump(json);
 }
 
-std::string SimulationText(const config::Experiment& experiment, const sweep::SimulatedRun& run) {
+std::string SimulationText(const experiment::Experiment& experiment,
+                           const sweep::SimulatedRun& run) {
   const trial::TrialResult& result = run.result;
   std::string text =
       fmt::format("{}: {}\n", NameOf(result.outcome), result.reason) +

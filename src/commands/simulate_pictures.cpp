@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "figure_file.hpp"
-#include "rift/report/simulation_figure.hpp"
+#include "rift/report/figures/simulation_figure.hpp"
 #include "rift/view/film.hpp"
 #include "rift/view/viewer.hpp"
 
@@ -38,7 +38,7 @@ std::vector<Eigen::Vector2d> GroundProfile(const simulation::Terrain& terrain,
   return profile;
 }
 
-void DrawFigure(const std::string& path, const config::Experiment& experiment,
+void DrawFigure(const std::string& path, const experiment::Experiment& experiment,
                 const sweep::SimulatedTrial& trial, const sweep::SimulatedRun& run) {
   const simulation::Terrain terrain(trial.simulation.terrain, trial.image);
   report::SimulatedTrial drawn{.name = experiment.name,
@@ -61,7 +61,7 @@ view::BodyShape ShapeOf(const simulation::BodyOptions& body) {
           .track_m = body.track_m};
 }
 
-view::Film FilmOf(const config::Experiment& experiment, const sweep::SimulatedTrial& trial,
+view::Film FilmOf(const experiment::Experiment& experiment, const sweep::SimulatedTrial& trial,
                   const sweep::SimulatedRun& run) {
   const simulation::Terrain terrain(trial.simulation.terrain, trial.image);
   view::Run shown{
@@ -109,7 +109,7 @@ void CheckPictureNames(const PictureRequest& request) {
   throw std::invalid_argument(fmt::format("--video {}: the name must end in .mp4", request.video));
 }
 
-void MakePictures(const PictureRequest& request, const config::Experiment& experiment,
+void MakePictures(const PictureRequest& request, const experiment::Experiment& experiment,
                   const sweep::SimulatedTrial& trial, const sweep::SimulatedRun& run) {
   if (!request.figure.empty()) DrawFigure(request.figure, experiment, trial, run);
   if (request.video.empty() && !request.window) return;

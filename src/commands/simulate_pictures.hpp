@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "rift/config/experiment.hpp"
-#include "rift/sweep/simulated_trial.hpp"
+#include "rift/experiment/experiment.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
 
 namespace rift::commands {
 
@@ -23,7 +23,7 @@ void CheckPictureNames(const PictureRequest& request);
 
 /// Draws, films and shows. OpenCV is loaded only for a film or a window; a window without a display
 /// is a line on stderr and no failure.
-void MakePictures(const PictureRequest& request, const config::Experiment& experiment,
+void MakePictures(const PictureRequest& request, const experiment::Experiment& experiment,
                   const sweep::SimulatedTrial& trial, const sweep::SimulatedRun& run);
 
 }  // namespace rift::commands

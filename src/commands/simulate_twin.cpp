@@ -8,10 +8,10 @@
 #include "files.hpp"
 #include "json_fields.hpp"
 #include "rift/commands/command.hpp"
-#include "rift/config/camera_file.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/twin/overhead_camera.hpp"
 #include "rift/twin/twin.hpp"
+#include "rift/vision/camera/camera_file.hpp"
 #include "simulated_runs.hpp"
 #include "stop_signal.hpp"
 
@@ -38,7 +38,7 @@ std::string Ending(const twin::TwinRun& run) {
                         : "ended from outside before the robot drove";
 }
 
-std::string TwinJson(const config::Experiment& experiment, const twin::TwinRun& run) {
+std::string TwinJson(const experiment::Experiment& experiment, const twin::TwinRun& run) {
   return Dump({{"name", experiment.name},
                {"rift_version", RIFT_VERSION},
                {"seed", experiment.seed},
@@ -54,7 +54,8 @@ std::string TwinJson(const config::Experiment& experiment, const twin::TwinRun& 
                {"robot_rejected", run.rejected}});
 }
 
-void Save(const fs::path& folder, const config::Experiment& experiment, const twin::TwinRun& run) {
+void Save(const fs::path& folder, const experiment::Experiment& experiment,
+          const twin::TwinRun& run) {
   WriteFile(folder / "truth.csv", trajectory::WriteRift(run.truth));
   WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.tag));
   WriteFile(folder / "summary.json", TwinJson(experiment, run));
@@ -69,9 +70,9 @@ void ExcludeFromTwin(CLI::App& app) {
   }
 }
 
-int RunTwin(const std::string& experiment_file, const config::Experiment& experiment,
+int RunTwin(const std::string& experiment_file, const experiment::Experiment& experiment,
             const fs::path& folder) {
-  config::Experiment as_twin = experiment;
+  experiment::Experiment as_twin = experiment;
   as_twin.simulation = twin::AsTwin(experiment.simulation, experiment.twin);
   const sweep::SimulatedTrial trial = TrialOf(as_twin, {}, experiment.seed, experiment_file);
   vision::SyntheticCameraOptions look = experiment.twin.camera;
@@ -83,8 +84,8 @@ int RunTwin(const std::string& experiment_file, const config::Experiment& experi
                               trial.image,
                               twin::OverheadCamera(experiment.waypoints, experiment.twin)};
   const fs::path calibration = folder / "camera.yaml";
-  WriteFile(calibration, config::WriteCamera(setup.camera));
-  WriteFile(folder / "experiment.yaml", config::WriteExperiment(as_twin));
+  WriteFile(calibration, vision::WriteCamera(setup.camera));
+  WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(as_twin));
 
   const StopSignal stop;
   const std::unique_ptr<vision::Vision> camera_side = vision::LoadVision();

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "rift/config/experiment.hpp"
+#include "rift/experiment/experiment.hpp"
 
 namespace rift::commands {
 
@@ -15,7 +15,7 @@ void ExcludeFromTwin(CLI::App& app);
 /// stdout where port, camera and calibration are, and writes the run folder: experiment.yaml (with
 /// the simulation as the twin is, for `simulate` to repeat), camera.yaml, truth.csv, trajectory.csv
 /// (the tag's true path) and summary.json.
-int RunTwin(const std::string& experiment_file, const config::Experiment& experiment,
+int RunTwin(const std::string& experiment_file, const experiment::Experiment& experiment,
             const std::filesystem::path& folder);
 
 }  // namespace rift::commands

@@ -41,8 +41,9 @@ std::shared_ptr<const simulation::HeightImage> ImageOf(const simulation::Terrain
 
 }  // namespace
 
-sweep::SimulatedTrial TrialOf(const config::Experiment& experiment, const geometry::Pose2& start,
-                              std::uint64_t seed, const std::string& experiment_file) {
+sweep::SimulatedTrial TrialOf(const experiment::Experiment& experiment,
+                              const geometry::Pose2& start, std::uint64_t seed,
+                              const std::string& experiment_file) {
   try {
     control::CheckWaypoints(experiment.waypoints);
   } catch (const std::invalid_argument& no_task) {

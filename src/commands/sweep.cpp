@@ -14,7 +14,7 @@
 #include "keys_flag.hpp"
 #include "likeness_output.hpp"
 #include "rift/commands/command.hpp"
-#include "rift/sweep/falsify.hpp"
+#include "rift/sweep/falsify/falsify.hpp"
 #include "sweep_explain.hpp"
 #include "sweep_likeness.hpp"
 #include "sweep_output.hpp"
@@ -46,18 +46,18 @@ struct SweepRequest {
 };
 
 /// A simulated sweep over nothing means the paper's grid; logs without a space are one setting.
-bool LacksSpace(const config::Experiment& experiment) {
-  return experiment.candidate.kind == sweep::CandidateKind::kSimulation &&
+bool LacksSpace(const experiment::Experiment& experiment) {
+  return experiment.candidate.kind == experiment::CandidateKind::kSimulation &&
          experiment.space.parameters.empty();
 }
 
 /// Budgets become part of the experiment, so that what is saved is what was run.
-config::Experiment LoadFor(const SweepRequest& request) {
+experiment::Experiment LoadFor(const SweepRequest& request) {
   std::vector<std::string> overrides = request.overrides;
   if (!request.budget.empty()) overrides.push_back("search.budget=" + request.budget);
   if (!request.seconds.empty()) overrides.push_back("search.max_s=" + request.seconds);
-  return config::LoadExperiment(request.experiment, overrides,
-                                [](const std::string& path) { return ReadFile(path); });
+  return experiment::LoadExperiment(request.experiment, overrides,
+                                    [](const std::string& path) { return ReadFile(path); });
 }
 
 /// What the process ends with when there is nothing to report on: logs that are not there are bad
@@ -71,9 +71,9 @@ int EndWithoutGap(const SweepRequest& request, const sweep::SweepResult& result)
   return kNotReached;
 }
 
-void Save(const fs::path& out, const config::Experiment& experiment, const SweepSources& sources,
-          const sweep::SweepResult& result) {
-  WriteFile(out / "experiment.yaml", config::WriteExperiment(experiment));
+void Save(const fs::path& out, const experiment::Experiment& experiment,
+          const SweepSources& sources, const sweep::SweepResult& result) {
+  WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
   WriteFile(out / "inputs.txt", sources.InputsText());
   WriteFile(out / "table.csv", TableCsv(result));
   WriteFile(out / "summary.json", SummaryJson(result));
@@ -91,19 +91,19 @@ bool IsFalsified(const sweep::SweepResult& result) {
   return result.falsification->verdict == gap::Verdict::kFalsified;
 }
 
-void RefuseLimitsOfGrid(const SweepRequest& request, sweep::Goal goal) {
+void RefuseLimitsOfGrid(const SweepRequest& request, experiment::Goal goal) {
   const bool has_limits = !request.budget.empty() || !request.seconds.empty();
-  if (goal != sweep::Goal::kGrid || !has_limits) return;
+  if (goal != experiment::Goal::kGrid || !has_limits) return;
   throw std::invalid_argument(
       fmt::format("{}: goal is grid, which visits every setting: --budget and --seconds limit a "
                   "search (goal: falsify)",
                   request.experiment));
 }
 
-void NoteTooFewRepeats(const config::Experiment& experiment) {
+void NoteTooFewRepeats(const experiment::Experiment& experiment) {
   const double needed = sweep::TrialsToFalsify(experiment.falsify);
   const bool is_enough =
-      experiment.goal != sweep::Goal::kFalsify || experiment.falsify.most_repeats >= needed;
+      experiment.goal != experiment::Goal::kFalsify || experiment.falsify.most_repeats >= needed;
   if (is_enough) return;
   fmt::print(
       stderr,
@@ -113,8 +113,8 @@ void NoteTooFewRepeats(const config::Experiment& experiment) {
 }
 
 /// Logs are compared in seconds and keep no journal.
-void SayStopped(const config::Experiment& experiment, const fs::path& out) {
-  if (experiment.candidate.kind == sweep::CandidateKind::kLogs) {
+void SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
+  if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
     fmt::print(stderr, "stopped; nothing was written, and the same command starts over\n");
     return;
   }
@@ -123,9 +123,9 @@ void SayStopped(const config::Experiment& experiment, const fs::path& out) {
 }
 
 int Sweep(const SweepRequest& request) {
-  config::Experiment experiment = LoadFor(request);
+  experiment::Experiment experiment = LoadFor(request);
   RefuseLimitsOfGrid(request, experiment.goal);
-  if (experiment.goal == sweep::Goal::kCalibrate) {
+  if (experiment.goal == experiment::Goal::kCalibrate) {
     const fs::path folder = OutputOf(request.out, experiment.name);
     const FolderLock alone(folder);
     return Calibrate(experiment, {request.experiment, folder, request.write_robot, request.jobs,
@@ -136,7 +136,7 @@ int Sweep(const SweepRequest& request) {
                                 ": --write-robot needs goal: calibrate (configs/calibrate.yaml)");
   }
   const bool lacks_space = LacksSpace(experiment);
-  if (lacks_space) experiment.space = sweep::PaperSpace();
+  if (lacks_space) experiment.space = experiment::PaperSpace();
   CheckRequest(request.explain, experiment);
   SweepSources sources(experiment, request.experiment);
   if (lacks_space) {

@@ -38,11 +38,11 @@ void AddExplainFlags(CLI::App& app, ExplainRequest& request) {
                "simulation)");
 }
 
-void CheckRequest(const ExplainRequest& request, const config::Experiment& experiment) {
+void CheckRequest(const ExplainRequest& request, const experiment::Experiment& experiment) {
   const bool costs_trials = !request.shrink.empty() || request.rare_event;
   if (!costs_trials) return;
   const char* flag = request.rare_event ? "--rare-event" : "--shrink";
-  if (experiment.candidate.kind == sweep::CandidateKind::kLogs) {
+  if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
     throw std::invalid_argument(
         fmt::format("{} drives further trials, and candidate.kind is logs: recorded runs cannot be "
                     "driven at other settings; set candidate.kind=simulation",
@@ -88,9 +88,9 @@ std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& re
   return failures;
 }
 
-std::string GapFlags(const config::Experiment& experiment) {
-  if (experiment.candidate.kind != sweep::CandidateKind::kLogs) return "";
-  if (experiment.reference.kind != sweep::ReferenceKind::kLogs) return "";
+std::string GapFlags(const experiment::Experiment& experiment) {
+  if (experiment.candidate.kind != experiment::CandidateKind::kLogs) return "";
+  if (experiment.reference.kind != experiment::ReferenceKind::kLogs) return "";
   std::string flags;
   const auto add = [&flags](const std::string& flag, const std::string& value) {
     flags += fmt::format(" {} {}", flag, value);
@@ -104,7 +104,7 @@ std::string GapFlags(const config::Experiment& experiment) {
 }
 
 std::optional<std::string> SpendTrials(const std::filesystem::path& folder,
-                                       const config::Experiment& experiment,
+                                       const experiment::Experiment& experiment,
                                        const sweep::SweepResult& result,
                                        const ExplainRequest& request, SweepSources& sources,
                                        const FurtherTrials::Style& style) {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "further_trials.hpp"
-#include "rift/report/page.hpp"
-#include "rift/sweep/explanation.hpp"
-#include "rift/sweep/shrink.hpp"
+#include "rift/report/page/page.hpp"
+#include "rift/sweep/explain/explanation.hpp"
+#include "rift/sweep/explain/shrink.hpp"
 #include "sweep_sources.hpp"
 
 namespace rift::commands {
@@ -27,7 +27,7 @@ struct ExplainRequest {
 void AddExplainFlags(CLI::App& app, ExplainRequest& request);
 
 /// Throws std::invalid_argument when a request cannot be met, before a trial is run.
-void CheckRequest(const ExplainRequest& request, const config::Experiment& experiment);
+void CheckRequest(const ExplainRequest& request, const experiment::Experiment& experiment);
 
 /// The options with what the command line says on top.
 sweep::ExplainOptions OptionsFor(const ExplainRequest& request);
@@ -39,14 +39,14 @@ std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& re
 
 /// How a row of recorded logs is measured again: the flags of `rift gap` behind the two logs. Empty
 /// for simulated candidates, whose rows `rift simulate --replay` drives again.
-std::string GapFlags(const config::Experiment& experiment);
+std::string GapFlags(const experiment::Experiment& experiment);
 
 /// Does what costs further trials, and returns what it found as text. Shrinks a failure into
 /// shrunk.json and the folder shrunk, whose table holds each trial that the claims rest on;
 /// estimates a rare event into rare_event.json. Nothing when it was told to stop.
 /// Throws std::invalid_argument when there is no such row, or it does not fail.
 std::optional<std::string> SpendTrials(const std::filesystem::path& folder,
-                                       const config::Experiment& experiment,
+                                       const experiment::Experiment& experiment,
                                        const sweep::SweepResult& result,
                                        const ExplainRequest& request, SweepSources& sources,
                                        const FurtherTrials::Style& style);

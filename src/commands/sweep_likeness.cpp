@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include "rift/sweep/grid.hpp"
-#include "rift/sweep/labels.hpp"
+#include "rift/experiment/parameter.hpp"
+#include "rift/sweep/falsify/labels.hpp"
 
 namespace rift::commands {
 namespace {
@@ -17,19 +17,20 @@ struct Labelled {
   RepeatedTrial trial;
 };
 
-bool HasRepeatedLogs(const config::Experiment& experiment) {
+bool HasRepeatedLogs(const experiment::Experiment& experiment) {
   const auto& parameters = experiment.space.parameters;
-  return experiment.reference.kind == sweep::ReferenceKind::kLogs &&
+  return experiment.reference.kind == experiment::ReferenceKind::kLogs &&
          experiment.reference.trials.names.size() > 1 &&
          std::none_of(parameters.begin(), parameters.end(),
-                      [](const sweep::Parameter& axis) { return axis.IsContinuous(); });
+                      [](const experiment::Parameter& axis) { return axis.IsContinuous(); });
 }
 
 /// The trials of one setting. A candidate log that serves all repeats is one run, not several.
-void AddSetting(const config::Experiment& experiment, const sweep::Theta& theta,
+void AddSetting(const experiment::Experiment& experiment, const experiment::Theta& theta,
                 SweepSources& sources, std::vector<Labelled>& trials) {
-  const bool is_simulated = experiment.candidate.kind == sweep::CandidateKind::kSimulation;
-  const config::Experiment at = is_simulated ? config::ExperimentAt(experiment, theta) : experiment;
+  const bool is_simulated = experiment.candidate.kind == experiment::CandidateKind::kSimulation;
+  const experiment::Experiment at =
+      is_simulated ? experiment::ExperimentAt(experiment, theta) : experiment;
   std::set<std::string> logs;
   for (const sweep::TrialRequest& request : sweep::TrialsAt(sources.Plan(), theta)) {
     const sweep::Recording real = sources.Reference(request);
@@ -52,11 +53,11 @@ void AddSetting(const config::Experiment& experiment, const sweep::Theta& theta,
 
 }  // namespace
 
-std::vector<LikenessRow> MeasureSweepLikeness(const config::Experiment& experiment,
+std::vector<LikenessRow> MeasureSweepLikeness(const experiment::Experiment& experiment,
                                               SweepSources& sources) {
   if (!HasRepeatedLogs(experiment)) return {};
   std::vector<Labelled> trials;
-  for (const sweep::Theta& theta : sweep::GridPoints(experiment.space.parameters)) {
+  for (const experiment::Theta& theta : experiment::GridPoints(experiment.space.parameters)) {
     AddSetting(experiment, theta, sources, trials);
   }
   std::vector<std::string> levels;
@@ -66,7 +67,7 @@ std::vector<LikenessRow> MeasureSweepLikeness(const config::Experiment& experime
     }
   }
   levels.push_back("all");
-  const bool is_matched = experiment.start == sweep::Start::kReference;
+  const bool is_matched = experiment.start == experiment::Start::kReference;
   std::vector<LikenessRow> rows;
   for (const std::string& level : levels) {
     const bool is_all = &level == &levels.back();

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "rift/sweep/result.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::commands {
 

@@ -30,9 +30,9 @@ std::string DurationText(double duration_s) {
   return fmt::format("{}:{:02}:{:02}", whole_s / 3600, whole_s / 60 % 60, whole_s % 60);
 }
 
-std::size_t HashOf(const std::vector<sweep::ParameterValue>& theta) {
+std::size_t HashOf(const experiment::Theta& theta) {
   std::string text;
-  for (const sweep::ParameterValue& value : theta) text += value.text + '\n';
+  for (const experiment::ParameterValue& value : theta) text += value.text + '\n';
   return std::hash<std::string>()(text);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <unordered_set>
 
-#include "rift/sweep/result.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::commands {
 

@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "files.hpp"
-#include "rift/report/page.hpp"
-#include "rift/report/sweep_figures.hpp"
+#include "rift/report/figures/sweep_figures.hpp"
+#include "rift/report/page/page.hpp"
 #include "sweep_explain.hpp"
 
 namespace rift::commands {
@@ -40,8 +40,8 @@ void RemoveFigures(const std::filesystem::path& folder) {
 }  // namespace
 
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
-                      const sweep::Explanation& explanation, const config::Experiment& experiment,
-                      SweepSources& sources) {
+                      const sweep::Explanation& explanation,
+                      const experiment::Experiment& experiment, SweepSources& sources) {
   const report::SweepFigureSet set = report::SweepFigures(result, WorstPair(result, sources));
   RemoveFigures(folder / "figures");
   for (const report::Figure& figure : set.figures) {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "rift/sweep/explanation.hpp"
+#include "rift/sweep/explain/explanation.hpp"
 #include "sweep_sources.hpp"
 
 namespace rift::commands {
@@ -11,7 +11,7 @@ namespace rift::commands {
 /// the paths of the worst trial and of a typical failure of each kind again. Figures that make no
 /// sense for this space are named on stderr.
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
-                      const sweep::Explanation& explanation, const config::Experiment& experiment,
-                      SweepSources& sources);
+                      const sweep::Explanation& explanation,
+                      const experiment::Experiment& experiment, SweepSources& sources);
 
 }  // namespace rift::commands

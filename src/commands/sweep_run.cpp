@@ -7,9 +7,9 @@
 #include <cstdlib>
 
 #include "files.hpp"
-#include "rift/sweep/falsify.hpp"
-#include "rift/sweep/journal.hpp"
-#include "rift/sweep/physics_version.hpp"
+#include "rift/sweep/falsify/falsify.hpp"
+#include "rift/sweep/falsify/physics_version.hpp"
+#include "rift/sweep/run/journal.hpp"
 #include "stop_signal.hpp"
 
 namespace rift::commands {
@@ -27,34 +27,36 @@ bool IsFree(const std::string& key) {
   return false;
 }
 
-sweep::Facts FactsOf(const config::Experiment& experiment) {
+sweep::Facts FactsOf(const experiment::Experiment& experiment) {
   sweep::Facts facts;
-  for (const auto& [key, value] : config::FlatValues(experiment)) {
+  for (const auto& [key, value] : experiment::FlatValues(experiment)) {
     if (!IsFree(key)) facts[key] = value;
   }
   facts["the version of rift"] = fmt::format("{} ({})", RIFT_VERSION, sweep::PhysicsVersion());
   return facts;
 }
 
-SweepSize SizeOf(const config::Experiment& experiment, const sweep::GridPlan& plan) {
-  if (experiment.goal != sweep::Goal::kGrid) return {experiment.search.budget, true};
+SweepSize SizeOf(const experiment::Experiment& experiment, const sweep::GridPlan& plan) {
+  if (experiment.goal != experiment::Goal::kGrid) return {experiment.search.budget, true};
   double trials = static_cast<double>(plan.trials.size());
-  for (const sweep::Parameter& parameter : plan.parameters) {
+  for (const experiment::Parameter& parameter : plan.parameters) {
     trials *= static_cast<double>(parameter.levels.size());
   }
   return {static_cast<int>(trials), false};
 }
 
-std::optional<sweep::SweepResult> RunGoal(const config::Experiment& experiment,
+std::optional<sweep::SweepResult> RunGoal(const experiment::Experiment& experiment,
                                           SweepSources& sources, const sweep::RunTrials& run,
                                           const MayStart& may_start) {
-  const auto noise_floor_m = [&](const sweep::Theta& theta) { return sources.NoiseFloor_m(theta); };
+  const auto noise_floor_m = [&](const experiment::Theta& theta) {
+    return sources.NoiseFloor_m(theta);
+  };
   switch (experiment.goal) {
-    case sweep::Goal::kGrid:
+    case experiment::Goal::kGrid:
       return sweep::SweepGrid(sources.Plan(), run, noise_floor_m);
-    case sweep::Goal::kCalibrate:
+    case experiment::Goal::kCalibrate:
       break;  // has no trials to run one by one: commands/calibrate.cpp
-    case sweep::Goal::kFalsify:
+    case experiment::Goal::kFalsify:
       return sweep::Falsify(sources.Plan(), experiment.search, experiment.falsify, run, may_start,
                             noise_floor_m);
   }
@@ -89,14 +91,14 @@ class Stopwatch {
   Clock::time_point noted_ = begun_;
 };
 
-std::optional<sweep::SweepResult> RunSimulated(const config::Experiment& experiment,
+std::optional<sweep::SweepResult> RunSimulated(const experiment::Experiment& experiment,
                                                SweepSources& sources,
                                                const SweepRunRequest& request,
                                                SweepProgress& progress, const StopSignal& stop) {
   const std::filesystem::path file = request.out / kJournalName;
   if (request.fresh) Journal::Remove(file);
   Journal journal(file, FactsOf(experiment));
-  WriteFile(request.out / "experiment.yaml", config::WriteExperiment(experiment));
+  WriteFile(request.out / "experiment.yaml", experiment::WriteExperiment(experiment));
   sources.LoadLogs();  // now, since workers are copies of what is there when they start
   journal.SetNote("name", experiment.name);
   const SweepSize size = SizeOf(experiment, sources.Plan());
@@ -136,12 +138,12 @@ int CoresToUse() {
   return ::sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
 }
 
-std::optional<sweep::SweepResult> RunSweep(const config::Experiment& experiment,
+std::optional<sweep::SweepResult> RunSweep(const experiment::Experiment& experiment,
                                            SweepSources& sources, const SweepRunRequest& request) {
   const StopSignal stop;
   SweepProgress progress(request.progress, SizeOf(experiment, sources.Plan()));
   std::optional<sweep::SweepResult> result;
-  if (experiment.candidate.kind == sweep::CandidateKind::kSimulation) {
+  if (experiment.candidate.kind == experiment::CandidateKind::kSimulation) {
     result = RunSimulated(experiment, sources, request, progress, stop);
   } else {
     const sweep::RunTrials run =

@@ -23,7 +23,7 @@ int CoresToUse();
 
 /// Runs what the experiment asks for; simulated trials go through worker processes and the journal
 /// in the folder. Nothing when it was stopped: the same call goes on.
-std::optional<sweep::SweepResult> RunSweep(const config::Experiment& experiment,
+std::optional<sweep::SweepResult> RunSweep(const experiment::Experiment& experiment,
                                            SweepSources& sources, const SweepRunRequest& request);
 
 }  // namespace rift::commands

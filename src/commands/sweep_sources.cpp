@@ -9,16 +9,16 @@
 
 #include "enum_name.hpp"
 #include "rebuilt_limits.hpp"
-#include "rift/config/error.hpp"
-#include "rift/sweep/grid.hpp"
-#include "rift/sweep/path_template.hpp"
+#include "rift/experiment/parameter.hpp"
+#include "rift/experiment/path_template.hpp"
+#include "rift/yaml/error.hpp"
 #include "simulated_runs.hpp"
 
 namespace rift::commands {
 namespace {
 
-using sweep::CandidateKind;
-using sweep::ReferenceKind;
+using experiment::CandidateKind;
+using experiment::ReferenceKind;
 
 /// The polyline through the waypoints, a second from each to the next.
 trajectory::Trajectory WaypointPath(const std::vector<control::Waypoint>& waypoints) {
@@ -42,7 +42,7 @@ auto InFile(const std::string& experiment_file, Call&& call) {
 
 }  // namespace
 
-SweepSources::SweepSources(const config::Experiment& experiment, std::string experiment_file)
+SweepSources::SweepSources(const experiment::Experiment& experiment, std::string experiment_file)
     : experiment_(experiment),
       experiment_file_(std::move(experiment_file)),
       candidate_logs_(experiment.candidate.format, 0.0, "candidate.format"),
@@ -60,14 +60,14 @@ SweepSources::SweepSources(const config::Experiment& experiment, std::string exp
   if (!candidate_is_logs || !reference_is_logs) {
     TrialOf(experiment, {}, experiment.seed, experiment_file_);  // complains now, not in trial 1
   }
-  if (experiment.start == sweep::Start::kReference && !reference_is_logs) {
+  if (experiment.start == experiment::Start::kReference && !reference_is_logs) {
     throw std::invalid_argument(fmt::format(
         "{}: start is reference, and reference.kind is {}: only logs tell where the robot stood",
         experiment_file_, NameOf(experiment.reference.kind)));
   }
 }
 
-void SweepSources::RequirePath(const sweep::PathTemplate& path, const std::string& key) const {
+void SweepSources::RequirePath(const experiment::PathTemplate& path, const std::string& key) const {
   if (!path.text.empty()) return;
   throw std::invalid_argument(
       fmt::format("{}: {} is missing: name the logs, such as {}: logs/{{surface}}_{{trial}}.csv",
@@ -88,21 +88,22 @@ sweep::GridPlan SweepSources::Plan() const {
           .falls_count = experiment_.falsify.falls_count};
 }
 
-std::string SweepSources::Filled(const sweep::PathTemplate& path, const sweep::Theta& theta,
-                                 const std::string& trial) const {
+std::string SweepSources::Filled(const experiment::PathTemplate& path,
+                                 const experiment::Theta& theta, const std::string& trial) const {
   return InFile(experiment_file_, [&] {
-    return sweep::FillTemplate(path.text, experiment_.space.parameters, theta, trial);
+    return experiment::FillTemplate(path.text, experiment_.space.parameters, theta, trial);
   });
 }
 
-std::string SweepSources::ReferencePath(const sweep::Theta& theta, const std::string& trial) const {
+std::string SweepSources::ReferencePath(const experiment::Theta& theta,
+                                        const std::string& trial) const {
   return Filled(experiment_.reference.path, theta, trial);
 }
 
 sweep::SimulatedTrial SweepSources::TrialFor(const sweep::TrialRequest& request,
                                              const sweep::Recording& reference) const {
-  const config::Experiment at = config::ExperimentAt(experiment_, request.theta);
-  const bool starts_as_reference = experiment_.start == sweep::Start::kReference;
+  const experiment::Experiment at = experiment::ExperimentAt(experiment_, request.theta);
+  const bool starts_as_reference = experiment_.start == experiment::Start::kReference;
   const geometry::Pose2 start =
       starts_as_reference ? StartFromLog(reference.trajectory, experiment_.reference.tag_offset_m,
                                          at.simulation.mocap)
@@ -118,7 +119,7 @@ sweep::Recording SweepSources::Candidate(const sweep::TrialRequest& request,
   }
   if (reference.status != sweep::TrialStatus::kOk) return reference;  // nothing to compare with
   const bool lacks_start =
-      experiment_.start == sweep::Start::kReference && !reference.trajectory.HasYaw();
+      experiment_.start == experiment::Start::kReference && !reference.trajectory.HasYaw();
   if (lacks_start) {
     return {.status = sweep::TrialStatus::kUnreadable,
             .reason = "start: reference needs its yaw: set reference.format",
@@ -166,7 +167,7 @@ sweep::TrialRow SweepSources::Evaluate(const sweep::TrialRequest& request) {
   const auto candidate = [this](const sweep::TrialRequest& of, const sweep::Recording& real) {
     try {
       return Candidate(of, real);
-    } catch (const config::Error& broken_rule) {
+    } catch (const yaml::Error& broken_rule) {
       return sweep::Recording{.status = sweep::TrialStatus::kInvalid,
                               .reason = broken_rule.what(),
                               .source = "experiment"};
@@ -197,7 +198,7 @@ double SweepSources::NominalNoiseFloor_m() {
   return result_m;
 }
 
-double SweepSources::NoiseFloor_m(const sweep::Theta& theta) {
+double SweepSources::NoiseFloor_m(const experiment::Theta& theta) {
   const std::vector<std::string>& trials = experiment_.reference.trials.names;
   const bool has_repeats = trials.size() > 1 && experiment_.reference.kind != ReferenceKind::kPath;
   if (!has_repeats) return gap::kNotComputed;
@@ -221,10 +222,10 @@ double SweepSources::NoiseFloor_m(const sweep::Theta& theta) {
 
 void SweepSources::LoadLogs() {
   if (experiment_.reference.kind != ReferenceKind::kLogs) return;
-  const std::vector<std::string> names = sweep::TemplateNames(experiment_.reference.path.text);
+  const std::vector<std::string> names = experiment::TemplateNames(experiment_.reference.path.text);
   // Of the other parameters one value will do: the path is the same for all.
-  std::vector<sweep::Parameter> parameters = experiment_.space.parameters;
-  for (sweep::Parameter& parameter : parameters) {
+  std::vector<experiment::Parameter> parameters = experiment_.space.parameters;
+  for (experiment::Parameter& parameter : parameters) {
     const bool is_named = std::find(names.begin(), names.end(), parameter.Name()) != names.end();
     if (is_named && parameter.IsContinuous()) {
       throw std::invalid_argument(
@@ -234,7 +235,7 @@ void SweepSources::LoadLogs() {
     }
     if (!is_named) parameter.levels = {{"0", 0.0}};
   }
-  for (const sweep::Theta& theta : sweep::GridPoints(parameters)) {
+  for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
     for (const std::string& trial : experiment_.reference.trials.names) {
       reference_logs_.At(ReferencePath(theta, trial));
     }
@@ -244,7 +245,7 @@ void SweepSources::LoadLogs() {
 std::string SweepSources::KeyOf(const sweep::TrialRequest& request) const {
   std::string key;
   for (size_t i = 0; i < request.theta.size(); ++i) {
-    const sweep::ParameterValue& value = request.theta[i];
+    const experiment::ParameterValue& value = request.theta[i];
     key += fmt::format("{}={} ", experiment_.space.parameters[i].key,
                        value.number ? fmt::format("{}", *value.number) : value.text);
   }

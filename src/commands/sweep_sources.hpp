@@ -4,9 +4,9 @@
 #include <string>
 
 #include "recorded_logs.hpp"
-#include "rift/config/experiment.hpp"
-#include "rift/sweep/grid_sweep.hpp"
-#include "rift/sweep/simulated_trial.hpp"
+#include "rift/experiment/experiment.hpp"
+#include "rift/sweep/falsify/grid_sweep.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
 
 namespace rift::commands {
 
@@ -15,18 +15,18 @@ class SweepSources {
  public:
   /// Throws std::invalid_argument, naming `experiment_file`, when the experiment lacks what its
   /// kinds of candidate and reference need.
-  SweepSources(const config::Experiment& experiment, std::string experiment_file);
+  SweepSources(const experiment::Experiment& experiment, std::string experiment_file);
 
   /// One trial as its row. A setting that breaks a rule of the experiment is a row that says so.
   sweep::TrialRow Evaluate(const sweep::TrialRequest& request);
   sweep::Recording Candidate(const sweep::TrialRequest& request, const sweep::Recording& reference);
-  /// The simulated trial of a request; throws config::Error when the setting breaks a rule.
+  /// The simulated trial of a request; throws yaml::Error when the setting breaks a rule.
   sweep::SimulatedTrial TrialFor(const sweep::TrialRequest& request,
                                  const sweep::Recording& reference) const;
   sweep::Recording Reference(const sweep::TrialRequest& request);
   /// How far the references of a setting are apart. Nominal runs are simulated in a process of
   /// their own.
-  double NoiseFloor_m(const sweep::Theta& theta);
+  double NoiseFloor_m(const experiment::Theta& theta);
 
   sweep::GridPlan Plan() const;
   /// Reads every log that some setting names, so that worker processes find them loaded.
@@ -37,14 +37,14 @@ class SweepSources {
   std::string InputsText() const;
 
  private:
-  void RequirePath(const sweep::PathTemplate& path, const std::string& key) const;
-  std::string Filled(const sweep::PathTemplate& path, const sweep::Theta& theta,
+  void RequirePath(const experiment::PathTemplate& path, const std::string& key) const;
+  std::string Filled(const experiment::PathTemplate& path, const experiment::Theta& theta,
                      const std::string& trial) const;
-  std::string ReferencePath(const sweep::Theta& theta, const std::string& trial) const;
+  std::string ReferencePath(const experiment::Theta& theta, const std::string& trial) const;
   const sweep::Recording& Nominal(const sweep::TrialRequest& request);
   double NominalNoiseFloor_m();
 
-  const config::Experiment& experiment_;
+  const experiment::Experiment& experiment_;
   std::string experiment_file_;
   RecordedLogs candidate_logs_;
   RecordedLogs reference_logs_;

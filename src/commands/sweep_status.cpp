@@ -4,7 +4,7 @@
 
 #include "folder_lock.hpp"
 #include "json_fields.hpp"
-#include "rift/sweep/journal.hpp"
+#include "rift/sweep/run/journal.hpp"
 #include "sweep_run.hpp"
 
 namespace rift::commands {

@@ -5,7 +5,7 @@
 
 #include "enum_name.hpp"
 #include "json_fields.hpp"
-#include "rift/sweep/labels.hpp"
+#include "rift/sweep/falsify/labels.hpp"
 #include "sweep_output.hpp"
 
 namespace rift::commands {
@@ -25,7 +25,7 @@ std::string NumberCell(double value) { return std::isnan(value) ? "" : fmt::form
 
 std::string RowCsv(const sweep::TrialRow& row, size_t id) {
   std::string text;
-  for (const sweep::ParameterValue& value : row.theta) text += CsvCell(value.text) + ',';
+  for (const experiment::ParameterValue& value : row.theta) text += CsvCell(value.text) + ',';
   const std::string falsified = row.IsOk() || row.falsified ? fmt::format("{}", row.falsified) : "";
   text += fmt::format("{},{},{},{}", CsvCell(row.trial), NumberCell(row.comparison.gap_m),
                       falsified, NameOf(row.status));
@@ -67,7 +67,7 @@ ordered_json EffectJson(const sweep::Effect& effect) {
 ordered_json SettingJson(const sweep::SweepResult& result, const sweep::SettingResult& setting) {
   ordered_json theta;
   for (size_t i = 0; i < result.parameters.size(); ++i) {
-    const sweep::ParameterValue& value = setting.theta[i];
+    const experiment::ParameterValue& value = setting.theta[i];
     const std::string name = result.parameters[i].Name();
     if (value.number) {
       theta[name] = *value.number;
@@ -143,9 +143,9 @@ ordered_json AttributionJson(const sweep::SweepResult& result) {
 
 std::string TableCsv(const sweep::SweepResult& result) {
   std::string text;
-  for (const sweep::Parameter& parameter : result.parameters)
+  for (const experiment::Parameter& parameter : result.parameters)
     text += CsvCell(parameter.Name()) + ',';
-  text += fmt::format("{}\n", fmt::join(sweep::kFixedColumns, ","));
+  text += fmt::format("{}\n", fmt::join(experiment::kFixedColumns, ","));
   size_t id = 0;
   for (const sweep::TrialRow& row : result.rows) text += RowCsv(row, ++id);
   return text;

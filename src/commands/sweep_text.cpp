@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "rift/report/sweep_figures.hpp"
-#include "rift/sweep/labels.hpp"
+#include "rift/report/figures/sweep_figures.hpp"
+#include "rift/sweep/falsify/labels.hpp"
 #include "sweep_output.hpp"
 
 namespace rift::commands {

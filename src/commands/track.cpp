@@ -11,8 +11,8 @@
 #include "keys_flag.hpp"
 #include "logs.hpp"
 #include "rift/commands/command.hpp"
-#include "rift/config/camera_file.hpp"
-#include "rift/config/experiment.hpp"
+#include "rift/experiment/experiment.hpp"
+#include "rift/vision/camera/camera_file.hpp"
 #include "stop_signal.hpp"
 #include "track_calibrate.hpp"
 #include "track_names.hpp"
@@ -31,18 +31,19 @@ void Say(const std::string& line) {
   std::fflush(stderr);
 }
 
-vision::TrackOptions OptionsOf(const TrackRequest& request) {
+experiment::TrackOptions OptionsOf(const TrackRequest& request) {
   const auto read = [&](const std::string& path) {
     return request.experiment.empty() ? std::string("{}") : ReadFile(path);
   };
   const std::string path = request.experiment.empty() ? "defaults" : request.experiment;
-  vision::TrackOptions options = config::LoadExperiment(path, request.overrides, read).track;
+  experiment::TrackOptions options =
+      experiment::LoadExperiment(path, request.overrides, read).track;
   if (request.fps) options.capture.fps = *request.fps;
   return options;
 }
 
-config::Experiment LoadPath(const std::string& path) {
-  return config::LoadExperiment(path, {}, [](const std::string& p) { return ReadFile(p); });
+experiment::Experiment LoadPath(const std::string& path) {
+  return experiment::LoadExperiment(path, {}, [](const std::string& p) { return ReadFile(p); });
 }
 
 /// A waypoint file or, told by its ending, a log.
@@ -72,7 +73,7 @@ std::unique_ptr<TrackView> ViewFor(const TrackRequest& request, vision::Vision& 
 
 /// Files of other programs may lack the picture's size; then the first picture has to be trusted.
 void TakeSizeFrom(vision::Capture& capture, const TrackRequest& request,
-                  const vision::TrackOptions& options, vision::CameraModel& camera) {
+                  const experiment::TrackOptions& options, vision::CameraModel& camera) {
   if (camera.width_px > 0 && camera.height_px > 0) return;
   const auto frame = capture.Next(options.capture.open_timeout_s);
   if (!frame) {
@@ -120,13 +121,13 @@ void SetAndStoreWorld(const TrackRequest& request, const WorldParts& parts,
                       vision::CameraModel& camera) {
   camera.world = SetWorld(parts, camera, request.world);
   WriteFile(request.calibration,
-            HeadOf(ReadFile(request.calibration)) + config::WriteCamera(camera));
+            HeadOf(ReadFile(request.calibration)) + vision::WriteCamera(camera));
   Say(fmt::format("world frame from {}, {:.2f} mm off at its points, is now in {}",
                   camera.world->origin, 1e3 * camera.world->residual_m, request.calibration));
 }
 
 int Report(const TrackRequest& request, const vision::CameraModel& camera,
-           const vision::TrackOptions& options, const TrackRun& run, int rows) {
+           const experiment::TrackOptions& options, const TrackRun& run, int rows) {
   const fs::path run_file = RunFileOf(request.out);
   WriteFile(run_file, TrackJson(request, camera, options, run, rows));
   fmt::print("{}", TrackText(run, rows));
@@ -138,10 +139,10 @@ int Report(const TrackRequest& request, const vision::CameraModel& camera,
 
 int TrackFor(const TrackRequest& request) {
   CheckTracking(request);
-  vision::TrackOptions options = OptionsOf(request);
+  experiment::TrackOptions options = OptionsOf(request);
   TrackView::Content content = ContentOf(request);
   vision::CameraModel camera =
-      config::ReadCamera(ReadFile(request.calibration), request.calibration);
+      vision::ReadCamera(ReadFile(request.calibration), request.calibration);
   const auto vision = vision::LoadVision();
   options.capture = CaptureFor(camera, options.capture);
   const StopSignal stop;
@@ -168,7 +169,7 @@ int CalibrateAndSave(const TrackRequest& request) {
   }
   if (request.out.empty()) throw std::invalid_argument("--out CAM.yaml is missing");
   request.board.Check();
-  const vision::TrackOptions options = OptionsOf(request);
+  const experiment::TrackOptions options = OptionsOf(request);
   const auto vision = vision::LoadVision();
   const StopSignal stop;
   vision::Calibration calibration = CalibrateFor(
@@ -183,7 +184,7 @@ int CalibrateAndSave(const TrackRequest& request) {
     return kNotReached;
   }
   calibration.camera.name = fs::path(request.out).stem().string();
-  WriteFile(request.out, CalibrationComment(calibration) + config::WriteCamera(calibration.camera));
+  WriteFile(request.out, CalibrationComment(calibration) + vision::WriteCamera(calibration.camera));
   Say(fmt::format("calibration: {}", request.out));
   return kDone;
 }

@@ -69,7 +69,7 @@ std::vector<vision::BoardView> FromFiles(vision::Vision& vision, const TrackRequ
 }
 
 std::vector<vision::BoardView> FromCamera(vision::Vision& vision, const TrackRequest& request,
-                                          const vision::TrackOptions& options,
+                                          const experiment::TrackOptions& options,
                                           const std::function<bool()>& is_stopped,
                                           const std::function<void(const std::string&)>& say) {
   const auto capture = vision.OpenCapture(request.camera, options.capture);
@@ -103,7 +103,7 @@ std::vector<vision::BoardView> FromCamera(vision::Vision& vision, const TrackReq
 }  // namespace
 
 vision::Calibration CalibrateFor(vision::Vision& vision, const TrackRequest& request,
-                                 const vision::TrackOptions& options,
+                                 const experiment::TrackOptions& options,
                                  const std::function<bool()>& is_stopped,
                                  const std::function<void(const std::string&)>& say) {
   const std::vector<vision::BoardView> views =

@@ -3,8 +3,8 @@
 #include <functional>
 #include <string>
 
-#include "rift/vision/module.hpp"
-#include "rift/vision/track_options.hpp"
+#include "rift/experiment/track_options.hpp"
+#include "rift/vision/module/module.hpp"
 #include "track_request.hpp"
 
 namespace rift::commands {
@@ -14,7 +14,7 @@ namespace rift::commands {
 /// recording does. Throws std::invalid_argument for no pictures, std::runtime_error when the camera
 /// fails before there was anything to calibrate from.
 vision::Calibration CalibrateFor(vision::Vision& vision, const TrackRequest& request,
-                                 const vision::TrackOptions& options,
+                                 const experiment::TrackOptions& options,
                                  const std::function<bool()>& is_stopped,
                                  const std::function<void(const std::string&)>& say);
 

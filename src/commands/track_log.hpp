@@ -4,7 +4,7 @@
 #include <fstream>
 #include <limits>
 
-#include "rift/vision/tag_tracker.hpp"
+#include "rift/vision/tracking/tag_tracker.hpp"
 
 namespace rift::commands {
 

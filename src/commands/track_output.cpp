@@ -70,7 +70,7 @@ ordered_json SpanJson(const std::vector<double>& values) {
 }  // namespace
 
 std::string TrackJson(const TrackRequest& request, const vision::CameraModel& camera,
-                      const vision::TrackOptions& options, const TrackRun& run, int rows) {
+                      const experiment::TrackOptions& options, const TrackRun& run, int rows) {
   InputHashes hashes;
   hashes.Add(request.calibration);
   ordered_json json{

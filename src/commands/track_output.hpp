@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "rift/vision/track_options.hpp"
+#include "rift/experiment/track_options.hpp"
 #include "track_request.hpp"
 #include "track_run.hpp"
 
@@ -11,7 +11,7 @@ namespace rift::commands {
 /// What the log was made from and how it went: camera, calibration, frame of the poses, options,
 /// rows, rates, misses, latency.
 std::string TrackJson(const TrackRequest& request, const vision::CameraModel& camera,
-                      const vision::TrackOptions& options, const TrackRun& run, int rows);
+                      const experiment::TrackOptions& options, const TrackRun& run, int rows);
 std::string TrackText(const TrackRun& run, int rows);
 
 /// The verdict of a calibration with its reasons, parameters and views.

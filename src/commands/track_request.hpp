@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/vision/chessboard.hpp"
+#include "rift/vision/calibration/chessboard.hpp"
 #include "track_session.hpp"
 
 namespace rift::commands {

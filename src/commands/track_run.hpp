@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "rift/vision/module.hpp"
-#include "rift/vision/track_options.hpp"
+#include "rift/experiment/track_options.hpp"
+#include "rift/vision/module/module.hpp"
 #include "track_log.hpp"
 #include "track_session.hpp"
 #include "track_view.hpp"
@@ -19,7 +19,7 @@ struct TrackParts {
   vision::Vision& vision;
   vision::Capture& capture;
   const vision::CameraModel& camera;
-  const vision::TrackOptions& options;
+  const experiment::TrackOptions& options;
   const SessionOptions& session;
   TrackLog& log;
   TrackView* view = nullptr;  ///< none: no window

@@ -6,12 +6,12 @@
 #include <numbers>
 
 #include "files.hpp"
-#include "rift/config/write.hpp"
+#include "rift/yaml/write.hpp"
 
 namespace rift::commands {
 namespace {
 
-using config::Node;
+using yaml::Node;
 
 constexpr double kTrailStep_m = 0.002;
 constexpr std::size_t kTrailLength = 4000;
@@ -37,7 +37,7 @@ std::string WaypointsYaml(const std::vector<control::Waypoint>& waypoints) {
   }
   Node root = Node::Map();
   root.Add("waypoints", list);
-  return config::Emit(root);
+  return yaml::Emit(root);
 }
 
 TrackView::TrackView(vision::Vision& vision, const vision::CameraModel& camera, Content content)

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "rift/control/waypoint.hpp"
-#include "rift/vision/module.hpp"
+#include "rift/vision/module/module.hpp"
 
 namespace rift::commands {
 

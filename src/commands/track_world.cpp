@@ -8,9 +8,9 @@
 
 #include "enum_name.hpp"
 #include "files.hpp"
-#include "rift/config/bind.hpp"
-#include "rift/config/load.hpp"
-#include "rift/vision/world_frame.hpp"
+#include "rift/vision/tracking/world_frame.hpp"
+#include "rift/yaml/bind.hpp"
+#include "rift/yaml/load.hpp"
 
 namespace rift::commands {
 namespace {
@@ -44,7 +44,7 @@ struct PlacesFile {
 
 PlacesFile ReadPlaces(const std::string& path) {
   PlacesFile file;
-  config::Bind(config::Parse(ReadFile(path), path), file);
+  yaml::Bind(yaml::Parse(ReadFile(path), path), file);
   if (file.tags.empty() == file.points.empty()) {
     throw std::invalid_argument(fmt::format(
         "{}: a world frame wants either `tags:` or `points:`, each with x_m and y_m", path));

@@ -3,8 +3,8 @@
 #include <functional>
 #include <string>
 
-#include "rift/vision/module.hpp"
-#include "rift/vision/track_options.hpp"
+#include "rift/experiment/track_options.hpp"
+#include "rift/vision/module/module.hpp"
 #include "track_session.hpp"
 
 namespace rift::commands {
@@ -13,7 +13,7 @@ namespace rift::commands {
 struct WorldParts {
   vision::Vision& vision;
   vision::Capture& capture;
-  const vision::TrackOptions& options;
+  const experiment::TrackOptions& options;
   const SessionOptions& session;
   std::function<bool()> is_stopped;
   std::function<void(const std::string&)> say;

@@ -58,7 +58,7 @@ bool Navigator::Observe(const PoseInput& input) {
   return true;
 }
 
-void Navigator::NoteSent(double now_s, const robot::WheelPower& power) {
+void Navigator::NoteSent(double now_s, const WheelPower& power) {
   last_sent_ = power;
   predictor_.NoteSent(now_s, power);
 }
@@ -123,7 +123,7 @@ void Navigator::DecidePower(Decision& decision, double dt_s) const {
   if (!options_.slew_rate_per_s) return;
 
   const double change = *options_.slew_rate_per_s * dt_s;
-  const robot::WheelPower wanted = decision.power;
+  const WheelPower wanted = decision.power;
   decision.power = {std::clamp(wanted.left, last_sent_.left - change, last_sent_.left + change),
                     std::clamp(wanted.right, last_sent_.right - change, last_sent_.right + change)};
   decision.limits.slew = !(decision.power == wanted);

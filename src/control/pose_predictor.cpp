@@ -13,7 +13,7 @@ constexpr double kLongestPoseHeld_s = 5.0;
 PosePredictor::PosePredictor(const LatencyOptions& options)
     : drive_(options.drive), delay_s_(options.delay_s) {}
 
-void PosePredictor::NoteSent(double now_s, const robot::WheelPower& power) {
+void PosePredictor::NoteSent(double now_s, const WheelPower& power) {
   if (delay_s_ <= 0.0) return;
   sent_.push_back({now_s, power});
   const double oldest_s = now_s - delay_s_ - kLongestPoseHeld_s;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kPictureWait_s = 0.05;
 
 /// world_from_robot = Rz(yaw) Ry(pitch) Rx(roll).
-robot::PoseMeasurement MeasurementOf(const vision::Sighting& sighting) {
+trial::PoseMeasurement MeasurementOf(const vision::Sighting& sighting) {
   assert(sighting.in_world);
   const Eigen::Matrix3d turn = sighting.map_from_tag.linear();
   const Eigen::Vector3d place = sighting.map_from_tag.translation();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFuture_s = 0.02;  // a clock may be read a little before the frame is stamped
 
-bool IsFinite(const robot::PoseMeasurement& pose) {
+bool IsFinite(const trial::PoseMeasurement& pose) {
   return std::isfinite(pose.captured_s) && pose.world_from_robot.IsFinite();
 }
 
@@ -55,7 +55,7 @@ void DriveGuard::SeePose(const PoseNews& news, double now_s) {
   if (news.fault) Stop(StopReason::kCameraGone, *news.fault, now_s);
   if (news.looked_s) looked_s_ = news.looked_s;
   if (!news.newest) return;
-  const robot::PoseMeasurement& pose = news.newest->measured;
+  const trial::PoseMeasurement& pose = news.newest->measured;
   if (!IsFinite(pose) || pose.captured_s > now_s + kFuture_s) {
     return Stop(StopReason::kPoseNotFinite,
                 "the camera gave a pose that is not finite or lies in the future", now_s);
@@ -65,7 +65,7 @@ void DriveGuard::SeePose(const PoseNews& news, double now_s) {
   pose_ = pose;
 }
 
-void DriveGuard::CheckJump(const robot::PoseMeasurement& before, const robot::PoseMeasurement& pose,
+void DriveGuard::CheckJump(const trial::PoseMeasurement& before, const trial::PoseMeasurement& pose,
                            double now_s) {
   const double elapsed_s = pose.captured_s - before.captured_s;
   const double moved_m =
@@ -82,7 +82,7 @@ void DriveGuard::CheckJump(const robot::PoseMeasurement& before, const robot::Po
        now_s);
 }
 
-void DriveGuard::Command(const robot::WheelPower& power, double now_s) {
+void DriveGuard::Command(const control::WheelPower& power, double now_s) {
   const double largest = std::max(std::abs(power.left), std::abs(power.right));
   NoteTime(now_s);
   commanded_s_ = now_s;
@@ -134,7 +134,7 @@ void DriveGuard::Tick(double now_s, double link_lag_s) {
     return Stop(StopReason::kLinkLagging,
                 fmt::format("the robot has not answered for {:.2f} s", link_lag_s), now_s);
   }
-  if (power_ == robot::WheelPower{}) return;
+  if (power_ == control::WheelPower{}) return;
   if (!RequireFreshPose(now_s)) return;
   if (now_s - commanded_s_ > options_.control_stale_s) {
     Stop(StopReason::kControlStale,
@@ -142,8 +142,8 @@ void DriveGuard::Tick(double now_s, double link_lag_s) {
   }
 }
 
-robot::WheelPower DriveGuard::Allowed() const {
-  return state_ == DriveState::kArmed ? power_ : robot::WheelPower{};
+control::WheelPower DriveGuard::Allowed() const {
+  return state_ == DriveState::kArmed ? power_ : control::WheelPower{};
 }
 
 }  // namespace rift::hardware

@@ -36,8 +36,8 @@ class RealRobot::Core {
   }
 
   void Arm();
-  robot::Sensed Sense();
-  void Command(const robot::WheelPower& power);
+  trial::Sensed Sense();
+  void Command(const control::WheelPower& power);
   void Stop() noexcept;
   bool HasNewPose() {
     const std::lock_guard lock(mutex_);
@@ -59,7 +59,7 @@ class RealRobot::Core {
   void Exchange(double now_s);
   void Hear(const RobotLink::Heard& heard, double now_s);
   void NoteWritten();
-  void Hand(const robot::WheelPower& power, bool is_first, double now_s);
+  void Hand(const control::WheelPower& power, bool is_first, double now_s);
 
   Clock& clock_;
   PoseSource& poses_;
@@ -73,7 +73,7 @@ class RealRobot::Core {
   PoseNews news_;
   std::optional<double> sensed_captured_s_;
   double next_pose_s_ = 0.0;  ///< when it is expected
-  std::optional<robot::EncoderCounts> counts_;
+  std::optional<control::EncoderCounts> counts_;
   std::optional<double> stopped_at_s_;  ///< when zeros began for good
   bool stop_is_answered_ = false;
   bool waits_for_write_ =
@@ -142,7 +142,7 @@ void RealRobot::Core::NoteWritten() {
 }
 
 void RealRobot::Core::Hear(const RobotLink::Heard& heard, double now_s) {
-  counts_ = robot::EncoderCounts{heard.answer.left, heard.answer.right};
+  counts_ = control::EncoderCounts{heard.answer.left, heard.answer.right};
   const double battery_v = kVoltPerMillivolt * heard.answer.battery_mv;
   const double sent_s = heard.sent ? heard.sent->at_s : heard.at_s;
   evidence_.encoders.push_back({0.5 * (sent_s + heard.at_s) - start_s_, *counts_, battery_v});
@@ -169,9 +169,9 @@ void RealRobot::Core::Arm() {
   stopped_at_s_.reset();
 }
 
-robot::Sensed RealRobot::Core::Sense() {
+trial::Sensed RealRobot::Core::Sense() {
   const std::lock_guard lock(mutex_);
-  robot::Sensed sensed;
+  trial::Sensed sensed;
   sensed.now_s = clock_.Now_s() - start_s_;
   sensed.encoders = counts_;
   if (guard_.stop()) sensed.fault = guard_.stop()->text;
@@ -190,7 +190,7 @@ robot::Sensed RealRobot::Core::Sense() {
   return sensed;
 }
 
-void RealRobot::Core::Command(const robot::WheelPower& power) {
+void RealRobot::Core::Command(const control::WheelPower& power) {
   const std::lock_guard lock(mutex_);
   const double now_s = clock_.Now_s();
   guard_.Command(power, now_s);
@@ -205,8 +205,8 @@ void RealRobot::Core::Command(const robot::WheelPower& power) {
 
 // At 9600 baud the line carries hardly more than one command for each picture: a second thought
 // about an old pose must not keep it from the first one about the next.
-void RealRobot::Core::Hand(const robot::WheelPower& power, bool is_first, double now_s) {
-  const bool is_zero = power == robot::WheelPower{};
+void RealRobot::Core::Hand(const control::WheelPower& power, bool is_first, double now_s) {
+  const bool is_zero = power == control::WheelPower{};
   if (is_first || is_zero || now_s + link_.Occupied_s() <= next_pose_s_) {
     link_.Put(power, is_first);
   } else {
@@ -256,8 +256,8 @@ RealRobot::~RealRobot() {
 
 void RealRobot::AddStopper(Stopper stopper) { core_->AddStopper(std::move(stopper)); }
 void RealRobot::Arm() { core_->Arm(); }
-robot::Sensed RealRobot::Sense() { return core_->Sense(); }
-void RealRobot::Command(const robot::WheelPower& power) { core_->Command(power); }
+trial::Sensed RealRobot::Sense() { return core_->Sense(); }
+void RealRobot::Command(const control::WheelPower& power) { core_->Command(power); }
 void RealRobot::Stop() noexcept { core_->Stop(); }
 DriveState RealRobot::state() const { return core_->state(); }
 DriveEvidence RealRobot::Evidence() const { return core_->Evidence(); }

@@ -60,7 +60,7 @@ RobotLink::RobotLink(ByteLine& line, const LineOptions& options, Protocol protoc
       protocol_(protocol),
       pacer_(options.baud, options.line_share) {}
 
-void RobotLink::Put(const robot::WheelPower& power, bool at_once) {
+void RobotLink::Put(const control::WheelPower& power, bool at_once) {
   is_due_ = is_due_ || at_once || !(power == power_);
   power_ = power;
 }

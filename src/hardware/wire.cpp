@@ -18,7 +18,7 @@ void RequirePower(const char* side, double power) {
       fmt::format("the {} power is {}, but it must lie in [-1, 1]", side, power));
 }
 
-void RequirePowers(const robot::WheelPower& power) {
+void RequirePowers(const control::WheelPower& power) {
   RequirePower("left", power.left);
   RequirePower("right", power.right);
 }
@@ -84,12 +84,12 @@ constexpr std::string_view kHello = "rift1 ";
 
 }  // namespace
 
-std::string PlainLine(const robot::WheelPower& power) {
+std::string PlainLine(const control::WheelPower& power) {
   RequirePowers(power);
   return fmt::format("{:.2f} {:.2f}\n", power.left, power.right);
 }
 
-MilliPower MilliOf(const robot::WheelPower& power) {
+MilliPower MilliOf(const control::WheelPower& power) {
   RequirePowers(power);
   return {static_cast<int>(std::lround(power.left * kFull)),
           static_cast<int>(std::lround(power.right * kFull))};

@@ -6,7 +6,7 @@
 #include "rift/simulation/body.hpp"
 #include "rift/simulation/ode_world.hpp"
 #include "rift/simulation/terrain.hpp"
-#include "rift/simulation/touch.hpp"
+#include "touch.hpp"
 
 namespace rift::simulation {
 

@@ -19,7 +19,7 @@ constexpr std::uint64_t kLineLossDraw = 1'000'000;
 
 enum Stream : std::uint64_t { kPhaseStream = 10, kLossStream = 11 };
 
-std::string LineOf(const robot::WheelPower& power, bool two_decimals) {
+std::string LineOf(const control::WheelPower& power, bool two_decimals) {
   return two_decimals ? fmt::format("{:.2f} {:.2f}\n", power.left, power.right)
                       : fmt::format("{} {}\n", power.left, power.right);
 }
@@ -52,11 +52,11 @@ Link::Link(const LinkOptions& options, std::uint64_t seed)
   next_poll_s_ = phase_s_;
 }
 
-void Link::Send(double at_s, const robot::WheelPower& power) {
+void Link::Send(double at_s, const control::WheelPower& power) {
   Enqueue(at_s, LineOf(power, options_.two_decimals));
 }
 
-void Link::SendUrgently(double at_s, const robot::WheelPower& power) {
+void Link::SendUrgently(double at_s, const control::WheelPower& power) {
   in_flight_.clear();
   line_free_s_ = 0.0;
   // A newline first ends whatever half line the robot has already received.
@@ -76,7 +76,7 @@ void Link::Enqueue(double at_s, const std::string& line) {
   line_free_s_ = free_s;
 }
 
-robot::WheelPower Link::Advance(double to_s) {
+control::WheelPower Link::Advance(double to_s) {
   const double from_s = now_s_;
   integral_ = {};
   for (double next_s = NextListening_s(); next_s <= to_s; next_s = NextListening_s()) {

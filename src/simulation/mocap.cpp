@@ -88,7 +88,7 @@ void Mocap::Observe(const TruePose& before, const TruePose& after) {
 void Mocap::TakeFrame(const TruePose& pose, double speed_mps, std::uint64_t frame) {
   if (noise_.Uniform(frame, kDropout) < options_.dropout) return;
   const double arrives_s = pose.t_s + 0.5 * options_.exposure_s + options_.processing_s;
-  robot::PoseMeasurement measurement = Measure(pose, speed_mps, frame);
+  trial::PoseMeasurement measurement = Measure(pose, speed_mps, frame);
   // A stamp lies after the last one and not after the arrival, whatever its jitter.
   measurement.captured_s =
       std::min(std::max(measurement.captured_s, last_stamp_s_ + kClockTick_s), arrives_s);
@@ -96,7 +96,7 @@ void Mocap::TakeFrame(const TruePose& pose, double speed_mps, std::uint64_t fram
   on_the_way_.push_back({arrives_s, measurement});
 }
 
-robot::PoseMeasurement Mocap::Measure(const TruePose& pose, double speed_mps,
+trial::PoseMeasurement Mocap::Measure(const TruePose& pose, double speed_mps,
                                       std::uint64_t frame) const {
   const Eigen::Vector3d tag_in_world = TagInWorld(pose, options_);
   const double across_m = std::hypot(options_.noise_across_m, options_.blur_across_s * speed_mps) *
@@ -106,7 +106,7 @@ robot::PoseMeasurement Mocap::Measure(const TruePose& pose, double speed_mps,
       std::hypot(options_.noise_yaw_rad, options_.blur_yaw_rad_per_mps * speed_mps) *
       noise_.HeavyTailed(frame, kYaw, options_.yaw_tail_dof);
   const geometry::Pose2 world_from_tag{tag_in_world.x(), tag_in_world.y(), pose.yaw_rad};
-  robot::PoseMeasurement measurement;
+  trial::PoseMeasurement measurement;
   measurement.captured_s = pose.t_s + options_.stamp_jitter_s * noise_.Normal(frame, kStamp);
   measurement.world_from_robot = world_from_tag * geometry::Pose2{along_m, across_m, yaw_noise_rad};
   measurement.z_m = tag_in_world.z() + options_.noise_z_m * noise_.Normal(frame, kHeight);
@@ -115,7 +115,7 @@ robot::PoseMeasurement Mocap::Measure(const TruePose& pose, double speed_mps,
   return measurement;
 }
 
-std::optional<robot::PoseMeasurement> Mocap::Newest(double now_s) {
+std::optional<trial::PoseMeasurement> Mocap::Newest(double now_s) {
   while (!on_the_way_.empty() && on_the_way_.front().at_s <= now_s) {
     newest_ = on_the_way_.front().measurement;
     on_the_way_.pop_front();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rift/simulation/check_ranges.hpp"
+#include "check_ranges.hpp"
 
 namespace rift::simulation {
 namespace {
@@ -58,20 +58,20 @@ SimulatedRobot::SimulatedRobot(const SimulationOptions& options, const geometry:
   mocap_.Observe(truth_, truth_);
 }
 
-robot::Sensed SimulatedRobot::Sense() {
-  robot::Sensed sensed;
+trial::Sensed SimulatedRobot::Sense() {
+  trial::Sensed sensed;
   sensed.now_s = Now_s();
   sensed.pose = mocap_.Newest(sensed.now_s);
   if (options_.encoder.reported) {
     const auto& angle_rad = world_.State().wheel_angle_rad;
-    sensed.encoders = robot::EncoderCounts{CountsAt(angle_rad[0], counts_per_rev_),
-                                           CountsAt(angle_rad[1], counts_per_rev_)};
+    sensed.encoders = control::EncoderCounts{CountsAt(angle_rad[0], counts_per_rev_),
+                                             CountsAt(angle_rad[1], counts_per_rev_)};
   }
   sensed.fault = world_.Fault();
   return sensed;
 }
 
-void SimulatedRobot::Command(const robot::WheelPower& power) {
+void SimulatedRobot::Command(const control::WheelPower& power) {
   link_.Send(Now_s(), {Power("left", power.left), Power("right", power.right)});
 }
 
@@ -88,11 +88,11 @@ void SimulatedRobot::Advance(double dt_s) {
 
 void SimulatedRobot::Step() {
   link_.Advance(truth_.t_s);  // what was commanded since, and takes effect at once
-  const robot::WheelPower at_start = link_.Held();
+  const control::WheelPower at_start = link_.Held();
   ++steps_;
   const double t_s = 1e-9 * static_cast<double>(steps_ * step_ns_);
-  const robot::WheelPower mean = link_.Advance(t_s);
-  const robot::WheelPower power = options_.sampling == Sampling::kRamped ? mean : at_start;
+  const control::WheelPower mean = link_.Advance(t_s);
+  const control::WheelPower power = options_.sampling == Sampling::kRamped ? mean : at_start;
   const auto& rate_rad_s = world_.State().wheel_rate_rad_s;
   const std::array<Grip, 2> grip = world_.WheelGrip();
   world_.Step({motors_[0].Drive(power.left, rate_rad_s[0], Drag_nm(grip[0]), options_.step_s),

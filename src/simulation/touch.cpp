@@ -1,4 +1,4 @@
-#include "rift/simulation/touch.hpp"
+#include "touch.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -31,7 +31,7 @@ Recorder::Recorder(const std::vector<control::Waypoint>& waypoints, double log_p
   result_.trajectory.channels = {{"power_left", {}}, {"power_right", {}}, {"v", {}}, {"w", {}}};
 }
 
-void Recorder::Pose(const robot::PoseMeasurement& measured, const control::Waypoint& target,
+void Recorder::Pose(const PoseMeasurement& measured, const control::Waypoint& target,
                     const control::Decision& decision) {
   std::vector<trajectory::StampedPose>& poses = result_.trajectory.poses;
   const double since_s = poses.empty() ? measured.captured_s : poses.back().t_s;
@@ -49,8 +49,8 @@ void Recorder::Pose(const robot::PoseMeasurement& measured, const control::Waypo
   channels[kW].values.push_back(decision.w);
 }
 
-void Recorder::Sent(double now_s, const robot::WheelPower& power) {
-  if (result_.driving_s < 0.0 && !(power == robot::WheelPower{})) result_.driving_s = now_s;
+void Recorder::Sent(double now_s, const control::WheelPower& power) {
+  if (result_.driving_s < 0.0 && !(power == control::WheelPower{})) result_.driving_s = now_s;
   result_.commands.push_back({now_s, power});
 }
 

@@ -19,18 +19,18 @@ constexpr double kSlowestClock = 20.0;
 // Whatever happens in between, the robot stands at the end.
 class StopGuard {
  public:
-  explicit StopGuard(robot::Robot& robot) : robot_(robot) {}
+  explicit StopGuard(Robot& robot) : robot_(robot) {}
   ~StopGuard() { robot_.Stop(); }
   StopGuard(const StopGuard&) = delete;
   StopGuard& operator=(const StopGuard&) = delete;
 
  private:
-  robot::Robot& robot_;
+  Robot& robot_;
 };
 
 class Loop {
  public:
-  Loop(robot::Robot& robot, const std::vector<control::Waypoint>& waypoints,
+  Loop(Robot& robot, const std::vector<control::Waypoint>& waypoints,
        const control::NavigatorOptions& navigator_options, const TrialOptions& options)
       : robot_(robot),
         options_(options),
@@ -40,22 +40,22 @@ class Loop {
   TrialResult Run();
 
  private:
-  void Begin(const robot::Sensed& sensed);
+  void Begin(const Sensed& sensed);
   bool ClockRuns(double now_s);
-  bool TakePose(const robot::Sensed& sensed);
-  bool IsOver(const robot::Sensed& sensed);
+  bool TakePose(const Sensed& sensed);
+  bool IsOver(const Sensed& sensed);
   void Act(double now_s, bool is_new_pose);
   control::Decision Decide(double now_s, bool is_new_pose);
-  void Send(double now_s, const robot::WheelPower& power);
+  void Send(double now_s, const control::WheelPower& power);
   bool End(Outcome outcome, std::string reason);
   double PoseAge_s(double now_s) const;
 
-  robot::Robot& robot_;
+  Robot& robot_;
   const TrialOptions& options_;
   control::Navigator navigator_;
   Recorder recorder_;
   std::optional<double> looked_at_s_;  ///< capture time of the newest pose seen, believed or not
-  robot::PoseMeasurement measured_;    ///< the newest pose believed
+  PoseMeasurement measured_;           ///< the newest pose believed
   std::optional<double> decided_s_;
   std::optional<double> tilted_since_s_;
   control::Decision decision_;
@@ -65,7 +65,7 @@ class Loop {
 };
 
 TrialResult Loop::Run() {
-  robot::Sensed sensed = robot_.Sense();
+  Sensed sensed = robot_.Sense();
   Begin(sensed);
   while (true) {
     const bool is_new_pose = TakePose(sensed);
@@ -82,7 +82,7 @@ TrialResult Loop::Run() {
   return std::move(recorder_.result());
 }
 
-void Loop::Begin(const robot::Sensed& sensed) {
+void Loop::Begin(const Sensed& sensed) {
   start_s_ = last_look_s_ = sensed.now_s;
   recorder_.result().start_s = start_s_;
 }
@@ -97,7 +97,7 @@ bool Loop::ClockRuns(double now_s) {
 
 // True when a pose came in that had not been seen before and is believed. One from the future
 // would never grow stale.
-bool Loop::TakePose(const robot::Sensed& sensed) {
+bool Loop::TakePose(const Sensed& sensed) {
   if (!sensed.pose || sensed.pose->captured_s == looked_at_s_) return false;
   looked_at_s_ = sensed.pose->captured_s;
   const bool believed = sensed.pose->captured_s <= sensed.now_s + options_.control_period_s &&
@@ -117,7 +117,7 @@ bool Loop::TakePose(const robot::Sensed& sensed) {
   return true;
 }
 
-bool Loop::IsOver(const robot::Sensed& sensed) {
+bool Loop::IsOver(const Sensed& sensed) {
   if (sensed.fault) return End(Outcome::kFault, *sensed.fault);
   if (!ClockRuns(sensed.now_s)) {
     return End(Outcome::kFault, "the robot's clock stands still or runs backwards");
@@ -173,7 +173,7 @@ control::Decision Loop::Decide(double now_s, bool is_new_pose) {
   return decision;
 }
 
-void Loop::Send(double now_s, const robot::WheelPower& power) {
+void Loop::Send(double now_s, const control::WheelPower& power) {
   robot_.Command(power);
   navigator_.NoteSent(now_s, power);
   recorder_.Sent(now_s, power);
@@ -187,7 +187,7 @@ bool Loop::End(Outcome outcome, std::string reason) {
 
 }  // namespace
 
-TrialResult RunTrial(robot::Robot& robot, const std::vector<control::Waypoint>& waypoints,
+TrialResult RunTrial(Robot& robot, const std::vector<control::Waypoint>& waypoints,
                      const control::NavigatorOptions& navigator_options,
                      const TrialOptions& options) {
   const StopGuard stop_at_the_end(robot);

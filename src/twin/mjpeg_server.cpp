@@ -1,4 +1,4 @@
-#include "rift/twin/mjpeg_server.hpp"
+#include "mjpeg_server.hpp"
 
 #include <fmt/format.h>
 
@@ -109,8 +109,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
 };
 
 tcp::acceptor Listen(asio::io_context& context, int port) {
-  const tcp::endpoint here(asio::ip::address_v4::loopback(),
-                           static_cast<unsigned short>(port));
+  const tcp::endpoint here(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port));
   try {
     return tcp::acceptor(context, here);
   } catch (const boost::system::system_error& error) {

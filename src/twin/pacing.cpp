@@ -1,4 +1,4 @@
-#include "rift/twin/pacing.hpp"
+#include "pacing.hpp"
 
 namespace rift::twin {
 
@@ -12,8 +12,8 @@ double Pacer::Simulated_s(double now_s) {
   return now_s - epoch_s_;
 }
 
-void TrialEnd::See(double t_s, const robot::WheelPower& power) {
-  if (power == robot::WheelPower{}) return;
+void TrialEnd::See(double t_s, const control::WheelPower& power) {
+  if (power == control::WheelPower{}) return;
   has_driven_ = true;
   driven_s_ = t_s;
 }

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "rift/twin/mjpeg_server.hpp"
+#include "mjpeg_server.hpp"
 #include "rift/twin/twin.hpp"
 
 namespace rift::twin {

@@ -5,9 +5,9 @@
 #include <random>
 #include <thread>
 
+#include "mjpeg_server.hpp"
+#include "pacing.hpp"
 #include "pseudo_terminal.hpp"
-#include "rift/twin/mjpeg_server.hpp"
-#include "rift/twin/pacing.hpp"
 #include "stream_camera.hpp"
 
 namespace rift::twin {
@@ -49,7 +49,7 @@ TwinRun RunTwin(const TwinSetup& setup, std::unique_ptr<vision::PictureMaker> pi
     const double now_s = pacer.Simulated_s(SteadyNow_s());
     epoch_s = pacer.ClockOf_s(0.0);
     robot.Hear(robot.Now_s(), line.Read());
-    robot.Advance(now_s, [&](const simulation::TruePose& pose, const robot::WheelPower& power) {
+    robot.Advance(now_s, [&](const simulation::TruePose& pose, const control::WheelPower& power) {
       path.Add(pose);
       end.See(pose.t_s, power);
     });

@@ -31,12 +31,12 @@ TwinRobot::TwinRobot(const simulation::SimulationOptions& options, double batter
       battery_mv_(static_cast<std::uint16_t>(std::lround(1e3 * battery_v))) {}
 
 hardware::Listener::Senses TwinRobot::Senses() {
-  const robot::EncoderCounts counts = robot_.Sense().encoders.value_or(robot::EncoderCounts{});
+  const control::EncoderCounts counts = robot_.Sense().encoders.value_or(control::EncoderCounts{});
   return {static_cast<std::int32_t>(counts.left), static_cast<std::int32_t>(counts.right),
           battery_mv_};
 }
 
-robot::WheelPower TwinRobot::Motors() const {
+control::WheelPower TwinRobot::Motors() const {
   return {1e-3 * listener_.Motors().left, 1e-3 * listener_.Motors().right};
 }
 
@@ -45,7 +45,7 @@ void TwinRobot::Advance(double to_s, const Witness& witness) {
     const std::vector<std::uint8_t> heard = to_robot_.Take(Now_s());
     const auto now_ms = static_cast<std::uint32_t>(turns_);  // a turn is a millisecond
     to_host_.Put(Now_s(), listener_.Poll(now_ms, heard, Senses()));
-    if (const robot::WheelPower power = Motors(); !(power == commanded_)) {
+    if (const control::WheelPower power = Motors(); !(power == commanded_)) {
       robot_.Command(power);
       commanded_ = power;
     }

@@ -1,12 +1,15 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
-#include <functional>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
+
+#include "support/tree.hpp"
 
 namespace rift {
 namespace {
@@ -15,30 +18,27 @@ namespace fs = std::filesystem;
 
 using Rooms = std::set<std::string>;
 
-/// The rooms that a room names in the plan; it may include them and the rooms they name.
-const std::map<std::string, Rooms> kRooms{
-    {"geometry", {}},
-    {"trajectory", {"geometry"}},
-    {"robot", {"geometry"}},
-    {"module", {}},
-    {"vision", {"geometry", "module"}},
-    {"gap", {"trajectory"}},
-    {"control", {"robot", "geometry"}},
-    {"trial", {"robot", "control", "trajectory"}},
-    {"simulation", {"robot"}},
-    {"hardware", {"robot", "vision"}},
-    {"twin", {"simulation", "hardware", "vision", "trial"}},
-    {"search", {}},
-    {"sweep", {"trial", "simulation", "gap", "trajectory", "search"}},
-    {"report", {"gap", "sweep", "trajectory"}},
-    {"view", {"geometry", "trajectory", "robot", "module"}},
-    {"config",
-     {"geometry", "trajectory", "robot", "vision", "gap", "control", "trial", "simulation",
-      "hardware", "twin", "search", "sweep", "report"}},
-    {"commands",
-     {"geometry", "trajectory", "robot", "vision", "gap", "control", "trial", "simulation",
-      "hardware", "twin", "search", "sweep", "report", "config", "view"}},
+/// What a room may include besides itself, as cmake/rooms.cmake says.
+struct Allowed {
+  Rooms rooms;
+  Rooms options;  ///< of these only the headers that hold options
 };
+
+/// The table of cmake/rooms.cmake: lines `name: room room; room room`.
+std::map<std::string, Allowed> ReadTable() {
+  std::map<std::string, Allowed> table;
+  std::ifstream file(test::BuildDir() + "/generated/rooms.txt");
+  for (std::string line; std::getline(file, line);) {
+    const size_t colon = line.find(':'), semicolon = line.find(';');
+    const auto names = [&](size_t from, size_t to) {
+      std::istringstream words(line.substr(from, to - from));
+      return Rooms(std::istream_iterator<std::string>(words), {});
+    };
+    table[line.substr(0, colon)] = {names(colon + 1, semicolon),
+                                    names(semicolon + 1, std::string::npos)};
+  }
+  return table;
+}
 
 /// Headers that only one room may see, so that a library can be exchanged in one place, and
 /// headers that computation has no business with.
@@ -47,15 +47,15 @@ struct Reserved {
   Rooms rooms;
 };
 const std::vector<Reserved> kReserved{
-    {"yaml-cpp/.*", {"config"}},
+    {"yaml-cpp/.*", {"yaml"}},
     {"ode/.*", {"simulation"}},
-    {"apriltag.*", {"vision"}},
-    {"opencv2/(videoio|imgcodecs|highgui).*", {"vision", "commands", "view"}},
+    {"apriltag.*", {"vision/tracking"}},
+    {"opencv2/(videoio|imgcodecs|highgui).*", {"vision", "view"}},
     {"CLI/.*", {"commands"}},
     {"pagmo/.*|nlopt.*", {"search"}},
     {"turbojpeg.h", {"vision"}},
     {"dlfcn.h|xcb/.*", {"module"}},
-    {"sqlite3.*|SQLiteCpp/.*", {"sweep"}},
+    {"sqlite3.*|SQLiteCpp/.*", {"sweep/run"}},
     {"termios.h|asm/termbits.h|boost/asio.*", {"hardware", "twin"}},
     {"fstream|iostream|cstdio", {"commands", "hardware", "vision", "twin", "report"}},
     {"thread|mutex|condition_variable", {"commands", "hardware", "vision", "twin", "sweep"}},
@@ -68,16 +68,22 @@ struct Include {
   std::string where;  ///< file:line
 };
 
-/// The first folder of a file below src or include/rift; main.cpp is the outermost room.
+/// The folder of a file below src or include/rift; main.cpp is the outermost room.
 std::string RoomOf(const fs::path& relative) {
-  return relative.has_parent_path() ? relative.begin()->string() : "main";
+  return relative.has_parent_path() ? relative.parent_path().generic_string() : "main";
 }
+
+bool IsIn(const std::string& room, const Rooms& rooms) {
+  return rooms.contains(room) || rooms.contains(room.substr(0, room.find('/')));
+}
+
+bool HoldsOptions(const std::string& header) { return header.ends_with("options.hpp"); }
 
 std::vector<Include> AllIncludes() {
   static const std::regex kInclude(R"(\s*#\s*include\s*[<"]([^>"]+)[>"].*)");
   std::vector<Include> includes;
   for (const char* top : {"src", "include/rift"}) {
-    const fs::path root = fs::path(RIFT_SOURCE_DIR) / top;
+    const fs::path root = fs::path(test::SourceDir()) / top;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
       if (!entry.is_regular_file()) continue;
       const std::string extension = entry.path().extension().string();
@@ -95,28 +101,35 @@ std::vector<Include> AllIncludes() {
   return includes;
 }
 
-/// A room, those it names, and those they name.
-Rooms Reachable(const std::string& room) {
-  Rooms reached{room};
-  std::function<void(const std::string&)> visit = [&](const std::string& from) {
-    for (const std::string& next : kRooms.at(from)) {
-      if (reached.insert(next).second) visit(next);
-    }
-  };
-  if (room == "main") return {"commands", "config"};
-  visit(room);
-  return reached;
-}
-
-TEST_CASE("Every room includes only the rooms that the plan allows it") {
+TEST_CASE("Every room includes only the rooms that cmake/rooms.cmake allows it") {
+  const std::map<std::string, Allowed> table = ReadTable();
   const std::vector<Include> includes = AllIncludes();
+  REQUIRE(table.size() > 15);
   REQUIRE(includes.size() > 50);
   for (const Include& include : includes) {
-    if (!include.target.starts_with("rift/")) continue;
+    if (!include.target.starts_with("rift/") || include.room == "main") continue;
     INFO(include.where << " includes " << include.target);
-    REQUIRE((include.room == "main" || kRooms.contains(include.room)));
+    REQUIRE(table.contains(include.room));
     const std::string target = RoomOf(fs::path(include.target).lexically_relative("rift"));
-    CHECK(Reachable(include.room).contains(target));
+    const Allowed& allowed = table.at(include.room);
+    const bool is_options = allowed.options.contains(target) && HoldsOptions(include.target);
+    CHECK((target == include.room || allowed.rooms.contains(target) || is_options));
+  }
+}
+
+TEST_CASE("No room is allowed a room that it does not include") {
+  std::map<std::string, Rooms> used;
+  for (const Include& include : AllIncludes()) {
+    if (!include.target.starts_with("rift/")) continue;
+    used[include.room].insert(RoomOf(fs::path(include.target).lexically_relative("rift")));
+  }
+  for (const auto& [room, allowed] : ReadTable()) {
+    for (const Rooms& rooms : {allowed.rooms, allowed.options}) {
+      for (const std::string& other : rooms) {
+        INFO(room << " may include " << other);
+        CHECK(used[room].contains(other));
+      }
+    }
   }
 }
 
@@ -126,21 +139,27 @@ TEST_CASE("A library is seen only by the room that owns it") {
     for (const Reserved& reserved : kReserved) {
       if (!std::regex_match(include.target, std::regex(reserved.pattern))) continue;
       INFO(include.where << " includes " << include.target);
-      CHECK(reserved.rooms.contains(include.room));
+      CHECK(IsIn(include.room, reserved.rooms));
     }
   }
 }
 
-TEST_CASE("The plan itself keeps simulator and hardware apart") {
-  CHECK_FALSE(Reachable("simulation").contains("hardware"));
-  CHECK_FALSE(Reachable("hardware").contains("simulation"));
-  CHECK_FALSE(Reachable("control").contains("vision"));
-  CHECK_FALSE(Reachable("control").contains("simulation"));
-  CHECK_FALSE(Reachable("gap").contains("control"));
+TEST_CASE("The table keeps simulator, hardware and computation apart") {
+  const std::map<std::string, Allowed> table = ReadTable();
+  const auto never = [&](const std::string& room, const std::string& other) {
+    INFO(room << " -> " << other);
+    CHECK_FALSE(IsIn(other, table.at(room).rooms));
+  };
+  never("simulation", "hardware");
+  never("hardware", "simulation");
+  never("control", "vision/camera");
   for (const char* room : {"control", "trial"}) {
-    CHECK_FALSE(Reachable(room).contains("simulation"));
-    CHECK_FALSE(Reachable(room).contains("hardware"));
+    never(room, "simulation");
+    never(room, "hardware");
   }
+  never("gap", "control");
+  never("sweep/run", "sweep/falsify");
+  for (const auto& [room, allowed] : table) never(room, "commands");
 }
 
 }  // namespace

@@ -19,11 +19,12 @@
 #include "rift/trajectory/log.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 
 namespace rift {
 namespace {
 
-const std::string kScript = RIFT_SOURCE_DIR "/tests/benchmarks/gap_baseline.py";
+const std::string kScript = test::SourceDir() + "/tests/benchmarks/gap_baseline.py";
 
 /// Two logs of `rows` rows with the columns that rift writes.
 struct Logs {
@@ -102,7 +103,7 @@ BENCHMARK(BM_CompareInProcess)->Unit(benchmark::kMicrosecond);
 void BM_GapWholeProcess(benchmark::State& state) {
   const Logs logs(static_cast<int>(state.range(0)));
   const std::string sim = logs.folder / "sim.csv", real = logs.folder / "real.csv";
-  const std::vector<std::string> rift{RIFT_BINARY, "gap", sim, real};
+  const std::vector<std::string> rift{test::RiftBinary(), "gap", sim, real};
   const std::vector<std::string> numpy{"/usr/bin/python3", kScript, sim, real};
   std::vector<double> ratios;
   for (auto _ : state) {

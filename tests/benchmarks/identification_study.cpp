@@ -11,7 +11,7 @@
 
 #include "benchmarks/run_study.hpp"
 #include "identification/trial_grid.hpp"
-#include "rift/sweep/short_horizon.hpp"
+#include "rift/sweep/calibrate/short_horizon.hpp"
 
 namespace rift {
 namespace {

@@ -8,10 +8,10 @@
 #include <chrono>
 #include <filesystem>
 
-#include "rift/sweep/grid_sweep.hpp"
-#include "rift/sweep/journal.hpp"
-#include "rift/sweep/simulated_trial.hpp"
-#include "rift/sweep/trial_runner.hpp"
+#include "rift/sweep/falsify/grid_sweep.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/sweep/falsify/trial_runner.hpp"
+#include "rift/sweep/run/journal.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/paths.hpp"
 

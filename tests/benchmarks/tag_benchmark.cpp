@@ -17,9 +17,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "rift/vision/synthetic_camera.hpp"
-#include "rift/vision/tag_detector.hpp"
-#include "rift/vision/tag_tracker.hpp"
+#include "rift/vision/rendering/synthetic_camera.hpp"
+#include "rift/vision/tracking/tag_detector.hpp"
+#include "rift/vision/tracking/tag_tracker.hpp"
 #include "support/paper_camera.hpp"
 
 namespace rift::vision {

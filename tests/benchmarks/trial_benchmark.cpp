@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "rift/simulation/ode_world.hpp"
-#include "rift/sweep/simulated_trial.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
 #include "support/paper_waypoints.hpp"
 
 namespace rift {

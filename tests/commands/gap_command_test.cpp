@@ -10,6 +10,7 @@
 
 #include "support/paths.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 
 namespace rift {
@@ -191,7 +192,8 @@ TEST_CASE("An output goes through a link and is put behind what its stream holds
   const TwoLogs logs(0.05);
   const std::string log = logs.folder / "log.txt", link = logs.folder / "link.csv";
   WriteText(log, "precious\n");
-  const std::string command = std::string(RIFT_BINARY) + " gap " + logs.sim + " " + logs.real;
+  const std::string command =
+      std::string(test::RiftBinary()) + " gap " + logs.sim + " " + logs.real;
   REQUIRE(std::system((command + " --json /dev/stdout >> " + log).c_str()) == 0);
   const std::string text = test::ReadFile(log);
   CHECK(text.starts_with("precious\n{"));
@@ -231,7 +233,7 @@ TEST_CASE("A mistyped subcommand is met with the nearest one") {
 }
 
 TEST_CASE("The README's recipe works on the recordings of this repository") {
-  const std::string folder = RIFT_SOURCE_DIR "/data/example/";
+  const std::string folder = test::SourceDir() + "/data/example/";
   const ProcessResult result =
       RunRift({"gap", folder + "simulator.csv", folder + "robot1.csv", folder + "robot2.csv"});
   CHECK(result.exit_code == 0);

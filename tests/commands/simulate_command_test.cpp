@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/process.hpp"
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 
 namespace rift {
@@ -13,7 +14,7 @@ using nlohmann::json;
 using test::ProcessResult;
 using test::RunRift;
 
-const std::string kTask = RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml";
+const std::string kTask = test::SourceDir() + "/configs/waypoints/paper.yaml";
 
 TEST_CASE("rift simulate reaches the paper's waypoints and leaves a whole run behind") {
   const test::TemporaryFolder folder;

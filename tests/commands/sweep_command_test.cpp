@@ -4,6 +4,7 @@
 
 #include "support/paths.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 
 namespace rift {
@@ -168,8 +169,8 @@ TEST_CASE("A sweep in which nothing could be compared leaves no report of an ear
 TEST_CASE("Robots that never arrive are rows and end with 1") {
   const test::TemporaryFolder folder;
   const ProcessResult result =
-      RunRift({"sweep", RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", "--out", folder / "out",
-               "--set", "trial.timeout_s=1", "--set", "space.v_min=[0.15]"});
+      RunRift({"sweep", test::SourceDir() + "/configs/waypoints/paper.yaml", "--out",
+               folder / "out", "--set", "trial.timeout_s=1", "--set", "space.v_min=[0.15]"});
   CHECK(result.exit_code == 1);
   CHECK(test::ReadFile(folder / "out/table.csv").find("0.15,1,,,timed_out,") != std::string::npos);
 }
@@ -205,8 +206,9 @@ reference: {kind: logs, path: "{a}|{b}_{trial}.csv", trials: 2}
 
 TEST_CASE("A waypoint file alone is swept on the simulator over the paper's grid") {
   const test::TemporaryFolder folder;
-  const ProcessResult result = RunRift({"sweep", RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml",
-                                        "--out", folder / "out", "--json"});
+  const ProcessResult result =
+      RunRift({"sweep", test::SourceDir() + "/configs/waypoints/paper.yaml", "--out",
+               folder / "out", "--json"});
   REQUIRE(result.exit_code == 0);
   CHECK(result.err.find("names no space: the paper's grid") != std::string::npos);
   const json summary = json::parse(result.out);
@@ -218,9 +220,10 @@ TEST_CASE("A waypoint file alone is swept on the simulator over the paper's grid
 
 TEST_CASE("A simulation against its own nominal run has no gap at the nominal setting") {
   const test::TemporaryFolder folder;
-  const ProcessResult result = RunRift(
-      {"sweep", RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", "--out", folder / "out", "--set",
-       "reference={kind: nominal, trials: 2}", "--set", "space.surface=[ground, bump]", "--json"});
+  const ProcessResult result =
+      RunRift({"sweep", test::SourceDir() + "/configs/waypoints/paper.yaml", "--out",
+               folder / "out", "--set", "reference={kind: nominal, trials: 2}", "--set",
+               "space.surface=[ground, bump]", "--json"});
   REQUIRE(result.exit_code == 0);
   const json summary = json::parse(result.out);
   CHECK(summary["n"] == 4);
@@ -231,8 +234,8 @@ TEST_CASE("A simulation against its own nominal run has no gap at the nominal se
 TEST_CASE("The paper's table comes out of the authors' logs") {
   RIFT_SKIP_WITHOUT_TRIALS();
   const test::TemporaryFolder folder;
-  const ProcessResult result = RunRift(
-      {"sweep", RIFT_SOURCE_DIR "/configs/paper_webots.yaml", "--out", folder / "out", "--json"});
+  const ProcessResult result = RunRift({"sweep", test::SourceDir() + "/configs/paper_webots.yaml",
+                                        "--out", folder / "out", "--json"});
   REQUIRE(result.exit_code == 0);
   const json summary = json::parse(result.out);
   CHECK(summary["n"] == 48);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/process.hpp"
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 
 namespace rift {
@@ -168,7 +169,7 @@ TEST_CASE("The paper's grid says that v_max is inert and why and what matters") 
   const test::TemporaryFolder folder;
   const std::string out = folder / "out";
   const ProcessResult result =
-      RunRift({"sweep", RIFT_SOURCE_DIR "/configs/paper_webots.yaml", "--out", out, "--quiet"});
+      RunRift({"sweep", test::SourceDir() + "/configs/paper_webots.yaml", "--out", out, "--quiet"});
   REQUIRE(result.exit_code == 0);
   const json explanation = json::parse(ReadFile(out + "/explanation.json"));
   const json& v_max = explanation["parameters"]["v_max"];

@@ -22,7 +22,7 @@ TEST_CASE("Without a delay the predicted pose is the measured one") {
 }
 
 TEST_CASE("The prediction drives through exactly what was sent within the delay") {
-  const robot::DiffDrive drive;
+  const DiffDrive drive;
   PosePredictor predictor(Delay(0.3));
   predictor.NoteSent(0.0, {0.2, 0.2});
   predictor.NoteSent(0.8, {0.1, 0.3});
@@ -34,7 +34,7 @@ TEST_CASE("The prediction drives through exactly what was sent within the delay"
 }
 
 TEST_CASE("A pose held since its arrival is driven on for that time too") {
-  const robot::DiffDrive drive;
+  const DiffDrive drive;
   PosePredictor predictor(Delay(0.3));
   predictor.NoteSent(0.0, {0.2, 0.2});
   const geometry::Pose2 predicted = predictor.Predict({}, 1.0, 1.05);
@@ -44,13 +44,13 @@ TEST_CASE("A pose held since its arrival is driven on for that time too") {
 // Weave of a robot with 0.3 s between command and effect. Without the derivative, which against
 // the least steering holds any heading error below 0.0085 x 0.58 rad/s / 0.045 = 0.11 rad.
 double HeadingErrorRms_rad(double compensated_s) {
-  const robot::DiffDrive drive;
+  const DiffDrive drive;
   NavigatorOptions options;
   options.heading.d = 0.0;
   options.latency.delay_s = compensated_s;
   Navigator navigator(options, {{"a", 0.0, 0.0, 0.0, false}, {"b", 1.5, 0.0, {}, true}});
   const int delay_steps = 15;
-  std::vector<robot::WheelPower> sent;
+  std::vector<WheelPower> sent;
   geometry::Pose2 pose{0.0, 0.0, 0.2};
   double sum = 0.0;
   int steps = 0;

@@ -74,7 +74,7 @@ TEST_CASE("Random poses and options never make a power beyond one or not finite"
       REQUIRE(IsPower(decision.power.right));
       REQUIRE(std::isfinite(decision.raw_v));
       REQUIRE(std::isfinite(decision.raw_w));
-      driven += !(decision.power == robot::WheelPower{});
+      driven += !(decision.power == WheelPower{});
     }
   }
   CHECK(driven > 10'000);

@@ -101,7 +101,7 @@ TEST_CASE("A stop is one decision of zero power and then the next leg begins") {
   const Decision at = navigator.Step({0.0, kStep_s, 0.0, {0.96, 0.0, 0.1}});
   CHECK(at.reached);
   CHECK(at.waypoint == 1);
-  CHECK(at.power == robot::WheelPower{});
+  CHECK(at.power == WheelPower{});
   const Decision next = navigator.Step({kStep_s, kStep_s, kStep_s, {0.96, 0.0, 0.1}});
   CHECK(next.waypoint == 2);
   CHECK(next.v == 0.3);
@@ -123,7 +123,7 @@ TEST_CASE("After the last waypoint the power stays zero") {
   CHECK(end.reached);
   const Decision after = navigator.Step({1.0, kStep_s, 1.0, {0.5, 0.0, 0.0}});
   CHECK(after.finished);
-  CHECK(after.power == robot::WheelPower{});
+  CHECK(after.power == WheelPower{});
 }
 
 TEST_CASE("Both loops start anew at every waypoint") {
@@ -171,7 +171,7 @@ TEST_CASE("Without a believable pose no wheel turns") {
         geometry::Pose2{0.0, 0.0, nan}, geometry::Pose2{1e300, 0.0, 0.0}}) {
     const Decision decision = navigator.Step({0.0, kStep_s, 0.0, pose});
     CHECK(decision.pose_refused);
-    CHECK(decision.power == robot::WheelPower{});
+    CHECK(decision.power == WheelPower{});
   }
 }
 

@@ -26,7 +26,7 @@ NavigatorOptions AuthorsOptions(const test::TrialLog& trial) {
 }
 
 std::vector<Eigen::Vector2d> Rebuild(const test::TrialLog& trial, const NavigatorOptions& options) {
-  const robot::DiffDrive drive;
+  const DiffDrive drive;
   Navigator navigator(options, test::PaperWaypoints());
   geometry::Pose2 pose = trial.log.poses.front().Planar();
   std::vector<Eigen::Vector2d> path{pose.Position()};
@@ -101,7 +101,7 @@ TEST_CASE("The logged first steering of a leg shows the derivative kick") {
       const trajectory::StampedPose& row = rows[i];
       if (row.target_x_m == rows[i - 1].target_x_m || row.target_x_m > 0.3) continue;
       const double turn_rad = geometry::WrapToPi(rows[i + 1].yaw_rad - row.yaw_rad);
-      const robot::DiffDriveOptions drive;
+      const DiffDriveOptions drive;
       const double power_of_turn = turn_rad / kStep_s * 0.5 * drive.track_m /
                                    (drive.wheel_radius_m * drive.full_power_speed_rad_s);
       for (const bool kick : {true, false}) {

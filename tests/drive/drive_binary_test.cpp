@@ -4,12 +4,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "files.hpp"
+#include "commands/files.hpp"
 #include "floor.hpp"
 #include "rift/control/waypoint.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/running_rift.hpp"
+#include "support/tree.hpp"
 
 namespace rift {
 namespace {
@@ -30,9 +31,9 @@ hardware:
 struct Scene {
   explicit Scene(int pictures = 1'000'000)
       : floor(control::StartPose(test::PaperWaypoints()), pictures) {
-    test::WriteText(folder / "cam.yaml", config::WriteCamera(test::SmallCamera()));
-    test::WriteText(folder / "task.yaml", "include: " RIFT_SOURCE_DIR
-                                          "/configs/waypoints/paper.yaml\n" +
+    test::WriteText(folder / "cam.yaml", vision::WriteCamera(test::SmallCamera()));
+    test::WriteText(folder / "task.yaml", "include: " + test::SourceDir() +
+                                              "/configs/waypoints/paper.yaml\n" +
                                               std::string(kPatient));
   }
   std::vector<std::string> Arguments() const {
@@ -136,9 +137,9 @@ TEST_CASE("Wrong inputs of a drive are answered with one line that says what to 
   };
   vision::CameraModel camera = test::SmallCamera();
   camera.width_px = 640;
-  test::WriteText(scene.folder / "size.yaml", config::WriteCamera(camera));
+  test::WriteText(scene.folder / "size.yaml", vision::WriteCamera(camera));
   camera.world.reset();
-  test::WriteText(scene.folder / "nowhere.yaml", config::WriteCamera(camera));
+  test::WriteText(scene.folder / "nowhere.yaml", vision::WriteCamera(camera));
   test::WriteText(scene.folder / "picture", "");
   struct Wrong {
     std::string flag, value;

@@ -1,4 +1,4 @@
-#include "drive_operator.hpp"
+#include "commands/drive_operator.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,14 +1,14 @@
-#include "drive_run.hpp"
+#include "commands/drive_run.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "drive_files.hpp"
-#include "drive_output.hpp"
-#include "files.hpp"
+#include "commands/drive_files.hpp"
+#include "commands/drive_output.hpp"
+#include "commands/files.hpp"
 #include "hardware/bench.hpp"
-#include "rift/config/camera_file.hpp"
 #include "rift/trajectory/log.hpp"
+#include "rift/vision/camera/camera_file.hpp"
 #include "support/paper_camera.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/process.hpp"
@@ -19,8 +19,8 @@ namespace {
 using hardware::Bench;
 using hardware::StopReason;
 
-config::Experiment PaperExperiment() {
-  config::Experiment experiment;
+experiment::Experiment PaperExperiment() {
+  experiment::Experiment experiment;
   experiment.name = "bench";
   experiment.waypoints = test::PaperWaypoints();
   experiment.trial.pace = trial::Pace::kNewPose;
@@ -47,7 +47,7 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   Bench bench;
   bench.line_delay_s = 0.005;
   Operator person;
-  const config::Experiment experiment = PaperExperiment();
+  const experiment::Experiment experiment = PaperExperiment();
   const DriveRun run = Drive(person.PartsOf(bench), experiment);
   CHECK(run.trial.outcome == trial::Outcome::kReached);
   CHECK(run.evidence.stop_acknowledged == true);
@@ -69,7 +69,7 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   CHECK(rows == 1 + static_cast<long>(run.evidence.poses.size()));
   const std::string encoders = ReadFile(folder / "encoders.csv");
   CHECK(std::count(encoders.begin(), encoders.end(), '\n') > rows - 5);
-  CHECK(config::ReadCamera(ReadFile(folder / "camera.yaml"), "camera").world);
+  CHECK(vision::ReadCamera(ReadFile(folder / "camera.yaml"), "camera").world);
   const trajectory::Log log = trajectory::ReadLog(ReadFile(folder / "trajectory.csv"), "trajectory",
                                                   trajectory::Format::kAuto);
   CHECK(log.trajectory.poses.size() == run.trial.trajectory.poses.size());

@@ -4,10 +4,10 @@
 #include <thread>
 
 #include "hardware/pseudo_terminal.hpp"
-#include "rift/config/camera_file.hpp"
+#include "rift/control/diff_drive.hpp"
 #include "rift/hardware/byte_line.hpp"
 #include "rift/hardware/listener.hpp"
-#include "rift/robot/diff_drive.hpp"
+#include "rift/vision/camera/camera_file.hpp"
 #include "support/paper_camera.hpp"
 #include "vision/mjpeg_server.hpp"
 #include "vision/rendered_tags.hpp"
@@ -81,7 +81,7 @@ class Floor {
   std::mutex mutex_;
   geometry::Pose2 pose_;
   double travelled_m_ = 0.0;
-  robot::DiffDrive drive_;
+  control::DiffDrive drive_;
   hardware::Listener listener_;
   hardware::SteadyClock clock_;
   hardware::PseudoTerminal terminal_;

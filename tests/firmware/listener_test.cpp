@@ -11,6 +11,7 @@
 
 #include "rift/hardware/wire.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 
 namespace rift::hardware {
 namespace {
@@ -41,7 +42,7 @@ std::string ScriptOf(const std::vector<Turn>& turns) {
 }
 
 bool CanRun() {
-  if (std::filesystem::exists(RIFT_MICROPYTHON "/installed")) return true;
+  if (std::filesystem::exists(test::BuildDir() + "/micropython/installed")) return true;
   WARN("SKIPPED: npm did not bring MicroPython when this was built");
   return false;
 }
@@ -50,11 +51,11 @@ bool CanRun() {
 Run RunFirmware(const std::string& script) {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "script", script);
-  const std::string source = RIFT_SOURCE_DIR;
+  const std::string source = test::SourceDir();
   const std::string command = fmt::format(
       "node '{0}/tests/firmware/run_firmware.mjs' '{1}' '{0}/src/firmware' "
       "'{0}/tests/firmware/stand_in' '{2}' > '{3}' 2>&1",
-      source, RIFT_MICROPYTHON, folder / "script", folder / "out");
+      source, test::BuildDir() + "/micropython", folder / "script", folder / "out");
   const int status = std::system(command.c_str());
   std::ifstream out(folder / "out");
   Run run;

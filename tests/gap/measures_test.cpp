@@ -1,4 +1,4 @@
-#include "../../src/gap/measures.hpp"
+#include "gap/measures.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "rift/control/diff_drive.hpp"
 #include "rift/hardware/listener.hpp"
 #include "rift/hardware/real_robot.hpp"
-#include "rift/robot/diff_drive.hpp"
 
 namespace rift::hardware {
 
@@ -34,7 +34,7 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   bool camera_is_frozen = false;
   bool tag_is_hidden = false;
   std::optional<std::string> camera_fault;
-  std::function<void(robot::PoseMeasurement&)> bend = [](robot::PoseMeasurement&) {};
+  std::function<void(trial::PoseMeasurement&)> bend = [](trial::PoseMeasurement&) {};
   // The robot.
   std::uint16_t battery_mv = 5000;
   bool robot_is_on = true;
@@ -130,7 +130,7 @@ class Bench : public ByteLine, public Clock, public PoseSource {
     constexpr double kFrame_s = 1.0 / 30.0, kSight_s = 0.012;
     if (now_s_ >= next_frame_s_) {
       next_frame_s_ += kFrame_s;
-      robot::PoseMeasurement seen{now_s_, pose_, 0.0, 0.0, 0.0};
+      trial::PoseMeasurement seen{now_s_, pose_, 0.0, 0.0, 0.0};
       if (!camera_is_frozen) pictures_.push_back({seen, tag_is_hidden});
     }
     while (!pictures_.empty() && pictures_.front().pose.captured_s + kSight_s <= now_s_) {
@@ -144,14 +144,14 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   }
 
   struct Picture {
-    robot::PoseMeasurement pose;
+    trial::PoseMeasurement pose;
     bool is_empty;
   };
 
   double now_s_ = 100.0;
   std::deque<Byte> to_robot_, to_host_;
   double to_robot_free_s_ = 0.0, to_host_free_s_ = 0.0;
-  robot::DiffDrive drive_;
+  control::DiffDrive drive_;
   geometry::Pose2 pose_{-0.2822, -0.0655, 0.0};
   double left_ = 0.0, right_ = 0.0, travelled_m_ = 0.0;
   double moving_s_ = 0.0;

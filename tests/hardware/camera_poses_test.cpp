@@ -98,7 +98,7 @@ TEST_CASE("A sighting becomes a pose on the floor with the times of its picture"
   scene.stage->Put(captured_s);
   const PoseNews news = scene.NewsWhen([](const PoseNews& n) { return n.newest.has_value(); });
   REQUIRE(news.newest);
-  const robot::PoseMeasurement& pose = news.newest->measured;
+  const trial::PoseMeasurement& pose = news.newest->measured;
   CHECK(pose.captured_s == captured_s);
   CHECK(news.newest->arrived_s == captured_s + 0.004);
   CHECK(news.newest->ready_s >= captured_s);

@@ -8,7 +8,7 @@
 namespace rift::hardware {
 namespace {
 
-constexpr robot::WheelPower kForward{0.3, 0.28};
+constexpr control::WheelPower kForward{0.3, 0.28};
 constexpr double kPeriod_s = 0.02;
 
 /// One turn of a control loop that only ever wants to drive on.

@@ -5,12 +5,13 @@
 #include <map>
 #include <stdexcept>
 
-#include "rift/config/bind.hpp"
-#include "rift/config/load.hpp"
-#include "rift/config/tree.hpp"
 #include "rift/gap/comparison.hpp"
 #include "rift/simulation/simulated_robot.hpp"
-#include "rift/sweep/drive_likeness.hpp"
+#include "rift/sweep/calibrate/drive_likeness.hpp"
+#include "rift/yaml/bind.hpp"
+#include "rift/yaml/load.hpp"
+#include "rift/yaml/tree.hpp"
+#include "support/tree.hpp"
 
 namespace rift::test {
 namespace {
@@ -93,11 +94,11 @@ bool BothReached(const trial::TrialResult& a, const trial::TrialResult& b) {
 }  // namespace
 
 GridStudy LoadGridStudy(const std::string& robot, const std::vector<std::string>& overrides) {
-  config::Node tree = config::Load(RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", ReadFile);
-  if (!robot.empty()) config::Merge(tree, config::Load(robot, ReadFile));
-  for (const std::string& set : overrides) config::Merge(tree, config::ParseOverride(set));
+  yaml::Node tree = yaml::Load(SourceDir() + "/configs/waypoints/paper.yaml", ReadFile);
+  if (!robot.empty()) yaml::Merge(tree, yaml::Load(robot, ReadFile));
+  for (const std::string& set : overrides) yaml::Merge(tree, yaml::ParseOverride(set));
   GridStudy study;
-  config::Bind(tree, study);
+  yaml::Bind(tree, study);
   return study;
 }
 

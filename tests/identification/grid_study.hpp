@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "rift/control/waypoint.hpp"
-#include "rift/simulation/simulation_options.hpp"
+#include "rift/simulation/options.hpp"
 #include "rift/trial/loop_delay.hpp"
 #include "rift/trial/trial.hpp"
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 
 namespace rift::test {
@@ -28,7 +29,7 @@ struct GridStudy {
   }
 };
 
-inline const std::string kAuthorsRobot = RIFT_SOURCE_DIR "/configs/robots/3pi_2040.yaml";
+inline const std::string kAuthorsRobot = SourceDir() + "/configs/robots/3pi_2040.yaml";
 
 /// The paper's waypoints and a robot file (none: the defaults, which are facts alone), with
 /// overrides "a.b=c".

@@ -3,11 +3,12 @@
 
 #include "identification/trial_grid.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 
 namespace rift {
 namespace {
 
-const std::string kConfigs = RIFT_SOURCE_DIR "/configs/";
+const std::string kConfigs = test::SourceDir() + "/configs/";
 
 nlohmann::json Sweep(const std::string& config) {
   test::TemporaryFolder folder;

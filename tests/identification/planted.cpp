@@ -4,21 +4,21 @@
 
 #include <random>
 
-#include "rift/config/set_value.hpp"
 #include "rift/control/waypoint.hpp"
-#include "rift/sweep/simulated_trial.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/yaml/set_value.hpp"
 
 namespace rift::test {
 namespace {
 
 GridStudy RobotAt(const GridStudy& robot, const std::vector<Planted>& planted,
                   const std::vector<double>& values) {
-  std::vector<config::KeyValue> pairs;
+  std::vector<yaml::KeyValue> pairs;
   for (size_t i = 0; i < planted.size(); ++i) {
-    pairs.push_back({planted[i].key, config::Node::Scalar(fmt::format("{}", values[i]))});
+    pairs.push_back({planted[i].key, yaml::Node::Scalar(fmt::format("{}", values[i]))});
   }
   GridStudy at = robot;
-  config::SetValues(at, pairs);
+  yaml::SetValues(at, pairs);
   return at;
 }
 
@@ -61,7 +61,7 @@ sweep::Calibration FindPlanted(const GridStudy& robot, const std::vector<Planted
                                std::uint64_t repeat, int logs,
                                const sweep::CalibrationOptions& options, int threads) {
   std::vector<double> truth;
-  std::vector<sweep::FreeParameter> free;
+  std::vector<experiment::FreeParameter> free;
   for (const Planted& p : planted) {
     truth.push_back(p.truth);
     free.push_back({p.key, p.min, p.max, p.start});

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "identification/grid_study.hpp"
-#include "rift/sweep/calibration.hpp"
+#include "rift/sweep/calibrate/calibration.hpp"
 
 namespace rift::test {
 

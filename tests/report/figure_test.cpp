@@ -1,4 +1,4 @@
-#include "rift/report/figure.hpp"
+#include "rift/report/figures/figure.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdlib>

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "report/synthetic_sweep.hpp"
-#include "rift/report/page.hpp"
-#include "rift/sweep/explanation.hpp"
+#include "rift/report/page/page.hpp"
+#include "rift/sweep/explain/explanation.hpp"
 #include "support/browser.hpp"
 
 namespace rift::report {

@@ -1,4 +1,4 @@
-#include "rift/report/page.hpp"
+#include "rift/report/page/page.hpp"
 
 #include <fmt/format.h>
 

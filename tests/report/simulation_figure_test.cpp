@@ -1,4 +1,4 @@
-#include "rift/report/simulation_figure.hpp"
+#include "rift/report/figures/simulation_figure.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

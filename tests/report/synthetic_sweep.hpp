@@ -5,18 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "rift/report/gap_figures.hpp"
-#include "rift/sweep/result.hpp"
-#include "rift/sweep/statistics.hpp"
+#include "rift/report/figures/gap_figures.hpp"
+#include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/falsify/statistics.hpp"
 
 namespace rift::report::synthetic {
 
-inline sweep::ParameterValue Word(const std::string& text) { return {text, {}}; }
-inline sweep::ParameterValue Numeric(const std::string& text) { return {text, std::stod(text)}; }
+inline experiment::ParameterValue Word(const std::string& text) { return {text, {}}; }
+inline experiment::ParameterValue Numeric(const std::string& text) {
+  return {text, std::stod(text)};
+}
 
 /// A row whose gap is known beforehand.
-inline sweep::TrialRow Row(std::vector<sweep::ParameterValue> theta, std::string trial,
-                           double gap_m) {
+inline sweep::TrialRow Row(experiment::Theta theta, std::string trial, double gap_m) {
   sweep::TrialRow row;
   row.theta = std::move(theta);
   row.trial = std::move(trial);

@@ -27,7 +27,7 @@ TEST_CASE("A link without any delay passes a command at once") {
   Link link(Direct(), 1);
   link.Send(0.0, {0.25, -0.5});
   link.Advance(0.0);
-  CHECK(link.Held() == robot::WheelPower{0.25, -0.5});
+  CHECK(link.Held() == control::WheelPower{0.25, -0.5});
 }
 
 TEST_CASE("A step sees the mean of the power over it") {
@@ -35,7 +35,7 @@ TEST_CASE("A step sees the mean of the power over it") {
   options.delay_s = 0.003;
   Link link(options, 1);
   link.Send(0.0, {0.4, 0.8});
-  const robot::WheelPower mean = link.Advance(0.004);
+  const control::WheelPower mean = link.Advance(0.004);
   CHECK(mean.left == Approx(0.1));
   CHECK(mean.right == Approx(0.2));
   CHECK(link.Advance(0.008).left == Approx(0.4));
@@ -64,12 +64,12 @@ TEST_CASE("Powers travel with two decimals or exactly") {
   Link rounded(options, 1);
   rounded.Send(0.0, {0.123456, -0.987});
   rounded.Advance(0.0);
-  CHECK(rounded.Held() == robot::WheelPower{0.12, -0.99});
+  CHECK(rounded.Held() == control::WheelPower{0.12, -0.99});
   options.two_decimals = false;
   Link exact(options, 1);
   exact.Send(0.0, {0.123456, -1.0 / 3.0});
   exact.Advance(0.0);
-  CHECK(exact.Held() == robot::WheelPower{0.123456, -1.0 / 3.0});
+  CHECK(exact.Held() == control::WheelPower{0.123456, -1.0 / 3.0});
 }
 
 TEST_CASE("A listener that polls holds its command until the next poll") {
@@ -182,9 +182,9 @@ TEST_CASE("An urgent line overtakes those that wait even behind half a line") {
   link.Advance(0.155);  // within the second line
   link.SendUrgently(0.155, {0.0, 0.0});
   link.Advance(0.155 + 0.111);
-  CHECK(link.Held() == robot::WheelPower{0.0, 0.0});
+  CHECK(link.Held() == control::WheelPower{0.0, 0.0});
   link.Advance(10.0);
-  CHECK(link.Held() == robot::WheelPower{0.0, 0.0});
+  CHECK(link.Held() == control::WheelPower{0.0, 0.0});
 }
 
 TEST_CASE("A poll faster than any listener is refused") {

@@ -28,10 +28,10 @@ TruePose Moving(double t_s, double speed_mps = kSpeed) {
 }
 
 /// Every new measurement of a straight drive, looked for every `look_s`.
-std::vector<robot::PoseMeasurement> Watch(const MocapOptions& options, double duration_s,
+std::vector<trial::PoseMeasurement> Watch(const MocapOptions& options, double duration_s,
                                           double look_s, double speed_mps = kSpeed) {
   Mocap mocap(options, 3);
-  std::vector<robot::PoseMeasurement> seen;
+  std::vector<trial::PoseMeasurement> seen;
   for (int i = 0; i < std::lround(duration_s / look_s); ++i) {
     mocap.Observe(Moving(i * look_s, speed_mps), Moving((i + 1) * look_s, speed_mps));
     const auto newest = mocap.Newest((i + 1) * look_s);
@@ -49,7 +49,7 @@ TEST_CASE("A pose arrives after exposure and processing and is stamped with its 
   options.processing_s = 0.070;
   Mocap mocap(options, 1);
   mocap.Observe(Moving(0.0), Moving(1.0));
-  std::optional<robot::PoseMeasurement> newest;
+  std::optional<trial::PoseMeasurement> newest;
   double first_s = 0.0;
   for (; !newest; first_s += 0.0005) newest = mocap.Newest(first_s);
   CHECK(first_s - newest->captured_s == Approx(0.075).margin(0.001));
@@ -76,7 +76,7 @@ TEST_CASE("Noise has the size asked for across along and in yaw") {
   options.noise_yaw_rad = 0.01;
   const auto seen = Watch(options, 2000.0, 0.01);
   double across = 0.0, along = 0.0, yaw = 0.0;
-  for (const robot::PoseMeasurement& m : seen) {
+  for (const trial::PoseMeasurement& m : seen) {
     const TruePose truth = Moving(m.captured_s);
     const double dx = m.world_from_robot.x_m - truth.x_m, dy = m.world_from_robot.y_m - truth.y_m;
     across += std::pow(-std::sin(kHeading) * dx + std::cos(kHeading) * dy, 2);
@@ -94,7 +94,7 @@ TEST_CASE("Time stamp jitter becomes an error along the motion and leaves stamps
   options.stamp_jitter_s = 0.010;
   const auto seen = Watch(options, 1000.0, 0.01);
   double along = 0.0, last_s = -1.0;
-  for (const robot::PoseMeasurement& m : seen) {
+  for (const trial::PoseMeasurement& m : seen) {
     const TruePose truth = Moving(m.captured_s);
     along += std::pow(m.world_from_robot.x_m - truth.x_m, 2) +
              std::pow(m.world_from_robot.y_m - truth.y_m, 2);

@@ -25,7 +25,7 @@ SimulationOptions Ideal() {
   return options;
 }
 
-robot::WheelPower Weave(int control_step) {
+control::WheelPower Weave(int control_step) {
   const double turn = 0.03 * std::sin(0.1 * control_step);
   return {0.18 - turn, 0.18 + turn};
 }
@@ -36,7 +36,7 @@ std::vector<double> Drive(const SimulationOptions& options, std::uint64_t seed) 
   for (int i = 0; i < 150; ++i) {
     robot.Command(Weave(i));
     robot.Advance(0.02);
-    const robot::Sensed sensed = robot.Sense();
+    const trial::Sensed sensed = robot.Sense();
     log.insert(log.end(), {robot.Truth().x_m, robot.Truth().y_m, robot.Truth().yaw_rad});
     if (!sensed.pose) continue;
     log.insert(log.end(), {sensed.pose->captured_s, sensed.pose->world_from_robot.x_m,
@@ -140,7 +140,7 @@ TEST_CASE("Encoders count what the wheels turned") {
   SimulatedRobot robot(Ideal(), {}, 1);
   robot.Command({-0.1, 0.2});
   robot.Advance(1.0);
-  const robot::EncoderCounts counts = robot.Sense().encoders.value();
+  const control::EncoderCounts counts = robot.Sense().encoders.value();
   const auto& angle_rad = robot.State().wheel_angle_rad;
   CHECK(counts.left == std::lround(std::floor(angle_rad[0] * 358.32 / (2.0 * geometry::kPi))));
   CHECK(counts.right == std::lround(std::floor(angle_rad[1] * 358.32 / (2.0 * geometry::kPi))));
@@ -191,9 +191,9 @@ TEST_CASE("Full power in both directions at the longest step never leaves the fi
   options.terrain.surface = GENERATE("ground", "bump", "downhill");
   SimulatedRobot robot(options, {}, 1);
   for (int i = 0; i < 100; ++i) {
-    robot.Command(i % 2 ? robot::WheelPower{1.0, -1.0} : robot::WheelPower{-1.0, 1.0});
+    robot.Command(i % 2 ? control::WheelPower{1.0, -1.0} : control::WheelPower{-1.0, 1.0});
     robot.Advance(0.05);
-    const robot::Sensed sensed = robot.Sense();
+    const trial::Sensed sensed = robot.Sense();
     if (sensed.fault) break;
     REQUIRE(robot.Truth().Planar().IsFinite());
   }

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "rift/simulation/touch.hpp"
+#include "simulation/touch.hpp"
 
 namespace rift::simulation {
 namespace {

@@ -6,14 +6,14 @@
 #include <functional>
 #include <vector>
 
-#include "rift/robot/diff_drive.hpp"
-#include "rift/robot/robot.hpp"
+#include "rift/control/diff_drive.hpp"
+#include "rift/trial/robot.hpp"
 
 namespace rift::test {
 
 struct FakeRobotOptions {
   geometry::Pose2 world_from_start;
-  robot::DiffDriveOptions drive;
+  control::DiffDriveOptions drive;
   double command_delay_s = 0.0;
   double sensing_delay_s = 0.0;
   double frame_period_s = 0.02;
@@ -21,19 +21,19 @@ struct FakeRobotOptions {
 
 /// A robot whose motion is known in closed form: no slip, no inertia, fixed delays. Every reading
 /// may be spoiled by `spoil` before the trial sees it.
-class FakeRobot : public robot::Robot {
+class FakeRobot : public trial::Robot {
  public:
   explicit FakeRobot(const FakeRobotOptions& options)
       : options_(options), drive_(options.drive), pose_(options.world_from_start) {
     TakePicture();
   }
 
-  std::function<void(robot::Sensed&)> spoil = [](robot::Sensed&) {};
-  std::vector<robot::WheelPower> commands;
+  std::function<void(trial::Sensed&)> spoil = [](trial::Sensed&) {};
+  std::vector<control::WheelPower> commands;
   int stops = 0;
 
-  robot::Sensed Sense() override {
-    robot::Sensed sensed;
+  trial::Sensed Sense() override {
+    trial::Sensed sensed;
     sensed.now_s = now_s_;
     while (pictures_.size() > 1 &&
            pictures_[1].captured_s + options_.sensing_delay_s <= now_s_ + kTick_s) {
@@ -46,7 +46,7 @@ class FakeRobot : public robot::Robot {
     return sensed;
   }
 
-  void Command(const robot::WheelPower& power) override {
+  void Command(const control::WheelPower& power) override {
     commands.push_back(power);
     queue_.push_back({now_s_ + options_.command_delay_s, power});
   }
@@ -74,13 +74,13 @@ class FakeRobot : public robot::Robot {
   }
 
   const geometry::Pose2& world_from_robot() const { return pose_; }
-  const robot::WheelPower& power() const { return power_; }
+  const control::WheelPower& power() const { return power_; }
 
  private:
   static constexpr double kTick_s = 1e-9;
   struct Queued {
     double acts_s;
-    robot::WheelPower power;
+    control::WheelPower power;
   };
 
   void TakePicture() {
@@ -89,13 +89,13 @@ class FakeRobot : public robot::Robot {
   }
 
   FakeRobotOptions options_;
-  robot::DiffDrive drive_;
+  control::DiffDrive drive_;
   geometry::Pose2 pose_;
-  robot::WheelPower power_;
+  control::WheelPower power_;
   double now_s_ = 0.0;
   double next_picture_s_ = 0.0;
   std::deque<Queued> queue_;
-  std::deque<robot::PoseMeasurement> pictures_;
+  std::deque<trial::PoseMeasurement> pictures_;
 };
 
 }  // namespace rift::test

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rift/vision/camera_model.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::test {
 

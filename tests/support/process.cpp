@@ -9,6 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 
 extern char** environ;
@@ -40,15 +41,16 @@ ProcessResult RunRift(const std::vector<std::string>& arguments) {
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), flags, 0600);
   posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), flags, 0600);
-  std::vector<std::string> words{RIFT_BINARY};
+  std::vector<std::string> words{RiftBinary()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   pid_t pid = 0;
-  const int failed = posix_spawn(&pid, RIFT_BINARY, &actions, nullptr, argv.data(), environ);
+  const int failed =
+      posix_spawn(&pid, RiftBinary().c_str(), &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) throw std::runtime_error("cannot start " RIFT_BINARY);
+  if (failed != 0) throw std::runtime_error("cannot start " + RiftBinary());
   int status = 0;
   waitpid(pid, &status, 0);
   ProcessResult result;

@@ -9,7 +9,7 @@
 #include <string>
 #include <type_traits>
 
-#include "rift/config/fields.hpp"
+#include "rift/yaml/fields.hpp"
 
 namespace rift::test {
 
@@ -32,7 +32,7 @@ inline std::string RandomText(std::mt19937_64& random) {
 }
 
 /// A number of the range, often an end of it, of any size when the range is open.
-inline double RandomNumber(const config::Range& range, std::mt19937_64& random) {
+inline double RandomNumber(const yaml::Range& range, std::mt19937_64& random) {
   constexpr double kWide = 1e300;
   const double min = std::max(range.min, -kWide);
   const double max = std::min(range.max, kWide);
@@ -52,18 +52,18 @@ void RandomFill(S& block, std::mt19937_64& random);
 
 /// A random value of a member. Hooked types stay as they are.
 template <class T>
-void RandomValue(T& value, const std::optional<config::Range>& range, std::mt19937_64& random) {
-  using config::Range;
+void RandomValue(T& value, const std::optional<yaml::Range>& range, std::mt19937_64& random) {
+  using yaml::Range;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if constexpr (config::Hooked<T>) {
+  if constexpr (yaml::Hooked<T>) {
     return;
-  } else if constexpr (config::Block<T>) {
+  } else if constexpr (yaml::Block<T>) {
     RandomFill(value, random);
-  } else if constexpr (config::kIsBlockMap<T>) {
+  } else if constexpr (yaml::kIsBlockMap<T>) {
     // An entry of the defaults cannot be taken away by a file, so none is taken away here.
     for (std::size_t more = random() % 3; more > 0; --more) value[RandomText(random)];
     for (auto& [name, entry] : value) RandomFill(entry, random);
-  } else if constexpr (config::kIsVector<T>) {
+  } else if constexpr (yaml::kIsVector<T>) {
     value.assign(random() % (random() % 8 == 0 ? 60 : 5), typename T::value_type{});
     for (auto& item : value) RandomValue(item, range, random);
   } else if constexpr (std::is_same_v<T, std::optional<double>>) {
@@ -78,7 +78,7 @@ void RandomValue(T& value, const std::optional<config::Range>& range, std::mt199
     value = static_cast<int>(std::clamp(whole, std::ceil(ends.min), std::floor(ends.max)));
   } else if constexpr (std::is_same_v<T, bool>) {
     value = random() % 2 == 0;
-  } else if constexpr (config::Enumerated<T>) {
+  } else if constexpr (yaml::Enumerated<T>) {
     value = static_cast<T>(random() % EnumNames(value).size());
   } else if constexpr (std::is_same_v<T, std::string>) {
     value = RandomText(random);
@@ -90,7 +90,7 @@ void RandomValue(T& value, const std::optional<config::Range>& range, std::mt199
 
 template <class S>
 bool KeepsItsRules(const S& block) {
-  if constexpr (config::Checked<S>) {
+  if constexpr (yaml::Checked<S>) {
     try {
       block.Check();
     } catch (const std::invalid_argument&) {
@@ -108,7 +108,7 @@ void RandomFill(S& block, std::mt19937_64& random) {
   const S untouched = block;
   for (int attempt = 0; attempt < 10'000; ++attempt) {
     block = untouched;
-    config::VisitFields(block, [&](const config::FieldInfo& field, auto& member) {
+    yaml::VisitFields(block, [&](const yaml::FieldInfo& field, auto& member) {
       RandomValue(member, field.range, random);
     });
     if (KeepsItsRules(block)) return;

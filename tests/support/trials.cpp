@@ -1,4 +1,5 @@
 #include "support/trials.hpp"
+#include "support/tree.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -16,7 +17,7 @@ double NumberAfter(const std::string& name, const std::string& key) {
 
 std::filesystem::path TrialsFolder() {
   const std::filesystem::path folder =
-      std::filesystem::path(RIFT_SOURCE_DIR) / ".." / "shared" / "trials";
+      std::filesystem::path(SourceDir()) / ".." / "shared" / "trials";
   return std::filesystem::exists(folder / "published_gaps.csv") ? folder : std::filesystem::path();
 }
 

@@ -1,9 +1,9 @@
-#include "rift/sweep/factorial.hpp"
+#include "rift/sweep/explain/factorial.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "rift/sweep/statistics.hpp"
+#include "rift/sweep/falsify/statistics.hpp"
 
 namespace rift::sweep {
 namespace {

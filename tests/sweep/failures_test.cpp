@@ -2,20 +2,21 @@
 #include <cmath>
 #include <random>
 
-#include "rift/sweep/clusters.hpp"
-#include "rift/sweep/failure_probability.hpp"
-#include "rift/sweep/shrink.hpp"
-#include "rift/sweep/statistics.hpp"
-#include "rift/sweep/suggest.hpp"
+#include "rift/sweep/explain/clusters.hpp"
+#include "rift/sweep/explain/failure_probability.hpp"
+#include "rift/sweep/explain/shrink.hpp"
+#include "rift/sweep/explain/suggest.hpp"
+#include "rift/sweep/falsify/statistics.hpp"
 
 namespace rift::sweep {
 namespace {
 
 using Catch::Matchers::Contains;
 
-ParameterValue Numeric(double number) { return {std::to_string(number), number}; }
+experiment::ParameterValue Numeric(double number) { return {std::to_string(number), number}; }
 
-TrialRow Row(const ParameterValue& value, double gap_m, const std::string& trial = "1") {
+TrialRow Row(const experiment::ParameterValue& value, double gap_m,
+             const std::string& trial = "1") {
   TrialRow row;
   row.theta = {value};
   row.trial = trial;
@@ -72,16 +73,17 @@ TEST_CASE("Robots that fell are a kind of their own and missing logs are none") 
   CHECK_THAT(clusters[1].sentence, Contains("1 ended as 'fell'"));
 }
 
-const std::vector<Parameter> kSpace{{.key = "delay", .min = 0.0, .max = 1.0},
-                                    {.key = "friction", .min = 0.0, .max = 1.0},
-                                    {.key = "level", .levels = {{"1", 1}, {"2", 2}, {"3", 3}}},
-                                    {.key = "surface", .levels = {{"ice", {}}, {"rock", {}}}}};
-const Theta kNominal{Numeric(0.1), Numeric(0.8), {"1", 1.0}, {"rock", {}}};
+const std::vector<experiment::Parameter> kSpace{
+    {.key = "delay", .min = 0.0, .max = 1.0},
+    {.key = "friction", .min = 0.0, .max = 1.0},
+    {.key = "level", .levels = {{"1", 1}, {"2", 2}, {"3", 3}}},
+    {.key = "surface", .levels = {{"ice", {}}, {"rock", {}}}}};
+const experiment::Theta kNominal{Numeric(0.1), Numeric(0.8), {"1", 1.0}, {"rock", {}}};
 
 void CheckMinimal(const ShrunkFailure& shrunk, const Robustness& robustness) {
   CHECK(robustness(shrunk.theta) < 0.0);
   for (const int i : shrunk.changed) {
-    Theta without = shrunk.theta;
+    experiment::Theta without = shrunk.theta;
     without[i] = kNominal[i];
     CHECK_FALSE(robustness(without) < 0.0);
   }
@@ -89,10 +91,10 @@ void CheckMinimal(const ShrunkFailure& shrunk, const Robustness& robustness) {
 
 TEST_CASE("A failure shrinks to the changes that cause it and each is as small as can be") {
   // Fails by a delay above 0.42 together with level 2 or more; the rest is decoration.
-  const Robustness robustness = [](const Theta& theta) {
+  const Robustness robustness = [](const experiment::Theta& theta) {
     return *theta[0].number > 0.42 && *theta[2].number >= 2.0 ? -0.01 : 0.01;
   };
-  const Theta failing{Numeric(0.9), Numeric(0.2), {"3", 3.0}, {"ice", {}}};
+  const experiment::Theta failing{Numeric(0.9), Numeric(0.2), {"3", 3.0}, {"ice", {}}};
   const ShrunkFailure shrunk = Shrink(kSpace, kNominal, failing, robustness);
   CHECK(shrunk.changed == std::vector<int>{0, 2});
   CHECK(*shrunk.theta[0].number == Approx(0.42).margin(0.02));
@@ -109,7 +111,7 @@ TEST_CASE("Shrinking random conjunctions always ends with a minimal failure") {
   for (int round = 0; round < 200; ++round) {
     const double least_delay = 0.1 + 0.5 * share(random), most_friction = 0.8 * share(random);
     const unsigned needed = random() % 16;
-    const Robustness robustness = [&](const Theta& theta) {
+    const Robustness robustness = [&](const experiment::Theta& theta) {
       const bool holds[4] = {*theta[0].number > least_delay,
                              *theta[1].number<most_friction, *theta[2].number> 1.5,
                              theta[3].text == "ice"};
@@ -118,7 +120,7 @@ TEST_CASE("Shrinking random conjunctions always ends with a minimal failure") {
       }
       return -0.01;
     };
-    const Theta failing{Numeric(0.95), Numeric(-0.01), {"3", 3.0}, {"ice", {}}};
+    const experiment::Theta failing{Numeric(0.95), Numeric(-0.01), {"3", 3.0}, {"ice", {}}};
     const ShrunkFailure shrunk = Shrink(kSpace, kNominal, failing, robustness);
     CHECK(static_cast<int>(shrunk.changed.size()) == __builtin_popcount(needed));
     CHECK(shrunk.is_minimal);
@@ -127,11 +129,14 @@ TEST_CASE("Shrinking random conjunctions always ends with a minimal failure") {
 }
 
 TEST_CASE("What does not fail is not shrunk and a spent budget is told") {
-  const Theta failing{Numeric(0.9), Numeric(0.2), {"3", 3.0}, {"ice", {}}};
-  CHECK_THROWS_WITH(Shrink(kSpace, kNominal, failing, [](const Theta&) { return 0.02; }),
-                    Contains("nothing to shrink") && Contains("0.02"));
-  CHECK_THROWS(Shrink(kSpace, kNominal, failing, [](const Theta&) { return NAN; }));
-  const Robustness any = [](const Theta& theta) { return theta[3].text == "ice" ? -1.0 : 1.0; };
+  const experiment::Theta failing{Numeric(0.9), Numeric(0.2), {"3", 3.0}, {"ice", {}}};
+  CHECK_THROWS_WITH(
+      Shrink(kSpace, kNominal, failing, [](const experiment::Theta&) { return 0.02; }),
+      Contains("nothing to shrink") && Contains("0.02"));
+  CHECK_THROWS(Shrink(kSpace, kNominal, failing, [](const experiment::Theta&) { return NAN; }));
+  const Robustness any = [](const experiment::Theta& theta) {
+    return theta[3].text == "ice" ? -1.0 : 1.0;
+  };
   const ShrunkFailure cut = Shrink(kSpace, kNominal, failing, any, {.max_evaluations = 2});
   CHECK(any(cut.theta) < 0.0);
   CHECK_FALSE(cut.is_minimal);

@@ -1,15 +1,15 @@
-#include "rift/sweep/falsify.hpp"
+#include "rift/sweep/falsify/falsify.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
-#include "rift/sweep/search_space.hpp"
+#include "rift/sweep/falsify/search_space.hpp"
 
 namespace rift::sweep {
 namespace {
 
-const std::vector<Parameter> kSpace{
+const std::vector<experiment::Parameter> kSpace{
     {.key = "control.v_min", .min = 0.0, .max = 1.0},
     {.key = "simulation.mass_kg", .min = 0.01, .max = 1.0, .is_logarithmic = true},
     {.key = "trial.count", .min = 1.0, .max = 9.0, .is_integer = true},
@@ -39,7 +39,7 @@ std::optional<SweepResult> Search(const SearchPlan& search, const FalsifyOptions
                                   const Watch& watch = {}) {
   return Falsify(
       Plan(), search, options, RunHere(Simulated, watch), [](const auto&) { return true; },
-      [](const Theta&) { return gap::kNotComputed; });
+      [](const experiment::Theta&) { return gap::kNotComputed; });
 }
 
 SearchPlan Budget(int budget, search::Method method = search::Method::kPortfolio) {
@@ -58,7 +58,7 @@ TEST_CASE("Every kind of parameter becomes an axis and its values come back") {
   CHECK(axes[3].kind == search::AxisKind::kInteger);
   CHECK(axes[3].max == 2.0);
   CHECK(axes[4].kind == search::AxisKind::kCategorical);
-  const Theta theta = ThetaAt(kSpace, {0.25, std::log(1.0), 4.0, 1.0, 1.0});
+  const experiment::Theta theta = ThetaAt(kSpace, {0.25, std::log(1.0), 4.0, 1.0, 1.0});
   CHECK(theta[0].text == "0.25");
   CHECK(theta[1].text == "1");
   CHECK(theta[2].text == "4");
@@ -110,7 +110,7 @@ TEST_CASE("Time that is up ends a search before the next batch") {
   const std::optional<SweepResult> result = Falsify(
       Plan(), Budget(500, search::Method::kRandom), {.until = Until::kBudget},
       RunHere(Simulated, {}), [&](const auto&) { return ++batches <= 2; },
-      [](const Theta&) { return gap::kNotComputed; });
+      [](const experiment::Theta&) { return gap::kNotComputed; });
   REQUIRE(result);
   CHECK(result->falsification->ended == "the time");
   CHECK(result->falsification->evaluations == 16);
@@ -176,7 +176,7 @@ TEST_CASE("A search over logs or over nothing is refused") {
     try {
       Falsify(
           plan, Budget(10), {}, RunHere(Simulated, {}), [](const auto&) { return true; },
-          [](const Theta&) { return 0.0; });
+          [](const experiment::Theta&) { return 0.0; });
     } catch (const std::invalid_argument& error) {
       return error.what();
     }

@@ -1,16 +1,16 @@
-#include "rift/sweep/grid_sweep.hpp"
+#include "rift/sweep/falsify/grid_sweep.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "rift/sweep/grid.hpp"
-#include "rift/sweep/path_template.hpp"
+#include "rift/experiment/parameter.hpp"
+#include "rift/experiment/path_template.hpp"
 #include "support/paths.hpp"
 
 namespace rift::sweep {
 namespace {
 
-const std::vector<Parameter> kParameters{
+const std::vector<experiment::Parameter> kParameters{
     {.key = "surface", .levels = {{"ground", {}}, {"ice", {}}}},
     {.key = "control.v_min", .levels = {{"0.15", 0.15}, {"0.2", 0.2}}}};
 
@@ -32,7 +32,7 @@ SweepResult CompareGrid(const GridPlan& plan, const Candidate& candidate,
   const auto evaluate = [&](const TrialRequest& request) {
     return CompareTrial(plan, request, candidate, reference);
   };
-  return *SweepGrid(plan, RunHere(evaluate, {}), [](const Theta&) { return 0.03; });
+  return *SweepGrid(plan, RunHere(evaluate, {}), [](const experiment::Theta&) { return 0.03; });
 }
 
 template <class Call>
@@ -46,17 +46,17 @@ std::string Refusal(const Call& call) {
 }
 
 TEST_CASE("A path template is filled in with values as written or as specified") {
-  const std::vector<ParameterValue> theta{{"ground", {}}, {"0.2", 0.2}};
-  CHECK(FillTemplate("a/{surface}/v{v_min:.2f}_{v_min}_{trial}.csv", kParameters, theta, "3") ==
-        "a/ground/v0.20_0.2_3.csv");
-  CHECK(FillTemplate("{trial:03d}", kParameters, theta, "3") == "003");
-  CHECK(FillTemplate("plain.csv", kParameters, theta, "3") == "plain.csv");
+  const experiment::Theta theta{{"ground", {}}, {"0.2", 0.2}};
+  CHECK(experiment::FillTemplate("a/{surface}/v{v_min:.2f}_{v_min}_{trial}.csv", kParameters, theta,
+                                 "3") == "a/ground/v0.20_0.2_3.csv");
+  CHECK(experiment::FillTemplate("{trial:03d}", kParameters, theta, "3") == "003");
+  CHECK(experiment::FillTemplate("plain.csv", kParameters, theta, "3") == "plain.csv");
 }
 
 TEST_CASE("A path template that cannot be filled in is refused with the reason") {
-  const std::vector<ParameterValue> theta{{"ground", {}}, {"0.2", 0.2}};
+  const experiment::Theta theta{{"ground", {}}, {"0.2", 0.2}};
   const auto fill = [&](const std::string& text) {
-    return Refusal([&] { FillTemplate(text, kParameters, theta, "3"); });
+    return Refusal([&] { experiment::FillTemplate(text, kParameters, theta, "3"); });
   };
   CHECK(fill("{vmin}.csv") ==
         "path '{vmin}.csv' names {vmin}, and the space has only surface, v_min, trial");
@@ -70,14 +70,15 @@ TEST_CASE("A path template that cannot be filled in is refused with the reason")
 }
 
 TEST_CASE("A grid visits every combination once with the first parameter slowest") {
-  const auto points = GridPoints(kParameters);
+  const auto points = experiment::GridPoints(kParameters);
   REQUIRE(points.size() == 4);
   CHECK(points[1][0].text == "ground");
   CHECK(points[1][1].text == "0.2");
   CHECK(points[2][0].text == "ice");
-  CHECK(GridPoints({}).size() == 1);
-  CHECK(Refusal(
-            [] { GridPoints({{.key = "a.b", .min = 0.0, .max = 1.0, .origin = "e.yaml:2:3"}}); }) ==
+  CHECK(experiment::GridPoints({}).size() == 1);
+  CHECK(Refusal([] {
+          experiment::GridPoints({{.key = "a.b", .min = 0.0, .max = 1.0, .origin = "e.yaml:2:3"}});
+        }) ==
         "e.yaml:2:3: space.a.b is a range, and a grid needs the values to visit: write a "
         "list, or set goal: falsify");
 }

@@ -1,10 +1,10 @@
-#include "rift/sweep/inert.hpp"
+#include "rift/sweep/explain/inert.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "rift/sweep/anatomy.hpp"
-#include "rift/sweep/statistics.hpp"
+#include "rift/sweep/explain/anatomy.hpp"
+#include "rift/sweep/falsify/statistics.hpp"
 #include "support/paths.hpp"
 
 namespace rift::sweep {
@@ -21,8 +21,8 @@ SweepResult Table() {
   result.parameters = {
       {.key = "surface", .levels = {{"ice", {}}, {"rock", {}}}},
       {.key = "control.v_max", .levels = {{"0.3", 0.3}, {"0.4", 0.4}, {"0.5", 0.5}}}};
-  for (const ParameterValue& surface : result.parameters[0].levels) {
-    for (const ParameterValue& v_max : result.parameters[1].levels) {
+  for (const experiment::ParameterValue& surface : result.parameters[0].levels) {
+    for (const experiment::ParameterValue& v_max : result.parameters[1].levels) {
       for (const char* trial : {"1", "2", "3", "4"}) {
         TrialRow row;
         row.theta = {surface, v_max};

@@ -1,4 +1,4 @@
-#include "rift/sweep/journal.hpp"
+#include "rift/sweep/run/journal.hpp"
 
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "../../src/sweep/calibration_model.hpp"
-#include "rift/sweep/drive_likeness.hpp"
+#include "rift/sweep/calibrate/drive_likeness.hpp"
+#include "sweep/calibrate/model.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -1,12 +1,12 @@
-#include "rift/sweep/sensitivity.hpp"
+#include "rift/sweep/explain/sensitivity.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "rift/sweep/failing_region.hpp"
-#include "rift/sweep/statistics.hpp"
+#include "rift/sweep/explain/failing_region.hpp"
+#include "rift/sweep/falsify/statistics.hpp"
 
 namespace rift::sweep {
 namespace {

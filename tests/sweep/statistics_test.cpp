@@ -1,16 +1,17 @@
-#include "rift/sweep/statistics.hpp"
+#include "rift/sweep/falsify/statistics.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "rift/sweep/labels.hpp"
+#include "rift/sweep/falsify/labels.hpp"
 
 namespace rift::sweep {
 namespace {
 
-Parameter Axis(const std::string& key, const std::vector<std::string>& texts, bool numbers) {
-  Parameter axis{.key = key};
+experiment::Parameter Axis(const std::string& key, const std::vector<std::string>& texts,
+                           bool numbers) {
+  experiment::Parameter axis{.key = key};
   for (const std::string& text : texts) {
     axis.levels.push_back({text, numbers ? std::optional(std::stod(text)) : std::nullopt});
   }
@@ -22,8 +23,8 @@ SweepResult TwoSurfaces() {
   SweepResult result;
   result.parameters = {Axis("terrain.surface", {"ground", "ice"}, false),
                        Axis("control.v_min", {"0.15", "0.20"}, true)};
-  for (const ParameterValue& surface : result.parameters[0].levels) {
-    for (const ParameterValue& speed : result.parameters[1].levels) {
+  for (const experiment::ParameterValue& surface : result.parameters[0].levels) {
+    for (const experiment::ParameterValue& speed : result.parameters[1].levels) {
       for (int trial = 1; trial <= 2; ++trial) {
         TrialRow row{.theta = {surface, speed}, .trial = std::to_string(trial)};
         row.comparison.gap_m = (surface.text == "ground" ? 0.05 : 0.07) + 0.001 * (trial * 2 - 3);
@@ -121,7 +122,7 @@ TEST_CASE("A trial without a gap is counted and never averaged") {
 
 TEST_CASE("The categorical parameter stands alone and the others are combined") {
   const SweepResult result = TwoSurfaces();
-  std::vector<Parameter> parameters = result.parameters;
+  std::vector<experiment::Parameter> parameters = result.parameters;
   std::swap(parameters[0], parameters[1]);
   parameters.push_back(Axis("v_max", {"0.3"}, true));
   const FactorSplit split = SplitFactors(parameters);

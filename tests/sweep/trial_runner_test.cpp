@@ -1,4 +1,4 @@
-#include "rift/sweep/trial_runner.hpp"
+#include "rift/sweep/falsify/trial_runner.hpp"
 
 #include <unistd.h>
 
@@ -9,8 +9,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "rift/sweep/falsify.hpp"
-#include "rift/sweep/grid_sweep.hpp"
+#include "rift/sweep/falsify/falsify.hpp"
+#include "rift/sweep/falsify/grid_sweep.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
 
@@ -59,7 +59,7 @@ std::string KeyOf(const TrialRequest& request) {
   return request.theta[0].text + " " + request.trial + " " + std::to_string(*request.seed);
 }
 
-double NoFloor(const Theta&) { return gap::kNotComputed; }
+double NoFloor(const experiment::Theta&) { return gap::kNotComputed; }
 
 SweepResult SweepWith(int workers, Journal* journal, const Watch& watch = {}) {
   TrialRunner runner(Evaluated, KeyOf, journal, workers, {.timeout_s = 2.0, .memory_mb = 32},

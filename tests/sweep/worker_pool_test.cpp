@@ -1,4 +1,4 @@
-#include "rift/sweep/worker_pool.hpp"
+#include "rift/sweep/run/worker_pool.hpp"
 
 #include <sys/types.h>
 #include <unistd.h>

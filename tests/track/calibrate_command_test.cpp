@@ -3,9 +3,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "rift/config/camera_file.hpp"
-#include "rift/vision/synthetic_camera.hpp"
+#include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/rendering/synthetic_camera.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 
 namespace rift {
@@ -76,7 +77,7 @@ TEST_CASE("A camera is calibrated from a folder of pictures and from a recording
     CHECK(fs::file_size(fs::path(name).replace_extension(".png")) > 10'000);
     const std::string text = test::ReadFile(name);
     CHECK_THAT(text, Contains("# rift track --calibrate, board 7x5"));
-    const vision::CameraModel found = config::ReadCamera(text, name);
+    const vision::CameraModel found = vision::ReadCamera(text, name);
     CHECK(found.width_px == 640);
     CHECK(found.k(0, 0) == Approx(610.0).epsilon(0.01));
     CHECK(found.rms_px < 0.3);
@@ -87,7 +88,7 @@ TEST_CASE("A picture without a board is refused with its name and no file") {
   const test::TemporaryFolder out;
   const ProcessResult result =
       RunRift({"track", "--calibrate", "--board", "5x4", "--square", "0.03", "--images",
-               RIFT_SOURCE_DIR "/data/camera/frames/000.jpg", "--out", out / "cam.yaml"});
+               test::SourceDir() + "/data/camera/frames/000.jpg", "--out", out / "cam.yaml"});
   INFO(result.out << result.err);
   CHECK(result.exit_code == 1);
   CHECK_THAT(result.out, Contains("verdict: refuse") && Contains("000.jpg is left out"));
@@ -96,7 +97,7 @@ TEST_CASE("A picture without a board is refused with its name and no file") {
 }
 
 TEST_CASE("The photographs of the paper's camera are not called good and why is named") {
-  const fs::path folder = fs::path(RIFT_SOURCE_DIR) / "../shared/calibration/victure";
+  const fs::path folder = fs::path(test::SourceDir()) / "../shared/calibration/victure";
   if (!fs::exists(folder)) {
     WARN("SKIPPED: the photographs are not beside this clone (../shared/calibration)");
     return;

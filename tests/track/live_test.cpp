@@ -9,11 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "rift/config/camera_file.hpp"
-#include "rift/vision/synthetic_camera.hpp"
+#include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/rendering/synthetic_camera.hpp"
 #include "support/environment.hpp"
 #include "support/paper_camera.hpp"
 #include "support/running_rift.hpp"
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 #include "vision/mjpeg_server.hpp"
 
@@ -27,7 +28,7 @@ using test::ProcessResult;
 using test::RunRift;
 using vision::synthetic::MjpegServer;
 
-const std::string kData = RIFT_SOURCE_DIR "/data/camera";
+const std::string kData = test::SourceDir() + "/data/camera";
 const std::string kCamera = kData + "/camera.yaml";
 
 std::vector<std::string> Tracking(const std::string& camera, const std::string& out,
@@ -52,7 +53,7 @@ const std::vector<double>& Column(const trajectory::Trajectory& log, const std::
 TEST_CASE("A V4L2 camera of 30 and 60 Hz gives as many rows a second with their latency") {
   const int fps = GENERATE(30, 60);
   const test::TemporaryFolder folder;
-  const Environment shim("LD_PRELOAD", RIFT_V4L2_SHIM);
+  const Environment shim("LD_PRELOAD", test::BuildDir() + "/tests/librift_v4l2_shim.so");
   const Environment jpegs("RIFT_SHIM_JPEGS", kData + "/frames");
   std::vector<std::string> words = Tracking("/dev/video0", folder / "log.csv", "4");
   words.insert(words.end(), {"--fps", std::to_string(fps)});
@@ -78,7 +79,7 @@ TEST_CASE("A camera that fails ends the tracking with its state and exit code 3"
       GENERATE(Fault{"unplug", "unplugged"}, Fault{"eio", "frozen"}, Fault{"hang", "frozen"},
                Fault{"freeze", "frozen"}, Fault{"black", "black"}, Fault{"busy", "busy"});
   const test::TemporaryFolder folder;
-  const Environment shim("LD_PRELOAD", RIFT_V4L2_SHIM);
+  const Environment shim("LD_PRELOAD", test::BuildDir() + "/tests/librift_v4l2_shim.so");
   const Environment jpegs("RIFT_SHIM_JPEGS", kData + "/frames");
   const Environment what("RIFT_SHIM_FAULT", fault.name);
   ProcessResult result;
@@ -101,7 +102,7 @@ TEST_CASE("A camera that fails ends the tracking with its state and exit code 3"
 
 TEST_CASE("A camera without a readable format is named with those it has") {
   const test::TemporaryFolder folder;
-  const Environment shim("LD_PRELOAD", RIFT_V4L2_SHIM);
+  const Environment shim("LD_PRELOAD", test::BuildDir() + "/tests/librift_v4l2_shim.so");
   const Environment formats("RIFT_SHIM_FORMATS", "H264,NV12");
   const ProcessResult result = RunRift(Tracking("/dev/video0", folder / "log.csv", "5"));
   CHECK(result.exit_code == 3);
@@ -110,7 +111,7 @@ TEST_CASE("A camera without a readable format is named with those it has") {
 
 TEST_CASE("Ctrl-C ends the tracking cleanly with its summary") {
   const test::TemporaryFolder folder;
-  const Environment shim("LD_PRELOAD", RIFT_V4L2_SHIM);
+  const Environment shim("LD_PRELOAD", test::BuildDir() + "/tests/librift_v4l2_shim.so");
   const Environment jpegs("RIFT_SHIM_JPEGS", kData + "/frames");
   test::RunningRift rift(Tracking("/dev/video0", folder / "log.csv", "60"));
   for (int i = 0; i < 100 && !std::filesystem::exists(folder / "log.csv"); ++i) {
@@ -130,7 +131,7 @@ TEST_CASE("Ctrl-C ends the tracking cleanly with its summary") {
 TEST_CASE("A reader that is too slow for its http camera stays below 100 ms behind") {
   const test::TemporaryFolder folder;
   const vision::CameraModel camera = test::PaperCamera();
-  test::WriteText(folder / "cam.yaml", config::WriteCamera(camera));
+  test::WriteText(folder / "cam.yaml", vision::WriteCamera(camera));
   vision::SyntheticCamera renderer(camera, {});
   std::mt19937_64 generator(1);
   vision::RobotMotion robot;

@@ -3,9 +3,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "rift/config/camera_file.hpp"
+#include "rift/vision/camera/camera_file.hpp"
 #include "support/environment.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 
 namespace rift {
@@ -17,7 +18,7 @@ using nlohmann::json;
 using test::ProcessResult;
 using test::RunRift;
 
-const std::string kData = RIFT_SOURCE_DIR "/data/camera";
+const std::string kData = test::SourceDir() + "/data/camera";
 const std::string kFrames = kData + "/frames/*.jpg";
 const std::string kCamera = kData + "/camera.yaml";
 
@@ -104,10 +105,10 @@ TEST_CASE("The run file says what the poses mean and what they were made from") 
 
 TEST_CASE("Without a world frame the poses are the camera's turned y up and the run file says so") {
   const test::TemporaryFolder folder;
-  vision::CameraModel camera = config::ReadCamera(test::ReadFile(kCamera), kCamera);
+  vision::CameraModel camera = vision::ReadCamera(test::ReadFile(kCamera), kCamera);
   const Eigen::Isometry3d world_from_camera = camera.world->world_from_camera;
   camera.world.reset();
-  test::WriteText(folder / "cam.yaml", config::WriteCamera(camera));
+  test::WriteText(folder / "cam.yaml", vision::WriteCamera(camera));
   REQUIRE(RunRift(Tracking(folder / "log.csv", folder / "cam.yaml")).exit_code == 0);
   const json run = json::parse(test::ReadFile(folder / "log.run.json"));
   CHECK(run["frame"]["name"] == "camera");
@@ -124,10 +125,10 @@ TEST_CASE("Without a world frame the poses are the camera's turned y up and the 
 
 TEST_CASE("Reference tags set the world frame and it is kept in the calibration") {
   const test::TemporaryFolder folder;
-  vision::CameraModel camera = config::ReadCamera(test::ReadFile(kCamera), kCamera);
+  vision::CameraModel camera = vision::ReadCamera(test::ReadFile(kCamera), kCamera);
   const Eigen::Isometry3d truth = camera.world->world_from_camera;
   camera.world.reset();
-  test::WriteText(folder / "cam.yaml", "# hung over the table\n" + config::WriteCamera(camera));
+  test::WriteText(folder / "cam.yaml", "# hung over the table\n" + vision::WriteCamera(camera));
   const ProcessResult set = RunRift({"track", "--camera", kFrames, "--calibration",
                                      folder / "cam.yaml", "--world", kData + "/tags.yaml"});
   INFO(set.err);
@@ -135,7 +136,7 @@ TEST_CASE("Reference tags set the world frame and it is kept in the calibration"
   CHECK_THAT(set.err, Contains("4 reference tags") && Contains("mm off at its points"));
   const std::string text = test::ReadFile(folder / "cam.yaml");
   CHECK_THAT(text, Catch::Matchers::StartsWith("# hung over the table\n"));
-  camera = config::ReadCamera(text, "cam.yaml");
+  camera = vision::ReadCamera(text, "cam.yaml");
   REQUIRE(camera.world);
   CHECK(camera.world->marks.size() == 4);
   CHECK(camera.world->residual_m < 1e-3);
@@ -143,7 +144,7 @@ TEST_CASE("Reference tags set the world frame and it is kept in the calibration"
 
   // The same camera, pushed: its reference tags are no longer where they were.
   for (vision::ReferenceMark& mark : camera.world->marks) mark.seen_px.x() += 20.0;
-  test::WriteText(folder / "cam.yaml", config::WriteCamera(camera));
+  test::WriteText(folder / "cam.yaml", vision::WriteCamera(camera));
   const ProcessResult moved = RunRift(Tracking(folder / "log.csv", folder / "cam.yaml"));
   CHECK_THAT(moved.err, Contains("the camera was moved"));
   const json run = json::parse(test::ReadFile(folder / "log.run.json"));
@@ -165,10 +166,10 @@ TEST_CASE("The robot's first pose can be the origin of the world") {
 
 TEST_CASE("A calibration of another size than the stream is refused") {
   const test::TemporaryFolder folder;
-  vision::CameraModel camera = config::ReadCamera(test::ReadFile(kCamera), kCamera);
+  vision::CameraModel camera = vision::ReadCamera(test::ReadFile(kCamera), kCamera);
   camera.width_px = 1920;
   camera.height_px = 1080;
-  test::WriteText(folder / "cam.yaml", config::WriteCamera(camera));
+  test::WriteText(folder / "cam.yaml", vision::WriteCamera(camera));
   const ProcessResult result = RunRift(Tracking(folder / "log.csv", folder / "cam.yaml"));
   CHECK(result.exit_code == 2);
   CHECK_THAT(result.err, Contains("960 x 720") && Contains("1920 x 1080"));

@@ -7,6 +7,7 @@
 
 #include "support/environment.hpp"
 #include "support/running_rift.hpp"
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 #include "support/virtual_display.hpp"
 
@@ -17,7 +18,7 @@ using Catch::Matchers::Contains;
 using test::Environment;
 using test::ProcessResult;
 
-const std::string kData = RIFT_SOURCE_DIR "/data/camera";
+const std::string kData = test::SourceDir() + "/data/camera";
 
 /// True once `command` succeeded, tried for some seconds.
 bool Succeeds(const std::string& command) {
@@ -47,7 +48,7 @@ TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
   ProcessResult result;
   {
     const Environment jpegs("RIFT_SHIM_JPEGS", kData + "/frames");
-    const Environment shim("LD_PRELOAD", RIFT_V4L2_SHIM);
+    const Environment shim("LD_PRELOAD", test::BuildDir() + "/tests/librift_v4l2_shim.so");
     test::RunningRift rift({"track", "--camera", "/dev/video0", "--calibration",
                             kData + "/camera.yaml", "--out", folder / "log.csv", "--view",
                             "--record-waypoints", waypoints, "--duration", "60"});

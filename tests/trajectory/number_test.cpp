@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "../../src/trajectory/number.hpp"
+#include "trajectory/number.hpp"
 
 namespace rift::trajectory::csv {
 namespace {

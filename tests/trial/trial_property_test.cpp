@@ -23,7 +23,7 @@ bool OneIn(Generator& generator, int n) {
   return std::uniform_int_distribution<int>(1, n)(generator) == 1;
 }
 
-void SpoilReading(Generator& generator, robot::Sensed& sensed) {
+void SpoilReading(Generator& generator, Sensed& sensed) {
   if (OneIn(generator, 4)) sensed.pose.reset();
   if (!sensed.pose) return;
   geometry::Pose2& pose = sensed.pose->world_from_robot;
@@ -57,7 +57,7 @@ TEST_CASE("Two hundred trials on spoiled readings end in order and at rest") {
     robot_options.sensing_delay_s = Between(generator, 0.0, 0.3);
     robot_options.frame_period_s = Between(generator, 0.005, 0.2);
     test::FakeRobot robot(robot_options);
-    robot.spoil = [&generator](robot::Sensed& sensed) { SpoilReading(generator, sensed); };
+    robot.spoil = [&generator](Sensed& sensed) { SpoilReading(generator, sensed); };
 
     TrialOptions options;
     options.timeout_s = 6.0;
@@ -68,7 +68,7 @@ TEST_CASE("Two hundred trials on spoiled readings end in order and at rest") {
     const TrialResult result = RunTrial(robot, test::PaperWaypoints(), navigator, options);
     CheckTrial(result, options);
     REQUIRE(robot.stops == 1);
-    REQUIRE(robot.power() == robot::WheelPower{});
+    REQUIRE(robot.power() == control::WheelPower{});
     driven += result.limits.decisions;
   }
   CHECK(driven > 2'000);

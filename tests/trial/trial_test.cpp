@@ -17,11 +17,11 @@ test::FakeRobot RobotAtStart(test::FakeRobotOptions options = {}) {
   return test::FakeRobot(options);
 }
 
-TrialResult Run(robot::Robot& robot, const TrialOptions& options = {}) {
+TrialResult Run(Robot& robot, const TrialOptions& options = {}) {
   return RunTrial(robot, test::PaperWaypoints(), {}, options);
 }
 
-bool IsStill(const robot::WheelPower& power) { return power == robot::WheelPower{}; }
+bool IsStill(const control::WheelPower& power) { return power == control::WheelPower{}; }
 
 // From `since_s` on, which the spoiled reading must outlast by pose_stale_s, no wheel may turn.
 void CheckStillAfter(const TrialResult& result, double since_s) {
@@ -124,7 +124,7 @@ TEST_CASE("A trial that takes too long ends at its timeout and names the waypoin
 
 TEST_CASE("Poses that are not a number stop the robot and lose the trial") {
   test::FakeRobot robot = RobotAtStart();
-  robot.spoil = [](robot::Sensed& sensed) {
+  robot.spoil = [](Sensed& sensed) {
     if (sensed.now_s > 1.0) {
       sensed.pose->world_from_robot.yaw_rad = std::numeric_limits<double>::quiet_NaN();
     }
@@ -139,7 +139,7 @@ TEST_CASE("Poses that are not a number stop the robot and lose the trial") {
 
 TEST_CASE("A pose that jumps for one frame changes no command") {
   test::FakeRobot clean = RobotAtStart(), jumping = RobotAtStart();
-  jumping.spoil = [](robot::Sensed& sensed) {
+  jumping.spoil = [](Sensed& sensed) {
     if (sensed.now_s > 0.91 && sensed.now_s < 0.93) sensed.pose->world_from_robot.x_m += 0.5;
   };
   const TrialResult one = Run(clean), other = Run(jumping);
@@ -153,7 +153,7 @@ TEST_CASE("A pose that jumps for one frame changes no command") {
 
 TEST_CASE("A robot carried to another place is believed again after a while") {
   test::FakeRobot robot = RobotAtStart();
-  robot.spoil = [](robot::Sensed& sensed) {
+  robot.spoil = [](Sensed& sensed) {
     if (sensed.now_s > 1.0) sensed.pose->world_from_robot.y_m += 0.2;
   };
   TrialOptions options;
@@ -166,8 +166,8 @@ TEST_CASE("A robot carried to another place is believed again after a while") {
 
 TEST_CASE("A frozen pose stops the robot and a pose that returns sets it going again") {
   test::FakeRobot robot = RobotAtStart();
-  std::optional<robot::PoseMeasurement> frozen;
-  robot.spoil = [&frozen](robot::Sensed& sensed) {
+  std::optional<PoseMeasurement> frozen;
+  robot.spoil = [&frozen](Sensed& sensed) {
     if (sensed.now_s < 0.9 || sensed.now_s > 2.0) return;
     if (!frozen) frozen = sensed.pose;
     sensed.pose = frozen;
@@ -185,7 +185,7 @@ TEST_CASE("A frozen pose stops the robot and a pose that returns sets it going a
 
 TEST_CASE("A robot that is never seen is lost and never driven") {
   test::FakeRobot robot = RobotAtStart();
-  robot.spoil = [](robot::Sensed& sensed) { sensed.pose.reset(); };
+  robot.spoil = [](Sensed& sensed) { sensed.pose.reset(); };
   const TrialResult result = Run(robot);
   CHECK(result.outcome == Outcome::kLost);
   CHECK(result.driving_s == -1.0);
@@ -195,7 +195,7 @@ TEST_CASE("A robot that is never seen is lost and never driven") {
 
 TEST_CASE("A pose from the future is not believed") {
   test::FakeRobot robot = RobotAtStart();
-  robot.spoil = [](robot::Sensed& sensed) { sensed.pose->captured_s += 1e6; };
+  robot.spoil = [](Sensed& sensed) { sensed.pose->captured_s += 1e6; };
   const TrialResult result = Run(robot);
   CHECK(result.outcome == Outcome::kLost);
   CHECK(result.driving_s == -1.0);
@@ -203,7 +203,7 @@ TEST_CASE("A pose from the future is not believed") {
 
 TEST_CASE("A fault ends the trial with the robot's own words") {
   test::FakeRobot robot = RobotAtStart();
-  robot.spoil = [](robot::Sensed& sensed) {
+  robot.spoil = [](Sensed& sensed) {
     if (sensed.now_s > 1.0) sensed.fault = "the battery is empty";
   };
   const TrialResult result = Run(robot);
@@ -215,7 +215,7 @@ TEST_CASE("A fault ends the trial with the robot's own words") {
 TEST_CASE("A clock that stands still or runs back is a fault and no endless loop") {
   for (const double clock_s : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     test::FakeRobot robot = RobotAtStart();
-    robot.spoil = [clock_s](robot::Sensed& sensed) {
+    robot.spoil = [clock_s](Sensed& sensed) {
       if (!(sensed.now_s < 0.5)) sensed.now_s = clock_s == 0.0 ? 0.5 : clock_s;
     };
     CHECK(Run(robot).outcome == Outcome::kFault);
@@ -225,7 +225,7 @@ TEST_CASE("A clock that stands still or runs back is a fault and no endless loop
 
 TEST_CASE("A tilt that lasts is a fall and a flicker of the tracker is none") {
   test::FakeRobot robot = RobotAtStart();
-  robot.spoil = [](robot::Sensed& sensed) {
+  robot.spoil = [](Sensed& sensed) {
     const bool flicker = sensed.now_s > 0.81 && sensed.now_s < 0.85;
     if (flicker || sensed.now_s > 1.21) sensed.pose->pitch_rad = -1.3;
   };
@@ -246,7 +246,7 @@ TEST_CASE("A robot outside the arena ends the trial") {
 
 TEST_CASE("An exception of the robot passes through and the robot is stopped") {
   test::FakeRobot robot = RobotAtStart();
-  robot.spoil = [](robot::Sensed& sensed) {
+  robot.spoil = [](Sensed& sensed) {
     if (sensed.now_s > 1.0) throw std::runtime_error("the port is gone");
   };
   CHECK_THROWS_WITH(Run(robot), "the port is gone");

@@ -1,4 +1,4 @@
-#include "rift/twin/mjpeg_server.hpp"
+#include "twin/mjpeg_server.hpp"
 
 #include <arpa/inet.h>
 #include <poll.h>

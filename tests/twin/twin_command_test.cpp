@@ -4,12 +4,13 @@
 #include <functional>
 #include <optional>
 
-#include "rift/config/camera_file.hpp"
 #include "rift/hardware/robot_link.hpp"
 #include "rift/hardware/serial_port.hpp"
 #include "rift/trajectory/log.hpp"
-#include "rift/vision/capture_thread.hpp"
-#include "rift/vision/tag_tracker.hpp"
+#include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/camera/capture_thread.hpp"
+#include "rift/vision/tracking/tag_tracker.hpp"
+#include "support/tree.hpp"
 #include "support/trials.hpp"
 #include "twin_process.hpp"
 
@@ -47,7 +48,7 @@ struct Host {
 struct Eye {
   Eye(const std::string& url, const std::string& calibration)
       : capture([url] { return vision::OpenCamera(url, {}); }, {}),
-        tracker(config::ReadCamera(test::ReadFile(calibration), calibration), {}) {}
+        tracker(vision::ReadCamera(test::ReadFile(calibration), calibration), {}) {}
 
   std::optional<vision::Sighting> Look(double timeout_s = 0.0) {
     const auto frame = capture.Next(timeout_s);
@@ -145,7 +146,7 @@ TEST_CASE("A killed host stops the twin and its port can be opened again") {
 }
 
 TEST_CASE("What the twin cannot do is refused in one line") {
-  const std::string experiment = RIFT_SOURCE_DIR "/configs/twin.yaml";
+  const std::string experiment = test::SourceDir() + "/configs/twin.yaml";
   const test::TemporaryFolder folder;
   test::WriteText(folder / "empty.yaml", "name: empty\n");
   const auto refused = [&](const std::vector<std::string>& more) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/process.hpp"
+#include "support/tree.hpp"
 
 namespace rift::test {
 
@@ -20,8 +21,8 @@ class TwinProcess {
   explicit TwinProcess(const std::vector<std::string>& more = {}) {
     int out[2];
     if (::pipe(out) != 0) throw std::runtime_error("no pipe to be had");
-    std::vector<std::string> words{RIFT_BINARY, "simulate", RIFT_SOURCE_DIR "/configs/twin.yaml",
-                                   "--twin",    "--out",    Folder()};
+    std::vector<std::string> words{RiftBinary(), "simulate", SourceDir() + "/configs/twin.yaml",
+                                   "--twin",     "--out",    Folder()};
     words.insert(words.end(), more.begin(), more.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
@@ -29,7 +30,7 @@ class TwinProcess {
     pid_ = ::fork();
     if (pid_ == 0) {
       ::dup2(out[1], STDOUT_FILENO);
-      ::execv(RIFT_BINARY, argv.data());
+      ::execv(RiftBinary().c_str(), argv.data());
       ::_exit(127);
     }
     ::close(out[1]);

@@ -6,8 +6,8 @@
 
 #include "rift/twin/options.hpp"
 #include "rift/twin/overhead_camera.hpp"
-#include "rift/twin/pacing.hpp"
 #include "rift/twin/true_path.hpp"
+#include "twin/pacing.hpp"
 
 namespace rift::twin {
 namespace {
@@ -32,7 +32,7 @@ std::vector<std::uint8_t> Text(const std::string& text) { return {text.begin(), 
 double LastPowered_s(TwinRobot& robot, double silent_s, double until_s,
                      const std::function<std::vector<std::uint8_t>(int)>& say) {
   double powered_s = -1.0;
-  const auto witness = [&](const simulation::TruePose& pose, const robot::WheelPower& power) {
+  const auto witness = [&](const simulation::TruePose& pose, const control::WheelPower& power) {
     if (power.left != 0.0 || power.right != 0.0) powered_s = pose.t_s;
   };
   for (int i = 0; 0.04 * i < until_s; ++i) {

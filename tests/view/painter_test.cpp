@@ -1,11 +1,11 @@
-#include "view/picture/painter.hpp"
+#include "view/painter.hpp"
 
 #include <catch2/catch.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "rift/geometry/angle.hpp"
 #include "rift/view/film.hpp"
-#include "view/picture/pen.hpp"
+#include "view/pen.hpp"
 #include "view/synthetic_run.hpp"
 
 namespace rift::view {

@@ -1,4 +1,4 @@
-#include "view/picture/playback.hpp"
+#include "view/playback.hpp"
 
 #include <catch2/catch.hpp>
 

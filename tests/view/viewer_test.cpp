@@ -14,6 +14,7 @@
 
 #include "rift/view/film.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 #include "support/virtual_display.hpp"
 #include "view/synthetic_run.hpp"
 
@@ -104,17 +105,6 @@ TEST_CASE("A disk that fills up is an error and leaves nothing behind") {
   CHECK(FilesIn(folder.Path()) == 0);
 }
 
-TEST_CASE("A missing module is named with what to do") {
-  CHECK_THROWS_WITH(LoadViewer("/nowhere/librift_view.so"),
-                    Contains("/nowhere/librift_view.so") && Contains("libopencv-dev"));
-}
-
-TEST_CASE("A file that is no module is refused") {
-  const TemporaryFolder folder;
-  test::WriteText(folder / "librift_view.so", "no module");
-  CHECK_THROWS_WITH(LoadViewer(folder / "librift_view.so"), Contains("cannot load a module of rift"));
-}
-
 TEST_CASE("Without a display there is a reason in one line and no window and no crash") {
   const Environment wayland("WAYLAND_DISPLAY", nullptr);
   const bool unreachable = GENERATE(false, true);
@@ -160,7 +150,7 @@ TEST_CASE(kWindowCase) {
 }
 
 TEST_CASE("The command line program does not load OpenCV by itself") {
-  std::ifstream program(RIFT_BINARY, std::ios::binary);
+  std::ifstream program(test::RiftBinary(), std::ios::binary);
   if (!program) {
     WARN("SKIPPED: rift is not built");
     return;

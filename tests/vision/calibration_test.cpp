@@ -1,10 +1,11 @@
-#include "rift/vision/calibration.hpp"
+#include "rift/vision/calibration/calibration.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "rift/vision/image_files.hpp"
+#include "rift/vision/camera/image_files.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 #include "vision/synthetic_views.hpp"
 
 namespace rift::vision {
@@ -106,7 +107,7 @@ TEST_CASE("A board without squares is refused with the rule") {
 }
 
 TEST_CASE("The photographs of the paper's camera are not called good and the reasons are named") {
-  const auto folder = std::filesystem::path(RIFT_SOURCE_DIR) / "../shared/calibration/victure";
+  const auto folder = std::filesystem::path(test::SourceDir()) / "../shared/calibration/victure";
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: the photographs are not beside this clone (../shared/calibration)");
     return;

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "rift/vision/capture_thread.hpp"
+#include "rift/vision/camera/capture_thread.hpp"
 
 int main(int argc, char** argv) {
   using namespace rift::vision;

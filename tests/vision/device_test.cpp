@@ -9,8 +9,9 @@
 #include <opencv2/imgproc.hpp>
 #include <regex>
 
-#include "rift/vision/camera_source.hpp"
+#include "rift/vision/camera/camera_source.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 
 namespace rift::vision {
 namespace {
@@ -35,9 +36,9 @@ struct Probed {
 };
 
 Probed Probe(const std::map<std::string, std::string>& shim, const std::string& arguments) {
-  std::string command = "env LD_PRELOAD=" RIFT_V4L2_SHIM;
+  std::string command = "env LD_PRELOAD=" + test::BuildDir() + "/tests/librift_v4l2_shim.so";
   for (const auto& [name, value] : shim) command += fmt::format(" RIFT_SHIM_{}='{}'", name, value);
-  command += " timeout 30 " RIFT_CAPTURE_PROBE " " + arguments + " 2>&1";
+  command += " timeout 30 " + test::BuildDir() + "/tests/rift_capture_probe " + arguments + " 2>&1";
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
   Probed probed;
   std::array<char, 512> line{};
@@ -65,8 +66,9 @@ TEST_CASE("A V4L2 camera runs at the rate asked for in MJPG and in YUYV") {
   const int fps = GENERATE(30, 60);
   const bool mjpg = GENERATE(true, false);
   const JpegFolder jpegs(640, 480);
-  const Probed probed = Probe({{"JPEGS", jpegs.Path()}},
-                              fmt::format("/dev/video0 2.5 {} {} 640 480", mjpg ? "mjpg" : "yuyv", fps));
+  const Probed probed =
+      Probe({{"JPEGS", jpegs.Path()}},
+            fmt::format("/dev/video0 2.5 {} {} 640 480", mjpg ? "mjpg" : "yuyv", fps));
   INFO(probed.text);
   CHECK_THAT(probed.text, Contains(mjpg ? "first jpeg 640 480" : "first yuyv 640 480"));
   CHECK(probed.Number("rate") == Approx(fps).epsilon(0.08));
@@ -101,8 +103,7 @@ TEST_CASE("Pictures that repeat or that see no light are named while they keep c
   INFO(frozen.text);
   CHECK(frozen.NamedAfter_s("frozen") >= 0.0);
   CHECK(frozen.Number("rate") > 20.0);
-  const Probed black =
-      Probe({{"JPEGS", dark.Path()}, {"FAULT", "black"}, {"AFTER", "10"}}, camera);
+  const Probed black = Probe({{"JPEGS", dark.Path()}, {"FAULT", "black"}, {"AFTER", "10"}}, camera);
   INFO(black.text);
   CHECK(black.NamedAfter_s("black") >= 0.0);
   CHECK(black.Number("rate") > 20.0);

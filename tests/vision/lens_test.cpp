@@ -1,4 +1,4 @@
-#include "rift/vision/lens.hpp"
+#include "rift/vision/camera/lens.hpp"
 
 #include <catch2/catch.hpp>
 

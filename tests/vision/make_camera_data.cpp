@@ -9,12 +9,12 @@
 #include <numbers>
 #include <sstream>
 
-#include "rift/config/bind.hpp"
-#include "rift/config/camera_file.hpp"
-#include "rift/config/load.hpp"
 #include "rift/trajectory/log.hpp"
-#include "rift/vision/print_sheet.hpp"
-#include "rift/vision/synthetic_camera.hpp"
+#include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/rendering/synthetic_camera.hpp"
+#include "rift/yaml/bind.hpp"
+#include "rift/yaml/load.hpp"
+#include "vision/rendering/print_sheet.hpp"
 
 namespace {
 
@@ -145,7 +145,7 @@ int main(int argc, char** argv) {
   std::ostringstream text;
   text << std::ifstream(folder / "recording.yaml").rdbuf();
   Recording recording;
-  config::Bind(config::Parse(text.str(), "recording.yaml"), recording);
+  yaml::Bind(yaml::Parse(text.str(), "recording.yaml"), recording);
 
   vision::CameraModel camera = CameraOf(recording.camera);
   vision::Scene scene;
@@ -178,7 +178,7 @@ int main(int argc, char** argv) {
   Write(folder / "tags.yaml", PlacesYaml(recording));
   Write(folder / "camera.yaml",
         "# The camera that rendered frames/, with its true place above the floor.\n" +
-            config::WriteCamera(camera));
+            vision::WriteCamera(camera));
   Write(folder / "print/tag36h11_0.svg", vision::TagSheet(0, 0.0475));
   Write(folder / "print/chessboard_13x9_25mm.svg", vision::ChessboardSheet({13, 9, 0.025}));
   return 0;

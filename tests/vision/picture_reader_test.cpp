@@ -1,4 +1,4 @@
-#include "rift/vision/picture_reader.hpp"
+#include "rift/vision/camera/picture_reader.hpp"
 
 #include <catch2/catch.hpp>
 #include <opencv2/core.hpp>

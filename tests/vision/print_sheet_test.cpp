@@ -1,4 +1,4 @@
-#include "rift/vision/print_sheet.hpp"
+#include "vision/rendering/print_sheet.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -8,8 +8,9 @@
 #include <regex>
 #include <sstream>
 
-#include "rift/vision/tag_detector.hpp"
+#include "rift/vision/tracking/tag_detector.hpp"
 #include "support/process.hpp"
+#include "support/tree.hpp"
 
 namespace rift::vision {
 namespace {
@@ -70,7 +71,7 @@ TEST_CASE("What no sheet holds is refused with its size") {
 }
 
 TEST_CASE("The sheets in data are those that this code makes") {
-  const std::string folder = RIFT_SOURCE_DIR "/data/camera/print/";
+  const std::string folder = test::SourceDir() + "/data/camera/print/";
   CHECK(FileText(folder + "tag36h11_0.svg") == TagSheet(0, 0.0475));
   CHECK(FileText(folder + "chessboard_13x9_25mm.svg") == ChessboardSheet({13, 9, 0.025}));
 }

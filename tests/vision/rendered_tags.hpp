@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "rift/vision/lens.hpp"
-#include "rift/vision/synthetic_camera.hpp"
-#include "rift/vision/tag_detector.hpp"
+#include "rift/vision/camera/lens.hpp"
+#include "rift/vision/rendering/synthetic_camera.hpp"
+#include "rift/vision/tracking/tag_detector.hpp"
 #include "support/paper_camera.hpp"
 
 namespace rift::test {

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "rift/vision/capture_thread.hpp"
+#include "rift/vision/camera/capture_thread.hpp"
+#include "vision/camera/multipart.hpp"
 #include "vision/mjpeg_server.hpp"
-#include "vision/multipart.hpp"
 
 namespace rift::vision {
 namespace {
@@ -86,8 +86,9 @@ TEST_CASE("An address where nobody answers is unplugged within a second") {
 }
 
 TEST_CASE("Parts are cut the same however the bytes are split") {
-  const std::string body = "\r\n--b\r\nContent-Type: image/jpeg\r\nContent-Length: 5\r\n\r\nab\r\nc"
-                           "\r\n--b\r\nContent-Type: image/jpeg\r\n\r\nxyz\r\n--b\r\n";
+  const std::string body =
+      "\r\n--b\r\nContent-Type: image/jpeg\r\nContent-Length: 5\r\n\r\nab\r\nc"
+      "\r\n--b\r\nContent-Type: image/jpeg\r\n\r\nxyz\r\n--b\r\n";
   const std::size_t piece = GENERATE(1U, 2U, 7U, 1000U);
   MultipartReader reader("multipart/x-mixed-replace;boundary=\"--b\"");
   std::vector<std::string> parts;

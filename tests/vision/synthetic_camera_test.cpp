@@ -1,4 +1,4 @@
-#include "rift/vision/synthetic_camera.hpp"
+#include "rift/vision/rendering/synthetic_camera.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "rendered_tags.hpp"
-#include "rift/vision/picture_reader.hpp"
-#include "vision/edge_fit.hpp"
+#include "rift/vision/camera/picture_reader.hpp"
+#include "vision/tracking/edge_fit.hpp"
 
 namespace rift::vision {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "rift/vision/calibration.hpp"
-#include "rift/vision/lens.hpp"
+#include "rift/vision/calibration/calibration.hpp"
+#include "rift/vision/camera/lens.hpp"
 
 namespace rift::vision::synthetic {
 
@@ -36,11 +36,12 @@ inline BoardView View(const CameraModel& camera, const Board& board, std::mt1993
   };
   for (;;) {
     const double distance_m = uniform(0.22, 0.9);
-    const Eigen::Vector3d middle(uniform(-0.85, 0.85) * distance_m,
-                                 uniform(-0.5, 0.5) * distance_m, distance_m);
-    const Eigen::Quaterniond turn = Eigen::AngleAxisd(uniform(-0.3, 0.3), Eigen::Vector3d::UnitZ()) *
-                                    Eigen::AngleAxisd(uniform(-0.8, 0.8), Eigen::Vector3d::UnitY()) *
-                                    Eigen::AngleAxisd(uniform(-0.8, 0.8), Eigen::Vector3d::UnitX());
+    const Eigen::Vector3d middle(uniform(-0.85, 0.85) * distance_m, uniform(-0.5, 0.5) * distance_m,
+                                 distance_m);
+    const Eigen::Quaterniond turn =
+        Eigen::AngleAxisd(uniform(-0.3, 0.3), Eigen::Vector3d::UnitZ()) *
+        Eigen::AngleAxisd(uniform(-0.8, 0.8), Eigen::Vector3d::UnitY()) *
+        Eigen::AngleAxisd(uniform(-0.8, 0.8), Eigen::Vector3d::UnitX());
     std::vector<Eigen::Vector3d> points;
     for (int i = 0; i < board.Corners(); ++i) {
       const double u = 2.0 * (i % board.columns) / (board.columns - 1) - 1.0;

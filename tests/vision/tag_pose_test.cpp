@@ -1,4 +1,4 @@
-#include "rift/vision/tag_pose.hpp"
+#include "rift/vision/tracking/tag_pose.hpp"
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "rift/vision/tag_tracker.hpp"
+#include "rift/vision/tracking/tag_tracker.hpp"
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>

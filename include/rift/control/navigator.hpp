@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
-#include "rift/control/navigator_options.hpp"
+#include "rift/control/options.hpp"
 #include "rift/control/pid.hpp"
 #include "rift/control/pose_gate.hpp"
 #include "rift/control/pose_predictor.hpp"
 #include "rift/control/waypoint.hpp"
-#include "rift/robot/robot.hpp"
+#include "rift/trial/robot.hpp"
 
 namespace rift::control {
 
@@ -35,7 +35,7 @@ struct Limits {
 
 /// What to do now, and why. Always finite, each power within [-1, 1].
 struct Decision {
-  robot::WheelPower power;
+  WheelPower power;
   size_t waypoint = 0;        ///< index of the waypoint driven to; the last one when finished
   bool pose_refused = false;  ///< the pose given was no believable one; the last good one was used
   bool reached = false;       ///< `waypoint` was reached at this step and the robot stops there
@@ -68,7 +68,7 @@ class Navigator {
   bool Observe(const PoseInput& input);
 
   /// Tells what was really sent, which slew limit and latency compensation build on.
-  void NoteSent(double now_s, const robot::WheelPower& power);
+  void NoteSent(double now_s, const WheelPower& power);
 
   bool finished() const { return active_ == waypoints_.size(); }
   size_t active() const { return finished() ? waypoints_.size() - 1 : active_; }
@@ -91,7 +91,7 @@ class Navigator {
   PoseGate gate_;
   double arrived_s_ = 0.0;
   PosePredictor predictor_;
-  robot::WheelPower last_sent_;
+  WheelPower last_sent_;
 };
 
 }  // namespace rift::control

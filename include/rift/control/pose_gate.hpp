@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "rift/control/navigator_options.hpp"
+#include "rift/control/options.hpp"
 #include "rift/geometry/pose2.hpp"
 
 namespace rift::control {

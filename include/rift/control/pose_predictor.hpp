@@ -2,7 +2,7 @@
 
 #include <deque>
 
-#include "rift/control/navigator_options.hpp"
+#include "rift/control/options.hpp"
 #include "rift/geometry/pose2.hpp"
 
 namespace rift::control {
@@ -15,7 +15,7 @@ class PosePredictor {
   explicit PosePredictor(const LatencyOptions& options);
 
   /// A power sent at `now_s`, which holds until the next one. Times must not run backwards.
-  void NoteSent(double now_s, const robot::WheelPower& power);
+  void NoteSent(double now_s, const WheelPower& power);
 
   /// The pose of the robot at the moment a command sent at `now_s` takes effect, given a pose
   /// that arrived at `arrived_s`: what was sent since `arrived_s` - delay is still to be driven.
@@ -26,10 +26,10 @@ class PosePredictor {
  private:
   struct Sent {
     double sent_s;
-    robot::WheelPower power;
+    WheelPower power;
   };
 
-  robot::DiffDrive drive_;
+  DiffDrive drive_;
   double delay_s_;
   std::deque<Sent> sent_;
 };

@@ -45,4 +45,30 @@ struct GapOptions {
 /// `tag_offset_m`: how far ahead of the tag the real path was taken.
 std::string DefinitionText(const GapOptions& options, double tag_offset_m = 0.0);
 
+/// How likeness is measured; the gap within it has options of its own.
+struct LikenessOptions {
+  int points = 64;
+  int shuffles = 999;
+  int speed_stride = 3;
+  double moving_mps = 0.1;
+  double wavelength_min_m = 0.06;
+  double longest_run = 1.5;
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("points", self.points, 8, 10'000,
+          "points along a path, for its weave, its spectrum, the mean path and the test");
+    field("shuffles", self.shuffles, 19, 1'000'000, "shuffles of the two-sample test");
+    field("speed_stride", self.speed_stride, 1, 1000, "frames over which a speed is taken");
+    field("moving_mps", self.moving_mps, 0.0, 100.0, "slower than this counts as standing");
+    field("wavelength_min_m", self.wavelength_min_m, 1e-4, 1e3,
+          "shortest wavelength of the weave that is looked for");
+    field(
+        "longest_run", self.longest_run, 1.0, 1e6,
+        "a run longer than this many times the longest real path of its setting passed a waypoint "
+        "and circled: it counts as failed, as no log shows what became of such trials");
+  }
+};
+
 }  // namespace rift::gap

@@ -8,7 +8,7 @@
 
 #include "rift/hardware/byte_line.hpp"
 #include "rift/hardware/pose_source.hpp"
-#include "rift/vision/module.hpp"
+#include "rift/vision/module/module.hpp"
 
 namespace rift::hardware {
 

@@ -61,18 +61,18 @@ class DriveGuard {
 
   void SeePose(const PoseNews& news, double now_s);
   /// A control step and what it wants.
-  void Command(const robot::WheelPower& power, double now_s);
+  void Command(const control::WheelPower& power, double now_s);
   void HearRobot(std::uint8_t stops, double battery_v, double now_s);
   /// To be called often: what has grown too old, or whether this process stood still.
   void Tick(double now_s, double link_lag_s);
 
   /// What may be sent now: the last command while all is well, else zero.
-  robot::WheelPower Allowed() const;
+  control::WheelPower Allowed() const;
   DriveState state() const { return state_; }
   const std::optional<DriveStop>& stop() const { return stop_; }
 
  private:
-  void CheckJump(const robot::PoseMeasurement& before, const robot::PoseMeasurement& pose,
+  void CheckJump(const trial::PoseMeasurement& before, const trial::PoseMeasurement& pose,
                  double now_s);
   void NoteTime(double now_s);
   bool RequireFreshPose(double now_s);
@@ -80,9 +80,9 @@ class DriveGuard {
   GuardOptions options_;
   DriveState state_ = DriveState::kDisarmed;
   std::optional<DriveStop> stop_;
-  std::optional<robot::PoseMeasurement> pose_;
+  std::optional<trial::PoseMeasurement> pose_;
   std::optional<double> looked_s_;
-  robot::WheelPower power_;
+  control::WheelPower power_;
   double commanded_s_ = 0.0;
   std::optional<double> ticked_s_;
   std::optional<std::uint8_t> robot_stops_;

@@ -3,13 +3,13 @@
 #include <optional>
 #include <string>
 
-#include "rift/robot/robot.hpp"
+#include "rift/trial/robot.hpp"
 
 namespace rift::hardware {
 
 /// A pose and the way it came; all times on the Clock.
 struct PoseSample {
-  robot::PoseMeasurement measured;  ///< world_from_robot, captured_s
+  trial::PoseMeasurement measured;  ///< world_from_robot, captured_s
   double arrived_s = 0.0;           ///< when the picture was in memory
   double ready_s = 0.0;             ///< when the tag had been found in it
 };

@@ -11,7 +11,7 @@
 #include "rift/hardware/options.hpp"
 #include "rift/hardware/pose_source.hpp"
 #include "rift/hardware/robot_link.hpp"
-#include "rift/robot/robot.hpp"
+#include "rift/trial/robot.hpp"
 
 namespace rift::hardware {
 
@@ -30,7 +30,7 @@ struct PoseStages {
 /// The wheels as the robot told, at the middle of the round trip of the command it answered.
 struct EncoderReading {
   double t_s = 0.0;
-  robot::EncoderCounts counts;
+  control::EncoderCounts counts;
   double battery_v = 0.0;
 };
 
@@ -65,7 +65,7 @@ struct RealRobotOptions {
 
 /// The robot on the floor behind the interface of the simulated one: camera poses in, powers out,
 /// with a DriveGuard between. `line`, `poses` and `clock` must outlive it.
-class RealRobot : public robot::Robot {
+class RealRobot : public trial::Robot {
  public:
   RealRobot(ByteLine& line, PoseSource& poses, Clock& clock, const RealRobotOptions& options);
   /// Sends zeros for a while, whatever happened before.
@@ -76,9 +76,9 @@ class RealRobot : public robot::Robot {
   void Arm();
 
   /// fault: why the guard has stopped the drive.
-  robot::Sensed Sense() override;
+  trial::Sensed Sense() override;
   /// A power that is refused stops the drive; it is never made to fit.
-  void Command(const robot::WheelPower& power) override;
+  void Command(const control::WheelPower& power) override;
   /// Waits in real time; returns early when there is a new pose to decide on.
   void Advance(double dt_s) override;
   void Stop() noexcept override;

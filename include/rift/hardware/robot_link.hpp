@@ -65,9 +65,9 @@ class RobotLink {
   RobotLink(ByteLine& line, const LineOptions& options, Protocol protocol);
 
   /// The command from now on. `at_once`: also when it is the one in force already.
-  void Put(const robot::WheelPower& power, bool at_once);
+  void Put(const control::WheelPower& power, bool at_once);
   /// The same, but it goes out only with the next command that is due, a heartbeat at the latest.
-  void PutForLater(const robot::WheelPower& power) { power_ = power; }
+  void PutForLater(const control::WheelPower& power) { power_ = power; }
   /// How long a command keeps the line from the next one.
   double Occupied_s() const { return pacer_.Time_s(std::max(CommandSize(), AnswerSize())); }
   /// Reads what has come, writes what is due. Throws LineGone.
@@ -96,7 +96,7 @@ class RobotLink {
   Protocol protocol_;
   LinkPacer pacer_;
   AnswerDecoder decoder_;
-  robot::WheelPower power_;
+  control::WheelPower power_;
   bool is_due_ = true;
   std::uint8_t next_sequence_ = 1;
   std::optional<Sent> last_sent_;

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "rift/robot/robot.hpp"
+#include "rift/trial/robot.hpp"
 
 /// The bytes between host and robot. Two languages, which the robot's listener (src/firmware) tells
 /// apart by themselves: `plain`, the authors' text, and `framed`.
@@ -26,7 +26,7 @@ using Bytes = std::span<const std::uint8_t>;
 
 /// The authors' line, "%.2f %.2f\n", left and right. Throws std::invalid_argument unless both
 /// powers are in [-1, 1].
-std::string PlainLine(const robot::WheelPower& power);
+std::string PlainLine(const control::WheelPower& power);
 
 /// A power as the motors take it, in 1/1000 of full power.
 struct MilliPower {
@@ -37,7 +37,7 @@ struct MilliPower {
   friend bool operator==(const MilliPower&, const MilliPower&) = default;
 };
 /// Rounds to 1/1000. Throws std::invalid_argument unless both powers are in [-1, 1].
-MilliPower MilliOf(const robot::WheelPower& power);
+MilliPower MilliOf(const control::WheelPower& power);
 
 /// Exactly two numbers with exactly two decimals and one blank between, both in [-1, 1], without
 /// the newline; none for anything else, since a lost byte turns 0.85 into 85, 0.8 or 0.850.90.

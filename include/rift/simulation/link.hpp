@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "rift/robot/robot.hpp"
 #include "rift/simulation/noise.hpp"
+#include "rift/trial/robot.hpp"
 
 namespace rift::simulation {
 
@@ -60,15 +60,15 @@ class Link {
   Link(const LinkOptions& options, std::uint64_t seed);
 
   /// Writes one command line at `at_s`, no earlier than the last Advance.
-  void Send(double at_s, const robot::WheelPower& power);
+  void Send(double at_s, const control::WheelPower& power);
   /// As Send, but drops the lines that are still on their way.
-  void SendUrgently(double at_s, const robot::WheelPower& power);
+  void SendUrgently(double at_s, const control::WheelPower& power);
 
   /// Lets time pass up to `to_s`; returns the mean power at the motors since the last call, which
   /// makes a step respond to the very moment a command takes effect.
-  robot::WheelPower Advance(double to_s);
+  control::WheelPower Advance(double to_s);
   /// The power the motors hold now.
-  const robot::WheelPower& Held() const { return held_; }
+  const control::WheelPower& Held() const { return held_; }
 
  private:
   struct Byte {
@@ -94,7 +94,7 @@ class Link {
   std::uint64_t lines_sent_ = 0;
   std::uint64_t polls_ = 0;
   double phase_s_;
-  robot::WheelPower held_, integral_;
+  control::WheelPower held_, integral_;
 };
 
 }  // namespace rift::simulation

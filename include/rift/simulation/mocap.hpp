@@ -4,8 +4,8 @@
 #include <deque>
 #include <optional>
 
-#include "rift/robot/robot.hpp"
 #include "rift/simulation/noise.hpp"
+#include "rift/trial/robot.hpp"
 
 namespace rift::simulation {
 
@@ -88,17 +88,17 @@ class Mocap {
   void Observe(const TruePose& before, const TruePose& after);
   /// The newest pose that has arrived by `now_s`, captured_s being when it was seen; none before
   /// the first. Ask in order of time.
-  std::optional<robot::PoseMeasurement> Newest(double now_s);
+  std::optional<trial::PoseMeasurement> Newest(double now_s);
 
  private:
   struct Arrival {
     double at_s;
-    robot::PoseMeasurement measurement;
+    trial::PoseMeasurement measurement;
   };
 
   double FrameTime_s(std::uint64_t frame) const;
   void TakeFrame(const TruePose& pose, double speed_mps, std::uint64_t frame);
-  robot::PoseMeasurement Measure(const TruePose& pose, double speed_mps, std::uint64_t frame) const;
+  trial::PoseMeasurement Measure(const TruePose& pose, double speed_mps, std::uint64_t frame) const;
 
   MocapOptions options_;
   Noise noise_;
@@ -106,7 +106,7 @@ class Mocap {
   std::uint64_t next_frame_ = 0;
   double last_stamp_s_;
   std::deque<Arrival> on_the_way_;
-  std::optional<robot::PoseMeasurement> newest_;
+  std::optional<trial::PoseMeasurement> newest_;
 };
 
 }  // namespace rift::simulation

@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <memory>
 
-#include "rift/robot/robot.hpp"
-#include "rift/simulation/simulation_options.hpp"
+#include "rift/simulation/options.hpp"
+#include "rift/trial/robot.hpp"
 
 namespace rift::simulation {
 
 /// The robot, its radio and its overhead camera, simulated. Same options, start, seed and calls:
 /// same bytes. Instances share nothing.
-class SimulatedRobot : public robot::Robot {
+class SimulatedRobot : public trial::Robot {
  public:
   /// At rest at `start` (middle of the axle, world frame), motors off, clock at 0. `image` is the
   /// heightfield of the chosen surface, if that is one (DecodeHeightImage makes it).
@@ -19,9 +19,9 @@ class SimulatedRobot : public robot::Robot {
   SimulatedRobot(const SimulationOptions& options, const geometry::Pose2& start, std::uint64_t seed,
                  std::shared_ptr<const HeightImage> image = nullptr);
 
-  robot::Sensed Sense() override;
+  trial::Sensed Sense() override;
   /// Throws std::invalid_argument when a power is not a number in [-1, 1].
-  void Command(const robot::WheelPower& power) override;
+  void Command(const control::WheelPower& power) override;
   /// Runs the whole steps that end by then; the rest of dt_s is kept for the next call, so the
   /// physics lags by less than a step and never drifts. Throws std::invalid_argument unless
   /// 0 <= dt_s <= 1e6.
@@ -33,7 +33,7 @@ class SimulatedRobot : public robot::Robot {
   TruePose Truth() const { return truth_; }
   const WorldState& State() const { return world_.State(); }
   /// The power at the motors now.
-  robot::WheelPower HeldPower() const { return link_.Held(); }
+  control::WheelPower HeldPower() const { return link_.Held(); }
 
  private:
   double Now_s() const { return 1e-9 * static_cast<double>(now_ns_); }

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "rift/control/navigator_options.hpp"
+#include "rift/control/options.hpp"
 #include "rift/control/waypoint.hpp"
 #include "rift/trajectory/trajectory.hpp"
 

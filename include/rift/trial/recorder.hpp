@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "rift/control/navigator.hpp"
-#include "rift/robot/robot.hpp"
+#include "rift/trial/robot.hpp"
 #include "rift/trial/trial.hpp"
 
 namespace rift::trial {
@@ -14,9 +14,9 @@ class Recorder {
   Recorder(const std::vector<control::Waypoint>& waypoints, double log_period_s);
 
   /// Once for each believable new pose, after the decision made on it (none while settling).
-  void Pose(const robot::PoseMeasurement& measured, const control::Waypoint& target,
+  void Pose(const PoseMeasurement& measured, const control::Waypoint& target,
             const control::Decision& decision);
-  void Sent(double now_s, const robot::WheelPower& power);
+  void Sent(double now_s, const control::WheelPower& power);
   /// Once for each decision; `active_after` is the waypoint the navigator drives to from now on.
   void Decided(double now_s, const control::Decision& decision, size_t active_after);
   void Refused() { ++result_.poses_refused; }

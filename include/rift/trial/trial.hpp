@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "rift/control/navigator.hpp"
-#include "rift/robot/robot.hpp"
 #include "rift/trajectory/trajectory.hpp"
-#include "rift/trial/trial_options.hpp"
+#include "rift/trial/options.hpp"
+#include "rift/trial/robot.hpp"
 
 namespace rift::trial {
 
@@ -30,7 +30,7 @@ struct WaypointVisit {
 /// A power as sent, on the robot clock.
 struct SentCommand {
   double t_s = 0.0;
-  robot::WheelPower power;
+  control::WheelPower power;
 };
 
 /// How many decisions each limit changed, and what the loops asked for at most: whether a limit
@@ -74,7 +74,7 @@ struct TrialResult {
 /// Robot::Stop() is called on every way out, exceptions of the robot included, and no power but
 /// zero is ever sent without a believable pose younger than pose_stale_s.
 /// Throws std::invalid_argument on bad options or waypoints, before the robot moves.
-TrialResult RunTrial(robot::Robot& robot, const std::vector<control::Waypoint>& waypoints,
+TrialResult RunTrial(Robot& robot, const std::vector<control::Waypoint>& waypoints,
                      const control::NavigatorOptions& navigator_options,
                      const TrialOptions& options);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "rift/simulation/simulation_options.hpp"
-#include "rift/vision/synthetic_camera.hpp"
+#include "rift/simulation/options.hpp"
+#include "rift/vision/rendering/synthetic_camera.hpp"
 
 namespace rift::twin {
 

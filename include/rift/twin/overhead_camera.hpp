@@ -4,7 +4,7 @@
 
 #include "rift/control/waypoint.hpp"
 #include "rift/twin/options.hpp"
-#include "rift/vision/camera_model.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::twin {
 

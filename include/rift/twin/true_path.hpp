@@ -5,7 +5,7 @@
 
 #include "rift/simulation/mocap.hpp"
 #include "rift/trajectory/trajectory.hpp"
-#include "rift/vision/synthetic_camera.hpp"
+#include "rift/vision/rendering/synthetic_camera.hpp"
 
 namespace rift::twin {
 

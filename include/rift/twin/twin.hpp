@@ -8,7 +8,7 @@
 #include "rift/twin/options.hpp"
 #include "rift/twin/true_path.hpp"
 #include "rift/twin/twin_robot.hpp"
-#include "rift/vision/module.hpp"
+#include "rift/vision/module/module.hpp"
 
 namespace rift::twin {
 

@@ -17,7 +17,7 @@ namespace rift::twin {
 class TwinRobot {
  public:
   /// Every physics step, the pose at its end and the power at the motors.
-  using Witness = std::function<void(const simulation::TruePose&, const robot::WheelPower&)>;
+  using Witness = std::function<void(const simulation::TruePose&, const control::WheelPower&)>;
 
   /// At rest at `start`; see SimulatedRobot.
   TwinRobot(const simulation::SimulationOptions& options, double battery_v,
@@ -31,7 +31,7 @@ class TwinRobot {
   /// What has reached the host by then.
   std::vector<std::uint8_t> Say(double now_s) { return to_host_.Take(now_s); }
 
-  robot::WheelPower Motors() const;
+  control::WheelPower Motors() const;
   double Now_s() const { return kTurn_s * static_cast<double>(turns_); }
   simulation::TruePose Truth() const { return robot_.Truth(); }
   const hardware::Listener& Listener() const { return listener_; }
@@ -47,7 +47,7 @@ class TwinRobot {
   ByteChannel to_host_;
   std::uint16_t battery_mv_;
   std::int64_t turns_ = 0;
-  robot::WheelPower commanded_;
+  control::WheelPower commanded_;
   double witnessed_s_ = 0.0;
 };
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "rift/trajectory/trajectory.hpp"
+#include "rift/view/options.hpp"
 #include "rift/view/scene.hpp"
-#include "rift/view/view_options.hpp"
 
 namespace rift::view {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "rift/geometry/pose2.hpp"
-#include "rift/robot/robot.hpp"
+#include "rift/trial/robot.hpp"
 
 namespace rift::view {
 
@@ -72,7 +72,7 @@ struct Scene {
   double roll_rad = 0.0;   ///< right side down positive
   double pitch_rad = 0.0;  ///< nose down positive
   double speed_mps = kUnknown;
-  robot::WheelPower power{kUnknown, kUnknown};
+  control::WheelPower power{kUnknown, kUnknown};
   int target = -1;          ///< index of the waypoint driven to; -1: none
   size_t trail_points = 0;  ///< of Stage::trail_m that had been measured by now
   std::string outcome;      ///< how the run ended; empty while it goes on

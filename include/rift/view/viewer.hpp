@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "rift/view/options.hpp"
 #include "rift/view/scene.hpp"
-#include "rift/view/view_options.hpp"
 
 namespace rift::view {
 
@@ -26,11 +26,6 @@ class Viewer {
                           const ViewOptions& options) = 0;
 };
 
-/// Where the module lies relative to this program: lib/rift/ beside it (build tree) or beside its
-/// folder (install tree).
-std::filesystem::path ViewerModulePath();
-
-/// Loads the module. Throws std::runtime_error when it is not there or does not fit.
-std::unique_ptr<Viewer> LoadViewer(const std::filesystem::path& module = ViewerModulePath());
+std::unique_ptr<Viewer> LoadViewer();
 
 }  // namespace rift::view

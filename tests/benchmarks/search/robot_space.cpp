@@ -6,9 +6,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "rift/config/bind.hpp"
 #include "rift/gap/comparison.hpp"
-#include "rift/sweep/simulated_trial.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/yaml/bind.hpp"
+#include "support/tree.hpp"
 
 namespace rift::test {
 namespace {
@@ -29,10 +30,10 @@ std::string ReadText(const std::string& path) {
   return text.str();
 }
 
-config::Experiment Nominal() {
-  config::Experiment experiment =
-      config::LoadExperiment(RIFT_SOURCE_DIR "/configs/waypoints/paper.yaml", {}, ReadText);
-  config::Bind(config::Load(RIFT_SOURCE_DIR "/configs/robots/3pi_2040.yaml", ReadText), experiment);
+experiment::Experiment Nominal() {
+  experiment::Experiment experiment =
+      experiment::LoadExperiment(SourceDir() + "/configs/waypoints/paper.yaml", {}, ReadText);
+  yaml::Bind(yaml::Load(SourceDir() + "/configs/robots/3pi_2040.yaml", ReadText), experiment);
   experiment.trial.timeout_s = 6.0;
   experiment.control.reach_radius_m = kReachRadius_m;
   return experiment;
@@ -50,7 +51,7 @@ RobotSpace::RobotSpace()
       nominal_(Nominal()),
       reference_(Drive(nominal_)) {}
 
-trajectory::Trajectory RobotSpace::Drive(const config::Experiment& experiment) const {
+trajectory::Trajectory RobotSpace::Drive(const experiment::Experiment& experiment) const {
   sweep::SimulatedRun run = sweep::Simulate({.waypoints = experiment.waypoints,
                                              .control = experiment.control,
                                              .trial = experiment.trial,
@@ -62,7 +63,7 @@ trajectory::Trajectory RobotSpace::Drive(const config::Experiment& experiment) c
 }
 
 double RobotSpace::Gap_m(const search::Point& point) const {
-  config::Experiment experiment = nominal_;
+  experiment::Experiment experiment = nominal_;
   experiment.simulation.terrain.surface = kSurfaces[static_cast<std::size_t>(point[0])];
   experiment.trial.pace = static_cast<trial::Pace>(point[1]);
   experiment.control.v_min = point[2];

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "rift/config/experiment.hpp"
+#include "rift/experiment/experiment.hpp"
 #include "rift/search/strategy.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
@@ -26,10 +26,10 @@ class RobotSpace {
   double Gap_m(const search::Point& point) const;
 
  private:
-  trajectory::Trajectory Drive(const config::Experiment& experiment) const;
+  trajectory::Trajectory Drive(const experiment::Experiment& experiment) const;
 
   std::vector<search::Axis> axes_;
-  config::Experiment nominal_;
+  experiment::Experiment nominal_;
   trajectory::Trajectory reference_;
 };
 

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rift/control/options.hpp"
+#include "rift/control/waypoint.hpp"
+#include "rift/experiment/calibrate_options.hpp"
+#include "rift/experiment/hooks.hpp"
+#include "rift/experiment/options.hpp"
+#include "rift/experiment/track_options.hpp"
+#include "rift/gap/options.hpp"
+#include "rift/hardware/options.hpp"
+#include "rift/simulation/options.hpp"
+#include "rift/sweep/falsify/options.hpp"
+#include "rift/sweep/run/options.hpp"
+#include "rift/trial/options.hpp"
+#include "rift/twin/options.hpp"
+#include "rift/yaml/load.hpp"
+
+namespace rift::experiment {
+
+/// Everything that a run depends on: the whole schema. The defaults stand in the Options structs
+/// of the rooms, and every key is optional: the authors' waypoint file is an experiment.
+struct Experiment {
+  std::string name;
+  std::vector<control::Waypoint> waypoints;
+  Goal goal = Goal::kGrid;
+  Space space;
+  sweep::SearchPlan search;
+  sweep::FalsifyOptions falsify;
+  sweep::RunOptions run;
+  CandidateOptions candidate;
+  Start start = Start::kWaypoint;
+  ReferenceOptions reference;
+  gap::GapOptions gap;
+  gap::LikenessOptions likeness;
+  std::uint64_t seed = 1;
+  control::NavigatorOptions control;
+  trial::TrialOptions trial;
+  simulation::SimulationOptions simulation;
+  hardware::HardwareOptions hardware;
+  TrackOptions track;
+  twin::TwinOptions twin;
+  CalibrateOptions calibrate;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("name", self.name, "what reports call it; by default the name of the file");
+    field("waypoints", self.waypoints, "the task: name, x, y, heading (of the first), stop");
+    field("goal", self.goal,
+          "what a sweep is for: visit every combination, look for failures, or fit the simulator");
+    field("space", self.space, "the parameters to vary: a list of values, or a range to search");
+    field("search", self.search, "how a sweep that is no grid looks for its goal");
+    field("falsify", self.falsify, "what counts as a failure, and how sure it must be");
+    field("calibrate", self.calibrate, "what is fitted to which logs");
+    field("run", self.run, "what a trial may cost; no part of what it computes");
+    field("candidate", self.candidate, "the simulator: what is put to the test");
+    field("start", self.start, "where a simulated trial begins: first waypoint, or as its log");
+    field("reference", self.reference, "the robot: what it is compared with");
+    field("gap", self.gap, "how the gap is measured");
+    field("likeness", self.likeness,
+          "how repeats of simulator and robot are held against each other");
+    field("seed", self.seed, "of all random numbers; trial i of a setting uses seed + i - 1");
+    field("control", self.control, "the waypoint controller, the same for robot and simulator");
+    field("trial", self.trial, "the trial loop: rates, time limits, when a trial has failed");
+    field("simulation", self.simulation, "the simulated robot, its radio, its camera, the floor");
+    field("hardware", self.hardware, "the real robot: its line, when it is stopped, its link");
+    field("track", self.track, "the overhead camera: what it is asked for, the tag, calibration");
+    field("twin", self.twin, "the simulated robot in real time, behind a port and a camera");
+  }
+};
+
+/// Defaults < file (with what it includes) < overrides (`a.b=c`), checked; paths absolute.
+/// Throws Error with file:line:column, the key, its value and the rule.
+Experiment LoadExperiment(const std::string& path, const std::vector<std::string>& overrides,
+                          const yaml::FileReader& read);
+
+/// The experiment with the parameters of its space at one setting. Throws Error, naming where the
+/// parameter was written, when a value breaks a rule.
+Experiment ExperimentAt(const Experiment& experiment, const std::vector<ParameterValue>& theta);
+
+/// The experiment with its free parameters (calibrate.fit) at these values, in their order. Throws
+/// Error, naming where the parameter was written, when a value breaks a rule.
+Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>& values);
+
+/// Every key of an experiment with type, default and meaning, a paragraph each.
+std::string DescribeKeys();
+
+/// Every value of the resolved experiment under its dotted key, as one line of YAML.
+std::map<std::string, std::string> FlatValues(const Experiment& experiment);
+
+/// The resolved experiment as YAML; loading it gives the same experiment.
+std::string WriteExperiment(const Experiment& experiment);
+
+}  // namespace rift::experiment

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rift/sweep/falsify/result.hpp"
+
+namespace rift::report {
+
+/// The settings of a sweep laid out as main factor x combination of all other parameters.
+struct SettingGrid {
+  std::string main_name;    ///< "surface"
+  std::string others_name;  ///< "[v_min, v_max]"; empty for a single axis
+  std::vector<sweep::LevelSummary> mains;
+  std::vector<sweep::LevelSummary> others;  ///< one unnamed entry for a single axis
+  /// [main][other]; null where the sweep holds no such setting; empty with a continuous axis,
+  /// where no two settings share a value.
+  std::vector<std::vector<const sweep::SettingResult*>> cells;
+
+  int CellCount() const { return static_cast<int>(mains.size() * others.size()); }
+};
+
+SettingGrid LayOut(const sweep::SweepResult& result);
+
+/// "ground [0.15, 0.30]", or "friction 0.4, delay_s 0.2" where no parameter is a word.
+std::string SettingLabel(const sweep::SweepResult& result, const experiment::Theta& theta);
+
+/// Finite gaps of a setting's trials, in the order of its rows.
+std::vector<double> GapsOf(const sweep::SweepResult& result, const sweep::SettingResult& setting);
+
+/// Its trials without a gap.
+int NotMeasured(const sweep::SweepResult& result, const sweep::SettingResult& setting);
+
+/// Settings by falling mean gap; those without any gap come first, since nothing is known of them.
+std::vector<const sweep::SettingResult*> WorstSettings(const sweep::SweepResult& result);
+
+}  // namespace rift::report

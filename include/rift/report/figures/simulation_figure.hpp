@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rift/report/figures/figure.hpp"
+#include "rift/trajectory/trajectory.hpp"
+
+namespace rift::report {
+
+/// A waypoint as it is drawn; the start is one of them.
+struct NamedPoint {
+  std::string name;
+  Eigen::Vector2d p_in_world_m;
+};
+
+/// A part of the floor that is not like the rest: a slope, a block, a patch with its own friction.
+/// No label: drawn without one.
+struct FloorArea {
+  std::string label;
+  double x_min_m = 0.0;
+  double x_max_m = 0.0;
+  double y_min_m = 0.0;
+  double y_max_m = 0.0;
+};
+
+/// One simulated trial as values.
+struct SimulatedTrial {
+  std::string name;              ///< how the caption calls it
+  trajectory::Trajectory truth;  ///< where it really was: at least two poses; z may be unknown
+  /// What the tracker saw, on the same clock; may be empty. Channels power_left and power_right,
+  /// here or in truth (that comes first), are drawn over time.
+  trajectory::Trajectory logged;
+  std::vector<NamedPoint> waypoints;
+  std::vector<FloorArea> areas;
+  std::vector<Eigen::Vector2d> ground_xz_m;  ///< profile of the ground by rising x; may be empty
+};
+
+/// Top view, side view, and speed and wheel powers over time, below each other. What is not known
+/// (heights, powers) is left out.
+/// Throws std::invalid_argument when truth has fewer than two poses.
+Figure SimulationFigure(const SimulatedTrial& trial, const ReportOptions& options = {});
+
+}  // namespace rift::report

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "rift/experiment/calibrate_options.hpp"
+#include "rift/sweep/calibrate/short_horizon.hpp"
+
+namespace rift::sweep {
+
+/// A log to fit. Logs of one setting repeat each other.
+struct CalibrationLog {
+  std::string name;
+  std::string setting;
+  trajectory::Trajectory log;
+  /// No simulated log that stands for this one is longer, by strides: such a run circled about a
+  /// waypoint, as no log here does, and would count more than all the others.
+  double longest_m = std::numeric_limits<double>::infinity();
+};
+
+/// The simulated twin of a log, with one value for each free parameter. It starts where the robot
+/// stood, and its seed is that log's own.
+using TwinAt = std::function<SimulatedTrial(size_t log, const std::vector<double>& values)>;
+
+/// Told after each step of the fit: how many there were, and the loss (of that step's own scale).
+using CalibrationStep = std::function<void(int steps, double loss)>;
+
+struct CalibratedParameter {
+  experiment::FreeParameter parameter;
+  double value = 0.0;
+  double low = 0.0;  ///< of the interval, within the range
+  double high = 0.0;
+  bool has_effect = true;     ///< false: no prediction and no run changed at all
+  bool is_at_bound = false;   ///< the fit would go beyond the range
+  bool is_identified = true;  ///< false: the logs leave too much of the range open
+};
+
+struct Calibration {
+  std::vector<CalibratedParameter> parameters;
+  Eigen::MatrixXd correlation;  ///< of the estimates; NaN in rows of parameters without effect
+  double loss_before = 0.0;     ///< mean squared error in standard deviations of the last fit
+  double loss_after = 0.0;
+  int steps = 0;  ///< of the fit
+  bool has_converged = false;
+  size_t trials_simulated = 0;
+};
+
+/// Fits the parameters to the logs. What is made small: errors of short-horizon predictions over
+/// their standard deviation, and how the runs of each log differ from it in weave, spread, speed
+/// and loop delay over the scatter of these among the logs. Whole paths have no say: of a delayed
+/// bang-bang loop they are chaotic. Intervals and correlations: bootstrap over logs, each draw
+/// fitted by one Gauss-Newton step; over the logs alone and over logs and the simulated ones of the
+/// corrections together, whichever is wider. Throws std::invalid_argument for no logs, no
+/// parameters or a start out of range. `threads` evaluate logs at once and change no result.
+Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
+                      const std::vector<CalibrationLog>& logs, const TwinAt& twin,
+                      const CalibrationOptions& options, std::mt19937_64& generator,
+                      int threads = 1, const CalibrationStep& on_step = {});
+
+}  // namespace rift::sweep

@@ -1,0 +1,71 @@
+#pragma once
+
+namespace rift::sweep {
+
+struct ShortHorizonOptions {
+  int most_frames = 5;
+  int phases = 8;
+  double moved_m = 0.02;
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("most_frames", self.most_frames, 1, 100,
+          "motions over 1 to this many frames are predicted; less than the loop delay, so that the "
+          "log alone decides what the robot was told");
+    field("phases", self.phases, 1, 1000,
+          "replays of a log whose mean is the prediction: nobody knows the phase of the robot's "
+          "listener");
+    field("moved_m", self.moved_m, 0.0, 10.0,
+          "a log counts from where the robot is this far from its start");
+  }
+};
+
+/// How a simulator is fitted to logs.
+struct CalibrationOptions {
+  ShortHorizonOptions horizon;
+  int runs = 4;
+  double likeness_weight = 4.0;
+  int iterations = 12;
+  double first_step = 0.2;
+  double step = 0.1;
+  int corrections = 2;
+  int simulated_logs = 24;
+  double outlier_sd = 3.0;
+  int resamples = 1000;
+  double confidence = 0.95;
+  double identified_share = 0.25;
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("horizon", self.horizon, "prediction of the next frames from the logged ones");
+    field("runs", self.runs, 0, 1000,
+          "whole simulated runs of each log, for weave, spread, speed and loop delay; 0: the next "
+          "frames alone decide");
+    field(
+        "likeness_weight", self.likeness_weight, 0.0, 1e6,
+        "how much weave, spread, speed and loop delay of a run count beside one predicted motion");
+    field("iterations", self.iterations, 1, 1000, "most steps of the fit (Levenberg-Marquardt)");
+    field("first_step", self.first_step, 1e-6, 0.5,
+          "change of a parameter that its effect is read from at first, as a share of its range: "
+          "long, to see past the leaps that a polled link makes");
+    field("step", self.step, 1e-6, 0.5, "the same at the end");
+    field(
+        "corrections", self.corrections, 0, 100,
+        "steps after the fit, to where the logs look like those the simulator makes itself; 0: the "
+        "least errors, whose delay and mismatch are biased");
+    field("simulated_logs", self.simulated_logs, 0, 10'000,
+          "simulated logs in them at least: every real one is repeated equally often");
+    field("outlier_sd", self.outlier_sd, 1.0, 1e6,
+          "errors beyond this many standard deviations count in proportion (Huber 1964)");
+    field("resamples", self.resamples, 20, 1'000'000,
+          "draws of the logs, with replacement, behind the intervals (bootstrap)");
+    field("confidence", self.confidence, 0.5, 0.9999, "of the intervals");
+    field("identified_share", self.identified_share, 0.001, 1.0,
+          "an interval that reaches further than this share of the range to either side says that "
+          "the logs do not tell the parameter");
+  }
+};
+
+}  // namespace rift::sweep

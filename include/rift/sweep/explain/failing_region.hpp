@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "rift/sweep/explain/factorial.hpp"
+#include "rift/sweep/explain/sensitivity.hpp"
+#include "rift/sweep/falsify/result.hpp"
+
+namespace rift::sweep {
+
+/// A patch of the plane of two parameters, and how often trials fail there.
+struct RegionCell {
+  std::string x, y;                  ///< the value, or the range
+  double x_low = 0.0, x_high = 1.0;  ///< place on the axis; the level's number for a list
+  double y_low = 0.0, y_high = 1.0;
+  double share = gap::kNotComputed;  ///< of failing trials; of the nearest ones in a range
+  int trials = 0;                    ///< counted for it
+};
+
+struct FailingRegion {
+  int x_parameter = -1;  ///< -1: there are no two parameters to show
+  int y_parameter = -1;
+  std::vector<RegionCell> cells;
+  bool is_smoothed = false;  ///< shares are of the nearest trials, wherever they are
+};
+
+/// The two parameters that matter most, by their shares.
+std::array<int, 2> MostInfluential(const SweepResult& result, const FactorialAnalysis& factors,
+                                   const Sensitivity& sensitivity);
+
+/// The failing region over two parameters, all others being what the trials had. Lists of values
+/// give a cell for each pair; with a range, the plane is cut into patches that count their nearest
+/// trials.
+FailingRegion MapFailures(const SweepResult& result, std::array<int, 2> parameters);
+
+}  // namespace rift::sweep

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "rift/sweep/falsify/result.hpp"
+
+namespace rift::sweep {
+
+/// How often a setting drawn evenly from the space fails, from rows that were drawn so and from no
+/// others. A draw with several trials fails when any of them does.
+struct FailureProbability {
+  int draws = 0;
+  int failures = 0;
+  int without_gap = 0;  ///< draws of which no trial has a gap; not among `draws`
+  double share = gap::kNotComputed;
+  double low = 0.0;  ///< Clopper and Pearson 1934
+  double high = 1.0;
+  double confidence = 0.95;
+  std::string sentence;
+};
+
+FailureProbability EstimateFailureProbability(const SweepResult& result);
+
+struct RareEventOptions {
+  int samples_per_level = 500;
+  double level_share = 0.1;
+  int most_levels = 10;
+  double step = 2.0;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("samples_per_level", self.samples_per_level, 20, 1'000'000,
+          "trials of each level; the error falls with their square root");
+    field("level_share", self.level_share, 0.01, 0.5,
+          "share of a level's samples that lie in the next one");
+    field("most_levels", self.most_levels, 1, 50, "levels after which it gives up");
+    field("step", self.step, 0.01, 10.0,
+          "largest move of a coordinate, in standard deviations of the level's samples");
+  }
+};
+
+/// A small failure probability.
+struct RareEvent {
+  double probability = gap::kNotComputed;  ///< an upper bound when not reached
+  double low = 0.0;                        ///< 95 % interval, lognormal
+  double high = 1.0;
+  double coefficient_of_variation = gap::kNotComputed;
+  int levels = 0;
+  int evaluations = 0;
+  bool is_reached = false;  ///< failures were found; else the probability is below `high`
+};
+
+/// Robustness at a point of the unit cube: below or at zero it fails; NaN: it does not.
+using UnitRobustness = std::function<double(std::span<const double>)>;
+
+/// Subset simulation (Au and Beck 2001) over the unit cube: a chain of levels of falling
+/// robustness, each reached with probability `level_share` from the one before. Needs some hundred
+/// trials for each factor of ten, where plain sampling needs ten times as many.
+RareEvent EstimateRareEvent(int dimensions, const UnitRobustness& robustness, std::uint64_t seed,
+                            const RareEventOptions& options = {});
+
+}  // namespace rift::sweep

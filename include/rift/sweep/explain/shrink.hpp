@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "rift/sweep/falsify/grid_sweep.hpp"
+
+namespace rift::sweep {
+
+/// Robustness of a setting: threshold - gap. Below zero it fails; NaN: no gap, so it does not.
+using Robustness = std::function<double(const experiment::Theta&)>;
+
+struct ShrinkOptions {
+  int max_evaluations = 400;
+  double tolerance = 0.02;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("max_evaluations", self.max_evaluations, 1, 1'000'000, "trials that may be spent");
+    field("tolerance", self.tolerance, 1e-6, 0.5,
+          "a change is small enough when this share of it less does not fail any more");
+  }
+};
+
+/// A counterexample with nothing in it that it does not need.
+struct ShrunkFailure {
+  experiment::Theta theta;
+  std::vector<int> changed;               ///< parameters that differ from nominal, in their order
+  double robustness = gap::kNotComputed;  ///< of theta, below zero
+  int evaluations = 0;
+  bool is_fewest = false;   ///< no smaller set of these changes fails (all were tried)
+  bool is_minimal = false;  ///< with any one change taken back it holds (each was tried)
+};
+
+/// The fewest and smallest changes from `nominal` that still fail: first sets of changes, the small
+/// ones first; then each change towards nominal, through the values of a list or by halving. A
+/// word is changed or not. Every claim in the result was tried, never inferred.
+/// Throws std::invalid_argument when `failing` does not fail.
+ShrunkFailure Shrink(const std::vector<experiment::Parameter>& parameters,
+                     const experiment::Theta& nominal, const experiment::Theta& failing,
+                     const Robustness& robustness, const ShrinkOptions& options = {});
+
+}  // namespace rift::sweep

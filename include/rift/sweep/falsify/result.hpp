@@ -1,0 +1,123 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rift/experiment/parameter.hpp"
+#include "rift/gap/comparison.hpp"
+#include "rift/gap/options.hpp"
+#include "rift/gap/verdict.hpp"
+#include "rift/sweep/falsify/evidence.hpp"
+
+namespace rift::sweep {
+
+/// How a trial ended; every one that was asked for is a row.
+enum class TrialStatus {
+  kOk,
+  kMissing,     ///< a log is not there
+  kUnreadable,  ///< a log is there and breaks a rule
+  kTimedOut,    ///< the simulated robot did not reach the end in time
+  kFell,
+  kLeftArena,
+  kLost,         ///< motion capture saw it no more
+  kFault,        ///< the simulation itself could not go on
+  kInvalid,      ///< the setting breaks a rule of the experiment
+  kNan,          ///< the simulation gave numbers that are none
+  kHung,         ///< its process did not end in time
+  kCrashed,      ///< its process died
+  kOutOfMemory,  ///< its process wanted more than it may have
+};
+
+constexpr std::array<std::string_view, 13> EnumNames(TrialStatus) {
+  return {"ok",    "missing", "unreadable", "timed_out", "fell",    "left_arena",   "lost",
+          "fault", "invalid", "nan",        "hung",      "crashed", "out_of_memory"};
+}
+
+/// One candidate trajectory against one reference trajectory.
+struct TrialRow {
+  experiment::Theta theta;            ///< one value for each parameter, in their order
+  std::string trial;                  ///< which repeat of the reference
+  std::optional<std::uint64_t> seed;  ///< of a simulated candidate
+  TrialStatus status = TrialStatus::kOk;
+  std::string reason;     ///< one line; empty when ok
+  std::string candidate;  ///< file of the candidate trajectory
+  std::string reference;
+  gap::Comparison comparison;  ///< all NaN unless ok
+  bool falsified = false;      ///< gap_m > threshold, or it fell where falls count
+  TrialEvidence evidence;
+  /// Theta was drawn independently of all other rows, evenly over the space. Only such rows tell
+  /// how often it fails; a grid and a search go where they like.
+  bool is_random_draw = false;
+
+  bool IsOk() const { return status == TrialStatus::kOk; }
+};
+
+/// All repeats of one setting.
+struct SettingResult {
+  experiment::Theta theta;
+  std::vector<int> rows;  ///< indices into SweepResult::rows
+  double mean_gap_m = gap::kNotComputed;
+  gap::RepeatVerdict verdict;
+  double noise_floor_m = gap::kNotComputed;  ///< mean gap between its real trials; NaN below two
+};
+
+/// The rows that share one value of a parameter (or of a combination of parameters).
+struct LevelSummary {
+  std::string level;  ///< "ground", "0.15"; "[0.15, 0.30]" for a combination
+  int n = 0;          ///< trials with a gap
+  int failures = 0;   ///< of them, above the threshold
+  int not_ok = 0;     ///< trials without a gap
+  double mean_gap_m = gap::kNotComputed;
+  double sd_gap_m = gap::kNotComputed;  ///< NaN below two
+};
+
+/// One-way analysis of variance of the gap over the values of one parameter.
+struct Effect {
+  std::string parameter;  ///< its name
+  std::vector<LevelSummary> levels;
+  double f = gap::kNotComputed;  ///< NaN where the data do not allow one
+  double df_between = 0.0;
+  double df_within = 0.0;
+  double p = gap::kNotComputed;
+  double eta_squared = gap::kNotComputed;    ///< share of the variance it explains
+  double omega_squared = gap::kNotComputed;  ///< the same, less what chance would explain
+  bool detected = false;                     ///< p < 0.05
+  /// One sentence: "effect found (F = ..., p = ...)" or "no effect found (p = ...)".
+  std::string sentence;
+};
+
+/// How a search for failures ended.
+struct Falsification {
+  std::string strategy;
+  gap::Verdict verdict = gap::Verdict::kNotFalsified;  ///< of the whole search
+  double confidence = 0.95;
+  double share = 0.5;   ///< falsified: more than this share of a setting's trials would fail
+  int evaluations = 0;  ///< settings tried
+  int budget = 0;
+  int falsified = 0;                    ///< settings, at that confidence
+  int undecided = 0;                    ///< settings with failures, too few to be sure
+  std::optional<int> first_evaluation;  ///< the first falsified setting, counted from 1
+  std::optional<int> worst_setting;     ///< index into settings: the falsified one, else the worst
+  std::string ended;                    ///< why: "the first falsified setting", "the budget"
+};
+
+/// Everything a sweep found out.
+struct SweepResult {
+  std::string name;            ///< of the experiment
+  std::string candidate_kind;  ///< "logs", "simulation"
+  std::string reference_kind;  ///< "logs", "nominal", "path"
+  gap::GapOptions gap;
+  double tag_offset_m = 0.0;  ///< how far ahead of the tag the reference logs were taken
+  std::vector<experiment::Parameter> parameters;
+  std::vector<TrialRow> rows;
+  std::vector<SettingResult> settings;
+  std::vector<Effect> effects;  ///< one for each parameter with more than one value
+  LevelSummary all;
+  std::optional<Falsification> falsification;  ///< of a search
+};
+
+}  // namespace rift::sweep

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rift/search/strategy.hpp"
+#include "rift/sweep/falsify/trial_runner.hpp"
+
+namespace rift::sweep {
+
+/// What a search over points of a space needs to know of its goal.
+struct SearchGoal {
+  int budget = 1;  ///< points
+  int batch = 1;   ///< asked for at once; never the number of workers, on which nothing may depend
+  /// The trials that tell what a point costs.
+  std::function<std::vector<TrialRequest>(const search::Point&)> trials;
+  /// Further trials of a point whose rows leave a doubt; may be empty.
+  std::function<std::vector<TrialRequest>(const search::Point&, std::span<const TrialRow>)> more;
+  /// What it costs, of all its rows; NaN where they do not tell.
+  std::function<double(std::span<const TrialRow>)> loss;
+  /// True when a point with such rows ends the search.
+  std::function<bool(std::span<const TrialRow>)> is_enough;
+};
+
+/// A point that was tried.
+struct TriedPoint {
+  search::Point point;
+  std::vector<TrialRow> rows;
+  double loss = 0.0;
+};
+
+struct SearchOutcome {
+  std::vector<TriedPoint> points;  ///< in the order in which they were proposed
+  std::string ended;               ///< "the budget", "the first hit", "every point", "the time"
+};
+
+/// Asks a strategy, runs the trials, tells it, until the goal is met, the budget is spent, or
+/// nothing is left to try. Nothing when the sweep was told to stop.
+/// `may_start` is asked before each batch with its trials: false ends the search in time.
+std::optional<SearchOutcome> Search(
+    search::Strategy& strategy, const SearchGoal& goal, const RunTrials& run,
+    const std::function<bool(const std::vector<TrialRequest>&)>& may_start);
+
+}  // namespace rift::sweep

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/run/journal.hpp"
+#include "rift/sweep/run/options.hpp"
+#include "rift/sweep/run/worker_pool.hpp"
+
+namespace rift::sweep {
+
+/// A trial to be run.
+struct TrialRequest {
+  experiment::Theta theta;
+  std::string trial;                  ///< which repeat of the reference
+  std::optional<std::uint64_t> seed;  ///< of a simulated candidate
+  bool is_random_draw = false;        ///< see TrialRow
+};
+
+/// Computes one trial. What it throws as std::exception makes the row a fault.
+using Evaluate = std::function<TrialRow(const TrialRequest&)>;
+
+/// Rows in the order of the requests; nothing when the sweep was told to stop.
+using RunTrials = std::function<std::optional<std::vector<TrialRow>>(std::vector<TrialRequest>)>;
+
+/// What whoever watches a sweep is told, and asked.
+struct Watch {
+  /// Each row when it is there, in any order.
+  std::function<void(const TrialRow&, bool from_journal)> seen = [](const TrialRow&, bool) {};
+  /// Asked at least every 0.1 s; false stops the sweep.
+  std::function<bool()> go_on = [] { return true; };
+};
+
+/// In this process, one after the other: for trials that cannot do harm.
+RunTrials RunHere(Evaluate evaluate, Watch watch);
+
+/// Trials in worker processes, each at most once: what the journal holds is not computed again. A
+/// trial that takes its process with it is a row with its status. The rows depend on the requests
+/// alone, not on the number of workers.
+class TrialRunner {
+ public:
+  /// A text for everything that a request's trial depends on beside the facts of the journal.
+  using KeyOf = std::function<std::string(const TrialRequest&)>;
+
+  /// `journal` may be nullptr.
+  TrialRunner(Evaluate evaluate, KeyOf key_of, Journal* journal, int workers,
+              const RunOptions& options, Watch watch);
+
+  std::optional<std::vector<TrialRow>> Run(std::vector<TrialRequest> requests);
+  /// True when the journal holds every one of them.
+  bool HasAll(const std::vector<TrialRequest>& requests);
+
+ private:
+  TrialRow Finish(TrialRequest request, const JobResult& result);
+
+  KeyOf key_of_;
+  Journal* journal_;
+  Watch watch_;
+  WorkerPool pool_;
+};
+
+}  // namespace rift::sweep

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "rift/vision/camera/frame.hpp"
+
+namespace rift::vision {
+
+/// A printed chessboard, counted in its inner corners.
+struct Board {
+  int columns = 13;
+  int rows = 9;
+  double square_m = 0.025;
+
+  int Corners() const { return columns * rows; }
+  /// Throws std::invalid_argument for fewer than 3 x 3 corners or a square of no length.
+  void Check() const;
+};
+
+/// How a corner list was found.
+enum class BoardMethod {
+  kNone,     ///< it was not
+  kSector,   ///< OpenCV's findChessboardCornersSB (Duda and Frese 2018), refined by cornerSubPix
+  kClassic,  ///< findChessboardCorners, refined the same way
+};
+
+/// One picture of the board.
+struct BoardView {
+  std::string name;
+  int width_px = 0;
+  int height_px = 0;
+  BoardMethod method = BoardMethod::kNone;
+  /// Row by row, the first of them nearest the picture's upper left, pixel middles at integers.
+  std::vector<Eigen::Vector2d> corners;
+  double coloured = 0.0;  ///< share of the board's pixels that are neither black, grey nor white
+  std::string problem;    ///< why there are no corners; empty otherwise
+};
+
+/// Looks for the whole board in a picture; a large one is searched at 960 px width. A picture that
+/// cannot be decoded or does not show it gives a view that says so.
+BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name);
+BoardView FindBoard(const std::string& path, const Board& board);
+
+}  // namespace rift::vision

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "rift/vision/camera/camera_model.hpp"
+
+namespace rift::vision {
+
+/// A camera's calibration, in any of these layouts (unknown keys are the business of others):
+///   ROS       camera_info: image_width, image_height, camera_name, camera_matrix and
+///             distortion_coefficients as {rows, cols, data}, distortion_model; ours has in
+///             addition `calibration` and `world_frame`, the latter strict
+///   OpenCV    FileStorage: the same keys with !!opencv-matrix; fisheye_model
+///   authors'  camera_matrix and dist_coeff (or dist_coeffs, dist, K, D, mtx) as nested lists;
+///             without a size: width_px and height_px stay 0
+/// Throws Error with file:line:column, key and rule.
+CameraModel ReadCamera(std::string_view text, const std::string& source);
+
+/// The ROS layout with our blocks. Reading it gives the same camera to the last bit.
+std::string WriteCamera(const CameraModel& camera);
+
+}  // namespace rift::vision

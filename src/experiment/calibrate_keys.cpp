@@ -1,0 +1,139 @@
+#include "calibrate_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "rift/yaml/describe.hpp"
+#include "rift/yaml/error.hpp"
+
+namespace rift::experiment {
+namespace {
+
+/// `surfaces.{surface}.mu` -> one key for each surface of the space; a key without braces as it is.
+std::vector<FreeParameter> Expand(const FreeParameter& free, const Space& space) {
+  const size_t open = free.key.find('{'), close = free.key.find('}', open);
+  if (open == std::string::npos || close == std::string::npos) return {free};
+  const std::string name = free.key.substr(open + 1, close - open - 1);
+  std::vector<std::string> known;
+  std::vector<FreeParameter> expanded;
+  for (const Parameter& parameter : space.parameters) {
+    known.push_back(parameter.Name());
+    if (parameter.Name() != name) continue;
+    for (const ParameterValue& level : parameter.levels) {
+      FreeParameter one = free;
+      one.key.replace(open, close - open + 1, level.text);
+      expanded.push_back(one);
+    }
+  }
+  if (expanded.empty()) {
+    throw yaml::Error(fmt::format(
+        "{}: calibrate.fit: {} asks for a parameter '{}' of space, which has {}", free.origin,
+        free.key, name, known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
+  }
+  return expanded;
+}
+
+double StartOf(const FreeParameter& free, const std::map<std::string, std::string>& values) {
+  const auto found = values.find(free.key);
+  const std::string text = found == values.end() ? "" : found->second;
+  double start = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), start);
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    throw yaml::Error(fmt::format("{}: calibrate.fit: {} is {}, and only a number can be fitted{}",
+                                  free.origin, free.key, text.empty() ? "a block" : text,
+                                  text == "null" ? "; give it a value to start from" : ""));
+  }
+  if (start < free.min || start > free.max) {
+    throw yaml::Error(
+        fmt::format("{}: calibrate.fit: {} starts at {}, which the experiment gives it, but its "
+                    "range is [{}, {}]; widen it or set another start",
+                    free.origin, free.key, start, free.min, free.max));
+  }
+  return start;
+}
+
+void RequireSimulatorAndLogs(const Experiment& experiment, const std::string& path) {
+  const auto refuse = [&path](const std::string& why) {
+    throw yaml::Error(fmt::format("{}: goal is calibrate, {}", path, why));
+  };
+  if (experiment.candidate.kind != CandidateKind::kSimulation) {
+    refuse("and candidate.kind is logs: only the simulator can be fitted");
+  }
+  if (experiment.reference.kind != ReferenceKind::kLogs) {
+    refuse("and reference.kind is not logs: name the robot's logs in reference.path");
+  }
+  if (experiment.reference.tag_offset_m != 0.0) {
+    refuse(
+        fmt::format("and reference.tag_offset_m is {}, but the fit needs the logs as the tag "
+                    "moved: leave it out and set simulation.mocap.tag_ahead_m",
+                    experiment.reference.tag_offset_m));
+  }
+  if (experiment.calibrate.fit.list.empty()) {
+    refuse(
+        "and calibrate.fit is empty: name parameters, such as {motor.mismatch: {min: -0.1, "
+        "max: 0.1}}");
+  }
+}
+
+void CheckHoldout(const Experiment& experiment, const std::string& path) {
+  const std::vector<std::string>& trials = experiment.reference.trials.names;
+  const std::vector<std::string>& held = experiment.calibrate.holdout.names;
+  for (const std::string& name : held) {
+    if (std::find(trials.begin(), trials.end(), name) != trials.end()) continue;
+    throw yaml::Error(
+        fmt::format("{}: calibrate.holdout names trial {}, and reference.trials has {}", path, name,
+                    fmt::join(trials, ", ")));
+  }
+  if (held.size() < trials.size()) return;
+  throw yaml::Error(fmt::format(
+      "{}: calibrate.holdout names all of reference.trials, so that none is left to fit", path));
+}
+
+/// A trial reads the logs of one setting and the values at it: a parameter is one or the other.
+void CheckIsNotInSpace(const FreeParameter& free, const Space& space) {
+  for (const Parameter& parameter : space.parameters) {
+    if (parameter.key != free.key) continue;
+    throw yaml::Error(
+        fmt::format("{}: calibrate.fit: {} is a parameter of space as well; leave it out "
+                    "of one of them",
+                    free.origin, free.key));
+  }
+}
+
+}  // namespace
+
+void ResolveCalibrate(Experiment& experiment, const std::string& path) {
+  RequireSimulatorAndLogs(experiment, path);
+  CheckHoldout(experiment, path);
+  const std::vector<std::string> keys = yaml::ListKeys(experiment);
+  const std::map<std::string, std::string> values = FlatValues(experiment);
+  std::vector<FreeParameter> resolved;
+  for (const FreeParameter& written : experiment.calibrate.fit.list) {
+    for (FreeParameter& free : Expand(written, experiment.space)) {
+      try {
+        free.key = yaml::ResolveKey(free.key, keys);
+      } catch (const yaml::Error& unknown) {
+        throw yaml::Error(fmt::format("{}: calibrate.fit: {}", free.origin, unknown.what()));
+      }
+      if (!free.key.starts_with("simulation.") && !free.key.starts_with("trial.")) {
+        throw yaml::Error(
+            fmt::format("{}: calibrate.fit: {} is no parameter of the simulator; fit keys "
+                        "of simulation or trial",
+                        free.origin, free.key));
+      }
+      CheckIsNotInSpace(free, experiment.space);
+      free.start = StartOf(free, values);
+      resolved.push_back(free);
+    }
+  }
+  experiment.calibrate.fit.list = resolved;
+  for (const bool at_max : {false, true}) {  // a range that leaves what a key may be is refused now
+    std::vector<double> ends;
+    for (const FreeParameter& free : resolved) ends.push_back(at_max ? free.max : free.min);
+    CalibratedAt(experiment, ends);
+  }
+}
+
+}  // namespace rift::experiment

@@ -1,0 +1,232 @@
+#include "rift/experiment/experiment.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "calibrate_keys.hpp"
+#include "rift/experiment/hooks.hpp"
+#include "rift/experiment/parameter.hpp"
+#include "rift/sweep/falsify/grid_sweep.hpp"
+#include "rift/yaml/bind.hpp"
+#include "rift/yaml/describe.hpp"
+#include "rift/yaml/error.hpp"
+#include "rift/yaml/set_value.hpp"
+#include "rift/yaml/tree.hpp"
+#include "rift/yaml/write.hpp"
+
+namespace rift::experiment {
+namespace {
+
+/// A resolved experiment is written into a run folder, so its paths must not depend on where a
+/// file or a shell stood.
+void MakeAbsolute(PathTemplate& path) {
+  if (path.text.empty()) return;
+  path.text = std::filesystem::absolute(path.text).lexically_normal().string();
+}
+
+/// Keys that a simulated trial reads; an axis of any other would repeat the same rows.
+void RequireEffect(const Parameter& parameter) {
+  for (const std::string_view block : {"control.", "trial.", "simulation.", "waypoints"}) {
+    if (parameter.key.starts_with(block)) return;
+  }
+  throw yaml::Error(fmt::format("{} does not change a simulated trial; {}", parameter.key,
+                                parameter.key == "seed"
+                                    ? "for repeats set reference.trials"
+                                    : "vary keys of control, trial or simulation"));
+}
+
+std::set<std::string> WholeNumberKeys(const Experiment& experiment) {
+  std::set<std::string> keys;
+  for (const yaml::KeyInfo& key : yaml::Describe(experiment)) {
+    if (key.type.starts_with("whole number")) keys.insert(key.key);
+  }
+  return keys;
+}
+
+/// The picture of a heightfield, like every path of a file, is relative to that file.
+void ResolveImages(yaml::Node& tree) {
+  yaml::Node* node = &tree;
+  for (const char* key : {"simulation", "terrain", "surfaces"}) {
+    yaml::Node::Entry* entry = node->Find(key);
+    if (entry == nullptr) return;
+    node = &entry->value;
+  }
+  for (yaml::Node::Entry& surface : node->entries) {
+    yaml::Node::Entry* image = surface.value.Find("image");
+    if (image == nullptr || !image->value.IsScalar() || image->value.text.empty()) continue;
+    PathTemplate path = yaml::Hook<PathTemplate>::FromNode(image->value);
+    MakeAbsolute(path);
+    image->value.text = path.text;
+    image->value.quoted = true;
+  }
+}
+
+/// Values to try a parameter with: its levels, or the ends of its range.
+std::vector<ParameterValue> ValuesToTry(const Parameter& parameter) {
+  if (!parameter.IsContinuous()) return parameter.levels;
+  std::vector<ParameterValue> ends;
+  for (const double end : {parameter.min, parameter.max}) {
+    ends.push_back({yaml::NumberText(end, parameter.key), end});
+  }
+  return ends;
+}
+
+/// A rule between keys, such as v_min <= v_max, is broken for good only when no other values of
+/// the other parameters keep it: their first, their last and those of the experiment are tried.
+void TryValue(const Experiment& experiment, size_t parameter, const ParameterValue& value) {
+  const std::vector<Parameter>& parameters = experiment.space.parameters;
+  Experiment alone = experiment;
+  alone.space.parameters = {parameters[parameter]};
+  std::vector<Theta> around(2);
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const std::vector<ParameterValue> others = ValuesToTry(parameters[i]);
+    around[0].push_back(i == parameter ? value : others.front());
+    around[1].push_back(i == parameter ? value : others.back());
+  }
+  for (const Theta& theta : around) {
+    try {
+      ExperimentAt(experiment, theta);
+      return;
+    } catch (const yaml::Error&) {  // the last try tells
+    }
+  }
+  ExperimentAt(alone, {value});
+}
+
+/// A setting of a small grid that breaks a rule is refused at once. Of a large one, and of ranges,
+/// every value is tried once; a setting that still breaks a rule becomes a row that says so.
+void TrySpace(const Experiment& experiment) {
+  constexpr double kMostTried = 2000;
+  const std::vector<Parameter>& parameters = experiment.space.parameters;
+  double settings = 1.0;
+  for (const Parameter& parameter : parameters) {
+    settings *= parameter.IsContinuous() ? HUGE_VAL : static_cast<double>(parameter.levels.size());
+  }
+  if (experiment.goal != Goal::kFalsify && settings <= kMostTried) {
+    for (const Theta& theta : GridPoints(parameters)) ExperimentAt(experiment, theta);
+    return;
+  }
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    for (const ParameterValue& value : ValuesToTry(parameters[i])) {
+      TryValue(experiment, i, value);
+    }
+  }
+}
+
+/// A range of a key that holds whole numbers is one of whole numbers, said or not.
+void RequireWhole(Parameter& parameter) {
+  parameter.is_integer = true;
+  const bool is_whole = parameter.min == std::floor(parameter.min) &&
+                        parameter.max == std::floor(parameter.max) && !parameter.is_logarithmic;
+  if (is_whole) return;
+  throw yaml::Error(fmt::format(
+      "{} holds whole numbers: its range needs whole bounds and a linear scale", parameter.key));
+}
+
+/// A simulated parameter is any key of the experiment, by its full name or a short one that is
+/// unique.
+void ResolveSpace(Experiment& experiment) {
+  const std::vector<std::string> keys = yaml::ListKeys(experiment);
+  const std::set<std::string> whole_keys = WholeNumberKeys(experiment);
+  for (Parameter& parameter : experiment.space.parameters) {
+    try {
+      parameter.key = yaml::ResolveKey(parameter.key, keys);
+      RequireEffect(parameter);
+      const bool is_whole = parameter.IsContinuous() && whole_keys.contains(parameter.key);
+      if (is_whole) RequireWhole(parameter);
+    } catch (const yaml::Error& unknown) {
+      throw yaml::Error(fmt::format("{}: space: {}", parameter.origin, unknown.what()));
+    }
+  }
+  if (experiment.goal != Goal::kFalsify) CheckGrid(experiment.space.parameters);
+  TrySpace(experiment);
+}
+
+/// A text that was quoted for it would otherwise be taken for a number or for nothing.
+yaml::Node LevelNode(const ParameterValue& level) {
+  const yaml::Node plain = yaml::Node::Scalar(level.text);
+  const bool reads_as_number = level.text.find_first_of("0123456789+-.") == 0;
+  return !level.number && (reads_as_number || plain.IsNull()) ? yaml::Node::Text(level.text)
+                                                              : plain;
+}
+
+}  // namespace
+
+Experiment ExperimentAt(const Experiment& experiment, const std::vector<ParameterValue>& theta) {
+  std::vector<yaml::KeyValue> values;
+  for (size_t i = 0; i < theta.size(); ++i) {
+    const Parameter& parameter = experiment.space.parameters[i];
+    yaml::Node value = LevelNode(theta[i]);
+    value.origin.source = parameter.origin;
+    values.push_back({parameter.key, value});
+  }
+  Experiment at = experiment;
+  yaml::SetValues(at, values);
+  return at;
+}
+
+Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>& values) {
+  std::vector<yaml::KeyValue> pairs;
+  for (size_t i = 0; i < values.size(); ++i) {
+    const FreeParameter& free = experiment.calibrate.fit.list[i];
+    yaml::Node value = yaml::Node::Scalar(yaml::NumberText(values[i], free.key));
+    value.origin.source = free.origin;
+    pairs.push_back({free.key, value});
+  }
+  Experiment at = experiment;
+  yaml::SetValues(at, pairs);
+  return at;
+}
+
+Experiment LoadExperiment(const std::string& path, const std::vector<std::string>& overrides,
+                          const yaml::FileReader& read) {
+  yaml::Node tree = yaml::Load(path, read);
+  for (const std::string& assignment : overrides)
+    yaml::Merge(tree, yaml::ParseOverride(assignment));
+  Experiment experiment;
+  experiment.name = std::filesystem::path(path).stem().string();
+  ResolveImages(tree);
+  yaml::Bind(tree, experiment);
+  MakeAbsolute(experiment.candidate.path);
+  MakeAbsolute(experiment.reference.path);
+  if (experiment.candidate.kind == CandidateKind::kSimulation) ResolveSpace(experiment);
+  if (experiment.goal == Goal::kCalibrate) ResolveCalibrate(experiment, path);
+  return experiment;
+}
+
+std::string DescribeKeys() {
+  std::string text;
+  for (const yaml::KeyInfo& key : yaml::Describe<Experiment>()) {
+    const std::string standard =
+        key.default_text.empty() ? "" : fmt::format(" [{}]", key.default_text);
+    text += fmt::format("{}: {}{}\n    {}\n", key.key, key.type, standard, key.help);
+  }
+  return text;
+}
+
+std::map<std::string, std::string> FlatValues(const Experiment& experiment) {
+  std::map<std::string, std::string> values;
+  const yaml::Node tree = yaml::ToNode(experiment);
+  for (const yaml::FlatEntry& entry : yaml::Flatten(tree)) {
+    std::string line;
+    for (const char c : yaml::Emit(*entry.value)) {
+      const bool is_gap = c == '\n' || c == ' ';
+      if (!is_gap)
+        line += c;
+      else if (!line.empty() && line.back() != ' ')
+        line += ' ';
+    }
+    if (line.ends_with(' ')) line.pop_back();
+    values[entry.key] = line;
+  }
+  return values;
+}
+
+std::string WriteExperiment(const Experiment& experiment) {
+  return yaml::Emit(yaml::ToNode(experiment));
+}
+
+}  // namespace rift::experiment

@@ -1,0 +1,93 @@
+#include "rift/report/figures/calibration_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "rift/report/figures/gnuplot_text.hpp"
+
+namespace rift::report {
+namespace {
+
+using trajectory::Trajectory;
+
+constexpr std::string_view kBeforeColour = "#999999";
+constexpr std::string_view kAfterColour = "#0072B2";
+constexpr std::string_view kRealColour = "#D55E00";
+
+/// Several paths in one block, a gap between two.
+std::string PathBlock(const std::string& name, const std::vector<Trajectory>& paths) {
+  std::string rows;
+  for (const Trajectory& path : paths) {
+    for (const trajectory::StampedPose& pose : path.poses) {
+      rows += fmt::format("{:.6f} {:.6f}\n", pose.x_m, pose.y_m);
+    }
+    rows += '\n';
+  }
+  return "$" + name + " << EOD\n" + rows + "EOD\n";
+}
+
+void AddPaths(const std::string& name, const std::vector<Trajectory>& paths,
+              std::string_view colour, double width, const std::string& title, std::string* data,
+              PlotCommand* plot) {
+  if (paths.empty()) return;
+  *data += PathBlock(name, paths);
+  plot->Add(fmt::format("${} using 1:2 with lines lw {} lc rgb '{}' title {}", name, width, colour,
+                        Quoted(title)));
+}
+
+}  // namespace
+
+Figure CalibrationGapFigure(const std::vector<CalibratedTrial>& trials,
+                            const ReportOptions& options) {
+  DataBlock fitted("fitted"), held_out("held_out");
+  double largest_mm = 0.0;
+  for (const CalibratedTrial& trial : trials) {
+    const double before_mm = 1e3 * trial.gap_before_m, after_mm = 1e3 * trial.gap_after_m;
+    if (std::isnan(before_mm) || std::isnan(after_mm)) continue;
+    (trial.is_held_out ? held_out : fitted).Add({before_mm, after_mm});
+    largest_mm = std::max({largest_mm, before_mm, after_mm});
+  }
+  if (fitted.IsEmpty() && held_out.IsEmpty()) {
+    throw std::invalid_argument("no trial has a gap both before and after the fit");
+  }
+  const double end_mm = AxisEnd(1.05 * largest_mm);
+  Figure figure{"calibration_gaps",
+                "Gap of each trial before and after the fit; below the line the fit helped",
+                options.width_px, options.width_px * 3 / 4};
+  PlotCommand plot;
+  plot.Add("x with lines lw 1 dt 2 lc rgb '#000000' title 'as before'");
+  if (!fitted.IsEmpty()) {
+    plot.Add(fmt::format("{} using 1:2 with points pt 7 ps 0.7 lc rgb '{}' title 'fitted'",
+                         fitted.Name(), kAfterColour));
+    figure.plot += fitted.Text();
+  }
+  if (!held_out.IsEmpty()) {
+    plot.Add(fmt::format("{} using 1:2 with points pt 4 ps 0.9 lw 1.5 lc rgb '{}' title 'held out'",
+                         held_out.Name(), kRealColour));
+    figure.plot += held_out.Text();
+  }
+  figure.plot += fmt::format(
+      "set size ratio -1\nset xlabel 'gap of the mean simulated path before (mm)'\n"
+      "set ylabel 'after the fit (mm)'\nset xrange [0:{0:.9g}]\nset yrange [0:{0:.9g}]\n{1}",
+      end_mm, plot.Text());
+  return figure;
+}
+
+Figure CalibrationPathFigure(const CalibratedPaths& paths, const ReportOptions& options) {
+  Figure figure{"calibration_paths", "Paths of " + paths.name, options.width_px,
+                options.width_px * 9 / 20};
+  PlotCommand plot;
+  std::string data;
+  AddPaths("before", paths.before, kBeforeColour, 1.0, "simulated before", &data, &plot);
+  AddPaths("after", paths.after, kAfterColour, 1.3, "after the fit", &data, &plot);
+  AddPaths("real", {paths.real}, kRealColour, 1.8, "robot, " + paths.name, &data, &plot);
+  figure.plot =
+      fmt::format("set size ratio -1\nset xlabel 'x (m)'\nset ylabel 'y (m)'\nset ytics 0.05\n{}{}",
+                  data, plot.Text());
+  return figure;
+}
+
+}  // namespace rift::report

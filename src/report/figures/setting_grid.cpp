@@ -1,0 +1,89 @@
+#include "rift/report/figures/setting_grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "rift/sweep/falsify/labels.hpp"
+
+namespace rift::report {
+namespace {
+
+std::map<std::string, std::size_t> PlaceOf(const std::vector<sweep::LevelSummary>& levels) {
+  std::map<std::string, std::size_t> place;
+  for (std::size_t i = 0; i < levels.size(); ++i) place[levels[i].level] = i;
+  return place;
+}
+
+}  // namespace
+
+SettingGrid LayOut(const sweep::SweepResult& result) {
+  const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
+  SettingGrid grid;
+  grid.main_name = result.parameters[split.main_factor].Name();
+  grid.mains = sweep::SummariseBy(result, {split.main_factor});
+  grid.others = {result.all};
+  if (!split.others.empty()) {
+    grid.others_name = split.others_name;
+    grid.others = sweep::SummariseBy(result, split.others);
+  }
+  const auto continuous = [](const experiment::Parameter& p) { return p.IsContinuous(); };
+  if (std::any_of(result.parameters.begin(), result.parameters.end(), continuous)) return grid;
+  grid.cells.assign(grid.mains.size(), {});
+  for (auto& row : grid.cells) row.assign(grid.others.size(), nullptr);
+  const auto main_place = PlaceOf(grid.mains), other_place = PlaceOf(grid.others);
+  for (const sweep::SettingResult& setting : result.settings) {
+    const std::size_t main =
+        main_place.at(sweep::CombinationLabel(setting.theta, {split.main_factor}));
+    const std::size_t other =
+        split.others.empty() ? 0
+                             : other_place.at(sweep::CombinationLabel(setting.theta, split.others));
+    grid.cells[main][other] = &setting;
+  }
+  return grid;
+}
+
+std::string SettingLabel(const sweep::SweepResult& result, const experiment::Theta& exact) {
+  experiment::Theta theta = exact;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    theta[i].text = sweep::ShortText(result.parameters[i], theta[i]);
+  }
+  if (result.parameters.empty()) return "the only setting";
+  const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
+  // Numbers alone do not say what they are.
+  if (!result.parameters[split.main_factor].IsCategorical()) {
+    return sweep::SettingText(result.parameters, exact);
+  }
+  const std::string main = sweep::CombinationLabel(theta, {split.main_factor});
+  if (split.others.empty()) return main;
+  return main + " " + sweep::CombinationLabel(theta, split.others);
+}
+
+std::vector<double> GapsOf(const sweep::SweepResult& result, const sweep::SettingResult& setting) {
+  std::vector<double> gaps_m;
+  for (const int row : setting.rows) {
+    if (result.rows[row].IsOk()) gaps_m.push_back(result.rows[row].comparison.gap_m);
+  }
+  return gaps_m;
+}
+
+int NotMeasured(const sweep::SweepResult& result, const sweep::SettingResult& setting) {
+  return static_cast<int>(setting.rows.size() - GapsOf(result, setting).size());
+}
+
+std::vector<const sweep::SettingResult*> WorstSettings(const sweep::SweepResult& result) {
+  std::vector<const sweep::SettingResult*> settings;
+  for (const sweep::SettingResult& setting : result.settings) settings.push_back(&setting);
+  const auto rank = [](const sweep::SettingResult* setting) {
+    return std::isfinite(setting->mean_gap_m) ? setting->mean_gap_m
+                                              : std::numeric_limits<double>::infinity();
+  };
+  std::stable_sort(settings.begin(), settings.end(),
+                   [&](const auto* a, const auto* b) { return rank(a) > rank(b); });
+  return settings;
+}
+
+}  // namespace rift::report

@@ -1,0 +1,224 @@
+#include "rift/report/text/findings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rift/report/figures/gnuplot_text.hpp"
+#include "rift/report/figures/setting_grid.hpp"
+#include "rift/report/figures/sweep_figures.hpp"
+#include "rift/sweep/falsify/labels.hpp"
+
+namespace rift::report {
+namespace {
+
+std::string Metres(double value_m) { return fmt::format("{:.4f} m", value_m); }
+/// Rare is not never: shares below a per cent keep their digits.
+std::string Percent(double share) {
+  const double percent = 100.0 * share;
+  return fmt::format("{:.{}f} %", percent, percent > 0.0 && percent < 1.0 ? 2 : 0);
+}
+
+std::string Count(long n, std::string_view noun) {
+  return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+}
+
+double FailureShare(const sweep::LevelSummary& level) {
+  return level.n == 0 ? -1.0 : static_cast<double>(level.failures) / level.n;
+}
+
+void SayLevel(const std::string& parameter, const sweep::LevelSummary& level, Sentence* sentence) {
+  const std::string query = TrialsWhere(parameter, level.level);
+  sentence->Say(level.level + " (")
+      .Link(std::to_string(level.failures), Both(query, AboveThreshold()))
+      .Say(" of ")
+      .Link(fmt::format("{} trials", level.n), query)
+      .Say(")");
+}
+
+// The levels of the main factor with the largest and the smallest share of failures.
+void SayMostAndLeast(const sweep::SweepResult& result, Finding* finding) {
+  const int main = sweep::SplitFactors(result.parameters).main_factor;
+  if (result.parameters[main].IsContinuous()) return;
+  std::vector<sweep::LevelSummary> levels = sweep::SummariseBy(result, {main});
+  std::erase_if(levels, [](const auto& level) { return level.n == 0; });
+  if (levels.size() < 2) return;
+  const auto [least, most] =
+      std::minmax_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
+        return std::pair(FailureShare(a), a.mean_gap_m) < std::pair(FailureShare(b), b.mean_gap_m);
+      });
+  const std::string name = result.parameters[main].Name();
+  Sentence sentence(fmt::format("Most often at {} ", name));
+  SayLevel(name, *most, &sentence);
+  sentence.Say(", least often at ");
+  SayLevel(name, *least, &sentence);
+  finding->sentences.push_back(sentence.Say("."));
+}
+
+void SayKinds(const sweep::Explanation& explanation, Finding* finding) {
+  constexpr std::size_t kMostKinds = 3;
+  const std::vector<sweep::FailureCluster>& clusters = explanation.clusters;
+  if (clusters.empty()) return;
+  finding->sentences.push_back(fmt::format(
+      "{} of failure by where and how the paths part:",
+      clusters.size() == 1 ? std::string("One kind") : fmt::format("{} kinds", clusters.size())));
+  for (std::size_t i = 0; i < std::min(kMostKinds, clusters.size()); ++i) {
+    const std::string count = std::to_string(clusters[i].rows.size());
+    Sentence sentence;
+    sentence.Link(count, TrialsNumbered(clusters[i].rows));
+    finding->sentences.push_back(sentence.Say(clusters[i].sentence.substr(count.size()) + "."));
+  }
+}
+
+Finding Where(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+  Finding finding{"Where does it fail?", {}};
+  const std::optional<int> worst = WorstRow(result);
+  if (!worst) {
+    finding.sentences.push_back(Sentence("Not known: no trial has a gap."));
+    return finding;
+  }
+  if (!result.parameters.empty() && result.all.failures > 0) SayMostAndLeast(result, &finding);
+  const sweep::TrialRow& row = result.rows[*worst];
+  Sentence largest("The largest gap, ");
+  largest.Link(Metres(row.comparison.gap_m), TrialsNumbered({*worst}))
+      .Say(fmt::format(", is {}, trial {}, at u = {:.2f} of the path.",
+                       SettingLabel(result, row.theta), row.trial, row.comparison.gap_u));
+  finding.sentences.push_back(largest);
+  for (const sweep::SettingResult* setting : WorstSettings(result)) {
+    if (!std::isfinite(setting->mean_gap_m)) continue;
+    Sentence sentence("The worst setting on average is ");
+    sentence.Link(SettingLabel(result, setting->theta), TrialsOf(result, setting->theta))
+        .Say(fmt::format(", {} over {}.", Metres(setting->mean_gap_m),
+                         Count(setting->verdict.repeats, "trial")));
+    finding.sentences.push_back(sentence);
+    break;
+  }
+  SayKinds(explanation, &finding);
+  return finding;
+}
+
+struct Verdicts {
+  int falsified = 0, held = 0, disagree = 0, unmeasured = 0;
+  const gap::RepeatVerdict* unanimous = nullptr;  ///< of the most repeats
+};
+
+Verdicts CountVerdicts(const sweep::SweepResult& result) {
+  Verdicts verdicts;
+  for (const sweep::SettingResult& setting : result.settings) {
+    const gap::RepeatVerdict& verdict = setting.verdict;
+    if (verdict.verdict == gap::Verdict::kUndecided) {
+      ++(verdict.repeats == 0 ? verdicts.unmeasured : verdicts.disagree);
+      continue;
+    }
+    ++(verdict.verdict == gap::Verdict::kFalsified ? verdicts.falsified : verdicts.held);
+    if (verdicts.unanimous == nullptr || verdict.repeats > verdicts.unanimous->repeats) {
+      verdicts.unanimous = &verdict;
+    }
+  }
+  return verdicts;
+}
+
+/// Which settings their repeats leave open, for as many as can be read.
+void SayUndecided(const sweep::SweepResult& result, Finding* finding) {
+  constexpr int kMostNamed = 12;
+  Sentence sentence("Undecided: ");
+  int named = 0;
+  for (const sweep::SettingResult& setting : result.settings) {
+    const gap::RepeatVerdict& verdict = setting.verdict;
+    if (verdict.verdict != gap::Verdict::kUndecided || verdict.repeats == 0) continue;
+    if (named == kMostNamed) {
+      sentence.Say(" and more in the table of settings");
+      ++named;
+      break;
+    }
+    sentence.Say(named++ == 0 ? "" : "; ")
+        .Link(SettingLabel(result, setting.theta), TrialsOf(result, setting.theta))
+        .Say(fmt::format(" ({} of {} above)", verdict.above, verdict.repeats));
+  }
+  if (named > 0) finding->sentences.push_back(sentence.Say("."));
+}
+
+Finding HowSure(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+  const Verdicts verdicts = CountVerdicts(result);
+  Finding finding{"How sure is that?", {}};
+  finding.sentences.push_back(fmt::format(
+      "Of {}, {} falsified, {} not falsified and {} undecided because the repeats disagree.",
+      Count(static_cast<long>(result.settings.size()), "setting"), verdicts.falsified,
+      verdicts.held, verdicts.disagree));
+  SayUndecided(result, &finding);
+  if (verdicts.unmeasured > 0) {
+    finding.sentences.push_back(fmt::format("{} undecided because no repeat has a gap.",
+                                            Count(verdicts.unmeasured, "setting")));
+  }
+  if (verdicts.unanimous != nullptr) {
+    const gap::RepeatVerdict& verdict = *verdicts.unanimous;
+    const std::string repeats =
+        verdict.repeats == 1 ? std::string("From a single repeat,")
+                             : fmt::format("Even where all {} repeats agree,", verdict.repeats);
+    finding.sentences.push_back(
+        fmt::format("{} the share of such trials above the threshold is known only to "
+                    "lie between {} and {} ({} confidence).",
+                    repeats, Percent(verdict.share_low), Percent(verdict.share_high),
+                    Percent(verdict.confidence)));
+  }
+  finding.sentences.push_back(explanation.probability.sentence + ".");
+  return finding;
+}
+
+Finding Next(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+  constexpr std::size_t kMostShown = 3;
+  Finding finding{"What to test next?", {}};
+  const std::vector<sweep::Suggestion>& suggestions = explanation.suggestions;
+  for (std::size_t i = 0; i < std::min(kMostShown, suggestions.size()); ++i) {
+    const sweep::Suggestion& suggestion = suggestions[i];
+    const sweep::SettingResult& setting = result.settings[suggestion.setting];
+    if (std::isnan(suggestion.wrong_now)) {
+      finding.sentences.push_back(
+          Sentence()
+              .Link(SettingLabel(result, setting.theta), TrialsOf(result, setting.theta))
+              .Say(": " + suggestion.sentence + "."));
+      continue;
+    }
+    Sentence sentence(Count(suggestion.repeats, "trial") + " of ");
+    sentence.Link(SettingLabel(result, setting.theta), TrialsOf(result, setting.theta))
+        .Say(fmt::format(": its mean gap is {:.4f} m so far, above {:g} m with {} probability; the "
+                         "risk of a wrong call falls from {} to {}.",
+                         suggestion.mean_gap_m, result.gap.threshold_m,
+                         Percent(suggestion.above_now), Percent(suggestion.wrong_now),
+                         Percent(suggestion.wrong_after)));
+    finding.sentences.push_back(sentence);
+  }
+  if (suggestions.empty()) {
+    finding.sentences.push_back(Sentence("Nothing can be said: no setting has a gap."));
+  }
+  return finding;
+}
+
+}  // namespace
+
+Headline Summary(const sweep::SweepResult& result) {
+  const std::string threshold = Number(result.gap.threshold_m);
+  const sweep::LevelSummary& all = result.all;
+  if (all.n == 0)
+    return {Outcome::kUnknown, Sentence("Not known whether it fails: no trial has a gap.")};
+  if (all.failures == 0) {
+    return {Outcome::kHolds,
+            fmt::format("No failure: none of {} exceeds {} m; mean gap {}.",
+                        Count(all.n, "measured trial"), threshold, Metres(all.mean_gap_m))};
+  }
+  Sentence sentence("It fails: ");
+  sentence.Link(std::to_string(all.failures), AboveThreshold())
+      .Say(fmt::format(" of {} exceed {} m ({}); mean gap {}.", Count(all.n, "measured trial"),
+                       threshold, Percent(FailureShare(all)), Metres(all.mean_gap_m)));
+  return {Outcome::kFails, sentence};
+}
+
+std::vector<Finding> Findings(const sweep::SweepResult& result,
+                              const sweep::Explanation& explanation) {
+  return {Where(result, explanation), Because(result, explanation), HowSure(result, explanation),
+          Next(result, explanation),  MadeOf(result, explanation),  BesideNoise(result),
+          NotMeasuredFinding(result)};
+}
+
+}  // namespace rift::report

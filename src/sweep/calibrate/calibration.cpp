@@ -1,0 +1,191 @@
+#include "rift/sweep/calibrate/calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "intervals.hpp"
+#include "model.hpp"
+
+namespace rift::sweep {
+namespace {
+
+constexpr double kConverged = 5e-3;  // of the range, for the largest change of a parameter
+constexpr double kFirstDamping = 1e-2;
+constexpr double kLargestDamping = 1e6;
+
+/// First down to the least errors, then on to where the errors are those of logs that the simulator
+/// makes itself.
+class Fit {
+ public:
+  Fit(const std::vector<experiment::FreeParameter>& parameters,
+      const std::vector<CalibrationLog>& logs, const TwinAt& twin,
+      const CalibrationOptions& options, int threads)
+      : parameters_(parameters),
+        options_(options),
+        shares_(StartOf(parameters)),
+        model_(parameters, logs, twin, options, threads, shares_),
+        step_(std::max(options.step, options.first_step)) {}
+
+  Calibration Run(std::mt19937_64& generator, const CalibrationStep& on_step);
+
+ private:
+  static Eigen::VectorXd StartOf(const std::vector<experiment::FreeParameter>& parameters);
+  void Descend(Calibration& result, const CalibrationStep& on_step);
+  bool Improve();
+  void Correct();
+  Eigen::VectorXd StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
+                          double damping) const;
+  Eigen::VectorXd Moved(const Eigen::VectorXd& by) const {
+    return (shares_ + by).cwiseMax(0.0).cwiseMin(1.0);
+  }
+
+  const std::vector<experiment::FreeParameter>& parameters_;
+  const CalibrationOptions& options_;
+  Eigen::VectorXd shares_;
+  ErrorModel model_;
+  double step_;
+  double damping_ = kFirstDamping;
+  Eigen::MatrixXd scale_;
+  Linearised at_;                      ///< the logs at shares_
+  std::vector<Linearised> simulated_;  ///< simulated logs where each correction set out from
+  size_t trials_of_simulated_ = 0;
+};
+
+void Append(Linearised& logs, const Linearised& more) {
+  logs.hessians.insert(logs.hessians.end(), more.hessians.begin(), more.hessians.end());
+  logs.gradients.insert(logs.gradients.end(), more.gradients.begin(), more.gradients.end());
+}
+
+Eigen::VectorXd Fit::StartOf(const std::vector<experiment::FreeParameter>& parameters) {
+  Eigen::VectorXd shares(static_cast<Eigen::Index>(parameters.size()));
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const experiment::FreeParameter& p = parameters[i];
+    shares[static_cast<Eigen::Index>(i)] = (p.start - p.min) / (p.max - p.min);
+  }
+  return shares;
+}
+
+/// A Gauss-Newton step that leaves alone what a bound stops.
+Eigen::VectorXd Fit::StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
+                             double damping) const {
+  Eigen::MatrixXd matrix = hessian;
+  matrix.diagonal() *= 1.0 + damping;
+  matrix.diagonal().array() += RidgeOf(hessian);
+  Eigen::VectorXd slope = gradient;
+  for (Eigen::Index k = 0; k < slope.size(); ++k) {
+    const bool is_stopped =
+        (shares_[k] <= 0.0 && slope[k] > 0.0) || (shares_[k] >= 1.0 && slope[k] < 0.0);
+    if (!is_stopped) continue;
+    matrix.row(k).setZero();
+    matrix.col(k).setZero();
+    matrix(k, k) = 1.0;
+    slope[k] = 0.0;
+  }
+  return -matrix.ldlt().solve(slope);
+}
+
+/// One step of Levenberg and Marquardt, damped until it helps; false when none does.
+bool Fit::Improve() {
+  const Eigen::MatrixXd hessian = Sum(at_.hessians);
+  const Eigen::VectorXd gradient = Sum(at_.gradients);
+  const double loss = SquaredSum(at_.errors);
+  for (; damping_ < kLargestDamping; damping_ *= 10.0) {
+    const Eigen::VectorXd tried = Moved(StepFor(hessian, gradient, damping_));
+    if ((tried - shares_).cwiseAbs().maxCoeff() < kConverged) return false;
+    if (SquaredSum(model_.ErrorsAt(tried, scale_)) >= loss) continue;
+    shares_ = tried;
+    damping_ = std::max(1e-4, 0.1 * damping_);
+    return true;
+  }
+  return false;
+}
+
+/// The loss has leaps, as a command that just misses one look of the listener waits for the next:
+/// slopes over long steps see past them, shorter ones tell the place.
+void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
+  while (result.steps < options_.iterations) {
+    const std::vector<LogErrors> raw = model_.RawErrorsAt(shares_);
+    scale_ = ScaleOf(raw, options_);
+    at_ = model_.LinearisedAt(shares_, raw, scale_, step_);
+    const bool helped = Improve();
+    result.steps += helped;
+    if (on_step) {
+      on_step(result.steps, SquaredSum(at_.errors) / static_cast<double>(Count(at_.errors)));
+    }
+    if (helped) continue;
+    result.has_converged = step_ <= options_.step;
+    if (result.has_converged) return;
+    step_ = std::max(options_.step, 0.5 * step_);
+    damping_ = kFirstDamping;
+  }
+}
+
+/// Least errors are not at the truth: what the robot did went into the log, so its luck went into
+/// the commands that are replayed. Logs of the simulator have the same bias, and there the truth is
+/// known (indirect inference, Gourieroux, Monfort and Renault 1993).
+void Fit::Correct() {
+  at_ = model_.LinearisedAt(shares_, model_.RawErrorsAt(shares_), scale_, step_);
+  // Few logs repeat more: what the simulated ones scatter by goes into the estimate.
+  const int logs = static_cast<int>(model_.LogCount());
+  const int repeats = (options_.simulated_logs + logs - 1) / logs;
+  Linearised made;
+  for (int i = 0; i < repeats; ++i) {
+    ErrorModel model = model_.OfSimulatedLogs(shares_, i);
+    Append(made, model.LinearisedAt(shares_, model.RawErrorsAt(shares_), scale_, step_));
+    trials_of_simulated_ += model.TrialsSimulated();
+  }
+  Eigen::VectorXd gradient = Sum(at_.gradients);
+  if (repeats > 0) {
+    gradient -= Sum(made.gradients) / repeats;
+    simulated_.push_back(std::move(made));
+  }
+  const Eigen::VectorXd step = StepFor(Sum(at_.hessians), gradient, kFirstDamping);
+  shares_ = Moved(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step));
+}
+
+Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step) {
+  Calibration result;
+  const Eigen::VectorXd start = shares_;
+  Descend(result, on_step);
+  step_ = options_.step;
+  for (int i = 0; i < options_.corrections; ++i) Correct();
+  if (options_.corrections == 0) {
+    at_ = model_.LinearisedAt(shares_, model_.RawErrorsAt(shares_), scale_, step_);
+  }
+  Judge(parameters_, options_, shares_, at_, simulated_, generator, result);
+  const auto count = static_cast<double>(Count(at_.errors));
+  result.loss_after = SquaredSum(model_.ErrorsAt(shares_, scale_)) / count;
+  result.loss_before = SquaredSum(model_.ErrorsAt(start, scale_)) / count;
+  result.trials_simulated = model_.TrialsSimulated() + trials_of_simulated_;
+  return result;
+}
+
+void Check(const std::vector<experiment::FreeParameter>& parameters,
+           const std::vector<CalibrationLog>& logs) {
+  if (parameters.empty()) throw std::invalid_argument("a calibration needs a free parameter");
+  if (logs.size() < 2) {
+    throw std::invalid_argument(
+        fmt::format("a calibration needs at least 2 logs, and there are {}", logs.size()));
+  }
+  for (const experiment::FreeParameter& p : parameters) {
+    if (p.min < p.max && p.start >= p.min && p.start <= p.max) continue;
+    throw std::invalid_argument(fmt::format(
+        "{} starts at {}, but it must lie in its range [{}, {}]", p.key, p.start, p.min, p.max));
+  }
+}
+
+}  // namespace
+
+Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
+                      const std::vector<CalibrationLog>& logs, const TwinAt& twin,
+                      const CalibrationOptions& options, std::mt19937_64& generator, int threads,
+                      const CalibrationStep& on_step) {
+  Check(parameters, logs);
+  return Fit(parameters, logs, twin, options, threads).Run(generator, on_step);
+}
+
+}  // namespace rift::sweep

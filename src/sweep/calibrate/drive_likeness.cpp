@@ -1,0 +1,85 @@
+#include "rift/sweep/calibrate/drive_likeness.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+namespace rift::sweep {
+namespace {
+
+using trajectory::Trajectory;
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return gap::kNotComputed;
+  std::sort(values.begin(), values.end());
+  const size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+}
+
+/// Loop delays of the paths on one side.
+struct Answers {
+  std::vector<double> lags_s, r2, gains;
+
+  void Add(const Trajectory& log, const RepeatedTrial& trial) {
+    try {
+      const trial::LoopDelay delay = trial::EstimateLoopDelay(log, trial.waypoints, trial.control);
+      if (delay.lag_s < 0.0) return;
+      lags_s.push_back(delay.lag_s);
+      r2.push_back(delay.r2);
+      gains.push_back(delay.gain_rad_s);
+    } catch (const std::invalid_argument&) {
+      // A path without yaw or with a handful of rows tells no delay, and may tell the rest.
+    }
+  }
+};
+
+}  // namespace
+
+double LengthByStrides_m(const Trajectory& path) {
+  constexpr double kStride_m = 0.02;
+  double length_m = 0.0;
+  Eigen::Vector2d last = path.poses.front().Position();
+  for (const trajectory::StampedPose& pose : path.poses) {
+    const double moved_m = (pose.Position() - last).norm();
+    if (moved_m < kStride_m) continue;
+    length_m += moved_m;
+    last = pose.Position();
+  }
+  return length_m;
+}
+
+std::vector<RepeatedTrial> WithoutDetours(std::vector<RepeatedTrial> trials, double longest_run) {
+  const auto longest_m = LongestBySetting_m(trials, &RepeatedTrial::real);
+  for (RepeatedTrial& trial : trials) {
+    const double limit_m = longest_run * longest_m.at(trial.setting);
+    const auto is_detour = [&](const Trajectory& run) { return LengthByStrides_m(run) > limit_m; };
+    trial.failed_runs += static_cast<int>(std::erase_if(trial.runs, is_detour));
+  }
+  return trials;
+}
+
+DriveLikeness MeasureDriveLikeness(const std::vector<RepeatedTrial>& trials, bool is_matched,
+                                   const gap::GapOptions& gap, const gap::LikenessOptions& options,
+                                   std::mt19937_64& generator) {
+  DriveLikeness likeness;
+  Answers sim, real;
+  std::map<std::string, gap::RepeatedSetting> settings;
+  for (const RepeatedTrial& trial : WithoutDetours(trials, options.longest_run)) {
+    likeness.failed_runs += trial.failed_runs;
+    real.Add(trial.real, trial);
+    gap::RepeatedSetting& setting = settings[trial.setting];
+    setting.reals.push_back(trial.real);
+    if (is_matched || setting.sims.empty()) setting.sims.emplace_back();
+    for (const Trajectory& run : trial.runs) sim.Add(run, trial);
+    setting.sims.back().insert(setting.sims.back().end(), trial.runs.begin(), trial.runs.end());
+  }
+  std::vector<gap::RepeatedSetting> in_order;
+  for (auto& [name, setting] : settings) in_order.push_back(std::move(setting));
+  likeness.path = gap::MeasureLikeness(in_order, gap, options, generator);
+  likeness.loop_delay_s = {Median(sim.lags_s), Median(real.lags_s)};
+  likeness.loop_r2 = {Median(sim.r2), Median(real.r2)};
+  likeness.steering_gain_rad_s = {Median(sim.gains), Median(real.gains)};
+  return likeness;
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "rift/sweep/calibrate/calibration.hpp"
+
+namespace rift::sweep {
+
+/// Traits of a path that a like simulator shares, each on a scale where differences are even.
+enum Trait { kLogWeave, kLogSpeed, kLoopDelay_s, kSteeringGain, kTraits };
+using Traits = std::optional<Eigen::Vector4d>;
+
+/// What is known of the logs before anything is simulated.
+struct LoggedTraits {
+  std::vector<Traits> of_log;
+  Eigen::Vector4d scatter;         ///< standard deviation of each trait among the logs
+  std::vector<int> partner;        ///< an earlier log of the same setting; -1: none
+  std::vector<double> log_spread;  ///< logarithm of the gap to the partner; NaN without one
+  double spread_scatter = 1.0;
+};
+
+LoggedTraits TraitsOfLogs(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
+                          const std::vector<double>& values);
+
+/// Errors of every log at one set of values, in their units: first the motions (ahead, left,
+/// turned; in order of rows and frames), then one for each trait and the spread, over their
+/// scatter.
+struct LogErrors {
+  Eigen::VectorXd motions;
+  Eigen::VectorXd traits;
+  std::vector<int> frames;  ///< of each three motions
+};
+
+std::vector<LogErrors> ErrorsAt(const std::vector<CalibrationLog>& logs, const LoggedTraits& traits,
+                                const TwinAt& twin, const std::vector<double>& values,
+                                const CalibrationOptions& options, int threads);
+
+/// Root mean square of each kind of motion error over all logs, (frames - 1) x 3; outliers cut.
+Eigen::MatrixXd ScaleOf(const std::vector<LogErrors>& errors, const CalibrationOptions& options);
+
+/// All errors of a log over their scale and weight: the sum of squares is its share of the loss.
+Eigen::VectorXd Weighted(const LogErrors& errors, const Eigen::MatrixXd& scale,
+                         const CalibrationOptions& options);
+
+}  // namespace rift::sweep

@@ -1,0 +1,146 @@
+#include "model.hpp"
+
+#include <algorithm>
+
+#include "rift/sweep/calibrate/drive_likeness.hpp"
+
+namespace rift::sweep {
+namespace {
+
+// Whole runs of a delayed bang-bang loop are chaotic: over a small step the scatter of their traits
+// is many times their slope.
+constexpr double kStepOfRuns = 0.2;
+// Runs that stand for real logs are none of those that predict.
+constexpr std::uint64_t kSeedsOfRepeat = 20'000;
+constexpr std::uint64_t kSeedsOfTry = 1'000'000;
+
+}  // namespace
+
+trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin) {
+  constexpr int kMostTries = 10;
+  trajectory::Trajectory run = Simulate(twin).result.trajectory;
+  for (int i = 1; i < kMostTries && LengthByStrides_m(run) > longest_m; ++i) {
+    twin.seed += kSeedsOfTry;
+    run = Simulate(twin).result.trajectory;
+  }
+  return run;
+}
+
+std::vector<double> ValuesAt(const std::vector<experiment::FreeParameter>& parameters,
+                             const Eigen::VectorXd& shares) {
+  std::vector<double> values;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const experiment::FreeParameter& p = parameters[i];
+    values.push_back(p.min + shares[static_cast<Eigen::Index>(i)] * (p.max - p.min));
+  }
+  return values;
+}
+
+double SquaredSum(const Blocks& blocks) {
+  double sum = 0.0;
+  for (const Eigen::VectorXd& block : blocks) sum += block.squaredNorm();
+  return sum;
+}
+
+size_t Count(const Blocks& blocks) {
+  size_t count = 0;
+  for (const Eigen::VectorXd& block : blocks) count += static_cast<size_t>(block.size());
+  return count;
+}
+
+double RidgeOf(const Eigen::MatrixXd& hessian) {
+  constexpr double kRidge = 1e-9;
+  return kRidge + kRidge * hessian.diagonal().maxCoeff();
+}
+
+ErrorModel::ErrorModel(const std::vector<experiment::FreeParameter>& parameters,
+                       std::vector<CalibrationLog> logs, const TwinAt& twin,
+                       const CalibrationOptions& options, int threads, const Eigen::VectorXd& start)
+    : parameters_(parameters),
+      logs_(std::move(logs)),
+      twin_(twin),
+      options_(options),
+      threads_(threads),
+      traits_(TraitsOfLogs(logs_, twin, ValuesAt(parameters, start))) {}
+
+ErrorModel ErrorModel::OfSimulatedLogs(const Eigen::VectorXd& shares, int repeat) const {
+  std::vector<CalibrationLog> logs;
+  for (size_t i = 0; i < logs_.size(); ++i) {
+    SimulatedTrial twin = twin_(i, ValuesAt(parameters_, shares));
+    twin.seed += static_cast<std::uint64_t>(repeat + 1) * kSeedsOfRepeat;
+    logs.push_back({logs_[i].name, logs_[i].setting, RunWithin(logs_[i].longest_m, twin)});
+  }
+  ErrorModel model(parameters_, std::move(logs), twin_, options_, threads_, shares);
+  model.traits_.scatter = traits_.scatter;
+  model.traits_.spread_scatter = traits_.spread_scatter;
+  return model;
+}
+
+std::vector<LogErrors> ErrorModel::Errors(const Eigen::VectorXd& shares,
+                                          const CalibrationOptions& options) {
+  trials_simulated_ += logs_.size() * static_cast<size_t>(options.horizon.phases + options.runs);
+  return sweep::ErrorsAt(logs_, traits_, twin_, ValuesAt(parameters_, shares), options, threads_);
+}
+
+std::vector<LogErrors> ErrorModel::RawErrorsAt(const Eigen::VectorXd& shares) {
+  return Errors(shares, options_);
+}
+
+Blocks ErrorModel::ErrorsAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale) {
+  return WeightedAt(shares, scale, options_);
+}
+
+Blocks ErrorModel::WeightedBlocks(const std::vector<LogErrors>& raw,
+                                  const Eigen::MatrixXd& scale) const {
+  Blocks blocks;
+  for (const LogErrors& errors : raw) blocks.push_back(Weighted(errors, scale, options_));
+  return blocks;
+}
+
+Blocks ErrorModel::WeightedAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale,
+                              const CalibrationOptions& options) {
+  return WeightedBlocks(Errors(shares, options), scale);
+}
+
+/// Of every error of each log, by central differences, one-sided at a bound.
+Blocks ErrorModel::Slope(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale,
+                         Eigen::Index parameter, double step, const CalibrationOptions& options) {
+  Eigen::VectorXd below = shares, above = shares;
+  below[parameter] = std::max(0.0, shares[parameter] - step);
+  above[parameter] = std::min(1.0, shares[parameter] + step);
+  Blocks slopes = WeightedAt(above, scale, options);
+  const Blocks at_below = WeightedAt(below, scale, options);
+  for (size_t i = 0; i < slopes.size(); ++i) {
+    slopes[i] = (slopes[i] - at_below[i]) / (above[parameter] - below[parameter]);
+  }
+  return slopes;
+}
+
+Linearised ErrorModel::LinearisedAt(const Eigen::VectorXd& shares,
+                                    const std::vector<LogErrors>& raw, const Eigen::MatrixXd& scale,
+                                    double step) {
+  CalibrationOptions motions_only = options_, runs_mostly = options_;
+  motions_only.runs = 0;
+  runs_mostly.horizon.phases = 1;
+  Linearised at{.errors = WeightedBlocks(raw, scale)};
+  std::vector<Eigen::MatrixXd> slopes;
+  for (const Eigen::VectorXd& block : at.errors) {
+    slopes.push_back(Eigen::MatrixXd::Zero(block.size(), shares.size()));
+  }
+  for (Eigen::Index k = 0; k < shares.size(); ++k) {
+    const Blocks near = Slope(shares, scale, k, step, motions_only);
+    for (size_t i = 0; i < slopes.size(); ++i) slopes[i].col(k) = near[i];
+    if (options_.runs == 0) continue;
+    const Blocks wide = Slope(shares, scale, k, std::max(step, kStepOfRuns), runs_mostly);
+    for (size_t i = 0; i < slopes.size(); ++i) {
+      slopes[i].col(k).tail(kTraits + 1) = wide[i].tail(kTraits + 1);
+    }
+  }
+  for (size_t i = 0; i < slopes.size(); ++i) {
+    at.hessians.push_back(slopes[i].transpose() * slopes[i]);
+    at.gradients.push_back(slopes[i].transpose() * at.errors[i]);
+  }
+  return at;
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "errors.hpp"
+#include "rift/sweep/calibrate/calibration.hpp"
+
+namespace rift::sweep {
+
+/// Values as shares of their ranges, which makes steps and damping mean the same for each.
+std::vector<double> ValuesAt(const std::vector<experiment::FreeParameter>& parameters,
+                             const Eigen::VectorXd& shares);
+
+/// A run of the twin that is no longer than that by strides: with its own seed, else with one of
+/// the next nine; without any such run the last of them.
+trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin);
+
+using Blocks = std::vector<Eigen::VectorXd>;  ///< weighted errors of each log
+
+double SquaredSum(const Blocks& blocks);
+size_t Count(const Blocks& blocks);
+
+/// Of at least one part.
+template <class T>
+T Sum(const std::vector<T>& parts) {
+  T sum = parts.front();
+  for (size_t i = 1; i < parts.size(); ++i) sum += parts[i];
+  return sum;
+}
+
+/// Weighted errors at some shares, and their slopes summed up log by log.
+struct Linearised {
+  Blocks errors;
+  std::vector<Eigen::MatrixXd> hessians;   ///< of each log: transposed slopes times slopes
+  std::vector<Eigen::VectorXd> gradients;  ///< of each log: transposed slopes times errors
+};
+
+/// What is added to the diagonal of a Hessian to keep parameters without effect where they are.
+double RidgeOf(const Eigen::MatrixXd& hessian);
+
+/// Errors of a set of logs as a function of the shares.
+class ErrorModel {
+ public:
+  /// `parameters`, `twin` and `options` must outlive the model.
+  ErrorModel(const std::vector<experiment::FreeParameter>& parameters,
+             std::vector<CalibrationLog> logs, const TwinAt& twin,
+             const CalibrationOptions& options, int threads, const Eigen::VectorXd& start);
+
+  /// Logs that the simulator made, held against what it predicts for them as the real ones are:
+  /// traits are told in the scatter of the real logs.
+  ErrorModel OfSimulatedLogs(const Eigen::VectorXd& shares, int repeat) const;
+
+  std::vector<LogErrors> RawErrorsAt(const Eigen::VectorXd& shares);
+  Blocks ErrorsAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale);
+  /// Slopes over `step` to either side, of a run's traits over a wide one; `raw`:
+  /// RawErrorsAt(shares).
+  Linearised LinearisedAt(const Eigen::VectorXd& shares, const std::vector<LogErrors>& raw,
+                          const Eigen::MatrixXd& scale, double step);
+
+  size_t LogCount() const { return logs_.size(); }
+  size_t TrialsSimulated() const { return trials_simulated_; }
+
+ private:
+  std::vector<LogErrors> Errors(const Eigen::VectorXd& shares, const CalibrationOptions& options);
+  Blocks WeightedBlocks(const std::vector<LogErrors>& raw, const Eigen::MatrixXd& scale) const;
+  Blocks WeightedAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale,
+                    const CalibrationOptions& options);
+  Blocks Slope(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale, Eigen::Index parameter,
+               double step, const CalibrationOptions& options);
+
+  const std::vector<experiment::FreeParameter>& parameters_;
+  std::vector<CalibrationLog> logs_;
+  const TwinAt& twin_;
+  const CalibrationOptions& options_;
+  int threads_;
+  LoggedTraits traits_;
+  size_t trials_simulated_ = 0;
+};
+
+}  // namespace rift::sweep

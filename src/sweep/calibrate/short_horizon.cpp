@@ -1,0 +1,146 @@
+#include "rift/sweep/calibrate/short_horizon.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "rift/geometry/angle.hpp"
+#include "rift/simulation/noise.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using geometry::Pose2;
+using trajectory::StampedPose;
+using trajectory::Trajectory;
+
+constexpr std::uint64_t kOffsetStream = 40;
+/// How long the loop runs on after the last pose of the log has arrived.
+constexpr double kRunOut_s = 0.1;
+
+/// The simulated robot seen through the eyes of a log: it moves as it is told, and reports what the
+/// real one reported.
+class RobotOfLog : public trial::Robot {
+ public:
+  RobotOfLog(const SimulatedTrial& trial, const Trajectory& log)
+      : robot_(trial.simulation, trial.start, trial.seed, trial.image),
+        log_(log),
+        arrival_s_(0.5 * trial.simulation.mocap.exposure_s + trial.simulation.mocap.processing_s),
+        point_from_robot_{trial.simulation.mocap.tag_ahead_m, 0.0, 0.0} {
+    Witness();
+  }
+
+  trial::Sensed Sense() override {
+    trial::Sensed sensed = robot_.Sense();
+    const double seen_s = sensed.now_s - arrival_s_;
+    while (next_ < log_.poses.size() && ClockOf(next_) <= seen_s) ++next_;
+    sensed.pose.reset();
+    if (next_ > 0) {
+      sensed.pose = trial::PoseMeasurement{.captured_s = ClockOf(next_ - 1),
+                                           .world_from_robot = log_.poses[next_ - 1].Planar()};
+    }
+    if (seen_s > ClockOf(log_.poses.size() - 1) + kRunOut_s) sensed.fault = "the log ends here";
+    return sensed;
+  }
+  void Command(const control::WheelPower& power) override { robot_.Command(power); }
+  void Advance(double dt_s) override {
+    robot_.Advance(dt_s);
+    Witness();
+  }
+  void Stop() noexcept override { robot_.Stop(); }
+
+  const Trajectory& Path() const { return path_; }
+
+ private:
+  double ClockOf(size_t row) const { return log_.poses[row].t_s - log_.poses.front().t_s; }
+
+  void Witness() {
+    const simulation::TruePose truth = robot_.Truth();
+    const Pose2 tag = truth.Planar() * point_from_robot_;
+    path_.poses.push_back({.t_s = log_.poses.front().t_s + truth.t_s,
+                           .x_m = tag.x_m,
+                           .y_m = tag.y_m,
+                           .yaw_rad = tag.yaw_rad});
+  }
+
+  simulation::SimulatedRobot robot_;
+  const Trajectory& log_;
+  double arrival_s_;
+  Pose2 point_from_robot_;
+  size_t next_ = 0;
+  Trajectory path_;
+};
+
+/// Poses of a path at the times of a log, both in order of time; the last one beyond its end.
+std::vector<Pose2> PosesAt(const Trajectory& path, const Trajectory& log) {
+  std::vector<Pose2> poses;
+  size_t i = 0;
+  for (const StampedPose& row : log.poses) {
+    while (i + 2 < path.poses.size() && path.poses[i + 1].t_s < row.t_s) ++i;
+    const StampedPose &a = path.poses[i], &b = path.poses[i + 1];
+    const double share = std::clamp((row.t_s - a.t_s) / (b.t_s - a.t_s), 0.0, 1.0);
+    poses.push_back({a.x_m + share * (b.x_m - a.x_m), a.y_m + share * (b.y_m - a.y_m),
+                     a.yaw_rad + share * geometry::WrapToPi(b.yaw_rad - a.yaw_rad)});
+  }
+  return poses;
+}
+
+size_t FirstMoving(const Trajectory& log, double moved_m) {
+  size_t i = 0;
+  const Eigen::Vector2d start = log.poses.front().Position();
+  while (i < log.poses.size() && (log.poses[i].Position() - start).norm() < moved_m) ++i;
+  return i;
+}
+
+std::vector<HorizonError> ErrorsOf(const std::vector<Pose2>& replay, const Trajectory& log,
+                                   const ShortHorizonOptions& options) {
+  std::vector<HorizonError> errors;
+  const size_t rows = log.poses.size();
+  for (size_t i = FirstMoving(log, options.moved_m); i < rows; ++i) {
+    for (int frames = 1; frames <= options.most_frames && i + frames < rows; ++frames) {
+      const Pose2 logged =
+          geometry::Inverse(log.poses[i].Planar()) * log.poses[i + frames].Planar();
+      const Pose2 motion = geometry::Inverse(replay[i]) * replay[i + frames];
+      errors.push_back({.from = i,
+                        .frames = frames,
+                        .ahead_m = motion.x_m - logged.x_m,
+                        .left_m = motion.y_m - logged.y_m,
+                        .turned_rad = geometry::WrapToPi(motion.yaw_rad - logged.yaw_rad)});
+    }
+  }
+  return errors;
+}
+
+}  // namespace
+
+Trajectory Replay(const SimulatedTrial& trial, const Trajectory& log) {
+  RobotOfLog robot(trial, log);
+  trial::TrialOptions options = trial.trial;
+  options.timeout_s = std::max(options.timeout_s, log.Duration_s() + 1.0);
+  trial::RunTrial(robot, trial.waypoints, trial.control, options);
+  return robot.Path();
+}
+
+std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial, const Trajectory& log,
+                                             const ShortHorizonOptions& options) {
+  if (!log.HasYaw()) throw std::invalid_argument("a replay needs the yaw of the log");
+  std::vector<HorizonError> mean;
+  SimulatedTrial phase = trial;
+  const double offset = simulation::Noise(trial.seed, kOffsetStream).Uniform(0, 0);
+  for (int i = 0; i < options.phases; ++i, ++phase.seed) {
+    // Even phases: over drawn ones the mean would change by leaps with a delay. Each log has its
+    // own offset, so that many logs see many phases.
+    phase.simulation.link.poll_phase = (i + offset) / options.phases;
+    const auto errors = ErrorsOf(PosesAt(Replay(phase, log), log), log, options);
+    mean.resize(errors.size());
+    for (size_t k = 0; k < mean.size(); ++k) {
+      mean[k].from = errors[k].from;
+      mean[k].frames = errors[k].frames;
+      mean[k].ahead_m += errors[k].ahead_m / options.phases;
+      mean[k].left_m += errors[k].left_m / options.phases;
+      mean[k].turned_rad += errors[k].turned_rad / options.phases;
+    }
+  }
+  return mean;
+}
+
+}  // namespace rift::sweep

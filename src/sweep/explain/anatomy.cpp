@@ -1,0 +1,97 @@
+#include "rift/sweep/explain/anatomy.hpp"
+
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <functional>
+
+namespace rift::sweep {
+namespace {
+
+using OfTrial = std::function<double(const gap::Comparison&)>;
+
+Estimate EstimateOf(const std::vector<double>& values) {
+  Estimate estimate;
+  double sum = 0.0, squares = 0.0;
+  for (const double value : values) sum += value;
+  estimate.n = static_cast<int>(values.size());
+  if (estimate.n == 0) return estimate;
+  estimate.mean = sum / estimate.n;
+  if (estimate.n < 2) return estimate;
+  for (const double value : values) squares += std::pow(value - estimate.mean, 2);
+  const double error = std::sqrt(squares / (estimate.n - 1) / estimate.n);
+  const double t = boost::math::quantile(boost::math::students_t(estimate.n - 1), 0.975);
+  estimate.low = estimate.mean - t * error;
+  estimate.high = estimate.mean + t * error;
+  return estimate;
+}
+
+std::vector<double> ValuesIn(const SweepResult& result, const SettingResult& setting,
+                             const OfTrial& of_trial) {
+  std::vector<double> values;
+  for (const int row : setting.rows) {
+    if (!result.rows[row].IsOk()) continue;
+    const double value = of_trial(result.rows[row].comparison);
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  return values;
+}
+
+/// Repeats of a setting share its candidate, so it is settings that are independent.
+Estimate Over(const SweepResult& result, const OfTrial& of_trial) {
+  std::vector<double> means, all;
+  for (const SettingResult& setting : result.settings) {
+    const std::vector<double> values = ValuesIn(result, setting, of_trial);
+    if (values.empty()) continue;
+    means.push_back(EstimateOf(values).mean);
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  return EstimateOf(means.size() >= 3 ? means : all);
+}
+
+Estimate OverSettings(const SweepResult& result,
+                      const std::function<double(const SettingResult&)>& of_setting) {
+  std::vector<double> values;
+  for (const SettingResult& setting : result.settings) {
+    const double value = of_setting(setting);
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  return EstimateOf(values);
+}
+
+std::vector<GapPart> PartsOf(const SweepResult& result, const Anatomy& anatomy) {
+  const bool is_robot = result.reference_kind == "logs";
+  return {
+      {"start placement", anatomy.start_m,
+       "no fault of a simulator: start it where the reference stood (start: reference)"},
+      {"frame", anatomy.frame_m,
+       is_robot ? "heading at the start and the camera's frame; a simulator removes only what its "
+                  "own first turn adds"
+                : "heading at the start; a simulator removes what its own first turn adds"},
+      {"shape", anatomy.shape_m,
+       "drift and weave: a better simulator, down to what repeats differ among themselves"},
+  };
+}
+
+}  // namespace
+
+Anatomy Dissect(const SweepResult& result) {
+  using gap::Comparison;
+  Anatomy anatomy;
+  anatomy.gap_m = Over(result, [](const Comparison& c) { return c.gap_m; });
+  anatomy.start_m =
+      Over(result, [](const Comparison& c) { return c.gap_m - c.start_aligned_gap_m; });
+  anatomy.frame_m =
+      Over(result, [](const Comparison& c) { return c.start_aligned_gap_m - c.shape_gap_m; });
+  anatomy.shape_m = Over(result, [](const Comparison& c) { return c.shape_gap_m; });
+  anatomy.pace_m = Over(result, [](const Comparison& c) { return c.gap_m - c.frechet_m; });
+  anatomy.timing_m = Over(result, [](const Comparison& c) { return c.equal_time_m - c.gap_m; });
+  anatomy.noise_m =
+      OverSettings(result, [](const SettingResult& setting) { return setting.noise_floor_m; });
+  anatomy.removable_m = OverSettings(result, [](const SettingResult& setting) {
+    return setting.mean_gap_m - setting.noise_floor_m;
+  });
+  anatomy.parts = PartsOf(result, anatomy);
+  return anatomy;
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,186 @@
+#include "rift/sweep/explain/inert.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "rift/sweep/falsify/labels.hpp"
+#include "rift/sweep/falsify/statistics.hpp"
+
+namespace rift::sweep {
+namespace {
+
+constexpr double kPower = 0.8;
+
+/// A key of the controller that is an upper limit, what it counts and what it cuts.
+struct UpperLimit {
+  std::string_view name;
+  size_t trial::LimitCounts::*bound;
+  double trial::LimitCounts::*largest_raw;
+};
+constexpr std::array<UpperLimit, 3> kUpperLimits{{
+    {"v_max", &trial::LimitCounts::v_max, &trial::LimitCounts::largest_raw_v},
+    {"cruise_speed", &trial::LimitCounts::cruise_cap, &trial::LimitCounts::largest_raw_v},
+    {"w_max", &trial::LimitCounts::w_max, &trial::LimitCounts::largest_raw_w},
+}};
+
+const UpperLimit* LimitOf(const experiment::Parameter& parameter) {
+  const auto found =
+      std::find_if(kUpperLimits.begin(), kUpperLimits.end(),
+                   [&](const UpperLimit& limit) { return limit.name == parameter.Name(); });
+  return found == kUpperLimits.end() ? nullptr : &*found;
+}
+
+/// Everything of a row but one parameter.
+std::vector<std::string> RestOf(const TrialRow& row, int parameter) {
+  std::vector<std::string> rest{row.trial};
+  for (int i = 0; i < static_cast<int>(row.theta.size()); ++i) {
+    if (i != parameter) rest.push_back(row.theta[i].text);
+  }
+  return rest;
+}
+
+void ComparePaths(const SweepResult& result, int parameter, Inertness& inert) {
+  std::map<std::vector<std::string>, std::map<std::string, std::uint64_t>> paths;
+  for (const TrialRow& row : result.rows) {
+    if (row.evidence.fingerprint == 0) continue;
+    paths[RestOf(row, parameter)].emplace(row.theta[parameter].text, row.evidence.fingerprint);
+  }
+  const experiment::Theta& levels = result.parameters[parameter].levels;
+  for (size_t i = 0; i + 1 < levels.size(); ++i) {
+    ValuePair pair{levels[i].text, levels[i + 1].text};
+    for (const auto& [rest, by_level] : paths) {
+      const auto a = by_level.find(pair.a), b = by_level.find(pair.b);
+      if (a == by_level.end() || b == by_level.end()) continue;
+      ++pair.compared;
+      pair.identical += a->second == b->second;
+    }
+    inert.compared += pair.compared;
+    inert.identical += pair.identical;
+    inert.pairs.push_back(std::move(pair));
+  }
+}
+
+std::vector<LimitUse> UseOf(const SweepResult& result, int parameter, const UpperLimit& limit,
+                            std::optional<trial::LimitCounts> TrialEvidence::*side) {
+  std::vector<LimitUse> uses;
+  for (const experiment::ParameterValue& level : result.parameters[parameter].levels) {
+    if (!level.number) return {};
+    LimitUse use{.level = level.text, .value = *level.number};
+    for (const TrialRow& row : result.rows) {
+      const std::optional<trial::LimitCounts>& counts = row.evidence.*side;
+      if (!counts || row.theta[parameter].text != level.text) continue;
+      ++use.runs;
+      use.runs_bound += (*counts).*limit.bound > 0;
+      use.decisions += static_cast<long>(counts->decisions);
+      use.bound += static_cast<long>((*counts).*limit.bound);
+      use.largest_raw = std::max(use.largest_raw, (*counts).*limit.largest_raw);
+    }
+    if (use.runs > 0) uses.push_back(use);
+  }
+  return uses;
+}
+
+std::string Joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  return text;
+}
+
+void SayPaths(Inertness& inert) {
+  if (inert.NeverChangedAPath()) {
+    inert.sentences.push_back(
+        fmt::format("{} never changed the candidate's path: in all {} pairs of trials that differ "
+                    "in it alone the paths are the same to the last bit",
+                    inert.parameter, inert.compared));
+    return;
+  }
+  for (const ValuePair& pair : inert.pairs) {
+    if (pair.compared == 0 || pair.identical < pair.compared) continue;
+    inert.sentences.push_back(
+        fmt::format("with {} {} and {} the candidate drove the same path to the last bit in all {} "
+                    "pairs of trials",
+                    inert.parameter, pair.a, pair.b, pair.compared));
+  }
+}
+
+/// What the controller of one side tells about the limit.
+void SayLimit(Inertness& inert, const std::vector<LimitUse>& uses, std::string_view side) {
+  std::vector<std::string> never, most;
+  std::string rarely;
+  for (const LimitUse& use : uses) {
+    if (use.bound == 0) {
+      never.push_back(use.level);
+      most.push_back(fmt::format("{:.3g}", use.largest_raw));
+    } else {
+      rarely += fmt::format("; {} bound in {} of {} decisions of {} runs", use.level, use.bound,
+                            use.decisions, use.runs);
+    }
+  }
+  if (never.empty()) return;
+  inert.is_explained = true;
+  inert.sentences.push_back(
+      fmt::format("{} {} never bound: the {}'s controller asked for {} at most{}", inert.parameter,
+                  Joined(never), side, Joined(most), rarely));
+}
+
+void SayEffect(Inertness& inert) {
+  if (std::isnan(inert.p)) return;
+  if (inert.is_detected) return;
+  std::string text = fmt::format(
+      "no effect of {} on the gap is seen (p = {:.2f} beside the other "
+      "parameters)",
+      inert.parameter, inert.p);
+  if (!std::isnan(inert.smallest_detectable_m)) {
+    text += fmt::format(
+        "; a difference of {:.4f} m between two of its values would have been seen "
+        "with {:.0f} % probability",
+        inert.smallest_detectable_m, 100.0 * kPower);
+  }
+  inert.sentences.push_back(text);
+}
+
+std::vector<int> CountsOf(const SweepResult& result, int parameter) {
+  std::vector<int> counts;
+  for (const LevelSummary& level : SummariseBy(result, {parameter})) {
+    if (level.n > 0) counts.push_back(level.n);
+  }
+  return counts;
+}
+
+Inertness Look(const SweepResult& result, int parameter, const FactorialAnalysis& factors) {
+  Inertness inert{.parameter = result.parameters[parameter].Name()};
+  ComparePaths(result, parameter, inert);
+  if (const FactorialTerm* term = factors.Main(parameter)) {
+    inert.p = term->p;
+    inert.is_detected = term->p < kSignificance;
+    inert.smallest_detectable_m = SmallestDetectable(
+        CountsOf(result, parameter), factors.residual_sd_m, factors.residual_df, kPower);
+  }
+  SayEffect(inert);
+  SayPaths(inert);
+  if (const UpperLimit* limit = LimitOf(result.parameters[parameter])) {
+    inert.candidate_limit = UseOf(result, parameter, *limit, &TrialEvidence::candidate_limits);
+    inert.reference_limit = UseOf(result, parameter, *limit, &TrialEvidence::reference_limits);
+    SayLimit(inert, inert.candidate_limit, "candidate");
+    SayLimit(inert, inert.reference_limit, "reference");
+  }
+  return inert;
+}
+
+}  // namespace
+
+std::vector<Inertness> FindInert(const SweepResult& result, const FactorialAnalysis& factors) {
+  std::vector<Inertness> all;
+  for (int i = 0; i < static_cast<int>(result.parameters.size()); ++i) {
+    if (result.parameters[i].levels.size() > 1) all.push_back(Look(result, i, factors));
+  }
+  return all;
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,194 @@
+#include "rift/sweep/explain/shrink.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+namespace rift::sweep {
+namespace {
+
+bool SameValue(const experiment::ParameterValue& a, const experiment::ParameterValue& b) {
+  return a.number && b.number ? *a.number == *b.number : a.text == b.text;
+}
+
+experiment::ParameterValue NumberValue(double number) {
+  const std::string text = fmt::format("{:.6g}", number);
+  return {text, std::stod(text)};  // what is tried is what is written
+}
+
+class Shrinker {
+ public:
+  Shrinker(const std::vector<experiment::Parameter>& parameters, const experiment::Theta& nominal,
+           const experiment::Theta& failing, const Robustness& robustness,
+           const ShrinkOptions& options)
+      : parameters_(parameters),
+        nominal_(nominal),
+        robustness_(robustness),
+        options_(options),
+        theta_(failing) {}
+
+  ShrunkFailure Run() {
+    if (!Fails(theta_)) {
+      throw std::invalid_argument(
+          fmt::format("there is nothing to shrink: the setting does not fail (robustness {:.4g} m)",
+                      Of(theta_)));
+    }
+    TakeFewest();
+    bool is_smaller = true;
+    while (is_smaller) {  // a smaller change may make another one needless
+      DropOneByOne();
+      is_smaller = ShrinkEach();
+    }
+    return Finish();
+  }
+
+ private:
+  bool HasBudget() const { return evaluations_ < options_.max_evaluations; }
+
+  double Of(const experiment::Theta& theta) {
+    std::string key;
+    for (const experiment::ParameterValue& value : theta) key += value.text + '\n';
+    const auto [found, is_new] = known_.emplace(key, 0.0);
+    if (is_new) {
+      found->second = robustness_(theta);
+      ++evaluations_;
+    }
+    return found->second;
+  }
+  bool Fails(const experiment::Theta& theta) { return Of(theta) < 0.0; }
+
+  std::vector<int> Changed(const experiment::Theta& theta) const {
+    std::vector<int> changed;
+    for (size_t i = 0; i < theta.size(); ++i) {
+      if (!SameValue(theta[i], nominal_[i])) changed.push_back(static_cast<int>(i));
+    }
+    return changed;
+  }
+
+  /// Sets of changes by rising size; the first that fails is taken.
+  void TakeFewest() {
+    const std::vector<int> changed = Changed(theta_);
+    const size_t n = changed.size();
+    for (size_t size = 0; size < n; ++size) {
+      std::vector<bool> is_kept(n, false);
+      std::fill(is_kept.begin(), is_kept.begin() + static_cast<long>(size), true);
+      do {
+        if (!HasBudget()) return;
+        experiment::Theta theta = nominal_;
+        for (size_t i = 0; i < n; ++i) {
+          if (is_kept[i]) theta[changed[i]] = theta_[changed[i]];
+        }
+        if (!Fails(theta)) continue;
+        theta_ = theta;
+        is_fewest_ = true;
+        return;
+      } while (std::prev_permutation(is_kept.begin(), is_kept.end()));
+    }
+    is_fewest_ = true;
+  }
+
+  void DropOneByOne() {
+    bool is_dropped = true;
+    while (is_dropped && HasBudget()) {
+      is_dropped = false;
+      for (const int i : Changed(theta_)) {
+        experiment::Theta without = theta_;
+        without[i] = nominal_[i];
+        if (!HasBudget() || !Fails(without)) continue;
+        theta_ = without;
+        is_dropped = true;
+      }
+    }
+  }
+
+  bool ShrinkEach() {
+    bool is_smaller = false;
+    for (const int i : Changed(theta_)) {
+      const experiment::ParameterValue before = theta_[i];
+      if (!before.number || !nominal_[i].number) continue;
+      if (parameters_[i].IsContinuous()) {
+        Halve(i);
+      } else {
+        TryLevels(i);
+      }
+      is_smaller = is_smaller || !SameValue(before, theta_[i]);
+    }
+    return is_smaller && HasBudget();
+  }
+
+  /// The value between nominal and the failing one, as near to nominal as still fails; what fails
+  /// further out is not asked for.
+  void Halve(int i) {
+    double holds = *nominal_[i].number, fails = *theta_[i].number;
+    const double enough = options_.tolerance * std::abs(fails - holds);
+    while (std::abs(fails - holds) > enough && HasBudget()) {
+      experiment::Theta nearer = theta_;
+      nearer[i] = NumberValue(0.5 * (holds + fails));
+      const bool is_at_end = *nearer[i].number == holds || *nearer[i].number == fails;
+      if (is_at_end) return;
+      if (Fails(nearer)) {
+        theta_ = nearer;
+        fails = *nearer[i].number;
+      } else {
+        holds = *nearer[i].number;
+      }
+    }
+  }
+
+  void TryLevels(int i) {
+    const double nominal = *nominal_[i].number, far = *theta_[i].number;
+    experiment::Theta between;
+    for (const experiment::ParameterValue& level : parameters_[i].levels) {
+      if (level.number && (*level.number - nominal) * (far - nominal) > 0.0 &&
+          std::abs(*level.number - nominal) < std::abs(far - nominal)) {
+        between.push_back(level);
+      }
+    }
+    std::sort(between.begin(), between.end(), [&](const auto& a, const auto& b) {
+      return std::abs(*a.number - nominal) < std::abs(*b.number - nominal);
+    });
+    for (const experiment::ParameterValue& level : between) {
+      experiment::Theta nearer = theta_;
+      nearer[i] = level;
+      if (!HasBudget() || !Fails(nearer)) continue;
+      theta_ = nearer;
+      return;
+    }
+  }
+
+  ShrunkFailure Finish() {
+    ShrunkFailure shrunk{.theta = theta_, .changed = Changed(theta_)};
+    shrunk.robustness = Of(theta_);
+    shrunk.is_minimal = HasBudget();
+    for (const int i : shrunk.changed) {
+      experiment::Theta without = theta_;
+      without[i] = nominal_[i];
+      shrunk.is_minimal = shrunk.is_minimal && !Fails(without);
+    }
+    shrunk.is_fewest = is_fewest_ && shrunk.is_minimal;
+    shrunk.evaluations = evaluations_;
+    return shrunk;
+  }
+
+  const std::vector<experiment::Parameter>& parameters_;
+  const experiment::Theta& nominal_;
+  const Robustness& robustness_;
+  ShrinkOptions options_;
+  experiment::Theta theta_;  ///< fails, always
+  std::map<std::string, double> known_;
+  int evaluations_ = 0;
+  bool is_fewest_ = false;
+};
+
+}  // namespace
+
+ShrunkFailure Shrink(const std::vector<experiment::Parameter>& parameters,
+                     const experiment::Theta& nominal, const experiment::Theta& failing,
+                     const Robustness& robustness, const ShrinkOptions& options) {
+  return Shrinker(parameters, nominal, failing, robustness, options).Run();
+}
+
+}  // namespace rift::sweep

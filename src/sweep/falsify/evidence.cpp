@@ -1,0 +1,86 @@
+#include "rift/sweep/falsify/evidence.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include "rift/control/navigator.hpp"
+#include "rift/gap/comparison.hpp"
+#include "rift/trial/recorder.hpp"
+
+namespace rift::sweep {
+namespace {
+
+constexpr int kErrorSamples = 8;
+
+/// The finaliser of MurmurHash3 (Appleby, public domain) over the running value.
+std::uint64_t Mix(std::uint64_t hash, double value) {
+  hash ^= std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value);  // -0 is the same place
+  hash ^= hash >> 33;
+  hash *= 0xff51afd7ed558ccdULL;
+  hash ^= hash >> 33;
+  hash *= 0xc4ceb9fe1a85ec53ULL;
+  return hash ^ (hash >> 33);
+}
+
+/// The targets in the order in which the log turns to them, behind its first pose.
+std::vector<control::Waypoint> LoggedTask(const trajectory::Trajectory& log) {
+  const trajectory::StampedPose& first = log.poses.front();
+  std::vector<control::Waypoint> task{{"start", first.x_m, first.y_m, {}, true}};
+  for (const trajectory::StampedPose& pose : log.poses) {
+    if (!std::isfinite(pose.target_x_m) || !std::isfinite(pose.target_y_m)) continue;
+    const Eigen::Vector2d target{pose.target_x_m, pose.target_y_m};
+    if (task.size() > 1 && task.back().Position() == target) continue;
+    task.push_back({"target", target.x(), target.y(), {}, true});
+  }
+  return task;
+}
+
+}  // namespace
+
+std::uint64_t Fingerprint(const trajectory::Trajectory& path) {
+  std::uint64_t hash = path.poses.size();
+  for (const trajectory::StampedPose& pose : path.poses) {
+    for (const double value :
+         {pose.x_m, pose.y_m, pose.z_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad}) {
+      hash = Mix(hash, value);
+    }
+  }
+  return hash == 0 ? 1 : hash;
+}
+
+std::vector<Eigen::Vector2d> ErrorsAlong(const trajectory::Trajectory& candidate,
+                                         const trajectory::Trajectory& reference,
+                                         const gap::GapOptions& options) {
+  gap::GapOptions coarse = options;
+  coarse.samples = kErrorSamples + 1;
+  coarse.skip_start = 0.0;
+  const gap::ErrorProfile profile = gap::ProfileAlong(candidate, reference, coarse);
+  std::vector<Eigen::Vector2d> errors_m;
+  for (size_t i = 1; i < profile.u.size(); ++i) {
+    errors_m.push_back(profile.real_m[i] - profile.sim_m[i]);
+  }
+  return errors_m;
+}
+
+std::optional<trial::LimitCounts> RebuildLimits(const trajectory::Trajectory& log,
+                                                const control::NavigatorOptions& options,
+                                                double tag_offset_m) {
+  if (log.poses.size() < 2 || !log.HasYaw()) return std::nullopt;
+  const trajectory::Trajectory tag = trajectory::OffsetAlongHeading(log, -tag_offset_m);
+  const std::vector<control::Waypoint> task = LoggedTask(tag);
+  if (task.size() < 2) return std::nullopt;
+  control::Navigator navigator(options, task);
+  trial::Recorder recorder(task, 0.0);
+  double last_s = 2.0 * tag.poses[0].t_s - tag.poses[1].t_s;
+  for (const trajectory::StampedPose& pose : tag.poses) {
+    const control::Decision decision =
+        navigator.Step({pose.t_s, pose.t_s - last_s, pose.t_s, pose.Planar()});
+    if (decision.finished) break;
+    navigator.NoteSent(pose.t_s, decision.power);
+    recorder.Decided(pose.t_s, decision, navigator.active());
+    last_s = pose.t_s;
+  }
+  return recorder.result().limits;
+}
+
+}  // namespace rift::sweep

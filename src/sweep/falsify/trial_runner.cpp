@@ -1,0 +1,125 @@
+#include "rift/sweep/falsify/trial_runner.hpp"
+
+#include <utility>
+
+#include "row_codec.hpp"
+
+namespace rift::sweep {
+namespace {
+
+TrialRow RowFor(TrialRequest request) {
+  return {.theta = std::move(request.theta),
+          .trial = std::move(request.trial),
+          .seed = request.seed,
+          .is_random_draw = request.is_random_draw};
+}
+
+TrialStatus StatusOf(JobEnd end) {
+  switch (end) {
+    case JobEnd::kDone:
+      return TrialStatus::kOk;
+    case JobEnd::kThrew:
+      return TrialStatus::kFault;
+    case JobEnd::kHung:
+      return TrialStatus::kHung;
+    case JobEnd::kCrashed:
+      return TrialStatus::kCrashed;
+    case JobEnd::kOutOfMemory:
+      return TrialStatus::kOutOfMemory;
+  }
+  return TrialStatus::kFault;
+}
+
+void SetStatus(TrialRow& row, TrialStatus status, const std::string& reason) {
+  row.status = status;
+  row.reason = reason.substr(0, reason.find('\n'));
+}
+
+JournalEntry EntryOf(const TrialRow& row) {
+  const auto status = EnumNames(row.status)[static_cast<size_t>(row.status)];
+  return {std::string(status), row.comparison.gap_m, row.falsified, EncodeFindings(row)};
+}
+
+WorkerPool::Work WorkOf(Evaluate evaluate) {
+  return [evaluate = std::move(evaluate)](const std::string& job) {
+    return EncodeFindings(evaluate(DecodeRequest(job)));
+  };
+}
+
+}  // namespace
+
+RunTrials RunHere(Evaluate evaluate, Watch watch) {
+  return [evaluate = std::move(evaluate), watch = std::move(watch)](
+             std::vector<TrialRequest> requests) -> std::optional<std::vector<TrialRow>> {
+    std::vector<TrialRow> rows;
+    rows.reserve(requests.size());
+    for (const TrialRequest& request : requests) {
+      if (!watch.go_on()) return std::nullopt;
+      rows.push_back(evaluate(request));
+      watch.seen(rows.back(), false);
+    }
+    return rows;
+  };
+}
+
+TrialRunner::TrialRunner(Evaluate evaluate, KeyOf key_of, Journal* journal, int workers,
+                         const RunOptions& options, Watch watch)
+    : key_of_(std::move(key_of)),
+      journal_(journal),
+      watch_(std::move(watch)),
+      pool_(WorkOf(std::move(evaluate)), workers, options) {}
+
+bool TrialRunner::HasAll(const std::vector<TrialRequest>& requests) {
+  if (journal_ == nullptr) return false;
+  for (const TrialRequest& request : requests) {
+    if (!journal_->Find(key_of_(request))) return false;
+  }
+  return true;
+}
+
+TrialRow TrialRunner::Finish(TrialRequest request, const JobResult& result) {
+  const std::string key = journal_ == nullptr ? "" : key_of_(request);
+  TrialRow row = RowFor(std::move(request));
+  if (result.end == JobEnd::kDone) {
+    DecodeFindings(result.bytes, row);
+  } else {
+    SetStatus(row, StatusOf(result.end), result.bytes);
+    row.candidate = "simulation";
+  }
+  if (journal_ != nullptr) journal_->Add(key, EntryOf(row));
+  watch_.seen(row, false);
+  return row;
+}
+
+std::optional<std::vector<TrialRow>> TrialRunner::Run(std::vector<TrialRequest> requests) {
+  std::vector<TrialRow> rows(requests.size());
+  std::vector<int> missing;
+  for (size_t i = 0; i < requests.size(); ++i) {
+    std::optional<std::string> bytes;
+    if (journal_ != nullptr) bytes = journal_->Find(key_of_(requests[i]));
+    if (!bytes) {
+      missing.push_back(static_cast<int>(i));
+      continue;
+    }
+    rows[i] = RowFor(std::move(requests[i]));
+    DecodeFindings(*bytes, rows[i]);
+    watch_.seen(rows[i], true);
+  }
+  WorkerPool::Batch batch;
+  batch.count = static_cast<int>(missing.size());
+  batch.job = [&](int job) { return EncodeRequest(requests[missing[job]]); };
+  batch.done = [&](int job, const JobResult& result) {
+    const int i = missing[job];
+    rows[i] = Finish(std::move(requests[i]), result);
+  };
+  batch.go_on = [&] {
+    if (journal_ != nullptr) journal_->Tick();
+    return watch_.go_on();
+  };
+  const bool is_whole = pool_.Run(batch);
+  if (journal_ != nullptr) journal_->Commit();
+  if (!is_whole) return std::nullopt;
+  return rows;
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,271 @@
+#include "rift/sweep/run/journal.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace rift::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kSchema = R"(
+  CREATE TABLE IF NOT EXISTS made_from(key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
+  CREATE TABLE IF NOT EXISTS note(name TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
+  CREATE TABLE IF NOT EXISTS trial(key TEXT PRIMARY KEY, status TEXT, gap_m REAL, falsified INTEGER,
+                                   row BLOB) WITHOUT ROWID;)";
+
+/// How a user gets on from what SQLite reports.
+std::string Advice(int code) {
+  switch (code & 0xff) {
+    case SQLITE_FULL:
+      return "the disk is full; make room and run the same command again: what was committed is "
+             "kept";
+    case SQLITE_IOERR:
+      return "the disk does not take it; run the same command again when it does: what was "
+             "committed is kept";
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      return "it is damaged; move it away to look at it, or start over with --fresh";
+    case SQLITE_CANTOPEN:
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+    case SQLITE_AUTH:
+      return "it cannot be written here: choose another folder with --out";
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return "another program is writing it";
+    default:
+      return "run the same command again, or start over with --fresh";
+  }
+}
+
+/// Calls, and throws what SQLite reports as one line.
+template <class Call>
+auto Told(const fs::path& file, const Call& call) {
+  try {
+    return call();
+  } catch (const SQLite::Exception& error) {
+    throw std::runtime_error(
+        fmt::format("{}: {} ({})", file.string(), Advice(error.getErrorCode()), error.what()));
+  }
+}
+
+/// Names at most a few of the facts that differ.
+std::string Differences(const Facts& then, const Facts& now) {
+  constexpr size_t kMostNamed = 5;
+  std::vector<std::string> differing;
+  for (const auto& [key, value] : then) {
+    const auto found = now.find(key);
+    if (found == now.end()) {
+      differing.push_back(fmt::format("{} was {} and is not set", key, value));
+    } else if (found->second != value) {
+      differing.push_back(fmt::format("{} was {} and is {}", key, value, found->second));
+    }
+  }
+  for (const auto& [key, value] : now) {
+    if (!then.contains(key))
+      differing.push_back(fmt::format("{} is {} and was not set", key, value));
+  }
+  const size_t more = differing.size() > kMostNamed ? differing.size() - kMostNamed : 0;
+  differing.resize(differing.size() - more);
+  const std::string text = fmt::format("{}", fmt::join(differing, "; "));
+  return more == 0 ? text : fmt::format("{}; and {} more", text, more);
+}
+
+Facts ReadTable(SQLite::Database& database, const char* query) {
+  Facts facts;
+  SQLite::Statement select(database, query);
+  while (select.executeStep()) {
+    facts[select.getColumn(0).getString()] = select.getColumn(1).getString();
+  }
+  return facts;
+}
+
+}  // namespace
+
+struct Journal::Store {
+  explicit Store(const fs::path& path)
+      : file(path), database(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
+    database.setBusyTimeout(2000);
+    Check();
+    // NORMAL: a commit survives the process, and after a loss of power the journal is whole but
+    // may lack the last commits.
+    database.exec("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL;");
+    database.exec(kSchema);
+    find.emplace(database, "SELECT row FROM trial WHERE key = ?");
+    add.emplace(database, "INSERT OR REPLACE INTO trial VALUES (?, ?, ?, ?, ?)");
+  }
+
+  /// A statement of its own, since one that has not ended keeps the journal from WAL mode.
+  void Check() {
+    SQLite::Statement check(database, "PRAGMA quick_check(1)");
+    if (check.executeStep() && check.getColumn(0).getString() != "ok") {
+      throw SQLite::Exception(check.getColumn(0).getString(), SQLITE_CORRUPT);
+    }
+  }
+
+  void Begin() {
+    if (transaction) return;
+    transaction.emplace(database);
+    begun = Clock::now();
+  }
+
+  fs::path file;
+  SQLite::Database database;
+  std::optional<SQLite::Statement> find, add;
+  std::optional<SQLite::Transaction> transaction;
+  Clock::time_point begun;
+};
+
+Journal::Journal(const fs::path& file, const Facts& made_from) {
+  Told(file, [&] {
+    store_ = std::make_unique<Store>(file);
+    const Facts then = ReadTable(store_->database, "SELECT key, value FROM made_from");
+    if (then.empty()) {
+      SQLite::Transaction transaction(store_->database);
+      SQLite::Statement insert(store_->database, "INSERT INTO made_from VALUES (?, ?)");
+      for (const auto& [key, value] : made_from) {
+        insert.bind(1, key);
+        insert.bind(2, value);
+        insert.exec();
+        insert.reset();
+      }
+      transaction.commit();
+    } else if (then != made_from) {
+      throw std::invalid_argument(fmt::format(
+          "{} is the journal of another experiment: {}; choose another folder with --out, or "
+          "start over with --fresh",
+          file.string(), Differences(then, made_from)));
+    }
+  });
+}
+
+Journal::~Journal() {
+  try {
+    if (store_) Commit();
+  } catch (const std::runtime_error&) {
+    // Only while another error, which is the one to be told, unwinds.
+  }
+}
+
+std::optional<std::string> Journal::Find(const std::string& key) {
+  return Told(store_->file, [&]() -> std::optional<std::string> {
+    SQLite::Statement& find = *store_->find;
+    find.reset();
+    find.bindNoCopy(1, key);
+    std::optional<std::string> bytes;
+    if (find.executeStep()) bytes = find.getColumn(0).getString();
+    find.reset();
+    return bytes;
+  });
+}
+
+void Journal::Add(const std::string& key, const JournalEntry& entry) {
+  Told(store_->file, [&] {
+    store_->Begin();
+    SQLite::Statement& add = *store_->add;
+    add.reset();
+    add.bindNoCopy(1, key);
+    add.bindNoCopy(2, entry.status);
+    if (std::isnan(entry.gap_m)) {
+      add.bind(3);
+    } else {
+      add.bind(3, entry.gap_m);
+    }
+    add.bind(4, static_cast<int>(entry.falsified));
+    add.bindNoCopy(5, entry.bytes.data(), static_cast<int>(entry.bytes.size()));
+    add.exec();
+  });
+  Tick();
+}
+
+void Journal::Tick() {
+  if (!store_->transaction) return;
+  const std::chrono::duration<double> since = Clock::now() - store_->begun;
+  if (since.count() > kCommitEvery_s) Commit();
+}
+
+void Journal::Commit() {
+  if (!store_->transaction) return;
+  Told(store_->file, [&] {
+    store_->transaction->commit();
+    store_->transaction.reset();
+  });
+}
+
+void Journal::SetNote(const std::string& name, const std::string& value) {
+  Told(store_->file, [&] {
+    store_->Begin();
+    SQLite::Statement insert(store_->database, "INSERT OR REPLACE INTO note VALUES (?, ?)");
+    insert.bind(1, name);
+    insert.bind(2, value);
+    insert.exec();
+  });
+}
+
+std::optional<std::string> Journal::Note(const std::string& name) {
+  return Told(store_->file, [&]() -> std::optional<std::string> {
+    SQLite::Statement select(store_->database, "SELECT value FROM note WHERE name = ?");
+    select.bind(1, name);
+    if (!select.executeStep()) return std::nullopt;
+    return select.getColumn(0).getString();
+  });
+}
+
+void Journal::Close() {
+  Commit();
+  Told(store_->file, [&] {
+    store_->find.reset();
+    store_->add.reset();
+    store_->database.exec("PRAGMA wal_checkpoint(TRUNCATE)");
+    store_->database.tryExec("PRAGMA journal_mode=DELETE");  // not while somebody reads
+  });
+  store_.reset();
+}
+
+void Journal::Remove(const fs::path& file) {
+  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
+    std::error_code error;
+    fs::remove(file.string() + suffix, error);
+    if (error) {
+      throw std::runtime_error(
+          fmt::format("cannot remove {}{}: {}", file.string(), suffix, error.message()));
+    }
+  }
+}
+
+JournalSummary ReadJournal(const fs::path& file) {
+  if (!fs::exists(file)) {
+    throw std::invalid_argument(fmt::format(
+        "{}: no such file; a sweep of simulated trials keeps its journal there", file.string()));
+  }
+  return Told(file, [&] {
+    SQLite::Database database(file.string(), SQLite::OPEN_READONLY);
+    database.setBusyTimeout(2000);
+    JournalSummary summary;
+    summary.notes = ReadTable(database, "SELECT name, value FROM note");
+    SQLite::Statement count(database,
+                            "SELECT status, COUNT(*), SUM(falsified) FROM trial GROUP BY status");
+    while (count.executeStep()) {
+      summary.trials_by_status[count.getColumn(0).getString()] = count.getColumn(1).getInt();
+      summary.falsified += count.getColumn(2).getInt();
+    }
+    SQLite::Statement worst(
+        database,
+        "SELECT key, gap_m FROM trial WHERE gap_m IS NOT NULL ORDER BY gap_m DESC, key LIMIT 1");
+    if (worst.executeStep()) {
+      summary.largest_key = worst.getColumn(0).getString();
+      summary.largest_gap_m = worst.getColumn(1).getDouble();
+    }
+    return summary;
+  });
+}
+
+}  // namespace rift::sweep

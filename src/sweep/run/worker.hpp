@@ -1,0 +1,51 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "rift/sweep/run/options.hpp"
+#include "rift/sweep/run/worker_pool.hpp"
+
+namespace rift::sweep {
+
+/// One forked process that does jobs one after the other.
+class Worker {
+ public:
+  /// Throws std::runtime_error when no process can be made.
+  Worker(const WorkerPool::Work& work, const RunOptions& options);
+  /// Kills and reaps it.
+  ~Worker();
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  int Descriptor() const { return socket_; }
+  /// A job that cannot be sent shows as the worker's death.
+  void Send(const std::string& job);
+  /// Takes in what has arrived. False when the worker is dead.
+  bool Receive();
+  /// The next finished job among what arrived.
+  std::optional<JobResult> NextResult();
+
+  struct Death {
+    JobEnd end = JobEnd::kCrashed;
+    std::string reason;
+    bool from_outside = false;  ///< killed by somebody else: no fault of the job
+  };
+  /// Reaps a worker that died by itself and says of what.
+  Death Autopsy();
+
+ private:
+  std::string LastWords() const;
+
+  RunOptions options_;
+  pid_t pid_ = -1;
+  int socket_ = -1;
+  int output_ = -1;  ///< what it wrote to stdout and stderr during the job
+  std::string arrived_;
+};
+
+}  // namespace rift::sweep

@@ -1,0 +1,143 @@
+#include "rift/sweep/run/worker_pool.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <stdexcept>
+
+#include "worker.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// The job under way and the next: a worker never waits for the coordinator.
+constexpr size_t kDepth = 2;
+// A job whose worker somebody else kills is not to blame, but there is an end to everything.
+constexpr int kMostKills = 5;
+constexpr int kTick_ms = 100;
+
+std::string Times(int count) {
+  if (count == 1) return "";
+  return count == 2 ? ", twice" : fmt::format(", {} times", count);
+}
+
+}  // namespace
+
+/// A worker's place: the worker, when there is one, and the jobs it was given, oldest first.
+struct WorkerPool::Seat {
+  std::unique_ptr<Worker> worker;
+  std::deque<Job> jobs;
+  Clock::time_point busy_since;
+};
+
+WorkerPool::WorkerPool(Work work, int workers, const RunOptions& options)
+    : work_(std::move(work)), options_(options) {
+  if (workers < 1) throw std::invalid_argument(fmt::format("{} workers: at least 1", workers));
+  seats_.resize(static_cast<size_t>(workers));
+}
+
+WorkerPool::~WorkerPool() = default;
+
+bool WorkerPool::Run(const Batch& batch) {
+  next_ = 0;
+  open_ = 0;
+  while (next_ < batch.count || open_ > 0) {
+    if (!batch.go_on()) {
+      KillAll();
+      return false;
+    }
+    Feed(batch);
+    Wait();
+    for (Seat& seat : seats_) Collect(seat, batch);
+  }
+  return true;
+}
+
+/// Level by level, and the last jobs of a batch only to workers that are free, so that none of them
+/// stands in line while another worker has nothing to do.
+void WorkerPool::Feed(const Batch& batch) {
+  for (size_t depth = 0; depth < kDepth; ++depth) {
+    for (Seat& seat : seats_) {
+      if (seat.jobs.size() > depth) continue;
+      const size_t left = again_.size() + static_cast<size_t>(batch.count - next_);
+      if (left == 0 || (depth > 0 && left <= seats_.size())) return;
+      if (again_.empty()) {
+        again_.push_back({next_, batch.job(next_)});
+        ++next_;
+        ++open_;
+      }
+      if (!seat.worker) seat.worker = std::make_unique<Worker>(work_, options_);
+      if (seat.jobs.empty()) seat.busy_since = Clock::now();
+      seat.worker->Send(again_.front().bytes);
+      seat.jobs.push_back(std::move(again_.front()));
+      again_.pop_front();
+    }
+  }
+}
+
+void WorkerPool::Wait() {
+  std::vector<pollfd> waiting;
+  for (const Seat& seat : seats_) {
+    if (!seat.jobs.empty()) waiting.push_back({seat.worker->Descriptor(), POLLIN, 0});
+  }
+  if (::poll(waiting.data(), waiting.size(), kTick_ms) < 0 && errno != EINTR) {
+    throw std::runtime_error(fmt::format("cannot wait for the workers: error {}", errno));
+  }
+}
+
+void WorkerPool::Collect(Seat& seat, const Batch& batch) {
+  if (!seat.worker) return;
+  const bool is_alive = seat.worker->Receive();
+  while (std::optional<JobResult> result = seat.worker->NextResult()) {
+    const bool is_full = result->end == JobEnd::kOutOfMemory;
+    if (is_full) return Bury(seat, result->end, result->bytes, batch);
+    const int index = seat.jobs.front().index;
+    seat.jobs.pop_front();
+    seat.busy_since = Clock::now();
+    --open_;
+    batch.done(index, std::move(*result));
+  }
+  if (!is_alive) {
+    const Worker::Death death = seat.worker->Autopsy();
+    const bool is_retried =
+        death.from_outside && !seat.jobs.empty() && ++seat.jobs.front().kills < kMostKills;
+    if (is_retried) --seat.jobs.front().failures;
+    return Bury(seat, death.end, death.reason, batch);
+  }
+  const std::chrono::duration<double> busy = Clock::now() - seat.busy_since;
+  if (!seat.jobs.empty() && busy.count() > options_.timeout_s) {
+    Bury(seat, JobEnd::kHung, fmt::format("had not ended after {:g} s", options_.timeout_s), batch);
+  }
+}
+
+/// The worker is gone, or goes; its oldest job is to blame, the others only stood in line.
+void WorkerPool::Bury(Seat& seat, JobEnd end, const std::string& reason, const Batch& batch) {
+  seat.worker.reset();
+  std::deque<Job> jobs = std::move(seat.jobs);
+  seat.jobs.clear();
+  if (jobs.empty()) return;
+  const bool is_over = ++jobs.front().failures > options_.retries;
+  if (is_over) {
+    const Job job = std::move(jobs.front());
+    jobs.pop_front();
+    --open_;
+    batch.done(job.index, {end, reason + Times(job.failures)});
+  }
+  again_.insert(again_.begin(), std::make_move_iterator(jobs.begin()),
+                std::make_move_iterator(jobs.end()));
+}
+
+void WorkerPool::KillAll() {
+  for (Seat& seat : seats_) {
+    seat.worker.reset();
+    seat.jobs.clear();
+  }
+  again_.clear();
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "rift/trial/robot.hpp"
+
+namespace rift::twin {
+
+/// Real time for a simulation: seconds since the start, without those that were slept through. A
+/// process that stood still (SIGSTOP, suspend, overload) must not hurry through them afterwards.
+class Pacer {
+ public:
+  static constexpr double kMostBehind_s = 0.25;
+
+  explicit Pacer(double start_s) : epoch_s_(start_s), last_s_(start_s) {}
+
+  double Simulated_s(double now_s);
+  /// The moment on the clock at which that simulated second is or was due.
+  double ClockOf_s(double simulated_s) const { return epoch_s_ + simulated_s; }
+  double Skipped_s() const { return skipped_s_; }
+
+ private:
+  double epoch_s_;
+  double last_s_;
+  double skipped_s_ = 0.0;
+};
+
+/// Tells when a trial is over: the robot drove, and its motors have been off for a while since.
+class TrialEnd {
+ public:
+  explicit TrialEnd(double still_s) : still_s_(still_s) {}
+
+  void See(double t_s, const control::WheelPower& power);
+  bool HasDriven() const { return has_driven_; }
+  bool IsOver(double now_s) const { return has_driven_ && now_s - driven_s_ >= still_s_; }
+
+ private:
+  double still_s_;
+  bool has_driven_ = false;
+  double driven_s_ = 0.0;
+};
+
+}  // namespace rift::twin

@@ -1,0 +1,58 @@
+#include "rift/vision/camera/camera_source.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "sources.hpp"
+
+namespace rift::vision {
+namespace {
+
+bool IsNumber(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(),
+                                      [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+// Said by its ending, so that a missing file is refused as what it was meant to be.
+bool NamesPicture(std::string_view name) {
+  for (const std::string_view ending : {".jpg", ".jpeg", ".png", ".bmp", ".pgm", ".tif"}) {
+    if (name.ends_with(ending)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+SourceKind KindOf(std::string_view name) {
+  if (name.starts_with("/dev/") || IsNumber(name)) return SourceKind::kDevice;
+  if (name.starts_with("http://") || name.starts_with("https://")) return SourceKind::kStream;
+  if (name.find("://") != std::string_view::npos) return SourceKind::kNetwork;
+  const bool is_pattern = name.find_first_of("*?[") != std::string_view::npos;
+  if (is_pattern || NamesPicture(name) || std::filesystem::is_directory(name)) {
+    return SourceKind::kImages;
+  }
+  return SourceKind::kVideo;
+}
+
+double SteadyNow_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::unique_ptr<CameraSource> OpenCamera(const std::string& name, const CaptureOptions& options) {
+  switch (KindOf(name)) {
+    case SourceKind::kDevice:
+      return OpenDevice(IsNumber(name) ? "/dev/video" + name : name, options);
+    case SourceKind::kStream:
+      return OpenStream(name, options);
+    case SourceKind::kNetwork:
+      return OpenVideo(name, false);
+    case SourceKind::kImages:
+      return OpenImages(name, options.fps);
+    case SourceKind::kVideo:
+      break;
+  }
+  return OpenVideo(name, true);
+}
+
+}  // namespace rift::vision

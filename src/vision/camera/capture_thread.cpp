@@ -1,0 +1,180 @@
+#include "rift/vision/camera/capture_thread.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+
+#include "picture_health.hpp"
+
+namespace rift::vision {
+namespace {
+
+using Lock = std::unique_lock<std::mutex>;
+using std::chrono::duration;
+
+constexpr double kRateWindow_s = 1.0;
+constexpr double kPatience_s = 0.5;  // for the thread to end; longer, and it hangs in a driver
+
+/// Pictures a second over the last window.
+class RateMeter {
+ public:
+  void Count(double now_s) {
+    times_s_.push_back(now_s);
+    while (times_s_.front() < now_s - kRateWindow_s) times_s_.pop_front();
+  }
+  double Rate_hz() const {
+    if (times_s_.size() < 3) return 0.0;
+    return static_cast<double>(times_s_.size() - 1) / (times_s_.back() - times_s_.front());
+  }
+
+ private:
+  std::deque<double> times_s_;
+};
+
+}  // namespace
+
+struct CaptureThread::Shared {
+  Shared(Opener opener, const CaptureOptions& capture_options)
+      : open(std::move(opener)), options(capture_options), health(capture_options) {}
+
+  void Run();
+  void ReadAll();
+  void Keep(Frame frame, CameraState state, std::string reason);
+  void End(CameraState state, const std::string& reason);
+  CaptureStatus Look(double now_s);
+
+  const Opener open;
+  const CaptureOptions options;
+  PictureHealth health;  // used by the thread alone
+
+  std::mutex mutex;  // guards all that follows
+  std::condition_variable changed;
+  std::shared_ptr<CameraSource> source;
+  std::exception_ptr failure;  // what is no CameraError goes to the one who asks for pictures
+  std::optional<Frame> newest;
+  CaptureStatus status;
+  RateMeter rate;
+  const double started_s = SteadyNow_s();
+  double last_s = 0.0;
+  bool stop = false;
+  bool done = false;
+};
+
+void CaptureThread::Shared::Run() {
+  try {
+    std::shared_ptr<CameraSource> opened = open();
+    {
+      const Lock lock(mutex);
+      source = std::move(opened);
+    }
+    ReadAll();
+  } catch (const CameraError& error) {
+    End(error.state, error.what());
+  } catch (...) {
+    const Lock lock(mutex);
+    failure = std::current_exception();
+  }
+  const Lock lock(mutex);
+  done = true;
+  changed.notify_all();
+}
+
+void CaptureThread::Shared::ReadAll() {
+  const bool recording = source->IsRecording();
+  for (std::uint64_t index = 0;;) {
+    {
+      Lock lock(mutex);
+      if (recording) changed.wait(lock, [this] { return stop || !newest; });
+      if (stop) return;
+    }
+    Frame frame;
+    if (!source->Read(frame)) continue;
+    frame.index = index++;
+    const CameraState state = recording ? CameraState::kRunning : health.Look(frame);
+    Keep(std::move(frame), state, recording ? std::string() : health.Reason());
+  }
+}
+
+void CaptureThread::Shared::Keep(Frame frame, CameraState state, std::string reason) {
+  const Lock lock(mutex);
+  if (IsFinal(status.state)) return;  // it was seen to be unplugged meanwhile
+  last_s = frame.arrived_s;
+  rate.Count(frame.arrived_s);
+  status.state = state;
+  status.reason = std::move(reason);
+  status.latency_s = frame.arrived_s - frame.captured_s;
+  ++status.delivered;
+  if (newest) ++status.dropped;
+  newest = std::move(frame);
+  changed.notify_all();
+}
+
+void CaptureThread::Shared::End(CameraState state, const std::string& reason) {
+  const Lock lock(mutex);
+  if (IsFinal(status.state)) return;
+  status.state = state;
+  status.reason = reason;
+}
+
+// The thread may hang in its driver, so silence is seen from here.
+CaptureStatus CaptureThread::Shared::Look(double now_s) {
+  CaptureStatus seen = status;
+  seen.rate_hz = rate.Rate_hz();
+  const bool waits_for_reader = newest.has_value() && source && source->IsRecording();
+  if (IsFinal(seen.state) || waits_for_reader) return seen;
+  const bool silent = seen.delivered > 0 ? now_s - last_s > options.silent_s
+                                         : now_s - started_s > options.open_timeout_s;
+  if (source && !source->IsPresent()) {
+    status.state = seen.state = CameraState::kUnplugged;
+    status.reason = seen.reason = "the device is gone";
+  } else if (silent && !(source && source->IsRecording())) {
+    seen.state = CameraState::kFrozen;
+    seen.reason = seen.delivered > 0
+                      ? fmt::format("no picture for {:.1f} s", now_s - last_s)
+                      : fmt::format("no first picture within {:.1f} s", now_s - started_s);
+    seen.rate_hz = 0.0;
+  }
+  return seen;
+}
+
+CaptureThread::CaptureThread(Opener open, const CaptureOptions& options)
+    : shared_(std::make_shared<Shared>(std::move(open), options)) {
+  std::thread([shared = shared_] { shared->Run(); }).detach();
+}
+
+CaptureThread::~CaptureThread() {
+  Lock lock(shared_->mutex);
+  shared_->stop = true;
+  shared_->changed.notify_all();
+  shared_->changed.wait_for(lock, duration<double>(kPatience_s), [this] { return shared_->done; });
+}
+
+std::optional<Frame> CaptureThread::Next(double timeout_s) {
+  Lock lock(shared_->mutex);
+  shared_->changed.wait_for(lock, duration<double>(timeout_s),
+                            [this] { return shared_->newest || shared_->done; });
+  if (shared_->failure) std::rethrow_exception(shared_->failure);
+  std::optional<Frame> frame = std::move(shared_->newest);
+  shared_->newest.reset();
+  shared_->changed.notify_all();
+  return frame;
+}
+
+CaptureStatus CaptureThread::Status() const {
+  const Lock lock(shared_->mutex);
+  CaptureStatus status = shared_->Look(SteadyNow_s());
+  // A recording has ended only once its last picture was taken.
+  if (status.state == CameraState::kEnded && shared_->newest) status.state = CameraState::kRunning;
+  return status;
+}
+
+bool CaptureThread::IsRecording() const {
+  const Lock lock(shared_->mutex);
+  return shared_->source && shared_->source->IsRecording();
+}
+
+}  // namespace rift::vision

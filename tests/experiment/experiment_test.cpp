@@ -1,0 +1,157 @@
+#include "rift/experiment/experiment.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <random>
+
+#include "rift/yaml/error.hpp"
+#include "support/random_fill.hpp"
+
+#include "rift/experiment/hooks.hpp"
+
+namespace rift::experiment {
+namespace {
+
+/// Loads from texts by name instead of files.
+Experiment LoadTexts(const std::map<std::string, std::string>& texts,
+                     const std::vector<std::string>& overrides = {}) {
+  return LoadExperiment(texts.begin()->first, overrides,
+                        [&](const std::string& path) { return texts.at(path); });
+}
+
+Space RandomSpace(std::mt19937_64& random) {
+  Space space;
+  for (size_t i = random() % 4; i > 0; --i) {
+    Parameter parameter{.key = "block.parameter_" + std::to_string(i)};
+    if (random() % 2 == 0) {
+      parameter.min = -std::uniform_real_distribution<double>(0.0, 9.0)(random);
+      parameter.max = std::uniform_real_distribution<double>(0.1, 9.0)(random);
+    } else {
+      parameter.levels = {{"0.30", 0.3}, {"text " + test::RandomText(random), std::nullopt}};
+    }
+    space.parameters.push_back(parameter);
+  }
+  return space;
+}
+
+TEST_CASE("A waypoint file of the authors is an experiment with every default") {
+  const Experiment experiment = LoadTexts({{"task.yaml", R"(waypoints:
+  - {name: start, x: -0.2822, y: -0.0655, heading: -0.9, stop: true}
+  - {name: end, x: 0.3832, y: -0.0597, stop: true}
+)"}});
+  CHECK(experiment.name == "task");
+  REQUIRE(experiment.waypoints.size() == 2);
+  CHECK(experiment.waypoints[0].heading_deg == -0.9);
+  CHECK(experiment.waypoints[1].x_m == 0.3832);
+  CHECK(experiment.gap.samples == 2000);
+  CHECK(experiment.gap.threshold_m == 0.06);
+}
+
+/// What a fit asks of the rest of its experiment.
+void MakeFit(Experiment& experiment) {
+  experiment.space.parameters.clear();
+  experiment.candidate.kind = CandidateKind::kSimulation;
+  experiment.reference.kind = ReferenceKind::kLogs;
+  experiment.reference.tag_offset_m = 0.0;
+  const double start = experiment.simulation.motor.mismatch;
+  experiment.calibrate.fit.list = {{.key = "simulation.motor.mismatch",
+                                    .min = std::max(start - 0.1, -0.5),
+                                    .max = std::min(start + 0.1, 0.5),
+                                    .start = start}};
+  experiment.calibrate.holdout.names = {"02"};
+}
+
+TEST_CASE("A resolved experiment loads as the same experiment") {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 300; ++i) {
+    Experiment experiment;
+    test::RandomFill(experiment, random);
+    experiment.space = RandomSpace(random);  // of names that only logs can have
+    if (!experiment.space.parameters.empty()) {
+      experiment.candidate.kind = CandidateKind::kLogs;
+    }
+    experiment.reference.trials.names = {"1", "02", test::RandomText(random) + "x"};
+    experiment.reference.path.text = "/logs/{surface}: " + test::RandomText(random);
+    experiment.candidate.path.text = "/a/b.csv";
+    if (experiment.goal == Goal::kCalibrate) MakeFit(experiment);
+    for (auto& [name, surface] : experiment.simulation.terrain.surfaces) {
+      if (!surface.image.empty()) surface.image = "/maps/hill.png";  // absolute, as once loaded
+    }
+    const std::string written = WriteExperiment(experiment);
+    INFO(written);
+    Experiment loaded;
+    try {
+      loaded = LoadTexts({{"experiment.yaml", written}});
+    } catch (const yaml::Error& error) {
+      FAIL(error.what());
+    }
+    loaded.reference.path = experiment.reference.path;  // made absolute and normal on loading
+    CHECK(WriteExperiment(loaded) == written);
+  }
+}
+
+TEST_CASE("Paths of a file are relative to it and paths of an override to the shell") {
+  const std::map<std::string, std::string> texts{
+      {"/a/b/task.yaml", "candidate: {path: ../logs/{surface}.csv}\n"}};
+  CHECK_THROWS_AS(LoadTexts(texts), yaml::Error);  // braces in a flow map are YAML's own
+  const Experiment experiment =
+      LoadTexts({{"/a/b/task.yaml", "candidate:\n  path: ../logs/{surface}.csv\n"}},
+                {"reference.path=/x/../y.csv"});
+  CHECK(experiment.candidate.path.text == "/a/logs/{surface}.csv");
+  CHECK(experiment.reference.path.text == "/y.csv");
+}
+
+TEST_CASE("Nested and dotted and overridden axes are one thing") {
+  const std::string dotted = "space: {control.v_min: [0.15, 0.20]}\n";
+  const std::string nested = "space:\n  control:\n    v_min: [0.15, 0.20]\n";
+  const Experiment a = LoadTexts({{"a.yaml", dotted}}), b = LoadTexts({{"a.yaml", nested}});
+  const Experiment c = LoadTexts({{"a.yaml", "{}"}}, {"space.control.v_min=[0.15, 0.20]"});
+  CHECK(WriteExperiment(a) == WriteExperiment(b));
+  CHECK(WriteExperiment(a) == WriteExperiment(c));
+  const Experiment d = LoadTexts({{"a.yaml", "space: {v_min: [0.15, 0.20]}"}});
+  CHECK(WriteExperiment(a) == WriteExperiment(d));  // the short name is unique
+  REQUIRE(a.space.parameters.size() == 1);
+  CHECK(a.space.parameters[0].key == "control.v_min");
+  CHECK(a.space.parameters[0].levels[1].text == "0.20");
+  CHECK(a.space.parameters[0].levels[1].number == 0.2);
+}
+
+TEST_CASE("A simulated parameter is a key of the experiment and its values are tried at once") {
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      LoadTexts({{"a.yaml", text}});
+    } catch (const yaml::Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK(refusal("space: {control.v_mim: [0.1]}").find("v_min") != std::string::npos);
+  CHECK(refusal("space: {mu: [0.1]}").find("surfaces.ground.mu") != std::string::npos);
+  CHECK(refusal("space: {simulation.body.chassis_mass_kg: [0.1, 0]}").starts_with("a.yaml:1:9"));
+  CHECK(refusal("space: {v_min: [0.9]}").find("v_max") != std::string::npos);
+  CHECK(refusal("space: {v_min: [0.9], v_max: [0.95]}") == "accepted");
+}
+
+TEST_CASE("An experiment at a setting has its values and leaves the rest") {
+  const Experiment experiment =
+      LoadTexts({{"a.yaml", "space: {surface: [ground, bump], v_min: [0.1]}"}});
+  const Experiment at = ExperimentAt(experiment, {{"bump", {}}, {"0.1", 0.1}});
+  CHECK(at.simulation.terrain.surface == "bump");
+  CHECK(at.control.v_min == 0.1);
+  CHECK(at.control.v_max == experiment.control.v_max);
+}
+
+TEST_CASE("Trials are a list or a count") {
+  const auto trials = [](const std::string& text) {
+    return LoadTexts({{"a.yaml", "reference: {trials: " + text + "}"}}).reference.trials.names;
+  };
+  CHECK(trials("[1, b, 3]") == std::vector<std::string>{"1", "b", "3"});
+  CHECK(trials("3") == std::vector<std::string>{"1", "2", "3"});
+  CHECK_THROWS_AS(trials("[]"), yaml::Error);
+  CHECK_THROWS_AS(trials("2.5"), yaml::Error);
+  CHECK_THROWS_AS(trials("[1, 1]"), yaml::Error);
+}
+
+}  // namespace
+}  // namespace rift::experiment

@@ -1,0 +1,160 @@
+#include "rift/vision/camera/camera_file.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "rift/yaml/error.hpp"
+
+namespace rift::vision {
+namespace {
+
+using Catch::Matchers::Contains;
+
+CameraModel SomeCamera() {
+  CameraModel camera;
+  camera.name = "victure: sc30";
+  camera.width_px = 1920;
+  camera.height_px = 1080;
+  camera.k << 1091.4, 0.0, 908.9, 0.0, 1095.7, 1.0 / 3.0, 0.0, 0.0, 1.0;
+  camera.distortion = {0.239, -0.435, 0.0123, -0.0021, 0.252};
+  camera.rms_px = 0.31;
+  camera.world.emplace();
+  camera.world->world_from_camera =
+      Eigen::Translation3d(0.1, -0.2, 0.87) * Eigen::AngleAxisd(3.1, Eigen::Vector3d::UnitX());
+  camera.world->residual_m = 0.0004;
+  camera.world->origin = "4 reference tags";
+  camera.world->marks = {{7, {0.5, -0.25, 0.0}, {100.25, 200.5}}};
+  return camera;
+}
+
+TEST_CASE("A camera file reads back to the same camera") {
+  const CameraModel wrote = SomeCamera();
+  const CameraModel read = ReadCamera(WriteCamera(wrote), "cam.yaml");
+  CHECK(read.name == wrote.name);
+  CHECK(read.width_px == 1920);
+  CHECK(read.height_px == 1080);
+  CHECK(read.k == wrote.k);
+  CHECK(read.distortion == wrote.distortion);
+  CHECK(read.rms_px == wrote.rms_px);
+  REQUIRE(read.world);
+  CHECK(read.world->world_from_camera.matrix() == wrote.world->world_from_camera.matrix());
+  CHECK(read.world->residual_m == wrote.world->residual_m);
+  CHECK(read.world->origin == wrote.world->origin);
+  REQUIRE(read.world->marks.size() == 1);
+  CHECK(read.world->marks[0].tag_id == 7);
+  CHECK(read.world->marks[0].p_in_world == wrote.world->marks[0].p_in_world);
+  CHECK(read.world->marks[0].seen_px == wrote.world->marks[0].seen_px);
+}
+
+TEST_CASE("A fisheye camera keeps its lens") {
+  CameraModel camera = SomeCamera();
+  camera.lens = Lens::kEquidistant;
+  camera.distortion = {0.1, 0.2, 0.3, 0.4};
+  const CameraModel read = ReadCamera(WriteCamera(camera), "cam.yaml");
+  CHECK(read.lens == Lens::kEquidistant);
+  CHECK(read.distortion == camera.distortion);
+}
+
+TEST_CASE("A camera file of ROS is read") {
+  const CameraModel camera = ReadCamera(R"(image_width: 640
+image_height: 480
+camera_name: narrow_stereo/left
+camera_matrix:
+  rows: 3
+  cols: 3
+  data: [438.783367, 0.000000, 305.593336, 0.000000, 437.302876, 243.738352, 0., 0., 1.]
+distortion_model: plumb_bob
+distortion_coefficients:
+  rows: 1
+  cols: 5
+  data: [-0.361976, 0.110510, 0.001014, 0.000505, 0.000000]
+rectification_matrix:
+  rows: 3
+  cols: 3
+  data: [0.999978, 0.002789, -0.006046, -0.002816, 0.999986, -0.004401, 0.006034, 0.004417, 0.999972]
+projection_matrix:
+  rows: 3
+  cols: 4
+  data: [393.653800, 0., 322.797939, 0., 0., 393.653800, 241.090902, 0., 0., 0., 1., 0.]
+)",
+                                        "ros.yaml");
+  CHECK(camera.width_px == 640);
+  CHECK(camera.k(1, 2) == 243.738352);
+  CHECK(camera.distortion[1] == 0.110510);
+  CHECK_FALSE(camera.world);
+}
+
+TEST_CASE("A camera file of OpenCV is read with its own tags") {
+  const CameraModel camera = ReadCamera(R"(%YAML:1.0
+---
+calibration_time: "Sat Nov 21 15:29:37 2026"
+nframes: 25
+image_width: 1280
+image_height: 720
+board_width: 9
+flags: 0
+fisheye_model: 0
+camera_matrix: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 9.1e+02, 0., 6.395e+02, 0., 9.2e+02, 3.595e+02, 0., 0., 1. ]
+distortion_coefficients: !!opencv-matrix
+   rows: 5
+   cols: 1
+   dt: d
+   data: [ -4.1802327018241026e-001, 5.0715244063187526e-001, 0., 0.,
+       -5.7843597214487474e-001 ]
+avg_reprojection_error: 2.3e-01
+)",
+                                        "opencv.yml");
+  CHECK(camera.height_px == 720);
+  CHECK(camera.k(0, 0) == 910.0);
+  CHECK(camera.distortion.size() == 5);
+  CHECK(camera.rms_px == 0.23);
+}
+
+TEST_CASE("A camera file with nested lists and no size is read") {
+  const CameraModel camera = ReadCamera(R"(camera_matrix:
+- - 1091.4
+  - 0.0
+  - 908.9
+- [0.0, 1095.7, 643.0]
+- [0.0, 0.0, 1.0]
+dist_coeff:
+- [0.239, -0.435, 0.0123, -0.0021, 0.252]
+)",
+                                        "authors.yaml");
+  CHECK(camera.width_px == 0);
+  CHECK(camera.k(0, 2) == 908.9);
+  CHECK(camera.k(1, 1) == 1095.7);
+  CHECK(camera.distortion.back() == 0.252);
+}
+
+TEST_CASE("A damaged camera file is refused with place and rule") {
+  const std::string good = WriteCamera(SomeCamera());
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    REQUIRE(text.find(from) != std::string::npos);
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      ReadCamera(text, "cam.yaml");
+    } catch (const yaml::Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK_THAT(message("camera_matrix: 3"), Contains("cam.yaml:1") && Contains("9 numbers"));
+  CHECK_THAT(message("x: 1"), Contains("no camera matrix"));
+  CHECK_THAT(message("- 1"), Contains("no camera file"));
+  CHECK_THAT(message(with("1091.4", "-1091.4")), Contains("fx and fy above 0"));
+  CHECK_THAT(message(with("1091.4", "nan")), Contains("cam.yaml:"));
+  CHECK_THAT(message(with("plumb_bob", "pinhole")), Contains("one of plumb_bob"));
+  CHECK_THAT(message(with("cols: 5", "cols: 4")), Contains("rows and cols say 4"));
+  CHECK_THAT(message(with("residual_m", "residual_mm")), Contains("residual_m"));
+  CHECK_THAT(message(with("image_width: 1920", "image_width: wide")), Contains("image_width"));
+}
+
+}  // namespace
+}  // namespace rift::vision
