@@ -1,7 +1,9 @@
 #include "embedded.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
 
 namespace rift::report {
 
@@ -9,7 +11,7 @@ std::string_view Embedded(std::string_view name) {
   const auto& files = EmbeddedFiles();
   const auto found = std::find_if(files.begin(), files.end(),
                                   [name](const EmbeddedFile& file) { return file.name == name; });
-  assert(found != files.end());
+  if (found == files.end()) throw std::logic_error(fmt::format("no embedded file {}", name));
   return found->text;
 }
 
