@@ -1,4 +1,4 @@
-#include "calibrate.hpp"
+#include "rift/sweep/calibrate/identification.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "rift/sweep/falsify/labels.hpp"
 #include "robot_file.hpp"
 #include "simulated_runs.hpp"
-#include "sweep_sources.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 
 namespace rift::commands {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "calibrate.hpp"
+#include "rift/sweep/calibrate/identification.hpp"
 
 namespace rift::commands {
 

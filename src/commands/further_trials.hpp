@@ -8,7 +8,7 @@
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "stop_signal.hpp"
 #include "sweep_progress.hpp"
-#include "sweep_sources.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 
 namespace rift::commands {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "rift/experiment/experiment.hpp"
-#include "rift/sweep/falsify/grid_sweep.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 
 namespace rift::commands {
 

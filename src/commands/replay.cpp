@@ -9,7 +9,7 @@
 #include "files.hpp"
 #include "simulated_runs.hpp"
 #include "sweep_output.hpp"
-#include "sweep_sources.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 
 namespace rift::commands {
 namespace {

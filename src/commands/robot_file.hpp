@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "calibrate.hpp"
+#include "rift/sweep/calibrate/identification.hpp"
 
 namespace rift::commands {
 

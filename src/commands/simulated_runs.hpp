@@ -4,7 +4,7 @@
 #include <string>
 
 #include "rift/experiment/experiment.hpp"
-#include "rift/sweep/falsify/grid_sweep.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 
 namespace rift::commands {

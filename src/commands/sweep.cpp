@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "calibrate.hpp"
+#include "rift/sweep/calibrate/identification.hpp"
 #include "explanation_output.hpp"
 #include "files.hpp"
 #include "folder_lock.hpp"
@@ -16,11 +16,11 @@
 #include "rift/commands/command.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "sweep_explain.hpp"
-#include "sweep_likeness.hpp"
+#include "rift/sweep/calibrate/sweep_likeness.hpp"
 #include "sweep_output.hpp"
 #include "sweep_report.hpp"
 #include "sweep_run.hpp"
-#include "sweep_sources.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 #include "sweep_status.hpp"
 
 namespace rift::commands {

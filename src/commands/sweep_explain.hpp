@@ -10,7 +10,7 @@
 #include "rift/report/page/page.hpp"
 #include "rift/sweep/explain/explanation.hpp"
 #include "rift/sweep/explain/shrink.hpp"
-#include "sweep_sources.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 
 namespace rift::commands {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "rift/sweep/explain/explanation.hpp"
-#include "sweep_sources.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 
 namespace rift::commands {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "sweep_progress.hpp"
-#include "sweep_sources.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 
 namespace rift::commands {
 

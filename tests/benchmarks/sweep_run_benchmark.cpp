@@ -8,7 +8,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "rift/sweep/falsify/grid_sweep.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"

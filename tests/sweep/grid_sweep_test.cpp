@@ -1,4 +1,4 @@
-#include "rift/sweep/falsify/grid_sweep.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

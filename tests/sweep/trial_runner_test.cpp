@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "rift/sweep/falsify/falsify.hpp"
-#include "rift/sweep/falsify/grid_sweep.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 #include "support/paths.hpp"
 #include "support/process.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/sweep/falsify/grid_sweep.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 
 namespace rift::sweep {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "rift/sweep/falsify/grid_sweep.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/options.hpp"
 #include "rift/sweep/falsify/search_loop.hpp"
 

@@ -1,4 +1,4 @@
-#include "sweep_likeness.hpp"
+#include "rift/sweep/calibrate/sweep_likeness.hpp"
 
 #include <algorithm>
 #include <set>

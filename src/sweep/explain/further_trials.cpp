@@ -1,11 +1,11 @@
-#include "further_trials.hpp"
+#include "commands/further_trials.hpp"
 
 #include <fmt/format.h>
 
 #include <charconv>
 
-#include "enum_name.hpp"
-#include "flags.hpp"
+#include "commands/enum_name.hpp"
+#include "commands/flags.hpp"
 
 namespace rift::commands {
 namespace {

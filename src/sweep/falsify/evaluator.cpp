@@ -1,4 +1,4 @@
-#include "sweep_sources.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <set>
 #include <stdexcept>
 
-#include "enum_name.hpp"
-#include "rebuilt_limits.hpp"
+#include "commands/enum_name.hpp"
+#include "commands/rebuilt_limits.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/yaml/error.hpp"
-#include "simulated_runs.hpp"
+#include "commands/simulated_runs.hpp"
 
 namespace rift::commands {
 namespace {

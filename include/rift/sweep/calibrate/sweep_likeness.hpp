@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "likeness_output.hpp"
+#include "commands/likeness_output.hpp"
 #include "rift/experiment/experiment.hpp"
-#include "sweep_sources.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 
 namespace rift::commands {
 

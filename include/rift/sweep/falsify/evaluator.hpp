@@ -1,0 +1,72 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "rift/experiment/experiment.hpp"
+#include "rift/sweep/falsify/recorded_logs.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/sweep/falsify/trial_runner.hpp"
+
+namespace rift::sweep {
+
+/// The evaluator of an experiment: one trial at one setting, theta -> gap. Grid, search, shrinking,
+/// rare events, suggestions, calibration and replay all ask it. Trajectories come from where the
+/// experiment says: logs, simulated runs, the waypoint path.
+class Evaluator {
+ public:
+  /// Throws std::invalid_argument, naming `experiment_file`, when the experiment lacks what its
+  /// kinds of candidate and reference need. The experiment must outlive the evaluator.
+  Evaluator(const experiment::Experiment& experiment, std::string experiment_file, Inputs inputs);
+
+  /// One trial as its row. A setting that breaks a rule of the experiment is a row that says so.
+  TrialRow Evaluate(const TrialRequest& request);
+  Recording Reference(const TrialRequest& request);
+  /// May start where the reference did.
+  Recording Candidate(const TrialRequest& request, const Recording& reference);
+  /// The simulated trial of a request; throws yaml::Error when the setting breaks a rule.
+  SimulatedTrial TrialFor(const TrialRequest& request, const Recording& reference) const;
+  /// The simulated trial of an experiment: where `TrialOf` takes its files from is the evaluator's.
+  SimulatedTrial TrialOf(const experiment::Experiment& experiment, const geometry::Pose2& start,
+                         std::uint64_t seed) const;
+  /// How far the references of a setting are apart: gap::NoiseFloor_m. NaN without repeats. Nominal
+  /// runs are simulated in a process of their own.
+  double NoiseFloor_m(const experiment::Theta& theta);
+
+  /// Reads every log that some setting names, so that worker processes find them loaded.
+  void LoadLogs();
+  /// Everything that a trial depends on beside the experiment itself, as one line: the journal's
+  /// key.
+  std::string KeyOf(const TrialRequest& request) const;
+  /// Fingerprints of every log that was read.
+  std::string InputsText() const;
+
+  const experiment::Experiment& experiment() const { return experiment_; }
+  const std::string& experiment_file() const { return experiment_file_; }
+
+ private:
+  void RequirePath(const experiment::PathTemplate& path, const std::string& key) const;
+  std::string Filled(const experiment::PathTemplate& path, const experiment::Theta& theta,
+                     const std::string& trial) const;
+  std::string ReferencePath(const experiment::Theta& theta, const std::string& trial) const;
+  const Recording& Nominal(const TrialRequest& request);
+  double NominalNoiseFloor_m();
+
+  const experiment::Experiment& experiment_;
+  std::string experiment_file_;
+  Inputs inputs_;
+  RecordedLogs candidate_logs_;
+  RecordedLogs reference_logs_;
+  std::map<std::uint64_t, Recording> nominal_runs_;  ///< by seed
+  std::map<std::string, double> noise_floors_m_;     ///< by the references' sources
+};
+
+/// One candidate against one reference. Without one of them it is a row with its status.
+TrialRow CompareTrial(const experiment::Experiment& experiment, const TrialRequest& request,
+                      const Recording& candidate, const Recording& reference);
+
+/// Throws std::invalid_argument when a path template of logs names no parameter, or a parameter or
+/// the trials are named by no path: the same rows would stand there under several labels.
+void CheckPaths(const experiment::Experiment& experiment);
+
+}  // namespace rift::sweep

@@ -1,0 +1,70 @@
+#include "rift/sweep/falsify/recorded_logs.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "rift/sweep/run/content_hash.hpp"
+
+namespace rift::sweep {
+namespace {
+
+std::string WhyNoYaw(const trajectory::Log& log, const std::string& format_key) {
+  if (!log.unknown_angles.empty()) return fmt::format("{}: set {}", log.unknown_angles, format_key);
+  if (log.line_without_yaw) return fmt::format("line {} has none", *log.line_without_yaw);
+  return "it logs none: leave the tag offset at 0";
+}
+
+}  // namespace
+
+trajectory::Log ReadMovedLog(const std::string& text, const std::string& path,
+                             const LogOptions& options) {
+  trajectory::Log log = trajectory::ReadLog(text, path, options.format);
+  if (options.tag_offset_m != 0.0 && !log.trajectory.HasYaw()) {
+    throw std::invalid_argument(fmt::format("{}: a tag offset of {:g} m needs the yaw, and {}",
+                                            path, options.tag_offset_m,
+                                            WhyNoYaw(log, options.format_key)));
+  }
+  log.trajectory =
+      trajectory::OffsetAlongHeading(std::move(log.trajectory), options.tag_offset_m);
+  return log;
+}
+
+const Recording& RecordedLogs::At(const std::string& path) {
+  const auto [found, is_new] = recordings_.try_emplace(path);
+  if (is_new) found->second = Load(path);
+  return found->second;
+}
+
+Recording RecordedLogs::Load(const std::string& path) {
+  Recording recording{.source = path};
+  try {
+    const std::optional<std::string> bytes = inputs_.read(path);
+    if (!bytes) {
+      recording.status = TrialStatus::kMissing;
+      recording.reason = "no such file";
+      return recording;
+    }
+    hash_of_[path] = ContentHash(*bytes);
+    trajectory::Log log = ReadMovedLog(*bytes, path, options_);
+    for (const std::string& note : log.notes) inputs_.note(fmt::format("{}: {}", path, note));
+    recording.trajectory = std::move(log.trajectory);
+  } catch (const std::invalid_argument& bad_log) {  // a row of its own, not the sweep's end
+    recording.status = TrialStatus::kUnreadable;
+    recording.reason = bad_log.what();
+  }
+  return recording;
+}
+
+std::string RecordedLogs::HashOf(const std::string& path) const {
+  const auto found = hash_of_.find(path);
+  return found == hash_of_.end() ? "" : found->second;
+}
+
+std::string RecordedLogs::HashesText() const {
+  std::string text;
+  for (const auto& [path, hash] : hash_of_) text += fmt::format("{}  {}\n", hash, path);
+  return text;
+}
+
+}  // namespace rift::sweep
