@@ -18,7 +18,7 @@ class ChangedFlags {
   template <class T>
   static std::string TextOf(const T& value) {
     if constexpr (std::is_enum_v<T>) {
-      return std::string(NameOf(value));
+      return std::string(yaml::NameOf(value));
     } else {
       return fmt::format("{}", value);
     }
