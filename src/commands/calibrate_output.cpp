@@ -56,13 +56,13 @@ std::string CorrelationText(const sweep::Calibration& fit) {
   return text;
 }
 
-std::string JudgedText(const std::vector<JudgedGroup>& judged) {
+std::string JudgedText(const std::vector<sweep::JudgedGroup>& judged) {
   std::string text = fmt::format(
       "before > after the fit, whole paths; ratios are simulated / real, 1 is like the robot\n"
       "{:<10} {:<8}  {:>13}  {:>8}  {:>13}  {:>12}  {:>12}  {:>22}  {:>14}  {:>9}\n",
       "", "", "gap_mm", "real_mm", "mean_path_mm", "spread", "weave", "delay_s (real)", "speed",
       "missed");
-  for (const JudgedGroup& group : judged) {
+  for (const sweep::JudgedGroup& group : judged) {
     const gap::Likeness &before = group.before.path, &after = group.after.path;
     text += fmt::format(
         "{:<10} {:<8}  {:>13}  {:>8}  {:>13}  {:>12}  {:>12}  {:>22}  {:>14}  {:>9}\n", group.level,
@@ -81,7 +81,7 @@ std::string JudgedText(const std::vector<JudgedGroup>& judged) {
          "missed: runs that did not reach the end, or only after circling about a waypoint\n";
 }
 
-std::string ErrorText(const CalibrationReport::Errors& errors) {
+std::string ErrorText(const sweep::CalibrationReport::Errors& errors) {
   const sweep::ErrorStructure &b = errors.before, &a = errors.after;
   return fmt::format(
       "errors over {:.2f} s, {}, before > after: ahead {} mm (mean {}), sideways {} mm (mean {}), "
@@ -149,9 +149,9 @@ ordered_json FitJson(const sweep::Calibration& fit) {
   return json;
 }
 
-std::vector<report::CalibratedTrial> Drawn(const CalibrationReport& report) {
+std::vector<report::CalibratedTrial> Drawn(const sweep::CalibrationReport& report) {
   std::vector<report::CalibratedTrial> drawn;
-  for (const CalibrationTrial& trial : report.trials) {
+  for (const sweep::CalibrationTrial& trial : report.trials) {
     drawn.push_back({trial.level, trial.is_held_out, trial.gap_before_m, trial.gap_after_m});
   }
   return drawn;
@@ -166,7 +166,7 @@ std::string FlagOf(const CalibratedParameter& parameter) {
   return flag;
 }
 
-std::string CalibrationText(const CalibrationReport& report) {
+std::string CalibrationText(const sweep::CalibrationReport& report) {
   const sweep::Calibration& fit = report.calibration;
   std::string text =
       fmt::format("loss {:.4f} > {:.4f} in {} steps{}, {} trials simulated\n\n", fit.loss_before,
@@ -174,25 +174,25 @@ std::string CalibrationText(const CalibrationReport& report) {
                   fit.has_converged ? "" : " (not converged: raise calibrate.method.iterations)",
                   fit.trials_simulated);
   text += ParameterText(fit) + CorrelationText(fit) + '\n' + JudgedText(report.judged) + '\n';
-  for (const CalibrationReport::Errors& errors : report.errors) text += ErrorText(errors);
+  for (const sweep::CalibrationReport::Errors& errors : report.errors) text += ErrorText(errors);
   return text;
 }
 
 std::string CalibrationJson(const experiment::Experiment& experiment,
-                            const CalibrationReport& report) {
+                            const sweep::CalibrationReport& report) {
   ordered_json json = {{"name", experiment.name},
                        {"confidence", experiment.calibrate.method.confidence},
                        {"fit", FitJson(report.calibration)}};
-  for (const JudgedGroup& group : report.judged) {
+  for (const sweep::JudgedGroup& group : report.judged) {
     ordered_json& entry = json["judged"][group.level][group.side];
-    entry["before"] = LikenessJson(std::vector<LikenessRow>{{"x", group.before}})["x"];
-    entry["after"] = LikenessJson(std::vector<LikenessRow>{{"x", group.after}})["x"];
+    entry["before"] = LikenessJson(std::vector<sweep::GroupLikeness>{{"x", group.before}})["x"];
+    entry["after"] = LikenessJson(std::vector<sweep::GroupLikeness>{{"x", group.after}})["x"];
   }
-  for (const CalibrationReport::Errors& errors : report.errors) {
+  for (const sweep::CalibrationReport::Errors& errors : report.errors) {
     json["errors"][errors.side] = {{"before", ErrorJson(errors.before)},
                                    {"after", ErrorJson(errors.after)}};
   }
-  for (const CalibrationTrial& trial : report.trials) {
+  for (const sweep::CalibrationTrial& trial : report.trials) {
     json["trials"].push_back({{"log", trial.source},
                               {"level", trial.level},
                               {"trial", trial.trial},
@@ -206,9 +206,9 @@ std::string CalibrationJson(const experiment::Experiment& experiment,
 
 void WriteCalibrationFigures(const std::filesystem::path& folder,
                              const experiment::Experiment& experiment,
-                             const CalibrationReport& report) {
-  const bool has_gaps =
-      std::any_of(report.trials.begin(), report.trials.end(), [](const CalibrationTrial& trial) {
+                             const sweep::CalibrationReport& report) {
+  const bool has_gaps = std::any_of(
+      report.trials.begin(), report.trials.end(), [](const sweep::CalibrationTrial& trial) {
         return !std::isnan(trial.gap_before_m) && !std::isnan(trial.gap_after_m);
       });
   if (!has_gaps) {
@@ -219,7 +219,7 @@ void WriteCalibrationFigures(const std::filesystem::path& folder,
   }
   std::vector<report::Figure> parts{report::CalibrationGapFigure(Drawn(report))};
   if (!report.shown_real.poses.empty()) {
-    const CalibrationTrial& shown = report.trials[report.shown];
+    const sweep::CalibrationTrial& shown = report.trials[report.shown];
     parts.push_back(report::CalibrationPathFigure(
         {.name = fmt::format("{}{}trial {}{}", shown.level, shown.level.empty() ? "" : ", ",
                              shown.trial, shown.is_held_out ? " (held out)" : ""),

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "rift/experiment/experiment.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "stop_signal.hpp"
 #include "sweep_progress.hpp"
-#include "rift/sweep/falsify/evaluator.hpp"
 
 namespace rift::commands {
 
@@ -22,8 +22,7 @@ class FurtherTrials {
     ProgressStyle progress = ProgressStyle::kQuiet;
   };
 
-  FurtherTrials(SweepSources& sources, const experiment::Experiment& experiment, const Style& style,
-                const StopSignal& stop);
+  FurtherTrials(sweep::Evaluator& evaluator, const Style& style, const StopSignal& stop);
 
   std::vector<sweep::TrialRow> Run(std::vector<sweep::TrialRequest> requests);
 
@@ -31,17 +30,11 @@ class FurtherTrials {
   void Begin(int most);
   void End();
 
-  const sweep::GridPlan& plan() const { return plan_; }
-
  private:
-  sweep::GridPlan plan_;
   Style style_;
   std::optional<SweepProgress> progress_;
   sweep::TrialRunner runner_;
 };
-
-/// The experiment's own values of its space's parameters.
-experiment::Theta NominalTheta(const experiment::Experiment& experiment);
 
 /// Those of the gap's options that are not the defaults, as flags of `rift gap`.
 std::string ChangedGapFlags(const gap::GapOptions& options);

@@ -5,16 +5,15 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <future>
 #include <memory>
 
 #include "figure_file.hpp"
 #include "files.hpp"
 #include "flags.hpp"
 #include "gap_output.hpp"
-#include "logs.hpp"
 #include "outputs.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/sweep/falsify/recorded_logs.hpp"
 
 namespace rift::commands {
 namespace {
@@ -37,7 +36,7 @@ struct GapRequest {
 
 /// What was mended, and why there may be no yaw errors.
 void SayNotes(const trajectory::Log& log, const std::string& path, const std::string& flag) {
-  PrintNotes(log, path);
+  for (const std::string& note : log.notes) fmt::print(stderr, "note: {}: {}\n", path, note);
   if (log.line_without_yaw) {
     fmt::print(stderr, "note: {}:{}: has no yaw: yaw errors are told where it is logged\n", path,
                *log.line_without_yaw);
@@ -47,32 +46,17 @@ void SayNotes(const trajectory::Log& log, const std::string& path, const std::st
              flag);
 }
 
-/// Reading is most of the work on long logs, and the logs do not know each other. A short one is
-/// read before a thread has started.
-std::launch LaunchFor(const std::string& path) {
-  constexpr std::uintmax_t kShort_bytes = 100'000;
-  std::error_code unknown;
-  const std::uintmax_t size_bytes = std::filesystem::file_size(path, unknown);
-  return !unknown && size_bytes < kShort_bytes ? std::launch::deferred : std::launch::async;
-}
-
 GapEvidence Measure(const GapRequest& request) {
   GapEvidence evidence{
       .options = request.options, .tag_offset_m = request.tag_offset_m, .sim_path = request.sim};
-  std::vector<std::future<trajectory::Log>> reals;
-  for (const std::string& path : request.reals) {
-    reals.push_back(std::async(LaunchFor(path), [&request, &path] {
-      return LoadLog(path, request.real_format, request.tag_offset_m, "--real-format");
-    }));
-  }
-  trajectory::Log sim = LoadLog(request.sim, request.sim_format);
+  trajectory::Log sim = trajectory::ReadLog(ReadFile(request.sim), request.sim, request.sim_format);
   SayNotes(sim, request.sim, "--sim-format");
   evidence.sim = std::move(sim.trajectory);
-  for (size_t i = 0; i < reals.size(); ++i) {
-    trajectory::Log real = reals[i].get();
-    SayNotes(real, request.reals[i], "--real-format");
-    evidence.trials.push_back(
-        {request.reals[i], gap::Compare(evidence.sim, real.trajectory, request.options)});
+  const sweep::LogOptions real_logs{request.real_format, request.tag_offset_m, "--real-format"};
+  for (const std::string& path : request.reals) {
+    trajectory::Log real = sweep::ReadMovedLog(ReadFile(path), path, real_logs);
+    SayNotes(real, path, "--real-format");
+    evidence.trials.push_back({path, gap::Compare(evidence.sim, real.trajectory, request.options)});
     evidence.reals.push_back(std::move(real.trajectory));
   }
   Judge(evidence);
@@ -83,7 +67,7 @@ GapEvidence Measure(const GapRequest& request) {
 gap::Likeness MeasureRepeats(const GapRequest& request, const GapEvidence& evidence) {
   gap::RepeatedSetting setting{.reals = evidence.reals, .sims = {{evidence.sim}}};
   for (const std::string& path : request.sim_repeats) {
-    trajectory::Log sim = LoadLog(path, request.sim_format);
+    trajectory::Log sim = trajectory::ReadLog(ReadFile(path), path, request.sim_format);
     SayNotes(sim, path, "--sim-format");
     setting.sims.front().push_back(std::move(sim.trajectory));
   }

@@ -41,9 +41,9 @@ std::string Sentence(const char* name, const BothSides& both, double scale, cons
 
 }  // namespace
 
-std::string LikenessText(const std::vector<LikenessRow>& rows) {
+std::string LikenessText(const std::vector<sweep::GroupLikeness>& rows) {
   size_t width = 8;
-  for (const LikenessRow& row : rows) width = std::max(width, row.level.size());
+  for (const sweep::GroupLikeness& row : rows) width = std::max(width, row.level.size());
   std::string text = fmt::format(
       "likeness: simulated / real; a simulator that is like the robot has all ratios at 1\n"
       "{:<{}}  {:>17}  {:>17}  {:>11}  {:>11}  {:>15}  {:>8}  {:>6}\n",
@@ -98,7 +98,7 @@ ordered_json LikenessJson(const gap::Likeness& likeness) {
           {"inside_expected", NumberOrNull(likeness.inside_expected)}};
 }
 
-ordered_json LikenessJson(const std::vector<LikenessRow>& rows) {
+ordered_json LikenessJson(const std::vector<sweep::GroupLikeness>& rows) {
   ordered_json json = ordered_json::object();
   for (const auto& [level, likeness] : rows) {
     ordered_json& entry = json[level] = LikenessJson(likeness.path);

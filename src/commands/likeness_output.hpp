@@ -5,20 +5,14 @@
 #include <vector>
 
 #include "rift/gap/likeness.hpp"
-#include "rift/sweep/calibrate/drive_likeness.hpp"
+#include "rift/sweep/calibrate/sweep_likeness.hpp"
 
 namespace rift::commands {
 
-/// The likeness of one group of settings, such as a surface.
-struct LikenessRow {
-  std::string level;
-  sweep::DriveLikeness likeness;
-};
-
 /// A table for the terminal, a line for each row, with what its columns mean.
-std::string LikenessText(const std::vector<LikenessRow>& rows);
+std::string LikenessText(const std::vector<sweep::GroupLikeness>& rows);
 /// {level: {spread: {sim, real, ratio}, ...}}; null where there is nothing to tell it by.
-nlohmann::ordered_json LikenessJson(const std::vector<LikenessRow>& rows);
+nlohmann::ordered_json LikenessJson(const std::vector<sweep::GroupLikeness>& rows);
 
 /// The same without what only a controller's side can tell: sentences for the terminal.
 std::string LikenessText(const gap::Likeness& likeness);

@@ -10,6 +10,7 @@
 #include "json_fields.hpp"
 #include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/search_space.hpp"
 
 namespace rift::commands {
@@ -57,15 +58,15 @@ std::string SentenceOf(const sweep::RareEvent& event) {
 std::string RareEventInto(const std::filesystem::path& folder,
                           const experiment::Experiment& experiment,
                           const sweep::RareEventOptions& options, FurtherTrials& trials) {
-  const std::vector<experiment::Parameter>& parameters = trials.plan().parameters;
+  const std::vector<experiment::Parameter>& parameters = experiment.space.parameters;
   const std::vector<search::Axis> axes = sweep::AxesOf(parameters);
-  const double threshold_m = trials.plan().gap.threshold_m;
+  const double threshold_m = experiment.gap.threshold_m;
   const auto robustness_m = [&](std::span<const double> unit) {
     const experiment::Theta theta = ThetaAtUnit(parameters, axes, unit);
-    return WorstRobustness_m(trials.Run(sweep::TrialsAt(trials.plan(), theta)), threshold_m);
+    return WorstRobustness_m(trials.Run(sweep::TrialsAt(experiment, theta)), threshold_m);
   };
   trials.Begin(options.samples_per_level * options.most_levels *
-               static_cast<int>(trials.plan().trials.size()));
+               static_cast<int>(experiment.reference.trials.names.size()));
   const sweep::RareEvent event = sweep::EstimateRareEvent(static_cast<int>(parameters.size()),
                                                           robustness_m, experiment.seed, options);
   trials.End();
@@ -79,7 +80,7 @@ std::string RareEventInto(const std::filesystem::path& folder,
       {"is_reached", event.is_reached},
       {"levels", event.levels},
       {"settings", event.evaluations},
-      {"trials_per_setting", trials.plan().trials.size()},
+      {"trials_per_setting", experiment.reference.trials.names.size()},
       {"options", FieldsToJson(options)},
       {"sentence", sentence}};
   WriteFile(folder / "rare_event.json", Dump(json));

@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "files.hpp"
-#include "rift/yaml/enum_name.hpp"
-#include "simulated_runs.hpp"
-#include "sweep_output.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
+#include "rift/sweep/falsify/grid.hpp"
+#include "rift/yaml/enum_name.hpp"
+#include "sweep_output.hpp"
 
 namespace rift::commands {
 namespace {
@@ -21,15 +21,7 @@ sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const Ta
   std::from_chars(text.data(), text.data() + text.size(), seed);
   request.seed = seed;
   for (const experiment::Parameter& parameter : experiment.space.parameters) {
-    const std::string& cell = row.at(parameter.Name());
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
-    const bool is_number =
-        !parameter.IsCategorical() && error == std::errc{} && end == cell.data() + cell.size();
-    request.theta.push_back({cell, is_number ? std::optional(number) : std::nullopt});
-    for (const experiment::ParameterValue& level : parameter.levels) {
-      if (level.text == cell) request.theta.back() = level;
-    }
+    request.theta.push_back(experiment::ParseValue(parameter, row.at(parameter.Name())));
   }
   return request;
 }
@@ -54,15 +46,15 @@ Replay ReplayRow(const std::filesystem::path& folder, const std::string& id) {
     throw std::invalid_argument(
         fmt::format("{}: candidate.kind is logs: there is nothing to simulate again", file));
   }
-  SweepSources sources(experiment, file);
-  sources.LoadLogs();
+  sweep::Evaluator evaluator(experiment, file, FileInputs());
+  evaluator.LoadLogs();
   const sweep::TrialRequest request = RequestOf(experiment, row);
   Replay replay{.experiment = experiment::ExperimentAt(experiment, request.theta)};
   replay.experiment.seed = *request.seed;
-  replay.trial = sources.TrialFor(request, sources.Reference(request));
+  replay.trial = evaluator.TrialFor(request, evaluator.Reference(request));
   replay.run = sweep::Simulate(replay.trial);
-  sweep::SweepResult again = sweep::EmptyResult(sources.Plan());
-  again.rows = {sources.Evaluate(request)};
+  sweep::SweepResult again = sweep::EmptyResult(experiment);
+  again.rows = {evaluator.Evaluate(request)};
   const TableRow made = FirstTableRow(TableCsv(again));
   if (Evidence(made) != Evidence(row)) {
     throw std::runtime_error(fmt::format(

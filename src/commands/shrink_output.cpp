@@ -10,6 +10,7 @@
 #include "rift/report/figures/sweep_figures.hpp"
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/labels.hpp"
 #include "rift/yaml/enum_name.hpp"
 #include "sweep_output.hpp"
@@ -70,7 +71,7 @@ ShrunkRow ShrinkRow(const experiment::Experiment& experiment, const sweep::Sweep
     const std::vector<sweep::TrialRow> rows = trials.Run({At(row, theta)});
     return sweep::Robustness_m(rows, result.gap.threshold_m);
   };
-  ShrunkRow found{.id = index + 1, .nominal = NominalTheta(experiment)};
+  ShrunkRow found{.id = index + 1, .nominal = experiment::NominalTheta(experiment)};
   found.shrunk = sweep::Shrink(result.parameters, found.nominal, row.theta, robustness_m, options);
   std::vector<sweep::TrialRequest> requests{At(row, row.theta), At(row, found.shrunk.theta)};
   for (const int i : found.shrunk.changed) {
@@ -173,7 +174,7 @@ std::string ShrinkInto(const std::filesystem::path& folder,
   const int index = IndexOf(result, row);
   RequireFailure(result, index, row);
   const ShrunkRow found = ShrinkRow(experiment, result, index, options, trials);
-  sweep::SweepResult table = sweep::EmptyResult(trials.plan());
+  sweep::SweepResult table = sweep::EmptyResult(experiment);
   table.rows = found.rows;
   WriteFile(folder / "shrunk" / "experiment.yaml", experiment::WriteExperiment(experiment));
   WriteFile(folder / "shrunk" / "table.csv", TableCsv(table));

@@ -11,12 +11,12 @@
 #include "outputs.hpp"
 #include "replay.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/yaml/set_value.hpp"
 #include "simulate_output.hpp"
 #include "simulate_pictures.hpp"
 #include "simulate_twin.hpp"
-#include "simulated_runs.hpp"
 #include "trial_output.hpp"
 
 namespace rift::commands {
@@ -130,7 +130,8 @@ Run SimulateFile(const SimulateRequest& request) {
   const experiment::Experiment& experiment = made.experiment;
   made.out = OutputOf(request.out, experiment.name);
   CheckNames(request, made.out, experiment, inputs);
-  made.trial = TrialOf(experiment, {}, experiment.seed, request.experiment);
+  made.trial =
+      sweep::SimulatedTrialOf(experiment, {}, experiment.seed, request.experiment, FileInputs());
   made.trial.start = control::StartPose(experiment.waypoints);
   made.run = sweep::Simulate(made.trial);
   return made;

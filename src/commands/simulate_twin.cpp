@@ -8,11 +8,11 @@
 #include "files.hpp"
 #include "json_fields.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/twin/overhead_camera.hpp"
 #include "rift/twin/twin.hpp"
 #include "rift/vision/camera/camera_file.hpp"
-#include "simulated_runs.hpp"
 #include "stop_signal.hpp"
 
 namespace rift::commands {
@@ -74,7 +74,8 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
             const fs::path& folder) {
   experiment::Experiment as_twin = experiment;
   as_twin.simulation = twin::AsTwin(experiment.simulation, experiment.twin);
-  const sweep::SimulatedTrial trial = TrialOf(as_twin, {}, experiment.seed, experiment_file);
+  const sweep::SimulatedTrial trial =
+      sweep::SimulatedTrialOf(as_twin, {}, experiment.seed, experiment_file, FileInputs());
   vision::SyntheticCameraOptions look = experiment.twin.camera;
   look.shutter_s = as_twin.simulation.mocap.exposure_s;
   const twin::TwinSetup setup{as_twin.simulation,

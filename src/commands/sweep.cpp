@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "rift/sweep/calibrate/identification.hpp"
+#include "calibrate.hpp"
 #include "explanation_output.hpp"
 #include "files.hpp"
 #include "folder_lock.hpp"
@@ -14,13 +14,14 @@
 #include "keys_flag.hpp"
 #include "likeness_output.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/sweep/calibrate/identification.hpp"
+#include "rift/sweep/calibrate/sweep_likeness.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "sweep_explain.hpp"
-#include "rift/sweep/calibrate/sweep_likeness.hpp"
 #include "sweep_output.hpp"
 #include "sweep_report.hpp"
 #include "sweep_run.hpp"
-#include "rift/sweep/falsify/evaluator.hpp"
 #include "sweep_status.hpp"
 
 namespace rift::commands {
@@ -51,32 +52,36 @@ bool LacksSpace(const experiment::Experiment& experiment) {
          experiment.space.parameters.empty();
 }
 
+void CheckFlags(const SweepRequest& request, const experiment::Experiment& experiment) {
+  const bool has_limits = !request.budget.empty() || !request.seconds.empty();
+  if (experiment.goal == experiment::Goal::kGrid && has_limits) {
+    throw std::invalid_argument(
+        fmt::format("{}: goal is grid, which visits every setting: --budget and --seconds limit a "
+                    "search (goal: falsify)",
+                    request.experiment));
+  }
+  if (experiment.goal != experiment::Goal::kCalibrate && !request.write_robot.empty()) {
+    throw std::invalid_argument(request.experiment +
+                                ": --write-robot needs goal: calibrate (configs/calibrate.yaml)");
+  }
+}
+
 /// Budgets become part of the experiment, so that what is saved is what was run.
 experiment::Experiment LoadFor(const SweepRequest& request) {
   std::vector<std::string> overrides = request.overrides;
   if (!request.budget.empty()) overrides.push_back("search.budget=" + request.budget);
   if (!request.seconds.empty()) overrides.push_back("search.max_s=" + request.seconds);
-  return experiment::LoadExperiment(request.experiment, overrides,
-                                    [](const std::string& path) { return ReadFile(path); });
+  const experiment::Experiment experiment = experiment::LoadExperiment(
+      request.experiment, overrides, [](const std::string& path) { return ReadFile(path); });
+  CheckFlags(request, experiment);
+  return experiment;
 }
 
-/// What the process ends with when there is nothing to report on: logs that are not there are bad
-/// input, a robot that never arrives is a result.
-int EndWithoutGap(const SweepRequest& request, const sweep::SweepResult& result) {
-  const std::string message =
-      fmt::format("{}: not one of {} trials could be compared; the first: {}", request.experiment,
-                  result.rows.size(), result.rows.front().reason);
-  if (result.candidate_kind == "logs") throw std::invalid_argument(message);
-  fmt::print(stderr, "rift: {}\n", message);
-  return kNotReached;
-}
-
-void Save(const fs::path& out, const experiment::Experiment& experiment,
-          const SweepSources& sources, const sweep::SweepResult& result) {
-  WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
-  WriteFile(out / "inputs.txt", sources.InputsText());
-  WriteFile(out / "table.csv", TableCsv(result));
-  WriteFile(out / "summary.json", SummaryJson(result));
+/// The experiment as it is swept.
+experiment::Experiment PlanFor(const SweepRequest& request, experiment::Experiment experiment) {
+  if (LacksSpace(experiment)) experiment.space = experiment::PaperSpace();
+  CheckRequest(request.explain, experiment);
+  return experiment;
 }
 
 /// An earlier run's report beside a table without a gap would tell of other trials.
@@ -86,18 +91,37 @@ void RemoveReport(const fs::path& out) {
   }
 }
 
+/// What the process ends with when there is nothing to report on: logs that are not there are bad
+/// input, a robot that never arrives is a result.
+int EndWithoutGap(const SweepRequest& request, const fs::path& out,
+                  const sweep::SweepResult& result) {
+  RemoveReport(out);
+  const std::string message =
+      fmt::format("{}: not one of {} trials could be compared; the first: {}", request.experiment,
+                  result.rows.size(), result.rows.front().reason);
+  if (result.candidate_kind == "logs") throw std::invalid_argument(message);
+  fmt::print(stderr, "rift: {}\n", message);
+  return kNotReached;
+}
+
+void Save(const fs::path& out, const experiment::Experiment& experiment,
+          const sweep::Evaluator& evaluator, const sweep::SweepResult& result) {
+  WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
+  WriteFile(out / "inputs.txt", evaluator.InputsText());
+  WriteFile(out / "table.csv", TableCsv(result));
+  WriteFile(out / "summary.json", SummaryJson(result));
+}
+
 bool IsFalsified(const sweep::SweepResult& result) {
   if (!result.falsification) return result.all.failures > 0;
   return result.falsification->verdict == gap::Verdict::kFalsified;
 }
 
-void RefuseLimitsOfGrid(const SweepRequest& request, experiment::Goal goal) {
-  const bool has_limits = !request.budget.empty() || !request.seconds.empty();
-  if (goal != experiment::Goal::kGrid || !has_limits) return;
-  throw std::invalid_argument(
-      fmt::format("{}: goal is grid, which visits every setting: --budget and --seconds limit a "
-                  "search (goal: falsify)",
-                  request.experiment));
+void NotePlan(const SweepRequest& request, const experiment::Experiment& loaded) {
+  if (LacksSpace(loaded)) {
+    fmt::print(stderr, "note: {} names no space: the paper's grid of surface, v_min and v_max\n",
+               request.experiment);
+  }
 }
 
 void NoteTooFewRepeats(const experiment::Experiment& experiment) {
@@ -113,71 +137,71 @@ void NoteTooFewRepeats(const experiment::Experiment& experiment) {
 }
 
 /// Logs are compared in seconds and keep no journal.
-void SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
+int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
   if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
     fmt::print(stderr, "stopped; nothing was written, and the same command starts over\n");
-    return;
+    return kStopped;
   }
   fmt::print(stderr, "stopped; the same command goes on where it was (rift sweep --status {})\n",
              out.string());
+  return kStopped;
+}
+
+void SaveReport(const fs::path& out, const sweep::SweepResult& result,
+                const sweep::Explanation& explanation,
+                const std::vector<sweep::GroupLikeness>& likeness, sweep::Evaluator& evaluator) {
+  WriteFile(out / "explanation.json", ExplanationJson(result, explanation));
+  WriteSweepReport(out, result, explanation, evaluator);
+  if (!likeness.empty()) WriteFile(out / "likeness.json", Dump(LikenessJson(likeness)));
+}
+
+void Print(const SweepRequest& request, const sweep::SweepResult& result,
+           const sweep::Explanation& explanation,
+           const std::vector<sweep::GroupLikeness>& likeness) {
+  if (request.json) {
+    fmt::print("{}", SummaryJson(result));
+    return;
+  }
+  fmt::print("{}", SweepText(result));
+  if (!likeness.empty()) fmt::print("\n{}", LikenessText(likeness));
+  fmt::print("{}", ExplanationText(result, explanation, request.explain.suggest > 0));
+}
+
+int CalibrateFor(const SweepRequest& request, const experiment::Experiment& experiment) {
+  const fs::path out = OutputOf(request.out, experiment.name);
+  const FolderLock lock(out);
+  return Calibrate(experiment, {request.experiment, out, request.write_robot, request.jobs,
+                                request.quiet, request.json});
 }
 
 int Sweep(const SweepRequest& request) {
-  experiment::Experiment experiment = LoadFor(request);
-  RefuseLimitsOfGrid(request, experiment.goal);
-  if (experiment.goal == experiment::Goal::kCalibrate) {
-    const fs::path folder = OutputOf(request.out, experiment.name);
-    const FolderLock alone(folder);
-    return Calibrate(experiment, {request.experiment, folder, request.write_robot, request.jobs,
-                                  request.quiet, request.json});
-  }
-  if (!request.write_robot.empty()) {
-    throw std::invalid_argument(request.experiment +
-                                ": --write-robot needs goal: calibrate (configs/calibrate.yaml)");
-  }
-  const bool lacks_space = LacksSpace(experiment);
-  if (lacks_space) experiment.space = experiment::PaperSpace();
-  CheckRequest(request.explain, experiment);
-  SweepSources sources(experiment, request.experiment);
-  if (lacks_space) {
-    fmt::print(stderr, "note: {} names no space: the paper's grid of surface, v_min and v_max\n",
-               request.experiment);
-  }
+  const experiment::Experiment loaded = LoadFor(request);
+  if (loaded.goal == experiment::Goal::kCalibrate) return CalibrateFor(request, loaded);
+
+  const experiment::Experiment experiment = PlanFor(request, loaded);
+  sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
+  NotePlan(request, loaded);
   NoteTooFewRepeats(experiment);
+
   const fs::path out = OutputOf(request.out, experiment.name);
   const FolderLock lock(out);
-  const std::optional<sweep::SweepResult> result =
-      RunSweep(experiment, sources,
-               {.out = out,
-                .jobs = request.jobs,
-                .fresh = request.fresh,
-                .progress = StyleFor(request.quiet, request.json_progress)});
-  if (!result) {
-    SayStopped(experiment, out);
-    return kStopped;
-  }
-  Save(out, experiment, sources, *result);
-  if (result->all.n == 0) {
-    RemoveReport(out);
-    return EndWithoutGap(request, *result);
-  }
-  const sweep::Explanation explanation = sweep::Explain(*result, OptionsFor(request.explain));
-  WriteFile(out / "explanation.json", ExplanationJson(*result, explanation));
-  WriteSweepReport(out, *result, explanation, experiment, sources);
-  const std::vector<LikenessRow> likeness = MeasureSweepLikeness(experiment, sources);
-  if (!likeness.empty()) WriteFile(out / "likeness.json", Dump(LikenessJson(likeness)));
-  fmt::print("{}", request.json ? SummaryJson(*result) : SweepText(*result));
-  if (!likeness.empty() && !request.json) fmt::print("\n{}", LikenessText(likeness));
-  if (!request.json) {
-    fmt::print("{}", ExplanationText(*result, explanation, request.explain.suggest > 0));
-  }
-  const std::optional<std::string> further =
-      SpendTrials(out, experiment, *result, request.explain, sources,
-                  {request.jobs, StyleFor(request.quiet, request.json_progress)});
-  if (!further) return kStopped;
-  if (!request.json) fmt::print("{}", *further);
+  const ProgressStyle progress = StyleFor(request.quiet, request.json_progress);
+  const std::optional<sweep::SweepResult> judged =
+      RunSweep(evaluator, {out, request.jobs, request.fresh, progress});
+  if (!judged) return SayStopped(experiment, out);
+  Save(out, experiment, evaluator, *judged);
+  if (judged->all.n == 0) return EndWithoutGap(request, out, *judged);
+
+  const sweep::Explanation explanation = sweep::Explain(*judged, OptionsFor(request.explain));
+  const std::vector<sweep::GroupLikeness> likeness = sweep::MeasureSweepLikeness(evaluator);
+  SaveReport(out, *judged, explanation, likeness, evaluator);
+  Print(request, *judged, explanation, likeness);
+
+  const bool is_done =
+      SpendTrials(out, *judged, request.explain, evaluator, {request.jobs, progress}, request.json);
+  if (!is_done) return kStopped;
   if (!request.quiet) fmt::print(stderr, "report: {}\n", (out / "report.html").string());
-  return request.exit_code && IsFalsified(*result) ? kFalsified : kDone;
+  return request.exit_code && IsFalsified(*judged) ? kFalsified : kDone;
 }
 
 void AddOptions(CLI::App& app, SweepRequest& request) {

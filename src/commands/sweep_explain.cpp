@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <optional>
+#include <cstdio>
 #include <stdexcept>
 
 #include "further_trials.hpp"
@@ -69,15 +69,15 @@ sweep::ExplainOptions OptionsFor(const ExplainRequest& request) {
 
 std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& result,
                                                     const sweep::Explanation& explanation,
-                                                    SweepSources& sources) {
+                                                    sweep::Evaluator& evaluator) {
   std::vector<report::TypicalFailure> failures;
   for (size_t kind = 0; kind < explanation.clusters.size(); ++kind) {
     const int index = explanation.clusters[kind].rows.front();
     const sweep::TrialRow& row = result.rows.at(index);
     if (!row.IsOk()) continue;  // it ended early: there is no path to hold against the other
     const sweep::TrialRequest request{.theta = row.theta, .trial = row.trial, .seed = row.seed};
-    const sweep::Recording reference = Finished(sources.Reference(request));
-    const sweep::Recording candidate = Finished(sources.Candidate(request, reference));
+    const sweep::Recording reference = Finished(evaluator.Reference(request));
+    const sweep::Recording candidate = Finished(evaluator.Candidate(request, reference));
     const std::string name = result.reference_kind == "logs"      ? "robot"
                              : result.reference_kind == "nominal" ? "nominal run"
                                                                   : "waypoint path";
@@ -103,15 +103,14 @@ std::string GapFlags(const experiment::Experiment& experiment) {
   return flags + ChangedGapFlags(experiment.gap);
 }
 
-std::optional<std::string> SpendTrials(const std::filesystem::path& folder,
-                                       const experiment::Experiment& experiment,
-                                       const sweep::SweepResult& result,
-                                       const ExplainRequest& request, SweepSources& sources,
-                                       const FurtherTrials::Style& style) {
+bool SpendTrials(const std::filesystem::path& folder, const sweep::SweepResult& result,
+                 const ExplainRequest& request, sweep::Evaluator& evaluator,
+                 const FurtherTrials::Style& style, bool is_silent) {
   const bool is_asked = !request.shrink.empty() || request.rare_event;
-  if (!is_asked) return "";
+  if (!is_asked) return true;
+  const experiment::Experiment& experiment = evaluator.experiment();
   const StopSignal stop;
-  FurtherTrials trials(sources, experiment, style, stop);
+  FurtherTrials trials(evaluator, style, stop);
   std::string text;
   try {
     if (!request.shrink.empty()) {
@@ -121,9 +120,10 @@ std::optional<std::string> SpendTrials(const std::filesystem::path& folder,
     if (request.rare_event)
       text += RareEventInto(folder, experiment, request.rare_event_options, trials);
   } catch (const FurtherTrials::Stopped&) {
-    return std::nullopt;
+    return false;
   }
-  return text;
+  if (!is_silent) fmt::print("{}", text);
+  return true;
 }
 
 }  // namespace rift::commands

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,20 +34,18 @@ sweep::ExplainOptions OptionsFor(const ExplainRequest& request);
 /// Paths of a typical failure of each kind, for the page.
 std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& result,
                                                     const sweep::Explanation& explanation,
-                                                    SweepSources& sources);
+                                                    sweep::Evaluator& evaluator);
 
 /// How a row of recorded logs is measured again: the flags of `rift gap` behind the two logs. Empty
 /// for simulated candidates, whose rows `rift simulate --replay` drives again.
 std::string GapFlags(const experiment::Experiment& experiment);
 
-/// Does what costs further trials, and returns what it found as text. Shrinks a failure into
-/// shrunk.json and the folder shrunk, whose table holds each trial that the claims rest on;
-/// estimates a rare event into rare_event.json. Nothing when it was told to stop.
+/// Does what costs further trials, and prints what it found unless `is_silent`. Shrinks a failure
+/// into shrunk.json and the folder shrunk, whose table holds each trial that the claims rest on;
+/// estimates a rare event into rare_event.json. False when it was told to stop.
 /// Throws std::invalid_argument when there is no such row, or it does not fail.
-std::optional<std::string> SpendTrials(const std::filesystem::path& folder,
-                                       const experiment::Experiment& experiment,
-                                       const sweep::SweepResult& result,
-                                       const ExplainRequest& request, SweepSources& sources,
-                                       const FurtherTrials::Style& style);
+bool SpendTrials(const std::filesystem::path& folder, const sweep::SweepResult& result,
+                 const ExplainRequest& request, sweep::Evaluator& evaluator,
+                 const FurtherTrials::Style& style, bool is_silent);
 
 }  // namespace rift::commands

@@ -13,13 +13,13 @@ namespace rift::commands {
 namespace {
 
 std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
-                                              SweepSources& sources) {
+                                              sweep::Evaluator& evaluator) {
   const std::optional<int> worst = report::WorstRow(result);
   if (!worst) return std::nullopt;
   const sweep::TrialRow& row = result.rows[*worst];
   const sweep::TrialRequest request{.theta = row.theta, .trial = row.trial, .seed = row.seed};
-  const sweep::Recording reference = sources.Reference(request);
-  const sweep::Recording candidate = sources.Candidate(request, reference);
+  const sweep::Recording reference = evaluator.Reference(request);
+  const sweep::Recording candidate = evaluator.Candidate(request, reference);
   const std::string name =
       result.reference_kind == "logs" ? "robot, trial " + row.trial : result.reference_kind;
   return report::ComparePair("simulator", candidate.trajectory, name, reference.trajectory,
@@ -40,9 +40,8 @@ void RemoveFigures(const std::filesystem::path& folder) {
 }  // namespace
 
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
-                      const sweep::Explanation& explanation,
-                      const experiment::Experiment& experiment, SweepSources& sources) {
-  const report::SweepFigureSet set = report::SweepFigures(result, WorstPair(result, sources));
+                      const sweep::Explanation& explanation, sweep::Evaluator& evaluator) {
+  const report::SweepFigureSet set = report::SweepFigures(result, WorstPair(result, evaluator));
   RemoveFigures(folder / "figures");
   for (const report::Figure& figure : set.figures) {
     const std::filesystem::path path = folder / "figures" / figure.name;
@@ -52,10 +51,10 @@ void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepRes
   for (const report::OmittedFigure& omitted : set.omitted) {
     fmt::print(stderr, "note: {} is not drawn: {}\n", omitted.name, omitted.reason);
   }
-  WriteFile(
-      folder / "report.html",
-      report::RenderPage(result, explanation,
-                         {TypicalFailures(result, explanation, sources), GapFlags(experiment)}));
+  WriteFile(folder / "report.html",
+            report::RenderPage(result, explanation,
+                               {TypicalFailures(result, explanation, evaluator),
+                                GapFlags(evaluator.experiment())}));
 }
 
 }  // namespace rift::commands

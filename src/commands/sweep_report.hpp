@@ -11,7 +11,6 @@ namespace rift::commands {
 /// the paths of the worst trial and of a typical failure of each kind again. Figures that make no
 /// sense for this space are named on stderr.
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
-                      const sweep::Explanation& explanation,
-                      const experiment::Experiment& experiment, SweepSources& sources);
+                      const sweep::Explanation& explanation, sweep::Evaluator& evaluator);
 
 }  // namespace rift::commands

@@ -7,8 +7,8 @@
 #include <cstdlib>
 
 #include "files.hpp"
-#include "rift/sweep/falsify/falsify.hpp"
 #include "rift/sweep/falsify/physics_version.hpp"
+#include "rift/sweep/falsify/sweep.hpp"
 #include "rift/sweep/run/journal.hpp"
 #include "stop_signal.hpp"
 
@@ -16,7 +16,6 @@ namespace rift::commands {
 namespace {
 
 using sweep::Journal;
-using MayStart = std::function<bool(const std::vector<sweep::TrialRequest>&)>;
 
 /// Keys that say when a sweep ends and not what a trial is: a journal goes on with others.
 bool IsFree(const std::string& key) {
@@ -36,31 +35,13 @@ sweep::Facts FactsOf(const experiment::Experiment& experiment) {
   return facts;
 }
 
-SweepSize SizeOf(const experiment::Experiment& experiment, const sweep::GridPlan& plan) {
+SweepSize SizeOf(const experiment::Experiment& experiment) {
   if (experiment.goal != experiment::Goal::kGrid) return {experiment.search.budget, true};
-  double trials = static_cast<double>(plan.trials.size());
-  for (const experiment::Parameter& parameter : plan.parameters) {
+  double trials = static_cast<double>(experiment.reference.trials.names.size());
+  for (const experiment::Parameter& parameter : experiment.space.parameters) {
     trials *= static_cast<double>(parameter.levels.size());
   }
   return {static_cast<int>(trials), false};
-}
-
-std::optional<sweep::SweepResult> RunGoal(const experiment::Experiment& experiment,
-                                          SweepSources& sources, const sweep::RunTrials& run,
-                                          const MayStart& may_start) {
-  const auto noise_floor_m = [&](const experiment::Theta& theta) {
-    return sources.NoiseFloor_m(theta);
-  };
-  switch (experiment.goal) {
-    case experiment::Goal::kGrid:
-      return sweep::SweepGrid(sources.Plan(), run, noise_floor_m);
-    case experiment::Goal::kCalibrate:
-      break;  // has no trials to run one by one: commands/calibrate.cpp
-    case experiment::Goal::kFalsify:
-      return sweep::Falsify(sources.Plan(), experiment.search, experiment.falsify, run, may_start,
-                            noise_floor_m);
-  }
-  throw std::logic_error("a goal without a search");
 }
 
 /// Wall-clock time of a sweep over all its runs, so that one that goes on keeps to its limit.
@@ -91,24 +72,24 @@ class Stopwatch {
   Clock::time_point noted_ = begun_;
 };
 
-std::optional<sweep::SweepResult> RunSimulated(const experiment::Experiment& experiment,
-                                               SweepSources& sources,
+std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
                                                const SweepRunRequest& request,
                                                SweepProgress& progress, const StopSignal& stop) {
+  const experiment::Experiment& experiment = evaluator.experiment();
   const std::filesystem::path file = request.out / kJournalName;
   if (request.fresh) Journal::Remove(file);
   Journal journal(file, FactsOf(experiment));
   WriteFile(request.out / "experiment.yaml", experiment::WriteExperiment(experiment));
-  sources.LoadLogs();  // now, since workers are copies of what is there when they start
+  evaluator.LoadLogs();  // now, since workers are copies of what is there when they start
   journal.SetNote("name", experiment.name);
-  const SweepSize size = SizeOf(experiment, sources.Plan());
+  const SweepSize size = SizeOf(experiment);
   journal.SetNote(size.is_settings ? "most_settings" : "most_trials", std::to_string(size.most));
   journal.SetNote("state", "running");
   journal.Commit();
   Stopwatch watch(journal);
   sweep::TrialRunner runner(
-      [&](const sweep::TrialRequest& trial) { return sources.Evaluate(trial); },
-      [&](const sweep::TrialRequest& trial) { return sources.KeyOf(trial); }, &journal,
+      [&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
+      [&](const sweep::TrialRequest& trial) { return evaluator.KeyOf(trial); }, &journal,
       request.jobs, experiment.run,
       {[&](const sweep::TrialRow& row, bool from_journal) { progress.Seen(row, from_journal); },
        [&] {
@@ -116,12 +97,12 @@ std::optional<sweep::SweepResult> RunSimulated(const experiment::Experiment& exp
          watch.Note();
          return !stop.IsAsked();
        }});
-  const MayStart may_start = [&](const std::vector<sweep::TrialRequest>& trials) {
+  const sweep::MayStart may_start = [&](const std::vector<sweep::TrialRequest>& trials) {
     const double limit_s = experiment.search.max_s;
     return limit_s == 0.0 || watch.Elapsed_s() < limit_s || runner.HasAll(trials);
   };
-  std::optional<sweep::SweepResult> result = RunGoal(
-      experiment, sources,
+  std::optional<sweep::SweepResult> result = sweep::Sweep(
+      evaluator,
       [&](std::vector<sweep::TrialRequest> trials) { return runner.Run(std::move(trials)); },
       may_start);
   watch.Note(true);
@@ -138,22 +119,22 @@ int CoresToUse() {
   return ::sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
 }
 
-std::optional<sweep::SweepResult> RunSweep(const experiment::Experiment& experiment,
-                                           SweepSources& sources, const SweepRunRequest& request) {
+std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
+                                           const SweepRunRequest& request) {
   const StopSignal stop;
-  SweepProgress progress(request.progress, SizeOf(experiment, sources.Plan()));
+  SweepProgress progress(request.progress, SizeOf(evaluator.experiment()));
   std::optional<sweep::SweepResult> result;
-  if (experiment.candidate.kind == experiment::CandidateKind::kSimulation) {
-    result = RunSimulated(experiment, sources, request, progress, stop);
+  if (evaluator.experiment().candidate.kind == experiment::CandidateKind::kSimulation) {
+    result = RunSimulated(evaluator, request, progress, stop);
   } else {
     const sweep::RunTrials run =
-        sweep::RunHere([&](const sweep::TrialRequest& trial) { return sources.Evaluate(trial); },
+        sweep::RunHere([&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
                        {[&](const sweep::TrialRow& row, bool) { progress.Seen(row, false); },
                         [&] {
                           progress.Tick();
                           return !stop.IsAsked();
                         }});
-    result = RunGoal(experiment, sources, run, [](const auto&) { return true; });
+    result = sweep::Sweep(evaluator, run, [](const auto&) { return true; });
   }
   progress.End(result ? "done" : "stopped");
   return result;

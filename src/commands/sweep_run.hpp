@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "sweep_progress.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
+#include "sweep_progress.hpp"
 
 namespace rift::commands {
 
@@ -23,7 +23,7 @@ int CoresToUse();
 
 /// Runs what the experiment asks for; simulated trials go through worker processes and the journal
 /// in the folder. Nothing when it was stopped: the same call goes on.
-std::optional<sweep::SweepResult> RunSweep(const experiment::Experiment& experiment,
-                                           SweepSources& sources, const SweepRunRequest& request);
+std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
+                                           const SweepRunRequest& request);
 
 }  // namespace rift::commands

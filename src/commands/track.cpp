@@ -8,9 +8,9 @@
 #include "files.hpp"
 #include "flags.hpp"
 #include "keys_flag.hpp"
-#include "logs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/experiment/experiment.hpp"
+#include "rift/trajectory/log.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/yaml/enum_name.hpp"
 #include "stop_signal.hpp"
@@ -51,7 +51,7 @@ TrackView::Content ContentOf(const TrackRequest& request) {
   TrackView::Content content{.record_to = request.record_waypoints};
   if (request.path.empty()) return content;
   if (fs::path(request.path).extension() == ".csv") {
-    const trajectory::Log log = LoadLog(request.path, trajectory::Format::kAuto);
+    const trajectory::Log log = trajectory::ReadLog(ReadFile(request.path), request.path);
     for (const auto& pose : log.trajectory.poses) content.path_m.push_back(pose.Position());
     return content;
   }

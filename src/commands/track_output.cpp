@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "input_hashes.hpp"
+#include "files.hpp"
 #include "json_fields.hpp"
+#include "rift/sweep/run/content_hash.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
@@ -72,14 +73,12 @@ ordered_json SpanJson(const std::vector<double>& values) {
 
 std::string TrackJson(const TrackRequest& request, const vision::CameraModel& camera,
                       const experiment::TrackOptions& options, const TrackRun& run, int rows) {
-  InputHashes hashes;
-  hashes.Add(request.calibration);
   ordered_json json{
       {"rift_version", RIFT_VERSION},
       {"camera", request.camera},
       {"recording", run.is_recording},
       {"calibration", request.calibration},
-      {"calibration_hash", hashes.Of(request.calibration)},
+      {"calibration_hash", sweep::ContentHash(ReadFile(request.calibration))},
       {"width_px", camera.width_px},
       {"height_px", camera.height_px},
       {"frame", FrameJson(camera)},

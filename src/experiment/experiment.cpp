@@ -168,6 +168,15 @@ Experiment ExperimentAt(const Experiment& experiment, const std::vector<Paramete
   return at;
 }
 
+Theta NominalTheta(const Experiment& experiment) {
+  const std::map<std::string, std::string> values = FlatValues(experiment);
+  Theta theta;
+  for (const Parameter& parameter : experiment.space.parameters) {
+    theta.push_back(ParseValue(parameter, values.at(parameter.key)));
+  }
+  return theta;
+}
+
 Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>& values) {
   std::vector<yaml::KeyValue> pairs;
   for (size_t i = 0; i < values.size(); ++i) {

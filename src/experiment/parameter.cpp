@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <stdexcept>
 
 namespace rift::experiment {
@@ -19,6 +20,17 @@ std::string Parameter::Name() const { return key.substr(key.rfind('.') + 1); }
 bool Parameter::IsCategorical() const {
   return std::any_of(levels.begin(), levels.end(),
                      [](const ParameterValue& level) { return !level.number; });
+}
+
+ParameterValue ParseValue(const Parameter& parameter, const std::string& text) {
+  for (const ParameterValue& level : parameter.levels) {
+    if (level.text == text) return level;
+  }
+  double number = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  const bool is_number = !parameter.IsCategorical() && error == std::errc{} && stop == end;
+  return {text, is_number ? std::optional(number) : std::nullopt};
 }
 
 Space PaperSpace() {

@@ -39,13 +39,10 @@ std::vector<sweep::TrialRequest> Requests(int count) {
 
 /// A row such as a simulated trial gives, after 10 ms of work.
 sweep::TrialRow TenMilliseconds(const sweep::TrialRequest& request) {
-  static const sweep::GridPlan plan;
+  static const experiment::Experiment plan;
   const double end_s = CpuSeconds() + 0.01;
-  const auto path = [](const sweep::TrialRequest&) {
-    return sweep::Recording{.source = "path", .trajectory = test::StraightPath(0.7, 40)};
-  };
-  sweep::TrialRow row = sweep::CompareTrial(
-      plan, request, [&](const auto& of, const auto&) { return path(of); }, path);
+  const sweep::Recording path{.source = "path", .trajectory = test::StraightPath(0.7, 40)};
+  sweep::TrialRow row = sweep::CompareTrial(plan, request, path, path);
   while (CpuSeconds() < end_s) {
   }
   return row;

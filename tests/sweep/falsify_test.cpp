@@ -16,7 +16,15 @@ const std::vector<experiment::Parameter> kSpace{
     {.key = "control.order", .levels = {{"0.5", 0.5}, {"0.1", 0.1}, {"0.3", 0.3}}},
     {.key = "surface", .levels = {{"ground", {}}, {"ice", {}}}}};
 
-GridPlan Plan() { return {.name = "test", .parameters = kSpace, .trials = {"1"}, .seed = 1}; }
+experiment::Experiment Plan(const SearchPlan& search = {}, const FalsifyOptions& options = {}) {
+  experiment::Experiment plan;
+  plan.name = "test";
+  plan.goal = experiment::Goal::kFalsify;
+  plan.space.parameters = kSpace;
+  plan.search = search;
+  plan.falsify = options;
+  return plan;
+}
 
 /// Fails on ice at a high v_min, by a margin above the noise only near the corner.
 TrialRow Simulated(const TrialRequest& request) {
@@ -37,9 +45,8 @@ TrialRow Simulated(const TrialRequest& request) {
 
 std::optional<SweepResult> Search(const SearchPlan& search, const FalsifyOptions& options = {},
                                   const Watch& watch = {}) {
-  return Falsify(
-      Plan(), search, options, RunHere(Simulated, watch), [](const auto&) { return true; },
-      [](const experiment::Theta&) { return gap::kNotComputed; });
+  return Falsify(Plan(search, options), RunHere(Simulated, watch),
+                 [](const auto&) { return true; });
 }
 
 SearchPlan Budget(int budget, search::Method method = search::Method::kPortfolio) {
@@ -107,10 +114,9 @@ TEST_CASE("The same seed gives the same search and its rows say when they are ra
 
 TEST_CASE("Time that is up ends a search before the next batch") {
   int batches = 0;
-  const std::optional<SweepResult> result = Falsify(
-      Plan(), Budget(500, search::Method::kRandom), {.until = Until::kBudget},
-      RunHere(Simulated, {}), [&](const auto&) { return ++batches <= 2; },
-      [](const experiment::Theta&) { return gap::kNotComputed; });
+  const std::optional<SweepResult> result =
+      Falsify(Plan(Budget(500, search::Method::kRandom), {.until = Until::kBudget}),
+              RunHere(Simulated, {}), [&](const auto&) { return ++batches <= 2; });
   REQUIRE(result);
   CHECK(result->falsification->ended == "the time");
   CHECK(result->falsification->evaluations == 16);
@@ -171,21 +177,19 @@ TEST_CASE("A fall tells only where falls count") {
 }
 
 TEST_CASE("A search over logs or over nothing is refused") {
-  GridPlan plan = Plan();
+  experiment::Experiment plan = Plan(Budget(10));
   const auto refusal = [&]() -> std::string {
     try {
-      Falsify(
-          plan, Budget(10), {}, RunHere(Simulated, {}), [](const auto&) { return true; },
-          [](const experiment::Theta&) { return 0.0; });
+      Falsify(plan, RunHere(Simulated, {}), [](const auto&) { return true; });
     } catch (const std::invalid_argument& error) {
       return error.what();
     }
     return "accepted";
   };
-  plan.seed.reset();
+  plan.candidate.kind = experiment::CandidateKind::kLogs;
   CHECK(refusal().find("only simulated trials") != std::string::npos);
-  plan = Plan();
-  plan.parameters.clear();
+  plan = Plan(Budget(10));
+  plan.space.parameters.clear();
   CHECK(refusal().find("no parameters") != std::string::npos);
 }
 

@@ -1,5 +1,7 @@
 #include "rift/sweep/falsify/grid.hpp"
 
+#include "rift/sweep/falsify/evaluator.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -14,7 +16,21 @@ const std::vector<experiment::Parameter> kParameters{
     {.key = "surface", .levels = {{"ground", {}}, {"ice", {}}}},
     {.key = "control.v_min", .levels = {{"0.15", 0.15}, {"0.2", 0.2}}}};
 
-GridPlan Plan() { return {.name = "test", .parameters = kParameters, .trials = {"1", "2"}}; }
+experiment::Experiment Plan() {
+  experiment::Experiment plan;
+  plan.name = "test";
+  plan.candidate.kind = experiment::CandidateKind::kLogs;
+  plan.space.parameters = kParameters;
+  plan.reference.trials.names = {"1", "2"};
+  return plan;
+}
+
+experiment::Experiment WithPaths(experiment::Experiment plan, const std::string& candidate,
+                                 const std::string& reference) {
+  plan.candidate.path.text = candidate;
+  plan.reference.path.text = reference;
+  return plan;
+}
 
 Recording Simulated(const TrialRequest&, const Recording&) {
   return {.source = "simulator", .trajectory = test::StraightPath(0.7, 40)};
@@ -27,12 +43,14 @@ Recording Real(const TrialRequest& request) {
           .trajectory = test::Moved(test::StraightPath(0.7, 40), {0.0, offset_m, 0.0})};
 }
 
-SweepResult CompareGrid(const GridPlan& plan, const Candidate& candidate,
+template <class Candidate, class Reference>
+SweepResult CompareGrid(const experiment::Experiment& plan, const Candidate& candidate,
                         const Reference& reference) {
   const auto evaluate = [&](const TrialRequest& request) {
-    return CompareTrial(plan, request, candidate, reference);
+    const Recording real = reference(request);
+    return CompareTrial(plan, request, candidate(request, real), real);
   };
-  return *SweepGrid(plan, RunHere(evaluate, {}), [](const experiment::Theta&) { return 0.03; });
+  return *SweepGrid(plan, RunHere(evaluate, {}));
 }
 
 template <class Call>
@@ -94,7 +112,6 @@ TEST_CASE("Every trial of every setting is a row with its gap") {
   CHECK(result.rows[1].falsified);
   REQUIRE(result.settings.size() == 4);
   CHECK(result.settings[0].verdict.verdict == gap::Verdict::kUndecided);
-  CHECK(result.settings[0].noise_floor_m == Approx(0.03));
 }
 
 TEST_CASE("A trial without a trajectory is a row with its status and not a smaller table") {
@@ -126,28 +143,29 @@ TEST_CASE("A candidate can start where its reference did") {
 }
 
 TEST_CASE("Two settings that name the same logs are refused") {
-  GridPlan plan = Plan();
-  plan.parameters[1].levels = {{"0.15", 0.15}, {"0.151", 0.151}};
+  experiment::Experiment plan = Plan();
+  plan.space.parameters[1].levels = {{"0.15", 0.15}, {"0.151", 0.151}};
   CHECK(Refusal([&] {
-          CheckPaths(plan, {"{surface}/{v_min:.2f}_sim.csv", "{surface}/{v_min:.2f}_{trial}.csv"});
+          CheckPaths(WithPaths(plan, "{surface}/{v_min:.2f}_sim.csv",
+                               "{surface}/{v_min:.2f}_{trial}.csv"));
         }) ==
         "two settings name the same logs, surface ground, v_min 0.15 and surface ground, v_min "
         "0.151: give the path templates more digits (ground/0.15_1.csv)");
-  CHECK_NOTHROW(
-      CheckPaths(plan, {"{surface}/{v_min:.2f}_sim.csv", "{surface}/{v_min}_{trial}.csv"}));
+  CHECK_NOTHROW(CheckPaths(
+      WithPaths(plan, "{surface}/{v_min:.2f}_sim.csv", "{surface}/{v_min}_{trial}.csv")));
 }
 
 TEST_CASE("A parameter that no path names is refused") {
-  const LogPaths paths{"{surface}/{v_min}_sim.csv", "{surface}/{v_min}_{trial}.csv"};
-  CHECK_NOTHROW(CheckPaths(Plan(), paths));
-  GridPlan plan = Plan();
-  plan.parameters.push_back({.key = "v_max", .levels = {{"0.3", 0.3}}});
-  CHECK(Refusal([&] { CheckPaths(plan, paths); }) ==
+  const std::string candidate = "{surface}/{v_min}_sim.csv";
+  const std::string reference = "{surface}/{v_min}_{trial}.csv";
+  CHECK_NOTHROW(CheckPaths(WithPaths(Plan(), candidate, reference)));
+  experiment::Experiment plan = Plan();
+  plan.space.parameters.push_back({.key = "v_max", .levels = {{"0.3", 0.3}}});
+  CHECK(Refusal([&] { CheckPaths(WithPaths(plan, candidate, reference)); }) ==
         "space.v_max is in neither candidate.path nor reference.path as {v_max}: they name "
         "{surface}, {trial}, {v_min}");
-  CHECK(Refusal([&] {
-          CheckPaths(Plan(), {paths.candidate, "{surface}/{v_min}.csv"});
-        }) == "reference.trials asks for repeats, and no path names {trial} to tell them apart");
+  CHECK(Refusal([&] { CheckPaths(WithPaths(Plan(), candidate, "{surface}/{v_min}.csv")); }) ==
+        "reference.trials asks for repeats, and no path names {trial} to tell them apart");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "support/paths.hpp"
@@ -17,27 +18,25 @@
 namespace rift::sweep {
 namespace {
 
-GridPlan Plan() {
-  return {.name = "trouble",
-          .candidate_kind = "simulation",
-          .reference_kind = "path",
-          .parameters = {{.key = "case",
-                          .levels = {{"fine", {}},
-                                     {"hangs", {}},
-                                     {"segfaults", {}},
-                                     {"nan", {}},
-                                     {"eats", {}},
-                                     {"throws", {}},
-                                     {"wide", {}}}}},
-          .trials = {"1", "2"},
-          .seed = 7};
+experiment::Experiment Plan() {
+  experiment::Experiment plan;
+  plan.name = "trouble";
+  plan.space.parameters = {{.key = "case",
+                            .levels = {{"fine", {}},
+                                       {"hangs", {}},
+                                       {"segfaults", {}},
+                                       {"nan", {}},
+                                       {"eats", {}},
+                                       {"throws", {}},
+                                       {"wide", {}}}}};
+  plan.reference.trials.names = {"1", "2"};
+  plan.seed = 7;
+  return plan;
 }
 
-Recording Straight(const TrialRequest&) {
-  return {.source = "path", .trajectory = test::StraightPath(0.7, 40)};
-}
+Recording Straight() { return {.source = "path", .trajectory = test::StraightPath(0.7, 40)}; }
 
-Recording Troubled(const TrialRequest& request, const Recording&) {
+Recording Troubled(const TrialRequest& request) {
   const std::string& what = request.theta[0].text;
   if (what == "hangs") ::sleep(1000);
   if (what == "segfaults") std::raise(SIGSEGV);
@@ -52,20 +51,18 @@ Recording Troubled(const TrialRequest& request, const Recording&) {
 }
 
 TrialRow Evaluated(const TrialRequest& request) {
-  return CompareTrial(Plan(), request, Troubled, Straight);
+  return CompareTrial(Plan(), request, Troubled(request), Straight());
 }
 
 std::string KeyOf(const TrialRequest& request) {
   return request.theta[0].text + " " + request.trial + " " + std::to_string(*request.seed);
 }
 
-double NoFloor(const experiment::Theta&) { return gap::kNotComputed; }
-
 SweepResult SweepWith(int workers, Journal* journal, const Watch& watch = {}) {
   TrialRunner runner(Evaluated, KeyOf, journal, workers, {.timeout_s = 2.0, .memory_mb = 32},
                      watch);
   const auto run = [&](std::vector<TrialRequest> all) { return runner.Run(std::move(all)); };
-  std::optional<SweepResult> result = SweepGrid(Plan(), run, NoFloor);
+  std::optional<SweepResult> result = SweepGrid(Plan(), run);
   REQUIRE(result);
   return *result;
 }
@@ -111,12 +108,12 @@ TEST_CASE("A sweep with planted trouble ends and each trouble is a row with its 
 
 TEST_CASE("A search with planted trouble ends and trouble is neither a failure nor a pass") {
   TrialRunner runner(Evaluated, KeyOf, nullptr, 2, {.timeout_s = 1.0, .memory_mb = 32}, {});
-  SearchPlan search;
-  search.budget = 20;  // the space has 7 settings
+  experiment::Experiment plan = Plan();
+  plan.search.budget = 20;  // the space has 7 settings
+  plan.falsify.until = Until::kBudget;
   const std::optional<SweepResult> result = Falsify(
-      Plan(), search, {.until = Until::kBudget},
-      [&](std::vector<TrialRequest> all) { return runner.Run(std::move(all)); },
-      [](const auto&) { return true; }, NoFloor);
+      plan, [&](std::vector<TrialRequest> all) { return runner.Run(std::move(all)); },
+      [](const auto&) { return true; });
   REQUIRE(result);
   REQUIRE(result->settings.size() == 7);
   const Falsification& found = *result->falsification;
@@ -137,14 +134,13 @@ TEST_CASE("A search with planted trouble ends and trouble is neither a failure n
 }
 
 TEST_CASE("The rows of a sweep are the same for one worker and for two and for none") {
-  GridPlan plan = Plan();
-  plan.parameters[0].levels = {{"fine", {}}, {"wide", {}}};
+  experiment::Experiment plan = Plan();
+  plan.space.parameters[0].levels = {{"fine", {}}, {"wide", {}}};
   const auto sweep_of = [&](int workers) {
     TrialRunner runner(Evaluated, KeyOf, nullptr, workers, {}, {});
-    return *SweepGrid(
-        plan, [&](auto all) { return runner.Run(std::move(all)); }, NoFloor);
+    return *SweepGrid(plan, [&](auto all) { return runner.Run(std::move(all)); });
   };
-  const SweepResult here = *SweepGrid(plan, RunHere(Evaluated, {}), NoFloor);
+  const SweepResult here = *SweepGrid(plan, RunHere(Evaluated, {}));
   CHECK(SameRows(sweep_of(1), here));
   CHECK(SameRows(sweep_of(2), here));
   CHECK(SameRows(SweepWith(1, nullptr), SweepWith(2, nullptr)));
@@ -176,8 +172,7 @@ TEST_CASE("A sweep that is stopped goes on with the trials that are missing") {
     };
     watch.go_on = [&] { return computed.size() < enough; };
     TrialRunner runner(Evaluated, KeyOf, &journal, 2, {.timeout_s = 2.0, .memory_mb = 32}, watch);
-    return SweepGrid(
-        Plan(), [&](auto all) { return runner.Run(std::move(all)); }, NoFloor);
+    return SweepGrid(Plan(), [&](auto all) { return runner.Run(std::move(all)); });
   };
   CHECK_FALSE(run_until(3));
   CHECK(computed.size() >= 3);

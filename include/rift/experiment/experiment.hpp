@@ -82,6 +82,9 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
 /// parameter was written, when a value breaks a rule.
 Experiment ExperimentAt(const Experiment& experiment, const std::vector<ParameterValue>& theta);
 
+/// The experiment's own values of its space's parameters.
+Theta NominalTheta(const Experiment& experiment);
+
 /// The experiment with its free parameters (calibrate.fit) at these values, in their order. Throws
 /// Error, naming where the parameter was written, when a value breaks a rule.
 Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>& values);

@@ -36,6 +36,10 @@ struct Parameter {
   bool IsCategorical() const;
 };
 
+/// A value of the parameter as a table or an experiment writes it: the level of that text, else a
+/// number where the text is one and the parameter has no words, else a word.
+ParameterValue ParseValue(const Parameter& parameter, const std::string& text);
+
 /// The axes of the parameter space: `space: {control.v_min: [0.15, 0.20]}`.
 struct Space {
   std::vector<Parameter> parameters;

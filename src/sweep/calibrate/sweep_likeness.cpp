@@ -4,13 +4,11 @@
 #include <set>
 
 #include "rift/experiment/parameter.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/labels.hpp"
 
-namespace rift::commands {
+namespace rift::sweep {
 namespace {
-
-using sweep::RepeatedTrial;
-using sweep::TrialStatus;
 
 struct Labelled {
   std::string level;
@@ -26,21 +24,22 @@ bool HasRepeatedLogs(const experiment::Experiment& experiment) {
 }
 
 /// The trials of one setting. A candidate log that serves all repeats is one run, not several.
-void AddSetting(const experiment::Experiment& experiment, const experiment::Theta& theta,
-                SweepSources& sources, std::vector<Labelled>& trials) {
+void AddSetting(Evaluator& evaluator, const experiment::Theta& theta,
+                std::vector<Labelled>& trials) {
+  const experiment::Experiment& experiment = evaluator.experiment();
   const bool is_simulated = experiment.candidate.kind == experiment::CandidateKind::kSimulation;
   const experiment::Experiment at =
       is_simulated ? experiment::ExperimentAt(experiment, theta) : experiment;
   std::set<std::string> logs;
-  for (const sweep::TrialRequest& request : sweep::TrialsAt(sources.Plan(), theta)) {
-    const sweep::Recording real = sources.Reference(request);
+  for (const TrialRequest& request : TrialsAt(experiment, theta)) {
+    const Recording real = evaluator.Reference(request);
     if (real.status != TrialStatus::kOk) continue;
-    Labelled labelled{sweep::MainLevel(experiment.space.parameters, theta),
-                      {.setting = sweep::SettingKey(theta),
+    Labelled labelled{MainLevel(experiment.space.parameters, theta),
+                      {.setting = SettingKey(theta),
                        .real = real.trajectory,
                        .waypoints = at.waypoints,
                        .control = at.control}};
-    sweep::Recording run = sources.Candidate(request, real);
+    Recording run = evaluator.Candidate(request, real);
     const bool is_new = is_simulated || logs.insert(run.source).second;
     if (run.status != TrialStatus::kOk) {
       ++labelled.trial.failed_runs;
@@ -53,12 +52,12 @@ void AddSetting(const experiment::Experiment& experiment, const experiment::Thet
 
 }  // namespace
 
-std::vector<LikenessRow> MeasureSweepLikeness(const experiment::Experiment& experiment,
-                                              SweepSources& sources) {
+std::vector<GroupLikeness> MeasureSweepLikeness(Evaluator& evaluator) {
+  const experiment::Experiment& experiment = evaluator.experiment();
   if (!HasRepeatedLogs(experiment)) return {};
   std::vector<Labelled> trials;
   for (const experiment::Theta& theta : experiment::GridPoints(experiment.space.parameters)) {
-    AddSetting(experiment, theta, sources, trials);
+    AddSetting(evaluator, theta, trials);
   }
   std::vector<std::string> levels;
   for (const Labelled& trial : trials) {
@@ -68,7 +67,7 @@ std::vector<LikenessRow> MeasureSweepLikeness(const experiment::Experiment& expe
   }
   levels.push_back("all");
   const bool is_matched = experiment.start == experiment::Start::kReference;
-  std::vector<LikenessRow> rows;
+  std::vector<GroupLikeness> rows;
   for (const std::string& level : levels) {
     const bool is_all = &level == &levels.back();
     std::vector<RepeatedTrial> group;
@@ -76,10 +75,10 @@ std::vector<LikenessRow> MeasureSweepLikeness(const experiment::Experiment& expe
       if (is_all || trial.level == level) group.push_back(trial.trial);
     }
     std::mt19937_64 generator(experiment.seed);
-    rows.push_back({level, sweep::MeasureDriveLikeness(group, is_matched, experiment.gap,
-                                                       experiment.likeness, generator)});
+    rows.push_back({level, MeasureDriveLikeness(group, is_matched, experiment.gap,
+                                                experiment.likeness, generator)});
   }
   return rows;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::sweep

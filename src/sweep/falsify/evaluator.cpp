@@ -3,18 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <map>
 #include <set>
 #include <stdexcept>
 
-#include "commands/enum_name.hpp"
-#include "commands/rebuilt_limits.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
+#include "rift/simulation/height_image.hpp"
+#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/labels.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "rift/yaml/error.hpp"
-#include "commands/simulated_runs.hpp"
+#include "rift/yaml/set_value.hpp"
 
-namespace rift::commands {
+namespace rift::sweep {
 namespace {
 
 using experiment::CandidateKind;
@@ -40,25 +44,185 @@ auto InFile(const std::string& experiment_file, Call&& call) {
   }
 }
 
+TrialStatus StatusOf(trial::Outcome outcome) {
+  switch (outcome) {
+    case trial::Outcome::kReached:
+      return TrialStatus::kOk;
+    case trial::Outcome::kTimedOut:
+      return TrialStatus::kTimedOut;
+    case trial::Outcome::kFell:
+      return TrialStatus::kFell;
+    case trial::Outcome::kLeftArena:
+      return TrialStatus::kLeftArena;
+    case trial::Outcome::kLost:
+      return TrialStatus::kLost;
+    case trial::Outcome::kFault:
+      return TrialStatus::kFault;
+  }
+  return TrialStatus::kFault;
+}
+
+/// A finished run as a sweep takes it: its log, or why it is no trajectory to be compared.
+Recording RecordingOf(SimulatedRun run, std::uint64_t seed) {
+  Recording recording{.status = StatusOf(run.result.outcome),
+                      .source = fmt::format("simulation with seed {}", seed),
+                      .limits = run.result.limits};
+  if (recording.status != TrialStatus::kOk) recording.reason = run.result.reason;
+  recording.trajectory = std::move(run.result.trajectory);
+  return recording;
+}
+
+/// Parameters of a sweep over logs name columns and parts of file names; some of them are also keys
+/// of the controller, and these tell how the log was driven.
+control::NavigatorOptions ControllerAt(const experiment::Experiment& experiment,
+                                       const experiment::Theta& theta) {
+  control::NavigatorOptions control = experiment.control;
+  std::vector<yaml::KeyValue> values;
+  for (const std::string& key : yaml::ListKeys(control)) {
+    for (size_t i = 0; i < theta.size(); ++i) {
+      const std::string& name = experiment.space.parameters[i].key;
+      const bool is_meant = theta[i].number && (name == key || name == "control." + key);
+      if (is_meant) values.push_back({key, yaml::Node::Scalar(theta[i].text)});
+    }
+  }
+  yaml::SetValues(control, values);
+  return control;
+}
+
+/// A recorded run with what its controller must have asked for: the experiment's controller, with
+/// those parameters of the setting that name its keys ("v_max"), over the logged poses.
+Recording WithLimits(Recording log, const experiment::Experiment& experiment,
+                     const experiment::Theta& theta, double tag_offset_m) {
+  if (log.status != TrialStatus::kOk) return log;
+  log.limits = RebuildLimits(log.trajectory, ControllerAt(experiment, theta), tag_offset_m);
+  return log;
+}
+
+void Fail(TrialRow& row, const Recording& recording) {
+  row.status = recording.status;
+  // A reader's message begins with the path already.
+  const bool is_named = recording.reason.find(recording.source) != recording.reason.npos;
+  row.reason =
+      is_named ? recording.reason : fmt::format("{}: {}", recording.source, recording.reason);
+}
+
+bool IsFinite(const trajectory::Trajectory& path) {
+  return std::all_of(path.poses.begin(), path.poses.end(), [](const auto& pose) {
+    return std::isfinite(pose.x_m) && std::isfinite(pose.y_m);
+  });
+}
+
+/// A path that never moves is a row of its own, not the sweep's end.
+void Measure(const gap::GapOptions& options, const Recording& candidate, const Recording& reference,
+             TrialRow& row) {
+  if (!IsFinite(candidate.trajectory)) {
+    row.status = TrialStatus::kNan;
+    row.reason = fmt::format("{}: a position is not finite", candidate.source);
+    return;
+  }
+  try {
+    row.comparison = gap::Compare(candidate.trajectory, reference.trajectory, options);
+    row.evidence.fingerprint = Fingerprint(candidate.trajectory);
+    row.evidence.errors_m = ErrorsAlong(candidate.trajectory, reference.trajectory, options);
+  } catch (const std::invalid_argument& no_path) {
+    row.status = TrialStatus::kUnreadable;
+    row.reason =
+        fmt::format("{} against {}: {}", candidate.source, reference.source, no_path.what());
+  }
+}
+
+bool Has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string InBraces(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "{" : ", {") + name + "}";
+  return text.empty() ? "nothing" : text;
+}
+
+/// One log under two settings would be counted twice.
+void RefuseSharedLogs(const experiment::Experiment& experiment) {
+  const std::vector<experiment::Parameter>& parameters = experiment.space.parameters;
+  const auto is_continuous = [](const experiment::Parameter& parameter) {
+    return parameter.IsContinuous();
+  };
+  if (std::any_of(parameters.begin(), parameters.end(), is_continuous)) return;
+  std::map<std::pair<std::string, std::string>, experiment::Theta> seen;
+  for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
+    const std::string& trial = experiment.reference.trials.names.front();
+    const auto fill = [&](const std::string& path) {
+      return experiment::FillTemplate(path, parameters, theta, trial);
+    };
+    const auto [first, is_new] = seen.try_emplace(
+        {fill(experiment.candidate.path.text), fill(experiment.reference.path.text)}, theta);
+    if (is_new) continue;
+    throw std::invalid_argument(fmt::format(
+        "two settings name the same logs, {} and {}: give the path templates more digits ({})",
+        SettingText(parameters, first->second), SettingText(parameters, theta),
+        first->first.second));
+  }
+}
+
 }  // namespace
 
-SweepSources::SweepSources(const experiment::Experiment& experiment, std::string experiment_file)
+void CheckPaths(const experiment::Experiment& experiment) {
+  std::vector<std::string> names = experiment::TemplateNames(experiment.candidate.path.text);
+  const std::vector<std::string> more = experiment::TemplateNames(experiment.reference.path.text);
+  names.insert(names.end(), more.begin(), more.end());
+  for (const experiment::Parameter& parameter : experiment.space.parameters) {
+    if (Has(names, parameter.Name())) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}space.{} is in neither candidate.path nor reference.path as {{{}}}: they name {}",
+        parameter.origin.empty() ? "" : parameter.origin + ": ", parameter.key, parameter.Name(),
+        InBraces({names.begin(), names.end()})));
+  }
+  if (experiment.reference.trials.names.size() > 1 && !Has(names, "trial")) {
+    throw std::invalid_argument(
+        "reference.trials asks for repeats, and no path names {trial} to tell them apart");
+  }
+  RefuseSharedLogs(experiment);
+}
+
+TrialRow CompareTrial(const experiment::Experiment& experiment, const TrialRequest& request,
+                      const Recording& simulated, const Recording& real) {
+  TrialRow row{.theta = request.theta,
+               .trial = request.trial,
+               .seed = request.seed,
+               .is_random_draw = request.is_random_draw};
+  row.candidate = simulated.source;
+  row.reference = real.source;
+  row.evidence.candidate_limits = simulated.limits;
+  row.evidence.reference_limits = real.limits;
+  if (real.status != TrialStatus::kOk) {
+    Fail(row, real);
+  } else if (simulated.status != TrialStatus::kOk) {
+    Fail(row, simulated);
+    row.falsified = experiment.falsify.falls_count && simulated.status == TrialStatus::kFell;
+  } else {
+    Measure(experiment.gap, simulated, real, row);
+    row.falsified = row.comparison.gap_m > experiment.gap.threshold_m;
+  }
+  return row;
+}
+
+Evaluator::Evaluator(const experiment::Experiment& experiment, std::string experiment_file,
+                     Inputs inputs)
     : experiment_(experiment),
       experiment_file_(std::move(experiment_file)),
-      candidate_logs_(experiment.candidate.format, 0.0, "candidate.format"),
-      reference_logs_(experiment.reference.format, experiment.reference.tag_offset_m,
-                      "reference.format") {
+      inputs_(std::move(inputs)),
+      candidate_logs_(inputs_, {experiment.candidate.format, 0.0, "candidate.format"}),
+      reference_logs_(inputs_, {experiment.reference.format, experiment.reference.tag_offset_m,
+                                "reference.format"}) {
   const bool candidate_is_logs = experiment.candidate.kind == CandidateKind::kLogs;
   const bool reference_is_logs = experiment.reference.kind == ReferenceKind::kLogs;
   if (candidate_is_logs) RequirePath(experiment.candidate.path, "candidate.path");
   if (reference_is_logs) RequirePath(experiment.reference.path, "reference.path");
   if (candidate_is_logs && reference_is_logs) {
-    InFile(experiment_file_, [&] {
-      sweep::CheckPaths(Plan(), {experiment.candidate.path.text, experiment.reference.path.text});
-    });
+    InFile(experiment_file_, [&] { CheckPaths(experiment); });
   }
   if (!candidate_is_logs || !reference_is_logs) {
-    TrialOf(experiment, {}, experiment.seed, experiment_file_);  // complains now, not in trial 1
+    TrialOf(experiment, {}, experiment.seed);  // complains now, not in trial 1
   }
   if (experiment.start == experiment::Start::kReference && !reference_is_logs) {
     throw std::invalid_argument(fmt::format(
@@ -67,68 +231,56 @@ SweepSources::SweepSources(const experiment::Experiment& experiment, std::string
   }
 }
 
-void SweepSources::RequirePath(const experiment::PathTemplate& path, const std::string& key) const {
+void Evaluator::RequirePath(const experiment::PathTemplate& path, const std::string& key) const {
   if (!path.text.empty()) return;
   throw std::invalid_argument(
       fmt::format("{}: {} is missing: name the logs, such as {}: logs/{{surface}}_{{trial}}.csv",
                   experiment_file_, key, key));
 }
 
-sweep::GridPlan SweepSources::Plan() const {
-  return {.name = experiment_.name,
-          .candidate_kind = std::string(yaml::NameOf(experiment_.candidate.kind)),
-          .reference_kind = std::string(yaml::NameOf(experiment_.reference.kind)),
-          .parameters = experiment_.space.parameters,
-          .trials = experiment_.reference.trials.names,
-          .seed = experiment_.candidate.kind == CandidateKind::kSimulation
-                      ? std::optional(experiment_.seed)
-                      : std::nullopt,
-          .gap = experiment_.gap,
-          .tag_offset_m = experiment_.reference.tag_offset_m,
-          .falls_count = experiment_.falsify.falls_count};
-}
-
-std::string SweepSources::Filled(const experiment::PathTemplate& path,
-                                 const experiment::Theta& theta, const std::string& trial) const {
+std::string Evaluator::Filled(const experiment::PathTemplate& path, const experiment::Theta& theta,
+                              const std::string& trial) const {
   return InFile(experiment_file_, [&] {
     return experiment::FillTemplate(path.text, experiment_.space.parameters, theta, trial);
   });
 }
 
-std::string SweepSources::ReferencePath(const experiment::Theta& theta,
-                                        const std::string& trial) const {
+std::string Evaluator::ReferencePath(const experiment::Theta& theta,
+                                     const std::string& trial) const {
   return Filled(experiment_.reference.path, theta, trial);
 }
 
-sweep::SimulatedTrial SweepSources::TrialFor(const sweep::TrialRequest& request,
-                                             const sweep::Recording& reference) const {
+SimulatedTrial Evaluator::TrialOf(const experiment::Experiment& experiment,
+                                  const geometry::Pose2& start, std::uint64_t seed) const {
+  return SimulatedTrialOf(experiment, start, seed, experiment_file_, inputs_);
+}
+
+SimulatedTrial Evaluator::TrialFor(const TrialRequest& request, const Recording& reference) const {
   const experiment::Experiment at = experiment::ExperimentAt(experiment_, request.theta);
   const bool starts_as_reference = experiment_.start == experiment::Start::kReference;
   const geometry::Pose2 start =
       starts_as_reference ? StartFromLog(reference.trajectory, experiment_.reference.tag_offset_m,
                                          at.simulation.mocap)
                           : control::StartPose(at.waypoints);
-  return TrialOf(at, start, *request.seed, experiment_file_);
+  return TrialOf(at, start, *request.seed);
 }
 
-sweep::Recording SweepSources::Candidate(const sweep::TrialRequest& request,
-                                         const sweep::Recording& reference) {
+Recording Evaluator::Candidate(const TrialRequest& request, const Recording& reference) {
   if (experiment_.candidate.kind == CandidateKind::kLogs) {
     const std::string path = Filled(experiment_.candidate.path, request.theta, request.trial);
     return WithLimits(candidate_logs_.At(path), experiment_, request.theta, 0.0);
   }
-  if (reference.status != sweep::TrialStatus::kOk) return reference;  // nothing to compare with
+  if (reference.status != TrialStatus::kOk) return reference;  // nothing to compare with
   const bool lacks_start =
       experiment_.start == experiment::Start::kReference && !reference.trajectory.HasYaw();
   if (lacks_start) {
-    return {.status = sweep::TrialStatus::kUnreadable,
+    return {.status = TrialStatus::kUnreadable,
             .reason = "start: reference needs its yaw: set reference.format",
             .source = reference.source};
   }
-  sweep::Recording simulated =
-      RecordingOf(sweep::Simulate(TrialFor(request, reference)), *request.seed);
-  const bool is_moved = experiment_.reference.kind == ReferenceKind::kLogs &&
-                        simulated.status == sweep::TrialStatus::kOk;
+  Recording simulated = RecordingOf(Simulate(TrialFor(request, reference)), *request.seed);
+  const bool is_moved =
+      experiment_.reference.kind == ReferenceKind::kLogs && simulated.status == TrialStatus::kOk;
   // The same point of the body on both sides.
   if (is_moved) {
     simulated.trajectory =
@@ -138,18 +290,18 @@ sweep::Recording SweepSources::Candidate(const sweep::TrialRequest& request,
 }
 
 /// The nominal run depends on the trial alone, and every setting is held against it.
-const sweep::Recording& SweepSources::Nominal(const sweep::TrialRequest& request) {
+const Recording& Evaluator::Nominal(const TrialRequest& request) {
   constexpr size_t kMostKept = 1000;
   const std::uint64_t seed = request.seed.value_or(experiment_.seed);
   const auto found = nominal_runs_.find(seed);
   if (found != nominal_runs_.end()) return found->second;
   if (nominal_runs_.size() >= kMostKept) nominal_runs_.clear();
   const geometry::Pose2 start = control::StartPose(experiment_.waypoints);
-  const sweep::SimulatedTrial trial = TrialOf(experiment_, start, seed, experiment_file_);
-  return nominal_runs_[seed] = RecordingOf(sweep::Simulate(trial), seed);
+  const SimulatedTrial trial = TrialOf(experiment_, start, seed);
+  return nominal_runs_[seed] = RecordingOf(Simulate(trial), seed);
 }
 
-sweep::Recording SweepSources::Reference(const sweep::TrialRequest& request) {
+Recording Evaluator::Reference(const TrialRequest& request) {
   switch (experiment_.reference.kind) {
     case ReferenceKind::kLogs:
       return WithLimits(reference_logs_.At(ReferencePath(request.theta, request.trial)),
@@ -162,43 +314,40 @@ sweep::Recording SweepSources::Reference(const sweep::TrialRequest& request) {
   return {.source = "waypoint path", .trajectory = WaypointPath(experiment_.waypoints)};
 }
 
-sweep::TrialRow SweepSources::Evaluate(const sweep::TrialRequest& request) {
-  const auto reference = [this](const sweep::TrialRequest& of) { return Reference(of); };
-  const auto candidate = [this](const sweep::TrialRequest& of, const sweep::Recording& real) {
-    try {
-      return Candidate(of, real);
-    } catch (const yaml::Error& broken_rule) {
-      return sweep::Recording{.status = sweep::TrialStatus::kInvalid,
-                              .reason = broken_rule.what(),
-                              .source = "experiment"};
-    }
-  };
-  return sweep::CompareTrial(Plan(), request, candidate, reference);
+TrialRow Evaluator::Evaluate(const TrialRequest& request) {
+  const Recording reference = Reference(request);
+  try {
+    return CompareTrial(experiment_, request, Candidate(request, reference), reference);
+  } catch (const yaml::Error& broken_rule) {
+    const Recording none{
+        .status = TrialStatus::kInvalid, .reason = broken_rule.what(), .source = "experiment"};
+    return CompareTrial(experiment_, request, none, reference);
+  }
 }
 
-double SweepSources::NominalNoiseFloor_m() {
+double Evaluator::NominalNoiseFloor_m() {
   const auto floor_m = [this](const std::string&) {
     std::vector<trajectory::Trajectory> runs;
-    for (const sweep::TrialRequest& request : sweep::TrialsAt(Plan(), {})) {
-      const sweep::Recording& run = Nominal(request);
-      if (run.status == sweep::TrialStatus::kOk) runs.push_back(run.trajectory);
+    for (const TrialRequest& request : TrialsAt(experiment_, {})) {
+      const Recording& run = Nominal(request);
+      if (run.status == TrialStatus::kOk) runs.push_back(run.trajectory);
     }
     return fmt::format("{}", gap::NoiseFloor_m(runs, experiment_.gap));
   };
   double result_m = gap::kNotComputed;
-  sweep::RunOptions options = experiment_.run;
+  RunOptions options = experiment_.run;
   options.timeout_s *= static_cast<double>(experiment_.reference.trials.names.size());
-  sweep::WorkerPool(floor_m, 1, options)
+  WorkerPool(floor_m, 1, options)
       .Run({1, [](int) { return std::string(); },
-            [&](int, const sweep::JobResult& result) {
-              if (result.end == sweep::JobEnd::kDone)
+            [&](int, const JobResult& result) {
+              if (result.end == JobEnd::kDone)
                 result_m = std::strtod(result.bytes.c_str(), nullptr);
             },
             [] { return true; }});
   return result_m;
 }
 
-double SweepSources::NoiseFloor_m(const experiment::Theta& theta) {
+double Evaluator::NoiseFloor_m(const experiment::Theta& theta) {
   const std::vector<std::string>& trials = experiment_.reference.trials.names;
   const bool has_repeats = trials.size() > 1 && experiment_.reference.kind != ReferenceKind::kPath;
   if (!has_repeats) return gap::kNotComputed;
@@ -214,13 +363,13 @@ double SweepSources::NoiseFloor_m(const experiment::Theta& theta) {
   }
   std::vector<trajectory::Trajectory> references;
   for (const std::string& source : sources) {
-    const sweep::Recording& log = reference_logs_.At(source);
-    if (log.status == sweep::TrialStatus::kOk) references.push_back(log.trajectory);
+    const Recording& log = reference_logs_.At(source);
+    if (log.status == TrialStatus::kOk) references.push_back(log.trajectory);
   }
   return found->second = gap::NoiseFloor_m(references, experiment_.gap);
 }
 
-void SweepSources::LoadLogs() {
+void Evaluator::LoadLogs() {
   if (experiment_.reference.kind != ReferenceKind::kLogs) return;
   const std::vector<std::string> names = experiment::TemplateNames(experiment_.reference.path.text);
   // Of the other parameters one value will do: the path is the same for all.
@@ -242,7 +391,7 @@ void SweepSources::LoadLogs() {
   }
 }
 
-std::string SweepSources::KeyOf(const sweep::TrialRequest& request) const {
+std::string Evaluator::KeyOf(const TrialRequest& request) const {
   std::string key;
   for (size_t i = 0; i < request.theta.size(); ++i) {
     const experiment::ParameterValue& value = request.theta[i];
@@ -252,13 +401,13 @@ std::string SweepSources::KeyOf(const sweep::TrialRequest& request) const {
   key += fmt::format("trial={} seed={}", request.trial, request.seed.value_or(0));
   if (experiment_.reference.kind == ReferenceKind::kLogs) {
     const std::string path = ReferencePath(request.theta, request.trial);
-    key += fmt::format(" log={}", reference_logs_.Hashes().Of(path));
+    key += fmt::format(" log={}", reference_logs_.HashOf(path));
   }
   return key;
 }
 
-std::string SweepSources::InputsText() const {
-  return candidate_logs_.Hashes().Text() + reference_logs_.Hashes().Text();
+std::string Evaluator::InputsText() const {
+  return candidate_logs_.HashesText() + reference_logs_.HashesText();
 }
 
-}  // namespace rift::commands
+}  // namespace rift::sweep

@@ -7,7 +7,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/search_space.hpp"
+#include "rift/sweep/falsify/statistics.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -30,39 +32,41 @@ bool HasFailure(std::span<const TrialRow> rows) {
 }
 
 /// The repeats that a setting gets beyond its first trials: all or none of them, at once.
-std::vector<TrialRequest> MoreTrials(const GridPlan& plan, const FalsifyOptions& options,
+std::vector<TrialRequest> MoreTrials(const experiment::Experiment& experiment,
                                      const experiment::Theta& theta,
                                      std::span<const TrialRow> rows) {
-  const double robustness_m = Robustness_m(rows, plan.gap.threshold_m);
-  const bool is_near = HasFailure(rows) || std::abs(robustness_m) <= options.near_m;
+  const double robustness_m = Robustness_m(rows, experiment.gap.threshold_m);
+  const bool is_near = HasFailure(rows) || std::abs(robustness_m) <= experiment.falsify.near_m;
   std::vector<TrialRequest> requests;
   if (!is_near) return requests;
-  const size_t most = static_cast<size_t>(options.most_repeats);
+  const size_t most = static_cast<size_t>(experiment.falsify.most_repeats);
   for (int repeat = 1; rows.size() + requests.size() < most; ++repeat) {
-    for (TrialRequest& request : TrialsAt(plan, theta, repeat)) {
+    for (TrialRequest& request : TrialsAt(experiment, theta, repeat)) {
       requests.push_back(std::move(request));
     }
   }
   return requests;
 }
 
-SearchGoal GoalOf(const GridPlan& plan, const SearchPlan& search, const FalsifyOptions& options) {
-  SearchGoal goal{.budget = search.budget, .batch = search.batch};
-  const bool is_random = search.strategy == search::Method::kRandom;
-  goal.trials = [=](const search::Point& point) {
-    std::vector<TrialRequest> requests = TrialsAt(plan, ThetaAt(plan.parameters, point));
+/// The experiment must outlive the goal.
+SearchGoal GoalOf(const experiment::Experiment& experiment) {
+  const std::vector<experiment::Parameter>& parameters = experiment.space.parameters;
+  SearchGoal goal{.budget = experiment.search.budget, .batch = experiment.search.batch};
+  const bool is_random = experiment.search.strategy == search::Method::kRandom;
+  goal.trials = [&, is_random](const search::Point& point) {
+    std::vector<TrialRequest> requests = TrialsAt(experiment, ThetaAt(parameters, point));
     for (TrialRequest& request : requests) request.is_random_draw = is_random;
     return requests;
   };
-  goal.more = [=](const search::Point& point, std::span<const TrialRow> rows) {
-    return MoreTrials(plan, options, ThetaAt(plan.parameters, point), rows);
+  goal.more = [&](const search::Point& point, std::span<const TrialRow> rows) {
+    return MoreTrials(experiment, ThetaAt(parameters, point), rows);
   };
-  goal.loss = [=](std::span<const TrialRow> rows) {
-    return Robustness_m(rows, plan.gap.threshold_m);
+  goal.loss = [&](std::span<const TrialRow> rows) {
+    return Robustness_m(rows, experiment.gap.threshold_m);
   };
-  goal.is_enough = [=](std::span<const TrialRow> rows) {
-    return options.until == Until::kFirst &&
-           JudgeSetting(rows, options) == gap::Verdict::kFalsified;
+  goal.is_enough = [&](std::span<const TrialRow> rows) {
+    return experiment.falsify.until == Until::kFirst &&
+           JudgeSetting(rows, experiment.falsify) == gap::Verdict::kFalsified;
   };
   return goal;
 }
@@ -145,29 +149,29 @@ double Robustness_m(std::span<const TrialRow> rows, double threshold_m) {
   return threshold_m - sum_m / static_cast<double>(gaps_m.size());
 }
 
-std::optional<SweepResult> Falsify(
-    const GridPlan& plan, const SearchPlan& search, const FalsifyOptions& options,
-    const RunTrials& run, const std::function<bool(const std::vector<TrialRequest>&)>& may_start,
-    const NoiseFloor& noise_floor_m) {
-  if (plan.parameters.empty()) {
+std::optional<SweepResult> Falsify(const experiment::Experiment& experiment, const RunTrials& run,
+                                   const MayStart& may_start) {
+  const std::vector<experiment::Parameter>& parameters = experiment.space.parameters;
+  if (parameters.empty()) {
     throw std::invalid_argument("goal is falsify, and space has no parameters to search");
   }
-  if (!plan.seed) {
+  const std::optional<std::uint64_t> seed = FirstSeed(experiment);
+  if (!seed) {
     throw std::invalid_argument(
         "goal is falsify, and candidate.kind is logs: only simulated trials can be searched");
   }
+  const SearchPlan& search = experiment.search;
   const std::unique_ptr<search::Strategy> strategy =
-      search::MakeStrategy(search, AxesOf(plan.parameters), search.budget, *plan.seed);
-  std::optional<SearchOutcome> outcome =
-      Search(*strategy, GoalOf(plan, search, options), run, may_start);
+      search::MakeStrategy(search, AxesOf(parameters), search.budget, *seed);
+  std::optional<SearchOutcome> outcome = Search(*strategy, GoalOf(experiment), run, may_start);
   if (!outcome) return std::nullopt;
-  SweepResult result = EmptyResult(plan);
-  const std::vector<gap::RepeatVerdict> verdicts = JudgeAll(*outcome, options);
-  result.falsification = Judge(*outcome, verdicts, search, options);
+  SweepResult result = EmptyResult(experiment);
+  const std::vector<gap::RepeatVerdict> verdicts = JudgeAll(*outcome, experiment.falsify);
+  result.falsification = Judge(*outcome, verdicts, search, experiment.falsify);
   for (TriedPoint& tried : outcome->points) {
     std::move(tried.rows.begin(), tried.rows.end(), std::back_inserter(result.rows));
   }
-  Conclude(result, noise_floor_m);
+  Summarise(result);
   assert(result.settings.size() == verdicts.size());  // no point is proposed twice
   for (size_t i = 0; i < verdicts.size(); ++i) result.settings[i].verdict = verdicts[i];
   return result;

@@ -1,26 +1,26 @@
 #include "rift/sweep/falsify/grid.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
-#include <stdexcept>
-
-#include "rift/experiment/parameter.hpp"
-#include "rift/experiment/path_template.hpp"
-#include "rift/sweep/falsify/labels.hpp"
 #include "rift/sweep/falsify/statistics.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sweep {
+
+using experiment::Experiment;
+
+std::optional<std::uint64_t> FirstSeed(const Experiment& experiment) {
+  if (experiment.candidate.kind == experiment::CandidateKind::kLogs) return std::nullopt;
+  return experiment.seed;
+}
+
 std::vector<TrialRequest> TrialsAt(const Experiment& experiment, const experiment::Theta& theta,
                                    int repeat) {
+  const std::vector<std::string>& trials = experiment.reference.trials.names;
+  const std::optional<std::uint64_t> first_seed = FirstSeed(experiment);
+  const size_t first = trials.size() * static_cast<size_t>(repeat);
   std::vector<TrialRequest> requests;
-  const size_t first = plan.trials.size() * static_cast<size_t>(repeat);
-  for (size_t i = 0; i < plan.trials.size(); ++i) {
-    TrialRequest request{.theta = theta, .trial = plan.trials[i]};
-    if (plan.seed) request.seed = *plan.seed + first + i;
+  for (size_t i = 0; i < trials.size(); ++i) {
+    TrialRequest request{.theta = theta, .trial = trials[i]};
+    if (first_seed) request.seed = *first_seed + first + i;
     requests.push_back(std::move(request));
   }
   return requests;
@@ -28,33 +28,27 @@ std::vector<TrialRequest> TrialsAt(const Experiment& experiment, const experimen
 
 SweepResult EmptyResult(const Experiment& experiment) {
   SweepResult result;
-  result.name = plan.name;
-  result.candidate_kind = plan.candidate_kind;
-  result.reference_kind = plan.reference_kind;
-  result.gap = plan.gap;
-  result.tag_offset_m = plan.tag_offset_m;
-  result.parameters = plan.parameters;
+  result.name = experiment.name;
+  result.candidate_kind = yaml::NameOf(experiment.candidate.kind);
+  result.reference_kind = yaml::NameOf(experiment.reference.kind);
+  result.gap = experiment.gap;
+  result.tag_offset_m = experiment.reference.tag_offset_m;
+  result.parameters = experiment.space.parameters;
   return result;
 }
 
-void Conclude(SweepResult& result, const NoiseFloor& noise_floor_m) {
-  Summarise(result);
-  for (SettingResult& setting : result.settings) {
-    setting.noise_floor_m = noise_floor_m(setting.theta);
-  }
-}
-
-std::optional<SweepResult> SweepGrid(const Experiment& experiment, const RunTrials& run,
-                                     const NoiseFloor& noise_floor_m) {
+std::optional<SweepResult> SweepGrid(const Experiment& experiment, const RunTrials& run) {
   std::vector<TrialRequest> requests;
-  for (const experiment::Theta& theta : experiment::GridPoints(plan.parameters)) {
-    for (TrialRequest& request : TrialsAt(plan, theta)) requests.push_back(std::move(request));
+  for (const experiment::Theta& theta : experiment::GridPoints(experiment.space.parameters)) {
+    for (TrialRequest& request : TrialsAt(experiment, theta)) {
+      requests.push_back(std::move(request));
+    }
   }
   std::optional<std::vector<TrialRow>> rows = run(std::move(requests));
   if (!rows) return std::nullopt;
-  SweepResult result = EmptyResult(plan);
+  SweepResult result = EmptyResult(experiment);
   result.rows = std::move(*rows);
-  Conclude(result, noise_floor_m);
+  Summarise(result);
   return result;
 }
 

@@ -65,8 +65,7 @@ void Tell(search::Strategy& strategy, const Points& batch) {
 }  // namespace
 
 std::optional<SearchOutcome> Search(search::Strategy& strategy, const SearchGoal& goal,
-                                    const RunTrials& run,
-                                    const std::function<bool(const Requests&)>& may_start) {
+                                    const RunTrials& run, const MayStart& may_start) {
   SearchOutcome outcome;
   while (static_cast<int>(outcome.points.size()) < goal.budget) {
     const int left = goal.budget - static_cast<int>(outcome.points.size());

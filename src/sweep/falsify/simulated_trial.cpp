@@ -1,5 +1,11 @@
 #include "rift/sweep/falsify/simulated_trial.hpp"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "rift/simulation/height_image.hpp"
+
 namespace rift::sweep {
 namespace {
 
@@ -37,6 +43,22 @@ class WitnessedRobot : public trial::Robot {
   trajectory::Trajectory& truth_;
 };
 
+std::shared_ptr<const simulation::HeightImage> ImageOf(const simulation::TerrainOptions& terrain,
+                                                       const Inputs& inputs) {
+  const simulation::SurfaceOptions& surface = terrain.Chosen();
+  if (surface.shape != simulation::Shape::kHeightfield) return nullptr;
+  const std::optional<std::string> bytes = inputs.read(surface.image);
+  if (!bytes) {
+    throw std::invalid_argument(
+        fmt::format("cannot read {}: No such file or directory", surface.image));
+  }
+  try {
+    return std::make_shared<const simulation::HeightImage>(simulation::DecodeHeightImage(*bytes));
+  } catch (const std::runtime_error& no_image) {
+    throw std::invalid_argument(fmt::format("{}: {}", surface.image, no_image.what()));
+  }
+}
+
 }  // namespace
 
 SimulatedRun Simulate(const SimulatedTrial& trial) {
@@ -45,6 +67,30 @@ SimulatedRun Simulate(const SimulatedTrial& trial) {
   WitnessedRobot witnessed(robot, run.truth);
   run.result = trial::RunTrial(witnessed, trial.waypoints, trial.control, trial.trial);
   return run;
+}
+
+SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
+                                const geometry::Pose2& start, std::uint64_t seed,
+                                const std::string& experiment_file, const Inputs& inputs) {
+  try {
+    control::CheckWaypoints(experiment.waypoints);
+  } catch (const std::invalid_argument& no_task) {
+    throw std::invalid_argument(fmt::format("{}: {}", experiment_file, no_task.what()));
+  }
+  return {.waypoints = experiment.waypoints,
+          .control = experiment.control,
+          .trial = experiment.trial,
+          .simulation = experiment.simulation,
+          .start = start,
+          .seed = seed,
+          .image = ImageOf(experiment.simulation.terrain, inputs)};
+}
+
+geometry::Pose2 StartFromLog(const trajectory::Trajectory& log, double tag_offset_m,
+                             const simulation::MocapOptions& mocap) {
+  const geometry::Pose2 world_from_point = trajectory::StandingPose(log);
+  const geometry::Pose2 point_from_robot{-(tag_offset_m + mocap.tag_ahead_m), 0.0, 0.0};
+  return world_from_point * point_from_robot;
 }
 
 }  // namespace rift::sweep

@@ -1,20 +1,21 @@
 #pragma once
 
-#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "rift/experiment/experiment.hpp"
+#include "rift/sweep/calibrate/calibration.hpp"
 #include "rift/sweep/calibrate/drive_likeness.hpp"
 #include "rift/sweep/calibrate/error_structure.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 
-namespace rift::commands {
+namespace rift::sweep {
 
 /// One simulator held against one group of trials.
 struct JudgedGroup {
   std::string level;  ///< of the main parameter of the space, or "all"
   std::string side;   ///< "fitted", "held out", or "both"
-  sweep::DriveLikeness before, after;
+  DriveLikeness before, after;
 };
 
 struct CalibrationTrial {
@@ -28,14 +29,14 @@ struct CalibrationTrial {
 
 /// Everything that `goal: calibrate` found.
 struct CalibrationReport {
-  sweep::Calibration calibration;
+  Calibration calibration;
   std::vector<double> values;  ///< of calibrate.fit, in its order
   std::vector<CalibrationTrial> trials;
   std::vector<std::string> missing;  ///< why a log of the plan takes no part
   std::vector<JudgedGroup> judged;
   struct Errors {
     std::string side;
-    sweep::ErrorStructure before, after;
+    ErrorStructure before, after;
   };
   std::vector<Errors> errors;  ///< fitted, then held out
   /// Of the held-out trial (else fitted) whose gap after the fit is the median one: what is drawn.
@@ -44,17 +45,13 @@ struct CalibrationReport {
   std::vector<trajectory::Trajectory> shown_before, shown_after;  ///< a few runs of it
 };
 
-struct CalibrateRequest {
-  std::string experiment_file;
-  std::filesystem::path out;
-  std::string robot_file;  ///< empty: none
-  int jobs = 1;
-  bool quiet = false;
-  bool json = false;
-};
+/// Told what goes on, a line at a time.
+using Say = std::function<void(const std::string& line)>;
 
-/// Fits, judges, writes calibration.json, experiment.yaml, inputs.txt, figures and the robot's
-/// file, and prints the table; returns the exit code.
-int Calibrate(const experiment::Experiment& experiment, const CalibrateRequest& request);
+/// What `goal: calibrate` does: fits the free parameters to the logs that are not held out, then
+/// judges the simulator before and after by whole paths and by the structure of its errors. `jobs`
+/// logs are evaluated at once and change no result. Throws std::invalid_argument for less than two
+/// logs to fit.
+CalibrationReport Identify(Evaluator& evaluator, int jobs, const Say& say);
 
-}  // namespace rift::commands
+}  // namespace rift::sweep

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/experiment/experiment.hpp"
 #include "rift/sweep/falsify/options.hpp"
 #include "rift/sweep/falsify/search_loop.hpp"
 
@@ -25,11 +24,9 @@ double TrialsToFalsify(const FalsifyOptions& options);
 double Robustness_m(std::span<const TrialRow> rows, double threshold_m);
 
 /// Looks for settings whose gap exceeds the threshold. Those that fail or come near it are
-/// repeated. The result depends on plan, options and seed alone. Nothing when it was told to stop.
-/// Throws std::invalid_argument for a space without parameters or a plan over logs.
-std::optional<SweepResult> Falsify(
-    const GridPlan& plan, const SearchPlan& search, const FalsifyOptions& options,
-    const RunTrials& run, const std::function<bool(const std::vector<TrialRequest>&)>& may_start,
-    const NoiseFloor& noise_floor_m);
+/// repeated. The result depends on the experiment alone. Nothing when it was told to stop. Throws
+/// std::invalid_argument for a space without parameters or candidates that are logs.
+std::optional<SweepResult> Falsify(const experiment::Experiment& experiment, const RunTrials& run,
+                                   const MayStart& may_start);
 
 }  // namespace rift::sweep

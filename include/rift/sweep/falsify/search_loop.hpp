@@ -37,11 +37,12 @@ struct SearchOutcome {
   std::string ended;               ///< "the budget", "the first hit", "every point", "the time"
 };
 
+/// Asked before each batch with its trials: false ends the search in time.
+using MayStart = std::function<bool(const std::vector<TrialRequest>&)>;
+
 /// Asks a strategy, runs the trials, tells it, until the goal is met, the budget is spent, or
 /// nothing is left to try. Nothing when the sweep was told to stop.
-/// `may_start` is asked before each batch with its trials: false ends the search in time.
-std::optional<SearchOutcome> Search(
-    search::Strategy& strategy, const SearchGoal& goal, const RunTrials& run,
-    const std::function<bool(const std::vector<TrialRequest>&)>& may_start);
+std::optional<SearchOutcome> Search(search::Strategy& strategy, const SearchGoal& goal,
+                                    const RunTrials& run, const MayStart& may_start);
 
 }  // namespace rift::sweep

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "rift/control/options.hpp"
-#include "rift/control/waypoint.hpp"
+#include "rift/experiment/experiment.hpp"
 #include "rift/simulation/simulated_robot.hpp"
+#include "rift/sweep/falsify/recorded_logs.hpp"
 #include "rift/trial/trial.hpp"
 
 namespace rift::sweep {
@@ -27,6 +27,17 @@ struct SimulatedRun {
   /// Where the robot really was after each control period, on the clock of the log.
   trajectory::Trajectory truth;
 };
+
+/// The trial that an experiment describes. Throws std::invalid_argument, naming `experiment_file`,
+/// when its waypoints make no task, or a heightfield image cannot be read.
+SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
+                                const geometry::Pose2& start, std::uint64_t seed,
+                                const std::string& experiment_file, const Inputs& inputs);
+
+/// Where a robot stood whose tag was seen at the start of a log, `tag_offset_m` ahead of it:
+/// world_from_robot.
+geometry::Pose2 StartFromLog(const trajectory::Trajectory& log, double tag_offset_m,
+                             const simulation::MocapOptions& mocap);
 
 /// Runs the one trial loop on the simulated robot. The same trial gives the same bytes.
 /// Throws std::invalid_argument for options or waypoints that break a rule.

@@ -1,11 +1,9 @@
-#include "commands/further_trials.hpp"
+#include "further_trials.hpp"
 
 #include <fmt/format.h>
 
-#include <charconv>
-
-#include "commands/enum_name.hpp"
-#include "commands/flags.hpp"
+#include "flags.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 namespace {
@@ -42,13 +40,12 @@ class ChangedFlags {
 
 }  // namespace
 
-FurtherTrials::FurtherTrials(SweepSources& sources, const experiment::Experiment& experiment,
-                             const Style& style, const StopSignal& stop)
-    : plan_(sources.Plan()),
-      style_(style),
-      runner_([&sources](const sweep::TrialRequest& trial) { return sources.Evaluate(trial); },
-              [&sources](const sweep::TrialRequest& trial) { return sources.KeyOf(trial); },
-              nullptr, style.jobs, experiment.run,
+FurtherTrials::FurtherTrials(sweep::Evaluator& evaluator, const Style& style,
+                             const StopSignal& stop)
+    : style_(style),
+      runner_([&evaluator](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
+              [&evaluator](const sweep::TrialRequest& trial) { return evaluator.KeyOf(trial); },
+              nullptr, style.jobs, evaluator.experiment().run,
               {[this](const sweep::TrialRow& row, bool from_journal) {
                  if (progress_) progress_->Seen(row, from_journal);
                },
@@ -56,7 +53,7 @@ FurtherTrials::FurtherTrials(SweepSources& sources, const experiment::Experiment
                  if (progress_) progress_->Tick();
                  return !stop.IsAsked();
                }}) {
-  sources.LoadLogs();  // workers are copies of what is there when they start
+  evaluator.LoadLogs();  // workers are copies of what is there when they start
 }
 
 std::vector<sweep::TrialRow> FurtherTrials::Run(std::vector<sweep::TrialRequest> requests) {
@@ -70,20 +67,6 @@ void FurtherTrials::Begin(int most) { progress_.emplace(style_.progress, SweepSi
 void FurtherTrials::End() {
   progress_->End("done");
   progress_.reset();
-}
-
-experiment::Theta NominalTheta(const experiment::Experiment& experiment) {
-  const std::map<std::string, std::string> values = experiment::FlatValues(experiment);
-  experiment::Theta theta;
-  for (const experiment::Parameter& parameter : experiment.space.parameters) {
-    const std::string& text = values.at(parameter.key);
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool is_number =
-        !parameter.IsCategorical() && error == std::errc{} && end == text.data() + text.size();
-    theta.push_back({text, is_number ? std::optional(number) : std::nullopt});
-  }
-  return theta;
 }
 
 std::string ChangedGapFlags(const gap::GapOptions& options) {

@@ -1,0 +1,276 @@
+#include "rift/sweep/calibrate/identification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rift/experiment/parameter.hpp"
+#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/labels.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using trajectory::Trajectory;
+
+constexpr int kRunsShown = 3;
+// Runs that judge are none of those that were fitted with.
+constexpr std::uint64_t kSeedsOfLog = 100'000;
+constexpr std::uint64_t kJudgeSeeds = 50'000;
+
+/// A log with its setting; its place in the list gives its seeds.
+struct Entry {
+  experiment::Theta theta;
+  CalibrationTrial trial;
+  CalibrationLog log;
+};
+
+class Identifier {
+ public:
+  Identifier(Evaluator& evaluator, int jobs, const Say& say)
+      : evaluator_(evaluator),
+        experiment_(evaluator.experiment()),
+        jobs_(jobs),
+        say_(say),
+        values_(StartValues()) {
+    Load();
+  }
+
+  CalibrationReport Run();
+
+ private:
+  std::vector<double> StartValues() const;
+  void Load();
+  bool IsHeldOut(const std::string& trial) const;
+  std::vector<const Entry*> Side(bool held_out) const;
+  SimulatedTrial TwinOf(const Entry& entry, const std::vector<double>& values,
+                        std::uint64_t seed) const;
+  TwinAt TwinsOf(const std::vector<const Entry*>& entries) const;
+  std::vector<RepeatedTrial> Drive(const std::vector<double>& values) const;
+  void JudgePaths(CalibrationReport& report) const;
+  void JudgeErrors(CalibrationReport& report) const;
+  void Show(CalibrationReport& report, const std::vector<RepeatedTrial>& before,
+            const std::vector<RepeatedTrial>& after) const;
+  DriveLikeness LikenessOf(const std::vector<RepeatedTrial>& trials,
+                           const std::vector<size_t>& chosen) const;
+
+  Evaluator& evaluator_;
+  const experiment::Experiment& experiment_;
+  int jobs_;
+  const Say& say_;
+  std::vector<Entry> entries_;
+  std::vector<std::string> missing_;
+  std::vector<double> values_;
+};
+
+std::vector<double> Identifier::StartValues() const {
+  std::vector<double> values;
+  for (const experiment::FreeParameter& free : experiment_.calibrate.fit.list) {
+    values.push_back(free.start);
+  }
+  return values;
+}
+
+bool Identifier::IsHeldOut(const std::string& trial) const {
+  const std::vector<std::string>& held = experiment_.calibrate.holdout.names;
+  return std::find(held.begin(), held.end(), trial) != held.end();
+}
+
+void Identifier::Load() {
+  const std::vector<experiment::Parameter>& parameters = experiment_.space.parameters;
+  for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
+    for (const TrialRequest& request : TrialsAt(experiment_, theta)) {
+      Recording real = evaluator_.Reference(request);
+      if (real.status == TrialStatus::kOk && !real.trajectory.HasYaw()) {
+        real.status = TrialStatus::kUnreadable;
+        real.reason = "its yaw is needed: set reference.format";
+      }
+      if (real.status != TrialStatus::kOk) {
+        missing_.push_back(fmt::format("{}: {}", real.source, real.reason));
+        continue;
+      }
+      entries_.push_back(
+          {theta,
+           {.level = MainLevel(parameters, theta),
+            .trial = request.trial,
+            .source = real.source,
+            .is_held_out = IsHeldOut(request.trial)},
+           {.name = real.source, .setting = SettingKey(theta), .log = real.trajectory}});
+    }
+  }
+  if (Side(false).size() >= 2) return;
+  throw std::invalid_argument(fmt::format("{}: a fit needs at least 2 logs, and there are {}{}",
+                                          evaluator_.experiment_file(), Side(false).size(),
+                                          missing_.empty() ? "" : "; " + missing_.front()));
+}
+
+std::vector<const Entry*> Identifier::Side(bool held_out) const {
+  std::vector<const Entry*> side;
+  for (const Entry& entry : entries_) {
+    if (entry.trial.is_held_out == held_out) side.push_back(&entry);
+  }
+  return side;
+}
+
+SimulatedTrial Identifier::TwinOf(const Entry& entry, const std::vector<double>& values,
+                                  std::uint64_t seed) const {
+  const experiment::Experiment at =
+      experiment::ExperimentAt(experiment::CalibratedAt(experiment_, values), entry.theta);
+  const geometry::Pose2 start = StartFromLog(entry.log.log, 0.0, at.simulation.mocap);
+  const auto number = static_cast<std::uint64_t>(&entry - entries_.data());
+  return evaluator_.TrialOf(at, start, experiment_.seed + number * kSeedsOfLog + seed);
+}
+
+TwinAt Identifier::TwinsOf(const std::vector<const Entry*>& entries) const {
+  return [this, entries](size_t log, const std::vector<double>& values) {
+    return TwinOf(*entries[log], values, 0);
+  };
+}
+
+std::vector<CalibrationLog> LogsOf(const std::vector<const Entry*>& entries) {
+  std::vector<CalibrationLog> logs;
+  for (const Entry* entry : entries) logs.push_back(entry->log);
+  return logs;
+}
+
+/// No simulated log makes a detour that the likeness would leave out.
+std::vector<CalibrationLog> LogsToFit(const std::vector<const Entry*>& entries,
+                                      double longest_run) {
+  std::vector<CalibrationLog> logs = LogsOf(entries);
+  const auto longest_m = LongestBySetting_m(logs, &CalibrationLog::log);
+  for (CalibrationLog& log : logs) log.longest_m = longest_run * longest_m.at(log.setting);
+  return logs;
+}
+
+std::vector<RepeatedTrial> Identifier::Drive(const std::vector<double>& values) const {
+  std::vector<RepeatedTrial> trials;
+  for (const Entry& entry : entries_) {
+    SimulatedTrial twin = TwinOf(entry, values, kJudgeSeeds);
+    RepeatedTrial trial{.setting = entry.log.setting,
+                        .real = entry.log.log,
+                        .waypoints = twin.waypoints,
+                        .control = twin.control};
+    for (int run = 0; run < experiment_.calibrate.judge_runs; ++run, ++twin.seed) {
+      SimulatedRun driven = Simulate(twin);
+      if (driven.result.outcome == trial::Outcome::kReached) {
+        trial.runs.push_back(std::move(driven.result.trajectory));
+      } else {
+        ++trial.failed_runs;
+      }
+    }
+    trials.push_back(std::move(trial));
+  }
+  return WithoutDetours(std::move(trials), experiment_.likeness.longest_run);
+}
+
+DriveLikeness Identifier::LikenessOf(const std::vector<RepeatedTrial>& trials,
+                                     const std::vector<size_t>& chosen) const {
+  std::vector<RepeatedTrial> group;
+  for (const size_t i : chosen) group.push_back(trials[i]);
+  std::mt19937_64 generator(experiment_.seed);
+  return MeasureDriveLikeness(group, true, experiment_.gap, experiment_.likeness, generator);
+}
+
+/// How far the mean simulated path is from the real one; NaN without a run.
+double MeanPathGap(const RepeatedTrial& trial, const gap::GapOptions& gap,
+                   const gap::LikenessOptions& options) {
+  const gap::RepeatedSetting setting{.reals = {trial.real}, .sims = {trial.runs}};
+  std::mt19937_64 unused(1);
+  gap::LikenessOptions quick = options;
+  quick.shuffles = 19;
+  return gap::MeasureLikeness({&setting, 1}, gap, quick, unused).mean_path_gap_m;
+}
+
+void Identifier::JudgePaths(CalibrationReport& report) const {
+  const std::vector<RepeatedTrial> before = Drive(StartValues()), after = Drive(report.values);
+  std::vector<std::string> levels;
+  for (size_t i = 0; i < entries_.size(); ++i) {
+    CalibrationTrial trial = entries_[i].trial;
+    trial.gap_before_m = MeanPathGap(before[i], experiment_.gap, experiment_.likeness);
+    trial.gap_after_m = MeanPathGap(after[i], experiment_.gap, experiment_.likeness);
+    report.trials.push_back(trial);
+    if (std::find(levels.begin(), levels.end(), trial.level) == levels.end()) {
+      levels.push_back(trial.level);
+    }
+  }
+  if (levels.size() > 1 || levels.front().empty()) levels.push_back("all");
+  if (levels.front().empty()) levels.erase(levels.begin());
+  for (const std::string& level : levels) {
+    for (const char* side : {"fitted", "held out", "both"}) {
+      std::vector<size_t> chosen;
+      for (size_t i = 0; i < entries_.size(); ++i) {
+        const bool is_side = side[0] == 'b' || entries_[i].trial.is_held_out == (side[0] == 'h');
+        if (is_side && (level == "all" || entries_[i].trial.level == level)) chosen.push_back(i);
+      }
+      const bool is_double = side[0] == 'b' && experiment_.calibrate.holdout.names.empty();
+      if (chosen.empty() || is_double) continue;
+      report.judged.push_back({level, side, LikenessOf(before, chosen), LikenessOf(after, chosen)});
+    }
+  }
+  Show(report, before, after);
+}
+
+void Identifier::Show(CalibrationReport& report, const std::vector<RepeatedTrial>& before,
+                      const std::vector<RepeatedTrial>& after) const {
+  const bool held_out = !Side(true).empty();
+  std::vector<size_t> order;
+  for (size_t i = 0; i < report.trials.size(); ++i) {
+    const bool is_told = !std::isnan(report.trials[i].gap_after_m);
+    if (report.trials[i].is_held_out == held_out && is_told) order.push_back(i);
+  }
+  if (order.empty()) return;
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return report.trials[a].gap_after_m < report.trials[b].gap_after_m;
+  });
+  report.shown = order[order.size() / 2];
+  report.shown_real = entries_[report.shown].log.log;
+  const auto first = [](const std::vector<Trajectory>& runs) {
+    const size_t count = std::min<size_t>(kRunsShown, runs.size());
+    return std::vector<Trajectory>(runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  report.shown_before = first(before[report.shown].runs);
+  report.shown_after = first(after[report.shown].runs);
+}
+
+void Identifier::JudgeErrors(CalibrationReport& report) const {
+  for (const bool held_out : {false, true}) {
+    const std::vector<const Entry*> side = Side(held_out);
+    if (side.empty()) continue;
+    const auto structure = [&](const std::vector<double>& values) {
+      return StructureOfErrors(LogsOf(side), TwinsOf(side), values,
+                               experiment_.calibrate.method.horizon);
+    };
+    report.errors.push_back(
+        {held_out ? "held out" : "fitted", structure(StartValues()), structure(report.values)});
+  }
+}
+
+CalibrationReport Identifier::Run() {
+  const std::vector<const Entry*> fitted = Side(false);
+  for (const std::string& why : missing_) say_("note: left out: " + why);
+  say_(fmt::format("fitting {} parameters to {} logs; {} held out", values_.size(), fitted.size(),
+                   entries_.size() - fitted.size()));
+  std::mt19937_64 generator(experiment_.seed);
+  CalibrationReport report;
+  report.calibration = Calibrate(
+      experiment_.calibrate.fit.list, LogsToFit(fitted, experiment_.likeness.longest_run),
+      TwinsOf(fitted), experiment_.calibrate.method, generator, jobs_,
+      [&](int steps, double loss) { say_(fmt::format("step {}: loss {:.4f}", steps, loss)); });
+  for (const CalibratedParameter& parameter : report.calibration.parameters) {
+    report.values.push_back(parameter.value);
+  }
+  report.missing = missing_;
+  say_(fmt::format("judging with {} runs of each log", experiment_.calibrate.judge_runs));
+  JudgePaths(report);
+  JudgeErrors(report);
+  return report;
+}
+
+}  // namespace
+
+CalibrationReport Identify(Evaluator& evaluator, int jobs, const Say& say) {
+  return Identifier(evaluator, jobs, say).Run();
+}
+
+}  // namespace rift::sweep

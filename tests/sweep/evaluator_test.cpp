@@ -1,0 +1,109 @@
+#include "rift/sweep/falsify/evaluator.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/sweep.hpp"
+#include "support/paths.hpp"
+
+namespace rift::sweep {
+namespace {
+
+/// Files by name; what is not there is missing, and "locked.csv" cannot be read.
+struct Files {
+  std::map<std::string, std::string> text;
+  std::vector<std::string> notes{};
+
+  Inputs AsInputs() {
+    return {[this](const std::string& path) -> std::optional<std::string> {
+              if (path.ends_with("locked.csv")) throw std::invalid_argument("cannot read " + path);
+              const auto found = text.find(path);
+              return found == text.end() ? std::nullopt : std::optional(found->second);
+            },
+            [this](const std::string& line) { notes.push_back(line); }};
+  }
+};
+
+std::string LogBeside(double offset_m) {
+  return trajectory::WriteRift(test::Moved(test::StraightPath(0.7, 40), {0.0, offset_m, 0.0}));
+}
+
+experiment::Experiment LogsAgainstLogs() {
+  experiment::Experiment experiment;
+  experiment.candidate = {experiment::CandidateKind::kLogs, {"{surface}_sim.csv"}};
+  experiment.reference.kind = experiment::ReferenceKind::kLogs;
+  experiment.reference.path.text = "{surface}_{trial}.csv";
+  experiment.reference.trials.names = {"1", "2"};
+  experiment.space.parameters = {{.key = "surface", .levels = {{"ground", {}}, {"ice", {}}}}};
+  return experiment;
+}
+
+RunTrials Here(Evaluator& evaluator) {
+  return RunHere([&](const TrialRequest& trial) { return evaluator.Evaluate(trial); }, {});
+}
+
+TEST_CASE("A sweep of logs tells each trial's gap and how far the repeats are apart") {
+  Files files{{{"ground_sim.csv", LogBeside(0.0)},
+               {"ground_1.csv", LogBeside(0.05)},
+               {"ground_2.csv", LogBeside(0.08)}}};
+  const experiment::Experiment experiment = LogsAgainstLogs();
+  Evaluator evaluator(experiment, "logs.yaml", files.AsInputs());
+  const auto result = Sweep(evaluator, Here(evaluator), [](const auto&) { return true; });
+  REQUIRE(result);
+  REQUIRE(result->rows.size() == 4);
+  CHECK(result->rows[0].comparison.gap_m == Approx(0.05));
+  CHECK(result->rows[1].comparison.gap_m == Approx(0.08));
+  CHECK_FALSE(result->rows[0].falsified);
+  CHECK(result->rows[1].falsified);
+  CHECK(result->settings[0].noise_floor_m == Approx(0.03));
+  CHECK(result->rows[2].status == TrialStatus::kMissing);
+  CHECK(result->rows[2].reason == "ice_1.csv: no such file");
+}
+
+TEST_CASE("A log that cannot be read or breaks a rule is a row with its reason") {
+  Files files{{{"ground_sim.csv", LogBeside(0.0)}, {"bad.csv", "t_s,x_m,y_m\n0,0\n"}}};
+  experiment::Experiment experiment = LogsAgainstLogs();
+  experiment.space.parameters.clear();
+  experiment.reference.trials.names = {"1"};
+  experiment.candidate.path.text = "ground_sim.csv";
+  const std::string broken = GENERATE(as<std::string>(), "locked.csv", "bad.csv");
+  experiment.reference.path.text = broken;
+  Evaluator evaluator(experiment, "logs.yaml", files.AsInputs());
+  const TrialRow row = evaluator.Evaluate({.theta = {}, .trial = "1"});
+  CHECK(row.status == TrialStatus::kUnreadable);
+  CHECK(row.reason.find(broken) != std::string::npos);
+}
+
+TEST_CASE("The key of a trial changes with its setting, repeat, seed and the bytes of its log") {
+  experiment::Experiment experiment = LogsAgainstLogs();
+  experiment.candidate = {};
+  experiment.waypoints = {{.name = "start"}, {.name = "end", .x_m = 0.5}};
+  const auto key_of = [&](const std::string& log, const TrialRequest& request) {
+    Files files{{{"ground_1.csv", log}, {"ground_2.csv", log}, {"ice_1.csv", log}}};
+    Evaluator evaluator(experiment, "logs.yaml", files.AsInputs());
+    evaluator.LoadLogs();
+    return evaluator.KeyOf(request);
+  };
+  const TrialRequest request{.theta = {{"ground", {}}}, .trial = "1", .seed = 3};
+  const std::string key = key_of(LogBeside(0.05), request);
+  CHECK(key_of(LogBeside(0.05), request) == key);
+  CHECK(key_of(LogBeside(0.06), request) != key);
+  CHECK(key_of(LogBeside(0.05), {.theta = {{"ice", {}}}, .trial = "1", .seed = 3}) != key);
+  CHECK(key_of(LogBeside(0.05), {.theta = {{"ground", {}}}, .trial = "2", .seed = 3}) != key);
+  CHECK(key_of(LogBeside(0.05), {.theta = {{"ground", {}}}, .trial = "1", .seed = 4}) != key);
+}
+
+TEST_CASE("The fingerprints of the logs that were read stand in the inputs") {
+  Files files{{{"ground_sim.csv", LogBeside(0.0)}, {"ground_1.csv", LogBeside(0.05)}}};
+  const experiment::Experiment experiment = LogsAgainstLogs();
+  Evaluator evaluator(experiment, "logs.yaml", files.AsInputs());
+  evaluator.Evaluate({.theta = {{"ground", {}}}, .trial = "1"});
+  const std::string text = evaluator.InputsText();
+  CHECK(text.find("  ground_sim.csv\n") == 32);
+  CHECK(text.find("  ground_1.csv\n") != std::string::npos);
+  CHECK(text.find("ground_2.csv") == std::string::npos);
+}
+
+}  // namespace
+}  // namespace rift::sweep
