@@ -4,6 +4,8 @@
 # (options.hpp, *_options.hpp). Nothing is transitive. tests/architecture holds every #include to
 # this table, and docs/rooms.md is made from it.
 
+rift_room(statistics
+  LIBRARIES Boost::headers)
 rift_room(geometry
   LIBRARIES Eigen3::Eigen)
 rift_room(yaml
@@ -16,9 +18,9 @@ rift_room(trial ROOMS control geometry trajectory
   LIBRARIES fmt::fmt)
 rift_room(gap ROOMS geometry trajectory
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers)
-rift_room(search
+rift_room(search ROOMS statistics
   PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt)
-rift_room(simulation ROOMS control geometry trial
+rift_room(simulation ROOMS control geometry statistics trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES PkgConfig::ODE PNG::PNG)
 rift_room(module
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES ${CMAKE_DL_LIBS} PkgConfig::XCB)
@@ -47,7 +49,7 @@ rift_room(sweep/falsify ROOMS control experiment gap geometry search simulation 
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers)
 rift_room(sweep/explain ROOMS experiment gap search sweep/falsify sweep/run trajectory trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen)
-rift_room(sweep/calibrate ROOMS control experiment gap geometry simulation sweep/falsify sweep/run trajectory trial
+rift_room(sweep/calibrate ROOMS control experiment gap geometry simulation statistics sweep/falsify sweep/run trajectory trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen Threads::Threads)
 rift_room(report/figures ROOMS gap geometry experiment sweep/falsify trajectory
   LIBRARIES fmt::fmt)

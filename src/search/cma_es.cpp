@@ -67,7 +67,7 @@ CmaEs::CmaEs(const Space& space, const Eigen::VectorXd& mean, double sigma, int 
   path_sigma_ = path_c_ = Eigen::VectorXd::Zero(size);
 }
 
-std::vector<Eigen::VectorXd> CmaEs::Sample(Random& random) {
+std::vector<Eigen::VectorXd> CmaEs::Sample(statistics::Random& random) {
   draws_.clear();
   std::vector<Eigen::VectorXd> units;
   for (int i = 0; i < population_; ++i) {
@@ -77,7 +77,7 @@ std::vector<Eigen::VectorXd> CmaEs::Sample(Random& random) {
   return units;
 }
 
-CmaEs::Draw CmaEs::DrawOne(Random& random) const {
+CmaEs::Draw CmaEs::DrawOne(statistics::Random& random) const {
   Draw draw;
   Eigen::VectorXd z(mean_.size());
   for (double& value : z) value = random.Normal();

@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "random.hpp"
 #include "rift/search/options.hpp"
+#include "rift/statistics/random.hpp"
 #include "space.hpp"
 
 namespace rift::search {
@@ -25,7 +25,7 @@ class CmaEs {
 
   int Population() const { return population_; }
   /// The next generation, in unit coordinates.
-  std::vector<Eigen::VectorXd> Sample(Random& random);
+  std::vector<Eigen::VectorXd> Sample(statistics::Random& random);
   /// The losses of that generation, in its order; +infinity where there is none.
   void Learn(const std::vector<double>& losses);
   /// Nothing more to gain: the spread or the differences vanished, no progress for long, or it
@@ -40,7 +40,7 @@ class CmaEs {
   };
 
   void Decompose();
-  Draw DrawOne(Random& random) const;
+  Draw DrawOne(statistics::Random& random) const;
   Eigen::VectorXd UnitOf(const Draw& draw) const;
   void MoveMean(const std::vector<int>& order);
   void AdaptShape(const Eigen::VectorXd& mean_step, const std::vector<int>& order);

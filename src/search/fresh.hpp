@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "archive.hpp"
-#include "random.hpp"
 #include "rift/search/strategy.hpp"
+#include "rift/statistics/random.hpp"
 #include "space.hpp"
 
 namespace rift::search {
@@ -39,7 +39,7 @@ class FreshOnly : public Strategy {
   std::vector<Point> proposed_;  ///< the proposer's last batch
   std::vector<Point> asked_;     ///< what of it, or instead of it, was passed on
   int batch_;
-  Random random_;
+  statistics::Random random_;
 };
 
 }  // namespace rift::search

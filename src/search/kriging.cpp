@@ -74,7 +74,8 @@ double Kriging::Prior(const Scales& scales) {
   return -0.5 * off.square().sum() - 0.5 * noise * noise / 9.0;
 }
 
-Kriging::Scales Kriging::Varied(const Scales& scales, double spread, Random& random) const {
+Kriging::Scales Kriging::Varied(const Scales& scales, double spread,
+                                statistics::Random& random) const {
   Scales varied = scales;
   for (double& length : varied.log_length) {
     length = std::clamp(length + spread * random.Normal(), std::log(0.02), std::log(20.0));
@@ -85,7 +86,7 @@ Kriging::Scales Kriging::Varied(const Scales& scales, double spread, Random& ran
 }
 
 void Kriging::Fit(const Eigen::MatrixXd& points, const Eigen::VectorXd& values, int fit_steps,
-                  Random& random) {
+                  statistics::Random& random) {
   points_ = points;
   values_ = values;
   model_ = ModelWith(scales_);

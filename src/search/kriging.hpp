@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "random.hpp"
+#include "rift/statistics/random.hpp"
 #include "space.hpp"
 
 namespace rift::search {
@@ -19,7 +19,7 @@ class Kriging {
   /// Rows are points in unit coordinates; values of about unit variance and zero mean. First looks
   /// for better scales in `fit_steps` trials.
   void Fit(const Eigen::MatrixXd& points, const Eigen::VectorXd& values, int fit_steps,
-           Random& random);
+           statistics::Random& random);
 
   struct Prediction {
     Eigen::VectorXd mean;
@@ -47,7 +47,7 @@ class Kriging {
   Eigen::MatrixXd Stretched(const Eigen::MatrixXd& points, const Scales& scales) const;
   Eigen::MatrixXd KernelBetween(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) const;
   Model ModelWith(const Scales& scales) const;
-  Scales Varied(const Scales& scales, double spread, Random& random) const;
+  Scales Varied(const Scales& scales, double spread, statistics::Random& random) const;
   /// Log prior: no axis is taken for irrelevant or wild before the data say so.
   static double Prior(const Scales& scales);
 

@@ -28,7 +28,7 @@ class Restarts : public Strategy {
   const Known& known_;
   CmaEsOptions options_;
   int batch_;
-  Random random_;
+  statistics::Random random_;
   std::optional<CmaEs> run_;
   std::vector<Point> generation_;
   std::vector<double> losses_;  ///< of the first points of the generation

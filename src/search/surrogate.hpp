@@ -5,8 +5,8 @@
 
 #include "fresh.hpp"
 #include "kriging.hpp"
-#include "random.hpp"
 #include "rift/search/options.hpp"
+#include "rift/statistics/random.hpp"
 #include "samplers.hpp"
 
 namespace rift::search {
@@ -29,7 +29,7 @@ class Surrogate : public Strategy {
 
   const Known& known_;
   SurrogateOptions options_;
-  Random random_;
+  statistics::Random random_;
   SobolSequence sequence_;
   Kriging model_;
   std::size_t fitted_at_ = 0;  ///< evaluations when the scales were last looked for
