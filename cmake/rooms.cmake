@@ -16,8 +16,8 @@ rift_room(control ROOMS geometry
   LIBRARIES fmt::fmt)
 rift_room(trial ROOMS control geometry trajectory
   LIBRARIES fmt::fmt)
-rift_room(gap ROOMS geometry trajectory
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers)
+rift_room(gap ROOMS geometry statistics trajectory
+  LIBRARIES fmt::fmt)
 rift_room(search ROOMS statistics
   PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt)
 rift_room(simulation ROOMS control geometry statistics trial
@@ -45,12 +45,12 @@ rift_room(experiment ROOMS control search trajectory yaml
   OPTIONS gap hardware simulation trial twin sweep/run sweep/falsify sweep/calibrate
           vision/camera vision/calibration vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen)
-rift_room(sweep/falsify ROOMS control experiment gap geometry search simulation sweep/run trajectory trial
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers)
-rift_room(sweep/explain ROOMS experiment gap search sweep/falsify sweep/run trajectory trial
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen)
+rift_room(sweep/falsify ROOMS control experiment gap geometry search simulation statistics sweep/run trajectory trial
+  LIBRARIES fmt::fmt)
+rift_room(sweep/explain ROOMS experiment gap search statistics sweep/falsify sweep/run trajectory trial
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
 rift_room(sweep/calibrate ROOMS control experiment gap geometry simulation statistics sweep/falsify sweep/run trajectory trial
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen Threads::Threads)
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
 rift_room(report/figures ROOMS gap geometry experiment sweep/falsify trajectory
   LIBRARIES fmt::fmt)
 rift_room(report/text ROOMS gap experiment report/figures sweep/explain sweep/falsify trajectory

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
-#include <numbers>
+
+#include "rift/statistics/distributions.hpp"
 
 namespace rift::search {
 namespace {
@@ -26,8 +26,7 @@ constexpr std::array kBoldness{0.5, 1.0, 2.0, 0.0, 1.5, 0.5, 3.0, 1.0};
 
 /// Normal scores of the ranks 1..n, best first: most negative.
 double NormalScore(std::size_t rank, std::size_t n) {
-  const double p = (static_cast<double>(rank) + 0.5) / static_cast<double>(n);
-  return std::numbers::sqrt2 * boost::math::erf_inv(2.0 * p - 1.0);
+  return statistics::NormalQuantile((static_cast<double>(rank) + 0.5) / static_cast<double>(n));
 }
 
 }  // namespace

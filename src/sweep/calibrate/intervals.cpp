@@ -2,11 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "rift/statistics/distributions.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -111,9 +111,8 @@ void Judge(const std::vector<experiment::FreeParameter>& parameters,
   const Scatter scatter = ScatterOf(at, simulated, options, generator);
   // Few logs tell their own scatter badly.
   const double upper = 0.5 + 0.5 * options.confidence;
-  const double few_logs =
-      boost::math::quantile(boost::math::students_t(std::max(1.0, logs - 1.0)), upper) /
-      boost::math::quantile(boost::math::normal(), upper);
+  const double few_logs = statistics::StudentQuantile(std::max(1.0, logs - 1.0), upper) /
+                          statistics::NormalQuantile(upper);
   const std::vector<double> values = ValuesAt(parameters, estimate);
   const Eigen::Index n = estimate.size();
   std::vector<bool> has_effect;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "rift/statistics/mean.hpp"
 #include "rift/sweep/falsify/search_space.hpp"
 
 namespace rift::sweep {
@@ -138,11 +139,7 @@ double TrialsToFalsify(const FalsifyOptions& options) {
 }
 
 double Robustness_m(std::span<const TrialRow> rows, double threshold_m) {
-  const std::vector<double> gaps_m = Gaps(rows, 2.0 * threshold_m);
-  if (gaps_m.empty()) return std::numeric_limits<double>::quiet_NaN();
-  double sum_m = 0.0;
-  for (const double gap_m : gaps_m) sum_m += gap_m;
-  return threshold_m - sum_m / static_cast<double>(gaps_m.size());
+  return threshold_m - statistics::Mean(Gaps(rows, 2.0 * threshold_m));
 }
 
 std::optional<SweepResult> Falsify(

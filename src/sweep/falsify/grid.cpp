@@ -11,7 +11,7 @@
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/sweep/falsify/labels.hpp"
-#include "rift/sweep/falsify/statistics.hpp"
+#include "rift/sweep/falsify/summary.hpp"
 
 namespace rift::sweep {
 std::vector<TrialRequest> TrialsAt(const Experiment& experiment, const experiment::Theta& theta,
