@@ -5,7 +5,7 @@
 # this table, and docs/rooms.md is made from it.
 
 rift_room(statistics
-  LIBRARIES Boost::headers)
+  LIBRARIES Boost::headers PRIVATE_LIBRARIES fmt::fmt)
 rift_room(geometry
   LIBRARIES Eigen3::Eigen)
 rift_room(yaml
@@ -24,7 +24,7 @@ rift_room(simulation ROOMS control geometry statistics trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES PkgConfig::ODE PNG::PNG)
 rift_room(module
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES ${CMAKE_DL_LIBS} PkgConfig::XCB)
-rift_room(vision/camera ROOMS geometry yaml
+rift_room(vision/camera ROOMS geometry statistics yaml
   LIBRARIES Eigen3::Eigen opencv_core opencv_imgproc opencv_calib3d
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs opencv_videoio CURL::libcurl PkgConfig::JPEG)
 rift_room(vision/calibration ROOMS vision/camera
@@ -37,9 +37,9 @@ rift_room(vision/module ROOMS geometry module vision/camera vision/calibration v
   PRIVATE_LIBRARIES fmt::fmt)
 rift_room(hardware ROOMS control geometry trial vision/camera vision/tracking vision/module
   LIBRARIES fmt::fmt Threads::Threads)
-rift_room(twin ROOMS control geometry hardware simulation trajectory trial vision/camera vision/rendering vision/module
+rift_room(twin ROOMS control geometry hardware simulation statistics trajectory trial vision/camera vision/rendering vision/module
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
-rift_room(sweep/run
+rift_room(sweep/run ROOMS statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES SQLiteCpp sqlite3)
 rift_room(experiment ROOMS control search trajectory yaml
   OPTIONS gap hardware simulation trial twin sweep/run sweep/falsify sweep/calibrate
@@ -61,7 +61,7 @@ rift_room(view ROOMS control geometry module trajectory trial
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio)
 rift_room(commands ROOMS control experiment gap geometry hardware module report/figures report/page
-    report/text search simulation sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
+    report/text search simulation statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
     trial twin view vision/calibration vision/camera vision/module vision/rendering
     vision/tracking yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)

@@ -2,17 +2,13 @@
 
 #include <fmt/format.h>
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include "files.hpp"
+#include "rift/statistics/hash.hpp"
 
 namespace rift::commands {
 
 void InputHashes::Add(const std::string& path) {
-  const std::string bytes = ReadFile(path);
-  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-  hash_of_[path] = fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  hash_of_[path] = statistics::Hash128Text(ReadFile(path));
 }
 
 std::string InputHashes::Of(const std::string& path) const {

@@ -1,22 +1,18 @@
 #include "archive.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "rift/statistics/hash.hpp"
+
 namespace rift::search {
 namespace {
 
-/// FNV-1a over 64-bit words with the finish of splitmix64.
-std::uint64_t HashOf(const Point& point) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const double value : point) {
-    hash = (hash ^ std::bit_cast<std::uint64_t>(value + 0.0)) * 0x100000001b3ULL;
-    hash ^= hash >> 31;
-  }
-  return hash;
+std::uint64_t HashOf(Point point) {
+  for (double& value : point) value += 0.0;  // -0 is the same place as 0
+  return statistics::Hash64(std::as_bytes(std::span(point)));
 }
 
 }  // namespace

@@ -17,8 +17,12 @@ std::uint64_t Mix(std::uint64_t value) {
 
 }  // namespace
 
+std::uint64_t SeedOfStream(std::uint64_t seed, std::uint64_t stream) {
+  return Mix(Mix(seed) ^ Mix(~stream));
+}
+
 CounterRandom::CounterRandom(std::uint64_t seed, std::uint64_t stream)
-    : key_(Mix(Mix(seed) ^ Mix(~stream))) {}
+    : key_(SeedOfStream(seed, stream)) {}
 
 double CounterRandom::Uniform(std::uint64_t event, std::uint64_t draw) const {
   const std::uint64_t bits = Mix(Mix(key_ ^ Mix(event)) + draw);

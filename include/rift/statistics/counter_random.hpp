@@ -4,6 +4,9 @@
 
 namespace rift::statistics {
 
+/// A seed for each stream of a seed, independent of each other.
+std::uint64_t SeedOfStream(std::uint64_t seed, std::uint64_t stream);
+
 /// Counter-based random numbers (Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2,
 /// 3"): the value of every event is a hash of (seed, stream, event, draw), so that no value depends
 /// on how often or in which order the others were asked for.
