@@ -35,7 +35,7 @@ rift_room(vision/rendering ROOMS geometry vision/camera vision/calibration visio
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
 rift_room(vision/module ROOMS geometry module vision/camera vision/calibration vision/tracking vision/rendering
   PRIVATE_LIBRARIES fmt::fmt)
-rift_room(hardware ROOMS control geometry trial vision/camera vision/tracking vision/module
+rift_room(hardware ROOMS control geometry statistics trial vision/camera vision/tracking vision/module
   LIBRARIES fmt::fmt Threads::Threads)
 rift_room(twin ROOMS control geometry hardware simulation statistics trajectory trial vision/camera vision/rendering vision/module
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
@@ -51,7 +51,7 @@ rift_room(sweep/explain ROOMS experiment gap search statistics sweep/falsify swe
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
 rift_room(sweep/calibrate ROOMS control experiment gap geometry simulation statistics sweep/falsify sweep/run trajectory trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
-rift_room(report/figures ROOMS gap geometry experiment sweep/falsify trajectory
+rift_room(report/figures ROOMS gap geometry experiment statistics sweep/falsify trajectory
   LIBRARIES fmt::fmt)
 rift_room(report/text ROOMS gap experiment report/figures sweep/explain sweep/falsify trajectory
   LIBRARIES fmt::fmt)

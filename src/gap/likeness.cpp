@@ -11,6 +11,7 @@
 #include "path_shape.hpp"
 #include "rift/gap/verdict.hpp"
 #include "rift/statistics/mean.hpp"
+#include "rift/statistics/quantile.hpp"
 
 namespace rift::gap {
 namespace {
@@ -22,13 +23,6 @@ constexpr int kWavelengths = 60;
 /// Of a weave by 2 micrometres: less is rounding.
 constexpr double kLeastPower_m2 = 1e-12;
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return kNotComputed;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double Speed_mps(const Trajectory& path, const LikenessOptions& options) {
   std::vector<double> speeds;
   const size_t stride = static_cast<size_t>(options.speed_stride);
@@ -37,7 +31,7 @@ double Speed_mps(const Trajectory& path, const LikenessOptions& options) {
     const double speed = (to.Position() - from.Position()).norm() / (to.t_s - from.t_s);
     if (speed > options.moving_mps) speeds.push_back(speed);
   }
-  return Median(std::move(speeds));
+  return statistics::Median(std::move(speeds));
 }
 
 /// Power of evenly spaced values at a wavelength, as share of 1 for a sine of amplitude 2.

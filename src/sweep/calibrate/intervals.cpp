@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rift/statistics/distributions.hpp"
+#include "rift/statistics/quantile.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -66,11 +67,8 @@ struct Scatter {
 Scatter ScatterOf(Eigen::MatrixXd draws, double confidence) {
   Scatter scatter{.reach = Eigen::VectorXd(draws.cols())};
   for (Eigen::Index k = 0; k < draws.cols(); ++k) {
-    std::vector<double> sorted(draws.col(k).begin(), draws.col(k).end());
-    std::sort(sorted.begin(), sorted.end());
-    const auto last = static_cast<double>(sorted.size() - 1);
-    const double low = sorted[static_cast<size_t>(std::lround(0.5 * (1.0 - confidence) * last))];
-    const double high = sorted[static_cast<size_t>(std::lround(0.5 * (1.0 + confidence) * last))];
+    const std::vector<double> values(draws.col(k).begin(), draws.col(k).end());
+    const auto [low, high] = statistics::CentralInterval(values, confidence);
     scatter.reach[k] = 0.5 * (high - low);
     draws.col(k) = draws.col(k).cwiseMax(low).cwiseMin(high);
   }
