@@ -10,7 +10,7 @@ rift_room(geometry
   LIBRARIES Eigen3::Eigen)
 rift_room(yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES yaml-cpp)
-rift_room(trajectory ROOMS geometry
+rift_room(trajectory ROOMS geometry statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES FastFloat::fast_float)
 rift_room(control ROOMS geometry
   LIBRARIES fmt::fmt)
@@ -27,9 +27,9 @@ rift_room(module
 rift_room(vision/camera ROOMS geometry statistics yaml
   LIBRARIES Eigen3::Eigen opencv_core opencv_imgproc opencv_calib3d
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs opencv_videoio CURL::libcurl PkgConfig::JPEG)
-rift_room(vision/calibration ROOMS vision/camera
+rift_room(vision/calibration ROOMS statistics vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs)
-rift_room(vision/tracking ROOMS geometry module vision/camera
+rift_room(vision/tracking ROOMS geometry module statistics vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_highgui opencv_imgcodecs PkgConfig::APRILTAG)
 rift_room(vision/rendering ROOMS geometry vision/camera vision/calibration vision/tracking
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
