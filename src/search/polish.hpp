@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fresh.hpp"
+#include "archive.hpp"
 #include "rift/search/options.hpp"
 #include "rift/statistics/random.hpp"
 

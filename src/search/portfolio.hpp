@@ -4,9 +4,9 @@
 #include <limits>
 #include <memory>
 
-#include "fresh.hpp"
+#include "archive.hpp"
+#include "cma_es.hpp"
 #include "polish.hpp"
-#include "restarts.hpp"
 #include "rift/search/options.hpp"
 #include "samplers.hpp"
 #include "surrogate.hpp"
