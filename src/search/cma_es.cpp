@@ -31,6 +31,11 @@ constexpr double kFlat = 1e-13;
 /// far behind another's result ends early.
 constexpr double kHopeless = 100.0;
 constexpr double kLargestCondition = 1e14;
+/// A run without progress for so many generations and 80 evaluations an axis ends.
+constexpr int kStallGenerations = 20;
+/// A run whose spread fell below this share of every axis ends: no simulator and no robot tells
+/// settings apart that are so near.
+constexpr double kLastSpread = 1e-7;
 
 std::vector<int> RankOrder(const std::vector<double>& losses) {
   std::vector<int> order(losses.size());
@@ -207,14 +212,14 @@ bool CmaEs::IsFlat() const {
   return has_continuous && !(spread_ > kFlat * std::abs(best_));
 }
 
-bool CmaEs::IsDone(const CmaEsOptions& options, double best_known) const {
-  const int patience = options.stall_generations + 80 * space_.Size() / population_;
+bool CmaEs::IsDone(double best_known) const {
+  const int patience = kStallGenerations + 80 * space_.Size() / population_;
   if (generation_ - improved_at_ > patience) return true;
   if (mean_.size() == 0) return false;
   if (IsFlat() || best_ - best_known > kHopeless * spread_) return true;
   const double largest = sigma_ * std::sqrt(covariance_.diagonal().maxCoeff());
   const double condition = std::pow(lengths_.maxCoeff() / lengths_.minCoeff(), 2);
-  return largest < options.last_step || condition > kLargestCondition;
+  return largest < kLastSpread || condition > kLargestCondition;
 }
 
 Restarts::Restarts(const Known& known, const CmaEsOptions& options, int batch, std::uint64_t seed)
@@ -276,7 +281,7 @@ void Restarts::FinishGeneration() {
   run_->Learn(losses_);
   generation_.clear();
   losses_.clear();
-  if (run_->IsDone(options_, known_.archive.BestLoss())) run_.reset();
+  if (run_->IsDone(known_.archive.BestLoss())) run_.reset();
 }
 
 }  // namespace rift::search

@@ -32,7 +32,7 @@ class CmaEs {
   void Learn(const std::vector<double>& losses);
   /// Nothing more to gain: the spread or the differences vanished, no progress for long, or it
   /// settles at losses far above `best_known`.
-  bool IsDone(const CmaEsOptions& options, double best_known) const;
+  bool IsDone(double best_known) const;
 
  private:
   struct Draw {

@@ -39,7 +39,6 @@ class Portfolio : public Strategy {
   double RewardOf(std::span<const Evaluation> batch) const;
 
   const Known& known_;
-  PortfolioOptions options_;
   int explore_;  ///< evaluations
   double explored_points_ = 0.0, corner_points_ = 0.0, polish_points_ = 0.0;
   std::array<std::unique_ptr<Strategy>, kMembers> members_;

@@ -21,6 +21,14 @@ Eigen::ArrayXXd Matern52(const Eigen::MatrixXd& squared) {
 }
 
 constexpr std::uint64_t kStream = 0x400;
+/// The model rests on so many evaluations at most, the best half and others: fitting costs their
+/// cube, and a proposal shall cost less than a trial.
+constexpr int kModelPoints = 128;
+/// Points that compete for a place in a batch; the prediction costs kModelPoints^2 for each.
+constexpr int kCandidates = 256;
+/// Trials of other length scales when the model is fitted anew: each costs kModelPoints^3, and the
+/// search goes on from the scales of the last fit.
+constexpr int kFitSteps = 16;
 /// The scales are looked for again when there are so many times the evaluations of the last time.
 constexpr double kRefitGrowth = 1.25;
 /// What a trial without a loss counts as: worse than the middle, so that it is not sought, and no
@@ -177,7 +185,7 @@ std::vector<Point> Surrogate::Ask(int most) {
 
 std::vector<std::size_t> Surrogate::ModelPoints() {
   const std::size_t n = known_.archive.Size();
-  const auto most = static_cast<std::size_t>(options_.model_points);
+  const auto most = static_cast<std::size_t>(kModelPoints);
   std::vector<std::size_t> order = known_.archive.Best(n);
   // The best half and an even choice of the others.
   for (std::size_t i = most / 2; i < most && n > most; ++i) {
@@ -202,7 +210,7 @@ void Surrogate::FitModel() {
   const double grown = kRefitGrowth * static_cast<double>(fitted_at_);
   const bool is_due = static_cast<double>(known_.archive.Size()) >= grown;
   if (is_due) fitted_at_ = known_.archive.Size();
-  model_.Fit(points, values, is_due ? options_.fit_steps : 0, random_);
+  model_.Fit(points, values, is_due ? kFitSteps : 0, random_);
 }
 
 Eigen::VectorXd Surrogate::Near(const Eigen::VectorXd& centre) {
@@ -227,8 +235,8 @@ Eigen::VectorXd Surrogate::Near(const Eigen::VectorXd& centre) {
 
 Eigen::MatrixXd Surrogate::Candidates() {
   const std::vector<std::size_t> best = known_.archive.Best(kCentres);
-  Eigen::MatrixXd candidates(options_.candidates, known_.space.Size());
-  const auto anywhere = static_cast<Eigen::Index>(kAnywhere * options_.candidates);
+  Eigen::MatrixXd candidates(kCandidates, known_.space.Size());
+  const auto anywhere = static_cast<Eigen::Index>(kAnywhere * kCandidates);
   for (Eigen::Index i = 0; i < candidates.rows(); ++i) {
     const Eigen::VectorXd unit =
         i < anywhere
