@@ -4,52 +4,54 @@
 # (options.hpp, *_options.hpp). Nothing is transitive. tests/architecture holds every #include to
 # this table, and docs/rooms.md is made from it.
 
+rift_room(statistics
+  LIBRARIES Boost::headers PRIVATE_LIBRARIES fmt::fmt)
 rift_room(geometry
   LIBRARIES Eigen3::Eigen)
 rift_room(yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES yaml-cpp)
-rift_room(trajectory ROOMS geometry
+rift_room(trajectory ROOMS geometry statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES FastFloat::fast_float)
 rift_room(control ROOMS geometry
   LIBRARIES fmt::fmt)
 rift_room(trial ROOMS control geometry trajectory
   LIBRARIES fmt::fmt)
-rift_room(gap ROOMS geometry trajectory
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers)
-rift_room(search
+rift_room(gap ROOMS geometry statistics trajectory
+  LIBRARIES fmt::fmt)
+rift_room(search ROOMS statistics
   PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt)
-rift_room(simulation ROOMS control geometry trial
+rift_room(simulation ROOMS control geometry statistics trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES PkgConfig::ODE PNG::PNG)
 rift_room(module
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES ${CMAKE_DL_LIBS} PkgConfig::XCB)
-rift_room(vision/camera ROOMS geometry yaml
+rift_room(vision/camera ROOMS geometry statistics yaml
   LIBRARIES Eigen3::Eigen opencv_core opencv_imgproc opencv_calib3d
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs opencv_videoio CURL::libcurl PkgConfig::JPEG)
-rift_room(vision/calibration ROOMS vision/camera
+rift_room(vision/calibration ROOMS statistics vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs)
-rift_room(vision/tracking ROOMS geometry module vision/camera
+rift_room(vision/tracking ROOMS geometry module statistics vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_highgui opencv_imgcodecs PkgConfig::APRILTAG)
 rift_room(vision/rendering ROOMS geometry vision/camera vision/calibration vision/tracking
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
 rift_room(vision/module ROOMS geometry module vision/camera vision/calibration vision/tracking vision/rendering
   PRIVATE_LIBRARIES fmt::fmt)
-rift_room(hardware ROOMS control geometry trial vision/camera vision/tracking vision/module
+rift_room(hardware ROOMS control geometry statistics trial vision/camera vision/tracking vision/module
   LIBRARIES fmt::fmt Threads::Threads)
-rift_room(twin ROOMS control geometry hardware simulation trajectory trial vision/camera vision/rendering vision/module
+rift_room(twin ROOMS control geometry hardware simulation statistics trajectory trial vision/camera vision/rendering vision/module
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
-rift_room(sweep/run
+rift_room(sweep/run ROOMS statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES SQLiteCpp sqlite3)
 rift_room(experiment ROOMS control search trajectory yaml
   OPTIONS gap hardware simulation trial twin sweep/run sweep/falsify sweep/calibrate
           vision/camera vision/calibration vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen)
-rift_room(sweep/falsify ROOMS control experiment gap geometry search simulation sweep/run trajectory trial
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers)
-rift_room(sweep/explain ROOMS experiment gap search sweep/falsify sweep/run trajectory trial
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen)
-rift_room(sweep/calibrate ROOMS control experiment gap geometry simulation sweep/falsify sweep/run trajectory trial
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen Threads::Threads)
-rift_room(report/figures ROOMS gap geometry experiment sweep/falsify trajectory
+rift_room(sweep/falsify ROOMS control experiment gap geometry search simulation statistics sweep/run trajectory trial
+  LIBRARIES fmt::fmt)
+rift_room(sweep/explain ROOMS experiment gap search statistics sweep/falsify sweep/run trajectory trial
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
+rift_room(sweep/calibrate ROOMS control experiment gap geometry simulation statistics sweep/falsify sweep/run trajectory trial
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
+rift_room(report/figures ROOMS gap geometry experiment statistics sweep/falsify trajectory
   LIBRARIES fmt::fmt)
 rift_room(report/text ROOMS gap experiment report/figures sweep/explain sweep/falsify trajectory
   LIBRARIES fmt::fmt)
@@ -59,7 +61,7 @@ rift_room(view ROOMS control geometry module trajectory trial
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio)
 rift_room(commands ROOMS control experiment gap geometry hardware module report/figures report/page
-    report/text search simulation sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
+    report/text search simulation statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
     trial twin view vision/calibration vision/camera vision/module vision/rendering
     vision/tracking yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "json_fields.hpp"
+#include "rift/statistics/quantile.hpp"
 #include "rift/yaml/enum_name.hpp"
 #include "trial_output.hpp"
 
@@ -59,7 +58,6 @@ constexpr std::array<Stage, 7> kStages{{
     {"capture_to_answer", &PoseStages::captured_s, &PoseStages::answered_s},
 }};
 
-/// Sorted.
 std::vector<double> Times_s(const std::vector<PoseStages>& poses, const Stage& stage) {
   std::vector<double> times_s;
   for (const PoseStages& pose : poses) {
@@ -67,12 +65,7 @@ std::vector<double> Times_s(const std::vector<PoseStages>& poses, const Stage& s
       times_s.push_back(pose.*stage.to - pose.*stage.from);
     }
   }
-  std::sort(times_s.begin(), times_s.end());
   return times_s;
-}
-
-double Quantile(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<size_t>(std::ceil(share * static_cast<double>(sorted.size()))) - 1];
 }
 
 ordered_json StageJson(const std::vector<PoseStages>& poses, const Stage& stage) {
@@ -80,9 +73,9 @@ ordered_json StageJson(const std::vector<PoseStages>& poses, const Stage& stage)
   ordered_json json{
       {"n", times_s.size()}, {"p50_s", nullptr}, {"p95_s", nullptr}, {"p99_s", nullptr}};
   if (times_s.empty()) return json;
-  json["p50_s"] = Quantile(times_s, 0.5);
-  json["p95_s"] = Quantile(times_s, 0.95);
-  json["p99_s"] = Quantile(times_s, 0.99);
+  json["p50_s"] = statistics::Quantile(times_s, 0.5);
+  json["p95_s"] = statistics::Quantile(times_s, 0.95);
+  json["p99_s"] = statistics::Quantile(times_s, 0.99);
   return json;
 }
 
@@ -163,8 +156,9 @@ std::string DriveText(const DriveRun& run) {
   const std::vector<double> latency_s = Times_s(run.evidence.poses, kCaptureToCommand);
   if (!latency_s.empty()) {
     text += fmt::format("capture to command p50 {:.1f} ms, p95 {:.1f}, p99 {:.1f}\n",
-                        1e3 * Quantile(latency_s, 0.5), 1e3 * Quantile(latency_s, 0.95),
-                        1e3 * Quantile(latency_s, 0.99));
+                        1e3 * statistics::Quantile(latency_s, 0.5),
+                        1e3 * statistics::Quantile(latency_s, 0.95),
+                        1e3 * statistics::Quantile(latency_s, 0.99));
   }
   const std::optional<bool>& acknowledged = run.evidence.stop_acknowledged;
   text += !acknowledged   ? "the robot cannot say whether it stands: look at it\n"

@@ -9,6 +9,7 @@
 
 #include "json_fields.hpp"
 #include "likeness_output.hpp"
+#include "rift/statistics/mean.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
@@ -65,9 +66,9 @@ std::string Table(const GapEvidence& evidence) {
 
 template <class Member>
 double MeanOf(const GapEvidence& evidence, Member member) {
-  double sum = 0.0;
-  for (const auto& trial : evidence.trials) sum += trial.comparison.*member;
-  return sum / static_cast<double>(evidence.trials.size());
+  std::vector<double> values;
+  for (const auto& trial : evidence.trials) values.push_back(trial.comparison.*member);
+  return statistics::Mean(values);
 }
 
 /// What the gap consists of: what goes with the start offset, what with a rigid motion, and what

@@ -7,21 +7,14 @@
 
 #include "files.hpp"
 #include "json_fields.hpp"
-#include "rift/sweep/run/content_hash.hpp"
+#include "rift/statistics/hash.hpp"
+#include "rift/statistics/quantile.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// NaN of none.
-double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return std::nan("");
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 double RowsPerSecond(const TrackRun& run, int rows) {
   const double span_s = run.last_t_s - run.first_t_s;
@@ -64,9 +57,9 @@ ordered_json FrameJson(const vision::CameraModel& camera) {
 }
 
 ordered_json SpanJson(const std::vector<double>& values) {
-  return {{"p50", NumberOrNull(Quantile(values, 0.5))},
-          {"p95", NumberOrNull(Quantile(values, 0.95))},
-          {"max", NumberOrNull(Quantile(values, 1.0))}};
+  return {{"p50", NumberOrNull(statistics::Quantile(values, 0.5))},
+          {"p95", NumberOrNull(statistics::Quantile(values, 0.95))},
+          {"max", NumberOrNull(statistics::Quantile(values, 1.0))}};
 }
 
 }  // namespace
@@ -78,7 +71,7 @@ std::string TrackJson(const TrackRequest& request, const vision::CameraModel& ca
       {"camera", request.camera},
       {"recording", run.is_recording},
       {"calibration", request.calibration},
-      {"calibration_hash", sweep::ContentHash(ReadFile(request.calibration))},
+      {"calibration_hash", statistics::Hash128Text(ReadFile(request.calibration))},
       {"width_px", camera.width_px},
       {"height_px", camera.height_px},
       {"frame", FrameJson(camera)},
@@ -111,13 +104,14 @@ std::string TrackText(const TrackRun& run, int rows) {
   text += fmt::format("; {} pictures, {}, {} dropped\n", run.frames, MissesText(run),
                       run.status.dropped);
   if (!run.latencies_s.empty()) {
-    text +=
-        fmt::format("latency from light to pose: p50 {:.0f} ms, p95 {:.0f} ms\n",
-                    1e3 * Quantile(run.latencies_s, 0.5), 1e3 * Quantile(run.latencies_s, 0.95));
+    text += fmt::format("latency from light to pose: p50 {:.0f} ms, p95 {:.0f} ms\n",
+                        1e3 * statistics::Quantile(run.latencies_s, 0.5),
+                        1e3 * statistics::Quantile(run.latencies_s, 0.95));
   }
   if (!run.costs_s.empty()) {
     text += fmt::format("finding the tag: p50 {:.1f} ms, p95 {:.1f} ms\n",
-                        1e3 * Quantile(run.costs_s, 0.5), 1e3 * Quantile(run.costs_s, 0.95));
+                        1e3 * statistics::Quantile(run.costs_s, 0.5),
+                        1e3 * statistics::Quantile(run.costs_s, 0.95));
   }
   if (run.most_tags_of_this_id > 1) {
     text += fmt::format("{} tags of this id were in the picture: take the others away\n",

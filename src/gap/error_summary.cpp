@@ -2,42 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
+
+#include "rift/statistics/mean.hpp"
+#include "rift/statistics/quantile.hpp"
 
 namespace rift::gap {
-namespace {
-
-double Mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// Linear interpolation between order statistics, as numpy and R (type 7) do.
-double Quantile(std::vector<double>& values, double share) {
-  const double position = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<size_t>(position);
-  std::nth_element(values.begin(), values.begin() + below, values.end());
-  const double low = values[below];
-  if (below + 1 == values.size()) return low;
-  const double high = *std::min_element(values.begin() + below + 1, values.end());
-  return low + (position - static_cast<double>(below)) * (high - low);
-}
-
-}  // namespace
 
 void SummariseErrors(std::vector<double> errors_m, Comparison& result) {
-  result.mean_error_m = Mean(errors_m);
+  result.mean_error_m = statistics::Mean(errors_m);
   double squares = 0.0;
   for (const double error_m : errors_m) squares += error_m * error_m;
   result.rms_error_m = std::sqrt(squares / static_cast<double>(errors_m.size()));
-  result.median_error_m = Quantile(errors_m, 0.5);
-  result.p95_error_m = Quantile(errors_m, 0.95);
+  result.median_error_m = statistics::Median(errors_m);
+  result.p95_error_m = statistics::Quantile(std::move(errors_m), 0.95);
 }
 
 void SummariseYawErrors(std::vector<double> errors_rad, Comparison& result) {
   std::erase_if(errors_rad, [](double error_rad) { return std::isnan(error_rad); });
   if (errors_rad.empty()) return;
   for (double& error_rad : errors_rad) error_rad = std::abs(error_rad);
-  result.mean_yaw_error_rad = Mean(errors_rad);
+  result.mean_yaw_error_rad = statistics::Mean(errors_rad);
   result.max_yaw_error_rad = *std::max_element(errors_rad.begin(), errors_rad.end());
 }
 

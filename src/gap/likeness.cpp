@@ -10,6 +10,8 @@
 #include "energy_test.hpp"
 #include "path_shape.hpp"
 #include "rift/gap/verdict.hpp"
+#include "rift/statistics/mean.hpp"
+#include "rift/statistics/quantile.hpp"
 
 namespace rift::gap {
 namespace {
@@ -21,28 +23,6 @@ constexpr int kWavelengths = 60;
 /// Of a weave by 2 micrometres: less is rounding.
 constexpr double kLeastPower_m2 = 1e-12;
 
-/// A mean that is NaN of nothing.
-class Mean {
- public:
-  void Add(double value) {
-    if (std::isnan(value)) return;
-    sum_ += value;
-    ++count_;
-  }
-  double Value() const { return count_ > 0 ? sum_ / count_ : kNotComputed; }
-
- private:
-  double sum_ = 0.0;
-  int count_ = 0;
-};
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return kNotComputed;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double Speed_mps(const Trajectory& path, const LikenessOptions& options) {
   std::vector<double> speeds;
   const size_t stride = static_cast<size_t>(options.speed_stride);
@@ -51,7 +31,7 @@ double Speed_mps(const Trajectory& path, const LikenessOptions& options) {
     const double speed = (to.Position() - from.Position()).norm() / (to.t_s - from.t_s);
     if (speed > options.moving_mps) speeds.push_back(speed);
   }
-  return Median(std::move(speeds));
+  return statistics::Median(std::move(speeds));
 }
 
 /// Power of evenly spaced values at a wavelength, as share of 1 for a sine of amplitude 2.
@@ -67,22 +47,24 @@ double PowerAt(const std::vector<double>& values, double length_m, double wavele
   return (in_phase * in_phase + in_quadrature * in_quadrature) / (n * n);
 }
 
-void AddSpread(const RepeatedSetting& setting, const GapOptions& gap, Mean& sim, Mean& real) {
-  real.Add(NoiseFloor_m(setting.reals, gap));
+void AddSpread(const RepeatedSetting& setting, const GapOptions& gap, std::vector<double>& sim,
+               std::vector<double>& real) {
+  real.push_back(NoiseFloor_m(setting.reals, gap));
   if (setting.sims.size() == 1) {
-    sim.Add(NoiseFloor_m(setting.sims.front(), gap));
+    sim.push_back(NoiseFloor_m(setting.sims.front(), gap));
     return;
   }
-  Mean spread_m;  // run i of one real trial and of the other: repeats as the reals are
+  std::vector<double>
+      spread_m;  // run i of one real trial and of the other: repeats as the reals are
   for (size_t a = 0; a < setting.sims.size(); ++a) {
     for (size_t b = 0; b < a; ++b) {
       const size_t runs = std::min(setting.sims[a].size(), setting.sims[b].size());
       for (size_t i = 0; i < runs; ++i) {
-        spread_m.Add(Gap(setting.sims[a][i], setting.sims[b][i], gap));
+        spread_m.push_back(Gap(setting.sims[a][i], setting.sims[b][i], gap));
       }
     }
   }
-  sim.Add(spread_m.Value());
+  sim.push_back(statistics::MeanOfKnown(spread_m));
 }
 
 /// The runs that a real path is held against.
@@ -119,29 +101,29 @@ class Closeness {
     if (sims.empty()) return;
     std::vector<Shape> shapes;
     for (const Trajectory& sim : sims) {
-      gap_m_.Add(Gap(sim, real, gap_));
+      gap_m_.push_back(Gap(sim, real, gap_));
       shapes.push_back(ShapeOf(sim, options_.points));
     }
     const Shape mean = MeanShape(shapes);
-    mean_path_gap_m_.Add(Gap(AsPath(mean), real, gap_));
+    mean_path_gap_m_.push_back(Gap(AsPath(mean), real, gap_));
     if (shapes.size() < 2) return;
     const bool is_inside = Distance_m(ShapeOf(real, options_.points), mean) <= BandWidth_m(shapes);
-    inside_.Add(is_inside ? 1.0 : 0.0);
+    inside_.push_back(is_inside ? 1.0 : 0.0);
     const double k = static_cast<double>(shapes.size());
-    inside_expected_.Add(k / (k + 1.0));
+    inside_expected_.push_back(k / (k + 1.0));
   }
 
   void Put(Likeness& likeness) const {
-    likeness.mean_gap_m = gap_m_.Value();
-    likeness.mean_path_gap_m = mean_path_gap_m_.Value();
-    likeness.inside_share = inside_.Value();
-    likeness.inside_expected = inside_expected_.Value();
+    likeness.mean_gap_m = statistics::MeanOfKnown(gap_m_);
+    likeness.mean_path_gap_m = statistics::MeanOfKnown(mean_path_gap_m_);
+    likeness.inside_share = statistics::MeanOfKnown(inside_);
+    likeness.inside_expected = statistics::MeanOfKnown(inside_expected_);
   }
 
  private:
   const GapOptions& gap_;
   const LikenessOptions& options_;
-  Mean gap_m_, mean_path_gap_m_, inside_, inside_expected_;
+  std::vector<double> gap_m_, mean_path_gap_m_, inside_, inside_expected_;
 };
 
 std::vector<Shape> ShapesOf(std::span<const Trajectory> paths, int points) {
@@ -177,10 +159,10 @@ AllPaths Gather(std::span<const RepeatedSetting> settings) {
 
 template <class Value>
 BothSides MeanOf(const AllPaths& all, Value value) {
-  Mean sim, real;
-  for (const Trajectory& path : all.sims) sim.Add(value(path));
-  for (const Trajectory& path : all.reals) real.Add(value(path));
-  return {sim.Value(), real.Value()};
+  std::vector<double> sim, real;
+  for (const Trajectory& path : all.sims) sim.push_back(value(path));
+  for (const Trajectory& path : all.reals) real.push_back(value(path));
+  return {statistics::MeanOfKnown(sim), statistics::MeanOfKnown(real)};
 }
 
 void Check(std::span<const RepeatedSetting> settings) {
@@ -233,7 +215,7 @@ Likeness MeasureLikeness(std::span<const RepeatedSetting> settings, const GapOpt
       MeanOf(all, [&](const Trajectory& path) { return TraitsOf(path, options).speed_mps; });
   likeness.wavelength_m = {DominantWavelength_m(all.sims, options),
                            DominantWavelength_m(all.reals, options)};
-  Mean sim_spread_m, real_spread_m;
+  std::vector<double> sim_spread_m, real_spread_m;
   Closeness closeness(gap, options);
   std::vector<ShuffleGroup> groups;
   for (const RepeatedSetting& setting : settings) {
@@ -243,7 +225,8 @@ Likeness MeasureLikeness(std::span<const RepeatedSetting> settings, const GapOpt
       closeness.Add(setting.reals[i], SimsOf(setting, i));
     }
   }
-  likeness.spread_m = {sim_spread_m.Value(), real_spread_m.Value()};
+  likeness.spread_m = {statistics::MeanOfKnown(sim_spread_m),
+                       statistics::MeanOfKnown(real_spread_m)};
   closeness.Put(likeness);
   const EnergyTest test = TestEnergy(groups, options.shuffles, generator);
   likeness.energy_m = test.energy_m;

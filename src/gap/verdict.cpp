@@ -1,23 +1,12 @@
 #include "rift/gap/verdict.hpp"
 
-#include <algorithm>
-#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 
 #include "rift/gap/comparison.hpp"
+#include "rift/statistics/intervals.hpp"
+#include "rift/statistics/mean.hpp"
 
 namespace rift::gap {
-namespace {
-
-/// Clopper and Pearson 1934, exact for a binomial count.
-void SetShareInterval(RepeatVerdict& verdict) {
-  const double k = verdict.above, n = verdict.repeats;
-  const double tail = (1.0 - verdict.confidence) / 2.0;
-  verdict.share_low = k == 0.0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, tail);
-  verdict.share_high = k == n ? 1.0 : boost::math::ibeta_inv(k + 1.0, n - k, 1.0 - tail);
-}
-
-}  // namespace
 
 RepeatVerdict JudgeRepeats(std::span<const double> gaps_m, double threshold_m, double confidence) {
   RepeatVerdict verdict;
@@ -30,19 +19,21 @@ RepeatVerdict JudgeRepeats(std::span<const double> gaps_m, double threshold_m, d
   if (verdict.repeats == 0) return verdict;
   if (verdict.above == verdict.repeats) verdict.verdict = Verdict::kFalsified;
   if (verdict.above == 0) verdict.verdict = Verdict::kNotFalsified;
-  SetShareInterval(verdict);
+  const statistics::Interval share =
+      statistics::ClopperPearson(verdict.above, verdict.repeats, confidence);
+  verdict.share_low = share.low;
+  verdict.share_high = share.high;
   return verdict;
 }
 
 double NoiseFloor_m(std::span<const trajectory::Trajectory> reals, const GapOptions& options) {
-  double sum_m = 0.0;
-  int pairs = 0;
+  std::vector<double> gaps_m;
   for (size_t i = 0; i < reals.size(); ++i) {
-    for (size_t j = i + 1; j < reals.size(); ++j, ++pairs) {
-      sum_m += Gap(reals[i], reals[j], options);
+    for (size_t j = i + 1; j < reals.size(); ++j) {
+      gaps_m.push_back(Gap(reals[i], reals[j], options));
     }
   }
-  return pairs > 0 ? sum_m / pairs : kNotComputed;
+  return statistics::Mean(gaps_m);
 }
 
 }  // namespace rift::gap

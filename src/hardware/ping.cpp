@@ -7,6 +7,7 @@
 #include <map>
 
 #include "rift/hardware/robot_link.hpp"
+#include "rift/statistics/quantile.hpp"
 
 namespace rift::hardware {
 namespace {
@@ -14,24 +15,17 @@ namespace {
 constexpr double kTick_s = 0.0005;
 constexpr double kLastAnswer_s = 0.5;  // how long the last commands may take to be answered
 
-/// Smallest value that at least `share` of the sorted values do not exceed.
-double Quantile(const std::vector<double>& sorted, double share) {
-  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
-  return sorted[static_cast<size_t>(std::max(rank, 1.0)) - 1];
-}
-
-void FillTimes(PingResult& result, std::vector<double> round_trips_s) {
+void FillTimes(PingResult& result, const std::vector<double>& round_trips_s) {
   if (round_trips_s.empty()) return;
   double changes_s = 0.0;
   for (size_t i = 1; i < round_trips_s.size(); ++i) {
     changes_s += std::abs(round_trips_s[i] - round_trips_s[i - 1]);
   }
   result.jitter_s = changes_s / std::max(1.0, static_cast<double>(round_trips_s.size() - 1));
-  std::sort(round_trips_s.begin(), round_trips_s.end());
-  result.p50_s = Quantile(round_trips_s, 0.50);
-  result.p95_s = Quantile(round_trips_s, 0.95);
-  result.p99_s = Quantile(round_trips_s, 0.99);
-  result.max_s = round_trips_s.back();
+  result.p50_s = statistics::Quantile(round_trips_s, 0.50);
+  result.p95_s = statistics::Quantile(round_trips_s, 0.95);
+  result.p99_s = statistics::Quantile(round_trips_s, 0.99);
+  result.max_s = *std::max_element(round_trips_s.begin(), round_trips_s.end());
 }
 
 size_t LongestBurst(const std::vector<bool>& is_answered) {
@@ -81,7 +75,7 @@ PingResult Ping(ByteLine& line, Clock& clock, const LineOptions& line_options, P
     result.loss = 1.0 - static_cast<double>(result.answered) / static_cast<double>(result.sent);
   }
   result.longest_burst = LongestBurst(is_answered);
-  FillTimes(result, std::move(round_trips_s));
+  FillTimes(result, round_trips_s);
   return result;
 }
 

@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <optional>
 #include <vector>
 
-#include "random.hpp"
+#include "archive.hpp"
 #include "rift/search/options.hpp"
+#include "rift/statistics/random.hpp"
 #include "space.hpp"
 
 namespace rift::search {
@@ -25,12 +27,12 @@ class CmaEs {
 
   int Population() const { return population_; }
   /// The next generation, in unit coordinates.
-  std::vector<Eigen::VectorXd> Sample(Random& random);
+  std::vector<Eigen::VectorXd> Sample(statistics::Random& random);
   /// The losses of that generation, in its order; +infinity where there is none.
   void Learn(const std::vector<double>& losses);
   /// Nothing more to gain: the spread or the differences vanished, no progress for long, or it
   /// settles at losses far above `best_known`.
-  bool IsDone(const CmaEsOptions& options, double best_known) const;
+  bool IsDone(double best_known) const;
 
  private:
   struct Draw {
@@ -40,7 +42,7 @@ class CmaEs {
   };
 
   void Decompose();
-  Draw DrawOne(Random& random) const;
+  Draw DrawOne(statistics::Random& random) const;
   Eigen::VectorXd UnitOf(const Draw& draw) const;
   void MoveMean(const std::vector<int>& order);
   void AdaptShape(const Eigen::VectorXd& mean_step, const std::vector<int>& order);
@@ -67,6 +69,36 @@ class CmaEs {
   int improved_at_ = 0;
   double best_ = std::numeric_limits<double>::infinity();
   double spread_ = 0.0;  ///< of the losses in the last generation
+};
+
+/// CMA-ES run after run, with populations that double and, for as many evaluations, small ones
+/// with short steps: BIPOP (Hansen 2009). The first run starts at the best point known then.
+class Restarts : public Strategy {
+ public:
+  Restarts(const Known& known, const CmaEsOptions& options, int batch, std::uint64_t seed);
+
+  std::vector<Point> Ask(int most) override;
+  void Tell(std::span<const Evaluation> batch) override;
+  /// A run just ended: what it learned is used up.
+  bool IsBetweenRuns() const { return !run_; }
+
+ private:
+  void Begin();
+  Eigen::VectorXd StartPoint();
+  void FinishGeneration();
+
+  const Known& known_;
+  CmaEsOptions options_;
+  int batch_;
+  statistics::Random random_;
+  std::optional<CmaEs> run_;
+  std::vector<Point> generation_;
+  std::vector<double> losses_;  ///< of the first points of the generation
+  int default_population_;
+  int runs_ = 0;
+  int doublings_ = 0;
+  bool is_large_ = true;
+  double spent_large_ = 0.0, spent_small_ = 0.0;  ///< evaluations
 };
 
 }  // namespace rift::search

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "fresh.hpp"
+#include "archive.hpp"
+#include "cma_es.hpp"
 #include "polish.hpp"
 #include "portfolio.hpp"
-#include "restarts.hpp"
 #include "rift/search/options.hpp"
 #include "samplers.hpp"
 #include "surrogate.hpp"
@@ -59,7 +59,8 @@ std::unique_ptr<Strategy> MakeStrategy(const SearchOptions& options, const std::
   options.polish.Check();
   auto known = std::make_unique<Known>(axes);
   auto proposer = Proposer(options, *known, budget, seed);
-  return std::make_unique<FreshOnly>(std::move(known), std::move(proposer), options.batch, seed);
+  return std::make_unique<WithoutRepeats>(std::move(known), std::move(proposer), options.batch,
+                                          seed);
 }
 
 }  // namespace rift::search

@@ -13,7 +13,7 @@ constexpr std::uint64_t kStream = 0x300;
 constexpr std::size_t kStartsWithin = 200;
 
 /// Columns are orthonormal and point evenly anywhere.
-Eigen::MatrixXd RandomFrame(Eigen::Index size, Random& random) {
+Eigen::MatrixXd RandomFrame(Eigen::Index size, statistics::Random& random) {
   Eigen::MatrixXd normal(size, size);
   for (double& value : normal.reshaped()) value = random.Normal();
   return Eigen::HouseholderQR<Eigen::MatrixXd>(normal).householderQ();

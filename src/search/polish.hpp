@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fresh.hpp"
-#include "random.hpp"
+#include "archive.hpp"
 #include "rift/search/options.hpp"
+#include "rift/statistics/random.hpp"
 
 namespace rift::search {
 
@@ -34,7 +34,7 @@ class Polish : public Strategy {
 
   const Known& known_;
   PolishOptions options_;
-  Random random_;
+  statistics::Random random_;
   std::vector<int> numeric_, categorical_;  ///< axes
   std::vector<Eigen::VectorXd> starts_;
 

@@ -6,6 +6,20 @@
 namespace rift::search {
 namespace {
 
+/// Share of the budget for corners and space-filling points before anything adapts, and at most so
+/// many points: what the others start from need not grow with a long search.
+constexpr double kExploreShare = 0.2;
+constexpr int kExploreMost = 100;
+/// Share of the exploring points that goes to corners, where simulators often fail first.
+constexpr double kCornerShare = 0.5;
+/// Evaluations after which the surrogate proposes no more: its model keeps its size while the
+/// others sharpen.
+constexpr int kSurrogateMost = 600;
+/// Share of all evaluations that polishing gets at most.
+constexpr double kPolishShare = 0.1;
+/// Weight of trying a method that was tried little against one that found much. UCB1 has sqrt(2)
+/// for rewards anywhere in [0, 1]; most batches earn nothing here.
+constexpr double kCuriosity = 0.3;
 /// Share of the records that a batch leaves: a memory of about 30 batches.
 constexpr double kMemory = 0.97;
 /// A batch pays when one of its points is among so many best.
@@ -18,8 +32,8 @@ constexpr double kExploreLater = 1.0 / 3.0;
 
 Portfolio::Portfolio(const Known& known, const SearchOptions& options, int budget,
                      std::uint64_t seed)
-    : known_(known), options_(options.portfolio) {
-  explore_ = std::min(options_.explore_most, static_cast<int>(options_.explore_share * budget));
+    : known_(known) {
+  explore_ = std::min(kExploreMost, static_cast<int>(kExploreShare * budget));
   members_[kSobol] = std::make_unique<SobolSampler>(known.space, seed);
   members_[kCorners] = std::make_unique<CornerSampler>(known.space, seed);
   members_[kSurrogate] = std::make_unique<Surrogate>(known, options.surrogate, seed);
@@ -31,19 +45,19 @@ bool Portfolio::IsExploring() const {
   const int evaluations = static_cast<int>(known_.archive.Size());
   if (evaluations < explore_) return true;
   const double later = explored_points_ - explore_;
-  return evaluations < options_.surrogate_most &&
+  return evaluations < kSurrogateMost &&
          later < kExploreLater * static_cast<double>(evaluations - explore_);
 }
 
 Portfolio::Member Portfolio::Explorer() const {
-  const double corners_due = options_.corner_share * static_cast<double>(known_.archive.Size());
+  const double corners_due = kCornerShare * static_cast<double>(known_.archive.Size());
   return corner_points_ < corners_due ? kCorners : kSobol;
 }
 
 bool Portfolio::MayPropose(Member member) const {
   const auto evaluations = static_cast<double>(known_.archive.Size());
-  if (member == kSurrogate) return evaluations < options_.surrogate_most;
-  if (member == kPolish) return polish_points_ < options_.polish_share * evaluations;
+  if (member == kSurrogate) return evaluations < kSurrogateMost;
+  if (member == kPolish) return polish_points_ < kPolishShare * evaluations;
   return true;
 }
 
@@ -58,7 +72,7 @@ Portfolio::Member Portfolio::Choose() const {
     const Record& record = records_[member];
     const double spent = std::max(record.spent, 1e-3);
     const double bound =
-        record.gain / spent + options_.curiosity * std::sqrt(std::log(1.0 + all_spent) / spent);
+        record.gain / spent + kCuriosity * std::sqrt(std::log(1.0 + all_spent) / spent);
     if (bound > highest) {
       highest = bound;
       choice = member;

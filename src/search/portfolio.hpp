@@ -4,9 +4,9 @@
 #include <limits>
 #include <memory>
 
-#include "fresh.hpp"
+#include "archive.hpp"
+#include "cma_es.hpp"
 #include "polish.hpp"
-#include "restarts.hpp"
 #include "rift/search/options.hpp"
 #include "samplers.hpp"
 #include "surrogate.hpp"
@@ -39,7 +39,6 @@ class Portfolio : public Strategy {
   double RewardOf(std::span<const Evaluation> batch) const;
 
   const Known& known_;
-  PortfolioOptions options_;
   int explore_;  ///< evaluations
   double explored_points_ = 0.0, corner_points_ = 0.0, polish_points_ = 0.0;
   std::array<std::unique_ptr<Strategy>, kMembers> members_;

@@ -49,7 +49,7 @@ Point RandomSampler::Next() {
 
 SobolSequence::SobolSequence(int size, std::uint64_t seed)
     : engine_(static_cast<std::size_t>(size)) {
-  Random random(seed, kScramble);
+  statistics::Random random(seed, kScramble);
   for (int i = 0; i < size; ++i) {
     scrambles_.push_back(static_cast<std::uint32_t>(random.Below(1ULL << 32)));
   }

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "archive.hpp"
-#include "random.hpp"
 #include "rift/search/strategy.hpp"
+#include "rift/statistics/random.hpp"
 #include "space.hpp"
 
 namespace rift::search {
@@ -33,7 +33,7 @@ class RandomSampler : public Sampler {
 
  private:
   Point Next() override;
-  Random random_;
+  statistics::Random random_;
 };
 
 /// A scrambled Sobol sequence in the unit cube (Joe and Kuo's directions, as in Boost; Owen
@@ -66,7 +66,7 @@ class LatinHypercubeSampler : public Sampler {
   Point Next() override;
   void Shuffle();
 
-  Random random_;
+  statistics::Random random_;
   std::vector<std::vector<int>> strata_;  ///< of each axis, in the order of the points
   int used_;
 };

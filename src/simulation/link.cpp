@@ -47,8 +47,8 @@ void LinkOptions::Check() const {
 Link::Link(const LinkOptions& options, std::uint64_t seed)
     : options_(options),
       noise_(seed, kLossStream),
-      phase_s_(options.poll_s *
-               options.poll_phase.value_or(Noise(seed, kPhaseStream).Uniform(0, 0))) {
+      phase_s_(options.poll_s * options.poll_phase.value_or(
+                                    statistics::CounterRandom(seed, kPhaseStream).Uniform(0, 0))) {
   next_poll_s_ = phase_s_;
 }
 

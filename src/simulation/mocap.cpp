@@ -60,8 +60,9 @@ Eigen::Vector3d TagInWorld(const TruePose& pose, const MocapOptions& options) {
 Mocap::Mocap(const MocapOptions& options, std::uint64_t seed)
     : options_(options),
       noise_(seed, kPoseStream),
-      phase_s_(options.rate_hz > 0.0 ? Noise(seed, kPhaseStream).Uniform(0, 0) / options.rate_hz
-                                     : 0.0),
+      phase_s_(options.rate_hz > 0.0
+                   ? statistics::CounterRandom(seed, kPhaseStream).Uniform(0, 0) / options.rate_hz
+                   : 0.0),
       last_stamp_s_(-std::numeric_limits<double>::infinity()) {}
 
 double Mocap::FrameTime_s(std::uint64_t frame) const {

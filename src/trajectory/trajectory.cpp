@@ -6,17 +6,9 @@
 #include <vector>
 
 #include "rift/geometry/angle.hpp"
+#include "rift/statistics/quantile.hpp"
 
 namespace rift::trajectory {
-namespace {
-
-double Median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-}  // namespace
 
 bool Trajectory::HasYaw() const {
   return !poses.empty() && std::all_of(poses.begin(), poses.end(), [](const StampedPose& pose) {
@@ -63,7 +55,8 @@ geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m) {
     y_m.push_back(pose.y_m);
     turn_rad.push_back(geometry::WrapToPi(pose.yaw_rad - first.yaw_rad));
   }
-  return {Median(x_m), Median(y_m), geometry::WrapToPi(first.yaw_rad + Median(turn_rad))};
+  return {statistics::Median(x_m), statistics::Median(y_m),
+          geometry::WrapToPi(first.yaw_rad + statistics::Median(turn_rad))};
 }
 
 }  // namespace rift::trajectory

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "rift/statistics/quantile.hpp"
+
 namespace rift::twin {
 namespace {
 
@@ -107,10 +109,7 @@ void StreamCamera::Finish(TwinRun& run) {
   RethrowFailure();
   run.pictures = tag_.poses.size();
   if (run.pictures > 0) run.picture_cpu_s = cpu_s_ / static_cast<double>(run.pictures);
-  if (!late_s_.empty()) {
-    std::sort(late_s_.begin(), late_s_.end());
-    run.picture_late_p99_s = late_s_[late_s_.size() * 99 / 100];
-  }
+  if (!late_s_.empty()) run.picture_late_p99_s = statistics::Quantile(late_s_, 0.99);
   run.tag = std::move(tag_);
 }
 

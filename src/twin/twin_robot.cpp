@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "rift/statistics/counter_random.hpp"
+
 namespace rift::twin {
 namespace {
 
@@ -15,10 +17,8 @@ simulation::SimulationOptions WithoutRadio(simulation::SimulationOptions options
   return options;
 }
 
-/// Seeds that a simulated run does not use for anything else.
-std::uint64_t SeedOf(std::uint64_t seed, std::uint64_t stream) {
-  return (seed + 1) * 0x9E3779B97F4A7C15ULL + stream;
-}
+/// Streams that a simulated run does not use.
+enum Stream : std::uint64_t { kToRobotStream = 100, kToHostStream = 101 };
 
 }  // namespace
 
@@ -26,8 +26,8 @@ TwinRobot::TwinRobot(const simulation::SimulationOptions& options, double batter
                      const geometry::Pose2& start, std::uint64_t seed,
                      std::shared_ptr<const simulation::HeightImage> image)
     : robot_(WithoutRadio(options), start, seed, std::move(image)),
-      to_robot_(options.link, SeedOf(seed, 1)),
-      to_host_(options.link, SeedOf(seed, 2)),
+      to_robot_(options.link, statistics::SeedOfStream(seed, kToRobotStream)),
+      to_host_(options.link, statistics::SeedOfStream(seed, kToHostStream)),
       battery_mv_(static_cast<std::uint16_t>(std::lround(1e3 * battery_v))) {}
 
 hardware::Listener::Senses TwinRobot::Senses() {

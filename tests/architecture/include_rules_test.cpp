@@ -53,6 +53,7 @@ const std::vector<Reserved> kReserved{
     {"opencv2/(videoio|imgcodecs|highgui).*", {"vision", "view"}},
     {"CLI/.*", {"commands"}},
     {"pagmo/.*|nlopt.*", {"search"}},
+    {"boost/math/.*|xxhash.h", {"statistics"}},
     {"turbojpeg.h", {"vision"}},
     {"dlfcn.h|xcb/.*", {"module"}},
     {"sqlite3.*|SQLiteCpp/.*", {"sweep/run"}},

@@ -7,7 +7,7 @@
 
 #include "rift/report/figures/gap_figures.hpp"
 #include "rift/sweep/falsify/result.hpp"
-#include "rift/sweep/falsify/statistics.hpp"
+#include "rift/sweep/falsify/summary.hpp"
 
 namespace rift::report::synthetic {
 

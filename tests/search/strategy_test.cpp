@@ -22,10 +22,6 @@ std::string NameOf(Method method) { return std::string(kNames[static_cast<std::s
 SearchOptions With(Method method) {
   SearchOptions options;
   options.strategy = method;
-  // What the model costs is a matter of the benchmarks; without optimisation it is much.
-  options.surrogate.model_points = 40;
-  options.surrogate.candidates = 40;
-  options.surrogate.fit_steps = 2;
   return options;
 }
 

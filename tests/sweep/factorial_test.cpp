@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "rift/sweep/falsify/statistics.hpp"
+#include "rift/sweep/falsify/summary.hpp"
 
 namespace rift::sweep {
 namespace {

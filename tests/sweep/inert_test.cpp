@@ -4,7 +4,7 @@
 #include <random>
 
 #include "rift/sweep/explain/anatomy.hpp"
-#include "rift/sweep/falsify/statistics.hpp"
+#include "rift/sweep/falsify/summary.hpp"
 #include "support/paths.hpp"
 
 namespace rift::sweep {

@@ -24,43 +24,27 @@ constexpr std::array<std::string_view, 8> EnumNames(Method) {
   return {"portfolio", "random", "sobol", "lhs", "corners", "cmaes", "surrogate", "polish"};
 }
 
-/// Covariance matrix adaptation. Lengths are shares of the axes' ranges.
+/// Covariance matrix adaptation.
 struct CmaEsOptions {
   double sigma = 0.25;
   int population = 0;
-  int stall_generations = 20;
-  double last_step = 1e-7;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("sigma", self.sigma, 1e-3, 1.0, "first step size as a share of every axis");
     field("population", self.population, 0, 10'000,
           "points in a generation of the first run; 0: 4 + 3 ln(axes) (Hansen 2016)");
-    field("stall_generations", self.stall_generations, 5, 10'000,
-          "a run without progress for so many generations and 80 evaluations an axis ends");
-    field("last_step", self.last_step, 1e-15, 1.0,
-          "a run whose spread fell below this on every axis ends, and another begins");
   }
 };
 
 /// Kriging over the ranks of the losses.
 struct SurrogateOptions {
   int initial = 0;
-  int model_points = 128;
-  int candidates = 256;
-  int fit_steps = 16;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("initial", self.initial, 0, 100'000,
           "space-filling points before the first model when it searches alone; 0: 4 an axis");
-    field("model_points", self.model_points, 8, 2000,
-          "evaluations the model rests on at most: the best half and others; costs their cube");
-    field(
-        "candidates", self.candidates, 16, 100'000,
-        "points that compete for a place in a batch; the model's variance costs each their square");
-    field("fit_steps", self.fit_steps, 1, 10'000,
-          "trials of other length scales when the model is fitted anew");
   }
 };
 
@@ -82,38 +66,12 @@ struct PolishOptions {
   void Check() const;
 };
 
-/// How the portfolio spends its budget.
-struct PortfolioOptions {
-  double explore_share = 0.2;
-  int explore_most = 100;
-  double corner_share = 0.5;
-  int surrogate_most = 600;
-  double polish_share = 0.1;
-  double curiosity = 0.3;
-
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor&& field) {
-    field("explore_share", self.explore_share, 0.0, 1.0,
-          "share of the budget for corners and space-filling points before anything adapts");
-    field("explore_most", self.explore_most, 0, 1'000'000, "but at most so many points");
-    field("corner_share", self.corner_share, 0.0, 1.0, "share of those that goes to corners");
-    field("surrogate_most", self.surrogate_most, 0, 1'000'000,
-          "evaluations after which the surrogate proposes no more: its model keeps its size while "
-          "the others sharpen");
-    field("polish_share", self.polish_share, 0.0, 1.0,
-          "share of all evaluations that polishing gets at most");
-    field("curiosity", self.curiosity, 0.0, 10.0,
-          "weight of trying a method that was tried little against one that found much");
-  }
-};
-
 struct SearchOptions {
   Method strategy = Method::kPortfolio;
   int batch = 8;
   CmaEsOptions cmaes;
   SurrogateOptions surrogate;
   PolishOptions polish;
-  PortfolioOptions portfolio;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -125,7 +83,6 @@ struct SearchOptions {
     field("cmaes", self.cmaes, "evolution strategy with restarts");
     field("surrogate", self.surrogate, "Kriging, for small budgets");
     field("polish", self.polish, "local search from the best points");
-    field("portfolio", self.portfolio, "the mixture");
   }
 };
 

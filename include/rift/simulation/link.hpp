@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "rift/simulation/noise.hpp"
+#include "rift/statistics/counter_random.hpp"
 #include "rift/trial/robot.hpp"
 
 namespace rift::simulation {
@@ -84,7 +84,7 @@ class Link {
   double SilentAfter_s() const;
 
   LinkOptions options_;
-  Noise noise_;
+  statistics::CounterRandom noise_;
   std::deque<Byte> in_flight_;
   std::string partial_line_;
   double line_free_s_ = 0.0;

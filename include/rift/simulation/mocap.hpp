@@ -4,7 +4,7 @@
 #include <deque>
 #include <optional>
 
-#include "rift/simulation/noise.hpp"
+#include "rift/statistics/counter_random.hpp"
 #include "rift/trial/robot.hpp"
 
 namespace rift::simulation {
@@ -101,7 +101,7 @@ class Mocap {
   trial::PoseMeasurement Measure(const TruePose& pose, double speed_mps, std::uint64_t frame) const;
 
   MocapOptions options_;
-  Noise noise_;
+  statistics::CounterRandom noise_;
   double phase_s_;
   std::uint64_t next_frame_ = 0;
   double last_stamp_s_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rift/report/figures/gnuplot_text.hpp"
+#include "rift/statistics/quantile.hpp"
 #include "sweep_plots.hpp"
 
 namespace rift::report {
@@ -49,10 +50,6 @@ std::string PointEntries(const Scatter& scatter, double threshold_m, std::string
   return plot.Text();
 }
 
-double Quantile(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
-}
-
 // Median and range in bins: a hundred thousand dots are a blot, and a file of ten megabytes.
 std::string BinnedEntries(const sweep::SweepResult& result, int parameter, std::string* data) {
   const experiment::Parameter& axis = result.parameters[parameter];
@@ -66,9 +63,9 @@ std::string BinnedEntries(const sweep::SweepResult& result, int parameter, std::
   DataBlock block("bins");
   for (int i = 0; i < kBins; ++i) {
     if (bins[i].empty()) continue;
-    std::sort(bins[i].begin(), bins[i].end());
-    block.Add({axis.min + (i + 0.5) * (axis.max - axis.min) / kBins, Quantile(bins[i], 0.05),
-               Quantile(bins[i], 0.5), Quantile(bins[i], 0.95), bins[i].back()});
+    block.Add({axis.min + (i + 0.5) * (axis.max - axis.min) / kBins,
+               statistics::Quantile(bins[i], 0.05), statistics::Median(bins[i]),
+               statistics::Quantile(bins[i], 0.95), statistics::Quantile(bins[i], 1.0)});
   }
   *data += block.Text();
   PlotCommand plot;

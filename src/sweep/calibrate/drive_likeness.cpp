@@ -4,17 +4,12 @@
 #include <map>
 #include <stdexcept>
 
+#include "rift/statistics/quantile.hpp"
+
 namespace rift::sweep {
 namespace {
 
 using trajectory::Trajectory;
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return gap::kNotComputed;
-  std::sort(values.begin(), values.end());
-  const size_t n = values.size();
-  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
-}
 
 /// Loop delays of the paths on one side.
 struct Answers {
@@ -76,9 +71,9 @@ DriveLikeness MeasureDriveLikeness(const std::vector<RepeatedTrial>& trials, boo
   std::vector<gap::RepeatedSetting> in_order;
   for (auto& [name, setting] : settings) in_order.push_back(std::move(setting));
   likeness.path = gap::MeasureLikeness(in_order, gap, options, generator);
-  likeness.loop_delay_s = {Median(sim.lags_s), Median(real.lags_s)};
-  likeness.loop_r2 = {Median(sim.r2), Median(real.r2)};
-  likeness.steering_gain_rad_s = {Median(sim.gains), Median(real.gains)};
+  likeness.loop_delay_s = {statistics::Median(sim.lags_s), statistics::Median(real.lags_s)};
+  likeness.loop_r2 = {statistics::Median(sim.r2), statistics::Median(real.r2)};
+  likeness.steering_gain_rad_s = {statistics::Median(sim.gains), statistics::Median(real.gains)};
   return likeness;
 }
 

@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "rift/gap/likeness.hpp"
+#include "rift/statistics/mean.hpp"
+#include "rift/statistics/quantile.hpp"
 #include "rift/trial/loop_delay.hpp"
 
 namespace rift::sweep {
@@ -38,14 +40,10 @@ double LogSpread(const Trajectory& a, const Trajectory& b) {
   return std::log(std::max(1e-4, gap::Gap(a, b, SpreadGap())));
 }
 
-double Scatter(const std::vector<double>& values) {
-  double sum = 0.0, squares = 0.0, n = 0.0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    sum += value, squares += value * value, n += 1.0;
-  }
-  const double variance = n > 1.0 ? (squares - sum * sum / n) / (n - 1.0) : 0.0;
-  return variance > 0.0 ? std::sqrt(variance) : 1.0;
+double Scatter(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  const double deviation = statistics::StandardDeviation(values);
+  return deviation > 0.0 ? deviation : 1.0;
 }
 
 /// Whole runs of one log that reached the end.
@@ -163,7 +161,6 @@ std::vector<LogErrors> ErrorsAt(const std::vector<CalibrationLog>& logs, const L
 }
 
 Eigen::MatrixXd ScaleOf(const std::vector<LogErrors>& errors, const CalibrationOptions& options) {
-  constexpr double kSdOfMedian = 1.4826;  // median absolute deviation of a normal distribution
   Eigen::MatrixXd scale = Eigen::MatrixXd::Ones(options.horizon.most_frames, 3);
   for (int frames = 1; frames <= options.horizon.most_frames; ++frames) {
     for (int channel = 0; channel < 3; ++channel) {
@@ -175,9 +172,8 @@ Eigen::MatrixXd ScaleOf(const std::vector<LogErrors>& errors, const CalibrationO
         }
       }
       if (sizes.empty()) continue;
-      const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-      std::nth_element(sizes.begin(), middle, sizes.end());
-      scale(frames - 1, channel) = std::max(1e-9, kSdOfMedian * *middle);
+      scale(frames - 1, channel) = std::max(
+          1e-9, statistics::kSigmaOfMedianDeviation * statistics::Median(std::move(sizes)));
     }
   }
   return scale;

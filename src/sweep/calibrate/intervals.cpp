@@ -2,11 +2,12 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "rift/statistics/distributions.hpp"
+#include "rift/statistics/quantile.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -66,11 +67,8 @@ struct Scatter {
 Scatter ScatterOf(Eigen::MatrixXd draws, double confidence) {
   Scatter scatter{.reach = Eigen::VectorXd(draws.cols())};
   for (Eigen::Index k = 0; k < draws.cols(); ++k) {
-    std::vector<double> sorted(draws.col(k).begin(), draws.col(k).end());
-    std::sort(sorted.begin(), sorted.end());
-    const auto last = static_cast<double>(sorted.size() - 1);
-    const double low = sorted[static_cast<size_t>(std::lround(0.5 * (1.0 - confidence) * last))];
-    const double high = sorted[static_cast<size_t>(std::lround(0.5 * (1.0 + confidence) * last))];
+    const std::vector<double> values(draws.col(k).begin(), draws.col(k).end());
+    const auto [low, high] = statistics::CentralInterval(values, confidence);
     scatter.reach[k] = 0.5 * (high - low);
     draws.col(k) = draws.col(k).cwiseMax(low).cwiseMin(high);
   }
@@ -111,9 +109,8 @@ void Judge(const std::vector<experiment::FreeParameter>& parameters,
   const Scatter scatter = ScatterOf(at, simulated, options, generator);
   // Few logs tell their own scatter badly.
   const double upper = 0.5 + 0.5 * options.confidence;
-  const double few_logs =
-      boost::math::quantile(boost::math::students_t(std::max(1.0, logs - 1.0)), upper) /
-      boost::math::quantile(boost::math::normal(), upper);
+  const double few_logs = statistics::StudentQuantile(std::max(1.0, logs - 1.0), upper) /
+                          statistics::NormalQuantile(upper);
   const std::vector<double> values = ValuesAt(parameters, estimate);
   const Eigen::Index n = estimate.size();
   std::vector<bool> has_effect;

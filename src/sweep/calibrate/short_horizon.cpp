@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "rift/geometry/angle.hpp"
-#include "rift/simulation/noise.hpp"
+#include "rift/statistics/counter_random.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -125,7 +125,7 @@ std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial, const 
   if (!log.HasYaw()) throw std::invalid_argument("a replay needs the yaw of the log");
   std::vector<HorizonError> mean;
   SimulatedTrial phase = trial;
-  const double offset = simulation::Noise(trial.seed, kOffsetStream).Uniform(0, 0);
+  const double offset = statistics::CounterRandom(trial.seed, kOffsetStream).Uniform(0, 0);
   for (int i = 0; i < options.phases; ++i, ++phase.seed) {
     // Even phases: over drawn ones the mean would change by leaps with a delay. Each log has its
     // own offset, so that many logs see many phases.

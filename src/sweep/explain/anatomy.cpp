@@ -1,8 +1,10 @@
 #include "rift/sweep/explain/anatomy.hpp"
 
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
+
+#include "rift/statistics/intervals.hpp"
+#include "rift/statistics/mean.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -10,19 +12,8 @@ namespace {
 using OfTrial = std::function<double(const gap::Comparison&)>;
 
 Estimate EstimateOf(const std::vector<double>& values) {
-  Estimate estimate;
-  double sum = 0.0, squares = 0.0;
-  for (const double value : values) sum += value;
-  estimate.n = static_cast<int>(values.size());
-  if (estimate.n == 0) return estimate;
-  estimate.mean = sum / estimate.n;
-  if (estimate.n < 2) return estimate;
-  for (const double value : values) squares += std::pow(value - estimate.mean, 2);
-  const double error = std::sqrt(squares / (estimate.n - 1) / estimate.n);
-  const double t = boost::math::quantile(boost::math::students_t(estimate.n - 1), 0.975);
-  estimate.low = estimate.mean - t * error;
-  estimate.high = estimate.mean + t * error;
-  return estimate;
+  const statistics::Interval interval = statistics::MeanInterval(values, 0.95);
+  return {statistics::Mean(values), interval.low, interval.high, static_cast<int>(values.size())};
 }
 
 std::vector<double> ValuesIn(const SweepResult& result, const SettingResult& setting,

@@ -2,13 +2,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/non_central_f.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <utility>
 
-#include "rift/sweep/falsify/statistics.hpp"
+#include "rift/statistics/distributions.hpp"
+#include "rift/sweep/falsify/summary.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -175,23 +175,13 @@ double LargestNoncentrality(const std::function<bool(double)>& holds) {
   return 0.5 * (low + high);
 }
 
-double CdfOfF(double f, double df1, double df2, double lambda) {
-  constexpr double kSeriesIsSlow = 200.0;
-  if (lambda <= 0.0) return boost::math::cdf(boost::math::fisher_f(df1, df2), f);
-  if (lambda > kSeriesIsSlow) {  // Patnaik 1949: a central F with the same first two moments
-    const double scale = (df1 + lambda) / df1;
-    const double df = std::pow(df1 + lambda, 2) / (df1 + 2.0 * lambda);
-    return boost::math::cdf(boost::math::fisher_f(df, df2), f / scale);
-  }
-  return boost::math::cdf(boost::math::non_central_f(df1, df2, lambda), f);
-}
-
 void SetShare(FactorialTerm& term, double residual_df, int n) {
   const double gain = term.df * (term.f - 1.0);
   term.share = std::max(0.0, gain / (gain + n));
   const auto share_at = [&](double tail) {
-    const double lambda = LargestNoncentrality(
-        [&](double l) { return CdfOfF(term.f, term.df, residual_df, l) > tail; });
+    const double lambda = LargestNoncentrality([&](double l) {
+      return statistics::NoncentralFCdf(term.df, residual_df, l, term.f) > tail;
+    });
     return lambda / (lambda + n);
   };
   term.share_low = share_at(0.975);
@@ -216,8 +206,7 @@ FactorialTerm Judge(const SweepResult& result, const std::vector<Coding>& coding
   const double mse = std::pow(analysis.residual_sd_m, 2);
   if (term.df < 1.0 || !(mse > 0.0)) return term;
   term.f = std::max(0.0, without.sse - with.sse) / term.df / mse;
-  const boost::math::fisher_f distribution(term.df, analysis.residual_df);
-  term.p = boost::math::cdf(boost::math::complement(distribution, term.f));
+  term.p = statistics::FUpperTail(term.df, analysis.residual_df, term.f);
   SetShare(term, analysis.residual_df, analysis.n);
   return term;
 }
@@ -267,10 +256,10 @@ double SmallestDetectable(const std::vector<int>& counts, double sd, double resi
     return gap::kNotComputed;
   }
   const double df = levels - 1.0;
-  const double critical = boost::math::quantile(
-      boost::math::complement(boost::math::fisher_f(df, residual_df), kSignificance));
-  const double lambda = LargestNoncentrality(
-      [&](double l) { return CdfOfF(critical, df, residual_df, l) > 1.0 - power; });
+  const double critical = statistics::FCriticalValue(df, residual_df, kSignificance);
+  const double lambda = LargestNoncentrality([&](double l) {
+    return statistics::NoncentralFCdf(df, residual_df, l, critical) > 1.0 - power;
+  });
   // Two means at -d/2 and d/2 with n trials each: lambda = n d^2 / (2 sd^2).
   return sd * std::sqrt(2.0 * lambda * inverse / levels);
 }

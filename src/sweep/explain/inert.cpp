@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "rift/sweep/falsify/labels.hpp"
-#include "rift/sweep/falsify/statistics.hpp"
+#include "rift/sweep/falsify/summary.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -4,6 +4,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "rift/statistics/distributions.hpp"
+#include "rift/statistics/quantile.hpp"
 #include "rift/sweep/explain/failure_probability.hpp"
 
 namespace rift::sweep {
@@ -67,9 +69,7 @@ class SubsetSimulation {
     for (const Chain& chain : chains) {
       for (const Sample& sample : chain) all.push_back(sample.robustness);
     }
-    const size_t rank = static_cast<size_t>(options_.level_share * static_cast<double>(all.size()));
-    std::nth_element(all.begin(), all.begin() + static_cast<long>(rank), all.end());
-    return all[rank];
+    return statistics::Quantile(std::move(all), options_.level_share);
   }
 
   static double ShareBelow(const std::vector<Chain>& chains, double level) {
@@ -148,7 +148,7 @@ class SubsetSimulation {
       return;
     }
     event_.coefficient_of_variation = std::sqrt(variance);
-    const double spread = 1.96 * std::sqrt(std::log1p(variance));
+    const double spread = statistics::NormalQuantile(0.975) * std::sqrt(std::log1p(variance));
     event_.low = probability * std::exp(-spread);
     event_.high = std::min(1.0, probability * std::exp(spread));
   }

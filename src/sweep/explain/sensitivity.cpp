@@ -8,6 +8,8 @@
 #include <optional>
 #include <random>
 
+#include "rift/statistics/quantile.hpp"
+
 namespace rift::sweep {
 namespace {
 
@@ -188,12 +190,9 @@ Eigen::VectorXd Weighted(const Eigen::MatrixXd& design, const Eigen::VectorXd& y
   return (weighted * design).ldlt().solve(weighted * y);
 }
 
-std::pair<double, double> Middle95(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    return values[static_cast<size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
-  };
-  return {at(0.025), at(0.975)};
+std::pair<double, double> Middle95(const std::vector<double>& values) {
+  const auto [low, high] = statistics::CentralInterval(values, 0.95);
+  return {low, high};
 }
 
 std::vector<Shares> Bootstrap(const Expansion& expansion, const Eigen::VectorXd& y, size_t axes,
@@ -226,8 +225,8 @@ std::vector<SobolIndex> IndicesOf(const SweepResult& result, const Expansion& ex
     SobolIndex index{.parameter = result.parameters[axis].Name(), .index = static_cast<int>(axis)};
     index.first = fitted.first[at];
     index.total = fitted.total[at];
-    std::tie(index.first_low, index.first_high) = Middle95(std::move(first));
-    std::tie(index.total_low, index.total_high) = Middle95(std::move(total));
+    std::tie(index.first_low, index.first_high) = Middle95(first);
+    std::tie(index.total_low, index.total_high) = Middle95(total);
     indices.push_back(index);
   }
   std::stable_sort(indices.begin(), indices.end(),

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
+#include "rift/statistics/distributions.hpp"
 #include "rift/sweep/falsify/labels.hpp"
 
 namespace rift::sweep {
@@ -15,15 +14,15 @@ namespace {
 constexpr double kConfidence = 0.95, kPower = 0.8;
 constexpr int kMostTrials = 1000;
 
-double Phi(double z) { return boost::math::cdf(boost::math::normal(), z); }
-
 /// What is known of the mean gap of a setting: normal around the mean of its trials.
 struct Knowledge {
   double above_m = 0.0;    ///< mean so far less the threshold
   double scatter_m = 0.0;  ///< of a single trial
   int trials = 0;
 
-  double Wrong() const { return Phi(-std::abs(above_m) / (scatter_m / std::sqrt(trials))); }
+  double Wrong() const {
+    return statistics::NormalCdf(-std::abs(above_m) / (scatter_m / std::sqrt(trials)));
+  }
 
   /// How far the mean will move with `more` trials (its predictive standard deviation).
   double Movement_m(int more) const {
@@ -55,18 +54,18 @@ double Width(int above, int trials, double threshold_m) {
 
 /// Expected over how many of the further trials are above, given the scatter.
 double WidthAfter(const gap::RepeatVerdict& now, const Knowledge& knowledge, int more) {
-  const double share = Phi(knowledge.above_m / knowledge.scatter_m);
-  const boost::math::binomial binomial(more, share);
+  const double share = statistics::NormalCdf(knowledge.above_m / knowledge.scatter_m);
   double width = 0.0;
   for (int k = 0; k <= more; ++k) {
-    width += boost::math::pdf(binomial, k) * Width(now.above + k, now.repeats + more, 0.0);
+    width +=
+        statistics::BinomialPdf(more, share, k) * Width(now.above + k, now.repeats + more, 0.0);
   }
   return width;
 }
 
 int TrialsToDecide(const Knowledge& knowledge) {
-  const double z = boost::math::quantile(boost::math::normal(), 0.5 + 0.5 * kConfidence) +
-                   boost::math::quantile(boost::math::normal(), kPower);
+  const double z =
+      statistics::NormalQuantile(0.5 + 0.5 * kConfidence) + statistics::NormalQuantile(kPower);
   const double trials = std::pow(z * knowledge.scatter_m / knowledge.above_m, 2);
   return trials <= kMostTrials ? static_cast<int>(std::ceil(trials)) : -1;
 }
@@ -80,7 +79,8 @@ Suggestion Describe(const SweepResult& result, int setting_index, int more, doub
   suggestion.wrong_now = knowledge.Wrong();
   suggestion.above_now = knowledge.above_m > 0.0 ? 1.0 - knowledge.Wrong() : knowledge.Wrong();
   suggestion.wrong_after = knowledge.WrongAfter(more);
-  suggestion.flip = Phi(-std::abs(knowledge.above_m) / knowledge.Movement_m(more));
+  suggestion.flip =
+      statistics::NormalCdf(-std::abs(knowledge.above_m) / knowledge.Movement_m(more));
   suggestion.width_now = setting.verdict.share_high - setting.verdict.share_low;
   suggestion.width_after = WidthAfter(setting.verdict, knowledge, more);
   suggestion.trials_to_decide = TrialsToDecide(knowledge);

@@ -1,26 +1,17 @@
 #include "rift/sweep/falsify/evidence.hpp"
 
-#include <bit>
 #include <cmath>
+#include <span>
 
 #include "rift/control/navigator.hpp"
 #include "rift/gap/comparison.hpp"
+#include "rift/statistics/hash.hpp"
 #include "rift/trial/recorder.hpp"
 
 namespace rift::sweep {
 namespace {
 
 constexpr int kErrorSamples = 8;
-
-/// The finaliser of MurmurHash3 (Appleby, public domain) over the running value.
-std::uint64_t Mix(std::uint64_t hash, double value) {
-  hash ^= std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value);  // -0 is the same place
-  hash ^= hash >> 33;
-  hash *= 0xff51afd7ed558ccdULL;
-  hash ^= hash >> 33;
-  hash *= 0xc4ceb9fe1a85ec53ULL;
-  return hash ^ (hash >> 33);
-}
 
 /// The targets in the order in which the log turns to them, behind its first pose.
 std::vector<control::Waypoint> LoggedTask(const trajectory::Trajectory& log) {
@@ -38,13 +29,14 @@ std::vector<control::Waypoint> LoggedTask(const trajectory::Trajectory& log) {
 }  // namespace
 
 std::uint64_t Fingerprint(const trajectory::Trajectory& path) {
-  std::uint64_t hash = path.poses.size();
+  std::vector<double> values;
   for (const trajectory::StampedPose& pose : path.poses) {
     for (const double value :
          {pose.x_m, pose.y_m, pose.z_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad}) {
-      hash = Mix(hash, value);
+      values.push_back(value + 0.0);  // -0 is the same place as 0
     }
   }
+  const std::uint64_t hash = statistics::Hash64(std::as_bytes(std::span(values)));
   return hash == 0 ? 1 : hash;
 }
 

@@ -8,8 +8,9 @@
 #include <stdexcept>
 
 #include "rift/sweep/falsify/grid.hpp"
+#include "rift/statistics/mean.hpp"
 #include "rift/sweep/falsify/search_space.hpp"
-#include "rift/sweep/falsify/statistics.hpp"
+#include "rift/sweep/falsify/summary.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -142,11 +143,7 @@ double TrialsToFalsify(const FalsifyOptions& options) {
 }
 
 double Robustness_m(std::span<const TrialRow> rows, double threshold_m) {
-  const std::vector<double> gaps_m = Gaps(rows, 2.0 * threshold_m);
-  if (gaps_m.empty()) return std::numeric_limits<double>::quiet_NaN();
-  double sum_m = 0.0;
-  for (const double gap_m : gaps_m) sum_m += gap_m;
-  return threshold_m - sum_m / static_cast<double>(gaps_m.size());
+  return threshold_m - statistics::Mean(Gaps(rows, 2.0 * threshold_m));
 }
 
 std::optional<SweepResult> Falsify(const experiment::Experiment& experiment, const RunTrials& run,

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "rift/sweep/run/content_hash.hpp"
+#include "rift/statistics/hash.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -45,7 +45,7 @@ Recording RecordedLogs::Load(const std::string& path) {
       recording.reason = "no such file";
       return recording;
     }
-    hash_of_[path] = ContentHash(*bytes);
+    hash_of_[path] = statistics::Hash128Text(*bytes);
     trajectory::Log log = ReadMovedLog(*bytes, path, options_);
     for (const std::string& note : log.notes) inputs_.note(fmt::format("{}: {}", path, note));
     recording.trajectory = std::move(log.trajectory);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "lens_fit.hpp"
+#include "rift/statistics/quantile.hpp"
 #include "verdict.hpp"
 
 namespace rift::vision {
@@ -58,9 +59,7 @@ void TakeErrors(const std::vector<ViewResult*>& used, const LensFit& fit) {
 double MedianRms_px(const std::vector<ViewResult*>& used) {
   std::vector<double> errors_px;
   for (const ViewResult* result : used) errors_px.push_back(result->rms_px);
-  const auto middle = errors_px.begin() + static_cast<std::ptrdiff_t>(errors_px.size() / 2);
-  std::nth_element(errors_px.begin(), middle, errors_px.end());
-  return *middle;
+  return statistics::Median(std::move(errors_px));
 }
 
 /// Leaves out the worst view when it is far off the others; whether it did.

@@ -2,21 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <functional>
 #include <opencv2/core.hpp>
-#include <string_view>
+#include <span>
 
+#include "rift/statistics/hash.hpp"
 #include "rift/vision/camera/picture.hpp"
 
 namespace rift::vision {
 namespace {
 
 constexpr int kMostUndecodable = 5;  // in a row: single damaged pictures happen on bad cables
-
-std::size_t HashOf(const Frame& frame) {
-  return std::hash<std::string_view>{}(
-      {reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size()});
-}
 
 }  // namespace
 
@@ -36,7 +31,7 @@ void PictureHealth::LookForLight(const Frame& frame) {
 }
 
 CameraState PictureHealth::Look(const Frame& frame) {
-  const std::size_t hash = HashOf(frame);
+  const std::uint64_t hash = statistics::Hash64(std::as_bytes(std::span(frame.bytes)));
   if (hash != hash_) same_since_s_ = frame.arrived_s;
   hash_ = hash;
   same_for_s_ = frame.arrived_s - same_since_s_;

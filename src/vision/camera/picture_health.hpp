@@ -23,7 +23,7 @@ class PictureHealth {
   void LookForLight(const Frame& frame);
 
   CaptureOptions options_;
-  std::optional<std::size_t> hash_;
+  std::optional<std::uint64_t> hash_;
   double same_since_s_ = 0.0;
   double same_for_s_ = 0.0;
   double looked_s_ = -1e9;

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rift/statistics/quantile.hpp"
+
 namespace rift::vision {
 namespace {
 
-/// Median of |x| to sigma of a normal distribution.
-constexpr double kSigmaFromMedian = 1.4826;
 constexpr int kRounds = 3;
 
 EdgeLine LeastSquares(const std::vector<Eigen::Vector2d>& points) {
@@ -35,9 +35,7 @@ double MedianDistance(const EdgeLine& line, const std::vector<Eigen::Vector2d>& 
   std::vector<double> distances;
   distances.reserve(points.size());
   for (const Eigen::Vector2d& p : points) distances.push_back(std::abs(line.Distance(p)));
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return statistics::Median(std::move(distances));
 }
 
 }  // namespace
@@ -47,8 +45,8 @@ std::optional<EdgeLine> FitLine(const std::vector<Eigen::Vector2d>& points, doub
   std::vector<Eigen::Vector2d> kept = points;
   EdgeLine line = LeastSquares(kept);
   for (int round = 0; round < kRounds; ++round) {
-    const double limit =
-        3.0 * std::max(least_sigma, kSigmaFromMedian * MedianDistance(line, points));
+    const double limit = 3.0 * std::max(least_sigma, statistics::kSigmaOfMedianDeviation *
+                                                         MedianDistance(line, points));
     kept.clear();
     std::copy_if(points.begin(), points.end(), std::back_inserter(kept),
                  [&](const Eigen::Vector2d& p) { return std::abs(line.Distance(p)) <= limit; });

@@ -1,16 +1,14 @@
+#include "rift/statistics/analysis_of_variance.hpp"
+
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <numeric>
 
-#include "rift/sweep/falsify/statistics.hpp"
+#include "rift/statistics/distributions.hpp"
+#include "rift/statistics/mean.hpp"
 
-namespace rift::sweep {
+namespace rift::statistics {
 namespace {
-
-double Mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 struct SumsOfSquares {
   double between = 0.0;
@@ -48,12 +46,11 @@ AnalysisOfVariance AnalyseVariance(const std::vector<std::vector<double>>& group
 
   const double mean_within = sums.within / result.df_within;
   result.f = sums.between / result.df_between / mean_within;
-  const boost::math::fisher_f distribution(result.df_between, result.df_within);
-  result.p = boost::math::cdf(boost::math::complement(distribution, result.f));
+  result.p = FUpperTail(result.df_between, result.df_within, result.f);
   result.eta_squared = sums.between / total;
   result.omega_squared =
       std::max(0.0, (sums.between - result.df_between * mean_within) / (total + mean_within));
   return result;
 }
 
-}  // namespace rift::sweep
+}  // namespace rift::statistics

@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <random>
 
-namespace rift::search {
+namespace rift::statistics {
 
-/// Random numbers of one user. The distributions are Boost's, since those of the standard differ
-/// from library to library.
+/// A sequence of random numbers for one user, where the order of the draws is fixed; else see
+/// CounterRandom. The distributions are Boost's, since those of the standard differ from library to
+/// library.
 class Random {
  public:
   /// Different streams of one seed are independent.
@@ -35,4 +36,4 @@ class Random {
   boost::random::normal_distribution<double> normal_;
 };
 
-}  // namespace rift::search
+}  // namespace rift::statistics

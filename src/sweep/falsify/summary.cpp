@@ -1,4 +1,4 @@
-#include "rift/sweep/falsify/statistics.hpp"
+#include "rift/sweep/falsify/summary.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,8 @@
 #include <map>
 #include <numeric>
 
+#include "rift/statistics/analysis_of_variance.hpp"
+#include "rift/statistics/mean.hpp"
 #include "rift/sweep/falsify/labels.hpp"
 
 namespace rift::sweep {
@@ -58,19 +60,6 @@ std::vector<double> GapsToJudge(const SweepResult& result, const std::vector<int
   return gaps_m;
 }
 
-double Mean(const std::vector<double>& values) {
-  if (values.empty()) return gap::kNotComputed;
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double StandardDeviation(const std::vector<double>& values) {
-  if (values.size() < 2) return gap::kNotComputed;
-  const double mean = Mean(values);
-  double squares = 0.0;
-  for (const double value : values) squares += std::pow(value - mean, 2);
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
-}
-
 LevelSummary SummariseRows(const SweepResult& result, const std::string& level,
                            const std::vector<int>& rows) {
   const std::vector<double> gaps_m = GapsOf(result, rows);
@@ -79,8 +68,8 @@ LevelSummary SummariseRows(const SweepResult& result, const std::string& level,
     summary.failures += result.rows[row].falsified;
     summary.not_ok += !result.rows[row].IsOk();
   }
-  summary.mean_gap_m = Mean(gaps_m);
-  summary.sd_gap_m = StandardDeviation(gaps_m);
+  summary.mean_gap_m = statistics::Mean(gaps_m);
+  summary.sd_gap_m = statistics::StandardDeviation(gaps_m);
   return summary;
 }
 
@@ -99,7 +88,7 @@ Effect EffectOf(const SweepResult& result, int parameter) {
   const Groups groups = GroupBy(result, {parameter});
   std::vector<std::vector<double>> gaps_m;
   for (const std::vector<int>& rows : groups.rows) gaps_m.push_back(GapsOf(result, rows));
-  const AnalysisOfVariance analysis = AnalyseVariance(gaps_m);
+  const statistics::AnalysisOfVariance analysis = statistics::AnalyseVariance(gaps_m);
   Effect effect{.parameter = result.parameters[parameter].Name(),
                 .levels = SummariseBy(result, {parameter}),
                 .f = analysis.f,
@@ -118,7 +107,7 @@ std::vector<SettingResult> SettingsOf(const SweepResult& result) {
   std::iota(all.begin(), all.end(), 0);
   std::vector<SettingResult> settings;
   for (std::vector<int>& rows : GroupBy(result, all).rows) {
-    const double mean_gap_m = Mean(GapsOf(result, rows));
+    const double mean_gap_m = statistics::Mean(GapsOf(result, rows));
     const std::vector<double> gaps_m = GapsToJudge(result, rows);
     SettingResult setting{.theta = result.rows[rows.front()].theta,
                           .rows = std::move(rows),

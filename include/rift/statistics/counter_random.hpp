@@ -2,14 +2,18 @@
 
 #include <cstdint>
 
-namespace rift::simulation {
+namespace rift::statistics {
 
-/// A reproducible random value for every event number: a hash of (seed, stream, event, draw), so
-/// that no value depends on how often or in which order the others were asked for.
-class Noise {
+/// A seed for each stream of a seed, independent of each other.
+std::uint64_t SeedOfStream(std::uint64_t seed, std::uint64_t stream);
+
+/// Counter-based random numbers (Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2,
+/// 3"): the value of every event is a hash of (seed, stream, event, draw), so that no value depends
+/// on how often or in which order the others were asked for.
+class CounterRandom {
  public:
   /// Different streams of one seed are independent.
-  Noise(std::uint64_t seed, std::uint64_t stream);
+  CounterRandom(std::uint64_t seed, std::uint64_t stream);
 
   /// Evenly spread in (0, 1).
   double Uniform(std::uint64_t event, std::uint64_t draw) const;
@@ -23,4 +27,4 @@ class Noise {
   std::uint64_t key_;
 };
 
-}  // namespace rift::simulation
+}  // namespace rift::statistics
