@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -8,9 +7,11 @@
 #include "floor.hpp"
 #include "rift/control/waypoint.hpp"
 #include "rift/trajectory/log.hpp"
+#include "support/environment.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/running_rift.hpp"
 #include "support/tree.hpp"
+#include "support/until.hpp"
 
 namespace rift {
 namespace {
@@ -29,8 +30,8 @@ hardware:
 
 /// A floor with the robot on the first waypoint, and what rift drive needs to be told.
 struct Scene {
-  explicit Scene(int pictures = 1'000'000)
-      : floor(control::StartPose(test::PaperWaypoints()), pictures) {
+  explicit Scene(int moving_pictures = 1'000'000)
+      : floor(control::StartPose(test::PaperWaypoints()), moving_pictures) {
     test::WriteText(folder / "cam.yaml", vision::WriteCamera(test::SmallCamera()));
     test::WriteText(folder / "task.yaml", "include: " + test::SourceDir() +
                                               "/configs/waypoints/paper.yaml\n" +
@@ -81,7 +82,7 @@ TEST_CASE("A signal to the binary stops the robot and the run is saved with its 
        {std::pair{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}) {
     Scene scene;
     test::RunningRift rift(scene.Arguments());
-    while (rift.IsRunning() && !scene.floor.Moves()) scene.floor.Pause();
+    rift.WaitUntil("the robot moves", [&] { return scene.floor.Moves(); });
     rift.Signal(signal);
     const test::ProcessResult result = rift.Wait();
     INFO(result.out << result.err);
@@ -96,16 +97,15 @@ TEST_CASE("A signal to the binary stops the robot and the run is saved with its 
 TEST_CASE("The robot of a killed binary stops by itself") {
   Scene scene;
   test::RunningRift rift(scene.Arguments());
-  while (rift.IsRunning() && !scene.floor.Moves()) scene.floor.Pause();
+  rift.WaitUntil("the robot moves", [&] { return scene.floor.Moves(); });
   rift.Signal(SIGKILL);
   CHECK(rift.Wait().exit_code == 128 + SIGKILL);
-  for (int i = 0; i < 1000 && scene.floor.Moves(); ++i) scene.floor.Pause();
-  CHECK_FALSE(scene.floor.Moves());
+  test::WaitUntil("the robot stands", [&] { return !scene.floor.Moves(); });
 }
 
 TEST_CASE("A camera that goes away in the middle stops the robot even without a display") {
-  ::unsetenv("DISPLAY");
-  Scene scene(90);
+  const test::Environment display("DISPLAY", "");
+  Scene scene(10);
   std::vector<std::string> arguments = scene.Arguments();
   arguments.push_back("--view");
   const test::ProcessResult result = test::RunRift(arguments);
