@@ -1,6 +1,9 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "hardware/pseudo_terminal.hpp"
@@ -44,6 +47,17 @@ class Floor {
   geometry::Pose2 Pose() {
     const std::lock_guard lock(mutex_);
     return pose_;
+  }
+  /// What the robot would say of itself.
+  std::string Told() {
+    const std::lock_guard lock(mutex_);
+    return fmt::format("the robot stopped {} times by itself and rejected {} commands",
+                       listener_.Stops(), listener_.Rejected());
+  }
+  /// It obeyed everything, but for a time when it had stopped by itself.
+  bool WasObedient() {
+    const std::lock_guard lock(mutex_);
+    return listener_.Rejected() == 0 || listener_.Stops() > 0;
   }
   bool Moves() {
     const std::lock_guard lock(mutex_);

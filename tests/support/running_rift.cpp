@@ -64,7 +64,9 @@ RunningRift::~RunningRift() {
   ::waitpid(pid_, &status_, 0);
 }
 
-void RunningRift::Signal(int signal) const { ::kill(pid_, signal); }
+void RunningRift::Signal(int signal) const {
+  if (!is_over_) ::kill(pid_, signal);  // its number may be another's by now
+}
 
 bool RunningRift::Freeze() {
   if (!IsRunning()) return false;
