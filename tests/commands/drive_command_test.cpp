@@ -35,7 +35,8 @@ TEST_CASE("Ping tells how the link is and which keys it sets") {
   const test::TemporaryFolder folder;
   // A budget that a loaded machine keeps as well.
   test::WriteText(folder / "lenient.yaml",
-                  "hardware: {ping: {max_p99_s: 5, max_loss: 0.9, max_burst: 500}}\n");
+                  "hardware: {line: {hello_s: 30},\n"
+                  "           ping: {max_p99_s: 10, max_loss: 0.9, max_burst: 500}}\n");
   const test::ProcessResult result =
       test::RunRift({"drive", folder / "lenient.yaml", "--ping", "--port", robot.path(), "--json"});
   INFO(result.err);

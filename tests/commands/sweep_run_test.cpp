@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "rift/sweep/run/journal.hpp"
 #include "support/process.hpp"
 #include "support/running_rift.hpp"
 #include "support/trials.hpp"
@@ -53,6 +54,19 @@ struct Sweep {
   std::string Summary(const std::string& out) const {
     return ReadFile(folder / (out + "/summary.json"));
   }
+  /// What the journal holds by now; nothing while there is none that can be read.
+  sweep::JournalSummary Journal(const std::string& out) const {
+    try {
+      return sweep::ReadJournal(folder / (out + "/journal.sqlite"));
+    } catch (const std::exception&) {
+      return {};
+    }
+  }
+  int Committed(const std::string& out) const {
+    int trials = 0;
+    for (const auto& [status, count] : Journal(out).trials_by_status) trials += count;
+    return trials;
+  }
 
   test::TemporaryFolder folder;
   std::string file = folder / "experiment.yaml";
@@ -69,18 +83,35 @@ TEST_CASE("A sweep gives the same bytes for one worker and for two") {
   }
 }
 
+/// Runs a sweep in one go and another of the same command under fire, and compares their bytes.
+test::KilledSweep CheckKilled(const Sweep& sweep, const std::vector<std::string>& more, int kills,
+                              std::mt19937_64& generator) {
+  REQUIRE(RunRift(sweep.Command("whole", more)).exit_code == 0);
+  // Without retries: a worker that somebody else kills costs its trial nothing.
+  std::vector<std::string> words = sweep.Command("killed", more);
+  words.insert(words.end(), {"--set", "run.retries=0"});
+  const test::KilledSweep killed = test::SweepUnderFire(
+      words, kills, [&] { return sweep.Committed("killed"); }, generator);
+  INFO(killed.last.err);
+  REQUIRE(killed.last.exit_code == 0);
+  CHECK(sweep.Table("killed") == sweep.Table("whole"));
+  CHECK(sweep.Summary("killed") == sweep.Summary("whole"));
+  return killed;
+}
+
 TEST_CASE("A sweep killed again and again ends with the bytes of one that was not") {
   std::mt19937_64 generator(20261121);
-  for (const std::string& text : {kGrid, kSearch}) {
-    const Sweep sweep(text);
-    REQUIRE(RunRift(sweep.Command("whole")).exit_code == 0);
-    const test::KilledSweep killed =
-        test::SweepUnderFire(sweep.Command("killed"), 6, 0.3, generator);
-    REQUIRE(killed.last.exit_code == 0);
-    CHECK(killed.coordinator_kills + killed.worker_kills > 0);
-    CHECK(sweep.Table("killed") == sweep.Table("whole"));
-    CHECK(sweep.Summary("killed") == sweep.Summary("whole"));
+  int resumed_starts = 0;
+  const std::vector<std::pair<std::string, std::vector<std::string>>> sweeps{
+      {kGrid, {"--set", "reference.trials=40"}}, {kSearch, {"--budget", "40"}}};
+  for (const auto& [text, more] : sweeps) {
+    const test::KilledSweep killed = CheckKilled(Sweep(text), more, 6, generator);
+    CHECK(killed.coordinator_kills > 0);
+    CHECK(killed.worker_kills > 0);
+    CHECK(killed.starts == killed.coordinator_kills + 1);
+    resumed_starts += killed.resumed_starts;
   }
+  CHECK(resumed_starts > 0);
 }
 
 // Takes minutes: run by name. The sweeps last long enough to be hit fifty times.
@@ -90,16 +121,10 @@ TEST_CASE("Fifty kills of coordinator and workers leave the bytes of a sweep as 
   const std::vector<std::pair<std::string, std::vector<std::string>>> sweeps{
       {kGrid, {"--set", "reference.trials=1000"}}, {kSearch, {"--budget", "500"}}};
   for (const auto& [text, more] : sweeps) {
-    const Sweep sweep(text);
-    REQUIRE(RunRift(sweep.Command("whole", more)).exit_code == 0);
-    const test::KilledSweep killed =
-        test::SweepUnderFire(sweep.Command("killed", more), 50, 0.4, generator);
-    REQUIRE(killed.last.exit_code == 0);
+    const test::KilledSweep killed = CheckKilled(Sweep(text), more, 50, generator);
     WARN(killed.coordinator_kills << " kills of the coordinator and " << killed.worker_kills
                                   << " of workers in " << killed.starts << " starts");
     CHECK(killed.coordinator_kills + killed.worker_kills == 50);
-    CHECK(sweep.Table("killed") == sweep.Table("whole"));
-    CHECK(sweep.Summary("killed") == sweep.Summary("whole"));
   }
 }
 
@@ -136,15 +161,12 @@ TEST_CASE("A finished sweep runs nothing again and a larger budget goes on with 
 }
 
 TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes on later") {
-  const Sweep sweep(kGrid + "run: {timeout_s: 50}\n");
+  const Sweep sweep(kGrid);
   const std::vector<std::string> command =
-      sweep.Command("out", {"--set", "reference.trials=200", "--jobs", "1"});
+      sweep.Command("out", {"--set", "reference.trials=2000", "--jobs", "1"});
   test::RunningRift first(command);
-  while (!fs::exists(sweep.folder / "out/experiment.yaml")) {
-    REQUIRE(first.IsRunning());
-    ::usleep(1000);
-  }
-  ::usleep(300'000);
+  first.WaitUntil("its first trials", [&] { return sweep.Committed("out") > 0; });
+  REQUIRE(first.Freeze());
   const ProcessResult second = RunRift(command);
   CHECK(second.exit_code == 3);
   CHECK(second.err.find("another sweep is at work in") != std::string::npos);
@@ -152,6 +174,7 @@ TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes o
   REQUIRE(status.exit_code == 0);
   CHECK(json::parse(status.out)["state"] == "running");
   first.Signal(SIGINT);
+  first.Thaw();
   const ProcessResult stopped = first.Wait();
   CHECK(stopped.exit_code == 130);
   CHECK(stopped.err.find("the same command goes on") != std::string::npos);
@@ -160,30 +183,42 @@ TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes o
       json::parse(RunRift({"sweep", "--status", sweep.folder / "out", "--json"}).out);
   CHECK(after["state"] == "stopped");
   CHECK(after["done"] > 0);
-  CHECK(after["done"] < 1200);
+  CHECK(after["done"] < 12'000);
 }
 
 TEST_CASE("A worker that stands still or crashes costs its trial and the sweep ends") {
+  constexpr int kTrials = 6 * 30;
   const Sweep sweep(kGrid);
   test::RunningRift running(
-      sweep.Command("out", {"--set", "reference.trials=10", "--set", "run.timeout_s=4", "--set",
+      sweep.Command("out", {"--set", "reference.trials=30", "--set", "run.timeout_s=3", "--set",
                             "run.retries=0", "--jobs", "1"}));
-  std::mt19937_64 generator(1);
-  pid_t crashed = 0;
-  while (crashed == 0) {
-    REQUIRE(running.IsRunning());
-    crashed = running.SignalWorker(SIGSEGV, generator);
-  }
-  while (running.SignalWorker(SIGSTOP, generator, crashed) == 0) REQUIRE(running.IsRunning());
+  pid_t last = 0;
+  running.WaitUntil("a worker", [&] { return !running.Workers().empty(); });
+  last = running.Workers().front();
+  REQUIRE(::kill(last, SIGSTOP) == 0);
+  // One that is hit between two trials costs none: then the next worker is.
+  int crashes = 0, committed_before = -1;
+  running.WaitUntil("a trial that crashed", [&] {
+    if (sweep.Journal("out").trials_by_status.contains("crashed")) return true;
+    const std::vector<pid_t> workers = running.Workers();
+    const bool has_passed = sweep.Committed("out") > committed_before;
+    if (workers.empty() || workers.front() == last || !has_passed) return false;
+    last = workers.front();
+    committed_before = sweep.Committed("out");
+    ++crashes;
+    REQUIRE(::kill(last, SIGSEGV) == 0);
+    return false;
+  });
   REQUIRE(running.Wait().exit_code == 0);
   const std::string table = sweep.Table("out");
   CHECK(table.find(",crashed,") != std::string::npos);
   CHECK(table.find("ended by signal 11 (Segmentation fault)") != std::string::npos);
   CHECK(table.find(",hung,") != std::string::npos);
-  CHECK(table.find("had not ended after 4 s") != std::string::npos);
+  CHECK(table.find("had not ended after 3 s") != std::string::npos);
   const json summary = json::parse(sweep.Summary("out"));
-  CHECK(summary["not_ok"] == 2);
-  CHECK(summary["n"] == 58);
+  CHECK(summary["not_ok"] >= 2);
+  CHECK(summary["not_ok"] <= 1 + crashes);
+  CHECK(summary["n"].get<int>() + summary["not_ok"].get<int>() == kTrials);
 }
 
 TEST_CASE("Limits of a search are refused by a grid") {

@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -8,9 +7,11 @@
 #include "floor.hpp"
 #include "rift/control/waypoint.hpp"
 #include "rift/trajectory/log.hpp"
+#include "support/environment.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/running_rift.hpp"
 #include "support/tree.hpp"
+#include "support/until.hpp"
 
 namespace rift {
 namespace {
@@ -29,8 +30,8 @@ hardware:
 
 /// A floor with the robot on the first waypoint, and what rift drive needs to be told.
 struct Scene {
-  explicit Scene(int pictures = 1'000'000)
-      : floor(control::StartPose(test::PaperWaypoints()), pictures) {
+  explicit Scene(int moving_pictures = 1'000'000)
+      : floor(control::StartPose(test::PaperWaypoints()), moving_pictures) {
     test::WriteText(folder / "cam.yaml", vision::WriteCamera(test::SmallCamera()));
     test::WriteText(folder / "task.yaml", "include: " + test::SourceDir() +
                                               "/configs/waypoints/paper.yaml\n" +
@@ -49,10 +50,32 @@ struct Scene {
   test::Floor floor;
 };
 
-TEST_CASE("The binary drives a robot under a camera to the last waypoint") {
-  Scene scene;
-  const test::ProcessResult result = test::RunRift(scene.Arguments());
-  INFO(result.out << result.err);
+/// True when the guard stopped the drive since somebody looked away for longer than the most
+/// patient limits, as it must on a machine that is that busy.
+bool WasInterrupted(Scene& scene) {
+  if (!std::filesystem::exists(scene.folder / "run/summary.json")) return false;
+  const std::string reason = scene.Summary()["stop"]["reason"];
+  INFO(scene.floor.Told());
+  CHECK(scene.floor.WasObedient());
+  return reason == "link_lagging" || reason == "host_stalled" || reason == "pose_stale" ||
+         reason == "control_stale";
+}
+
+/// Runs `drive` on a new scene, which returns false for a drive that was interrupted, until one
+/// was not.
+template <class Drive>
+void Uninterrupted(int moving_pictures, const Drive& drive) {
+  for (int i = 0; i < 5; ++i) {
+    Scene scene(moving_pictures);
+    if (drive(scene)) return;
+  }
+  FAIL("five drives were interrupted: the machine is too busy");
+}
+
+constexpr int kAll = 1'000'000;
+
+void CheckWholeDrive(Scene& scene, const test::ProcessResult& result) {
+  INFO(result.out << result.err << scene.floor.Told());
   REQUIRE(result.exit_code == 0);
   CHECK_THAT(result.err, Catch::Contains("worst stopping distance"));
   CHECK_THAT(result.out, Catch::Contains("the robot acknowledged the stop"));
@@ -76,46 +99,71 @@ TEST_CASE("The binary drives a robot under a camera to the last waypoint") {
   CHECK_THAT(again.err, Catch::Contains("holds a run already"));
 }
 
+TEST_CASE("The binary drives a robot under a camera to the last waypoint") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    const test::ProcessResult result = test::RunRift(scene.Arguments());
+    if (WasInterrupted(scene)) return false;
+    CheckWholeDrive(scene, result);
+    return true;
+  });
+}
+
+/// Or for the end of a drive that was interrupted.
+void WaitForMotion(test::RunningRift& rift, Scene& scene) {
+  test::WaitUntil("the robot moves or the drive is over",
+                  [&] { return scene.floor.Moves() || !rift.IsRunning(); });
+}
+
 TEST_CASE("A signal to the binary stops the robot and the run is saved with its reason") {
   for (const auto& [signal, name] :
        {std::pair{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}) {
-    Scene scene;
-    test::RunningRift rift(scene.Arguments());
-    while (rift.IsRunning() && !scene.floor.Moves()) scene.floor.Pause();
-    rift.Signal(signal);
-    const test::ProcessResult result = rift.Wait();
-    INFO(result.out << result.err);
-    CHECK(result.exit_code == 1);
-    CHECK_FALSE(scene.floor.Moves());
-    CHECK(scene.Summary()["stop"]["reason"] == "signal");
-    CHECK(scene.Summary()["stop"]["acknowledged"] == true);
-    CHECK_THAT(scene.Summary()["reason"].get<std::string>(), Catch::Contains(name));
+    Uninterrupted(kAll, [signal = signal, name = name](Scene& scene) {
+      test::RunningRift rift(scene.Arguments());
+      WaitForMotion(rift, scene);
+      rift.Signal(signal);
+      const test::ProcessResult result = rift.Wait();
+      if (WasInterrupted(scene)) return false;
+      INFO(result.out << result.err);
+      CHECK(result.exit_code == 1);
+      CHECK_FALSE(scene.floor.Moves());
+      CHECK(scene.Summary()["stop"]["reason"] == "signal");
+      CHECK(scene.Summary()["stop"]["acknowledged"] == true);
+      CHECK_THAT(scene.Summary()["reason"].get<std::string>(), Catch::Contains(name));
+      return true;
+    });
   }
 }
 
 TEST_CASE("The robot of a killed binary stops by itself") {
-  Scene scene;
-  test::RunningRift rift(scene.Arguments());
-  while (rift.IsRunning() && !scene.floor.Moves()) scene.floor.Pause();
-  rift.Signal(SIGKILL);
-  CHECK(rift.Wait().exit_code == 128 + SIGKILL);
-  for (int i = 0; i < 1000 && scene.floor.Moves(); ++i) scene.floor.Pause();
-  CHECK_FALSE(scene.floor.Moves());
+  Uninterrupted(kAll, [](Scene& scene) {
+    test::RunningRift rift(scene.Arguments());
+    WaitForMotion(rift, scene);
+    rift.Signal(SIGKILL);
+    const test::ProcessResult result = rift.Wait();
+    if (WasInterrupted(scene)) return false;
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 128 + SIGKILL);
+    test::WaitUntil("the robot stands", [&] { return !scene.floor.Moves(); });
+    return true;
+  });
 }
 
 TEST_CASE("A camera that goes away in the middle stops the robot even without a display") {
-  ::unsetenv("DISPLAY");
-  Scene scene(90);
-  std::vector<std::string> arguments = scene.Arguments();
-  arguments.push_back("--view");
-  const test::ProcessResult result = test::RunRift(arguments);
-  INFO(result.out << result.err);
-  CHECK(result.exit_code == 1);
-  CHECK_FALSE(scene.floor.Moves());
-  CHECK_THAT(result.err,
-             Catch::Contains("DISPLAY is not set") && Catch::Contains("driving without --view"));
-  CHECK(scene.Summary()["stop"]["reason"] == "camera_gone");
-  CHECK(scene.Summary()["stop"]["acknowledged"] == true);
+  const test::Environment display("DISPLAY", "");
+  Uninterrupted(10, [](Scene& scene) {
+    std::vector<std::string> arguments = scene.Arguments();
+    arguments.push_back("--view");
+    const test::ProcessResult result = test::RunRift(arguments);
+    if (WasInterrupted(scene)) return false;
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 1);
+    CHECK_FALSE(scene.floor.Moves());
+    CHECK_THAT(result.err,
+               Catch::Contains("DISPLAY is not set") && Catch::Contains("driving without --view"));
+    CHECK(scene.Summary()["stop"]["reason"] == "camera_gone");
+    CHECK(scene.Summary()["stop"]["acknowledged"] == true);
+    return true;
+  });
 }
 
 TEST_CASE("Nobody to press a key and no yes is refused before the port is opened") {

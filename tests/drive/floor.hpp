@@ -1,6 +1,9 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "hardware/pseudo_terminal.hpp"
@@ -25,17 +28,19 @@ inline vision::CameraModel SmallCamera() {
 
 /// A robot on a floor under a camera, for the rift binary: the listener behind a pseudo terminal,
 /// and an http camera. The robot moves by a fixed time with every picture, however long the machine
-/// takes for one, so a slow machine makes a slow world and no other path.
+/// takes for one, so a slow machine makes a slow world and no other path. The robot's own clock
+/// goes slower than the machine's, else its watchdog would stop it when the machine is busy.
 class Floor {
  public:
-  /// `pictures`: then the camera is gone.
-  explicit Floor(const geometry::Pose2& start, int pictures = 1'000'000)
+  /// The camera is gone after `moving_pictures` of a robot that moves.
+  explicit Floor(const geometry::Pose2& start, int moving_pictures = 1'000'000)
       : pose_(start),
+        moving_pictures_(moving_pictures),
         camera_(SmallCamera(), vision::SyntheticCameraOptions{}),
         listening_([this](const std::stop_token& stop) {
           while (!stop.stop_requested()) Listen();
         }),
-        server_([this] { return NextPicture(); }, {.fps = kPictures_hz, .pictures = pictures}) {}
+        server_([this] { return NextPicture(); }, {.fps = kPictures_hz}) {}
 
   const std::string& Port() const { return terminal_.path(); }
   std::string Camera() const { return server_.Url(); }
@@ -43,24 +48,33 @@ class Floor {
     const std::lock_guard lock(mutex_);
     return pose_;
   }
+  /// What the robot would say of itself.
+  std::string Told() {
+    const std::lock_guard lock(mutex_);
+    return fmt::format("the robot stopped {} times by itself and rejected {} commands",
+                       listener_.Stops(), listener_.Rejected());
+  }
+  /// It obeyed everything, but for a time when it had stopped by itself.
+  bool WasObedient() {
+    const std::lock_guard lock(mutex_);
+    return listener_.Rejected() == 0 || listener_.Stops() > 0;
+  }
   bool Moves() {
     const std::lock_guard lock(mutex_);
     return !listener_.Motors().IsZero();
   }
 
-  /// Lets a little time pass.
-  void Pause() { clock_.Wait(0.01); }
-
  private:
   static constexpr double kPictures_hz = 20.0;
   static constexpr double kStep_s = 1.0 / 60.0;
+  static constexpr double kClockSpeed = 0.1;
 
   void Listen() {
     const std::vector<std::uint8_t> heard = terminal_.Read(2);
     const std::lock_guard lock(mutex_);
     const auto counts = static_cast<std::int32_t>(3564.0 * travelled_m_);
-    terminal_.Write(listener_.Poll(static_cast<std::uint32_t>(1000.0 * clock_.Now_s()), heard,
-                                   {counts, counts, 4800}));
+    const auto now_ms = static_cast<std::uint32_t>(1000.0 * kClockSpeed * clock_.Now_s());
+    terminal_.Write(listener_.Poll(now_ms, heard, {counts, counts, 4800}));
   }
 
   std::vector<std::uint8_t> NextPicture() {
@@ -68,6 +82,7 @@ class Floor {
     {
       const std::lock_guard lock(mutex_);
       const hardware::MilliPower motors = listener_.Motors();
+      if (!motors.IsZero() && moving_pictures_-- == 0) return {};
       const geometry::Pose2 before = pose_;
       pose_ = drive_.Drive(pose_, {1e-3 * motors.left, 1e-3 * motors.right}, kStep_s);
       travelled_m_ += (pose_.Position() - before.Position()).norm();
@@ -80,6 +95,7 @@ class Floor {
 
   std::mutex mutex_;
   geometry::Pose2 pose_;
+  int moving_pictures_;
   double travelled_m_ = 0.0;
   control::DiffDrive drive_;
   hardware::Listener listener_;

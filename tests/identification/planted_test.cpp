@@ -72,6 +72,8 @@ TEST_CASE("Threads change no byte of a calibration") {
   options.runs = 1;
   options.iterations = 1;
   options.horizon.phases = 1;
+  options.simulated_logs = 3;
+  options.corrections = 1;
   const sweep::Calibration alone =
       test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 1);
   const sweep::Calibration together =

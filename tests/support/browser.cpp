@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "support/process.hpp"
+#include "support/until.hpp"
 
 namespace rift::test {
 namespace {
@@ -53,7 +54,8 @@ BrowserVisit Visit(const std::string& html) {
   WriteText(folder.Path() / "page.html", html);
   const std::string at = folder.Path().string();
   const std::string command =
-      "timeout 60 chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
+      "timeout " + std::to_string(kGiveUp.count()) +
+      " chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
       "--disable-background-networking --disable-component-update --disable-sync "
       "--disable-dev-shm-usage --host-resolver-rules='MAP * ~NOTFOUND' --user-data-dir=" +
       at + "/profile --log-net-log=" + at +

@@ -13,7 +13,7 @@ struct ProcessResult {
   std::string err;
 };
 
-/// Runs the rift binary that was built with these tests.
+/// Runs the rift binary that was built with these tests, within the limits of RunningRift.
 ProcessResult RunRift(const std::vector<std::string>& arguments);
 
 /// A new empty folder, removed with all its contents at the end of its scope.

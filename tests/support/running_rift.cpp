@@ -1,7 +1,9 @@
 #include "support/running_rift.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,31 +13,26 @@
 
 #include "support/tree.hpp"
 #include "support/trials.hpp"
+#include "support/until.hpp"
 
 extern char** environ;
 
 namespace rift::test {
 namespace {
 
-/// Gnuplot, which draws the figures, is a child as well.
 bool IsRift(pid_t pid) {
   std::string name;
   return std::ifstream("/proc/" + std::to_string(pid) + "/comm") >> name && name == "rift";
 }
 
-std::vector<pid_t> WorkersOf(pid_t pid) {
-  const std::string task = "/proc/" + std::to_string(pid) + "/task/" + std::to_string(pid);
-  std::ifstream file(task + "/children");
-  std::vector<pid_t> workers;
-  for (pid_t child = 0; file >> child;) {
-    if (IsRift(child)) workers.push_back(child);
-  }
-  return workers;
-}
-
-void Pause(double longest_s, std::mt19937_64& generator) {
-  const double pause_s = std::uniform_real_distribution<double>(0.0, longest_s)(generator);
-  ::usleep(static_cast<useconds_t>(1e6 * pause_s));
+/// False when it has not ended by then.
+bool EndsInTime(pid_t pid) {
+  const int process = static_cast<int>(::syscall(SYS_pidfd_open, pid, 0));
+  if (process < 0) throw std::runtime_error("cannot wait for a process");
+  pollfd wanted{process, POLLIN, 0};
+  const int ready = ::poll(&wanted, 1, static_cast<int>(1000 * kGiveUp.count()));
+  ::close(process);
+  return ready > 0;
 }
 
 }  // namespace
@@ -50,7 +47,10 @@ RunningRift::RunningRift(const std::vector<std::string>& arguments) {
   std::vector<std::string> words{RiftBinary()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
+  for (std::string& word : words) {
+    argv.push_back(word.data());
+    command_ += (command_.empty() ? "" : " ") + word;
+  }
   argv.push_back(nullptr);
   const int failed =
       posix_spawn(&pid_, RiftBinary().c_str(), &actions, nullptr, argv.data(), environ);
@@ -61,19 +61,31 @@ RunningRift::RunningRift(const std::vector<std::string>& arguments) {
 RunningRift::~RunningRift() {
   if (!IsRunning()) return;
   Signal(SIGKILL);
-  Wait();
+  ::waitpid(pid_, &status_, 0);
 }
 
-void RunningRift::Signal(int signal) const { ::kill(pid_, signal); }
+void RunningRift::Signal(int signal) const {
+  if (!is_over_) ::kill(pid_, signal);  // its number may be another's by now
+}
 
-pid_t RunningRift::SignalWorker(int signal, std::mt19937_64& generator, pid_t spared) const {
-  std::vector<pid_t> workers = WorkersOf(pid_);
-  std::erase(workers, spared);
-  if (workers.empty()) return 0;
-  const pid_t worker = workers[generator() % workers.size()];
-  ::usleep(20'000);  // a child that is about to become gnuplot is called rift until then
-  if (!IsRift(worker)) return 0;
-  return ::kill(worker, signal) == 0 ? worker : 0;
+bool RunningRift::Freeze() {
+  if (!IsRunning()) return false;
+  Signal(SIGSTOP);
+  if (::waitpid(pid_, &status_, WUNTRACED) != pid_) throw std::runtime_error("cannot stop rift");
+  is_over_ = !WIFSTOPPED(status_);
+  return !is_over_;
+}
+
+void RunningRift::Thaw() const { Signal(SIGCONT); }
+
+std::vector<pid_t> RunningRift::Workers() const {
+  const std::string task = "/proc/" + std::to_string(pid_) + "/task/" + std::to_string(pid_);
+  std::ifstream file(task + "/children");
+  std::vector<pid_t> workers;
+  for (pid_t child = 0; file >> child;) {
+    if (IsRift(child)) workers.push_back(child);
+  }
+  return workers;
 }
 
 bool RunningRift::IsRunning() {
@@ -81,33 +93,94 @@ bool RunningRift::IsRunning() {
   return !is_over_;
 }
 
-ProcessResult RunningRift::Wait() {
-  if (!is_over_) ::waitpid(pid_, &status_, 0);
-  is_over_ = true;
-  return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_),
-          ReadFile(folder_ / "out"), ReadFile(folder_ / "err")};
+std::string RunningRift::Out() const { return ReadFile(folder_ / "out"); }
+std::string RunningRift::Err() const { return ReadFile(folder_ / "err"); }
+
+void RunningRift::WaitUntil(const std::string& what, const std::function<bool()>& is_so) {
+  bool is_in_vain = false;
+  try {
+    test::WaitUntil(what, [&] {
+      const bool is_running = IsRunning();  // before the question: its last deed counts
+      if (is_so()) return true;
+      is_in_vain = !is_running;
+      return is_in_vain;
+    });
+  } catch (const std::runtime_error&) {
+    is_in_vain = true;
+  }
+  if (is_in_vain) GiveUp(what);
 }
 
+ProcessResult RunningRift::Wait() {
+  if (!is_over_ && !EndsInTime(pid_)) GiveUp("its end");
+  if (!is_over_) ::waitpid(pid_, &status_, 0);
+  is_over_ = true;
+  return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_), Out(), Err()};
+}
+
+void RunningRift::GiveUp(const std::string& what) {
+  const bool was_running = IsRunning();
+  if (was_running) {
+    Signal(SIGKILL);
+    ::waitpid(pid_, &status_, 0);
+    is_over_ = true;
+  }
+  throw std::runtime_error("waited in vain for: " + what + "\n" + command_ +
+                           (was_running ? " was killed" : " has ended") + "; it printed\n" + Out() +
+                           "and on stderr\n" + Err());
+}
+
+namespace {
+
+/// What is killed next.
+enum class Target { kWorking, kWorker, kCommitted };
+
+/// Kills `target` when its time has come; false when the sweep ended before.
+bool Kill(RunningRift& running, Target target, const std::function<int()>& committed_trials,
+          std::mt19937_64& generator) {
+  const int before = committed_trials();
+  std::vector<pid_t> workers;
+  bool is_over = false;
+  test::WaitUntil("a sweep is in the middle or over", [&] {
+    const bool is_time =
+        target == Target::kCommitted ? committed_trials() > before : !running.Workers().empty();
+    if (!is_time && running.IsRunning()) return false;
+    // Without workers it plans, writes or draws: it goes on until it has some, or to its end.
+    is_over = !running.Freeze();
+    if (!is_over) workers = running.Workers();
+    if (!is_over && workers.empty()) running.Thaw();
+    return is_over || !workers.empty();
+  });
+  if (is_over) return false;
+  if (target != Target::kWorker) {
+    running.Signal(SIGKILL);
+  } else {
+    ::kill(workers[generator() % workers.size()], SIGKILL);
+    running.Thaw();
+  }
+  return true;
+}
+
+}  // namespace
+
 KilledSweep SweepUnderFire(const std::vector<std::string>& arguments, int kills,
-                           double longest_pause_s, std::mt19937_64& generator) {
+                           const std::function<int()>& committed_trials,
+                           std::mt19937_64& generator) {
+  constexpr Target kTargets[] = {Target::kWorking, Target::kWorker, Target::kCommitted};
   KilledSweep sweep;
-  while (true) {
+  for (int killed = 0;;) {
+    sweep.resumed_starts += committed_trials() > 0;
     RunningRift running(arguments);
     ++sweep.starts;
-    bool is_killed = false;
-    while (!is_killed && sweep.coordinator_kills + sweep.worker_kills < kills) {
-      Pause(longest_pause_s, generator);
-      if (!running.IsRunning()) break;
-      if (generator() % 2 == 0) {
-        sweep.worker_kills += running.SignalWorker(SIGKILL, generator) != 0;
-      } else {
-        running.Signal(SIGKILL);
-        ++sweep.coordinator_kills;
-        is_killed = true;
-      }
+    while (killed < kills) {
+      const Target target = kTargets[killed % 3];
+      if (!Kill(running, target, committed_trials, generator)) break;
+      ++killed;
+      ++(target == Target::kWorker ? sweep.worker_kills : sweep.coordinator_kills);
+      if (target != Target::kWorker) break;
     }
     sweep.last = running.Wait();
-    if (!is_killed) return sweep;
+    if (sweep.last.exit_code != 128 + SIGKILL) return sweep;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -10,7 +11,9 @@
 
 namespace rift::test {
 
-/// The rift binary at work, to be killed or waited for.
+/// The rift binary at work, to be watched, signalled and waited for. What waits for it gives up
+/// after kGiveUp (until.hpp): it kills the process and throws std::runtime_error with what was
+/// waited for and what the process printed.
 class RunningRift {
  public:
   explicit RunningRift(const std::vector<std::string>& arguments);
@@ -20,27 +23,44 @@ class RunningRift {
   RunningRift& operator=(const RunningRift&) = delete;
 
   void Signal(int signal) const;
-  /// Signals one of its worker processes at random, but not `spared`; 0 when there is none.
-  pid_t SignalWorker(int signal, std::mt19937_64& generator, pid_t spared = 0) const;
+  /// Stops the process (SIGSTOP) and returns when it stands still; false when it has ended.
+  bool Freeze();
+  void Thaw() const;
+  /// Its worker processes. Gnuplot, which draws the figures, is a child as well and none of them.
+  std::vector<pid_t> Workers() const;
   bool IsRunning();
+  /// What it has printed so far.
+  std::string Out() const;
+  std::string Err() const;
+
+  /// Waits until `is_so()`. Throws as well when the process ends before.
+  void WaitUntil(const std::string& what, const std::function<bool()>& is_so);
+  /// Waits for its end.
   ProcessResult Wait();
 
  private:
+  [[noreturn]] void GiveUp(const std::string& what);
+
   TemporaryFolder folder_;
+  std::string command_;
   pid_t pid_ = -1;
   int status_ = 0;
   bool is_over_ = false;
 };
 
-/// Runs one sweep with a `kill -9` after every random while, of the whole process and of single
-/// workers in turn, `kills` times; then to its end. Every start is the same command.
+/// Runs one sweep and kills it in the middle (`kill -9`), `kills` times at most; then to its end.
+/// Every start is the same command. In turn are killed: the process while its workers are at work,
+/// one of the workers, and the process when it has committed trials of its own. A sweep that ends
+/// before is not killed.
 struct KilledSweep {
   int coordinator_kills = 0;
   int worker_kills = 0;
   int starts = 0;
+  int resumed_starts = 0;  ///< of those, with trials of an earlier one in the journal
   ProcessResult last;
 };
 KilledSweep SweepUnderFire(const std::vector<std::string>& arguments, int kills,
-                           double longest_pause_s, std::mt19937_64& generator);
+                           const std::function<int()>& committed_trials,
+                           std::mt19937_64& generator);
 
 }  // namespace rift::test

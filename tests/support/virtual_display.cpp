@@ -1,9 +1,13 @@
 #include "support/virtual_display.hpp"
 
+#include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
+
+#include "support/until.hpp"
 
 namespace rift::test {
 
@@ -12,6 +16,7 @@ VirtualDisplay::VirtualDisplay() {
   if (pipe(ends) != 0) return;
   pid_ = fork();
   if (pid_ == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // not left behind by a test that crashes
     close(ends[0]);
     const std::string descriptor = std::to_string(ends[1]);
     // Without -noreset the server starts over when its last client goes, and refuses the next.
@@ -20,8 +25,12 @@ VirtualDisplay::VirtualDisplay() {
     _exit(127);
   }
   close(ends[1]);
-  char letter = 0;
-  while (read(ends[0], &letter, 1) == 1 && letter != '\n') number_ += letter;
+  pollfd wanted{ends[0], POLLIN, 0};
+  const int longest_ms = static_cast<int>(1000 * kGiveUp.count());
+  for (char letter = 0; poll(&wanted, 1, longest_ms) == 1 && read(ends[0], &letter, 1) == 1;) {
+    if (letter == '\n') break;
+    number_ += letter;
+  }
   close(ends[0]);
 }
 

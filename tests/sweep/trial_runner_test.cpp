@@ -59,7 +59,7 @@ std::string KeyOf(const TrialRequest& request) {
 }
 
 SweepResult SweepWith(int workers, Journal* journal, const Watch& watch = {}) {
-  TrialRunner runner(Evaluated, KeyOf, journal, workers, {.timeout_s = 2.0, .memory_mb = 32},
+  TrialRunner runner(Evaluated, KeyOf, journal, workers, {.timeout_s = 1.0, .memory_mb = 32},
                      watch);
   const auto run = [&](std::vector<TrialRequest> all) { return runner.Run(std::move(all)); };
   std::optional<SweepResult> result = SweepGrid(Plan(), run);
@@ -92,7 +92,7 @@ TEST_CASE("A sweep with planted trouble ends and each trouble is a row with its 
   CHECK(row(0).comparison.gap_m == Approx(0.007));
   CHECK(result.rows[1].comparison.gap_m == Approx(0.008));
   CHECK(row(1).status == TrialStatus::kHung);
-  CHECK(row(1).reason == "had not ended after 2 s, twice");
+  CHECK(row(1).reason == "had not ended after 1 s, twice");
   CHECK(row(2).status == TrialStatus::kCrashed);
   CHECK(row(2).reason == "ended by signal 11 (Segmentation fault), twice");
   CHECK(row(3).status == TrialStatus::kNan);
@@ -171,7 +171,7 @@ TEST_CASE("A sweep that is stopped goes on with the trials that are missing") {
       if (!from_journal) CHECK(computed.insert(row.theta[0].text + row.trial).second);
     };
     watch.go_on = [&] { return computed.size() < enough; };
-    TrialRunner runner(Evaluated, KeyOf, &journal, 2, {.timeout_s = 2.0, .memory_mb = 32}, watch);
+    TrialRunner runner(Evaluated, KeyOf, &journal, 2, {.timeout_s = 1.0, .memory_mb = 32}, watch);
     return SweepGrid(Plan(), [&](auto all) { return runner.Run(std::move(all)); });
   };
   CHECK_FALSE(run_until(3));

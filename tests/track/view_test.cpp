@@ -1,9 +1,7 @@
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "support/environment.hpp"
 #include "support/running_rift.hpp"
@@ -20,19 +18,14 @@ using test::ProcessResult;
 
 const std::string kData = test::SourceDir() + "/data/camera";
 
-/// True once `command` succeeded, tried for some seconds.
 bool Succeeds(const std::string& command) {
-  for (int i = 0; i < 200; ++i) {
-    if (std::system((command + " >/dev/null 2>&1").c_str()) == 0) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
-  return false;
+  return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
 }
 
-void Do(const std::string& command) {
-  INFO(command);
-  CHECK(std::system((command + " >/dev/null 2>&1").c_str()) == 0);
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+int Count(const std::string& text, const std::string& word) {
+  int count = 0;
+  for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) ++count;
+  return count;
 }
 
 TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
@@ -51,19 +44,31 @@ TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
     const Environment shim("LD_PRELOAD", test::BuildDir() + "/tests/librift_v4l2_shim.so");
     test::RunningRift rift({"track", "--camera", "/dev/video0", "--calibration",
                             kData + "/camera.yaml", "--out", folder / "log.csv", "--view",
-                            "--record-waypoints", waypoints, "--duration", "60"});
+                            "--record-waypoints", waypoints, "--set", "track.capture.silent_s=60"});
     {
       const Environment none("LD_PRELOAD", "");
-      REQUIRE(Succeeds("xdotool search --sync --onlyvisible --name '^rift track$'"));
-      std::this_thread::sleep_for(std::chrono::milliseconds(500));
       const std::string window = "xdotool search --onlyvisible --name '^rift track$' ";
-      Do(window + "mousemove --window %1 120 300 click 1");
-      Do(window + "mousemove --window %1 320 260 click 1");
-      Do(window + "mousemove --window %1 500 100 click 1");
-      Do(window + "mousemove --window %1 520 220 click 1");
-      Do(window + "windowfocus %1 key u");
-      Do(window + "windowfocus %1 key s");
-      Do(window + "windowfocus %1 key q");
+      rift.WaitUntil("the window shows a picture", [&] {
+        return Succeeds("test $(" + window + "getwindowgeometry --shell | " +
+                        "sed -n s/^HEIGHT=//p) -gt 300");
+      });
+      // Each click and key but the last changes the file.
+      const auto saved = [&] {
+        return std::filesystem::exists(waypoints) ? test::ReadFile(waypoints) : "";
+      };
+      const auto act = [&](const std::string& what, const auto& is_saved) {
+        INFO(what);
+        REQUIRE(Succeeds(window + what));
+        rift.WaitUntil(what + " is saved", is_saved);
+      };
+      const std::vector<std::string> places{"120 300", "320 260", "500 100", "520 220"};
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        act("mousemove --window %1 " + places[i] + " click 1",
+            [&] { return Count(saved(), "name:") == static_cast<int>(i) + 1; });
+      }
+      act("windowfocus --sync %1 key u", [&] { return Count(saved(), "name:") == 3; });
+      act("windowfocus --sync %1 key s", [&] { return Count(saved(), "stop: false") == 1; });
+      REQUIRE(Succeeds(window + "windowfocus --sync %1 key q"));
     }
     result = rift.Wait();
   }

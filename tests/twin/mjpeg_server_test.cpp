@@ -7,9 +7,9 @@
 
 #include <array>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <string>
-#include <thread>
+
+#include "support/until.hpp"
 
 namespace rift::twin {
 namespace {
@@ -38,13 +38,13 @@ class Client {
     REQUIRE(::send(socket_, request.data(), request.size(), MSG_NOSIGNAL) ==
             static_cast<ssize_t>(request.size()));
   }
-  /// Everything until `text` was seen, 10 s at most.
+  /// Everything until `text` was seen or nothing came for kGiveUp.
   std::string Until(const std::string& text) {
     std::string got;
     std::array<char, 65536> chunk;
     while (got.find(text) == std::string::npos) {
       pollfd wanted{socket_, POLLIN, 0};
-      if (::poll(&wanted, 1, 10'000) <= 0) return got;
+      if (::poll(&wanted, 1, static_cast<int>(1000 * test::kGiveUp.count())) <= 0) return got;
       const ssize_t n = ::recv(socket_, chunk.data(), chunk.size(), 0);
       if (n <= 0) return got;
       got.append(chunk.data(), static_cast<size_t>(n));
@@ -63,10 +63,7 @@ std::vector<std::uint8_t> Picture(const std::string& name, size_t size = 0) {
 }
 
 void WaitForClients(const MjpegServer& server, int count) {
-  for (int i = 0; i < 1000 && server.Clients() != count; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  REQUIRE(server.Clients() == count);
+  test::WaitUntil(std::to_string(count) + " clients", [&] { return server.Clients() == count; });
 }
 
 TEST_CASE("Every client of the stream is given the picture") {

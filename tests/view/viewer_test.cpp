@@ -15,6 +15,7 @@
 #include "rift/view/film.hpp"
 #include "support/process.hpp"
 #include "support/tree.hpp"
+#include "support/until.hpp"
 #include "support/virtual_display.hpp"
 #include "view/synthetic_run.hpp"
 
@@ -140,6 +141,7 @@ TEST_CASE(kWindowCase) {
   const Environment shows(kShows, "1");
   const pid_t child = fork();
   if (child == 0) {
+    ::alarm(static_cast<unsigned>(test::kGiveUp.count()));  // ends it when it hangs
     execl("/proc/self/exe", "rift_view_test", kWindowCase, static_cast<char*>(nullptr));
     _exit(127);
   }

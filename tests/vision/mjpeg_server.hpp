@@ -21,6 +21,7 @@ struct ServerOptions {
   std::string content_type = "multipart/x-mixed-replace; boundary=frame";
   int pictures = 1'000'000;  ///< then it closes the connection ...
   bool then_silent = false;  ///< ... or stays there without a word
+  bool paced = false;        ///< sends, instead of fps a second, as many as Release allows
 };
 
 /// An http camera for one client on a free port of this machine. Every JPEG carries the time at
@@ -31,7 +32,7 @@ class MjpegServer {
 
   MjpegServer(std::vector<std::uint8_t> jpeg, ServerOptions options)
       : MjpegServer([jpeg = std::move(jpeg)] { return jpeg; }, std::move(options)) {}
-  /// `camera` is asked for each picture, by a thread of the server.
+  /// `camera` is asked for each picture, by a thread of the server; an empty one is the end.
   MjpegServer(Camera camera, ServerOptions options)
       : camera_(std::move(camera)), options_(std::move(options)), thread_([this] { Serve(); }) {}
   ~MjpegServer() {
@@ -49,6 +50,9 @@ class MjpegServer {
   std::string Url() const {
     return "http://127.0.0.1:" + std::to_string(acceptor_.local_endpoint().port()) + "/video";
   }
+
+  /// Allows a paced server to send so many more.
+  void Release(int pictures) { released_ += pictures; }
 
   /// When each picture was sent so far.
   std::vector<double> SentTimes_s() {
@@ -70,6 +74,7 @@ class MjpegServer {
  private:
   std::vector<std::uint8_t> Stamped() const {
     std::vector<std::uint8_t> jpeg = camera_();
+    if (jpeg.empty()) return jpeg;
     std::vector<std::uint8_t> comment{0xFF, 0xFE, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0};
     const double now_s = Now_s();
     std::memcpy(comment.data() + 4, &now_s, sizeof now_s);
@@ -82,6 +87,12 @@ class MjpegServer {
     boost::asio::write(*client_, boost::asio::buffer(body));
   }
 
+  /// Waits for the leave to send picture i; false when the server is to stop.
+  bool IsReleased(int i) const {
+    while (i >= released_ && !stop_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return i < released_;
+  }
+
   void Serve() {
     try {
       client_.emplace(acceptor_.accept());
@@ -89,7 +100,9 @@ class MjpegServer {
       boost::asio::read_until(*client_, boost::asio::dynamic_buffer(request), "\r\n\r\n");
       Send("HTTP/1.0 200 OK\r\nContent-Type: " + options_.content_type + "\r\n\r\n", {});
       for (int i = 0; i < options_.pictures && !stop_; ++i) {
+        if (options_.paced && !IsReleased(i)) break;
         const std::vector<std::uint8_t> jpeg = Stamped();
+        if (jpeg.empty()) break;
         {
           const std::lock_guard lock(mutex_);
           sent_s_.push_back(SentAt_s(jpeg));
@@ -99,6 +112,7 @@ class MjpegServer {
           head += "Content-Length: " + std::to_string(jpeg.size()) + "\r\n";
         }
         Send(head + "\r\n", jpeg);
+        if (options_.paced) continue;
         std::this_thread::sleep_for(std::chrono::duration<double>(1.0 / options_.fps));
       }
       while (options_.then_silent && !stop_) {
@@ -118,6 +132,7 @@ class MjpegServer {
   std::mutex mutex_;
   std::vector<double> sent_s_;
   std::atomic<bool> stop_ = false;
+  std::atomic<int> released_ = 0;
   std::thread thread_;
 };
 

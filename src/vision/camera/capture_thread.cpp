@@ -62,6 +62,8 @@ struct CaptureThread::Shared {
   double last_s = 0.0;
   bool stop = false;
   bool done = false;
+
+  std::thread thread;  // used by the CaptureThread alone
 };
 
 void CaptureThread::Shared::Run() {
@@ -143,14 +145,23 @@ CaptureStatus CaptureThread::Shared::Look(double now_s) {
 
 CaptureThread::CaptureThread(Opener open, const CaptureOptions& options)
     : shared_(std::make_shared<Shared>(std::move(open), options)) {
-  std::thread([shared = shared_] { shared->Run(); }).detach();
+  shared_->thread = std::thread([shared = shared_] { shared->Run(); });
 }
 
 CaptureThread::~CaptureThread() {
   Lock lock(shared_->mutex);
   shared_->stop = true;
   shared_->changed.notify_all();
-  shared_->changed.wait_for(lock, duration<double>(kPatience_s), [this] { return shared_->done; });
+  const bool is_done = shared_->changed.wait_for(lock, duration<double>(kPatience_s),
+                                                 [this] { return shared_->done; });
+  lock.unlock();
+  // Joined, since a thread that closes its camera while the process ends finds libraries that have
+  // cleaned up already.
+  if (is_done) {
+    shared_->thread.join();
+  } else {
+    shared_->thread.detach();
+  }
 }
 
 std::optional<Frame> CaptureThread::Next(double timeout_s) {
