@@ -12,6 +12,8 @@
 #include <stdexcept>
 
 namespace rift::commands {
+namespace {
+
 /// An open file, closed at the end of its scope.
 class Descriptor {
  public:
@@ -29,8 +31,6 @@ class Descriptor {
  private:
   int number_;
 };
-
-namespace {
 
 [[noreturn]] void CannotRead(const std::filesystem::path& path) {
   throw std::invalid_argument(fmt::format("cannot read {}: {}", path.string(), strerror(errno)));
@@ -130,42 +130,6 @@ std::string ReadFile(const std::filesystem::path& path) {
   }
   text.resize(used);
   return text;
-}
-
-LinesOfFile::LinesOfFile(const std::filesystem::path& path)
-    : path_(path), file_(std::make_unique<Descriptor>(path, O_RDONLY)) {
-  constexpr size_t kPiece_bytes = 1 << 18;
-  if (!file_->IsOpen()) CannotRead(path);
-  size_bytes_ = SizeOf(*file_);
-  buffer_.resize(std::clamp<size_t>(size_bytes_ + 1, 4096, kPiece_bytes));
-}
-
-LinesOfFile::~LinesOfFile() = default;
-
-/// False at the end of the file, where a log that grows on is left alone.
-bool LinesOfFile::ReadOn() {
-  if (has_ended_) return false;
-  if (used_ == buffer_.size()) buffer_.resize(2 * used_);
-  const size_t got = ReadSome(*file_, buffer_.data() + used_, buffer_.size() - used_, path_);
-  used_ += got;
-  has_ended_ = got == 0;
-  return !has_ended_;
-}
-
-std::string_view LinesOfFile::Next() {
-  // The line that was cut off begins the next piece.
-  std::copy(buffer_.begin() + given_, buffer_.begin() + used_, buffer_.begin());
-  size_t searched = used_ - given_;
-  used_ = searched;
-  given_ = 0;
-  while (given_ == 0 && ReadOn()) {
-    const std::string_view fresh(buffer_.data() + searched, used_ - searched);
-    const size_t last = fresh.rfind('\n');
-    if (last != fresh.npos) given_ = searched + last + 1;
-    searched = used_;
-  }
-  if (given_ == 0) given_ = used_;
-  return {buffer_.data(), given_};
 }
 
 void WriteFile(const std::filesystem::path& target, std::string_view text) {

@@ -10,8 +10,7 @@
 namespace rift::commands {
 
 trajectory::Log LoadLog(const std::string& path, trajectory::Format format) {
-  LinesOfFile lines(path);
-  return trajectory::ReadLog({[&] { return lines.Next(); }, lines.Size_bytes()}, path, format);
+  return trajectory::ReadLog(ReadFile(path), path, format);
 }
 
 void PrintNotes(const trajectory::Log& log, const std::string& path) {
