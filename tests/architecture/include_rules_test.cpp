@@ -58,8 +58,7 @@ const std::vector<Reserved> kReserved{
     {"sqlite3.*|SQLiteCpp/.*", {"sweep/run"}},
     {"termios.h|asm/termbits.h|boost/asio.*", {"hardware", "twin"}},
     {"fstream|iostream|cstdio", {"commands", "hardware", "vision", "twin", "report"}},
-    {"thread|mutex|condition_variable", {"commands", "hardware", "vision", "twin", "sweep"}},
-    {"future", {"commands", "hardware", "vision", "twin", "sweep", "gap"}},
+    {"thread|mutex|condition_variable|future", {"commands", "hardware", "vision", "twin", "sweep"}},
 };
 
 struct Include {
