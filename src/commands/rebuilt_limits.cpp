@@ -1,6 +1,6 @@
 #include "rebuilt_limits.hpp"
 
-#include "rift/yaml/set_value.hpp"
+#include "rift/yaml/bind.hpp"
 
 namespace rift::commands {
 namespace {

@@ -11,7 +11,7 @@
 #include "commands/rebuilt_limits.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
-#include "rift/yaml/error.hpp"
+#include "rift/yaml/node.hpp"
 #include "commands/simulated_runs.hpp"
 
 namespace rift::commands {
