@@ -9,7 +9,7 @@ rift_room(geometry
 rift_room(yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES yaml-cpp)
 rift_room(trajectory ROOMS geometry
-  LIBRARIES fmt::fmt)
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES FastFloat::fast_float)
 rift_room(control ROOMS geometry
   LIBRARIES fmt::fmt)
 rift_room(trial ROOMS control geometry trajectory

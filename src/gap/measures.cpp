@@ -87,8 +87,9 @@ double EqualTime_m(const ArcPath& a, const ArcPath& b) {
     const double now_s = std::min(a_s, b_s);
     const Eigen::Vector2d difference_m = PositionAt(a, now_s, i) - PositionAt(b, now_s, j);
     largest_m = std::max(largest_m, difference_m.norm());
-    if (a_s <= now_s) ++i;
-    if (b_s <= now_s) ++j;
+    // Sums, not branches: which of the two paths goes on is as good as random.
+    i += a_s <= now_s;
+    j += b_s <= now_s;
   }
   return largest_m;
 }

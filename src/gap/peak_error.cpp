@@ -20,8 +20,9 @@ void ForEachInterval(const ArcPath& sim, const ArcPath& real, Visit&& visit) {
     begin = end;
     const bool sim_ends = sim.u[i + 1] <= end;
     if (sim_ends && i == sim_last) return;
-    if (sim_ends) ++i;
-    if (real.u[j + 1] <= end && j < real_last) ++j;
+    // Sums, not branches: which of the two paths goes on is as good as random.
+    i += sim_ends;
+    j += (real.u[j + 1] <= end) & (j < real_last);
   }
 }
 

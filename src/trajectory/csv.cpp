@@ -1,5 +1,6 @@
 #include "csv.hpp"
 
+#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -132,8 +133,17 @@ void RowReader::ReadCells(std::string_view line) {
   cells_.clear();
   if (IsBlank(separator_)) line = Trim(line);
   for (bool more = true; more;) {
-    const size_t end = CellEnd(line, separator_);
-    cells_.push_back(Number(Trim(line.substr(0, end)), cells_.size()));
+    double value = 0.0;
+    const auto [stop, error] =
+        fast_float::from_chars(line.data(), line.data() + line.size(), value);
+    auto end = static_cast<size_t>(stop - line.data());
+    const bool ends_here = end == line.size() || line[end] == separator_;
+    // Nearly every cell is a number alone. fast_float tells an underflow to zero in another way.
+    if (!ends_here || error != std::errc{} || !std::isfinite(value) || value == 0.0) {
+      end = CellEnd(line, separator_);
+      value = Number(Trim(line.substr(0, end)), cells_.size());
+    }
+    cells_.push_back(value);
     more = end < line.size();
     line.remove_prefix(end + more);
     if (IsBlank(separator_)) line = Trim(line);

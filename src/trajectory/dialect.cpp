@@ -107,10 +107,9 @@ void AddPose(LogRows& rows, const StampedPose& pose, const std::string& name, in
   rows.trajectory.poses.push_back(pose);
 }
 
-LogRows ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& names,
-                    const std::string& name) {
+void ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& names,
+                 const std::string& name, LogRows& rows) {
   const ColumnMap columns(row.Columns(), names, name, row.Line());
-  LogRows rows;
   for (const size_t column : columns.Channels()) {
     rows.trajectory.channels.push_back({row.Columns()[column], {}});
   }
@@ -120,7 +119,6 @@ LogRows ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& n
       rows.trajectory.channels[i].values.push_back(row.Cells()[columns.Channels()[i]]);
     }
   }
-  return rows;
 }
 
 StampedPose TumPose(const csv::RowReader& row, const std::string& name) {
@@ -145,10 +143,8 @@ StampedPose TumPose(const csv::RowReader& row, const std::string& name) {
   return pose;
 }
 
-LogRows ReadTum(csv::RowReader row, const std::string& name) {
-  LogRows rows;
+void ReadTum(csv::RowReader row, const std::string& name, LogRows& rows) {
   while (row.Next()) AddPose(rows, TumPose(row, name), name, row.Line());
-  return rows;
 }
 
 /// The one place where the authors' camera frame (x right, y down, z away from the camera, yaw
@@ -204,9 +200,15 @@ Format FormatFromHeader(std::string_view text, const std::string& name) {
 }
 
 LogRows ReadRows(std::string_view text, const std::string& name, Format format) {
-  if (format == Format::kTum) return ReadTum(csv::RowReader(text, name, false, ' '), name);
-  return ReadColumns(csv::RowReader(text, name, true, ','),
-                     format == Format::kRift ? kRiftColumns : kAuthorsColumns, name);
+  LogRows rows;
+  rows.trajectory.poses.reserve(std::count(text.begin(), text.end(), '\n') + 1);
+  if (format == Format::kTum) {
+    ReadTum(csv::RowReader(text, name, false, ' '), name, rows);
+  } else {
+    ReadColumns(csv::RowReader(text, name, true, ','),
+                format == Format::kRift ? kRiftColumns : kAuthorsColumns, name, rows);
+  }
+  return rows;
 }
 
 void ConvertUnitsAndFrame(Log& log) {

@@ -69,6 +69,8 @@ Node Node::Text(std::string text) {
   return node;
 }
 
+Node Node::List() { return List(std::vector<Node>{}); }
+
 Node Node::List(std::vector<Node> items) {
   Node node;
   node.kind = Kind::kList;

@@ -42,7 +42,8 @@ struct Node {
   static Node Scalar(std::string plain_text);
   /// A scalar that stays text whatever it looks like.
   static Node Text(std::string text);
-  static Node List(std::vector<Node> items = {});
+  static Node List();
+  static Node List(std::vector<Node> items);
   static Node Map();
 
   bool IsNull() const { return kind == Kind::kNull; }
