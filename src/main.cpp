@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "rift/commands/command.hpp"
-#include "rift/yaml/error.hpp"
+#include "rift/yaml/node.hpp"
 #include "rift/yaml/suggest.hpp"
 
 namespace {

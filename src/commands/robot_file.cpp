@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calibrate_output.hpp"
-#include "rift/yaml/tree.hpp"
+#include "rift/yaml/node.hpp"
 #include "rift/yaml/write.hpp"
 
 namespace rift::commands {

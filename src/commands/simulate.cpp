@@ -13,7 +13,7 @@
 #include "rift/commands/command.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/trajectory/log.hpp"
-#include "rift/yaml/set_value.hpp"
+#include "rift/yaml/bind.hpp"
 #include "simulate_output.hpp"
 #include "simulate_pictures.hpp"
 #include "simulate_twin.hpp"

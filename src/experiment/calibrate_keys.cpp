@@ -6,7 +6,7 @@
 #include <charconv>
 
 #include "rift/yaml/describe.hpp"
-#include "rift/yaml/error.hpp"
+#include "rift/yaml/node.hpp"
 
 namespace rift::experiment {
 namespace {

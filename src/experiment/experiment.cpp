@@ -12,9 +12,7 @@
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/describe.hpp"
-#include "rift/yaml/error.hpp"
-#include "rift/yaml/set_value.hpp"
-#include "rift/yaml/tree.hpp"
+#include "rift/yaml/node.hpp"
 #include "rift/yaml/write.hpp"
 
 namespace rift::experiment {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "rift/yaml/node.hpp"
 #include "rift/yaml/scalar.hpp"
-#include "rift/yaml/tree.hpp"
 
 namespace rift::yaml {
 namespace {

@@ -3,20 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cassert>
 #include <cmath>
-#include <future>
+#include <numeric>
 #include <string>
 #include <vector>
 
-#include "alignment.hpp"
 #include "arc_path.hpp"
-#include "error_summary.hpp"
 #include "measures.hpp"
-#include "path_error.hpp"
+#include "peak_error.hpp"
 #include "rift/geometry/angle.hpp"
-#include "standstill.hpp"
+#include "rift/statistics/mean.hpp"
+#include "rift/statistics/quantile.hpp"
 
 namespace rift::gap {
 namespace {
@@ -27,94 +24,19 @@ constexpr int kMeasurePoints = 160;
 /// Hausdorff costs the product of the rows; up to this many pairs every vertex is looked at.
 constexpr size_t kMostHausdorffPairs = 65536;
 
-/// From this many rows on a second thread is worth its start.
-constexpr size_t kManyRows = 20'000;
-
 struct Paths {
   ArcPath sim;
   ArcPath real;
-
-  bool AreLong() const { return sim.Size() + real.Size() >= kManyRows; }
 };
-
-/// Calls both, at once if told to. What `first` throws comes before what `second` does.
-template <class First, class Second>
-void CallBoth(bool at_once, First&& first, Second&& second) {
-  std::future<void> other;
-  if (at_once) other = std::async(std::launch::async, second);
-  first();
-  at_once ? other.get() : second();
-}
 
 /// Both paths as they are to be compared, after trimming and aligning.
 Paths Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
               const GapOptions& options) {
-  Paths paths;
-  CallBoth(
-      sim.poses.size() + real.poses.size() >= kManyRows,
-      [&] { paths.sim = MakeArcPath(sim, options); },
-      [&] { paths.real = MakeArcPath(real, options); });
+  Paths paths{MakeArcPath(sim, options), MakeArcPath(real, options)};
   if (options.align != Align::kNone) {
     Transform(paths.sim, AligningMotion(paths.sim, paths.real, options.align, options.samples));
   }
   return paths;
-}
-
-/// The published numbers leave out int(0.1 * 2000) samples; the margin keeps a product such as
-/// 0.29 * 100 = 28.999999999999996 from losing one.
-int FirstSample(const GapOptions& options) {
-  return std::min(static_cast<int>(options.skip_start * options.samples + 1e-9),
-                  options.samples - 1);
-}
-
-double SampleU(int k, const GapOptions& options) {
-  return static_cast<double>(k) / (options.samples - 1);
-}
-
-/// Equation (3.1): the largest error over the samples, from two of them in each interval, with the
-/// sim path moved by each of the motions.
-template <size_t kMotions>
-std::array<Peak, kMotions> SampledPeaks(const Paths& paths,
-                                        const std::array<geometry::Pose2, kMotions>& motions,
-                                        const GapOptions& options) {
-  std::vector<PathError> errors;
-  for (const geometry::Pose2& motion : motions) errors.emplace_back(paths.sim, paths.real, motion);
-  std::array<Peak, kMotions> peaks;
-  int next = FirstSample(options);
-  ForEachInterval(paths.sim, paths.real, [&](double, double end, size_t i, size_t j) {
-    const int last =
-        std::min(static_cast<int>(end * (options.samples - 1) + 1e-9), options.samples - 1);
-    if (last < next) return;  // most intervals of a long log hold no sample
-    for (size_t m = 0; m < kMotions; ++m) {
-      const auto error_at = errors[m].OnEdges(i, j);
-      for (const int k : {next, last}) {
-        const double error_m = error_at(SampleU(k, options));
-        if (error_m > peaks[m].error_m) peaks[m] = {error_m, SampleU(k, options)};
-      }
-    }
-    next = last + 1;
-  });
-  assert(peaks[0].error_m >= 0.0);
-  return peaks;
-}
-
-/// The supremum over the polylines from the first sample on.
-Peak ExactPeak(const Paths& paths, const GapOptions& options) {
-  const PathError error(paths.sim, paths.real);
-  Peak peak;
-  const double first_u = SampleU(FirstSample(options), options);
-  const auto look_at = [&peak](double u, double error_m) {
-    if (error_m > peak.error_m) peak = {error_m, u};
-  };
-  ForEachInterval(paths.sim, paths.real, [&](double begin, double end, size_t i, size_t j) {
-    if (end < first_u) return;
-    const auto error_at = error.OnEdges(i, j);
-    // The other begins are ends, since the error is continuous.
-    if (begin <= first_u) look_at(first_u, error_at(first_u));
-    look_at(end, error_at(end));
-  });
-  assert(peak.error_m >= 0.0);
-  return peak;
 }
 
 double YawAt(const ArcPath& path, double u, size_t& i) {
@@ -157,18 +79,42 @@ std::vector<double> YawErrors_rad(const Paths& paths, const GapOptions& options)
   return errors_rad;
 }
 
+/// Mean, RMS, median and 95 % of the errors at the samples.
+void SummariseErrors(std::vector<double> errors_m, Comparison& result) {
+  result.mean_error_m = statistics::Mean(errors_m);
+  double squares = 0.0;
+  for (const double error_m : errors_m) squares += error_m * error_m;
+  result.rms_error_m = std::sqrt(squares / static_cast<double>(errors_m.size()));
+  result.median_error_m = statistics::Median(errors_m);
+  result.p95_error_m = statistics::Quantile(std::move(errors_m), 0.95);
+}
+
+/// Mean and maximum of the sizes of those that are not NaN; nothing without any.
+void SummariseYawErrors(std::vector<double> errors_rad, Comparison& result) {
+  std::erase_if(errors_rad, [](double error_rad) { return std::isnan(error_rad); });
+  if (errors_rad.empty()) return;
+  for (double& error_rad : errors_rad) error_rad = std::abs(error_rad);
+  result.mean_yaw_error_rad = statistics::Mean(errors_rad);
+  result.max_yaw_error_rad = *std::max_element(errors_rad.begin(), errors_rad.end());
+}
+
 void MeasureErrors(const Paths& paths, const GapOptions& options, Comparison& result) {
   const SampledPaths samples(paths, options);
   SummariseErrors(Errors_m(samples, options), result);
   SummariseYawErrors(YawErrors_rad(paths, options), result);
-  result.real_from_sim = BestRigidMotion(samples.sim_m, samples.real_m);
-  const auto [as_it_is, start_aligned, shape] = SampledPeaks<3>(
-      paths, {geometry::Pose2{}, StartMotion(paths.sim, paths.real), result.real_from_sim},
-      options);
-  result.gap_m = as_it_is.error_m;
-  result.gap_u = as_it_is.u;
-  result.start_aligned_gap_m = start_aligned.error_m;
-  result.shape_gap_m = shape.error_m;
+}
+
+/// The gap as it is, its supremum, and what is left of it after two motions of the sim path.
+void MeasureGaps(const Paths& paths, const GapOptions& options, Comparison& result) {
+  const auto& [sim, real] = paths;
+  const Peak gap = SampledPeak(sim, real, options), exact = ExactPeak(sim, real, options);
+  result.gap_m = gap.error_m;
+  result.gap_u = gap.u;
+  result.exact_gap_m = exact.error_m;
+  result.exact_gap_u = exact.u;
+  result.start_aligned_gap_m = SampledPeak(sim, real, options, StartMotion(sim, real)).error_m;
+  result.real_from_sim = BestRigidMotion(sim, real, options.samples);
+  result.shape_gap_m = SampledPeak(sim, real, options, result.real_from_sim).error_m;
 }
 
 /// Of the whole log, whether the path was trimmed or not.
@@ -209,7 +155,7 @@ void MeasureShape(const Paths& paths, Comparison& result) {
 double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
            const GapOptions& options) {
   const Paths paths = Prepare(sim, real, options);
-  return SampledPeaks<1>(paths, {geometry::Pose2{}}, options)[0].error_m;
+  return SampledPeak(paths.sim, paths.real, options).error_m;
 }
 
 ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
@@ -230,19 +176,13 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
                    const GapOptions& options) {
   const Paths paths = Prepare(sim, real, options);
   Comparison result;
-  // Each half takes about as long as the other.
-  CallBoth(
-      paths.AreLong(), [&] { MeasureErrors(paths, options, result); },
-      [&] {
-        const Peak exact = ExactPeak(paths, options);
-        result.exact_gap_m = exact.error_m;
-        result.exact_gap_u = exact.u;
-        MeasureEnds(paths, result);
-        MeasureShape(paths, result);
-        result.equal_time_m = EqualTime_m(paths.sim, paths.real);
-        result.sim_standstill_share = StandstillShare(sim, paths.sim, options);
-        result.real_standstill_share = StandstillShare(real, paths.real, options);
-      });
+  MeasureGaps(paths, options, result);
+  MeasureErrors(paths, options, result);
+  MeasureEnds(paths, result);
+  MeasureShape(paths, result);
+  result.equal_time_m = EqualTime_m(paths.sim, paths.real);
+  result.sim_standstill_share = StandstillShare(sim, paths.sim, options);
+  result.real_standstill_share = StandstillShare(real, paths.real, options);
   return result;
 }
 

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "energy_test.hpp"
 #include "path_shape.hpp"
 #include "rift/gap/verdict.hpp"
 #include "rift/statistics/mean.hpp"

@@ -9,84 +9,21 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The coordinates of a row of points, a column each, for arithmetic on all of them at once.
-struct Coordinates {
-  explicit Coordinates(const Points& points) : x(points.size()), y(points.size()) {
-    for (size_t i = 0; i < points.size(); ++i) {
-      x[i] = points[i].x();
-      y[i] = points[i].y();
-    }
-  }
-  Eigen::ArrayXd x, y;
-};
-
 double DirectedHausdorff_m(const Points& from, const Points& to) {
-  const Coordinates vertices(to);
-  const Eigen::Index edges = vertices.x.size() - 1;
-  const auto x = vertices.x.head(edges), y = vertices.y.head(edges);
-  const Eigen::ArrayXd along_x = vertices.x.tail(edges) - x, along_y = vertices.y.tail(edges) - y;
-  const Eigen::ArrayXd squared_length = along_x.square() + along_y.square();
-  const Eigen::ArrayXd inverse =
-      squared_length.unaryExpr([](double square) { return square > 0.0 ? 1.0 / square : 0.0; });
-  Eigen::ArrayXd to_x(edges), to_y(edges), on_edge(edges);
-  double largest = 0.0;
+  double largest_m2 = 0.0;
   for (const Eigen::Vector2d& p : from) {
-    to_x = p.x() - x;
-    to_y = p.y() - y;
-    on_edge = ((to_x * along_x + to_y * along_y) * inverse).min(1.0).max(0.0);
-    const double closest =
-        ((to_x - on_edge * along_x).square() + (to_y - on_edge * along_y).square()).minCoeff();
-    largest = std::max(largest, closest);
-  }
-  return std::sqrt(largest);
-}
-
-/// Squared distances between the points of two rows that a table of both has on one diagonal: its
-/// cells do not depend on each other, so that whole diagonals are computed at once.
-class DiagonalDistances {
- public:
-  DiagonalDistances(const Points& a, const Points& b) : a_(a), b_(Points(b.rbegin(), b.rend())) {}
-
-  /// Calls visit(first, squared_distances) for the diagonals i + j = 0, 1, ..., of which the first
-  /// cell has i = first.
-  template <class Visit>
-  void ForEach(Visit&& visit) const {
-    const Eigen::Index rows = a_.x.size(), columns = b_.x.size();
-    for (Eigen::Index sum = 0; sum < rows + columns - 1; ++sum) {
-      const Eigen::Index first = std::max<Eigen::Index>(0, sum - columns + 1);
-      const Eigen::Index size = std::min(rows, sum + 1) - first;
-      const Eigen::Index in_b = first + columns - 1 - sum;
-      visit(first, (a_.x.segment(first, size) - b_.x.segment(in_b, size)).square() +
-                       (a_.y.segment(first, size) - b_.y.segment(in_b, size)).square());
+    double closest_m2 = kInfinity;
+    for (size_t i = 0; i + 1 < to.size(); ++i) {
+      const Eigen::Vector2d along = to[i + 1] - to[i], to_p = p - to[i];
+      const double length_m2 = along.squaredNorm();
+      const double inverse = length_m2 > 0.0 ? 1.0 / length_m2 : 0.0;
+      const double on_edge = std::clamp(to_p.dot(along) * inverse, 0.0, 1.0);
+      closest_m2 = std::min(closest_m2, (to_p - on_edge * along).squaredNorm());
     }
+    largest_m2 = std::max(largest_m2, closest_m2);
   }
-
- private:
-  Coordinates a_, b_;  ///< b from its last point on
-};
-
-/// One number for each cell of the diagonal that is being filled and of the two before it. Cell
-/// (i, j) stands at i + 1; what lies outside the table is infinite.
-struct Diagonals {
-  explicit Diagonals(size_t rows)
-      : cells(Eigen::ArrayXd::Constant(rows + 1, kInfinity)), last(cells), before_last(cells) {}
-
-  auto Cells(Eigen::Index first, Eigen::Index size) { return cells.segment(first + 1, size); }
-  auto FromAbove(Eigen::Index first, Eigen::Index size) const { return last.segment(first, size); }
-  auto FromLeft(Eigen::Index first, Eigen::Index size) const {
-    return last.segment(first + 1, size);
-  }
-  auto FromCorner(Eigen::Index first, Eigen::Index size) const {
-    return before_last.segment(first, size);
-  }
-  void GoOn() {
-    before_last[0] = kInfinity;
-    before_last.swap(last);
-    last.swap(cells);
-  }
-
-  Eigen::ArrayXd cells, last, before_last;
-};
+  return std::sqrt(largest_m2);
+}
 
 double SinceStart_s(const ArcPath& path, size_t i) {
   return path.poses[i].t_s - path.poses.front().t_s;
@@ -106,41 +43,39 @@ double Hausdorff_m(const Points& a, const Points& b) {
 }
 
 double DiscreteFrechet_m(const Points& a, const Points& b) {
-  // Squared distances: the order of maxima and minima is the same, one root at the end.
-  Diagonals leash(a.size());
-  leash.before_last[0] = 0.0;
-  DiagonalDistances(a, b).ForEach([&](Eigen::Index first, const auto& squared_distances) {
-    const Eigen::Index size = squared_distances.size();
-    leash.Cells(first, size) = leash.FromCorner(first, size)
-                                   .min(leash.FromAbove(first, size))
-                                   .min(leash.FromLeft(first, size))
-                                   .max(squared_distances);
-    leash.GoOn();
-  });
-  return std::sqrt(leash.last[a.size()]);
+  // leash[j + 1]: squared, from the start to the points i of a and j of b.
+  std::vector<double> leash(b.size() + 1, kInfinity);
+  double corner = 0.0;  // of the cell before in both rows
+  for (const Eigen::Vector2d& point : a) {
+    for (size_t j = 0; j < b.size(); ++j) {
+      const double least = std::min({corner, leash[j + 1], leash[j]});
+      corner = leash[j + 1];
+      leash[j + 1] = std::max(least, (point - b[j]).squaredNorm());
+    }
+    corner = kInfinity;
+  }
+  return std::sqrt(leash.back());
 }
 
 double DynamicTimeWarping_m(const Points& a, const Points& b) {
-  Diagonals total_m(a.size()), steps(a.size());
-  total_m.before_last[0] = steps.before_last[0] = 0.0;
-  Eigen::ArrayXd distances_m(a.size());
-  DiagonalDistances(a, b).ForEach([&](Eigen::Index first, const auto& squared_distances) {
-    const Eigen::Index size = squared_distances.size();
-    distances_m.head(size) = squared_distances.sqrt();
-    for (Eigen::Index k = 0; k < size; ++k) {
-      const Eigen::Index i = first + k;
-      // Selections, not branches: which way the walk goes is as good as random.
-      const bool above = total_m.last[i] < total_m.before_last[i];
-      const double two_m = above ? total_m.last[i] : total_m.before_last[i];
-      const double two_steps = above ? steps.last[i] : steps.before_last[i];
-      const bool left = total_m.last[i + 1] < two_m;
-      total_m.cells[i + 1] = (left ? total_m.last[i + 1] : two_m) + distances_m[k];
-      steps.cells[i + 1] = (left ? steps.last[i + 1] : two_steps) + 1.0;
+  struct Walk {
+    double total_m = kInfinity;
+    double steps = 0.0;
+  };
+  // walks[j + 1]: the cheapest from the start to the points i of a and j of b.
+  std::vector<Walk> walks(b.size() + 1);
+  Walk corner{0.0, 0.0};
+  for (const Eigen::Vector2d& point : a) {
+    for (size_t j = 0; j < b.size(); ++j) {
+      Walk least = corner;
+      if (walks[j + 1].total_m < least.total_m) least = walks[j + 1];
+      if (walks[j].total_m < least.total_m) least = walks[j];
+      corner = walks[j + 1];
+      walks[j + 1] = {least.total_m + (point - b[j]).norm(), least.steps + 1.0};
     }
-    total_m.GoOn();
-    steps.GoOn();
-  });
-  return total_m.last[a.size()] / steps.last[a.size()];
+    corner = {};
+  }
+  return walks.back().total_m / walks.back().steps;
 }
 
 double EqualTime_m(const ArcPath& a, const ArcPath& b) {

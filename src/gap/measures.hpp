@@ -1,13 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <vector>
-
 #include "arc_path.hpp"
 
 namespace rift::gap {
-
-using Points = std::vector<Eigen::Vector2d>;
 
 /// Largest distance from a vertex of either polyline to the closest point of the other.
 double Hausdorff_m(const Points& a, const Points& b);

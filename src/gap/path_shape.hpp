@@ -1,15 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <random>
 #include <span>
 #include <vector>
 
-#include "rift/trajectory/trajectory.hpp"
+#include "arc_path.hpp"
 
 namespace rift::gap {
 
 /// A path at evenly spaced u, from 0 to 1.
-using Shape = std::vector<Eigen::Vector2d>;
+using Shape = Points;
 
 Shape ShapeOf(const trajectory::Trajectory& path, int points);
 
@@ -21,5 +21,21 @@ double Distance_m(const Shape& a, const Shape& b);
 
 /// Signed distance of each point from the straight line that fits them best.
 std::vector<double> LateralResiduals_m(const Shape& shape);
+
+/// Paths of which some are real; the same simulator and robot would let any of them be so.
+struct ShuffleGroup {
+  std::vector<Shape> reals;
+  std::vector<Shape> sims;
+};
+
+struct EnergyTest {
+  double energy_m;
+  double p;
+};
+
+/// 2 E|X - Y| - E|X - X'| - E|Y - Y'| over all paths, and the share of `shuffles` within the groups
+/// that give as much [Szekely and Rizzo 2004]. NaN unless both sides have two paths or more.
+EnergyTest TestEnergy(const std::vector<ShuffleGroup>& groups, int shuffles,
+                      std::mt19937_64& generator);
 
 }  // namespace rift::gap

@@ -1,16 +1,14 @@
 #include "csv.hpp"
 
+#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <system_error>
-
-#include "number.hpp"
 
 namespace rift::trajectory::csv {
 namespace {
@@ -23,18 +21,9 @@ std::string_view Trim(std::string_view cell) {
   return cell;
 }
 
-std::string_view TakeCell(std::string_view& line, char separator) {
-  if (IsBlank(separator)) {
-    line = Trim(line);
-    const size_t end = std::min(line.find_first_of(" \t"), line.size());
-    const std::string_view cell = line.substr(0, end);
-    line.remove_prefix(end);
-    return cell;
-  }
-  const size_t end = std::min(line.find(separator), line.size());
-  const std::string_view cell = Trim(line.substr(0, end));
-  line.remove_prefix(std::min(end + 1, line.size()));
-  return cell;
+size_t CellEnd(std::string_view line, char separator) {
+  return std::min(IsBlank(separator) ? line.find_first_of(" \t") : line.find(separator),
+                  line.size());
 }
 
 /// Takes a cell in double quotes off the line, in which two of them stand for one. A quote that is
@@ -99,49 +88,21 @@ std::vector<std::string> SplitHeader(std::string_view line) {
     line = Trim(line);
     std::string quoted;
     if (line.starts_with('"')) quoted = TakeQuoted(line);
-    const bool last = line.find(',') == line.npos;
-    cells.push_back(quoted + std::string(TakeCell(line, ',')));
-    if (last) return cells;
+    const size_t end = CellEnd(line, ',');
+    cells.push_back(quoted + std::string(Trim(line.substr(0, end))));
+    if (end == line.size()) return cells;
+    line.remove_prefix(end + 1);
   }
 }
 
-ShortText::ShortText(const char* begin, size_t size, const char* end) {
-  if (size > sizeof(bytes_) || static_cast<size_t>(end - begin) < sizeof(bytes_)) return;
-  size_ = size;
-  // A look at these from `size` before their middle on keeps the first `size` bytes of a word.
-  constexpr std::array<unsigned char, 16> kMask{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
-  std::memcpy(&mask_, kMask.data() + kMask.size() / 2 - size, sizeof(mask_));
-  std::memcpy(&bytes_, begin, sizeof(bytes_));
-  bytes_ &= mask_;
-}
-
-bool ShortText::IsAt(const char* at, const char* end) const {
-  std::uint64_t bytes = 0;
-  if (size_ == 0 || static_cast<size_t>(end - at) < sizeof(bytes)) return false;
-  std::memcpy(&bytes, at, sizeof(bytes));
-  return (bytes & mask_) == bytes_;
-}
-
-RowReader::RowReader(std::string_view head, const TextPieces& pieces, const std::string& name,
-                     bool has_header, char separator)
-    : rest_(WithoutMark(head)),
-      pieces_(pieces),
-      seen_bytes_(head.size()),
-      name_(name),
-      has_header_(has_header),
-      separator_(separator) {
+RowReader::RowReader(std::string_view text, const std::string& name, bool has_header,
+                     char separator)
+    : rest_(WithoutMark(text)), name_(name), has_header_(has_header), separator_(separator) {
   if (has_header_) ReadHeader();
 }
 
-bool RowReader::HasMore() {
-  if (!rest_.empty()) return true;
-  rest_ = pieces_.next();
-  seen_bytes_ += rest_.size();
-  return !rest_.empty();
-}
-
 void RowReader::ReadHeader() {
-  while (columns_.empty() && HasMore()) {
+  while (columns_.empty() && !rest_.empty()) {
     ++line_number_;
     const std::string_view line = TakeLine(rest_);
     if (IsSkipped(line)) continue;
@@ -152,23 +113,14 @@ void RowReader::ReadHeader() {
 }
 
 bool RowReader::Next() {
-  while (HasMore()) {
+  while (!rest_.empty()) {
     ++line_number_;
-    const size_t before = rest_.size();
-    if (!TakePlain()) {
-      const std::string_view line = TakeLine(rest_);
-      if (IsSkipped(line)) continue;
-      ReadAny(line);
-    }
-    line_size_ = before - rest_.size();
+    const std::string_view line = TakeLine(rest_);
+    if (IsSkipped(line)) continue;
+    ReadCells(line);
     return true;
   }
   return false;
-}
-
-size_t RowReader::RowsToExpect() const {
-  const size_t unseen = std::max(pieces_.size_bytes, seen_bytes_) - seen_bytes_;
-  return 2 + (rest_.size() + unseen) * 6 / (5 * line_size_);
 }
 
 bool RowReader::IsSkipped(std::string_view line) const {
@@ -176,42 +128,25 @@ bool RowReader::IsSkipped(std::string_view line) const {
   return trimmed.empty() || (!has_header_ && trimmed.starts_with('#'));
 }
 
-/// Takes off the row of a large log, numbers and commas only, in one go. False for any other, which
-/// is left where it is. A cell that repeats the one above it, such as the waypoint of hundreds of
-/// rows, is not read again.
-bool RowReader::TakePlain() {
-  if (separator_ != ',' || cells_.empty()) return false;
-  above_.resize(cells_.size());
-  const char *at = rest_.data(), *const end = at + rest_.size();
-  for (size_t i = 0; i < cells_.size(); ++i) {
-    const bool is_last = i + 1 == cells_.size();
-    if (above_[i].IsAt(at, end)) {
-      at += above_[i].Size();
-      continue;
-    }
-    const char* const begin = at;
-    const auto [stop, error] = FromChars(begin, end, cells_[i]);
-    if (error != std::errc{} || !std::isfinite(cells_[i])) return false;
-    at = stop + (is_last && stop != end && *stop == '\r');
-    if (at == end ? !is_last : *at != (is_last ? '\n' : ',')) return false;
-    at += at != end;
-    above_[i] = ShortText(begin, static_cast<size_t>(at - begin), end);
-  }
-  rest_.remove_prefix(at - rest_.data());
-  return true;
-}
-
-void RowReader::ReadAny(std::string_view line) {
+void RowReader::ReadCells(std::string_view line) {
   const size_t width = cells_.size();
   cells_.clear();
-  above_.clear();
-  bool more = true;
-  while (more) {
-    const bool ends_here = IsBlank(separator_) ? false : line.find(separator_) == line.npos;
-    const std::string_view cell = TakeCell(line, separator_);
-    if (IsBlank(separator_) && cell.empty()) break;
-    cells_.push_back(Number(cell, cells_.size()));
-    more = IsBlank(separator_) ? !line.empty() : !ends_here;
+  if (IsBlank(separator_)) line = Trim(line);
+  for (bool more = true; more;) {
+    double value = 0.0;
+    const auto [stop, error] =
+        fast_float::from_chars(line.data(), line.data() + line.size(), value);
+    auto end = static_cast<size_t>(stop - line.data());
+    const bool ends_here = end == line.size() || line[end] == separator_;
+    // Nearly every cell is a number alone. fast_float tells an underflow to zero in another way.
+    if (!ends_here || error != std::errc{} || !std::isfinite(value) || value == 0.0) {
+      end = CellEnd(line, separator_);
+      value = Number(Trim(line.substr(0, end)), cells_.size());
+    }
+    cells_.push_back(value);
+    more = end < line.size();
+    line.remove_prefix(end + more);
+    if (IsBlank(separator_)) line = Trim(line);
   }
   if (width != 0 && cells_.size() != width) {
     throw std::invalid_argument(fmt::format("{}:{}: the row has {} cells where {} are expected",
@@ -224,7 +159,7 @@ double RowReader::Number(std::string_view cell, size_t column) const {
   const std::string_view digits = WithoutPlus(cell);
   const char* const digits_end = digits.data() + digits.size();
   double value = 0.0;
-  const auto [end, error] = FromChars(digits.data(), digits_end, value);
+  const auto [end, error] = std::from_chars(digits.data(), digits_end, value);
   const bool is_number = error == std::errc{} && end == digits_end;
   if (!is_number || !std::isfinite(value)) Refuse(cell, column);
   return value;

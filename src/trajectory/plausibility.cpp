@@ -32,9 +32,22 @@ void CheckValue(double value, double limit, std::string_view column, const std::
       fmt::format("{}: {} is {:g}, beyond +-{:g}: {}", where, column, value, limit, question));
 }
 
-void Raise(double& largest, double angle) {
-  if (std::abs(angle) > largest) largest = std::abs(angle);
-}
+/// Largest absolute values that are logged; zero without any.
+struct LargestAngles {
+  explicit LargestAngles(const Trajectory& trajectory) {
+    for (const StampedPose& pose : trajectory.poses) {
+      Raise(roll_rad, pose.roll_rad);
+      Raise(pitch_rad, pose.pitch_rad);
+      Raise(yaw_rad, pose.yaw_rad);
+    }
+  }
+
+  static void Raise(double& largest, double angle) {
+    if (std::abs(angle) > largest) largest = std::abs(angle);
+  }
+
+  double roll_rad = 0.0, pitch_rad = 0.0, yaw_rad = 0.0;
+};
 
 /// Largest step of the yaw between two rows.
 double LargestYawStep(const Trajectory& trajectory) {
@@ -114,14 +127,9 @@ void CheckMagnitudes(const StampedPose& pose, const std::string& name, int line)
   CheckValue(pose.yaw_rad, kLargestAngle, "yaw", where, kAngle);
 }
 
-void LargestAngles::Add(const StampedPose& pose) {
-  Raise(roll_rad, pose.roll_rad);
-  Raise(pitch_rad, pose.pitch_rad);
-  Raise(yaw_rad, pose.yaw_rad);
-}
-
-void NoteDoubtfulAngles(Log& log, const LargestAngles& largest) {
+void NoteDoubtfulAngles(Log& log) {
   if (log.trajectory.poses.empty()) return;
+  const LargestAngles largest(log.trajectory);
   if (log.format == Format::kRift || log.format == Format::kWebots) NoteDegrees(log, largest);
   if (log.format == Format::kTracker) NoteRadians(log, largest);
 }

@@ -3,105 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "csv.hpp"
-#include "log_rows.hpp"
+#include "dialect.hpp"
 #include "plausibility.hpp"
-#include "rift/geometry/angle.hpp"
 #include "rift/trajectory/log.hpp"
 
 namespace rift::trajectory {
 namespace {
-
-using geometry::kPi;
-using geometry::RadFromDeg;
-using geometry::WrapToPi;
-
-bool Has(const std::vector<std::string>& header, std::string_view name) {
-  return std::find(header.begin(), header.end(), name) != header.end();
-}
-
-bool IsBlankLine(std::string_view line) { return line.find_first_not_of(" \t") == line.npos; }
-
-bool IsComment(std::string_view line) {
-  return !IsBlankLine(line) && line[line.find_first_not_of(" \t")] == '#';
-}
-
-/// True when the first line that is no comment holds numbers between blanks, and for comments only.
-bool LooksLikeTum(std::string_view line, std::string_view rest) {
-  bool commented = false;
-  while (IsComment(line) || (IsBlankLine(line) && !rest.empty())) {
-    commented = commented || IsComment(line);
-    line = csv::TakeLine(rest);
-  }
-  if (IsBlankLine(line)) return commented;
-  return line.find_first_not_of("0123456789+-.eE \t") == line.npos;
-}
-
-/// kAuto where the header is the authors': it is the same for their robot and their simulator.
-Format FormatFromHeader(std::string_view text, const std::string& name) {
-  std::string_view rest = csv::WithoutMark(text);
-  std::string_view line;
-  int number = 0;
-  for (; !rest.empty() && IsBlankLine(line); ++number) line = csv::TakeLine(rest);
-  const std::vector<std::string> header = csv::SplitHeader(line);
-  if (Has(header, "t_s") && Has(header, "x_m") && Has(header, "y_m")) return Format::kRift;
-  if (Has(header, "t") && Has(header, "x") && Has(header, "y")) return Format::kAuto;
-  if (LooksLikeTum(line, rest)) return Format::kTum;
-  throw std::invalid_argument(fmt::format(
-      "{}:{}: the header '{}' belongs to no dialect: it needs t_s,x_m,y_m (rift), t,x,y (tracker, "
-      "webots) or eight columns without header (tum)",
-      name, number, csv::Shown(line)));
-}
-
-/// The one place where the authors' camera frame (x right, y down, z away from the camera, yaw
-/// clockwise seen from above) becomes the frame of their waypoints. They wrote the waypoints in
-/// camera numbers and drove Webots, a y-up world, by the same numbers: their floor and their
-/// simulator are mirror images. x, y and yaw agree with each other as they stand and are kept, so
-/// that robot, simulator and waypoints can be compared; left and right of a real log are swapped.
-/// Height is measured up from the camera.
-void FromTrackerFrame(StampedPose& pose) {
-  pose.z_m = -pose.z_m;
-  pose.roll_rad = RadFromDeg(pose.roll_rad);
-  pose.pitch_rad = RadFromDeg(pose.pitch_rad);
-  pose.yaw_rad = WrapToPi(RadFromDeg(pose.yaw_rad));
-}
-
-/// The authors' robot model points along its own y axis, hence the quarter turn.
-void FromWebotsFrame(StampedPose& pose) { pose.yaw_rad = WrapToPi(pose.yaw_rad - kPi / 2.0); }
-
-/// Angles of which the unit is not known are taken out rather than guessed.
-void ForgetAngles(Log& log) {
-  double largest = 0.0;
-  bool any = false;
-  for (StampedPose& pose : log.trajectory.poses) {
-    for (double* angle : {&pose.roll_rad, &pose.pitch_rad, &pose.yaw_rad}) {
-      if (std::isnan(*angle)) continue;
-      any = true;
-      largest = std::max(largest, std::abs(*angle));
-      *angle = StampedPose::kNotLogged;
-    }
-    pose.z_m = StampedPose::kNotLogged;
-  }
-  if (!any) return;
-  log.unknown_angles = fmt::format(
-      "its header does not tell degrees (tracker) from radians (webots){}",
-      largest > 2.0 * kPi ? fmt::format("; an angle of {:.1f} looks like degrees", largest) : "");
-}
-
-void ConvertAngles(Log& log) {
-  if (log.format == Format::kRift || log.format == Format::kTum) return;
-  for (StampedPose& pose : log.trajectory.poses) {
-    if (log.format == Format::kTracker) FromTrackerFrame(pose);
-    if (log.format == Format::kWebots) FromWebotsFrame(pose);
-  }
-  if (log.format == Format::kAuto) ForgetAngles(log);
-}
 
 void Reorder(Trajectory& trajectory, const std::vector<size_t>& order) {
   Trajectory sorted;
@@ -112,6 +25,14 @@ void Reorder(Trajectory& trajectory, const std::vector<size_t>& order) {
     sorted.channels.push_back(std::move(copy));
   }
   trajectory = std::move(sorted);
+}
+
+bool TimeRises(const Trajectory& trajectory) {
+  const auto does_not_rise = [](const StampedPose& a, const StampedPose& b) {
+    return b.t_s <= a.t_s;
+  };
+  const auto& poses = trajectory.poses;
+  return std::adjacent_find(poses.begin(), poses.end(), does_not_rise) == poses.end();
 }
 
 /// Makes time strictly increasing and notes what had to be done for it.
@@ -162,14 +83,14 @@ void CheckMoves(const Trajectory& trajectory, const std::string& name) {
 }
 
 /// Files whose lines no reader finds, each with what to do.
-void RefuseNoText(std::string_view head, const std::string& name) {
-  if (csv::WithoutMark(head).find_first_not_of(" \t\r\n") == head.npos) {
+void RefuseNoText(std::string_view text, const std::string& name) {
+  if (csv::WithoutMark(text).find_first_not_of(" \t\r\n") == text.npos) {
     throw std::invalid_argument(name + ": the file is empty");
   }
-  if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF")) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
     throw std::invalid_argument(name + ": is UTF-16: save it as UTF-8 text");
   }
-  if (head.find('\n') == head.npos && head.find('\r') < head.size() - 1) {
+  if (text.find('\n') == text.npos && text.find('\r') < text.size() - 1) {
     throw std::invalid_argument(name + ": its lines end with CR alone: save it with LF or CRLF");
   }
 }
@@ -177,20 +98,14 @@ void RefuseNoText(std::string_view head, const std::string& name) {
 }  // namespace
 
 Log ReadLog(std::string_view text, const std::string& name, Format format) {
-  const auto next = [&] { return std::exchange(text, {}); };
-  return ReadLog(TextPieces{next, text.size()}, name, format);
-}
-
-Log ReadLog(const TextPieces& pieces, const std::string& name, Format format) {
+  RefuseNoText(text, name);
   Log log;
-  const std::string_view head = pieces.next();
-  RefuseNoText(head, name);
-  log.format = format == Format::kAuto ? FormatFromHeader(head, name) : format;
-  LogRows rows = ReadRows(head, pieces, name, log.format);
+  log.format = format == Format::kAuto ? FormatFromHeader(text, name) : format;
+  LogRows rows = ReadRows(text, name, log.format);
   log.trajectory = std::move(rows.trajectory);
-  NoteDoubtfulAngles(log, rows.largest_angles);
-  ConvertAngles(log);
-  if (!rows.time_rises) SortByTime(log);
+  NoteDoubtfulAngles(log);
+  ConvertUnitsAndFrame(log);
+  if (!TimeRises(log.trajectory)) SortByTime(log);
   if (rows.first_line_without_yaw && LacksSomeYaw(log.trajectory)) {
     log.line_without_yaw = rows.first_line_without_yaw;
   }

@@ -7,8 +7,7 @@
 #include <fmt/format.h>
 
 #include "key_path.hpp"
-#include "rift/yaml/error.hpp"
-#include "rift/yaml/tree.hpp"
+#include "rift/yaml/node.hpp"
 
 namespace rift::yaml {
 namespace {

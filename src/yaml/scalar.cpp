@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "rift/yaml/error.hpp"
 #include "rift/yaml/suggest.hpp"
 
 namespace rift::yaml {

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "rift/yaml/error.hpp"
-
 namespace rift::yaml {
 namespace {
 

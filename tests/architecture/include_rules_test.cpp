@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/documented.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -59,8 +60,7 @@ const std::vector<Reserved> kReserved{
     {"sqlite3.*|SQLiteCpp/.*", {"sweep/run"}},
     {"termios.h|asm/termbits.h|boost/asio.*", {"hardware", "twin"}},
     {"fstream|iostream|cstdio", {"commands", "hardware", "vision", "twin", "report"}},
-    {"thread|mutex|condition_variable", {"commands", "hardware", "vision", "twin", "sweep"}},
-    {"future", {"commands", "hardware", "vision", "twin", "sweep", "gap"}},
+    {"thread|mutex|condition_variable|future", {"commands", "hardware", "vision", "twin", "sweep"}},
 };
 
 struct Include {
@@ -143,6 +143,37 @@ TEST_CASE("A library is seen only by the room that owns it") {
       CHECK(IsIn(include.room, reserved.rooms));
     }
   }
+}
+
+/// As the last column of docs/rooms.md has it.
+std::string Text(const std::string& rooms, const std::string& options) {
+  const auto quoted = [](const std::string& names) {
+    std::istringstream words(names);
+    std::string text;
+    for (std::string name; words >> name;) text += (text.empty() ? "`" : ", `") + name + "`";
+    return text;
+  };
+  std::string text = quoted(rooms);
+  const std::string of = quoted(options);
+  if (!of.empty()) text += (text.empty() ? "" : "; ") + ("options of " + of);
+  return text.empty() ? "-" : text;
+}
+
+TEST_CASE("docs/rooms.md is the table of cmake/rooms.cmake") {
+  const std::vector<test::DocumentedRoom> documented = test::DocumentedRooms();
+  std::ifstream file(test::BuildDir() + "/generated/rooms.txt");
+  size_t row = 0;
+  for (std::string line; std::getline(file, line); ++row) {
+    const size_t colon = line.find(':'), semicolon = line.find(';');
+    const std::string name = line.substr(0, colon);
+    const std::string may_include =
+        Text(line.substr(colon + 1, semicolon - colon - 1), line.substr(semicolon + 1));
+    INFO("row of docs/rooms.md: | `" << name << "` | what it holds | " << may_include << " |");
+    REQUIRE(row < documented.size());
+    CHECK(documented[row].name == name);
+    CHECK(documented[row].may_include == may_include);
+  }
+  CHECK(documented.size() == row);
 }
 
 TEST_CASE("The table keeps simulator, hardware and computation apart") {

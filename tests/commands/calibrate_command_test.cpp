@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "support/documented.hpp"
 #include "support/process.hpp"
 #include "support/trials.hpp"
 
@@ -63,6 +64,7 @@ TEST_CASE("A calibration finds the mismatch and its robot file is used as an inc
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   const json found = json::parse(ReadFile(bench.folder / "out/calibration.json"));
+  CHECK(test::KeysOf(found) == test::DocumentedKeys("calibration.json"));
   const json& fitted = found["fit"]["parameters"];
   const json& mismatch = fitted["simulation.motor.mismatch"];
   CHECK(mismatch["value"].get<double>() == Approx(0.05).margin(0.03));

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "support/documented.hpp"
 #include "support/process.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
@@ -146,6 +147,7 @@ TEST_CASE("A rare event is estimated over the space with an interval") {
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   const json rare = sweep.File("rare_event.json");
+  CHECK(test::KeysOf(rare) == test::DocumentedKeys("rare_event.json"));
   const json often = sweep.File("explanation.json")["failure_probability"];
   CHECK_THAT(result.out, Contains("fails with a probability of"));
   CHECK(rare["is_reached"] == true);

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "rift/control/navigator.hpp"
-#include "rift/control/pose_predictor.hpp"
+#include "rift/control/pose_filter.hpp"
 #include "support/paper_waypoints.hpp"
 
 namespace rift::control {

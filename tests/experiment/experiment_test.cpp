@@ -5,7 +5,7 @@
 #include <map>
 #include <random>
 
-#include "rift/yaml/error.hpp"
+#include "rift/yaml/node.hpp"
 #include "support/random_fill.hpp"
 
 #include "rift/experiment/hooks.hpp"

@@ -10,7 +10,7 @@
 #include "rift/sweep/calibrate/drive_likeness.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/load.hpp"
-#include "rift/yaml/tree.hpp"
+#include "rift/yaml/node.hpp"
 #include "support/tree.hpp"
 
 namespace rift::test {

@@ -6,7 +6,7 @@
 
 #include "rift/control/waypoint.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
-#include "rift/yaml/set_value.hpp"
+#include "rift/yaml/bind.hpp"
 
 namespace rift::test {
 namespace {

@@ -277,47 +277,6 @@ TEST_CASE("No damaged log of any dialect does anything but read or be refused") 
   }
 }
 
-/// What a reader makes of a text in random pieces of whole lines: the rows, or what it says.
-std::string ReadInPieces(const std::string& text, Format format, double share_of_cuts,
-                         std::mt19937_64& generator) {
-  std::bernoulli_distribution cut(share_of_cuts);
-  std::string piece;  // its own memory, as a buffer that is filled anew
-  size_t taken = 0;
-  const auto next = [&]() -> std::string_view {
-    const size_t begin = taken;
-    while (taken < text.size()) {
-      if (text[taken++] == '\n' && cut(generator)) break;
-    }
-    piece = text.substr(begin, taken - begin);
-    return piece;
-  };
-  try {
-    return WriteRift(ReadLog(TextPieces{next, text.size() / 2}, "log.csv", format).trajectory);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-}
-
-TEST_CASE("A log in pieces of whole lines reads as the whole and is refused for the same reason") {
-  std::mt19937_64 generator(21);
-  Trajectory written = RandomTrajectory(generator, true);
-  const std::string rift = "\xEF\xBB\xBF" + WriteRift(written);
-  written.channels.clear();
-  for (const auto& [text, format] : {std::pair{rift, Format::kRift}, std::pair{rift, Format::kAuto},
-                                     std::pair{WriteTum(written), Format::kTum}}) {
-    int read = 0;
-    for (int i = 0; i < 300; ++i) {
-      const std::string log = i == 0 ? text : test::Damaged(text, generator);
-      const std::string whole = ReadInPieces(log, format, 0.0, generator);
-      REQUIRE(ReadInPieces(log, format, 1.0, generator) == whole);
-      REQUIRE(ReadInPieces(log, format, 0.2, generator) == whole);
-      read += !whole.starts_with("log.csv");
-    }
-    CHECK(read > 15);
-    CHECK(read < 285);
-  }
-}
-
 TEST_CASE("A million rows are read whole") {
   std::string text = "t_s,x_m,y_m\n";
   for (int i = 0; i < 1'000'000; ++i) {

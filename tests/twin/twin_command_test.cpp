@@ -14,6 +14,7 @@
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/camera/capture_thread.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
+#include "support/documented.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
 #include "support/until.hpp"
@@ -127,6 +128,7 @@ TEST_CASE("The twin is seen to drive as it is told and to stop after the last co
   const auto summary = nlohmann::json::parse(test::ReadFile(twin.Folder() + "/summary.json"));
   CHECK(summary.at("robot_stopped_by_itself") >= 1);
   CHECK(summary.at("has_driven") == true);
+  CHECK(test::KeysOf(summary) == test::DocumentedKeys("summary.json of rift simulate --twin"));
   const auto tag = ReadRun(twin, "trajectory.csv");
   CHECK(Off_m(*start, tag.poses.front()) < 0.001);
   CHECK(Off_m(*last, tag.poses.back()) < 0.001);

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "rift/yaml/error.hpp"
+#include "rift/yaml/node.hpp"
 
 namespace rift::vision {
 namespace {

@@ -11,7 +11,6 @@ namespace {
 
 using Catch::Matchers::Contains;
 using synthetic::MjpegServer;
-using synthetic::ServerOptions;
 
 // As many bytes as a camera of 1080p sends, so that buffers on the way fill as they do there.
 std::vector<std::uint8_t> LargeJpeg() {

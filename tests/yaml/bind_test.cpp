@@ -2,7 +2,7 @@
 
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/load.hpp"
-#include "rift/yaml/tree.hpp"
+#include "rift/yaml/node.hpp"
 #include "robot_schema.hpp"
 
 namespace elsewhere {

@@ -4,7 +4,7 @@
 
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/load.hpp"
-#include "rift/yaml/tree.hpp"
+#include "rift/yaml/node.hpp"
 #include "rift/yaml/write.hpp"
 #include "robot_schema.hpp"
 #include "support/random_fill.hpp"

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
+#include "rift/yaml/bind.hpp"
 #include "rift/yaml/describe.hpp"
 #include "rift/yaml/load.hpp"
-#include "rift/yaml/set_value.hpp"
 #include "rift/yaml/suggest.hpp"
 #include "robot_schema.hpp"
 

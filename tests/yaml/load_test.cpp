@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "rift/yaml/load.hpp"
-#include "rift/yaml/tree.hpp"
+#include "rift/yaml/node.hpp"
 #include "rift/yaml/write.hpp"
 #include "robot_schema.hpp"
 

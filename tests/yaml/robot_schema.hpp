@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "rift/yaml/error.hpp"
 #include "rift/yaml/fields.hpp"
 #include "rift/yaml/node.hpp"
 

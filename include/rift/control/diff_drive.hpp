@@ -1,9 +1,26 @@
 #pragma once
 
-#include "rift/control/wheels.hpp"
+#include <cstdint>
+
 #include "rift/geometry/pose2.hpp"
 
 namespace rift::control {
+
+/// Motor power of the two wheels as a share of full power, each in [-1, 1]; forward positive.
+struct WheelPower {
+  double left = 0.0;
+  double right = 0.0;
+
+  friend bool operator==(const WheelPower&, const WheelPower&) = default;
+};
+
+/// Counts of the quadrature encoders since the start; forward positive.
+struct EncoderCounts {
+  std::int64_t left = 0;
+  std::int64_t right = 0;
+
+  friend bool operator==(const EncoderCounts&, const EncoderCounts&) = default;
+};
 
 /// Geometry and gearing of a robot with two driven wheels on one axle (facts: the authors' world
 /// file and Pololu 0J83/5.3 for the 3pi+ with 30:1 motors).

@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
+#include "rift/control/diff_drive.hpp"
 #include "rift/control/options.hpp"
 #include "rift/control/pid.hpp"
-#include "rift/control/pose_gate.hpp"
-#include "rift/control/pose_predictor.hpp"
+#include "rift/control/pose_filter.hpp"
 #include "rift/control/waypoint.hpp"
-#include "rift/trial/robot.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::control {
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,13 +35,6 @@ struct Log {
   std::optional<int> line_without_yaw;
 };
 
-/// Text in pieces of whole lines; the very last may lack its end. So a long log is not held twice,
-/// and fresh memory costs more than the numbers in it.
-struct TextPieces {
-  std::function<std::string_view()> next;  ///< valid until the next call; empty after the last
-  size_t size_bytes = 0;                   ///< of all pieces; a guess is fine
-};
-
 /// Reads a whole log or throws std::invalid_argument with one line `name:row: what is wrong`.
 /// Rows out of order are sorted by time and of rows with equal time the last is kept, both noted.
 /// Refused: NaN or infinite values, |x|, |y| or |z| above 1e6 m, |t| above 1e12 s, angles above 1e6
@@ -52,7 +44,6 @@ struct TextPieces {
 /// Accepted: a byte order mark, CRLF, blank lines, header cells in double quotes, `+1.0`, empty
 /// cells in optional columns (not logged).
 Log ReadLog(std::string_view text, const std::string& name, Format format = Format::kAuto);
-Log ReadLog(const TextPieces& pieces, const std::string& name, Format format = Format::kAuto);
 
 /// The rift dialect; doubles in the shortest form that reads back to the same bits, values that
 /// are not logged as empty cells.

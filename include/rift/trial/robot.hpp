@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "rift/control/wheels.hpp"
+#include "rift/control/diff_drive.hpp"
 #include "rift/geometry/pose2.hpp"
 
 namespace rift::trial {

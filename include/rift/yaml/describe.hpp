@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "rift/yaml/fields.hpp"
+#include "rift/yaml/suggest.hpp"
 #include "rift/yaml/write.hpp"
 
 namespace rift::yaml {
@@ -28,20 +29,19 @@ std::vector<KeyInfo> Describe(const S& defaults = {});
 template <Block S>
 std::vector<std::string> ListKeys(const S& block);
 
-/// The full key for a full key or for the end of one, when there is only one such: `v_min` ->
-/// `control.v_min`. Throws Error naming the candidates when there are several, the nearest key when
-/// there is none.
-std::string ResolveKey(std::string_view name, const std::vector<std::string>& keys);
+/// The same among the keys of a struct.
 template <Block S>
 std::string ResolveKey(std::string_view name, const S& block) {
   return ResolveKey(name, ListKeys(block));
 }
 
-/// `did you mean 'gap.samples'?`, or the first known keys when none is near.
-std::string KeyHint(std::string_view name, const std::vector<std::string>& keys);
+inline std::string ListTypeText(std::string_view item) {
+  return item == "block" ? "list of blocks" : fmt::format("list, each {}", item);
+}
 
-std::string ListTypeText(std::string_view item);
-std::string NumberTypeText(std::string_view noun, const std::optional<Range>& range);
+inline std::string NumberTypeText(std::string_view noun, const std::optional<Range>& range) {
+  return range ? fmt::format("{} {}", noun, RangeText(*range)) : std::string(noun);
+}
 
 template <class T>
 std::string TypeText(const std::optional<Range>& range) {

@@ -18,4 +18,12 @@ std::string Nearest(std::string_view name, const std::vector<std::string>& candi
 std::string Suggestion(std::string_view name, const std::vector<std::string>& candidates,
                        std::string_view otherwise);
 
+/// The full key for a full key or for the end of one, when there is only one such: `v_min` ->
+/// `control.v_min`. Throws Error naming the candidates when there are several, the nearest key when
+/// there is none.
+std::string ResolveKey(std::string_view name, const std::vector<std::string>& keys);
+
+/// `did you mean 'gap.samples'?`, or the first known keys when none is near.
+std::string KeyHint(std::string_view name, const std::vector<std::string>& keys);
+
 }  // namespace rift::yaml

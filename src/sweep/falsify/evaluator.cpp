@@ -15,8 +15,7 @@
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/labels.hpp"
 #include "rift/yaml/enum_name.hpp"
-#include "rift/yaml/error.hpp"
-#include "rift/yaml/set_value.hpp"
+#include "rift/yaml/bind.hpp"
 
 namespace rift::sweep {
 namespace {

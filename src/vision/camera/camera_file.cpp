@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "rift/yaml/bind.hpp"
-#include "rift/yaml/error.hpp"
 #include "rift/yaml/load.hpp"
+#include "rift/yaml/node.hpp"
 
 namespace rift::vision {
 namespace {

@@ -1,11 +1,36 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 
+#include "rift/control/diff_drive.hpp"
 #include "rift/control/options.hpp"
 #include "rift/geometry/pose2.hpp"
 
+/// What becomes of a measured pose before the controller uses it.
 namespace rift::control {
+
+struct TimedPose {
+  double captured_s = 0.0;
+  geometry::Pose2 world_from_robot;
+};
+
+/// Believes a pose when it is finite, not older than the last one believed, and reachable from
+/// it. The reachable set grows with time, so a robot that really was moved is believed again.
+class PoseGate {
+ public:
+  explicit PoseGate(const PoseGateOptions& options) : options_(options) {}
+
+  /// True when the pose is believed; it is then the last one.
+  bool Accept(const TimedPose& pose);
+  const std::optional<TimedPose>& last() const { return last_; }
+
+ private:
+  bool IsReachable(const TimedPose& pose) const;
+
+  PoseGateOptions options_;
+  std::optional<TimedPose> last_;
+};
 
 /// Makes up for a known loop delay: moves a measured pose through the commands that were sent but
 /// cannot have shown in it yet.

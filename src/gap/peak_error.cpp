@@ -1,18 +1,11 @@
-#pragma once
+#include "peak_error.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
-#include <vector>
-
-#include "arc_path.hpp"
 
 namespace rift::gap {
-
-/// A value along the path and where it stands.
-struct Peak {
-  double error_m = -1.0;
-  double u = 0.0;
-};
+namespace {
 
 /// Calls visit(u_begin, u_end, i, j) for each interval between neighbouring breakpoints of either
 /// path: in it `sim` stands on its edge i and `real` on its edge j.
@@ -70,5 +63,57 @@ class PathError {
   const ArcPath& real_;
   geometry::PointMotion motion_;
 };
+
+}  // namespace
+
+/// The published numbers leave out int(0.1 * 2000) samples; the margin keeps a product such as
+/// 0.29 * 100 = 28.999999999999996 from losing one.
+int FirstSample(const GapOptions& options) {
+  return std::min(static_cast<int>(options.skip_start * options.samples + 1e-9),
+                  options.samples - 1);
+}
+
+double SampleU(int k, const GapOptions& options) {
+  return static_cast<double>(k) / (options.samples - 1);
+}
+
+// The error is convex in u within an interval, so the first and the last sample in it are enough.
+Peak SampledPeak(const ArcPath& sim, const ArcPath& real, const GapOptions& options,
+                 const geometry::Pose2& real_from_sim) {
+  const PathError error(sim, real, real_from_sim);
+  Peak peak;
+  int next = FirstSample(options);
+  ForEachInterval(sim, real, [&](double, double end, size_t i, size_t j) {
+    const int last =
+        std::min(static_cast<int>(end * (options.samples - 1) + 1e-9), options.samples - 1);
+    if (last < next) return;  // most intervals of a long log hold no sample
+    const auto error_at = error.OnEdges(i, j);
+    for (const int k : {next, last}) {
+      const double error_m = error_at(SampleU(k, options));
+      if (error_m > peak.error_m) peak = {error_m, SampleU(k, options)};
+    }
+    next = last + 1;
+  });
+  assert(peak.error_m >= 0.0);
+  return peak;
+}
+
+Peak ExactPeak(const ArcPath& sim, const ArcPath& real, const GapOptions& options) {
+  const PathError error(sim, real);
+  Peak peak;
+  const double first_u = SampleU(FirstSample(options), options);
+  const auto look_at = [&peak](double u, double error_m) {
+    if (error_m > peak.error_m) peak = {error_m, u};
+  };
+  ForEachInterval(sim, real, [&](double begin, double end, size_t i, size_t j) {
+    if (end < first_u) return;
+    const auto error_at = error.OnEdges(i, j);
+    // The other begins are ends, since the error is continuous.
+    if (begin <= first_u) look_at(first_u, error_at(first_u));
+    look_at(end, error_at(end));
+  });
+  assert(peak.error_m >= 0.0);
+  return peak;
+}
 
 }  // namespace rift::gap

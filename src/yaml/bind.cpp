@@ -1,4 +1,4 @@
-#include "rift/yaml/block_rules.hpp"
+#include "rift/yaml/bind.hpp"
 
 #include <algorithm>
 #include <set>
@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "key_path.hpp"
-#include "rift/yaml/error.hpp"
 #include "rift/yaml/suggest.hpp"
 
 namespace rift::yaml {

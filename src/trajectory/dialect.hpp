@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "rift/trajectory/log.hpp"
+
+namespace rift::trajectory {
+
+/// The dialect that the header tells; kAuto where it is the authors', which is the same for their
+/// robot and their simulator. Throws std::invalid_argument `name:line: ...` when it is of none.
+Format FormatFromHeader(std::string_view text, const std::string& name);
+
+/// The poses of a log as they stand in the file, in the units and the frame of its dialect.
+struct LogRows {
+  Trajectory trajectory;
+  std::optional<int> first_line_without_yaw;
+};
+
+/// kAuto stands for the authors' header. Throws std::invalid_argument `name:line: ...`.
+LogRows ReadRows(std::string_view text, const std::string& name, Format format);
+
+/// Brings the poses from the units and the frame of their dialect to those of StampedPose. Angles
+/// and heights of a log in kAuto are taken out, and unknown_angles says why.
+void ConvertUnitsAndFrame(Log& log);
+
+}  // namespace rift::trajectory
