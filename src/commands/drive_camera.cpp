@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "enum_name.hpp"
 #include "files.hpp"
 #include "rift/vision/camera/camera_file.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 namespace {
@@ -20,8 +20,8 @@ vision::Frame FirstPicture(vision::Capture& capture, const std::string& camera) 
     if (std::optional<vision::Frame> frame = capture.Next(kPictureWait_s)) return std::move(*frame);
     const vision::CaptureStatus status = capture.Status();
     if (vision::IsFinal(status.state) || status.state == vision::CameraState::kFrozen) {
-      throw std::runtime_error(
-          fmt::format("the camera {} is {}: {}", camera, NameOf(status.state), status.reason));
+      throw std::runtime_error(fmt::format("the camera {} is {}: {}", camera,
+                                           yaml::NameOf(status.state), status.reason));
     }
   }
 }

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "enum_name.hpp"
 #include "json_fields.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "trial_output.hpp"
 
 namespace rift::commands {
@@ -21,7 +21,7 @@ ordered_json TimeOrNull(double time_s) {
 }
 
 ordered_json PingBlock(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
-  ordered_json json{{"protocol", NameOf(ping.protocol)},
+  ordered_json json{{"protocol", yaml::NameOf(ping.protocol)},
                     {"sent", ping.sent},
                     {"answered", ping.answered},
                     {"loss", ping.loss},
@@ -89,7 +89,7 @@ ordered_json StageJson(const std::vector<PoseStages>& poses, const Stage& stage)
 ordered_json StopJson(const hardware::DriveEvidence& evidence) {
   ordered_json json{{"reason", nullptr}, {"text", nullptr}, {"at_s", nullptr}};
   if (evidence.stop) {
-    json = {{"reason", NameOf(evidence.stop->reason)},
+    json = {{"reason", yaml::NameOf(evidence.stop->reason)},
             {"text", evidence.stop->text},
             {"at_s", evidence.stop->at_s}};
   }
@@ -134,7 +134,7 @@ std::string DriveJson(const experiment::Experiment& experiment, const DriveRun& 
   const trial::TrialResult& result = run.trial;
   ordered_json json{{"name", experiment.name},
                     {"rift_version", RIFT_VERSION},
-                    {"outcome", NameOf(result.outcome)},
+                    {"outcome", yaml::NameOf(result.outcome)},
                     {"reason", result.reason},
                     {"duration_s", result.Duration_s()},
                     {"path_length_m", result.trajectory.ArcLength_m()},
@@ -158,8 +158,8 @@ std::string DriveJson(const experiment::Experiment& experiment, const DriveRun& 
 std::string DriveText(const DriveRun& run) {
   const trial::TrialResult& result = run.trial;
   std::string text =
-      fmt::format("{}: {}\n{:.2f} s, {} poses logged\n", NameOf(result.outcome), result.reason,
-                  result.Duration_s(), result.trajectory.poses.size());
+      fmt::format("{}: {}\n{:.2f} s, {} poses logged\n", yaml::NameOf(result.outcome),
+                  result.reason, result.Duration_s(), result.trajectory.poses.size());
   const std::vector<double> latency_s = Times_s(run.evidence.poses, kCaptureToCommand);
   if (!latency_s.empty()) {
     text += fmt::format("capture to command p50 {:.1f} ms, p95 {:.1f}, p99 {:.1f}\n",

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "enum_name.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 namespace {
@@ -94,7 +94,7 @@ DriveRun Drive(const DriveParts& parts, const experiment::Experiment& experiment
   control::CheckWaypoints(experiment.waypoints);
   DriveRun run;
   run.ping = MeasureLink(parts.line, parts.clock, experiment.hardware);
-  parts.say(fmt::format("the robot speaks {}", NameOf(run.ping.protocol)));
+  parts.say(fmt::format("the robot speaks {}", yaml::NameOf(run.ping.protocol)));
   RequireBudget(run.ping, experiment.hardware.ping);
   run.stopping_distance_m = PrintStoppingDistance(parts, experiment, run.ping);
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "enum_name.hpp"
 #include "explanation_output.hpp"
 #include "json_fields.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 namespace {
@@ -122,7 +122,7 @@ ordered_json ClustersJson(const std::vector<sweep::FailureCluster>& clusters) {
     json.push_back({{"trials", cluster.rows.size()},
                     {"typical_row", cluster.rows.front() + 1},
                     {"rows", RowIds(cluster.rows)},
-                    {"status", NameOf(cluster.status)},
+                    {"status", yaml::NameOf(cluster.status)},
                     {"mean_gap_m", NumberOrNull(cluster.mean_gap_m)},
                     {"mean_u", NumberOrNull(cluster.mean_u)},
                     {"sentence", cluster.sentence}});

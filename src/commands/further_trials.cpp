@@ -4,8 +4,8 @@
 
 #include <charconv>
 
-#include "enum_name.hpp"
 #include "flags.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 namespace {
@@ -18,7 +18,7 @@ class ChangedFlags {
   template <class T>
   static std::string TextOf(const T& value) {
     if constexpr (std::is_enum_v<T>) {
-      return std::string(NameOf(value));
+      return std::string(yaml::NameOf(value));
     } else {
       return fmt::format("{}", value);
     }

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "enum_name.hpp"
 #include "json_fields.hpp"
 #include "likeness_output.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 namespace {
@@ -108,7 +108,7 @@ std::string VerdictText(const GapEvidence& evidence) {
   return fmt::format(
       "verdict: {} ({} of {} above {:g} m; at {:g} % confidence {:.0f} to {:.0f} % of such trials "
       "are)\n",
-      NameOf(verdict.verdict), verdict.above, verdict.repeats, evidence.options.threshold_m,
+      yaml::NameOf(verdict.verdict), verdict.above, verdict.repeats, evidence.options.threshold_m,
       100.0 * verdict.confidence, 100.0 * verdict.share_low, 100.0 * verdict.share_high);
 }
 
@@ -151,7 +151,7 @@ std::string GapJson(const GapEvidence& evidence) {
   }
   json["mean_gap_m"] = evidence.mean_gap_m;
   json["noise_floor_m"] = NumberOrNull(evidence.noise_floor_m);
-  json["verdict"] = NameOf(verdict.verdict);
+  json["verdict"] = yaml::NameOf(verdict.verdict);
   json["repeats"] = {{"n", verdict.repeats},
                      {"above_threshold", verdict.above},
                      {"confidence", verdict.confidence},

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "enum_name.hpp"
 #include "rift/gap/comparison.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 
@@ -23,7 +23,7 @@ nlohmann::ordered_json FieldsToJson(const Options& options) {
   nlohmann::ordered_json json;
   Options::Fields(options, [&](const char* key, const auto& value, const auto&...) {
     if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(value)>>) {
-      json[key] = NameOf(value);
+      json[key] = yaml::NameOf(value);
     } else {
       json[key] = value;
     }

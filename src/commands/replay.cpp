@@ -5,8 +5,8 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "enum_name.hpp"
 #include "files.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "simulated_runs.hpp"
 #include "sweep_output.hpp"
 #include "sweep_sources.hpp"

@@ -5,13 +5,13 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "enum_name.hpp"
 #include "files.hpp"
 #include "json_fields.hpp"
 #include "rift/report/figures/sweep_figures.hpp"
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "rift/sweep/falsify/labels.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "sweep_output.hpp"
 
 namespace rift::commands {
@@ -55,7 +55,7 @@ void RequireFailure(const sweep::SweepResult& result, int index, const std::stri
   const sweep::TrialRow& row = result.rows[index];
   if (row.falsified) return;
   const std::string what = row.IsOk() ? fmt::format("its gap is {:.4f} m", row.comparison.gap_m)
-                                      : fmt::format("it ended as '{}'", NameOf(row.status));
+                                      : fmt::format("it ended as '{}'", yaml::NameOf(row.status));
   throw std::invalid_argument(
       fmt::format("--shrink {}: row {} does not fail ({}, and above {:g} m falsifies){}", id,
                   index + 1, what, result.gap.threshold_m,
@@ -101,7 +101,7 @@ ordered_json TrialJson(const std::filesystem::path& folder,
                        size_t i) {
   const sweep::TrialRow& row = found.rows[i];
   return {{"theta", ThetaJson(parameters, row.theta)},
-          {"status", NameOf(row.status)},
+          {"status", yaml::NameOf(row.status)},
           {"gap_m", NumberOrNull(row.comparison.gap_m)},
           {"falsified", row.falsified},
           {"replay", ReplayCommand(folder, i)}};
@@ -134,7 +134,7 @@ std::string ShrunkJson(const std::filesystem::path& folder,
 
 std::string OutcomeText(const sweep::TrialRow& row) {
   return row.IsOk() ? fmt::format("gap {:.4f} m", row.comparison.gap_m)
-                    : std::string(NameOf(row.status));
+                    : std::string(yaml::NameOf(row.status));
 }
 
 std::string ShrunkText(const std::filesystem::path& folder,

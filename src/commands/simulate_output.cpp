@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "enum_name.hpp"
 #include "json_fields.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "trial_output.hpp"
 
 namespace rift::commands {
@@ -17,7 +17,7 @@ std::string SimulationJson(const experiment::Experiment& experiment,
   ordered_json json{{"name", experiment.name},
                     {"rift_version", RIFT_VERSION},
                     {"seed", experiment.seed},
-                    {"outcome", NameOf(result.outcome)},
+                    {"outcome", yaml::NameOf(result.outcome)},
                     {"reason", result.reason},
                     {"duration_s", result.Duration_s()},
                     {"path_length_m", result.trajectory.ArcLength_m()},
@@ -34,7 +34,7 @@ std::string SimulationText(const experiment::Experiment& experiment,
                            const sweep::SimulatedRun& run) {
   const trial::TrialResult& result = run.result;
   std::string text =
-      fmt::format("{}: {}\n", NameOf(result.outcome), result.reason) +
+      fmt::format("{}: {}\n", yaml::NameOf(result.outcome), result.reason) +
       fmt::format("{:.2f} s, {:.3f} m, {} poses logged, seed {}\n", result.Duration_s(),
                   run.truth.ArcLength_m(), result.trajectory.poses.size(), experiment.seed);
   for (const trial::WaypointVisit& visit : result.visits) {

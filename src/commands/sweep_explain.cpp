@@ -5,9 +5,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "enum_name.hpp"
 #include "further_trials.hpp"
 #include "rare_event_output.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "shrink_output.hpp"
 #include "stop_signal.hpp"
 
@@ -95,8 +95,8 @@ std::string GapFlags(const experiment::Experiment& experiment) {
   const auto add = [&flags](const std::string& flag, const std::string& value) {
     flags += fmt::format(" {} {}", flag, value);
   };
-  add("--sim-format", std::string(NameOf(experiment.candidate.format)));
-  add("--real-format", std::string(NameOf(experiment.reference.format)));
+  add("--sim-format", std::string(yaml::NameOf(experiment.candidate.format)));
+  add("--real-format", std::string(yaml::NameOf(experiment.reference.format)));
   if (experiment.reference.tag_offset_m != 0.0) {
     add("--tag-offset", fmt::format("{}", experiment.reference.tag_offset_m));
   }

@@ -7,10 +7,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "enum_name.hpp"
 #include "rebuilt_limits.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "rift/yaml/error.hpp"
 #include "simulated_runs.hpp"
 
@@ -63,7 +63,7 @@ SweepSources::SweepSources(const experiment::Experiment& experiment, std::string
   if (experiment.start == experiment::Start::kReference && !reference_is_logs) {
     throw std::invalid_argument(fmt::format(
         "{}: start is reference, and reference.kind is {}: only logs tell where the robot stood",
-        experiment_file_, NameOf(experiment.reference.kind)));
+        experiment_file_, yaml::NameOf(experiment.reference.kind)));
   }
 }
 
@@ -76,8 +76,8 @@ void SweepSources::RequirePath(const experiment::PathTemplate& path, const std::
 
 sweep::GridPlan SweepSources::Plan() const {
   return {.name = experiment_.name,
-          .candidate_kind = std::string(NameOf(experiment_.candidate.kind)),
-          .reference_kind = std::string(NameOf(experiment_.reference.kind)),
+          .candidate_kind = std::string(yaml::NameOf(experiment_.candidate.kind)),
+          .reference_kind = std::string(yaml::NameOf(experiment_.reference.kind)),
           .parameters = experiment_.space.parameters,
           .trials = experiment_.reference.trials.names,
           .seed = experiment_.candidate.kind == CandidateKind::kSimulation

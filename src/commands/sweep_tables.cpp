@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "enum_name.hpp"
 #include "json_fields.hpp"
 #include "rift/sweep/falsify/labels.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "sweep_output.hpp"
 
 namespace rift::commands {
@@ -28,7 +28,7 @@ std::string RowCsv(const sweep::TrialRow& row, size_t id) {
   for (const experiment::ParameterValue& value : row.theta) text += CsvCell(value.text) + ',';
   const std::string falsified = row.IsOk() || row.falsified ? fmt::format("{}", row.falsified) : "";
   text += fmt::format("{},{},{},{}", CsvCell(row.trial), NumberCell(row.comparison.gap_m),
-                      falsified, NameOf(row.status));
+                      falsified, yaml::NameOf(row.status));
   const gap::Comparison& c = row.comparison;
   for (const double value :
        {c.gap_u, c.exact_gap_m, c.mean_error_m, c.rms_error_m, c.start_offset_m,
@@ -78,7 +78,7 @@ ordered_json SettingJson(const sweep::SweepResult& result, const sweep::SettingR
   const gap::RepeatVerdict& verdict = setting.verdict;
   return {{"theta", theta},
           {"mean_gap_m", NumberOrNull(setting.mean_gap_m)},
-          {"verdict", NameOf(verdict.verdict)},
+          {"verdict", yaml::NameOf(verdict.verdict)},
           {"failures", verdict.above},
           {"n", verdict.repeats},
           {"share_above_low", verdict.share_low},
@@ -88,7 +88,7 @@ ordered_json SettingJson(const sweep::SweepResult& result, const sweep::SettingR
 
 ordered_json FalsificationJson(const sweep::SweepResult& result,
                                const sweep::Falsification& found) {
-  ordered_json json{{"verdict", NameOf(found.verdict)},
+  ordered_json json{{"verdict", yaml::NameOf(found.verdict)},
                     {"strategy", found.strategy},
                     {"evaluations", found.evaluations},
                     {"budget", found.budget},

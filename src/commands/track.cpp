@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "enum_name.hpp"
 #include "files.hpp"
 #include "flags.hpp"
 #include "keys_flag.hpp"
@@ -13,6 +12,7 @@
 #include "rift/commands/command.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/vision/camera/camera_file.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "stop_signal.hpp"
 #include "track_calibrate.hpp"
 #include "track_names.hpp"
@@ -78,7 +78,8 @@ void TakeSizeFrom(vision::Capture& capture, const TrackRequest& request,
   const auto frame = capture.Next(options.capture.open_timeout_s);
   if (!frame) {
     const vision::CaptureStatus status = capture.Status();
-    throw std::runtime_error(fmt::format("camera {}: {}", NameOf(status.state), status.reason));
+    throw std::runtime_error(
+        fmt::format("camera {}: {}", yaml::NameOf(status.state), status.reason));
   }
   camera.width_px = frame->width_px;
   camera.height_px = frame->height_px;

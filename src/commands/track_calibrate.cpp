@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "enum_name.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 namespace {
@@ -90,7 +90,7 @@ std::vector<vision::BoardView> FromCamera(vision::Vision& vision, const TrackReq
     const vision::CaptureStatus status = capture->Status();
     if (frame || !vision::IsFinal(status.state)) continue;
     if (status.state != vision::CameraState::kEnded) {
-      say(fmt::format("camera {}: {}", NameOf(status.state), status.reason));
+      say(fmt::format("camera {}: {}", yaml::NameOf(status.state), status.reason));
     }
     if (collector.Views().empty() && status.state != vision::CameraState::kEnded) {
       throw std::runtime_error("no view of the board was taken");

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "enum_name.hpp"
 #include "input_hashes.hpp"
 #include "json_fields.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 namespace {
@@ -30,7 +30,8 @@ double RowsPerSecond(const TrackRun& run, int rows) {
 ordered_json MissesJson(const TrackRun& run) {
   ordered_json json = ordered_json::object();
   for (std::size_t i = 1; i < run.misses.size(); ++i) {
-    if (run.misses[i] > 0) json[std::string(NameOf(static_cast<vision::Miss>(i)))] = run.misses[i];
+    if (run.misses[i] > 0)
+      json[std::string(yaml::NameOf(static_cast<vision::Miss>(i)))] = run.misses[i];
   }
   return json;
 }
@@ -43,7 +44,7 @@ std::string MissesText(const TrackRun& run) {
     if (run.misses[i] == 0) continue;
     all += run.misses[i];
     kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", run.misses[i],
-                         NameOf(static_cast<vision::Miss>(i)));
+                         yaml::NameOf(static_cast<vision::Miss>(i)));
   }
   return all == 0 ? "the tag in every one" : fmt::format("{} without the tag ({})", all, kinds);
 }
@@ -82,7 +83,7 @@ std::string TrackJson(const TrackRequest& request, const vision::CameraModel& ca
       {"width_px", camera.width_px},
       {"height_px", camera.height_px},
       {"frame", FrameJson(camera)},
-      {"state", NameOf(run.state)},
+      {"state", yaml::NameOf(run.state)},
       {"reason", run.reason},
       {"zero_of_t_s_on_the_steady_clock", run.zero_s},
       {"rows", rows},
@@ -127,11 +128,11 @@ std::string TrackText(const TrackRun& run, int rows) {
 }
 
 std::string CalibrationText(const vision::Calibration& c) {
-  std::string text = fmt::format("verdict: {}\n", NameOf(c.verdict));
+  std::string text = fmt::format("verdict: {}\n", yaml::NameOf(c.verdict));
   for (const std::string& reason : c.reasons) text += fmt::format("  {}\n", reason);
   if (c.camera.width_px == 0) return text;
   text += fmt::format("{} {}x{}, error {:.3f} px RMS (plumb_bob {:.3f}, equidistant {:.3f})\n",
-                      NameOf(c.camera.lens), c.camera.width_px, c.camera.height_px, c.rms_px,
+                      yaml::NameOf(c.camera.lens), c.camera.width_px, c.camera.height_px, c.rms_px,
                       c.plumb_bob_px, c.equidistant_px);
   text += fmt::format("on the floor: {:.2f} mm; odd views against even ones: {:.2f} mm\n",
                       1e3 * c.floor_error_m, 1e3 * c.cross_check_m);
@@ -151,7 +152,7 @@ std::string CalibrationComment(const vision::Calibration& c) {
   std::string text = fmt::format(
       "# rift track --calibrate, board {}x{} of {:g} m squares: {}.\n"
       "# {:.2f} px RMS, {:.1f} mm on the floor; odd views against even ones {:.1f} mm.\n",
-      c.board.columns, c.board.rows, c.board.square_m, NameOf(c.verdict), c.rms_px,
+      c.board.columns, c.board.rows, c.board.square_m, yaml::NameOf(c.verdict), c.rms_px,
       1e3 * c.floor_error_m, 1e3 * c.cross_check_m);
   for (const std::string& reason : c.reasons) text += fmt::format("# - {}\n", reason);
   return text;

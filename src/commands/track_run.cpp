@@ -7,7 +7,7 @@
 #include <cmath>
 #include <thread>
 
-#include "enum_name.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {
 namespace {
@@ -120,7 +120,7 @@ void Session::WatchState() {
   if (state == before || starts || state == CameraState::kEnded) return;
   const std::string reason =
       run_.status.reason.empty() ? "" : fmt::format(": {}", run_.status.reason);
-  parts_.say(fmt::format("camera {}{}", NameOf(state), reason));
+  parts_.say(fmt::format("camera {}{}", yaml::NameOf(state), reason));
 }
 
 bool Session::IsOver() const {

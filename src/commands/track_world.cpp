@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "enum_name.hpp"
 #include "files.hpp"
 #include "rift/vision/tracking/world_frame.hpp"
 #include "rift/yaml/bind.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "rift/yaml/load.hpp"
 
 namespace rift::commands {
@@ -57,7 +57,7 @@ void ThrowIfOver(const WorldParts& parts) {
   const vision::CaptureStatus status = parts.capture.Status();
   if (!vision::IsFinal(status.state)) return;
   throw std::runtime_error(fmt::format("camera {}: {}; the world frame was not set",
-                                       NameOf(status.state), status.reason));
+                                       yaml::NameOf(status.state), status.reason));
 }
 
 /// The next picture; throws when there will be none.

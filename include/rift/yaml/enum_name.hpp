@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace rift::commands {
+namespace rift::yaml {
 
 /// The name of an enum's value, as YAML, tables and JSON write it.
 template <class Enum>
@@ -11,4 +11,4 @@ constexpr std::string_view NameOf(Enum value) {
   return EnumNames(value)[static_cast<std::size_t>(value)];
 }
 
-}  // namespace rift::commands
+}  // namespace rift::yaml
