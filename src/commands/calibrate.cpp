@@ -5,20 +5,25 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
-#include "calibrate_output.hpp"
 #include "files.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/experiment/parameter.hpp"
+#include "rift/report/figures/calibration_figure.hpp"
+#include "rift/report/json/calibration.hpp"
+#include "rift/report/text/calibration.hpp"
 #include "rift/sweep/calibrate/drive_likeness.hpp"
+#include "rift/sweep/calibrate/identification.hpp"
 #include "rift/sweep/falsify/labels.hpp"
-#include "robot_file.hpp"
 #include "simulated_runs.hpp"
 #include "sweep_sources.hpp"
 
 namespace rift::commands {
 namespace {
 
+using sweep::CalibrationReport;
+using sweep::CalibrationTrial;
 using sweep::RepeatedTrial;
 using trajectory::Trajectory;
 
@@ -278,21 +283,35 @@ CalibrationReport Calibrator::Run() {
   return report;
 }
 
+void WriteFigures(const std::filesystem::path& folder, const std::string& name,
+                  const CalibrationReport& found) {
+  const std::optional<report::Figure> figure = report::CalibrationFigure(name, found);
+  if (!figure) {
+    fmt::print(stderr,
+               "note: no figure: no log has a simulated run that reached the end, both "
+               "before and after the fit\n");
+    return;
+  }
+  WriteFile(folder / (figure->name + ".svg"), report::Render(*figure, report::FigureFormat::kSvg));
+  WriteFile(folder / (figure->name + ".png"), report::Render(*figure, report::FigureFormat::kPng));
+}
+
 }  // namespace
 
 int Calibrate(const experiment::Experiment& experiment, const CalibrateRequest& request) {
   Calibrator calibrator(experiment, request);
-  const CalibrationReport report = calibrator.Run();
+  const CalibrationReport found = calibrator.Run();
   WriteFile(request.out / "experiment.yaml", experiment::WriteExperiment(experiment));
   WriteFile(request.out / "inputs.txt", calibrator.Sources().InputsText());
-  const std::string json = CalibrationJson(experiment, report);
+  const std::string json = report::CalibrationJson(experiment, found);
   WriteFile(request.out / "calibration.json", json);
   if (!request.robot_file.empty()) {
-    WriteFile(request.robot_file, RobotYaml(experiment, report, calibrator.Sources().InputsText(),
-                                            request.experiment_file));
+    WriteFile(request.robot_file,
+              report::RobotYaml(experiment, found, calibrator.Sources().InputsText(),
+                                request.experiment_file));
   }
-  fmt::print("{}", request.json ? json : CalibrationText(report));
-  WriteCalibrationFigures(request.out, experiment, report);
+  fmt::print("{}", request.json ? json : report::CalibrationText(found));
+  WriteFigures(request.out / "figures", experiment.name, found);
   if (!request.quiet) {
     fmt::print(stderr, "written: {}\n", (request.out / "calibration.json").string());
   }

@@ -11,10 +11,13 @@
 #include "figure_file.hpp"
 #include "files.hpp"
 #include "flags.hpp"
-#include "gap_output.hpp"
 #include "logs.hpp"
 #include "outputs.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/gap/result.hpp"
+#include "rift/report/figures/gap_figures.hpp"
+#include "rift/report/json/gap.hpp"
+#include "rift/report/text/gap.hpp"
 
 namespace rift::commands {
 namespace {
@@ -56,8 +59,8 @@ std::launch LaunchFor(const std::string& path) {
   return !unknown && size_bytes < kShort_bytes ? std::launch::deferred : std::launch::async;
 }
 
-GapEvidence Measure(const GapRequest& request) {
-  GapEvidence evidence{
+gap::GapResult Measure(const GapRequest& request) {
+  gap::GapResult result{
       .options = request.options, .tag_offset_m = request.tag_offset_m, .sim_path = request.sim};
   std::vector<std::future<trajectory::Log>> reals;
   for (const std::string& path : request.reals) {
@@ -67,21 +70,21 @@ GapEvidence Measure(const GapRequest& request) {
   }
   trajectory::Log sim = LoadLog(request.sim, request.sim_format);
   SayNotes(sim, request.sim, "--sim-format");
-  evidence.sim = std::move(sim.trajectory);
+  result.sim = std::move(sim.trajectory);
   for (size_t i = 0; i < reals.size(); ++i) {
     trajectory::Log real = reals[i].get();
     SayNotes(real, request.reals[i], "--real-format");
-    evidence.trials.push_back(
-        {request.reals[i], gap::Compare(evidence.sim, real.trajectory, request.options)});
-    evidence.reals.push_back(std::move(real.trajectory));
+    result.trials.push_back(
+        {request.reals[i], gap::Compare(result.sim, real.trajectory, request.options)});
+    result.reals.push_back(std::move(real.trajectory));
   }
-  Judge(evidence);
-  return evidence;
+  Judge(result);
+  return result;
 }
 
 /// Every simulated run is held against every real one: nothing says that they belong together.
-gap::Likeness MeasureRepeats(const GapRequest& request, const GapEvidence& evidence) {
-  gap::RepeatedSetting setting{.reals = evidence.reals, .sims = {{evidence.sim}}};
+gap::Likeness MeasureRepeats(const GapRequest& request, const gap::GapResult& result) {
+  gap::RepeatedSetting setting{.reals = result.reals, .sims = {{result.sim}}};
   for (const std::string& path : request.sim_repeats) {
     trajectory::Log sim = LoadLog(path, request.sim_format);
     SayNotes(sim, path, "--sim-format");
@@ -91,15 +94,15 @@ gap::Likeness MeasureRepeats(const GapRequest& request, const GapEvidence& evide
   return gap::MeasureLikeness({&setting, 1}, request.options, request.likeness, generator);
 }
 
-void Save(const GapRequest& request, const GapEvidence& evidence) {
-  if (!request.profile.empty()) WriteFile(request.profile, ProfileCsv(evidence));
-  if (!request.figure.empty()) WriteGapFigure(request.figure, evidence);
+void Save(const GapRequest& request, const gap::GapResult& result) {
+  if (!request.profile.empty()) WriteFile(request.profile, report::ProfileCsv(result));
+  if (!request.figure.empty()) WriteFigure(request.figure, report::GapFigure(result));
   if (request.json == "-") {
-    fmt::print("{}", GapJson(evidence));
+    fmt::print("{}", report::GapJson(result));
     return;
   }
-  if (!request.json.empty()) WriteFile(request.json, GapJson(evidence));
-  fmt::print("{}", GapText(evidence));
+  if (!request.json.empty()) WriteFile(request.json, report::GapJson(result));
+  fmt::print("{}", report::GapText(result));
 }
 
 /// A log that counts twice would pass for a repeat.
@@ -163,10 +166,10 @@ void AddGap(CLI::App& app, int& exit_code) {
   app.callback([request, &exit_code] {
     CheckInputs(*request);
     CheckNames(*request);
-    GapEvidence evidence = Measure(*request);
-    if (!request->sim_repeats.empty()) evidence.likeness = MeasureRepeats(*request, evidence);
-    Save(*request, evidence);
-    const bool falsified = evidence.verdict.verdict == gap::Verdict::kFalsified;
+    gap::GapResult result = Measure(*request);
+    if (!request->sim_repeats.empty()) result.likeness = MeasureRepeats(*request, result);
+    Save(*request, result);
+    const bool falsified = result.verdict.verdict == gap::Verdict::kFalsified;
     exit_code = request->exit_code && falsified ? kFalsified : kDone;
   });
 }

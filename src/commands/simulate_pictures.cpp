@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "figure_file.hpp"
+#include "rift/geometry/floor.hpp"
 #include "rift/report/figures/simulation_figure.hpp"
 #include "rift/view/film.hpp"
 #include "rift/view/viewer.hpp"

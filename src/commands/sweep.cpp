@@ -7,17 +7,19 @@
 #include <optional>
 
 #include "calibrate.hpp"
-#include "explanation_output.hpp"
 #include "files.hpp"
 #include "folder_lock.hpp"
-#include "json_fields.hpp"
 #include "keys_flag.hpp"
-#include "likeness_output.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/report/json/fields.hpp"
+#include "rift/report/json/likeness.hpp"
+#include "rift/report/json/sweep.hpp"
+#include "rift/report/json/table.hpp"
+#include "rift/report/text/likeness.hpp"
+#include "rift/report/text/sweep.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "sweep_explain.hpp"
 #include "sweep_likeness.hpp"
-#include "sweep_output.hpp"
 #include "sweep_report.hpp"
 #include "sweep_run.hpp"
 #include "sweep_sources.hpp"
@@ -75,8 +77,8 @@ void Save(const fs::path& out, const experiment::Experiment& experiment,
           const SweepSources& sources, const sweep::SweepResult& result) {
   WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
   WriteFile(out / "inputs.txt", sources.InputsText());
-  WriteFile(out / "table.csv", TableCsv(result));
-  WriteFile(out / "summary.json", SummaryJson(result));
+  WriteFile(out / "table.csv", report::TableCsv(result));
+  WriteFile(out / "summary.json", report::SummaryJson(result));
 }
 
 /// An earlier run's report beside a table without a gap would tell of other trials.
@@ -162,14 +164,15 @@ int Sweep(const SweepRequest& request) {
     return EndWithoutGap(request, *result);
   }
   const sweep::Explanation explanation = sweep::Explain(*result, OptionsFor(request.explain));
-  WriteFile(out / "explanation.json", ExplanationJson(*result, explanation));
+  WriteFile(out / "explanation.json", report::ExplanationJson(*result, explanation));
   WriteSweepReport(out, *result, explanation, experiment, sources);
-  const std::vector<LikenessRow> likeness = MeasureSweepLikeness(experiment, sources);
-  if (!likeness.empty()) WriteFile(out / "likeness.json", Dump(LikenessJson(likeness)));
-  fmt::print("{}", request.json ? SummaryJson(*result) : SweepText(*result));
-  if (!likeness.empty() && !request.json) fmt::print("\n{}", LikenessText(likeness));
+  const std::vector<sweep::GroupLikeness> likeness = MeasureSweepLikeness(experiment, sources);
+  if (!likeness.empty())
+    WriteFile(out / "likeness.json", report::Dump(report::LikenessJson(likeness)));
+  fmt::print("{}", request.json ? report::SummaryJson(*result) : report::SweepText(*result));
+  if (!likeness.empty() && !request.json) fmt::print("\n{}", report::LikenessText(likeness));
   if (!request.json) {
-    fmt::print("{}", ExplanationText(*result, explanation, request.explain.suggest > 0));
+    fmt::print("{}", report::ExplanationText(*result, explanation, request.explain.suggest > 0));
   }
   const std::optional<std::string> further =
       SpendTrials(out, experiment, *result, request.explain, sources,

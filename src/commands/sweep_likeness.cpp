@@ -53,8 +53,8 @@ void AddSetting(const experiment::Experiment& experiment, const experiment::Thet
 
 }  // namespace
 
-std::vector<LikenessRow> MeasureSweepLikeness(const experiment::Experiment& experiment,
-                                              SweepSources& sources) {
+std::vector<sweep::GroupLikeness> MeasureSweepLikeness(const experiment::Experiment& experiment,
+                                                       SweepSources& sources) {
   if (!HasRepeatedLogs(experiment)) return {};
   std::vector<Labelled> trials;
   for (const experiment::Theta& theta : experiment::GridPoints(experiment.space.parameters)) {
@@ -68,7 +68,7 @@ std::vector<LikenessRow> MeasureSweepLikeness(const experiment::Experiment& expe
   }
   levels.push_back("all");
   const bool is_matched = experiment.start == experiment::Start::kReference;
-  std::vector<LikenessRow> rows;
+  std::vector<sweep::GroupLikeness> rows;
   for (const std::string& level : levels) {
     const bool is_all = &level == &levels.back();
     std::vector<RepeatedTrial> group;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rift/control/waypoint.hpp"
+#include "rift/geometry/floor.hpp"
 #include "rift/vision/module/module.hpp"
 
 namespace rift::commands {

@@ -1,44 +1,18 @@
+#include "rift/report/json/sweep.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "json_fields.hpp"
+#include "rift/report/json/fields.hpp"
 #include "rift/sweep/falsify/labels.hpp"
 #include "rift/yaml/enum_name.hpp"
-#include "sweep_output.hpp"
 
-namespace rift::commands {
+namespace rift::report {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// RFC 4180: quoted when it must be.
-std::string CsvCell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == text.npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
-std::string NumberCell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
-
-std::string RowCsv(const sweep::TrialRow& row, size_t id) {
-  std::string text;
-  for (const experiment::ParameterValue& value : row.theta) text += CsvCell(value.text) + ',';
-  const std::string falsified = row.IsOk() || row.falsified ? fmt::format("{}", row.falsified) : "";
-  text += fmt::format("{},{},{},{}", CsvCell(row.trial), NumberCell(row.comparison.gap_m),
-                      falsified, yaml::NameOf(row.status));
-  const gap::Comparison& c = row.comparison;
-  for (const double value :
-       {c.gap_u, c.exact_gap_m, c.mean_error_m, c.rms_error_m, c.start_offset_m,
-        c.start_aligned_gap_m, c.shape_gap_m, c.length_ratio, c.end_error_m}) {
-    text += ',' + NumberCell(value);
-  }
-  return text + ',' + CsvCell(row.reason) + ',' + CsvCell(row.candidate) + ',' +
-         CsvCell(row.reference) + ',' + (row.seed ? fmt::format("{}", *row.seed) : "") +
-         fmt::format(",{}\n", id);
-}
 
 ordered_json LevelJson(const sweep::LevelSummary& level) {
   return {{"mean_gap_m", NumberOrNull(level.mean_gap_m)},
@@ -141,16 +115,6 @@ ordered_json AttributionJson(const sweep::SweepResult& result) {
 
 }  // namespace
 
-std::string TableCsv(const sweep::SweepResult& result) {
-  std::string text;
-  for (const experiment::Parameter& parameter : result.parameters)
-    text += CsvCell(parameter.Name()) + ',';
-  text += fmt::format("{}\n", fmt::join(experiment::kFixedColumns, ","));
-  size_t id = 0;
-  for (const sweep::TrialRow& row : result.rows) text += RowCsv(row, ++id);
-  return text;
-}
-
 std::string SummaryJson(const sweep::SweepResult& result) {
   ordered_json json;
   json["name"] = result.name;
@@ -184,4 +148,4 @@ std::string SummaryJson(const sweep::SweepResult& result) {
   return Dump(json);
 }
 
-}  // namespace rift::commands
+}  // namespace rift::report

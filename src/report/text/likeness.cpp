@@ -1,23 +1,14 @@
-#include "likeness_output.hpp"
+#include "rift/report/text/likeness.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "json_fields.hpp"
-
-namespace rift::commands {
+namespace rift::report {
 namespace {
 
 using gap::BothSides;
-using nlohmann::ordered_json;
-
-ordered_json BothJson(const BothSides& both) {
-  return {{"sim", NumberOrNull(both.sim)},
-          {"real", NumberOrNull(both.real)},
-          {"ratio", NumberOrNull(both.Ratio())}};
-}
 
 std::string Number(double value, int decimals) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, decimals);
@@ -41,15 +32,15 @@ std::string Sentence(const char* name, const BothSides& both, double scale, cons
 
 }  // namespace
 
-std::string LikenessText(const std::vector<LikenessRow>& rows) {
+std::string LikenessText(const std::vector<sweep::GroupLikeness>& groups) {
   size_t width = 8;
-  for (const LikenessRow& row : rows) width = std::max(width, row.level.size());
+  for (const sweep::GroupLikeness& group : groups) width = std::max(width, group.level.size());
   std::string text = fmt::format(
       "likeness: simulated / real; a simulator that is like the robot has all ratios at 1\n"
       "{:<{}}  {:>17}  {:>17}  {:>11}  {:>11}  {:>15}  {:>8}  {:>6}\n",
       "", width, "spread_mm", "weave_mm", "delay_s", "speed_ratio", "wavelength_mm", "energy_p",
       "inside");
-  for (const auto& [level, likeness] : rows) {
+  for (const auto& [level, likeness] : groups) {
     const gap::Likeness& path = likeness.path;
     text += fmt::format("{:<{}}  {:>17}  {:>17}  {:>11}  {:>11}  {:>15}  {:>8}  {:>6}\n", level,
                         width, Millimetres(path.spread_m), Millimetres(path.weave_m),
@@ -83,31 +74,4 @@ std::string LikenessText(const gap::Likeness& likeness) {
   return text;
 }
 
-ordered_json LikenessJson(const gap::Likeness& likeness) {
-  return {{"sims", likeness.sims},
-          {"reals", likeness.reals},
-          {"spread_m", BothJson(likeness.spread_m)},
-          {"weave_m", BothJson(likeness.weave_m)},
-          {"wavelength_m", BothJson(likeness.wavelength_m)},
-          {"speed_mps", BothJson(likeness.speed_mps)},
-          {"mean_gap_m", NumberOrNull(likeness.mean_gap_m)},
-          {"mean_path_gap_m", NumberOrNull(likeness.mean_path_gap_m)},
-          {"energy_m", NumberOrNull(likeness.energy_m)},
-          {"energy_p", NumberOrNull(likeness.energy_p)},
-          {"inside_share", NumberOrNull(likeness.inside_share)},
-          {"inside_expected", NumberOrNull(likeness.inside_expected)}};
-}
-
-ordered_json LikenessJson(const std::vector<LikenessRow>& rows) {
-  ordered_json json = ordered_json::object();
-  for (const auto& [level, likeness] : rows) {
-    ordered_json& entry = json[level] = LikenessJson(likeness.path);
-    entry["loop_delay_s"] = BothJson(likeness.loop_delay_s);
-    entry["loop_r2"] = BothJson(likeness.loop_r2);
-    entry["steering_gain_rad_s"] = BothJson(likeness.steering_gain_rad_s);
-    entry["failed_runs"] = likeness.failed_runs;
-  }
-  return json;
-}
-
-}  // namespace rift::commands
+}  // namespace rift::report

@@ -1,10 +1,10 @@
 #include <algorithm>
 
-#include "explanation_output.hpp"
-#include "json_fields.hpp"
+#include "rift/report/json/fields.hpp"
+#include "rift/report/json/sweep.hpp"
 #include "rift/yaml/enum_name.hpp"
 
-namespace rift::commands {
+namespace rift::report {
 namespace {
 
 using nlohmann::ordered_json;
@@ -215,4 +215,4 @@ std::string ExplanationJson(const sweep::SweepResult& result,
   return Dump(json);
 }
 
-}  // namespace rift::commands
+}  // namespace rift::report

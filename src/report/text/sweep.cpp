@@ -1,3 +1,5 @@
+#include "rift/report/text/sweep.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,10 +7,11 @@
 #include <optional>
 
 #include "rift/report/figures/sweep_figures.hpp"
+#include "rift/report/text/answers.hpp"
 #include "rift/sweep/falsify/labels.hpp"
-#include "sweep_output.hpp"
+#include "rift/yaml/enum_name.hpp"
 
-namespace rift::commands {
+namespace rift::report {
 namespace {
 
 /// Of a long table the values with the largest means, since a terminal is not for thousands.
@@ -50,7 +53,7 @@ std::string EffectsText(const sweep::SweepResult& result) {
 }
 
 std::string WorstText(const sweep::SweepResult& result) {
-  const std::optional<int> index = report::WorstRow(result);
+  const std::optional<int> index = WorstRow(result);
   if (!index) return "";
   const sweep::TrialRow& worst = result.rows[*index];
   return fmt::format("worst: {:.4f} m at u = {:.2f} ({}, trial {})\n", worst.comparison.gap_m,
@@ -74,7 +77,7 @@ std::string FalsificationText(const sweep::SweepResult& result, const sweep::Fal
   std::string text = fmt::format(
       "{}: {} settings falsified and {} undecided of {} tried ({}, ended by {}); falsified: more "
       "than {:.0f} % of its trials would fail, at {:g} % confidence\n",
-      EnumNames(found.verdict)[static_cast<size_t>(found.verdict)], found.falsified,
+      yaml::NameOf(found.verdict), found.falsified,
       found.undecided, found.evaluations, found.strategy, found.ended, 100.0 * found.share,
       100.0 * found.confidence);
   if (found.first_evaluation) {
@@ -105,6 +108,23 @@ std::string LevelTables(const sweep::SweepResult& result) {
   return text;
 }
 
+std::string SuggestionsText(const sweep::Explanation& explanation) {
+  if (explanation.suggestions.empty()) {
+    return "\nno experiment can be suggested: no setting has a gap\n";
+  }
+  std::string text = "\nnext experiments on the robot, the one that decides most first:\n";
+  int number = 0;
+  for (const sweep::Suggestion& suggestion : explanation.suggestions) {
+    text += fmt::format("{}. {}\n", ++number, suggestion.sentence);
+  }
+  return text;
+}
+
+std::string OutcomeText(const sweep::TrialRow& row) {
+  return row.IsOk() ? fmt::format("gap {:.4f} m", row.comparison.gap_m)
+                    : std::string(yaml::NameOf(row.status));
+}
+
 }  // namespace
 
 std::string SweepText(const sweep::SweepResult& result) {
@@ -122,4 +142,63 @@ std::string SweepText(const sweep::SweepResult& result) {
   return text;
 }
 
-}  // namespace rift::commands
+std::string ExplanationText(const sweep::SweepResult& result, const sweep::Explanation& explanation,
+                            bool suggest) {
+  std::string text;
+  for (const Answer& answer : Answers(result, explanation)) {
+    const bool is_shown =
+        answer.question == "Because of what?" || answer.question == "How sure is that?";
+    if (!is_shown) continue;
+    text += fmt::format("\n{}\n", answer.question);
+    for (const std::string& sentence : answer.sentences) text += fmt::format("- {}\n", sentence);
+  }
+  return suggest ? text + SuggestionsText(explanation) : text;
+}
+
+std::string ReplayCommand(const std::string& folder, size_t row) {
+  return fmt::format("rift simulate --replay {} {}", folder, row + 1);
+}
+
+std::string ShrunkText(const sweep::SweepResult& result, const sweep::ShrunkRow& found,
+                       const std::string& folder) {
+  const std::vector<experiment::Parameter>& parameters = result.parameters;
+  const sweep::TrialRow& failing = found.rows[0];
+  const sweep::TrialRow& least = found.rows[1];
+  std::string text = fmt::format(
+      "\nshrunk: row {} ({}; {}) still fails with {} of its {} changes from the experiment's own "
+      "values ({}, above {:g} m; {} trials)\n",
+      found.id, sweep::SettingText(parameters, failing.theta), OutcomeText(failing),
+      found.shrunk.changed.size(), parameters.size(), OutcomeText(least), result.gap.threshold_m,
+      found.shrunk.evaluations);
+  if (found.shrunk.changed.empty()) {
+    text += "  it fails with none of them: the experiment's own values do\n";
+  }
+  for (size_t i = 0; i < found.shrunk.changed.size(); ++i) {
+    const int parameter = found.shrunk.changed[i];
+    text += fmt::format("  {}: {} instead of {}; taken back, {}\n", parameters[parameter].Name(),
+                        found.shrunk.theta[parameter].text, found.nominal[parameter].text,
+                        OutcomeText(found.rows[2 + i]));
+  }
+  text += found.shrunk.is_minimal ? "  none of these changes can be left out (each was tried)\n"
+                                  : "  there may be less to it: no more trials are spent on it\n";
+  if (found.shrunk.is_fewest)
+    text += "  no smaller set of the row's changes fails (all were tried)\n";
+  return text + fmt::format("  again: {}\n", ReplayCommand(folder, 1));
+}
+
+std::string RareEventSentence(const sweep::RareEvent& event) {
+  if (!event.is_reached) {
+    return fmt::format(
+        "no failure was reached in {} levels: a setting drawn at random fails with a probability "
+        "of about {:.2g} at most",
+        event.levels, event.high);
+  }
+  return fmt::format(
+      "a setting drawn at random fails with a probability of {:.2g}, between {:.2g} and {:.2g} "
+      "with 95 % confidence ({} settings in {})",
+      event.probability, event.low, event.high, event.evaluations,
+      event.levels == 1 ? std::string("1 level: it is not rare")
+                        : fmt::format("{} levels of subset simulation", event.levels));
+}
+
+}  // namespace rift::report

@@ -1,8 +1,11 @@
-#include "trial_output.hpp"
+#include "rift/report/json/trial.hpp"
 
 #include <fmt/format.h>
 
-namespace rift::commands {
+#include "rift/report/json/fields.hpp"
+#include "rift/yaml/enum_name.hpp"
+
+namespace rift::report {
 namespace {
 
 using nlohmann::ordered_json;
@@ -36,6 +39,25 @@ ordered_json LimitsJson(const trial::LimitCounts& limits) {
           {"largest_raw_w", limits.largest_raw_w}};
 }
 
+std::string SimulationJson(const experiment::Experiment& experiment,
+                           const sweep::SimulatedRun& run) {
+  const trial::TrialResult& result = run.result;
+  ordered_json json{{"name", experiment.name},
+                    {"rift_version", RIFT_VERSION},
+                    {"seed", experiment.seed},
+                    {"outcome", yaml::NameOf(result.outcome)},
+                    {"reason", result.reason},
+                    {"duration_s", result.Duration_s()},
+                    {"path_length_m", result.trajectory.ArcLength_m()},
+                    {"true_path_length_m", run.truth.ArcLength_m()},
+                    {"poses", result.trajectory.poses.size()},
+                    {"poses_refused", result.poses_refused},
+                    {"stale_decisions", result.stale_decisions}};
+  json["waypoints"] = WaypointsJson(result);
+  json["limits"] = LimitsJson(result.limits);
+  return Dump(json);
+}
+
 std::string CommandsCsv(const trial::TrialResult& result) {
   std::string text = "t_s,power_left,power_right\n";
   for (const trial::SentCommand& command : result.commands) {
@@ -44,4 +66,4 @@ std::string CommandsCsv(const trial::TrialResult& result) {
   return text;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::report

@@ -1,5 +1,3 @@
-#include "robot_file.hpp"
-
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -7,11 +5,11 @@
 #include <sstream>
 #include <vector>
 
-#include "calibrate_output.hpp"
+#include "rift/report/text/calibration.hpp"
 #include "rift/yaml/tree.hpp"
 #include "rift/yaml/write.hpp"
 
-namespace rift::commands {
+namespace rift::report {
 namespace {
 
 using sweep::CalibratedParameter;
@@ -53,11 +51,11 @@ std::string Indented(const std::string& lines) {
   return text;
 }
 
-std::string Head(const experiment::Experiment& experiment, const CalibrationReport& report,
+std::string Head(const experiment::Experiment& experiment, const sweep::CalibrationReport& report,
                  const std::string& inputs, const std::string& experiment_file) {
   const sweep::Calibration& fit = report.calibration;
   size_t held = 0;
-  for (const CalibrationTrial& trial : report.trials) held += trial.is_held_out;
+  for (const sweep::CalibrationTrial& trial : report.trials) held += trial.is_held_out;
   std::string text = fmt::format(
       "# Written by rift sweep {} --write-robot (rift {}), goal: calibrate.\n"
       "# How: short-horizon prediction (1 to {} frames) and weave, spread, speed and loop delay "
@@ -68,7 +66,7 @@ std::string Head(const experiment::Experiment& experiment, const CalibrationRepo
       experiment.calibrate.method.horizon.most_frames, fit.steps,
       fit.has_converged ? "" : ", not converged", report.trials.size() - held, held,
       fit.loss_before, fit.loss_after);
-  for (const JudgedGroup& group : report.judged) {
+  for (const sweep::JudgedGroup& group : report.judged) {
     if (group.level != "all") continue;
     text += fmt::format(
         "# {}: mean simulated path {:.1f} mm from the real ones before, {:.1f} mm after.\n",
@@ -90,8 +88,9 @@ std::string Head(const experiment::Experiment& experiment, const CalibrationRepo
 
 }  // namespace
 
-std::string RobotYaml(const experiment::Experiment& experiment, const CalibrationReport& report,
-                      const std::string& inputs, const std::string& experiment_file) {
+std::string RobotYaml(const experiment::Experiment& experiment,
+                      const sweep::CalibrationReport& report, const std::string& inputs,
+                      const std::string& experiment_file) {
   std::map<std::string, std::string> fitted;
   for (const CalibratedParameter& p : report.calibration.parameters) {
     fitted[p.parameter.key] = CommentOf(p, experiment.calibrate.method.confidence);
@@ -107,4 +106,4 @@ std::string RobotYaml(const experiment::Experiment& experiment, const Calibratio
   return Head(experiment, report, inputs, experiment_file) + yaml::Emit(robot);
 }
 
-}  // namespace rift::commands
+}  // namespace rift::report

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 
-#include "rift/gap/comparison.hpp"
 #include "rift/yaml/enum_name.hpp"
 
-namespace rift::commands {
+namespace rift::report {
 
 /// Indented text; a file name that is no UTF-8 shows replacement characters.
 std::string Dump(const nlohmann::ordered_json& json);
@@ -31,6 +31,4 @@ nlohmann::ordered_json FieldsToJson(const Options& options) {
   return json;
 }
 
-nlohmann::ordered_json ComparisonToJson(const gap::Comparison& comparison);
-
-}  // namespace rift::commands
+}  // namespace rift::report
