@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "rift/report/figures/sweep_figures.hpp"
-#include "rift/report/text/answers.hpp"
+#include "rift/report/text/findings.hpp"
 #include "rift/sweep/falsify/labels.hpp"
 #include "rift/yaml/enum_name.hpp"
 
@@ -77,9 +77,8 @@ std::string FalsificationText(const sweep::SweepResult& result, const sweep::Fal
   std::string text = fmt::format(
       "{}: {} settings falsified and {} undecided of {} tried ({}, ended by {}); falsified: more "
       "than {:.0f} % of its trials would fail, at {:g} % confidence\n",
-      yaml::NameOf(found.verdict), found.falsified,
-      found.undecided, found.evaluations, found.strategy, found.ended, 100.0 * found.share,
-      100.0 * found.confidence);
+      yaml::NameOf(found.verdict), found.falsified, found.undecided, found.evaluations,
+      found.strategy, found.ended, 100.0 * found.share, 100.0 * found.confidence);
   if (found.first_evaluation) {
     text += fmt::format("first falsified setting: number {}\n", *found.first_evaluation);
   }
@@ -145,12 +144,14 @@ std::string SweepText(const sweep::SweepResult& result) {
 std::string ExplanationText(const sweep::SweepResult& result, const sweep::Explanation& explanation,
                             bool suggest) {
   std::string text;
-  for (const Answer& answer : Answers(result, explanation)) {
+  for (const Finding& finding : Findings(result, explanation)) {
     const bool is_shown =
-        answer.question == "Because of what?" || answer.question == "How sure is that?";
+        finding.question == "Because of what?" || finding.question == "How sure is that?";
     if (!is_shown) continue;
-    text += fmt::format("\n{}\n", answer.question);
-    for (const std::string& sentence : answer.sentences) text += fmt::format("- {}\n", sentence);
+    text += fmt::format("\n{}\n", finding.question);
+    for (const Sentence& sentence : finding.sentences) {
+      text += fmt::format("- {}\n", sentence.Text());
+    }
   }
   return suggest ? text + SuggestionsText(explanation) : text;
 }

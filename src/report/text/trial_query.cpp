@@ -1,4 +1,4 @@
-#include "rift/report/text/sentence.hpp"
+#include "trial_query.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,9 @@
 
 namespace rift::report {
 
+namespace {
+
+/// Bytes as a browser's URLSearchParams reads them.
 std::string QueryText(const std::string& text) {
   static constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
@@ -21,6 +24,8 @@ std::string QueryText(const std::string& text) {
   }
   return query;
 }
+
+}  // namespace
 
 std::string AboveThreshold() { return "result=" + QueryText("above threshold"); }
 
