@@ -9,16 +9,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json ThetaJson(const sweep::SweepResult& result, const experiment::Theta& theta) {
-  ordered_json json = ordered_json::object();
-  for (size_t i = 0; i < theta.size(); ++i) {
-    const experiment::ParameterValue& value = theta[i];
-    json[result.parameters[i].Name()] =
-        value.number ? ordered_json(*value.number) : ordered_json(value.text);
-  }
-  return json;
-}
-
 /// Of many rows the first, which are the most typical ones.
 ordered_json RowIds(const std::vector<int>& rows) {
   constexpr size_t kMost = 1000;
@@ -163,7 +153,7 @@ ordered_json UndecidedJson(const sweep::SweepResult& result) {
     const gap::RepeatVerdict& verdict = setting.verdict;
     const bool is_open = verdict.verdict == gap::Verdict::kUndecided && verdict.repeats > 0;
     if (!is_open || json.size() == kMost) continue;
-    json.push_back({{"theta", ThetaJson(result, setting.theta)},
+    json.push_back({{"theta", ThetaJson(result.parameters, setting.theta)},
                     {"rows", RowIds(setting.rows)},
                     {"mean_gap_m", NumberOrNull(setting.mean_gap_m)},
                     {"failures", verdict.above},
@@ -177,7 +167,7 @@ ordered_json SuggestionsJson(const sweep::SweepResult& result,
   ordered_json json = ordered_json::array();
   for (const sweep::Suggestion& suggestion : suggestions) {
     const sweep::SettingResult& setting = result.settings[suggestion.setting];
-    json.push_back({{"theta", ThetaJson(result, setting.theta)},
+    json.push_back({{"theta", ThetaJson(result.parameters, setting.theta)},
                     {"repeats", suggestion.repeats},
                     {"rows", RowIds(setting.rows)},
                     {"mean_gap_m", NumberOrNull(suggestion.mean_gap_m)},

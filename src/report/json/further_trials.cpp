@@ -8,16 +8,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json ThetaJson(const std::vector<experiment::Parameter>& parameters,
-                       const experiment::Theta& theta) {
-  ordered_json json = ordered_json::object();
-  for (size_t i = 0; i < theta.size(); ++i) {
-    const experiment::ParameterValue& value = theta[i];
-    json[parameters[i].key] = value.number ? ordered_json(*value.number) : ordered_json(value.text);
-  }
-  return json;
-}
-
 ordered_json TrialJson(const std::string& folder,
                        const std::vector<experiment::Parameter>& parameters,
                        const sweep::ShrunkRow& found, size_t i) {
@@ -44,7 +34,7 @@ std::string ShrunkJson(const sweep::SweepResult& result, const sweep::ShrunkRow&
   json["changes"] = ordered_json::array();
   for (size_t i = 0; i < found.shrunk.changed.size(); ++i) {
     const int parameter = found.shrunk.changed[i];
-    json["changes"].push_back({{"parameter", parameters[parameter].key},
+    json["changes"].push_back({{"parameter", parameters[parameter].Name()},
                                {"nominal", found.nominal[parameter].text},
                                {"failing", failing.theta[parameter].text},
                                {"shrunk", found.shrunk.theta[parameter].text},

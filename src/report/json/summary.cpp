@@ -39,18 +39,8 @@ ordered_json EffectJson(const sweep::Effect& effect) {
 }
 
 ordered_json SettingJson(const sweep::SweepResult& result, const sweep::SettingResult& setting) {
-  ordered_json theta;
-  for (size_t i = 0; i < result.parameters.size(); ++i) {
-    const experiment::ParameterValue& value = setting.theta[i];
-    const std::string name = result.parameters[i].Name();
-    if (value.number) {
-      theta[name] = *value.number;
-    } else {
-      theta[name] = value.text;
-    }
-  }
   const gap::RepeatVerdict& verdict = setting.verdict;
-  return {{"theta", theta},
+  return {{"theta", ThetaJson(result.parameters, setting.theta)},
           {"mean_gap_m", NumberOrNull(setting.mean_gap_m)},
           {"verdict", yaml::NameOf(verdict.verdict)},
           {"failures", verdict.above},
