@@ -51,17 +51,21 @@ rift_room(sweep/explain ROOMS experiment gap search statistics sweep/falsify swe
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
 rift_room(sweep/calibrate ROOMS control experiment gap geometry simulation statistics sweep/falsify sweep/run trajectory trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
-rift_room(report/figures ROOMS gap geometry experiment statistics sweep/falsify trajectory
+rift_room(report/figures ROOMS gap geometry statistics sweep/calibrate sweep/falsify trajectory
   LIBRARIES fmt::fmt)
-rift_room(report/text ROOMS gap experiment report/figures sweep/explain sweep/falsify trajectory
+rift_room(report/text ROOMS experiment gap report/figures sweep/calibrate sweep/explain
+    sweep/falsify yaml
   LIBRARIES fmt::fmt)
-rift_room(report/page ROOMS gap experiment report/figures report/text sweep/explain sweep/falsify trajectory
+rift_room(report/json ROOMS experiment gap report/text sweep/calibrate sweep/explain sweep/falsify
+    trial yaml
+  LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
+rift_room(report/page ROOMS report/figures report/text sweep/explain sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(view ROOMS control geometry module trajectory trial
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio)
-rift_room(commands ROOMS control experiment gap geometry hardware module report/figures report/page
-    report/text search simulation statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
+rift_room(commands ROOMS control experiment gap geometry hardware module report/figures report/json
+    report/page report/text search simulation statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
     trial twin view vision/calibration vision/camera vision/module vision/rendering
     vision/tracking yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)

@@ -2,9 +2,9 @@
 
 #include "drive_output.hpp"
 #include "files.hpp"
+#include "rift/report/json/trial.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/vision/camera/camera_file.hpp"
-#include "trial_output.hpp"
 
 namespace rift::commands {
 
@@ -16,7 +16,7 @@ void BeginDriveFolder(const std::filesystem::path& folder, const experiment::Exp
 
 void SaveDrive(const std::filesystem::path& folder, const experiment::Experiment& experiment,
                const DriveRun& run) {
-  WriteFile(folder / "commands.csv", CommandsCsv(run.trial));
+  WriteFile(folder / "commands.csv", report::CommandsCsv(run.trial));
   WriteFile(folder / "stages.csv", StagesCsv(run.evidence));
   WriteFile(folder / "encoders.csv", EncodersCsv(run.evidence));
   WriteFile(folder / "summary.json", DriveJson(experiment, run));

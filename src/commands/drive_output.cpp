@@ -4,10 +4,10 @@
 
 #include <array>
 
-#include "json_fields.hpp"
 #include "rift/statistics/quantile.hpp"
+#include "rift/report/json/fields.hpp"
+#include "rift/report/json/trial.hpp"
 #include "rift/yaml/enum_name.hpp"
-#include "trial_output.hpp"
 
 namespace rift::commands {
 namespace {
@@ -96,7 +96,7 @@ std::string Cell(double time_s) { return time_s < 0.0 ? "" : fmt::format("{:.6f}
 }  // namespace
 
 std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
-  return Dump(PingBlock(ping, options));
+  return report::Dump(PingBlock(ping, options));
 }
 
 std::string PingText(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
@@ -143,9 +143,9 @@ std::string DriveJson(const experiment::Experiment& experiment, const DriveRun& 
                   {"answered", run.evidence.answered},
                   {"rejected_by_robot", run.evidence.rejected_by_robot}};
   json["ping"] = PingBlock(run.ping, experiment.hardware);
-  json["waypoints"] = WaypointsJson(result);
-  json["limits"] = LimitsJson(result.limits);
-  return Dump(json);
+  json["waypoints"] = report::WaypointsJson(result);
+  json["limits"] = report::LimitsJson(result.limits);
+  return report::Dump(json);
 }
 
 std::string DriveText(const DriveRun& run) {

@@ -10,9 +10,12 @@
 #include "figure_file.hpp"
 #include "files.hpp"
 #include "flags.hpp"
-#include "gap_output.hpp"
 #include "outputs.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/gap/result.hpp"
+#include "rift/report/figures/gap_figures.hpp"
+#include "rift/report/json/gap.hpp"
+#include "rift/report/text/gap.hpp"
 #include "rift/sweep/falsify/recorded_logs.hpp"
 
 namespace rift::commands {
@@ -46,26 +49,26 @@ void SayNotes(const trajectory::Log& log, const std::string& path, const std::st
              flag);
 }
 
-GapEvidence Measure(const GapRequest& request) {
-  GapEvidence evidence{
+gap::GapResult Measure(const GapRequest& request) {
+  gap::GapResult result{
       .options = request.options, .tag_offset_m = request.tag_offset_m, .sim_path = request.sim};
   trajectory::Log sim = trajectory::ReadLog(ReadFile(request.sim), request.sim, request.sim_format);
   SayNotes(sim, request.sim, "--sim-format");
-  evidence.sim = std::move(sim.trajectory);
+  result.sim = std::move(sim.trajectory);
   const sweep::LogOptions real_logs{request.real_format, request.tag_offset_m, "--real-format"};
   for (const std::string& path : request.reals) {
     trajectory::Log real = sweep::ReadMovedLog(ReadFile(path), path, real_logs);
     SayNotes(real, path, "--real-format");
-    evidence.trials.push_back({path, gap::Compare(evidence.sim, real.trajectory, request.options)});
-    evidence.reals.push_back(std::move(real.trajectory));
+    result.trials.push_back({path, gap::Compare(result.sim, real.trajectory, request.options)});
+    result.reals.push_back(std::move(real.trajectory));
   }
-  Judge(evidence);
-  return evidence;
+  Judge(result);
+  return result;
 }
 
 /// Every simulated run is held against every real one: nothing says that they belong together.
-gap::Likeness MeasureRepeats(const GapRequest& request, const GapEvidence& evidence) {
-  gap::RepeatedSetting setting{.reals = evidence.reals, .sims = {{evidence.sim}}};
+gap::Likeness MeasureRepeats(const GapRequest& request, const gap::GapResult& result) {
+  gap::RepeatedSetting setting{.reals = result.reals, .sims = {{result.sim}}};
   for (const std::string& path : request.sim_repeats) {
     trajectory::Log sim = trajectory::ReadLog(ReadFile(path), path, request.sim_format);
     SayNotes(sim, path, "--sim-format");
@@ -75,15 +78,15 @@ gap::Likeness MeasureRepeats(const GapRequest& request, const GapEvidence& evide
   return gap::MeasureLikeness({&setting, 1}, request.options, request.likeness, generator);
 }
 
-void Save(const GapRequest& request, const GapEvidence& evidence) {
-  if (!request.profile.empty()) WriteFile(request.profile, ProfileCsv(evidence));
-  if (!request.figure.empty()) WriteGapFigure(request.figure, evidence);
+void Save(const GapRequest& request, const gap::GapResult& result) {
+  if (!request.profile.empty()) WriteFile(request.profile, report::ProfileCsv(result));
+  if (!request.figure.empty()) WriteFigure(request.figure, report::GapFigure(result));
   if (request.json == "-") {
-    fmt::print("{}", GapJson(evidence));
+    fmt::print("{}", report::GapJson(result));
     return;
   }
-  if (!request.json.empty()) WriteFile(request.json, GapJson(evidence));
-  fmt::print("{}", GapText(evidence));
+  if (!request.json.empty()) WriteFile(request.json, report::GapJson(result));
+  fmt::print("{}", report::GapText(result));
 }
 
 /// A log that counts twice would pass for a repeat.
@@ -147,10 +150,10 @@ void AddGap(CLI::App& app, int& exit_code) {
   app.callback([request, &exit_code] {
     CheckInputs(*request);
     CheckNames(*request);
-    GapEvidence evidence = Measure(*request);
-    if (!request->sim_repeats.empty()) evidence.likeness = MeasureRepeats(*request, evidence);
-    Save(*request, evidence);
-    const bool falsified = evidence.verdict.verdict == gap::Verdict::kFalsified;
+    gap::GapResult result = Measure(*request);
+    if (!request->sim_repeats.empty()) result.likeness = MeasureRepeats(*request, result);
+    Save(*request, result);
+    const bool falsified = result.verdict.verdict == gap::Verdict::kFalsified;
     exit_code = request->exit_code && falsified ? kFalsified : kDone;
   });
 }

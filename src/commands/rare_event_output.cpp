@@ -7,7 +7,8 @@
 #include <limits>
 
 #include "files.hpp"
-#include "json_fields.hpp"
+#include "rift/report/json/sweep.hpp"
+#include "rift/report/text/sweep.hpp"
 #include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "rift/sweep/falsify/grid.hpp"
@@ -38,21 +39,6 @@ double WorstRobustness_m(std::span<const sweep::TrialRow> rows, double threshold
   return worst_m;
 }
 
-std::string SentenceOf(const sweep::RareEvent& event) {
-  if (!event.is_reached) {
-    return fmt::format(
-        "no failure was reached in {} levels: a setting drawn at random fails with a probability "
-        "of about {:.2g} at most",
-        event.levels, event.high);
-  }
-  return fmt::format(
-      "a setting drawn at random fails with a probability of {:.2g}, between {:.2g} and {:.2g} "
-      "with 95 % confidence ({} settings in {})",
-      event.probability, event.low, event.high, event.evaluations,
-      event.levels == 1 ? std::string("1 level: it is not rare")
-                        : fmt::format("{} levels of subset simulation", event.levels));
-}
-
 }  // namespace
 
 std::string RareEventInto(const std::filesystem::path& folder,
@@ -70,21 +56,9 @@ std::string RareEventInto(const std::filesystem::path& folder,
   const sweep::RareEvent event = sweep::EstimateRareEvent(static_cast<int>(parameters.size()),
                                                           robustness_m, experiment.seed, options);
   trials.End();
-  const std::string sentence = SentenceOf(event);
-  nlohmann::ordered_json json{
-      {"probability", NumberOrNull(event.probability)},
-      {"low", event.low},
-      {"high", event.high},
-      {"confidence", 0.95},
-      {"coefficient_of_variation", NumberOrNull(event.coefficient_of_variation)},
-      {"is_reached", event.is_reached},
-      {"levels", event.levels},
-      {"settings", event.evaluations},
-      {"trials_per_setting", experiment.reference.trials.names.size()},
-      {"options", FieldsToJson(options)},
-      {"sentence", sentence}};
-  WriteFile(folder / "rare_event.json", Dump(json));
-  return fmt::format("\nrare event: {}\n", sentence);
+  const size_t trials_per_setting = experiment.reference.trials.names.size();
+  WriteFile(folder / "rare_event.json", report::RareEventJson(event, options, trials_per_setting));
+  return fmt::format("\nrare event: {}\n", report::RareEventSentence(event));
 }
 
 }  // namespace rift::commands

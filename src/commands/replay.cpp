@@ -6,15 +6,16 @@
 #include <stdexcept>
 
 #include "files.hpp"
+#include "rift/report/json/table.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/yaml/enum_name.hpp"
-#include "sweep_output.hpp"
 
 namespace rift::commands {
 namespace {
 
-sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row) {
+sweep::TrialRequest RequestOf(const experiment::Experiment& experiment,
+                              const report::TableRow& row) {
   sweep::TrialRequest request{.trial = row.at("trial")};
   std::uint64_t seed = 0;
   const std::string& text = row.at("seed");
@@ -27,7 +28,7 @@ sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const Ta
 }
 
 /// Cells that the trial alone decides.
-std::string Evidence(const TableRow& row) {
+std::string Evidence(const report::TableRow& row) {
   std::string text;
   for (const auto& [column, cell] : row) {
     if (column != "id") text += fmt::format("{} {}, ", column, cell);
@@ -38,7 +39,8 @@ std::string Evidence(const TableRow& row) {
 }  // namespace
 
 Replay ReplayRow(const std::filesystem::path& folder, const std::string& id) {
-  const TableRow row = ReadTableRow(folder / "table.csv", id);
+  const std::filesystem::path table = folder / "table.csv";
+  const report::TableRow row = report::TableRowOf(ReadFile(table), id, table.string());
   const std::string file = (folder / "experiment.yaml").string();
   const experiment::Experiment experiment =
       experiment::LoadExperiment(file, {}, [](const std::string& path) { return ReadFile(path); });
@@ -55,7 +57,7 @@ Replay ReplayRow(const std::filesystem::path& folder, const std::string& id) {
   replay.run = sweep::Simulate(replay.trial);
   sweep::SweepResult again = sweep::EmptyResult(experiment);
   again.rows = {evaluator.Evaluate(request)};
-  const TableRow made = FirstTableRow(TableCsv(again));
+  const report::TableRow made = report::FirstTableRow(report::TableCsv(again));
   if (Evidence(made) != Evidence(row)) {
     throw std::runtime_error(fmt::format(
         "row {} comes out different (gap {} m, not {} m): another version of rift, or of its logs, "

@@ -5,7 +5,6 @@
 
 #include "rift/experiment/experiment.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
-#include "table_row.hpp"
 
 namespace rift::commands {
 

@@ -11,13 +11,13 @@
 #include "outputs.hpp"
 #include "replay.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/report/json/trial.hpp"
+#include "rift/report/text/trial.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/yaml/bind.hpp"
-#include "simulate_output.hpp"
 #include "simulate_pictures.hpp"
 #include "simulate_twin.hpp"
-#include "trial_output.hpp"
 
 namespace rift::commands {
 namespace {
@@ -109,8 +109,8 @@ void Save(const fs::path& out, const experiment::Experiment& experiment,
   const RunFiles files(out);
   WriteFile(files.experiment, experiment::WriteExperiment(experiment));
   WriteFile(files.truth, trajectory::WriteRift(run.truth));
-  WriteFile(files.commands, CommandsCsv(run.result));
-  WriteFile(files.summary, SimulationJson(experiment, run));
+  WriteFile(files.commands, report::CommandsCsv(run.result));
+  WriteFile(files.summary, report::SimulationJson(experiment, run));
   WriteFile(files.trajectory, trajectory::WriteRift(run.result.trajectory));
 }
 
@@ -214,8 +214,8 @@ void AddSimulate(CLI::App& app, int& exit_code) {
     }
     MakePictures(request->pictures, made.experiment, made.trial, made.run);
     fmt::print(stderr, "log: {}\n", RunFiles(made.out).trajectory.string());
-    fmt::print("{}", request->json ? SimulationJson(made.experiment, made.run)
-                                   : SimulationText(made.experiment, made.run));
+    fmt::print("{}", request->json ? report::SimulationJson(made.experiment, made.run)
+                                   : report::SimulationText(made.experiment, made.run));
     exit_code = made.run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;
   });
 }

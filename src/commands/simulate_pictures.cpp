@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "figure_file.hpp"
+#include "rift/geometry/floor.hpp"
 #include "rift/report/figures/simulation_figure.hpp"
 #include "rift/view/film.hpp"
 #include "rift/view/viewer.hpp"
@@ -16,8 +17,8 @@ namespace {
 
 constexpr double kGroundStep_m = 0.002;  // the edge of a bump shows
 
-std::vector<report::FloorArea> AreasOf(const simulation::TerrainOptions& terrain) {
-  std::vector<report::FloorArea> areas;
+std::vector<geometry::FloorArea> AreasOf(const simulation::TerrainOptions& terrain) {
+  std::vector<geometry::FloorArea> areas;
   for (const simulation::PatchOptions& patch : terrain.patches) {
     areas.push_back({fmt::format("mu {:g}", patch.mu), patch.x_min_m, patch.x_max_m, patch.y_min_m,
                      patch.y_max_m});
@@ -66,6 +67,7 @@ view::Film FilmOf(const experiment::Experiment& experiment, const sweep::Simulat
   const simulation::Terrain terrain(trial.simulation.terrain, trial.image);
   view::Run shown{
       .title = fmt::format("{} on {}", experiment.name, trial.simulation.terrain.surface),
+      .patches = AreasOf(trial.simulation.terrain),
       .body = ShapeOf(trial.simulation.body),
       .height_at = [&](double x_m, double y_m) { return terrain.HeightAt(x_m, y_m); },
       .truth = run.truth,
@@ -74,9 +76,6 @@ view::Film FilmOf(const experiment::Experiment& experiment, const sweep::Simulat
   for (const control::Waypoint& waypoint : trial.waypoints) {
     shown.waypoints.push_back({waypoint.name, waypoint.Position()});
     shown.reference_m.push_back(waypoint.Position());
-  }
-  for (const report::FloorArea& area : AreasOf(trial.simulation.terrain)) {
-    shown.patches.push_back({area.label, area.x_min_m, area.x_max_m, area.y_min_m, area.y_max_m});
   }
   return view::MakeFilm(shown);
 }

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
-#include "json_fields.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/report/json/fields.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/twin/overhead_camera.hpp"
 #include "rift/twin/twin.hpp"
@@ -39,19 +39,19 @@ std::string Ending(const twin::TwinRun& run) {
 }
 
 std::string TwinJson(const experiment::Experiment& experiment, const twin::TwinRun& run) {
-  return Dump({{"name", experiment.name},
-               {"rift_version", RIFT_VERSION},
-               {"seed", experiment.seed},
-               {"ending", Ending(run)},
-               {"has_driven", run.has_driven},
-               {"true_path_length_m", run.truth.ArcLength_m()},
-               {"began_steady_s", run.began_s},
-               {"skipped_s", run.skipped_s},
-               {"pictures", run.pictures},
-               {"picture_cpu_s", run.picture_cpu_s},
-               {"picture_late_p99_s", run.picture_late_p99_s},
-               {"robot_stopped_by_itself", run.stops},
-               {"robot_rejected", run.rejected}});
+  return report::Dump({{"name", experiment.name},
+                       {"rift_version", RIFT_VERSION},
+                       {"seed", experiment.seed},
+                       {"ending", Ending(run)},
+                       {"has_driven", run.has_driven},
+                       {"true_path_length_m", run.truth.ArcLength_m()},
+                       {"began_steady_s", run.began_s},
+                       {"skipped_s", run.skipped_s},
+                       {"pictures", run.pictures},
+                       {"picture_cpu_s", run.picture_cpu_s},
+                       {"picture_late_p99_s", run.picture_late_p99_s},
+                       {"robot_stopped_by_itself", run.stops},
+                       {"robot_rejected", run.rejected}});
 }
 
 void Save(const fs::path& folder, const experiment::Experiment& experiment,

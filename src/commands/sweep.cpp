@@ -7,19 +7,20 @@
 #include <optional>
 
 #include "calibrate.hpp"
-#include "explanation_output.hpp"
 #include "files.hpp"
 #include "folder_lock.hpp"
-#include "json_fields.hpp"
 #include "keys_flag.hpp"
-#include "likeness_output.hpp"
 #include "rift/commands/command.hpp"
-#include "rift/sweep/calibrate/identification.hpp"
+#include "rift/report/json/fields.hpp"
+#include "rift/report/json/likeness.hpp"
+#include "rift/report/json/sweep.hpp"
+#include "rift/report/json/table.hpp"
+#include "rift/report/text/likeness.hpp"
+#include "rift/report/text/sweep.hpp"
 #include "rift/sweep/calibrate/sweep_likeness.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "sweep_explain.hpp"
-#include "sweep_output.hpp"
 #include "sweep_report.hpp"
 #include "sweep_run.hpp"
 #include "sweep_status.hpp"
@@ -108,8 +109,8 @@ void Save(const fs::path& out, const experiment::Experiment& experiment,
           const sweep::Evaluator& evaluator, const sweep::SweepResult& result) {
   WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
   WriteFile(out / "inputs.txt", evaluator.InputsText());
-  WriteFile(out / "table.csv", TableCsv(result));
-  WriteFile(out / "summary.json", SummaryJson(result));
+  WriteFile(out / "table.csv", report::TableCsv(result));
+  WriteFile(out / "summary.json", report::SummaryJson(result));
 }
 
 bool IsFalsified(const sweep::SweepResult& result) {
@@ -150,21 +151,21 @@ int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
 void SaveReport(const fs::path& out, const sweep::SweepResult& result,
                 const sweep::Explanation& explanation,
                 const std::vector<sweep::GroupLikeness>& likeness, sweep::Evaluator& evaluator) {
-  WriteFile(out / "explanation.json", ExplanationJson(result, explanation));
+  WriteFile(out / "explanation.json", report::ExplanationJson(result, explanation));
   WriteSweepReport(out, result, explanation, evaluator);
-  if (!likeness.empty()) WriteFile(out / "likeness.json", Dump(LikenessJson(likeness)));
+  if (!likeness.empty()) WriteFile(out / "likeness.json", report::Dump(report::LikenessJson(likeness)));
 }
 
 void Print(const SweepRequest& request, const sweep::SweepResult& result,
            const sweep::Explanation& explanation,
            const std::vector<sweep::GroupLikeness>& likeness) {
   if (request.json) {
-    fmt::print("{}", SummaryJson(result));
+    fmt::print("{}", report::SummaryJson(result));
     return;
   }
-  fmt::print("{}", SweepText(result));
-  if (!likeness.empty()) fmt::print("\n{}", LikenessText(likeness));
-  fmt::print("{}", ExplanationText(result, explanation, request.explain.suggest > 0));
+  fmt::print("{}", report::SweepText(result));
+  if (!likeness.empty()) fmt::print("\n{}", report::LikenessText(likeness));
+  fmt::print("{}", report::ExplanationText(result, explanation, request.explain.suggest > 0));
 }
 
 int CalibrateFor(const SweepRequest& request, const experiment::Experiment& experiment) {

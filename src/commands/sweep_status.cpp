@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "folder_lock.hpp"
-#include "json_fields.hpp"
+#include "rift/report/json/fields.hpp"
 #include "rift/sweep/run/journal.hpp"
 #include "sweep_run.hpp"
 
@@ -36,7 +36,7 @@ std::string SweepStatus(const std::filesystem::path& folder, bool json) {
   int done = 0;
   for (const auto& [status, count] : summary.trials_by_status) done += count;
   if (json) {
-    nlohmann::ordered_json report{{"state", state},
+    nlohmann::ordered_json status{{"state", state},
                                   {"name", NoteOf(summary, "name")},
                                   {"done", done},
                                   {"most_trials", std::stoi(NoteOf(summary, "most_trials"))},
@@ -46,8 +46,8 @@ std::string SweepStatus(const std::filesystem::path& folder, bool json) {
                                   {"largest_gap_m", nullptr},
                                   {"largest_gap_at", summary.largest_key},
                                   {"trials_by_status", summary.trials_by_status}};
-    if (summary.largest_gap_m) report["largest_gap_m"] = *summary.largest_gap_m;
-    return Dump(report);
+    if (summary.largest_gap_m) status["largest_gap_m"] = *summary.largest_gap_m;
+    return report::Dump(status);
   }
   std::string text = fmt::format("{}: {}, {} trials done (planned: {}) in {} s, {} falsified\n",
                                  NoteOf(summary, "name"), state, done, PlanText(summary),

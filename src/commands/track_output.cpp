@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "files.hpp"
-#include "json_fields.hpp"
+#include "rift/report/json/fields.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/statistics/quantile.hpp"
 #include "rift/yaml/enum_name.hpp"
@@ -57,9 +57,9 @@ ordered_json FrameJson(const vision::CameraModel& camera) {
 }
 
 ordered_json SpanJson(const std::vector<double>& values) {
-  return {{"p50", NumberOrNull(statistics::Quantile(values, 0.5))},
-          {"p95", NumberOrNull(statistics::Quantile(values, 0.95))},
-          {"max", NumberOrNull(statistics::Quantile(values, 1.0))}};
+  return {{"p50", report::NumberOrNull(statistics::Quantile(values, 0.5))},
+          {"p95", report::NumberOrNull(statistics::Quantile(values, 0.95))},
+          {"max", report::NumberOrNull(statistics::Quantile(values, 1.0))}};
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ std::string TrackJson(const TrackRequest& request, const vision::CameraModel& ca
       {"reason", run.reason},
       {"zero_of_t_s_on_the_steady_clock", run.zero_s},
       {"rows", rows},
-      {"rows_per_s", NumberOrNull(RowsPerSecond(run, rows))},
+      {"rows_per_s", report::NumberOrNull(RowsPerSecond(run, rows))},
       {"pictures", run.frames},
       {"delivered", run.status.delivered},
       {"dropped", run.status.dropped},
@@ -89,10 +89,10 @@ std::string TrackJson(const TrackRequest& request, const vision::CameraModel& ca
       {"latency_s", SpanJson(run.latencies_s)},
       {"finding_s", SpanJson(run.costs_s)},
       {"reference_tags_off_m", run.moved_m ? ordered_json(*run.moved_m) : ordered_json(nullptr)}};
-  json["track"] = {{"capture", FieldsToJson(options.capture)},
-                   {"tag", FieldsToJson(options.tag)},
-                   {"session", FieldsToJson(request.session)}};
-  return Dump(json);
+  json["track"] = {{"capture", report::FieldsToJson(options.capture)},
+                   {"tag", report::FieldsToJson(options.tag)},
+                   {"session", report::FieldsToJson(request.session)}};
+  return report::Dump(json);
 }
 
 std::string TrackText(const TrackRun& run, int rows) {

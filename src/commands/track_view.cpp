@@ -48,8 +48,8 @@ TrackView::TrackView(vision::Vision& vision, const vision::CameraModel& camera, 
   if (camera.world) plane_z_m_ = 0.0;
 }
 
-std::vector<vision::MapPlace> TrackView::Places() const {
-  std::vector<vision::MapPlace> places;
+std::vector<geometry::NamedPoint> TrackView::Places() const {
+  std::vector<geometry::NamedPoint> places;
   for (const auto* list : {&content_.planned, &recorded_}) {
     for (const control::Waypoint& waypoint : *list) {
       places.push_back({waypoint.name + (waypoint.stop ? "" : " (pass)"), waypoint.Position()});

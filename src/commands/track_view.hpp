@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rift/control/waypoint.hpp"
+#include "rift/geometry/floor.hpp"
 #include "rift/vision/module/module.hpp"
 
 namespace rift::commands {
@@ -35,7 +36,7 @@ class TrackView {
   void Obey(const vision::TrackInput& input, const std::optional<vision::Sighting>& sighting);
   void Record(const Eigen::Vector2d& p_m, std::optional<double> heading_deg);
   void Save() const;
-  std::vector<vision::MapPlace> Places() const;
+  std::vector<geometry::NamedPoint> Places() const;
   std::vector<std::string> Prompts(const std::optional<double>& moved_m) const;
 
   vision::Vision& vision_;

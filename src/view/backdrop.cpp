@@ -71,7 +71,7 @@ cv::Mat ShadedGround(const Ground& ground, cv::Size size) {
   return shaded;
 }
 
-void DrawPatch(cv::Mat& picture, const Layout& layout, const Patch& patch) {
+void DrawPatch(cv::Mat& picture, const Layout& layout, const geometry::FloorArea& patch) {
   const cv::Point2d low = layout.TopPixel({patch.x_min_m, patch.y_min_m});
   const cv::Point2d high = layout.TopPixel({patch.x_max_m, patch.y_max_m});
   const cv::Rect2d whole(cv::Point2d(low.x, high.y), cv::Point2d(high.x, low.y));
@@ -87,7 +87,7 @@ void DrawPatch(cv::Mat& picture, const Layout& layout, const Patch& patch) {
 }
 
 void DrawWaypoints(const Pen& pen, const Layout& layout, const Stage& stage) {
-  for (const Place& place : stage.waypoints) {
+  for (const geometry::NamedPoint& place : stage.waypoints) {
     const cv::Point2d at = layout.TopPixel(place.p_in_world_m);
     pen.Dot(at, 7, colour::kInk);
     pen.Dot(at, 5.5, colour::kYellow);
@@ -125,7 +125,7 @@ void DrawCaptions(const Pen& pen, const Layout& layout) {
 cv::Mat Backdrop(const Stage& stage, const Layout& layout) {
   cv::Mat picture(layout.size, CV_8UC3, colour::kPaper);
   ShadedGround(stage.ground, layout.top.size()).copyTo(picture(layout.top));
-  for (const Patch& patch : stage.patches) DrawPatch(picture, layout, patch);
+  for (const geometry::FloorArea& patch : stage.patches) DrawPatch(picture, layout, patch);
   const Pen pen(picture, layout.Ui());
   Points reference;
   for (const Eigen::Vector2d& p_m : stage.reference_m) reference.push_back(layout.TopPixel(p_m));

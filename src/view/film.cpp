@@ -55,9 +55,10 @@ int TargetAt(const Run& run, double t_s) {
   if (row < 0) return -1;
   const StampedPose& pose = run.logged.poses[row];
   const Eigen::Vector2d target_m(pose.target_x_m, pose.target_y_m);
-  const auto place = std::find_if(run.waypoints.begin(), run.waypoints.end(), [&](const Place& p) {
-    return (p.p_in_world_m - target_m).norm() <= kSamePlace_m;
-  });
+  const auto place =
+      std::find_if(run.waypoints.begin(), run.waypoints.end(), [&](const geometry::NamedPoint& p) {
+        return (p.p_in_world_m - target_m).norm() <= kSamePlace_m;
+      });
   return place == run.waypoints.end() ? -1 : static_cast<int>(place - run.waypoints.begin());
 }
 

@@ -20,7 +20,7 @@ struct Box {
 
 Box ShownFloor(const Run& run, double margin_m) {
   Box box;
-  for (const Place& place : run.waypoints) box.Cover(place.p_in_world_m);
+  for (const geometry::NamedPoint& place : run.waypoints) box.Cover(place.p_in_world_m);
   for (const Eigen::Vector2d& p_m : run.reference_m) box.Cover(p_m);
   for (const trajectory::StampedPose& pose : run.truth.poses) box.Cover(pose.Position());
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(margin_m + run.body.chassis_radius_m);

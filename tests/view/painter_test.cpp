@@ -89,7 +89,7 @@ TEST_CASE("The side view shows the pitch") {
 
 TEST_CASE("Waypoints are yellow where they lie") {
   const Shot shot(StraightRun());
-  for (const Place& place : shot.film.stage.waypoints) {
+  for (const geometry::NamedPoint& place : shot.film.stage.waypoints) {
     INFO(place.name);
     const cv::Point at = shot.painter.layout().TopPixel(place.p_in_world_m);
     const cv::Vec3b pixel = shot.picture.at<cv::Vec3b>(at + cv::Point(4, 0));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "rift/geometry/floor.hpp"
 #include "rift/trajectory/trajectory.hpp"
 #include "rift/view/options.hpp"
 #include "rift/view/scene.hpp"
@@ -14,9 +15,9 @@ namespace rift::view {
 /// A finished run as its maker knows it.
 struct Run {
   std::string title;
-  std::vector<Place> waypoints;              ///< the start first
-  std::vector<Eigen::Vector2d> reference_m;  ///< path to compare with; may be empty
-  std::vector<Patch> patches;
+  std::vector<geometry::NamedPoint> waypoints;  ///< the start first
+  std::vector<Eigen::Vector2d> reference_m;     ///< path to compare with; may be empty
+  std::vector<geometry::FloorArea> patches;
   BodyShape body;
   /// Height of the ground in m at x, y; -infinity where there is none. Unset: a floor at 0.
   std::function<double(double x_m, double y_m)> height_at;

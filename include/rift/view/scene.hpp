@@ -5,25 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "rift/geometry/floor.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/trial/robot.hpp"
 
 namespace rift::view {
-
-/// A waypoint as it is drawn.
-struct Place {
-  std::string name;
-  Eigen::Vector2d p_in_world_m;
-};
-
-/// A rectangle of the floor that is not like the rest, such as one with its own friction.
-struct Patch {
-  std::string label;
-  double x_min_m = 0.0;
-  double x_max_m = 0.0;
-  double y_min_m = 0.0;
-  double y_max_m = 0.0;
-};
 
 /// Outline of the robot; the origin is the middle of the axle (facts: the authors' world).
 struct BodyShape {
@@ -55,9 +41,9 @@ struct Stage {
   std::string title;
   Ground ground;
   double top_m = 0.0;  ///< above the highest point of robot and ground
-  std::vector<Place> waypoints;
+  std::vector<geometry::NamedPoint> waypoints;
   std::vector<Eigen::Vector2d> reference_m;
-  std::vector<Patch> patches;
+  std::vector<geometry::FloorArea> patches;
   BodyShape body;
   std::vector<Eigen::Vector2d> trail_m;  ///< every position that was measured, in order
 };

@@ -90,4 +90,26 @@ Figure CalibrationPathFigure(const CalibratedPaths& paths, const ReportOptions& 
   return figure;
 }
 
+std::optional<Figure> CalibrationFigure(const std::string& name,
+                                        const sweep::CalibrationReport& report) {
+  std::vector<CalibratedTrial> trials;
+  bool has_gaps = false;
+  for (const sweep::CalibrationTrial& trial : report.trials) {
+    trials.push_back({trial.level, trial.is_held_out, trial.gap_before_m, trial.gap_after_m});
+    has_gaps = has_gaps || (!std::isnan(trial.gap_before_m) && !std::isnan(trial.gap_after_m));
+  }
+  if (!has_gaps) return std::nullopt;
+  std::vector<Figure> parts{CalibrationGapFigure(trials)};
+  if (!report.shown_real.poses.empty()) {
+    const sweep::CalibrationTrial& shown = report.trials[report.shown];
+    parts.push_back(CalibrationPathFigure(
+        {.name = fmt::format("{}{}trial {}{}", shown.level, shown.level.empty() ? "" : ", ",
+                             shown.trial, shown.is_held_out ? " (held out)" : ""),
+         .real = report.shown_real,
+         .before = report.shown_before,
+         .after = report.shown_after}));
+  }
+  return Stack("calibration", name + ": before and after the fit", parts);
+}
+
 }  // namespace rift::report

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 #include "rift/report/figures/gnuplot_text.hpp"
@@ -265,6 +266,19 @@ std::vector<Figure> GapFigures(const std::vector<ComparedPair>& pairs, const gap
                                const ReportOptions& options) {
   return {OverlayFigure(pairs, options), ErrorFigure(pairs, gap, options),
           ErrorCdfFigure(pairs, gap, options)};
+}
+
+Figure GapFigure(const gap::GapResult& result) {
+  const auto name_of = [](const std::string& path) {
+    return std::filesystem::path(path).stem().string();
+  };
+  std::vector<ComparedPair> pairs;
+  for (size_t i = 0; i < result.trials.size(); ++i) {
+    pairs.push_back(ComparePair(name_of(result.sim_path), result.sim,
+                                name_of(result.trials[i].path), result.reals[i], result.options));
+  }
+  return Stack("gap", "paths, error over u and its distribution",
+               GapFigures(pairs, result.options));
 }
 
 }  // namespace rift::report

@@ -56,7 +56,7 @@ Extent ExtentOf(const SimulatedTrial& trial) {
   for (const Trajectory* path : {&trial.truth, &trial.logged}) {
     for (const StampedPose& pose : path->poses) cover(pose.x_m, pose.y_m);
   }
-  for (const NamedPoint& point : trial.waypoints) {
+  for (const geometry::NamedPoint& point : trial.waypoints) {
     cover(point.p_in_world_m.x(), point.p_in_world_m.y());
   }
   extent.x_m.Widen(0.07, 0.2);
@@ -79,7 +79,7 @@ std::string Block(const char* name, const std::vector<StampedPose>& poses, Row&&
 
 std::string AreaText(const SimulatedTrial& trial, const Extent& shown) {
   std::string text;
-  for (const FloorArea& area : trial.areas) {
+  for (const geometry::FloorArea& area : trial.areas) {
     const double left = std::max(area.x_min_m, shown.x_m.low);
     const double right = std::min(area.x_max_m, shown.x_m.high);
     const double low = std::max(area.y_min_m, shown.y_m.low);
@@ -106,7 +106,7 @@ std::string HeadingArrow(const StampedPose& pose, std::string_view colour) {
 void AddWaypoints(const SimulatedTrial& trial, std::string* text, PlotCommand* plot) {
   if (trial.waypoints.empty()) return;
   DataBlock block("waypoints");
-  for (const NamedPoint& point : trial.waypoints) {
+  for (const geometry::NamedPoint& point : trial.waypoints) {
     block.Add({point.p_in_world_m.x(), point.p_in_world_m.y()});
     *text += fmt::format("set label {} at {:.9g},{:.9g} center offset 0,-1.1 front\n",
                          Quoted(Shortened(point.name, 16)), point.p_in_world_m.x(),

@@ -1,10 +1,9 @@
+#include "causes.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "rift/report/figures/gnuplot_text.hpp"
-#include "rift/report/text/findings.hpp"
 
 namespace rift::report {
 namespace {
@@ -109,24 +108,6 @@ std::string PartText(const sweep::GapPart& part) {
                      IntervalText(part.size_m), part.remedy);
 }
 
-}  // namespace
-
-Finding Because(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
-  Finding finding{"Because of what?", {}};
-  SayFactors(explanation, &finding);
-  SayIndices(explanation, &finding);
-  SayStart(explanation, &finding);
-  SayInert(explanation, true, &finding);
-  SayInert(explanation, false, &finding);
-  SayInteractions(explanation, &finding);
-  if (finding.sentences.empty()) {
-    finding.sentences.push_back(Sentence(
-        result.effects.empty() ? "Not known: no parameter was varied over comparable values."
-                               : "Not known: too few trials with a gap to test any parameter."));
-  }
-  return finding;
-}
-
 void SayParts(const sweep::Explanation& explanation, Finding* finding) {
   const sweep::Anatomy& anatomy = explanation.anatomy;
   for (const sweep::GapPart& part : anatomy.parts) {
@@ -146,6 +127,56 @@ void SayParts(const sweep::Explanation& explanation, Finding* finding) {
                     "path it would differ by {:+.4f} m.",
                     anatomy.timing_m.mean));
   }
+}
+
+template <class Field>
+double MeanOverTrials(const sweep::SweepResult& result, Field field) {
+  double sum = 0.0;
+  long n = 0;
+  for (const sweep::TrialRow& row : result.rows) {
+    const double value = row.comparison.*field;
+    if (!row.IsOk() || !std::isfinite(value)) continue;
+    sum += value;
+    ++n;
+  }
+  return n == 0 ? NAN : sum / static_cast<double>(n);
+}
+
+}  // namespace
+
+Finding Because(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+  Finding finding{"Because of what?", {}};
+  SayFactors(explanation, &finding);
+  SayIndices(explanation, &finding);
+  SayStart(explanation, &finding);
+  SayInert(explanation, true, &finding);
+  SayInert(explanation, false, &finding);
+  SayInteractions(explanation, &finding);
+  if (finding.sentences.empty()) {
+    finding.sentences.push_back(Sentence(
+        result.effects.empty() ? "Not known: no parameter was varied over comparable values."
+                               : "Not known: too few trials with a gap to test any parameter."));
+  }
+  return finding;
+}
+
+Finding MadeOf(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+  Finding finding{"What is the gap made of?", {}};
+  const double gap_m = MeanOverTrials(result, &gap::Comparison::gap_m);
+  const double aligned_m = MeanOverTrials(result, &gap::Comparison::start_aligned_gap_m);
+  const double shape_m = MeanOverTrials(result, &gap::Comparison::shape_gap_m);
+  if (!std::isfinite(aligned_m) || !std::isfinite(shape_m)) {
+    finding.sentences.push_back(Sentence("Not known: no trial has a gap."));
+    return finding;
+  }
+  const double change = (aligned_m - gap_m) / gap_m;
+  finding.sentences.push_back(
+      fmt::format("Mean gap {:.4f} m; with the first points laid together {:.4f} m ({:+.0f} %); "
+                  "{:.4f} m is shape, left after "
+                  "the best rigid motion.",
+                  gap_m, aligned_m, 100.0 * change, shape_m));
+  SayParts(explanation, &finding);
+  return finding;
 }
 
 }  // namespace rift::report

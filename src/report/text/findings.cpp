@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "causes.hpp"
 #include "rift/report/figures/gnuplot_text.hpp"
 #include "rift/report/figures/setting_grid.hpp"
 #include "rift/report/figures/sweep_figures.hpp"
 #include "rift/sweep/falsify/labels.hpp"
+#include "rift/yaml/enum_name.hpp"
+#include "trial_query.hpp"
 
 namespace rift::report {
 namespace {
@@ -195,7 +198,66 @@ Finding Next(const sweep::SweepResult& result, const sweep::Explanation& explana
   return finding;
 }
 
+Finding BesideNoise(const sweep::SweepResult& result) {
+  Finding finding{"How much is the robot's own scatter?", {}};
+  double sum_m = 0.0;
+  long n = 0;
+  for (const sweep::SettingResult& setting : result.settings) {
+    if (!std::isfinite(setting.noise_floor_m)) continue;
+    sum_m += setting.noise_floor_m;
+    ++n;
+  }
+  if (n == 0) {
+    finding.sentences.push_back(
+        Sentence("Not known: no setting has two references to compare with each other."));
+    return finding;
+  }
+  const double floor_m = sum_m / static_cast<double>(n);
+  finding.sentences.push_back(fmt::format(
+      "Repeats of one setting are {} apart from each other (noise floor, mean of {}); the mean gap "
+      "to the candidate is {}, {:.2f} times that.",
+      Metres(floor_m), Count(n, "setting"), Metres(result.all.mean_gap_m),
+      result.all.mean_gap_m / floor_m));
+  return finding;
+}
+
+Finding Missing(const sweep::SweepResult& result) {
+  Finding finding{"What was not measured?", {}};
+  if (result.all.not_ok == 0) {
+    finding.sentences.push_back(fmt::format("Nothing: all {} have a gap.",
+                                            Count(static_cast<long>(result.rows.size()), "trial")));
+    return finding;
+  }
+  std::string kinds;
+  const auto names = EnumNames(sweep::TrialStatus{});
+  for (std::size_t kind = 1; kind < names.size(); ++kind) {
+    const auto status = static_cast<sweep::TrialStatus>(kind);
+    const long n = std::count_if(result.rows.begin(), result.rows.end(),
+                                 [status](const auto& row) { return row.status == status; });
+    if (n == 0) continue;
+    kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", n, names[kind]);
+  }
+  finding.sentences.push_back(
+      fmt::format("Without a gap: {} of {} ({}). They are in no mean on this page.",
+                  result.all.not_ok, Count(static_cast<long>(result.rows.size()), "trial"), kinds));
+  const long fewer =
+      std::count_if(result.settings.begin(), result.settings.end(), [&](const auto& setting) {
+        return setting.verdict.repeats > 0 && NotMeasured(result, setting) > 0;
+      });
+  if (fewer > 0) {
+    finding.sentences.push_back(
+        fmt::format("{} judged by fewer repeats than asked for.", Count(fewer, "setting")));
+  }
+  return finding;
+}
+
 }  // namespace
+
+std::string Sentence::Text() const {
+  std::string text;
+  for (const Piece& piece : pieces_) text += piece.text;
+  return text;
+}
 
 Headline Summary(const sweep::SweepResult& result) {
   const std::string threshold = Number(result.gap.threshold_m);
@@ -216,9 +278,23 @@ Headline Summary(const sweep::SweepResult& result) {
 
 std::vector<Finding> Findings(const sweep::SweepResult& result,
                               const sweep::Explanation& explanation) {
-  return {Where(result, explanation), Because(result, explanation), HowSure(result, explanation),
-          Next(result, explanation),  MadeOf(result, explanation),  BesideNoise(result),
-          NotMeasuredFinding(result)};
+  return {Where(result, explanation),
+          Because(result, explanation),
+          HowSure(result, explanation),
+          Next(result, explanation),
+          MadeOf(result, explanation),
+          BesideNoise(result),
+          Missing(result)};
+}
+
+std::vector<std::string> UnmeasuredTrials(const sweep::SweepResult& result) {
+  std::vector<std::string> lines;
+  for (const sweep::TrialRow& row : result.rows) {
+    if (row.IsOk()) continue;
+    lines.push_back(fmt::format("{}, trial {}: {} – {}", SettingLabel(result, row.theta), row.trial,
+                                yaml::NameOf(row.status), row.reason));
+  }
+  return lines;
 }
 
 }  // namespace rift::report

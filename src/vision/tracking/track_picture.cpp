@@ -100,8 +100,8 @@ void DrawMap(const MapPen& pen, const TrackScene& scene) {
     pen.Line(pen.FromMap({line.from_m, line.to_m}), kBlue, 2);
   }
   pen.Line(pen.FromMap(scene.trail_m), kRed, 2);
-  for (const MapPlace& place : scene.waypoints) {
-    const std::vector<cv::Point> at = pen.FromMap({place.p_in_map});
+  for (const geometry::NamedPoint& place : scene.waypoints) {
+    const std::vector<cv::Point> at = pen.FromMap({place.p_in_world_m});
     if (at.empty()) continue;
     pen.Dot(at.front(), 7.5, kBlack);
     pen.Dot(at.front(), 6.0, kYellow);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rift/report/figures/figure.hpp"
+#include "rift/sweep/calibrate/identification.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
 namespace rift::report {
@@ -29,5 +31,10 @@ struct CalibratedPaths {
 };
 
 Figure CalibrationPathFigure(const CalibratedPaths& paths, const ReportOptions& options = {});
+
+/// Gap of each trial before and after the fit, and the paths of one trial, below each other.
+/// Nothing when no trial has both gaps.
+std::optional<Figure> CalibrationFigure(const std::string& name,
+                                        const sweep::CalibrationReport& report);
 
 }  // namespace rift::report

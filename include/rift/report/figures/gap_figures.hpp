@@ -5,6 +5,7 @@
 
 #include "rift/gap/comparison.hpp"
 #include "rift/gap/options.hpp"
+#include "rift/gap/result.hpp"
 #include "rift/report/figures/figure.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
@@ -42,5 +43,8 @@ Figure ErrorCdfFigure(const std::vector<ComparedPair>& pairs, const gap::GapOpti
 /// The three above, in this order.
 std::vector<Figure> GapFigures(const std::vector<ComparedPair>& pairs, const gap::GapOptions& gap,
                                const ReportOptions& options = {});
+
+/// The three of them below each other, a pair for each trial.
+Figure GapFigure(const gap::GapResult& result);
 
 }  // namespace rift::report

@@ -3,26 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "rift/geometry/floor.hpp"
 #include "rift/report/figures/figure.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
 namespace rift::report {
-
-/// A waypoint as it is drawn; the start is one of them.
-struct NamedPoint {
-  std::string name;
-  Eigen::Vector2d p_in_world_m;
-};
-
-/// A part of the floor that is not like the rest: a slope, a block, a patch with its own friction.
-/// No label: drawn without one.
-struct FloorArea {
-  std::string label;
-  double x_min_m = 0.0;
-  double x_max_m = 0.0;
-  double y_min_m = 0.0;
-  double y_max_m = 0.0;
-};
 
 /// One simulated trial as values.
 struct SimulatedTrial {
@@ -31,8 +16,8 @@ struct SimulatedTrial {
   /// What the tracker saw, on the same clock; may be empty. Channels power_left and power_right,
   /// here or in truth (that comes first), are drawn over time.
   trajectory::Trajectory logged;
-  std::vector<NamedPoint> waypoints;
-  std::vector<FloorArea> areas;
+  std::vector<geometry::NamedPoint> waypoints;  ///< the start is one of them
+  std::vector<geometry::FloorArea> areas;
   std::vector<Eigen::Vector2d> ground_xz_m;  ///< profile of the ground by rising x; may be empty
 };
 

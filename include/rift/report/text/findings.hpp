@@ -1,13 +1,41 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "rift/report/text/sentence.hpp"
 #include "rift/sweep/explain/explanation.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::report {
+
+/// A part of a sentence, with the trials it speaks of as a query of the trials table:
+/// "surface=ground&result=above%20threshold"; empty for words alone.
+struct Piece {
+  std::string text;
+  std::string query;
+};
+
+/// Words of which the numbers lead to their rows.
+class Sentence {
+ public:
+  Sentence() = default;
+  Sentence(std::string text) { Say(std::move(text)); }  // NOLINT: a plain sentence is one
+  Sentence& Say(std::string text) {
+    pieces_.push_back({std::move(text), ""});
+    return *this;
+  }
+  Sentence& Link(std::string text, std::string query) {
+    pieces_.push_back({std::move(text), std::move(query)});
+    return *this;
+  }
+  const std::vector<Piece>& pieces() const { return pieces_; }
+  /// Without the links.
+  std::string Text() const;
+
+ private:
+  std::vector<Piece> pieces_;
+};
 
 /// A question everybody asks of a sweep, and the answer its data give.
 struct Finding {
@@ -28,15 +56,6 @@ Headline Summary(const sweep::SweepResult& result);
 /// missing.
 std::vector<Finding> Findings(const sweep::SweepResult& result,
                               const sweep::Explanation& explanation);
-
-/// What matters, what does not, and why not.
-Finding Because(const sweep::SweepResult& result, const sweep::Explanation& explanation);
-/// Start, frame, shape, and what a better simulator could remove.
-Finding MadeOf(const sweep::SweepResult& result, const sweep::Explanation& explanation);
-/// The same part by part, in sentences of their own.
-void SayParts(const sweep::Explanation& explanation, Finding* finding);
-Finding BesideNoise(const sweep::SweepResult& result);
-Finding NotMeasuredFinding(const sweep::SweepResult& result);
 
 /// One line for each trial without a gap: setting, trial, status, reason.
 std::vector<std::string> UnmeasuredTrials(const sweep::SweepResult& result);

@@ -33,6 +33,15 @@ struct ShrunkFailure {
   bool is_minimal = false;  ///< with any one change taken back it holds (each was tried)
 };
 
+/// What a failing row of a sweep shrank to, with the trials that the claims rest on.
+struct ShrunkRow {
+  int id = 0;  ///< of the row in the sweep's table.csv
+  experiment::Theta nominal;
+  ShrunkFailure shrunk;
+  /// The row, the shrunk one, and that without each of its changes.
+  std::vector<TrialRow> rows;
+};
+
 /// The fewest and smallest changes from `nominal` that still fail: first sets of changes, the small
 /// ones first; then each change towards nominal, through the values of a list or by halving. A
 /// word is changed or not. Every claim in the result was tried, never inferred.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "rift/geometry/floor.hpp"
 #include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/camera/camera_state.hpp"
 #include "rift/vision/camera/frame.hpp"
@@ -12,21 +13,15 @@
 
 namespace rift::vision {
 
-/// A waypoint as the view draws it, in the map.
-struct MapPlace {
-  std::string name;
-  Eigen::Vector2d p_in_map;
-};
-
 /// One moment of a tracking session, to be drawn over the camera's picture.
 struct TrackScene {
   const CameraModel* camera = nullptr;
   const Frame* frame = nullptr;  ///< the picture; none: nothing came yet
   std::optional<Sighting> sighting;
-  std::vector<Eigen::Vector2d> trail_m;  ///< where the tag was, in the map
-  std::vector<Eigen::Vector2d> path_m;   ///< to hold the trail against; may be empty
-  std::vector<MapPlace> waypoints;
-  double plane_z_m = 0.0;  ///< of the map: path, waypoints and trail lie in it
+  std::vector<Eigen::Vector2d> trail_m;         ///< where the tag was, in the map
+  std::vector<Eigen::Vector2d> path_m;          ///< to hold the trail against; may be empty
+  std::vector<geometry::NamedPoint> waypoints;  ///< in the map, as path and trail
+  double plane_z_m = 0.0;                       ///< of the map: path, waypoints and trail lie in it
   CaptureStatus status;
   double latency_s = 0.0;            ///< from the light to the pose; NaN of a recording
   std::vector<std::string> prompts;  ///< what the user is asked or told, lines at the foot

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "rift/experiment/parameter.hpp"
+#include "rift/yaml/enum_name.hpp"
+
+namespace rift::report {
+
+/// Indented text; a file name that is no UTF-8 shows replacement characters.
+std::string Dump(const nlohmann::ordered_json& json);
+
+/// JSON has no NaN: what was not computed is null.
+inline nlohmann::ordered_json NumberOrNull(double value) {
+  return std::isnan(value) ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(value);
+}
+
+/// An Options struct of plain fields as a JSON object with the keys of the YAML file.
+template <class Options>
+nlohmann::ordered_json FieldsToJson(const Options& options) {
+  nlohmann::ordered_json json;
+  Options::Fields(options, [&](const char* key, const auto& value, const auto&...) {
+    if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(value)>>) {
+      json[key] = yaml::NameOf(value);
+    } else {
+      json[key] = value;
+    }
+  });
+  return json;
+}
+
+/// A setting as an object whose keys are the parameters' columns in table.csv:
+/// {"surface": "ground", "v_min": 0.15}.
+nlohmann::ordered_json ThetaJson(const std::vector<experiment::Parameter>& parameters,
+                                 const experiment::Theta& theta);
+
+}  // namespace rift::report

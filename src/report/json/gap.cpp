@@ -1,0 +1,89 @@
+#include "rift/report/json/gap.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "rift/report/json/fields.hpp"
+#include "rift/report/json/likeness.hpp"
+#include "rift/yaml/enum_name.hpp"
+
+namespace rift::report {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json ComparisonJson(const gap::Comparison& c) {
+  return {{"gap_m", NumberOrNull(c.gap_m)},
+          {"u", NumberOrNull(c.gap_u)},
+          {"exact_gap_m", NumberOrNull(c.exact_gap_m)},
+          {"exact_u", NumberOrNull(c.exact_gap_u)},
+          {"mean_error_m", NumberOrNull(c.mean_error_m)},
+          {"rms_error_m", NumberOrNull(c.rms_error_m)},
+          {"median_error_m", NumberOrNull(c.median_error_m)},
+          {"p95_error_m", NumberOrNull(c.p95_error_m)},
+          {"mean_yaw_error_rad", NumberOrNull(c.mean_yaw_error_rad)},
+          {"max_yaw_error_rad", NumberOrNull(c.max_yaw_error_rad)},
+          {"start_offset_m", NumberOrNull(c.start_offset_m)},
+          {"start_aligned_gap_m", NumberOrNull(c.start_aligned_gap_m)},
+          {"shape_gap_m", NumberOrNull(c.shape_gap_m)},
+          {"real_from_sim",
+           {{"x_m", c.real_from_sim.x_m},
+            {"y_m", c.real_from_sim.y_m},
+            {"yaw_rad", c.real_from_sim.yaw_rad}}},
+          {"sim_length_m", NumberOrNull(c.sim_length_m)},
+          {"real_length_m", NumberOrNull(c.real_length_m)},
+          {"length_ratio", NumberOrNull(c.length_ratio)},
+          {"end_error_m", NumberOrNull(c.end_error_m)},
+          {"sim_standstill_share", NumberOrNull(c.sim_standstill_share)},
+          {"real_standstill_share", NumberOrNull(c.real_standstill_share)},
+          {"hausdorff_m", NumberOrNull(c.hausdorff_m)},
+          {"frechet_m", NumberOrNull(c.frechet_m)},
+          {"dtw_m", NumberOrNull(c.dtw_m)},
+          {"equal_time_m", NumberOrNull(c.equal_time_m)}};
+}
+
+}  // namespace
+
+std::string GapJson(const gap::GapResult& result) {
+  const gap::RepeatVerdict& verdict = result.verdict;
+  ordered_json json;
+  json["definition"] = FieldsToJson(result.options);
+  json["definition"]["tag_offset_m"] = result.tag_offset_m;
+  json["definition"]["text"] = gap::DefinitionText(result.options, result.tag_offset_m);
+  json["trials"] = ordered_json::array();
+  for (const auto& trial : result.trials) {
+    ordered_json row{{"sim", result.sim_path}, {"real", trial.path}};
+    row.update(ComparisonJson(trial.comparison));
+    row["falsified"] = trial.comparison.gap_m > result.options.threshold_m;
+    json["trials"].push_back(std::move(row));
+  }
+  json["mean_gap_m"] = result.mean_gap_m;
+  json["noise_floor_m"] = NumberOrNull(result.noise_floor_m);
+  json["verdict"] = yaml::NameOf(verdict.verdict);
+  json["repeats"] = {{"n", verdict.repeats},
+                     {"above_threshold", verdict.above},
+                     {"confidence", verdict.confidence},
+                     {"share_above_low", verdict.share_low},
+                     {"share_above_high", verdict.share_high}};
+  if (result.likeness) json["likeness"] = LikenessJson(*result.likeness);
+  return Dump(json);
+}
+
+std::string ProfileCsv(const gap::GapResult& result) {
+  std::string text = "real,u,error_m,yaw_error_rad,sim_x_m,sim_y_m,real_x_m,real_y_m\n";
+  for (size_t i = 0; i < result.reals.size(); ++i) {
+    const gap::ErrorProfile profile =
+        gap::ProfileAlong(result.sim, result.reals[i], result.options);
+    for (size_t k = 0; k < profile.u.size(); ++k) {
+      const double yaw_rad = profile.yaw_error_rad[k];
+      text +=
+          fmt::format("{},{},{},{},{},{},{},{}\n", i + 1, profile.u[k], profile.error_m[k],
+                      std::isnan(yaw_rad) ? "" : fmt::format("{}", yaw_rad), profile.sim_m[k].x(),
+                      profile.sim_m[k].y(), profile.real_m[k].x(), profile.real_m[k].y());
+    }
+  }
+  return text;
+}
+
+}  // namespace rift::report

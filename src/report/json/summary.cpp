@@ -1,0 +1,141 @@
+#include "rift/report/json/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rift/report/json/fields.hpp"
+#include "rift/sweep/falsify/labels.hpp"
+#include "rift/yaml/enum_name.hpp"
+
+namespace rift::report {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json LevelJson(const sweep::LevelSummary& level) {
+  return {{"mean_gap_m", NumberOrNull(level.mean_gap_m)},
+          {"failures", level.failures},
+          {"n", level.n},
+          {"not_ok", level.not_ok},
+          {"sd_gap_m", NumberOrNull(level.sd_gap_m)}};
+}
+
+ordered_json LevelsJson(const std::vector<sweep::LevelSummary>& levels) {
+  ordered_json json = ordered_json::object();
+  for (const sweep::LevelSummary& level : levels) json[level.level] = LevelJson(level);
+  return json;
+}
+
+ordered_json EffectJson(const sweep::Effect& effect) {
+  return {{"f", NumberOrNull(effect.f)},
+          {"df", {effect.df_between, effect.df_within}},
+          {"p", NumberOrNull(effect.p)},
+          {"eta_squared", NumberOrNull(effect.eta_squared)},
+          {"omega_squared", NumberOrNull(effect.omega_squared)},
+          {"detected", effect.detected},
+          {"sentence", effect.sentence}};
+}
+
+ordered_json SettingJson(const sweep::SweepResult& result, const sweep::SettingResult& setting) {
+  const gap::RepeatVerdict& verdict = setting.verdict;
+  return {{"theta", ThetaJson(result.parameters, setting.theta)},
+          {"mean_gap_m", NumberOrNull(setting.mean_gap_m)},
+          {"verdict", yaml::NameOf(verdict.verdict)},
+          {"failures", verdict.above},
+          {"n", verdict.repeats},
+          {"share_above_low", verdict.share_low},
+          {"share_above_high", verdict.share_high},
+          {"noise_floor_m", NumberOrNull(setting.noise_floor_m)}};
+}
+
+ordered_json FalsificationJson(const sweep::SweepResult& result,
+                               const sweep::Falsification& found) {
+  ordered_json json{{"verdict", yaml::NameOf(found.verdict)},
+                    {"strategy", found.strategy},
+                    {"evaluations", found.evaluations},
+                    {"budget", found.budget},
+                    {"ended_by", found.ended},
+                    {"confidence", found.confidence},
+                    {"share", found.share},
+                    {"falsified", found.falsified},
+                    {"undecided", found.undecided},
+                    {"first_evaluation", nullptr},
+                    {"worst", nullptr}};
+  if (found.first_evaluation) json["first_evaluation"] = *found.first_evaluation;
+  if (found.worst_setting) {
+    json["worst"] = SettingJson(result, result.settings.at(*found.worst_setting));
+  }
+  return json;
+}
+
+/// Of a large sweep only the settings with the largest mean gaps: the file is to be read whole.
+void AddSettings(const sweep::SweepResult& result, ordered_json& json) {
+  constexpr size_t kMostSettings = 10'000;
+  std::vector<const sweep::SettingResult*> settings;
+  for (const sweep::SettingResult& setting : result.settings) settings.push_back(&setting);
+  if (settings.size() > kMostSettings) {
+    const auto is_worse = [](const auto* a, const auto* b) {
+      const auto rank = [](double gap_m) { return std::isnan(gap_m) ? -1.0 : gap_m; };
+      return rank(a->mean_gap_m) > rank(b->mean_gap_m);
+    };
+    std::stable_sort(settings.begin(), settings.end(), is_worse);
+    json["settings_omitted"] = settings.size() - kMostSettings;
+    settings.resize(kMostSettings);
+  }
+  json["settings"] = ordered_json::array();
+  for (const sweep::SettingResult* setting : settings) {
+    json["settings"].push_back(SettingJson(result, *setting));
+  }
+}
+
+/// Means over the trials with a gap: what alignment takes away.
+ordered_json AttributionJson(const sweep::SweepResult& result) {
+  double start_m = 0.0, aligned_m = 0.0, shape_m = 0.0;
+  for (const sweep::TrialRow& row : result.rows) {
+    if (!row.IsOk()) continue;
+    start_m += row.comparison.start_offset_m / result.all.n;
+    aligned_m += row.comparison.start_aligned_gap_m / result.all.n;
+    shape_m += row.comparison.shape_gap_m / result.all.n;
+  }
+  return {
+      {"start_offset_m", start_m}, {"start_aligned_gap_m", aligned_m}, {"shape_gap_m", shape_m}};
+}
+
+}  // namespace
+
+std::string SummaryJson(const sweep::SweepResult& result) {
+  ordered_json json;
+  json["name"] = result.name;
+  json["rift_version"] = RIFT_VERSION;
+  json["candidate"] = result.candidate_kind;
+  json["reference"] = result.reference_kind;
+  json["definition"] = FieldsToJson(result.gap);
+  json["definition"]["tag_offset_m"] = result.tag_offset_m;
+  json["definition"]["text"] = gap::DefinitionText(result.gap, result.tag_offset_m);
+  json.update(LevelJson(result.all));
+  if (result.all.n > 0) json["attribution"] = AttributionJson(result);
+  if (result.falsification) {
+    json["falsification"] = FalsificationJson(result, *result.falsification);
+  }
+  ordered_json& by = json["by"] = ordered_json::object();
+  ordered_json& effects = json["effects"] = ordered_json::object();
+  for (size_t i = 0; i < result.parameters.size(); ++i) {
+    if (result.parameters[i].IsContinuous()) continue;  // every setting would be its own level
+    by[result.parameters[i].Name()] = LevelsJson(sweep::SummariseBy(result, {static_cast<int>(i)}));
+  }
+  for (const sweep::Effect& effect : result.effects) effects[effect.parameter] = EffectJson(effect);
+  if (!result.parameters.empty()) {
+    const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
+    const bool has_range = std::any_of(split.others.begin(), split.others.end(),
+                                       [&](int i) { return result.parameters[i].IsContinuous(); });
+    if (split.others.size() > 1 && !has_range) {
+      by[split.others_name] = LevelsJson(sweep::SummariseBy(result, split.others));
+    }
+  }
+  AddSettings(result, json);
+  return Dump(json);
+}
+
+}  // namespace rift::report

@@ -1,0 +1,69 @@
+#include "rift/report/json/trial.hpp"
+
+#include <fmt/format.h>
+
+#include "rift/report/json/fields.hpp"
+#include "rift/yaml/enum_name.hpp"
+
+namespace rift::report {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json VisitJson(const trial::WaypointVisit& visit) {
+  ordered_json json{{"name", visit.name}, {"reached_s", nullptr}, {"closest_m", nullptr}};
+  if (visit.reached_s) json["reached_s"] = *visit.reached_s;
+  if (visit.closest_m) json["closest_m"] = *visit.closest_m;
+  return json;
+}
+
+}  // namespace
+
+ordered_json WaypointsJson(const trial::TrialResult& result) {
+  ordered_json json = ordered_json::array();
+  for (const trial::WaypointVisit& visit : result.visits) json.push_back(VisitJson(visit));
+  return json;
+}
+
+ordered_json LimitsJson(const trial::LimitCounts& limits) {
+  return {{"decisions", limits.decisions},
+          {"v_min", limits.v_min},
+          {"v_max", limits.v_max},
+          {"cruise_cap", limits.cruise_cap},
+          {"through_cruise", limits.through_cruise},
+          {"w_min", limits.w_min},
+          {"w_max", limits.w_max},
+          {"normalised", limits.normalised},
+          {"slew", limits.slew},
+          {"largest_raw_v", limits.largest_raw_v},
+          {"largest_raw_w", limits.largest_raw_w}};
+}
+
+std::string SimulationJson(const experiment::Experiment& experiment,
+                           const sweep::SimulatedRun& run) {
+  const trial::TrialResult& result = run.result;
+  ordered_json json{{"name", experiment.name},
+                    {"rift_version", RIFT_VERSION},
+                    {"seed", experiment.seed},
+                    {"outcome", yaml::NameOf(result.outcome)},
+                    {"reason", result.reason},
+                    {"duration_s", result.Duration_s()},
+                    {"path_length_m", result.trajectory.ArcLength_m()},
+                    {"true_path_length_m", run.truth.ArcLength_m()},
+                    {"poses", result.trajectory.poses.size()},
+                    {"poses_refused", result.poses_refused},
+                    {"stale_decisions", result.stale_decisions}};
+  json["waypoints"] = WaypointsJson(result);
+  json["limits"] = LimitsJson(result.limits);
+  return Dump(json);
+}
+
+std::string CommandsCsv(const trial::TrialResult& result) {
+  std::string text = "t_s,power_left,power_right\n";
+  for (const trial::SentCommand& command : result.commands) {
+    text += fmt::format("{},{},{}\n", command.t_s, command.power.left, command.power.right);
+  }
+  return text;
+}
+
+}  // namespace rift::report

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "rift/report/text/findings.hpp"
+
+namespace rift::report {
+
+/// What matters, what does not, and why not.
+Finding Because(const sweep::SweepResult& result, const sweep::Explanation& explanation);
+
+/// Start, frame, shape, and what a better simulator could remove.
+Finding MadeOf(const sweep::SweepResult& result, const sweep::Explanation& explanation);
+
+}  // namespace rift::report

@@ -1,0 +1,205 @@
+#include "rift/report/text/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "rift/report/figures/sweep_figures.hpp"
+#include "rift/report/text/findings.hpp"
+#include "rift/sweep/falsify/labels.hpp"
+#include "rift/yaml/enum_name.hpp"
+
+namespace rift::report {
+namespace {
+
+/// Of a long table the values with the largest means, since a terminal is not for thousands.
+std::string LevelTable(const std::string& head, std::vector<sweep::LevelSummary> levels) {
+  constexpr size_t kMostLevels = 40;
+  const size_t omitted = levels.size() - std::min(levels.size(), kMostLevels);
+  if (omitted > 0) {
+    std::stable_sort(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
+      return std::isnan(b.mean_gap_m) ? !std::isnan(a.mean_gap_m) : a.mean_gap_m > b.mean_gap_m;
+    });
+    levels.resize(kMostLevels);
+  }
+  size_t width = head.size();
+  for (const sweep::LevelSummary& level : levels) width = std::max(width, level.level.size());
+  std::string text =
+      fmt::format("{:<{}}  mean_gap_m  failures  trials  without_gap\n", head, width);
+  for (const sweep::LevelSummary& level : levels) {
+    const std::string mean =
+        std::isnan(level.mean_gap_m) ? "-" : fmt::format("{:.4f}", level.mean_gap_m);
+    text += fmt::format("{:<{}}  {:>10}  {:>8}  {:>6}  {:>11}\n", level.level, width, mean,
+                        level.failures, level.n, level.not_ok);
+  }
+  if (omitted > 0) text += fmt::format("and {} more, all of them in summary.json\n", omitted);
+  return text + '\n';
+}
+
+int CountVerdict(const sweep::SweepResult& result, gap::Verdict verdict) {
+  return static_cast<int>(std::count_if(
+      result.settings.begin(), result.settings.end(),
+      [&](const sweep::SettingResult& setting) { return setting.verdict.verdict == verdict; }));
+}
+
+std::string EffectsText(const sweep::SweepResult& result) {
+  std::string text;
+  for (const sweep::Effect& effect : result.effects) {
+    text += fmt::format("{}: {}\n", effect.parameter, effect.sentence);
+  }
+  return text;
+}
+
+std::string WorstText(const sweep::SweepResult& result) {
+  const std::optional<int> index = WorstRow(result);
+  if (!index) return "";
+  const sweep::TrialRow& worst = result.rows[*index];
+  return fmt::format("worst: {:.4f} m at u = {:.2f} ({}, trial {})\n", worst.comparison.gap_m,
+                     worst.comparison.gap_u, sweep::SettingText(result.parameters, worst.theta),
+                     worst.trial);
+}
+
+std::string NotOkText(const sweep::SweepResult& result) {
+  constexpr int kMostShown = 3;
+  std::string text;
+  int shown = 0;
+  for (const sweep::TrialRow& row : result.rows) {
+    if (row.IsOk() || ++shown > kMostShown) continue;
+    text += fmt::format("without gap: {}\n", row.reason);
+  }
+  if (shown > kMostShown) text += fmt::format("without gap: {} more\n", shown - kMostShown);
+  return text;
+}
+
+std::string FalsificationText(const sweep::SweepResult& result, const sweep::Falsification& found) {
+  std::string text = fmt::format(
+      "{}: {} settings falsified and {} undecided of {} tried ({}, ended by {}); falsified: more "
+      "than {:.0f} % of its trials would fail, at {:g} % confidence\n",
+      yaml::NameOf(found.verdict), found.falsified, found.undecided, found.evaluations,
+      found.strategy, found.ended, 100.0 * found.share, 100.0 * found.confidence);
+  if (found.first_evaluation) {
+    text += fmt::format("first falsified setting: number {}\n", *found.first_evaluation);
+  }
+  if (found.worst_setting) {
+    const sweep::SettingResult& worst = result.settings.at(*found.worst_setting);
+    text += fmt::format("worst setting: mean gap {:.4f} m in {} trials, {} of them failed ({})\n",
+                        worst.mean_gap_m, worst.rows.size(), worst.verdict.above,
+                        sweep::SettingText(result.parameters, worst.theta));
+  }
+  return text;
+}
+
+/// The table of a parameter, unless every setting has a value of its own.
+std::string LevelTables(const sweep::SweepResult& result) {
+  const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
+  const auto is_range = [&](int i) { return result.parameters[i].IsContinuous(); };
+  std::string text;
+  if (!is_range(split.main_factor)) {
+    text += LevelTable(result.parameters[split.main_factor].Name(),
+                       sweep::SummariseBy(result, {split.main_factor}));
+  }
+  const bool has_range = std::any_of(split.others.begin(), split.others.end(), is_range);
+  if (!split.others.empty() && !has_range) {
+    text += LevelTable(split.others_name, sweep::SummariseBy(result, split.others));
+  }
+  return text;
+}
+
+std::string SuggestionsText(const sweep::Explanation& explanation) {
+  if (explanation.suggestions.empty()) {
+    return "\nno experiment can be suggested: no setting has a gap\n";
+  }
+  std::string text = "\nnext experiments on the robot, the one that decides most first:\n";
+  int number = 0;
+  for (const sweep::Suggestion& suggestion : explanation.suggestions) {
+    text += fmt::format("{}. {}\n", ++number, suggestion.sentence);
+  }
+  return text;
+}
+
+std::string OutcomeText(const sweep::TrialRow& row) {
+  return row.IsOk() ? fmt::format("gap {:.4f} m", row.comparison.gap_m)
+                    : std::string(yaml::NameOf(row.status));
+}
+
+}  // namespace
+
+std::string SweepText(const sweep::SweepResult& result) {
+  std::string text =
+      fmt::format("gap: {}; above {:g} m falsifies\n\n",
+                  gap::DefinitionText(result.gap, result.tag_offset_m), result.gap.threshold_m);
+  if (!result.parameters.empty()) text += LevelTables(result);
+  text += LevelTable("", {result.all});
+  text += EffectsText(result) + WorstText(result) + NotOkText(result);
+  if (result.falsification) return text + FalsificationText(result, *result.falsification);
+  text += fmt::format("settings: {} falsified, {} not, {} undecided (their repeats disagree)\n",
+                      CountVerdict(result, gap::Verdict::kFalsified),
+                      CountVerdict(result, gap::Verdict::kNotFalsified),
+                      CountVerdict(result, gap::Verdict::kUndecided));
+  return text;
+}
+
+std::string ExplanationText(const sweep::SweepResult& result, const sweep::Explanation& explanation,
+                            bool suggest) {
+  std::string text;
+  for (const Finding& finding : Findings(result, explanation)) {
+    const bool is_shown =
+        finding.question == "Because of what?" || finding.question == "How sure is that?";
+    if (!is_shown) continue;
+    text += fmt::format("\n{}\n", finding.question);
+    for (const Sentence& sentence : finding.sentences) {
+      text += fmt::format("- {}\n", sentence.Text());
+    }
+  }
+  return suggest ? text + SuggestionsText(explanation) : text;
+}
+
+std::string ReplayCommand(const std::string& folder, size_t row) {
+  return fmt::format("rift simulate --replay {} {}", folder, row + 1);
+}
+
+std::string ShrunkText(const sweep::SweepResult& result, const sweep::ShrunkRow& found,
+                       const std::string& folder) {
+  const std::vector<experiment::Parameter>& parameters = result.parameters;
+  const sweep::TrialRow& failing = found.rows[0];
+  const sweep::TrialRow& least = found.rows[1];
+  std::string text = fmt::format(
+      "\nshrunk: row {} ({}; {}) still fails with {} of its {} changes from the experiment's own "
+      "values ({}, above {:g} m; {} trials)\n",
+      found.id, sweep::SettingText(parameters, failing.theta), OutcomeText(failing),
+      found.shrunk.changed.size(), parameters.size(), OutcomeText(least), result.gap.threshold_m,
+      found.shrunk.evaluations);
+  if (found.shrunk.changed.empty()) {
+    text += "  it fails with none of them: the experiment's own values do\n";
+  }
+  for (size_t i = 0; i < found.shrunk.changed.size(); ++i) {
+    const int parameter = found.shrunk.changed[i];
+    text += fmt::format("  {}: {} instead of {}; taken back, {}\n", parameters[parameter].Name(),
+                        found.shrunk.theta[parameter].text, found.nominal[parameter].text,
+                        OutcomeText(found.rows[2 + i]));
+  }
+  text += found.shrunk.is_minimal ? "  none of these changes can be left out (each was tried)\n"
+                                  : "  there may be less to it: no more trials are spent on it\n";
+  if (found.shrunk.is_fewest)
+    text += "  no smaller set of the row's changes fails (all were tried)\n";
+  return text + fmt::format("  again: {}\n", ReplayCommand(folder, 1));
+}
+
+std::string RareEventSentence(const sweep::RareEvent& event) {
+  if (!event.is_reached) {
+    return fmt::format(
+        "no failure was reached in {} levels: a setting drawn at random fails with a probability "
+        "of about {:.2g} at most",
+        event.levels, event.high);
+  }
+  return fmt::format(
+      "a setting drawn at random fails with a probability of {:.2g}, between {:.2g} and {:.2g} "
+      "with 95 % confidence ({} settings in {})",
+      event.probability, event.low, event.high, event.evaluations,
+      event.levels == 1 ? std::string("1 level: it is not rare")
+                        : fmt::format("{} levels of subset simulation", event.levels));
+}
+
+}  // namespace rift::report

@@ -1,0 +1,27 @@
+#include "rift/report/text/trial.hpp"
+
+#include <fmt/format.h>
+
+#include "rift/yaml/enum_name.hpp"
+
+namespace rift::report {
+
+std::string SimulationText(const experiment::Experiment& experiment,
+                           const sweep::SimulatedRun& run) {
+  const trial::TrialResult& result = run.result;
+  std::string text =
+      fmt::format("{}: {}\n", yaml::NameOf(result.outcome), result.reason) +
+      fmt::format("{:.2f} s, {:.3f} m, {} poses logged, seed {}\n", result.Duration_s(),
+                  run.truth.ArcLength_m(), result.trajectory.poses.size(), experiment.seed);
+  for (const trial::WaypointVisit& visit : result.visits) {
+    if (visit.reached_s)
+      text += fmt::format("{} reached at {:.2f} s\n", visit.name, *visit.reached_s);
+  }
+  if (result.limits.v_max == 0) {
+    text += fmt::format("v_max ({:g}) never bound: the largest speed asked for was {:.3f}\n",
+                        experiment.control.v_max, result.limits.largest_raw_v);
+  }
+  return text;
+}
+
+}  // namespace rift::report

@@ -1,0 +1,55 @@
+#include "trial_query.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "rift/report/figures/gnuplot_text.hpp"
+
+namespace rift::report {
+
+namespace {
+
+/// Bytes as a browser's URLSearchParams reads them.
+std::string QueryText(const std::string& text) {
+  static constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
+  std::string query;
+  for (const char c : PlainText(text)) {
+    if (kPlain.find(c) != kPlain.npos) {
+      query += c;
+    } else {
+      query += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+  }
+  return query;
+}
+
+}  // namespace
+
+std::string AboveThreshold() { return "result=" + QueryText("above threshold"); }
+
+std::string TrialsWhere(const std::string& parameter, const std::string& value) {
+  return QueryText(parameter) + "=" + QueryText(value);
+}
+
+std::string TrialsOf(const sweep::SweepResult& result, const experiment::Theta& theta) {
+  std::string query;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    query = Both(query, TrialsWhere(result.parameters[i].Name(), theta[i].text));
+  }
+  return query;
+}
+
+std::string TrialsNumbered(const std::vector<int>& rows) {
+  constexpr std::size_t kMost = 100;
+  std::vector<int> numbers;
+  for (std::size_t i = 0; i < std::min(kMost, rows.size()); ++i) numbers.push_back(rows[i] + 1);
+  return fmt::format("row={}", fmt::join(numbers, "%2C"));
+}
+
+std::string Both(const std::string& a, const std::string& b) {
+  return a.empty() || b.empty() ? a + b : a + "&" + b;
+}
+
+}  // namespace rift::report

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rift/sweep/falsify/result.hpp"
+
+namespace rift::report {
+
+/// Queries for the trials table.
+std::string AboveThreshold();
+std::string TrialsWhere(const std::string& parameter, const std::string& value);
+std::string TrialsOf(const sweep::SweepResult& result, const experiment::Theta& theta);
+/// By their numbers in table.csv; of many, the first hundred.
+std::string TrialsNumbered(const std::vector<int>& rows);
+std::string Both(const std::string& a, const std::string& b);
+
+}  // namespace rift::report
