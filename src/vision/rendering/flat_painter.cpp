@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "rift/vision/camera/lens.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::vision {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "flat_pattern.hpp"
 #include "ray_tiles.hpp"
-#include "rift/vision/camera/grey_patch.hpp"
+#include "rift/vision/camera/frame.hpp"
 
 namespace rift::vision {
 

@@ -1,6 +1,6 @@
 #include "ray_tiles.hpp"
 
-#include "rift/vision/camera/lens.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::vision {
 

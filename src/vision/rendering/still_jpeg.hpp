@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "jpeg_rows.hpp"
-#include "rift/vision/camera/grey_patch.hpp"
+#include "rift/vision/camera/frame.hpp"
 #include "sensor_noise.hpp"
 
 namespace rift::vision {

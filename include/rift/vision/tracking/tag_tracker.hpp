@@ -48,7 +48,7 @@ struct Sighting {
   std::uint64_t frame_index = 0;
   double captured_s = 0.0;  ///< the frame's
   Eigen::Isometry3d camera_from_tag = Eigen::Isometry3d::Identity();
-  /// In the world, z up, or where the camera has none in its own frame turned y-up (map_frame.hpp).
+  /// In the world, z up, or where the camera has none in its own frame turned y-up (MapFromCamera).
   /// Tag frame: x right and y up as one reads the tag, z out of the paper; x is forward.
   Eigen::Isometry3d map_from_tag = Eigen::Isometry3d::Identity();
   bool in_world = false;                               ///< the map is the world
