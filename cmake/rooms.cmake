@@ -30,7 +30,7 @@ rift_room(vision/calibration ROOMS vision/camera
 rift_room(vision/tracking ROOMS geometry module vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_highgui opencv_imgcodecs PkgConfig::APRILTAG)
 rift_room(vision/rendering ROOMS geometry vision/camera vision/calibration vision/tracking
-  PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
+  PRIVATE_LIBRARIES fmt::fmt opencv_imgproc)
 rift_room(vision/module ROOMS geometry module vision/camera vision/calibration vision/tracking vision/rendering
   PRIVATE_LIBRARIES fmt::fmt)
 rift_room(hardware ROOMS control geometry trial vision/camera vision/tracking vision/module

@@ -19,13 +19,12 @@ double SteadyNow_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The first pictures cost more: the floor is compressed with each of its noises.
+/// The first picture costs more: the rays of the pixels around the robot are worked out for it.
 void WarmUp(vision::PictureMaker& pictures, const TwinSetup& setup) {
-  constexpr int kPictures = 10;
   std::mt19937_64 generator(setup.seed);
   vision::RobotMotion tag = TagOf({}, setup.simulation.mocap);
   tag.world_from_tag.translation().head<2>() += setup.start.Position();
-  for (int i = 0; i < kPictures; ++i) pictures.Jpeg(tag, generator);
+  pictures.Jpeg(tag, generator);
 }
 
 }  // namespace
