@@ -9,7 +9,6 @@
 #include "json_fields.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/trajectory/log.hpp"
-#include "rift/twin/overhead_camera.hpp"
 #include "rift/twin/twin.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "simulated_runs.hpp"

@@ -12,6 +12,7 @@
 
 #include "mjpeg_server.hpp"
 #include "rift/twin/twin.hpp"
+#include "true_path.hpp"
 
 namespace rift::twin {
 
