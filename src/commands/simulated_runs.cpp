@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "files.hpp"
-#include "rift/simulation/height_image.hpp"
+#include "rift/simulation/terrain.hpp"
 
 namespace rift::commands {
 namespace {
