@@ -49,7 +49,7 @@ class RealRobot::Core {
     const std::lock_guard lock(mutex_);
     return guard_.state();
   }
-  DriveEvidence Evidence();
+  DriveRecord Record();
   double Now_s() { return clock_.Now_s(); }
 
  private:
@@ -77,9 +77,9 @@ class RealRobot::Core {
   std::optional<double> stopped_at_s_;  ///< when zeros began for good
   bool stop_is_answered_ = false;
   bool waits_for_write_ =
-      false;  ///< the newest command, which belongs to the last of evidence_.poses
+      false;  ///< the newest command, which belongs to the last of record_.poses
   std::optional<double> written_s_;
-  DriveEvidence evidence_;
+  DriveRecord record_;
   std::jthread thread_;  // last: it ends before what it uses
 };
 
@@ -137,7 +137,7 @@ void RealRobot::Core::NoteWritten() {
   if (!link_.last_sent() || link_.last_sent()->at_s == written_s_) return;
   written_s_ = link_.last_sent()->at_s;
   if (!waits_for_write_) return;
-  evidence_.poses.back().written_s = *written_s_ - start_s_;
+  record_.poses.back().written_s = *written_s_ - start_s_;
   waits_for_write_ = false;
 }
 
@@ -145,11 +145,11 @@ void RealRobot::Core::Hear(const RobotLink::Heard& heard, double now_s) {
   counts_ = control::EncoderCounts{heard.answer.left, heard.answer.right};
   const double battery_v = kVoltPerMillivolt * heard.answer.battery_mv;
   const double sent_s = heard.sent ? heard.sent->at_s : heard.at_s;
-  evidence_.encoders.push_back({0.5 * (sent_s + heard.at_s) - start_s_, *counts_, battery_v});
+  record_.encoders.push_back({0.5 * (sent_s + heard.at_s) - start_s_, *counts_, battery_v});
   if (!heard.sent) return;  // a plain answer says neither to what nor how often the robot stopped
-  evidence_.rejected_by_robot = heard.answer.rejected;
-  evidence_.round_trips_s.push_back(heard.at_s - sent_s);
-  for (auto pose = evidence_.poses.rbegin(); pose != evidence_.poses.rend(); ++pose) {
+  record_.rejected_by_robot = heard.answer.rejected;
+  record_.round_trips_s.push_back(heard.at_s - sent_s);
+  for (auto pose = record_.poses.rbegin(); pose != record_.poses.rend(); ++pose) {
     if (pose->written_s >= 0.0 && pose->written_s <= sent_s - start_s_) {
       if (pose->answered_s < 0.0) pose->answered_s = heard.at_s - start_s_;
       break;
@@ -184,8 +184,8 @@ trial::Sensed RealRobot::Core::Sense() {
     next_pose_s_ = clock_.Now_s() + std::min(period_s, kLongestPeriod_s);
     sensed_captured_s_ = news_.newest->measured.captured_s;
     waits_for_write_ = false;
-    evidence_.poses.push_back({sensed.pose->captured_s, news_.newest->arrived_s - start_s_,
-                               news_.newest->ready_s - start_s_, sensed.now_s});
+    record_.poses.push_back({sensed.pose->captured_s, news_.newest->arrived_s - start_s_,
+                             news_.newest->ready_s - start_s_, sensed.now_s});
   }
   return sensed;
 }
@@ -194,9 +194,9 @@ void RealRobot::Core::Command(const control::WheelPower& power) {
   const std::lock_guard lock(mutex_);
   const double now_s = clock_.Now_s();
   guard_.Command(power, now_s);
-  const bool is_first = !evidence_.poses.empty() && evidence_.poses.back().commanded_s < 0.0;
+  const bool is_first = !record_.poses.empty() && record_.poses.back().commanded_s < 0.0;
   if (is_first) {
-    evidence_.poses.back().commanded_s = now_s - start_s_;
+    record_.poses.back().commanded_s = now_s - start_s_;
     waits_for_write_ = true;
   }
   Hand(guard_.Allowed(), is_first, now_s);
@@ -233,16 +233,16 @@ bool RealRobot::Core::StopIsAnswered() {
   return stop_is_answered_;
 }
 
-DriveEvidence RealRobot::Core::Evidence() {
+DriveRecord RealRobot::Core::Record() {
   const std::lock_guard lock(mutex_);
-  DriveEvidence evidence = evidence_;
-  evidence.protocol = link_.protocol();
-  evidence.stop = guard_.stop();
-  if (evidence.stop) evidence.stop->at_s -= start_s_;
-  if (link_.protocol() == Protocol::kFramed) evidence.stop_acknowledged = stop_is_answered_;
-  evidence.sent = link_.sent_count();
-  evidence.answered = link_.answered_count();
-  return evidence;
+  DriveRecord record = record_;
+  record.protocol = link_.protocol();
+  record.stop = guard_.stop();
+  if (record.stop) record.stop->at_s -= start_s_;
+  if (link_.protocol() == Protocol::kFramed) record.stop_acknowledged = stop_is_answered_;
+  record.sent = link_.sent_count();
+  record.answered = link_.answered_count();
+  return record;
 }
 
 RealRobot::RealRobot(ByteLine& line, PoseSource& poses, Clock& clock,
@@ -260,7 +260,7 @@ trial::Sensed RealRobot::Sense() { return core_->Sense(); }
 void RealRobot::Command(const control::WheelPower& power) { core_->Command(power); }
 void RealRobot::Stop() noexcept { core_->Stop(); }
 DriveState RealRobot::state() const { return core_->state(); }
-DriveEvidence RealRobot::Evidence() const { return core_->Evidence(); }
+DriveRecord RealRobot::Record() const { return core_->Record(); }
 
 void RealRobot::Advance(double dt_s) {
   const double end_s = core_->Now_s() + dt_s;

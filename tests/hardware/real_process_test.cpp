@@ -58,7 +58,7 @@ int DriveForEver(const std::string& path) {
   }
   robot.Stop();
   robot.ConfirmStop(1.0);
-  const DriveEvidence evidence = robot.Evidence();
+  const DriveRecord evidence = robot.Record();
   return static_cast<int>(evidence.stop->reason) + (evidence.stop_acknowledged == true ? 100 : 0);
 }
 
