@@ -54,12 +54,12 @@ class RealRobot::Core {
 
  private:
   void Run(const std::stop_token& stop);
-  void Pump();
-  void LookAround(double now_s);
+  void Update();
+  void ReadInputs(double now_s);
   void Exchange(double now_s);
-  void Hear(const RobotLink::Heard& heard, double now_s);
+  void HandleAnswer(const RobotLink::Heard& heard, double now_s);
   void NoteWritten();
-  void Hand(const control::WheelPower& power, bool is_first, double now_s);
+  void PassToLink(const control::WheelPower& power, bool is_first, double now_s);
 
   Clock& clock_;
   PoseSource& poses_;
@@ -68,7 +68,7 @@ class RealRobot::Core {
   std::mutex mutex_;
   DriveGuard guard_;
   RobotLink link_;
-  bool line_is_dead_ = false;
+  bool line_is_lost_ = false;
   std::vector<Stopper> stoppers_;
   PoseNews news_;
   std::optional<double> sensed_captured_s_;
@@ -85,25 +85,25 @@ class RealRobot::Core {
 
 void RealRobot::Core::Run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    Pump();
+    Update();
     clock_.Wait(kTick_s);
   }
 }
 
 void RealRobot::Core::Wait(double dt_s) {
   clock_.Wait(dt_s);
-  if (!is_threaded_) Pump();
+  if (!is_threaded_) Update();
 }
 
-void RealRobot::Core::Pump() {
+void RealRobot::Core::Update() {
   const std::lock_guard lock(mutex_);
   const double now_s = clock_.Now_s();
-  LookAround(now_s);
+  ReadInputs(now_s);
   Exchange(now_s);
 }
 
 // What throws here ends the drive, not the process: the zeros must still be sent.
-void RealRobot::Core::LookAround(double now_s) {
+void RealRobot::Core::ReadInputs(double now_s) {
   try {
     for (const Stopper& stopper : stoppers_) {
       if (const auto stop = stopper()) guard_.Stop(stop->first, stop->second, now_s);
@@ -117,20 +117,20 @@ void RealRobot::Core::LookAround(double now_s) {
 }
 
 void RealRobot::Core::Exchange(double now_s) {
-  guard_.Tick(now_s, line_is_dead_ ? 0.0 : link_.Lag_s(now_s));
-  if (line_is_dead_) return;
+  guard_.Tick(now_s, line_is_lost_ ? 0.0 : link_.Lag_s(now_s));
+  if (line_is_lost_) return;
   if (guard_.state() == DriveState::kStopped && !stopped_at_s_) stopped_at_s_ = now_s;
   if (guard_.state() != DriveState::kStopped) stopped_at_s_.reset();
   link_.Put(guard_.Allowed(), false);
   try {
     link_.Tick(now_s);
   } catch (const LineGone& gone) {
-    line_is_dead_ = true;
+    line_is_lost_ = true;
     guard_.Stop(StopReason::kPortGone, gone.what(), now_s);
     return;
   }
   NoteWritten();
-  for (const RobotLink::Heard& heard : link_.TakeHeard()) Hear(heard, now_s);
+  for (const RobotLink::Heard& heard : link_.TakeHeard()) HandleAnswer(heard, now_s);
 }
 
 void RealRobot::Core::NoteWritten() {
@@ -141,7 +141,7 @@ void RealRobot::Core::NoteWritten() {
   waits_for_write_ = false;
 }
 
-void RealRobot::Core::Hear(const RobotLink::Heard& heard, double now_s) {
+void RealRobot::Core::HandleAnswer(const RobotLink::Heard& heard, double now_s) {
   counts_ = control::EncoderCounts{heard.answer.left, heard.answer.right};
   const double battery_v = kVoltPerMillivolt * heard.answer.battery_mv;
   const double sent_s = heard.sent ? heard.sent->at_s : heard.at_s;
@@ -163,7 +163,7 @@ void RealRobot::Core::Hear(const RobotLink::Heard& heard, double now_s) {
 
 void RealRobot::Core::Arm() {
   const std::lock_guard lock(mutex_);
-  if (line_is_dead_) throw std::runtime_error("cannot arm: the serial port went away");
+  if (line_is_lost_) throw std::runtime_error("cannot arm: the serial port went away");
   guard_.Arm(clock_.Now_s());
   stop_is_answered_ = false;
   stopped_at_s_.reset();
@@ -199,13 +199,13 @@ void RealRobot::Core::Command(const control::WheelPower& power) {
     record_.poses.back().commanded_s = now_s - start_s_;
     waits_for_write_ = true;
   }
-  Hand(guard_.Allowed(), is_first, now_s);
+  PassToLink(guard_.Allowed(), is_first, now_s);
   Exchange(now_s);
 }
 
-// At 9600 baud the line carries hardly more than one command for each picture: a second thought
-// about an old pose must not keep it from the first one about the next.
-void RealRobot::Core::Hand(const control::WheelPower& power, bool is_first, double now_s) {
+// At 9600 baud the line carries hardly more than one command for each picture: a second command
+// for an old pose must not delay the first one for the next pose.
+void RealRobot::Core::PassToLink(const control::WheelPower& power, bool is_first, double now_s) {
   const bool is_zero = power == control::WheelPower{};
   if (is_first || is_zero || now_s + link_.Occupied_s() <= next_pose_s_) {
     link_.Put(power, is_first);

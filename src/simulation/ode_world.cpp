@@ -205,7 +205,7 @@ void OdeWorld::Bodies::Settle() {
   ReadState();
 }
 
-/// A step broken off leaves jobs behind, and ODE's destructors object to those: leak the lot.
+/// An aborted step leaves unfinished jobs, for which ODE's destructors fail: everything is leaked.
 void OdeWorld::Bodies::Abandon() {
   static_cast<void>(contacts.release());
   static_cast<void>(world.release());

@@ -156,7 +156,7 @@ class MjpegServer::Core {
     });
   }
 
-  std::atomic<int> watching_ = 0;  // first: clients count themselves off it
+  std::atomic<int> watching_ = 0;  // first: the destructor of a client lowers it
   std::vector<std::weak_ptr<Client>> clients_;
   asio::io_context context_;
   tcp::acceptor acceptor_;

@@ -173,14 +173,6 @@ std::vector<std::string> ImageFiles(const std::string& pattern) {
   return files;
 }
 
-std::unique_ptr<CameraSource> OpenImages(const std::string& pattern, double fps) {
-  return std::make_unique<ImageSource>(ImageFiles(pattern), fps);
-}
-
-std::unique_ptr<CameraSource> OpenVideo(const std::string& name, bool is_recording) {
-  return std::make_unique<VideoSource>(name, is_recording);
-}
-
 SourceKind KindOf(std::string_view name) {
   if (name.starts_with("/dev/") || IsNumber(name)) return SourceKind::kDevice;
   if (name.starts_with("http://") || name.starts_with("https://")) return SourceKind::kStream;
@@ -203,13 +195,13 @@ std::unique_ptr<CameraSource> OpenCamera(const std::string& name, const CaptureO
     case SourceKind::kStream:
       return OpenStream(name, options);
     case SourceKind::kNetwork:
-      return OpenVideo(name, false);
+      return std::make_unique<VideoSource>(name, false);
     case SourceKind::kImages:
-      return OpenImages(name, options.fps);
+      return std::make_unique<ImageSource>(ImageFiles(name), options.fps);
     case SourceKind::kVideo:
       break;
   }
-  return OpenVideo(name, true);
+  return std::make_unique<VideoSource>(name, true);
 }
 
 }  // namespace rift::vision

@@ -89,7 +89,7 @@ using Lock = std::unique_lock<std::mutex>;
 using std::chrono::duration;
 
 constexpr double kRateWindow_s = 1.0;
-constexpr double kPatience_s = 0.5;  // for the thread to end; longer, and it hangs in a driver
+constexpr double kEndTimeout_s = 0.5;  // for the thread to end; longer, and it hangs in a driver
 
 /// Pictures a second over the last window.
 class RateMeter {
@@ -222,7 +222,8 @@ CaptureThread::~CaptureThread() {
   Lock lock(shared_->mutex);
   shared_->stop = true;
   shared_->changed.notify_all();
-  shared_->changed.wait_for(lock, duration<double>(kPatience_s), [this] { return shared_->done; });
+  shared_->changed.wait_for(lock, duration<double>(kEndTimeout_s),
+                            [this] { return shared_->done; });
 }
 
 std::optional<Frame> CaptureThread::Next(double timeout_s) {

@@ -11,11 +11,9 @@
 
 namespace rift::vision {
 
-// The kinds of sources, each in its own file; see OpenCamera.
+// The live sources of OpenCamera, each in its own file.
 std::unique_ptr<CameraSource> OpenDevice(const std::string& path, const CaptureOptions& options);
 std::unique_ptr<CameraSource> OpenStream(const std::string& url, const CaptureOptions& options);
-std::unique_ptr<CameraSource> OpenVideo(const std::string& name, bool is_recording);
-std::unique_ptr<CameraSource> OpenImages(const std::string& pattern, double fps);
 
 /// Cuts multipart/x-mixed-replace (RFC 2046 5.1) into its parts, fed piece by piece. A part ends at
 /// its Content-Length where it has one, else at the next boundary.

@@ -35,7 +35,8 @@ std::vector<Eigen::Vector3d> Outline(const FlatPattern& pattern,
   return points;
 }
 
-/// The mean over a pixel whose corners lie at these points of the plane; `under` shines through.
+/// The mean over a pixel whose corners lie at these points of the plane; `under` where it is
+/// transparent.
 double Mean(const FlatPattern& pattern, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
             const Eigen::Vector2d& c, const Eigen::Vector2d& d, double under, int fine) {
   double sum = 0.0;

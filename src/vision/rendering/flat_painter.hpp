@@ -19,7 +19,7 @@ class FlatPattern {
   virtual ~FlatPattern() = default;
   /// Which cell the point is in. Cells are convex, but for the one around everything.
   virtual int Cell(double x_m, double y_m) const = 0;
-  /// NaN where one sees through.
+  /// NaN where it is transparent.
   virtual double Grey(int cell) const = 0;
   /// The corners of a box around all that is not transparent.
   virtual Eigen::Vector2d LeastCorner() const = 0;
@@ -39,8 +39,8 @@ class DiscPattern : public FlatPattern {
   double grey_;
 };
 
-/// Cells of a square lattice that runs on without end, so that a pixel which only the tip of a
-/// corner touches is told from one beside it.
+/// Cells of an infinite square lattice, so that a pixel with only the tip of a corner in it differs
+/// from one beside the pattern.
 class LatticePattern : public FlatPattern {
  public:
   LatticePattern(double cell_m, Eigen::Vector2d least, int columns, int rows)

@@ -75,7 +75,7 @@ cv::Rect ToRect(const Region& region) {
   return {region.x_px, region.y_px, region.width_px, region.height_px};
 }
 
-/// Paper: fibres about a pixel wide and clouds about twenty, each with half of the variance.
+/// The texture of paper: noise of about one and of about twenty pixels, half of the variance each.
 cv::Mat1f Grain(const CameraModel& camera, double sigma_grey) {
   cv::Mat1f sum(cv::Mat1f::zeros(camera.height_px, camera.width_px));
   cv::RNG random(kGrainSeed);

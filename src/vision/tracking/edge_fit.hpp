@@ -34,7 +34,7 @@ struct ReadBits {
 };
 
 /// Compares the cells at the square with those that the tag should have. Far cheaper than decoding,
-/// so that every sighting carries the proof that it is this tag, the right way round.
+/// so that every sighting is verified to be this tag, the right way round.
 ReadBits CompareBits(const CameraModel& camera, const GreyPatch& patch, const FittedSquare& square,
                      const TagCells& expected);
 

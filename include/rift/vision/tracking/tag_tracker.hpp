@@ -18,7 +18,7 @@
 
 namespace rift::vision {
 
-/// How a sighting came about, from the cheapest to the dearest.
+/// How a sighting was found, by rising cost.
 enum class TrackMode {
   kEdges,    ///< edges found where the motion so far leads, bits compared there
   kRegion,   ///< AprilTag in the region where the tag was expected
@@ -43,7 +43,7 @@ constexpr std::array<std::string_view, 7> EnumNames(Miss) {
           "doubtful bits", "no edges",      "no pose"};
 }
 
-/// Where the tag was in one frame, with what speaks for it.
+/// Where the tag was in one frame, with the quality of the measurement.
 struct Sighting {
   std::uint64_t frame_index = 0;
   double captured_s = 0.0;  ///< the frame's
