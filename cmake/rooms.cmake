@@ -32,7 +32,7 @@ rift_room(vision/calibration ROOMS statistics vision/camera
 rift_room(vision/tracking ROOMS geometry module statistics vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_highgui opencv_imgcodecs PkgConfig::APRILTAG)
 rift_room(vision/rendering ROOMS geometry vision/camera vision/calibration vision/tracking
-  PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
+  PRIVATE_LIBRARIES fmt::fmt opencv_imgproc)
 rift_room(vision/module ROOMS geometry module vision/camera vision/calibration vision/tracking vision/rendering
   PRIVATE_LIBRARIES fmt::fmt)
 rift_room(hardware ROOMS control geometry statistics trial vision/camera vision/tracking vision/module
@@ -53,7 +53,7 @@ rift_room(sweep/calibrate ROOMS control experiment gap geometry simulation stati
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
 rift_room(report/figures ROOMS gap geometry statistics sweep/calibrate sweep/falsify trajectory
   LIBRARIES fmt::fmt)
-rift_room(report/text ROOMS experiment gap report/figures sweep/calibrate sweep/explain
+rift_room(report/text ROOMS experiment gap report/figures statistics sweep/calibrate sweep/explain
     sweep/falsify yaml
   LIBRARIES fmt::fmt)
 rift_room(report/json ROOMS experiment gap report/text sweep/calibrate sweep/explain sweep/falsify

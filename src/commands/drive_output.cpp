@@ -79,7 +79,7 @@ ordered_json StageJson(const std::vector<PoseStages>& poses, const Stage& stage)
   return json;
 }
 
-ordered_json StopJson(const hardware::DriveEvidence& evidence) {
+ordered_json StopJson(const hardware::DriveRecord& evidence) {
   ordered_json json{{"reason", nullptr}, {"text", nullptr}, {"at_s", nullptr}};
   if (evidence.stop) {
     json = {{"reason", yaml::NameOf(evidence.stop->reason)},
@@ -167,7 +167,7 @@ std::string DriveText(const DriveRun& run) {
   return text;
 }
 
-std::string StagesCsv(const hardware::DriveEvidence& evidence) {
+std::string StagesCsv(const hardware::DriveRecord& evidence) {
   std::string text = "captured_s,arrived_s,ready_s,sensed_s,commanded_s,written_s,answered_s\n";
   for (const PoseStages& pose : evidence.poses) {
     text += Cell(pose.captured_s);
@@ -180,7 +180,7 @@ std::string StagesCsv(const hardware::DriveEvidence& evidence) {
   return text;
 }
 
-std::string EncodersCsv(const hardware::DriveEvidence& evidence) {
+std::string EncodersCsv(const hardware::DriveRecord& evidence) {
   std::string text = "t_s,left,right\n";
   for (const PoseStages& pose : evidence.poses) {
     const auto counts = hardware::CountsAt(evidence.encoders, pose.captured_s);

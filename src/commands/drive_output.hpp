@@ -16,9 +16,9 @@ std::string DriveJson(const experiment::Experiment& experiment, const DriveRun& 
 std::string DriveText(const DriveRun& run);
 
 /// One row a pose: when it went through each stage. Cells of stages never reached are empty.
-std::string StagesCsv(const hardware::DriveEvidence& evidence);
+std::string StagesCsv(const hardware::DriveRecord& evidence);
 /// The wheels in step with the camera: at the capture time of each pose, between two readings.
 /// Poses before the first reading or after the last have no row.
-std::string EncodersCsv(const hardware::DriveEvidence& evidence);
+std::string EncodersCsv(const hardware::DriveRecord& evidence);
 
 }  // namespace rift::commands

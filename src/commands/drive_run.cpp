@@ -46,7 +46,7 @@ bool WaitUntil(hardware::RealRobot& robot, const std::function<bool()>& is_so) {
   while (!is_so()) {
     robot.Advance(kTurn_s);
     if (robot.state() != hardware::DriveState::kStopped) continue;
-    const hardware::DriveStop stop = *robot.Evidence().stop;
+    const hardware::DriveStop stop = *robot.Record().stop;
     if (stop.reason == hardware::StopReason::kOperator ||
         stop.reason == hardware::StopReason::kSignal) {
       return false;
@@ -109,10 +109,10 @@ DriveRun Drive(const DriveParts& parts, const experiment::Experiment& experiment
     robot.Arm();
     run.trial = trial::RunTrial(robot, experiment.waypoints, experiment.control, experiment.trial);
   } else {
-    run.trial.reason = "stopped before the start: " + robot.Evidence().stop->text;
+    run.trial.reason = "stopped before the start: " + robot.Record().stop->text;
   }
   robot.ConfirmStop(kConfirm_s);
-  run.evidence = robot.Evidence();
+  run.evidence = robot.Record();
   return run;
 }
 

@@ -32,7 +32,7 @@ struct DriveRun {
   bool has_begun = false;  ///< false: a person stopped it before the start
   hardware::PingResult ping;
   trial::TrialResult trial;
-  hardware::DriveEvidence evidence;
+  hardware::DriveRecord evidence;
   double stopping_distance_m = 0.0;
 };
 

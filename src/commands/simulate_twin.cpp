@@ -10,7 +10,6 @@
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/report/json/fields.hpp"
 #include "rift/trajectory/log.hpp"
-#include "rift/twin/overhead_camera.hpp"
 #include "rift/twin/twin.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "stop_signal.hpp"

@@ -49,17 +49,17 @@ class RealRobot::Core {
     const std::lock_guard lock(mutex_);
     return guard_.state();
   }
-  DriveEvidence Evidence();
+  DriveRecord Record();
   double Now_s() { return clock_.Now_s(); }
 
  private:
   void Run(const std::stop_token& stop);
-  void Pump();
-  void LookAround(double now_s);
+  void Update();
+  void ReadInputs(double now_s);
   void Exchange(double now_s);
-  void Hear(const RobotLink::Heard& heard, double now_s);
+  void HandleAnswer(const RobotLink::Heard& heard, double now_s);
   void NoteWritten();
-  void Hand(const control::WheelPower& power, bool is_first, double now_s);
+  void PassToLink(const control::WheelPower& power, bool is_first, double now_s);
 
   Clock& clock_;
   PoseSource& poses_;
@@ -68,7 +68,7 @@ class RealRobot::Core {
   std::mutex mutex_;
   DriveGuard guard_;
   RobotLink link_;
-  bool line_is_dead_ = false;
+  bool line_is_lost_ = false;
   std::vector<Stopper> stoppers_;
   PoseNews news_;
   std::optional<double> sensed_captured_s_;
@@ -77,33 +77,33 @@ class RealRobot::Core {
   std::optional<double> stopped_at_s_;  ///< when zeros began for good
   bool stop_is_answered_ = false;
   bool waits_for_write_ =
-      false;  ///< the newest command, which belongs to the last of evidence_.poses
+      false;  ///< the newest command, which belongs to the last of record_.poses
   std::optional<double> written_s_;
-  DriveEvidence evidence_;
+  DriveRecord record_;
   std::jthread thread_;  // last: it ends before what it uses
 };
 
 void RealRobot::Core::Run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    Pump();
+    Update();
     clock_.Wait(kTick_s);
   }
 }
 
 void RealRobot::Core::Wait(double dt_s) {
   clock_.Wait(dt_s);
-  if (!is_threaded_) Pump();
+  if (!is_threaded_) Update();
 }
 
-void RealRobot::Core::Pump() {
+void RealRobot::Core::Update() {
   const std::lock_guard lock(mutex_);
   const double now_s = clock_.Now_s();
-  LookAround(now_s);
+  ReadInputs(now_s);
   Exchange(now_s);
 }
 
 // What throws here ends the drive, not the process: the zeros must still be sent.
-void RealRobot::Core::LookAround(double now_s) {
+void RealRobot::Core::ReadInputs(double now_s) {
   try {
     for (const Stopper& stopper : stoppers_) {
       if (const auto stop = stopper()) guard_.Stop(stop->first, stop->second, now_s);
@@ -117,39 +117,39 @@ void RealRobot::Core::LookAround(double now_s) {
 }
 
 void RealRobot::Core::Exchange(double now_s) {
-  guard_.Tick(now_s, line_is_dead_ ? 0.0 : link_.Lag_s(now_s));
-  if (line_is_dead_) return;
+  guard_.Tick(now_s, line_is_lost_ ? 0.0 : link_.Lag_s(now_s));
+  if (line_is_lost_) return;
   if (guard_.state() == DriveState::kStopped && !stopped_at_s_) stopped_at_s_ = now_s;
   if (guard_.state() != DriveState::kStopped) stopped_at_s_.reset();
   link_.Put(guard_.Allowed(), false);
   try {
     link_.Tick(now_s);
   } catch (const LineGone& gone) {
-    line_is_dead_ = true;
+    line_is_lost_ = true;
     guard_.Stop(StopReason::kPortGone, gone.what(), now_s);
     return;
   }
   NoteWritten();
-  for (const RobotLink::Heard& heard : link_.TakeHeard()) Hear(heard, now_s);
+  for (const RobotLink::Heard& heard : link_.TakeHeard()) HandleAnswer(heard, now_s);
 }
 
 void RealRobot::Core::NoteWritten() {
   if (!link_.last_sent() || link_.last_sent()->at_s == written_s_) return;
   written_s_ = link_.last_sent()->at_s;
   if (!waits_for_write_) return;
-  evidence_.poses.back().written_s = *written_s_ - start_s_;
+  record_.poses.back().written_s = *written_s_ - start_s_;
   waits_for_write_ = false;
 }
 
-void RealRobot::Core::Hear(const RobotLink::Heard& heard, double now_s) {
+void RealRobot::Core::HandleAnswer(const RobotLink::Heard& heard, double now_s) {
   counts_ = control::EncoderCounts{heard.answer.left, heard.answer.right};
   const double battery_v = kVoltPerMillivolt * heard.answer.battery_mv;
   const double sent_s = heard.sent ? heard.sent->at_s : heard.at_s;
-  evidence_.encoders.push_back({0.5 * (sent_s + heard.at_s) - start_s_, *counts_, battery_v});
+  record_.encoders.push_back({0.5 * (sent_s + heard.at_s) - start_s_, *counts_, battery_v});
   if (!heard.sent) return;  // a plain answer says neither to what nor how often the robot stopped
-  evidence_.rejected_by_robot = heard.answer.rejected;
-  evidence_.round_trips_s.push_back(heard.at_s - sent_s);
-  for (auto pose = evidence_.poses.rbegin(); pose != evidence_.poses.rend(); ++pose) {
+  record_.rejected_by_robot = heard.answer.rejected;
+  record_.round_trips_s.push_back(heard.at_s - sent_s);
+  for (auto pose = record_.poses.rbegin(); pose != record_.poses.rend(); ++pose) {
     if (pose->written_s >= 0.0 && pose->written_s <= sent_s - start_s_) {
       if (pose->answered_s < 0.0) pose->answered_s = heard.at_s - start_s_;
       break;
@@ -163,7 +163,7 @@ void RealRobot::Core::Hear(const RobotLink::Heard& heard, double now_s) {
 
 void RealRobot::Core::Arm() {
   const std::lock_guard lock(mutex_);
-  if (line_is_dead_) throw std::runtime_error("cannot arm: the serial port went away");
+  if (line_is_lost_) throw std::runtime_error("cannot arm: the serial port went away");
   guard_.Arm(clock_.Now_s());
   stop_is_answered_ = false;
   stopped_at_s_.reset();
@@ -184,8 +184,8 @@ trial::Sensed RealRobot::Core::Sense() {
     next_pose_s_ = clock_.Now_s() + std::min(period_s, kLongestPeriod_s);
     sensed_captured_s_ = news_.newest->measured.captured_s;
     waits_for_write_ = false;
-    evidence_.poses.push_back({sensed.pose->captured_s, news_.newest->arrived_s - start_s_,
-                               news_.newest->ready_s - start_s_, sensed.now_s});
+    record_.poses.push_back({sensed.pose->captured_s, news_.newest->arrived_s - start_s_,
+                             news_.newest->ready_s - start_s_, sensed.now_s});
   }
   return sensed;
 }
@@ -194,18 +194,18 @@ void RealRobot::Core::Command(const control::WheelPower& power) {
   const std::lock_guard lock(mutex_);
   const double now_s = clock_.Now_s();
   guard_.Command(power, now_s);
-  const bool is_first = !evidence_.poses.empty() && evidence_.poses.back().commanded_s < 0.0;
+  const bool is_first = !record_.poses.empty() && record_.poses.back().commanded_s < 0.0;
   if (is_first) {
-    evidence_.poses.back().commanded_s = now_s - start_s_;
+    record_.poses.back().commanded_s = now_s - start_s_;
     waits_for_write_ = true;
   }
-  Hand(guard_.Allowed(), is_first, now_s);
+  PassToLink(guard_.Allowed(), is_first, now_s);
   Exchange(now_s);
 }
 
-// At 9600 baud the line carries hardly more than one command for each picture: a second thought
-// about an old pose must not keep it from the first one about the next.
-void RealRobot::Core::Hand(const control::WheelPower& power, bool is_first, double now_s) {
+// At 9600 baud the line carries hardly more than one command for each picture: a second command
+// for an old pose must not delay the first one for the next pose.
+void RealRobot::Core::PassToLink(const control::WheelPower& power, bool is_first, double now_s) {
   const bool is_zero = power == control::WheelPower{};
   if (is_first || is_zero || now_s + link_.Occupied_s() <= next_pose_s_) {
     link_.Put(power, is_first);
@@ -233,16 +233,16 @@ bool RealRobot::Core::StopIsAnswered() {
   return stop_is_answered_;
 }
 
-DriveEvidence RealRobot::Core::Evidence() {
+DriveRecord RealRobot::Core::Record() {
   const std::lock_guard lock(mutex_);
-  DriveEvidence evidence = evidence_;
-  evidence.protocol = link_.protocol();
-  evidence.stop = guard_.stop();
-  if (evidence.stop) evidence.stop->at_s -= start_s_;
-  if (link_.protocol() == Protocol::kFramed) evidence.stop_acknowledged = stop_is_answered_;
-  evidence.sent = link_.sent_count();
-  evidence.answered = link_.answered_count();
-  return evidence;
+  DriveRecord record = record_;
+  record.protocol = link_.protocol();
+  record.stop = guard_.stop();
+  if (record.stop) record.stop->at_s -= start_s_;
+  if (link_.protocol() == Protocol::kFramed) record.stop_acknowledged = stop_is_answered_;
+  record.sent = link_.sent_count();
+  record.answered = link_.answered_count();
+  return record;
 }
 
 RealRobot::RealRobot(ByteLine& line, PoseSource& poses, Clock& clock,
@@ -260,7 +260,7 @@ trial::Sensed RealRobot::Sense() { return core_->Sense(); }
 void RealRobot::Command(const control::WheelPower& power) { core_->Command(power); }
 void RealRobot::Stop() noexcept { core_->Stop(); }
 DriveState RealRobot::state() const { return core_->state(); }
-DriveEvidence RealRobot::Evidence() const { return core_->Evidence(); }
+DriveRecord RealRobot::Record() const { return core_->Record(); }
 
 void RealRobot::Advance(double dt_s) {
   const double end_s = core_->Now_s() + dt_s;

@@ -44,7 +44,7 @@ void AnswerDecoder::TakeText(std::uint8_t byte, std::vector<Answer>& answers) {
     line_ += static_cast<char>(byte);
     return;
   }
-  // A module's chatter has no newline of its own, so it stands before what the robot says.
+  // A module's own text ends without a newline, so the robot's line follows on it.
   const size_t start = line_.rfind("rift1 ");
   if (start != std::string::npos) {
     if (const auto answer = ParseAnswerLine(std::string_view(line_).substr(start))) {
@@ -121,7 +121,7 @@ void RobotLink::Match(Heard& heard) {
   });
   if (found == unanswered_.end()) return;
   heard.sent = *found;
-  unanswered_.erase(unanswered_.begin(), found + 1);  // older ones were overtaken or lost
+  unanswered_.erase(unanswered_.begin(), found + 1);  // older ones are lost
   ++answered_count_;
 }
 

@@ -1,9 +1,117 @@
 #include "contacts.hpp"
 
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 namespace rift::simulation {
 namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kSegments = 24;
+constexpr int kBisections = 12;  // finds the edge of a block to a micrometre
+constexpr int kRimPoints = 8;
+
+std::optional<ContactPoint> IfDeep(const Vector3d& point, const Vector3d& normal, double depth_m) {
+  if (depth_m <= 0.0) return std::nullopt;
+  return ContactPoint{point, normal, depth_m};
+}
+
+/// The ground cut by a vertical plane through a disc's centre: heights over the distance s along
+/// `along`, both relative to the centre. The disc is as wide as the wheel, so the highest counts.
+class Profile {
+ public:
+  Profile(const Terrain& terrain, const Vector3d& centre, const Vector3d& along, double radius_m,
+          double half_width_m)
+      : terrain_(terrain),
+        centre_(centre),
+        along_(along),
+        aside_(half_width_m * Vector3d(-along.y(), along.x(), 0.0)),
+        wide_(half_width_m > 0.0),
+        radius_m_(radius_m) {}
+
+  /// The point of the ground nearest to the centre, as (s, height).
+  Vector2d Nearest() const {
+    Vector2d nearest(0.0, -std::numeric_limits<double>::infinity());
+    double s = -radius_m_, height = HeightAt(s);
+    for (int i = 1; i <= kSegments; ++i) {
+      const double next_s = radius_m_ * (2.0 * i / kSegments - 1.0), next_height = HeightAt(next_s);
+      if (std::max(height, next_height) > -radius_m_) {
+        NearestOfSegment({s, height}, {next_s, next_height}, nearest);
+      }
+      s = next_s;
+      height = next_height;
+    }
+    return nearest;
+  }
+
+ private:
+  double HeightAt(double s) const {
+    const Vector3d p = centre_ + s * along_;
+    double height = terrain_.HeightAt(p.x(), p.y());
+    if (wide_) {
+      height = std::max({height, terrain_.HeightAt(p.x() + aside_.x(), p.y() + aside_.y()),
+                         terrain_.HeightAt(p.x() - aside_.x(), p.y() - aside_.y())});
+    }
+    return std::max(height - centre_.z(), -10.0 * radius_m_);  // beyond a table: deep, but finite
+  }
+
+  void NearestOfSegment(const Vector2d& from, const Vector2d& to, Vector2d& nearest) const {
+    const bool step = std::abs(to.y() - from.y()) > 2.0 * (to.x() - from.x());
+    if (!step) return KeepNearer(from, to, nearest);
+    double low = from.x(), high = to.x();
+    for (int i = 0; i < kBisections; ++i) {
+      const double middle = 0.5 * (low + high), height = HeightAt(middle);
+      const bool still_from = std::abs(height - from.y()) < std::abs(height - to.y());
+      (still_from ? low : high) = middle;
+    }
+    KeepNearer(from, {low, from.y()}, nearest);
+    KeepNearer({high, to.y()}, to, nearest);
+  }
+
+  static void KeepNearer(const Vector2d& from, const Vector2d& to, Vector2d& nearest) {
+    const Vector2d span = to - from;
+    const double share =
+        span.squaredNorm() > 0.0 ? std::clamp(-from.dot(span) / span.squaredNorm(), 0.0, 1.0) : 0.0;
+    const Vector2d candidate = from + share * span;
+    if (candidate.squaredNorm() < nearest.squaredNorm()) nearest = candidate;
+  }
+
+  const Terrain& terrain_;
+  const Vector3d& centre_;
+  const Vector3d& along_;
+  const Vector3d aside_;
+  const bool wide_;
+  const double radius_m_;
+};
+
+std::optional<ContactPoint> DiscContactPoint(const Terrain& terrain, const Vector3d& centre,
+                                             const Vector3d& along, double radius_m,
+                                             double half_width_m) {
+  const Profile profile(terrain, centre, along, radius_m, half_width_m);
+  const Vector2d nearest = profile.Nearest();
+  const double distance_m = nearest.norm();
+  if (distance_m >= radius_m) return std::nullopt;
+  const Vector3d ground = centre + nearest.x() * along + nearest.y() * Vector3d::UnitZ();
+  Vector3d normal = distance_m > 0.0 ? Vector3d((centre - ground) / distance_m) : Vector3d::UnitZ();
+  if (!terrain.IsStepped()) {  // the profile does not see how the ground leans sideways
+    const Vector3d aside(-along.y(), along.x(), 0.0);
+    normal = (normal + terrain.NormalAt(ground.x(), ground.y()).dot(aside) * aside).normalized();
+  }
+  return IfDeep(centre - radius_m * normal, normal, radius_m - distance_m);
+}
+
+Vector3d Lowest(const Vector3d& axis, const Vector3d& normal) {
+  const Vector3d down = axis * axis.dot(normal) - normal;
+  const double length = down.norm();
+  return length > 1e-9 ? Vector3d(down / length) : Vector3d(axis.unitOrthogonal());
+}
 
 using Eigen::Vector3d;
 
@@ -11,20 +119,77 @@ using Eigen::Vector3d;
 /// robot creep by less than a micrometre a second on a slope.
 constexpr double kLeastSlip_mps_per_n = 1e-6;
 
+constexpr double kTippedOver_rad = 1.05;
+constexpr double kThroughFloor_m = 0.012;
+constexpr double kFallen_m = 0.5;
+
+bool IsFinite(const WorldState& state) {
+  return state.position_m.allFinite() && state.velocity_mps.allFinite() &&
+         state.world_from_robot.allFinite() &&
+         std::isfinite(state.wheel_rate_rad_s[0] + state.wheel_rate_rad_s[1]);
+}
+
 }  // namespace
+
+std::optional<ContactPoint> WheelContactPoint(const Terrain& terrain, const Vector3d& centre,
+                                              const Vector3d& axle, double radius_m,
+                                              double width_m) {
+  if (const auto plane = terrain.PlaneNear(centre.x(), centre.y(), radius_m)) {
+    const Vector3d point = centre + radius_m * Lowest(axle, plane->normal);
+    return IfDeep(point, plane->normal, plane->normal.dot(plane->point - point));
+  }
+  const Vector3d along = axle.cross(Vector3d::UnitZ()).stableNormalized();
+  return DiscContactPoint(terrain, centre, along, radius_m, 0.5 * width_m);
+}
+
+std::optional<ContactPoint> BallContactPoint(const Terrain& terrain, const Vector3d& centre,
+                                             const Vector3d& forward, double radius_m) {
+  if (const auto plane = terrain.PlaneNear(centre.x(), centre.y(), radius_m)) {
+    const Vector3d point = centre - radius_m * plane->normal;
+    return IfDeep(point, plane->normal, plane->normal.dot(plane->point - point));
+  }
+  const Vector3d along = Vector3d(forward.x(), forward.y(), 0.0).stableNormalized();
+  const Vector3d aside(-along.y(), along.x(), 0.0);
+  const auto lengthwise = DiscContactPoint(terrain, centre, along, radius_m, 0.0);
+  const auto crosswise = DiscContactPoint(terrain, centre, aside, radius_m, 0.0);
+  if (!lengthwise || !crosswise) return lengthwise ? lengthwise : crosswise;
+  return lengthwise->depth_m > crosswise->depth_m ? lengthwise : crosswise;
+}
+
+std::optional<ContactPoint> RimContactPoint(const Terrain& terrain, const Vector3d& centre,
+                                            const Vector3d& up, double radius_m) {
+  if (const auto plane = terrain.PlaneNear(centre.x(), centre.y(), radius_m)) {
+    const Vector3d point = centre + radius_m * Lowest(up, plane->normal);
+    return IfDeep(point, plane->normal, plane->normal.dot(plane->point - point));
+  }
+  std::optional<ContactPoint> deepest;
+  const Vector3d forward = up.unitOrthogonal(), left = up.cross(forward);
+  for (int i = 0; i < kRimPoints; ++i) {
+    const double angle_rad = 2.0 * std::numbers::pi * i / kRimPoints;
+    const Vector3d point =
+        centre + radius_m * (std::cos(angle_rad) * forward + std::sin(angle_rad) * left);
+    const double depth_m = terrain.HeightAt(point.x(), point.y()) - point.z();
+    if (depth_m <= (deepest ? deepest->depth_m : 0.0)) continue;
+    const Vector3d normal =
+        terrain.IsStepped() ? Vector3d(Vector3d::UnitZ()) : terrain.NormalAt(point.x(), point.y());
+    deepest = ContactPoint{point, normal, depth_m};
+  }
+  return deepest;
+}
 
 std::optional<GroundContact> WheelContact(const BodyOptions& body, const Terrain& terrain,
                                           const WorldState& state, int side, const Vector3d& centre,
                                           double wheel_load_n) {
   const Vector3d axle = state.world_from_robot.col(1);
-  const auto touch = TouchWheel(terrain, centre, axle, body.wheel_radius_m, body.wheel_width_m);
-  if (!touch) return std::nullopt;
-  const Grip grip = terrain.GripAt(touch->point.x(), touch->point.y());
-  const Vector3d sideways = (axle - axle.dot(touch->normal) * touch->normal).normalized();
+  const auto contact =
+      WheelContactPoint(terrain, centre, axle, body.wheel_radius_m, body.wheel_width_m);
+  if (!contact) return std::nullopt;
+  const Grip grip = terrain.GripAt(contact->point.x(), contact->point.y());
+  const Vector3d sideways = (axle - axle.dot(contact->normal) * contact->normal).normalized();
   const double rim_mps = std::abs(state.wheel_rate_rad_s[side]) * body.wheel_radius_m;
   const double creep =
       grip.slip > 0.0 && grip.mu > 0.0 ? grip.slip * rim_mps / (grip.mu * wheel_load_n) : 0.0;
-  return GroundContact{*touch, grip.mu, sideways, kLeastSlip_mps_per_n + creep};
+  return GroundContact{*contact, grip.mu, sideways, kLeastSlip_mps_per_n + creep};
 }
 
 std::optional<GroundContact> CasterContact(const BodyOptions& body, const Terrain& terrain,
@@ -32,20 +197,34 @@ std::optional<GroundContact> CasterContact(const BodyOptions& body, const Terrai
   const Vector3d caster =
       state.position_m +
       state.world_from_robot * Vector3d(body.caster_ahead_m, 0.0, -body.caster_below_m);
-  const auto touch =
-      TouchBall(terrain, caster, state.world_from_robot.col(0), body.caster_radius_m);
-  if (!touch) return std::nullopt;
-  const Grip grip = terrain.GripAt(touch->point.x(), touch->point.y());
-  return GroundContact{*touch, grip.caster_factor * body.caster_mu};
+  const auto contact =
+      BallContactPoint(terrain, caster, state.world_from_robot.col(0), body.caster_radius_m);
+  if (!contact) return std::nullopt;
+  const Grip grip = terrain.GripAt(contact->point.x(), contact->point.y());
+  return GroundContact{*contact, grip.caster_factor * body.caster_mu};
 }
 
 std::optional<GroundContact> RimContact(const BodyOptions& body, const Terrain& terrain,
                                         const WorldState& state) {
   const Vector3d up = state.world_from_robot.col(2);
   const Vector3d rim = state.position_m - (body.wheel_radius_m - body.rim_clearance_m) * up;
-  const auto touch = TouchRim(terrain, rim, up, body.chassis_radius_m);
-  if (!touch) return std::nullopt;
-  return GroundContact{*touch, body.rim_mu};
+  const auto contact = RimContactPoint(terrain, rim, up, body.chassis_radius_m);
+  if (!contact) return std::nullopt;
+  return GroundContact{*contact, body.rim_mu};
+}
+
+std::optional<std::string> FaultOf(const WorldState& state, const Terrain& terrain) {
+  if (!IsFinite(state)) return "the simulated motion is no longer finite";
+  const Eigen::Vector3d& p = state.position_m;
+  const auto at = [&p](const char* what) {
+    return fmt::format("{} at ({:.3f}, {:.3f}) m", what, p.x(), p.y());
+  };
+  const double ground_m = terrain.HeightAt(p.x(), p.y());
+  const bool is_on_table = std::isfinite(ground_m);
+  if (!is_on_table && p.z() < -kFallen_m) return at("fell off the table");
+  if (is_on_table && p.z() < ground_m - kThroughFloor_m) return at("sank through the floor");
+  if (state.world_from_robot(2, 2) < std::cos(kTippedOver_rad)) return at("tipped over");
+  return std::nullopt;
 }
 
 }  // namespace rift::simulation

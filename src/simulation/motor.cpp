@@ -80,4 +80,9 @@ WheelDrive Motor::TorqueLine(double power, double rate_rad_s, double drag_nm) co
           std::numeric_limits<double>::infinity()};
 }
 
+std::int64_t CountsAt(double angle_rad, double counts_per_rev) {
+  return static_cast<std::int64_t>(
+      std::floor(angle_rad * counts_per_rev / (2.0 * std::numbers::pi)));
+}
+
 }  // namespace rift::simulation

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "contacts.hpp"
-#include "world_fault.hpp"
 
 // The only file that knows ODE.
 namespace rift::simulation {
@@ -206,7 +205,7 @@ void OdeWorld::Bodies::Settle() {
   ReadState();
 }
 
-/// A step broken off leaves jobs behind, and ODE's destructors object to those: leak the lot.
+/// An aborted step leaves unfinished jobs, for which ODE's destructors fail: everything is leaked.
 void OdeWorld::Bodies::Abandon() {
   static_cast<void>(contacts.release());
   static_cast<void>(world.release());
@@ -264,9 +263,9 @@ void OdeWorld::Bodies::Add(const std::optional<GroundContact>& ground, dBodyID p
   contact.surface.mu = sticks ? dInfinity : ground->mu;
   contact.surface.soft_erp = contact_erp;
   contact.surface.soft_cfm = contact_cfm;
-  contact.geom.depth = ground->touch.depth_m;
-  Eigen::Map<Vector3d>(contact.geom.pos) = ground->touch.point;
-  Eigen::Map<Vector3d>(contact.geom.normal) = ground->touch.normal;
+  contact.geom.depth = ground->at.depth_m;
+  Eigen::Map<Vector3d>(contact.geom.pos) = ground->at.point;
+  Eigen::Map<Vector3d>(contact.geom.normal) = ground->at.normal;
   if (ground->sideways) {
     Eigen::Map<Vector3d>(contact.fdir1) = *ground->sideways;
     contact.surface.slip1 = contact.surface.slip2 = ground->slip_mps_per_n;

@@ -29,11 +29,11 @@ constexpr const char* kStreamHead =
     "Cache-Control: no-store\r\nConnection: close\r\n\r\n";
 
 /// One client. All its handlers run on the server's thread.
-class Viewer : public std::enable_shared_from_this<Viewer> {
+class Client : public std::enable_shared_from_this<Client> {
  public:
-  Viewer(tcp::socket socket, std::atomic<int>& watching)
+  Client(tcp::socket socket, std::atomic<int>& watching)
       : socket_(std::move(socket)), watching_(watching) {}
-  ~Viewer() {
+  ~Client() {
     if (is_watching_) --watching_;
   }
 
@@ -137,9 +137,9 @@ class MjpegServer::Core {
   int Clients() const { return watching_; }
   void Publish(Picture picture) {
     asio::post(context_, [this, picture = std::move(picture)] {
-      std::erase_if(viewers_, [](const auto& viewer) { return viewer.expired(); });
-      for (const auto& viewer : viewers_) {
-        if (const auto here = viewer.lock()) here->Show(picture);
+      std::erase_if(clients_, [](const auto& client) { return client.expired(); });
+      for (const auto& client : clients_) {
+        if (const auto here = client.lock()) here->Show(picture);
       }
     });
   }
@@ -148,16 +148,16 @@ class MjpegServer::Core {
   void Accept() {
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
       if (!error) {
-        const auto viewer = std::make_shared<Viewer>(std::move(socket), watching_);
-        viewers_.push_back(viewer);
-        viewer->Start();
+        const auto client = std::make_shared<Client>(std::move(socket), watching_);
+        clients_.push_back(client);
+        client->Start();
       }
       Accept();
     });
   }
 
-  std::atomic<int> watching_ = 0;  // first: viewers count themselves off it
-  std::vector<std::weak_ptr<Viewer>> viewers_;
+  std::atomic<int> watching_ = 0;  // first: the destructor of a client lowers it
+  std::vector<std::weak_ptr<Client>> clients_;
   asio::io_context context_;
   tcp::acceptor acceptor_;
   std::thread thread_;

@@ -9,7 +9,7 @@ namespace rift::twin {
 
 /// An http camera on 127.0.0.1: GET /stream.mjpg is answered with multipart/x-mixed-replace. Any
 /// number of clients, each given the newest picture when it has taken the last one, so that a slow
-/// one misses pictures and holds up nobody. Has a thread of its own.
+/// one misses pictures and delays no other. Has a thread of its own.
 class MjpegServer {
  public:
   /// port 0: a free one. Throws std::runtime_error when the port is taken.
@@ -19,7 +19,7 @@ class MjpegServer {
   MjpegServer& operator=(const MjpegServer&) = delete;
 
   std::string Url() const;
-  /// To whoever watches, now.
+  /// To all clients, now.
   void Publish(std::vector<std::uint8_t> jpeg);
   int Clients() const;
 

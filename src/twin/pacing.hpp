@@ -4,15 +4,23 @@
 
 namespace rift::twin {
 
-/// Real time for a simulation: seconds since the start, without those that were slept through. A
-/// process that stood still (SIGSTOP, suspend, overload) must not hurry through them afterwards.
+/// Real time for a simulation: seconds since the start, without those in which the
+/// process stood still (SIGSTOP, suspend, overload): it must not catch up on them afterwards.
 class Pacer {
  public:
   static constexpr double kMostBehind_s = 0.25;
 
   explicit Pacer(double start_s) : epoch_s_(start_s), last_s_(start_s) {}
 
-  double Simulated_s(double now_s);
+  double Simulated_s(double now_s) {
+    const double behind_s = now_s - last_s_;
+    if (behind_s > kMostBehind_s) {
+      epoch_s_ += behind_s - kMostBehind_s;
+      skipped_s_ += behind_s - kMostBehind_s;
+    }
+    last_s_ = now_s;
+    return now_s - epoch_s_;
+  }
   /// The moment on the clock at which that simulated second is or was due.
   double ClockOf_s(double simulated_s) const { return epoch_s_ + simulated_s; }
   double Skipped_s() const { return skipped_s_; }
@@ -28,7 +36,11 @@ class TrialEnd {
  public:
   explicit TrialEnd(double still_s) : still_s_(still_s) {}
 
-  void See(double t_s, const control::WheelPower& power);
+  void Observe(double t_s, const control::WheelPower& power) {
+    if (power == control::WheelPower{}) return;
+    has_driven_ = true;
+    driven_s_ = t_s;
+  }
   bool HasDriven() const { return has_driven_; }
   bool IsOver(double now_s) const { return has_driven_ && now_s - driven_s_ >= still_s_; }
 

@@ -8,7 +8,7 @@
 namespace rift::twin {
 
 /// The robot's end of a serial line whose other end is a port for one program at a time. The port
-/// may be closed and opened again: this side keeps it alive.
+/// may be closed and opened again: this side keeps it open.
 class PseudoTerminal {
  public:
   /// Throws std::runtime_error when the system gives none.
@@ -20,7 +20,8 @@ class PseudoTerminal {
   const std::string& path() const { return path_; }
   /// What has come, without waiting.
   std::vector<std::uint8_t> Read();
-  /// Without waiting; what nobody reads is lost in the end, as on a serial line.
+  /// Without waiting; bytes that are not read are lost when the buffer is full, as on a serial
+  /// line.
   void Write(std::span<const std::uint8_t> bytes);
 
  private:

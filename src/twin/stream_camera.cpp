@@ -7,16 +7,13 @@
 #include <cmath>
 
 #include "rift/statistics/quantile.hpp"
+#include "rift/vision/camera/camera_source.hpp"
 
 namespace rift::twin {
 namespace {
 
-constexpr double kNap_s = 0.001;
+constexpr double kPoll_s = 0.001;
 constexpr double kLate_s = 0.020;  // a picture that late is left out, as a camera drops it
-
-double SteadyNow_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 double ThreadCpu_s() {
   timespec spent{};
@@ -63,7 +60,7 @@ StreamCamera::StreamCamera(const TwinSetup& setup, std::unique_ptr<vision::Pictu
 
 StreamCamera::~StreamCamera() = default;
 
-double StreamCamera::Now_s() const { return SteadyNow_s() - epoch_s_; }
+double StreamCamera::Now_s() const { return vision::SteadyNow_s() - epoch_s_; }
 
 void StreamCamera::Run(const std::stop_token& stop) {
   std::int64_t next = 0;
@@ -78,7 +75,7 @@ void StreamCamera::Run(const std::stop_token& stop) {
       ++next;
       continue;
     }
-    std::this_thread::sleep_for(std::chrono::duration<double>(kNap_s));
+    std::this_thread::sleep_for(std::chrono::duration<double>(kPoll_s));
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "mjpeg_server.hpp"
 #include "rift/twin/twin.hpp"
+#include "true_path.hpp"
 
 namespace rift::twin {
 
@@ -20,8 +21,8 @@ namespace rift::twin {
 /// finds the tag in its own time, so the twin makes it wait for the rest alone.
 double HoldBack_s(const simulation::MocapOptions& mocap, const TwinOptions& options);
 
-/// Takes pictures of the true path in a thread of its own and publishes each when it is due. While
-/// nobody watches, none is made.
+/// Takes pictures of the true path in a thread of its own and publishes each when it is due. None
+/// is made without a client.
 class StreamCamera {
  public:
   /// `epoch_s`: the steady clock at simulated second 0. All must outlive it.

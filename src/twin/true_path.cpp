@@ -1,4 +1,4 @@
-#include "rift/twin/true_path.hpp"
+#include "true_path.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,14 @@
-#include "rift/twin/twin_robot.hpp"
+#include "twin_robot.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "rift/statistics/counter_random.hpp"
 
 namespace rift::twin {
 namespace {
+
+constexpr double kBitsPerByte = 10.0;  // 8N1: start, eight bits, stop
 
 constexpr double kRounding_s = 1e-9;
 
@@ -21,6 +24,27 @@ simulation::SimulationOptions WithoutRadio(simulation::SimulationOptions options
 enum Stream : std::uint64_t { kToRobotStream = 100, kToHostStream = 101 };
 
 }  // namespace
+
+void ByteChannel::Put(double at_s, std::span<const std::uint8_t> bytes) {
+  if (bytes.empty()) return;
+  const double byte_s = options_.baud > 0.0 ? kBitsPerByte / options_.baud : 0.0;
+  const bool is_lost = Happens(options_.line_loss);
+  free_s_ = std::max(at_s + options_.delay_s, free_s_);
+  for (const std::uint8_t value : bytes) {
+    free_s_ += byte_s;
+    if (is_lost || Happens(options_.byte_loss)) continue;
+    on_the_way_.push_back({free_s_, value});
+  }
+}
+
+std::vector<std::uint8_t> ByteChannel::Take(double now_s) {
+  std::vector<std::uint8_t> arrived;
+  while (!on_the_way_.empty() && on_the_way_.front().arrives_s <= now_s) {
+    arrived.push_back(on_the_way_.front().value);
+    on_the_way_.pop_front();
+  }
+  return arrived;
+}
 
 TwinRobot::TwinRobot(const simulation::SimulationOptions& options, double battery_v,
                      const geometry::Pose2& start, std::uint64_t seed,
@@ -40,7 +64,7 @@ control::WheelPower TwinRobot::Motors() const {
   return {1e-3 * listener_.Motors().left, 1e-3 * listener_.Motors().right};
 }
 
-void TwinRobot::Advance(double to_s, const Witness& witness) {
+void TwinRobot::Advance(double to_s, const Observer& observer) {
   while (Now_s() + kTurn_s <= to_s + kRounding_s) {
     const std::vector<std::uint8_t> heard = to_robot_.Take(Now_s());
     const auto now_ms = static_cast<std::uint32_t>(turns_);  // a turn is a millisecond
@@ -52,9 +76,9 @@ void TwinRobot::Advance(double to_s, const Witness& witness) {
     robot_.Advance(kTurn_s);
     ++turns_;
     const simulation::TruePose pose = robot_.Truth();
-    if (pose.t_s > witnessed_s_) {
-      witnessed_s_ = pose.t_s;
-      witness(pose, commanded_);
+    if (pose.t_s > observed_s_) {
+      observed_s_ = pose.t_s;
+      observer(pose, commanded_);
     }
   }
 }

@@ -86,8 +86,8 @@ void DrawPatch(cv::Mat& picture, const Layout& layout, const geometry::FloorArea
            std::max(1, shown.width - 6));
 }
 
-void DrawWaypoints(const Pen& pen, const Layout& layout, const Stage& stage) {
-  for (const geometry::NamedPoint& place : stage.waypoints) {
+void DrawWaypoints(const Pen& pen, const Layout& layout, const StaticScene& fixed) {
+  for (const geometry::NamedPoint& place : fixed.waypoints) {
     const cv::Point2d at = layout.TopPixel(place.p_in_world_m);
     pen.Dot(at, 7, colour::kInk);
     pen.Dot(at, 5.5, colour::kYellow);
@@ -122,24 +122,24 @@ void DrawCaptions(const Pen& pen, const Layout& layout) {
 
 }  // namespace
 
-cv::Mat Backdrop(const Stage& stage, const Layout& layout) {
+cv::Mat Backdrop(const StaticScene& fixed, const Layout& layout) {
   cv::Mat picture(layout.size, CV_8UC3, colour::kPaper);
-  ShadedGround(stage.ground, layout.top.size()).copyTo(picture(layout.top));
-  for (const geometry::FloorArea& patch : stage.patches) DrawPatch(picture, layout, patch);
+  ShadedGround(fixed.ground, layout.top.size()).copyTo(picture(layout.top));
+  for (const geometry::FloorArea& patch : fixed.patches) DrawPatch(picture, layout, patch);
   const Pen pen(picture, layout.Ui());
   Points reference;
-  for (const Eigen::Vector2d& p_m : stage.reference_m) reference.push_back(layout.TopPixel(p_m));
+  for (const Eigen::Vector2d& p_m : fixed.reference_m) reference.push_back(layout.TopPixel(p_m));
   if (reference.size() > 1) pen.Line(reference, colour::kBlack, 1.5);
-  DrawWaypoints(pen, layout, stage);
+  DrawWaypoints(pen, layout, fixed);
   DrawScale(pen, layout);
   DrawCaptions(pen, layout);
   cv::rectangle(picture, layout.top, colour::kFaint, 1);
   return picture;
 }
 
-void DrawProfile(cv::Mat& picture, const Stage& stage, const Layout& layout, double y_low_m,
+void DrawProfile(cv::Mat& picture, const StaticScene& fixed, const Layout& layout, double y_low_m,
                  double y_high_m) {
-  const Ground& ground = stage.ground;
+  const Ground& ground = fixed.ground;
   const auto row_at = [&](double y_m) {
     const double row = std::round((y_m - ground.y_min_m) / ground.cell_m);
     return static_cast<int>(std::clamp(row, 0.0, ground.rows - 1.0));

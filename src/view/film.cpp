@@ -7,10 +7,87 @@
 #include <stdexcept>
 
 #include "rift/geometry/angle.hpp"
-#include "stage.hpp"
+#include "rift/view/options.hpp"
 
 namespace rift::view {
 namespace {
+
+// H.264 in 4:2:0 keeps one colour for two by two pixels.
+void CheckEven(const char* field, int value) {
+  if (value % 2 == 0) return;
+  throw std::invalid_argument(fmt::format("{} is {}, but it must be even", field, value));
+}
+
+/// The poses whose positions are the trail: those measured, else the true ones.
+const trajectory::Trajectory& Trail(const Run& run) {
+  return run.logged.poses.empty() ? run.truth : run.logged;
+}
+
+constexpr int kMostCells = 1200;  // a side; more than a window has pixels
+
+struct Box {
+  Eigen::Vector2d low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+
+  void Cover(const Eigen::Vector2d& p_m) {
+    if (!p_m.allFinite()) return;
+    low = low.cwiseMin(p_m);
+    high = high.cwiseMax(p_m);
+  }
+};
+
+Box ShownFloor(const Run& run, double margin_m) {
+  Box box;
+  for (const geometry::NamedPoint& place : run.waypoints) box.Cover(place.p_in_world_m);
+  for (const Eigen::Vector2d& p_m : run.reference_m) box.Cover(p_m);
+  for (const trajectory::StampedPose& pose : run.truth.poses) box.Cover(pose.Position());
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(margin_m + run.body.chassis_radius_m);
+  return {box.low - margin, box.high + margin};
+}
+
+Ground Sample(const Run& run, const Box& box, double finest_m) {
+  const Eigen::Vector2d extent_m = box.high - box.low;
+  Ground ground;
+  ground.x_min_m = box.low.x();
+  ground.y_min_m = box.low.y();
+  ground.cell_m = std::max(finest_m, extent_m.maxCoeff() / kMostCells);
+  ground.columns = static_cast<int>(std::ceil(extent_m.x() / ground.cell_m)) + 1;
+  ground.rows = static_cast<int>(std::ceil(extent_m.y() / ground.cell_m)) + 1;
+  ground.height_m.assign(static_cast<size_t>(ground.columns) * ground.rows, 0.0F);
+  if (!run.height_at) return ground;
+  for (int row = 0; row < ground.rows; ++row) {
+    for (int column = 0; column < ground.columns; ++column) {
+      const double x_m = ground.x_min_m + column * ground.cell_m;
+      const double y_m = ground.y_min_m + row * ground.cell_m;
+      ground.height_m[static_cast<size_t>(row) * ground.columns + column] =
+          static_cast<float>(run.height_at(x_m, y_m));
+    }
+  }
+  return ground;
+}
+
+double Top_m(const Run& run, const Ground& ground) {
+  double top_m = 0.0;
+  for (const float height_m : ground.height_m) top_m = std::max(top_m, double{height_m});
+  const BodyShape& body = run.body;
+  return top_m + body.wheel_radius_m + body.chassis_bottom_m + body.chassis_height_m +
+         body.chassis_radius_m;
+}
+
+/// The ground around everything that is shown, and what lies on it.
+StaticScene MakeStaticScene(const Run& run, const ViewOptions& options) {
+  StaticScene fixed;
+  fixed.title = run.title;
+  fixed.ground = Sample(run, ShownFloor(run, options.margin_m), options.ground_cell_m);
+  fixed.top_m = Top_m(run, fixed.ground);
+  fixed.waypoints = run.waypoints;
+  fixed.reference_m = run.reference_m;
+  fixed.patches = run.patches;
+  fixed.body = run.body;
+  for (const trajectory::StampedPose& pose : Trail(run).poses) {
+    fixed.trail_m.push_back(pose.Position());
+  }
+  return fixed;
+}
 
 using trajectory::StampedPose;
 using trajectory::Trajectory;
@@ -79,6 +156,11 @@ double Speed_mps(const Run& run, const StampedPose& a, const StampedPose& b) {
 
 }  // namespace
 
+void ViewOptions::Check() const {
+  CheckEven("width_px", width_px);
+  CheckEven("height_px", height_px);
+}
+
 Scene SceneAt(const Run& run, double t_s) {
   const auto& poses = run.truth.poses;
   const double at_s = poses.front().t_s + t_s;
@@ -114,7 +196,7 @@ Film MakeFilm(const Run& run, const ViewOptions& options) {
                     "possible: lower fps",
                     duration_s, options.fps, count, kMostPictures));
   }
-  Film film{MakeStage(run, options), {}, static_cast<double>(options.fps)};
+  Film film{MakeStaticScene(run, options), {}, static_cast<double>(options.fps)};
   for (int i = 0; i + 1 < static_cast<int>(count); ++i) {
     film.scenes.push_back(SceneAt(run, i / film.fps));
   }

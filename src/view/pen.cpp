@@ -32,7 +32,7 @@ std::vector<cv::Point> HullOf(const Points& points) {
 
 cv::Point Rounded(const cv::Point2d& p) { return {cvRound(p.x), cvRound(p.y)}; }
 
-// OpenCV's stroke fonts: the doubled face for larger letters, since a thicker pen blots them.
+// OpenCV's stroke fonts: the doubled face for larger letters, since a thicker stroke fills them.
 struct Font {
   explicit Font(double letter_px)
       : face(letter_px > 13.0 ? cv::FONT_HERSHEY_DUPLEX : cv::FONT_HERSHEY_SIMPLEX),

@@ -42,7 +42,7 @@ void Encode(const Film& film, const fs::path& path, cv::Size size) {
         "cannot write {}: the folder is missing or not writable, or FFmpeg has no H.264 encoder",
         path.string()));
   }
-  const Painter painter(film.stage, size);
+  const Painter painter(film.fixed, size);
   for (const Scene& scene : film.scenes) writer.write(painter.Paint(scene));
 }
 

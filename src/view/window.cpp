@@ -47,7 +47,7 @@ void PlayInWindow(const Film& film, const ViewOptions& options) {
   if (const std::string missing = module::MissingDisplay(); !missing.empty()) {
     throw std::runtime_error(missing);
   }
-  const Painter painter(film.stage, {options.width_px, options.height_px});
+  const Painter painter(film.fixed, {options.width_px, options.height_px});
   const int last = static_cast<int>(film.scenes.size()) - 1;
   const double duration_s = last / film.fps;
   const int wait_ms = std::max(1, static_cast<int>(500.0 / film.fps));

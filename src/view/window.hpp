@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "rift/view/film.hpp"
 #include "rift/view/options.hpp"
-#include "rift/view/scene.hpp"
 
 namespace rift::view {
 

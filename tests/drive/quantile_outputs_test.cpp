@@ -4,8 +4,9 @@
 
 #include "commands/drive_output.hpp"
 #include "commands/track_output.hpp"
-#include "gap/error_summary.hpp"
+#include "rift/gap/comparison.hpp"
 #include "rift/statistics/quantile.hpp"
+#include "support/paths.hpp"
 
 namespace rift::commands {
 namespace {
@@ -16,10 +17,12 @@ std::vector<double> OneToTen() { return {7.0, 1.0, 10.0, 4.0, 9.0, 2.0, 6.0, 3.0
 constexpr double kMedian = 5.5, kP95 = 9.55;
 
 TEST_CASE("Quantiles of one list are the same number in gap and track and drive") {
-  gap::Comparison comparison;
-  gap::SummariseErrors(OneToTen(), comparison);
-  CHECK(comparison.median_error_m == Approx(kMedian));
-  CHECK(comparison.p95_error_m == Approx(kP95));
+  // The ten errors between two straight paths that part at an angle are 0, 1, ..., 9 ninths.
+  const trajectory::Trajectory ahead = test::StraightPath(1.0, 10);
+  const gap::Comparison parting =
+      gap::Compare(ahead, test::Moved(ahead, {0.0, 0.0, 0.1}), {.samples = 10});
+  CHECK(parting.median_error_m == Approx(0.5 * parting.gap_m));
+  CHECK(parting.p95_error_m == Approx(0.95 * parting.gap_m));
 
   TrackRun track;
   track.latencies_s = OneToTen();

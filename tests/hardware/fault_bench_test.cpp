@@ -159,8 +159,8 @@ TEST_CASE("Whatever goes wrong the motors are off in time and stay off") {
       CHECK(scene.bench.SpeedOfWheels() < 1e-6);
       if (fault.reason) {
         CHECK(scene.robot.state() == DriveState::kStopped);
-        REQUIRE(scene.robot.Evidence().stop);
-        CHECK(EnumNames(StopReason{})[static_cast<size_t>(scene.robot.Evidence().stop->reason)] ==
+        REQUIRE(scene.robot.Record().stop);
+        CHECK(EnumNames(StopReason{})[static_cast<size_t>(scene.robot.Record().stop->reason)] ==
               EnumNames(StopReason{})[static_cast<size_t>(*fault.reason)]);
         CHECK(scene.robot.Sense().fault);
       }
@@ -173,7 +173,7 @@ TEST_CASE("A control loop that hangs is cut off while the link goes on") {
   const double to_zero_s = TimeToZero(
       scene, [] {}, [&] { scene.robot.Advance(0.001); });
   CHECK(to_zero_s <= 0.1 + kSend_s);
-  CHECK(scene.robot.Evidence().stop->reason == StopReason::kControlStale);
+  CHECK(scene.robot.Record().stop->reason == StopReason::kControlStale);
 }
 
 TEST_CASE("A power before arming stops the drive before it began") {
@@ -181,7 +181,7 @@ TEST_CASE("A power before arming stops the drive before it began") {
   RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
   for (int i = 0; i < 20; ++i) robot.Advance(kPeriod_s);
   DriveOn(robot, 0.5, bench);
-  CHECK(robot.Evidence().stop->reason == StopReason::kNotArmed);
+  CHECK(robot.Record().stop->reason == StopReason::kNotArmed);
   CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
 }
 
@@ -211,18 +211,18 @@ TEST_CASE("A stop is acknowledged by the robot or reported as not acknowledged")
   Scene heard;
   heard.robot.Stop();
   heard.robot.ConfirmStop(1.0);
-  CHECK(heard.robot.Evidence().stop_acknowledged == true);
+  CHECK(heard.robot.Record().stop_acknowledged == true);
 
   Scene deaf;
   deaf.bench.to_robot_is_cut = true;
   deaf.robot.Stop();
   deaf.robot.ConfirmStop(1.0);
-  CHECK(deaf.robot.Evidence().stop_acknowledged == false);
+  CHECK(deaf.robot.Record().stop_acknowledged == false);
 
   Bench bench;
   RealRobot plain(bench, bench, bench, {{}, Protocol::kPlain, false});
   plain.Stop();
-  CHECK_FALSE(plain.Evidence().stop_acknowledged);
+  CHECK_FALSE(plain.Record().stop_acknowledged);
 }
 
 struct Noise {
@@ -309,7 +309,7 @@ TEST_CASE("The trial loop of the simulator drives the robot to the last waypoint
   const trial::TrialResult result = Trial(robot, {.pace = trial::Pace::kNewPose});
   CHECK(result.reason == "the last waypoint was reached");
   robot.ConfirmStop(1.0);
-  const DriveEvidence evidence = robot.Evidence();
+  const DriveRecord evidence = robot.Record();
   CHECK(evidence.stop_acknowledged == true);
   REQUIRE(evidence.poses.size() > 30);
   for (const PoseStages& pose : evidence.poses) {
@@ -327,7 +327,7 @@ TEST_CASE("Second thoughts about a pose do not hold up the command for the next 
   RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
   Trial(robot, {.pace = trial::Pace::kEveryPeriod});
   std::vector<double> waits_s;
-  for (const PoseStages& pose : robot.Evidence().poses) {
+  for (const PoseStages& pose : robot.Record().poses) {
     if (pose.written_s >= 0.0) waits_s.push_back(pose.written_s - pose.ready_s);
   }
   REQUIRE(waits_s.size() > 30);

@@ -63,8 +63,8 @@ int DriveForEver(const std::string& path) {
     robot.Advance(0.02);
   }
   robot.Stop();
-  if (robot.Evidence().stop->reason != StopReason::kPortGone) robot.ConfirmStop(30.0);
-  const DriveEvidence evidence = robot.Evidence();
+  if (robot.Record().stop->reason != StopReason::kPortGone) robot.ConfirmStop(30.0);
+  const DriveRecord evidence = robot.Record();
   return static_cast<int>(evidence.stop->reason) + (evidence.stop_acknowledged == true ? 100 : 0);
 }
 

@@ -1,4 +1,4 @@
-#include "rift/simulation/height_image.hpp"
+#include "rift/simulation/terrain.hpp"
 
 #include <png.h>
 

@@ -3,8 +3,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "rift/simulation/encoder.hpp"
-
 namespace rift::simulation {
 namespace {
 

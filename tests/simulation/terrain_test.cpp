@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "simulation/touch.hpp"
+#include "simulation/contacts.hpp"
 
 namespace rift::simulation {
 namespace {
@@ -99,13 +99,13 @@ TEST_CASE("A wheel on a plane touches with its lowest point along the normal") {
   const double radius_m = 0.016, sunk_m = 1e-5;
   const Eigen::Vector3d ground(0.5, 0.0, terrain.HeightAt(0.5, 0.0));
   const Eigen::Vector3d normal = terrain.NormalAt(0.5, 0.0);
-  const auto touch = TouchWheel(terrain, ground + (radius_m - sunk_m) * normal,
-                                Eigen::Vector3d::UnitY(), radius_m, 0.0068);
-  REQUIRE(touch);
-  CHECK(touch->depth_m == Approx(sunk_m));
-  CHECK((touch->point - (ground - sunk_m * normal)).norm() < 1e-9);
-  CHECK_FALSE(TouchWheel(terrain, ground + (radius_m + sunk_m) * normal, Eigen::Vector3d::UnitY(),
-                         radius_m, 0.0068));
+  const auto contact = WheelContactPoint(terrain, ground + (radius_m - sunk_m) * normal,
+                                         Eigen::Vector3d::UnitY(), radius_m, 0.0068);
+  REQUIRE(contact);
+  CHECK(contact->depth_m == Approx(sunk_m));
+  CHECK((contact->point - (ground - sunk_m * normal)).norm() < 1e-9);
+  CHECK_FALSE(WheelContactPoint(terrain, ground + (radius_m + sunk_m) * normal,
+                                Eigen::Vector3d::UnitY(), radius_m, 0.0068));
 }
 
 TEST_CASE("A wheel before a block touches its edge at the angle of the step") {
@@ -115,14 +115,15 @@ TEST_CASE("A wheel before a block touches its edge at the angle of the step") {
   const double reach_m =
       std::sqrt(radius_m * radius_m - (radius_m - height_m) * (radius_m - height_m));
   const Eigen::Vector3d centre(-0.010 - reach_m + 1e-4, 0.0, radius_m);
-  const auto touch = TouchWheel(terrain, centre, Eigen::Vector3d::UnitY(), radius_m, 0.0068);
-  REQUIRE(touch);
-  CHECK(touch->normal.z() == Approx((radius_m - height_m) / radius_m).margin(0.005));
-  CHECK(touch->normal.x() < -0.6);
-  CHECK(touch->depth_m == Approx(1e-4 * reach_m / radius_m).epsilon(0.05));
+  const auto contact =
+      WheelContactPoint(terrain, centre, Eigen::Vector3d::UnitY(), radius_m, 0.0068);
+  REQUIRE(contact);
+  CHECK(contact->normal.z() == Approx((radius_m - height_m) / radius_m).margin(0.005));
+  CHECK(contact->normal.x() < -0.6);
+  CHECK(contact->depth_m == Approx(1e-4 * reach_m / radius_m).epsilon(0.05));
 }
 
-TEST_CASE("Away from planes the profile finds the same touch as the plane does") {
+TEST_CASE("Away from planes the profile finds the same contact as the plane does") {
   const auto image = std::make_shared<HeightImage>(HeightImage{2, 2, {0.0, 1.0, 0.0, 1.0}});
   const Terrain terrain(Heightfield(), image);  // slope of 0.05 towards +x
   const double radius_m = 0.016, sunk_m = 1e-5;
@@ -130,11 +131,11 @@ TEST_CASE("Away from planes the profile finds the same touch as the plane does")
   const Eigen::Vector3d normal = Eigen::Vector3d(-0.05, 0.0, 1.0).normalized();
   for (const Eigen::Vector3d& axle :
        {Eigen::Vector3d(0.0, 1.0, 0.0), Eigen::Vector3d(0.6, 0.8, 0.0)}) {
-    const auto touch =
-        TouchWheel(terrain, ground + (radius_m - sunk_m) * normal, axle, radius_m, 0.0);
-    REQUIRE(touch);
-    CHECK((touch->normal - normal).norm() < 1e-3);
-    CHECK(touch->depth_m == Approx(sunk_m).margin(2e-5));
+    const auto contact =
+        WheelContactPoint(terrain, ground + (radius_m - sunk_m) * normal, axle, radius_m, 0.0);
+    REQUIRE(contact);
+    CHECK((contact->normal - normal).norm() < 1e-3);
+    CHECK(contact->depth_m == Approx(sunk_m).margin(2e-5));
   }
 }
 

@@ -1,13 +1,13 @@
-#include "rift/twin/twin_robot.hpp"
+#include "twin/twin_robot.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 
 #include "rift/twin/options.hpp"
-#include "rift/twin/overhead_camera.hpp"
-#include "rift/twin/true_path.hpp"
+#include "rift/twin/twin.hpp"
 #include "twin/pacing.hpp"
+#include "twin/true_path.hpp"
 
 namespace rift::twin {
 namespace {
@@ -36,7 +36,7 @@ double LastPowered_s(TwinRobot& robot, double silent_s, double until_s,
     if (power.left != 0.0 || power.right != 0.0) powered_s = pose.t_s;
   };
   for (int i = 0; 0.04 * i < until_s; ++i) {
-    if (0.04 * i <= silent_s) robot.Hear(0.04 * i, say(i));
+    if (0.04 * i <= silent_s) robot.Receive(0.04 * i, say(i));
     robot.Advance(0.04 * (i + 1), witness);
   }
   return powered_s;
@@ -72,7 +72,7 @@ TEST_CASE("A frame without a zero before it does not move the twin") {
 TEST_CASE("The twin answers with its encoders and its battery") {
   TwinRobot robot(Options(), 4.9, {}, 1);
   LastPowered_s(robot, 0.8, 2.0, FramedHost);
-  const std::vector<std::uint8_t> said = robot.Say(2.0);
+  const std::vector<std::uint8_t> said = robot.Transmit(2.0);
   REQUIRE(said.size() >= hardware::Answer::kSize);
   const auto last = hardware::DecodeAnswer(hardware::Bytes(said).last(hardware::Answer::kSize));
   REQUIRE(last);
@@ -124,10 +124,10 @@ TEST_CASE("A process that stood still does not hurry afterwards") {
 
 TEST_CASE("A trial is over when the robot drove and was off for long enough") {
   TrialEnd end(2.0);
-  end.See(1.0, {});
+  end.Observe(1.0, {});
   CHECK_FALSE(end.IsOver(60.0));
-  end.See(60.0, {0.0, 0.1});
-  end.See(60.1, {});
+  end.Observe(60.0, {0.0, 0.1});
+  end.Observe(60.1, {});
   CHECK_FALSE(end.IsOver(61.9));
   CHECK(end.IsOver(62.0));
 }

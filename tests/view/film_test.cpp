@@ -71,7 +71,7 @@ TEST_CASE("The ground is sampled around path and waypoints with a margin") {
   run.height_at = [](double x_m, double) { return x_m > 0.2 ? 0.01 : 0.0; };
   ViewOptions options;
   options.margin_m = 0.05;
-  const Ground ground = MakeFilm(run, options).stage.ground;
+  const Ground ground = MakeFilm(run, options).fixed.ground;
   CHECK(ground.x_min_m == Approx(-0.05 - run.body.chassis_radius_m));
   CHECK(ground.x_min_m + (ground.columns - 1) * ground.cell_m >= 0.45);
   CHECK(ground.At(0, 0) == 0.0F);
@@ -81,7 +81,7 @@ TEST_CASE("The ground is sampled around path and waypoints with a margin") {
 TEST_CASE("A wide world is sampled coarsely rather than without end") {
   Run run = StraightRun();
   run.waypoints.push_back({"far", {900.0, -900.0}});
-  const Ground ground = MakeFilm(run).stage.ground;
+  const Ground ground = MakeFilm(run).fixed.ground;
   CHECK(ground.columns * ground.rows < 2'000'000);
 }
 

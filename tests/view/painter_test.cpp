@@ -34,7 +34,7 @@ struct Shot {
   cv::Mat picture;
 
   explicit Shot(const Run& run, size_t index = 30)
-      : film(MakeFilm(run)), painter(film.stage, {1280, 720}) {
+      : film(MakeFilm(run)), painter(film.fixed, {1280, 720}) {
     picture = painter.Paint(film.scenes.at(index));
   }
 };
@@ -52,8 +52,8 @@ TEST_CASE("The green outline lies around the true position in both views") {
   const cv::Rect beside =
       cv::boundingRect(Pixels(shot.picture, layout.side, colour::kGreen)) + layout.side.tl();
   CHECK((beside.tl() + beside.br()).x / 2.0 == Approx(expected.x).margin(kNear_px));
-  const double middle_m = scene.z_m + shot.film.stage.body.chassis_bottom_m +
-                          shot.film.stage.body.chassis_height_m / 2.0;
+  const double middle_m = scene.z_m + shot.film.fixed.body.chassis_bottom_m +
+                          shot.film.fixed.body.chassis_height_m / 2.0;
   CHECK((beside.tl() + beside.br()).y / 2.0 ==
         Approx(layout.SidePixel(0.0, middle_m).y).margin(kNear_px));
 }
@@ -89,7 +89,7 @@ TEST_CASE("The side view shows the pitch") {
 
 TEST_CASE("Waypoints are yellow where they lie") {
   const Shot shot(StraightRun());
-  for (const geometry::NamedPoint& place : shot.film.stage.waypoints) {
+  for (const geometry::NamedPoint& place : shot.film.fixed.waypoints) {
     INFO(place.name);
     const cv::Point at = shot.painter.layout().TopPixel(place.p_in_world_m);
     const cv::Vec3b pixel = shot.picture.at<cv::Vec3b>(at + cv::Point(4, 0));

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "rift/vision/camera/image_files.hpp"
+#include "rift/vision/camera/camera_source.hpp"
 #include "support/process.hpp"
 #include "support/tree.hpp"
 #include "vision/synthetic_views.hpp"

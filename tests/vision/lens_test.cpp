@@ -1,4 +1,4 @@
-#include "rift/vision/camera/lens.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 
 #include <catch2/catch.hpp>
 

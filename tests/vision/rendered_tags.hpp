@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "rift/vision/camera/lens.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/rendering/synthetic_camera.hpp"
 #include "rift/vision/tracking/tag_detector.hpp"
 #include "support/paper_camera.hpp"

@@ -3,7 +3,7 @@
 
 #include "rift/vision/camera/capture_thread.hpp"
 #include "support/until.hpp"
-#include "vision/camera/multipart.hpp"
+#include "vision/camera/sources.hpp"
 #include "vision/mjpeg_server.hpp"
 
 namespace rift::vision {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "rift/vision/calibration/calibration.hpp"
-#include "rift/vision/camera/lens.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::vision::synthetic {
 

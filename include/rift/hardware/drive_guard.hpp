@@ -47,7 +47,7 @@ struct DriveStop {
   double at_s = 0.0;
 };
 
-/// Keeps the promise: no power without a fresh pose and a fresh control step. The first thing that
+/// Allows no power without a recent pose and a recent control step. The first thing that
 /// goes wrong stops the drive for good; only Arm() starts it again. Commands are allowed as they
 /// are or not at all. Knows no clock and no line.
 class DriveGuard {

@@ -34,8 +34,8 @@ struct EncoderReading {
   double battery_v = 0.0;
 };
 
-/// What a drive leaves behind beside its trial.
-struct DriveEvidence {
+/// What is recorded of a drive beside its trial.
+struct DriveRecord {
   Protocol protocol = Protocol::kAuto;
   std::optional<DriveStop> stop;
   /// Whether the robot said that it stands; none: it speaks plain and cannot say.
@@ -86,7 +86,7 @@ class RealRobot : public trial::Robot {
   /// After Stop(): sends zeros until the robot says that it stands, `timeout_s` at most.
   void ConfirmStop(double timeout_s);
   DriveState state() const;
-  DriveEvidence Evidence() const;
+  DriveRecord Record() const;
 
  private:
   class Core;

@@ -13,7 +13,7 @@
 
 namespace rift::hardware {
 
-/// Finds answers in what comes back, between the chatter of radio modules (`OK+LOST`, `OK+CONN`).
+/// Finds answers in what comes back, between the messages of radio modules (`OK+LOST`, `OK+CONN`).
 class AnswerDecoder {
  public:
   std::vector<Answer> Take(Bytes bytes);

@@ -3,7 +3,6 @@
 #include <array>
 #include <string_view>
 
-#include "rift/simulation/encoder.hpp"
 #include "rift/simulation/link.hpp"
 #include "rift/simulation/mocap.hpp"
 #include "rift/simulation/motor.hpp"

@@ -5,12 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "rift/control/waypoint.hpp"
+#include "rift/geometry/pose2.hpp"
+#include "rift/trajectory/trajectory.hpp"
 #include "rift/twin/options.hpp"
-#include "rift/twin/true_path.hpp"
-#include "rift/twin/twin_robot.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/module/module.hpp"
 
 namespace rift::twin {
+
+/// A 1080p camera that looks straight down on the middle of the waypoints, calibrated without
+/// error. Its intrinsics are about those of the authors' webcam, whose own distortion (2.83 px RMS)
+/// bends the picture's rim over. Throws std::invalid_argument when a waypoint lies outside the
+/// picture and says how high the camera would have to hang.
+vision::CameraModel OverheadCamera(const std::vector<control::Waypoint>& waypoints,
+                                   const TwinOptions& options);
 
 /// Everything one twin depends on.
 struct TwinSetup {
@@ -30,8 +39,7 @@ struct TwinAddress {
 
 /// What was seen at the moment of each picture.
 struct TwinRun {
-  bool is_over =
-      false;  ///< the robot drove and stood still again; else it was stopped from outside
+  bool is_over = false;  ///< the robot drove and stood still again; else stopped from outside
   bool has_driven = false;
   trajectory::Trajectory truth;  ///< middle of the axle; times since the twin began
   trajectory::Trajectory tag;    ///< its tag at the moment of every picture since the first client

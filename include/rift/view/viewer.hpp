@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "rift/view/film.hpp"
 #include "rift/view/options.hpp"
-#include "rift/view/scene.hpp"
 
 namespace rift::view {
 

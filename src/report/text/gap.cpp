@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "rift/report/text/likeness.hpp"
+#include "rift/statistics/mean.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {
@@ -63,9 +64,9 @@ std::string Table(const gap::GapResult& result) {
 
 template <class Member>
 double MeanOf(const gap::GapResult& result, Member member) {
-  double sum = 0.0;
-  for (const auto& trial : result.trials) sum += trial.comparison.*member;
-  return sum / static_cast<double>(result.trials.size());
+  std::vector<double> values;
+  for (const auto& trial : result.trials) values.push_back(trial.comparison.*member);
+  return statistics::Mean(values);
 }
 
 /// What the gap consists of: what goes with the start offset, what with a rigid motion, and what

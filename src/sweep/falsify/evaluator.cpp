@@ -11,7 +11,6 @@
 
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
-#include "rift/simulation/height_image.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/labels.hpp"
 #include "rift/yaml/enum_name.hpp"

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "rift/simulation/height_image.hpp"
+#include "rift/simulation/terrain.hpp"
 
 namespace rift::sweep {
 namespace {

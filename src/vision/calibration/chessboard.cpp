@@ -9,8 +9,9 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <stdexcept>
 
-#include "rift/vision/camera/picture.hpp"
+#include "rift/vision/camera/picture_reader.hpp"
 
 namespace rift::vision {
 namespace {
@@ -122,6 +123,19 @@ BoardView Undecodable(const std::string& name) {
 }
 
 }  // namespace
+
+void Board::Check() const {
+  if (columns < 3 || rows < 3 || columns > 100 || rows > 100) {
+    throw std::invalid_argument(
+        fmt::format("a board of {} x {} inner corners: there must be 3 to 100 both ways (squares "
+                    "less one)",
+                    columns, rows));
+  }
+  if (!(square_m > 0.0) || square_m > 10.0) {
+    throw std::invalid_argument(
+        fmt::format("squares of {} m: the side of one square in metres is needed", square_m));
+  }
+}
 
 BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name) {
   const cv::Mat picture = BgrOf(frame);

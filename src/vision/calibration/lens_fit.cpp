@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
-#include "rift/vision/camera/lens.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::vision {
 namespace {

@@ -6,18 +6,85 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <span>
+#include <string>
 #include <thread>
 
-#include "picture_health.hpp"
+#include "rift/statistics/hash.hpp"
+#include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/camera/capture_options.hpp"
+#include "rift/vision/camera/frame.hpp"
+#include "rift/vision/camera/picture_reader.hpp"
 
 namespace rift::vision {
 namespace {
+
+/// Tells pictures of a working camera from those of one that repeats itself or sees no light.
+class PictureHealth {
+ public:
+  explicit PictureHealth(const CaptureOptions& options) : options_(options) {}
+
+  /// kRunning, kFrozen or kBlack; Reason() says why. Throws CameraError (wrong format) for a
+  /// picture that cannot be decoded when it is looked at.
+  CameraState Check(const Frame& frame);
+  std::string Reason() const;
+
+ private:
+  void CheckBrightness(const Frame& frame);
+
+  CaptureOptions options_;
+  std::optional<std::uint64_t> hash_;
+  double same_since_s_ = 0.0;
+  double same_for_s_ = 0.0;
+  double looked_s_ = -1e9;
+  double brightness_ = 255.0;
+  int undecodable_ = 0;
+};
+
+constexpr int kMostUndecodable = 5;  // in a row: single damaged pictures happen on bad cables
+
+void PictureHealth::CheckBrightness(const Frame& frame) {
+  if (frame.arrived_s - looked_s_ < options_.look_s) return;
+  looked_s_ = frame.arrived_s;
+  const cv::Mat grey = SmallGreyOf(frame);
+  if (grey.empty()) {
+    if (++undecodable_ < kMostUndecodable) return;
+    throw CameraError(CameraState::kWrongFormat,
+                      "its pictures cannot be decoded: ask the camera for MJPEG or YUYV");
+  }
+  undecodable_ = 0;
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(grey, mean, deviation);
+  brightness_ = mean[0] + 3.0 * deviation[0];
+}
+
+CameraState PictureHealth::Check(const Frame& frame) {
+  const std::uint64_t hash = statistics::Hash64(std::as_bytes(std::span(frame.bytes)));
+  if (hash != hash_) same_since_s_ = frame.arrived_s;
+  hash_ = hash;
+  same_for_s_ = frame.arrived_s - same_since_s_;
+  CheckBrightness(frame);
+  if (same_for_s_ >= options_.same_s) return CameraState::kFrozen;
+  return brightness_ < options_.black_level ? CameraState::kBlack : CameraState::kRunning;
+}
+
+std::string PictureHealth::Reason() const {
+  if (same_for_s_ >= options_.same_s) {
+    return fmt::format("the same picture for {:.1f} s: plug the camera out and in", same_for_s_);
+  }
+  if (brightness_ < options_.black_level) {
+    return "the picture is black: lens cap, light, or exposure?";
+  }
+  return {};
+}
 
 using Lock = std::unique_lock<std::mutex>;
 using std::chrono::duration;
 
 constexpr double kRateWindow_s = 1.0;
-constexpr double kPatience_s = 0.5;  // for the thread to end; longer, and it hangs in a driver
+constexpr double kEndTimeout_s = 0.5;  // for the thread to end; longer, and it hangs in a driver
 
 /// Pictures a second over the last window.
 class RateMeter {
@@ -45,7 +112,7 @@ struct CaptureThread::Shared {
   void ReadAll();
   void Keep(Frame frame, CameraState state, std::string reason);
   void End(CameraState state, const std::string& reason);
-  CaptureStatus Look(double now_s);
+  CaptureStatus StatusAt(double now_s);
 
   const Opener open;
   const CaptureOptions options;
@@ -96,7 +163,7 @@ void CaptureThread::Shared::ReadAll() {
     Frame frame;
     if (!source->Read(frame)) continue;
     frame.index = index++;
-    const CameraState state = recording ? CameraState::kRunning : health.Look(frame);
+    const CameraState state = recording ? CameraState::kRunning : health.Check(frame);
     Keep(std::move(frame), state, recording ? std::string() : health.Reason());
   }
 }
@@ -123,7 +190,7 @@ void CaptureThread::Shared::End(CameraState state, const std::string& reason) {
 }
 
 // The thread may hang in its driver, so silence is seen from here.
-CaptureStatus CaptureThread::Shared::Look(double now_s) {
+CaptureStatus CaptureThread::Shared::StatusAt(double now_s) {
   CaptureStatus seen = status;
   seen.rate_hz = rate.Rate_hz();
   const bool waits_for_reader = newest.has_value() && source && source->IsRecording();
@@ -152,7 +219,7 @@ CaptureThread::~CaptureThread() {
   Lock lock(shared_->mutex);
   shared_->stop = true;
   shared_->changed.notify_all();
-  const bool is_done = shared_->changed.wait_for(lock, duration<double>(kPatience_s),
+  const bool is_done = shared_->changed.wait_for(lock, duration<double>(kEndTimeout_s),
                                                  [this] { return shared_->done; });
   lock.unlock();
   // Joined, since a thread that closes its camera while the process ends finds libraries that have
@@ -177,7 +244,7 @@ std::optional<Frame> CaptureThread::Next(double timeout_s) {
 
 CaptureStatus CaptureThread::Status() const {
   const Lock lock(shared_->mutex);
-  CaptureStatus status = shared_->Look(SteadyNow_s());
+  CaptureStatus status = shared_->StatusAt(SteadyNow_s());
   // A recording has ended only once its last picture was taken.
   if (status.state == CameraState::kEnded && shared_->newest) status.state = CameraState::kRunning;
   return status;

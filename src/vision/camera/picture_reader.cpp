@@ -1,12 +1,24 @@
 #include "rift/vision/camera/picture_reader.hpp"
 
 #include <cstring>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-
-#include "jpeg_reader.hpp"
 
 namespace rift::vision {
 namespace {
+
+// Not copied, hence not to be written to.
+cv::Mat Raw(const Frame& frame, int type) {
+  return {cv::Size(frame.width_px, frame.height_px), type,
+          const_cast<std::uint8_t*>(frame.bytes.data())};
+}
+
+cv::Mat Decoded(const Frame& frame, int how) {
+  if (frame.bytes.empty()) return {};
+  return cv::imdecode(cv::Mat(1, static_cast<int>(frame.bytes.size()), CV_8U,
+                              const_cast<std::uint8_t*>(frame.bytes.data())),
+                      how);
+}
 
 int BytesPerPixel(PixelFormat format) {
   if (format == PixelFormat::kBgr) return 3;
@@ -36,12 +48,39 @@ GreyPatch ReadRaw(const Frame& frame, const Region& region) {
 
 }  // namespace
 
-class PictureReader::Jpeg : public JpegReader {};
+cv::Mat BgrOf(const Frame& frame) {
+  cv::Mat picture;
+  switch (frame.format) {
+    case PixelFormat::kJpeg:
+      return Decoded(frame, cv::IMREAD_COLOR);
+    case PixelFormat::kGrey:
+      cv::cvtColor(Raw(frame, CV_8UC1), picture, cv::COLOR_GRAY2BGR);
+      break;
+    case PixelFormat::kBgr:
+      return Raw(frame, CV_8UC3).clone();
+    case PixelFormat::kYuyv:
+      cv::cvtColor(Raw(frame, CV_8UC2), picture, cv::COLOR_YUV2BGR_YUYV);
+      break;
+  }
+  return picture;
+}
 
-PictureReader::PictureReader() : jpeg_(std::make_unique<Jpeg>()) {}
-PictureReader::~PictureReader() = default;
-PictureReader::PictureReader(PictureReader&&) noexcept = default;
-PictureReader& PictureReader::operator=(PictureReader&&) noexcept = default;
+cv::Mat SmallGreyOf(const Frame& frame) {
+  cv::Mat grey;
+  switch (frame.format) {
+    case PixelFormat::kJpeg:
+      return Decoded(frame, cv::IMREAD_REDUCED_GRAYSCALE_8);
+    case PixelFormat::kGrey:
+      return Raw(frame, CV_8UC1);
+    case PixelFormat::kBgr:
+      cv::cvtColor(Raw(frame, CV_8UC3), grey, cv::COLOR_BGR2GRAY);
+      break;
+    case PixelFormat::kYuyv:
+      cv::extractChannel(Raw(frame, CV_8UC2), grey, 0);
+      break;
+  }
+  return grey;
+}
 
 std::optional<GreyPatch> PictureReader::Read(const Frame& frame) {
   return Read(frame, {0, 0, frame.width_px, frame.height_px});
@@ -51,7 +90,7 @@ std::optional<GreyPatch> PictureReader::Read(const Frame& frame, const Region& r
   const Region inside = Clipped(region, frame.width_px, frame.height_px);
   if (inside.empty()) return std::nullopt;
   if (frame.format == PixelFormat::kJpeg) {
-    return jpeg_->Read(frame.bytes, frame.width_px, frame.height_px, inside);
+    return jpeg_.Read(frame.bytes, frame.width_px, frame.height_px, inside);
   }
   const std::size_t needed =
       static_cast<std::size_t>(frame.width_px) * frame.height_px * BytesPerPixel(frame.format);

@@ -1,7 +1,7 @@
 #include "rift/vision/module/module.hpp"
 
 #include "rift/module/display.hpp"
-#include "rift/vision/camera/image_files.hpp"
+#include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/camera/picture_reader.hpp"
 #include "rift/vision/tracking/track_window.hpp"
 

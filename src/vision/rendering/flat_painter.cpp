@@ -1,12 +1,21 @@
 #include "flat_painter.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "rift/vision/camera/lens.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::vision {
 namespace {
+
+constexpr double kTransparent = std::numeric_limits<double>::quiet_NaN();
+constexpr int kLatticeHalf = 1 << 14;
+
+/// A tag is ten cells wide, its black square eight.
+constexpr int kTagCells = 10;
+constexpr int kBlackCells = 8;
 
 /// Points around the box, many on each side: the lens bends its outline.
 std::vector<Eigen::Vector3d> Outline(const FlatPattern& pattern,
@@ -26,7 +35,8 @@ std::vector<Eigen::Vector3d> Outline(const FlatPattern& pattern,
   return points;
 }
 
-/// The mean over a pixel whose corners lie at these points of the plane; `under` shines through.
+/// The mean over a pixel whose corners lie at these points of the plane; `under` where it is
+/// transparent.
 double Mean(const FlatPattern& pattern, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
             const Eigen::Vector2d& c, const Eigen::Vector2d& d, double under, int fine) {
   double sum = 0.0;
@@ -45,6 +55,77 @@ double Mean(const FlatPattern& pattern, const Eigen::Vector2d& a, const Eigen::V
 }
 
 }  // namespace
+
+int DiscPattern::Cell(double x_m, double y_m) const {
+  return x_m * x_m + y_m * y_m < radius_m_ * radius_m_ ? 1 : 0;
+}
+
+double DiscPattern::Grey(int cell) const { return cell == 1 ? grey_ : kTransparent; }
+
+int LatticePattern::Cell(double x_m, double y_m) const {
+  const double limit = kLatticeHalf - 1;
+  const double column = std::clamp(std::floor((x_m - least_.x()) / cell_m_), -limit, limit);
+  const double row = std::clamp(std::floor((y_m - least_.y()) / cell_m_), -limit, limit);
+  return (static_cast<int>(row) + kLatticeHalf) * (2 * kLatticeHalf) + static_cast<int>(column) +
+         kLatticeHalf;
+}
+
+double LatticePattern::Grey(int cell) const {
+  const int column = cell % (2 * kLatticeHalf) - kLatticeHalf;
+  const int row = cell / (2 * kLatticeHalf) - kLatticeHalf;
+  if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return kTransparent;
+  return GreyInside(column, row);
+}
+
+TagPattern::TagPattern(int id, double size_m, double black_grey, double white_grey)
+    : LatticePattern(size_m / kBlackCells,
+                     Eigen::Vector2d::Constant(-0.5 * kTagCells * size_m / kBlackCells), kTagCells,
+                     kTagCells),
+      cells_(CellsOfTag(id)),
+      black_grey_(black_grey),
+      white_grey_(white_grey) {}
+
+double TagPattern::GreyInside(int column, int row) const {
+  return cells_[kTagCells - 1 - row][column] ? white_grey_ : black_grey_;
+}
+
+BoardPattern::BoardPattern(const PlacedBoard& board, double black_grey, double white_grey)
+    : LatticePattern(board.square_m, Eigen::Vector2d::Constant(-2.0 * board.square_m),
+                     board.columns + 3, board.rows + 3),
+      columns_(board.columns + 1),
+      rows_(board.rows + 1),
+      black_grey_(black_grey),
+      white_grey_(white_grey) {}
+
+double BoardPattern::GreyInside(int column, int row) const {
+  const bool margin = column < 1 || row < 1 || column > columns_ || row > rows_;
+  return margin || (column + row) % 2 != 0 ? white_grey_ : black_grey_;
+}
+
+RayTiles::RayTiles(const CameraModel& camera)
+    : camera_(camera),
+      tiles_across_(camera.width_px / kSide + 1),
+      tiles_(static_cast<std::size_t>(tiles_across_) * (camera.height_px / kSide + 1)) {}
+
+const Eigen::Vector2d& RayTiles::At(int i, int j) {
+  const int tile_x = i / kSide;
+  const int tile_y = j / kSide;
+  std::vector<Eigen::Vector2d>& tile =
+      tiles_[static_cast<std::size_t>(tile_y) * tiles_across_ + tile_x];
+  if (tile.empty()) Fill(tile, tile_x, tile_y);
+  return tile[static_cast<std::size_t>(j - tile_y * kSide) * kSide + (i - tile_x * kSide)];
+}
+
+void RayTiles::Fill(std::vector<Eigen::Vector2d>& tile, int tile_x, int tile_y) const {
+  std::vector<Eigen::Vector2d> pixels;
+  pixels.reserve(kSide * kSide);
+  for (int j = 0; j < kSide; ++j) {
+    for (int i = 0; i < kSide; ++i) {
+      pixels.emplace_back(tile_x * kSide + i - 0.5, tile_y * kSide + j - 0.5);
+    }
+  }
+  tile = RaysFromPixels(camera_, pixels);
+}
 
 Region Footprint(const CameraModel& camera, const FlatPattern& pattern,
                  const Eigen::Isometry3d& camera_from_pattern) {

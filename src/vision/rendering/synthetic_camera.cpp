@@ -5,15 +5,51 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <random>
 #include <stdexcept>
 
 #include "flat_painter.hpp"
-#include "sensor_noise.hpp"
-#include "still_jpeg.hpp"
+#include "rift/vision/camera/jpeg.hpp"
 
 namespace rift::vision {
 namespace {
+
+/// Normal noise for whole pictures at the cost of two additions a pixel: a long table made once,
+/// of which every row of every picture takes a stretch from a random place.
+class SensorNoise {
+ public:
+  explicit SensorNoise(double sigma_grey);
+  /// Adds to every pixel, within 0 to 255.
+  void AddTo(cv::Mat1b& picture, std::mt19937_64& generator) const;
+
+ private:
+  cv::Mat1b brighter_;  ///< one row each; the noise is their difference
+  cv::Mat1b darker_;
+};
+
+constexpr int kTableLength = 1 << 20;
+constexpr std::uint64_t kTableSeed = 0x5eed;
+
+SensorNoise::SensorNoise(double sigma_grey) {
+  if (sigma_grey <= 0.0) return;
+  cv::Mat1f table(1, kTableLength);
+  cv::RNG(kTableSeed).fill(table, cv::RNG::NORMAL, 0.0, sigma_grey);
+  table.convertTo(brighter_, CV_8U);
+  cv::Mat1f(-table).convertTo(darker_, CV_8U);
+}
+
+void SensorNoise::AddTo(cv::Mat1b& picture, std::mt19937_64& generator) const {
+  if (brighter_.empty()) return;
+  const auto places = static_cast<std::uint64_t>(kTableLength - picture.cols);
+  for (int y = 0; y < picture.rows; ++y) {
+    const cv::Rect part(static_cast<int>(generator() % places), 0, picture.cols, 1);
+    cv::Mat row = picture.row(y);
+    cv::add(row, brighter_(part), row);
+    cv::subtract(row, darker_(part), row);
+  }
+}
 
 constexpr std::uint64_t kGrainSeed = 0xf1008;
 /// Exposures that are averaged where the shutter is open for a while: one a pixel of smear. So many
@@ -39,7 +75,7 @@ cv::Rect ToRect(const Region& region) {
   return {region.x_px, region.y_px, region.width_px, region.height_px};
 }
 
-/// Paper: fibres about a pixel wide and clouds about twenty, each with half of the variance.
+/// The texture of paper: noise of about one and of about twenty pixels, half of the variance each.
 cv::Mat1f Grain(const CameraModel& camera, double sigma_grey) {
   cv::Mat1f sum(cv::Mat1f::zeros(camera.height_px, camera.width_px));
   cv::RNG random(kGrainSeed);
@@ -93,8 +129,7 @@ struct SyntheticCamera::State {
                   cv::Mat1f& canvas);
   /// Everything that light and lens do, sensor noise not yet.
   cv::Mat1b Expose(const cv::Mat1f& light) const;
-  /// Returns what of the picture it changed.
-  Region DrawRobot(const RobotMotion& robot, cv::Mat1b& picture);
+  void DrawRobot(const RobotMotion& robot, cv::Mat1b& picture);
   std::vector<std::uint8_t> Pack(const cv::Mat1b& picture, PixelFormat format);
 
   CameraModel camera;
@@ -102,7 +137,6 @@ struct SyntheticCamera::State {
   Eigen::Isometry3d camera_from_world;
   FlatPainter painter;
   SensorNoise noise;
-  StillJpeg still_jpeg;
   std::vector<Layer> robot_layers;
   cv::Mat1f floor;  ///< before the lens
   cv::Mat1b still;  ///< the picture without a robot and without noise
@@ -114,8 +148,7 @@ SyntheticCamera::State::State(const CameraModel& model, const SyntheticCameraOpt
       options(given),
       camera_from_world(model.world->world_from_camera.inverse()),
       painter(model),
-      noise(given.noise_grey),
-      still_jpeg(model.width_px, model.height_px, given.jpeg_quality, given.jpeg_colour) {
+      noise(given.noise_grey) {
   floor = Grain(camera, options.grain_grey);
   floor += options.floor_grey;
   for (const PlacedBoard& board : scene.boards) {
@@ -190,14 +223,14 @@ cv::Mat1b SyntheticCamera::State::Expose(const cv::Mat1f& light) const {
   return picture;
 }
 
-Region SyntheticCamera::State::DrawRobot(const RobotMotion& robot, cv::Mat1b& picture) {
-  Region touched;
-  for (const Layer& layer : robot_layers) touched = Union(touched, RobotFootprint(layer, robot));
-  if (touched.empty()) return touched;
+void SyntheticCamera::State::DrawRobot(const RobotMotion& robot, cv::Mat1b& picture) {
+  Region covered;
+  for (const Layer& layer : robot_layers) covered = Union(covered, RobotFootprint(layer, robot));
+  if (covered.empty()) return;
   // The blur reaches this far; what it makes at the rim of the canvas is not used.
   const int reach_px = static_cast<int>(std::ceil(4.0 * options.blur_px)) + 1;
-  touched = Grown(touched, reach_px, camera);
-  const Region region = Grown(touched, reach_px, camera);
+  covered = Grown(covered, reach_px, camera);
+  const Region region = Grown(covered, reach_px, camera);
   const int moments = Moments(robot);
   const int fine = moments > 1 ? kFineOfMoments : FlatPainter::kFine;
   cv::Mat1f light(cv::Mat1f::zeros(region.height_px, region.width_px));
@@ -206,14 +239,16 @@ Region SyntheticCamera::State::DrawRobot(const RobotMotion& robot, cv::Mat1b& pi
     PaintRobot(robot, options.shutter_s * ((i + 0.5) / moments - 0.5), region, fine, moment);
     cv::scaleAdd(moment, 1.0 / moments, light, light);
   }
-  const cv::Rect inner(touched.x_px - region.x_px, touched.y_px - region.y_px, touched.width_px,
-                       touched.height_px);
-  Expose(light)(inner).copyTo(picture(ToRect(touched)));
-  return touched;
+  const cv::Rect inner(covered.x_px - region.x_px, covered.y_px - region.y_px, covered.width_px,
+                       covered.height_px);
+  Expose(light)(inner).copyTo(picture(ToRect(covered)));
 }
 
 std::vector<std::uint8_t> SyntheticCamera::State::Pack(const cv::Mat1b& picture,
                                                        PixelFormat format) {
+  if (format == PixelFormat::kJpeg) {
+    return WriteJpeg(picture, options.jpeg_quality, options.jpeg_colour);
+  }
   cv::Mat packed = picture;
   if (format == PixelFormat::kBgr) cv::cvtColor(picture, packed, cv::COLOR_GRAY2BGR);
   if (format == PixelFormat::kYuyv) {
@@ -246,14 +281,9 @@ Frame SyntheticCamera::Render(const std::optional<RobotMotion>& robot, PixelForm
   frame.height_px = state_->camera.height_px;
   frame.format = format;
   cv::Mat1b picture = state_->still.clone();
-  const Region touched = robot ? state_->DrawRobot(*robot, picture) : Region{};
-  if (format == PixelFormat::kJpeg) {
-    frame.bytes =
-        state_->still_jpeg.Write(state_->still, picture, touched, state_->noise, generator);
-  } else {
-    state_->noise.AddTo(picture, generator);
-    frame.bytes = state_->Pack(picture, format);
-  }
+  if (robot) state_->DrawRobot(*robot, picture);
+  state_->noise.AddTo(picture, generator);
+  frame.bytes = state_->Pack(picture, format);
   return frame;
 }
 

@@ -1,16 +1,88 @@
 #include "edge_fit.hpp"
 
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
-#include "edge_line.hpp"
-#include "rift/vision/camera/lens.hpp"
+#include "rift/statistics/quantile.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::vision {
 namespace {
 
-constexpr double kCellsPerSide = 8.0;
+/// normal . p = offset, with a unit normal.
+struct EdgeLine {
+  Eigen::Vector2d normal;
+  double offset = 0.0;
+  double rms = 0.0;  ///< distance of the points that were kept
+
+  double Distance(const Eigen::Vector2d& point) const { return normal.dot(point) - offset; }
+};
+
+/// The line with the least squared distances, after points further than 3 sigma (by the median, at
+/// least `least_sigma`) are left out. None when fewer than half of the points are left.
+std::optional<EdgeLine> FitLine(const std::vector<Eigen::Vector2d>& points, double least_sigma);
+
+/// Where they meet; none when they are all but parallel.
+std::optional<Eigen::Vector2d> Meet(const EdgeLine& a, const EdgeLine& b);
+
+constexpr int kRounds = 3;
+
+EdgeLine LeastSquares(const std::vector<Eigen::Vector2d>& points) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : points) mean += p;
+  mean /= static_cast<double>(points.size());
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (const Eigen::Vector2d& p : points) {
+    const Eigen::Vector2d d = p - mean;
+    xx += d.x() * d.x();
+    xy += d.x() * d.y();
+    yy += d.y() * d.y();
+  }
+  const double along = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  EdgeLine line{{-std::sin(along), std::cos(along)}, 0.0, 0.0};
+  line.offset = line.normal.dot(mean);
+  double sum = 0.0;
+  for (const Eigen::Vector2d& p : points) sum += line.Distance(p) * line.Distance(p);
+  line.rms = std::sqrt(sum / static_cast<double>(points.size()));
+  return line;
+}
+
+double MedianDistance(const EdgeLine& line, const std::vector<Eigen::Vector2d>& points) {
+  std::vector<double> distances;
+  distances.reserve(points.size());
+  for (const Eigen::Vector2d& p : points) distances.push_back(std::abs(line.Distance(p)));
+  return statistics::Median(std::move(distances));
+}
+
+std::optional<EdgeLine> FitLine(const std::vector<Eigen::Vector2d>& points, double least_sigma) {
+  if (points.size() < 4) return std::nullopt;
+  std::vector<Eigen::Vector2d> kept = points;
+  EdgeLine line = LeastSquares(kept);
+  for (int round = 0; round < kRounds; ++round) {
+    const double limit =
+        3.0 * std::max(least_sigma, statistics::kSigmaOfMedianDeviation * MedianDistance(line, points));
+    kept.clear();
+    std::copy_if(points.begin(), points.end(), std::back_inserter(kept),
+                 [&](const Eigen::Vector2d& p) { return std::abs(line.Distance(p)) <= limit; });
+    if (2 * kept.size() < points.size()) return std::nullopt;
+    line = LeastSquares(kept);
+    if (kept.size() == points.size()) break;
+  }
+  return line;
+}
+
+std::optional<Eigen::Vector2d> Meet(const EdgeLine& a, const EdgeLine& b) {
+  Eigen::Matrix2d normals;
+  normals << a.normal.transpose(), b.normal.transpose();
+  if (std::abs(normals.determinant()) < 0.1) return std::nullopt;
+  return normals.inverse() * Eigen::Vector2d(a.offset, b.offset);
+}
+
+constexpr int kCells = 8;  // along a side of the black square
 /// Below this a cell is too small for a plateau on both sides of the edge.
 constexpr double kLeastCell_px = 2.0;
 
@@ -27,7 +99,7 @@ struct Side {
     // The corners run counter-clockwise as one sees the tag, in a picture whose y runs down.
     normal = {-along.y(), along.x()};
   }
-  double Cell_px() const { return length_px / kCellsPerSide; }
+  double Cell_px() const { return length_px / kCells; }
 };
 
 /// Calls visit(point) at about `step_px` along the side, a cell away from its ends.
@@ -161,6 +233,42 @@ bool JoinCorners(const CameraModel& camera, const std::array<EdgeLine, 4>& lines
   return true;
 }
 
+/// Homography that takes the square [0, 8] x [0, 8] (x right, y up) to the four rays.
+Eigen::Matrix3d RaysFromCells(const std::array<Eigen::Vector2d, 4>& rays) {
+  const std::array<Eigen::Vector2d, 4> corners{
+      {{0, 0}, {kCells, 0}, {kCells, kCells}, {0, kCells}}};
+  Eigen::Matrix<double, 8, 8> a = Eigen::Matrix<double, 8, 8>::Zero();
+  Eigen::Matrix<double, 8, 1> b;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::RowVector3d p = corners[i].homogeneous().transpose();
+    a.block<1, 3>(2 * i, 0) = p;
+    a.block<1, 3>(2 * i + 1, 3) = p;
+    a.block<1, 2>(2 * i, 6) = -rays[i].x() * p.head<2>();
+    a.block<1, 2>(2 * i + 1, 6) = -rays[i].y() * p.head<2>();
+    b.segment<2>(2 * i) = rays[i];
+  }
+  const Eigen::Matrix<double, 8, 1> h = a.partialPivLu().solve(b);
+  Eigen::Matrix3d homography;
+  homography << h(0), h(1), h(2), h(3), h(4), h(5), h(6), h(7), 1.0;
+  return homography;
+}
+
+/// Middles of the cells, rows from the top of the tag.
+std::vector<Eigen::Vector2d> CellPixels(const CameraModel& camera, const FittedSquare& square) {
+  const Eigen::Matrix3d rays_from_cells = RaysFromCells(square.rays);
+  std::vector<Eigen::Vector3d> points;
+  for (int row = 0; row < kCells; ++row) {
+    for (int column = 0; column < kCells; ++column) {
+      points.push_back(rays_from_cells * Eigen::Vector3d(column + 0.5, kCells - row - 0.5, 1.0));
+    }
+  }
+  return PixelsFromPoints(camera, points);
+}
+
+bool IsBit(int row, int column) {
+  return row > 0 && column > 0 && row < kCells - 1 && column < kCells - 1;
+}
+
 }  // namespace
 
 std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch& patch,
@@ -184,6 +292,23 @@ std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch
   }
   if (!JoinCorners(camera, lines, square)) return std::nullopt;
   return square;
+}
+
+ReadBits CompareBits(const CameraModel& camera, const GreyPatch& patch, const FittedSquare& square,
+                     const TagCells& expected) {
+  const std::vector<Eigen::Vector2d> pixels = CellPixels(camera, square);
+  const double threshold = 0.5 * (square.black_grey + square.white_grey);
+  ReadBits read;
+  for (int row = 0; row < kCells; ++row) {
+    for (int column = 0; column < kCells; ++column) {
+      const Eigen::Vector2d& pixel = pixels[row * kCells + column];
+      const double excess = patch.At(pixel.x(), pixel.y()) - threshold;
+      const bool right = expected[row + 1][column + 1] ? excess > 0.0 : excess < 0.0;
+      if (!right) ++read.wrong;
+      if (IsBit(row, column)) read.margin += std::abs(excess) / 36.0;
+    }
+  }
+  return read;
 }
 
 }  // namespace rift::vision

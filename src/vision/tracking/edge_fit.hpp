@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "rift/vision/camera/camera_model.hpp"
-#include "rift/vision/camera/grey_patch.hpp"
+#include "rift/vision/camera/frame.hpp"
 #include "rift/vision/tracking/tag_detector.hpp"
 
 namespace rift::vision {
@@ -22,9 +22,20 @@ struct FittedSquare {
 /// Sub-pixel corners from a guess that is off by up to half a cell of the tag: on each side the
 /// steps from black to white are located along its normal, freed of the lens, and joined by a line;
 /// the corners are where the lines meet. A straight edge is straight only without the lens, which
-/// is worth a third of the error. None where an edge is
-/// missing, too short, leaves the patch or has less than `least_contrast` grey values.
+/// is worth a third of the error. None where an edge is missing, too short, leaves the patch or has
+/// less than `least_contrast` grey values.
 std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch& patch,
                                       const TagCorners& guess, double least_contrast);
+
+/// What the picture says inside a fitted square.
+struct ReadBits {
+  int wrong = 0;        ///< of the 64 cells of the black square
+  double margin = 0.0;  ///< mean distance of the 36 bits from the threshold, in grey values
+};
+
+/// Compares the cells at the square with those that the tag should have. Far cheaper than decoding,
+/// so that every sighting is verified to be this tag, the right way round.
+ReadBits CompareBits(const CameraModel& camera, const GreyPatch& patch, const FittedSquare& square,
+                     const TagCells& expected);
 
 }  // namespace rift::vision

@@ -7,9 +7,8 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "rift/vision/camera/lens.hpp"
-#include "rift/vision/camera/map_frame.hpp"
-#include "rift/vision/camera/picture.hpp"
+#include "rift/vision/camera/camera_model.hpp"
+#include "rift/vision/camera/picture_reader.hpp"
 
 namespace rift::vision {
 namespace {

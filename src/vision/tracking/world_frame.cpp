@@ -8,8 +8,7 @@
 #include <opencv2/calib3d.hpp>
 #include <stdexcept>
 
-#include "rift/vision/camera/lens.hpp"
-#include "rift/vision/camera/map_frame.hpp"
+#include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::vision {
 namespace {

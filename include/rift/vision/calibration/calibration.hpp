@@ -73,7 +73,7 @@ struct Calibration {
 Calibration Calibrate(const std::vector<BoardView>& views, const Board& board,
                       const CalibrationOptions& options = {});
 
-/// One view alone; how new views are told from those there are (ROS's camera_calibration).
+/// Where one view has the board, to compare views with (ROS's camera_calibration).
 struct ViewPlace {
   double x = 0.0, y = 0.0, size = 0.0, skew = 0.0;
 };

@@ -44,4 +44,25 @@ struct CameraModel {
   std::optional<WorldFrame> world;
 };
 
+/// A pixel with integer coordinates is a pixel's middle, as in OpenCV: the picture begins at
+/// (-0.5, -0.5). A ray is a point on the plane one metre before the camera: (x/z, y/z).
+
+/// Where points (metres, camera frame, z > 0) appear, the lens included.
+std::vector<Eigen::Vector2d> PixelsFromPoints(const CameraModel& camera,
+                                              const std::vector<Eigen::Vector3d>& points_in_camera);
+/// The rays that end in these pixels, to 1e-9 for every pixel of a lens that does not fold the
+/// picture over itself.
+std::vector<Eigen::Vector2d> RaysFromPixels(const CameraModel& camera,
+                                            const std::vector<Eigen::Vector2d>& pixels);
+
+/// The one place where the camera's y-down frame is turned y-up. With a world frame: that frame.
+/// Without: the camera's own place with x right, y up in the picture and z towards the camera, so
+/// that what the camera sees has z < 0.
+inline Eigen::Isometry3d MapFromCamera(const CameraModel& camera) {
+  if (camera.world) return camera.world->world_from_camera;
+  Eigen::Isometry3d y_up_from_camera = Eigen::Isometry3d::Identity();
+  y_up_from_camera.linear() = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+  return y_up_from_camera;
+}
+
 }  // namespace rift::vision

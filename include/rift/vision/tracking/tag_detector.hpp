@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "rift/vision/camera/grey_patch.hpp"
+#include "rift/vision/camera/frame.hpp"
 
 namespace rift::vision {
 

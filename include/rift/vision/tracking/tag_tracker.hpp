@@ -18,7 +18,7 @@
 
 namespace rift::vision {
 
-/// How a sighting came about, from the cheapest to the dearest.
+/// How a sighting was found, by rising cost.
 enum class TrackMode {
   kEdges,    ///< edges found where the motion so far leads, bits compared there
   kRegion,   ///< AprilTag in the region where the tag was expected
@@ -43,12 +43,12 @@ constexpr std::array<std::string_view, 7> EnumNames(Miss) {
           "doubtful bits", "no edges",      "no pose"};
 }
 
-/// Where the tag was in one frame, with what speaks for it.
+/// Where the tag was in one frame, with the quality of the measurement.
 struct Sighting {
   std::uint64_t frame_index = 0;
   double captured_s = 0.0;  ///< the frame's
   Eigen::Isometry3d camera_from_tag = Eigen::Isometry3d::Identity();
-  /// In the world, z up, or where the camera has none in its own frame turned y-up (map_frame.hpp).
+  /// In the world, z up, or where the camera has none in its own frame turned y-up (MapFromCamera).
   /// Tag frame: x right and y up as one reads the tag, z out of the paper; x is forward.
   Eigen::Isometry3d map_from_tag = Eigen::Isometry3d::Identity();
   bool in_world = false;                               ///< the map is the world

@@ -7,7 +7,7 @@
 
 #include "rift/geometry/floor.hpp"
 #include "rift/vision/camera/camera_model.hpp"
-#include "rift/vision/camera/camera_state.hpp"
+#include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/camera/frame.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
 

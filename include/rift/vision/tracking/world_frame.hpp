@@ -38,7 +38,7 @@ WorldFrame WorldFromFirstPose(const std::vector<Eigen::Isometry3d>& camera_from_
 /// where the frame has no marks or none of them is seen.
 std::optional<double> MovedBy_m(const CameraModel& camera, const std::vector<TagDetection>& seen);
 
-/// Where the ray of a pixel meets the plane z = z_m of the map (map_frame.hpp); nothing when it
+/// Where the ray of a pixel meets the plane z = z_m of the map (MapFromCamera); nothing when it
 /// does not.
 std::optional<Eigen::Vector2d> MapFromPixel(const CameraModel& camera, const Eigen::Vector2d& pixel,
                                             double z_m);

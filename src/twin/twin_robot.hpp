@@ -1,23 +1,50 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
+#include <random>
 #include <span>
 #include <vector>
 
 #include "rift/hardware/listener.hpp"
+#include "rift/simulation/link.hpp"
 #include "rift/simulation/simulated_robot.hpp"
-#include "rift/twin/byte_channel.hpp"
 
 namespace rift::twin {
+
+/// One way of a serial radio: delay, baud rate and losses of the simulated link, for any bytes.
+/// What was put in at once is lost as a whole by line_loss. Times in s, never running backwards.
+class ByteChannel {
+ public:
+  ByteChannel(const simulation::LinkOptions& options, std::uint64_t seed)
+      : options_(options), random_(seed) {}
+
+  void Put(double at_s, std::span<const std::uint8_t> bytes);
+  /// What has arrived by then and was not taken before.
+  std::vector<std::uint8_t> Take(double now_s);
+
+ private:
+  struct Byte {
+    double arrives_s;
+    std::uint8_t value;
+  };
+
+  bool Happens(double share) { return std::uniform_real_distribution<>(0.0, 1.0)(random_) < share; }
+
+  simulation::LinkOptions options_;
+  std::mt19937_64 random_;
+  std::deque<Byte> on_the_way_;
+  double free_s_ = 0.0;
+};
 
 /// The simulated robot with rift's listener between its radio and its motors: bytes in, bytes out.
 /// Knows no clock; the same bytes at the same times move it the same way.
 class TwinRobot {
  public:
-  /// Every physics step, the pose at its end and the power at the motors.
-  using Witness = std::function<void(const simulation::TruePose&, const control::WheelPower&)>;
+  /// Called for every physics step with the pose at its end and the power at the motors.
+  using Observer = std::function<void(const simulation::TruePose&, const control::WheelPower&)>;
 
   /// At rest at `start`; see SimulatedRobot.
   TwinRobot(const simulation::SimulationOptions& options, double battery_v,
@@ -25,11 +52,11 @@ class TwinRobot {
             std::shared_ptr<const simulation::HeightImage> image = nullptr);
 
   /// The host wrote these bytes at `at_s`.
-  void Hear(double at_s, std::span<const std::uint8_t> bytes) { to_robot_.Put(at_s, bytes); }
+  void Receive(double at_s, std::span<const std::uint8_t> bytes) { to_robot_.Put(at_s, bytes); }
   /// Runs up to `to_s`.
-  void Advance(double to_s, const Witness& witness);
+  void Advance(double to_s, const Observer& observer);
   /// What has reached the host by then.
-  std::vector<std::uint8_t> Say(double now_s) { return to_host_.Take(now_s); }
+  std::vector<std::uint8_t> Transmit(double now_s) { return to_host_.Take(now_s); }
 
   control::WheelPower Motors() const;
   double Now_s() const { return kTurn_s * static_cast<double>(turns_); }
@@ -48,7 +75,7 @@ class TwinRobot {
   std::uint16_t battery_mv_;
   std::int64_t turns_ = 0;
   control::WheelPower commanded_;
-  double witnessed_s_ = 0.0;
+  double observed_s_ = 0.0;
 };
 
 }  // namespace rift::twin

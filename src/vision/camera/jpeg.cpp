@@ -1,4 +1,4 @@
-#include "jpeg_reader.hpp"
+#include "rift/vision/camera/jpeg.hpp"
 
 // jpeglib.h uses FILE and size_t without including them.
 #include <cstddef>
@@ -6,12 +6,47 @@
 // After those.
 #include <jerror.h>
 #include <jpeglib.h>
+#include <turbojpeg.h>
 
+#include <array>
 #include <csetjmp>
 #include <cstring>
+#include <stdexcept>
 
 namespace rift::vision {
 namespace {
+
+constexpr std::uint8_t kMark = 0xFF, kStart = 0xD8, kEnd = 0xD9, kScan = 0xDA;
+
+// Frame headers are C0..CF but for C4 (Huffman tables), C8 (reserved) and CC (arithmetic tables).
+bool IsFrameHeader(std::uint8_t marker) {
+  return (marker & 0xF0) == 0xC0 && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
+int Number(std::span<const std::uint8_t> bytes, std::size_t at) {
+  return bytes[at] << 8 | bytes[at + 1];
+}
+
+bool IsJpeg(std::span<const std::uint8_t> bytes) {
+  return bytes.size() > 4 && bytes[0] == kMark && bytes[1] == kStart;
+}
+
+// Segments have a length each up to the scan, so that thumbnails inside them are jumped over.
+template <class Visit>
+std::size_t WalkSegments(std::span<const std::uint8_t> bytes, Visit&& visit) {
+  std::size_t at = 2;
+  while (at + 4 <= bytes.size() && bytes[at] == kMark) {
+    const std::uint8_t marker = bytes[at + 1];
+    if (marker == kMark) {  // a fill byte
+      ++at;
+      continue;
+    }
+    visit(marker, at);
+    at += 2 + static_cast<std::size_t>(Number(bytes, at + 2));
+    if (marker == kScan) break;
+  }
+  return at;
+}
 
 struct Errors {
   jpeg_error_mgr manager;  ///< first, so that libjpeg's pointer to it is a pointer to this
@@ -31,6 +66,25 @@ void NoteDamage(j_common_ptr info, int level) {
 
 }  // namespace
 
+std::optional<JpegSize> SizeOfJpeg(std::span<const std::uint8_t> bytes) {
+  std::optional<JpegSize> size;
+  if (!IsJpeg(bytes)) return size;
+  WalkSegments(bytes, [&](std::uint8_t marker, std::size_t at) {
+    if (!IsFrameHeader(marker) || at + 9 > bytes.size()) return;
+    size = JpegSize{Number(bytes, at + 7), Number(bytes, at + 5)};
+  });
+  return size;
+}
+
+std::size_t JpegLength(std::span<const std::uint8_t> bytes) {
+  if (!IsJpeg(bytes)) return bytes.size();
+  for (std::size_t at = WalkSegments(bytes, [](auto...) {}); at + 1 < bytes.size(); ++at) {
+    if (bytes[at] == kMark && bytes[at + 1] == kEnd) return at + 2;
+  }
+  return bytes.size();
+}
+
+/// libjpeg's own interface: TurboJPEG's has no way to read a part of a picture.
 struct JpegReader::State {
   jpeg_decompress_struct info{};
   Errors errors{};
@@ -107,6 +161,25 @@ std::optional<GreyPatch> JpegReader::Read(const std::vector<std::uint8_t>& bytes
                 &state_->rows[static_cast<std::size_t>(y) * stride + shift], region.width_px);
   }
   return patch;
+}
+
+std::vector<std::uint8_t> WriteJpeg(const cv::Mat1b& picture, int quality, bool colour) {
+  constexpr std::uint8_t kNeutralChroma = 128;
+  // 4:2:0 halves an even width and height.
+  cv::Mat1b luma;
+  cv::copyMakeBorder(picture, luma, 0, picture.rows % 2, 0, picture.cols % 2, cv::BORDER_REPLICATE);
+  const cv::Mat1b chroma(luma.rows / 2, luma.cols / 2, kNeutralChroma);
+  std::array<const unsigned char*, 3> planes{luma.data, chroma.data, chroma.data};
+  const std::array<int, 3> strides{luma.cols, chroma.cols, chroma.cols};
+  const std::unique_ptr<void, decltype(&tjDestroy)> encoder(tjInitCompress(), tjDestroy);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  const int failed = tjCompressFromYUVPlanes(
+      encoder.get(), planes.data(), picture.cols, strides.data(), picture.rows,
+      colour ? TJSAMP_420 : TJSAMP_GRAY, &bytes, &size, quality, 0);
+  const std::unique_ptr<unsigned char, decltype(&tjFree)> owner(bytes, tjFree);
+  if (failed != 0) throw std::runtime_error(tjGetErrorStr2(encoder.get()));
+  return {bytes, bytes + size};
 }
 
 }  // namespace rift::vision
