@@ -20,22 +20,18 @@ rift_room(search
   PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt)
 rift_room(simulation ROOMS control geometry trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES PkgConfig::ODE PNG::PNG)
-rift_room(module
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES ${CMAKE_DL_LIBS} PkgConfig::XCB)
 rift_room(vision/camera ROOMS geometry yaml
   LIBRARIES Eigen3::Eigen opencv_core opencv_imgproc opencv_calib3d
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs opencv_videoio CURL::libcurl PkgConfig::JPEG)
 rift_room(vision/calibration ROOMS vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs)
-rift_room(vision/tracking ROOMS geometry module vision/camera
-  PRIVATE_LIBRARIES fmt::fmt opencv_highgui opencv_imgcodecs PkgConfig::APRILTAG)
+rift_room(vision/tracking ROOMS geometry vision/camera
+  PRIVATE_LIBRARIES fmt::fmt PkgConfig::APRILTAG)
 rift_room(vision/rendering ROOMS geometry vision/camera vision/calibration vision/tracking
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
-rift_room(vision/module ROOMS geometry module vision/camera vision/calibration vision/tracking vision/rendering
-  PRIVATE_LIBRARIES fmt::fmt)
-rift_room(hardware ROOMS control geometry trial vision/camera vision/tracking vision/module
+rift_room(hardware ROOMS control geometry trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Threads::Threads)
-rift_room(twin ROOMS control geometry hardware simulation trajectory trial vision/camera vision/rendering vision/module
+rift_room(twin ROOMS control geometry hardware simulation trajectory trial vision/camera vision/rendering
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
 rift_room(sweep/run
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES SQLiteCpp sqlite3)
@@ -55,11 +51,11 @@ rift_room(report/text ROOMS gap experiment report/figures sweep/explain sweep/fa
   LIBRARIES fmt::fmt)
 rift_room(report/page ROOMS gap experiment report/figures report/text sweep/explain sweep/falsify trajectory
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
-rift_room(view ROOMS control geometry module trajectory trial
+rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
-  PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio)
-rift_room(commands ROOMS control experiment gap geometry hardware module report/figures report/page
+  PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
+rift_room(commands ROOMS control experiment gap geometry hardware report/figures report/page
     report/text search simulation sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
-    trial twin view vision/calibration vision/camera vision/module vision/rendering
+    trial twin view vision/calibration vision/camera vision/rendering
     vision/tracking yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)

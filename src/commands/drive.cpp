@@ -15,6 +15,8 @@
 #include "keys_flag.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/hardware/serial_port.hpp"
+#include "rift/view/display.hpp"
+#include "rift/vision/camera/camera_source.hpp"
 
 namespace rift::commands {
 namespace {
@@ -96,11 +98,13 @@ class Drivers {
         person_(request.yes),
         port_(request.port, experiment.hardware.line.baud,
               experiment.hardware.line.write_timeout_s),
-        vision_(vision::LoadVision()),
-        camera_(OpenDriveCamera(*vision_, request.camera, camera, experiment)) {
+        camera_(OpenDriveCamera(request.camera, camera, experiment)) {
     for (const std::string& warning : WarningsOf(camera_)) Say(warning);
     poses_ = std::make_unique<hardware::CameraPoses>(
-        std::move(camera_.capture), vision_->MakeTracker(camera_.model, experiment.track.tag),
+        std::move(camera_.capture),
+        [tracker = std::make_shared<vision::TagTracker>(camera_.model, experiment.track.tag,
+                                                        vision::SteadyNow_s)](
+            const vision::Frame& frame) { return tracker->Track(frame); },
         clock_);
   }
 
@@ -116,14 +120,14 @@ class Drivers {
 
   /// The window needs the main thread, so the robot is driven from another one.
   DriveRun DriveInView() {
-    const std::string missing = vision_->MissingDisplay();
+    const std::string missing = view::MissingDisplay();
     if (!missing.empty()) {
       Say(missing + "; driving without --view");
       return Drive();
     }
-    const auto window = vision_->OpenWindow("rift drive");
+    view::TrackWindow window("rift drive");
     std::future<DriveRun> drive = std::async(std::launch::async, [this] { return Drive(); });
-    ShowUntilOver(drive, *window, *poses_, camera_.model, experiment_, person_);
+    ShowUntilOver(drive, window, *poses_, camera_.model, experiment_, person_);
     return drive.get();
   }
 
@@ -134,7 +138,6 @@ class Drivers {
   DriveOperator person_;
   hardware::SteadyClock clock_;
   hardware::SerialPort port_;
-  std::unique_ptr<vision::Vision> vision_;
   DriveCamera camera_;
   std::unique_ptr<hardware::CameraPoses> poses_;
 };

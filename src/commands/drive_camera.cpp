@@ -8,6 +8,7 @@
 #include "enum_name.hpp"
 #include "files.hpp"
 #include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/tracking/world_frame.hpp"
 
 namespace rift::commands {
 namespace {
@@ -49,10 +50,10 @@ vision::CameraModel ReadDriveCamera(const std::string& calibration) {
       calibration));
 }
 
-DriveCamera OpenDriveCamera(vision::Vision& vision, const std::string& camera,
-                            vision::CameraModel model, const experiment::Experiment& experiment) {
+DriveCamera OpenDriveCamera(const std::string& camera, vision::CameraModel model,
+                            const experiment::Experiment& experiment) {
   const vision::TagOptions& tag = experiment.track.tag;
-  DriveCamera opened{.capture = vision.OpenCapture(camera, experiment.track.capture),
+  DriveCamera opened{.capture = vision::OpenCapture(camera, experiment.track.capture),
                      .model = std::move(model)};
   const vision::Frame first = FirstPicture(*opened.capture, camera);
   if (opened.capture->IsRecording()) {
@@ -63,8 +64,8 @@ DriveCamera OpenDriveCamera(vision::Vision& vision, const std::string& camera,
   }
   CheckSize(first, camera, opened.model);
   const std::vector<vision::TagDetection> seen =
-      vision.FindTags(first, tag.acquire_decimate, tag.max_hamming);
-  opened.moved_by_m = vision.MovedBy_m(opened.model, seen);
+      vision::FindTags(first, tag.acquire_decimate, tag.max_hamming);
+  opened.moved_by_m = vision::MovedBy_m(opened.model, seen);
   opened.robots_tags = static_cast<int>(std::count_if(
       seen.begin(), seen.end(), [&tag](const auto& found) { return found.id == tag.id; }));
   if (opened.robots_tags > 1) {

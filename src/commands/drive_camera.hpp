@@ -5,7 +5,7 @@
 
 #include "rift/experiment/experiment.hpp"
 #include "rift/hardware/camera_poses.hpp"
-#include "rift/vision/module/module.hpp"
+#include "rift/vision/camera/capture_thread.hpp"
 
 namespace rift::commands {
 
@@ -24,8 +24,8 @@ struct DriveCamera {
 /// Opens the camera and looks at its first picture. Throws std::invalid_argument for a recording
 /// and for pictures of another size than the calibration's; std::runtime_error when no picture
 /// comes, or two tags have the robot's id.
-DriveCamera OpenDriveCamera(vision::Vision& vision, const std::string& camera,
-                            vision::CameraModel model, const experiment::Experiment& experiment);
+DriveCamera OpenDriveCamera(const std::string& camera, vision::CameraModel model,
+                            const experiment::Experiment& experiment);
 
 /// What the operator should know before the start, one line each.
 std::vector<std::string> WarningsOf(const DriveCamera& camera);

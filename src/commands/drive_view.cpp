@@ -9,9 +9,9 @@ namespace {
 constexpr std::chrono::milliseconds kPicture{100};
 constexpr double kTrailStep_m = 0.002;
 
-vision::TrackScene SceneOf(const vision::CameraModel& camera,
-                           const experiment::Experiment& experiment) {
-  vision::TrackScene scene{.camera = &camera};
+view::TrackScene SceneOf(const vision::CameraModel& camera,
+                         const experiment::Experiment& experiment) {
+  view::TrackScene scene{.camera = &camera};
   for (const control::Waypoint& waypoint : experiment.waypoints) {
     scene.path_m.push_back(waypoint.Position());
     scene.waypoints.push_back({waypoint.name, waypoint.Position()});
@@ -19,7 +19,7 @@ vision::TrackScene SceneOf(const vision::CameraModel& camera,
   return scene;
 }
 
-void Follow(const vision::Sighting& sighting, vision::TrackScene& scene) {
+void Follow(const vision::Sighting& sighting, view::TrackScene& scene) {
   const Eigen::Vector2d place = sighting.map_from_tag.translation().head<2>();
   if (scene.trail_m.empty() || (place - scene.trail_m.back()).norm() > kTrailStep_m) {
     scene.trail_m.push_back(place);
@@ -30,10 +30,10 @@ void Follow(const vision::Sighting& sighting, vision::TrackScene& scene) {
 
 }  // namespace
 
-void ShowUntilOver(const std::future<DriveRun>& drive, vision::TrackWindow& window,
+void ShowUntilOver(const std::future<DriveRun>& drive, view::TrackWindow& window,
                    const hardware::CameraPoses& poses, const vision::CameraModel& camera,
                    const experiment::Experiment& experiment, DriveOperator& person) {
-  vision::TrackScene scene = SceneOf(camera, experiment);
+  view::TrackScene scene = SceneOf(camera, experiment);
   scene.prompts = {"close the window or press q in it to stop the robot"};
   while (drive.wait_for(kPicture) != std::future_status::ready) {
     const hardware::CameraPoses::View view = poses.Seen();

@@ -8,8 +8,10 @@
 
 #include "figure_file.hpp"
 #include "rift/report/figures/simulation_figure.hpp"
+#include "rift/view/display.hpp"
 #include "rift/view/film.hpp"
-#include "rift/view/viewer.hpp"
+#include "rift/view/video.hpp"
+#include "rift/view/window.hpp"
 
 namespace rift::commands {
 namespace {
@@ -82,12 +84,11 @@ view::Film FilmOf(const experiment::Experiment& experiment, const sweep::Simulat
 }
 
 void ShowFilm(const PictureRequest& request, const view::Film& film) {
-  const std::unique_ptr<view::Viewer> viewer = view::LoadViewer();
-  if (!request.video.empty()) viewer->WriteVideo(film, request.video, {});
+  if (!request.video.empty()) view::WriteVideo(film, request.video, {});
   if (!request.window) return;
-  const std::string no_display = viewer->MissingDisplay();
+  const std::string no_display = view::MissingDisplay();
   if (no_display.empty()) {
-    viewer->PlayInWindow(film, {});
+    view::PlayInWindow(film, {});
   } else {
     fmt::print(stderr, "note: --view shows nothing: {}\n", no_display);
   }

@@ -21,7 +21,7 @@ void AddPictureFlags(CLI::App& app, PictureRequest& request);
 /// Throws std::invalid_argument for names that say no format.
 void CheckPictureNames(const PictureRequest& request);
 
-/// Draws, films and shows. OpenCV is loaded only for a film or a window; a window without a display
+/// Draws, films and shows. A window without a display
 /// is a line on stderr and no failure.
 void MakePictures(const PictureRequest& request, const experiment::Experiment& experiment,
                   const sweep::SimulatedTrial& trial, const sweep::SimulatedRun& run);

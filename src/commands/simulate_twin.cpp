@@ -82,16 +82,15 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
                               control::StartPose(experiment.waypoints),
                               experiment.seed,
                               trial.image,
-                              twin::OverheadCamera(experiment.waypoints, experiment.twin)};
+                              twin::OverheadCamera(experiment.waypoints, experiment.twin),
+                              look};
   const fs::path calibration = folder / "camera.yaml";
   WriteFile(calibration, vision::WriteCamera(setup.camera));
   WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(as_twin));
 
   const StopSignal stop;
-  const std::unique_ptr<vision::Vision> camera_side = vision::LoadVision();
   const twin::TwinRun run = twin::RunTwin(
-      setup, camera_side->MakePictures(setup.camera, look),
-      [&](const twin::TwinAddress& address) { Announce(address, calibration); },
+      setup, [&](const twin::TwinAddress& address) { Announce(address, calibration); },
       [&] { return stop.IsAsked(); });
   Save(folder, as_twin, run);
   fmt::print(stderr, "{}; {} pictures at {:.1f} ms of one core each; true path: {}\n", Ending(run),

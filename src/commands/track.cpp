@@ -12,6 +12,7 @@
 #include "logs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/experiment/experiment.hpp"
+#include "rift/view/display.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "stop_signal.hpp"
 #include "track_calibrate.hpp"
@@ -60,15 +61,15 @@ TrackView::Content ContentOf(const TrackRequest& request) {
   return content;
 }
 
-std::unique_ptr<TrackView> ViewFor(const TrackRequest& request, vision::Vision& vision,
-                                   const vision::CameraModel& camera, TrackView::Content content) {
+std::unique_ptr<TrackView> ViewFor(const TrackRequest& request, const vision::CameraModel& camera,
+                                   TrackView::Content content) {
   if (!request.view && request.record_waypoints.empty()) return nullptr;
-  if (const std::string missing = vision.MissingDisplay(); !missing.empty()) {
+  if (const std::string missing = view::MissingDisplay(); !missing.empty()) {
     Say(fmt::format("{}; tracking goes on without{}", missing,
                     request.record_waypoints.empty() ? "" : ", no waypoints can be recorded"));
     return nullptr;
   }
-  return std::make_unique<TrackView>(vision, camera, std::move(content));
+  return std::make_unique<TrackView>(camera, std::move(content));
 }
 
 /// Files of other programs may lack the picture's size; then the first picture has to be trusted.
@@ -143,22 +144,20 @@ int TrackFor(const TrackRequest& request) {
   TrackView::Content content = ContentOf(request);
   vision::CameraModel camera =
       vision::ReadCamera(ReadFile(request.calibration), request.calibration);
-  const auto vision = vision::LoadVision();
   options.capture = CaptureFor(camera, options.capture);
   const StopSignal stop;
   const auto is_stopped = [&stop] { return stop.IsAsked(); };
-  std::unique_ptr<vision::Capture> capture = vision->OpenCapture(request.camera, options.capture);
+  std::unique_ptr<vision::Capture> capture = vision::OpenCapture(request.camera, options.capture);
   TakeSizeFrom(*capture, request, options, camera);
   if (!request.world.empty()) {
-    SetAndStoreWorld(request, {*vision, *capture, options, request.session, is_stopped, Say},
-                     camera);
+    SetAndStoreWorld(request, {*capture, options, request.session, is_stopped, Say}, camera);
     if (request.out.empty()) return kDone;
   }
   // What was read so far of a recording belongs to its log as well.
-  if (capture->IsRecording()) capture = vision->OpenCapture(request.camera, options.capture);
+  if (capture->IsRecording()) capture = vision::OpenCapture(request.camera, options.capture);
   TrackLog log(request.out);
-  const std::unique_ptr<TrackView> view = ViewFor(request, *vision, camera, std::move(content));
-  const TrackRun run = Track({*vision, *capture, camera, options, request.session, log, view.get(),
+  const std::unique_ptr<TrackView> view = ViewFor(request, camera, std::move(content));
+  const TrackRun run = Track({*capture, camera, options, request.session, log, view.get(),
                               request.duration_s, is_stopped, Say});
   return Report(request, camera, options, run, log.Rows());
 }
@@ -170,14 +169,13 @@ int CalibrateAndSave(const TrackRequest& request) {
   if (request.out.empty()) throw std::invalid_argument("--out CAM.yaml is missing");
   request.board.Check();
   const experiment::TrackOptions options = OptionsOf(request);
-  const auto vision = vision::LoadVision();
   const StopSignal stop;
   vision::Calibration calibration = CalibrateFor(
-      *vision, request, options, [&stop] { return stop.IsAsked(); }, Say);
+      request, options, [&stop] { return stop.IsAsked(); }, Say);
   fmt::print("{}", CalibrationText(calibration));
   const fs::path picture = request.picture.empty() ? fs::path(request.out).replace_extension(".png")
                                                    : fs::path(request.picture);
-  vision->DrawCalibration(calibration, picture);
+  vision::DrawCalibration(calibration, picture);
   Say(fmt::format("picture: {}", picture.string()));
   if (calibration.verdict == vision::CalibrationVerdict::kRefuse) {
     Say(fmt::format("{} is not written: the verdict is refuse", request.out));

@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "enum_name.hpp"
+#include "rift/vision/camera/capture_thread.hpp"
+#include "rift/vision/camera/image_files.hpp"
 
 namespace rift::commands {
 namespace {
@@ -24,12 +26,11 @@ double Distance(const vision::ViewPlace& a, const vision::ViewPlace& b) {
 /// Views from a camera, each unlike those before.
 class ViewCollector {
  public:
-  ViewCollector(vision::Vision& vision, const vision::Board& board)
-      : vision_(vision), board_(board) {}
+  explicit ViewCollector(const vision::Board& board) : board_(board) {}
 
   bool Add(const vision::BoardView& view) {
     if (view.corners.empty()) return false;
-    const vision::ViewPlace place = vision_.PlaceOf(view, board_);
+    const vision::ViewPlace place = vision::PlaceOf(view, board_);
     const bool is_new = std::all_of(places_.begin(), places_.end(), [&](const auto& other) {
       return Distance(place, other) > kUnlike;
     });
@@ -41,25 +42,24 @@ class ViewCollector {
   bool IsCovered(double good_coverage) const {
     std::vector<vision::ViewResult> used;
     for (const vision::BoardView& view : views_) used.push_back({.view = view, .used = true});
-    const vision::Coverage c = vision_.CoverageOf(used, board_);
+    const vision::Coverage c = vision::CoverageOf(used, board_);
     return std::min({c.x, c.y, c.size, c.skew}) >= good_coverage;
   }
   const std::vector<vision::BoardView>& Views() const { return views_; }
 
  private:
-  vision::Vision& vision_;
   vision::Board board_;
   std::vector<vision::BoardView> views_;
   std::vector<vision::ViewPlace> places_;
 };
 
-std::vector<vision::BoardView> FromFiles(vision::Vision& vision, const TrackRequest& request,
+std::vector<vision::BoardView> FromFiles(const TrackRequest& request,
                                          const std::function<bool()>& is_stopped,
                                          const std::function<void(const std::string&)>& say) {
   std::vector<vision::BoardView> views;
-  for (const std::string& file : vision.ImageFiles(request.images)) {
+  for (const std::string& file : vision::ImageFiles(request.images)) {
     if (is_stopped()) throw std::runtime_error("stopped before all pictures were read");
-    views.push_back(vision.FindBoard(file, request.board));
+    views.push_back(vision::FindBoard(file, request.board));
     const vision::BoardView& view = views.back();
     say(fmt::format(
         "{}: {}", view.name,
@@ -68,19 +68,19 @@ std::vector<vision::BoardView> FromFiles(vision::Vision& vision, const TrackRequ
   return views;
 }
 
-std::vector<vision::BoardView> FromCamera(vision::Vision& vision, const TrackRequest& request,
+std::vector<vision::BoardView> FromCamera(const TrackRequest& request,
                                           const experiment::TrackOptions& options,
                                           const std::function<bool()>& is_stopped,
                                           const std::function<void(const std::string&)>& say) {
-  const auto capture = vision.OpenCapture(request.camera, options.capture);
-  ViewCollector collector(vision, request.board);
+  const auto capture = vision::OpenCapture(request.camera, options.capture);
+  ViewCollector collector(request.board);
   say("move the board about: near and far, to every edge, tilted; Ctrl-C ends and calibrates");
   const auto needed = static_cast<std::size_t>(options.calibration.good_views);
   while (!is_stopped() && collector.Views().size() < kMostViews) {
     const auto frame = capture->Next(kTick_s);
     if (frame) {
       const std::string name = fmt::format("frame{:06}", frame->index);
-      const vision::BoardView view = vision.FindBoard(*frame, request.board, name);
+      const vision::BoardView view = vision::FindBoard(*frame, request.board, name);
       if (!collector.Add(view)) continue;
       say(fmt::format("view {}: {}", collector.Views().size(), name));
     }
@@ -102,14 +102,14 @@ std::vector<vision::BoardView> FromCamera(vision::Vision& vision, const TrackReq
 
 }  // namespace
 
-vision::Calibration CalibrateFor(vision::Vision& vision, const TrackRequest& request,
+vision::Calibration CalibrateFor(const TrackRequest& request,
                                  const experiment::TrackOptions& options,
                                  const std::function<bool()>& is_stopped,
                                  const std::function<void(const std::string&)>& say) {
-  const std::vector<vision::BoardView> views =
-      request.images.empty() ? FromCamera(vision, request, options, is_stopped, say)
-                             : FromFiles(vision, request, is_stopped, say);
-  return vision.Calibrate(views, request.board, options.calibration);
+  const std::vector<vision::BoardView> views = request.images.empty()
+                                                   ? FromCamera(request, options, is_stopped, say)
+                                                   : FromFiles(request, is_stopped, say);
+  return vision::Calibrate(views, request.board, options.calibration);
 }
 
 }  // namespace rift::commands

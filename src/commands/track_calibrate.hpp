@@ -4,7 +4,7 @@
 #include <string>
 
 #include "rift/experiment/track_options.hpp"
-#include "rift/vision/module/module.hpp"
+#include "rift/vision/calibration/calibration.hpp"
 #include "track_request.hpp"
 
 namespace rift::commands {
@@ -13,7 +13,7 @@ namespace rift::commands {
 /// unlike those there are already are taken until they cover everything, the user ends it, or the
 /// recording does. Throws std::invalid_argument for no pictures, std::runtime_error when the camera
 /// fails before there was anything to calibrate from.
-vision::Calibration CalibrateFor(vision::Vision& vision, const TrackRequest& request,
+vision::Calibration CalibrateFor(const TrackRequest& request,
                                  const experiment::TrackOptions& options,
                                  const std::function<bool()>& is_stopped,
                                  const std::function<void(const std::string&)>& say);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "rift/experiment/track_options.hpp"
+#include "rift/vision/calibration/calibration.hpp"
 #include "track_request.hpp"
 #include "track_run.hpp"
 

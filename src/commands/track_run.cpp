@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "enum_name.hpp"
+#include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/tracking/world_frame.hpp"
 
 namespace rift::commands {
 namespace {
@@ -17,16 +19,12 @@ using vision::CameraState;
 constexpr double kTick_s = 0.02;
 constexpr double kRedraw_s = 0.1;
 
-double Now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 class Session {
  public:
   explicit Session(const TrackParts& parts)
       : parts_(parts),
-        tracker_(parts.vision.MakeTracker(parts.camera, parts.options.tag)),
-        started_s_(Now_s()) {}
+        tracker_(parts.camera, parts.options.tag, vision::SteadyNow_s),
+        started_s_(vision::SteadyNow_s()) {}
 
   TrackRun Run();
 
@@ -42,7 +40,7 @@ class Session {
   bool IsOver() const;
 
   const TrackParts& parts_;
-  std::unique_ptr<vision::PoseTracker> tracker_;
+  vision::TagTracker tracker_;
   double started_s_;
   TrackRun run_;
   std::optional<double> first_captured_s_;
@@ -80,9 +78,9 @@ void Session::Keep(const vision::Sighting& sighting) {
 void Session::Take(vision::Frame frame) {
   if (run_.frames++ == 0) run_.is_recording = parts_.capture.IsRecording();
   Rebase(frame);
-  const double begin_s = Now_s();
-  const vision::TrackResult result = tracker_->Track(frame);
-  run_.costs_s.push_back(Now_s() - begin_s);
+  const double begin_s = vision::SteadyNow_s();
+  const vision::TrackResult result = tracker_.Track(frame);
+  run_.costs_s.push_back(vision::SteadyNow_s() - begin_s);
   ++run_.misses[static_cast<std::size_t>(result.miss)];
   sighting_ = result.sighting;
   if (sighting_ && run_.is_recording) sighting_->latency_s = std::nan("");  // its clock is its own
@@ -96,9 +94,9 @@ void Session::WatchReferences(const vision::Frame& frame) {
   const bool has_marks = parts_.camera.world && !parts_.camera.world->marks.empty();
   if (!has_marks || frame.captured_s - checked_s_ < options.check_every_s) return;
   checked_s_ = frame.captured_s;
-  const auto moved_m = parts_.vision.MovedBy_m(
+  const auto moved_m = vision::MovedBy_m(
       parts_.camera,
-      parts_.vision.FindTags(frame, options.check_decimate, parts_.options.tag.max_hamming));
+      vision::FindTags(frame, options.check_decimate, parts_.options.tag.max_hamming));
   if (!moved_m) return;
   if (*moved_m > options.moved_m && run_.moved_m.value_or(0.0) <= options.moved_m) {
     parts_.say(fmt::format(
@@ -115,7 +113,7 @@ void Session::WatchState() {
   const bool fails = state != CameraState::kOpening && state != CameraState::kRunning &&
                      state != CameraState::kEnded;
   if (!fails) failing_since_s_.reset();
-  if (fails && !failing_since_s_) failing_since_s_ = Now_s();
+  if (fails && !failing_since_s_) failing_since_s_ = vision::SteadyNow_s();
   const bool starts = before == CameraState::kOpening && state == CameraState::kRunning;
   if (state == before || starts || state == CameraState::kEnded) return;
   const std::string reason =
@@ -125,23 +123,24 @@ void Session::WatchState() {
 
 bool Session::IsOver() const {
   if (quit_ || parts_.is_stopped() || vision::IsFinal(run_.status.state)) return true;
-  if (parts_.duration_s && Now_s() - started_s_ > *parts_.duration_s) return true;
-  return failing_since_s_ && Now_s() - *failing_since_s_ > parts_.session.give_up_s;
+  if (parts_.duration_s && vision::SteadyNow_s() - started_s_ > *parts_.duration_s) return true;
+  return failing_since_s_ && vision::SteadyNow_s() - *failing_since_s_ > parts_.session.give_up_s;
 }
 
 void Session::Show() {
   if (parts_.view == nullptr) return;
   // The same picture is drawn again only to answer clicks and keys.
   const bool is_new = frame_ && frame_->index != shown_index_;
-  if (!is_new && Now_s() - shown_s_ < kRedraw_s) return;
+  if (!is_new && vision::SteadyNow_s() - shown_s_ < kRedraw_s) return;
   if (frame_) shown_index_ = frame_->index;
   // A recording is shown at the speed at which it was made.
-  while (run_.is_recording && frame_ && Now_s() - started_s_ < frame_->captured_s && !quit_) {
+  while (run_.is_recording && frame_ && vision::SteadyNow_s() - started_s_ < frame_->captured_s &&
+         !quit_) {
     quit_ = !parts_.view->Show(frame_, sighting_, run_.status, run_.moved_m) || IsOver();
     std::this_thread::sleep_for(std::chrono::duration<double>(kTick_s / 4));
   }
   quit_ = quit_ || !parts_.view->Show(frame_, sighting_, run_.status, run_.moved_m);
-  shown_s_ = Now_s();
+  shown_s_ = vision::SteadyNow_s();
 }
 
 TrackRun Session::Run() {

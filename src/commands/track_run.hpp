@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "rift/experiment/track_options.hpp"
-#include "rift/vision/module/module.hpp"
+#include "rift/vision/camera/capture_thread.hpp"
 #include "track_log.hpp"
 #include "track_session.hpp"
 #include "track_view.hpp"
@@ -16,7 +16,6 @@ namespace rift::commands {
 
 /// What a tracking session is made of and whom it talks to.
 struct TrackParts {
-  vision::Vision& vision;
   vision::Capture& capture;
   const vision::CameraModel& camera;
   const experiment::TrackOptions& options;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "files.hpp"
+#include "rift/vision/tracking/world_frame.hpp"
 #include "rift/yaml/write.hpp"
 
 namespace rift::commands {
@@ -40,16 +41,13 @@ std::string WaypointsYaml(const std::vector<control::Waypoint>& waypoints) {
   return yaml::Emit(root);
 }
 
-TrackView::TrackView(vision::Vision& vision, const vision::CameraModel& camera, Content content)
-    : vision_(vision),
-      camera_(camera),
-      content_(std::move(content)),
-      window_(vision.OpenWindow("rift track")) {
+TrackView::TrackView(const vision::CameraModel& camera, Content content)
+    : camera_(camera), content_(std::move(content)), window_("rift track") {
   if (camera.world) plane_z_m_ = 0.0;
 }
 
-std::vector<vision::MapPlace> TrackView::Places() const {
-  std::vector<vision::MapPlace> places;
+std::vector<view::MapPlace> TrackView::Places() const {
+  std::vector<view::MapPlace> places;
   for (const auto* list : {&content_.planned, &recorded_}) {
     for (const control::Waypoint& waypoint : *list) {
       places.push_back({waypoint.name + (waypoint.stop ? "" : " (pass)"), waypoint.Position()});
@@ -81,26 +79,26 @@ bool TrackView::Show(const std::optional<vision::Frame>& frame,
     if (moved) trail_m_.push_back(middle.head<2>());
     if (trail_m_.size() > kTrailLength) trail_m_.erase(trail_m_.begin());
   }
-  vision::TrackScene scene{.camera = &camera_,
-                           .frame = frame ? &*frame : nullptr,
-                           .sighting = sighting,
-                           .trail_m = trail_m_,
-                           .path_m = content_.path_m,
-                           .waypoints = Places(),
-                           .plane_z_m = plane_z_m_.value_or(0.0),
-                           .status = status,
-                           .latency_s = sighting ? sighting->latency_s : status.latency_s,
-                           .prompts = Prompts(moved_m)};
-  const vision::TrackInput input = window_->Show(scene);
+  view::TrackScene scene{.camera = &camera_,
+                         .frame = frame ? &*frame : nullptr,
+                         .sighting = sighting,
+                         .trail_m = trail_m_,
+                         .path_m = content_.path_m,
+                         .waypoints = Places(),
+                         .plane_z_m = plane_z_m_.value_or(0.0),
+                         .status = status,
+                         .latency_s = sighting ? sighting->latency_s : status.latency_s,
+                         .prompts = Prompts(moved_m)};
+  const view::TrackInput input = window_.Show(scene);
   Obey(input, sighting);
   return !input.quit;
 }
 
-void TrackView::Obey(const vision::TrackInput& input,
+void TrackView::Obey(const view::TrackInput& input,
                      const std::optional<vision::Sighting>& sighting) {
   const std::size_t before = recorded_.size();
   for (const Eigen::Vector2d& pixel : input.clicks_px) {
-    const auto p_m = plane_z_m_ ? vision_.MapFromPixel(camera_, pixel, *plane_z_m_) : std::nullopt;
+    const auto p_m = plane_z_m_ ? vision::MapFromPixel(camera_, pixel, *plane_z_m_) : std::nullopt;
     if (p_m) {
       Record(*p_m, {});
     } else {

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "rift/control/waypoint.hpp"
-#include "rift/vision/module/module.hpp"
+#include "rift/view/track_window.hpp"
 
 namespace rift::commands {
 
@@ -22,7 +21,7 @@ class TrackView {
     std::vector<std::string> prompts;
   };
 
-  TrackView(vision::Vision& vision, const vision::CameraModel& camera, Content content);
+  TrackView(const vision::CameraModel& camera, Content content);
 
   /// False when the user has asked to end. Writes the waypoints file whenever they change.
   bool Show(const std::optional<vision::Frame>& frame,
@@ -32,16 +31,15 @@ class TrackView {
   const std::vector<control::Waypoint>& Recorded() const { return recorded_; }
 
  private:
-  void Obey(const vision::TrackInput& input, const std::optional<vision::Sighting>& sighting);
+  void Obey(const view::TrackInput& input, const std::optional<vision::Sighting>& sighting);
   void Record(const Eigen::Vector2d& p_m, std::optional<double> heading_deg);
   void Save() const;
-  std::vector<vision::MapPlace> Places() const;
+  std::vector<view::MapPlace> Places() const;
   std::vector<std::string> Prompts(const std::optional<double>& moved_m) const;
 
-  vision::Vision& vision_;
   const vision::CameraModel& camera_;
   Content content_;
-  std::unique_ptr<vision::TrackWindow> window_;
+  view::TrackWindow window_;
   std::vector<control::Waypoint> recorded_;
   std::vector<Eigen::Vector2d> trail_m_;
   std::optional<double> plane_z_m_;

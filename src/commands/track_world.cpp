@@ -8,6 +8,9 @@
 
 #include "enum_name.hpp"
 #include "files.hpp"
+#include "rift/view/display.hpp"
+#include "rift/view/track_window.hpp"
+#include "rift/vision/tracking/tag_tracker.hpp"
 #include "rift/vision/tracking/world_frame.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/load.hpp"
@@ -86,14 +89,14 @@ class Patience {
 
 vision::WorldFrame FromFirstPose(const WorldParts& parts, vision::CameraModel camera) {
   camera.world.reset();
-  const auto tracker = parts.vision.MakeTracker(camera, parts.options.tag);
+  vision::TagTracker tracker(camera, parts.options.tag);
   Patience patience(parts.session.world_patience_s);
   std::optional<Patience> averaging;
   std::vector<Eigen::Isometry3d> poses;
   for (;;) {
     ThrowIfOver(parts);
     const vision::Frame frame = NextFrame(parts);
-    if (const auto sighting = tracker->Track(frame).sighting) {
+    if (const auto sighting = tracker.Track(frame).sighting) {
       poses.push_back(sighting->camera_from_tag);
       if (!averaging) averaging.emplace(parts.session.world_average_s);
     }
@@ -104,7 +107,7 @@ vision::WorldFrame FromFirstPose(const WorldParts& parts, vision::CameraModel ca
                       parts.options.tag.id, parts.session.world_patience_s));
     }
   }
-  return parts.vision.WorldFromFirstPose(poses, parts.session.tag_height_m);
+  return vision::WorldFromFirstPose(poses, parts.session.tag_height_m);
 }
 
 vision::WorldFrame FromTags(const WorldParts& parts, const vision::CameraModel& camera,
@@ -118,24 +121,24 @@ vision::WorldFrame FromTags(const WorldParts& parts, const vision::CameraModel& 
     ThrowIfOver(parts);
     const vision::Frame frame = NextFrame(parts);
     const std::vector<vision::TagDetection> seen =
-        parts.vision.FindTags(frame, parts.session.world_decimate, parts.options.tag.max_hamming);
+        vision::FindTags(frame, parts.session.world_decimate, parts.options.tag.max_hamming);
     std::size_t found = 0;
     for (const vision::ReferenceMark& mark : marks) {
       for (const vision::TagDetection& tag : seen) found += tag.id == mark.tag_id;
     }
     // With some missing, the last try says which.
     const bool last = patience.IsOver(frame) || parts.capture.IsRecording();
-    if (found >= marks.size() || last) return parts.vision.WorldFromTags(camera, marks, seen);
+    if (found >= marks.size() || last) return vision::WorldFromTags(camera, marks, seen);
   }
 }
 
 vision::WorldFrame FromClicks(const WorldParts& parts, vision::CameraModel camera,
                               const std::vector<PlaceBlock>& points) {
-  if (const std::string missing = parts.vision.MissingDisplay(); !missing.empty()) {
+  if (const std::string missing = view::MissingDisplay(); !missing.empty()) {
     throw std::runtime_error(fmt::format("{}: points cannot be clicked, use tags", missing));
   }
   camera.world.reset();
-  const auto window = parts.vision.OpenWindow("rift track: world frame");
+  view::TrackWindow window("rift track: world frame");
   std::vector<vision::WorldPoint> clicked;
   std::optional<vision::Frame> frame;
   while (clicked.size() < points.size()) {
@@ -143,12 +146,12 @@ vision::WorldFrame FromClicks(const WorldParts& parts, vision::CameraModel camer
     if (!(frame && parts.capture.IsRecording())) ThrowIfOver(parts);
     if (parts.is_stopped()) throw std::runtime_error("stopped before the world frame was set");
     const PlaceBlock& wanted = points[clicked.size()];
-    vision::TrackScene scene{.camera = &camera, .frame = frame ? &*frame : nullptr};
+    view::TrackScene scene{.camera = &camera, .frame = frame ? &*frame : nullptr};
     scene.status = parts.capture.Status();
     scene.prompts = {fmt::format("click point {} of {}: {} at x {:g} m, y {:g} m (u takes back)",
                                  clicked.size() + 1, points.size(), wanted.name, wanted.x_m,
                                  wanted.y_m)};
-    const vision::TrackInput input = window->Show(scene);
+    const view::TrackInput input = window.Show(scene);
     if (input.quit) throw std::runtime_error("ended before the world frame was set");
     if (input.undo && !clicked.empty()) clicked.pop_back();
     for (const Eigen::Vector2d& pixel : input.clicks_px) {
@@ -157,8 +160,7 @@ vision::WorldFrame FromClicks(const WorldParts& parts, vision::CameraModel camer
       clicked.push_back({{point.x_m, point.y_m, point.z_m}, pixel});
     }
   }
-  return parts.vision.WorldFromPoints(camera, clicked,
-                                      fmt::format("{} clicked points", clicked.size()));
+  return vision::WorldFromPoints(camera, clicked, fmt::format("{} clicked points", clicked.size()));
 }
 
 }  // namespace

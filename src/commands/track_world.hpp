@@ -4,14 +4,14 @@
 #include <string>
 
 #include "rift/experiment/track_options.hpp"
-#include "rift/vision/module/module.hpp"
+#include "rift/vision/camera/camera_model.hpp"
+#include "rift/vision/camera/capture_thread.hpp"
 #include "track_session.hpp"
 
 namespace rift::commands {
 
 /// What a world frame is set with.
 struct WorldParts {
-  vision::Vision& vision;
   vision::Capture& capture;
   const experiment::TrackOptions& options;
   const SessionOptions& session;

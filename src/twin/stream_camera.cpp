@@ -6,15 +6,13 @@
 #include <chrono>
 #include <cmath>
 
+#include "rift/vision/camera/camera_source.hpp"
+
 namespace rift::twin {
 namespace {
 
 constexpr double kNap_s = 0.001;
 constexpr double kLate_s = 0.020;  // a picture that late is left out, as a camera drops it
-
-double SteadyNow_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 double ThreadCpu_s() {
   timespec spent{};
@@ -39,7 +37,7 @@ double HoldBack_s(const simulation::MocapOptions& mocap, const TwinOptions& opti
   return 0.5 * mocap.exposure_s + std::max(0.0, mocap.processing_s - options.host_share_s);
 }
 
-StreamCamera::StreamCamera(const TwinSetup& setup, std::unique_ptr<vision::PictureMaker> pictures,
+StreamCamera::StreamCamera(const TwinSetup& setup, vision::SyntheticCamera pictures,
                            const TruePath& path, MjpegServer& server,
                            const std::atomic<double>& epoch_s)
     : mocap_(setup.simulation.mocap),
@@ -61,7 +59,7 @@ StreamCamera::StreamCamera(const TwinSetup& setup, std::unique_ptr<vision::Pictu
 
 StreamCamera::~StreamCamera() = default;
 
-double StreamCamera::Now_s() const { return SteadyNow_s() - epoch_s_; }
+double StreamCamera::Now_s() const { return vision::SteadyNow_s() - epoch_s_; }
 
 void StreamCamera::Run(const std::stop_token& stop) {
   std::int64_t next = 0;
@@ -84,7 +82,8 @@ void StreamCamera::Take(double captured_s) {
   const double before_s = ThreadCpu_s();
   const TruePath::Moment moment = path_.At(captured_s);
   const vision::RobotMotion tag = TagOf(moment, mocap_);
-  waiting_.push({captured_s + hold_back_s_, pictures_->Jpeg(tag, generator_)});
+  vision::Frame picture = pictures_.Render(tag, vision::PixelFormat::kJpeg, generator_);
+  waiting_.push({captured_s + hold_back_s_, std::move(picture.bytes)});
   tag_.poses.push_back(RowOf(tag, moment.pose));
   cpu_s_ += ThreadCpu_s() - before_s;
 }

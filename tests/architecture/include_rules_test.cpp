@@ -54,7 +54,7 @@ const std::vector<Reserved> kReserved{
     {"CLI/.*", {"commands"}},
     {"pagmo/.*|nlopt.*", {"search"}},
     {"turbojpeg.h", {"vision"}},
-    {"dlfcn.h|xcb/.*", {"module"}},
+    {"xcb/.*", {"view"}},
     {"sqlite3.*|SQLiteCpp/.*", {"sweep/run"}},
     {"termios.h|asm/termbits.h|boost/asio.*", {"hardware", "twin"}},
     {"fstream|iostream|cstdio", {"commands", "hardware", "vision", "twin", "report"}},

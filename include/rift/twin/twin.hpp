@@ -8,7 +8,7 @@
 #include "rift/twin/options.hpp"
 #include "rift/twin/true_path.hpp"
 #include "rift/twin/twin_robot.hpp"
-#include "rift/vision/module/module.hpp"
+#include "rift/vision/rendering/synthetic_camera.hpp"
 
 namespace rift::twin {
 
@@ -20,6 +20,7 @@ struct TwinSetup {
   std::uint64_t seed = 1;
   std::shared_ptr<const simulation::HeightImage> image;
   vision::CameraModel camera;
+  vision::SyntheticCameraOptions look;  ///< of its pictures
 };
 
 /// Where it can be reached.
@@ -47,8 +48,7 @@ struct TwinRun {
 /// Runs the robot in real time behind a serial port and an http camera. `announce` is called once
 /// both can be opened; `is_stopped` is asked many times a second. Throws what goes wrong in any of
 /// its threads.
-TwinRun RunTwin(const TwinSetup& setup, std::unique_ptr<vision::PictureMaker> pictures,
-                const std::function<void(const TwinAddress&)>& announce,
+TwinRun RunTwin(const TwinSetup& setup, const std::function<void(const TwinAddress&)>& announce,
                 const std::function<bool()>& is_stopped);
 
 }  // namespace rift::twin

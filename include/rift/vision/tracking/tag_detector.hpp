@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "rift/vision/camera/frame.hpp"
 #include "rift/vision/camera/grey_patch.hpp"
 
 namespace rift::vision {
@@ -44,5 +45,8 @@ class TagDetector {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Every tag in a picture; none in one that cannot be decoded.
+std::vector<TagDetection> FindTags(const Frame& frame, int decimate, int max_hamming);
 
 }  // namespace rift::vision

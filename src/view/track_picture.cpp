@@ -11,7 +11,7 @@
 #include "rift/vision/camera/map_frame.hpp"
 #include "rift/vision/camera/picture.hpp"
 
-namespace rift::vision {
+namespace rift::view {
 namespace {
 
 constexpr int kWidest_px = 1280, kShift = 4;
@@ -28,7 +28,7 @@ class MapPen {
   MapPen(cv::Mat& picture, const TrackScene& scene, double shown_per_px)
       : picture_(picture),
         scene_(scene),
-        camera_from_map_(MapFromCamera(*scene.camera).inverse()),
+        camera_from_map_(vision::MapFromCamera(*scene.camera).inverse()),
         scale_(shown_per_px) {}
 
   cv::Point FromPixel(const Eigen::Vector2d& pixel) const {
@@ -51,7 +51,7 @@ class MapPen {
     }
     std::vector<cv::Point> points;
     if (ahead.empty()) return points;
-    for (const Eigen::Vector2d& pixel : PixelsFromPoints(*scene_.camera, ahead)) {
+    for (const Eigen::Vector2d& pixel : vision::PixelsFromPoints(*scene_.camera, ahead)) {
       points.push_back(FromPixel(pixel));
     }
     return points;
@@ -109,7 +109,7 @@ void DrawMap(const MapPen& pen, const TrackScene& scene) {
   }
 }
 
-void DrawTag(const MapPen& pen, const Sighting& sighting) {
+void DrawTag(const MapPen& pen, const vision::Sighting& sighting) {
   std::vector<cv::Point> outline;
   for (const Eigen::Vector2d& corner : sighting.corners) outline.push_back(pen.FromPixel(corner));
   pen.Line(outline, kGreen, 2, true);
@@ -167,7 +167,7 @@ void DrawLines(cv::Mat& picture, const std::vector<std::string>& lines, bool at_
 }
 
 cv::Mat Shown(const TrackScene& scene) {
-  cv::Mat picture = scene.frame == nullptr ? cv::Mat() : BgrOf(*scene.frame);
+  cv::Mat picture = scene.frame == nullptr ? cv::Mat() : vision::BgrOf(*scene.frame);
   if (picture.empty()) {
     picture = cv::Mat(std::max(scene.camera->height_px, 240), std::max(scene.camera->width_px, 320),
                       CV_8UC3, kPanel);
@@ -197,4 +197,4 @@ TrackPicture DrawTrack(const TrackScene& scene) {
   return shown;
 }
 
-}  // namespace rift::vision
+}  // namespace rift::view

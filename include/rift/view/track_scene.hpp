@@ -10,7 +10,7 @@
 #include "rift/vision/camera/frame.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
 
-namespace rift::vision {
+namespace rift::view {
 
 /// A waypoint as the view draws it, in the map.
 struct MapPlace {
@@ -20,33 +20,16 @@ struct MapPlace {
 
 /// One moment of a tracking session, to be drawn over the camera's picture.
 struct TrackScene {
-  const CameraModel* camera = nullptr;
-  const Frame* frame = nullptr;  ///< the picture; none: nothing came yet
-  std::optional<Sighting> sighting;
+  const vision::CameraModel* camera = nullptr;
+  const vision::Frame* frame = nullptr;  ///< the picture; none: nothing came yet
+  std::optional<vision::Sighting> sighting;
   std::vector<Eigen::Vector2d> trail_m;  ///< where the tag was, in the map
   std::vector<Eigen::Vector2d> path_m;   ///< to hold the trail against; may be empty
   std::vector<MapPlace> waypoints;
   double plane_z_m = 0.0;  ///< of the map: path, waypoints and trail lie in it
-  CaptureStatus status;
+  vision::CaptureStatus status;
   double latency_s = 0.0;            ///< from the light to the pose; NaN of a recording
   std::vector<std::string> prompts;  ///< what the user is asked or told, lines at the foot
 };
 
-/// What the user did since the last picture.
-struct TrackInput {
-  bool quit = false;
-  bool undo = false;         ///< take the last waypoint away
-  bool here = false;         ///< a waypoint where the robot is
-  bool toggle_stop = false;  ///< the last waypoint: stop there or pass
-  bool clear_trail = false;
-  std::vector<Eigen::Vector2d> clicks_px;  ///< in the camera's picture
-};
-
-/// A window with the camera's picture.
-class TrackWindow {
- public:
-  virtual ~TrackWindow() = default;
-  virtual TrackInput Show(const TrackScene& scene) = 0;
-};
-
-}  // namespace rift::vision
+}  // namespace rift::view

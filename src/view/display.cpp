@@ -1,11 +1,12 @@
-#include "rift/module/display.hpp"
+#include "rift/view/display.hpp"
 
 #include <fmt/format.h>
 #include <xcb/xcb.h>
 
 #include <cstdlib>
+#include <stdexcept>
 
-namespace rift::module {
+namespace rift::view {
 
 std::string MissingDisplay() {
   const char* name = std::getenv("DISPLAY");
@@ -19,4 +20,13 @@ std::string MissingDisplay() {
   return failed ? fmt::format("no window: the display {} does not answer", name) : std::string();
 }
 
-}  // namespace rift::module
+void RequireDisplay() {
+  if (const std::string missing = MissingDisplay(); !missing.empty()) {
+    throw std::runtime_error(missing);
+  }
+  // The display that was looked at is the one to open: with another plugin Qt aborts when that one
+  // is missing.
+  setenv("QT_QPA_PLATFORM", "xcb", 1);
+}
+
+}  // namespace rift::view

@@ -2,9 +2,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "rift/vision/tracking/track_scene.hpp"
+#include "rift/view/track_scene.hpp"
 
-namespace rift::vision {
+namespace rift::view {
 
 /// What the window shows.
 struct TrackPicture {
@@ -24,4 +24,4 @@ struct LateralLine {
 std::vector<LateralLine> LateralLines(const std::vector<Eigen::Vector2d>& trail_m,
                                       const std::vector<Eigen::Vector2d>& path_m);
 
-}  // namespace rift::vision
+}  // namespace rift::view

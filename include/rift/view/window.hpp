@@ -1,13 +1,12 @@
 #pragma once
 
-#include <string>
-
 #include "rift/view/options.hpp"
 #include "rift/view/scene.hpp"
 
 namespace rift::view {
 
-/// See Viewer::PlayInWindow.
+/// Plays the film in a window until it is over or the user leaves. Throws std::runtime_error with
+/// MissingDisplay() where that is not empty.
 void PlayInWindow(const Film& film, const ViewOptions& options);
 
 }  // namespace rift::view

@@ -2,7 +2,7 @@
 
 #include "track_picture.hpp"
 
-namespace rift::vision {
+namespace rift::view {
 namespace {
 
 constexpr double kApart_m = 0.02;
@@ -33,4 +33,4 @@ std::vector<LateralLine> LateralLines(const std::vector<Eigen::Vector2d>& trail_
   return lines;
 }
 
-}  // namespace rift::vision
+}  // namespace rift::view
