@@ -25,7 +25,7 @@ rift_room(vision/camera ROOMS geometry yaml
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs opencv_videoio CURL::libcurl PkgConfig::JPEG)
 rift_room(vision/calibration ROOMS vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs)
-rift_room(vision/tracking ROOMS geometry vision/camera
+rift_room(vision/tracking ROOMS geometry vision/camera yaml
   PRIVATE_LIBRARIES fmt::fmt PkgConfig::APRILTAG)
 rift_room(vision/rendering ROOMS geometry vision/camera vision/calibration vision/tracking
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
@@ -56,6 +56,6 @@ rift_room(view ROOMS control geometry trajectory trial vision/camera vision/trac
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
 rift_room(commands ROOMS control experiment gap geometry hardware report/figures report/page
     report/text search simulation sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
-    trial twin view vision/calibration vision/camera vision/rendering
+    trial twin view vision/calibration vision/camera
     vision/tracking yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)

@@ -8,6 +8,7 @@
 #include "enum_name.hpp"
 #include "input_hashes.hpp"
 #include "json_fields.hpp"
+#include "rift/yaml/write.hpp"
 
 namespace rift::commands {
 namespace {
@@ -22,12 +23,12 @@ double Quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-double RowsPerSecond(const TrackRun& run, int rows) {
+double RowsPerSecond(const vision::TrackRun& run, int rows) {
   const double span_s = run.last_t_s - run.first_t_s;
   return rows > 1 && span_s > 0.0 ? (rows - 1) / span_s : std::nan("");
 }
 
-ordered_json MissesJson(const TrackRun& run) {
+ordered_json MissesJson(const vision::TrackRun& run) {
   ordered_json json = ordered_json::object();
   for (std::size_t i = 1; i < run.misses.size(); ++i) {
     if (run.misses[i] > 0) json[std::string(NameOf(static_cast<vision::Miss>(i)))] = run.misses[i];
@@ -35,7 +36,7 @@ ordered_json MissesJson(const TrackRun& run) {
   return json;
 }
 
-std::string MissesText(const TrackRun& run) {
+std::string MissesText(const vision::TrackRun& run) {
   if (run.frames == 0) return "none came";
   std::string kinds;
   int all = 0;
@@ -67,10 +68,14 @@ ordered_json SpanJson(const std::vector<double>& values) {
           {"max", NumberOrNull(Quantile(values, 1.0))}};
 }
 
+/// Tenths of a millimetre: finer than anybody clicks.
+yaml::Node Metres(double value) { return yaml::Node::Scalar(fmt::format("{:.4f}", value)); }
+
 }  // namespace
 
 std::string TrackJson(const TrackRequest& request, const vision::CameraModel& camera,
-                      const experiment::TrackOptions& options, const TrackRun& run, int rows) {
+                      const experiment::TrackOptions& options, const vision::TrackRun& run,
+                      int rows) {
   InputHashes hashes;
   hashes.Add(request.calibration);
   ordered_json json{
@@ -102,7 +107,7 @@ std::string TrackJson(const TrackRequest& request, const vision::CameraModel& ca
   return Dump(json);
 }
 
-std::string TrackText(const TrackRun& run, int rows) {
+std::string TrackText(const vision::TrackRun& run, int rows) {
   std::string text = fmt::format("{} rows", rows);
   const double rate = RowsPerSecond(run, rows);
   if (!std::isnan(rate)) {
@@ -155,6 +160,24 @@ std::string CalibrationComment(const vision::Calibration& c) {
       1e3 * c.floor_error_m, 1e3 * c.cross_check_m);
   for (const std::string& reason : c.reasons) text += fmt::format("# - {}\n", reason);
   return text;
+}
+
+std::string WaypointsYaml(const std::vector<control::Waypoint>& waypoints) {
+  yaml::Node list = yaml::Node::List();
+  for (const control::Waypoint& waypoint : waypoints) {
+    yaml::Node item = yaml::Node::Map();
+    item.Add("name", yaml::Node::Text(waypoint.name));
+    item.Add("x", Metres(waypoint.x_m));
+    item.Add("y", Metres(waypoint.y_m));
+    if (waypoint.heading_deg) {
+      item.Add("heading", yaml::Node::Scalar(fmt::format("{:.1f}", *waypoint.heading_deg)));
+    }
+    item.Add("stop", yaml::Node::Scalar(waypoint.stop ? "true" : "false"));
+    list.items.push_back(item);
+  }
+  yaml::Node root = yaml::Node::Map();
+  root.Add("waypoints", list);
+  return yaml::Emit(root);
 }
 
 }  // namespace rift::commands

@@ -1,12 +1,10 @@
-#include "drive_run.hpp"
+#include "rift/hardware/arming.hpp"
 
 #include <fmt/format.h>
 
 #include <stdexcept>
 
-#include "enum_name.hpp"
-
-namespace rift::commands {
+namespace rift::hardware {
 namespace {
 
 constexpr double kTurn_s = 0.02;
@@ -14,22 +12,22 @@ constexpr double kFirstPose_s = 10.0;
 constexpr double kConfirm_s = 1.0;
 constexpr double kNearStart_m = 0.1;  // by hand, the authors were up to 0.07 m off
 
-void RequireBudget(const hardware::PingResult& ping, const hardware::PingOptions& options) {
-  const std::vector<std::string> broken = hardware::BrokenBudget(ping, options);
+void RequireBudget(const PingResult& ping, const PingOptions& options) {
+  const std::vector<std::string> broken = BrokenBudget(ping, options);
   if (broken.empty()) return;
   throw std::runtime_error(
       fmt::format("not armed, the link breaks its budget: {}", fmt::join(broken, "; ")));
 }
 
-double PrintStoppingDistance(const DriveParts& parts, const experiment::Experiment& experiment,
-                             const hardware::PingResult& ping) {
-  hardware::StoppingOptions options = experiment.hardware.stopping;
+double PrintStoppingDistance(const DriveParts& parts, const DriveTask& task,
+                             const PingResult& ping) {
+  StoppingOptions options = task.hardware.stopping;
   if (ping.IsMeasured()) options.delay_s = ping.OneWay_s();
-  const double distance_m = hardware::StoppingDistance_m(options, experiment.control.v_max);
+  const double distance_m = StoppingDistance_m(options, task.control.v_max);
   parts.say(fmt::format(
       "worst stopping distance {:.3f} m: at power {:g}, {:.2f} m/s x ({:.3f} s watchdog + {:.3f} s "
       "delay) + braking",
-      distance_m, experiment.control.v_max, options.full_power_speed_mps * experiment.control.v_max,
+      distance_m, task.control.v_max, options.full_power_speed_mps * task.control.v_max,
       options.robot_watchdog_s, options.delay_s));
   if (!ping.IsMeasured()) {
     parts.say(
@@ -42,13 +40,12 @@ double PrintStoppingDistance(const DriveParts& parts, const experiment::Experime
 
 /// Lets the link run until `is_so`; false when a person stopped the drive meanwhile. Throws when
 /// anything else did.
-bool WaitUntil(hardware::RealRobot& robot, const std::function<bool()>& is_so) {
+bool WaitUntil(RealRobot& robot, const std::function<bool()>& is_so) {
   while (!is_so()) {
     robot.Advance(kTurn_s);
-    if (robot.state() != hardware::DriveState::kStopped) continue;
-    const hardware::DriveStop stop = *robot.Evidence().stop;
-    if (stop.reason == hardware::StopReason::kOperator ||
-        stop.reason == hardware::StopReason::kSignal) {
+    if (robot.state() != DriveState::kStopped) continue;
+    const DriveStop stop = *robot.Evidence().stop;
+    if (stop.reason == StopReason::kOperator || stop.reason == StopReason::kSignal) {
       return false;
     }
     throw std::runtime_error(fmt::format("stopped before the start: {}", stop.text));
@@ -56,7 +53,7 @@ bool WaitUntil(hardware::RealRobot& robot, const std::function<bool()>& is_so) {
   return true;
 }
 
-bool WaitForFirstPose(hardware::RealRobot& robot) {
+bool WaitForFirstPose(RealRobot& robot) {
   const double start_s = robot.Sense().now_s;
   return WaitUntil(robot, [&] {
     const trial::Sensed sensed = robot.Sense();
@@ -70,10 +67,9 @@ bool WaitForFirstPose(hardware::RealRobot& robot) {
   });
 }
 
-void SayWhereItStands(const DriveParts& parts, hardware::RealRobot& robot,
-                      const experiment::Experiment& experiment) {
+void SayWhereItStands(const DriveParts& parts, RealRobot& robot, const DriveTask& task) {
   const geometry::Pose2 pose = robot.Sense().pose->world_from_robot;
-  const geometry::Pose2 start = control::StartPose(experiment.waypoints);
+  const geometry::Pose2 start = control::StartPose(task.waypoints);
   const double off_m = (pose.Position() - start.Position()).norm();
   parts.say(
       fmt::format("the robot stands at x {:.3f} m, y {:.3f} m, {:.3f} m from the first "
@@ -84,30 +80,30 @@ void SayWhereItStands(const DriveParts& parts, hardware::RealRobot& robot,
 
 }  // namespace
 
-hardware::PingResult MeasureLink(hardware::ByteLine& line, hardware::Clock& clock,
-                                 const hardware::HardwareOptions& options) {
-  const hardware::Protocol protocol = hardware::FindProtocol(line, clock, options.line);
-  return hardware::Ping(line, clock, options.line, protocol, options.ping);
+PingResult MeasureLink(ByteLine& line, Clock& clock, const HardwareOptions& options) {
+  const Protocol protocol = FindProtocol(line, clock, options.line);
+  return Ping(line, clock, options.line, protocol, options.ping);
 }
 
-DriveRun Drive(const DriveParts& parts, const experiment::Experiment& experiment) {
-  control::CheckWaypoints(experiment.waypoints);
+DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
+  control::CheckWaypoints(task.waypoints);
   DriveRun run;
-  run.ping = MeasureLink(parts.line, parts.clock, experiment.hardware);
-  parts.say(fmt::format("the robot speaks {}", NameOf(run.ping.protocol)));
-  RequireBudget(run.ping, experiment.hardware.ping);
-  run.stopping_distance_m = PrintStoppingDistance(parts, experiment, run.ping);
+  run.ping = MeasureLink(parts.line, parts.clock, task.hardware);
+  parts.say(fmt::format("the robot speaks {}",
+                        EnumNames(run.ping.protocol)[static_cast<std::size_t>(run.ping.protocol)]));
+  RequireBudget(run.ping, task.hardware.ping);
+  run.stopping_distance_m = PrintStoppingDistance(parts, task, run.ping);
 
-  hardware::RealRobot robot(parts.line, parts.poses, parts.clock,
-                            {experiment.hardware, run.ping.protocol, parts.threads});
-  for (const hardware::Stopper& stopper : parts.stoppers) robot.AddStopper(stopper);
+  RealRobot robot(parts.line, parts.poses, parts.clock,
+                  {task.hardware, run.ping.protocol, parts.threads});
+  for (const Stopper& stopper : parts.stoppers) robot.AddStopper(stopper);
   if (WaitForFirstPose(robot)) {
-    SayWhereItStands(parts, robot, experiment);
+    SayWhereItStands(parts, robot, task);
     run.has_begun = WaitUntil(robot, parts.may_arm);
   }
   if (run.has_begun) {
     robot.Arm();
-    run.trial = trial::RunTrial(robot, experiment.waypoints, experiment.control, experiment.trial);
+    run.trial = trial::RunTrial(robot, task.waypoints, task.control, task.trial);
   } else {
     run.trial.reason = "stopped before the start: " + robot.Evidence().stop->text;
   }
@@ -116,4 +112,4 @@ DriveRun Drive(const DriveParts& parts, const experiment::Experiment& experiment
   return run;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::hardware

@@ -1,4 +1,4 @@
-#include "commands/drive_operator.hpp"
+#include "rift/hardware/operator.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -6,9 +6,9 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
-#include "hardware/pseudo_terminal.hpp"
+#include "pseudo_terminal.hpp"
 
-namespace rift::commands {
+namespace rift::hardware {
 namespace {
 
 /// Whatever stdin is by itself, in this scope it is a terminal on which the test types.
@@ -42,7 +42,7 @@ struct Listening {
 
 TEST_CASE("Enter starts the robot once it was asked for and the next key stops it") {
   Keyboard keyboard;
-  DriveOperator person(false);
+  Operator person(false);
   const hardware::Stopper stopper = person.Stopper();
   Listening listening;
   keyboard.Type('\n');  // before anybody asked
@@ -63,7 +63,7 @@ TEST_CASE("Enter starts the robot once it was asked for and the next key stops i
 
 TEST_CASE("Before the start q gives up") {
   Keyboard keyboard;
-  DriveOperator person(false);
+  Operator person(false);
   keyboard.Type('q');
   REQUIRE(person.Stopper()());
   CHECK(person.Stopper()()->second == "a key was pressed");
@@ -72,7 +72,7 @@ TEST_CASE("Before the start q gives up") {
 TEST_CASE("With a yes nothing is asked and a key or a signal or the window stops") {
   const auto stops_by = [](const auto& strike) {
     Keyboard keyboard;
-    DriveOperator person(true);
+    Operator person(true);
     Listening listening;
     CHECK(person.MayArm(listening.say));
     CHECK(listening.told.empty());
@@ -80,12 +80,11 @@ TEST_CASE("With a yes nothing is asked and a key or a signal or the window stops
     strike(keyboard, person);
     return person.Stopper()().value().second;
   };
-  CHECK(stops_by([](Keyboard& keyboard, DriveOperator&) { keyboard.Type('a'); }) ==
-        "a key was pressed");
-  CHECK(stops_by([](Keyboard&, DriveOperator&) { std::raise(SIGHUP); }) == "SIGHUP came");
-  CHECK(stops_by([](Keyboard&, DriveOperator& person) { person.CloseWindow(); }) ==
+  CHECK(stops_by([](Keyboard& keyboard, Operator&) { keyboard.Type('a'); }) == "a key was pressed");
+  CHECK(stops_by([](Keyboard&, Operator&) { std::raise(SIGHUP); }) == "SIGHUP came");
+  CHECK(stops_by([](Keyboard&, Operator& person) { person.CloseWindow(); }) ==
         "the window was closed");
 }
 
 }  // namespace
-}  // namespace rift::commands
+}  // namespace rift::hardware

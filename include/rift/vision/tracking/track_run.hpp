@@ -6,22 +6,22 @@
 #include <string>
 #include <vector>
 
-#include "rift/experiment/track_options.hpp"
-#include "rift/vision/camera/capture_thread.hpp"
-#include "track_log.hpp"
-#include "track_session.hpp"
-#include "track_view.hpp"
+#include "rift/vision/tracking/session.hpp"
+#include "rift/vision/tracking/session_options.hpp"
 
-namespace rift::commands {
+namespace rift::vision {
 
-/// What a tracking session is made of and whom it talks to.
+/// What a tracking run is made of and whom it talks to.
 struct TrackParts {
-  vision::Capture& capture;
-  const vision::CameraModel& camera;
-  const experiment::TrackOptions& options;
-  const SessionOptions& session;
-  TrackLog& log;
-  TrackView* view = nullptr;  ///< none: no window
+  CameraSession& session;
+  const SessionOptions& options;
+  /// Takes a row of the log; false when `t_s` is not later than that of the row before.
+  std::function<bool(double t_s, const Sighting& sighting)> log;
+  /// Shows a moment of the run, `moved_m` being the largest so far; false when the user has asked
+  /// to end. None: no window.
+  std::function<bool(const std::optional<Frame>& frame, const std::optional<Sighting>& sighting,
+                     const CaptureStatus& status, const std::optional<double>& moved_m)>
+      show;
   std::optional<double> duration_s;
   std::function<bool()> is_stopped;
   /// One line for the user.
@@ -30,13 +30,14 @@ struct TrackParts {
 
 /// What became of it.
 struct TrackRun {
-  vision::CameraState state = vision::CameraState::kOpening;  ///< at the end
+  CameraState state = CameraState::kOpening;  ///< at the end
   std::string reason;
   bool has_failed = false;  ///< the camera ended it, not the user or a recording's end
-  vision::CaptureStatus status;
+  CaptureStatus status;
   bool is_recording = false;
   int frames = 0;
-  std::array<int, 7> misses{};  ///< by vision::Miss
+  int rows = 0;                 ///< of the log
+  std::array<int, 7> misses{};  ///< by Miss
   int repeated = 0;             ///< sightings that were not later than the one before
   int most_tags_of_this_id = 1;
   double zero_s = 0.0;  ///< of the rows' times, on the steady clock of this machine
@@ -48,6 +49,6 @@ struct TrackRun {
 
 /// Tracks until the user, the time, the recording or the camera ends it. Throws
 /// std::invalid_argument when the stream's size is not the calibration's.
-TrackRun Track(const TrackParts& parts);
+TrackRun RunTracking(const TrackParts& parts);
 
-}  // namespace rift::commands
+}  // namespace rift::vision

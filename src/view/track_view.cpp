@@ -1,53 +1,28 @@
-#include "track_view.hpp"
+#include "rift/view/track_view.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "files.hpp"
 #include "rift/vision/tracking/world_frame.hpp"
-#include "rift/yaml/write.hpp"
 
-namespace rift::commands {
+namespace rift::view {
 namespace {
-
-using yaml::Node;
 
 constexpr double kTrailStep_m = 0.002;
 constexpr std::size_t kTrailLength = 4000;
 constexpr double kLifted_m = 0.15;  // no robot drives that far between pictures
 
-/// Tenths of a millimetre: finer than anybody clicks.
-Node Metres(double value) { return Node::Scalar(fmt::format("{:.4f}", value)); }
-
 }  // namespace
-
-std::string WaypointsYaml(const std::vector<control::Waypoint>& waypoints) {
-  Node list = Node::List();
-  for (const control::Waypoint& waypoint : waypoints) {
-    Node item = Node::Map();
-    item.Add("name", Node::Text(waypoint.name));
-    item.Add("x", Metres(waypoint.x_m));
-    item.Add("y", Metres(waypoint.y_m));
-    if (waypoint.heading_deg) {
-      item.Add("heading", Node::Scalar(fmt::format("{:.1f}", *waypoint.heading_deg)));
-    }
-    item.Add("stop", Node::Scalar(waypoint.stop ? "true" : "false"));
-    list.items.push_back(item);
-  }
-  Node root = Node::Map();
-  root.Add("waypoints", list);
-  return yaml::Emit(root);
-}
 
 TrackView::TrackView(const vision::CameraModel& camera, Content content)
     : camera_(camera), content_(std::move(content)), window_("rift track") {
   if (camera.world) plane_z_m_ = 0.0;
 }
 
-std::vector<view::MapPlace> TrackView::Places() const {
-  std::vector<view::MapPlace> places;
+std::vector<MapPlace> TrackView::Places() const {
+  std::vector<MapPlace> places;
   for (const auto* list : {&content_.planned, &recorded_}) {
     for (const control::Waypoint& waypoint : *list) {
       places.push_back({waypoint.name + (waypoint.stop ? "" : " (pass)"), waypoint.Position()});
@@ -57,7 +32,7 @@ std::vector<view::MapPlace> TrackView::Places() const {
 }
 
 std::vector<std::string> TrackView::Prompts(const std::optional<double>& moved_m) const {
-  std::vector<std::string> lines = content_.prompts;
+  std::vector<std::string> lines;
   if (moved_m) {
     lines.push_back(fmt::format("reference tags {:.1f} mm off their places", 1e3 * *moved_m));
   }
@@ -65,37 +40,37 @@ std::vector<std::string> TrackView::Prompts(const std::optional<double>& moved_m
   return lines;
 }
 
+void TrackView::Follow(const vision::Sighting& sighting) {
+  const Eigen::Vector3d middle = sighting.map_from_tag.translation();
+  if (!plane_z_m_) plane_z_m_ = middle.z();
+  const auto is_away_by = [&](double distance_m) {
+    return !trail_m_.empty() && (middle.head<2>() - trail_m_.back()).norm() > distance_m;
+  };
+  if (is_away_by(kLifted_m)) trail_m_.clear();
+  if (trail_m_.empty() || is_away_by(kTrailStep_m)) trail_m_.push_back(middle.head<2>());
+  if (trail_m_.size() > kTrailLength) trail_m_.erase(trail_m_.begin());
+}
+
 bool TrackView::Show(const std::optional<vision::Frame>& frame,
                      const std::optional<vision::Sighting>& sighting,
                      const vision::CaptureStatus& status, const std::optional<double>& moved_m) {
-  if (sighting) {
-    const Eigen::Vector3d middle = sighting->map_from_tag.translation();
-    if (!plane_z_m_) plane_z_m_ = middle.z();
-    const bool lifted =
-        !trail_m_.empty() && (middle.head<2>() - trail_m_.back()).norm() > kLifted_m;
-    if (lifted) trail_m_.clear();
-    const bool moved =
-        trail_m_.empty() || (middle.head<2>() - trail_m_.back()).norm() > kTrailStep_m;
-    if (moved) trail_m_.push_back(middle.head<2>());
-    if (trail_m_.size() > kTrailLength) trail_m_.erase(trail_m_.begin());
-  }
-  view::TrackScene scene{.camera = &camera_,
-                         .frame = frame ? &*frame : nullptr,
-                         .sighting = sighting,
-                         .trail_m = trail_m_,
-                         .path_m = content_.path_m,
-                         .waypoints = Places(),
-                         .plane_z_m = plane_z_m_.value_or(0.0),
-                         .status = status,
-                         .latency_s = sighting ? sighting->latency_s : status.latency_s,
-                         .prompts = Prompts(moved_m)};
-  const view::TrackInput input = window_.Show(scene);
+  if (sighting) Follow(*sighting);
+  TrackScene scene{.camera = &camera_,
+                   .frame = frame ? &*frame : nullptr,
+                   .sighting = sighting,
+                   .trail_m = trail_m_,
+                   .path_m = content_.path_m,
+                   .waypoints = Places(),
+                   .plane_z_m = plane_z_m_.value_or(0.0),
+                   .status = status,
+                   .latency_s = sighting ? sighting->latency_s : status.latency_s,
+                   .prompts = Prompts(moved_m)};
+  const TrackInput input = window_.Show(scene);
   Obey(input, sighting);
   return !input.quit;
 }
 
-void TrackView::Obey(const view::TrackInput& input,
-                     const std::optional<vision::Sighting>& sighting) {
+void TrackView::Obey(const TrackInput& input, const std::optional<vision::Sighting>& sighting) {
   const std::size_t before = recorded_.size();
   for (const Eigen::Vector2d& pixel : input.clicks_px) {
     const auto p_m = plane_z_m_ ? vision::MapFromPixel(camera_, pixel, *plane_z_m_) : std::nullopt;
@@ -113,7 +88,7 @@ void TrackView::Obey(const view::TrackInput& input,
   if (input.toggle_stop && !recorded_.empty()) recorded_.back().stop = !recorded_.back().stop;
   if (input.clear_trail) trail_m_.clear();
   const bool changed = recorded_.size() != before || input.toggle_stop || !input.clicks_px.empty();
-  if (changed && !content_.record_to.empty()) Save();
+  if (changed && content_.save && !recorded_.empty()) content_.save(recorded_);
 }
 
 /// Only the first waypoint has a heading: where the robot looks at the start.
@@ -123,11 +98,7 @@ void TrackView::Record(const Eigen::Vector2d& p_m, std::optional<double> heading
   if (recorded_.empty()) waypoint.heading_deg = heading_deg;
   recorded_.push_back(waypoint);
   said_ = fmt::format("{}: x {:.3f} m, y {:.3f} m{}", waypoint.name, p_m.x(), p_m.y(),
-                      content_.record_to.empty() ? " (not saved: --record-waypoints FILE)" : "");
+                      !content_.save ? " (not saved: --record-waypoints FILE)" : "");
 }
 
-void TrackView::Save() const {
-  if (!recorded_.empty()) WriteFile(content_.record_to, WaypointsYaml(recorded_));
-}
-
-}  // namespace rift::commands
+}  // namespace rift::view

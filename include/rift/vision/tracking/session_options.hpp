@@ -1,9 +1,9 @@
 #pragma once
 
-namespace rift::commands {
+namespace rift::vision {
 
-/// How a session of `rift track` goes: how its world frame is set and watched, when it ends. Each
-/// member is a flag.
+/// How a camera session goes: how its world frame is set and watched, when it ends. Each member is
+/// a flag of `rift track`.
 struct SessionOptions {
   double tag_height_m = 0.03;
   double world_average_s = 1.0;
@@ -34,4 +34,4 @@ struct SessionOptions {
   }
 };
 
-}  // namespace rift::commands
+}  // namespace rift::vision

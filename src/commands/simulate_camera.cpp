@@ -1,5 +1,3 @@
-#include "simulate_twin.hpp"
-
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -11,7 +9,12 @@
 #include "rift/trajectory/log.hpp"
 #include "rift/twin/overhead_camera.hpp"
 #include "rift/twin/twin.hpp"
+#include "rift/view/display.hpp"
+#include "rift/view/film.hpp"
+#include "rift/view/video.hpp"
+#include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
+#include "simulate.hpp"
 #include "simulated_runs.hpp"
 #include "stop_signal.hpp"
 
@@ -61,15 +64,10 @@ void Save(const fs::path& folder, const experiment::Experiment& experiment,
   WriteFile(folder / "summary.json", TwinJson(experiment, run));
 }
 
-}  // namespace
-
-void ExcludeFromTwin(CLI::App& app) {
-  CLI::Option* twin = app.get_option("--twin");
-  for (const char* other : {"--replay", "--tum", "--json", "--video", "--figure", "--view"}) {
-    twin->excludes(app.get_option(other));
-  }
-}
-
+/// Serves until the trial is over or a signal comes, says in one line of JSON on stdout where port,
+/// camera and calibration are, and writes the run folder: experiment.yaml (with the simulation as
+/// the twin is, for `simulate` to repeat), camera.yaml, truth.csv, trajectory.csv (the tag's true
+/// path) and summary.json.
 int RunTwin(const std::string& experiment_file, const experiment::Experiment& experiment,
             const fs::path& folder) {
   experiment::Experiment as_twin = experiment;
@@ -96,6 +94,58 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
   fmt::print(stderr, "{}; {} pictures at {:.1f} ms of one core each; true path: {}\n", Ending(run),
              run.pictures, 1e3 * run.picture_cpu_s, (folder / "truth.csv").string());
   return kDone;
+}
+
+view::BodyShape ShapeOf(const simulation::BodyOptions& body) {
+  return {.chassis_radius_m = body.chassis_radius_m,
+          .chassis_height_m = body.chassis_height_m,
+          .chassis_bottom_m = body.rim_clearance_m - body.wheel_radius_m,
+          .wheel_radius_m = body.wheel_radius_m,
+          .wheel_width_m = body.wheel_width_m,
+          .track_m = body.track_m};
+}
+
+view::Film FilmOf(const experiment::Experiment& experiment, const sweep::SimulatedTrial& trial,
+                  const sweep::SimulatedRun& run) {
+  const simulation::Terrain terrain(trial.simulation.terrain, trial.image);
+  view::Run shown{
+      .title = fmt::format("{} on {}", experiment.name, trial.simulation.terrain.surface),
+      .body = ShapeOf(trial.simulation.body),
+      .height_at = [&](double x_m, double y_m) { return terrain.HeightAt(x_m, y_m); },
+      .truth = run.truth,
+      .logged = run.result.trajectory,
+      .outcome = run.result.reason};
+  for (const control::Waypoint& waypoint : trial.waypoints) {
+    shown.waypoints.push_back({waypoint.name, waypoint.Position()});
+    shown.reference_m.push_back(waypoint.Position());
+  }
+  for (const report::FloorArea& area : AreasOf(trial.simulation.terrain)) {
+    shown.patches.push_back({area.label, area.x_min_m, area.x_max_m, area.y_min_m, area.y_max_m});
+  }
+  return view::MakeFilm(shown);
+}
+
+void ShowFilm(const PictureRequest& request, const view::Film& film) {
+  if (!request.video.empty()) view::WriteVideo(film, request.video, {});
+  if (!request.window) return;
+  const std::string no_display = view::MissingDisplay();
+  if (no_display.empty()) {
+    view::PlayInWindow(film, {});
+  } else {
+    fmt::print(stderr, "note: --view shows nothing: {}\n", no_display);
+  }
+}
+
+}  // namespace
+
+int SimulateWithCamera(const SimulateRequest& request) {
+  if (request.twin) {
+    const TwinJob job = LoadTwinJob(request);
+    return RunTwin(request.experiment, job.experiment, job.folder);
+  }
+  return Simulate(request, [&request](const Simulated& made) {
+    ShowFilm(request.pictures, FilmOf(made.experiment, made.trial, made.run));
+  });
 }
 
 }  // namespace rift::commands
