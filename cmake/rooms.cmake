@@ -22,22 +22,18 @@ rift_room(search ROOMS statistics
   PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt)
 rift_room(simulation ROOMS control geometry statistics trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES PkgConfig::ODE PNG::PNG)
-rift_room(module
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES ${CMAKE_DL_LIBS} PkgConfig::XCB)
 rift_room(vision/camera ROOMS geometry statistics yaml
   LIBRARIES Eigen3::Eigen opencv_core opencv_imgproc opencv_calib3d
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs opencv_videoio CURL::libcurl PkgConfig::JPEG)
 rift_room(vision/calibration ROOMS statistics vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs)
-rift_room(vision/tracking ROOMS geometry module statistics vision/camera
-  PRIVATE_LIBRARIES fmt::fmt opencv_highgui opencv_imgcodecs PkgConfig::APRILTAG)
+rift_room(vision/tracking ROOMS geometry statistics vision/camera yaml
+  PRIVATE_LIBRARIES fmt::fmt PkgConfig::APRILTAG)
 rift_room(vision/rendering ROOMS geometry vision/camera vision/calibration vision/tracking
-  PRIVATE_LIBRARIES fmt::fmt opencv_imgproc)
-rift_room(vision/module ROOMS geometry module vision/camera vision/calibration vision/tracking vision/rendering
-  PRIVATE_LIBRARIES fmt::fmt)
-rift_room(hardware ROOMS control geometry statistics trial vision/camera vision/tracking vision/module
+  PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
+rift_room(hardware ROOMS control geometry statistics trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Threads::Threads)
-rift_room(twin ROOMS control geometry hardware simulation statistics trajectory trial vision/camera vision/rendering vision/module
+rift_room(twin ROOMS control geometry hardware simulation statistics trajectory trial vision/camera vision/rendering
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
 rift_room(sweep/run ROOMS statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES SQLiteCpp sqlite3)
@@ -61,11 +57,11 @@ rift_room(report/json ROOMS experiment gap report/text sweep/calibrate sweep/exp
   LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
 rift_room(report/page ROOMS report/figures report/text sweep/explain sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
-rift_room(view ROOMS control geometry module trajectory trial
+rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
-  PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio)
-rift_room(commands ROOMS control experiment gap geometry hardware module report/figures report/json
+  PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
+rift_room(commands ROOMS control experiment gap geometry hardware report/figures report/json
     report/page report/text search simulation statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
-    trial twin view vision/calibration vision/camera vision/module vision/rendering
+    trial twin view vision/calibration vision/camera
     vision/tracking yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)

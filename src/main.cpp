@@ -1,80 +1,11 @@
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cstdio>
-#include <stdexcept>
-
+#include "rift/commands/camera_program.hpp"
 #include "rift/commands/command.hpp"
-#include "rift/yaml/node.hpp"
-#include "rift/yaml/suggest.hpp"
 
-namespace {
-
-using rift::commands::Command;
-using rift::commands::Commands;
-
-std::vector<std::string> Names() {
-  std::vector<std::string> names;
-  for (const Command& command : Commands()) names.push_back(command.name);
-  return names;
-}
-
-/// CLI11 calls a mistyped subcommand "an argument that was not expected".
-void CheckSubcommand(int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
-  const std::vector<std::string> names = Names();
-  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
-  const std::string nearest = rift::yaml::Nearest(argv[1], names);
-  throw std::invalid_argument(
-      nearest.empty()
-          ? fmt::format("'{}' is no subcommand; there are {}", argv[1], fmt::join(names, ", "))
-          : fmt::format("'{}' is no subcommand; did you mean '{}'?", argv[1], nearest));
-}
-
-int Run(int argc, char** argv) {
-  CheckSubcommand(argc, argv);
-  int exit_code = rift::commands::kDone;
-  CLI::App app("rift: where a simulator and its robot part ways, and why");
-  app.set_version_flag("--version", "rift " RIFT_VERSION);
-  app.require_subcommand(1);
-  app.footer(
-      "Exit codes: 0 done, 1 falsified (with --exit-code) or not reached, 2 usage or input, 3 "
-      "failure.");
-  for (const Command& command : Commands()) {
-    CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
-    // A word that is not there chooses no subcommand, and options take time to make.
-    if (std::find(argv, argv + argc, std::string_view(command.name)) == argv + argc) continue;
-    command.add(subcommand, exit_code);
-  }
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const bool asked_for_help = error.get_exit_code() == 0;
-    if (asked_for_help) return app.exit(error);
-    throw std::invalid_argument(error.what());
-  }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw std::runtime_error("cannot write to stdout: the results are lost");
-  }
-  return exit_code;
-}
-
-int Fail(const char* what, int exit_code) {
-  fmt::print(stderr, "rift: {}\n", what);
-  return exit_code;
-}
-
-}  // namespace
-
+/// The program rift: what needs a camera, a window or a video is left to rift-camera.
 int main(int argc, char** argv) {
-  try {
-    return Run(argc, argv);
-  } catch (const std::invalid_argument& error) {
-    return Fail(error.what(), rift::commands::kBadInput);
-  } catch (const rift::yaml::Error& error) {
-    return Fail(error.what(), rift::commands::kBadInput);
-  } catch (const std::exception& error) {
-    return Fail(error.what(), rift::commands::kRunTimeFailure);
-  }
+  const auto camera_program = [argv](const auto&) -> int {
+    rift::commands::RunCameraProgram(argv);
+  };
+  return rift::commands::RunCommandLine(
+      argc, argv, {.track = camera_program, .drive = camera_program, .simulate = camera_program});
 }

@@ -1,38 +1,31 @@
+#include "drive.hpp"
+
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <filesystem>
 #include <future>
 #include <memory>
+#include <stdexcept>
 
-#include "drive_camera.hpp"
-#include "drive_files.hpp"
-#include "drive_operator.hpp"
 #include "drive_output.hpp"
-#include "drive_run.hpp"
-#include "drive_view.hpp"
 #include "files.hpp"
-#include "keys_flag.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/hardware/camera_poses.hpp"
+#include "rift/hardware/operator.hpp"
 #include "rift/hardware/serial_port.hpp"
+#include "rift/trajectory/log.hpp"
+#include "rift/view/display.hpp"
+#include "rift/view/drive_view.hpp"
+#include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/tracking/session.hpp"
+#include "rift/report/text/trial.hpp"
 
 namespace rift::commands {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct DriveRequest {
-  std::string experiment;
-  std::vector<std::string> overrides;
-  std::string port;
-  std::string camera;
-  std::string calibration;
-  std::string out;
-  bool view = false;
-  bool yes = false;
-  bool ping = false;
-  bool json = false;
-};
+// A window costs a decoded and drawn picture each time; the tracker needs the processor more.
+constexpr std::chrono::milliseconds kRedraw{100};
 
 void Say(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
@@ -46,25 +39,10 @@ int PingRobot(const DriveRequest& request) {
   if (!request.experiment.empty()) options = LoadFor(request).hardware;
   hardware::SerialPort port(request.port, options.line.baud, options.line.write_timeout_s);
   hardware::SteadyClock clock;
-  const hardware::PingResult ping = MeasureLink(port, clock, options);
+  const hardware::PingResult ping = hardware::MeasureLink(port, clock, options);
   fmt::print("{}", request.json ? PingJson(ping, options) : PingText(ping, options));
   const bool is_good = ping.IsMeasured() && hardware::BrokenBudget(ping, options.ping).empty();
   return is_good ? kDone : kNotReached;
-}
-
-void RequireAll(const DriveRequest& request) {
-  if (request.experiment.empty()) {
-    throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
-  }
-  if (request.camera.empty()) {
-    throw std::invalid_argument(
-        "--camera is missing: name a device such as /dev/video0, or an http:// stream");
-  }
-  if (request.calibration.empty()) {
-    throw std::invalid_argument(
-        "--calibration is missing: name the camera's YAML file, which rift track --calibrate "
-        "writes");
-  }
 }
 
 experiment::Experiment LoadTask(const DriveRequest& request) {
@@ -87,6 +65,40 @@ fs::path NewFolder(const DriveRequest& request, const experiment::Experiment& ex
       folder.string()));
 }
 
+/// Throws std::invalid_argument, saying what to do, when the calibration has no world frame: the
+/// waypoints would mean nothing.
+vision::CameraModel ReadCameraWithWorld(const std::string& calibration) {
+  vision::CameraModel camera = vision::ReadCamera(ReadFile(calibration), calibration);
+  if (camera.world) return camera;
+  throw std::invalid_argument(fmt::format(
+      "{}: the calibration has no world frame, so nobody knows where on the floor the waypoints "
+      "are: lay reference tags on the floor and let rift track write it",
+      calibration));
+}
+
+/// Holds the first picture against what a drive needs, and tells the operator what is amiss.
+void CheckFirstPicture(const DriveRequest& request, vision::CameraSession& session) {
+  const vision::Frame first = session.FirstPicture();
+  if (session.capture().IsRecording()) {
+    throw std::invalid_argument(fmt::format(
+        "{} is a recording, and a robot is driven by what is seen now: name a device such as "
+        "/dev/video0, or a stream such as http://camera/video",
+        request.camera));
+  }
+  const vision::TagOptions& tag = session.tag();
+  const vision::Look look = session.LookAt(first, tag.acquire_decimate);
+  if (look.robot_tags > 1) {
+    throw std::runtime_error(fmt::format(
+        "{} tags with the robot's id {} are in the picture: take away all but the robot's",
+        look.robot_tags, tag.id));
+  }
+  const auto moved = vision::MovedWarning(look.moved_m, request.session.moved_m);
+  if (moved) Say("warning: " + *moved);
+  if (look.robot_tags == 0) {
+    Say("the robot's tag is not in the picture yet: put the robot on its place");
+  }
+}
+
 /// All that a drive is made of, opened in the order in which it is cheap to fail.
 class Drivers {
  public:
@@ -96,56 +108,58 @@ class Drivers {
         person_(request.yes),
         port_(request.port, experiment.hardware.line.baud,
               experiment.hardware.line.write_timeout_s),
-        vision_(vision::LoadVision()),
-        camera_(OpenDriveCamera(*vision_, request.camera, camera, experiment)) {
-    for (const std::string& warning : WarningsOf(camera_)) Say(warning);
+        session_(request.camera, camera, experiment.track.capture, experiment.track.tag) {
+    CheckFirstPicture(request, session_);
+    const auto tracker = std::make_shared<vision::TagTracker>(session_.MakeTracker());
     poses_ = std::make_unique<hardware::CameraPoses>(
-        std::move(camera_.capture), vision_->MakeTracker(camera_.model, experiment.track.tag),
-        clock_);
+        session_.TakeCapture(),
+        [tracker](const vision::Frame& frame) { return tracker->Track(frame); }, clock_);
   }
 
-  DriveRun Drive() {
-    return commands::Drive({.line = port_,
+  hardware::DriveRun Drive() {
+    return hardware::Drive({.line = port_,
                             .poses = *poses_,
                             .clock = clock_,
                             .stoppers = {person_.Stopper()},
                             .say = Say,
                             .may_arm = [this] { return person_.MayArm(Say); }},
-                           experiment_);
+                           TaskOf(experiment_));
   }
 
   /// The window needs the main thread, so the robot is driven from another one.
-  DriveRun DriveInView() {
-    const std::string missing = vision_->MissingDisplay();
+  hardware::DriveRun DriveInView() {
+    const std::string missing = view::MissingDisplay();
     if (!missing.empty()) {
       Say(missing + "; driving without --view");
       return Drive();
     }
-    const auto window = vision_->OpenWindow("rift drive");
-    std::future<DriveRun> drive = std::async(std::launch::async, [this] { return Drive(); });
-    ShowUntilOver(drive, *window, *poses_, camera_.model, experiment_, person_);
+    view::DriveView view(session_.camera(), experiment_.waypoints);
+    auto drive = std::async(std::launch::async, [this] { return Drive(); });
+    while (drive.wait_for(kRedraw) != std::future_status::ready) {
+      const hardware::CameraPoses::View seen = poses_->Seen();
+      const bool goes_on = view.Show(seen.frame.get(), seen.found.sighting, poses_->Status());
+      if (!goes_on) person_.CloseWindow();
+    }
     return drive.get();
   }
 
-  const vision::CameraModel& camera() const { return camera_.model; }
+  const vision::CameraModel& camera() const { return session_.camera(); }
 
  private:
   const experiment::Experiment& experiment_;
-  DriveOperator person_;
+  hardware::Operator person_;
   hardware::SteadyClock clock_;
   hardware::SerialPort port_;
-  std::unique_ptr<vision::Vision> vision_;
-  DriveCamera camera_;
+  vision::CameraSession session_;
   std::unique_ptr<hardware::CameraPoses> poses_;
 };
 
 int DriveRobot(const DriveRequest& request) {
-  RequireAll(request);
   const experiment::Experiment experiment = LoadTask(request);
   const fs::path folder = NewFolder(request, experiment);
-  Drivers drivers(request, experiment, ReadDriveCamera(request.calibration));
+  Drivers drivers(request, experiment, ReadCameraWithWorld(request.calibration));
   BeginDriveFolder(folder, experiment, drivers.camera());
-  const DriveRun run = request.view ? drivers.DriveInView() : drivers.Drive();
+  const hardware::DriveRun run = request.view ? drivers.DriveInView() : drivers.Drive();
   if (run.has_begun) {
     SaveDrive(folder, experiment, run);
     Say("log: " + (folder / "trajectory.csv").string());
@@ -154,51 +168,29 @@ int DriveRobot(const DriveRequest& request) {
   return run.trial.outcome == trial::Outcome::kReached ? kDone : kNotReached;
 }
 
-void AddDriveFlags(CLI::App& app, DriveRequest& request) {
-  CLI::Option* experiment = app.add_option("EXPERIMENT", request.experiment,
-                                           "YAML file with the waypoints; its key hardware: holds "
-                                           "the link's settings and limits");
-  app.add_option("--set", request.overrides, "sets one key, such as hardware.line.baud=115200")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false)
-      ->needs(experiment);
-  app.add_option("--port", request.port, "the robot's serial port, such as /dev/rfcomm0")
-      ->required()
-      ->type_name("TTY");
-  app.add_option("--camera", request.camera,
-                 "the camera above the floor: /dev/video0, or an http:// or rtsp:// stream")
-      ->type_name("DEVICE|URL");
-  app.add_option("--calibration", request.calibration,
-                 "the camera's lens and where it hangs, as rift track writes them")
-      ->type_name("FILE.yaml");
-  app.add_option("--out", request.out, "folder of the run; must not hold one [out/NAME_drive]")
-      ->type_name("DIR");
-  app.add_flag("--view", request.view, "show the camera's picture; closing it stops the robot");
-  app.add_flag("--yes", request.yes, "start at once instead of when Enter is pressed");
-  app.add_flag("--ping", request.ping, "only measure the link, with the motors at zero");
-  app.add_flag("--json", request.json, "print JSON instead of text");
-}
-
 }  // namespace
 
-void AddDrive(CLI::App& app, int& exit_code) {
-  const auto request = std::make_shared<DriveRequest>();
-  AddDriveFlags(app, *request);
-  AddKeysFlag(app);
-  app.footer(
-      "Enter starts the robot. Any key, Ctrl-C, SIGTERM or SIGHUP stops it for good, as do a tag "
-      "or\n"
-      "picture that stays away, a pose that jumps, and a radio that falls silent.\n"
-      "Ends with 0 when the last waypoint was reached, 1 when it was not or the robot was stopped\n"
-      "(--ping: when the link is over its budget or cannot be measured), 2 for usage and input, 3\n"
-      "when it could not begin or broke.\n"
-      "Example: rift drive --ping --port /dev/rfcomm0\n"
-      "         rift drive configs/waypoints/paper.yaml --port /dev/rfcomm0 --camera /dev/video0 "
-      "\\\n"
-      "             --calibration cam.yaml --out out/real1");
-  app.callback([request, &exit_code] {
-    exit_code = request->ping ? PingRobot(*request) : DriveRobot(*request);
-  });
+hardware::DriveTask TaskOf(const experiment::Experiment& experiment) {
+  return {experiment.waypoints, experiment.control, experiment.trial, experiment.hardware};
+}
+
+void BeginDriveFolder(const std::filesystem::path& folder, const experiment::Experiment& experiment,
+                      const vision::CameraModel& camera) {
+  WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(experiment));
+  WriteFile(folder / "camera.yaml", vision::WriteCamera(camera));
+}
+
+void SaveDrive(const std::filesystem::path& folder, const experiment::Experiment& experiment,
+               const hardware::DriveRun& run) {
+  WriteFile(folder / "commands.csv", CommandsCsv(run.trial));
+  WriteFile(folder / "stages.csv", StagesCsv(run.evidence));
+  WriteFile(folder / "encoders.csv", EncodersCsv(run.evidence));
+  WriteFile(folder / "summary.json", DriveJson(experiment, run));
+  WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.trial.trajectory));
+}
+
+int Drive(const DriveRequest& request) {
+  return request.ping ? PingRobot(request) : DriveRobot(request);
 }
 
 }  // namespace rift::commands

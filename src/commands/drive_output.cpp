@@ -123,7 +123,7 @@ std::string PingText(const hardware::PingResult& ping, const hardware::HardwareO
   return text;
 }
 
-std::string DriveJson(const experiment::Experiment& experiment, const DriveRun& run) {
+std::string DriveJson(const experiment::Experiment& experiment, const hardware::DriveRun& run) {
   const trial::TrialResult& result = run.trial;
   ordered_json json{{"name", experiment.name},
                     {"rift_version", RIFT_VERSION},
@@ -148,7 +148,7 @@ std::string DriveJson(const experiment::Experiment& experiment, const DriveRun& 
   return report::Dump(json);
 }
 
-std::string DriveText(const DriveRun& run) {
+std::string DriveText(const hardware::DriveRun& run) {
   const trial::TrialResult& result = run.trial;
   std::string text =
       fmt::format("{}: {}\n{:.2f} s, {} poses logged\n", yaml::NameOf(result.outcome),

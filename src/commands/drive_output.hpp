@@ -2,7 +2,8 @@
 
 #include <string>
 
-#include "drive_run.hpp"
+#include "rift/experiment/experiment.hpp"
+#include "rift/hardware/arming.hpp"
 
 namespace rift::commands {
 
@@ -12,8 +13,8 @@ std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareO
 std::string PingText(const hardware::PingResult& ping, const hardware::HardwareOptions& options);
 
 /// As a simulated run's, with protocol, link, latency by stage, and how the drive was stopped.
-std::string DriveJson(const experiment::Experiment& experiment, const DriveRun& run);
-std::string DriveText(const DriveRun& run);
+std::string DriveJson(const experiment::Experiment& experiment, const hardware::DriveRun& run);
+std::string DriveText(const hardware::DriveRun& run);
 
 /// One row a pose: when it went through each stage. Cells of stages never reached are empty.
 std::string StagesCsv(const hardware::DriveRecord& evidence);

@@ -1,3 +1,5 @@
+#include "simulate.hpp"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -16,26 +18,11 @@
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/yaml/bind.hpp"
-#include "simulate_pictures.hpp"
-#include "simulate_twin.hpp"
 
 namespace rift::commands {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct SimulateRequest {
-  std::string experiment;
-  std::vector<std::string> overrides;
-  std::string start;
-  std::string seed;
-  std::string out;
-  std::string tum;
-  std::vector<std::string> replay;  ///< folder of a sweep and id of a row
-  bool json = false;
-  bool twin = false;
-  PictureRequest pictures;
-};
 
 /// `-0.28,-0.06,10`: metres, metres, degrees; the schema of the waypoints says what is allowed.
 void PutStart(const std::string& text, experiment::Experiment& experiment) {
@@ -114,19 +101,12 @@ void Save(const fs::path& out, const experiment::Experiment& experiment,
   WriteFile(files.trajectory, trajectory::WriteRift(run.result.trajectory));
 }
 
-struct Run {
-  fs::path out;
-  experiment::Experiment experiment;
-  sweep::SimulatedTrial trial;
-  sweep::SimulatedRun run;
-};
-
-Run SimulateFile(const SimulateRequest& request) {
+Simulated SimulateFile(const SimulateRequest& request) {
   if (request.experiment.empty()) {
     throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
   }
   std::vector<fs::path> inputs;
-  Run made{.experiment = LoadFor(request, inputs)};
+  Simulated made{.experiment = LoadFor(request, inputs)};
   const experiment::Experiment& experiment = made.experiment;
   made.out = OutputOf(request.out, experiment.name);
   CheckNames(request, made.out, experiment, inputs);
@@ -137,7 +117,7 @@ Run SimulateFile(const SimulateRequest& request) {
   return made;
 }
 
-Run ReplayFor(const SimulateRequest& request) {
+Simulated ReplayFor(const SimulateRequest& request) {
   const bool is_changed = !request.experiment.empty() || !request.overrides.empty() ||
                           !request.start.empty() || !request.seed.empty();
   if (is_changed) {
@@ -155,21 +135,45 @@ Run ReplayFor(const SimulateRequest& request) {
   return {out, std::move(replay.experiment), std::move(replay.trial), std::move(replay.run)};
 }
 
-int ServeTwin(const SimulateRequest& request) {
-  if (request.experiment.empty()) {
-    throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
+/// What cannot be asked of a robot in real time is refused beside --twin.
+void ExcludeFromTwin(CLI::App& app) {
+  CLI::Option* twin = app.get_option("--twin");
+  for (const char* other : {"--replay", "--tum", "--json", "--video", "--figure", "--view"}) {
+    twin->excludes(app.get_option(other));
   }
-  std::vector<fs::path> inputs;
-  const experiment::Experiment experiment = LoadFor(request, inputs);
-  const fs::path out = OutputOf(request.out, experiment.name);
-  RefuseSweepFolder(out);
-  CheckOutputs(inputs, {out / "experiment.yaml", out / "camera.yaml"});
-  return RunTwin(request.experiment, experiment, out);
 }
 
 }  // namespace
 
-void AddSimulate(CLI::App& app, int& exit_code) {
+int Simulate(const SimulateRequest& request, const std::function<void(const Simulated&)>& show) {
+  const Simulated made = request.replay.empty() ? SimulateFile(request) : ReplayFor(request);
+  Save(made.out, made.experiment, made.run);
+  if (!request.tum.empty()) {
+    WriteFile(request.tum, trajectory::WriteTum(made.run.result.trajectory));
+  }
+  if (!request.pictures.figure.empty()) {
+    DrawFigure(request.pictures.figure, made.experiment, made.trial, made.run);
+  }
+  if (show) show(made);
+  fmt::print(stderr, "log: {}\n", RunFiles(made.out).trajectory.string());
+  fmt::print("{}", request.json ? SimulationJson(made.experiment, made.run)
+                                : SimulationText(made.experiment, made.run));
+  return made.run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;
+}
+
+TwinJob LoadTwinJob(const SimulateRequest& request) {
+  if (request.experiment.empty()) {
+    throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
+  }
+  std::vector<fs::path> inputs;
+  TwinJob job{.experiment = LoadFor(request, inputs)};
+  job.folder = OutputOf(request.out, job.experiment.name);
+  RefuseSweepFolder(job.folder);
+  CheckOutputs(inputs, {job.folder / "experiment.yaml", job.folder / "camera.yaml"});
+  return job;
+}
+
+void AddSimulate(CLI::App& app, int& exit_code, const CameraUses& camera) {
   const auto request = std::make_shared<SimulateRequest>();
   app.add_option("EXPERIMENT", request->experiment, "YAML file with at least the waypoints");
   app.add_option("--set", request->overrides, "sets one key, such as control.v_min=0.2")
@@ -202,21 +206,10 @@ void AddSimulate(CLI::App& app, int& exit_code) {
       "         rift simulate --replay out/paper 17 --video 17.mp4\n"
       "         rift simulate configs/twin.yaml --twin --out out/twin");
   ExcludeFromTwin(app);
-  app.callback([request, &exit_code] {
-    if (request->twin) {
-      exit_code = ServeTwin(*request);
-      return;
-    }
-    const Run made = request->replay.empty() ? SimulateFile(*request) : ReplayFor(*request);
-    Save(made.out, made.experiment, made.run);
-    if (!request->tum.empty()) {
-      WriteFile(request->tum, trajectory::WriteTum(made.run.result.trajectory));
-    }
-    MakePictures(request->pictures, made.experiment, made.trial, made.run);
-    fmt::print(stderr, "log: {}\n", RunFiles(made.out).trajectory.string());
-    fmt::print("{}", request->json ? report::SimulationJson(made.experiment, made.run)
-                                   : report::SimulationText(made.experiment, made.run));
-    exit_code = made.run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;
+  app.callback([request, with_camera = camera.simulate, &exit_code] {
+    const PictureRequest& pictures = request->pictures;
+    const bool needs_camera = request->twin || pictures.window || !pictures.video.empty();
+    exit_code = needs_camera ? with_camera(*request) : Simulate(*request, {});
   });
 }
 

@@ -2,8 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "rift/experiment/experiment.hpp"
+#include "rift/report/figures/simulation_figure.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 
 namespace rift::commands {
@@ -21,9 +23,11 @@ void AddPictureFlags(CLI::App& app, PictureRequest& request);
 /// Throws std::invalid_argument for names that say no format.
 void CheckPictureNames(const PictureRequest& request);
 
-/// Draws, films and shows. OpenCV is loaded only for a film or a window; a window without a display
-/// is a line on stderr and no failure.
-void MakePictures(const PictureRequest& request, const experiment::Experiment& experiment,
-                  const sweep::SimulatedTrial& trial, const sweep::SimulatedRun& run);
+/// Rectangles of the floor with their own friction.
+std::vector<geometry::FloorArea> AreasOf(const simulation::TerrainOptions& terrain);
+
+/// Draws path, heights, speed and powers into `path`.
+void DrawFigure(const std::string& path, const experiment::Experiment& experiment,
+                const sweep::SimulatedTrial& trial, const sweep::SimulatedRun& run);
 
 }  // namespace rift::commands

@@ -5,32 +5,32 @@
 #include <algorithm>
 #include <cmath>
 
-#include "files.hpp"
-#include "rift/report/json/fields.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/statistics/quantile.hpp"
 #include "rift/yaml/enum_name.hpp"
+#include "files.hpp"
+#include "rift/report/json/fields.hpp"
+#include "rift/yaml/write.hpp"
 
 namespace rift::commands {
 namespace {
 
 using nlohmann::ordered_json;
 
-double RowsPerSecond(const TrackRun& run, int rows) {
+double RowsPerSecond(const vision::TrackRun& run, int rows) {
   const double span_s = run.last_t_s - run.first_t_s;
   return rows > 1 && span_s > 0.0 ? (rows - 1) / span_s : std::nan("");
 }
 
-ordered_json MissesJson(const TrackRun& run) {
+ordered_json MissesJson(const vision::TrackRun& run) {
   ordered_json json = ordered_json::object();
   for (std::size_t i = 1; i < run.misses.size(); ++i) {
-    if (run.misses[i] > 0)
-      json[std::string(yaml::NameOf(static_cast<vision::Miss>(i)))] = run.misses[i];
+    if (run.misses[i] > 0) json[std::string(yaml::NameOf(static_cast<vision::Miss>(i)))] = run.misses[i];
   }
   return json;
 }
 
-std::string MissesText(const TrackRun& run) {
+std::string MissesText(const vision::TrackRun& run) {
   if (run.frames == 0) return "none came";
   std::string kinds;
   int all = 0;
@@ -62,10 +62,14 @@ ordered_json SpanJson(const std::vector<double>& values) {
           {"max", report::NumberOrNull(statistics::Quantile(values, 1.0))}};
 }
 
+/// Tenths of a millimetre: finer than anybody clicks.
+yaml::Node Metres(double value) { return yaml::Node::Scalar(fmt::format("{:.4f}", value)); }
+
 }  // namespace
 
 std::string TrackJson(const TrackRequest& request, const vision::CameraModel& camera,
-                      const experiment::TrackOptions& options, const TrackRun& run, int rows) {
+                      const experiment::TrackOptions& options, const vision::TrackRun& run,
+                      int rows) {
   ordered_json json{
       {"rift_version", RIFT_VERSION},
       {"camera", request.camera},
@@ -95,7 +99,7 @@ std::string TrackJson(const TrackRequest& request, const vision::CameraModel& ca
   return report::Dump(json);
 }
 
-std::string TrackText(const TrackRun& run, int rows) {
+std::string TrackText(const vision::TrackRun& run, int rows) {
   std::string text = fmt::format("{} rows", rows);
   const double rate = RowsPerSecond(run, rows);
   if (!std::isnan(rate)) {
@@ -104,14 +108,13 @@ std::string TrackText(const TrackRun& run, int rows) {
   text += fmt::format("; {} pictures, {}, {} dropped\n", run.frames, MissesText(run),
                       run.status.dropped);
   if (!run.latencies_s.empty()) {
-    text += fmt::format("latency from light to pose: p50 {:.0f} ms, p95 {:.0f} ms\n",
-                        1e3 * statistics::Quantile(run.latencies_s, 0.5),
-                        1e3 * statistics::Quantile(run.latencies_s, 0.95));
+    text +=
+        fmt::format("latency from light to pose: p50 {:.0f} ms, p95 {:.0f} ms\n",
+                    1e3 * statistics::Quantile(run.latencies_s, 0.5), 1e3 * statistics::Quantile(run.latencies_s, 0.95));
   }
   if (!run.costs_s.empty()) {
     text += fmt::format("finding the tag: p50 {:.1f} ms, p95 {:.1f} ms\n",
-                        1e3 * statistics::Quantile(run.costs_s, 0.5),
-                        1e3 * statistics::Quantile(run.costs_s, 0.95));
+                        1e3 * statistics::Quantile(run.costs_s, 0.5), 1e3 * statistics::Quantile(run.costs_s, 0.95));
   }
   if (run.most_tags_of_this_id > 1) {
     text += fmt::format("{} tags of this id were in the picture: take the others away\n",
@@ -149,6 +152,24 @@ std::string CalibrationComment(const vision::Calibration& c) {
       1e3 * c.floor_error_m, 1e3 * c.cross_check_m);
   for (const std::string& reason : c.reasons) text += fmt::format("# - {}\n", reason);
   return text;
+}
+
+std::string WaypointsYaml(const std::vector<control::Waypoint>& waypoints) {
+  yaml::Node list = yaml::Node::List();
+  for (const control::Waypoint& waypoint : waypoints) {
+    yaml::Node item = yaml::Node::Map();
+    item.Add("name", yaml::Node::Text(waypoint.name));
+    item.Add("x", Metres(waypoint.x_m));
+    item.Add("y", Metres(waypoint.y_m));
+    if (waypoint.heading_deg) {
+      item.Add("heading", yaml::Node::Scalar(fmt::format("{:.1f}", *waypoint.heading_deg)));
+    }
+    item.Add("stop", yaml::Node::Scalar(waypoint.stop ? "true" : "false"));
+    list.items.push_back(item);
+  }
+  yaml::Node root = yaml::Node::Map();
+  root.Add("waypoints", list);
+  return yaml::Emit(root);
 }
 
 }  // namespace rift::commands

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "rift/vision/calibration/chessboard.hpp"
-#include "track_session.hpp"
+#include "rift/vision/tracking/session_options.hpp"
 
 namespace rift::commands {
 
@@ -23,12 +24,19 @@ struct TrackRequest {
   std::optional<double> duration_s;
   bool view = false;
 
-  SessionOptions session;
+  vision::SessionOptions session;
 
   bool calibrate = false;
   vision::Board board;
   std::string images;
   std::string picture;
+
+  /// Throws std::invalid_argument for what is missing or does not go together, and for a log that
+  /// is no file, an input, a picture of the camera or another output.
+  void Check() const;
 };
+
+/// Beside the log: what it was made from.
+std::filesystem::path RunFileOf(const std::filesystem::path& log);
 
 }  // namespace rift::commands

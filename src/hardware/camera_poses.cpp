@@ -36,10 +36,9 @@ std::optional<std::string> FaultOf(const vision::CaptureStatus& status) {
 
 }  // namespace
 
-CameraPoses::CameraPoses(std::unique_ptr<vision::Capture> capture,
-                         std::unique_ptr<vision::PoseTracker> tracker, Clock& clock)
+CameraPoses::CameraPoses(std::unique_ptr<vision::Capture> capture, FindTag find_tag, Clock& clock)
     : capture_(std::move(capture)),
-      tracker_(std::move(tracker)),
+      find_tag_(std::move(find_tag)),
       clock_(clock),
       thread_([this](const std::stop_token& stop) { Run(stop); }) {}
 
@@ -61,7 +60,7 @@ void CameraPoses::TakePicture() {
     news_.fault = std::move(fault);
     return;
   }
-  vision::TrackResult found = tracker_->Track(*taken);
+  vision::TrackResult found = find_tag_(*taken);
   const double ready_s = clock_.Now_s();
   auto frame = std::make_shared<const vision::Frame>(std::move(*taken));
   const std::lock_guard lock(mutex_);

@@ -2,13 +2,11 @@
 #include <thread>
 
 #include "rift/hardware/byte_line.hpp"
+#include "rift/vision/camera/camera_source.hpp"
 
 namespace rift::hardware {
 
-double SteadyClock::Now_s() {
-  const auto since_start = std::chrono::steady_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(since_start).count();
-}
+double SteadyClock::Now_s() { return vision::SteadyNow_s(); }
 
 void SteadyClock::Wait(double dt_s) {
   std::this_thread::sleep_for(std::chrono::duration<double>(dt_s));

@@ -38,7 +38,7 @@ double HoldBack_s(const simulation::MocapOptions& mocap, const TwinOptions& opti
   return 0.5 * mocap.exposure_s + std::max(0.0, mocap.processing_s - options.host_share_s);
 }
 
-StreamCamera::StreamCamera(const TwinSetup& setup, std::unique_ptr<vision::PictureMaker> pictures,
+StreamCamera::StreamCamera(const TwinSetup& setup, vision::SyntheticCamera pictures,
                            const TruePath& path, MjpegServer& server,
                            const std::atomic<double>& epoch_s)
     : mocap_(setup.simulation.mocap),
@@ -83,7 +83,8 @@ void StreamCamera::Take(double captured_s) {
   const double before_s = ThreadCpu_s();
   const TruePath::Moment moment = path_.At(captured_s);
   const vision::RobotMotion tag = TagOf(moment, mocap_);
-  waiting_.push({captured_s + hold_back_s_, pictures_->Jpeg(tag, generator_)});
+  vision::Frame picture = pictures_.Render(tag, vision::PixelFormat::kJpeg, generator_);
+  waiting_.push({captured_s + hold_back_s_, std::move(picture.bytes)});
   tag_.poses.push_back(RowOf(tag, moment.pose));
   cpu_s_ += ThreadCpu_s() - before_s;
 }

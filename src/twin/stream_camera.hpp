@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <exception>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <queue>
@@ -26,8 +25,8 @@ double HoldBack_s(const simulation::MocapOptions& mocap, const TwinOptions& opti
 class StreamCamera {
  public:
   /// `epoch_s`: the steady clock at simulated second 0. All must outlive it.
-  StreamCamera(const TwinSetup& setup, std::unique_ptr<vision::PictureMaker> pictures,
-               const TruePath& path, MjpegServer& server, const std::atomic<double>& epoch_s);
+  StreamCamera(const TwinSetup& setup, vision::SyntheticCamera pictures, const TruePath& path,
+               MjpegServer& server, const std::atomic<double>& epoch_s);
   ~StreamCamera();
 
   /// What went wrong in the thread, if anything did.
@@ -49,7 +48,7 @@ class StreamCamera {
   simulation::MocapOptions mocap_;
   double fps_;
   double hold_back_s_;
-  std::unique_ptr<vision::PictureMaker> pictures_;
+  vision::SyntheticCamera pictures_;
   const TruePath& path_;
   MjpegServer& server_;
   const std::atomic<double>& epoch_s_;

@@ -46,11 +46,11 @@ double NeededHeight_m(const Eigen::AlignedBox2d& box) {
 }
 
 /// The first picture costs more: the rays of the pixels around the robot are worked out for it.
-void WarmUp(vision::PictureMaker& pictures, const TwinSetup& setup) {
+void WarmUp(vision::SyntheticCamera& camera, const TwinSetup& setup) {
   std::mt19937_64 generator(setup.seed);
   vision::RobotMotion tag = TagOf({}, setup.simulation.mocap);
   tag.world_from_tag.translation().head<2>() += setup.start.Position();
-  pictures.Jpeg(tag, generator);
+  camera.Render(tag, vision::PixelFormat::kJpeg, generator);
 }
 
 }  // namespace
@@ -90,10 +90,10 @@ vision::CameraModel OverheadCamera(const std::vector<control::Waypoint>& waypoin
   return camera;
 }
 
-TwinRun RunTwin(const TwinSetup& setup, std::unique_ptr<vision::PictureMaker> pictures,
-                const std::function<void(const TwinAddress&)>& announce,
+TwinRun RunTwin(const TwinSetup& setup, const std::function<void(const TwinAddress&)>& announce,
                 const std::function<bool()>& is_stopped) {
-  WarmUp(*pictures, setup);
+  vision::SyntheticCamera pictures(setup.camera, setup.look);
+  WarmUp(pictures, setup);
   TwinRobot robot(setup.simulation, setup.twin.battery_v, setup.start, setup.seed, setup.image);
   TruePath path(robot.Truth());
   TrialEnd end(setup.twin.still_s);

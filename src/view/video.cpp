@@ -1,4 +1,4 @@
-#include "video.hpp"
+#include "rift/view/video.hpp"
 
 #include <fmt/format.h>
 

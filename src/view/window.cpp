@@ -1,17 +1,17 @@
-#include "window.hpp"
+#include "rift/view/window.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <opencv2/highgui.hpp>
-#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "painter.hpp"
 #include "playback.hpp"
-#include "rift/module/display.hpp"
+#include "rift/view/display.hpp"
 
 namespace rift::view {
 namespace {
@@ -21,9 +21,7 @@ constexpr const char* kWindow = "rift";
 class Window {
  public:
   Window() {
-    // The display that was looked at is the one to open: with another plugin Qt aborts when that
-    // one is missing.
-    setenv("QT_QPA_PLATFORM", "xcb", 1);
+    RequireDisplay();
     cv::namedWindow(kWindow, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);
   }
   ~Window() {
@@ -44,14 +42,11 @@ std::vector<std::string> Keys(const Playback& playback) {
 
 void PlayInWindow(const Film& film, const ViewOptions& options) {
   using Clock = std::chrono::steady_clock;
-  if (const std::string missing = module::MissingDisplay(); !missing.empty()) {
-    throw std::runtime_error(missing);
-  }
-  const Painter painter(film.fixed, {options.width_px, options.height_px});
+  const Window window;
+  const Painter painter(film.stage, {options.width_px, options.height_px});
   const int last = static_cast<int>(film.scenes.size()) - 1;
   const double duration_s = last / film.fps;
   const int wait_ms = std::max(1, static_cast<int>(500.0 / film.fps));
-  const Window window;
   Playback playback{.speed = options.speed};
   Clock::time_point then = Clock::now();
   do {

@@ -56,7 +56,7 @@ const std::vector<Reserved> kReserved{
     {"pagmo/.*|nlopt.*", {"search"}},
     {"boost/math/.*|xxhash.h", {"statistics"}},
     {"turbojpeg.h", {"vision"}},
-    {"dlfcn.h|xcb/.*", {"module"}},
+    {"xcb/.*", {"view"}},
     {"sqlite3.*|SQLiteCpp/.*", {"sweep/run"}},
     {"termios.h|asm/termbits.h|boost/asio.*", {"hardware", "twin"}},
     {"fstream|iostream|cstdio", {"commands", "hardware", "vision", "twin", "report"}},

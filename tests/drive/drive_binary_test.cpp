@@ -176,6 +176,86 @@ TEST_CASE("Nobody to press a key and no yes is refused before the port is opened
   CHECK_FALSE(std::filesystem::exists(scene.folder.Path() / "run"));
 }
 
+/// A device that shows one of the recorded pictures of 960x720 for ever: the robot stands still.
+struct Device {
+  Device() {
+    std::filesystem::create_directory(folder.Path() / "frames");
+    std::filesystem::copy_file(test::SourceDir() + "/data/camera/frames/000.jpg",
+                               folder / "frames/000.jpg");
+  }
+  test::TemporaryFolder folder;
+  const test::Environment shim{"LD_PRELOAD", test::BuildDir() + "/tests/librift_v4l2_shim.so"};
+  const test::Environment jpegs{"RIFT_SHIM_JPEGS", folder / "frames"};
+};
+
+TEST_CASE("A device is asked for the size of its calibration as in tracking") {
+  Scene scene;
+  const std::string calibration = test::SourceDir() + "/data/camera/camera.yaml";
+  std::vector<std::string> arguments = scene.Arguments();
+  const auto set = [&arguments](const std::string& flag, const std::string& value) {
+    *(std::find(arguments.begin(), arguments.end(), flag) + 1) = value;
+  };
+  set("--camera", "/dev/video0");
+  set("--calibration", calibration);
+  arguments.insert(arguments.end(),
+                   {"--set", "trial.timeout_s=1", "--set", "track.capture.same_s=60"});
+  const Device device;
+  const test::ProcessResult result = test::RunRift(arguments);
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 1);
+  CHECK_THAT(result.err, Catch::Contains("the robot stands at x"));
+  CHECK(scene.Summary()["outcome"] == "timeout");
+  CHECK(scene.Summary()["poses"] > 5);
+  const std::string kept = ReadFile(scene.folder / "run/camera.yaml");
+  CHECK(vision::ReadCamera(kept, "camera.yaml").width_px == 960);
+
+  const test::ProcessResult tracked = test::RunRift(
+      {"track", "--camera", "/dev/video0", "--calibration", calibration, "--out",
+       scene.folder / "log.csv", "--duration", "2", "--set", "track.capture.same_s=60"});
+  INFO(tracked.out << tracked.err);
+  CHECK(tracked.exit_code == 0);
+}
+
+TEST_CASE("How far the reference tags may lie off before a drive is an option of it") {
+  // Marks that the picture shows 20 px from where they set the frame.
+  const std::string calibration = test::SourceDir() + "/data/camera/camera.yaml";
+  Scene scene;
+  test::WriteText(scene.folder / "moved.yaml", ReadFile(calibration));
+  const Device device;
+  const test::ProcessResult framed = test::RunRift(
+      {"track", "--camera", "/dev/video0", "--calibration", scene.folder / "moved.yaml", "--world",
+       test::SourceDir() + "/data/camera/tags.yaml"});
+  INFO(framed.err);
+  REQUIRE(framed.exit_code == 0);
+  const std::string path = scene.folder / "moved.yaml";
+  vision::CameraModel camera = vision::ReadCamera(ReadFile(path), path);
+  for (vision::ReferenceMark& mark : camera.world->marks) mark.seen_px.x() += 20.0;
+  test::WriteText(path, vision::WriteCamera(camera));
+  for (const bool is_allowed : {false, true}) {
+    std::vector<std::string> arguments{"drive",
+                                       scene.folder / "task.yaml",
+                                       "--port",
+                                       scene.floor.Port(),
+                                       "--camera",
+                                       "/dev/video0",
+                                       "--calibration",
+                                       path,
+                                       "--out",
+                                       scene.folder / (is_allowed ? "allowed" : "warned"),
+                                       "--yes",
+                                       "--set",
+                                       "trial.timeout_s=1",
+                                       "--set",
+                                       "track.capture.same_s=60"};
+    if (is_allowed) arguments.insert(arguments.end(), {"--moved", "0.1"});
+    const test::ProcessResult result = test::RunRift(arguments);
+    INFO(result.err);
+    CHECK(result.exit_code == 1);
+    const bool is_warned = result.err.find("the camera was moved") != std::string::npos;
+    CHECK(is_warned == !is_allowed);
+  }
+}
+
 TEST_CASE("Wrong inputs of a drive are answered with one line that says what to do") {
   const Scene scene;
   const auto replaced = [&scene](const std::string& flag, const std::string& value) {

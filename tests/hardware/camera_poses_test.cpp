@@ -55,18 +55,6 @@ class StagedCapture : public vision::Capture {
   std::shared_ptr<Stage> stage_;
 };
 
-/// Sees whatever it was told to see, or throws.
-class StagedTracker : public vision::PoseTracker {
- public:
-  using Answer = std::function<vision::TrackResult(const vision::Frame&)>;
-  explicit StagedTracker(Answer answer) : answer_(std::move(answer)) {}
-  vision::TrackResult Track(const vision::Frame& frame) override { return answer_(frame); }
-  void Forget() override {}
-
- private:
-  Answer answer_;
-};
-
 vision::TrackResult LeaningTag(const vision::Frame& frame) {
   vision::Sighting sighting;
   sighting.captured_s = frame.captured_s;
@@ -79,9 +67,8 @@ vision::TrackResult LeaningTag(const vision::Frame& frame) {
 }
 
 struct Scene {
-  explicit Scene(StagedTracker::Answer answer)
-      : poses(std::make_unique<StagedCapture>(stage), std::make_unique<StagedTracker>(answer),
-              clock) {}
+  explicit Scene(CameraPoses::FindTag find_tag)
+      : poses(std::make_unique<StagedCapture>(stage), std::move(find_tag), clock) {}
 
   /// The news once they are so.
   PoseNews NewsWhen(const std::function<bool(const PoseNews&)>& is_so) {

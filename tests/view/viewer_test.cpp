@@ -1,4 +1,6 @@
-#include "rift/view/viewer.hpp"
+#include "rift/view/display.hpp"
+#include "rift/view/video.hpp"
+#include "rift/view/window.hpp"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -51,7 +53,7 @@ TEST_CASE("A video holds every picture of the film and they change") {
   const TemporaryFolder folder;
   const std::string path = folder / "run 100%d.mp4";
   const Film film = MakeFilm(StraightRun());
-  LoadViewer()->WriteVideo(film, path, {});
+  WriteVideo(film, path, {});
   CHECK(FilesIn(folder.Path()) == 1);
   cv::VideoCapture video(path, cv::CAP_FFMPEG);
   REQUIRE(video.isOpened());
@@ -71,23 +73,21 @@ TEST_CASE("A video replaces an older file of its name") {
   test::WriteText(path, "old");
   Run run = StraightRun();
   run.truth.poses.resize(3);
-  LoadViewer()->WriteVideo(MakeFilm(run), path, {});
+  WriteVideo(MakeFilm(run), path, {});
   CHECK(std::filesystem::file_size(path) > 1000);
 }
 
 TEST_CASE("A video that cannot be written is an error and leaves nothing behind") {
   const TemporaryFolder folder;
   const Film film = MakeFilm(StraightRun());
-  const auto viewer = LoadViewer();
-  CHECK_THROWS_WITH(viewer->WriteVideo(film, folder / "no/such/run.mp4", {}),
+  CHECK_THROWS_WITH(WriteVideo(film, folder / "no/such/run.mp4", {}),
                     Contains("cannot write") && Contains("folder"));
-  CHECK_THROWS_WITH(viewer->WriteVideo(film, folder / "run.avi", {}), Contains(".mp4"));
+  CHECK_THROWS_WITH(WriteVideo(film, folder / "run.avi", {}), Contains(".mp4"));
   CHECK(FilesIn(folder.Path()) == 0);
 }
 
 TEST_CASE("A disk that fills up is an error and leaves nothing behind") {
   const TemporaryFolder folder;
-  const auto viewer = LoadViewer();
   const Film film = MakeFilm(StraightRun());
   rlimit old{};
   REQUIRE(getrlimit(RLIMIT_FSIZE, &old) == 0);
@@ -96,7 +96,7 @@ TEST_CASE("A disk that fills up is an error and leaves nothing behind") {
   setrlimit(RLIMIT_FSIZE, &small);
   std::string message;
   try {
-    viewer->WriteVideo(film, folder / "run.mp4", {});
+    WriteVideo(film, folder / "run.mp4", {});
   } catch (const std::runtime_error& error) {
     message = error.what();
   }
@@ -110,10 +110,9 @@ TEST_CASE("Without a display there is a reason in one line and no window and no 
   const Environment wayland("WAYLAND_DISPLAY", nullptr);
   const bool unreachable = GENERATE(false, true);
   const Environment display("DISPLAY", unreachable ? ":9753" : nullptr);
-  const auto viewer = LoadViewer();
-  const std::string missing = viewer->MissingDisplay();
+  const std::string missing = MissingDisplay();
   CHECK_THAT(missing, Contains("no window") && !Contains("\n"));
-  CHECK_THROWS_WITH(viewer->PlayInWindow(MakeFilm(StraightRun()), {}), missing);
+  CHECK_THROWS_WITH(PlayInWindow(MakeFilm(StraightRun()), {}), missing);
 }
 
 // Set in the process that opens the window: one of its own, since Qt takes its process along when
@@ -125,9 +124,8 @@ void ShowWindow() {
   ViewOptions options;
   options.speed = 8.0;
   options.hold_s = 0.1;
-  const auto viewer = LoadViewer();
-  REQUIRE(viewer->MissingDisplay().empty());
-  viewer->PlayInWindow(MakeFilm(StraightRun(), options), options);
+  REQUIRE(MissingDisplay().empty());
+  PlayInWindow(MakeFilm(StraightRun(), options), options);
 }
 
 TEST_CASE(kWindowCase) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -8,7 +9,8 @@
 
 #include "rift/hardware/byte_line.hpp"
 #include "rift/hardware/pose_source.hpp"
-#include "rift/vision/module/module.hpp"
+#include "rift/vision/camera/capture_thread.hpp"
+#include "rift/vision/tracking/tag_tracker.hpp"
 
 namespace rift::hardware {
 
@@ -24,10 +26,11 @@ class CameraPoses : public PoseSource {
     vision::TrackResult found;
   };
 
-  /// `tracker` must give poses in the world. `clock` must be the frames' (SteadyClock) and outlive
-  /// this.
-  CameraPoses(std::unique_ptr<vision::Capture> capture,
-              std::unique_ptr<vision::PoseTracker> tracker, Clock& clock);
+  /// What finds the tag in a picture, such as TagTracker::Track. Its poses must be in the world.
+  using FindTag = std::function<vision::TrackResult(const vision::Frame&)>;
+
+  /// `clock` must be the frames' (SteadyClock) and outlive this.
+  CameraPoses(std::unique_ptr<vision::Capture> capture, FindTag find_tag, Clock& clock);
   CameraPoses(const CameraPoses&) = delete;
   CameraPoses& operator=(const CameraPoses&) = delete;
 
@@ -40,7 +43,7 @@ class CameraPoses : public PoseSource {
   void TakePicture();
 
   std::unique_ptr<vision::Capture> capture_;
-  std::unique_ptr<vision::PoseTracker> tracker_;
+  FindTag find_tag_;
   Clock& clock_;
   mutable std::mutex mutex_;  // guards what follows
   PoseNews news_;

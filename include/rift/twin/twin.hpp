@@ -10,7 +10,7 @@
 #include "rift/trajectory/trajectory.hpp"
 #include "rift/twin/options.hpp"
 #include "rift/vision/camera/camera_model.hpp"
-#include "rift/vision/module/module.hpp"
+#include "rift/vision/rendering/synthetic_camera.hpp"
 
 namespace rift::twin {
 
@@ -29,6 +29,7 @@ struct TwinSetup {
   std::uint64_t seed = 1;
   std::shared_ptr<const simulation::HeightImage> image;
   vision::CameraModel camera;
+  vision::SyntheticCameraOptions look;  ///< of its pictures
 };
 
 /// Where it can be reached.
@@ -55,8 +56,7 @@ struct TwinRun {
 /// Runs the robot in real time behind a serial port and an http camera. `announce` is called once
 /// both can be opened; `is_stopped` is asked many times a second. Throws what goes wrong in any of
 /// its threads.
-TwinRun RunTwin(const TwinSetup& setup, std::unique_ptr<vision::PictureMaker> pictures,
-                const std::function<void(const TwinAddress&)>& announce,
+TwinRun RunTwin(const TwinSetup& setup, const std::function<void(const TwinAddress&)>& announce,
                 const std::function<bool()>& is_stopped);
 
 }  // namespace rift::twin

@@ -255,4 +255,9 @@ bool CaptureThread::IsRecording() const {
   return shared_->source && shared_->source->IsRecording();
 }
 
+std::unique_ptr<Capture> OpenCapture(const std::string& camera, const CaptureOptions& options) {
+  return std::make_unique<CaptureThread>([camera, options] { return OpenCamera(camera, options); },
+                                         options);
+}
+
 }  // namespace rift::vision

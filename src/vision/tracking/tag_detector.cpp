@@ -6,6 +6,8 @@
 
 #include <stdexcept>
 
+#include "rift/vision/camera/picture_reader.hpp"
+
 namespace rift::vision {
 namespace {
 
@@ -82,6 +84,11 @@ TagCells CellsOfTag(int id) {
     cells[family->bit_y[bit] + 1][family->bit_x[bit] + 1] = (family->codes[id] & mask) != 0;
   }
   return cells;
+}
+
+std::vector<TagDetection> FindTags(const Frame& frame, int decimate, int max_hamming) {
+  const auto grey = PictureReader().Read(frame);
+  return grey ? TagDetector(decimate, max_hamming).Detect(*grey) : std::vector<TagDetection>();
 }
 
 }  // namespace rift::vision

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/camera/capture_options.hpp"
@@ -42,5 +43,8 @@ class CaptureThread : public Capture {
   struct Shared;  // outlives this object while its thread hangs
   std::shared_ptr<Shared> shared_;
 };
+
+/// The camera of that name (see KindOf), opened in the thread.
+std::unique_ptr<Capture> OpenCapture(const std::string& camera, const CaptureOptions& options);
 
 }  // namespace rift::vision

@@ -45,4 +45,7 @@ class TagDetector {
   std::unique_ptr<State> state_;
 };
 
+/// Every tag in a picture; none in one that cannot be decoded.
+std::vector<TagDetection> FindTags(const Frame& frame, int decimate, int max_hamming);
+
 }  // namespace rift::vision

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rift/control/waypoint.hpp"
+#include "rift/view/track_window.hpp"
+
+namespace rift::view {
+
+/// The window of `rift track`, and the waypoints that are made in it. Path, waypoints and clicks
+/// lie on the floor; in a map without a world frame, where no floor is known, on the plane in which
+/// the tag was first seen.
+class TrackView {
+ public:
+  struct Content {
+    std::vector<Eigen::Vector2d> path_m;
+    std::vector<control::Waypoint> planned;  ///< those of the path
+    /// Called with the recorded waypoints whenever they change; none: they are not kept.
+    std::function<void(const std::vector<control::Waypoint>&)> save;
+  };
+
+  /// `camera` must outlive it. Throws std::runtime_error with MissingDisplay() where that is not
+  /// empty.
+  TrackView(const vision::CameraModel& camera, Content content);
+
+  /// False when the user has asked to end.
+  bool Show(const std::optional<vision::Frame>& frame,
+            const std::optional<vision::Sighting>& sighting, const vision::CaptureStatus& status,
+            const std::optional<double>& moved_m);
+
+ private:
+  void Follow(const vision::Sighting& sighting);
+  void Obey(const TrackInput& input, const std::optional<vision::Sighting>& sighting);
+  void Record(const Eigen::Vector2d& p_m, std::optional<double> heading_deg);
+  std::vector<geometry::NamedPoint> Places() const;
+  std::vector<std::string> Prompts(const std::optional<double>& moved_m) const;
+
+  const vision::CameraModel& camera_;
+  Content content_;
+  TrackWindow window_;
+  std::vector<control::Waypoint> recorded_;
+  std::vector<Eigen::Vector2d> trail_m_;
+  std::optional<double> plane_z_m_;
+  std::string said_;
+};
+
+}  // namespace rift::view

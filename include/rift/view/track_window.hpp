@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+
+#include "rift/view/track_scene.hpp"
+
+namespace rift::view {
+
+/// What the user did since the last picture.
+struct TrackInput {
+  bool quit = false;
+  bool undo = false;         ///< take the last waypoint away
+  bool here = false;         ///< a waypoint where the robot is
+  bool toggle_stop = false;  ///< the last waypoint: stop there or pass
+  bool clear_trail = false;
+  std::vector<Eigen::Vector2d> clicks_px;  ///< in the camera's picture
+};
+
+/// A window with the camera's picture, for one thread.
+class TrackWindow {
+ public:
+  /// Throws std::runtime_error with MissingDisplay() where that is not empty.
+  explicit TrackWindow(std::string title);
+  ~TrackWindow();
+  TrackWindow(const TrackWindow&) = delete;
+  TrackWindow& operator=(const TrackWindow&) = delete;
+
+  TrackInput Show(const TrackScene& scene);
+
+ private:
+  static void OnMouse(int event, int x, int y, int flags, void* window);
+  bool IsOpen() const;
+
+  std::string title_;
+  TrackInput input_;
+  double px_per_shown_ = 1.0;
+};
+
+}  // namespace rift::view

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "rift/view/options.hpp"
+#include "rift/view/film.hpp"
+
+namespace rift::view {
+
+/// Plays the film in a window until it is over or the user leaves. Throws std::runtime_error with
+/// MissingDisplay() where that is not empty.
+void PlayInWindow(const Film& film, const ViewOptions& options);
+
+}  // namespace rift::view

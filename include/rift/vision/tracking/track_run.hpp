@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rift/vision/tracking/session.hpp"
+#include "rift/vision/tracking/session_options.hpp"
+
+namespace rift::vision {
+
+/// What a tracking run is made of and whom it talks to.
+struct TrackParts {
+  CameraSession& session;
+  const SessionOptions& options;
+  /// Takes a row of the log; false when `t_s` is not later than that of the row before.
+  std::function<bool(double t_s, const Sighting& sighting)> log;
+  /// Shows a moment of the run, `moved_m` being the largest so far; false when the user has asked
+  /// to end. None: no window.
+  std::function<bool(const std::optional<Frame>& frame, const std::optional<Sighting>& sighting,
+                     const CaptureStatus& status, const std::optional<double>& moved_m)>
+      show;
+  std::optional<double> duration_s;
+  std::function<bool()> is_stopped;
+  /// One line for the user.
+  std::function<void(const std::string&)> say;
+};
+
+/// What became of it.
+struct TrackRun {
+  CameraState state = CameraState::kOpening;  ///< at the end
+  std::string reason;
+  bool has_failed = false;  ///< the camera ended it, not the user or a recording's end
+  CaptureStatus status;
+  bool is_recording = false;
+  int frames = 0;
+  int rows = 0;                 ///< of the log
+  std::array<int, 7> misses{};  ///< by Miss
+  int repeated = 0;             ///< sightings that were not later than the one before
+  int most_tags_of_this_id = 1;
+  double zero_s = 0.0;  ///< of the rows' times, on the steady clock of this machine
+  double first_t_s = 0.0, last_t_s = 0.0;  ///< of the rows
+  std::vector<double> latencies_s;         ///< of the rows; none of a recording
+  std::vector<double> costs_s;             ///< of finding the tag, each frame
+  std::optional<double> moved_m;           ///< the reference tags' largest distance seen
+};
+
+/// Tracks until the user, the time, the recording or the camera ends it. Throws
+/// std::invalid_argument when the stream's size is not the calibration's.
+TrackRun RunTracking(const TrackParts& parts);
+
+}  // namespace rift::vision

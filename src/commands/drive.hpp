@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "rift/experiment/experiment.hpp"
+#include "rift/hardware/arming.hpp"
+#include "rift/vision/camera/camera_model.hpp"
+#include "rift/vision/tracking/session_options.hpp"
+
+namespace rift::commands {
+
+/// What `rift drive` was asked for.
+struct DriveRequest {
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::string port;
+  std::string camera;
+  std::string calibration;
+  std::string out;
+  vision::SessionOptions session;  ///< of it moved_m
+  bool view = false;
+  bool yes = false;
+  bool ping = false;
+  bool json = false;
+
+  /// Throws std::invalid_argument, saying what to give, when something is missing.
+  void Check() const;
+};
+
+/// What the robot has to know of an experiment.
+hardware::DriveTask TaskOf(const experiment::Experiment& experiment);
+
+/// Before the robot moves: the experiment and the camera (experiment.yaml, camera.yaml), so that a
+/// folder that cannot be written is known in time.
+void BeginDriveFolder(const std::filesystem::path& folder, const experiment::Experiment& experiment,
+                      const vision::CameraModel& camera);
+
+/// The rest of the run folder: what a simulated run's has (trajectory.csv, commands.csv,
+/// summary.json), stages.csv and, in step with the camera, encoders.csv in place of the true path.
+void SaveDrive(const std::filesystem::path& folder, const experiment::Experiment& experiment,
+               const hardware::DriveRun& run);
+
+}  // namespace rift::commands

@@ -1,0 +1,83 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "drive.hpp"
+#include "flags.hpp"
+#include "keys_flag.hpp"
+#include "rift/commands/command.hpp"
+
+namespace rift::commands {
+namespace {
+
+void AddDriveFlags(CLI::App& app, DriveRequest& request) {
+  CLI::Option* experiment = app.add_option("EXPERIMENT", request.experiment,
+                                           "YAML file with the waypoints; its key hardware: holds "
+                                           "the link's settings and limits");
+  app.add_option("--set", request.overrides, "sets one key, such as hardware.line.baud=115200")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)
+      ->needs(experiment);
+  app.add_option("--port", request.port, "the robot's serial port, such as /dev/rfcomm0")
+      ->required()
+      ->type_name("TTY");
+  app.add_option("--camera", request.camera,
+                 "the camera above the floor: /dev/video0, or an http:// or rtsp:// stream")
+      ->type_name("DEVICE|URL");
+  app.add_option("--calibration", request.calibration,
+                 "the camera's lens and where it hangs, as rift track writes them")
+      ->type_name("FILE.yaml");
+  // Of how the reference tags are watched, what matters before a start.
+  FlagMaker make_flag(app);
+  vision::SessionOptions::Fields(request.session, [&](std::string_view key, auto&&... field) {
+    if (key == "moved_m") make_flag(key, std::forward<decltype(field)>(field)...);
+  });
+  app.add_option("--out", request.out, "folder of the run; must not hold one [out/NAME_drive]")
+      ->type_name("DIR");
+  app.add_flag("--view", request.view, "show the camera's picture; closing it stops the robot");
+  app.add_flag("--yes", request.yes, "start at once instead of when Enter is pressed");
+  app.add_flag("--ping", request.ping, "only measure the link, with the motors at zero");
+  app.add_flag("--json", request.json, "print JSON instead of text");
+}
+
+}  // namespace
+
+void DriveRequest::Check() const {
+  if (ping) return;
+  if (experiment.empty()) {
+    throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
+  }
+  if (camera.empty()) {
+    throw std::invalid_argument(
+        "--camera is missing: name a device such as /dev/video0, or an http:// stream");
+  }
+  if (calibration.empty()) {
+    throw std::invalid_argument(
+        "--calibration is missing: name the camera's YAML file, which rift track --calibrate "
+        "writes");
+  }
+}
+
+void AddDrive(CLI::App& app, int& exit_code, const CameraUses& camera) {
+  const auto request = std::make_shared<DriveRequest>();
+  AddDriveFlags(app, *request);
+  AddKeysFlag(app);
+  app.footer(
+      "Enter starts the robot. Any key, Ctrl-C, SIGTERM or SIGHUP stops it for good, as do a tag "
+      "or\n"
+      "picture that stays away, a pose that jumps, and a radio that falls silent.\n"
+      "Ends with 0 when the last waypoint was reached, 1 when it was not or the robot was stopped\n"
+      "(--ping: when the link is over its budget or cannot be measured), 2 for usage and input, 3\n"
+      "when it could not begin or broke.\n"
+      "Example: rift drive --ping --port /dev/rfcomm0\n"
+      "         rift drive configs/waypoints/paper.yaml --port /dev/rfcomm0 --camera /dev/video0 "
+      "\\\n"
+      "             --calibration cam.yaml --out out/real1");
+  app.callback([request, drive = camera.drive, &exit_code] {
+    request->Check();
+    exit_code = drive(*request);
+  });
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "files.hpp"
+#include "rift/report/json/fields.hpp"
+#include "rift/commands/command.hpp"
+#include "rift/trajectory/log.hpp"
+#include "rift/twin/twin.hpp"
+#include "rift/view/display.hpp"
+#include "rift/view/film.hpp"
+#include "rift/view/video.hpp"
+#include "rift/view/window.hpp"
+#include "rift/vision/camera/camera_file.hpp"
+#include "simulate.hpp"
+#include "stop_signal.hpp"
+
+namespace rift::commands {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+/// One line, at once: whoever started the twin waits for it.
+void Announce(const twin::TwinAddress& address, const fs::path& calibration) {
+  const ordered_json json{{"port", address.port},
+                          {"camera", address.camera},
+                          {"calibration", fs::absolute(calibration).string()}};
+  fmt::print("{}\n", json.dump());
+  if (std::fflush(stdout) != 0) {
+    throw std::runtime_error("cannot write to stdout: nobody can learn where the twin is");
+  }
+}
+
+std::string Ending(const twin::TwinRun& run) {
+  if (run.is_over) return "the robot drove and stood still again";
+  return run.has_driven ? "ended from outside while the robot drove or shortly after"
+                        : "ended from outside before the robot drove";
+}
+
+std::string TwinJson(const experiment::Experiment& experiment, const twin::TwinRun& run) {
+  return report::Dump({{"name", experiment.name},
+               {"rift_version", RIFT_VERSION},
+               {"seed", experiment.seed},
+               {"ending", Ending(run)},
+               {"has_driven", run.has_driven},
+               {"true_path_length_m", run.truth.ArcLength_m()},
+               {"began_steady_s", run.began_s},
+               {"skipped_s", run.skipped_s},
+               {"pictures", run.pictures},
+               {"picture_cpu_s", run.picture_cpu_s},
+               {"picture_late_p99_s", run.picture_late_p99_s},
+               {"robot_stopped_by_itself", run.stops},
+               {"robot_rejected", run.rejected}});
+}
+
+void Save(const fs::path& folder, const experiment::Experiment& experiment,
+          const twin::TwinRun& run) {
+  WriteFile(folder / "truth.csv", trajectory::WriteRift(run.truth));
+  WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.tag));
+  WriteFile(folder / "summary.json", TwinJson(experiment, run));
+}
+
+/// Serves until the trial is over or a signal comes, says in one line of JSON on stdout where port,
+/// camera and calibration are, and writes the run folder: experiment.yaml (with the simulation as
+/// the twin is, for `simulate` to repeat), camera.yaml, truth.csv, trajectory.csv (the tag's true
+/// path) and summary.json.
+int RunTwin(const std::string& experiment_file, const experiment::Experiment& experiment,
+            const fs::path& folder) {
+  experiment::Experiment as_twin = experiment;
+  as_twin.simulation = twin::AsTwin(experiment.simulation, experiment.twin);
+  const sweep::SimulatedTrial trial = sweep::SimulatedTrialOf(
+      as_twin, {}, experiment.seed, experiment_file, FileInputs());
+  vision::SyntheticCameraOptions look = experiment.twin.camera;
+  look.shutter_s = as_twin.simulation.mocap.exposure_s;
+  const twin::TwinSetup setup{as_twin.simulation,
+                              experiment.twin,
+                              control::StartPose(experiment.waypoints),
+                              experiment.seed,
+                              trial.image,
+                              twin::OverheadCamera(experiment.waypoints, experiment.twin),
+                              look};
+  const fs::path calibration = folder / "camera.yaml";
+  WriteFile(calibration, vision::WriteCamera(setup.camera));
+  WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(as_twin));
+
+  const StopSignal stop;
+  const twin::TwinRun run = twin::RunTwin(
+      setup, [&](const twin::TwinAddress& address) { Announce(address, calibration); },
+      [&] { return stop.IsAsked(); });
+  Save(folder, as_twin, run);
+  fmt::print(stderr, "{}; {} pictures at {:.1f} ms of one core each; true path: {}\n", Ending(run),
+             run.pictures, 1e3 * run.picture_cpu_s, (folder / "truth.csv").string());
+  return kDone;
+}
+
+view::BodyShape ShapeOf(const simulation::BodyOptions& body) {
+  return {.chassis_radius_m = body.chassis_radius_m,
+          .chassis_height_m = body.chassis_height_m,
+          .chassis_bottom_m = body.rim_clearance_m - body.wheel_radius_m,
+          .wheel_radius_m = body.wheel_radius_m,
+          .wheel_width_m = body.wheel_width_m,
+          .track_m = body.track_m};
+}
+
+view::Film FilmOf(const experiment::Experiment& experiment, const sweep::SimulatedTrial& trial,
+                  const sweep::SimulatedRun& run) {
+  const simulation::Terrain terrain(trial.simulation.terrain, trial.image);
+  view::Run shown{
+      .title = fmt::format("{} on {}", experiment.name, trial.simulation.terrain.surface),
+      .body = ShapeOf(trial.simulation.body),
+      .height_at = [&](double x_m, double y_m) { return terrain.HeightAt(x_m, y_m); },
+      .truth = run.truth,
+      .logged = run.result.trajectory,
+      .outcome = run.result.reason};
+  for (const control::Waypoint& waypoint : trial.waypoints) {
+    shown.waypoints.push_back({waypoint.name, waypoint.Position()});
+    shown.reference_m.push_back(waypoint.Position());
+  }
+  for (const report::FloorArea& area : AreasOf(trial.simulation.terrain)) {
+    shown.patches.push_back({area.label, area.x_min_m, area.x_max_m, area.y_min_m, area.y_max_m});
+  }
+  return view::MakeFilm(shown);
+}
+
+void ShowFilm(const PictureRequest& request, const view::Film& film) {
+  if (!request.video.empty()) view::WriteVideo(film, request.video, {});
+  if (!request.window) return;
+  const std::string no_display = view::MissingDisplay();
+  if (no_display.empty()) {
+    view::PlayInWindow(film, {});
+  } else {
+    fmt::print(stderr, "note: --view shows nothing: {}\n", no_display);
+  }
+}
+
+}  // namespace
+
+int SimulateWithCamera(const SimulateRequest& request) {
+  if (request.twin) {
+    const TwinJob job = LoadTwinJob(request);
+    return RunTwin(request.experiment, job.experiment, job.folder);
+  }
+  return Simulate(request, [&request](const Simulated& made) {
+    ShowFilm(request.pictures, FilmOf(made.experiment, made.trial, made.run));
+  });
+}
+
+}  // namespace rift::commands

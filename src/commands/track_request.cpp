@@ -1,0 +1,154 @@
+#include "track_request.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "flags.hpp"
+#include "keys_flag.hpp"
+#include "outputs.hpp"
+#include "rift/commands/command.hpp"
+
+namespace rift::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `frames/*.jpg` is a camera too, and frames/000.jpg one of its pictures.
+void RefuseAmongPictures(const fs::path& camera, const fs::path& log) {
+  const bool is_pattern = camera.filename().string().find('*') != std::string::npos;
+  const bool is_among =
+      is_pattern && log.extension() == camera.extension() &&
+      IsSameFile(fs::absolute(log).parent_path(), fs::absolute(camera).parent_path());
+  if (!is_among) return;
+  throw std::invalid_argument(
+      fmt::format("--out {} is one of the camera's pictures: name a log", log.string()));
+}
+
+void CheckLogName(const TrackRequest& request) {
+  std::error_code not_there;
+  if (fs::exists(request.out, not_there) && !fs::is_regular_file(request.out, not_there)) {
+    throw std::invalid_argument(fmt::format(
+        "--out {}: the log needs a file, since its run file stands beside it", request.out));
+  }
+  std::vector<fs::path> inputs{request.calibration};
+  for (const std::string& input : {request.world, request.path, request.experiment}) {
+    if (!input.empty()) inputs.emplace_back(input);
+  }
+  if (fs::exists(request.camera, not_there)) inputs.emplace_back(request.camera);
+  RefuseAmongPictures(request.camera, request.out);
+  std::vector<fs::path> outputs{request.out, RunFileOf(request.out)};
+  if (!request.record_waypoints.empty()) outputs.emplace_back(request.record_waypoints);
+  CheckOutputs(inputs, outputs);
+}
+
+void CheckTracking(const TrackRequest& request) {
+  if (request.camera.empty()) throw std::invalid_argument("--camera is missing");
+  if (request.calibration.empty()) {
+    throw std::invalid_argument(
+        "--calibration is missing: rift track --calibrate makes one from pictures of a chessboard");
+  }
+  if (request.out.empty() && request.world.empty()) {
+    throw std::invalid_argument("--out LOG.csv is missing: where shall the poses go?");
+  }
+  if (!request.out.empty()) CheckLogName(request);
+  if (!request.images.empty() || !request.picture.empty()) {
+    throw std::invalid_argument("--images and --picture belong to --calibrate");
+  }
+}
+
+void CheckCalibrating(const TrackRequest& request) {
+  if (request.images.empty() == request.camera.empty()) {
+    throw std::invalid_argument("--calibrate wants either --images DIR or --camera");
+  }
+  if (request.out.empty()) throw std::invalid_argument("--out CAM.yaml is missing");
+}
+
+/// `13x9`
+void ReadBoard(const std::string& text, vision::Board& board) {
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &board.columns, &board.rows, &rest) != 2) {
+    throw CLI::ValidationError(
+        fmt::format("--board '{}': inner corners across and down, such as 13x9", text));
+  }
+}
+
+void AddCalibrationFlags(CLI::App& app, TrackRequest& request) {
+  app.add_flag("--calibrate", request.calibrate, "make the calibration of a camera instead");
+  app.add_option_function<std::string>(
+         "--board", [&request](const std::string& text) { ReadBoard(text, request.board); },
+         "inner corners of the chessboard (squares less one)")
+      ->type_name("WxH")
+      ->default_str("13x9");
+  app.add_option("--square", request.board.square_m, "side of a square of it")
+      ->type_name("m")
+      ->capture_default_str();
+  app.add_option("--images", request.images, "its photographs")->type_name("DIR|'GLOB'");
+  app.add_option("--picture", request.picture,
+                 "where residuals and coverage are drawn [beside --out, .png]")
+      ->type_name("FILE.png");
+}
+
+void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
+  app.add_option("EXPERIMENT", request.experiment, "YAML file; its key track: holds the settings");
+  app.add_option("--set", request.overrides, "sets one key, such as track.tag.id=3")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--camera", request.camera,
+                 "device, stream, video, or quoted pattern of pictures in the order of their names")
+      ->type_name("/dev/video0|URL|FILE|'GLOB'");
+  app.add_option("--calibration", request.calibration,
+                 "of the camera: ROS camera_info, OpenCV's, the authors', or from --calibrate")
+      ->type_name("CAM.yaml");
+  app.add_option("--out", request.out, "the log; with --calibrate, the calibration")
+      ->type_name("FILE");
+  app.add_option("--fps", request.fps, "asked of a device; rate of a pattern of pictures")
+      ->check(InRange(0.1, 1000.0))
+      ->type_name("hz");
+  app.add_option("--duration", request.duration_s, "ends after this long")
+      ->check(InRange(0.0, 1e9))
+      ->type_name("s");
+  app.add_option("--world", request.world,
+                 "sets the world frame first and keeps it in the calibration: from the robot's "
+                 "first pose, or from a file with tags: (id, x_m, y_m) to be seen or points: "
+                 "(name, x_m, y_m) to be clicked")
+      ->type_name("first|FILE.yaml");
+  app.add_flag("--view", request.view, "show it in a window");
+  app.add_option("--path", request.path, "what the view holds the robot's trail against")
+      ->type_name("WAYPOINTS.yaml|LOG.csv");
+  app.add_option("--record-waypoints", request.record_waypoints,
+                 "write the waypoints made in the window, for simulate and drive")
+      ->type_name("FILE.yaml");
+}
+
+}  // namespace
+
+fs::path RunFileOf(const fs::path& log) {
+  return fs::path(log).replace_extension().string() + ".run.json";
+}
+
+void TrackRequest::Check() const { calibrate ? CheckCalibrating(*this) : CheckTracking(*this); }
+
+void AddTrack(CLI::App& app, int& exit_code, const CameraUses& camera) {
+  const auto request = std::make_shared<TrackRequest>();
+  AddTrackingFlags(app, *request);
+  AddFlags(app, request->session);
+  AddCalibrationFlags(app, *request);
+  AddKeysFlag(app);
+  app.footer(
+      "Ctrl-C ends it. Ends with 1 when the tag was never seen or the calibration is refused, with "
+      "3\n"
+      "when the camera fails (unplugged, frozen, black, busy, wrong format).\n"
+      "Example: rift track --calibrate --board 13x9 --square 0.025 --images photos --out cam.yaml\n"
+      "         rift track --camera /dev/video0 --calibration cam.yaml --world first --out "
+      "log.csv");
+  app.callback([request, track = camera.track, &exit_code] {
+    request->Check();
+    exit_code = track(*request);
+  });
+}
+
+}  // namespace rift::commands

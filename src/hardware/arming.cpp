@@ -1,0 +1,115 @@
+#include "rift/hardware/arming.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace rift::hardware {
+namespace {
+
+constexpr double kTurn_s = 0.02;
+constexpr double kFirstPose_s = 10.0;
+constexpr double kConfirm_s = 1.0;
+constexpr double kNearStart_m = 0.1;  // by hand, the authors were up to 0.07 m off
+
+void RequireBudget(const PingResult& ping, const PingOptions& options) {
+  const std::vector<std::string> broken = BrokenBudget(ping, options);
+  if (broken.empty()) return;
+  throw std::runtime_error(
+      fmt::format("not armed, the link breaks its budget: {}", fmt::join(broken, "; ")));
+}
+
+double PrintStoppingDistance(const DriveParts& parts, const DriveTask& task,
+                             const PingResult& ping) {
+  StoppingOptions options = task.hardware.stopping;
+  if (ping.IsMeasured()) options.delay_s = ping.OneWay_s();
+  const double distance_m = StoppingDistance_m(options, task.control.v_max);
+  parts.say(fmt::format(
+      "worst stopping distance {:.3f} m: at power {:g}, {:.2f} m/s x ({:.3f} s watchdog + {:.3f} s "
+      "delay) + braking",
+      distance_m, task.control.v_max, options.full_power_speed_mps * task.control.v_max,
+      options.robot_watchdog_s, options.delay_s));
+  if (!ping.IsMeasured()) {
+    parts.say(
+        "the robot speaks plain and does not answer: it cannot be measured, a stop cannot be "
+        "acknowledged, and without rift's listener the last command holds for ever if the link "
+        "breaks");
+  }
+  return distance_m;
+}
+
+/// Lets the link run until `is_so`; false when a person stopped the drive meanwhile. Throws when
+/// anything else did.
+bool WaitUntil(RealRobot& robot, const std::function<bool()>& is_so) {
+  while (!is_so()) {
+    robot.Advance(kTurn_s);
+    if (robot.state() != DriveState::kStopped) continue;
+    const DriveStop stop = *robot.Record().stop;
+    if (stop.reason == StopReason::kOperator || stop.reason == StopReason::kSignal) {
+      return false;
+    }
+    throw std::runtime_error(fmt::format("stopped before the start: {}", stop.text));
+  }
+  return true;
+}
+
+bool WaitForFirstPose(RealRobot& robot) {
+  const double start_s = robot.Sense().now_s;
+  return WaitUntil(robot, [&] {
+    const trial::Sensed sensed = robot.Sense();
+    if (!sensed.pose && sensed.now_s - start_s > kFirstPose_s) {
+      throw std::runtime_error(fmt::format(
+          "the robot was not seen within {} s: is its tag in the picture, flat and well "
+          "lit?",
+          kFirstPose_s));
+    }
+    return sensed.pose.has_value();
+  });
+}
+
+void SayWhereItStands(const DriveParts& parts, RealRobot& robot, const DriveTask& task) {
+  const geometry::Pose2 pose = robot.Sense().pose->world_from_robot;
+  const geometry::Pose2 start = control::StartPose(task.waypoints);
+  const double off_m = (pose.Position() - start.Position()).norm();
+  parts.say(
+      fmt::format("the robot stands at x {:.3f} m, y {:.3f} m, {:.3f} m from the first "
+                  "waypoint{}",
+                  pose.x_m, pose.y_m, off_m,
+                  off_m > kNearStart_m ? ": far off, is the world frame right?" : ""));
+}
+
+}  // namespace
+
+PingResult MeasureLink(ByteLine& line, Clock& clock, const HardwareOptions& options) {
+  const Protocol protocol = FindProtocol(line, clock, options.line);
+  return Ping(line, clock, options.line, protocol, options.ping);
+}
+
+DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
+  control::CheckWaypoints(task.waypoints);
+  DriveRun run;
+  run.ping = MeasureLink(parts.line, parts.clock, task.hardware);
+  parts.say(fmt::format("the robot speaks {}",
+                        EnumNames(run.ping.protocol)[static_cast<std::size_t>(run.ping.protocol)]));
+  RequireBudget(run.ping, task.hardware.ping);
+  run.stopping_distance_m = PrintStoppingDistance(parts, task, run.ping);
+
+  RealRobot robot(parts.line, parts.poses, parts.clock,
+                  {task.hardware, run.ping.protocol, parts.threads});
+  for (const Stopper& stopper : parts.stoppers) robot.AddStopper(stopper);
+  if (WaitForFirstPose(robot)) {
+    SayWhereItStands(parts, robot, task);
+    run.has_begun = WaitUntil(robot, parts.may_arm);
+  }
+  if (run.has_begun) {
+    robot.Arm();
+    run.trial = trial::RunTrial(robot, task.waypoints, task.control, task.trial);
+  } else {
+    run.trial.reason = "stopped before the start: " + robot.Record().stop->text;
+  }
+  robot.ConfirmStop(kConfirm_s);
+  run.evidence = robot.Record();
+  return run;
+}
+
+}  // namespace rift::hardware

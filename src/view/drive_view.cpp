@@ -1,0 +1,38 @@
+#include "rift/view/drive_view.hpp"
+
+namespace rift::view {
+namespace {
+
+constexpr double kTrailStep_m = 0.002;
+
+void Follow(const vision::Sighting& sighting, TrackScene& scene) {
+  const Eigen::Vector2d place = sighting.map_from_tag.translation().head<2>();
+  if (scene.trail_m.empty() || (place - scene.trail_m.back()).norm() > kTrailStep_m) {
+    scene.trail_m.push_back(place);
+  }
+  scene.plane_z_m = sighting.map_from_tag.translation().z();
+  scene.latency_s = sighting.latency_s;
+}
+
+}  // namespace
+
+DriveView::DriveView(const vision::CameraModel& camera,
+                     const std::vector<control::Waypoint>& waypoints)
+    : scene_{.camera = &camera}, window_("rift drive") {
+  for (const control::Waypoint& waypoint : waypoints) {
+    scene_.path_m.push_back(waypoint.Position());
+    scene_.waypoints.push_back({waypoint.name, waypoint.Position()});
+  }
+  scene_.prompts = {"close the window or press q in it to stop the robot"};
+}
+
+bool DriveView::Show(const vision::Frame* frame, const std::optional<vision::Sighting>& sighting,
+                     const vision::CaptureStatus& status) {
+  scene_.frame = frame;
+  scene_.sighting = sighting;
+  scene_.status = status;
+  if (sighting) Follow(*sighting, scene_);
+  return !window_.Show(scene_).quit;
+}
+
+}  // namespace rift::view

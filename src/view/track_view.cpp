@@ -1,0 +1,104 @@
+#include "rift/view/track_view.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "rift/vision/tracking/world_frame.hpp"
+
+namespace rift::view {
+namespace {
+
+constexpr double kTrailStep_m = 0.002;
+constexpr std::size_t kTrailLength = 4000;
+constexpr double kLifted_m = 0.15;  // no robot drives that far between pictures
+
+}  // namespace
+
+TrackView::TrackView(const vision::CameraModel& camera, Content content)
+    : camera_(camera), content_(std::move(content)), window_("rift track") {
+  if (camera.world) plane_z_m_ = 0.0;
+}
+
+std::vector<geometry::NamedPoint> TrackView::Places() const {
+  std::vector<geometry::NamedPoint> places;
+  for (const auto* list : {&content_.planned, &recorded_}) {
+    for (const control::Waypoint& waypoint : *list) {
+      places.push_back({waypoint.name + (waypoint.stop ? "" : " (pass)"), waypoint.Position()});
+    }
+  }
+  return places;
+}
+
+std::vector<std::string> TrackView::Prompts(const std::optional<double>& moved_m) const {
+  std::vector<std::string> lines;
+  if (moved_m) {
+    lines.push_back(fmt::format("reference tags {:.1f} mm off their places", 1e3 * *moved_m));
+  }
+  if (!said_.empty()) lines.push_back(said_);
+  return lines;
+}
+
+void TrackView::Follow(const vision::Sighting& sighting) {
+  const Eigen::Vector3d middle = sighting.map_from_tag.translation();
+  if (!plane_z_m_) plane_z_m_ = middle.z();
+  const auto is_away_by = [&](double distance_m) {
+    return !trail_m_.empty() && (middle.head<2>() - trail_m_.back()).norm() > distance_m;
+  };
+  if (is_away_by(kLifted_m)) trail_m_.clear();
+  if (trail_m_.empty() || is_away_by(kTrailStep_m)) trail_m_.push_back(middle.head<2>());
+  if (trail_m_.size() > kTrailLength) trail_m_.erase(trail_m_.begin());
+}
+
+bool TrackView::Show(const std::optional<vision::Frame>& frame,
+                     const std::optional<vision::Sighting>& sighting,
+                     const vision::CaptureStatus& status, const std::optional<double>& moved_m) {
+  if (sighting) Follow(*sighting);
+  TrackScene scene{.camera = &camera_,
+                   .frame = frame ? &*frame : nullptr,
+                   .sighting = sighting,
+                   .trail_m = trail_m_,
+                   .path_m = content_.path_m,
+                   .waypoints = Places(),
+                   .plane_z_m = plane_z_m_.value_or(0.0),
+                   .status = status,
+                   .latency_s = sighting ? sighting->latency_s : status.latency_s,
+                   .prompts = Prompts(moved_m)};
+  const TrackInput input = window_.Show(scene);
+  Obey(input, sighting);
+  return !input.quit;
+}
+
+void TrackView::Obey(const TrackInput& input, const std::optional<vision::Sighting>& sighting) {
+  const std::size_t before = recorded_.size();
+  for (const Eigen::Vector2d& pixel : input.clicks_px) {
+    const auto p_m = plane_z_m_ ? vision::MapFromPixel(camera_, pixel, *plane_z_m_) : std::nullopt;
+    if (p_m) {
+      Record(*p_m, {});
+    } else {
+      said_ = "no place: show the robot's tag first, or set a world frame (--world)";
+    }
+  }
+  if (input.here && sighting) {
+    const geometry::Pose2 pose = sighting->Planar();
+    Record(pose.Position(), pose.yaw_rad * 180.0 / std::numbers::pi);
+  }
+  if (input.undo && !recorded_.empty()) recorded_.pop_back();
+  if (input.toggle_stop && !recorded_.empty()) recorded_.back().stop = !recorded_.back().stop;
+  if (input.clear_trail) trail_m_.clear();
+  const bool changed = recorded_.size() != before || input.toggle_stop || !input.clicks_px.empty();
+  if (changed && content_.save && !recorded_.empty()) content_.save(recorded_);
+}
+
+/// Only the first waypoint has a heading: where the robot looks at the start.
+void TrackView::Record(const Eigen::Vector2d& p_m, std::optional<double> heading_deg) {
+  control::Waypoint waypoint{.x_m = p_m.x(), .y_m = p_m.y()};
+  waypoint.name = recorded_.empty() ? "start" : fmt::format("wp{}", recorded_.size());
+  if (recorded_.empty()) waypoint.heading_deg = heading_deg;
+  recorded_.push_back(waypoint);
+  said_ = fmt::format("{}: x {:.3f} m, y {:.3f} m{}", waypoint.name, p_m.x(), p_m.y(),
+                      !content_.save ? " (not saved: --record-waypoints FILE)" : "");
+}
+
+}  // namespace rift::view

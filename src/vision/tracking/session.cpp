@@ -1,0 +1,74 @@
+#include "rift/vision/tracking/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "rift/vision/tracking/world_frame.hpp"
+
+namespace rift::vision {
+namespace {
+
+constexpr double kPictureWait_s = 0.1;
+
+CaptureOptions AtSizeOf(const CameraModel& camera, CaptureOptions options) {
+  if (camera.width_px > 0) options.width_px = camera.width_px;
+  if (camera.height_px > 0) options.height_px = camera.height_px;
+  return options;
+}
+
+}  // namespace
+
+CameraSession::CameraSession(std::string name, CameraModel camera, CaptureOptions capture,
+                             const TagOptions& tag)
+    : name_(std::move(name)),
+      camera_(std::move(camera)),
+      options_(AtSizeOf(camera_, capture)),
+      tag_(tag),
+      capture_(OpenCapture(name_, options_)) {}
+
+Frame CameraSession::FirstPicture() {
+  std::optional<Frame> frame;
+  while (!(frame = capture_->Next(kPictureWait_s))) {
+    const CaptureStatus status = capture_->Status();
+    if (!IsFinal(status.state) && status.state != CameraState::kFrozen) continue;
+    throw std::runtime_error(fmt::format(
+        "the camera {} is {}: {}", name_,
+        EnumNames(status.state)[static_cast<std::size_t>(status.state)], status.reason));
+  }
+  if (camera_.width_px == 0 || camera_.height_px == 0) {
+    camera_.width_px = frame->width_px;
+    camera_.height_px = frame->height_px;
+  }
+  if (frame->width_px == camera_.width_px && frame->height_px == camera_.height_px) {
+    return std::move(*frame);
+  }
+  throw std::invalid_argument(
+      fmt::format("the camera {} gives {}x{} pixels and its calibration is for {}x{}: set the "
+                  "camera to that size, or calibrate anew",
+                  name_, frame->width_px, frame->height_px, camera_.width_px, camera_.height_px));
+}
+
+Look CameraSession::LookAt(const Frame& frame, int decimate) const {
+  const std::vector<TagDetection> seen = FindTags(frame, decimate, tag_.max_hamming);
+  const auto robots = std::count_if(seen.begin(), seen.end(),
+                                    [&](const auto& found) { return found.id == tag_.id; });
+  return {.robot_tags = static_cast<int>(robots), .moved_m = MovedBy_m(camera_, seen)};
+}
+
+void CameraSession::Restart() {
+  if (capture_->IsRecording()) capture_ = OpenCapture(name_, options_);
+}
+
+TagTracker CameraSession::MakeTracker() const { return {camera_, tag_, SteadyNow_s}; }
+
+std::optional<std::string> MovedWarning(const std::optional<double>& moved_m, double limit_m) {
+  if (!moved_m || *moved_m <= limit_m) return std::nullopt;
+  return fmt::format(
+      "the camera was moved: the reference tags lie {:.1f} mm off; set the world frame again",
+      1e3 * *moved_m);
+}
+
+}  // namespace rift::vision

@@ -1,0 +1,154 @@
+#include "rift/vision/tracking/track_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "rift/vision/camera/camera_source.hpp"
+
+namespace rift::vision {
+namespace {
+
+constexpr double kTick_s = 0.02;
+constexpr double kRedraw_s = 0.1;
+
+class Tracking {
+ public:
+  explicit Tracking(const TrackParts& parts)
+      : parts_(parts), tracker_(parts.session.MakeTracker()), started_s_(SteadyNow_s()) {}
+
+  TrackRun Run();
+
+ private:
+  void Take(Frame frame);
+  void Keep(const Sighting& sighting);
+  /// A recording's times begin at zero and are rounded, so that the same recording gives the same
+  /// bytes.
+  void Rebase(Frame& frame);
+  void WatchState();
+  void WatchReferences(const Frame& frame);
+  void Show();
+  bool IsOver() const;
+
+  const TrackParts& parts_;
+  TagTracker tracker_;
+  double started_s_;
+  TrackRun run_;
+  std::optional<double> first_captured_s_;
+  std::optional<Frame> frame_;
+  std::optional<Sighting> sighting_;
+  std::optional<double> failing_since_s_;
+  double checked_s_ = -1e9;
+  std::optional<std::uint64_t> shown_index_;
+  double shown_s_ = 0.0;
+  bool quit_ = false;
+};
+
+void Tracking::Rebase(Frame& frame) {
+  if (!first_captured_s_) run_.zero_s = frame.captured_s;
+  if (!first_captured_s_) first_captured_s_ = frame.captured_s;
+  if (run_.is_recording) {
+    frame.captured_s = std::round((frame.captured_s - *first_captured_s_) * 1e6) / 1e6;
+  }
+}
+
+void Tracking::Keep(const Sighting& sighting) {
+  const double t_s = run_.is_recording
+                         ? sighting.captured_s
+                         : std::round((sighting.captured_s - *first_captured_s_) * 1e6) / 1e6;
+  if (!parts_.log(t_s, sighting)) {
+    ++run_.repeated;
+    return;
+  }
+  if (++run_.rows == 1) run_.first_t_s = t_s;
+  run_.last_t_s = t_s;
+  if (!run_.is_recording) run_.latencies_s.push_back(sighting.latency_s);
+  run_.most_tags_of_this_id = std::max(run_.most_tags_of_this_id, sighting.tags_of_this_id);
+}
+
+void Tracking::Take(Frame frame) {
+  if (run_.frames++ == 0) run_.is_recording = parts_.session.capture().IsRecording();
+  Rebase(frame);
+  const double begin_s = SteadyNow_s();
+  const TrackResult result = tracker_.Track(frame);
+  run_.costs_s.push_back(SteadyNow_s() - begin_s);
+  ++run_.misses[static_cast<std::size_t>(result.miss)];
+  sighting_ = result.sighting;
+  if (sighting_ && run_.is_recording) sighting_->latency_s = std::nan("");  // its clock is its own
+  if (sighting_) Keep(*sighting_);
+  WatchReferences(frame);
+  frame_ = std::move(frame);
+}
+
+void Tracking::WatchReferences(const Frame& frame) {
+  const SessionOptions& options = parts_.options;
+  const std::optional<WorldFrame>& world = parts_.session.camera().world;
+  const bool has_marks = world && !world->marks.empty();
+  if (!has_marks || frame.captured_s - checked_s_ < options.check_every_s) return;
+  checked_s_ = frame.captured_s;
+  const std::optional<double> moved_m =
+      parts_.session.LookAt(frame, options.check_decimate).moved_m;
+  if (!moved_m) return;
+  const bool is_known = MovedWarning(run_.moved_m, options.moved_m).has_value();
+  const std::optional<std::string> warning = MovedWarning(moved_m, options.moved_m);
+  if (warning && !is_known) parts_.say(*warning);
+  run_.moved_m = std::max(run_.moved_m.value_or(0.0), *moved_m);
+}
+
+void Tracking::WatchState() {
+  const CameraState before = run_.status.state;
+  run_.status = parts_.session.capture().Status();
+  const CameraState state = run_.status.state;
+  const bool fails = state != CameraState::kOpening && state != CameraState::kRunning &&
+                     state != CameraState::kEnded;
+  if (!fails) failing_since_s_.reset();
+  if (fails && !failing_since_s_) failing_since_s_ = SteadyNow_s();
+  const bool starts = before == CameraState::kOpening && state == CameraState::kRunning;
+  if (state == before || starts || state == CameraState::kEnded) return;
+  const std::string reason =
+      run_.status.reason.empty() ? "" : fmt::format(": {}", run_.status.reason);
+  parts_.say(fmt::format("camera {}{}", EnumNames(state)[static_cast<std::size_t>(state)], reason));
+}
+
+bool Tracking::IsOver() const {
+  if (quit_ || parts_.is_stopped() || IsFinal(run_.status.state)) return true;
+  if (parts_.duration_s && SteadyNow_s() - started_s_ > *parts_.duration_s) return true;
+  return failing_since_s_ && SteadyNow_s() - *failing_since_s_ > parts_.options.give_up_s;
+}
+
+void Tracking::Show() {
+  if (!parts_.show) return;
+  // The same picture is drawn again only to answer clicks and keys.
+  const bool is_new = frame_ && frame_->index != shown_index_;
+  if (!is_new && SteadyNow_s() - shown_s_ < kRedraw_s) return;
+  if (frame_) shown_index_ = frame_->index;
+  // A recording is shown at the speed at which it was made.
+  while (run_.is_recording && frame_ && SteadyNow_s() - started_s_ < frame_->captured_s && !quit_) {
+    quit_ = !parts_.show(frame_, sighting_, run_.status, run_.moved_m) || IsOver();
+    std::this_thread::sleep_for(std::chrono::duration<double>(kTick_s / 4));
+  }
+  quit_ = quit_ || !parts_.show(frame_, sighting_, run_.status, run_.moved_m);
+  shown_s_ = SteadyNow_s();
+}
+
+TrackRun Tracking::Run() {
+  while (!IsOver()) {
+    std::optional<Frame> frame = parts_.session.capture().Next(kTick_s);
+    if (frame) Take(std::move(*frame));
+    WatchState();
+    Show();
+  }
+  run_.state = run_.status.state;
+  run_.reason = run_.status.reason;
+  run_.has_failed = failing_since_s_.has_value() && !quit_ && !parts_.is_stopped();
+  return run_;
+}
+
+}  // namespace
+
+TrackRun RunTracking(const TrackParts& parts) { return Tracking(parts).Run(); }
+
+}  // namespace rift::vision

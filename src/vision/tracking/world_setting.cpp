@@ -1,0 +1,110 @@
+#include "rift/vision/tracking/world_setting.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "rift/vision/tracking/world_frame.hpp"
+#include "rift/yaml/bind.hpp"
+#include "rift/yaml/load.hpp"
+
+namespace rift::vision {
+namespace {
+
+constexpr double kTick_s = 0.02;
+
+/// The next picture; throws when there will be none.
+Frame NextFrame(const WorldSetting& setting) {
+  for (;;) {
+    std::optional<Frame> frame = setting.session.capture().Next(kTick_s);
+    if (frame) return std::move(*frame);
+    setting.ThrowIfOver();
+  }
+}
+
+/// A time limit by the pictures' clock: a recording gives them out faster than they were taken.
+class TimeLimit {
+ public:
+  explicit TimeLimit(double limit_s) : limit_s_(limit_s) {}
+  bool IsOver(const Frame& frame) {
+    if (!has_begun_) begin_s_ = frame.captured_s;
+    has_begun_ = true;
+    return frame.captured_s - begin_s_ >= limit_s_;
+  }
+
+ private:
+  double limit_s_;
+  bool has_begun_ = false;
+  double begin_s_ = 0.0;
+};
+
+}  // namespace
+
+FloorMarks ReadFloorMarks(std::string_view text, const std::string& source) {
+  FloorMarks marks;
+  yaml::Bind(yaml::Parse(text, source), marks);
+  if (marks.tags.empty() == marks.points.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "{}: a world frame wants either `tags:` or `points:`, each with x_m and y_m", source));
+  }
+  return marks;
+}
+
+void WorldSetting::ThrowIfOver() const {
+  if (is_stopped()) throw std::runtime_error("stopped before the world frame was set");
+  const CaptureStatus status = session.capture().Status();
+  if (!IsFinal(status.state)) return;
+  throw std::runtime_error(
+      fmt::format("camera {}: {}; the world frame was not set",
+                  EnumNames(status.state)[static_cast<std::size_t>(status.state)], status.reason));
+}
+
+WorldFrame WorldFromRobot(const WorldSetting& setting) {
+  CameraModel camera = setting.session.camera();
+  camera.world.reset();
+  TagTracker tracker(camera, setting.session.tag());
+  TimeLimit search(setting.options.world_patience_s);
+  std::optional<TimeLimit> averaging;
+  std::vector<Eigen::Isometry3d> poses;
+  for (;;) {
+    setting.ThrowIfOver();
+    const Frame frame = NextFrame(setting);
+    if (const auto sighting = tracker.Track(frame).sighting) {
+      poses.push_back(sighting->camera_from_tag);
+      if (!averaging) averaging.emplace(setting.options.world_average_s);
+    }
+    if (averaging && averaging->IsOver(frame)) break;
+    if (poses.empty() && search.IsOver(frame)) {
+      throw std::invalid_argument(
+          fmt::format("tag {} was not seen within {:g} s: the world frame was not set",
+                      setting.session.tag().id, setting.options.world_patience_s));
+    }
+  }
+  return WorldFromFirstPose(poses, setting.options.tag_height_m);
+}
+
+WorldFrame WorldFromFloorTags(const WorldSetting& setting, const std::vector<FloorMark>& tags) {
+  std::vector<ReferenceMark> marks;
+  for (const FloorMark& tag : tags) {
+    marks.push_back({tag.id, {tag.x_m, tag.y_m, tag.z_m}, Eigen::Vector2d::Zero()});
+  }
+  TimeLimit search(setting.options.world_patience_s);
+  for (;;) {
+    setting.ThrowIfOver();
+    const Frame frame = NextFrame(setting);
+    const std::vector<TagDetection> seen =
+        FindTags(frame, setting.options.world_decimate, setting.session.tag().max_hamming);
+    std::size_t found = 0;
+    for (const ReferenceMark& mark : marks) {
+      for (const TagDetection& tag : seen) found += tag.id == mark.tag_id;
+    }
+    // With some missing, the last try says which.
+    const bool is_last = search.IsOver(frame) || setting.session.capture().IsRecording();
+    if (found >= marks.size() || is_last) {
+      return WorldFromTags(setting.session.camera(), marks, seen);
+    }
+  }
+}
+
+}  // namespace rift::vision

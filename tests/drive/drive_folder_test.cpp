@@ -1,0 +1,66 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "commands/drive.hpp"
+#include "commands/drive_output.hpp"
+#include "commands/files.hpp"
+#include "hardware/bench.hpp"
+#include "rift/trajectory/log.hpp"
+#include "rift/vision/camera/camera_file.hpp"
+#include "support/paper_camera.hpp"
+#include "support/paper_waypoints.hpp"
+#include "support/process.hpp"
+
+namespace rift::commands {
+namespace {
+
+experiment::Experiment PaperExperiment() {
+  experiment::Experiment experiment;
+  experiment.name = "bench";
+  experiment.waypoints = test::PaperWaypoints();
+  experiment.trial.pace = trial::Pace::kNewPose;
+  return experiment;
+}
+
+TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
+  hardware::Bench bench;
+  bench.line_delay_s = 0.005;
+  std::vector<std::string> told;
+  const experiment::Experiment experiment = PaperExperiment();
+  const hardware::DriveRun run =
+      hardware::Drive({.line = bench,
+                       .poses = bench,
+                       .clock = bench,
+                       .say = [&](const auto& line) { told.push_back(line); },
+                       .may_arm = [] { return true; },
+                       .threads = false},
+                      TaskOf(experiment));
+  CHECK(run.trial.outcome == trial::Outcome::kReached);
+  CHECK(run.evidence.stop_acknowledged == true);
+  CHECK(run.ping.protocol == hardware::Protocol::kFramed);
+  REQUIRE(told.size() == 3);
+  CHECK_THAT(told[1], Catch::StartsWith("worst stopping distance 0.2"));
+  CHECK_THAT(DriveText(run), Catch::Contains("acknowledged the stop"));
+
+  const test::TemporaryFolder folder;
+  BeginDriveFolder(folder.Path(), experiment, test::PaperCamera());
+  SaveDrive(folder.Path(), experiment, run);
+  const auto summary = nlohmann::json::parse(ReadFile(folder / "summary.json"));
+  CHECK(summary["outcome"] == "reached");
+  CHECK(summary["stop"]["acknowledged"] == true);
+  CHECK(summary["stop"]["reason"] == "finished");
+  CHECK(summary["latency"]["capture_to_command"]["p50_s"] < 0.03);
+  CHECK(summary["latency"]["capture_to_command"]["n"] > 30);
+  const std::string stages = ReadFile(folder / "stages.csv");
+  const auto rows = std::count(stages.begin(), stages.end(), '\n');
+  CHECK(rows == 1 + static_cast<long>(run.evidence.poses.size()));
+  const std::string encoders = ReadFile(folder / "encoders.csv");
+  CHECK(std::count(encoders.begin(), encoders.end(), '\n') > rows - 5);
+  CHECK(vision::ReadCamera(ReadFile(folder / "camera.yaml"), "camera").world);
+  const trajectory::Log log = trajectory::ReadLog(ReadFile(folder / "trajectory.csv"), "trajectory",
+                                                  trajectory::Format::kAuto);
+  CHECK(log.trajectory.poses.size() == run.trial.trajectory.poses.size());
+}
+
+}  // namespace
+}  // namespace rift::commands

@@ -1,0 +1,85 @@
+#include "rift/hardware/arming.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "bench.hpp"
+#include "support/paper_waypoints.hpp"
+
+namespace rift::hardware {
+namespace {
+
+DriveTask PaperTask() {
+  DriveTask task;
+  task.waypoints = test::PaperWaypoints();
+  task.trial.pace = trial::Pace::kNewPose;
+  return task;
+}
+
+struct Operator {
+  std::vector<std::string> told;
+  std::optional<std::pair<StopReason, std::string>> stop;
+  bool says_yes = true;
+
+  DriveParts PartsOf(Bench& bench) {
+    return {.line = bench,
+            .poses = bench,
+            .clock = bench,
+            .stoppers = {[this] { return stop; }},
+            .say = [this](const std::string& line) { told.push_back(line); },
+            .may_arm = [this] { return says_yes; },
+            .threads = false};
+  }
+};
+
+TEST_CASE("A link over its budget is not armed and the line says what to change") {
+  Bench bench;
+  bench.line_delay_s = 0.2;
+  Operator person;
+  CHECK_THROWS_WITH(Drive(person.PartsOf(bench), PaperTask()),
+                    Catch::Contains("not armed, the link breaks its budget: 99 %") &&
+                        Catch::Contains("baud rate"));
+  CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
+}
+
+TEST_CASE("Nothing moves until the operator says yes") {
+  Bench bench;
+  Operator person;
+  person.says_yes = false;
+  DriveParts parts = person.PartsOf(bench);
+  int asked = 0;
+  parts.may_arm = [&] {
+    if (++asked == 50) person.stop = {StopReason::kOperator, "q was pressed"};
+    return false;
+  };
+  const DriveRun run = Drive(parts, PaperTask());
+  CHECK_FALSE(run.has_begun);
+  CHECK(run.trial.reason == "stopped before the start: q was pressed");
+  CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
+}
+
+TEST_CASE("A robot that no camera sees is not driven") {
+  Bench bench;
+  bench.tag_is_hidden = true;
+  Operator person;
+  CHECK_THROWS_WITH(Drive(person.PartsOf(bench), PaperTask()),
+                    Catch::Contains("was not seen within 10 s"));
+}
+
+TEST_CASE("A stop in the middle of a drive is told with its reason") {
+  Bench bench;
+  Operator person;
+  DriveParts parts = person.PartsOf(bench);
+  const double begun_s = bench.Now_s();
+  parts.stoppers.push_back([&]() -> std::optional<std::pair<StopReason, std::string>> {
+    if (bench.Now_s() < begun_s + 5.0) return std::nullopt;
+    return std::pair(StopReason::kSignal, "SIGTERM came");
+  });
+  const DriveRun run = Drive(parts, PaperTask());
+  CHECK(run.trial.outcome == trial::Outcome::kFault);
+  CHECK(run.trial.reason == "SIGTERM came");
+  CHECK(run.evidence.stop->reason == StopReason::kSignal);
+  CHECK(run.evidence.stop_acknowledged == true);
+}
+
+}  // namespace
+}  // namespace rift::hardware

@@ -1,0 +1,90 @@
+#include "rift/hardware/operator.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "pseudo_terminal.hpp"
+
+namespace rift::hardware {
+namespace {
+
+/// Whatever stdin is by itself, in this scope it is a terminal on which the test types.
+class Keyboard {
+ public:
+  Keyboard() : before_(::dup(STDIN_FILENO)) {
+    const int terminal = ::open(terminal_.path().c_str(), O_RDWR | O_NOCTTY);
+    ::dup2(terminal, STDIN_FILENO);
+    ::close(terminal);
+  }
+  ~Keyboard() {
+    ::dup2(before_, STDIN_FILENO);
+    ::close(before_);
+  }
+  Keyboard(const Keyboard&) = delete;
+  Keyboard& operator=(const Keyboard&) = delete;
+
+  void Type(char key) { terminal_.Write({static_cast<std::uint8_t>(key)}); }
+
+ private:
+  hardware::PseudoTerminal terminal_;
+  int before_;
+};
+
+struct Listening {
+  std::vector<std::string> told;
+  std::function<void(const std::string&)> say = [this](const std::string& line) {
+    told.push_back(line);
+  };
+};
+
+TEST_CASE("Enter starts the robot once it was asked for and the next key stops it") {
+  Keyboard keyboard;
+  Operator person(false);
+  const hardware::Stopper stopper = person.Stopper();
+  Listening listening;
+  keyboard.Type('\n');  // before anybody asked
+  CHECK_FALSE(stopper());
+  CHECK_FALSE(person.MayArm(listening.say));
+  CHECK_FALSE(person.MayArm(listening.say));
+  CHECK(listening.told.size() == 1);
+  keyboard.Type('x');
+  CHECK_FALSE(stopper());
+  CHECK_FALSE(person.MayArm(listening.say));
+  keyboard.Type('\n');
+  CHECK_FALSE(stopper());
+  CHECK(person.MayArm(listening.say));
+  keyboard.Type(' ');
+  REQUIRE(stopper());
+  CHECK(stopper()->first == hardware::StopReason::kOperator);
+}
+
+TEST_CASE("Before the start q gives up") {
+  Keyboard keyboard;
+  Operator person(false);
+  keyboard.Type('q');
+  REQUIRE(person.Stopper()());
+  CHECK(person.Stopper()()->second == "a key was pressed");
+}
+
+TEST_CASE("With a yes nothing is asked and a key or a signal or the window stops") {
+  const auto stops_by = [](const auto& strike) {
+    Keyboard keyboard;
+    Operator person(true);
+    Listening listening;
+    CHECK(person.MayArm(listening.say));
+    CHECK(listening.told.empty());
+    CHECK_FALSE(person.Stopper()());
+    strike(keyboard, person);
+    return person.Stopper()().value().second;
+  };
+  CHECK(stops_by([](Keyboard& keyboard, Operator&) { keyboard.Type('a'); }) == "a key was pressed");
+  CHECK(stops_by([](Keyboard&, Operator&) { std::raise(SIGHUP); }) == "SIGHUP came");
+  CHECK(stops_by([](Keyboard&, Operator& person) { person.CloseWindow(); }) ==
+        "the window was closed");
+}
+
+}  // namespace
+}  // namespace rift::hardware
