@@ -20,32 +20,32 @@ rift_room(gap ROOMS geometry statistics trajectory
   LIBRARIES fmt::fmt)
 rift_room(search ROOMS statistics
   PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt)
-rift_room(simulation ROOMS control geometry statistics trial
+rift_room(simulation ROOMS geometry statistics trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES PkgConfig::ODE PNG::PNG)
-rift_room(vision/camera ROOMS geometry statistics yaml
+rift_room(vision/camera ROOMS statistics yaml
   LIBRARIES Eigen3::Eigen opencv_core opencv_imgproc opencv_calib3d
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs opencv_videoio CURL::libcurl PkgConfig::JPEG)
 rift_room(vision/calibration ROOMS statistics vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs)
 rift_room(vision/tracking ROOMS geometry statistics vision/camera yaml
   PRIVATE_LIBRARIES fmt::fmt PkgConfig::APRILTAG)
-rift_room(vision/rendering ROOMS geometry vision/camera vision/calibration vision/tracking
+rift_room(vision/rendering ROOMS vision/camera vision/calibration vision/tracking
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
 rift_room(hardware ROOMS control geometry statistics trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Threads::Threads)
 rift_room(twin ROOMS control geometry hardware simulation statistics trajectory trial vision/camera vision/rendering
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
-rift_room(sweep/run ROOMS statistics
+rift_room(sweep/run
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES SQLiteCpp sqlite3)
-rift_room(experiment ROOMS control search trajectory yaml
+rift_room(experiment ROOMS control trajectory yaml
   OPTIONS gap hardware simulation trial twin sweep/run sweep/falsify sweep/calibrate
           vision/camera vision/calibration vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen)
-rift_room(sweep/falsify ROOMS control experiment gap geometry search simulation statistics sweep/run trajectory trial
+rift_room(sweep/falsify ROOMS control experiment gap search simulation statistics sweep/run trajectory trial yaml
   LIBRARIES fmt::fmt)
-rift_room(sweep/explain ROOMS experiment gap search statistics sweep/falsify sweep/run trajectory trial
+rift_room(sweep/explain ROOMS statistics sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
-rift_room(sweep/calibrate ROOMS control experiment gap geometry simulation statistics sweep/falsify sweep/run trajectory trial
+rift_room(sweep/calibrate ROOMS experiment gap geometry statistics sweep/falsify trajectory trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
 rift_room(report/figures ROOMS gap geometry statistics sweep/calibrate sweep/falsify trajectory
   LIBRARIES fmt::fmt)
@@ -60,8 +60,8 @@ rift_room(report/page ROOMS report/figures report/text sweep/explain sweep/falsi
 rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
-rift_room(commands ROOMS control experiment gap geometry hardware report/figures report/json
-    report/page report/text search simulation statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
-    trial twin view vision/calibration vision/camera
+rift_room(commands ROOMS control experiment gap hardware report/figures report/json
+    report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
+    twin view vision/calibration vision/camera
     vision/tracking yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)

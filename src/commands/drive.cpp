@@ -182,7 +182,7 @@ void BeginDriveFolder(const std::filesystem::path& folder, const experiment::Exp
 
 void SaveDrive(const std::filesystem::path& folder, const experiment::Experiment& experiment,
                const hardware::DriveRun& run) {
-  WriteFile(folder / "commands.csv", CommandsCsv(run.trial));
+  WriteFile(folder / "commands.csv", report::CommandsCsv(run.trial));
   WriteFile(folder / "stages.csv", StagesCsv(run.evidence));
   WriteFile(folder / "encoders.csv", EncodersCsv(run.evidence));
   WriteFile(folder / "summary.json", DriveJson(experiment, run));

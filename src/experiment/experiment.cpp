@@ -9,7 +9,6 @@
 #include "calibrate_keys.hpp"
 #include "rift/experiment/hooks.hpp"
 #include "rift/experiment/parameter.hpp"
-#include "rift/sweep/falsify/grid.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/describe.hpp"
 #include "rift/yaml/node.hpp"

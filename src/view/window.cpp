@@ -43,7 +43,7 @@ std::vector<std::string> Keys(const Playback& playback) {
 void PlayInWindow(const Film& film, const ViewOptions& options) {
   using Clock = std::chrono::steady_clock;
   const Window window;
-  const Painter painter(film.stage, {options.width_px, options.height_px});
+  const Painter painter(film.fixed, {options.width_px, options.height_px});
   const int last = static_cast<int>(film.scenes.size()) - 1;
   const double duration_s = last / film.fps;
   const int wait_ms = std::max(1, static_cast<int>(500.0 / film.fps));

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/sweep/falsify/result.hpp"
+#include "rift/experiment/parameter.hpp"
 
 namespace rift::experiment {
 
