@@ -60,8 +60,7 @@ rift_room(report/page ROOMS report/figures report/text sweep/explain sweep/falsi
 rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
-rift_room(commands ROOMS control experiment gap geometry hardware report/figures report/json
-    report/page report/text search simulation statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
-    trial twin view vision/calibration vision/camera
-    vision/tracking yaml
+rift_room(commands ROOMS control experiment gap hardware report/figures report/json report/page
+    report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory twin view
+    vision/calibration vision/camera vision/tracking yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
