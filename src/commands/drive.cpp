@@ -17,7 +17,7 @@
 #include "rift/view/drive_view.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/tracking/session.hpp"
-#include "rift/report/text/trial.hpp"
+#include "rift/report/json/trial.hpp"
 
 namespace rift::commands {
 namespace {

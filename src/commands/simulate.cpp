@@ -156,8 +156,8 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
   }
   if (show) show(made);
   fmt::print(stderr, "log: {}\n", RunFiles(made.out).trajectory.string());
-  fmt::print("{}", request.json ? SimulationJson(made.experiment, made.run)
-                                : SimulationText(made.experiment, made.run));
+  fmt::print("{}", request.json ? report::SimulationJson(made.experiment, made.run)
+                                : report::SimulationText(made.experiment, made.run));
   return made.run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;
 }
 

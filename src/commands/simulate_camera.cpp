@@ -118,7 +118,7 @@ view::Film FilmOf(const experiment::Experiment& experiment, const sweep::Simulat
     shown.waypoints.push_back({waypoint.name, waypoint.Position()});
     shown.reference_m.push_back(waypoint.Position());
   }
-  for (const report::FloorArea& area : AreasOf(trial.simulation.terrain)) {
+  for (const geometry::FloorArea& area : AreasOf(trial.simulation.terrain)) {
     shown.patches.push_back({area.label, area.x_min_m, area.x_max_m, area.y_min_m, area.y_max_m});
   }
   return view::MakeFilm(shown);

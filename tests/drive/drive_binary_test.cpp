@@ -204,7 +204,7 @@ TEST_CASE("A device is asked for the size of its calibration as in tracking") {
   INFO(result.out << result.err);
   CHECK(result.exit_code == 1);
   CHECK_THAT(result.err, Catch::Contains("the robot stands at x"));
-  CHECK(scene.Summary()["outcome"] == "timeout");
+  CHECK(scene.Summary()["outcome"] == "timed_out");
   CHECK(scene.Summary()["poses"] > 5);
   const std::string kept = ReadFile(scene.folder / "run/camera.yaml");
   CHECK(vision::ReadCamera(kept, "camera.yaml").width_px == 960);

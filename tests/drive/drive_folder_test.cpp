@@ -7,6 +7,7 @@
 #include "hardware/bench.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/vision/camera/camera_file.hpp"
+#include "support/documented.hpp"
 #include "support/paper_camera.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/process.hpp"
@@ -51,10 +52,14 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   CHECK(summary["stop"]["reason"] == "finished");
   CHECK(summary["latency"]["capture_to_command"]["p50_s"] < 0.03);
   CHECK(summary["latency"]["capture_to_command"]["n"] > 30);
+  CHECK(test::KeysOf(summary) == test::DocumentedKeys("summary.json of rift drive"));
+  CHECK(test::KeysOf(summary["ping"]) == test::DocumentedKeys("rift drive --ping --json"));
   const std::string stages = ReadFile(folder / "stages.csv");
+  CHECK(test::Columns(stages) == test::Documented("files.md", "Columns of stages.csv"));
   const auto rows = std::count(stages.begin(), stages.end(), '\n');
   CHECK(rows == 1 + static_cast<long>(run.evidence.poses.size()));
   const std::string encoders = ReadFile(folder / "encoders.csv");
+  CHECK(test::Columns(encoders) == test::Documented("files.md", "Columns of encoders.csv"));
   CHECK(std::count(encoders.begin(), encoders.end(), '\n') > rows - 5);
   CHECK(vision::ReadCamera(ReadFile(folder / "camera.yaml"), "camera").world);
   const trajectory::Log log = trajectory::ReadLog(ReadFile(folder / "trajectory.csv"), "trajectory",

@@ -1,12 +1,14 @@
 #include "rift/hardware/operator.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <csignal>
 
 #include "pseudo_terminal.hpp"
+#include "support/until.hpp"
 
 namespace rift::hardware {
 namespace {
@@ -26,7 +28,12 @@ class Keyboard {
   Keyboard(const Keyboard&) = delete;
   Keyboard& operator=(const Keyboard&) = delete;
 
-  void Type(char key) { terminal_.Write({static_cast<std::uint8_t>(key)}); }
+  /// Returns when the key can be read: the system hands it over in its own time.
+  void Type(char key) {
+    terminal_.Write({static_cast<std::uint8_t>(key)});
+    pollfd wanted{STDIN_FILENO, POLLIN, 0};
+    REQUIRE(::poll(&wanted, 1, static_cast<int>(1000 * test::kGiveUp.count())) == 1);
+  }
 
  private:
   hardware::PseudoTerminal terminal_;
