@@ -24,12 +24,12 @@ TEST_CASE("Quantiles of one list are the same number in gap and track and drive"
   CHECK(parting.median_error_m == Approx(0.5 * parting.gap_m));
   CHECK(parting.p95_error_m == Approx(0.95 * parting.gap_m));
 
-  TrackRun track;
+  vision::TrackRun track;
   track.latencies_s = OneToTen();
   const std::string text = TrackText(track, 10);
   CHECK_THAT(text, Catch::Contains("p50 5500 ms, p95 9550 ms"));
 
-  DriveRun drive;
+  hardware::DriveRun drive;
   for (const double latency_s : OneToTen()) {
     hardware::PoseStages stages;
     stages.captured_s = 100.0;
