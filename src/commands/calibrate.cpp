@@ -41,8 +41,8 @@ int Calibrate(const experiment::Experiment& experiment, const CalibrateRequest& 
   const std::string json = report::CalibrationJson(experiment, found);
   WriteFile(request.out / "calibration.json", json);
   if (!request.robot_file.empty()) {
-    WriteFile(request.robot_file,
-              report::RobotYaml(experiment, found, evaluator.InputsText(), request.experiment_file));
+    WriteFile(request.robot_file, report::RobotYaml(experiment, found, evaluator.InputsText(),
+                                                    request.experiment_file));
   }
   fmt::print("{}", request.json ? json : report::CalibrationText(found));
   WriteFigures(request.out / "figures", experiment.name, found);

@@ -12,12 +12,12 @@
 #include "rift/hardware/camera_poses.hpp"
 #include "rift/hardware/operator.hpp"
 #include "rift/hardware/serial_port.hpp"
+#include "rift/report/json/trial.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/view/display.hpp"
 #include "rift/view/drive_view.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/tracking/session.hpp"
-#include "rift/report/json/trial.hpp"
 
 namespace rift::commands {
 namespace {

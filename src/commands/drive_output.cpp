@@ -4,9 +4,9 @@
 
 #include <array>
 
-#include "rift/statistics/quantile.hpp"
 #include "rift/report/json/fields.hpp"
 #include "rift/report/json/trial.hpp"
+#include "rift/statistics/quantile.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::commands {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
-#include "rift/report/json/fields.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/report/json/fields.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/twin/twin.hpp"
 #include "rift/view/display.hpp"
@@ -41,18 +41,18 @@ std::string Ending(const twin::TwinRun& run) {
 
 std::string TwinJson(const experiment::Experiment& experiment, const twin::TwinRun& run) {
   return report::Dump({{"name", experiment.name},
-               {"rift_version", RIFT_VERSION},
-               {"seed", experiment.seed},
-               {"ending", Ending(run)},
-               {"has_driven", run.has_driven},
-               {"true_path_length_m", run.truth.ArcLength_m()},
-               {"began_steady_s", run.began_s},
-               {"skipped_s", run.skipped_s},
-               {"pictures", run.pictures},
-               {"picture_cpu_s", run.picture_cpu_s},
-               {"picture_late_p99_s", run.picture_late_p99_s},
-               {"robot_stopped_by_itself", run.stops},
-               {"robot_rejected", run.rejected}});
+                       {"rift_version", RIFT_VERSION},
+                       {"seed", experiment.seed},
+                       {"ending", Ending(run)},
+                       {"has_driven", run.has_driven},
+                       {"true_path_length_m", run.truth.ArcLength_m()},
+                       {"began_steady_s", run.began_s},
+                       {"skipped_s", run.skipped_s},
+                       {"pictures", run.pictures},
+                       {"picture_cpu_s", run.picture_cpu_s},
+                       {"picture_late_p99_s", run.picture_late_p99_s},
+                       {"robot_stopped_by_itself", run.stops},
+                       {"robot_rejected", run.rejected}});
 }
 
 void Save(const fs::path& folder, const experiment::Experiment& experiment,
@@ -70,8 +70,8 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
             const fs::path& folder) {
   experiment::Experiment as_twin = experiment;
   as_twin.simulation = twin::AsTwin(experiment.simulation, experiment.twin);
-  const sweep::SimulatedTrial trial = sweep::SimulatedTrialOf(
-      as_twin, {}, experiment.seed, experiment_file, FileInputs());
+  const sweep::SimulatedTrial trial =
+      sweep::SimulatedTrialOf(as_twin, {}, experiment.seed, experiment_file, FileInputs());
   vision::SyntheticCameraOptions look = experiment.twin.camera;
   look.shutter_s = as_twin.simulation.mocap.exposure_s;
   const twin::TwinSetup setup{as_twin.simulation,

@@ -153,7 +153,8 @@ void SaveReport(const fs::path& out, const sweep::SweepResult& result,
                 const std::vector<sweep::GroupLikeness>& likeness, sweep::Evaluator& evaluator) {
   WriteFile(out / "explanation.json", report::ExplanationJson(result, explanation));
   WriteSweepReport(out, result, explanation, evaluator);
-  if (!likeness.empty()) WriteFile(out / "likeness.json", report::Dump(report::LikenessJson(likeness)));
+  if (!likeness.empty())
+    WriteFile(out / "likeness.json", report::Dump(report::LikenessJson(likeness)));
 }
 
 void Print(const SweepRequest& request, const sweep::SweepResult& result,

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "files.hpp"
+#include "rift/report/json/fields.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/statistics/quantile.hpp"
 #include "rift/yaml/enum_name.hpp"
-#include "files.hpp"
-#include "rift/report/json/fields.hpp"
 #include "rift/yaml/write.hpp"
 
 namespace rift::commands {
@@ -25,7 +25,8 @@ double RowsPerSecond(const vision::TrackRun& run, int rows) {
 ordered_json MissesJson(const vision::TrackRun& run) {
   ordered_json json = ordered_json::object();
   for (std::size_t i = 1; i < run.misses.size(); ++i) {
-    if (run.misses[i] > 0) json[std::string(yaml::NameOf(static_cast<vision::Miss>(i)))] = run.misses[i];
+    if (run.misses[i] > 0)
+      json[std::string(yaml::NameOf(static_cast<vision::Miss>(i)))] = run.misses[i];
   }
   return json;
 }
@@ -108,13 +109,14 @@ std::string TrackText(const vision::TrackRun& run, int rows) {
   text += fmt::format("; {} pictures, {}, {} dropped\n", run.frames, MissesText(run),
                       run.status.dropped);
   if (!run.latencies_s.empty()) {
-    text +=
-        fmt::format("latency from light to pose: p50 {:.0f} ms, p95 {:.0f} ms\n",
-                    1e3 * statistics::Quantile(run.latencies_s, 0.5), 1e3 * statistics::Quantile(run.latencies_s, 0.95));
+    text += fmt::format("latency from light to pose: p50 {:.0f} ms, p95 {:.0f} ms\n",
+                        1e3 * statistics::Quantile(run.latencies_s, 0.5),
+                        1e3 * statistics::Quantile(run.latencies_s, 0.95));
   }
   if (!run.costs_s.empty()) {
     text += fmt::format("finding the tag: p50 {:.1f} ms, p95 {:.1f} ms\n",
-                        1e3 * statistics::Quantile(run.costs_s, 0.5), 1e3 * statistics::Quantile(run.costs_s, 0.95));
+                        1e3 * statistics::Quantile(run.costs_s, 0.5),
+                        1e3 * statistics::Quantile(run.costs_s, 0.95));
   }
   if (run.most_tags_of_this_id > 1) {
     text += fmt::format("{} tags of this id were in the picture: take the others away\n",

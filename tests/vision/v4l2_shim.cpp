@@ -252,29 +252,44 @@ T& As(void* argument) {
 int Answer(Camera& camera, int descriptor, Device& device, unsigned long request, void* argument) {
   if (camera.FaultIs("unplug")) return Error(ENODEV);
   switch (request) {
-    case VIDIOC_QUERYCAP: return Capabilities(As<v4l2_capability>(argument));
-    case VIDIOC_ENUM_FMT: return Describe(camera, As<v4l2_fmtdesc>(argument));
-    case VIDIOC_G_FMT: return Format(camera, device, As<v4l2_format>(argument), false);
+    case VIDIOC_QUERYCAP:
+      return Capabilities(As<v4l2_capability>(argument));
+    case VIDIOC_ENUM_FMT:
+      return Describe(camera, As<v4l2_fmtdesc>(argument));
+    case VIDIOC_G_FMT:
+      return Format(camera, device, As<v4l2_format>(argument), false);
     case VIDIOC_TRY_FMT:
-    case VIDIOC_S_FMT: return Format(camera, device, As<v4l2_format>(argument), true);
-    case VIDIOC_G_PARM: return Parameters(device, As<v4l2_streamparm>(argument), false);
-    case VIDIOC_S_PARM: return Parameters(device, As<v4l2_streamparm>(argument), true);
-    case VIDIOC_G_INPUT: As<int>(argument) = 0; return 0;
-    case VIDIOC_S_INPUT: return 0;
-    case VIDIOC_ENUMINPUT: return As<v4l2_input>(argument).index == 0 ? 0 : Error(EINVAL);
+    case VIDIOC_S_FMT:
+      return Format(camera, device, As<v4l2_format>(argument), true);
+    case VIDIOC_G_PARM:
+      return Parameters(device, As<v4l2_streamparm>(argument), false);
+    case VIDIOC_S_PARM:
+      return Parameters(device, As<v4l2_streamparm>(argument), true);
+    case VIDIOC_G_INPUT:
+      As<int>(argument) = 0;
+      return 0;
+    case VIDIOC_S_INPUT:
+      return 0;
+    case VIDIOC_ENUMINPUT:
+      return As<v4l2_input>(argument).index == 0 ? 0 : Error(EINVAL);
     case VIDIOC_REQBUFS:
       return RequestBuffers(camera, device, descriptor, As<v4l2_requestbuffers>(argument));
-    case VIDIOC_QUERYBUF: return QueryBuffer(device, As<v4l2_buffer>(argument));
+    case VIDIOC_QUERYBUF:
+      return QueryBuffer(device, As<v4l2_buffer>(argument));
     case VIDIOC_QBUF:
       device.queued.push_back(static_cast<int>(As<v4l2_buffer>(argument).index));
       return 0;
-    case VIDIOC_DQBUF: return Dequeue(camera, device, As<v4l2_buffer>(argument));
+    case VIDIOC_DQBUF:
+      return Dequeue(camera, device, As<v4l2_buffer>(argument));
     case VIDIOC_STREAMON:
       device.started_s = Now_s();
       device.next_frame = 0;
       return 0;
-    case VIDIOC_STREAMOFF: device.queued.clear(); return 0;
-    default: return Error(EINVAL);
+    case VIDIOC_STREAMOFF:
+      device.queued.clear();
+      return 0;
+    default:
+      return Error(EINVAL);
   }
 }
 

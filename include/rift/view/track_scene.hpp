@@ -18,10 +18,10 @@ struct TrackScene {
   const vision::CameraModel* camera = nullptr;
   const vision::Frame* frame = nullptr;  ///< the picture; none: nothing came yet
   std::optional<vision::Sighting> sighting;
-  std::vector<Eigen::Vector2d> trail_m;  ///< where the tag was, in the map
-  std::vector<Eigen::Vector2d> path_m;   ///< to hold the trail against; may be empty
+  std::vector<Eigen::Vector2d> trail_m;         ///< where the tag was, in the map
+  std::vector<Eigen::Vector2d> path_m;          ///< to hold the trail against; may be empty
   std::vector<geometry::NamedPoint> waypoints;  ///< in the map
-  double plane_z_m = 0.0;  ///< of the map: path, waypoints and trail lie in it
+  double plane_z_m = 0.0;                       ///< of the map: path, waypoints and trail lie in it
   vision::CaptureStatus status;
   double latency_s = 0.0;            ///< from the light to the pose; NaN of a recording
   std::vector<std::string> prompts;  ///< what the user is asked or told, lines at the foot

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "rift/view/options.hpp"
 #include "rift/view/film.hpp"
+#include "rift/view/options.hpp"
 
 namespace rift::view {
 

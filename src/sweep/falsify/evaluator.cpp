@@ -13,8 +13,8 @@
 #include "rift/experiment/path_template.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/labels.hpp"
-#include "rift/yaml/enum_name.hpp"
 #include "rift/yaml/bind.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sweep {
 namespace {

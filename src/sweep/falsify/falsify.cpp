@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "rift/sweep/falsify/grid.hpp"
 #include "rift/statistics/mean.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/search_space.hpp"
 #include "rift/sweep/falsify/summary.hpp"
 

@@ -25,8 +25,7 @@ trajectory::Log ReadMovedLog(const std::string& text, const std::string& path,
                                             path, options.tag_offset_m,
                                             WhyNoYaw(log, options.format_key)));
   }
-  log.trajectory =
-      trajectory::OffsetAlongHeading(std::move(log.trajectory), options.tag_offset_m);
+  log.trajectory = trajectory::OffsetAlongHeading(std::move(log.trajectory), options.tag_offset_m);
   return log;
 }
 

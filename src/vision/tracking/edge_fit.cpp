@@ -63,8 +63,8 @@ std::optional<EdgeLine> FitLine(const std::vector<Eigen::Vector2d>& points, doub
   std::vector<Eigen::Vector2d> kept = points;
   EdgeLine line = LeastSquares(kept);
   for (int round = 0; round < kRounds; ++round) {
-    const double limit =
-        3.0 * std::max(least_sigma, statistics::kSigmaOfMedianDeviation * MedianDistance(line, points));
+    const double limit = 3.0 * std::max(least_sigma, statistics::kSigmaOfMedianDeviation *
+                                                         MedianDistance(line, points));
     kept.clear();
     std::copy_if(points.begin(), points.end(), std::back_inserter(kept),
                  [&](const Eigen::Vector2d& p) { return std::abs(line.Distance(p)) <= limit; });
