@@ -52,15 +52,15 @@ rift_room(report/figures ROOMS gap geometry statistics sweep/calibrate sweep/fal
 rift_room(report/text ROOMS experiment gap report/figures statistics sweep/calibrate sweep/explain
     sweep/falsify yaml
   LIBRARIES fmt::fmt)
-rift_room(report/json ROOMS experiment gap report/text sweep/calibrate sweep/explain sweep/falsify
-    trial yaml
+rift_room(report/json ROOMS control experiment gap hardware report/text statistics sweep/calibrate
+    sweep/explain sweep/falsify trial vision/calibration vision/tracking yaml
   LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
 rift_room(report/page ROOMS report/figures report/text sweep/explain sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
-rift_room(commands ROOMS control experiment gap hardware report/figures report/json
+rift_room(commands ROOMS experiment gap hardware report/figures report/json
     report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
     twin view vision/calibration vision/camera
     vision/tracking yaml

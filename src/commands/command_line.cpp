@@ -1,15 +1,22 @@
+#include "rift/commands/camera_program.hpp"
+#include "rift/commands/command.hpp"
+
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <stdexcept>
 
-#include "rift/commands/command.hpp"
 #include "rift/yaml/node.hpp"
 #include "rift/yaml/suggest.hpp"
 
 namespace rift::commands {
+
 namespace {
 
 /// CLI11 calls a mistyped subcommand "an argument that was not expected".
@@ -71,6 +78,36 @@ int RunCommandLine(int argc, char** argv, const CameraUses& camera) {
   } catch (const std::exception& error) {
     return Fail(error.what(), kRunTimeFailure);
   }
+}
+
+std::vector<Command> Commands(const CameraUses& camera) {
+  return {
+      {"simulate", "Drive the simulated robot through a waypoint task",
+       [camera](CLI::App& app, int& exit_code) { AddSimulate(app, exit_code, camera); }},
+      {"track", "Track the robot's tag with a camera, or calibrate the camera",
+       [camera](CLI::App& app, int& exit_code) { AddTrack(app, exit_code, camera); }},
+      {"drive", "Drive the real robot through a waypoint task, or measure its radio link",
+       [camera](CLI::App& app, int& exit_code) { AddDrive(app, exit_code, camera); }},
+      {"gap", "Measure the Sim-to-Real gap of trajectories", AddGap},
+      {"sweep", "Find where in a parameter space the gap is too large, and why", AddSweep},
+  };
+}
+
+namespace fs = std::filesystem;
+
+void RunCameraProgram(char** argv) {
+  const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
+  const fs::path relative = "lib/rift/rift-camera";
+  const fs::path in_build = folder / relative;
+  const fs::path program = fs::exists(in_build) ? in_build : folder.parent_path() / relative;
+  if (!fs::exists(program)) {
+    throw std::runtime_error(fmt::format(
+        "cameras, windows and videos need the program {}, which is not there: build and install "
+        "rift again, with libopencv-dev",
+        program.string()));
+  }
+  ::execv(program.c_str(), argv);
+  throw std::runtime_error(fmt::format("cannot run {}: {}", program.string(), strerror(errno)));
 }
 
 }  // namespace rift::commands

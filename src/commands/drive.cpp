@@ -6,12 +6,12 @@
 #include <memory>
 #include <stdexcept>
 
-#include "drive_output.hpp"
 #include "files.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/hardware/camera_poses.hpp"
 #include "rift/hardware/operator.hpp"
 #include "rift/hardware/serial_port.hpp"
+#include "rift/report/json/drive.hpp"
 #include "rift/report/json/trial.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/view/display.hpp"
@@ -40,7 +40,8 @@ int PingRobot(const DriveRequest& request) {
   hardware::SerialPort port(request.port, options.line.baud, options.line.write_timeout_s);
   hardware::SteadyClock clock;
   const hardware::PingResult ping = hardware::MeasureLink(port, clock, options);
-  fmt::print("{}", request.json ? PingJson(ping, options) : PingText(ping, options));
+  fmt::print("{}",
+             request.json ? report::PingJson(ping, options) : report::PingText(ping, options));
   const bool is_good = ping.IsMeasured() && hardware::BrokenBudget(ping, options.ping).empty();
   return is_good ? kDone : kNotReached;
 }
@@ -164,7 +165,7 @@ int DriveRobot(const DriveRequest& request) {
     SaveDrive(folder, experiment, run);
     Say("log: " + (folder / "trajectory.csv").string());
   }
-  fmt::print("{}", request.json ? DriveJson(experiment, run) : DriveText(run));
+  fmt::print("{}", request.json ? report::DriveJson(experiment, run) : report::DriveText(run));
   return run.trial.outcome == trial::Outcome::kReached ? kDone : kNotReached;
 }
 
@@ -183,9 +184,9 @@ void BeginDriveFolder(const std::filesystem::path& folder, const experiment::Exp
 void SaveDrive(const std::filesystem::path& folder, const experiment::Experiment& experiment,
                const hardware::DriveRun& run) {
   WriteFile(folder / "commands.csv", report::CommandsCsv(run.trial));
-  WriteFile(folder / "stages.csv", StagesCsv(run.evidence));
-  WriteFile(folder / "encoders.csv", EncodersCsv(run.evidence));
-  WriteFile(folder / "summary.json", DriveJson(experiment, run));
+  WriteFile(folder / "stages.csv", report::StagesCsv(run.evidence));
+  WriteFile(folder / "encoders.csv", report::EncodersCsv(run.evidence));
+  WriteFile(folder / "summary.json", report::DriveJson(experiment, run));
   WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.trial.trajectory));
 }
 

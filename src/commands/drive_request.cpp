@@ -5,7 +5,6 @@
 
 #include "drive.hpp"
 #include "flags.hpp"
-#include "keys_flag.hpp"
 #include "rift/commands/command.hpp"
 
 namespace rift::commands {

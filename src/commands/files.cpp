@@ -2,16 +2,20 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <thread>
 
 namespace rift::commands {
+
 namespace {
 
 /// An open file, closed at the end of its scope.
@@ -174,6 +178,103 @@ void WriteFile(const std::filesystem::path& target, std::string_view text) {
     std::filesystem::remove(beside, error);
     throw std::runtime_error(fmt::format("cannot write {}: {}", path.string(), reason.message()));
   }
+}
+
+namespace {
+
+int Open(const std::filesystem::path& folder) {
+  return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+/// Workers of a sweep that was killed a moment ago may still be dying.
+bool LockWithin(int descriptor, std::chrono::milliseconds patience) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK && errno != EINTR) return true;  // a file system without locks
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return true;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw std::runtime_error(
+        fmt::format("cannot make folder {}: {}", folder.string(), error.message()));
+  }
+  descriptor_ = Open(folder);
+  if (descriptor_ < 0) {
+    throw std::runtime_error(
+        fmt::format("cannot open folder {}: {}", folder.string(), strerror(errno)));
+  }
+  if (LockWithin(descriptor_, std::chrono::seconds(1))) return;
+  ::close(descriptor_);
+  throw std::runtime_error(fmt::format(
+      "another sweep is at work in {}: wait for it (rift sweep --status {}), or choose another "
+      "folder with --out",
+      folder.string(), folder.string()));
+}
+
+FolderLock::~FolderLock() { ::close(descriptor_); }
+
+bool FolderLock::IsHeld(const std::filesystem::path& folder) {
+  const int descriptor = Open(folder);
+  if (descriptor < 0) return false;
+  const bool is_held = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  return is_held;
+}
+
+namespace fs = std::filesystem;
+
+bool IsSameFile(const fs::path& a, const fs::path& b) {
+  std::error_code not_there;
+  return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal() ||
+         fs::equivalent(a, b, not_there);
+}
+
+void CheckOutputs(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
+  std::vector<fs::path> taken = inputs;
+  for (const fs::path& output : outputs) {
+    std::error_code not_there;
+    if (fs::is_directory(output, not_there)) {
+      throw std::invalid_argument(output.string() + " is a folder: name a file");
+    }
+    const bool is_taken = std::any_of(taken.begin(), taken.end(), [&](const fs::path& other) {
+      return IsSameFile(output, other);
+    });
+    if (is_taken) {
+      throw std::invalid_argument(
+          fmt::format("{} is an input or another output: name another file", output.string()));
+    }
+    taken.push_back(output);
+  }
+}
+
+void RefuseSweepFolder(const fs::path& folder) {
+  if (!fs::exists(folder / "journal.sqlite") && !fs::exists(folder / "table.csv")) return;
+  throw std::invalid_argument(
+      fmt::format("{} holds a sweep: name another folder with --out", folder.string()));
+}
+
+namespace {
+
+report::FigureFormat FormatOf(const std::filesystem::path& path) {
+  if (path.extension() == ".svg") return report::FigureFormat::kSvg;
+  if (path.extension() == ".png") return report::FigureFormat::kPng;
+  throw std::invalid_argument("--figure " + path.string() + ": the name must end in .svg or .png");
+}
+
+}  // namespace
+
+void RequireFigureName(const std::filesystem::path& path) { FormatOf(path); }
+
+void WriteFigure(const std::filesystem::path& path, const report::Figure& figure) {
+  WriteFile(path, report::Render(figure, FormatOf(path)));
 }
 
 }  // namespace rift::commands

@@ -85,4 +85,7 @@ void AddFlags(CLI::App& app, Options& options) {
   Options::Fields(options, FlagMaker(app));
 }
 
+/// `--keys`: lists every key that an experiment can have, and ends.
+void AddKeysFlag(CLI::App& app);
+
 }  // namespace rift::commands

@@ -7,10 +7,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "figure_file.hpp"
 #include "files.hpp"
 #include "flags.hpp"
-#include "outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/gap/result.hpp"
 #include "rift/report/figures/gap_figures.hpp"

@@ -6,26 +6,27 @@
 #include <memory>
 #include <optional>
 
-#include "calibrate.hpp"
 #include "files.hpp"
-#include "folder_lock.hpp"
-#include "keys_flag.hpp"
+#include "flags.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/report/figures/calibration_figure.hpp"
+#include "rift/report/json/calibration.hpp"
 #include "rift/report/json/fields.hpp"
 #include "rift/report/json/likeness.hpp"
 #include "rift/report/json/sweep.hpp"
 #include "rift/report/json/table.hpp"
+#include "rift/report/text/calibration.hpp"
 #include "rift/report/text/likeness.hpp"
 #include "rift/report/text/sweep.hpp"
+#include "rift/sweep/calibrate/identification.hpp"
 #include "rift/sweep/calibrate/sweep_likeness.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "sweep_explain.hpp"
-#include "sweep_report.hpp"
 #include "sweep_run.hpp"
-#include "sweep_status.hpp"
 
 namespace rift::commands {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,16 +170,46 @@ void Print(const SweepRequest& request, const sweep::SweepResult& result,
   fmt::print("{}", report::ExplanationText(result, explanation, request.explain.suggest > 0));
 }
 
-int CalibrateFor(const SweepRequest& request, const experiment::Experiment& experiment) {
+void WriteFigures(const std::filesystem::path& folder, const std::string& name,
+                  const sweep::CalibrationReport& found) {
+  const std::optional<report::Figure> figure = report::CalibrationFigure(name, found);
+  if (!figure) {
+    fmt::print(stderr,
+               "note: no figure: no log has a simulated run that reached the end, both "
+               "before and after the fit\n");
+    return;
+  }
+  WriteFile(folder / (figure->name + ".svg"), report::Render(*figure, report::FigureFormat::kSvg));
+  WriteFile(folder / (figure->name + ".png"), report::Render(*figure, report::FigureFormat::kPng));
+}
+
+/// Fits, judges, writes calibration.json, experiment.yaml, inputs.txt, figures and the robot's
+/// file, and prints the table; returns the exit code.
+int Calibrate(const SweepRequest& request, const experiment::Experiment& experiment) {
   const fs::path out = OutputOf(request.out, experiment.name);
   const FolderLock lock(out);
-  return Calibrate(experiment, {request.experiment, out, request.write_robot, request.jobs,
-                                request.quiet, request.json});
+  const auto say = [&request](const std::string& line) {
+    if (!request.quiet) fmt::print(stderr, "{}\n", line);
+  };
+  sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
+  const sweep::CalibrationReport found = sweep::Identify(evaluator, request.jobs, say);
+  WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
+  WriteFile(out / "inputs.txt", evaluator.InputsText());
+  const std::string json = report::CalibrationJson(experiment, found);
+  WriteFile(out / "calibration.json", json);
+  if (!request.write_robot.empty()) {
+    WriteFile(request.write_robot,
+              report::RobotYaml(experiment, found, evaluator.InputsText(), request.experiment));
+  }
+  fmt::print("{}", request.json ? json : report::CalibrationText(found));
+  WriteFigures(out / "figures", experiment.name, found);
+  say(fmt::format("written: {}", (out / "calibration.json").string()));
+  return kDone;
 }
 
 int Sweep(const SweepRequest& request) {
   const experiment::Experiment loaded = LoadFor(request);
-  if (loaded.goal == experiment::Goal::kCalibrate) return CalibrateFor(request, loaded);
+  if (loaded.goal == experiment::Goal::kCalibrate) return Calibrate(request, loaded);
 
   const experiment::Experiment experiment = PlanFor(request, loaded);
   sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());

@@ -48,4 +48,10 @@ bool SpendTrials(const std::filesystem::path& folder, const sweep::SweepResult& 
                  const ExplainRequest& request, sweep::Evaluator& evaluator,
                  const FurtherTrials::Style& style, bool is_silent);
 
+/// Draws the figures (SVG and PNG, in DIR/figures) and writes DIR/report.html. `sources` bring
+/// the paths of the worst trial and of a typical failure of each kind again. Figures that make no
+/// sense for this space are named on stderr.
+void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
+                      const sweep::Explanation& explanation, sweep::Evaluator& evaluator);
+
 }  // namespace rift::commands

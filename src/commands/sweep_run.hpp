@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "sweep_progress.hpp"
@@ -25,5 +26,9 @@ int CoresToUse();
 /// in the folder. Nothing when it was stopped: the same call goes on.
 std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
                                            const SweepRunRequest& request);
+
+/// How far the sweep in a folder is: while it runs, when it was stopped or killed, or when it is
+/// done. Throws std::invalid_argument when there is no journal of a sweep.
+std::string SweepStatus(const std::filesystem::path& folder, bool json);
 
 }  // namespace rift::commands

@@ -8,6 +8,8 @@
 #include "files.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/experiment/experiment.hpp"
+#include "rift/report/json/track.hpp"
+#include "rift/statistics/hash.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/view/display.hpp"
 #include "rift/view/track_view.hpp"
@@ -20,7 +22,6 @@
 #include "rift/vision/tracking/world_setting.hpp"
 #include "stop_signal.hpp"
 #include "track_log.hpp"
-#include "track_output.hpp"
 #include "track_request.hpp"
 
 namespace rift::commands {
@@ -53,7 +54,7 @@ view::TrackView::Content ContentOf(const TrackRequest& request) {
   view::TrackView::Content content;
   if (!request.record_waypoints.empty()) {
     content.save = [file = request.record_waypoints](const auto& waypoints) {
-      WriteFile(file, WaypointsYaml(waypoints));
+      WriteFile(file, report::WaypointsYaml(waypoints));
     };
   }
   if (request.path.empty()) return content;
@@ -115,8 +116,11 @@ void SetAndSaveWorld(const TrackRequest& request, const std::function<bool()>& i
 int Report(const TrackRequest& request, const vision::CameraModel& camera,
            const experiment::TrackOptions& options, const vision::TrackRun& run) {
   const fs::path run_file = RunFileOf(request.out);
-  WriteFile(run_file, TrackJson(request, camera, options, run, run.rows));
-  fmt::print("{}", TrackText(run, run.rows));
+  WriteFile(run_file, report::TrackJson(
+                          {request.camera, request.calibration,
+                           statistics::Hash128Text(ReadFile(request.calibration)), request.session},
+                          camera, options, run, run.rows));
+  fmt::print("{}", report::TrackText(run, run.rows));
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
   Say(fmt::format("{}; run: {}", log, run_file.string()));
   if (run.has_failed) return kRunTimeFailure;
@@ -169,7 +173,7 @@ vision::Calibration CalibrateFor(const TrackRequest& request) {
 
 int CalibrateAndSave(const TrackRequest& request) {
   vision::Calibration calibration = CalibrateFor(request);
-  fmt::print("{}", CalibrationText(calibration));
+  fmt::print("{}", report::CalibrationText(calibration));
   const fs::path picture = request.picture.empty() ? fs::path(request.out).replace_extension(".png")
                                                    : fs::path(request.picture);
   vision::DrawCalibration(calibration, picture);
@@ -179,7 +183,8 @@ int CalibrateAndSave(const TrackRequest& request) {
     return kNotReached;
   }
   calibration.camera.name = fs::path(request.out).stem().string();
-  WriteFile(request.out, CalibrationComment(calibration) + vision::WriteCamera(calibration.camera));
+  WriteFile(request.out,
+            report::CalibrationComment(calibration) + vision::WriteCamera(calibration.camera));
   Say(fmt::format("calibration: {}", request.out));
   return kDone;
 }

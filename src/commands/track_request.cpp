@@ -7,9 +7,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "files.hpp"
 #include "flags.hpp"
-#include "keys_flag.hpp"
-#include "outputs.hpp"
 #include "rift/commands/command.hpp"
 
 namespace rift::commands {

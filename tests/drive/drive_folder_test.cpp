@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/drive.hpp"
-#include "commands/drive_output.hpp"
 #include "commands/files.hpp"
 #include "hardware/bench.hpp"
+#include "rift/report/json/drive.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "support/documented.hpp"
@@ -41,7 +41,7 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   CHECK(run.ping.protocol == hardware::Protocol::kFramed);
   REQUIRE(told.size() == 3);
   CHECK_THAT(told[1], Catch::StartsWith("worst stopping distance 0.2"));
-  CHECK_THAT(DriveText(run), Catch::Contains("acknowledged the stop"));
+  CHECK_THAT(report::DriveText(run), Catch::Contains("acknowledged the stop"));
 
   const test::TemporaryFolder folder;
   BeginDriveFolder(folder.Path(), experiment, test::PaperCamera());

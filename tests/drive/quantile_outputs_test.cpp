@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "commands/drive_output.hpp"
-#include "commands/track_output.hpp"
 #include "rift/gap/comparison.hpp"
+#include "rift/report/json/drive.hpp"
+#include "rift/report/json/track.hpp"
 #include "rift/statistics/quantile.hpp"
 #include "support/paths.hpp"
 
@@ -26,7 +26,7 @@ TEST_CASE("Quantiles of one list are the same number in gap and track and drive"
 
   vision::TrackRun track;
   track.latencies_s = OneToTen();
-  const std::string text = TrackText(track, 10);
+  const std::string text = report::TrackText(track, 10);
   CHECK_THAT(text, Catch::Contains("p50 5500 ms, p95 9550 ms"));
 
   hardware::DriveRun drive;
@@ -36,8 +36,8 @@ TEST_CASE("Quantiles of one list are the same number in gap and track and drive"
     stages.written_s = 100.0 + latency_s;
     drive.evidence.poses.push_back(stages);
   }
-  CHECK_THAT(DriveText(drive), Catch::Contains("p50 5500.0 ms, p95 9550.0"));
-  const auto json = nlohmann::json::parse(DriveJson({}, drive));
+  CHECK_THAT(report::DriveText(drive), Catch::Contains("p50 5500.0 ms, p95 9550.0"));
+  const auto json = nlohmann::json::parse(report::DriveJson({}, drive));
   CHECK(json["latency"]["capture_to_command"]["p95_s"] == Approx(kP95));
 
   CHECK(statistics::Median(OneToTen()) == Approx(kMedian));

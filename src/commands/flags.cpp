@@ -1,4 +1,4 @@
-#include "keys_flag.hpp"
+#include "flags.hpp"
 
 #include <fmt/format.h>
 

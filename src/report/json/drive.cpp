@@ -1,4 +1,4 @@
-#include "drive_output.hpp"
+#include "rift/report/json/drive.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "rift/statistics/quantile.hpp"
 #include "rift/yaml/enum_name.hpp"
 
-namespace rift::commands {
+namespace rift::report {
 namespace {
 
 using hardware::PoseStages;
@@ -96,7 +96,7 @@ std::string Cell(double time_s) { return time_s < 0.0 ? "" : fmt::format("{:.6f}
 }  // namespace
 
 std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
-  return report::Dump(PingBlock(ping, options));
+  return Dump(PingBlock(ping, options));
 }
 
 std::string PingText(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
@@ -143,9 +143,9 @@ std::string DriveJson(const experiment::Experiment& experiment, const hardware::
                   {"answered", run.evidence.answered},
                   {"rejected_by_robot", run.evidence.rejected_by_robot}};
   json["ping"] = PingBlock(run.ping, experiment.hardware);
-  json["waypoints"] = report::WaypointsJson(result);
-  json["limits"] = report::LimitsJson(result.limits);
-  return report::Dump(json);
+  json["waypoints"] = WaypointsJson(result);
+  json["limits"] = LimitsJson(result.limits);
+  return Dump(json);
 }
 
 std::string DriveText(const hardware::DriveRun& run) {
@@ -190,4 +190,4 @@ std::string EncodersCsv(const hardware::DriveRecord& evidence) {
   return text;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::report

@@ -1,18 +1,16 @@
-#include "track_output.hpp"
+#include "rift/report/json/track.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "files.hpp"
 #include "rift/report/json/fields.hpp"
-#include "rift/statistics/hash.hpp"
 #include "rift/statistics/quantile.hpp"
 #include "rift/yaml/enum_name.hpp"
 #include "rift/yaml/write.hpp"
 
-namespace rift::commands {
+namespace rift::report {
 namespace {
 
 using nlohmann::ordered_json;
@@ -58,9 +56,9 @@ ordered_json FrameJson(const vision::CameraModel& camera) {
 }
 
 ordered_json SpanJson(const std::vector<double>& values) {
-  return {{"p50", report::NumberOrNull(statistics::Quantile(values, 0.5))},
-          {"p95", report::NumberOrNull(statistics::Quantile(values, 0.95))},
-          {"max", report::NumberOrNull(statistics::Quantile(values, 1.0))}};
+  return {{"p50", NumberOrNull(statistics::Quantile(values, 0.5))},
+          {"p95", NumberOrNull(statistics::Quantile(values, 0.95))},
+          {"max", NumberOrNull(statistics::Quantile(values, 1.0))}};
 }
 
 /// Tenths of a millimetre: finer than anybody clicks.
@@ -68,15 +66,15 @@ yaml::Node Metres(double value) { return yaml::Node::Scalar(fmt::format("{:.4f}"
 
 }  // namespace
 
-std::string TrackJson(const TrackRequest& request, const vision::CameraModel& camera,
+std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& camera,
                       const experiment::TrackOptions& options, const vision::TrackRun& run,
                       int rows) {
   ordered_json json{
       {"rift_version", RIFT_VERSION},
-      {"camera", request.camera},
+      {"camera", inputs.camera},
       {"recording", run.is_recording},
-      {"calibration", request.calibration},
-      {"calibration_hash", statistics::Hash128Text(ReadFile(request.calibration))},
+      {"calibration", inputs.calibration},
+      {"calibration_hash", inputs.calibration_hash},
       {"width_px", camera.width_px},
       {"height_px", camera.height_px},
       {"frame", FrameJson(camera)},
@@ -84,7 +82,7 @@ std::string TrackJson(const TrackRequest& request, const vision::CameraModel& ca
       {"reason", run.reason},
       {"zero_of_t_s_on_the_steady_clock", run.zero_s},
       {"rows", rows},
-      {"rows_per_s", report::NumberOrNull(RowsPerSecond(run, rows))},
+      {"rows_per_s", NumberOrNull(RowsPerSecond(run, rows))},
       {"pictures", run.frames},
       {"delivered", run.status.delivered},
       {"dropped", run.status.dropped},
@@ -94,10 +92,10 @@ std::string TrackJson(const TrackRequest& request, const vision::CameraModel& ca
       {"latency_s", SpanJson(run.latencies_s)},
       {"finding_s", SpanJson(run.costs_s)},
       {"reference_tags_off_m", run.moved_m ? ordered_json(*run.moved_m) : ordered_json(nullptr)}};
-  json["track"] = {{"capture", report::FieldsToJson(options.capture)},
-                   {"tag", report::FieldsToJson(options.tag)},
-                   {"session", report::FieldsToJson(request.session)}};
-  return report::Dump(json);
+  json["track"] = {{"capture", FieldsToJson(options.capture)},
+                   {"tag", FieldsToJson(options.tag)},
+                   {"session", FieldsToJson(inputs.session)}};
+  return Dump(json);
 }
 
 std::string TrackText(const vision::TrackRun& run, int rows) {
@@ -174,4 +172,4 @@ std::string WaypointsYaml(const std::vector<control::Waypoint>& waypoints) {
   return yaml::Emit(root);
 }
 
-}  // namespace rift::commands
+}  // namespace rift::report

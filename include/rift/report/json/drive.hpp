@@ -5,7 +5,7 @@
 #include "rift/experiment/experiment.hpp"
 #include "rift/hardware/arming.hpp"
 
-namespace rift::commands {
+namespace rift::report {
 
 /// Loss, round trips, battery, which part of the budget is broken, and the keys of an experiment
 /// that the measurement sets.
@@ -22,4 +22,4 @@ std::string StagesCsv(const hardware::DriveRecord& evidence);
 /// Poses before the first reading or after the last have no row.
 std::string EncodersCsv(const hardware::DriveRecord& evidence);
 
-}  // namespace rift::commands
+}  // namespace rift::report

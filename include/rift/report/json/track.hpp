@@ -6,14 +6,22 @@
 #include "rift/control/waypoint.hpp"
 #include "rift/experiment/track_options.hpp"
 #include "rift/vision/calibration/calibration.hpp"
+#include "rift/vision/tracking/session_options.hpp"
 #include "rift/vision/tracking/track_run.hpp"
-#include "track_request.hpp"
 
-namespace rift::commands {
+namespace rift::report {
+
+/// What a tracking run was asked for, as far as its record says so.
+struct TrackInputs {
+  std::string camera;            ///< device, stream or pattern of pictures
+  std::string calibration;       ///< file
+  std::string calibration_hash;  ///< of its bytes
+  vision::SessionOptions session;
+};
 
 /// What the log was made from and how it went: camera, calibration, frame of the poses, options,
 /// rows, rates, misses, latency.
-std::string TrackJson(const TrackRequest& request, const vision::CameraModel& camera,
+std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& camera,
                       const experiment::TrackOptions& options, const vision::TrackRun& run,
                       int rows);
 std::string TrackText(const vision::TrackRun& run, int rows);
@@ -26,4 +34,4 @@ std::string CalibrationComment(const vision::Calibration& calibration);
 /// Waypoints made in the window as a waypoint file, which is an experiment as it is.
 std::string WaypointsYaml(const std::vector<control::Waypoint>& waypoints);
 
-}  // namespace rift::commands
+}  // namespace rift::report
