@@ -46,7 +46,7 @@ void Listener::TakeFrame(const CommandFrame& frame) {
   sequence_ = frame.sequence;
   ready_ = true;
   framed_ = true;
-  Obey(frame.power, Pending::kFrame);
+  Apply(frame.power, Pending::kFrame);
 }
 
 void Listener::TakeText(std::uint8_t byte) {
@@ -74,10 +74,10 @@ void Listener::TakeLine() {
   const std::optional<MilliPower> power = ParsePlainLine(line_);
   if (!power || (framed_ && fed_ && !power->IsZero())) return Reject();
   if (!fed_) framed_ = false;
-  Obey(*power, Pending::kLine);
+  Apply(*power, Pending::kLine);
 }
 
-void Listener::Obey(const MilliPower& power, Pending answer) {
+void Listener::Apply(const MilliPower& power, Pending answer) {
   motors_ = power;
   fed_ms_ = now_ms_;
   fed_ = true;

@@ -66,11 +66,11 @@ bool TrackView::Show(const std::optional<vision::Frame>& frame,
                    .latency_s = sighting ? sighting->latency_s : status.latency_s,
                    .prompts = Prompts(moved_m)};
   const TrackInput input = window_.Show(scene);
-  Obey(input, sighting);
+  Apply(input, sighting);
   return !input.quit;
 }
 
-void TrackView::Obey(const TrackInput& input, const std::optional<vision::Sighting>& sighting) {
+void TrackView::Apply(const TrackInput& input, const std::optional<vision::Sighting>& sighting) {
   const std::size_t before = recorded_.size();
   for (const Eigen::Vector2d& pixel : input.clicks_px) {
     const auto p_m = plane_z_m_ ? vision::MapFromPixel(camera_, pixel, *plane_z_m_) : std::nullopt;

@@ -42,7 +42,7 @@ class Listener {
   void TakeFrame(const CommandFrame& frame);
   void TakeText(std::uint8_t byte);
   void TakeLine();
-  void Obey(const MilliPower& power, Pending answer);
+  void Apply(const MilliPower& power, Pending answer);
   void StopByItself();
   void Reject() { ++rejected_; }
   bool Silent() const { return now_ms_ - fed_ms_ >= kWatchdog_ms; }

@@ -33,7 +33,7 @@ class TrackView {
 
  private:
   void Follow(const vision::Sighting& sighting);
-  void Obey(const TrackInput& input, const std::optional<vision::Sighting>& sighting);
+  void Apply(const TrackInput& input, const std::optional<vision::Sighting>& sighting);
   void Record(const Eigen::Vector2d& p_m, std::optional<double> heading_deg);
   std::vector<geometry::NamedPoint> Places() const;
   std::vector<std::string> Prompts(const std::optional<double>& moved_m) const;

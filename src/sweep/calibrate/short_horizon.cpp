@@ -26,7 +26,7 @@ class RobotOfLog : public trial::Robot {
         log_(log),
         arrival_s_(0.5 * trial.simulation.mocap.exposure_s + trial.simulation.mocap.processing_s),
         point_from_robot_{trial.simulation.mocap.tag_ahead_m, 0.0, 0.0} {
-    Witness();
+    RecordTruth();
   }
 
   trial::Sensed Sense() override {
@@ -44,7 +44,7 @@ class RobotOfLog : public trial::Robot {
   void Command(const control::WheelPower& power) override { robot_.Command(power); }
   void Advance(double dt_s) override {
     robot_.Advance(dt_s);
-    Witness();
+    RecordTruth();
   }
   void Stop() noexcept override { robot_.Stop(); }
 
@@ -53,7 +53,7 @@ class RobotOfLog : public trial::Robot {
  private:
   double ClockOf(size_t row) const { return log_.poses[row].t_s - log_.poses.front().t_s; }
 
-  void Witness() {
+  void RecordTruth() {
     const simulation::TruePose truth = robot_.Truth();
     const Pose2 tag = truth.Planar() * point_from_robot_;
     path_.poses.push_back({.t_s = log_.poses.front().t_s + truth.t_s,

@@ -10,23 +10,23 @@ namespace rift::sweep {
 namespace {
 
 /// The simulated robot, with its true path written down as it goes.
-class WitnessedRobot : public trial::Robot {
+class RobotWithTruth : public trial::Robot {
  public:
-  WitnessedRobot(simulation::SimulatedRobot& robot, trajectory::Trajectory& truth)
+  RobotWithTruth(simulation::SimulatedRobot& robot, trajectory::Trajectory& truth)
       : robot_(robot), truth_(truth) {
-    Witness();
+    RecordTruth();
   }
 
   trial::Sensed Sense() override { return robot_.Sense(); }
   void Command(const control::WheelPower& power) override { robot_.Command(power); }
   void Advance(double dt_s) override {
     robot_.Advance(dt_s);
-    Witness();
+    RecordTruth();
   }
   void Stop() noexcept override { robot_.Stop(); }
 
  private:
-  void Witness() {
+  void RecordTruth() {
     const simulation::TruePose pose = robot_.Truth();
     const bool is_new = truth_.poses.empty() || pose.t_s > truth_.poses.back().t_s;
     if (!is_new) return;
@@ -64,8 +64,8 @@ std::shared_ptr<const simulation::HeightImage> ImageOf(const simulation::Terrain
 SimulatedRun Simulate(const SimulatedTrial& trial) {
   SimulatedRun run;
   simulation::SimulatedRobot robot(trial.simulation, trial.start, trial.seed, trial.image);
-  WitnessedRobot witnessed(robot, run.truth);
-  run.result = trial::RunTrial(witnessed, trial.waypoints, trial.control, trial.trial);
+  RobotWithTruth with_truth(robot, run.truth);
+  run.result = trial::RunTrial(with_truth, trial.waypoints, trial.control, trial.trial);
   return run;
 }
 

@@ -187,7 +187,7 @@ std::optional<JobResult> Worker::NextResult() {
   return result;
 }
 
-std::string Worker::LastWords() const {
+std::string Worker::StartOfOutput() const {
   constexpr size_t kLongest = 200;
   std::string text(kLongest, '\0');
   const ssize_t n = ::pread(output_, text.data(), text.size(), 0);
@@ -195,13 +195,13 @@ std::string Worker::LastWords() const {
   return OneLine(text, kLongest);
 }
 
-Worker::Death Worker::Autopsy() {
+Worker::ExitStatus Worker::Reap() {
   int status = 0;
   rusage usage{};
   while (::wait4(pid_, &status, 0, &usage) < 0 && errno == EINTR) {
   }
   pid_ = -1;
-  const std::string words = LastWords();
+  const std::string words = StartOfOutput();
   const bool is_full = usage.ru_maxrss > 9L * options_.memory_mb * 1024 / 10;
   if (is_full || words.find("bad_alloc") != words.npos) {
     return {JobEnd::kOutOfMemory,

@@ -23,23 +23,23 @@ class Worker {
   Worker& operator=(const Worker&) = delete;
 
   int Descriptor() const { return socket_; }
-  /// A job that cannot be sent shows as the worker's death.
+  /// A job that cannot be sent shows as the worker's exit.
   void Send(const std::string& job);
-  /// Takes in what has arrived. False when the worker is dead.
+  /// Takes in what has arrived. False when the worker has exited.
   bool Receive();
   /// The next finished job among what arrived.
   std::optional<JobResult> NextResult();
 
-  struct Death {
+  struct ExitStatus {
     JobEnd end = JobEnd::kCrashed;
     std::string reason;
     bool from_outside = false;  ///< killed by somebody else: no fault of the job
   };
-  /// Reaps a worker that died by itself and says of what.
-  Death Autopsy();
+  /// Reaps a worker that exited by itself and says why.
+  ExitStatus Reap();
 
  private:
-  std::string LastWords() const;
+  std::string StartOfOutput() const;
 
   RunOptions options_;
   pid_t pid_ = -1;

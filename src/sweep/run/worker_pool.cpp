@@ -29,7 +29,7 @@ std::string Times(int count) {
 }  // namespace
 
 /// A worker's place: the worker, when there is one, and the jobs it was given, oldest first.
-struct WorkerPool::Seat {
+struct WorkerPool::Slot {
   std::unique_ptr<Worker> worker;
   std::deque<Job> jobs;
   Clock::time_point busy_since;
@@ -38,7 +38,7 @@ struct WorkerPool::Seat {
 WorkerPool::WorkerPool(Work work, int workers, const RunOptions& options)
     : work_(std::move(work)), options_(options) {
   if (workers < 1) throw std::invalid_argument(fmt::format("{} workers: at least 1", workers));
-  seats_.resize(static_cast<size_t>(workers));
+  slots_.resize(static_cast<size_t>(workers));
 }
 
 WorkerPool::~WorkerPool() = default;
@@ -53,7 +53,7 @@ bool WorkerPool::Run(const Batch& batch) {
     }
     Feed(batch);
     Wait();
-    for (Seat& seat : seats_) Collect(seat, batch);
+    for (Slot& slot : slots_) Collect(slot, batch);
   }
   return true;
 }
@@ -62,19 +62,19 @@ bool WorkerPool::Run(const Batch& batch) {
 /// stands in line while another worker has nothing to do.
 void WorkerPool::Feed(const Batch& batch) {
   for (size_t depth = 0; depth < kDepth; ++depth) {
-    for (Seat& seat : seats_) {
-      if (seat.jobs.size() > depth) continue;
+    for (Slot& slot : slots_) {
+      if (slot.jobs.size() > depth) continue;
       const size_t left = again_.size() + static_cast<size_t>(batch.count - next_);
-      if (left == 0 || (depth > 0 && left <= seats_.size())) return;
+      if (left == 0 || (depth > 0 && left <= slots_.size())) return;
       if (again_.empty()) {
         again_.push_back({next_, batch.job(next_)});
         ++next_;
         ++open_;
       }
-      if (!seat.worker) seat.worker = std::make_unique<Worker>(work_, options_);
-      if (seat.jobs.empty()) seat.busy_since = Clock::now();
-      seat.worker->Send(again_.front().bytes);
-      seat.jobs.push_back(std::move(again_.front()));
+      if (!slot.worker) slot.worker = std::make_unique<Worker>(work_, options_);
+      if (slot.jobs.empty()) slot.busy_since = Clock::now();
+      slot.worker->Send(again_.front().bytes);
+      slot.jobs.push_back(std::move(again_.front()));
       again_.pop_front();
     }
   }
@@ -82,44 +82,45 @@ void WorkerPool::Feed(const Batch& batch) {
 
 void WorkerPool::Wait() {
   std::vector<pollfd> waiting;
-  for (const Seat& seat : seats_) {
-    if (!seat.jobs.empty()) waiting.push_back({seat.worker->Descriptor(), POLLIN, 0});
+  for (const Slot& slot : slots_) {
+    if (!slot.jobs.empty()) waiting.push_back({slot.worker->Descriptor(), POLLIN, 0});
   }
   if (::poll(waiting.data(), waiting.size(), kTick_ms) < 0 && errno != EINTR) {
     throw std::runtime_error(fmt::format("cannot wait for the workers: error {}", errno));
   }
 }
 
-void WorkerPool::Collect(Seat& seat, const Batch& batch) {
-  if (!seat.worker) return;
-  const bool is_alive = seat.worker->Receive();
-  while (std::optional<JobResult> result = seat.worker->NextResult()) {
+void WorkerPool::Collect(Slot& slot, const Batch& batch) {
+  if (!slot.worker) return;
+  const bool is_alive = slot.worker->Receive();
+  while (std::optional<JobResult> result = slot.worker->NextResult()) {
     const bool is_full = result->end == JobEnd::kOutOfMemory;
-    if (is_full) return Bury(seat, result->end, result->bytes, batch);
-    const int index = seat.jobs.front().index;
-    seat.jobs.pop_front();
-    seat.busy_since = Clock::now();
+    if (is_full) return EndWorker(slot, result->end, result->bytes, batch);
+    const int index = slot.jobs.front().index;
+    slot.jobs.pop_front();
+    slot.busy_since = Clock::now();
     --open_;
     batch.done(index, std::move(*result));
   }
   if (!is_alive) {
-    const Worker::Death death = seat.worker->Autopsy();
+    const Worker::ExitStatus exit = slot.worker->Reap();
     const bool is_retried =
-        death.from_outside && !seat.jobs.empty() && ++seat.jobs.front().kills < kMostKills;
-    if (is_retried) --seat.jobs.front().failures;
-    return Bury(seat, death.end, death.reason, batch);
+        exit.from_outside && !slot.jobs.empty() && ++slot.jobs.front().kills < kMostKills;
+    if (is_retried) --slot.jobs.front().failures;
+    return EndWorker(slot, exit.end, exit.reason, batch);
   }
-  const std::chrono::duration<double> busy = Clock::now() - seat.busy_since;
-  if (!seat.jobs.empty() && busy.count() > options_.timeout_s) {
-    Bury(seat, JobEnd::kHung, fmt::format("had not ended after {:g} s", options_.timeout_s), batch);
+  const std::chrono::duration<double> busy = Clock::now() - slot.busy_since;
+  if (!slot.jobs.empty() && busy.count() > options_.timeout_s) {
+    EndWorker(slot, JobEnd::kHung, fmt::format("had not ended after {:g} s", options_.timeout_s),
+              batch);
   }
 }
 
-/// The worker is gone, or goes; its oldest job is to blame, the others only stood in line.
-void WorkerPool::Bury(Seat& seat, JobEnd end, const std::string& reason, const Batch& batch) {
-  seat.worker.reset();
-  std::deque<Job> jobs = std::move(seat.jobs);
-  seat.jobs.clear();
+/// The worker is gone, or goes; its oldest job has failed, the others are handed out again.
+void WorkerPool::EndWorker(Slot& slot, JobEnd end, const std::string& reason, const Batch& batch) {
+  slot.worker.reset();
+  std::deque<Job> jobs = std::move(slot.jobs);
+  slot.jobs.clear();
   if (jobs.empty()) return;
   const bool is_over = ++jobs.front().failures > options_.retries;
   if (is_over) {
@@ -133,9 +134,9 @@ void WorkerPool::Bury(Seat& seat, JobEnd end, const std::string& reason, const B
 }
 
 void WorkerPool::KillAll() {
-  for (Seat& seat : seats_) {
-    seat.worker.reset();
-    seat.jobs.clear();
+  for (Slot& slot : slots_) {
+    slot.worker.reset();
+    slot.jobs.clear();
   }
   again_.clear();
 }

@@ -61,17 +61,17 @@ class WorkerPool {
     int failures = 0;  ///< own ones
     int kills = 0;     ///< by somebody else
   };
-  struct Seat;
+  struct Slot;
 
   void Feed(const Batch& batch);
   void Wait();
-  void Collect(Seat& seat, const Batch& batch);
-  void Bury(Seat& seat, JobEnd end, const std::string& reason, const Batch& batch);
+  void Collect(Slot& slot, const Batch& batch);
+  void EndWorker(Slot& slot, JobEnd end, const std::string& reason, const Batch& batch);
   void KillAll();
 
   Work work_;
   RunOptions options_;
-  std::vector<Seat> seats_;
+  std::vector<Slot> slots_;
   std::deque<Job> again_;  ///< to be tried again, before any new job
   int next_ = 0;
   int open_ = 0;  ///< jobs handed out or waiting to be tried again
