@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 
 // The job under way and the next: a worker never waits for the coordinator.
 constexpr size_t kDepth = 2;
-// A job whose worker somebody else kills is not to blame, but there is an end to everything.
+// A job whose worker was killed from outside is handed out again, but not for ever.
 constexpr int kMostKills = 5;
 constexpr int kTick_ms = 100;
 
