@@ -39,9 +39,6 @@ class FurtherTrials {
   sweep::TrialRunner runner_;
 };
 
-/// Those of the gap's options that are not the defaults, as flags of `rift gap`.
-std::string ChangedGapFlags(const gap::GapOptions& options);
-
 /// Shrinks a row of the sweep (its id, or "worst") with the random numbers that the row had. Writes
 /// DIR/shrunk.json, and DIR/shrunk with the trials that its claims rest on as a table: the row,
 /// what it shrank to, and that with each of its changes taken back, for `rift simulate --replay`.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "files.hpp"
+#include "flags.hpp"
 #include "further_trials.hpp"
 #include "rift/report/figures/sweep_figures.hpp"
 #include "rift/report/page/page.hpp"
@@ -15,6 +16,49 @@
 namespace rift::commands {
 
 namespace {
+
+/// A value as the table of flags writes it; nothing for one that is the default.
+class ChangedFlags {
+ public:
+  explicit ChangedFlags(std::vector<std::string> defaults) : defaults_(std::move(defaults)) {}
+
+  template <class T>
+  static std::string TextOf(const T& value) {
+    if constexpr (std::is_enum_v<T>) {
+      return std::string(yaml::NameOf(value));
+    } else {
+      return fmt::format("{}", value);
+    }
+  }
+
+  template <class T>
+  void Add(const char* key, const T& value) {
+    const std::string text = TextOf(value);
+    if (text == defaults_.at(at_++)) return;
+    flags_ += " " + FlagName(key).flag;
+    if constexpr (!std::is_same_v<T, bool>) flags_ += " " + text;
+  }
+
+  const std::string& Text() const { return flags_; }
+
+ private:
+  std::vector<std::string> defaults_;
+  size_t at_ = 0;
+  std::string flags_;
+};
+
+/// Those of the gap's options that are not the defaults, as flags of `rift gap`.
+std::string ChangedGapFlags(const gap::GapOptions& options) {
+  const gap::GapOptions standard;
+  std::vector<std::string> defaults;
+  gap::GapOptions::Fields(standard, [&](const char*, const auto& value, const auto&...) {
+    defaults.push_back(ChangedFlags::TextOf(value));
+  });
+  ChangedFlags flags(std::move(defaults));
+  gap::GapOptions::Fields(
+      options, [&](const char* key, const auto& value, const auto&...) { flags.Add(key, value); });
+  return flags.Text();
+}
 
 sweep::Recording Finished(sweep::Recording recording) {
   if (recording.status != sweep::TrialStatus::kOk) {
