@@ -7,6 +7,6 @@ foreach(source IN LISTS sources)
 endforeach()
 string(SHA256 version "${hashes}")
 string(SUBSTRING "${version}" 0 12 version)
-file(WRITE "${OUTPUT}" "#include \"rift/sweep/falsify/physics_version.hpp\"\n\n"
+file(WRITE "${OUTPUT}" "#include \"rift/sweep/falsify/simulated_trial.hpp\"\n\n"
      "namespace rift::sweep {\n\n"
      "std::string_view PhysicsVersion() { return \"${version}\"; }\n\n}  // namespace rift::sweep\n")

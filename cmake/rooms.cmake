@@ -6,6 +6,8 @@
 
 rift_room(statistics
   LIBRARIES Boost::headers PRIVATE_LIBRARIES fmt::fmt)
+rift_room(files
+  PRIVATE_LIBRARIES fmt::fmt)
 rift_room(geometry
   LIBRARIES Eigen3::Eigen)
 rift_room(yaml
@@ -43,7 +45,7 @@ rift_room(experiment ROOMS control trajectory yaml
   LIBRARIES fmt::fmt Eigen3::Eigen)
 rift_room(sweep/falsify ROOMS control experiment gap search simulation statistics sweep/run trajectory trial yaml
   LIBRARIES fmt::fmt)
-rift_room(sweep/explain ROOMS statistics sweep/falsify
+rift_room(sweep/explain ROOMS experiment search statistics sweep/falsify yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
 rift_room(sweep/calibrate ROOMS experiment gap geometry statistics sweep/falsify trajectory trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
@@ -60,7 +62,7 @@ rift_room(report/page ROOMS report/figures report/text sweep/explain sweep/falsi
 rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
-rift_room(commands ROOMS experiment gap hardware report/figures report/json
+rift_room(commands ROOMS experiment files gap hardware report/figures report/json
     report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
     twin view vision/calibration vision/camera
     vision/tracking yaml

@@ -8,14 +8,14 @@
 
 #include "files.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/files/files.hpp"
+#include "rift/hardware/arming.hpp"
 #include "rift/hardware/camera_poses.hpp"
-#include "rift/hardware/operator.hpp"
 #include "rift/hardware/serial_port.hpp"
-#include "rift/report/json/drive.hpp"
-#include "rift/report/json/trial.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/trajectory/log.hpp"
-#include "rift/view/display.hpp"
 #include "rift/view/drive_view.hpp"
+#include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/tracking/session.hpp"
 
@@ -31,7 +31,7 @@ void Say(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
 experiment::Experiment LoadFor(const DriveRequest& request) {
   return experiment::LoadExperiment(request.experiment, request.overrides,
-                                    [](const std::string& path) { return ReadFile(path); });
+                                    [](const std::string& path) { return files::ReadFile(path); });
 }
 
 int PingRobot(const DriveRequest& request) {
@@ -69,7 +69,7 @@ fs::path NewFolder(const DriveRequest& request, const experiment::Experiment& ex
 /// Throws std::invalid_argument, saying what to do, when the calibration has no world frame: the
 /// waypoints would mean nothing.
 vision::CameraModel ReadCameraWithWorld(const std::string& calibration) {
-  vision::CameraModel camera = vision::ReadCamera(ReadFile(calibration), calibration);
+  vision::CameraModel camera = vision::ReadCamera(files::ReadFile(calibration), calibration);
   if (camera.world) return camera;
   throw std::invalid_argument(fmt::format(
       "{}: the calibration has no world frame, so nobody knows where on the floor the waypoints "
@@ -177,17 +177,17 @@ hardware::DriveTask TaskOf(const experiment::Experiment& experiment) {
 
 void BeginDriveFolder(const std::filesystem::path& folder, const experiment::Experiment& experiment,
                       const vision::CameraModel& camera) {
-  WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(experiment));
-  WriteFile(folder / "camera.yaml", vision::WriteCamera(camera));
+  files::WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(experiment));
+  files::WriteFile(folder / "camera.yaml", vision::WriteCamera(camera));
 }
 
 void SaveDrive(const std::filesystem::path& folder, const experiment::Experiment& experiment,
                const hardware::DriveRun& run) {
-  WriteFile(folder / "commands.csv", report::CommandsCsv(run.trial));
-  WriteFile(folder / "stages.csv", report::StagesCsv(run.evidence));
-  WriteFile(folder / "encoders.csv", report::EncodersCsv(run.evidence));
-  WriteFile(folder / "summary.json", report::DriveJson(experiment, run));
-  WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.trial.trajectory));
+  files::WriteFile(folder / "commands.csv", report::CommandsCsv(run.trial));
+  files::WriteFile(folder / "stages.csv", report::StagesCsv(run.evidence));
+  files::WriteFile(folder / "encoders.csv", report::EncodersCsv(run.evidence));
+  files::WriteFile(folder / "summary.json", report::DriveJson(experiment, run));
+  files::WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.trial.trajectory));
 }
 
 int Drive(const DriveRequest& request) {

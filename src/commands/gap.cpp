@@ -10,10 +10,11 @@
 #include "files.hpp"
 #include "flags.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/files/files.hpp"
 #include "rift/gap/result.hpp"
-#include "rift/report/figures/gap_figures.hpp"
-#include "rift/report/json/gap.hpp"
-#include "rift/report/text/gap.hpp"
+#include "rift/report/figures/figures.hpp"
+#include "rift/report/json/json.hpp"
+#include "rift/report/text/text.hpp"
 #include "rift/sweep/falsify/recorded_logs.hpp"
 
 namespace rift::commands {
@@ -50,12 +51,13 @@ void SayNotes(const trajectory::Log& log, const std::string& path, const std::st
 gap::GapResult Measure(const GapRequest& request) {
   gap::GapResult result{
       .options = request.options, .tag_offset_m = request.tag_offset_m, .sim_path = request.sim};
-  trajectory::Log sim = trajectory::ReadLog(ReadFile(request.sim), request.sim, request.sim_format);
+  trajectory::Log sim =
+      trajectory::ReadLog(files::ReadFile(request.sim), request.sim, request.sim_format);
   SayNotes(sim, request.sim, "--sim-format");
   result.sim = std::move(sim.trajectory);
   const sweep::LogOptions real_logs{request.real_format, request.tag_offset_m, "--real-format"};
   for (const std::string& path : request.reals) {
-    trajectory::Log real = sweep::ReadMovedLog(ReadFile(path), path, real_logs);
+    trajectory::Log real = sweep::ReadMovedLog(files::ReadFile(path), path, real_logs);
     SayNotes(real, path, "--real-format");
     result.trials.push_back({path, gap::Compare(result.sim, real.trajectory, request.options)});
     result.reals.push_back(std::move(real.trajectory));
@@ -68,7 +70,7 @@ gap::GapResult Measure(const GapRequest& request) {
 gap::Likeness MeasureRepeats(const GapRequest& request, const gap::GapResult& result) {
   gap::RepeatedSetting setting{.reals = result.reals, .sims = {{result.sim}}};
   for (const std::string& path : request.sim_repeats) {
-    trajectory::Log sim = trajectory::ReadLog(ReadFile(path), path, request.sim_format);
+    trajectory::Log sim = trajectory::ReadLog(files::ReadFile(path), path, request.sim_format);
     SayNotes(sim, path, "--sim-format");
     setting.sims.front().push_back(std::move(sim.trajectory));
   }
@@ -77,21 +79,21 @@ gap::Likeness MeasureRepeats(const GapRequest& request, const gap::GapResult& re
 }
 
 void Save(const GapRequest& request, const gap::GapResult& result) {
-  if (!request.profile.empty()) WriteFile(request.profile, report::ProfileCsv(result));
+  if (!request.profile.empty()) files::WriteFile(request.profile, report::ProfileCsv(result));
   if (!request.figure.empty()) WriteFigure(request.figure, report::GapFigure(result));
   if (request.json == "-") {
     fmt::print("{}", report::GapJson(result));
     return;
   }
-  if (!request.json.empty()) WriteFile(request.json, report::GapJson(result));
+  if (!request.json.empty()) files::WriteFile(request.json, report::GapJson(result));
   fmt::print("{}", report::GapText(result));
 }
 
 /// A log that counts twice would pass for a repeat.
 void RefuseTwins(const std::vector<std::string>& logs) {
   for (auto log = logs.begin(); log != logs.end(); ++log) {
-    const auto twin =
-        std::find_if(logs.begin(), log, [&](const auto& other) { return IsSameFile(*log, other); });
+    const auto twin = std::find_if(
+        logs.begin(), log, [&](const auto& other) { return files::IsSameFile(*log, other); });
     if (twin == log) continue;
     throw std::invalid_argument(fmt::format(
         "{} and {} are one log, and each repeat is a run of its own: name it once", *twin, *log));

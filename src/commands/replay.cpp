@@ -6,7 +6,8 @@
 #include <stdexcept>
 
 #include "files.hpp"
-#include "rift/report/json/table.hpp"
+#include "rift/files/files.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/yaml/enum_name.hpp"
@@ -40,10 +41,10 @@ std::string Evidence(const report::TableRow& row) {
 
 Replay ReplayRow(const std::filesystem::path& folder, const std::string& id) {
   const std::filesystem::path table = folder / "table.csv";
-  const report::TableRow row = report::TableRowOf(ReadFile(table), id, table.string());
+  const report::TableRow row = report::TableRowOf(files::ReadFile(table), id, table.string());
   const std::string file = (folder / "experiment.yaml").string();
-  const experiment::Experiment experiment =
-      experiment::LoadExperiment(file, {}, [](const std::string& path) { return ReadFile(path); });
+  const experiment::Experiment experiment = experiment::LoadExperiment(
+      file, {}, [](const std::string& path) { return files::ReadFile(path); });
   if (experiment.candidate.kind != experiment::CandidateKind::kSimulation) {
     throw std::invalid_argument(
         fmt::format("{}: candidate.kind is logs: there is nothing to simulate again", file));

@@ -14,9 +14,10 @@
 #include "flags.hpp"
 #include "replay.hpp"
 #include "rift/commands/command.hpp"
-#include "rift/report/figures/simulation_figure.hpp"
-#include "rift/report/json/trial.hpp"
-#include "rift/report/text/trial.hpp"
+#include "rift/files/files.hpp"
+#include "rift/report/figures/figures.hpp"
+#include "rift/report/json/json.hpp"
+#include "rift/report/text/text.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/yaml/bind.hpp"
@@ -106,7 +107,7 @@ experiment::Experiment LoadFor(const SimulateRequest& request, std::vector<fs::p
   if (!request.seed.empty()) overrides.push_back("seed=" + request.seed);
   const auto read = [&inputs](const std::string& path) {
     inputs.emplace_back(path);
-    return ReadFile(path);
+    return files::ReadFile(path);
   };
   experiment::Experiment experiment =
       experiment::LoadExperiment(request.experiment, overrides, read);
@@ -134,7 +135,8 @@ struct RunFiles {
 
 /// The same text again in the file it was read from does no harm.
 bool IsSaved(const experiment::Experiment& experiment, const fs::path& path) {
-  return fs::is_regular_file(path) && ReadFile(path) == experiment::WriteExperiment(experiment);
+  return fs::is_regular_file(path) &&
+         files::ReadFile(path) == experiment::WriteExperiment(experiment);
 }
 
 void CheckNames(const SimulateRequest& request, const fs::path& out,
@@ -153,11 +155,11 @@ void CheckNames(const SimulateRequest& request, const fs::path& out,
 void Save(const fs::path& out, const experiment::Experiment& experiment,
           const sweep::SimulatedRun& run) {
   const RunFiles files(out);
-  WriteFile(files.experiment, experiment::WriteExperiment(experiment));
-  WriteFile(files.truth, trajectory::WriteRift(run.truth));
-  WriteFile(files.commands, report::CommandsCsv(run.result));
-  WriteFile(files.summary, report::SimulationJson(experiment, run));
-  WriteFile(files.trajectory, trajectory::WriteRift(run.result.trajectory));
+  files::WriteFile(files.experiment, experiment::WriteExperiment(experiment));
+  files::WriteFile(files.truth, trajectory::WriteRift(run.truth));
+  files::WriteFile(files.commands, report::CommandsCsv(run.result));
+  files::WriteFile(files.summary, report::SimulationJson(experiment, run));
+  files::WriteFile(files.trajectory, trajectory::WriteRift(run.result.trajectory));
 }
 
 Simulated SimulateFile(const SimulateRequest& request) {
@@ -208,7 +210,7 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
   const Simulated made = request.replay.empty() ? SimulateFile(request) : ReplayFor(request);
   Save(made.out, made.experiment, made.run);
   if (!request.tum.empty()) {
-    WriteFile(request.tum, trajectory::WriteTum(made.run.result.trajectory));
+    files::WriteFile(request.tum, trajectory::WriteTum(made.run.result.trajectory));
   }
   if (!request.pictures.figure.empty()) {
     DrawFigure(request.pictures.figure, made.experiment, made.trial, made.run);

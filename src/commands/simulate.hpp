@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "rift/experiment/experiment.hpp"
-#include "rift/report/figures/simulation_figure.hpp"
+#include "rift/report/figures/figures.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 
 namespace rift::commands {

@@ -4,11 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
+#include "flags.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/files/files.hpp"
 #include "rift/report/json/fields.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/twin/twin.hpp"
-#include "rift/view/display.hpp"
 #include "rift/view/film.hpp"
 #include "rift/view/video.hpp"
 #include "rift/view/window.hpp"
@@ -57,9 +58,9 @@ std::string TwinJson(const experiment::Experiment& experiment, const twin::TwinR
 
 void Save(const fs::path& folder, const experiment::Experiment& experiment,
           const twin::TwinRun& run) {
-  WriteFile(folder / "truth.csv", trajectory::WriteRift(run.truth));
-  WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.tag));
-  WriteFile(folder / "summary.json", TwinJson(experiment, run));
+  files::WriteFile(folder / "truth.csv", trajectory::WriteRift(run.truth));
+  files::WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.tag));
+  files::WriteFile(folder / "summary.json", TwinJson(experiment, run));
 }
 
 /// Serves until the trial is over or a signal comes, says in one line of JSON on stdout where port,
@@ -82,8 +83,8 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
                               twin::OverheadCamera(experiment.waypoints, experiment.twin),
                               look};
   const fs::path calibration = folder / "camera.yaml";
-  WriteFile(calibration, vision::WriteCamera(setup.camera));
-  WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(as_twin));
+  files::WriteFile(calibration, vision::WriteCamera(setup.camera));
+  files::WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(as_twin));
 
   const StopSignal stop;
   const twin::TwinRun run = twin::RunTwin(

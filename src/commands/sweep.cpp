@@ -9,17 +9,14 @@
 #include "files.hpp"
 #include "flags.hpp"
 #include "rift/commands/command.hpp"
-#include "rift/report/figures/calibration_figure.hpp"
-#include "rift/report/json/calibration.hpp"
+#include "rift/files/files.hpp"
+#include "rift/files/folder_lock.hpp"
+#include "rift/report/figures/figures.hpp"
 #include "rift/report/json/fields.hpp"
-#include "rift/report/json/likeness.hpp"
-#include "rift/report/json/sweep.hpp"
-#include "rift/report/json/table.hpp"
-#include "rift/report/text/calibration.hpp"
-#include "rift/report/text/likeness.hpp"
-#include "rift/report/text/sweep.hpp"
+#include "rift/report/json/json.hpp"
+#include "rift/report/text/text.hpp"
 #include "rift/sweep/calibrate/identification.hpp"
-#include "rift/sweep/calibrate/sweep_likeness.hpp"
+#include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "sweep_explain.hpp"
@@ -74,7 +71,7 @@ experiment::Experiment LoadFor(const SweepRequest& request) {
   if (!request.budget.empty()) overrides.push_back("search.budget=" + request.budget);
   if (!request.seconds.empty()) overrides.push_back("search.max_s=" + request.seconds);
   const experiment::Experiment experiment = experiment::LoadExperiment(
-      request.experiment, overrides, [](const std::string& path) { return ReadFile(path); });
+      request.experiment, overrides, [](const std::string& path) { return files::ReadFile(path); });
   CheckFlags(request, experiment);
   return experiment;
 }
@@ -108,10 +105,10 @@ int EndWithoutGap(const SweepRequest& request, const fs::path& out,
 
 void Save(const fs::path& out, const experiment::Experiment& experiment,
           const sweep::Evaluator& evaluator, const sweep::SweepResult& result) {
-  WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
-  WriteFile(out / "inputs.txt", evaluator.InputsText());
-  WriteFile(out / "table.csv", report::TableCsv(result));
-  WriteFile(out / "summary.json", report::SummaryJson(result));
+  files::WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
+  files::WriteFile(out / "inputs.txt", evaluator.InputsText());
+  files::WriteFile(out / "table.csv", report::TableCsv(result));
+  files::WriteFile(out / "summary.json", report::SummaryJson(result));
 }
 
 bool IsFalsified(const sweep::SweepResult& result) {
@@ -152,10 +149,10 @@ int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
 void SaveReport(const fs::path& out, const sweep::SweepResult& result,
                 const sweep::Explanation& explanation,
                 const std::vector<sweep::GroupLikeness>& likeness, sweep::Evaluator& evaluator) {
-  WriteFile(out / "explanation.json", report::ExplanationJson(result, explanation));
+  files::WriteFile(out / "explanation.json", report::ExplanationJson(result, explanation));
   WriteSweepReport(out, result, explanation, evaluator);
   if (!likeness.empty())
-    WriteFile(out / "likeness.json", report::Dump(report::LikenessJson(likeness)));
+    files::WriteFile(out / "likeness.json", report::Dump(report::LikenessJson(likeness)));
 }
 
 void Print(const SweepRequest& request, const sweep::SweepResult& result,
@@ -179,27 +176,30 @@ void WriteFigures(const std::filesystem::path& folder, const std::string& name,
                "before and after the fit\n");
     return;
   }
-  WriteFile(folder / (figure->name + ".svg"), report::Render(*figure, report::FigureFormat::kSvg));
-  WriteFile(folder / (figure->name + ".png"), report::Render(*figure, report::FigureFormat::kPng));
+  files::WriteFile(folder / (figure->name + ".svg"),
+                   report::Render(*figure, report::FigureFormat::kSvg));
+  files::WriteFile(folder / (figure->name + ".png"),
+                   report::Render(*figure, report::FigureFormat::kPng));
 }
 
 /// Fits, judges, writes calibration.json, experiment.yaml, inputs.txt, figures and the robot's
 /// file, and prints the table; returns the exit code.
 int Calibrate(const SweepRequest& request, const experiment::Experiment& experiment) {
   const fs::path out = OutputOf(request.out, experiment.name);
-  const FolderLock lock(out);
+  const files::FolderLock lock(out);
   const auto say = [&request](const std::string& line) {
     if (!request.quiet) fmt::print(stderr, "{}\n", line);
   };
   sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
   const sweep::CalibrationReport found = sweep::Identify(evaluator, request.jobs, say);
-  WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
-  WriteFile(out / "inputs.txt", evaluator.InputsText());
+  files::WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
+  files::WriteFile(out / "inputs.txt", evaluator.InputsText());
   const std::string json = report::CalibrationJson(experiment, found);
-  WriteFile(out / "calibration.json", json);
+  files::WriteFile(out / "calibration.json", json);
   if (!request.write_robot.empty()) {
-    WriteFile(request.write_robot,
-              report::RobotYaml(experiment, found, evaluator.InputsText(), request.experiment));
+    files::WriteFile(
+        request.write_robot,
+        report::RobotYaml(experiment, found, evaluator.InputsText(), request.experiment));
   }
   fmt::print("{}", request.json ? json : report::CalibrationText(found));
   WriteFigures(out / "figures", experiment.name, found);
@@ -217,7 +217,7 @@ int Sweep(const SweepRequest& request) {
   NoteTooFewRepeats(experiment);
 
   const fs::path out = OutputOf(request.out, experiment.name);
-  const FolderLock lock(out);
+  const files::FolderLock lock(out);
   const ProgressStyle progress = StyleFor(request.quiet, request.json_progress);
   const std::optional<sweep::SweepResult> judged =
       RunSweep(evaluator, {out, request.jobs, request.fresh, progress});

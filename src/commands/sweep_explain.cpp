@@ -7,13 +7,142 @@
 
 #include "files.hpp"
 #include "flags.hpp"
-#include "further_trials.hpp"
-#include "rift/report/figures/sweep_figures.hpp"
+#include "rift/files/files.hpp"
+#include "rift/report/figures/figures.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/report/page/page.hpp"
+#include "rift/report/text/text.hpp"
+#include "rift/sweep/explain/failure_probability.hpp"
+#include "rift/sweep/explain/shrink.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 #include "rift/yaml/enum_name.hpp"
 #include "stop_signal.hpp"
 
 namespace rift::commands {
+
+FurtherTrials::FurtherTrials(sweep::Evaluator& evaluator, const Style& style,
+                             const StopSignal& stop)
+    : style_(style),
+      runner_([&evaluator](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
+              [&evaluator](const sweep::TrialRequest& trial) { return evaluator.KeyOf(trial); },
+              nullptr, style.jobs, evaluator.experiment().run,
+              {[this](const sweep::TrialRow& row, bool from_journal) {
+                 if (progress_) progress_->Seen(row, from_journal);
+               },
+               [this, &stop] {
+                 if (progress_) progress_->Tick();
+                 return !stop.IsAsked();
+               }}) {
+  evaluator.LoadLogs();  // workers are copies of what is there when they start
+}
+
+std::vector<sweep::TrialRow> FurtherTrials::Run(std::vector<sweep::TrialRequest> requests) {
+  std::optional<std::vector<sweep::TrialRow>> rows = runner_.Run(std::move(requests));
+  if (!rows) throw Stopped{};
+  return *std::move(rows);
+}
+
+void FurtherTrials::Begin(int most) { progress_.emplace(style_.progress, SweepSize{.most = most}); }
+
+void FurtherTrials::End() {
+  progress_->End("done");
+  progress_.reset();
+}
+
+std::string ShrinkInto(const std::filesystem::path& folder,
+                       const experiment::Experiment& experiment, const sweep::SweepResult& result,
+                       const std::string& row, const sweep::ShrinkOptions& options,
+                       FurtherTrials& trials) {
+  const int index = sweep::FailingRow(result, row);
+  const sweep::ShrunkRow found =
+      sweep::ShrinkRow(experiment, result, index, options, trials.AsRun());
+  sweep::SweepResult table = sweep::EmptyResult(experiment);
+  table.rows = found.rows;
+  files::WriteFile(folder / "shrunk" / "experiment.yaml", experiment::WriteExperiment(experiment));
+  files::WriteFile(folder / "shrunk" / "table.csv", report::TableCsv(table));
+  const std::string trials_folder = (folder / "shrunk").string();
+  files::WriteFile(folder / "shrunk.json", report::ShrunkJson(result, found, trials_folder));
+  return report::ShrunkText(result, found, trials_folder);
+}
+
+std::string RareEventInto(const std::filesystem::path& folder,
+                          const experiment::Experiment& experiment,
+                          const sweep::RareEventOptions& options, FurtherTrials& trials) {
+  trials.Begin(options.samples_per_level * options.most_levels *
+               static_cast<int>(experiment.reference.trials.names.size()));
+  const sweep::RareEvent event = sweep::EstimateRareEvent(experiment, trials.AsRun(), options);
+  trials.End();
+  const size_t trials_per_setting = experiment.reference.trials.names.size();
+  files::WriteFile(folder / "rare_event.json",
+                   report::RareEventJson(event, options, trials_per_setting));
+  return fmt::format("\nrare event: {}\n", report::RareEventSentence(event));
+}
+
+void AddExplainFlags(CLI::App& app, ExplainRequest& request) {
+  app.add_option("--suggest", request.suggest,
+                 "print the next N experiments on the robot and what each would decide")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--shrink", request.shrink,
+                 "bring a failing row of table.csv down to the fewest and smallest changes from "
+                 "the experiment's own values that still fail, by further trials")
+      ->type_name("ROW|worst");
+  app.add_flag("--rare-event", request.rare_event,
+               "estimate a small failure probability over the space by further trials (subset "
+               "simulation)");
+}
+
+void CheckRequest(const ExplainRequest& request, const experiment::Experiment& experiment) {
+  const bool costs_trials = !request.shrink.empty() || request.rare_event;
+  if (!costs_trials) return;
+  const char* flag = request.rare_event ? "--rare-event" : "--shrink";
+  if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
+    throw std::invalid_argument(
+        fmt::format("{} drives further trials, and candidate.kind is logs: recorded runs cannot be "
+                    "driven at other settings; set candidate.kind=simulation",
+                    flag));
+  }
+  if (experiment.space.parameters.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "{} needs a space: name the parameters to vary, such as space.v_min: [0.15, 0.2]", flag));
+  }
+  const bool is_row = !request.shrink.empty() &&
+                      request.shrink.find_first_not_of("0123456789") == std::string::npos;
+  if (!request.shrink.empty() && request.shrink != "worst" && !is_row) {
+    throw std::invalid_argument(
+        fmt::format("--shrink {}: must be the id of a row in table.csv (a whole number), or worst",
+                    request.shrink));
+  }
+}
+
+sweep::ExplainOptions OptionsFor(const ExplainRequest& request) {
+  sweep::ExplainOptions options = request.options;
+  if (request.suggest > 0) options.suggest.experiments = request.suggest;
+  return options;
+}
+
+bool SpendTrials(const std::filesystem::path& folder, const sweep::SweepResult& result,
+                 const ExplainRequest& request, sweep::Evaluator& evaluator,
+                 const FurtherTrials::Style& style, bool is_silent) {
+  const bool is_asked = !request.shrink.empty() || request.rare_event;
+  if (!is_asked) return true;
+  const experiment::Experiment& experiment = evaluator.experiment();
+  const StopSignal stop;
+  FurtherTrials trials(evaluator, style, stop);
+  std::string text;
+  try {
+    if (!request.shrink.empty()) {
+      text +=
+          ShrinkInto(folder, experiment, result, request.shrink, request.shrink_options, trials);
+    }
+    if (request.rare_event)
+      text += RareEventInto(folder, experiment, request.rare_event_options, trials);
+  } catch (const FurtherTrials::Stopped&) {
+    return false;
+  }
+  if (!is_silent) fmt::print("{}", text);
+  return true;
+}
 
 namespace {
 
@@ -68,49 +197,14 @@ sweep::Recording Finished(sweep::Recording recording) {
   return recording;
 }
 
-}  // namespace
-
-void AddExplainFlags(CLI::App& app, ExplainRequest& request) {
-  app.add_option("--suggest", request.suggest,
-                 "print the next N experiments on the robot and what each would decide")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--shrink", request.shrink,
-                 "bring a failing row of table.csv down to the fewest and smallest changes from "
-                 "the experiment's own values that still fail, by further trials")
-      ->type_name("ROW|worst");
-  app.add_flag("--rare-event", request.rare_event,
-               "estimate a small failure probability over the space by further trials (subset "
-               "simulation)");
-}
-
-void CheckRequest(const ExplainRequest& request, const experiment::Experiment& experiment) {
-  const bool costs_trials = !request.shrink.empty() || request.rare_event;
-  if (!costs_trials) return;
-  const char* flag = request.rare_event ? "--rare-event" : "--shrink";
-  if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
-    throw std::invalid_argument(
-        fmt::format("{} drives further trials, and candidate.kind is logs: recorded runs cannot be "
-                    "driven at other settings; set candidate.kind=simulation",
-                    flag));
-  }
-  if (experiment.space.parameters.empty()) {
-    throw std::invalid_argument(fmt::format(
-        "{} needs a space: name the parameters to vary, such as space.v_min: [0.15, 0.2]", flag));
-  }
-  const bool is_row = !request.shrink.empty() &&
-                      request.shrink.find_first_not_of("0123456789") == std::string::npos;
-  if (!request.shrink.empty() && request.shrink != "worst" && !is_row) {
-    throw std::invalid_argument(
-        fmt::format("--shrink {}: must be the id of a row in table.csv (a whole number), or worst",
-                    request.shrink));
-  }
-}
-
-sweep::ExplainOptions OptionsFor(const ExplainRequest& request) {
-  sweep::ExplainOptions options = request.options;
-  if (request.suggest > 0) options.suggest.experiments = request.suggest;
-  return options;
+/// The simulated and the reference path of a row, computed again.
+report::ComparedPair PathsOf(const sweep::SweepResult& result, const sweep::TrialRow& row,
+                             const std::string& name, sweep::Evaluator& evaluator) {
+  const sweep::TrialRequest request{.theta = row.theta, .trial = row.trial, .seed = row.seed};
+  const sweep::Recording reference = Finished(evaluator.Reference(request));
+  const sweep::Recording candidate = Finished(evaluator.Candidate(request, reference));
+  return report::ComparePair("simulator", candidate.trajectory, name, reference.trajectory,
+                             result.gap);
 }
 
 std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& result,
@@ -121,15 +215,10 @@ std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& re
     const int index = explanation.clusters[kind].rows.front();
     const sweep::TrialRow& row = result.rows.at(index);
     if (!row.IsOk()) continue;  // it ended early: there is no path to hold against the other
-    const sweep::TrialRequest request{.theta = row.theta, .trial = row.trial, .seed = row.seed};
-    const sweep::Recording reference = Finished(evaluator.Reference(request));
-    const sweep::Recording candidate = Finished(evaluator.Candidate(request, reference));
     const std::string name = result.reference_kind == "logs"      ? "robot"
                              : result.reference_kind == "nominal" ? "nominal run"
                                                                   : "waypoint path";
-    failures.push_back({index, static_cast<int>(kind),
-                        report::ComparePair("simulator", candidate.trajectory, name,
-                                            reference.trajectory, result.gap)});
+    failures.push_back({index, static_cast<int>(kind), PathsOf(result, row, name, evaluator)});
   }
   return failures;
 }
@@ -149,43 +238,14 @@ std::string GapFlags(const experiment::Experiment& experiment) {
   return flags + ChangedGapFlags(experiment.gap);
 }
 
-bool SpendTrials(const std::filesystem::path& folder, const sweep::SweepResult& result,
-                 const ExplainRequest& request, sweep::Evaluator& evaluator,
-                 const FurtherTrials::Style& style, bool is_silent) {
-  const bool is_asked = !request.shrink.empty() || request.rare_event;
-  if (!is_asked) return true;
-  const experiment::Experiment& experiment = evaluator.experiment();
-  const StopSignal stop;
-  FurtherTrials trials(evaluator, style, stop);
-  std::string text;
-  try {
-    if (!request.shrink.empty()) {
-      text +=
-          ShrinkInto(folder, experiment, result, request.shrink, request.shrink_options, trials);
-    }
-    if (request.rare_event)
-      text += RareEventInto(folder, experiment, request.rare_event_options, trials);
-  } catch (const FurtherTrials::Stopped&) {
-    return false;
-  }
-  if (!is_silent) fmt::print("{}", text);
-  return true;
-}
-
-namespace {
-
 std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
                                               sweep::Evaluator& evaluator) {
-  const std::optional<int> worst = report::WorstRow(result);
+  const std::optional<int> worst = sweep::WorstRow(result);
   if (!worst) return std::nullopt;
   const sweep::TrialRow& row = result.rows[*worst];
-  const sweep::TrialRequest request{.theta = row.theta, .trial = row.trial, .seed = row.seed};
-  const sweep::Recording reference = evaluator.Reference(request);
-  const sweep::Recording candidate = evaluator.Candidate(request, reference);
   const std::string name =
       result.reference_kind == "logs" ? "robot, trial " + row.trial : result.reference_kind;
-  return report::ComparePair("simulator", candidate.trajectory, name, reference.trajectory,
-                             result.gap);
+  return PathsOf(result, row, name, evaluator);
 }
 
 /// Figures of an earlier sweep into the same folder, which this one may not draw again.
@@ -207,16 +267,16 @@ void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepRes
   RemoveFigures(folder / "figures");
   for (const report::Figure& figure : set.figures) {
     const std::filesystem::path path = folder / "figures" / figure.name;
-    WriteFile(path.string() + ".svg", report::Render(figure, report::FigureFormat::kSvg));
-    WriteFile(path.string() + ".png", report::Render(figure, report::FigureFormat::kPng));
+    files::WriteFile(path.string() + ".svg", report::Render(figure, report::FigureFormat::kSvg));
+    files::WriteFile(path.string() + ".png", report::Render(figure, report::FigureFormat::kPng));
   }
   for (const report::OmittedFigure& omitted : set.omitted) {
     fmt::print(stderr, "note: {} is not drawn: {}\n", omitted.name, omitted.reason);
   }
-  WriteFile(folder / "report.html",
-            report::RenderPage(result, explanation,
-                               {TypicalFailures(result, explanation, evaluator),
-                                GapFlags(evaluator.experiment())}));
+  files::WriteFile(folder / "report.html",
+                   report::RenderPage(result, explanation,
+                                      {TypicalFailures(result, explanation, evaluator),
+                                       GapFlags(evaluator.experiment())}));
 }
 
 }  // namespace rift::commands

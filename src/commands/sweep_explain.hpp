@@ -1,17 +1,68 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "further_trials.hpp"
+#include "flags.hpp"
+#include "rift/experiment/experiment.hpp"
 #include "rift/report/page/page.hpp"
 #include "rift/sweep/explain/explanation.hpp"
+#include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
+#include "rift/sweep/falsify/trial_runner.hpp"
+#include "stop_signal.hpp"
+#include "sweep_progress.hpp"
 
 namespace rift::commands {
+
+/// Trials of a sweep beyond its own, in worker processes; they enter neither its journal nor its
+/// table.
+class FurtherTrials {
+ public:
+  struct Stopped {};  ///< thrown by Run when the user asked for an end
+  struct Style {
+    int jobs = 1;
+    ProgressStyle progress = ProgressStyle::kQuiet;
+  };
+
+  FurtherTrials(sweep::Evaluator& evaluator, const Style& style, const StopSignal& stop);
+
+  std::vector<sweep::TrialRow> Run(std::vector<sweep::TrialRequest> requests);
+  /// The same for what computes with them; must not outlive this.
+  sweep::RunAllTrials AsRun() {
+    return [this](std::vector<sweep::TrialRequest> requests) { return Run(std::move(requests)); };
+  }
+
+  /// Between these, what was run is shown as progress towards `most` trials.
+  void Begin(int most);
+  void End();
+
+ private:
+  Style style_;
+  std::optional<SweepProgress> progress_;
+  sweep::TrialRunner runner_;
+};
+
+/// Shrinks a row of the sweep (its id, or "worst") with the random numbers that the row had. Writes
+/// DIR/shrunk.json, and DIR/shrunk with the trials that its claims rest on as a table: the row,
+/// what it shrank to, and that with each of its changes taken back, for `rift simulate --replay`.
+/// Returns what a person wants to know. Throws std::invalid_argument when there is no such row, or
+/// it does not fail.
+std::string ShrinkInto(const std::filesystem::path& folder,
+                       const experiment::Experiment& experiment, const sweep::SweepResult& result,
+                       const std::string& row, const sweep::ShrinkOptions& options,
+                       FurtherTrials& trials);
+
+/// Estimates how often a setting drawn evenly from the space fails, where that is too seldom for
+/// plain draws. A setting fails when any of its trials does. Writes DIR/rare_event.json and returns
+/// what a person wants to know.
+std::string RareEventInto(const std::filesystem::path& folder,
+                          const experiment::Experiment& experiment,
+                          const sweep::RareEventOptions& options, FurtherTrials& trials);
 
 /// What of a sweep's explanation is asked for on the command line.
 struct ExplainRequest {
@@ -30,15 +81,6 @@ void CheckRequest(const ExplainRequest& request, const experiment::Experiment& e
 
 /// The options with what the command line says on top.
 sweep::ExplainOptions OptionsFor(const ExplainRequest& request);
-
-/// Paths of a typical failure of each kind, for the page.
-std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& result,
-                                                    const sweep::Explanation& explanation,
-                                                    sweep::Evaluator& evaluator);
-
-/// How a row of recorded logs is measured again: the flags of `rift gap` behind the two logs. Empty
-/// for simulated candidates, whose rows `rift simulate --replay` drives again.
-std::string GapFlags(const experiment::Experiment& experiment);
 
 /// Does what costs further trials, and prints what it found unless `is_silent`. Shrinks a failure
 /// into shrunk.json and the folder shrunk, whose table holds each trial that the claims rest on;

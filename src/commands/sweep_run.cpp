@@ -1,4 +1,5 @@
 #include "sweep_run.hpp"
+#include "stop_signal.hpp"
 
 #include <fmt/format.h>
 #include <sched.h>
@@ -7,11 +8,13 @@
 #include <cstdlib>
 
 #include "files.hpp"
+#include "flags.hpp"
+#include "rift/files/files.hpp"
+#include "rift/files/folder_lock.hpp"
 #include "rift/report/json/fields.hpp"
-#include "rift/sweep/falsify/physics_version.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
 #include "rift/sweep/run/journal.hpp"
-#include "stop_signal.hpp"
 
 namespace rift::commands {
 
@@ -81,7 +84,7 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
   const std::filesystem::path file = request.out / kJournalName;
   if (request.fresh) Journal::Remove(file);
   Journal journal(file, FactsOf(experiment));
-  WriteFile(request.out / "experiment.yaml", experiment::WriteExperiment(experiment));
+  files::WriteFile(request.out / "experiment.yaml", experiment::WriteExperiment(experiment));
   evaluator.LoadLogs();  // now, since workers are copies of what is there when they start
   journal.SetNote("name", experiment.name);
   const SweepSize size = SizeOf(experiment);
@@ -146,7 +149,7 @@ namespace {
 
 /// A journal that says "running" while nobody holds the folder was left by a killed sweep.
 std::string StateOf(const std::filesystem::path& folder, const sweep::JournalSummary& summary) {
-  if (FolderLock::IsHeld(folder)) return "running";
+  if (files::FolderLock::IsHeld(folder)) return "running";
   const auto noted = summary.notes.find("state");
   const bool is_done = noted != summary.notes.end() && noted->second == "done";
   return is_done ? "done" : "stopped";

@@ -6,16 +6,19 @@
 #include <stdexcept>
 
 #include "files.hpp"
+#include "flags.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/experiment/experiment.hpp"
-#include "rift/report/json/track.hpp"
+#include "rift/files/files.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/trajectory/log.hpp"
-#include "rift/view/display.hpp"
 #include "rift/view/track_view.hpp"
+#include "rift/view/track_window.hpp"
+#include "rift/view/window.hpp"
 #include "rift/view/world_clicks.hpp"
-#include "rift/vision/calibration/board_views.hpp"
 #include "rift/vision/calibration/calibration.hpp"
+#include "rift/vision/calibration/chessboard.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/tracking/track_run.hpp"
@@ -36,7 +39,7 @@ void Say(const std::string& line) {
 
 experiment::TrackOptions OptionsOf(const TrackRequest& request) {
   const auto read = [&](const std::string& path) {
-    return request.experiment.empty() ? std::string("{}") : ReadFile(path);
+    return request.experiment.empty() ? std::string("{}") : files::ReadFile(path);
   };
   const std::string path = request.experiment.empty() ? "defaults" : request.experiment;
   experiment::TrackOptions options =
@@ -46,7 +49,8 @@ experiment::TrackOptions OptionsOf(const TrackRequest& request) {
 }
 
 experiment::Experiment LoadPath(const std::string& path) {
-  return experiment::LoadExperiment(path, {}, [](const std::string& p) { return ReadFile(p); });
+  return experiment::LoadExperiment(path, {},
+                                    [](const std::string& p) { return files::ReadFile(p); });
 }
 
 /// The path is a waypoint file or, told by its ending, a log.
@@ -54,12 +58,12 @@ view::TrackView::Content ContentOf(const TrackRequest& request) {
   view::TrackView::Content content;
   if (!request.record_waypoints.empty()) {
     content.save = [file = request.record_waypoints](const auto& waypoints) {
-      WriteFile(file, report::WaypointsYaml(waypoints));
+      files::WriteFile(file, report::WaypointsYaml(waypoints));
     };
   }
   if (request.path.empty()) return content;
   if (fs::path(request.path).extension() == ".csv") {
-    const trajectory::Log log = trajectory::ReadLog(ReadFile(request.path), request.path);
+    const trajectory::Log log = trajectory::ReadLog(files::ReadFile(request.path), request.path);
     for (const auto& pose : log.trajectory.poses) content.path_m.push_back(pose.Position());
     return content;
   }
@@ -98,7 +102,8 @@ std::string HeadOf(const std::string& text) {
 
 vision::WorldFrame WorldFor(const TrackRequest& request, const vision::WorldSetting& setting) {
   if (request.world == "first") return WorldFromRobot(setting);
-  const vision::FloorMarks marks = vision::ReadFloorMarks(ReadFile(request.world), request.world);
+  const vision::FloorMarks marks =
+      vision::ReadFloorMarks(files::ReadFile(request.world), request.world);
   return marks.tags.empty() ? view::WorldFromClicks(setting, marks.points)
                             : WorldFromFloorTags(setting, marks.tags);
 }
@@ -106,8 +111,8 @@ vision::WorldFrame WorldFor(const TrackRequest& request, const vision::WorldSett
 void SetAndSaveWorld(const TrackRequest& request, const std::function<bool()>& is_stopped,
                      vision::CameraSession& session) {
   session.SetWorld(WorldFor(request, {session, request.session, is_stopped}));
-  WriteFile(request.calibration,
-            HeadOf(ReadFile(request.calibration)) + vision::WriteCamera(session.camera()));
+  files::WriteFile(request.calibration, HeadOf(files::ReadFile(request.calibration)) +
+                                            vision::WriteCamera(session.camera()));
   const vision::WorldFrame& world = *session.camera().world;
   Say(fmt::format("world frame from {}, {:.2f} mm off at its points, is now in {}", world.origin,
                   1e3 * world.residual_m, request.calibration));
@@ -116,10 +121,11 @@ void SetAndSaveWorld(const TrackRequest& request, const std::function<bool()>& i
 int Report(const TrackRequest& request, const vision::CameraModel& camera,
            const experiment::TrackOptions& options, const vision::TrackRun& run) {
   const fs::path run_file = RunFileOf(request.out);
-  WriteFile(run_file, report::TrackJson(
-                          {request.camera, request.calibration,
-                           statistics::Hash128Text(ReadFile(request.calibration)), request.session},
-                          camera, options, run, run.rows));
+  files::WriteFile(run_file,
+                   report::TrackJson({request.camera, request.calibration,
+                                      statistics::Hash128Text(files::ReadFile(request.calibration)),
+                                      request.session},
+                                     camera, options, run, run.rows));
   fmt::print("{}", report::TrackText(run, run.rows));
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
   Say(fmt::format("{}; run: {}", log, run_file.string()));
@@ -131,7 +137,7 @@ int TrackRobot(const TrackRequest& request) {
   experiment::TrackOptions options = OptionsOf(request);
   view::TrackView::Content content = ContentOf(request);
   const vision::CameraModel camera =
-      vision::ReadCamera(ReadFile(request.calibration), request.calibration);
+      vision::ReadCamera(files::ReadFile(request.calibration), request.calibration);
   const StopSignal stop;
   const auto is_stopped = [&stop] { return stop.IsAsked(); };
   vision::CameraSession session(request.camera, camera, options.capture, options.tag);
@@ -183,8 +189,8 @@ int CalibrateAndSave(const TrackRequest& request) {
     return kNotReached;
   }
   calibration.camera.name = fs::path(request.out).stem().string();
-  WriteFile(request.out,
-            report::CalibrationComment(calibration) + vision::WriteCamera(calibration.camera));
+  files::WriteFile(request.out, report::CalibrationComment(calibration) +
+                                    vision::WriteCamera(calibration.camera));
   Say(fmt::format("calibration: {}", request.out));
   return kDone;
 }

@@ -10,6 +10,7 @@
 #include "files.hpp"
 #include "flags.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/files/files.hpp"
 
 namespace rift::commands {
 namespace {
@@ -21,7 +22,7 @@ void RefuseAmongPictures(const fs::path& camera, const fs::path& log) {
   const bool is_pattern = camera.filename().string().find('*') != std::string::npos;
   const bool is_among =
       is_pattern && log.extension() == camera.extension() &&
-      IsSameFile(fs::absolute(log).parent_path(), fs::absolute(camera).parent_path());
+      files::IsSameFile(fs::absolute(log).parent_path(), fs::absolute(camera).parent_path());
   if (!is_among) return;
   throw std::invalid_argument(
       fmt::format("--out {} is one of the camera's pictures: name a log", log.string()));

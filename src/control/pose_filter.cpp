@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::control {
 namespace {

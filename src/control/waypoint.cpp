@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::control {
 namespace {

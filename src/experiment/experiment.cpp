@@ -7,8 +7,8 @@
 #include <set>
 
 #include "calibrate_keys.hpp"
-#include "rift/experiment/hooks.hpp"
 #include "rift/experiment/parameter.hpp"
+#include "rift/experiment/space_yaml.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/describe.hpp"
 #include "rift/yaml/node.hpp"
@@ -64,11 +64,7 @@ void ResolveImages(yaml::Node& tree) {
 /// Values to try a parameter with: its levels, or the ends of its range.
 std::vector<ParameterValue> ValuesToTry(const Parameter& parameter) {
   if (!parameter.IsContinuous()) return parameter.levels;
-  std::vector<ParameterValue> ends;
-  for (const double end : {parameter.min, parameter.max}) {
-    ends.push_back({yaml::NumberText(end, parameter.key), end});
-  }
-  return ends;
+  return {NumberValue(parameter.min), NumberValue(parameter.max)};
 }
 
 /// A rule between keys, such as v_min <= v_max, is broken for good only when no other values of
@@ -178,7 +174,7 @@ Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>&
   std::vector<yaml::KeyValue> pairs;
   for (size_t i = 0; i < values.size(); ++i) {
     const FreeParameter& free = experiment.calibrate.fit.list[i];
-    yaml::Node value = yaml::Node::Scalar(yaml::NumberText(values[i], free.key));
+    yaml::Node value = yaml::Node::Scalar(NumberValue(values[i]).text);
     value.origin.source = free.origin;
     pairs.push_back({free.key, value});
   }

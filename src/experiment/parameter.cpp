@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <stdexcept>
 
 namespace rift::experiment {
@@ -20,6 +21,12 @@ std::string Parameter::Name() const { return key.substr(key.rfind('.') + 1); }
 bool Parameter::IsCategorical() const {
   return std::any_of(levels.begin(), levels.end(),
                      [](const ParameterValue& level) { return !level.number; });
+}
+
+ParameterValue NumberValue(double number) {
+  if (!std::isfinite(number))
+    throw std::invalid_argument("the value of a parameter must be finite");
+  return {fmt::format("{}", number), number};
 }
 
 ParameterValue ParseValue(const Parameter& parameter, const std::string& text) {

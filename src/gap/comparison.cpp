@@ -1,4 +1,5 @@
 #include "rift/gap/comparison.hpp"
+#include "other_distances.hpp"
 
 #include <fmt/format.h>
 
@@ -9,11 +10,10 @@
 #include <vector>
 
 #include "arc_path.hpp"
-#include "measures.hpp"
-#include "peak_error.hpp"
-#include "rift/geometry/angle.hpp"
-#include "rift/statistics/mean.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "max_deviation.hpp"
+#include "path_shape.hpp"
+#include "rift/geometry/pose2.hpp"
+#include "rift/statistics/descriptive.hpp"
 
 namespace rift::gap {
 namespace {

@@ -8,9 +8,8 @@
 #include <stdexcept>
 
 #include "path_shape.hpp"
-#include "rift/gap/verdict.hpp"
-#include "rift/statistics/mean.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "rift/gap/result.hpp"
+#include "rift/statistics/descriptive.hpp"
 
 namespace rift::gap {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "rift/geometry/angle.hpp"
-
 namespace rift::geometry {
 
 Eigen::Vector2d Pose2::Forward() const { return {std::cos(yaw_rad), std::sin(yaw_rad)}; }

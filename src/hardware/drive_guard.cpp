@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::hardware {
 namespace {

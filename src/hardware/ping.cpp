@@ -7,7 +7,7 @@
 #include <map>
 
 #include "rift/hardware/robot_link.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
 
 namespace rift::hardware {
 namespace {

@@ -1,6 +1,6 @@
+// The kernel's own termios, since glibc's knows only a list of baud rates.
 #include "rift/hardware/serial_port.hpp"
 
-// The kernel's own termios, since glibc's knows only a list of baud rates.
 #include <asm/termbits.h>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,8 +16,18 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <thread>
+
+#include "rift/vision/camera/camera_source.hpp"
 
 namespace rift::hardware {
+
+double SteadyClock::Now_s() { return vision::SteadyNow_s(); }
+
+void SteadyClock::Wait(double dt_s) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(dt_s));
+}
+
 namespace {
 
 std::string GroupOf(const std::string& path) {

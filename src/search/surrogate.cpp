@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "rift/statistics/distributions.hpp"
+#include "rift/statistics/inference.hpp"
 
 namespace rift::search {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::simulation {
 namespace {

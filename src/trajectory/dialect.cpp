@@ -12,7 +12,7 @@
 
 #include "csv.hpp"
 #include "plausibility.hpp"
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::trajectory {
 namespace {

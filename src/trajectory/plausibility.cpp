@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::trajectory {
 namespace {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "rift/geometry/angle.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "rift/geometry/pose2.hpp"
+#include "rift/statistics/descriptive.hpp"
 
 namespace rift::trajectory {
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "rift/control/navigator.hpp"
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::trial {
 namespace {

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "rift/vision/camera/camera_source.hpp"
 
 namespace rift::twin {

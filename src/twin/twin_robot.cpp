@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rift/statistics/counter_random.hpp"
+#include "rift/statistics/random.hpp"
 
 namespace rift::twin {
 namespace {

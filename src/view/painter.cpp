@@ -12,7 +12,7 @@
 
 #include "backdrop.hpp"
 #include "pen.hpp"
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 #include "rift/view/film.hpp"
 
 namespace rift::view {

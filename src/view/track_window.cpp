@@ -3,7 +3,7 @@
 #include <opencv2/highgui.hpp>
 #include <utility>
 
-#include "rift/view/display.hpp"
+#include "rift/view/window.hpp"
 #include "track_picture.hpp"
 
 namespace rift::view {

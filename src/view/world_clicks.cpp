@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "rift/view/display.hpp"
 #include "rift/view/track_window.hpp"
+#include "rift/view/window.hpp"
 #include "rift/vision/tracking/world_frame.hpp"
 
 namespace rift::view {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "key_path.hpp"
+#include "rift/yaml/bind.hpp"
 
 namespace rift::yaml {
 namespace {

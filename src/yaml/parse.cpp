@@ -10,7 +10,7 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
-#include "key_path.hpp"
+#include "rift/yaml/bind.hpp"
 #include "rift/yaml/load.hpp"
 #include "rift/yaml/node.hpp"
 #include "text_check.hpp"

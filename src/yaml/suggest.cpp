@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "key_path.hpp"
+#include "rift/yaml/bind.hpp"
 #include "rift/yaml/node.hpp"
 
 namespace rift::yaml {

@@ -3,8 +3,8 @@
 #include <thread>
 
 #include "hardware/pseudo_terminal.hpp"
-#include "rift/hardware/byte_line.hpp"
 #include "rift/hardware/listener.hpp"
+#include "rift/hardware/serial_port.hpp"
 #include "support/process.hpp"
 
 namespace rift {

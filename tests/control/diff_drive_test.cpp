@@ -5,7 +5,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::control {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 #include "support/paper_waypoints.hpp"
 
 namespace rift::control {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "rift/control/navigator.hpp"
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/trials.hpp"
 

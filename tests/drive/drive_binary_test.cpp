@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "commands/files.hpp"
 #include "floor.hpp"
 #include "rift/control/waypoint.hpp"
+#include "rift/files/files.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/environment.hpp"
 #include "support/paper_waypoints.hpp"
@@ -15,8 +15,6 @@
 
 namespace rift {
 namespace {
-
-using commands::ReadFile;
 
 // Limits that a loaded machine keeps as well; those of a real drive are tested on a fake clock.
 constexpr const char* kPatient = R"(
@@ -43,7 +41,7 @@ struct Scene {
             "--out",    folder / "run",       "--yes"};
   }
   nlohmann::json Summary() const {
-    return nlohmann::json::parse(ReadFile(folder / "run/summary.json"));
+    return nlohmann::json::parse(files::ReadFile(folder / "run/summary.json"));
   }
 
   test::TemporaryFolder folder;
@@ -85,7 +83,7 @@ void CheckWholeDrive(Scene& scene, const test::ProcessResult& result) {
   CHECK(summary["latency"]["capture_to_command"]["p99_s"] > 0.0);
   const std::string path = scene.folder / "run/trajectory.csv";
   const auto poses =
-      trajectory::ReadLog(ReadFile(path), path, trajectory::Format::kAuto).trajectory.poses;
+      trajectory::ReadLog(files::ReadFile(path), path, trajectory::Format::kAuto).trajectory.poses;
   REQUIRE(poses.size() > 50);
   const geometry::Pose2 end = scene.floor.Pose();
   CHECK((end.Position() - test::PaperWaypoints().back().Position()).norm() < 0.08);
@@ -206,7 +204,7 @@ TEST_CASE("A device is asked for the size of its calibration as in tracking") {
   CHECK_THAT(result.err, Catch::Contains("the robot stands at x"));
   CHECK(scene.Summary()["outcome"] == "timed_out");
   CHECK(scene.Summary()["poses"] > 5);
-  const std::string kept = ReadFile(scene.folder / "run/camera.yaml");
+  const std::string kept = files::ReadFile(scene.folder / "run/camera.yaml");
   CHECK(vision::ReadCamera(kept, "camera.yaml").width_px == 960);
 
   const test::ProcessResult tracked = test::RunRift(
@@ -220,7 +218,7 @@ TEST_CASE("How far the reference tags may lie off before a drive is an option of
   // Marks that the picture shows 20 px from where they set the frame.
   const std::string calibration = test::SourceDir() + "/data/camera/camera.yaml";
   Scene scene;
-  test::WriteText(scene.folder / "moved.yaml", ReadFile(calibration));
+  test::WriteText(scene.folder / "moved.yaml", files::ReadFile(calibration));
   const Device device;
   const test::ProcessResult framed = test::RunRift(
       {"track", "--camera", "/dev/video0", "--calibration", scene.folder / "moved.yaml", "--world",
@@ -228,7 +226,7 @@ TEST_CASE("How far the reference tags may lie off before a drive is an option of
   INFO(framed.err);
   REQUIRE(framed.exit_code == 0);
   const std::string path = scene.folder / "moved.yaml";
-  vision::CameraModel camera = vision::ReadCamera(ReadFile(path), path);
+  vision::CameraModel camera = vision::ReadCamera(files::ReadFile(path), path);
   for (vision::ReferenceMark& mark : camera.world->marks) mark.seen_px.x() += 20.0;
   test::WriteText(path, vision::WriteCamera(camera));
   for (const bool is_allowed : {false, true}) {

@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/drive.hpp"
-#include "commands/files.hpp"
 #include "hardware/bench.hpp"
-#include "rift/report/json/drive.hpp"
+#include "rift/files/files.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "support/documented.hpp"
@@ -46,7 +46,7 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   const test::TemporaryFolder folder;
   BeginDriveFolder(folder.Path(), experiment, test::PaperCamera());
   SaveDrive(folder.Path(), experiment, run);
-  const auto summary = nlohmann::json::parse(ReadFile(folder / "summary.json"));
+  const auto summary = nlohmann::json::parse(files::ReadFile(folder / "summary.json"));
   CHECK(summary["outcome"] == "reached");
   CHECK(summary["stop"]["acknowledged"] == true);
   CHECK(summary["stop"]["reason"] == "finished");
@@ -54,16 +54,16 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   CHECK(summary["latency"]["capture_to_command"]["n"] > 30);
   CHECK(test::KeysOf(summary) == test::DocumentedKeys("summary.json of rift drive"));
   CHECK(test::KeysOf(summary["ping"]) == test::DocumentedKeys("rift drive --ping --json"));
-  const std::string stages = ReadFile(folder / "stages.csv");
+  const std::string stages = files::ReadFile(folder / "stages.csv");
   CHECK(test::Columns(stages) == test::Documented("files.md", "Columns of stages.csv"));
   const auto rows = std::count(stages.begin(), stages.end(), '\n');
   CHECK(rows == 1 + static_cast<long>(run.evidence.poses.size()));
-  const std::string encoders = ReadFile(folder / "encoders.csv");
+  const std::string encoders = files::ReadFile(folder / "encoders.csv");
   CHECK(test::Columns(encoders) == test::Documented("files.md", "Columns of encoders.csv"));
   CHECK(std::count(encoders.begin(), encoders.end(), '\n') > rows - 5);
-  CHECK(vision::ReadCamera(ReadFile(folder / "camera.yaml"), "camera").world);
-  const trajectory::Log log = trajectory::ReadLog(ReadFile(folder / "trajectory.csv"), "trajectory",
-                                                  trajectory::Format::kAuto);
+  CHECK(vision::ReadCamera(files::ReadFile(folder / "camera.yaml"), "camera").world);
+  const trajectory::Log log = trajectory::ReadLog(files::ReadFile(folder / "trajectory.csv"),
+                                                  "trajectory", trajectory::Format::kAuto);
   CHECK(log.trajectory.poses.size() == run.trial.trajectory.poses.size());
 }
 

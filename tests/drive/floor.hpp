@@ -8,8 +8,8 @@
 
 #include "hardware/pseudo_terminal.hpp"
 #include "rift/control/diff_drive.hpp"
-#include "rift/hardware/byte_line.hpp"
 #include "rift/hardware/listener.hpp"
+#include "rift/hardware/serial_port.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "support/paper_camera.hpp"
 #include "vision/mjpeg_server.hpp"

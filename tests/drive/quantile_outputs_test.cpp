@@ -3,9 +3,8 @@
 #include <vector>
 
 #include "rift/gap/comparison.hpp"
-#include "rift/report/json/drive.hpp"
-#include "rift/report/json/track.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "rift/report/json/json.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "support/paths.hpp"
 
 namespace rift::commands {

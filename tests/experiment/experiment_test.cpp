@@ -8,7 +8,7 @@
 #include "rift/yaml/node.hpp"
 #include "support/random_fill.hpp"
 
-#include "rift/experiment/hooks.hpp"
+#include "rift/experiment/space_yaml.hpp"
 
 namespace rift::experiment {
 namespace {

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "rift/experiment/experiment.hpp"
-#include "rift/experiment/hooks.hpp"
+#include "rift/experiment/space_yaml.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "support/random_fill.hpp"
 

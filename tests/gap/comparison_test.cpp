@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 #include "support/paths.hpp"
 
 namespace rift::gap {

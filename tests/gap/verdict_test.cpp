@@ -1,4 +1,4 @@
-#include "rift/gap/verdict.hpp"
+#include "rift/gap/result.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

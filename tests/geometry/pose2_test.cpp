@@ -3,8 +3,6 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "rift/geometry/angle.hpp"
-
 namespace rift::geometry {
 namespace {
 

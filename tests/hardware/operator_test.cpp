@@ -1,4 +1,4 @@
-#include "rift/hardware/operator.hpp"
+#include "rift/hardware/arming.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -7,7 +7,7 @@
 
 #include "rift/gap/comparison.hpp"
 #include "rift/simulation/simulated_robot.hpp"
-#include "rift/sweep/calibrate/drive_likeness.hpp"
+#include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/load.hpp"
 #include "rift/yaml/node.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "identification/grid_study.hpp"
-#include "rift/sweep/calibrate/drive_likeness.hpp"
+#include "rift/sweep/calibrate/likeness.hpp"
 
 namespace rift::test {
 

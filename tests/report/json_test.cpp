@@ -3,8 +3,7 @@
 
 #include "report/synthetic_sweep.hpp"
 #include "rift/report/json/fields.hpp"
-#include "rift/report/json/sweep.hpp"
-#include "rift/report/json/table.hpp"
+#include "rift/report/json/json.hpp"
 
 namespace rift::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "rift/report/figures/simulation_figure.hpp"
+#include "rift/report/figures/figures.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

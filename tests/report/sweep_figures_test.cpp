@@ -1,4 +1,4 @@
-#include "rift/report/figures/sweep_figures.hpp"
+#include "rift/report/figures/figures.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "rift/report/figures/gap_figures.hpp"
+#include "rift/report/figures/figures.hpp"
 #include "rift/sweep/falsify/result.hpp"
-#include "rift/sweep/falsify/summary.hpp"
 
 namespace rift::report::synthetic {
 

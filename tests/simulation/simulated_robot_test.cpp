@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::simulation {
 namespace {

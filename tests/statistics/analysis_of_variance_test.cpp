@@ -1,4 +1,4 @@
-#include "rift/statistics/analysis_of_variance.hpp"
+#include "rift/statistics/inference.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

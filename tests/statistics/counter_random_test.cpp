@@ -1,4 +1,4 @@
-#include "rift/statistics/counter_random.hpp"
+#include "rift/statistics/random.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,12 +1,11 @@
-#include "rift/statistics/intervals.hpp"
+#include "rift/statistics/inference.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 #include <vector>
 
-#include "rift/statistics/distributions.hpp"
-#include "rift/statistics/mean.hpp"
+#include "rift/statistics/descriptive.hpp"
 
 namespace rift::statistics {
 namespace {

@@ -1,4 +1,4 @@
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

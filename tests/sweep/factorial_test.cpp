@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "rift/sweep/falsify/summary.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -6,7 +6,7 @@
 #include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/explain/suggest.hpp"
-#include "rift/sweep/falsify/summary.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
 namespace {

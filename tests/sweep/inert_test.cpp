@@ -4,7 +4,7 @@
 #include <random>
 
 #include "rift/sweep/explain/anatomy.hpp"
-#include "rift/sweep/falsify/summary.hpp"
+#include "rift/sweep/falsify/result.hpp"
 #include "support/paths.hpp"
 
 namespace rift::sweep {
@@ -29,8 +29,10 @@ SweepResult Table() {
         row.trial = trial;
         row.comparison.gap_m = (surface.text == "ice" ? 0.03 : 0.06) + normal(random);
         row.evidence.fingerprint = (surface.text == "ice" ? 10 : 20) + (*v_max.number > 0.35);
-        row.evidence.candidate_limits = trial::LimitCounts{
-            .decisions = 60, .v_max = *v_max.number < 0.39 ? 1u : 0u, .largest_raw_v = 0.39};
+        trial::LimitCounts& limits = row.evidence.candidate_limits.emplace();
+        limits.decisions = 60;
+        limits.v_max = *v_max.number < 0.39 ? 1 : 0;
+        limits.largest_raw_v = 0.39;
         result.rows.push_back(row);
       }
     }

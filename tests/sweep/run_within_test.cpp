@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "rift/sweep/calibrate/drive_likeness.hpp"
+#include "rift/sweep/calibrate/likeness.hpp"
 #include "sweep/calibrate/model.hpp"
 
 namespace rift::sweep {

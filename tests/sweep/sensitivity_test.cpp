@@ -6,7 +6,7 @@
 #include <random>
 
 #include "rift/sweep/explain/failing_region.hpp"
-#include "rift/sweep/falsify/summary.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -1,8 +1,6 @@
-#include "rift/sweep/falsify/summary.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 #include <catch2/catch.hpp>
-
-#include "rift/sweep/falsify/labels.hpp"
 
 namespace rift::sweep {
 namespace {

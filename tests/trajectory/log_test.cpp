@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 #include "support/paths.hpp"
 
 namespace rift::trajectory {

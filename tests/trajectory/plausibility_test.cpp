@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/trials.hpp"
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 #include "rift/view/film.hpp"
 #include "view/pen.hpp"
 #include "view/synthetic_run.hpp"

@@ -1,4 +1,4 @@
-#include "view/playback.hpp"
+#include "rift/view/film.hpp"
 
 #include <catch2/catch.hpp>
 

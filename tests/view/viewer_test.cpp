@@ -1,4 +1,3 @@
-#include "rift/view/display.hpp"
 #include "rift/view/video.hpp"
 #include "rift/view/window.hpp"
 

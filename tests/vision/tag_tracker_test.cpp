@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "rendered_tags.hpp"
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::vision {
 namespace {

@@ -21,17 +21,34 @@ struct PoseInput {
   geometry::Pose2 world_from_robot;
 };
 
-/// Which limits changed what the two loops asked for.
-struct Limits {
-  bool v_min = false;
-  bool v_max = false;
-  bool cruise_cap = false;
-  bool through_cruise = false;
-  bool w_min = false;
-  bool w_max = false;
-  bool normalised = false;
-  bool slew = false;
+/// Something about each limit of the controller.
+template <class T>
+struct ForEachLimit {
+  T v_min{};
+  T v_max{};
+  T cruise_cap{};
+  T through_cruise{};
+  T w_min{};
+  T w_max{};
+  T normalised{};
+  T slew{};
+
+  /// Calls field(name, member) for every limit.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("v_min", self.v_min);
+    field("v_max", self.v_max);
+    field("cruise_cap", self.cruise_cap);
+    field("through_cruise", self.through_cruise);
+    field("w_min", self.w_min);
+    field("w_max", self.w_max);
+    field("normalised", self.normalised);
+    field("slew", self.slew);
+  }
 };
+
+/// Which limits changed what the two loops asked for.
+using Limits = ForEachLimit<bool>;
 
 /// What to do now, and why. Always finite, each power within [-1, 1].
 struct Decision {

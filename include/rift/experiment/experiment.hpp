@@ -7,10 +7,8 @@
 
 #include "rift/control/options.hpp"
 #include "rift/control/waypoint.hpp"
-#include "rift/experiment/calibrate_options.hpp"
-#include "rift/experiment/hooks.hpp"
 #include "rift/experiment/options.hpp"
-#include "rift/experiment/track_options.hpp"
+#include "rift/experiment/space_yaml.hpp"
 #include "rift/gap/options.hpp"
 #include "rift/hardware/options.hpp"
 #include "rift/simulation/options.hpp"

@@ -36,6 +36,10 @@ struct Parameter {
   bool IsCategorical() const;
 };
 
+/// A number as a value: the one place where it becomes text, the shortest that reads back the same.
+/// Throws std::invalid_argument unless it is finite.
+ParameterValue NumberValue(double number);
+
 /// A value of the parameter as a table or an experiment writes it: the level of that text, else a
 /// number where the text is one and the parameter has no words, else a word.
 ParameterValue ParseValue(const Parameter& parameter, const std::string& text);

@@ -7,8 +7,8 @@
 #include <string>
 #include <thread>
 
-#include "rift/hardware/byte_line.hpp"
 #include "rift/hardware/pose_source.hpp"
+#include "rift/hardware/serial_port.hpp"
 #include "rift/vision/camera/capture_thread.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
 

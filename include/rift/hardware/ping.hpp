@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "rift/hardware/byte_line.hpp"
 #include "rift/hardware/options.hpp"
+#include "rift/hardware/serial_port.hpp"
 
 namespace rift::hardware {
 

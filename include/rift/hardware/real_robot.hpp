@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "rift/hardware/byte_line.hpp"
 #include "rift/hardware/drive_guard.hpp"
 #include "rift/hardware/options.hpp"
 #include "rift/hardware/pose_source.hpp"
 #include "rift/hardware/robot_link.hpp"
+#include "rift/hardware/serial_port.hpp"
 #include "rift/trial/robot.hpp"
 
 namespace rift::hardware {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "rift/hardware/byte_line.hpp"
 #include "rift/hardware/options.hpp"
+#include "rift/hardware/serial_port.hpp"
 #include "rift/hardware/wire.hpp"
 
 namespace rift::hardware {

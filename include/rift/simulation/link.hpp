@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "rift/statistics/counter_random.hpp"
+#include "rift/statistics/random.hpp"
 #include "rift/trial/robot.hpp"
 
 namespace rift::simulation {

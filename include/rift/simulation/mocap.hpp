@@ -4,7 +4,7 @@
 #include <deque>
 #include <optional>
 
-#include "rift/statistics/counter_random.hpp"
+#include "rift/statistics/random.hpp"
 #include "rift/trial/robot.hpp"
 
 namespace rift::simulation {

@@ -35,16 +35,8 @@ struct SentCommand {
 
 /// How many decisions each limit changed, and what the loops asked for at most: whether a limit
 /// such as v_max mattered in this trial.
-struct LimitCounts {
+struct LimitCounts : control::ForEachLimit<size_t> {
   size_t decisions = 0;  ///< those that drove, thus neither settling, stopped nor stale
-  size_t v_min = 0;
-  size_t v_max = 0;
-  size_t cruise_cap = 0;
-  size_t through_cruise = 0;
-  size_t w_min = 0;
-  size_t w_max = 0;
-  size_t normalised = 0;
-  size_t slew = 0;
   double largest_raw_v = 0.0;
   double largest_raw_w = 0.0;  ///< of either sign
 };
@@ -77,5 +69,29 @@ struct TrialResult {
 TrialResult RunTrial(Robot& robot, const std::vector<control::Waypoint>& waypoints,
                      const control::NavigatorOptions& navigator_options,
                      const TrialOptions& options);
+
+/// Turns the steps of a trial into the evidence of its result.
+class Recorder {
+ public:
+  Recorder(const std::vector<control::Waypoint>& waypoints, double log_period_s);
+
+  /// Once for each believable new pose, after the decision made on it (none while settling).
+  void Pose(const PoseMeasurement& measured, const control::Waypoint& target,
+            const control::Decision& decision);
+  void Sent(double now_s, const control::WheelPower& power);
+  /// Once for each decision; `active_after` is the waypoint the navigator drives to from now on.
+  void Decided(double now_s, const control::Decision& decision, size_t active_after);
+  void Refused() { ++result_.poses_refused; }
+  void Stale() { ++result_.stale_decisions; }
+
+  TrialResult& result() { return result_; }
+
+ private:
+  enum ChannelIndex { kPowerLeft, kPowerRight, kV, kW };
+
+  double log_period_s_;
+  size_t active_ = 1;
+  TrialResult result_;
+};
 
 }  // namespace rift::trial

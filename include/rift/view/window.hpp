@@ -1,9 +1,18 @@
 #pragma once
 
+#include <string>
+
 #include "rift/view/film.hpp"
 #include "rift/view/options.hpp"
 
 namespace rift::view {
+
+/// Why no window can be opened here, in one line for people; empty when one can.
+std::string MissingDisplay();
+
+/// To be called before a window is opened. Throws std::runtime_error with MissingDisplay() where
+/// that is not empty.
+void RequireDisplay();
 
 /// Plays the film in a window until it is over or the user leaves. Throws std::runtime_error with
 /// MissingDisplay() where that is not empty.

@@ -1,4 +1,4 @@
-#include "rift/report/figures/calibration_figure.hpp"
+#include "rift/report/figures/figures.hpp"
 
 #include <fmt/format.h>
 

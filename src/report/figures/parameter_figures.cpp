@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "rift/report/figures/gnuplot_text.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "sweep_plots.hpp"
 
 namespace rift::report {

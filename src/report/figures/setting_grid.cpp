@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "rift/sweep/falsify/labels.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::report {
 namespace {

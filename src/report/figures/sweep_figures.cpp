@@ -1,11 +1,11 @@
-#include "rift/report/figures/sweep_figures.hpp"
+#include "rift/report/figures/figures.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "rift/sweep/falsify/labels.hpp"
+#include "rift/sweep/falsify/result.hpp"
 #include "sweep_plots.hpp"
 
 namespace rift::report {
@@ -155,17 +155,6 @@ SweepFigureSet SweepFigures(const sweep::SweepResult& result,
   maker.ByOtherFactors();
   maker.OverContinuousAxes();
   return maker.Take();
-}
-
-std::optional<int> WorstRow(const sweep::SweepResult& result) {
-  std::optional<int> worst;
-  for (std::size_t i = 0; i < result.rows.size(); ++i) {
-    if (!result.rows[i].IsOk()) continue;
-    if (!worst || result.rows[i].comparison.gap_m > result.rows[*worst].comparison.gap_m) {
-      worst = static_cast<int>(i);
-    }
-  }
-  return worst;
 }
 
 }  // namespace rift::report

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "rift/report/figures/gnuplot_text.hpp"
-#include "rift/sweep/falsify/labels.hpp"
+#include "rift/sweep/falsify/result.hpp"
 #include "sweep_plots.hpp"
 
 namespace rift::report {

@@ -1,7 +1,6 @@
-#include "rift/report/json/calibration.hpp"
+#include "rift/report/json/json.hpp"
 
 #include "rift/report/json/fields.hpp"
-#include "rift/report/json/likeness.hpp"
 
 namespace rift::report {
 namespace {

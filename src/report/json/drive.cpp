@@ -1,12 +1,11 @@
-#include "rift/report/json/drive.hpp"
+#include "rift/report/json/json.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 
 #include "rift/report/json/fields.hpp"
-#include "rift/report/json/trial.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {

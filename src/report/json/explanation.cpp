@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "rift/report/json/fields.hpp"
-#include "rift/report/json/sweep.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {

@@ -1,6 +1,6 @@
 #include "rift/report/json/fields.hpp"
-#include "rift/report/json/sweep.hpp"
-#include "rift/report/text/sweep.hpp"
+#include "rift/report/json/json.hpp"
+#include "rift/report/text/text.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {

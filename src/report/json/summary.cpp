@@ -1,4 +1,4 @@
-#include "rift/report/json/sweep.hpp"
+#include "rift/report/json/json.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "rift/report/json/fields.hpp"
-#include "rift/sweep/falsify/labels.hpp"
+#include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {

@@ -1,4 +1,4 @@
-#include "rift/report/json/table.hpp"
+#include "rift/report/json/json.hpp"
 
 #include <fmt/format.h>
 

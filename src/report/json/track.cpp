@@ -1,4 +1,4 @@
-#include "rift/report/json/track.hpp"
+#include "rift/report/json/json.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "rift/report/json/fields.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "rift/yaml/enum_name.hpp"
 #include "rift/yaml/write.hpp"
 

@@ -1,4 +1,4 @@
-#include "rift/report/json/trial.hpp"
+#include "rift/report/json/json.hpp"
 
 #include <fmt/format.h>
 
@@ -26,17 +26,11 @@ ordered_json WaypointsJson(const trial::TrialResult& result) {
 }
 
 ordered_json LimitsJson(const trial::LimitCounts& limits) {
-  return {{"decisions", limits.decisions},
-          {"v_min", limits.v_min},
-          {"v_max", limits.v_max},
-          {"cruise_cap", limits.cruise_cap},
-          {"through_cruise", limits.through_cruise},
-          {"w_min", limits.w_min},
-          {"w_max", limits.w_max},
-          {"normalised", limits.normalised},
-          {"slew", limits.slew},
-          {"largest_raw_v", limits.largest_raw_v},
-          {"largest_raw_w", limits.largest_raw_w}};
+  ordered_json json{{"decisions", limits.decisions}};
+  trial::LimitCounts::Fields(limits, [&](const char* name, size_t count) { json[name] = count; });
+  json["largest_raw_v"] = limits.largest_raw_v;
+  json["largest_raw_w"] = limits.largest_raw_w;
+  return json;
 }
 
 std::string SimulationJson(const experiment::Experiment& experiment,

@@ -1,4 +1,4 @@
-#include "charts.hpp"
+#include "parts.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "embedded.hpp"
 #include "rift/report/figures/gnuplot_text.hpp"
 #include "rift/report/figures/setting_grid.hpp"
-#include "rift/sweep/falsify/labels.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::report {
 namespace {

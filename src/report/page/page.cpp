@@ -5,12 +5,10 @@
 #include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
-#include "charts.hpp"
 #include "embedded.hpp"
+#include "parts.hpp"
 #include "rift/report/figures/gnuplot_text.hpp"
 #include "rift/report/text/findings.hpp"
-#include "tables.hpp"
-#include "why_charts.hpp"
 
 namespace rift::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "tables.hpp"
+#include "parts.hpp"
 
 #include <fmt/format.h>
 

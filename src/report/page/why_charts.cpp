@@ -1,4 +1,4 @@
-#include "why_charts.hpp"
+#include "parts.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "rift/report/text/calibration.hpp"
+#include "rift/report/text/text.hpp"
 
 #include <fmt/format.h>
 

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "causes.hpp"
+#include "rift/report/figures/figures.hpp"
 #include "rift/report/figures/gnuplot_text.hpp"
 #include "rift/report/figures/setting_grid.hpp"
-#include "rift/report/figures/sweep_figures.hpp"
-#include "rift/sweep/falsify/labels.hpp"
+#include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/enum_name.hpp"
 #include "trial_query.hpp"
 

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <vector>
 
-#include "rift/report/text/calibration.hpp"
+#include "rift/report/text/text.hpp"
 #include "rift/yaml/node.hpp"
 #include "rift/yaml/write.hpp"
 

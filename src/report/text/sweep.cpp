@@ -1,4 +1,4 @@
-#include "rift/report/text/sweep.hpp"
+#include "rift/report/text/text.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <optional>
 
-#include "rift/report/figures/sweep_figures.hpp"
+#include "rift/report/figures/figures.hpp"
 #include "rift/report/text/findings.hpp"
-#include "rift/sweep/falsify/labels.hpp"
+#include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {

@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-#include "rift/geometry/angle.hpp"
+#include "rift/geometry/pose2.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -6,8 +6,7 @@
 #include <stdexcept>
 
 #include "rift/gap/likeness.hpp"
-#include "rift/statistics/mean.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "rift/trial/loop_delay.hpp"
 
 namespace rift::sweep {

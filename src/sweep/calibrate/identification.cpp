@@ -7,7 +7,7 @@
 
 #include "rift/experiment/parameter.hpp"
 #include "rift/sweep/falsify/grid.hpp"
-#include "rift/sweep/falsify/labels.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
 namespace {

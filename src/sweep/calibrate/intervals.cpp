@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "rift/statistics/distributions.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
+#include "rift/statistics/inference.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "rift/sweep/calibrate/drive_likeness.hpp"
+#include "rift/sweep/calibrate/likeness.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "rift/geometry/angle.hpp"
-#include "rift/statistics/counter_random.hpp"
+#include "rift/geometry/pose2.hpp"
+#include "rift/statistics/random.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <functional>
 
-#include "rift/statistics/intervals.hpp"
-#include "rift/statistics/mean.hpp"
+#include "rift/statistics/descriptive.hpp"
+#include "rift/statistics/inference.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "rift/statistics/distributions.hpp"
-#include "rift/sweep/falsify/summary.hpp"
+#include "rift/statistics/inference.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -7,8 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "rift/sweep/falsify/labels.hpp"
-#include "rift/sweep/falsify/summary.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <random>
 
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -2,6 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include "rift/sweep/falsify/evaluator.hpp"
+#include "rift/sweep/falsify/verdict.hpp"
+#include "rift/yaml/enum_name.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,9 +21,9 @@ bool SameValue(const experiment::ParameterValue& a, const experiment::ParameterV
   return a.number && b.number ? *a.number == *b.number : a.text == b.text;
 }
 
-experiment::ParameterValue NumberValue(double number) {
-  const std::string text = fmt::format("{:.6g}", number);
-  return {text, std::stod(text)};  // what is tried is what is written
+/// Six digits, since a person reads it; what is tried is what is written.
+experiment::ParameterValue RoundedValue(double number) {
+  return experiment::NumberValue(std::stod(fmt::format("{:.6g}", number)));
 }
 
 class Shrinker {
@@ -126,7 +133,7 @@ class Shrinker {
     const double enough = options_.tolerance * std::abs(fails - holds);
     while (std::abs(fails - holds) > enough && HasBudget()) {
       experiment::Theta nearer = theta_;
-      nearer[i] = NumberValue(0.5 * (holds + fails));
+      nearer[i] = RoundedValue(0.5 * (holds + fails));
       const bool is_at_end = *nearer[i].number == holds || *nearer[i].number == fails;
       if (is_at_end) return;
       if (Fails(nearer)) {
@@ -189,6 +196,70 @@ ShrunkFailure Shrink(const std::vector<experiment::Parameter>& parameters,
                      const experiment::Theta& nominal, const experiment::Theta& failing,
                      const Robustness& robustness, const ShrinkOptions& options) {
   return Shrinker(parameters, nominal, failing, robustness, options).Run();
+}
+
+namespace {
+
+/// Index of the row with that id, or of the largest gap.
+int IndexOf(const SweepResult& result, const std::string& id) {
+  if (id == "worst") {
+    const std::optional<int> worst = WorstRow(result);
+    if (!worst) throw std::invalid_argument("--shrink worst: no trial has a gap");
+    return *worst;
+  }
+  size_t number = 0;
+  const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), number);
+  const bool is_there = error == std::errc{} && end == id.data() + id.size() && number >= 1 &&
+                        number <= result.rows.size();
+  if (!is_there) {
+    throw std::invalid_argument(
+        fmt::format("--shrink {}: table.csv has the rows 1 to {}", id, result.rows.size()));
+  }
+  return static_cast<int>(number) - 1;
+}
+
+/// The row's trial at another setting: the same repeat and random numbers.
+TrialRequest At(const TrialRow& row, const experiment::Theta& theta) {
+  return {.theta = theta, .trial = row.trial, .seed = row.seed};
+}
+
+void RequireFailure(const SweepResult& result, int index, const std::string& id) {
+  const TrialRow& row = result.rows[index];
+  if (row.falsified) return;
+  const std::string what = row.IsOk() ? fmt::format("its gap is {:.4f} m", row.comparison.gap_m)
+                                      : fmt::format("it ended as '{}'", yaml::NameOf(row.status));
+  throw std::invalid_argument(
+      fmt::format("--shrink {}: row {} does not fail ({}, and above {:g} m falsifies){}", id,
+                  index + 1, what, result.gap.threshold_m,
+                  id == "worst" ? ": nothing of this sweep can be shrunk"
+                                : "; --shrink worst takes the worst"));
+}
+
+}  // namespace
+
+int FailingRow(const SweepResult& result, const std::string& id) {
+  const int index = IndexOf(result, id);
+  RequireFailure(result, index, id);
+  return index;
+}
+
+ShrunkRow ShrinkRow(const experiment::Experiment& experiment, const SweepResult& result, int index,
+                    const ShrinkOptions& options, const RunAllTrials& run) {
+  const TrialRow& row = result.rows[index];
+  const auto robustness_m = [&](const experiment::Theta& theta) {
+    const std::vector<TrialRow> rows = run({At(row, theta)});
+    return Robustness_m(rows, result.gap.threshold_m);
+  };
+  ShrunkRow found{.id = index + 1, .nominal = experiment::NominalTheta(experiment)};
+  found.shrunk = Shrink(result.parameters, found.nominal, row.theta, robustness_m, options);
+  std::vector<TrialRequest> requests{At(row, row.theta), At(row, found.shrunk.theta)};
+  for (const int i : found.shrunk.changed) {
+    experiment::Theta without = found.shrunk.theta;
+    without[i] = found.nominal[i];
+    requests.push_back(At(row, without));
+  }
+  found.rows = run(std::move(requests));
+  return found;
 }
 
 }  // namespace rift::sweep

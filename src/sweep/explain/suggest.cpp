@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rift/statistics/distributions.hpp"
-#include "rift/sweep/falsify/labels.hpp"
+#include "rift/statistics/inference.hpp"
+#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
 namespace {

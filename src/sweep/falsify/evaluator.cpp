@@ -12,7 +12,7 @@
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/sweep/falsify/grid.hpp"
-#include "rift/sweep/falsify/labels.hpp"
+#include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/enum_name.hpp"
 
@@ -339,7 +339,7 @@ std::string Evaluator::KeyOf(const TrialRequest& request) const {
   for (size_t i = 0; i < request.theta.size(); ++i) {
     const experiment::ParameterValue& value = request.theta[i];
     key += fmt::format("{}={} ", experiment_.space.parameters[i].key,
-                       value.number ? fmt::format("{}", *value.number) : value.text);
+                       value.number ? experiment::NumberValue(*value.number).text : value.text);
   }
   key += fmt::format("trial={} seed={}", request.trial, request.seed.value_or(0));
   if (experiment_.reference.kind == ReferenceKind::kLogs) {

@@ -6,7 +6,7 @@
 #include "rift/control/navigator.hpp"
 #include "rift/gap/comparison.hpp"
 #include "rift/statistics/hash.hpp"
-#include "rift/trial/recorder.hpp"
+#include "rift/trial/trial.hpp"
 
 namespace rift::sweep {
 namespace {

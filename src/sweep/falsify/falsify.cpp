@@ -7,26 +7,107 @@
 #include <limits>
 #include <stdexcept>
 
-#include "rift/statistics/mean.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/search_space.hpp"
-#include "rift/sweep/falsify/summary.hpp"
 
 namespace rift::sweep {
+
 namespace {
 
-/// Gaps of the trials that tell; a fall that counts is above any threshold.
-std::vector<double> Gaps(std::span<const TrialRow> rows, double fall_m) {
-  std::vector<double> gaps_m;
-  for (const TrialRow& row : rows) {
-    if (row.IsOk()) {
-      gaps_m.push_back(row.comparison.gap_m);
-    } else if (row.falsified) {
-      gaps_m.push_back(fall_m);
+using Points = std::vector<TriedPoint>;
+using Requests = std::vector<TrialRequest>;
+
+void Append(Requests& all, Requests more) {
+  all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+/// Runs the trials of all points at once, so that no worker waits at the end of each.
+bool RunAll(Points& batch, const std::vector<size_t>& counts, Requests requests,
+            const RunTrials& run) {
+  std::optional<std::vector<TrialRow>> rows = run(std::move(requests));
+  if (!rows) return false;
+  auto next = std::make_move_iterator(rows->begin());
+  for (size_t i = 0; i < batch.size(); ++i) {
+    const auto end = next + static_cast<std::ptrdiff_t>(counts[i]);
+    batch[i].rows.insert(batch[i].rows.end(), next, end);
+    next = end;
+  }
+  return true;
+}
+
+struct Asked {
+  Points batch;
+  std::vector<size_t> counts;
+  Requests requests;
+};
+
+Asked Ask(search::Strategy& strategy, const SearchGoal& goal, int most) {
+  Asked asked;
+  for (search::Point& point : strategy.Ask(most)) {
+    Requests trials = goal.trials(point);
+    asked.counts.push_back(trials.size());
+    Append(asked.requests, std::move(trials));
+    asked.batch.push_back({std::move(point), {}, 0.0});
+  }
+  return asked;
+}
+
+bool RunMore(Points& batch, const SearchGoal& goal, const RunTrials& run) {
+  if (!goal.more) return true;
+  Requests requests;
+  std::vector<size_t> counts;
+  for (const TriedPoint& tried : batch) {
+    Requests more = goal.more(tried.point, tried.rows);
+    counts.push_back(more.size());
+    Append(requests, std::move(more));
+  }
+  return requests.empty() || RunAll(batch, counts, std::move(requests), run);
+}
+
+void Tell(search::Strategy& strategy, const Points& batch) {
+  std::vector<search::Evaluation> evaluations;
+  for (const TriedPoint& tried : batch) evaluations.push_back({tried.point, tried.loss});
+  strategy.Tell(evaluations);
+}
+
+}  // namespace
+
+std::optional<SearchOutcome> Search(search::Strategy& strategy, const SearchGoal& goal,
+                                    const RunTrials& run, const MayStart& may_start) {
+  SearchOutcome outcome;
+  while (static_cast<int>(outcome.points.size()) < goal.budget) {
+    const int left = goal.budget - static_cast<int>(outcome.points.size());
+    Asked asked = Ask(strategy, goal, std::min(left, goal.batch));
+    if (asked.batch.empty()) {
+      outcome.ended = "every point of the space";
+      return outcome;
+    }
+    if (!may_start(asked.requests)) {
+      outcome.ended = "the time";
+      return outcome;
+    }
+    Points& batch = asked.batch;
+    const bool is_whole =
+        RunAll(batch, asked.counts, std::move(asked.requests), run) && RunMore(batch, goal, run);
+    if (!is_whole) return std::nullopt;
+    for (TriedPoint& tried : batch) tried.loss = goal.loss(tried.rows);
+    Tell(strategy, batch);
+    const bool is_enough = std::any_of(batch.begin(), batch.end(), [&](const TriedPoint& tried) {
+      return goal.is_enough(tried.rows);
+    });
+    std::move(batch.begin(), batch.end(), std::back_inserter(outcome.points));
+    if (is_enough) {
+      outcome.ended = "the first hit";
+      return outcome;
     }
   }
-  return gaps_m;
+  outcome.ended = "the budget";
+  return outcome;
 }
+
+namespace {
 
 bool HasFailure(std::span<const TrialRow> rows) {
   return std::any_of(rows.begin(), rows.end(), [](const TrialRow& row) { return row.falsified; });
@@ -72,22 +153,6 @@ SearchGoal GoalOf(const experiment::Experiment& experiment) {
   return goal;
 }
 
-/// Each row as a number above or below 0.5: it was judged by the threshold already.
-gap::RepeatVerdict CountFailures(std::span<const TrialRow> rows, double confidence) {
-  std::vector<double> failures;
-  for (const TrialRow& row : rows) {
-    if (row.IsOk() || row.falsified) failures.push_back(row.falsified ? 1.0 : 0.0);
-  }
-  return gap::JudgeRepeats(failures, 0.5, confidence);
-}
-
-gap::Verdict Decide(const gap::RepeatVerdict& repeats, double share) {
-  if (repeats.repeats == 0) return gap::Verdict::kUndecided;
-  if (repeats.share_low > share) return gap::Verdict::kFalsified;
-  if (repeats.share_high < share) return gap::Verdict::kNotFalsified;
-  return gap::Verdict::kUndecided;
-}
-
 /// A setting far from the threshold had one trial, which proves little, but nothing speaks against
 /// it either: only failures leave a doubt.
 std::vector<gap::RepeatVerdict> JudgeAll(const SearchOutcome& outcome,
@@ -95,7 +160,7 @@ std::vector<gap::RepeatVerdict> JudgeAll(const SearchOutcome& outcome,
   std::vector<gap::RepeatVerdict> verdicts;
   for (const TriedPoint& tried : outcome.points) {
     verdicts.push_back(CountFailures(tried.rows, options.confidence));
-    if (verdicts.back().above > 0) verdicts.back().verdict = Decide(verdicts.back(), options.share);
+    if (verdicts.back().above > 0) verdicts.back().verdict = JudgeSetting(tried.rows, options);
   }
   return verdicts;
 }
@@ -130,21 +195,6 @@ Falsification Judge(const SearchOutcome& outcome, const std::vector<gap::RepeatV
 }
 
 }  // namespace
-
-gap::Verdict JudgeSetting(std::span<const TrialRow> rows, const FalsifyOptions& options) {
-  return Decide(CountFailures(rows, options.confidence), options.share);
-}
-
-double TrialsToFalsify(const FalsifyOptions& options) {
-  if (options.share >= 1.0) return std::numeric_limits<double>::infinity();
-  const double tail = (1.0 - options.confidence) / 2.0;
-  // n failures of n: the lower bound is tail^(1/n) (Clopper and Pearson 1934).
-  return std::floor(std::log(tail) / std::log(options.share)) + 1.0;
-}
-
-double Robustness_m(std::span<const TrialRow> rows, double threshold_m) {
-  return threshold_m - statistics::Mean(Gaps(rows, 2.0 * threshold_m));
-}
 
 std::optional<SweepResult> Falsify(const experiment::Experiment& experiment, const RunTrials& run,
                                    const MayStart& may_start) {

@@ -1,6 +1,6 @@
 #include "rift/sweep/falsify/grid.hpp"
 
-#include "rift/sweep/falsify/summary.hpp"
+#include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::sweep {

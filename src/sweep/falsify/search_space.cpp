@@ -1,7 +1,5 @@
 #include "rift/sweep/falsify/search_space.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -40,7 +38,7 @@ experiment::ParameterValue ValueAt(const experiment::Parameter& parameter, doubl
   double value = parameter.is_logarithmic ? std::exp(coordinate) : coordinate;
   value = std::clamp(value, parameter.min, parameter.max);  // exp(log(max)) may exceed max
   if (parameter.is_integer) value = std::round(value);
-  return {fmt::format("{}", value), value};
+  return experiment::NumberValue(value);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "rift/simulation/terrain.hpp"
 
 namespace rift::sweep {
+
 namespace {
 
 /// The simulated robot, with its true path written down as it goes.

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "lens_fit.hpp"
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
 
 namespace rift::vision {
 namespace {

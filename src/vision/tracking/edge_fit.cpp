@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "rift/statistics/quantile.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::vision {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "rift/report/figures/gap_figures.hpp"
+#include "rift/report/figures/figures.hpp"
 #include "rift/report/figures/options.hpp"
 #include "rift/sweep/explain/explanation.hpp"
 #include "rift/sweep/falsify/result.hpp"

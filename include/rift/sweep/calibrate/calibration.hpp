@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/experiment/calibrate_options.hpp"
+#include "rift/experiment/options.hpp"
 #include "rift/sweep/calibrate/short_horizon.hpp"
 
 namespace rift::sweep {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "rift/sweep/calibrate/calibration.hpp"
-#include "rift/sweep/calibrate/drive_likeness.hpp"
 #include "rift/sweep/calibrate/error_structure.hpp"
+#include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 
 namespace rift::sweep {

@@ -5,7 +5,9 @@
 #include <span>
 #include <string>
 
+#include "rift/experiment/experiment.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/falsify/trial_runner.hpp"
 
 namespace rift::sweep {
 
@@ -61,5 +63,10 @@ using UnitRobustness = std::function<double(std::span<const double>)>;
 /// trials for each factor of ten, where plain sampling needs ten times as many.
 RareEvent EstimateRareEvent(int dimensions, const UnitRobustness& robustness, std::uint64_t seed,
                             const RareEventOptions& options = {});
+
+/// The same over the experiment's space: how often a setting drawn evenly from it fails. A setting
+/// fails when any of its trials does.
+RareEvent EstimateRareEvent(const experiment::Experiment& experiment, const RunAllTrials& run,
+                            const RareEventOptions& options);
 
 }  // namespace rift::sweep

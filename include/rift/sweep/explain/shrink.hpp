@@ -50,4 +50,13 @@ ShrunkFailure Shrink(const std::vector<experiment::Parameter>& parameters,
                      const experiment::Theta& nominal, const experiment::Theta& failing,
                      const Robustness& robustness, const ShrinkOptions& options = {});
 
+/// Index of the row that `id` names: its number in table.csv, or "worst". Throws
+/// std::invalid_argument when there is no such row, or it does not fail.
+int FailingRow(const SweepResult& result, const std::string& id);
+
+/// Shrinks a failing row towards the experiment's own values, with the random numbers that the row
+/// had.
+ShrunkRow ShrinkRow(const experiment::Experiment& experiment, const SweepResult& result, int index,
+                    const ShrinkOptions& options, const RunAllTrials& run);
+
 }  // namespace rift::sweep

@@ -1,27 +1,52 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "rift/experiment/experiment.hpp"
+#include "rift/search/strategy.hpp"
 #include "rift/sweep/falsify/options.hpp"
-#include "rift/sweep/falsify/search_loop.hpp"
+#include "rift/sweep/falsify/trial_runner.hpp"
+#include "rift/sweep/falsify/verdict.hpp"
 
 namespace rift::sweep {
 
-/// What the repeats of a setting say at a stated confidence: falsified when the Clopper-Pearson
-/// interval for the share of such trials that fail lies above `share`, not falsified when it lies
-/// below; in between, and without a trial that tells, undecided.
-gap::Verdict JudgeSetting(std::span<const TrialRow> rows, const FalsifyOptions& options);
+/// What a search over points of a space needs to know of its goal.
+struct SearchGoal {
+  int budget = 1;  ///< points
+  int batch = 1;   ///< asked for at once; never the number of workers, on which nothing may depend
+  /// The trials that tell what a point costs.
+  std::function<std::vector<TrialRequest>(const search::Point&)> trials;
+  /// Further trials of a point whose rows leave a doubt; may be empty.
+  std::function<std::vector<TrialRequest>(const search::Point&, std::span<const TrialRow>)> more;
+  /// What it costs, of all its rows; NaN where they do not tell.
+  std::function<double(std::span<const TrialRow>)> loss;
+  /// True when a point with such rows ends the search.
+  std::function<bool(std::span<const TrialRow>)> is_enough;
+};
 
-/// How many trials of a setting, all of them failing, it takes to falsify it; infinite for a share
-/// of 1.
-double TrialsToFalsify(const FalsifyOptions& options);
+/// A point that was tried.
+struct TriedPoint {
+  search::Point point;
+  std::vector<TrialRow> rows;
+  double loss = 0.0;
+};
 
-/// Threshold minus mean gap: below zero is a failure. A fall that counts is as bad as twice the
-/// threshold. NaN when no row tells.
-double Robustness_m(std::span<const TrialRow> rows, double threshold_m);
+struct SearchOutcome {
+  std::vector<TriedPoint> points;  ///< in the order in which they were proposed
+  std::string ended;               ///< "the budget", "the first hit", "every point", "the time"
+};
+
+/// Asked before each batch with its trials: false ends the search in time.
+using MayStart = std::function<bool(const std::vector<TrialRequest>&)>;
+
+/// Asks a strategy, runs the trials, tells it, until the goal is met, the budget is spent, or
+/// nothing is left to try. Nothing when the sweep was told to stop.
+std::optional<SearchOutcome> Search(search::Strategy& strategy, const SearchGoal& goal,
+                                    const RunTrials& run, const MayStart& may_start);
 
 /// Looks for settings whose gap exceeds the threshold. Those that fail or come near it are
 /// repeated. The result depends on the experiment alone. Nothing when it was told to stop. Throws

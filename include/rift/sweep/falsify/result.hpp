@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,7 +11,7 @@
 #include "rift/experiment/parameter.hpp"
 #include "rift/gap/comparison.hpp"
 #include "rift/gap/options.hpp"
-#include "rift/gap/verdict.hpp"
+#include "rift/gap/result.hpp"
 #include "rift/sweep/falsify/evidence.hpp"
 
 namespace rift::sweep {
@@ -119,5 +120,50 @@ struct SweepResult {
   LevelSummary all;
   std::optional<Falsification> falsification;  ///< of a search
 };
+
+/// The two sides of figures 7, 8, 10 and 13: the first categorical parameter (else the first)
+/// and the combination of all others.
+struct FactorSplit {
+  int main_factor = 0;
+  std::vector<int> others;  ///< indices of the other parameters; empty for one axis
+  std::string others_name;  ///< "[v_min, v_max]"
+};
+
+/// Throws std::invalid_argument for a space without parameters.
+FactorSplit SplitFactors(const std::vector<experiment::Parameter>& parameters);
+
+/// The value for people: one drawn from a range has 17 digits, which nobody reads; table.csv has
+/// them.
+std::string ShortText(const experiment::Parameter& parameter,
+                      const experiment::ParameterValue& value);
+
+/// "surface parchment, v_min 0.15", by the parameters' last names and for people as well.
+std::string SettingText(const std::vector<experiment::Parameter>& parameters,
+                        const experiment::Theta& theta);
+
+/// "0.15" for one parameter, "[0.15, 0.30]" for several.
+std::string CombinationLabel(const experiment::Theta& theta, const std::vector<int>& parameters);
+
+/// The value of the main factor; empty in a space without parameters.
+std::string MainLevel(const std::vector<experiment::Parameter>& parameters,
+                      const experiment::Theta& theta);
+
+/// A text that is the same for two settings only when all their values are written the same.
+std::string SettingKey(const experiment::Theta& theta);
+
+/// Rows grouped by the combination of the named parameters' values, in the order of first rows.
+std::vector<LevelSummary> SummariseBy(const SweepResult& result,
+                                      const std::vector<int>& parameters);
+
+/// Fills in everything of a result that follows from its parameters and rows: the settings with
+/// their verdicts, the effects of the parameters and the summary of all rows. Settings stand in
+/// the order of their first rows; their noise floor is left alone.
+void Summarise(SweepResult& result);
+
+/// A parameter with a p below this has a detected effect.
+inline constexpr double kSignificance = 0.05;
+
+/// Index of the row with the largest gap; empty when no trial has one.
+std::optional<int> WorstRow(const SweepResult& result);
 
 }  // namespace rift::sweep

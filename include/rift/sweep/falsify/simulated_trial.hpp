@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "rift/experiment/experiment.hpp"
@@ -42,5 +43,9 @@ geometry::Pose2 StartFromLog(const trajectory::Trajectory& log, double tag_offse
 /// Runs the one trial loop on the simulated robot. The same trial gives the same bytes.
 /// Throws std::invalid_argument for options or waypoints that break a rule.
 SimulatedRun Simulate(const SimulatedTrial& trial);
+
+/// Fingerprint of the sources of everything that a simulated trial runs through: rows of an older
+/// one may be other rows today.
+std::string_view PhysicsVersion();
 
 }  // namespace rift::sweep

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rift/sweep/falsify/result.hpp"
@@ -26,6 +27,9 @@ using Evaluate = std::function<TrialRow(const TrialRequest&)>;
 
 /// Rows in the order of the requests; nothing when the sweep was told to stop.
 using RunTrials = std::function<std::optional<std::vector<TrialRow>>(std::vector<TrialRequest>)>;
+
+/// The same for a caller with nothing to keep when it is told to stop: throws then.
+using RunAllTrials = std::function<std::vector<TrialRow>(std::vector<TrialRequest>)>;
 
 /// What whoever watches a sweep is told, and asked.
 struct Watch {
@@ -62,5 +66,14 @@ class TrialRunner {
   Watch watch_;
   WorkerPool pool_;
 };
+
+/// A request as bytes for a worker.
+std::string EncodeRequest(const TrialRequest& request);
+TrialRequest DecodeRequest(std::string_view bytes);
+
+/// What a trial found out, as bytes: everything of a row but what its request said already.
+std::string EncodeFindings(const TrialRow& row);
+/// Throws std::runtime_error for bytes of another layout.
+void DecodeFindings(std::string_view bytes, TrialRow& row);
 
 }  // namespace rift::sweep

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string_view>
+
+#include "rift/experiment/options.hpp"
+#include "rift/yaml/fields.hpp"
+
+/// How the values of a sweep that are no plain fields stand in YAML.
+namespace rift::yaml {
+
+template <>
+struct Hook<experiment::PathTemplate> {
+  static constexpr std::string_view kTypeText = "path, or a template such as {surface}_{trial}.csv";
+  static experiment::PathTemplate FromNode(const Node& node);
+  static Node ToNode(const experiment::PathTemplate& path);
+};
+
+template <>
+struct Hook<experiment::TrialList> {
+  static constexpr std::string_view kTypeText = "list of names, or a count";
+  static experiment::TrialList FromNode(const Node& node);
+  static Node ToNode(const experiment::TrialList& trials);
+};
+
+template <>
+struct Hook<experiment::Space> {
+  static constexpr std::string_view kTypeText = "parameter: [values], or {min, max}";
+  static experiment::Space FromNode(const Node& node);
+  static Node ToNode(const experiment::Space& space);
+};
+
+template <>
+struct Hook<experiment::HeldOutTrials> {
+  static constexpr std::string_view kTypeText = "list of names";
+  static experiment::HeldOutTrials FromNode(const Node& node);
+  static Node ToNode(const experiment::HeldOutTrials& trials);
+};
+
+template <>
+struct Hook<experiment::FreeParameters> {
+  static constexpr std::string_view kTypeText = "key: {min, max}";
+  static experiment::FreeParameters FromNode(const Node& node);
+  static Node ToNode(const experiment::FreeParameters& fit);
+};
+
+}  // namespace rift::yaml

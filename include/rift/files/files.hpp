@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace rift::files {
+
+/// The whole file. Throws std::invalid_argument with the path and the system's reason.
+std::string ReadFile(const std::filesystem::path& path);
+
+/// The whole file; nothing when there is no such file. Throws as ReadFile does.
+std::optional<std::string> ReadIfThere(const std::filesystem::path& path);
+
+/// Writes beside the target and renames, so that the target is whole or absent; a pipe or a device
+/// is written to as it is, and a link leads to its file. Missing parent folders are made. Throws
+/// std::runtime_error with the path and the system's reason.
+void WriteFile(const std::filesystem::path& target, std::string_view text);
+
+/// One file behind two names, there or not.
+bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
+
+}  // namespace rift::files

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+
+namespace rift::files {
+
+/// Keeps other sweeps out of a folder, until the end of its scope or of the process, however it
+/// ends. The folder is made when it is not there.
+class FolderLock {
+ public:
+  /// Throws std::runtime_error when the folder cannot be made or another sweep is at work in it.
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+  /// True while some process holds the lock of a folder.
+  static bool IsHeld(const std::filesystem::path& folder);
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace rift::files

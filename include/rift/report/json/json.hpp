@@ -1,0 +1,129 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rift/control/waypoint.hpp"
+#include "rift/experiment/experiment.hpp"
+#include "rift/experiment/options.hpp"
+#include "rift/gap/likeness.hpp"
+#include "rift/gap/result.hpp"
+#include "rift/hardware/arming.hpp"
+#include "rift/sweep/calibrate/identification.hpp"
+#include "rift/sweep/calibrate/likeness.hpp"
+#include "rift/sweep/explain/explanation.hpp"
+#include "rift/sweep/explain/failure_probability.hpp"
+#include "rift/sweep/explain/shrink.hpp"
+#include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/trial/trial.hpp"
+#include "rift/vision/calibration/calibration.hpp"
+#include "rift/vision/tracking/session_options.hpp"
+#include "rift/vision/tracking/track_run.hpp"
+
+namespace rift::report {
+
+/// calibration.json: {name, confidence, fit, judged, errors, trials, missing}; the same report
+/// gives the same bytes.
+std::string CalibrationJson(const experiment::Experiment& experiment,
+                            const sweep::CalibrationReport& report);
+
+/// Loss, round trips, battery, which part of the budget is broken, and the keys of an experiment
+/// that the measurement sets.
+std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareOptions& options);
+std::string PingText(const hardware::PingResult& ping, const hardware::HardwareOptions& options);
+
+/// As a simulated run's, with protocol, link, latency by stage, and how the drive was stopped.
+std::string DriveJson(const experiment::Experiment& experiment, const hardware::DriveRun& run);
+std::string DriveText(const hardware::DriveRun& run);
+
+/// One row a pose: when it went through each stage. Cells of stages never reached are empty.
+std::string StagesCsv(const hardware::DriveRecord& evidence);
+/// The wheels in step with the camera: at the capture time of each pose, between two readings.
+/// Poses before the first reading or after the last have no row.
+std::string EncodersCsv(const hardware::DriveRecord& evidence);
+
+/// `rift gap --json`: {definition, trials, mean_gap_m, noise_floor_m, verdict, repeats, likeness}.
+std::string GapJson(const gap::GapResult& result);
+
+/// Columns real,u,error_m,yaw_error_rad,sim_x_m,sim_y_m,real_x_m,real_y_m; `real` counts from 1.
+std::string ProfileCsv(const gap::GapResult& result);
+
+/// {spread: {sim, real, ratio}, ...}; null where there is nothing to tell it by.
+nlohmann::ordered_json LikenessJson(const gap::Likeness& likeness);
+/// The same, and what only a controller's side can tell.
+nlohmann::ordered_json LikenessJson(const sweep::DriveLikeness& likeness);
+/// likeness.json: {level: the same}.
+nlohmann::ordered_json LikenessJson(const std::vector<sweep::GroupLikeness>& groups);
+
+/// summary.json: {mean_gap_m, failures, n, not_ok, "by": {parameter: {value: the same}}, effects,
+/// settings, ...}
+std::string SummaryJson(const sweep::SweepResult& result);
+
+/// explanation.json, rows by their id in table.csv: {effects, sobol, parameters (inert and why),
+/// anatomy, failures, failing_region, failure_probability, undecided, suggestions}.
+std::string ExplanationJson(const sweep::SweepResult& result,
+                            const sweep::Explanation& explanation);
+
+/// shrunk.json: the failing row, what it shrank to, and its changes taken back one by one.
+/// `folder` holds the table of these trials, for `rift simulate --replay`.
+std::string ShrunkJson(const sweep::SweepResult& result, const sweep::ShrunkRow& shrunk,
+                       const std::string& folder);
+
+/// rare_event.json.
+std::string RareEventJson(const sweep::RareEvent& event, const sweep::RareEventOptions& options,
+                          size_t trials_per_setting);
+
+/// One row a trial: a column for each parameter by its last name, then trial, gap_m, falsified,
+/// status and further evidence; cells of what could not be computed are empty.
+std::string TableCsv(const sweep::SweepResult& result);
+
+/// Cells of one row of a table.csv by the names of their columns.
+using TableRow = std::map<std::string, std::string>;
+
+/// The first row of such a table.
+TableRow FirstTableRow(const std::string& table_csv);
+
+/// The row with this `id`. Throws std::invalid_argument, naming the table and the ids there are,
+/// when there is none.
+TableRow TableRowOf(const std::string& table_csv, const std::string& id, const std::string& name);
+
+/// What a tracking run was asked for, as far as its record says so.
+struct TrackInputs {
+  std::string camera;            ///< device, stream or pattern of pictures
+  std::string calibration;       ///< file
+  std::string calibration_hash;  ///< of its bytes
+  vision::SessionOptions session;
+};
+
+/// What the log was made from and how it went: camera, calibration, frame of the poses, options,
+/// rows, rates, misses, latency.
+std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& camera,
+                      const experiment::TrackOptions& options, const vision::TrackRun& run,
+                      int rows);
+std::string TrackText(const vision::TrackRun& run, int rows);
+
+/// The verdict of a calibration with its reasons, parameters and views.
+std::string CalibrationText(const vision::Calibration& calibration);
+/// The same in short, as comment lines for the head of the camera file.
+std::string CalibrationComment(const vision::Calibration& calibration);
+
+/// Waypoints made in the window as a waypoint file, which is an experiment as it is.
+std::string WaypointsYaml(const std::vector<control::Waypoint>& waypoints);
+
+/// What the summaries of a simulated and of a real trial have in common.
+nlohmann::ordered_json WaypointsJson(const trial::TrialResult& result);
+nlohmann::ordered_json LimitsJson(const trial::LimitCounts& limits);
+
+/// summary.json of a simulated trial: outcome, times, waypoints, which limits of the controller
+/// were binding, seed and version.
+std::string SimulationJson(const experiment::Experiment& experiment,
+                           const sweep::SimulatedRun& run);
+
+/// Columns t_s,power_left,power_right: every command as it was sent.
+std::string CommandsCsv(const trial::TrialResult& result);
+
+}  // namespace rift::report

@@ -1,0 +1,237 @@
+#include "rift/experiment/space_yaml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "rift/yaml/node.hpp"
+#include "rift/yaml/scalar.hpp"
+
+namespace rift::yaml {
+namespace {
+
+/// A number where the text, not quoted, reads as one.
+std::optional<double> NumberOf(const Node& scalar) {
+  double number = 0.0;
+  const char* end = scalar.text.data() + scalar.text.size();
+  const auto [stop, error] = std::from_chars(scalar.text.data(), end, number);
+  if (scalar.quoted || error != std::errc{} || stop != end || !std::isfinite(number)) return {};
+  return number;
+}
+
+experiment::ParameterValue LevelFromNode(const Node& node, const std::string& key) {
+  if (!node.IsScalar()) Fail(node, key, "every value of an axis must be a number or a text");
+  return {node.text, NumberOf(node)};
+}
+
+bool SameLevel(const experiment::ParameterValue& a, const experiment::ParameterValue& b) {
+  return a.number && b.number ? *a.number == *b.number : a.text == b.text;
+}
+
+void ReadLevels(const Node& node, const std::string& key, experiment::Parameter& parameter) {
+  if (node.items.empty()) Fail(node, key, "an axis needs at least one value");
+  for (const Node& item : node.items) {
+    const experiment::ParameterValue level = LevelFromNode(item, key);
+    for (const experiment::ParameterValue& earlier : parameter.levels) {
+      if (SameLevel(earlier, level)) Fail(item, key, "an axis has each value once");
+    }
+    parameter.levels.push_back(level);
+  }
+}
+
+void ReadRangeKind(const Node& node, const std::string& key, experiment::Parameter& parameter) {
+  const auto is_whole = [](double value) { return value == std::floor(value); };
+  if (const Node::Entry* entry = node.Find("integer")) {
+    parameter.is_integer = ReadBool(entry->value, {Join(key, "integer"), {}, ""});
+  }
+  if (const Node::Entry* entry = node.Find("scale")) {
+    constexpr std::array<std::string_view, 2> kScales{"linear", "log"};
+    parameter.is_logarithmic = ReadName(entry->value, {Join(key, "scale"), {}, ""}, kScales) == 1;
+  }
+  if (parameter.is_logarithmic && (parameter.is_integer || parameter.min <= 0.0)) {
+    Fail(node, key, "scale: log needs min above 0, and no integers");
+  }
+  if (parameter.is_integer && !(is_whole(parameter.min) && is_whole(parameter.max))) {
+    Fail(node, key, "min and max of integers must be whole");
+  }
+}
+
+void ReadRange(const Node& node, const std::string& key, experiment::Parameter& parameter) {
+  for (const char* bound : {"min", "max"}) {
+    const Node::Entry* entry = node.Find(bound);
+    if (entry == nullptr)
+      Fail(node, key, fmt::format("a range needs min and max; {} is missing", bound));
+    const std::optional<double> number = NumberOf(entry->value);
+    if (!number) Fail(entry->value, Join(key, bound), "must be a number");
+    (bound[1] == 'i' ? parameter.min : parameter.max) = *number;
+  }
+  if (!(parameter.min < parameter.max)) Fail(node, key, "min must be below max");
+  ReadRangeKind(node, key, parameter);
+}
+
+experiment::Parameter ParameterFromEntry(const FlatEntry& entry) {
+  const std::string key = Join("space", entry.key);
+  experiment::Parameter parameter{.key = entry.key, .origin = entry.origin.Text()};
+  if (entry.value->IsList()) {
+    ReadLevels(*entry.value, key, parameter);
+  } else if (IsContinuousAxis(*entry.value)) {
+    ReadRange(*entry.value, key, parameter);
+  } else {
+    Fail(*entry.value, key, "must be a list of values, or {min: a, max: b}");
+  }
+  return parameter;
+}
+
+/// Names that table.csv, or a path template, has for something else.
+void CheckIsNoColumn(const Node& node, const std::string& name) {
+  if (name == "trial") {
+    Fail(node, "space", "'trial' is the name of the repeats: see reference.trials");
+  }
+  if (name == "seed") {
+    Fail(node, "space", "seed does not change a trial's kind; for repeats set reference.trials");
+  }
+  for (const std::string_view column : experiment::kFixedColumns) {
+    if (name != column) continue;
+    Fail(node, "space", fmt::format("'{}' is a column of table.csv already", name));
+  }
+}
+
+/// Columns and path templates know a parameter by its last name.
+void CheckNames(const Node& node, const std::vector<experiment::Parameter>& parameters) {
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      if (parameters[i].Name() != parameters[j].Name()) continue;
+      Fail(node, "space",
+           fmt::format("{} and {} have the same last name '{}'", parameters[j].key,
+                       parameters[i].key, parameters[i].Name()));
+    }
+    CheckIsNoColumn(node, parameters[i].Name());
+  }
+}
+
+Node LevelToNode(const experiment::ParameterValue& level) {
+  return level.number ? Node::Scalar(level.text) : Node::Text(level.text);
+}
+
+}  // namespace
+
+experiment::PathTemplate Hook<experiment::PathTemplate>::FromNode(const Node& node) {
+  if (!node.IsScalar()) throw std::invalid_argument("must be a path");
+  const bool from_file = node.origin.line > 0;
+  const std::filesystem::path written = node.text;
+  if (node.text.empty() || written.is_absolute() || !from_file) return {node.text};
+  const std::filesystem::path folder = std::filesystem::path(node.origin.source).parent_path();
+  return {(folder / written).lexically_normal().string()};
+}
+
+Node Hook<experiment::PathTemplate>::ToNode(const experiment::PathTemplate& path) {
+  return Node::Text(path.text);
+}
+
+experiment::TrialList Hook<experiment::TrialList>::FromNode(const Node& node) {
+  experiment::TrialList trials{{}};
+  if (node.IsScalar()) {
+    const std::optional<double> count = NumberOf(node);
+    if (!count || *count != std::floor(*count) || *count < 1 || *count > 1e6) {
+      throw std::invalid_argument("must be a list of trials, or how many there are (1 or more)");
+    }
+    for (int i = 1; i <= static_cast<int>(*count); ++i)
+      trials.names.push_back(fmt::format("{}", i));
+    return trials;
+  }
+  if (!node.IsList() || node.items.empty()) {
+    throw std::invalid_argument("must be a list of trials, or how many there are");
+  }
+  for (const Node& item : node.items) {
+    if (!item.IsScalar()) throw std::invalid_argument("every trial must be a number or a name");
+    if (std::find(trials.names.begin(), trials.names.end(), item.text) != trials.names.end()) {
+      throw std::invalid_argument(fmt::format("trial {} stands there twice", item.text));
+    }
+    trials.names.push_back(item.text);
+  }
+  return trials;
+}
+
+Node Hook<experiment::TrialList>::ToNode(const experiment::TrialList& trials) {
+  Node list = Node::List();
+  for (const std::string& name : trials.names) {
+    Node item = Node::Scalar(name);
+    list.items.push_back(NumberOf(item) ? item : Node::Text(name));
+  }
+  return list;
+}
+
+experiment::HeldOutTrials Hook<experiment::HeldOutTrials>::FromNode(const Node& node) {
+  if (!node.IsList()) throw std::invalid_argument("must be a list of trials, [] for none");
+  if (node.items.empty()) return {};
+  return {Hook<experiment::TrialList>::FromNode(node).names};
+}
+
+Node Hook<experiment::HeldOutTrials>::ToNode(const experiment::HeldOutTrials& trials) {
+  return Hook<experiment::TrialList>::ToNode({trials.names});
+}
+
+experiment::FreeParameters Hook<experiment::FreeParameters>::FromNode(const Node& node) {
+  if (!node.IsMap()) throw std::invalid_argument("must be a map of keys, each with {min, max}");
+  experiment::FreeParameters fit;
+  for (const FlatEntry& entry : Flatten(node)) {
+    const std::string key = Join("calibrate.fit", entry.key);
+    if (!IsContinuousAxis(*entry.value) || entry.value->entries.size() != 2) {
+      Fail(*entry.value, key, "must be {min: a, max: b}");
+    }
+    experiment::Parameter range;
+    ReadRange(*entry.value, key, range);
+    fit.list.push_back({.key = entry.key,
+                        .min = range.min,
+                        .max = range.max,
+                        .start = range.min,
+                        .origin = entry.origin.Text()});
+  }
+  return fit;
+}
+
+Node Hook<experiment::FreeParameters>::ToNode(const experiment::FreeParameters& fit) {
+  Node map = Node::Map();
+  for (const experiment::FreeParameter& free : fit.list) {
+    Node range = Node::Map();
+    range.Add("min", Node::Scalar(NumberText(free.min, free.key)));
+    range.Add("max", Node::Scalar(NumberText(free.max, free.key)));
+    map.Add(free.key, range);
+  }
+  return map;
+}
+
+experiment::Space Hook<experiment::Space>::FromNode(const Node& node) {
+  if (!node.IsMap()) throw std::invalid_argument("must be a map of parameters");
+  experiment::Space space;
+  for (const FlatEntry& entry : Flatten(node)) {
+    space.parameters.push_back(ParameterFromEntry(entry));
+  }
+  CheckNames(node, space.parameters);
+  return space;
+}
+
+Node Hook<experiment::Space>::ToNode(const experiment::Space& space) {
+  Node map = Node::Map();
+  for (const experiment::Parameter& parameter : space.parameters) {
+    Node axis = Node::List();
+    for (const experiment::ParameterValue& level : parameter.levels) {
+      axis.items.push_back(LevelToNode(level));
+    }
+    if (parameter.IsContinuous()) {
+      axis = Node::Map();
+      axis.Add("min", Node::Scalar(NumberText(parameter.min, parameter.key)));
+      axis.Add("max", Node::Scalar(NumberText(parameter.max, parameter.key)));
+      if (parameter.is_integer) axis.Add("integer", Node::Scalar("true"));
+      if (parameter.is_logarithmic) axis.Add("scale", Node::Scalar("log"));
+    }
+    map.Add(parameter.key, axis);
+  }
+  return map;
+}
+
+}  // namespace rift::yaml

@@ -1,0 +1,65 @@
+#include "rift/files/folder_lock.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <stdexcept>
+#include <thread>
+
+namespace rift::files {
+
+namespace {
+
+int Open(const std::filesystem::path& folder) {
+  return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+/// Workers of a sweep that was killed a moment ago may still be dying.
+bool LockWithin(int descriptor, std::chrono::milliseconds patience) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK && errno != EINTR) return true;  // a file system without locks
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return true;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw std::runtime_error(
+        fmt::format("cannot make folder {}: {}", folder.string(), error.message()));
+  }
+  descriptor_ = Open(folder);
+  if (descriptor_ < 0) {
+    throw std::runtime_error(
+        fmt::format("cannot open folder {}: {}", folder.string(), strerror(errno)));
+  }
+  if (LockWithin(descriptor_, std::chrono::seconds(1))) return;
+  ::close(descriptor_);
+  throw std::runtime_error(fmt::format(
+      "another sweep is at work in {}: wait for it (rift sweep --status {}), or choose another "
+      "folder with --out",
+      folder.string(), folder.string()));
+}
+
+FolderLock::~FolderLock() { ::close(descriptor_); }
+
+bool FolderLock::IsHeld(const std::filesystem::path& folder) {
+  const int descriptor = Open(folder);
+  if (descriptor < 0) return false;
+  const bool is_held = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  return is_held;
+}
+
+}  // namespace rift::files

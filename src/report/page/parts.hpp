@@ -1,0 +1,39 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+#include "rift/report/figures/options.hpp"
+#include "rift/report/page/page.hpp"
+#include "rift/sweep/falsify/result.hpp"
+
+namespace rift::report {
+
+/// A chart of the page: a heading, one sentence, and a Vega specification with its data.
+struct PageChart {
+  std::string title;
+  std::string sentence;
+  nlohmann::json spec;
+};
+
+std::vector<PageChart> PageCharts(const sweep::SweepResult& result, const ReportOptions& options);
+
+/// A table of the page as page.js reads it: {"columns", "rows", "marks"}, and what it holds.
+struct PageTable {
+  nlohmann::json data;
+  std::string note;
+};
+
+PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& options);
+/// `gap_flags`: see PageEvidence.
+PageTable TrialsTable(const sweep::SweepResult& result, const std::string& gap_flags,
+                      const ReportOptions& options);
+
+/// What matters, what the gap is made of, where it fails, and typical failures.
+std::vector<PageChart> WhyCharts(const sweep::SweepResult& result,
+                                 const sweep::Explanation& explanation,
+                                 const std::vector<TypicalFailure>& failures);
+
+}  // namespace rift::report

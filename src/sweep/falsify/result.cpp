@@ -1,0 +1,211 @@
+#include "rift/sweep/falsify/result.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+
+#include "rift/statistics/descriptive.hpp"
+#include "rift/statistics/inference.hpp"
+
+namespace rift::sweep {
+
+FactorSplit SplitFactors(const std::vector<experiment::Parameter>& parameters) {
+  if (parameters.empty()) throw std::invalid_argument("the space has no parameters");
+  const auto categorical = std::find_if(
+      parameters.begin(), parameters.end(),
+      [](const experiment::Parameter& parameter) { return parameter.IsCategorical(); });
+  FactorSplit split;
+  if (categorical != parameters.end()) {
+    split.main_factor = static_cast<int>(categorical - parameters.begin());
+  }
+  for (int i = 0; i < static_cast<int>(parameters.size()); ++i) {
+    if (i == split.main_factor) continue;
+    split.others.push_back(i);
+    split.others_name += (split.others_name.empty() ? "" : ", ") + parameters[i].Name();
+  }
+  if (split.others.size() > 1) split.others_name = "[" + split.others_name + "]";
+  return split;
+}
+
+std::string ShortText(const experiment::Parameter& parameter,
+                      const experiment::ParameterValue& value) {
+  const bool is_drawn = parameter.IsContinuous() && value.number;
+  return is_drawn ? fmt::format("{:.4g}", *value.number) : value.text;
+}
+
+std::string SettingText(const std::vector<experiment::Parameter>& parameters,
+                        const experiment::Theta& theta) {
+  std::string text;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", parameters[i].Name(),
+                        ShortText(parameters[i], theta[i]));
+  }
+  return text.empty() ? "the only setting" : text;
+}
+
+std::string CombinationLabel(const experiment::Theta& theta, const std::vector<int>& parameters) {
+  if (parameters.size() == 1) return theta[parameters.front()].text;
+  std::string label;
+  for (const int i : parameters) label += (label.empty() ? "" : ", ") + theta[i].text;
+  return "[" + label + "]";
+}
+
+std::string MainLevel(const std::vector<experiment::Parameter>& parameters,
+                      const experiment::Theta& theta) {
+  return parameters.empty() ? "" : theta[SplitFactors(parameters).main_factor].text;
+}
+
+std::string SettingKey(const experiment::Theta& theta) {
+  std::string key;
+  for (const experiment::ParameterValue& value : theta) key += value.text + '\n';
+  return key;
+}
+
+namespace {
+
+/// Indices of rows by the label of their group, groups in the order of their first row.
+struct Groups {
+  std::vector<std::string> labels;
+  std::vector<std::vector<int>> rows;
+};
+
+/// Values of a row that tell its group; labels would not do, since one may contain another's comma.
+std::vector<std::string> KeyOf(const TrialRow& row, const std::vector<int>& parameters) {
+  std::vector<std::string> key;
+  for (const int i : parameters) key.push_back(row.theta[i].text);
+  return key;
+}
+
+Groups GroupBy(const SweepResult& result, const std::vector<int>& parameters) {
+  Groups groups;
+  std::map<std::vector<std::string>, size_t> index_of;
+  for (size_t row = 0; row < result.rows.size(); ++row) {
+    const auto [found, is_new] =
+        index_of.emplace(KeyOf(result.rows[row], parameters), groups.labels.size());
+    if (is_new) {
+      groups.labels.push_back(CombinationLabel(result.rows[row].theta, parameters));
+      groups.rows.emplace_back();
+    }
+    groups.rows[found->second].push_back(static_cast<int>(row));
+  }
+  return groups;
+}
+
+std::vector<double> GapsOf(const SweepResult& result, const std::vector<int>& rows) {
+  std::vector<double> gaps_m;
+  for (const int row : rows) {
+    if (result.rows[row].IsOk()) gaps_m.push_back(result.rows[row].comparison.gap_m);
+  }
+  return gaps_m;
+}
+
+/// A fall that counts is above any threshold.
+std::vector<double> GapsToJudge(const SweepResult& result, const std::vector<int>& rows) {
+  std::vector<double> gaps_m = GapsOf(result, rows);
+  for (const int row : rows) {
+    const bool is_fall = !result.rows[row].IsOk() && result.rows[row].falsified;
+    if (is_fall) gaps_m.push_back(std::numeric_limits<double>::infinity());
+  }
+  return gaps_m;
+}
+
+LevelSummary SummariseRows(const SweepResult& result, const std::string& level,
+                           const std::vector<int>& rows) {
+  const std::vector<double> gaps_m = GapsOf(result, rows);
+  LevelSummary summary{.level = level, .n = static_cast<int>(gaps_m.size())};
+  for (const int row : rows) {
+    summary.failures += result.rows[row].falsified;
+    summary.not_ok += !result.rows[row].IsOk();
+  }
+  summary.mean_gap_m = statistics::Mean(gaps_m);
+  summary.sd_gap_m = statistics::StandardDeviation(gaps_m);
+  return summary;
+}
+
+std::string EffectSentence(const Effect& effect) {
+  if (std::isnan(effect.p) && effect.df_within >= 1.0 && effect.df_between >= 1.0) {
+    return "no test possible: the trials of each value do not differ";
+  }
+  if (std::isnan(effect.p)) return "no test possible: too few trials with a gap";
+  const std::string p = effect.p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", effect.p);
+  if (!effect.detected) return fmt::format("no effect found ({})", p);
+  return fmt::format("effect found (F = {:.1f}, {}, {:.0f} % of the variance)", effect.f, p,
+                     100.0 * effect.eta_squared);
+}
+
+Effect EffectOf(const SweepResult& result, int parameter) {
+  const Groups groups = GroupBy(result, {parameter});
+  std::vector<std::vector<double>> gaps_m;
+  for (const std::vector<int>& rows : groups.rows) gaps_m.push_back(GapsOf(result, rows));
+  const statistics::AnalysisOfVariance analysis = statistics::AnalyseVariance(gaps_m);
+  Effect effect{.parameter = result.parameters[parameter].Name(),
+                .levels = SummariseBy(result, {parameter}),
+                .f = analysis.f,
+                .df_between = analysis.df_between,
+                .df_within = analysis.df_within,
+                .p = analysis.p,
+                .eta_squared = analysis.eta_squared,
+                .omega_squared = analysis.omega_squared,
+                .detected = analysis.p < kSignificance};
+  effect.sentence = EffectSentence(effect);
+  return effect;
+}
+
+std::vector<SettingResult> SettingsOf(const SweepResult& result) {
+  std::vector<int> all(result.parameters.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<SettingResult> settings;
+  for (std::vector<int>& rows : GroupBy(result, all).rows) {
+    const double mean_gap_m = statistics::Mean(GapsOf(result, rows));
+    const std::vector<double> gaps_m = GapsToJudge(result, rows);
+    SettingResult setting{.theta = result.rows[rows.front()].theta,
+                          .rows = std::move(rows),
+                          .mean_gap_m = mean_gap_m,
+                          .verdict = gap::JudgeRepeats(gaps_m, result.gap.threshold_m)};
+    settings.push_back(std::move(setting));
+  }
+  return settings;
+}
+
+}  // namespace
+
+std::vector<LevelSummary> SummariseBy(const SweepResult& result,
+                                      const std::vector<int>& parameters) {
+  const Groups groups = GroupBy(result, parameters);
+  std::vector<LevelSummary> summaries;
+  for (size_t i = 0; i < groups.labels.size(); ++i) {
+    summaries.push_back(SummariseRows(result, groups.labels[i], groups.rows[i]));
+  }
+  return summaries;
+}
+
+void Summarise(SweepResult& result) {
+  std::vector<int> every_row(result.rows.size());
+  std::iota(every_row.begin(), every_row.end(), 0);
+  result.all = SummariseRows(result, "all", every_row);
+  result.settings = SettingsOf(result);
+  result.effects.clear();
+  for (size_t i = 0; i < result.parameters.size(); ++i) {
+    const experiment::Parameter& parameter = result.parameters[i];
+    if (parameter.levels.size() > 1)
+      result.effects.push_back(EffectOf(result, static_cast<int>(i)));
+  }
+}
+
+std::optional<int> WorstRow(const SweepResult& result) {
+  std::optional<int> worst;
+  for (std::size_t i = 0; i < result.rows.size(); ++i) {
+    if (!result.rows[i].IsOk()) continue;
+    if (!worst || result.rows[i].comparison.gap_m > result.rows[*worst].comparison.gap_m) {
+      worst = static_cast<int>(i);
+    }
+  }
+  return worst;
+}
+
+}  // namespace rift::sweep
