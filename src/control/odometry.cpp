@@ -1,4 +1,4 @@
-#include "odometry.hpp"
+#include "rift/control/odometry.hpp"
 
 #include <fmt/format.h>
 

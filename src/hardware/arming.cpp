@@ -146,6 +146,37 @@ void SayWhereItStands(const DriveParts& parts, RealRobot& robot, const DriveTask
                   off_m > kNearStart_m ? ": far off, is the world frame right?" : ""));
 }
 
+std::string PartText(const char* name, const std::optional<double>& part_s) {
+  return part_s ? fmt::format("{} {:.0f} ms", name, 1e3 * *part_s)
+                : fmt::format("{} unknown", name);
+}
+
+/// The turn on the spot, and what follows from it.
+std::optional<LatencyResult> MeasureCamera(RealRobot& robot, const DriveParts& parts,
+                                           const DriveTask& task, const PingResult& ping) {
+  if (!task.hardware.turn.enabled) return std::nullopt;
+  const double one_way_s = ping.IsMeasured() ? ping.OneWay_s() : task.hardware.stopping.delay_s;
+  parts.say("the robot turns a few degrees to and fro, to see how late the camera is");
+  const std::optional<LatencyResult> found =
+      MeasureLatency(robot, task.hardware.odometry, task.hardware.turn, one_way_s);
+  if (!found) return std::nullopt;
+  const LoopDelay& delay = found->delay;
+  parts.say(fmt::format("loop delay {:.0f} ms: {}, {}, {}, {}", 1e3 * delay.total_s.value_or(0.0),
+                        PartText("camera", delay.camera_s), PartText("host", delay.host_s),
+                        PartText("link", delay.link_s), PartText("robot", delay.robot_s)));
+  if (!delay.camera_s) return found;
+  const double budget_s = task.hardware.evidence.max_latency_s;
+  if (std::abs(*delay.camera_s) > budget_s) {
+    throw std::runtime_error(fmt::format(
+        "the camera's pictures are {:.3f} s late, and the budget (hardware.evidence.max_latency_s) "
+        "is {:.3f} s: ask it for fewer pixels or a shorter exposure, or read it without a server "
+        "between",
+        *delay.camera_s, budget_s));
+  }
+  robot.SetCameraLatency(std::max(0.0, *delay.camera_s));
+  return found;
+}
+
 }  // namespace
 
 PingResult MeasureLink(ByteLine& line, Clock& clock, const HardwareOptions& options) {
@@ -171,6 +202,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   }
   if (run.has_begun) {
     robot.Arm();
+    run.latency = MeasureCamera(robot, parts, task, run.ping);
     run.trial = trial::RunTrial(robot, task.waypoints, task.control, task.trial);
   } else {
     run.trial.reason = "stopped before the start: " + robot.Record().stop->text;

@@ -54,11 +54,18 @@ void DriveGuard::SeePose(const PoseNews& news, double now_s) {
   NoteTime(now_s);
   if (news.fault) Stop(StopReason::kCameraGone, *news.fault, now_s);
   if (news.looked_s) looked_s_ = news.looked_s;
+  repeats_since_s_ = news.repeats_since_s;
   if (!news.newest) return;
   const trial::PoseMeasurement& pose = news.newest->measured;
   if (!IsFinite(pose) || pose.captured_s > now_s + kFuture_s) {
     return Stop(StopReason::kPoseNotFinite,
                 "the camera gave a pose that is not finite or lies in the future", now_s);
+  }
+  if (pose_ && state_ == DriveState::kArmed && pose.captured_s < pose_->captured_s) {
+    return Stop(StopReason::kTimeBackwards,
+                fmt::format("a picture was taken {:.3f} s before the one that came before it",
+                            pose_->captured_s - pose.captured_s),
+                now_s);
   }
   if (pose_ && pose.captured_s <= pose_->captured_s) return;
   if (pose_ && state_ == DriveState::kArmed) CheckJump(*pose_, pose, now_s);
@@ -105,7 +112,12 @@ bool DriveGuard::RequireFreshPose(double now_s) {
   const bool sees_pictures = looked_s_ && now_s - *looked_s_ <= options_.pose_stale_s;
   const std::string age =
       pose_ ? fmt::format("for {:.3f} s", now_s - pose_->captured_s) : std::string("yet");
-  if (sees_pictures) {
+  if (repeats_since_s_) {
+    Stop(StopReason::kPictureRepeats,
+         fmt::format("the camera has shown the same picture for {:.3f} s",
+                     now_s - *repeats_since_s_),
+         now_s);
+  } else if (sees_pictures) {
     Stop(StopReason::kTagLost, fmt::format("the tag was not seen {}", age), now_s);
   } else {
     Stop(StopReason::kPoseStale, fmt::format("no picture {}", age), now_s);

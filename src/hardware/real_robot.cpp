@@ -4,7 +4,10 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <numbers>
 #include <thread>
+
+#include "motion_check.hpp"
 
 namespace rift::hardware {
 namespace {
@@ -24,7 +27,9 @@ class RealRobot::Core {
         poses_(poses),
         is_threaded_(options.thread),
         start_s_(clock.Now_s()),
+        hardware_(options.hardware),
         guard_(options.hardware.guard),
+        motion_(options.hardware.evidence, options.hardware.odometry.drive.track_m),
         link_(line, options.hardware.line, options.protocol) {
     options.hardware.Check();
     if (is_threaded_) thread_ = std::jthread([this](std::stop_token stop) { Run(stop); });
@@ -50,6 +55,12 @@ class RealRobot::Core {
     return guard_.state();
   }
   DriveRecord Record();
+  void SetCameraLatency(double latency_s) {
+    const std::lock_guard lock(mutex_);
+    camera_latency_s_ = latency_s;
+    motion_.SetLatency(latency_s);
+    motion_.Restart();
+  }
   double Now_s() { return clock_.Now_s(); }
 
  private:
@@ -59,6 +70,8 @@ class RealRobot::Core {
   void Exchange(double now_s);
   void HandleAnswer(const RobotLink::Heard& heard, double now_s);
   void NoteWritten();
+  void CheckMotion(double now_s);
+  void FollowCommands(double now_s);
   void PassToLink(const control::WheelPower& power, bool is_first, double now_s);
 
   Clock& clock_;
@@ -66,7 +79,12 @@ class RealRobot::Core {
   bool is_threaded_;
   double start_s_;
   std::mutex mutex_;
+  HardwareOptions hardware_;
   DriveGuard guard_;
+  MotionCheck motion_;
+  double camera_latency_s_ = 0.0;
+  double commanded_s_ = 0.0;  ///< up to when `commanded_` was followed
+  WheelTravel commanded_;     ///< of wheels that obey, where the robot tells nothing of its own
   RobotLink link_;
   bool line_is_lost_ = false;
   std::vector<Stopper> stoppers_;
@@ -110,6 +128,11 @@ void RealRobot::Core::ReadInputs(double now_s) {
     }
     PoseNews news = poses_.Newest();
     guard_.SeePose(news, now_s);
+    const bool is_new = news.newest && (!news_.newest || news.newest->measured.captured_s >
+                                                             news_.newest->measured.captured_s);
+    if (is_new && news.newest->measured.world_from_robot.IsFinite()) {
+      motion_.SeePose(news.newest->measured);
+    }
     if (guard_.state() != DriveState::kStopped || news.newest) news_ = std::move(news);
   } catch (const std::exception& error) {
     guard_.Stop(StopReason::kException, error.what(), now_s);
@@ -131,6 +154,29 @@ void RealRobot::Core::Exchange(double now_s) {
   }
   NoteWritten();
   for (const RobotLink::Heard& heard : link_.TakeHeard()) HandleAnswer(heard, now_s);
+  FollowCommands(now_s);
+  CheckMotion(now_s);
+}
+
+// Only what an armed robot does on its own counts: before, it may be carried to its start.
+void RealRobot::Core::CheckMotion(double now_s) {
+  const std::optional<Disagreement> found = motion_.Check();
+  if (!found || guard_.state() != DriveState::kArmed) return;
+  guard_.Stop(found->reason, found->text, now_s);
+}
+
+// A robot that never answers is taken to obey.
+void RealRobot::Core::FollowCommands(double now_s) {
+  constexpr double kEvery_s = 0.02;
+  if (counts_ || now_s - commanded_s_ < kEvery_s) return;
+  const double elapsed_s = commanded_s_ > 0.0 ? now_s - commanded_s_ : 0.0;
+  commanded_s_ = now_s;
+  const MilliPower power = link_.last_sent() ? link_.last_sent()->power : MilliPower{};
+  const double m_per_milli = 1e-3 * hardware_.stopping.full_power_speed_mps * elapsed_s;
+  commanded_.t_s = now_s + hardware_.stopping.delay_s;
+  commanded_.left_m += m_per_milli * power.left;
+  commanded_.right_m += m_per_milli * power.right;
+  motion_.SeeWheels(commanded_, false);
 }
 
 void RealRobot::Core::NoteWritten() {
@@ -145,7 +191,13 @@ void RealRobot::Core::HandleAnswer(const RobotLink::Heard& heard, double now_s) 
   counts_ = control::EncoderCounts{heard.answer.left, heard.answer.right};
   const double battery_v = kVoltPerMillivolt * heard.answer.battery_mv;
   const double sent_s = heard.sent ? heard.sent->at_s : heard.at_s;
-  record_.encoders.push_back({0.5 * (sent_s + heard.at_s) - start_s_, *counts_, battery_v});
+  const double read_s = 0.5 * (sent_s + heard.at_s);
+  record_.encoders.push_back({read_s - start_s_, *counts_, battery_v});
+  const double m_per_count = 2.0 * std::numbers::pi * hardware_.odometry.drive.wheel_radius_m /
+                             hardware_.odometry.counts_per_wheel_turn;
+  motion_.SeeWheels({read_s, m_per_count * static_cast<double>(counts_->left),
+                     m_per_count * static_cast<double>(counts_->right)},
+                    true);
   if (!heard.sent) return;  // a plain answer says neither to what nor how often the robot stopped
   record_.rejected_by_robot = heard.answer.rejected;
   record_.round_trips_s.push_back(heard.at_s - sent_s);
@@ -165,6 +217,7 @@ void RealRobot::Core::Arm() {
   const std::lock_guard lock(mutex_);
   if (line_is_lost_) throw std::runtime_error("cannot arm: the serial port went away");
   guard_.Arm(clock_.Now_s());
+  motion_.Restart();
   stop_is_answered_ = false;
   stopped_at_s_.reset();
 }
@@ -177,7 +230,7 @@ trial::Sensed RealRobot::Core::Sense() {
   if (guard_.stop()) sensed.fault = guard_.stop()->text;
   if (!news_.newest) return sensed;
   sensed.pose = news_.newest->measured;
-  sensed.pose->captured_s -= start_s_;
+  sensed.pose->captured_s -= start_s_ + camera_latency_s_;
   if (sensed_captured_s_ != news_.newest->measured.captured_s) {
     const double period_s =
         news_.newest->measured.captured_s - sensed_captured_s_.value_or(-INFINITY);
@@ -259,6 +312,7 @@ void RealRobot::Arm() { core_->Arm(); }
 trial::Sensed RealRobot::Sense() { return core_->Sense(); }
 void RealRobot::Command(const control::WheelPower& power) { core_->Command(power); }
 void RealRobot::Stop() noexcept { core_->Stop(); }
+void RealRobot::SetCameraLatency(double latency_s) { core_->SetCameraLatency(latency_s); }
 DriveState RealRobot::state() const { return core_->state(); }
 DriveRecord RealRobot::Record() const { return core_->Record(); }
 

@@ -1,4 +1,4 @@
-#include "control/odometry.hpp"
+#include "rift/control/odometry.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <set>
 #include <utility>
 #include <vector>
@@ -34,8 +35,10 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   bool camera_is_frozen = false;
   bool tag_is_hidden = false;
   std::optional<std::string> camera_fault;
+  double camera_late_s = 0.0;  ///< older than its pictures' stamps say
   std::function<void(trial::PoseMeasurement&)> bend = [](trial::PoseMeasurement&) {};
   // The robot.
+  double slip_left = 1.0, slip_right = 1.0;  ///< what a wheel turns over what it moves the robot
   std::uint16_t battery_mv = 5000;
   bool robot_is_on = true;
   std::unique_ptr<Listener> listener = std::make_unique<Listener>();
@@ -114,12 +117,17 @@ class Bench : public ByteLine, public Clock, public PoseSource {
     right_ += (motors.right / 1000.0 - right_) * dt_s / kMotorLag_s;
     pose_ = drive_.Drive(pose_, {left_, right_}, dt_s);
     travelled_m_ += 1.206 * 0.5 * std::abs(left_ + right_) * dt_s;
+    rolled_left_m_ += 1.206 * slip_left * left_ * dt_s;
+    rolled_right_m_ += 1.206 * slip_right * right_ * dt_s;
     TakePictures();
   }
 
   void PollListener(const std::vector<std::uint8_t>& received) {
-    const Listener::Senses senses{static_cast<std::int32_t>(travelled_m_ * 3564.0),
-                                  static_cast<std::int32_t>(travelled_m_ * 3564.0), battery_mv};
+    constexpr double kCountsPerMetre = 358.3 / (2.0 * std::numbers::pi * 0.016);
+    const auto counts = [](double rolled_m) {
+      return static_cast<std::int32_t>(std::floor(rolled_m * kCountsPerMetre));
+    };
+    const Listener::Senses senses{counts(rolled_left_m_), counts(rolled_right_m_), battery_mv};
     const auto said = listener->Poll(static_cast<std::uint32_t>(now_s_ * 1000.0), received, senses);
     obeyed.insert({listener->Motors().left, listener->Motors().right});
     zeros_heard += !said.empty() && listener->Motors().IsZero();
@@ -133,9 +141,11 @@ class Bench : public ByteLine, public Clock, public PoseSource {
       trial::PoseMeasurement seen{now_s_, pose_, 0.0, 0.0, 0.0};
       if (!camera_is_frozen) pictures_.push_back({seen, tag_is_hidden});
     }
-    while (!pictures_.empty() && pictures_.front().pose.captured_s + kSight_s <= now_s_) {
+    while (!pictures_.empty() &&
+           pictures_.front().pose.captured_s + kSight_s + camera_late_s <= now_s_) {
       Picture picture = pictures_.front();
       pictures_.pop_front();
+      picture.pose.captured_s += camera_late_s;
       news_.looked_s = picture.pose.captured_s;
       if (picture.is_empty) continue;
       bend(picture.pose);
@@ -154,6 +164,7 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   control::DiffDrive drive_;
   geometry::Pose2 pose_{-0.2822, -0.0655, 0.0};
   double left_ = 0.0, right_ = 0.0, travelled_m_ = 0.0;
+  double rolled_left_m_ = 0.0, rolled_right_m_ = 0.0;
   double moving_s_ = 0.0;
   double next_frame_s_ = 100.0;
   std::deque<Picture> pictures_;

@@ -59,7 +59,7 @@ std::string KeyOf(const TrialRequest& request) {
 }
 
 SweepResult SweepWith(int workers, Journal* journal, const Watch& watch = {}) {
-  TrialRunner runner(Evaluated, KeyOf, journal, workers, {.timeout_s = 1.0, .memory_mb = 32},
+  TrialRunner runner(Evaluated, KeyOf, journal, workers, {.timeout_s = 3.0, .memory_mb = 32},
                      watch);
   const auto run = [&](std::vector<TrialRequest> all) { return runner.Run(std::move(all)); };
   std::optional<SweepResult> result = SweepGrid(Plan(), run);
@@ -107,7 +107,7 @@ TEST_CASE("A sweep with planted trouble ends and each trouble is a row with its 
 }
 
 TEST_CASE("A search with planted trouble ends and trouble is neither a failure nor a pass") {
-  TrialRunner runner(Evaluated, KeyOf, nullptr, 2, {.timeout_s = 1.0, .memory_mb = 32}, {});
+  TrialRunner runner(Evaluated, KeyOf, nullptr, 2, {.timeout_s = 3.0, .memory_mb = 32}, {});
   experiment::Experiment plan = Plan();
   plan.search.budget = 20;  // the space has 7 settings
   plan.falsify.until = Until::kBudget;
@@ -171,7 +171,7 @@ TEST_CASE("A sweep that is stopped goes on with the trials that are missing") {
       if (!from_journal) CHECK(computed.insert(row.theta[0].text + row.trial).second);
     };
     watch.go_on = [&] { return computed.size() < enough; };
-    TrialRunner runner(Evaluated, KeyOf, &journal, 2, {.timeout_s = 1.0, .memory_mb = 32}, watch);
+    TrialRunner runner(Evaluated, KeyOf, &journal, 2, {.timeout_s = 3.0, .memory_mb = 32}, watch);
     return SweepGrid(Plan(), [&](auto all) { return runner.Run(std::move(all)); });
   };
   CHECK_FALSE(run_until(3));

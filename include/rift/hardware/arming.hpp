@@ -10,6 +10,7 @@
 
 #include "rift/control/options.hpp"
 #include "rift/control/waypoint.hpp"
+#include "rift/hardware/latency.hpp"
 #include "rift/hardware/ping.hpp"
 #include "rift/hardware/pose_source.hpp"
 #include "rift/hardware/real_robot.hpp"
@@ -90,6 +91,7 @@ struct DriveParts {
 struct DriveRun {
   bool has_begun = false;  ///< false: a person stopped it before the start
   PingResult ping;
+  std::optional<LatencyResult> latency;  ///< none: not measured
   trial::TrialResult trial;
   DriveRecord evidence;
   double stopping_distance_m = 0.0;

@@ -21,9 +21,16 @@ enum class StopReason {
   kSignal,
   kException,
   kPoseStale,
+  kPictureRepeats,
   kTagLost,
   kPoseNotFinite,
   kPoseJump,
+  kTimeBackwards,
+  kPoseStands,
+  kWheelsStand,
+  kPoseDisorder,
+  kPoseDisagrees,
+  kPoseLags,
   kCameraGone,
   kPortGone,
   kLinkLagging,
@@ -34,11 +41,12 @@ enum class StopReason {
   kRobotStopped,
   kBatteryLow,
 };
-constexpr std::array<std::string_view, 17> EnumNames(StopReason) {
-  return {"finished",      "operator",        "signal",       "exception",     "pose_stale",
-          "tag_lost",      "pose_not_finite", "pose_jump",    "camera_gone",   "port_gone",
-          "link_lagging",  "control_stale",   "host_stalled", "power_refused", "not_armed",
-          "robot_stopped", "battery_low"};
+constexpr std::array<std::string_view, 24> EnumNames(StopReason) {
+  return {"finished",        "operator",     "signal",          "exception",      "pose_stale",
+          "picture_repeats", "tag_lost",     "pose_not_finite", "pose_jump",      "time_backwards",
+          "pose_stands",     "wheels_stand", "pose_disorder",   "pose_disagrees", "pose_lags",
+          "camera_gone",     "port_gone",    "link_lagging",    "control_stale",  "host_stalled",
+          "power_refused",   "not_armed",    "robot_stopped",   "battery_low"};
 }
 
 struct DriveStop {
@@ -82,6 +90,7 @@ class DriveGuard {
   std::optional<DriveStop> stop_;
   std::optional<trial::PoseMeasurement> pose_;
   std::optional<double> looked_s_;
+  std::optional<double> repeats_since_s_;
   control::WheelPower power_;
   double commanded_s_ = 0.0;
   std::optional<double> ticked_s_;

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "rift/control/odometry.hpp"
+
 namespace rift::hardware {
 
 enum class Protocol { kAuto, kPlain, kFramed };
@@ -69,6 +71,65 @@ struct GuardOptions {
   }
 };
 
+/// When what the camera shows and what the wheels do contradict each other.
+struct EvidenceOptions {
+  double still_m = 0.006;
+  double still_deg = 4.0;
+  double blind_m = 0.012;
+  double blind_s = 0.1;
+  double pushed_m = 0.03;
+  double pushed_deg = 15.0;
+  double agree_m = 0.05;
+  double agree_share = 0.4;
+  double max_latency_s = 0.25;
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("still_m", self.still_m, 1e-4, 1.0,
+          "a pose that moved less stands (a standing tag jitters by 1 mm at most)");
+    field("still_deg", self.still_deg, 0.1, 90.0, "and turned less (it jitters by 0.5 deg)");
+    field(
+        "blind_m", self.blind_m, 1e-3, 10.0,
+        "how far a wheel may roll while the pose stands; three times as far where the robot tells "
+        "no encoders and its commands must do");
+    field("blind_s", self.blind_s, 0.0, 2.0,
+          "and what it rolls in this time on top (plus max_latency_s while the camera's latency is "
+          "not measured)");
+    field("pushed_m", self.pushed_m, 1e-3, 10.0,
+          "how far the pose may move while the wheels stand");
+    field("pushed_deg", self.pushed_deg, 0.1, 180.0, "and turn");
+    field("agree_m", self.agree_m, 1e-3, 10.0,
+          "how far pose and wheels may part within 0.4 s, whatever the wheels did");
+    field("agree_share", self.agree_share, 0.0, 10.0,
+          "and for each metre that the wheels rolled (slip)");
+    field(
+        "max_latency_s", self.max_latency_s, 0.02, 2.0,
+        "budget: from the light to a picture's time stamp, and how far a pose may lag the wheels");
+  }
+};
+
+/// The turn on the spot before a drive, from which the camera's latency is measured.
+struct TurnOptions {
+  bool enabled = true;
+  double power = 0.08;
+  double most_power = 0.3;
+  double pulse_s = 0.06;
+  double enough_deg = 3.0;
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("enabled", self.enabled,
+          "turn a few degrees to and fro before the first leg; without it the camera's latency is "
+          "not known, and only a drive that contradicts it is stopped");
+    field("power", self.power, 0.01, 1.0, "of the first pulses; the next are stronger");
+    field("most_power", self.most_power, 0.01, 1.0, "of the last");
+    field("pulse_s", self.pulse_s, 0.02, 0.5, "length of a pulse");
+    field("enough_deg", self.enough_deg, 0.5, 30.0, "pulses grow until the robot turns this far");
+  }
+};
+
 /// What the stopping distance is worked out from.
 struct StoppingOptions {
   double full_power_speed_mps = 1.6;
@@ -111,6 +172,9 @@ struct PingOptions {
 struct HardwareOptions {
   LineOptions line;
   GuardOptions guard;
+  EvidenceOptions evidence;
+  TurnOptions turn;
+  control::OdometryOptions odometry;
   StoppingOptions stopping;
   PingOptions ping;
 
@@ -119,6 +183,9 @@ struct HardwareOptions {
   static void Fields(Self& self, Visitor&& field) {
     field("line", self.line, "the serial line to the robot");
     field("guard", self.guard, "when the robot is stopped for good");
+    field("evidence", self.evidence, "what camera and wheels must agree on");
+    field("turn", self.turn, "the turn before a drive that measures the camera's latency");
+    field("odometry", self.odometry, "wheels and encoders of the robot");
     field("stopping", self.stopping, "what the printed stopping distance is worked out from");
     field("ping", self.ping, "how the link is measured, and what it must keep");
   }

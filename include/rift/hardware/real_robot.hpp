@@ -83,6 +83,9 @@ class RealRobot : public trial::Robot {
   void Advance(double dt_s) override;
   void Stop() noexcept override;
 
+  /// How much earlier pictures were taken than their stamps say: what Sense gives is put right.
+  void SetCameraLatency(double latency_s);
+
   /// After Stop(): sends zeros until the robot says that it stands, `timeout_s` at most.
   void ConfirmStop(double timeout_s);
   DriveState state() const;

@@ -1,0 +1,233 @@
+#include "rift/hardware/latency.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "rift/geometry/pose2.hpp"
+#include "rift/statistics/descriptive.hpp"
+
+namespace rift::hardware {
+namespace {
+
+constexpr double kTurn_s = 0.02;        // of the loop
+constexpr double kTick_s = 1e-4;  // less is no time
+constexpr double kLagStep_s = 0.005;
+constexpr double kLeastLag_s = -0.1;    // clocks that do not agree show up here
+constexpr double kMostLag_s = 1.2;
+constexpr size_t kLeastSamples = 8;
+constexpr double kRest_s = 0.5;  // after a pulse, for wheels and link to come to rest
+constexpr int kMostPulses = 14;
+constexpr double kHarder = 1.25;
+
+double Range(std::span<const Angle> angles) {
+  if (angles.empty()) return 0.0;
+  const auto [low, high] = std::minmax_element(
+      angles.begin(), angles.end(), [](const Angle& a, const Angle& b) { return a.rad < b.rad; });
+  return high->rad - low->rad;
+}
+
+/// It stands before its first time and after its last: all of the follower counts at every lag.
+double At(std::span<const Angle> angles, double t_s) {
+  const auto after = std::lower_bound(angles.begin(), angles.end(), t_s,
+                                      [](const Angle& a, double t) { return a.t_s < t; });
+  if (after == angles.begin()) return after->rad;
+  if (after == angles.end()) return angles.back().rad;
+  const Angle& before = *(after - 1);
+  const double share = (t_s - before.t_s) / (after->t_s - before.t_s);
+  return before.rad + share * (after->rad - before.rad);
+}
+
+/// The line through follower over leader at one lag.
+std::optional<Lag> FitAt(std::span<const Angle> follower, std::span<const Angle> leader,
+                         double lag_s) {
+  std::vector<double> x, y;
+  for (const Angle& angle : follower) {
+    x.push_back(At(leader, angle.t_s - lag_s));
+    y.push_back(angle.rad);
+  }
+  if (x.size() < kLeastSamples) return std::nullopt;
+  const double mean_x = statistics::Mean(x), mean_y = statistics::Mean(y);
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+    yy += (y[i] - mean_y) * (y[i] - mean_y);
+  }
+  if (xx <= 0.0) return std::nullopt;
+  const double scale = xy / xx;
+  const double squares = std::max(0.0, yy - scale * xy);
+  return Lag{lag_s, scale, std::sqrt(squares / static_cast<double>(x.size()))};
+}
+
+}  // namespace
+
+std::optional<Lag> EstimateLag(std::span<const Angle> follower, std::span<const Angle> leader,
+                               double least_s, double most_s) {
+  constexpr double kLeastTurn_rad = 1e-3;
+  if (Range(follower) < kLeastTurn_rad || Range(leader) < kLeastTurn_rad) return std::nullopt;
+  std::vector<Lag> fits;
+  for (double lag_s = least_s; lag_s <= most_s + 1e-9; lag_s += kLagStep_s) {
+    if (const std::optional<Lag> fit = FitAt(follower, leader, lag_s)) fits.push_back(*fit);
+  }
+  if (fits.empty()) return std::nullopt;
+  const auto best = std::min_element(fits.begin(), fits.end(), [](const Lag& a, const Lag& b) {
+    return a.residual_rad < b.residual_rad;
+  });
+  Lag found = *best;
+  if (best == fits.begin() || best + 1 == fits.end()) return found;
+  // The parabola through the squares of the residuals around the least.
+  const double before = std::pow((best - 1)->residual_rad, 2);
+  const double here = std::pow(best->residual_rad, 2);
+  const double after = std::pow((best + 1)->residual_rad, 2);
+  const double curvature = before - 2.0 * here + after;
+  if (curvature > 0.0) found.lag_s += 0.5 * kLagStep_s * (before - after) / curvature;
+  return found;
+}
+
+std::vector<Angle> WheelTurns(std::span<const EncoderReading> readings, double rad_per_count) {
+  std::vector<Angle> angles;
+  for (const EncoderReading& reading : readings) {
+    const auto difference = static_cast<double>(reading.counts.right - reading.counts.left);
+    if (angles.empty() || reading.t_s > angles.back().t_s) {
+      angles.push_back({reading.t_s, rad_per_count * difference});
+    }
+  }
+  return angles;
+}
+
+namespace {
+
+/// Collects what the turn shows.
+class Turn {
+ public:
+  Turn(RealRobot& robot, const control::OdometryOptions& odometry) : robot_(robot) {
+    metres_per_count_ = 2.0 * std::numbers::pi * odometry.drive.wheel_radius_m /
+                        odometry.counts_per_wheel_turn;
+    track_m_ = odometry.drive.track_m;
+  }
+
+  /// False when the drive was stopped.
+  bool Run(const control::WheelPower& power, double duration_s) {
+    double now_s = Look();
+    for (const double end_s = now_s + duration_s; now_s < end_s - kTick_s; now_s = Look()) {
+      if (robot_.state() == DriveState::kStopped) return false;
+      if (commanded_.empty() || commanded_.back().t_s < now_s) {
+        const double before_rad = commanded_.empty() ? 0.0 : commanded_.back().rad;
+        const double since_s = commanded_.empty() ? 0.0 : now_s - commanded_.back().t_s;
+        commanded_.push_back({now_s, before_rad + (last_.right - last_.left) * since_s});
+      }
+      robot_.Command(power);
+      last_ = power;
+      robot_.Advance(std::min(kTurn_s, end_s - now_s));
+    }
+    return true;
+  }
+
+  std::vector<Angle> Wheels() const {
+    return WheelTurns(robot_.Record().encoders, metres_per_count_ / track_m_);
+  }
+  const std::vector<Angle>& Seen() const { return seen_; }
+  const std::vector<Angle>& Commanded() const { return commanded_; }
+  double Began_s() const { return seen_.empty() ? 0.0 : seen_.front().t_s; }
+
+ private:
+  double Look() {
+    const trial::Sensed sensed = robot_.Sense();
+    if (sensed.pose && (seen_.empty() || sensed.pose->captured_s > seen_.back().t_s)) {
+      const double yaw_rad = sensed.pose->world_from_robot.yaw_rad;
+      const double before_rad = seen_.empty() ? yaw_rad : seen_.back().rad;
+      seen_.push_back(
+          {sensed.pose->captured_s, before_rad + geometry::WrapToPi(yaw_rad - before_rad)});
+    }
+    return sensed.now_s;
+  }
+
+  RealRobot& robot_;
+  double metres_per_count_ = 0.0;
+  double track_m_ = 0.0;
+  std::vector<Angle> seen_, commanded_;
+  control::WheelPower last_;
+};
+
+}  // namespace
+
+namespace {
+
+std::optional<double> HostTime_s(const std::vector<PoseStages>& poses) {
+  std::vector<double> times_s;
+  for (const PoseStages& pose : poses) {
+    if (pose.written_s >= 0.0) times_s.push_back(pose.written_s - pose.arrived_s);
+  }
+  if (times_s.empty()) return std::nullopt;
+  return statistics::Median(times_s);
+}
+
+/// The parts of the loop delay, from what the turn showed.
+LoopDelay DelayOf(const Turn& turn, const std::vector<Angle>& wheels, const Lag& camera,
+                  double one_way_s, const std::vector<PoseStages>& poses) {
+  LoopDelay delay{.camera_s = camera.lag_s, .host_s = HostTime_s(poses), .link_s = one_way_s};
+  if (const auto response = EstimateLag(wheels, turn.Commanded(), 0.0, kMostLag_s)) {
+    delay.robot_s = std::max(0.0, response->lag_s - one_way_s);
+  }
+  delay.total_s = *delay.camera_s + delay.host_s.value_or(0.0) + *delay.link_s +
+                  delay.robot_s.value_or(0.0);
+  return delay;
+}
+
+/// Without encoders the commands lead, and only the sum of all parts is seen.
+const std::vector<Angle>& LeaderOf(const Turn& turn, const std::vector<Angle>& wheels) {
+  return wheels.empty() ? turn.Commanded() : wheels;
+}
+
+void RequireSeen(const std::optional<Lag>& lag, double turned_rad, double seen_rad) {
+  constexpr double kLeastScale = 0.4, kMostScale = 2.5, kMostNoise = 0.25;
+  const bool is_seen = lag && lag->scale > kLeastScale && lag->scale < kMostScale &&
+                       lag->residual_rad < kMostNoise * seen_rad;
+  if (is_seen) return;
+  throw std::runtime_error(fmt::format(
+      "the wheels turned the robot by {:.1f} deg and the picture shows {:.1f} deg within {:g} s: do "
+      "the wheels touch the floor, is it this robot's tag, and are the pictures of now "
+      "(hardware.turn.enabled=false leaves this check out)",
+      geometry::DegFromRad(turned_rad), geometry::DegFromRad(seen_rad), kMostLag_s));
+}
+
+}  // namespace
+
+std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
+                                            const control::OdometryOptions& odometry,
+                                            const TurnOptions& options, double one_way_s) {
+  Turn turn(robot, odometry);
+  if (!turn.Run({}, kTurn_s)) return std::nullopt;
+  const double enough_rad = geometry::RadFromDeg(options.enough_deg);
+  double power = options.power;
+  std::vector<Angle> wheels;
+  for (int pulse = 0; pulse < kMostPulses; ++pulse) {
+    const double side = pulse % 2 == 0 ? power : -power;
+    if (!turn.Run({-side, side}, options.pulse_s) || !turn.Run({}, kRest_s)) return std::nullopt;
+    if (pulse % 2 == 0) continue;  // it must stand as it stood
+    wheels = turn.Wheels();
+    const double moved_rad = wheels.empty() ? Range(turn.Seen()) : Range(wheels);
+    if (moved_rad >= enough_rad) break;
+    power = std::min(options.most_power, power * kHarder);
+  }
+  if (!turn.Run({}, kMostLag_s - kRest_s)) return std::nullopt;  // for the latest of pictures
+  wheels = turn.Wheels();
+  const std::vector<Angle>& leader = LeaderOf(turn, wheels);
+  const std::optional<Lag> lag = EstimateLag(turn.Seen(), leader, kLeastLag_s, kMostLag_s);
+  LatencyResult result{.turned_deg = geometry::DegFromRad(Range(wheels)),
+                       .seen_deg = geometry::DegFromRad(Range(turn.Seen()))};
+  if (wheels.empty()) {
+    if (!lag) RequireSeen(lag, Range(turn.Commanded()), Range(turn.Seen()));
+    result.delay.total_s = lag->lag_s;
+    return result;
+  }
+  RequireSeen(lag, Range(wheels), Range(turn.Seen()));
+  result.delay = DelayOf(turn, wheels, *lag, one_way_s, robot.Record().poses);
+  return result;
+}
+
+}  // namespace rift::hardware
