@@ -9,10 +9,17 @@
 
 namespace rift::control {
 
+double MetresPerCount(const OdometryOptions& options) {
+  return 2.0 * geometry::kPi * options.drive.wheel_radius_m / options.counts_per_wheel_turn;
+}
+
+double YawPerCount_rad(const OdometryOptions& options) {
+  return MetresPerCount(options) / options.drive.track_m;
+}
+
 Odometry::Odometry(const OdometryOptions& options, const geometry::Pose2& world_from_start)
     : track_m_(DiffDrive(options.drive).options().track_m),
-      metres_per_count_(2.0 * geometry::kPi * options.drive.wheel_radius_m /
-                        options.counts_per_wheel_turn),
+      metres_per_count_(MetresPerCount(options)),
       world_from_robot_(world_from_start) {
   if (!std::isfinite(options.counts_per_wheel_turn) || options.counts_per_wheel_turn <= 0.0) {
     throw std::invalid_argument(

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "rift/geometry/pose2.hpp"
+
 namespace rift::hardware {
 
 struct OperatorKeys::Saved {
@@ -146,6 +148,23 @@ void SayWhereItStands(const DriveParts& parts, RealRobot& robot, const DriveTask
                   off_m > kNearStart_m ? ": far off, is the world frame right?" : ""));
 }
 
+/// By how much the poses of a drive lag its encoders, on top of what was subtracted already.
+std::optional<double> LatencyOver(const DriveRun& run, const control::OdometryOptions& odometry) {
+  constexpr double kLeastScale = 0.4, kMost_s = 1.0;
+  std::vector<Angle> seen;
+  for (const trajectory::StampedPose& pose : run.trial.trajectory.poses) {
+    const double before_rad = seen.empty() ? pose.yaw_rad : seen.back().rad;
+    seen.push_back({pose.t_s, before_rad + geometry::WrapToPi(pose.yaw_rad - before_rad)});
+  }
+  const std::vector<Angle> wheels =
+      WheelTurns(run.evidence.encoders, control::YawPerCount_rad(odometry));
+  if (seen.empty() || wheels.empty()) return std::nullopt;
+  const std::optional<Lag> lag = EstimateLag(seen, wheels, -kMost_s, kMost_s);
+  if (!lag || lag->scale < kLeastScale) return std::nullopt;
+  const bool was_measured = run.latency && run.latency->delay.camera_s;
+  return lag->lag_s + (was_measured ? std::max(0.0, *run.latency->delay.camera_s) : 0.0);
+}
+
 std::string PartText(const char* name, const std::optional<double>& part_s) {
   return part_s ? fmt::format("{} {:.0f} ms", name, 1e3 * *part_s)
                 : fmt::format("{} unknown", name);
@@ -209,6 +228,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   }
   robot.ConfirmStop(kConfirm_s);
   run.evidence = robot.Record();
+  run.camera_latency_s = LatencyOver(run, task.hardware.odometry);
   return run;
 }
 

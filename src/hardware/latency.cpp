@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "rift/geometry/pose2.hpp"
@@ -13,10 +12,10 @@
 namespace rift::hardware {
 namespace {
 
-constexpr double kTurn_s = 0.02;        // of the loop
+constexpr double kTurn_s = 0.02;  // of the loop
 constexpr double kTick_s = 1e-4;  // less is no time
 constexpr double kLagStep_s = 0.005;
-constexpr double kLeastLag_s = -0.1;    // clocks that do not agree show up here
+constexpr double kLeastLag_s = -0.1;  // clocks that do not agree show up here
 constexpr double kMostLag_s = 1.2;
 constexpr size_t kLeastSamples = 8;
 constexpr double kRest_s = 0.5;  // after a pulse, for wheels and link to come to rest
@@ -105,9 +104,7 @@ namespace {
 class Turn {
  public:
   Turn(RealRobot& robot, const control::OdometryOptions& odometry) : robot_(robot) {
-    metres_per_count_ = 2.0 * std::numbers::pi * odometry.drive.wheel_radius_m /
-                        odometry.counts_per_wheel_turn;
-    track_m_ = odometry.drive.track_m;
+    yaw_per_count_rad_ = control::YawPerCount_rad(odometry);
   }
 
   /// False when the drive was stopped.
@@ -128,7 +125,7 @@ class Turn {
   }
 
   std::vector<Angle> Wheels() const {
-    return WheelTurns(robot_.Record().encoders, metres_per_count_ / track_m_);
+    return WheelTurns(robot_.Record().encoders, yaw_per_count_rad_);
   }
   const std::vector<Angle>& Seen() const { return seen_; }
   const std::vector<Angle>& Commanded() const { return commanded_; }
@@ -147,8 +144,7 @@ class Turn {
   }
 
   RealRobot& robot_;
-  double metres_per_count_ = 0.0;
-  double track_m_ = 0.0;
+  double yaw_per_count_rad_ = 0.0;
   std::vector<Angle> seen_, commanded_;
   control::WheelPower last_;
 };
@@ -173,8 +169,8 @@ LoopDelay DelayOf(const Turn& turn, const std::vector<Angle>& wheels, const Lag&
   if (const auto response = EstimateLag(wheels, turn.Commanded(), 0.0, kMostLag_s)) {
     delay.robot_s = std::max(0.0, response->lag_s - one_way_s);
   }
-  delay.total_s = *delay.camera_s + delay.host_s.value_or(0.0) + *delay.link_s +
-                  delay.robot_s.value_or(0.0);
+  delay.total_s =
+      *delay.camera_s + delay.host_s.value_or(0.0) + *delay.link_s + delay.robot_s.value_or(0.0);
   return delay;
 }
 
@@ -188,11 +184,12 @@ void RequireSeen(const std::optional<Lag>& lag, double turned_rad, double seen_r
   const bool is_seen = lag && lag->scale > kLeastScale && lag->scale < kMostScale &&
                        lag->residual_rad < kMostNoise * seen_rad;
   if (is_seen) return;
-  throw std::runtime_error(fmt::format(
-      "the wheels turned the robot by {:.1f} deg and the picture shows {:.1f} deg within {:g} s: do "
-      "the wheels touch the floor, is it this robot's tag, and are the pictures of now "
-      "(hardware.turn.enabled=false leaves this check out)",
-      geometry::DegFromRad(turned_rad), geometry::DegFromRad(seen_rad), kMostLag_s));
+  throw std::runtime_error(
+      fmt::format("the wheels turned the robot by {:.1f} deg and the picture shows {:.1f} deg "
+                  "within {:g} s: do "
+                  "the wheels touch the floor, is it this robot's tag, and are the pictures of now "
+                  "(hardware.turn.enabled=false leaves this check out)",
+                  geometry::DegFromRad(turned_rad), geometry::DegFromRad(seen_rad), kMostLag_s));
 }
 
 }  // namespace

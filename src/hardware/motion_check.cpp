@@ -13,12 +13,12 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kKept_s = 4.0;       // of wheels and samples
-constexpr double kWindow_s = 0.4;     // over which displacements are compared
-constexpr double kStep_m = 0.003;     // less is jitter
-constexpr double kRolls_m = 0.0005;   // of the wheels from picture to picture
+constexpr double kKept_s = 4.0;      // of wheels and samples
+constexpr double kWindow_s = 0.4;    // over which displacements are compared
+constexpr double kStep_m = 0.003;    // less is jitter
+constexpr double kRolls_m = 0.0005;  // of the wheels from picture to picture
 constexpr double kBackward = 0.5;    // of what the wheels rolled: the pose ran back
-constexpr double kDisorder_s = 0.7;   // in which kBackwardSteps of them are no accident
+constexpr double kDisorder_s = 0.7;  // in which kBackwardSteps of them are no accident
 constexpr size_t kBackwardSteps = 3;
 constexpr double kLagWindow_s = 2.0;
 constexpr double kLagSpan_s = 0.15;
@@ -33,7 +33,8 @@ double Largest(const WheelTravel& from, const WheelTravel& to) {
 
 WheelTravel Between(const WheelTravel& a, const WheelTravel& b, double t_s) {
   const double share = (t_s - a.t_s) / (b.t_s - a.t_s);
-  return {t_s, a.left_m + share * (b.left_m - a.left_m), a.right_m + share * (b.right_m - a.right_m)};
+  return {t_s, a.left_m + share * (b.left_m - a.left_m),
+          a.right_m + share * (b.right_m - a.right_m)};
 }
 
 double Moved_m(const Pose2& a, const Pose2& b) { return (b.Position() - a.Position()).norm(); }
@@ -227,8 +228,8 @@ std::optional<double> MotionCheck::Lag_s() const {
       if (!a || !b) continue;
       const Step rolled = Rolled(*a, *b);
       const Step seen = Seen(samples_[from].pose, samples_[to].pose, track_m_);
-      sum_m2 += std::pow(seen.forward_m - rolled.forward_m, 2) +
-                std::pow(seen.turn_m - rolled.turn_m, 2);
+      sum_m2 +=
+          std::pow(seen.forward_m - rolled.forward_m, 2) + std::pow(seen.turn_m - rolled.turn_m, 2);
       ++pairs;
     }
     if (pairs == 0) return std::nullopt;
@@ -239,8 +240,8 @@ std::optional<double> MotionCheck::Lag_s() const {
       best_s = lag_s;
     }
   }
-  constexpr double kSeen_m = 0.004;   // less is noise
-  constexpr double kClearly = 0.25;   // of the error without a lag
+  constexpr double kSeen_m = 0.004;  // less is noise
+  constexpr double kClearly = 0.25;  // of the error without a lag
   const bool is_clear = none_m2 > kSeen_m * kSeen_m && best_m2 < kClearly * none_m2;
   return is_clear ? std::optional(best_s) : std::nullopt;
 }

@@ -47,8 +47,8 @@ class MotionCheck {
  private:
   struct Sample {
     double t_s = 0.0;
-    geometry::Pose2 pose;   ///< its yaw runs on through +-pi
-    WheelTravel wheels;     ///< at the same time
+    geometry::Pose2 pose;  ///< its yaw runs on through +-pi
+    WheelTravel wheels;    ///< at the same time
   };
 
   /// Commands tell less of the wheels than encoders do.

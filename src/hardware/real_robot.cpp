@@ -4,7 +4,6 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
-#include <numbers>
 #include <thread>
 
 #include "motion_check.hpp"
@@ -193,8 +192,7 @@ void RealRobot::Core::HandleAnswer(const RobotLink::Heard& heard, double now_s) 
   const double sent_s = heard.sent ? heard.sent->at_s : heard.at_s;
   const double read_s = 0.5 * (sent_s + heard.at_s);
   record_.encoders.push_back({read_s - start_s_, *counts_, battery_v});
-  const double m_per_count = 2.0 * std::numbers::pi * hardware_.odometry.drive.wheel_radius_m /
-                             hardware_.odometry.counts_per_wheel_turn;
+  const double m_per_count = control::MetresPerCount(hardware_.odometry);
   motion_.SeeWheels({read_s, m_per_count * static_cast<double>(counts_->left),
                      m_per_count * static_cast<double>(counts_->right)},
                     true);

@@ -13,8 +13,8 @@
 namespace rift::hardware {
 
 /// A bench whose camera, wheels and radio are as noisy as those of the authors' trials: the tag
-/// jitters by 0.6 mm and 0.3 deg (standing robots in the trials), pictures and answers are lost, and
-/// each wheel slips by some per cent (spread of the paths at equal commands).
+/// jitters by 0.6 mm and 0.3 deg (standing robots in the trials), pictures and answers are lost,
+/// and each wheel slips by some per cent (spread of the paths at equal commands).
 struct NoisyDrive {
   explicit NoisyDrive(std::uint64_t seed, const HardwareOptions& hardware = {})
       : random(seed), robot(bench, bench, bench, {hardware, Protocol::kFramed, false}) {
@@ -107,11 +107,13 @@ inline const std::vector<std::pair<std::string, std::function<void(NoisyDrive&)>
            pose.world_from_robot = *other;
          };
        }},
-      {"clock jumps forward", [](NoisyDrive& d) {
+      {"clock jumps forward",
+       [](NoisyDrive& d) {
          const double by_s = d.Uniform(0.2, 5.0);
          d.fault = [by_s](auto& pose) { pose.captured_s += by_s; };
        }},
-      {"clock jumps back", [](NoisyDrive& d) {
+      {"clock jumps back",
+       [](NoisyDrive& d) {
          const double by_s = d.Uniform(0.2, 5.0);
          d.fault = [by_s](auto& pose) { pose.captured_s -= by_s; };
        }},

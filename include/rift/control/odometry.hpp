@@ -19,6 +19,11 @@ struct OdometryOptions {
   }
 };
 
+/// What a wheel rolls in a count.
+double MetresPerCount(const OdometryOptions& options);
+/// What the robot turns by when the right wheel is a count ahead of the left one.
+double YawPerCount_rad(const OdometryOptions& options);
+
 /// Where the wheels say the robot went. Between two readings both wheels are taken to turn
 /// steadily, so the robot follows one exact arc.
 class Odometry {

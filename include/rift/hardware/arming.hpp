@@ -92,6 +92,8 @@ struct DriveRun {
   bool has_begun = false;  ///< false: a person stopped it before the start
   PingResult ping;
   std::optional<LatencyResult> latency;  ///< none: not measured
+  /// Of the camera, over the whole drive by its own turns; none without encoders or turns.
+  std::optional<double> camera_latency_s;
   trial::TrialResult trial;
   DriveRecord evidence;
   double stopping_distance_m = 0.0;

@@ -90,6 +90,28 @@ ordered_json StopJson(const hardware::DriveRecord& evidence) {
   return json;
 }
 
+/// Where the time between a turn and the command that answers it goes; null where unknown.
+ordered_json LoopDelayJson(const hardware::DriveRun& run) {
+  ordered_json json{{"camera_s", nullptr},   {"host_s", nullptr},  {"link_s", nullptr},
+                    {"robot_s", nullptr},    {"total_s", nullptr}, {"camera_over_drive_s", nullptr},
+                    {"turned_deg", nullptr}, {"seen_deg", nullptr}};
+  const auto set = [&json](const char* key, const std::optional<double>& value) {
+    if (value) json[key] = *value;
+  };
+  if (run.latency) {
+    const hardware::LoopDelay& delay = run.latency->delay;
+    set("camera_s", delay.camera_s);
+    set("host_s", delay.host_s);
+    set("link_s", delay.link_s);
+    set("robot_s", delay.robot_s);
+    set("total_s", delay.total_s);
+    set("turned_deg", run.latency->turned_deg);
+    set("seen_deg", run.latency->seen_deg);
+  }
+  set("camera_over_drive_s", run.camera_latency_s);
+  return json;
+}
+
 std::string Cell(double time_s) { return time_s < 0.0 ? "" : fmt::format("{:.6f}", time_s); }
 
 }  // namespace
@@ -135,6 +157,7 @@ std::string DriveJson(const experiment::Experiment& experiment, const hardware::
                     {"stale_decisions", result.stale_decisions}};
   json["stop"] = StopJson(run.evidence);
   json["stopping_distance_m"] = run.stopping_distance_m;
+  json["loop_delay"] = LoopDelayJson(run);
   json["latency"] = ordered_json::object();
   for (const Stage& stage : kStages)
     json["latency"][stage.name] = StageJson(run.evidence.poses, stage);
@@ -158,6 +181,11 @@ std::string DriveText(const hardware::DriveRun& run) {
                         1e3 * statistics::Quantile(latency_s, 0.5),
                         1e3 * statistics::Quantile(latency_s, 0.95),
                         1e3 * statistics::Quantile(latency_s, 0.99));
+  }
+  if (run.latency && run.latency->delay.total_s) {
+    text += fmt::format(
+        "loop delay {:.0f} ms; to make up for it: --set control.latency.delay_s={:.3f}\n",
+        1e3 * *run.latency->delay.total_s, *run.latency->delay.total_s);
   }
   const std::optional<bool>& acknowledged = run.evidence.stop_acknowledged;
   text += !acknowledged   ? "the robot cannot say whether it stands: look at it\n"
