@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "print.hpp"
+#include "process_start.hpp"
 #include "rift/yaml/node.hpp"
 #include "rift/yaml/suggest.hpp"
 
@@ -84,6 +85,7 @@ int Deliver(int exit_code) {
 
 int RunCommandLine(int argc, char** argv, const CameraUses& camera) {
   try {
+    GuardProcessStart();
     return Deliver(Run(argc, argv, camera));
   } catch (const std::invalid_argument& error) {
     return Fail(error.what(), kBadInput);
