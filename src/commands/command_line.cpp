@@ -7,11 +7,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <sstream>
 #include <stdexcept>
 
+#include "print.hpp"
+#include "process_start.hpp"
 #include "rift/yaml/node.hpp"
 #include "rift/yaml/suggest.hpp"
 
@@ -32,6 +34,13 @@ void CheckSubcommand(int argc, char** argv, const std::vector<Command>& commands
           : fmt::format("'{}' is no subcommand; did you mean '{}'?", argv[1], nearest));
 }
 
+int ShowHelp(const CLI::App& app, const CLI::ParseError& error) {
+  std::ostringstream text;
+  const int exit_code = app.exit(error, text, text);
+  PrintText(text.str());
+  return exit_code;
+}
+
 int Run(int argc, char** argv, const CameraUses& camera) {
   const std::vector<Command> commands = Commands(camera);
   CheckSubcommand(argc, argv, commands);
@@ -41,7 +50,7 @@ int Run(int argc, char** argv, const CameraUses& camera) {
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, 1 falsified (with --exit-code) or not reached, 2 usage or input, 3 "
-      "failure.");
+      "failure, also to write the results.");
   for (const Command& command : commands) {
     CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
     // A word that is not there chooses no subcommand, and options take time to make.
@@ -52,25 +61,32 @@ int Run(int argc, char** argv, const CameraUses& camera) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
-    if (asked_for_help) return app.exit(error);
+    if (asked_for_help) return ShowHelp(app, error);
     throw std::invalid_argument(error.what());
-  }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw std::runtime_error("cannot write to stdout: the results are lost");
   }
   return exit_code;
 }
 
-int Fail(const char* what, int exit_code) {
-  fmt::print(stderr, "rift: {}\n", what);
+int Fail(const std::string& what, int exit_code) {
+  Say("rift: " + what);
   return exit_code;
+}
+
+/// A reader that went away, as head does, has seen what it wanted and is not told.
+int Deliver(int exit_code) {
+  const int error = FlushResults();
+  if (error == 0) return exit_code;
+  if (error == EPIPE) return kRunTimeFailure;
+  const std::string reason = error == EBADF ? "it is closed" : strerror(error);
+  return Fail("cannot write to stdout: " + reason, kRunTimeFailure);
 }
 
 }  // namespace
 
 int RunCommandLine(int argc, char** argv, const CameraUses& camera) {
   try {
-    return Run(argc, argv, camera);
+    GuardProcessStart();
+    return Deliver(Run(argc, argv, camera));
   } catch (const std::invalid_argument& error) {
     return Fail(error.what(), kBadInput);
   } catch (const yaml::Error& error) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "files.hpp"
+#include "print.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/hardware/arming.hpp"
@@ -27,8 +28,6 @@ namespace fs = std::filesystem;
 // A window costs a decoded and drawn picture each time; the tracker needs the processor more.
 constexpr std::chrono::milliseconds kRedraw{100};
 
-void Say(const std::string& line) { fmt::print(stderr, "{}\n", line); }
-
 experiment::Experiment LoadFor(const DriveRequest& request) {
   return experiment::LoadExperiment(request.experiment, request.overrides,
                                     [](const std::string& path) { return files::ReadFile(path); });
@@ -40,8 +39,8 @@ int PingRobot(const DriveRequest& request) {
   hardware::SerialPort port(request.port, options.line.baud, options.line.write_timeout_s);
   hardware::SteadyClock clock;
   const hardware::PingResult ping = hardware::MeasureLink(port, clock, options);
-  fmt::print("{}",
-             request.json ? report::PingJson(ping, options) : report::PingText(ping, options));
+  request.json ? PrintData(report::PingJson(ping, options))
+               : PrintText(report::PingText(ping, options));
   const bool is_good = ping.IsMeasured() && hardware::BrokenBudget(ping, options.ping).empty();
   return is_good ? kDone : kNotReached;
 }
@@ -165,7 +164,7 @@ int DriveRobot(const DriveRequest& request) {
     SaveDrive(folder, experiment, run);
     Say("log: " + (folder / "trajectory.csv").string());
   }
-  fmt::print("{}", request.json ? report::DriveJson(experiment, run) : report::DriveText(run));
+  request.json ? PrintData(report::DriveJson(experiment, run)) : PrintText(report::DriveText(run));
   return run.trial.outcome == trial::Outcome::kReached ? kDone : kNotReached;
 }
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <stdexcept>
 
+#include "print.hpp"
 #include "rift/files/files.hpp"
 
 namespace rift::commands {
@@ -25,7 +25,7 @@ std::filesystem::path OutputOf(const std::string& out, const std::string& name) 
 
 sweep::Inputs FileInputs() {
   return {[](const std::string& path) { return files::ReadIfThere(path); },
-          [](const std::string& line) { fmt::print(stderr, "note: {}\n", line); }};
+          [](const std::string& line) { Say("note: " + line); }};
 }
 
 void CheckOutputs(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {

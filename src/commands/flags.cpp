@@ -1,14 +1,13 @@
 #include "flags.hpp"
 
-#include <fmt/format.h>
-
+#include "print.hpp"
 #include "rift/experiment/experiment.hpp"
 
 namespace rift::commands {
 
 void AddKeysFlag(CLI::App& app) {
   const auto list_and_end = [] {
-    fmt::print("{}", experiment::DescribeKeys());
+    PrintText(experiment::DescribeKeys());
     throw CLI::Success();
   };
   app.add_flag_callback("--keys", list_and_end, "list every key of an experiment and end")

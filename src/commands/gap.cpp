@@ -3,12 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "files.hpp"
 #include "flags.hpp"
+#include "print.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/gap/result.hpp"
@@ -38,14 +38,13 @@ struct GapRequest {
 
 /// What was mended, and why there may be no yaw errors.
 void SayNotes(const trajectory::Log& log, const std::string& path, const std::string& flag) {
-  for (const std::string& note : log.notes) fmt::print(stderr, "note: {}: {}\n", path, note);
+  for (const std::string& note : log.notes) Say(fmt::format("note: {}: {}", path, note));
   if (log.line_without_yaw) {
-    fmt::print(stderr, "note: {}:{}: has no yaw: yaw errors are told where it is logged\n", path,
-               *log.line_without_yaw);
+    Say(fmt::format("note: {}:{}: has no yaw: yaw errors are told where it is logged", path,
+                    *log.line_without_yaw));
   }
   if (log.unknown_angles.empty()) return;
-  fmt::print(stderr, "note: {}: yaw errors are left out: {}: set {}\n", path, log.unknown_angles,
-             flag);
+  Say(fmt::format("note: {}: yaw errors are left out: {}: set {}", path, log.unknown_angles, flag));
 }
 
 gap::GapResult Measure(const GapRequest& request) {
@@ -82,11 +81,11 @@ void Save(const GapRequest& request, const gap::GapResult& result) {
   if (!request.profile.empty()) files::WriteFile(request.profile, report::ProfileCsv(result));
   if (!request.figure.empty()) WriteFigure(request.figure, report::GapFigure(result));
   if (request.json == "-") {
-    fmt::print("{}", report::GapJson(result));
+    PrintData(report::GapJson(result));
     return;
   }
   if (!request.json.empty()) files::WriteFile(request.json, report::GapJson(result));
-  fmt::print("{}", report::GapText(result));
+  PrintText(report::GapText(result));
 }
 
 /// A log that counts twice would pass for a repeat.

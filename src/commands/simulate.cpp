@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "files.hpp"
 #include "flags.hpp"
+#include "print.hpp"
 #include "replay.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
@@ -188,7 +188,7 @@ Simulated ReplayFor(const SimulateRequest& request) {
   const fs::path folder = request.replay[0];
   const std::string& id = request.replay[1];
   Replay replay = ReplayRow(folder, id);
-  fmt::print(stderr, "{}\n", replay.verdict);
+  Say(replay.verdict);
   const fs::path out = request.out.empty() ? folder / "replay" / id : fs::path(request.out);
   CheckNames(request, out, replay.experiment,
              {folder / "table.csv", folder / "experiment.yaml", folder / "journal.sqlite",
@@ -216,9 +216,9 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
     DrawFigure(request.pictures.figure, made.experiment, made.trial, made.run);
   }
   if (show) show(made);
-  fmt::print(stderr, "log: {}\n", RunFiles(made.out).trajectory.string());
-  fmt::print("{}", request.json ? report::SimulationJson(made.experiment, made.run)
-                                : report::SimulationText(made.experiment, made.run));
+  Say("log: " + RunFiles(made.out).trajectory.string());
+  request.json ? PrintData(report::SimulationJson(made.experiment, made.run))
+               : PrintText(report::SimulationText(made.experiment, made.run));
   return made.run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;
 }
 

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
 #include "flags.hpp"
+#include "print.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/fields.hpp"
@@ -28,8 +28,8 @@ void Announce(const twin::TwinAddress& address, const fs::path& calibration) {
   const ordered_json json{{"port", address.port},
                           {"camera", address.camera},
                           {"calibration", fs::absolute(calibration).string()}};
-  fmt::print("{}\n", json.dump());
-  if (std::fflush(stdout) != 0) {
+  PrintData(json.dump() + '\n');
+  if (FlushResults() != 0) {
     throw std::runtime_error("cannot write to stdout: nobody can learn where the twin is");
   }
 }
@@ -91,8 +91,8 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
       setup, [&](const twin::TwinAddress& address) { Announce(address, calibration); },
       [&] { return stop.IsAsked(); });
   Save(folder, as_twin, run);
-  fmt::print(stderr, "{}; {} pictures at {:.1f} ms of one core each; true path: {}\n", Ending(run),
-             run.pictures, 1e3 * run.picture_cpu_s, (folder / "truth.csv").string());
+  Say(fmt::format("{}; {} pictures at {:.1f} ms of one core each; true path: {}", Ending(run),
+                  run.pictures, 1e3 * run.picture_cpu_s, (folder / "truth.csv").string()));
   return kDone;
 }
 
@@ -132,7 +132,7 @@ void ShowFilm(const PictureRequest& request, const view::Film& film) {
   if (no_display.empty()) {
     view::PlayInWindow(film, {});
   } else {
-    fmt::print(stderr, "note: --view shows nothing: {}\n", no_display);
+    Say("note: --view shows nothing: " + no_display);
   }
 }
 

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "files.hpp"
 #include "flags.hpp"
+#include "print.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
@@ -99,7 +99,7 @@ int EndWithoutGap(const SweepRequest& request, const fs::path& out,
       fmt::format("{}: not one of {} trials could be compared; the first: {}", request.experiment,
                   result.rows.size(), result.rows.front().reason);
   if (result.candidate_kind == "logs") throw std::invalid_argument(message);
-  fmt::print(stderr, "rift: {}\n", message);
+  Say("rift: " + message);
   return kNotReached;
 }
 
@@ -118,8 +118,8 @@ bool IsFalsified(const sweep::SweepResult& result) {
 
 void NotePlan(const SweepRequest& request, const experiment::Experiment& loaded) {
   if (LacksSpace(loaded)) {
-    fmt::print(stderr, "note: {} names no space: the paper's grid of surface, v_min and v_max\n",
-               request.experiment);
+    Say(fmt::format("note: {} names no space: the paper's grid of surface, v_min and v_max",
+                    request.experiment));
   }
 }
 
@@ -128,21 +128,20 @@ void NoteTooFewRepeats(const experiment::Experiment& experiment) {
   const bool is_enough =
       experiment.goal != experiment::Goal::kFalsify || experiment.falsify.most_repeats >= needed;
   if (is_enough) return;
-  fmt::print(
-      stderr,
+  Say(fmt::format(
       "note: falsify.most_repeats is {}, and it takes {} failing trials to falsify a setting "
-      "at {:g} % confidence: settings that fail stay undecided\n",
-      experiment.falsify.most_repeats, needed, 100.0 * experiment.falsify.confidence);
+      "at {:g} % confidence: settings that fail stay undecided",
+      experiment.falsify.most_repeats, needed, 100.0 * experiment.falsify.confidence));
 }
 
 /// Logs are compared in seconds and keep no journal.
 int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
   if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
-    fmt::print(stderr, "stopped; nothing was written, and the same command starts over\n");
+    Say("stopped; nothing was written, and the same command starts over");
     return kStopped;
   }
-  fmt::print(stderr, "stopped; the same command goes on where it was (rift sweep --status {})\n",
-             out.string());
+  Say(fmt::format("stopped; the same command goes on where it was (rift sweep --status {})",
+                  out.string()));
   return kStopped;
 }
 
@@ -159,21 +158,20 @@ void Print(const SweepRequest& request, const sweep::SweepResult& result,
            const sweep::Explanation& explanation,
            const std::vector<sweep::GroupLikeness>& likeness) {
   if (request.json) {
-    fmt::print("{}", report::SummaryJson(result));
+    PrintData(report::SummaryJson(result));
     return;
   }
-  fmt::print("{}", report::SweepText(result));
-  if (!likeness.empty()) fmt::print("\n{}", report::LikenessText(likeness));
-  fmt::print("{}", report::ExplanationText(result, explanation, request.explain.suggest > 0));
+  PrintText(report::SweepText(result));
+  if (!likeness.empty()) PrintText("\n" + report::LikenessText(likeness));
+  PrintText(report::ExplanationText(result, explanation, request.explain.suggest > 0));
 }
 
 void WriteFigures(const std::filesystem::path& folder, const std::string& name,
                   const sweep::CalibrationReport& found) {
   const std::optional<report::Figure> figure = report::CalibrationFigure(name, found);
   if (!figure) {
-    fmt::print(stderr,
-               "note: no figure: no log has a simulated run that reached the end, both "
-               "before and after the fit\n");
+    Say("note: no figure: no log has a simulated run that reached the end, both before and after "
+        "the fit");
     return;
   }
   files::WriteFile(folder / (figure->name + ".svg"),
@@ -188,7 +186,7 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
   const fs::path out = OutputOf(request.out, experiment.name);
   const files::FolderLock lock(out);
   const auto say = [&request](const std::string& line) {
-    if (!request.quiet) fmt::print(stderr, "{}\n", line);
+    if (!request.quiet) Say(line);
   };
   sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
   const sweep::CalibrationReport found = sweep::Identify(evaluator, request.jobs, say);
@@ -201,7 +199,7 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
         request.write_robot,
         report::RobotYaml(experiment, found, evaluator.InputsText(), request.experiment));
   }
-  fmt::print("{}", request.json ? json : report::CalibrationText(found));
+  request.json ? PrintData(json) : PrintText(report::CalibrationText(found));
   WriteFigures(out / "figures", experiment.name, found);
   say(fmt::format("written: {}", (out / "calibration.json").string()));
   return kDone;
@@ -233,7 +231,7 @@ int Sweep(const SweepRequest& request) {
   const bool is_done =
       SpendTrials(out, *judged, request.explain, evaluator, {request.jobs, progress}, request.json);
   if (!is_done) return kStopped;
-  if (!request.quiet) fmt::print(stderr, "report: {}\n", (out / "report.html").string());
+  if (!request.quiet) Say("report: " + (out / "report.html").string());
   return request.exit_code && IsFalsified(*judged) ? kFalsified : kDone;
 }
 
@@ -280,7 +278,8 @@ void AddSweep(CLI::App& app, int& exit_code) {
   AddOptions(app, *request);
   app.callback([request, &exit_code] {
     if (!request->status.empty()) {
-      fmt::print("{}", SweepStatus(request->status, request->json));
+      const std::string status = SweepStatus(request->status, request->json);
+      request->json ? PrintData(status) : PrintText(status);
       return;
     }
     if (request->experiment.empty()) {

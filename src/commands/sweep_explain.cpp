@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <stdexcept>
 
 #include "files.hpp"
 #include "flags.hpp"
+#include "print.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/json/json.hpp"
@@ -140,7 +140,7 @@ bool SpendTrials(const std::filesystem::path& folder, const sweep::SweepResult& 
   } catch (const FurtherTrials::Stopped&) {
     return false;
   }
-  if (!is_silent) fmt::print("{}", text);
+  if (!is_silent) PrintText(text);
   return true;
 }
 
@@ -271,7 +271,7 @@ void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepRes
     files::WriteFile(path.string() + ".png", report::Render(figure, report::FigureFormat::kPng));
   }
   for (const report::OmittedFigure& omitted : set.omitted) {
-    fmt::print(stderr, "note: {} is not drawn: {}\n", omitted.name, omitted.reason);
+    Say(fmt::format("note: {} is not drawn: {}", omitted.name, omitted.reason));
   }
   files::WriteFile(folder / "report.html",
                    report::RenderPage(result, explanation,

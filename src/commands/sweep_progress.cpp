@@ -4,9 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
+
+#include "print.hpp"
 
 namespace rift::commands {
 namespace {
@@ -56,7 +57,7 @@ SweepProgress::SweepProgress(ProgressStyle style, const SweepSize& size)
 
 SweepProgress::~SweepProgress() {
   const bool is_open = style_ == ProgressStyle::kBar && printed_ != begun_ && !is_over_;
-  if (is_open) fmt::print(stderr, "\n");
+  if (is_open) Say("");
 }
 
 void SweepProgress::Seen(const sweep::TrialRow& row, bool from_journal) {
@@ -108,10 +109,10 @@ void SweepProgress::Print(const std::string& state) {
     case ProgressStyle::kQuiet:
       return;
     case ProgressStyle::kBar:
-      fmt::print(stderr, "\r\x1b[K{} {}", BarText(Steps(), size_.most), Text());
+      SayInPlace(fmt::format("{} {}", BarText(Steps(), size_.most), Text()));
       break;
     case ProgressStyle::kLines:
-      fmt::print(stderr, "{}: {}\n", state, Text());
+      Say(fmt::format("{}: {}", state, Text()));
       break;
     case ProgressStyle::kJson: {
       nlohmann::ordered_json json{
@@ -122,11 +123,10 @@ void SweepProgress::Print(const std::string& state) {
       if (size_.is_settings) json["settings"] = Steps();
       if (const std::optional<double> left_s = Left_s()) json["left_s"] = *left_s;
       if (largest_gap_m_) json["largest_gap_m"] = *largest_gap_m_;
-      fmt::print(stderr, "{}\n", json.dump());
+      Say(json.dump());
       break;
     }
   }
-  std::fflush(stderr);
 }
 
 void SweepProgress::Tick() {
@@ -141,7 +141,7 @@ void SweepProgress::End(const std::string& state) {
   is_over_ = true;
   if (style_ == ProgressStyle::kLines && !has_spoken) return;  // too short to be worth a line
   Print(state);
-  if (style_ == ProgressStyle::kBar) fmt::print(stderr, "\n");
+  if (style_ == ProgressStyle::kBar) Say("");
 }
 
 }  // namespace rift::commands

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
 
 #include "files.hpp"
 #include "flags.hpp"
+#include "print.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/files/files.hpp"
@@ -31,11 +31,6 @@ namespace rift::commands {
 namespace {
 
 namespace fs = std::filesystem;
-
-void Say(const std::string& line) {
-  fmt::print(stderr, "{}\n", line);
-  std::fflush(stderr);
-}
 
 experiment::TrackOptions OptionsOf(const TrackRequest& request) {
   const auto read = [&](const std::string& path) {
@@ -126,7 +121,7 @@ int Report(const TrackRequest& request, const vision::CameraModel& camera,
                                       statistics::Hash128Text(files::ReadFile(request.calibration)),
                                       request.session},
                                      camera, options, run, run.rows));
-  fmt::print("{}", report::TrackText(run, run.rows));
+  PrintText(report::TrackText(run, run.rows));
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
   Say(fmt::format("{}; run: {}", log, run_file.string()));
   if (run.has_failed) return kRunTimeFailure;
@@ -179,7 +174,7 @@ vision::Calibration CalibrateFor(const TrackRequest& request) {
 
 int CalibrateAndSave(const TrackRequest& request) {
   vision::Calibration calibration = CalibrateFor(request);
-  fmt::print("{}", report::CalibrationText(calibration));
+  PrintText(report::CalibrationText(calibration));
   const fs::path picture = request.picture.empty() ? fs::path(request.out).replace_extension(".png")
                                                    : fs::path(request.picture);
   vision::DrawCalibration(calibration, picture);

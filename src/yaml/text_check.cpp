@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "rift/yaml/utf8.hpp"
+
 namespace rift::yaml {
 namespace {
 

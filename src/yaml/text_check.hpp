@@ -7,10 +7,6 @@
 
 namespace rift::yaml {
 
-/// Bytes of the UTF-8 sequence at `text[at]`; 0 when there is no valid one (overlong forms,
-/// surrogates and code points above U+10FFFF are not valid).
-std::size_t Utf8Length(std::string_view text, std::size_t at);
-
 /// Refuses what yaml-cpp would silently repair or misread: bytes that are no UTF-8, control
 /// characters (it takes 0x04 for the end of the file), and tabs in an indentation.
 /// Throws Error with `source:line:column`.

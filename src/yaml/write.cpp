@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "text_check.hpp"
+#include "rift/yaml/utf8.hpp"
 
 namespace rift::yaml {
 namespace {

@@ -1,11 +1,14 @@
 #include <catch2/catch.hpp>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "hardware/pseudo_terminal.hpp"
 #include "rift/hardware/listener.hpp"
 #include "rift/hardware/serial_port.hpp"
+#include "support/broken_streams.hpp"
 #include "support/process.hpp"
+#include "support/wire_bytes.hpp"
 
 namespace rift {
 namespace {
@@ -18,14 +21,23 @@ class RobotBehindTerminal {
           hardware::Listener listener;
           hardware::SteadyClock clock;
           while (!stop.stop_requested()) {
+            const auto heard = terminal_.Read(5);
+            const std::lock_guard lock(mutex_);
+            heard_.insert(heard_.end(), heard.begin(), heard.end());
             const auto said = listener.Poll(static_cast<std::uint32_t>(1000.0 * clock.Now_s()),
-                                            terminal_.Read(5), {10, 20, 4800});
+                                            heard, {10, 20, 4800});
             if (answers) terminal_.Write(said);
           }
         }) {}
   const std::string& path() const { return terminal_.path(); }
+  std::vector<std::uint8_t> Heard() {
+    const std::lock_guard lock(mutex_);
+    return heard_;
+  }
 
  private:
+  std::mutex mutex_;
+  std::vector<std::uint8_t> heard_;
   hardware::PseudoTerminal terminal_;
   std::jthread thread_;
 };
@@ -55,6 +67,22 @@ TEST_CASE("Ping of a robot that never answers says that it cannot be measured") 
   const test::ProcessResult result = test::RunRift({"drive", "--ping", "--port", robot.path()});
   CHECK(result.exit_code == 1);
   CHECK_THAT(result.out, Catch::Contains("copy src/firmware to it"));
+}
+
+TEST_CASE("A robot hears nothing but commands when the streams of a ping are closed or full") {
+  RobotBehindTerminal robot(true);
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "lenient.yaml",
+                  "hardware: {line: {hello_s: 30},\n"
+                  "           ping: {max_p99_s: 10, max_loss: 0.9, max_burst: 500}}\n");
+  for (const test::Streams& streams : test::BrokenStreams(folder)) {
+    const test::ProcessResult result = test::RunRift(
+        {"drive", folder / "lenient.yaml", "--ping", "--port", robot.path()}, streams.redirection);
+    INFO(streams.redirection << ": " << result.err);
+    CHECK(result.exit_code == (streams.take_results ? 0 : 3));
+    CHECK(test::BytesThatAreNoCommands(robot.Heard()) == "");
+  }
+  CHECK(robot.Heard().size() > 1000);
 }
 
 TEST_CASE("A port that is not there is a failure of one clear line") {

@@ -7,6 +7,7 @@
 #include "rift/control/waypoint.hpp"
 #include "rift/files/files.hpp"
 #include "rift/trajectory/log.hpp"
+#include "support/broken_streams.hpp"
 #include "support/environment.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/running_rift.hpp"
@@ -104,6 +105,24 @@ TEST_CASE("The binary drives a robot under a camera to the last waypoint") {
     CheckWholeDrive(scene, result);
     return true;
   });
+}
+
+TEST_CASE("A drive whose streams are closed or full arrives and its robot hears commands alone") {
+  // A ping is held to all broken streams (drive_command_test.cpp): a drive takes seconds.
+  const std::vector<test::Streams> broken{
+      {"2>&-"}, {">&-", false}, {">/dev/full 2>/dev/full", false}};
+  for (const test::Streams& streams : broken) {
+    Uninterrupted(kAll, [&streams](Scene& scene) {
+      const test::ProcessResult result = test::RunRift(scene.Arguments(), streams.redirection);
+      INFO(streams.redirection << ": " << result.out << result.err << scene.floor.Told());
+      CHECK(scene.floor.NoCommands() == "");
+      if (WasInterrupted(scene)) return false;
+      CHECK(result.exit_code == (streams.take_results ? 0 : 3));
+      CHECK(scene.Summary()["outcome"] == "reached");
+      CHECK(scene.Summary()["stop"]["acknowledged"] == true);
+      return true;
+    });
+  }
 }
 
 /// Or for the end of a drive that was interrupted.

@@ -12,6 +12,7 @@
 #include "rift/hardware/serial_port.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "support/paper_camera.hpp"
+#include "support/wire_bytes.hpp"
 #include "vision/mjpeg_server.hpp"
 #include "vision/rendered_tags.hpp"
 
@@ -59,6 +60,11 @@ class Floor {
     const std::lock_guard lock(mutex_);
     return listener_.Rejected() == 0 || listener_.Stops() > 0;
   }
+  /// What came that is no command.
+  std::string NoCommands() {
+    const std::lock_guard lock(mutex_);
+    return BytesThatAreNoCommands(heard_);
+  }
   bool Moves() {
     const std::lock_guard lock(mutex_);
     return !listener_.Motors().IsZero();
@@ -72,6 +78,7 @@ class Floor {
   void Listen() {
     const std::vector<std::uint8_t> heard = terminal_.Read(2);
     const std::lock_guard lock(mutex_);
+    heard_.insert(heard_.end(), heard.begin(), heard.end());
     const auto counts = static_cast<std::int32_t>(3564.0 * travelled_m_);
     const auto now_ms = static_cast<std::uint32_t>(1000.0 * kClockSpeed * clock_.Now_s());
     terminal_.Write(listener_.Poll(now_ms, heard, {counts, counts, 4800}));
@@ -97,6 +104,7 @@ class Floor {
   geometry::Pose2 pose_;
   int moving_pictures_;
   double travelled_m_ = 0.0;
+  std::vector<std::uint8_t> heard_;
   control::DiffDrive drive_;
   hardware::Listener listener_;
   hardware::SteadyClock clock_;

@@ -24,8 +24,8 @@ void WriteText(const std::filesystem::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-ProcessResult RunRift(const std::vector<std::string>& arguments) {
-  return RunningRift(arguments).Wait();
+ProcessResult RunRift(const std::vector<std::string>& arguments, const std::string& redirection) {
+  return RunningRift(arguments, redirection).Wait();
 }
 
 }  // namespace rift::test

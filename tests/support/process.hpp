@@ -13,8 +13,10 @@ struct ProcessResult {
   std::string err;
 };
 
-/// Runs the rift binary that was built with these tests, within the limits of RunningRift.
-ProcessResult RunRift(const std::vector<std::string>& arguments);
+/// Runs the rift binary that was built with these tests, within the limits of RunningRift and with
+/// its redirection of streams.
+ProcessResult RunRift(const std::vector<std::string>& arguments,
+                      const std::string& redirection = "");
 
 /// A new empty folder, removed with all its contents at the end of its scope.
 class TemporaryFolder {

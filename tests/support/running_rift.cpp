@@ -37,7 +37,8 @@ bool EndsInTime(pid_t pid) {
 
 }  // namespace
 
-RunningRift::RunningRift(const std::vector<std::string>& arguments) {
+RunningRift::RunningRift(const std::vector<std::string>& arguments,
+                         const std::string& redirection) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   const int flags = O_WRONLY | O_CREAT | O_TRUNC;
@@ -45,6 +46,9 @@ RunningRift::RunningRift(const std::vector<std::string>& arguments) {
   posix_spawn_file_actions_addopen(&actions, 1, (folder_ / "out").c_str(), flags, 0600);
   posix_spawn_file_actions_addopen(&actions, 2, (folder_ / "err").c_str(), flags, 0600);
   std::vector<std::string> words{RiftBinary()};
+  if (!redirection.empty()) {
+    words.insert(words.begin(), {"/bin/sh", "-c", "exec \"$0\" \"$@\" " + redirection});
+  }
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) {
@@ -52,8 +56,7 @@ RunningRift::RunningRift(const std::vector<std::string>& arguments) {
     command_ += (command_.empty() ? "" : " ") + word;
   }
   argv.push_back(nullptr);
-  const int failed =
-      posix_spawn(&pid_, RiftBinary().c_str(), &actions, nullptr, argv.data(), environ);
+  const int failed = posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) throw std::runtime_error("cannot start " + RiftBinary());
 }

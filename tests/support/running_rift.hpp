@@ -16,7 +16,9 @@ namespace rift::test {
 /// waited for and what the process printed.
 class RunningRift {
  public:
-  explicit RunningRift(const std::vector<std::string>& arguments);
+  /// `redirection` is what a shell is told of its streams, such as `>&-`; none: stdin is /dev/null.
+  explicit RunningRift(const std::vector<std::string>& arguments,
+                       const std::string& redirection = "");
   /// Kills it when it still runs.
   ~RunningRift();
   RunningRift(const RunningRift&) = delete;
