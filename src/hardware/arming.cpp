@@ -108,6 +108,27 @@ double PrintStoppingDistance(const DriveParts& parts, const DriveTask& task,
   return distance_m;
 }
 
+/// Thrown out of a wait before the start.
+struct StopAsked {
+  DriveStop stop;
+};
+
+/// Asks whoever may stop a drive each time something waits: a hello and a ping take seconds.
+class AskingClock : public Clock {
+ public:
+  explicit AskingClock(const DriveParts& parts) : parts_(parts) {}
+  double Now_s() override { return parts_.clock.Now_s(); }
+  void Wait(double dt_s) override {
+    for (const Stopper& stopper : parts_.stoppers) {
+      if (const auto stop = stopper()) throw StopAsked{{stop->first, stop->second, 0.0}};
+    }
+    parts_.clock.Wait(dt_s);
+  }
+
+ private:
+  const DriveParts& parts_;
+};
+
 /// Lets the link run until `is_so`; false when a person stopped the drive meanwhile. Throws when
 /// anything else did.
 bool WaitUntil(RealRobot& robot, const std::function<bool()>& is_so) {
@@ -206,7 +227,14 @@ PingResult MeasureLink(ByteLine& line, Clock& clock, const HardwareOptions& opti
 DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   control::CheckWaypoints(task.waypoints);
   DriveRun run;
-  run.ping = MeasureLink(parts.line, parts.clock, task.hardware);
+  try {
+    AskingClock clock(parts);
+    run.ping = MeasureLink(parts.line, clock, task.hardware);
+  } catch (const StopAsked& asked) {
+    run.evidence.stop = asked.stop;
+    run.trial.reason = "stopped before the start: " + asked.stop.text;
+    return run;
+  }
   parts.say(fmt::format("the robot speaks {}",
                         EnumNames(run.ping.protocol)[static_cast<std::size_t>(run.ping.protocol)]));
   RequireBudget(run.ping, task.hardware.ping);

@@ -162,12 +162,35 @@ std::optional<double> HostTime_s(const std::vector<PoseStages>& poses) {
   return statistics::Median(times_s);
 }
 
-/// The parts of the loop delay, from what the turn showed.
-LoopDelay DelayOf(const Turn& turn, const std::vector<Angle>& wheels, const Lag& camera,
-                  double one_way_s, const std::vector<PoseStages>& poses) {
+/// From the middle of a pulse to the middle of what the wheels made of it; NaN when they hardly
+/// moved.
+double Response_s(const std::vector<Angle>& wheels, double began_s, double pulse_s) {
+  constexpr double kLeast_rad = 0.01;
+  const double from_rad = At(wheels, began_s), to_rad = At(wheels, began_s + kRest_s);
+  if (std::abs(to_rad - from_rad) < kLeast_rad) return std::nan("");
+  const double middle_rad = 0.5 * (from_rad + to_rad);
+  for (size_t i = 1; i < wheels.size(); ++i) {
+    const Angle &before = wheels[i - 1], &after = wheels[i];
+    const bool crosses = (before.rad < middle_rad) != (after.rad < middle_rad);
+    if (after.t_s < began_s || !crosses) continue;
+    const double share = (middle_rad - before.rad) / (after.rad - before.rad);
+    return before.t_s + share * (after.t_s - before.t_s) - (began_s + 0.5 * pulse_s);
+  }
+  return std::nan("");
+}
+
+/// The parts of the loop delay, from what the turn showed. `pulses_s`: when each pulse began.
+LoopDelay DelayOf(const std::vector<Angle>& wheels, const std::vector<double>& pulses_s,
+                  double pulse_s, const Lag& camera, double one_way_s,
+                  const std::vector<PoseStages>& poses) {
   LoopDelay delay{.camera_s = camera.lag_s, .host_s = HostTime_s(poses), .link_s = one_way_s};
-  if (const auto response = EstimateLag(wheels, turn.Commanded(), 0.0, kMostLag_s)) {
-    delay.robot_s = std::max(0.0, response->lag_s - one_way_s);
+  std::vector<double> responses_s;
+  for (const double began_s : pulses_s) {
+    const double response_s = Response_s(wheels, began_s, pulse_s);
+    if (!std::isnan(response_s)) responses_s.push_back(response_s);
+  }
+  if (!responses_s.empty()) {
+    delay.robot_s = std::max(0.0, statistics::Median(responses_s) - one_way_s);
   }
   delay.total_s =
       *delay.camera_s + delay.host_s.value_or(0.0) + *delay.link_s + delay.robot_s.value_or(0.0);
@@ -202,8 +225,10 @@ std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
   const double enough_rad = geometry::RadFromDeg(options.enough_deg);
   double power = options.power;
   std::vector<Angle> wheels;
+  std::vector<double> pulses_s;
   for (int pulse = 0; pulse < kMostPulses; ++pulse) {
     const double side = pulse % 2 == 0 ? power : -power;
+    pulses_s.push_back(turn.Commanded().back().t_s);
     if (!turn.Run({-side, side}, options.pulse_s) || !turn.Run({}, kRest_s)) return std::nullopt;
     if (pulse % 2 == 0) continue;  // it must stand as it stood
     wheels = turn.Wheels();
@@ -223,7 +248,7 @@ std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
     return result;
   }
   RequireSeen(lag, Range(wheels), Range(turn.Seen()));
-  result.delay = DelayOf(turn, wheels, *lag, one_way_s, robot.Record().poses);
+  result.delay = DelayOf(wheels, pulses_s, options.pulse_s, *lag, one_way_s, robot.Record().poses);
   return result;
 }
 

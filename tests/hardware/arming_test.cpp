@@ -65,6 +65,25 @@ TEST_CASE("A robot that no camera sees is not driven") {
                     Catch::Contains("was not seen within 10 s"));
 }
 
+TEST_CASE("A stop during the hello or the ping is obeyed at once") {
+  for (const double after_s : {0.05, 0.5, 2.0}) {
+    Bench bench;
+    bench.from_robot_is_cut = after_s < 0.1;  // a hello that nobody answers
+    Operator person;
+    DriveParts parts = person.PartsOf(bench);
+    const double begun_s = bench.Now_s();
+    parts.stoppers.push_back([&]() -> std::optional<std::pair<StopReason, std::string>> {
+      if (bench.Now_s() < begun_s + after_s) return std::nullopt;
+      return std::pair(StopReason::kSignal, "SIGINT came");
+    });
+    const DriveRun run = Drive(parts, PaperTask());
+    CHECK_FALSE(run.has_begun);
+    CHECK(run.trial.reason == "stopped before the start: SIGINT came");
+    CHECK(bench.Now_s() - begun_s < after_s + 0.05);
+    CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
+  }
+}
+
 TEST_CASE("A stop in the middle of a drive is told with its reason") {
   Bench bench;
   Operator person;
