@@ -25,7 +25,8 @@ trial::PoseMeasurement MeasurementOf(const vision::Sighting& sighting) {
           .pitch_rad = -std::asin(std::clamp(turn(2, 0), -1.0, 1.0))};
 }
 
-/// A sensor is never as quiet as this; a clock drawn into a repeated picture leaves the tag alone.
+/// A tag that moves never looks so alike twice; a clock drawn into a repeated picture leaves it as
+/// it is.
 bool IsSamePicture(const vision::TagCorners& a, const vision::TagCorners& b) {
   constexpr double kSame_px = 0.004;
   for (size_t i = 0; i < a.size(); ++i) {
@@ -75,11 +76,11 @@ void CameraPoses::TakePicture() {
   const std::lock_guard lock(mutex_);
   const bool repeats = found.sighting && view_.found.sighting &&
                        IsSamePicture(found.sighting->corners, view_.found.sighting->corners);
-  if (repeats) {
-    if (!news_.repeats_since_s) news_.repeats_since_s = view_.frame->captured_s;
-    return;  // the view keeps the picture that the next ones are held against
+  if (!repeats) {
+    news_.repeats_since_s.reset();
+  } else if (!news_.repeats_since_s) {
+    news_.repeats_since_s = view_.frame->captured_s;
   }
-  news_.repeats_since_s.reset();
   news_.looked_s = frame->captured_s;
   if (found.sighting) {
     news_.newest = PoseSample{MeasurementOf(*found.sighting), frame->arrived_s, ready_s};

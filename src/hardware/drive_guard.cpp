@@ -54,7 +54,6 @@ void DriveGuard::SeePose(const PoseNews& news, double now_s) {
   NoteTime(now_s);
   if (news.fault) Stop(StopReason::kCameraGone, *news.fault, now_s);
   if (news.looked_s) looked_s_ = news.looked_s;
-  repeats_since_s_ = news.repeats_since_s;
   if (!news.newest) return;
   const trial::PoseMeasurement& pose = news.newest->measured;
   if (!IsFinite(pose) || pose.captured_s > now_s + kFuture_s) {
@@ -112,12 +111,7 @@ bool DriveGuard::RequireFreshPose(double now_s) {
   const bool sees_pictures = looked_s_ && now_s - *looked_s_ <= options_.pose_stale_s;
   const std::string age =
       pose_ ? fmt::format("for {:.3f} s", now_s - pose_->captured_s) : std::string("yet");
-  if (repeats_since_s_) {
-    Stop(StopReason::kPictureRepeats,
-         fmt::format("the camera has shown the same picture for {:.3f} s",
-                     now_s - *repeats_since_s_),
-         now_s);
-  } else if (sees_pictures) {
+  if (sees_pictures) {
     Stop(StopReason::kTagLost, fmt::format("the tag was not seen {}", age), now_s);
   } else {
     Stop(StopReason::kPoseStale, fmt::format("no picture {}", age), now_s);

@@ -82,11 +82,13 @@ void MotionCheck::SeeWheels(const WheelTravel& wheels, bool is_measured) {
   while (wheels_.front().t_s < wheels.t_s - kKept_s) wheels_.pop_front();
 }
 
-void MotionCheck::SeePose(const trial::PoseMeasurement& pose) {
-  waiting_.push_back(pose);
-  waiting_.back().captured_s -= latency_s_;
+void MotionCheck::SeePose(const trial::PoseMeasurement& pose,
+                          const std::optional<double>& repeats_since_s) {
+  Sample sample{pose.captured_s - latency_s_, pose.world_from_robot, {}, repeats_since_s};
+  if (sample.repeats_since_s) *sample.repeats_since_s -= latency_s_;
+  waiting_.push_back(sample);
   // A link that tells nothing of the wheels is watched for that itself.
-  while (waiting_.front().captured_s < waiting_.back().captured_s - kKept_s) waiting_.pop_front();
+  while (waiting_.front().t_s < waiting_.back().t_s - kKept_s) waiting_.pop_front();
 }
 
 std::optional<WheelTravel> MotionCheck::WheelsAt(double t_s) const {
@@ -99,9 +101,10 @@ std::optional<WheelTravel> MotionCheck::WheelsAt(double t_s) const {
 
 std::optional<Disagreement> MotionCheck::Check() {
   while (!waiting_.empty()) {
-    const std::optional<WheelTravel> wheels = WheelsAt(waiting_.front().captured_s);
+    Sample now = waiting_.front();
+    const std::optional<WheelTravel> wheels = WheelsAt(now.t_s);
     if (!wheels) return std::nullopt;
-    Sample now{waiting_.front().captured_s, waiting_.front().world_from_robot, *wheels};
+    now.wheels = *wheels;
     waiting_.pop_front();
     if (!samples_.empty()) {
       const double before_rad = samples_.back().pose.yaw_rad;
@@ -116,12 +119,29 @@ std::optional<Disagreement> MotionCheck::Check() {
 }
 
 std::optional<Disagreement> MotionCheck::CheckSample(const Sample& now) {
+  if (auto found = CheckRepeats(now)) return found;
   if (auto found = CheckPoseStands(now)) return found;
   if (auto found = CheckWheelsStand(now)) return found;
   if (samples_.empty() || !is_measured_) return std::nullopt;
   if (auto found = CheckOrder(samples_.back(), now)) return found;
   if (auto found = CheckWindow(now)) return found;
   return CheckLag(now);
+}
+
+// Cameras at half their rate repeat a picture now and then, and may repeat all of a robot that
+// stands.
+std::optional<Disagreement> MotionCheck::CheckRepeats(const Sample& now) const {
+  constexpr double kRolled_m = 0.005;
+  if (!now.repeats_since_s || now.t_s - *now.repeats_since_s < options_.repeats_s)
+    return std::nullopt;
+  const std::optional<WheelTravel> before = WheelsAt(*now.repeats_since_s);
+  const double rolled_m = before ? Largest(*before, now.wheels) : 0.0;
+  if (rolled_m <= Loosened(kRolled_m)) return std::nullopt;
+  return Disagreement{
+      StopReason::kPictureRepeats,
+      fmt::format("the camera has shown the same picture for {:.3f} s, in which the "
+                  "wheels rolled {:.3f} m",
+                  now.t_s - *now.repeats_since_s, rolled_m)};
 }
 
 /// Of the faster wheel, over the last moments.

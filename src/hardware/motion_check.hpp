@@ -40,7 +40,9 @@ class MotionCheck {
   void Restart();
   /// Times must rise. `is_measured`: by encoders; else it is what the commands ask for.
   void SeeWheels(const WheelTravel& wheels, bool is_measured);
-  void SeePose(const trial::PoseMeasurement& pose);
+  /// `repeats_since_s`: as PoseNews has it.
+  void SeePose(const trial::PoseMeasurement& pose,
+               const std::optional<double>& repeats_since_s = std::nullopt);
   /// What is wrong with all that was seen up to now; none while pose and wheels agree.
   std::optional<Disagreement> Check();
 
@@ -49,6 +51,7 @@ class MotionCheck {
     double t_s = 0.0;
     geometry::Pose2 pose;  ///< its yaw runs on through +-pi
     WheelTravel wheels;    ///< at the same time
+    std::optional<double> repeats_since_s;
   };
 
   /// Commands tell less of the wheels than encoders do.
@@ -56,6 +59,7 @@ class MotionCheck {
   double Speed_mps(const Sample& now) const;
   std::optional<WheelTravel> WheelsAt(double t_s) const;
   std::optional<Disagreement> CheckSample(const Sample& now);
+  std::optional<Disagreement> CheckRepeats(const Sample& now) const;
   std::optional<Disagreement> CheckPoseStands(const Sample& now);
   std::optional<Disagreement> CheckWheelsStand(const Sample& now);
   std::optional<Disagreement> CheckOrder(const Sample& before, const Sample& now);
@@ -69,7 +73,7 @@ class MotionCheck {
   bool is_latency_known_ = false;
   bool is_measured_ = true;
   std::deque<WheelTravel> wheels_;
-  std::deque<trial::PoseMeasurement> waiting_;  ///< for the wheels at their time
+  std::deque<Sample> waiting_;  ///< for the wheels at their time
   std::deque<Sample> samples_;
   std::optional<Sample> pose_anchor_;   ///< where the pose last moved
   std::optional<Sample> wheel_anchor_;  ///< where the wheels last moved

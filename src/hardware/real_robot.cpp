@@ -130,7 +130,7 @@ void RealRobot::Core::ReadInputs(double now_s) {
     const bool is_new = news.newest && (!news_.newest || news.newest->measured.captured_s >
                                                              news_.newest->measured.captured_s);
     if (is_new && news.newest->measured.world_from_robot.IsFinite()) {
-      motion_.SeePose(news.newest->measured);
+      motion_.SeePose(news.newest->measured, news.repeats_since_s);
     }
     if (guard_.state() != DriveState::kStopped || news.newest) news_ = std::move(news);
   } catch (const std::exception& error) {

@@ -17,6 +17,7 @@ int main(int count, char** words) {
     const Struck struck = StrikeAtRandom(static_cast<std::uint64_t>(seed));
     if (struck.faults == "none") {
       ++false_alarms;
+      std::printf("seed %d stopped before: %s\n", seed, struck.reason.c_str());
       continue;
     }
     worst = std::max(worst, struck.travelled_m / struck.allowed_m);

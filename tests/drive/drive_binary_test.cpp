@@ -215,7 +215,8 @@ TEST_CASE("A device is asked for the size of its calibration as in tracking") {
   set("--camera", "/dev/video0");
   set("--calibration", calibration);
   arguments.insert(arguments.end(),
-                   {"--set", "trial.timeout_s=1", "--set", "track.capture.same_s=60"});
+                   {"--set", "trial.timeout_s=1", "--set", "track.capture.same_s=60", "--set",
+                    "hardware.turn.enabled=false"});
   const Device device;
   const test::ProcessResult result = test::RunRift(arguments);
   INFO(result.out << result.err);
@@ -263,7 +264,9 @@ TEST_CASE("How far the reference tags may lie off before a drive is an option of
                                        "--set",
                                        "trial.timeout_s=1",
                                        "--set",
-                                       "track.capture.same_s=60"};
+                                       "track.capture.same_s=60",
+                                       "--set",
+                                       "hardware.turn.enabled=false"};
     if (is_allowed) arguments.insert(arguments.end(), {"--moved", "0.1"});
     const test::ProcessResult result = test::RunRift(arguments);
     INFO(result.err);

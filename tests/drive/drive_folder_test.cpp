@@ -39,7 +39,7 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   CHECK(run.trial.outcome == trial::Outcome::kReached);
   CHECK(run.evidence.stop_acknowledged == true);
   CHECK(run.ping.protocol == hardware::Protocol::kFramed);
-  REQUIRE(told.size() == 3);
+  REQUIRE(told.size() == 5);
   CHECK_THAT(told[1], Catch::StartsWith("worst stopping distance 0.2"));
   CHECK_THAT(report::DriveText(run), Catch::Contains("acknowledged the stop"));
 

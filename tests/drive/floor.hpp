@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -79,9 +80,12 @@ class Floor {
     const std::vector<std::uint8_t> heard = terminal_.Read(2);
     const std::lock_guard lock(mutex_);
     heard_.insert(heard_.end(), heard.begin(), heard.end());
-    const auto counts = static_cast<std::int32_t>(3564.0 * travelled_m_);
+    const auto counts = [](double rolled_m) {
+      return static_cast<std::int32_t>(std::floor(3564.0 * rolled_m));
+    };
     const auto now_ms = static_cast<std::uint32_t>(1000.0 * kClockSpeed * clock_.Now_s());
-    terminal_.Write(listener_.Poll(now_ms, heard, {counts, counts, 4800}));
+    terminal_.Write(
+        listener_.Poll(now_ms, heard, {counts(rolled_left_m_), counts(rolled_right_m_), 4800}));
   }
 
   std::vector<std::uint8_t> NextPicture() {
@@ -90,9 +94,10 @@ class Floor {
       const std::lock_guard lock(mutex_);
       const hardware::MilliPower motors = listener_.Motors();
       if (!motors.IsZero() && moving_pictures_-- == 0) return {};
-      const geometry::Pose2 before = pose_;
+      constexpr double kFull_mps = 1.206;  // of a wheel at full power
+      rolled_left_m_ += kFull_mps * 1e-3 * motors.left * kStep_s;
+      rolled_right_m_ += kFull_mps * 1e-3 * motors.right * kStep_s;
       pose_ = drive_.Drive(pose_, {1e-3 * motors.left, 1e-3 * motors.right}, kStep_s);
-      travelled_m_ += (pose_.Position() - before.Position()).norm();
       pose = pose_;
     }
     return camera_
@@ -103,7 +108,7 @@ class Floor {
   std::mutex mutex_;
   geometry::Pose2 pose_;
   int moving_pictures_;
-  double travelled_m_ = 0.0;
+  double rolled_left_m_ = 0.0, rolled_right_m_ = 0.0;
   std::vector<std::uint8_t> heard_;
   control::DiffDrive drive_;
   hardware::Listener listener_;

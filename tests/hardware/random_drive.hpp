@@ -24,7 +24,7 @@ struct NoisyDrive {
       pose.world_from_robot.yaw_rad += 0.005 * normal(random);
       fault(pose);
     };
-    bench.lose_command = [this] { return uniform(random) < 0.02; };
+    bench.lose_command = [this] { return uniform(random) < 0.001; };
     bench.extra_delay_s = [this] { return 0.01 * uniform(random); };
     bench.slip_left = 1.0 + 0.04 * normal(random);
     bench.slip_right = 1.0 + 0.04 * normal(random);
@@ -149,6 +149,7 @@ inline Struck StrikeAtRandom(std::uint64_t seed) {
   Struck struck{.speed_mps = 1.206 * forward};
   if (drive.robot.state() == DriveState::kStopped) {  // a false alarm, counted elsewhere
     struck.faults = "none";
+    struck.reason = drive.robot.Record().stop->text;
     struck.allowed_m = 1e9;
     return struck;
   }

@@ -90,7 +90,6 @@ class DriveGuard {
   std::optional<DriveStop> stop_;
   std::optional<trial::PoseMeasurement> pose_;
   std::optional<double> looked_s_;
-  std::optional<double> repeats_since_s_;
   control::WheelPower power_;
   double commanded_s_ = 0.0;
   std::optional<double> ticked_s_;

@@ -77,6 +77,7 @@ struct EvidenceOptions {
   double still_deg = 4.0;
   double blind_m = 0.012;
   double blind_s = 0.1;
+  double repeats_s = 0.1;
   double pushed_m = 0.03;
   double pushed_deg = 15.0;
   double agree_m = 0.05;
@@ -96,6 +97,8 @@ struct EvidenceOptions {
     field("blind_s", self.blind_s, 0.0, 2.0,
           "and what it rolls in this time on top (plus max_latency_s while the camera's latency is "
           "not measured)");
+    field("repeats_s", self.repeats_s, 0.0, 3600.0,
+          "how long all pictures may be the same one while the wheels roll by 5 mm");
     field("pushed_m", self.pushed_m, 1e-3, 10.0,
           "how far the pose may move while the wheels stand");
     field("pushed_deg", self.pushed_deg, 0.1, 180.0, "and turn");

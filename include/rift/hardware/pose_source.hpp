@@ -17,8 +17,8 @@ struct PoseSample {
 struct PoseNews {
   std::optional<PoseSample> newest;  ///< none before the first
   std::optional<double> looked_s;    ///< capture time of the newest picture, tag or no tag
-  /// Since when every picture has been the same one; such pictures are neither newest nor looked
-  /// at.
+  /// Capture time of the first of the newest pictures that are all the same; none when the newest
+  /// differs from the one before.
   std::optional<double> repeats_since_s;
   std::optional<std::string> fault;  ///< why no more pictures will come, in one line
 };
