@@ -211,6 +211,7 @@ std::string CloseDrive(const std::filesystem::path& folder,
 }
 
 int Drive(const DriveRequest& request) {
+  if (!request.replay.empty()) return ReplayDrive(request);
   return request.ping ? PingRobot(request) : DriveRobot(request);
 }
 

@@ -32,6 +32,9 @@ struct DriveRequest {
   void Check() const;
 };
 
+/// Shows a drive that was: in a window, or as a video. Returns the exit code.
+int ReplayDrive(const DriveRequest& request);
+
 /// What the robot has to know of an experiment.
 hardware::DriveTask TaskOf(const experiment::Experiment& experiment);
 

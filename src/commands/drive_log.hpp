@@ -64,8 +64,8 @@ class DriveLog : public hardware::DriveObserver {
 
   /// Why the drive must stop; to be asked often.
   hardware::Stopper Stopper();
-  /// Once, after the drive: writes the rest of `evidence` and ends the thread. Returns why the files are
-  /// not whole; empty when they are.
+  /// Once, after the drive: writes the rest of `evidence` and ends the thread. Returns why the
+  /// files are not whole; empty when they are.
   std::string Close(const hardware::DriveRecord& evidence);
 
  private:
