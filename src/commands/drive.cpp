@@ -14,7 +14,6 @@
 #include "rift/hardware/camera_poses.hpp"
 #include "rift/hardware/serial_port.hpp"
 #include "rift/report/json/json.hpp"
-#include "rift/trajectory/log.hpp"
 #include "rift/view/drive_view.hpp"
 #include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
@@ -103,8 +102,9 @@ void CheckFirstPicture(const DriveRequest& request, vision::CameraSession& sessi
 class Drivers {
  public:
   Drivers(const DriveRequest& request, const experiment::Experiment& experiment,
-          const vision::CameraModel& camera)
+          const vision::CameraModel& camera, DriveLog& log)
       : experiment_(experiment),
+        log_(log),
         person_(request.yes),
         port_(request.port, experiment.hardware.line.baud,
               experiment.hardware.line.write_timeout_s),
@@ -120,9 +120,10 @@ class Drivers {
     return hardware::Drive({.line = port_,
                             .poses = *poses_,
                             .clock = clock_,
-                            .stoppers = {person_.Stopper()},
+                            .stoppers = {person_.Stopper(), log_.Stopper()},
                             .say = Say,
-                            .may_arm = [this] { return person_.MayArm(Say); }},
+                            .may_arm = [this] { return person_.MayArm(Say); },
+                            .observer = &log_},
                            TaskOf(experiment_));
   }
 
@@ -147,6 +148,7 @@ class Drivers {
 
  private:
   const experiment::Experiment& experiment_;
+  DriveLog& log_;
   hardware::Operator person_;
   hardware::SteadyClock clock_;
   hardware::SerialPort port_;
@@ -154,17 +156,26 @@ class Drivers {
   std::unique_ptr<hardware::CameraPoses> poses_;
 };
 
+/// The log was slow enough to stop the robot, even when it became whole in the end.
+bool WasStoppedByLog(const hardware::DriveRun& run) {
+  return run.evidence.stop && run.evidence.stop->reason == hardware::StopReason::kLogFailed;
+}
+
 int DriveRobot(const DriveRequest& request) {
   const experiment::Experiment experiment = LoadTask(request);
   const fs::path folder = NewFolder(request, experiment);
-  Drivers drivers(request, experiment, ReadCameraWithWorld(request.calibration));
+  DriveLog log(WriterInto(folder, experiment));
+  Drivers drivers(request, experiment, ReadCameraWithWorld(request.calibration), log);
   BeginDriveFolder(folder, experiment, drivers.camera());
   const hardware::DriveRun run = request.view ? drivers.DriveInView() : drivers.Drive();
-  if (run.has_begun) {
-    SaveDrive(folder, experiment, run);
-    Say("log: " + (folder / "trajectory.csv").string());
-  }
-  request.json ? PrintData(report::DriveJson(experiment, run)) : PrintText(report::DriveText(run));
+  const std::string failure = run.has_begun ? CloseDrive(folder, experiment, run, log) : "";
+  const bool is_whole = failure.empty();
+  if (run.has_begun && is_whole) Say("log: " + (folder / "trajectory.csv").string());
+  const auto state = is_whole ? report::RunState::kFinished : report::RunState::kInterrupted;
+  request.json ? PrintData(report::DriveJson(experiment, run, state))
+               : PrintText(report::DriveText(run));
+  if (!is_whole) throw std::runtime_error("the log is not whole: " + failure);
+  if (WasStoppedByLog(run)) throw std::runtime_error(run.evidence.stop->text);
   return run.trial.outcome == trial::Outcome::kReached ? kDone : kNotReached;
 }
 
@@ -180,16 +191,27 @@ void BeginDriveFolder(const std::filesystem::path& folder, const experiment::Exp
   files::WriteFile(folder / "camera.yaml", vision::WriteCamera(camera));
 }
 
-void SaveDrive(const std::filesystem::path& folder, const experiment::Experiment& experiment,
-               const hardware::DriveRun& run) {
-  files::WriteFile(folder / "commands.csv", report::CommandsCsv(run.trial));
-  files::WriteFile(folder / "stages.csv", report::StagesCsv(run.evidence));
-  files::WriteFile(folder / "encoders.csv", report::EncodersCsv(run.evidence));
-  files::WriteFile(folder / "summary.json", report::DriveJson(experiment, run));
-  files::WriteFile(folder / "trajectory.csv", trajectory::WriteRift(run.trial.trajectory));
+DriveLog::Write WriterInto(const std::filesystem::path& folder,
+                           const experiment::Experiment& experiment) {
+  const auto files = std::make_shared<DriveFiles>(folder, report::InterruptedDriveJson(experiment));
+  return [files](const DriveRows& rows, std::atomic<unsigned>& progress) {
+    files->Write(rows, progress);
+  };
+}
+
+// A disk that failed is not written to again: it may hang.
+std::string CloseDrive(const std::filesystem::path& folder,
+                       const experiment::Experiment& experiment, const hardware::DriveRun& run,
+                       DriveLog& log) {
+  std::string failure = log.Close(run.evidence);
+  if (failure.empty()) {
+    files::WriteFile(folder / "summary.json", report::DriveJson(experiment, run));
+  }
+  return failure;
 }
 
 int Drive(const DriveRequest& request) {
+  if (!request.replay.empty()) return ReplayDrive(request);
   return request.ping ? PingRobot(request) : DriveRobot(request);
 }
 

@@ -10,6 +10,22 @@
 namespace rift::commands {
 namespace {
 
+/// No robot, no camera: what belongs to them is refused beside it.
+void AddReplayFlags(CLI::App& app, DriveRequest& request) {
+  CLI::Option* replay =
+      app.add_option("--replay", request.replay,
+                     "show a drive that was, finished or interrupted, in a window: its folder");
+  replay->type_name("DIR");
+  for (const char* other : {"EXPERIMENT", "--set", "--port", "--camera", "--calibration", "--out",
+                            "--yes", "--ping", "--json"}) {
+    replay->excludes(app.get_option(other));
+  }
+  app.add_option("--video", request.video,
+                 "with --replay: write a film instead; --view shows it as well")
+      ->needs(replay)
+      ->type_name("FILE.mp4");
+}
+
 void AddDriveFlags(CLI::App& app, DriveRequest& request) {
   CLI::Option* experiment = app.add_option("EXPERIMENT", request.experiment,
                                            "YAML file with the waypoints; its key hardware: holds "
@@ -19,7 +35,6 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
       ->allow_extra_args(false)
       ->needs(experiment);
   app.add_option("--port", request.port, "the robot's serial port, such as /dev/rfcomm0")
-      ->required()
       ->type_name("TTY");
   app.add_option("--camera", request.camera,
                  "the camera above the floor: /dev/video0, or an http:// or rtsp:// stream")
@@ -38,11 +53,17 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
   app.add_flag("--yes", request.yes, "start at once instead of when Enter is pressed");
   app.add_flag("--ping", request.ping, "only measure the link, with the motors at zero");
   app.add_flag("--json", request.json, "print JSON instead of text");
+  AddReplayFlags(app, request);
 }
 
 }  // namespace
 
 void DriveRequest::Check() const {
+  if (!replay.empty()) return;
+  if (port.empty()) {
+    throw std::invalid_argument(
+        "--port is missing: name the robot's serial port, such as /dev/rfcomm0");
+  }
   if (ping) return;
   if (experiment.empty()) {
     throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
@@ -68,11 +89,13 @@ void AddDrive(CLI::App& app, int& exit_code, const CameraUses& camera) {
       "picture that stays away, a pose that jumps, and a radio that falls silent.\n"
       "Ends with 0 when the last waypoint was reached, 1 when it was not or the robot was stopped\n"
       "(--ping: when the link is over its budget or cannot be measured), 2 for usage and input, 3\n"
-      "when it could not begin or broke.\n"
+      "when it could not begin or broke, or when its log could not be written: that stops the "
+      "robot.\n"
       "Example: rift drive --ping --port /dev/rfcomm0\n"
       "         rift drive configs/waypoints/paper.yaml --port /dev/rfcomm0 --camera /dev/video0 "
       "\\\n"
-      "             --calibration cam.yaml --out out/real1");
+      "             --calibration cam.yaml --out out/real1\n"
+      "         rift drive --replay out/real1");
   app.callback([request, drive = camera.drive, &exit_code] {
     request->Check();
     exit_code = drive(*request);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
+#include "film.hpp"
 #include "flags.hpp"
 #include "print.hpp"
 #include "rift/commands/command.hpp"
@@ -11,8 +12,6 @@
 #include "rift/trajectory/log.hpp"
 #include "rift/twin/twin.hpp"
 #include "rift/view/film.hpp"
-#include "rift/view/video.hpp"
-#include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "simulate.hpp"
 #include "stop_signal.hpp"
@@ -96,15 +95,6 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
   return kDone;
 }
 
-view::BodyShape ShapeOf(const simulation::BodyOptions& body) {
-  return {.chassis_radius_m = body.chassis_radius_m,
-          .chassis_height_m = body.chassis_height_m,
-          .chassis_bottom_m = body.rim_clearance_m - body.wheel_radius_m,
-          .wheel_radius_m = body.wheel_radius_m,
-          .wheel_width_m = body.wheel_width_m,
-          .track_m = body.track_m};
-}
-
 view::Film FilmOf(const experiment::Experiment& experiment, const sweep::SimulatedTrial& trial,
                   const sweep::SimulatedRun& run) {
   const simulation::Terrain terrain(trial.simulation.terrain, trial.image);
@@ -125,17 +115,6 @@ view::Film FilmOf(const experiment::Experiment& experiment, const sweep::Simulat
   return view::MakeFilm(shown);
 }
 
-void ShowFilm(const PictureRequest& request, const view::Film& film) {
-  if (!request.video.empty()) view::WriteVideo(film, request.video, {});
-  if (!request.window) return;
-  const std::string no_display = view::MissingDisplay();
-  if (no_display.empty()) {
-    view::PlayInWindow(film, {});
-  } else {
-    Say("note: --view shows nothing: " + no_display);
-  }
-}
-
 }  // namespace
 
 int SimulateWithCamera(const SimulateRequest& request) {
@@ -144,7 +123,8 @@ int SimulateWithCamera(const SimulateRequest& request) {
     return RunTwin(request.experiment, job.experiment, job.folder);
   }
   return Simulate(request, [&request](const Simulated& made) {
-    ShowFilm(request.pictures, FilmOf(made.experiment, made.trial, made.run));
+    ShowFilm(FilmOf(made.experiment, made.trial, made.run), request.pictures.video,
+             request.pictures.window);
   });
 }
 

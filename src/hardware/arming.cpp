@@ -217,6 +217,25 @@ std::optional<LatencyResult> MeasureCamera(RealRobot& robot, const DriveParts& p
   return found;
 }
 
+/// Hands on what the trial records, and with each row what the robot has recorded since the last.
+class Forward : public trial::Observer {
+ public:
+  Forward(RealRobot& robot, DriveObserver* to) : robot_(robot), to_(to) {}
+
+  void Row(const trajectory::StampedPose& pose, std::span<const double> channels) override {
+    if (to_ == nullptr) return;
+    to_->Row(pose, channels);
+    to_->Recorded(robot_.TakeNews());
+  }
+  void Sent(const trial::SentCommand& command) override {
+    if (to_ != nullptr) to_->Sent(command);
+  }
+
+ private:
+  RealRobot& robot_;
+  DriveObserver* to_;
+};
+
 }  // namespace
 
 PingResult MeasureLink(ByteLine& line, Clock& clock, const HardwareOptions& options) {
@@ -250,7 +269,8 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   if (run.has_begun) {
     robot.Arm();
     run.latency = MeasureCamera(robot, parts, task, run.ping);
-    run.trial = trial::RunTrial(robot, task.waypoints, task.control, task.trial);
+    Forward forward(robot, parts.observer);
+    run.trial = trial::RunTrial(robot, task.waypoints, task.control, task.trial, &forward);
   } else {
     run.trial.reason = "stopped before the start: " + robot.Record().stop->text;
   }

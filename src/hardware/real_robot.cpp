@@ -15,6 +15,7 @@ constexpr double kTick_s = 0.001;
 constexpr double kVoltPerMillivolt = 1e-3;
 constexpr double kLastZeros_s = 0.3;
 constexpr double kLongestPeriod_s = 0.1;  // of pictures; a pause is none
+constexpr double kSettled_s = 2.5;        // the guard waits for no answer as long as that
 
 }  // namespace
 
@@ -60,6 +61,7 @@ class RealRobot::Core {
     motion_.SetLatency(latency_s);
     motion_.Restart();
   }
+  DriveNews TakeNews();
   double Now_s() { return clock_.Now_s(); }
 
  private:
@@ -97,6 +99,8 @@ class RealRobot::Core {
       false;  ///< the newest command, which belongs to the last of record_.poses
   std::optional<double> written_s_;
   DriveRecord record_;
+  size_t poses_taken_ = 0;  ///< of record_, by TakeNews()
+  size_t encoders_taken_ = 0;
   std::jthread thread_;  // last: it ends before what it uses
 };
 
@@ -296,6 +300,23 @@ DriveRecord RealRobot::Core::Record() {
   return record;
 }
 
+// An answer settles its pose and all before it; what has none by kSettled_s gets none.
+DriveNews RealRobot::Core::TakeNews() {
+  const std::lock_guard lock(mutex_);
+  const double old_s = clock_.Now_s() - start_s_ - kSettled_s;
+  const auto is_open = [old_s](const PoseStages& pose) {
+    return pose.answered_s < 0.0 && pose.captured_s > old_s;
+  };
+  size_t settled = record_.poses.size();
+  while (settled > poses_taken_ && is_open(record_.poses[settled - 1])) --settled;
+  const auto poses = record_.poses.begin();
+  DriveNews news{{poses + poses_taken_, poses + settled},
+                 {record_.encoders.begin() + encoders_taken_, record_.encoders.end()}};
+  poses_taken_ = settled;
+  encoders_taken_ = record_.encoders.size();
+  return news;
+}
+
 RealRobot::RealRobot(ByteLine& line, PoseSource& poses, Clock& clock,
                      const RealRobotOptions& options)
     : core_(std::make_unique<Core>(line, poses, clock, options)) {}
@@ -313,6 +334,7 @@ void RealRobot::Stop() noexcept { core_->Stop(); }
 void RealRobot::SetCameraLatency(double latency_s) { core_->SetCameraLatency(latency_s); }
 DriveState RealRobot::state() const { return core_->state(); }
 DriveRecord RealRobot::Record() const { return core_->Record(); }
+DriveNews RealRobot::TakeNews() { return core_->TakeNews(); }
 
 void RealRobot::Advance(double dt_s) {
   const double end_s = core_->Now_s() + dt_s;

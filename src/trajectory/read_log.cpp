@@ -95,12 +95,30 @@ void RefuseNoText(std::string_view text, const std::string& name) {
   }
 }
 
+/// rift ends each row with a line end, so one that lacks it and cells too was cut short when its
+/// writer was killed or the disk was full.
+std::string_view WithoutTornRow(std::string_view text, Log& log) {
+  const size_t begin = text.rfind('\n') + 1;
+  const std::string_view last = text.substr(begin);
+  if (begin == 0 || last.find_first_not_of(" \t\r") == last.npos) return text;
+  const size_t header = text.find_first_not_of("\r\n");
+  const std::string_view columns = text.substr(header, text.find('\n', header) - header);
+  const bool lacks_cells =
+      std::count(last.begin(), last.end(), ',') < std::count(columns.begin(), columns.end(), ',');
+  if (!lacks_cells && std::string_view("+-.eE").find(last.back()) == std::string_view::npos) {
+    return text;
+  }
+  log.notes.emplace_back("the last row was cut short while it was written: it is left out");
+  return text.substr(0, begin);
+}
+
 }  // namespace
 
 Log ReadLog(std::string_view text, const std::string& name, Format format) {
   RefuseNoText(text, name);
   Log log;
   log.format = format == Format::kAuto ? FormatFromHeader(text, name) : format;
+  if (log.format == Format::kRift) text = WithoutTornRow(text, log);
   LogRows rows = ReadRows(text, name, log.format);
   log.trajectory = std::move(rows.trajectory);
   NoteDoubtfulAngles(log);

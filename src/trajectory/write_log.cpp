@@ -1,7 +1,9 @@
 #include <Eigen/Geometry>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "rift/trajectory/log.hpp"
 
@@ -24,6 +26,20 @@ std::string HeaderCell(const std::string& name) {
   return cell + '"';
 }
 
+void AppendRow(std::string& text, const StampedPose& pose, std::span<const double> channels) {
+  AppendNumber(text, pose.t_s);
+  const auto append = [&text](double value) {
+    text += ',';
+    AppendNumber(text, value);
+  };
+  for (const double value : {pose.x_m, pose.y_m, pose.z_m, pose.roll_rad, pose.pitch_rad,
+                             pose.yaw_rad, pose.target_x_m, pose.target_y_m}) {
+    append(value);
+  }
+  for (const double value : channels) append(value);
+  text += '\n';
+}
+
 double ZeroIfNotLogged(double value) { return std::isnan(value) ? 0.0 : value; }
 
 }  // namespace
@@ -32,20 +48,17 @@ std::string WriteRift(const Trajectory& trajectory) {
   std::string text = "t_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad,target_x_m,target_y_m";
   for (const Channel& channel : trajectory.channels) text += "," + HeaderCell(channel.name);
   text += '\n';
+  std::vector<double> values(trajectory.channels.size());
   for (size_t row = 0; row < trajectory.poses.size(); ++row) {
-    const StampedPose& pose = trajectory.poses[row];
-    AppendNumber(text, pose.t_s);
-    for (const double value : {pose.x_m, pose.y_m, pose.z_m, pose.roll_rad, pose.pitch_rad,
-                               pose.yaw_rad, pose.target_x_m, pose.target_y_m}) {
-      text += ',';
-      AppendNumber(text, value);
-    }
-    for (const Channel& channel : trajectory.channels) {
-      text += ',';
-      AppendNumber(text, channel.values[row]);
-    }
-    text += '\n';
+    for (size_t i = 0; i < values.size(); ++i) values[i] = trajectory.channels[i].values[row];
+    AppendRow(text, trajectory.poses[row], values);
   }
+  return text;
+}
+
+std::string RiftRow(const StampedPose& pose, std::span<const double> channels) {
+  std::string text;
+  AppendRow(text, pose, channels);
   return text;
 }
 

@@ -26,12 +26,17 @@ void Count(LimitCounts& counts, const control::Decision& decision) {
 
 }  // namespace
 
-Recorder::Recorder(const std::vector<control::Waypoint>& waypoints, double log_period_s)
-    : log_period_s_(log_period_s) {
+std::vector<trajectory::Channel> RecordedChannels() {
+  return {{"power_left", {}}, {"power_right", {}}, {"v", {}}, {"w", {}}};
+}
+
+Recorder::Recorder(const std::vector<control::Waypoint>& waypoints, double log_period_s,
+                   Observer* observer)
+    : log_period_s_(log_period_s), observer_(observer) {
   for (size_t i = 1; i < waypoints.size(); ++i) {
     result_.visits.push_back({waypoints[i].name, std::nullopt, std::nullopt});
   }
-  result_.trajectory.channels = {{"power_left", {}}, {"power_right", {}}, {"v", {}}, {"w", {}}};
+  result_.trajectory.channels = RecordedChannels();
 }
 
 void Recorder::Pose(const PoseMeasurement& measured, const control::Waypoint& target,
@@ -46,15 +51,16 @@ void Recorder::Pose(const PoseMeasurement& measured, const control::Waypoint& ta
   poses.push_back({measured.captured_s, pose.x_m, pose.y_m, measured.z_m, measured.roll_rad,
                    measured.pitch_rad, pose.yaw_rad, target.x_m, target.y_m});
   std::vector<trajectory::Channel>& channels = result_.trajectory.channels;
-  channels[kPowerLeft].values.push_back(decision.power.left);
-  channels[kPowerRight].values.push_back(decision.power.right);
-  channels[kV].values.push_back(decision.v);
-  channels[kW].values.push_back(decision.w);
+  const std::array<double, 4> values{decision.power.left, decision.power.right, decision.v,
+                                     decision.w};
+  for (size_t i = 0; i < values.size(); ++i) channels[i].values.push_back(values[i]);
+  if (observer_ != nullptr) observer_->Row(poses.back(), values);
 }
 
 void Recorder::Sent(double now_s, const control::WheelPower& power) {
   if (result_.driving_s < 0.0 && !(power == control::WheelPower{})) result_.driving_s = now_s;
   result_.commands.push_back({now_s, power});
+  if (observer_ != nullptr) observer_->Sent(result_.commands.back());
 }
 
 void Recorder::Decided(double now_s, const control::Decision& decision, size_t active_after) {
@@ -91,11 +97,12 @@ class StopGuard {
 class Loop {
  public:
   Loop(Robot& robot, const std::vector<control::Waypoint>& waypoints,
-       const control::NavigatorOptions& navigator_options, const TrialOptions& options)
+       const control::NavigatorOptions& navigator_options, const TrialOptions& options,
+       Observer* observer)
       : robot_(robot),
         options_(options),
         navigator_(navigator_options, waypoints),
-        recorder_(waypoints, options.log_period_s) {}
+        recorder_(waypoints, options.log_period_s, observer) {}
 
   TrialResult Run();
 
@@ -249,10 +256,10 @@ bool Loop::End(Outcome outcome, std::string reason) {
 
 TrialResult RunTrial(Robot& robot, const std::vector<control::Waypoint>& waypoints,
                      const control::NavigatorOptions& navigator_options,
-                     const TrialOptions& options) {
+                     const TrialOptions& options, Observer* observer) {
   const StopGuard stop_at_the_end(robot);
   options.Check();
-  return Loop(robot, waypoints, navigator_options, options).Run();
+  return Loop(robot, waypoints, navigator_options, options, observer).Run();
 }
 
 }  // namespace rift::trial

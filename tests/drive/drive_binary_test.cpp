@@ -1,3 +1,5 @@
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
@@ -53,7 +55,9 @@ struct Scene {
 /// patient limits, as it must on a machine that is that busy.
 bool WasInterrupted(Scene& scene) {
   if (!std::filesystem::exists(scene.folder / "run/summary.json")) return false;
-  const std::string reason = scene.Summary()["stop"]["reason"];
+  const auto summary = scene.Summary();
+  if (!summary.contains("stop")) return false;  // killed
+  const std::string reason = summary["stop"]["reason"];
   INFO(scene.floor.Told());
   CHECK(scene.floor.WasObedient());
   return reason == "link_lagging" || reason == "host_stalled" || reason == "pose_stale" ||
@@ -72,6 +76,7 @@ void Uninterrupted(int moving_pictures, const Drive& drive) {
 }
 
 constexpr int kAll = 1'000'000;
+constexpr rlim_t kRoom = 12'000;  // more than the experiment, less than a drive
 
 void CheckWholeDrive(Scene& scene, const test::ProcessResult& result) {
   INFO(result.out << result.err << scene.floor.Told());
@@ -163,6 +168,110 @@ TEST_CASE("The robot of a killed binary stops by itself") {
     test::WaitUntil("the robot stands", [&] { return !scene.floor.Moves(); });
     return true;
   });
+}
+
+std::string LogOf(const Scene& scene) {
+  return files::ReadIfThere(scene.folder / "run/trajectory.csv").value_or("");
+}
+
+/// Or for the end of a drive that was interrupted.
+void WaitForRows(test::RunningRift& rift, Scene& scene) {
+  WaitForMotion(rift, scene);
+  const size_t before = LogOf(scene).size();
+  test::WaitUntil("a second of the drive is on disk or the drive is over",
+                  [&] { return LogOf(scene).size() > before + 3000 || !rift.IsRunning(); });
+}
+
+TEST_CASE("A killed drive leaves its rows, which rift gap and a replay read") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    test::RunningRift rift(scene.Arguments());
+    WaitForRows(rift, scene);
+    rift.Signal(SIGKILL);
+    const geometry::Pose2 end = scene.floor.Pose();
+    const test::ProcessResult result = rift.Wait();
+    if (WasInterrupted(scene)) return false;
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 128 + SIGKILL);
+    CHECK(scene.Summary()["state"] == "interrupted");
+    const auto rows = trajectory::ReadLog(LogOf(scene), "log").trajectory.poses;
+    CHECK((rows.back().Position() - end.Position()).norm() < 0.2);  // a second at most
+    const std::string log = scene.folder / "run/trajectory.csv";
+    test::WriteText(log, files::ReadFile(log) + "1.5,0.3");
+    const test::ProcessResult gap =
+        test::RunRift({"gap", log, test::SourceDir() + "/data/example/robot1.csv"});
+    INFO(gap.err);
+    CHECK(gap.exit_code == 0);
+    CHECK_THAT(gap.err, Catch::Contains("cut short"));
+
+    const test::ProcessResult shown = test::RunRift(
+        {"drive", "--replay", scene.folder / "run", "--video", scene.folder / "run.mp4"});
+    INFO(shown.err);
+    CHECK(shown.exit_code == 0);
+    CHECK_THAT(shown.out, Catch::StartsWith("interrupted: "));
+    CHECK(std::filesystem::file_size(scene.folder / "run.mp4") > 1000);
+    return true;
+  });
+}
+
+/// After the log can no longer be written: the robot is told to stop, then the operator why.
+bool IsStoppedForItsLog(test::RunningRift& rift, Scene& scene, const std::string& says) {
+  const test::ProcessResult result = rift.Wait();
+  INFO(result.out << result.err);
+  const auto summary = nlohmann::json::parse(result.out);
+  if (summary["stop"]["reason"] != "log_failed") return false;  // a busy machine came first
+  CHECK(result.exit_code == 3);
+  CHECK_FALSE(scene.floor.Moves());
+  CHECK_THAT(result.err, Catch::Contains("rift: the log is not whole") && Catch::Contains(says));
+  CHECK(summary["state"] == "interrupted");
+  CHECK(summary["stop"]["acknowledged"] == true);
+  return true;
+}
+
+TEST_CASE("A run folder that is removed during the drive stops the robot first") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    std::vector<std::string> arguments = scene.Arguments();
+    arguments.push_back("--json");
+    test::RunningRift rift(arguments);
+    WaitForRows(rift, scene);
+    if (!rift.IsRunning()) return false;
+    std::filesystem::remove_all(scene.folder / "run");
+    const bool is_stopped = IsStoppedForItsLog(rift, scene, "was removed or moved");
+    CHECK_FALSE(std::filesystem::exists(scene.folder / "run"));
+    return is_stopped;
+  });
+}
+
+TEST_CASE("A log that finds no room stops the robot first and keeps its rows") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    std::vector<std::string> arguments = scene.Arguments();
+    arguments.push_back("--json");
+    rlimit before{};
+    REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+    const rlimit limit{kRoom, before.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+    test::RunningRift rift(arguments);
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
+    const bool is_stopped = IsStoppedForItsLog(rift, scene, "File too large");
+    CHECK_THAT(LogOf(scene), Catch::EndsWith("\n"));
+    CHECK(LogOf(scene).size() > kRoom / 2);
+    CHECK(scene.Summary()["state"] == "interrupted");
+    return is_stopped;
+  });
+}
+
+TEST_CASE("What is no drive cannot be replayed and is refused in one line") {
+  const test::TemporaryFolder folder;
+  const auto refused = [](const std::vector<std::string>& words) {
+    std::vector<std::string> arguments{"drive", "--replay"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const test::ProcessResult result = test::RunRift(arguments);
+    CHECK(result.exit_code == 2);
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    return result.err;
+  };
+  CHECK_THAT(refused({folder / "none"}), Catch::Contains("none holds no drive"));
+  CHECK_THAT(refused({folder.Path()}), Catch::Contains("no experiment.yaml in it"));
+  CHECK_THAT(refused({folder.Path(), "--port", "/dev/rfcomm0"}), Catch::Contains("--port"));
 }
 
 TEST_CASE("A camera that goes away in the middle stops the robot even without a display") {

@@ -28,12 +28,16 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   bench.line_delay_s = 0.005;
   std::vector<std::string> told;
   const experiment::Experiment experiment = PaperExperiment();
+  const test::TemporaryFolder folder;
+  BeginDriveFolder(folder.Path(), experiment, test::PaperCamera());
+  DriveLog log(WriterInto(folder.Path(), experiment));
   const hardware::DriveRun run =
       hardware::Drive({.line = bench,
                        .poses = bench,
                        .clock = bench,
                        .say = [&](const auto& line) { told.push_back(line); },
                        .may_arm = [] { return true; },
+                       .observer = &log,
                        .threads = false},
                       TaskOf(experiment));
   CHECK(run.trial.outcome == trial::Outcome::kReached);
@@ -43,10 +47,9 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   CHECK_THAT(told[1], Catch::StartsWith("worst stopping distance 0.2"));
   CHECK_THAT(report::DriveText(run), Catch::Contains("acknowledged the stop"));
 
-  const test::TemporaryFolder folder;
-  BeginDriveFolder(folder.Path(), experiment, test::PaperCamera());
-  SaveDrive(folder.Path(), experiment, run);
+  CHECK(CloseDrive(folder.Path(), experiment, run, log).empty());
   const auto summary = nlohmann::json::parse(files::ReadFile(folder / "summary.json"));
+  CHECK(summary["state"] == "finished");
   CHECK(summary["outcome"] == "reached");
   CHECK(summary["stop"]["acknowledged"] == true);
   CHECK(summary["stop"]["reason"] == "finished");
@@ -62,9 +65,9 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   CHECK(test::Columns(encoders) == test::Documented("files.md", "Columns of encoders.csv"));
   CHECK(std::count(encoders.begin(), encoders.end(), '\n') > rows - 5);
   CHECK(vision::ReadCamera(files::ReadFile(folder / "camera.yaml"), "camera").world);
-  const trajectory::Log log = trajectory::ReadLog(files::ReadFile(folder / "trajectory.csv"),
-                                                  "trajectory", trajectory::Format::kAuto);
-  CHECK(log.trajectory.poses.size() == run.trial.trajectory.poses.size());
+  const trajectory::Log read = trajectory::ReadLog(files::ReadFile(folder / "trajectory.csv"),
+                                                   "trajectory", trajectory::Format::kAuto);
+  CHECK(read.trajectory.poses.size() == run.trial.trajectory.poses.size());
 }
 
 }  // namespace

@@ -229,6 +229,29 @@ TEST_CASE("A bad log is refused with its row and its rule") {
   CHECK(Refusal("0 1 2 3 0 0 0 0\n") == "log.csv:1: the quaternion has zero length");
 }
 
+TEST_CASE("A last row that was cut short is left out with a note and no other is") {
+  const std::string whole = "t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,1,-1,0.5\n";
+  const auto poses_of = [](const std::string& text, size_t notes) {
+    const Log log = ReadLog(text, "log.csv");
+    INFO(text);
+    CHECK(log.notes.size() == notes);
+    return log.trajectory.poses.size();
+  };
+  const std::string row = "2,-2e-05,0.25,1e-05";
+  for (size_t bytes = 1; bytes < row.size(); ++bytes) {
+    // In the last cell 1e-0 is a number as well; all before it are known to be whole.
+    const bool is_whole = bytes == 15 || bytes == 14 || row.substr(0, bytes).ends_with("e-0");
+    if (bytes > 13 && is_whole) continue;
+    CHECK(poses_of(whole + row.substr(0, bytes), 1) == 2);
+  }
+  CHECK(poses_of(whole + std::string(20, '\0'), 1) == 2);
+  CHECK(poses_of(whole + row, 0) == 3);
+  CHECK(poses_of(whole + row + "\n", 0) == 3);
+  CHECK(poses_of(whole + "  ", 0) == 2);
+  CHECK_THROWS_WITH(ReadLog(whole + "2,-2e-05\n", "log.csv"), Catch::Contains("2 cells"));
+  CHECK_THROWS_WITH(ReadLog("t,x,y\n0,0,0\n1,1,1\n2,2", "log.csv"), Catch::Contains("2 cells"));
+}
+
 TEST_CASE("A position or a time that no robot logs is refused with its row") {
   const std::string good = "t_s,x_m,y_m,z_m\n0,0,0,0\n";
   CHECK(Refusal(good + "1,1e308,0,0\n") ==

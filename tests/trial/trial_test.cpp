@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "rift/trajectory/log.hpp"
 #include "support/fake_robot.hpp"
 #include "support/paper_waypoints.hpp"
 
@@ -46,6 +47,29 @@ TEST_CASE("A robot without delay reaches every waypoint in order") {
   CHECK(last_s == Approx(result.end_s));
   CHECK(robot.stops == 1);
   CHECK(IsStill(robot.power()));
+}
+
+struct Listing : Observer {
+  void Row(const trajectory::StampedPose& pose, std::span<const double> channels) override {
+    rows.push_back(trajectory::RiftRow(pose, channels));
+  }
+  void Sent(const SentCommand& command) override { commands.push_back(command); }
+
+  std::vector<std::string> rows;
+  std::vector<SentCommand> commands;
+};
+
+TEST_CASE("An observer is told every row and every command of the result") {
+  TrialOptions options;
+  options.log_period_s = 0.1;
+  test::FakeRobot robot = RobotAtStart();
+  Listing listing;
+  const TrialResult result = RunTrial(robot, test::PaperWaypoints(), {}, options, &listing);
+  std::string text = trajectory::WriteRift({{}, RecordedChannels()});
+  for (const std::string& row : listing.rows) text += row;
+  CHECK(text == trajectory::WriteRift(result.trajectory));
+  REQUIRE(listing.commands.size() == result.commands.size());
+  CHECK(listing.commands.back().t_s == result.commands.back().t_s);
 }
 
 TEST_CASE("A loop delay like the real robot's still reaches the end") {

@@ -85,6 +85,8 @@ struct DriveParts {
   std::function<void(const std::string&)> say;
   /// Asked until it is true: may the robot move now?
   std::function<bool()> may_arm;
+  /// Of the trial; may be none.
+  DriveObserver* observer = nullptr;
   bool threads = true;  ///< false where `clock` is no real one
 };
 

@@ -40,13 +40,14 @@ enum class StopReason {
   kNotArmed,
   kRobotStopped,
   kBatteryLow,
+  kLogFailed,
 };
-constexpr std::array<std::string_view, 24> EnumNames(StopReason) {
+constexpr std::array<std::string_view, 25> EnumNames(StopReason) {
   return {"finished",        "operator",     "signal",          "exception",      "pose_stale",
           "picture_repeats", "tag_lost",     "pose_not_finite", "pose_jump",      "time_backwards",
           "pose_stands",     "wheels_stand", "pose_disorder",   "pose_disagrees", "pose_lags",
           "camera_gone",     "port_gone",    "link_lagging",    "control_stale",  "host_stalled",
-          "power_refused",   "not_armed",    "robot_stopped",   "battery_low"};
+          "power_refused",   "not_armed",    "robot_stopped",   "battery_low",    "log_failed"};
 }
 
 struct DriveStop {

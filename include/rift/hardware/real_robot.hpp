@@ -12,6 +12,7 @@
 #include "rift/hardware/robot_link.hpp"
 #include "rift/hardware/serial_port.hpp"
 #include "rift/trial/robot.hpp"
+#include "rift/trial/trial.hpp"
 
 namespace rift::hardware {
 
@@ -46,6 +47,18 @@ struct DriveRecord {
   size_t sent = 0;
   size_t answered = 0;
   unsigned rejected_by_robot = 0;  ///< modulo 256
+};
+
+/// Of a DriveRecord what will change no more.
+struct DriveNews {
+  std::vector<PoseStages> poses;
+  std::vector<EncoderReading> encoders;
+};
+
+/// Told what a drive records while the robot drives, under the same terms as its base.
+class DriveObserver : public trial::Observer {
+ public:
+  virtual void Recorded(const DriveNews& news) = 0;
 };
 
 /// Counts at `t_s` between two readings; none outside of them.
@@ -90,6 +103,8 @@ class RealRobot : public trial::Robot {
   void ConfirmStop(double timeout_s);
   DriveState state() const;
   DriveRecord Record() const;
+  /// What has settled in the record since the last call.
+  DriveNews TakeNews();
 
  private:
   class Core;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,9 @@ Log ReadLog(std::string_view text, const std::string& name, Format format = Form
 /// The rift dialect; doubles in the shortest form that reads back to the same bits, values that
 /// are not logged as empty cells.
 std::string WriteRift(const Trajectory& trajectory);
+
+/// One row of it with its line end; `channels` has a value for each channel.
+std::string RiftRow(const StampedPose& pose, std::span<const double> channels);
 
 /// evo's TUM dialect; angles and heights that are not logged are written as zero.
 std::string WriteTum(const Trajectory& trajectory);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,6 +61,23 @@ struct TrialResult {
   double Duration_s() const { return end_s - start_s; }
 };
 
+/// Told each row and each command of a trial as it is recorded. It is called between the decisions
+/// of a driving robot: it must neither wait nor throw.
+class Observer {
+ public:
+  Observer() = default;
+  virtual ~Observer() = default;
+  Observer(const Observer&) = delete;
+  Observer& operator=(const Observer&) = delete;
+
+  /// `channels`: one value for each of TrialResult::trajectory.channels, in their order.
+  virtual void Row(const trajectory::StampedPose& pose, std::span<const double> channels) = 0;
+  virtual void Sent(const SentCommand& command) = 0;
+};
+
+/// The channels of TrialResult::trajectory, without values.
+std::vector<trajectory::Channel> RecordedChannels();
+
 /// The one loop for simulator and hardware: sense, decide, command, record, advance, until the
 /// last waypoint is reached or the trial fails. Deterministic in what the robot reports.
 ///
@@ -68,12 +86,13 @@ struct TrialResult {
 /// Throws std::invalid_argument on bad options or waypoints, before the robot moves.
 TrialResult RunTrial(Robot& robot, const std::vector<control::Waypoint>& waypoints,
                      const control::NavigatorOptions& navigator_options,
-                     const TrialOptions& options);
+                     const TrialOptions& options, Observer* observer = nullptr);
 
 /// Turns the steps of a trial into the evidence of its result.
 class Recorder {
  public:
-  Recorder(const std::vector<control::Waypoint>& waypoints, double log_period_s);
+  Recorder(const std::vector<control::Waypoint>& waypoints, double log_period_s,
+           Observer* observer = nullptr);
 
   /// Once for each believable new pose, after the decision made on it (none while settling).
   void Pose(const PoseMeasurement& measured, const control::Waypoint& target,
@@ -87,9 +106,8 @@ class Recorder {
   TrialResult& result() { return result_; }
 
  private:
-  enum ChannelIndex { kPowerLeft, kPowerRight, kV, kW };
-
   double log_period_s_;
+  Observer* observer_;
   size_t active_ = 1;
   TrialResult result_;
 };

@@ -144,10 +144,20 @@ std::string PingText(const hardware::PingResult& ping, const hardware::HardwareO
   return text;
 }
 
-std::string DriveJson(const experiment::Experiment& experiment, const hardware::DriveRun& run) {
+std::string InterruptedDriveJson(const experiment::Experiment& experiment) {
+  return Dump({{"name", experiment.name},
+               {"rift_version", RIFT_VERSION},
+               {"state", yaml::NameOf(RunState::kInterrupted)},
+               {"outcome", nullptr},
+               {"reason", "the log was not closed: rift was ended, or could not write"}});
+}
+
+std::string DriveJson(const experiment::Experiment& experiment, const hardware::DriveRun& run,
+                      RunState state) {
   const trial::TrialResult& result = run.trial;
   ordered_json json{{"name", experiment.name},
                     {"rift_version", RIFT_VERSION},
+                    {"state", yaml::NameOf(state)},
                     {"outcome", yaml::NameOf(result.outcome)},
                     {"reason", result.reason},
                     {"duration_s", result.Duration_s()},
@@ -196,25 +206,31 @@ std::string DriveText(const hardware::DriveRun& run) {
 
 std::string StagesCsv(const hardware::DriveRecord& evidence) {
   std::string text = "captured_s,arrived_s,ready_s,sensed_s,commanded_s,written_s,answered_s\n";
-  for (const PoseStages& pose : evidence.poses) {
-    text += Cell(pose.captured_s);
-    for (const double time_s : {pose.arrived_s, pose.ready_s, pose.sensed_s, pose.commanded_s,
-                                pose.written_s, pose.answered_s}) {
-      text += "," + Cell(time_s);
-    }
-    text += "\n";
-  }
+  for (const PoseStages& pose : evidence.poses) text += StagesRow(pose);
   return text;
+}
+
+std::string StagesRow(const PoseStages& pose) {
+  std::string text = Cell(pose.captured_s);
+  for (const double time_s : {pose.arrived_s, pose.ready_s, pose.sensed_s, pose.commanded_s,
+                              pose.written_s, pose.answered_s}) {
+    text += "," + Cell(time_s);
+  }
+  return text + "\n";
 }
 
 std::string EncodersCsv(const hardware::DriveRecord& evidence) {
   std::string text = "t_s,left,right\n";
   for (const PoseStages& pose : evidence.poses) {
-    const auto counts = hardware::CountsAt(evidence.encoders, pose.captured_s);
-    if (!counts) continue;
-    text += fmt::format("{},{:.1f},{:.1f}\n", Cell(pose.captured_s), counts->first, counts->second);
+    text += EncodersRow(evidence.encoders, pose.captured_s);
   }
   return text;
+}
+
+std::string EncodersRow(const std::vector<hardware::EncoderReading>& readings, double captured_s) {
+  const auto counts = hardware::CountsAt(readings, captured_s);
+  if (!counts) return "";
+  return fmt::format("{},{:.1f},{:.1f}\n", Cell(captured_s), counts->first, counts->second);
 }
 
 }  // namespace rift::report

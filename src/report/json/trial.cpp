@@ -54,10 +54,12 @@ std::string SimulationJson(const experiment::Experiment& experiment,
 
 std::string CommandsCsv(const trial::TrialResult& result) {
   std::string text = "t_s,power_left,power_right\n";
-  for (const trial::SentCommand& command : result.commands) {
-    text += fmt::format("{},{},{}\n", command.t_s, command.power.left, command.power.right);
-  }
+  for (const trial::SentCommand& command : result.commands) text += CommandsRow(command);
   return text;
+}
+
+std::string CommandsRow(const trial::SentCommand& command) {
+  return fmt::format("{},{},{}\n", command.t_s, command.power.left, command.power.right);
 }
 
 }  // namespace rift::report

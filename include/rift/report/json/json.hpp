@@ -2,8 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rift/control/waypoint.hpp"
@@ -36,15 +38,27 @@ std::string CalibrationJson(const experiment::Experiment& experiment,
 std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareOptions& options);
 std::string PingText(const hardware::PingResult& ping, const hardware::HardwareOptions& options);
 
+/// Whether a run folder holds the whole run.
+enum class RunState { kFinished, kInterrupted };
+constexpr std::array<std::string_view, 2> EnumNames(RunState) {
+  return {"finished", "interrupted"};
+}
+
 /// As a simulated run's, with protocol, link, latency by stage, and how the drive was stopped.
-std::string DriveJson(const experiment::Experiment& experiment, const hardware::DriveRun& run);
+std::string DriveJson(const experiment::Experiment& experiment, const hardware::DriveRun& run,
+                      RunState state = RunState::kFinished);
+/// What stands in its place until the drive was closed, thus for ever when rift is killed.
+std::string InterruptedDriveJson(const experiment::Experiment& experiment);
 std::string DriveText(const hardware::DriveRun& run);
 
 /// One row a pose: when it went through each stage. Cells of stages never reached are empty.
 std::string StagesCsv(const hardware::DriveRecord& evidence);
+std::string StagesRow(const hardware::PoseStages& pose);
 /// The wheels in step with the camera: at the capture time of each pose, between two readings.
 /// Poses before the first reading or after the last have no row.
 std::string EncodersCsv(const hardware::DriveRecord& evidence);
+/// Empty where there is no row.
+std::string EncodersRow(const std::vector<hardware::EncoderReading>& readings, double captured_s);
 
 /// `rift gap --json`: {definition, trials, mean_gap_m, noise_floor_m, verdict, repeats, likeness}.
 std::string GapJson(const gap::GapResult& result);
@@ -125,5 +139,6 @@ std::string SimulationJson(const experiment::Experiment& experiment,
 
 /// Columns t_s,power_left,power_right: every command as it was sent.
 std::string CommandsCsv(const trial::TrialResult& result);
+std::string CommandsRow(const trial::SentCommand& command);
 
 }  // namespace rift::report

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "drive.hpp"
+#include "film.hpp"
+#include "print.hpp"
+#include "rift/commands/command.hpp"
+#include "rift/files/files.hpp"
+#include "rift/trajectory/log.hpp"
+#include "rift/view/window.hpp"
+
+namespace rift::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+void RequireDrive(const fs::path& folder) {
+  for (const char* name : {"experiment.yaml", "trajectory.csv"}) {
+    std::error_code not_there;
+    if (fs::exists(folder / name, not_there)) continue;
+    throw std::invalid_argument(
+        fmt::format("{} holds no drive: there is no {} in it", folder.string(), name));
+  }
+}
+
+trajectory::Trajectory ReadDriven(const fs::path& path) {
+  trajectory::Log log = trajectory::ReadLog(files::ReadFile(path), path.string());
+  for (const std::string& note : log.notes) {
+    Say(fmt::format("note: {}: {}", path.string(), note));
+  }
+  return std::move(log.trajectory);
+}
+
+/// In one line for people.
+std::string EndingOf(const fs::path& folder) {
+  const std::string text = files::ReadIfThere(folder / "summary.json").value_or("");
+  const auto summary = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!summary.is_object()) return "without a summary";
+  const auto word = [&summary](const char* key) {
+    const auto found = summary.find(key);
+    return found != summary.end() && found->is_string() ? found->get<std::string>() : "";
+  };
+  if (word("state") == "interrupted") return "interrupted: " + word("reason");
+  return fmt::format("{}: {}", word("outcome"), word("reason"));
+}
+
+/// The camera saw the tag, which is neither the axle nor without noise: the robot is drawn level on
+/// the floor.
+trajectory::Trajectory OnTheFloor(trajectory::Trajectory seen) {
+  for (trajectory::StampedPose& pose : seen.poses) {
+    pose.z_m = pose.roll_rad = pose.pitch_rad = trajectory::StampedPose::kNotLogged;
+  }
+  return seen;
+}
+
+}  // namespace
+
+int ReplayDrive(const DriveRequest& request) {
+  const fs::path folder = request.replay;
+  RequireDrive(folder);
+  const bool window = request.video.empty() || request.view;
+  if (request.video.empty()) view::RequireDisplay();
+  const experiment::Experiment experiment =
+      experiment::LoadExperiment((folder / "experiment.yaml").string(), {},
+                                 [](const std::string& path) { return files::ReadFile(path); });
+  const trajectory::Trajectory seen = ReadDriven(folder / "trajectory.csv");
+  const std::string ending = EndingOf(folder);
+  view::Run shown{.title = fmt::format("{}, {}", experiment.name, folder.string()),
+                  .body = ShapeOf(experiment.simulation.body),
+                  .truth = OnTheFloor(seen),
+                  .logged = seen,
+                  .outcome = ending};
+  for (const control::Waypoint& waypoint : experiment.waypoints) {
+    shown.waypoints.push_back({waypoint.name, waypoint.Position()});
+    shown.reference_m.push_back(waypoint.Position());
+  }
+  PrintText(
+      fmt::format("{}\n{} poses over {:.2f} s\n", ending, seen.poses.size(), seen.Duration_s()));
+  FlushResults();
+  ShowFilm(view::MakeFilm(shown), request.video, window);
+  return kDone;
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,63 @@
+#include "rift/files/append_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+namespace rift::files {
+namespace {
+
+[[noreturn]] void CannotWrite(const std::filesystem::path& path, int reason) {
+  throw std::runtime_error(fmt::format("cannot write {}: {}", path.string(), strerror(reason)));
+}
+
+}  // namespace
+
+AppendFile::AppendFile(std::filesystem::path path)
+    : path_(std::move(path)),
+      descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) CannotWrite(path_, errno);
+}
+
+AppendFile::~AppendFile() { ::close(descriptor_); }
+
+void AppendFile::Append(std::string_view text) {
+  const off_t before = ::lseek(descriptor_, 0, SEEK_END);
+  size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t written = ::write(descriptor_, text.data() + done, text.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      const int reason = errno;
+      const auto whole_lines = static_cast<off_t>(text.substr(0, done).rfind('\n') + 1);
+      // Where even that fails a torn row stays, which readers leave out.
+      if (before >= 0) std::ignore = ::ftruncate(descriptor_, before + whole_lines);
+      CannotWrite(path_, reason);
+    }
+    done += static_cast<size_t>(written);
+  }
+}
+
+void AppendFile::Sync() {
+  // EINVAL: a file system that has nothing to sync.
+  if (::fdatasync(descriptor_) != 0 && errno != EINVAL) CannotWrite(path_, errno);
+}
+
+void AppendFile::RequireInPlace() const {
+  struct stat open {};
+  struct stat named {};
+  if (::fstat(descriptor_, &open) != 0) CannotWrite(path_, errno);
+  const bool is_there = ::stat(path_.c_str(), &named) == 0;
+  if (is_there && open.st_dev == named.st_dev && open.st_ino == named.st_ino) return;
+  throw std::runtime_error(
+      fmt::format("{} was removed or moved while it was being written", path_.string()));
+}
+
+}  // namespace rift::files

@@ -1,0 +1,219 @@
+#include "commands/drive_log.hpp"
+
+#include <sys/resource.h>
+
+#include <catch2/catch.hpp>
+#include <future>
+#include <nlohmann/json.hpp>
+
+#include "commands/drive.hpp"
+#include "hardware/bench.hpp"
+#include "rift/files/files.hpp"
+#include "rift/report/json/json.hpp"
+#include "rift/trajectory/log.hpp"
+#include "support/paper_waypoints.hpp"
+#include "support/process.hpp"
+#include "support/until.hpp"
+
+namespace rift::commands {
+namespace {
+
+using std::chrono::steady_clock;
+
+double Since_s(steady_clock::time_point start) {
+  return std::chrono::duration<double>(steady_clock::now() - start).count();
+}
+
+experiment::Experiment PaperExperiment() {
+  experiment::Experiment experiment;
+  experiment.name = "bench";
+  experiment.waypoints = test::PaperWaypoints();
+  experiment.trial.pace = trial::Pace::kNewPose;
+  return experiment;
+}
+
+hardware::DriveRun DriveOnBench(const experiment::Experiment& experiment,
+                                hardware::Protocol protocol, DriveLog& log) {
+  hardware::Bench bench;
+  bench.line_delay_s = 0.005;
+  hardware::DriveTask task = TaskOf(experiment);
+  task.hardware.line.protocol = protocol;
+  return hardware::Drive({.line = bench,
+                          .poses = bench,
+                          .clock = bench,
+                          .say = [](const auto&) {},
+                          .may_arm = [] { return true; },
+                          .observer = &log,
+                          .threads = false},
+                         task);
+}
+
+TEST_CASE("The files that grew during a drive are those of its whole record to the byte") {
+  const auto protocol = GENERATE(hardware::Protocol::kFramed, hardware::Protocol::kPlain);
+  const test::TemporaryFolder folder;
+  const experiment::Experiment experiment = PaperExperiment();
+  DriveLog log(WriterInto(folder.Path(), experiment));
+  const hardware::DriveRun run = DriveOnBench(experiment, protocol, log);
+  REQUIRE(run.trial.trajectory.poses.size() > 30);
+  CHECK(CloseDrive(folder.Path(), experiment, run, log).empty());
+  CHECK(files::ReadFile(folder / "trajectory.csv") == trajectory::WriteRift(run.trial.trajectory));
+  CHECK(files::ReadFile(folder / "commands.csv") == report::CommandsCsv(run.trial));
+  CHECK(files::ReadFile(folder / "stages.csv") == report::StagesCsv(run.evidence));
+  CHECK(files::ReadFile(folder / "encoders.csv") == report::EncodersCsv(run.evidence));
+  CHECK(files::ReadFile(folder / "summary.json") == report::DriveJson(experiment, run));
+}
+
+/// One row of each kind.
+void Record(DriveLog& log, double t_s) {
+  log.Row({.t_s = t_s, .x_m = t_s, .y_m = 0.0, .yaw_rad = 0.0}, std::vector<double>(4, 0.5));
+  log.Sent({t_s, {0.1, 0.2}});
+  const auto counts = static_cast<std::int32_t>(1000 * t_s);
+  log.Recorded({{{.captured_s = t_s}}, {{t_s, {counts, counts}}}});
+}
+
+size_t Lines(const std::filesystem::path& path) {
+  const std::string text = files::ReadIfThere(path).value_or("");
+  return std::count(text.begin(), text.end(), '\n');
+}
+
+TEST_CASE("Rows are on disk a moment after they were recorded and the summary says interrupted") {
+  const test::TemporaryFolder folder;
+  DriveLog log(WriterInto(folder.Path(), PaperExperiment()));
+  const hardware::Stopper stopper = log.Stopper();
+  CHECK_FALSE(std::filesystem::exists(folder / "trajectory.csv"));  // no drive has begun
+  for (int row = 1; row <= 3; ++row) {
+    const auto start = steady_clock::now();
+    Record(log, row);
+    test::WaitUntil("the row is on disk", [&] {
+      return Lines(folder / "trajectory.csv") == 1u + row &&
+             Lines(folder / "commands.csv") == 1u + row &&
+             Lines(folder / "stages.csv") == 1u + row &&
+             Lines(folder / "encoders.csv") == 0u + row;  // the last waits for a later reading
+    });
+    CHECK(Since_s(start) < 1.0);
+    CHECK_FALSE(stopper());
+  }
+  const auto summary = nlohmann::json::parse(files::ReadFile(folder / "summary.json"));
+  CHECK(summary["state"] == "interrupted");
+  CHECK(summary["outcome"].is_null());
+}
+
+TEST_CASE("A drive that never began leaves no files of a run") {
+  const test::TemporaryFolder folder;
+  { const DriveLog log(WriterInto(folder.Path(), PaperExperiment())); }
+  CHECK(std::filesystem::is_empty(folder.Path()));
+}
+
+TEST_CASE("A folder that vanishes during a drive stops it within a second") {
+  const bool is_moved = GENERATE(false, true);
+  const test::TemporaryFolder folder;
+  const std::filesystem::path run = folder / "run";
+  std::filesystem::create_directory(run);
+  DriveLog log(WriterInto(run, PaperExperiment()));
+  const hardware::Stopper stopper = log.Stopper();
+  Record(log, 1.0);
+  test::WaitUntil("the files are there", [&] { return Lines(run / "encoders.csv") == 1; });
+  REQUIRE_FALSE(stopper());
+  if (is_moved) {
+    std::filesystem::rename(run, folder / "elsewhere");
+  } else {
+    std::filesystem::remove_all(run);
+  }
+  const auto start = steady_clock::now();
+  test::WaitUntil("the drive is stopped", [&] { return stopper().has_value(); });
+  CHECK(Since_s(start) < 1.0);
+  CHECK(stopper()->first == hardware::StopReason::kLogFailed);
+  CHECK_THAT(stopper()->second, Catch::Contains("was removed or moved"));
+  CHECK_THAT(log.Close({}), Catch::Contains("was removed or moved"));
+  CHECK_FALSE(std::filesystem::exists(run));
+}
+
+TEST_CASE("A folder that vanishes before a drive stops it and is not made again") {
+  const test::TemporaryFolder folder;
+  DriveLog log(WriterInto(folder.Path() / "run", PaperExperiment()));
+  const hardware::Stopper stopper = log.Stopper();
+  Record(log, 1.0);
+  test::WaitUntil("the drive is stopped", [&] { return stopper().has_value(); });
+  CHECK_THAT(stopper()->second, Catch::Contains("before the drive began"));
+  CHECK(std::filesystem::is_empty(folder.Path()));
+}
+
+/// What a full disk does to files: none may grow beyond `bytes`.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_CASE("A file that cannot grow stops the drive and ends with a whole row") {
+  const test::TemporaryFolder folder;
+  DriveLog log(WriterInto(folder.Path(), PaperExperiment()));
+  const hardware::Stopper stopper = log.Stopper();
+  {
+    const FileSizeLimit limit(1000);
+    double t_s = 0.0;
+    test::WaitUntil("the drive is stopped", [&] {
+      Record(log, t_s += 0.001);
+      return stopper().has_value();
+    });
+  }
+  CHECK(stopper()->first == hardware::StopReason::kLogFailed);
+  CHECK_THAT(stopper()->second,
+             Catch::Contains("cannot write") && Catch::Contains("File too large"));
+  CHECK_FALSE(log.Close({}).empty());
+  for (const char* name : {"trajectory.csv", "commands.csv", "stages.csv", "encoders.csv"}) {
+    CHECK_THAT(files::ReadFile(folder / name), Catch::EndsWith("\n"));
+  }
+}
+
+TEST_CASE("A disk that hangs stops the drive after a second and nobody waits for it") {
+  std::promise<void> answer;
+  const std::shared_future<void> disk = answer.get_future().share();
+  std::string failure;
+  {
+    DriveLog log([disk](const DriveRows& rows, std::atomic<unsigned>&) {
+      if (!rows.trajectory.empty()) disk.wait();
+    });
+    const hardware::Stopper stopper = log.Stopper();
+    Record(log, 1.0);
+    const auto start = steady_clock::now();
+    double longest_s = 0.0;
+    test::WaitUntil("the drive is stopped", [&] {
+      const auto before = steady_clock::now();
+      Record(log, 2.0);
+      longest_s = std::max(longest_s, Since_s(before));
+      return stopper().has_value();
+    });
+    CHECK(Since_s(start) > 0.9);
+    CHECK(Since_s(start) < 2.5);
+    CHECK(longest_s < 0.2);
+    CHECK(stopper()->first == hardware::StopReason::kLogFailed);
+    CHECK_THAT(stopper()->second, Catch::Contains("has not been written for 1.0 s"));
+    failure = log.Close({});
+  }
+  CHECK_THAT(failure, Catch::Contains("has not answered"));
+  answer.set_value();
+}
+
+TEST_CASE("A process that stood still itself does not blame the disk") {
+  std::promise<void> answer;
+  const std::shared_future<void> disk = answer.get_future().share();
+  DriveLog log([disk](const DriveRows&, std::atomic<unsigned>&) { disk.wait(); });
+  const hardware::Stopper stopper = log.Stopper();
+  CHECK_FALSE(stopper());
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  CHECK_FALSE(stopper());
+  answer.set_value();
+}
+
+}  // namespace
+}  // namespace rift::commands
