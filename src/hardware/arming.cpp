@@ -155,7 +155,7 @@ PingResult MeasureLink(ByteLine& line, Clock& clock, const HardwareOptions& opti
 
 DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   control::CheckWaypoints(task.waypoints);
-  DriveRun run;
+  DriveRun run{.dry_run = parts.dry_run};
   run.ping = MeasureLink(parts.line, parts.clock, task.hardware);
   parts.say(fmt::format("the robot speaks {}",
                         EnumNames(run.ping.protocol)[static_cast<std::size_t>(run.ping.protocol)]));
@@ -163,7 +163,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   run.stopping_distance_m = PrintStoppingDistance(parts, task, run.ping);
 
   RealRobot robot(parts.line, parts.poses, parts.clock,
-                  {task.hardware, run.ping.protocol, parts.threads});
+                  {task.hardware, run.ping.protocol, parts.threads, parts.dry_run});
   for (const Stopper& stopper : parts.stoppers) robot.AddStopper(stopper);
   if (WaitForFirstPose(robot)) {
     SayWhereItStands(parts, robot, task);

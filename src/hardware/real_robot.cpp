@@ -24,7 +24,7 @@ class RealRobot::Core {
         poses_(poses),
         is_threaded_(options.thread),
         start_s_(clock.Now_s()),
-        guard_(options.hardware.guard),
+        guard_(options.hardware.guard, options.dry_run),
         link_(line, options.hardware.line, options.protocol) {
     options.hardware.Check();
     if (is_threaded_) thread_ = std::jthread([this](std::stop_token stop) { Run(stop); });

@@ -126,6 +126,7 @@ std::string DriveJson(const experiment::Experiment& experiment, const hardware::
   const trial::TrialResult& result = run.trial;
   ordered_json json{{"name", experiment.name},
                     {"rift_version", RIFT_VERSION},
+                    {"dry_run", run.dry_run},
                     {"outcome", yaml::NameOf(result.outcome)},
                     {"reason", result.reason},
                     {"duration_s", result.Duration_s()},
@@ -152,6 +153,7 @@ std::string DriveText(const hardware::DriveRun& run) {
   std::string text =
       fmt::format("{}: {}\n{:.2f} s, {} poses logged\n", yaml::NameOf(result.outcome),
                   result.reason, result.Duration_s(), result.trajectory.poses.size());
+  if (run.dry_run) text += "dry run: the robot was sent zeros alone\n";
   const std::vector<double> latency_s = Times_s(run.evidence.poses, kCaptureToCommand);
   if (!latency_s.empty()) {
     text += fmt::format("capture to command p50 {:.1f} ms, p95 {:.1f}, p99 {:.1f}\n",
