@@ -24,6 +24,7 @@ hardware:
   line: {baud: 115200, hello_s: 20}
   guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
   ping: {duration_s: 0.5, max_p99_s: 10, max_loss: 1, max_burst: 1000}
+  start: {countdown_s: 0}
 )";
 
 /// A floor with the robot on the first waypoint, and what rift drive needs to be told.
@@ -195,8 +196,8 @@ TEST_CASE("A device is asked for the size of its calibration as in tracking") {
   };
   set("--camera", "/dev/video0");
   set("--calibration", calibration);
-  arguments.insert(arguments.end(),
-                   {"--set", "trial.timeout_s=1", "--set", "track.capture.same_s=60"});
+  arguments.insert(arguments.end(), {"--set", "trial.timeout_s=1", "--set",
+                                     "track.capture.same_s=60", "--any-start"});
   const Device device;
   const test::ProcessResult result = test::RunRift(arguments);
   INFO(result.out << result.err);
@@ -230,21 +231,15 @@ TEST_CASE("How far the reference tags may lie off before a drive is an option of
   for (vision::ReferenceMark& mark : camera.world->marks) mark.seen_px.x() += 20.0;
   test::WriteText(path, vision::WriteCamera(camera));
   for (const bool is_allowed : {false, true}) {
-    std::vector<std::string> arguments{"drive",
-                                       scene.folder / "task.yaml",
-                                       "--port",
-                                       scene.floor.Port(),
-                                       "--camera",
-                                       "/dev/video0",
-                                       "--calibration",
-                                       path,
-                                       "--out",
-                                       scene.folder / (is_allowed ? "allowed" : "warned"),
-                                       "--yes",
-                                       "--set",
-                                       "trial.timeout_s=1",
-                                       "--set",
-                                       "track.capture.same_s=60"};
+    std::vector<std::string> arguments{
+        "drive",         scene.folder / "task.yaml",
+        "--port",        scene.floor.Port(),
+        "--camera",      "/dev/video0",
+        "--calibration", path,
+        "--out",         scene.folder / (is_allowed ? "allowed" : "warned"),
+        "--yes",         "--any-start",
+        "--set",         "trial.timeout_s=1",
+        "--set",         "track.capture.same_s=60"};
     if (is_allowed) arguments.insert(arguments.end(), {"--moved", "0.1"});
     const test::ProcessResult result = test::RunRift(arguments);
     INFO(result.err);
