@@ -168,7 +168,7 @@ class DriveSession::Drivers {
   StartGate::Person PersonAtGate(hardware::Operator& person) const {
     StartGate::Person at_gate{.has_agreed = [&person] { return person.MayArm(Say); }, .say = Say};
     if (!request_.yes) at_gate.ask_again = [&person] { person.AskAgain(); };
-    if (!request_.yes) at_gate.show = ShowInPlace;
+    if (!request_.yes) at_gate.show = LiveLine::Show;
     return at_gate;
   }
 
@@ -207,6 +207,7 @@ void DriveSession::MoveTo(const std::string& port, const std::string& camera,
 
 hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
                                            const experiment::Experiment& experiment) {
+  const LiveLine line;
   hardware::Operator person(request_.yes);  // first, and last to go: a signal must not end a save
   if (!drivers_) {
     drivers_ =

@@ -155,10 +155,9 @@ void CheckSameSeries(const fs::path& file, const Experiment& sweep) {
   std::map<std::string, std::string> old_values = experiment::FlatValues(before);
   for (const auto& [key, value] : experiment::FlatValues(sweep)) {
     if (!ChangesDrives(key) || old_values[key] == value) continue;
-    throw std::invalid_argument(
-        fmt::format("{} is the table of other drives: {} was {} and is {} now; choose another --out",
-                    file.string(), key, old_values[key].empty() ? "not there" : old_values[key],
-                    value));
+    throw std::invalid_argument(fmt::format(
+        "{} is the table of other drives: {} was {} and is {} now; choose another --out",
+        file.string(), key, old_values[key].empty() ? "not there" : old_values[key], value));
   }
 }
 
@@ -245,7 +244,8 @@ std::optional<Series::End> Series::AskAboutUnfinished(const PlannedTrial& trial)
 bool Series::LayFloor(const PlannedTrial& trial) {
   const std::string& floor = trial.experiment.simulation.terrain.surface;
   if (!plan_.has_floors || floor_ == floor) return true;
-  if (Ask(fmt::format("lay the {}; Enter (q: quit)", floor), "y", request_.yes) == 'q') return false;
+  if (Ask(fmt::format("lay the {}; Enter (q: quit)", floor), "y", request_.yes) == 'q')
+    return false;
   floor_ = floor;
   return true;
 }
@@ -302,8 +302,11 @@ int DriveSeries(const DriveRequest& request, const Experiment& experiment) {
     left += end == Series::End::kLeft;
   }
   series.Close();
-  if (left > 0) Say(fmt::format("{} of {} drives did not reach the end; the same command asks "
-                                "about them again", left, count));
+  if (left > 0)
+    Say(
+        fmt::format("{} of {} drives did not reach the end; the same command asks "
+                    "about them again",
+                    left, count));
   const int reported = request.grid ? RunSweep(out, request.json) : kDone;
   if (!request.grid) {
     Say(fmt::format("against the simulator: rift sweep {} --out {}", (out / "sweep.yaml").string(),

@@ -29,8 +29,8 @@ struct SeriesPlan {
 };
 
 /// Every setting of the experiment's grid (the paper's without a space), reference.trials times
-/// each, below `out`. Throws std::invalid_argument for a space that is none of lists, or that varies
-/// what no drive can.
+/// each, below `out`. Throws std::invalid_argument for a space that is none of lists, or that
+/// varies what no drive can.
 SeriesPlan PlanGrid(const experiment::Experiment& experiment, const std::filesystem::path& out);
 
 /// The experiment `count` times, into out/1, out/2, ...

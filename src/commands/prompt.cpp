@@ -15,19 +15,24 @@ namespace rift::commands {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll{20};
+constexpr const char* kClear = "\r\033[K";
 
 std::atomic<bool> is_in_place = false;  // the cursor stands in a line that is to be replaced
 
 }  // namespace
 
 void Say(const std::string& line) {
-  fmt::print(stderr, "{}{}\n", is_in_place.exchange(false) ? "\r\033[K" : "", line);
+  fmt::print(stderr, "{}{}\n", is_in_place.exchange(false) ? kClear : "", line);
 }
 
-void ShowInPlace(const std::string& line) {
+LiveLine::~LiveLine() {
+  if (is_in_place.exchange(false)) fmt::print(stderr, "{}", kClear);
+}
+
+void LiveLine::Show(const std::string& line) {
   if (::isatty(STDERR_FILENO) == 0) return;
   is_in_place = true;
-  fmt::print(stderr, "\r\033[K{}", line);
+  fmt::print(stderr, "{}{}", kClear, line);
   std::fflush(stderr);
 }
 

@@ -36,8 +36,11 @@ std::optional<std::string> StartGate::WhyNot(const std::optional<geometry::Pose2
 }
 
 bool StartGate::MayStart(double now_s, const std::optional<geometry::Pose2>& seen) {
-  if (!agreed_s_) ShowPlacement(now_s, seen);
-  if (!person_.has_agreed() || !MayGoOn(seen)) {
+  if (!person_.has_agreed()) {
+    ShowPlacement(now_s, seen);
+    return false;
+  }
+  if (!MayGoOn(seen)) {
     agreed_s_.reset();
     return false;
   }
@@ -48,7 +51,10 @@ bool StartGate::MayStart(double now_s, const std::optional<geometry::Pose2>& see
       person_.say(fmt::format("starts in {:g} s; any key or Ctrl-C cancels", options_.countdown_s));
     }
   }
-  if (now_s - *agreed_s_ >= options_.countdown_s) return true;
+  if (now_s - *agreed_s_ >= options_.countdown_s) {
+    if (person_.show) person_.show("the robot drives: any key or Ctrl-C stops it");
+    return true;
+  }
   CountDown(now_s);
   return false;
 }

@@ -107,6 +107,28 @@ TEST_CASE("The binary drives a robot under a camera to the last waypoint") {
   });
 }
 
+TEST_CASE("A dry run of the binary decides and the robot stands where it stood") {
+  Scene scene;
+  const geometry::Pose2 start = scene.floor.Pose();
+  std::vector<std::string> arguments = scene.Arguments();
+  arguments.insert(arguments.end(), {"--dry-run", "--seconds", "2"});
+  const test::ProcessResult result = test::RunRift(arguments);
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 0);
+  CHECK_THAT(result.err, Catch::Contains("nothing moves"));
+  CHECK_THAT(result.out, Catch::Contains("zeros alone"));
+  CHECK(scene.floor.Pose() == start);
+  CHECK(scene.Summary()["dry_run"] == true);
+  CHECK(scene.Summary()["outcome"] == "timed_out");
+  const std::string decided = files::ReadFile(scene.folder / "run/commands.csv");
+  const auto count = [&decided](const std::string& text) {
+    int found = 0;
+    for (std::size_t at = 0; (at = decided.find(text, at)) != decided.npos; ++at) ++found;
+    return found;
+  };
+  CHECK(count(",0,0\n") < count("\n") - 1);  // and not only while it settled
+}
+
 /// Or for the end of a drive that was interrupted.
 void WaitForMotion(test::RunningRift& rift, Scene& scene) {
   test::WaitUntil("the robot moves or the drive is over",

@@ -34,14 +34,17 @@ hardware:
 /// The command that drives, on twins of its own, everything that is not driven yet.
 struct Bench {
   Bench() {
-    test::WriteText(folder / "task.yaml", "include: " + test::SourceDir() + "/configs/twin.yaml\n" +
-                                              std::string(kTask));
+    test::WriteText(folder / "task.yaml",
+                    "include: " + test::SourceDir() + "/configs/twin.yaml\n" + std::string(kTask));
   }
   std::vector<std::string> Command(const std::vector<std::string>& more,
                                    const std::string& twin) const {
-    std::vector<std::string> words{"drive",         folder / "task.yaml",
-                                   "--yes",         "--out",
-                                   folder / "run",  "--before-each",
+    std::vector<std::string> words{"drive",
+                                   folder / "task.yaml",
+                                   "--yes",
+                                   "--out",
+                                   folder / "run",
+                                   "--before-each",
                                    test::BuildDir() + "/rift simulate " + (folder / "task.yaml") +
                                        " --twin --seed {trial} " + twin};
     words.insert(words.end(), more.begin(), more.end());
@@ -64,9 +67,9 @@ test::ProcessResult GoOn(const std::vector<std::string>& command) {
 
 TEST_CASE("A grid driven on twins and killed in the middle goes on and ends with its report") {
   const Bench bench;
-  const std::vector<std::string> command = bench.Command(
-      {"--grid"}, "--set simulation.terrain.surface={surface} --out " +
-                      (bench.folder / "twins/{surface}_{trial}"));
+  const std::vector<std::string> command =
+      bench.Command({"--grid"}, "--set simulation.terrain.surface={surface} --out " +
+                                    (bench.folder / "twins/{surface}_{trial}"));
   {
     test::RunningRift rift(command);
     rift.WaitUntil("the third drive has begun",

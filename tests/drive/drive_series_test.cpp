@@ -2,6 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <filesystem>
+#include <set>
+#include <thread>
 
 #include "commands/before_each.hpp"
 #include "rift/files/files.hpp"
@@ -97,10 +100,15 @@ TEST_CASE("A command is parted into words at its blanks and no shell reads them"
 
 TEST_CASE("A scene that says where it is goes on until it is no longer needed") {
   const test::TemporaryFolder folder;
-  test::WriteText(folder / "scene", "echo ready\necho '{\"port\": \"/dev/p\", \"camera\": \"c\"}'\n"
-                                    "echo $$ > " + folder / "pid\n"
-                                    "trap 'echo over > " + folder / "over; exit' TERM\n"
-                                    "while :; do sleep 0.01; done\n");
+  test::WriteText(folder / "scene",
+                  "echo ready\necho '{\"port\": \"/dev/p\", \"camera\": \"c\"}'\n"
+                  "echo $$ > " +
+                      folder /
+                          "pid\n"
+                          "trap 'echo over > " +
+                      folder /
+                          "over; exit' TERM\n"
+                          "while :; do sleep 0.01; done\n");
   {
     const SceneCommand scene({"sh", folder / "scene"});
     REQUIRE(scene.address());
