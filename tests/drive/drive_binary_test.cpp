@@ -129,6 +129,23 @@ TEST_CASE("A dry run of the binary decides and the robot stands where it stood")
   CHECK(count(",0,0\n") < count("\n") - 1);  // and not only while it settled
 }
 
+TEST_CASE("Ctrl-C in the countdown ends the drive before anything moves") {
+  Scene scene;
+  const geometry::Pose2 start = scene.floor.Pose();
+  std::vector<std::string> arguments = scene.Arguments();
+  arguments.insert(arguments.end(), {"--countdown", "60"});
+  test::RunningRift rift(arguments);
+  rift.WaitUntil("the countdown began",
+                 [&] { return rift.Err().find("starts in 60 s") != std::string::npos; });
+  rift.Signal(SIGINT);
+  const test::ProcessResult result = rift.Wait();
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 1);
+  CHECK_THAT(result.out, Catch::Contains("stopped before the start: SIGINT came"));
+  CHECK(scene.floor.Pose() == start);
+  CHECK_FALSE(std::filesystem::exists(scene.folder.Path() / "run/trajectory.csv"));
+}
+
 /// Or for the end of a drive that was interrupted.
 void WaitForMotion(test::RunningRift& rift, Scene& scene) {
   test::WaitUntil("the robot moves or the drive is over",

@@ -103,6 +103,29 @@ TEST_CASE("A grid driven on twins and killed in the middle goes on and ends with
   CHECK_THAT(other.err, Catch::Contains("control.v_min was") && Catch::Contains("another --out"));
 }
 
+TEST_CASE("Repeats are driven into numbered folders and a sweep reads them") {
+  const Bench bench;
+  const test::ProcessResult result =
+      GoOn(bench.Command({"--repeat", "2"}, "--out " + (bench.folder / "twins/{trial}")));
+  INFO(result.out << result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK(bench.Has("1/trajectory.csv"));
+  const test::ProcessResult swept = test::RunRift(
+      {"sweep", bench.folder / "run/sweep.yaml", "--out", bench.folder / "run/sweep", "--quiet"});
+  INFO(swept.out << swept.err);
+  CHECK(swept.exit_code == 0);
+  const std::string table = bench.Read("sweep/table.csv");
+  CHECK(std::count(table.begin(), table.end(), '\n') == 1 + 2);
+  CHECK(table.find("run/2/trajectory.csv") != table.npos);
+
+  const test::ProcessResult more =
+      GoOn(bench.Command({"--repeat", "3"}, "--out " + (bench.folder / "twins/{trial}")));
+  INFO(more.err);
+  CHECK(more.exit_code == 0);
+  CHECK_THAT(more.err, Catch::Contains("2 of them done"));
+  CHECK(bench.Has("3/trajectory.csv"));
+}
+
 TEST_CASE("A robot that is put down far off its start is not driven, with what to do") {
   const Bench bench;
   const test::ProcessResult result = test::RunRift(
