@@ -62,7 +62,7 @@ rift_room(report/page ROOMS report/figures report/text sweep/explain sweep/falsi
 rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
-rift_room(commands ROOMS experiment files gap hardware report/figures report/json
+rift_room(commands ROOMS experiment files gap geometry hardware report/figures report/json
     report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
     twin view vision/calibration vision/camera
     vision/tracking yaml

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <future>
 #include <memory>
 #include <stdexcept>
 
+#include "drive_series.hpp"
 #include "files.hpp"
 #include "print.hpp"
+#include "prompt.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/hardware/arming.hpp"
@@ -18,6 +21,7 @@
 #include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/tracking/session.hpp"
+#include "start_gate.hpp"
 
 namespace rift::commands {
 namespace {
@@ -26,6 +30,8 @@ namespace fs = std::filesystem;
 
 // A window costs a decoded and drawn picture each time; the tracker needs the processor more.
 constexpr std::chrono::milliseconds kRedraw{100};
+// A robot at rest that was not seen for longer may stand elsewhere by now.
+constexpr double kSeen_s = 0.5;
 
 experiment::Experiment LoadFor(const DriveRequest& request) {
   return experiment::LoadExperiment(request.experiment, request.overrides,
@@ -42,26 +48,6 @@ int PingRobot(const DriveRequest& request) {
                : PrintText(report::PingText(ping, options));
   const bool is_good = ping.IsMeasured() && hardware::BrokenBudget(ping, options.ping).empty();
   return is_good ? kDone : kNotReached;
-}
-
-experiment::Experiment LoadTask(const DriveRequest& request) {
-  experiment::Experiment experiment = LoadFor(request);
-  try {
-    control::CheckWaypoints(experiment.waypoints);
-  } catch (const std::invalid_argument& no_task) {
-    throw std::invalid_argument(fmt::format("{}: {}", request.experiment, no_task.what()));
-  }
-  return experiment;
-}
-
-// A robot's run cannot be repeated to the byte as a simulated one can.
-fs::path NewFolder(const DriveRequest& request, const experiment::Experiment& experiment) {
-  fs::path folder =
-      request.out.empty() ? OutputOf("", experiment.name + "_drive") : fs::path(request.out);
-  if (!fs::exists(folder / "trajectory.csv")) return folder;
-  throw std::invalid_argument(fmt::format(
-      "{} holds a run already, and a robot does not repeat itself: choose another --out",
-      folder.string()));
 }
 
 /// Throws std::invalid_argument, saying what to do, when the calibration has no world frame: the
@@ -98,14 +84,41 @@ void CheckFirstPicture(const DriveRequest& request, vision::CameraSession& sessi
   }
 }
 
+bool HasArrived(const hardware::DriveRun& run) {
+  return run.trial.outcome == trial::Outcome::kReached;
+}
+
+/// A dry run has nowhere to arrive: it is well when only time or a person ended it.
+int ExitCodeOf(const hardware::DriveRun& run) {
+  if (HasArrived(run)) return kDone;
+  const bool is_whole = run.dry_run && run.has_begun && run.evidence.stop &&
+                        (run.trial.outcome == trial::Outcome::kTimedOut ||
+                         run.evidence.stop->reason == hardware::StopReason::kOperator ||
+                         run.evidence.stop->reason == hardware::StopReason::kSignal);
+  return is_whole ? kDone : kNotReached;
+}
+
+int DriveOnce(const DriveRequest& request, const experiment::Experiment& experiment) {
+  const fs::path folder = NewFolder(request, experiment);
+  DriveSession session(request);
+  const hardware::DriveRun run = session.DriveInto(folder, experiment);
+  const bool is_whole = session.LogFailure().empty();
+  if (run.has_begun && is_whole) Say("log: " + (folder / "trajectory.csv").string());
+  const auto state = is_whole ? report::RunState::kFinished : report::RunState::kInterrupted;
+  request.json ? PrintData(report::DriveJson(experiment, run, state))
+               : PrintText(report::DriveText(run));
+  session.RequireLog();
+  return ExitCodeOf(run);
+}
+
+}  // namespace
+
 /// All that a drive is made of, opened in the order in which it is cheap to fail.
-class Drivers {
+class DriveSession::Drivers {
  public:
   Drivers(const DriveRequest& request, const experiment::Experiment& experiment,
-          const vision::CameraModel& camera, DriveLog& log)
-      : experiment_(experiment),
-        log_(log),
-        person_(request.yes),
+          const vision::CameraModel& camera)
+      : request_(request),
         port_(request.port, experiment.hardware.line.baud,
               experiment.hardware.line.write_timeout_s),
         session_(request.camera, camera, experiment.track.capture, experiment.track.tag) {
@@ -116,30 +129,41 @@ class Drivers {
         [tracker](const vision::Frame& frame) { return tracker->Track(frame); }, clock_);
   }
 
-  hardware::DriveRun Drive() {
+  hardware::DriveRun Drive(const experiment::Experiment& experiment, hardware::Operator& person,
+                           DriveLog& log) {
+    has_started_ = false;
+    StartGate gate(experiment.hardware.start, control::StartPose(experiment.waypoints),
+                   request_.any_start || request_.dry_run, PersonAtGate(person));
     return hardware::Drive({.line = port_,
                             .poses = *poses_,
                             .clock = clock_,
-                            .stoppers = {person_.Stopper(), log_.Stopper()},
+                            .stoppers = {person.Stopper(), log.Stopper()},
                             .say = Say,
-                            .may_arm = [this] { return person_.MayArm(Say); },
-                            .observer = &log_},
-                           TaskOf(experiment_));
+                            .may_arm =
+                                [&] {
+                                  has_started_ = gate.MayStart(clock_.Now_s(), SeenNow());
+                                  return has_started_.load();
+                                },
+                            .observer = &log,
+                            .dry_run = request_.dry_run},
+                           TaskOf(experiment));
   }
 
   /// The window needs the main thread, so the robot is driven from another one.
-  hardware::DriveRun DriveInView() {
+  hardware::DriveRun DriveInView(const experiment::Experiment& experiment,
+                                 hardware::Operator& person, DriveLog& log) {
     const std::string missing = view::MissingDisplay();
     if (!missing.empty()) {
       Say(missing + "; driving without --view");
-      return Drive();
+      return Drive(experiment, person, log);
     }
-    view::DriveView view(session_.camera(), experiment_.waypoints);
-    auto drive = std::async(std::launch::async, [this] { return Drive(); });
+    view::DriveView view(session_.camera(), experiment.waypoints);
+    auto drive = std::async(std::launch::async, [&] { return Drive(experiment, person, log); });
     while (drive.wait_for(kRedraw) != std::future_status::ready) {
       const hardware::CameraPoses::View seen = poses_->Seen();
-      const bool goes_on = view.Show(seen.frame.get(), seen.found.sighting, poses_->Status());
-      if (!goes_on) person_.CloseWindow();
+      const bool goes_on = view.Show(seen.frame.get(), seen.found.sighting, poses_->Status(),
+                                     PlacementNow(experiment));
+      if (!goes_on) person.CloseWindow();
     }
     return drive.get();
   }
@@ -147,39 +171,96 @@ class Drivers {
   const vision::CameraModel& camera() const { return session_.camera(); }
 
  private:
-  const experiment::Experiment& experiment_;
-  DriveLog& log_;
-  hardware::Operator person_;
+  StartGate::Person PersonAtGate(hardware::Operator& person) const {
+    StartGate::Person at_gate{.has_agreed = [&person] { return person.MayArm(Say); }, .say = Say};
+    if (!request_.yes) at_gate.ask_again = [&person] { person.AskAgain(); };
+    if (!request_.yes) at_gate.show = LiveLine::Show;
+    return at_gate;
+  }
+
+  std::optional<geometry::Pose2> SeenNow() {
+    const hardware::PoseNews news = poses_->Newest();
+    if (!news.newest || clock_.Now_s() - news.newest->measured.captured_s > kSeen_s) return {};
+    return news.newest->measured.world_from_robot;
+  }
+
+  std::string PlacementNow(const experiment::Experiment& experiment) {
+    if (has_started_) return "";
+    const std::optional<geometry::Pose2> seen = SeenNow();
+    if (!seen) return "it is not seen";
+    return PlacementText(PlacementOf(*seen, control::StartPose(experiment.waypoints)));
+  }
+
+  const DriveRequest& request_;
+  std::atomic<bool> has_started_ = false;  // asked for by the window's thread
   hardware::SteadyClock clock_;
   hardware::SerialPort port_;
   vision::CameraSession session_;
   std::unique_ptr<hardware::CameraPoses> poses_;
 };
 
-/// The log was slow enough to stop the robot, even when it became whole in the end.
-bool WasStoppedByLog(const hardware::DriveRun& run) {
-  return run.evidence.stop && run.evidence.stop->reason == hardware::StopReason::kLogFailed;
+DriveSession::DriveSession(const DriveRequest& request) : request_(request) {}
+DriveSession::~DriveSession() = default;
+void DriveSession::Close() { drivers_.reset(); }
+
+void DriveSession::RequireLog() const {
+  if (!log_failure_.empty()) throw std::runtime_error("the log is not whole: " + log_failure_);
 }
 
-int DriveRobot(const DriveRequest& request) {
-  const experiment::Experiment experiment = LoadTask(request);
-  const fs::path folder = NewFolder(request, experiment);
+void DriveSession::MoveTo(const std::string& port, const std::string& camera,
+                          const std::string& calibration) {
+  Close();
+  if (!port.empty()) request_.port = port;
+  if (!camera.empty()) request_.camera = camera;
+  if (!calibration.empty()) request_.calibration = calibration;
+}
+
+hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
+                                           const experiment::Experiment& experiment) {
+  const LiveLine line;
+  hardware::Operator person(request_.yes);  // first, and last to go: a signal must not end a save
+  log_failure_.clear();
   DriveLog log(WriterInto(folder, experiment));
-  Drivers drivers(request, experiment, ReadCameraWithWorld(request.calibration), log);
-  BeginDriveFolder(folder, experiment, drivers.camera());
-  const hardware::DriveRun run = request.view ? drivers.DriveInView() : drivers.Drive();
-  const std::string failure = run.has_begun ? CloseDrive(folder, experiment, run, log) : "";
-  const bool is_whole = failure.empty();
-  if (run.has_begun && is_whole) Say("log: " + (folder / "trajectory.csv").string());
-  const auto state = is_whole ? report::RunState::kFinished : report::RunState::kInterrupted;
-  request.json ? PrintData(report::DriveJson(experiment, run, state))
-               : PrintText(report::DriveText(run));
-  if (!is_whole) throw std::runtime_error("the log is not whole: " + failure);
-  if (WasStoppedByLog(run)) throw std::runtime_error(run.evidence.stop->text);
-  return run.trial.outcome == trial::Outcome::kReached ? kDone : kNotReached;
+  if (!drivers_) {
+    drivers_ =
+        std::make_unique<Drivers>(request_, experiment, ReadCameraWithWorld(request_.calibration));
+  }
+  BeginDriveFolder(folder, experiment, drivers_->camera());
+  if (request_.dry_run) Say("dry run: nothing moves, the robot is sent zeros alone");
+  const hardware::DriveRun run = request_.view ? drivers_->DriveInView(experiment, person, log)
+                                               : drivers_->Drive(experiment, person, log);
+  if (run.has_begun && !HasArrived(run)) RingBell();
+  if (run.has_begun) log_failure_ = CloseDrive(folder, experiment, run, log);
+  const bool was_slow =
+      run.evidence.stop && run.evidence.stop->reason == hardware::StopReason::kLogFailed;
+  // Slow enough to stop the robot, even when it became whole in the end.
+  if (was_slow && log_failure_.empty()) log_failure_ = run.evidence.stop->text;
+  if (!HasArrived(run)) Close();
+  return run;
 }
 
-}  // namespace
+experiment::Experiment LoadTask(const DriveRequest& request) {
+  experiment::Experiment experiment = LoadFor(request);
+  if (request.countdown_s) experiment.hardware.start.countdown_s = *request.countdown_s;
+  if (request.seconds) experiment.trial.timeout_s = *request.seconds;
+  try {
+    control::CheckWaypoints(experiment.waypoints);
+  } catch (const std::invalid_argument& no_task) {
+    throw std::invalid_argument(fmt::format("{}: {}", request.experiment, no_task.what()));
+  }
+  return experiment;
+}
+
+// A robot's run cannot be repeated to the byte as a simulated one can.
+std::filesystem::path NewFolder(const DriveRequest& request,
+                                const experiment::Experiment& experiment) {
+  fs::path folder =
+      request.out.empty() ? OutputOf("", experiment.name + "_drive") : fs::path(request.out);
+  if (!fs::exists(folder / "trajectory.csv")) return folder;
+  throw std::invalid_argument(fmt::format(
+      "{} holds a run already, and a robot does not repeat itself: choose another --out",
+      folder.string()));
+}
 
 hardware::DriveTask TaskOf(const experiment::Experiment& experiment) {
   return {experiment.waypoints, experiment.control, experiment.trial, experiment.hardware};
@@ -212,7 +293,9 @@ std::string CloseDrive(const std::filesystem::path& folder,
 
 int Drive(const DriveRequest& request) {
   if (!request.replay.empty()) return ReplayDrive(request);
-  return request.ping ? PingRobot(request) : DriveRobot(request);
+  if (request.ping) return PingRobot(request);
+  const experiment::Experiment experiment = LoadTask(request);
+  return request.IsSeries() ? DriveSeries(request, experiment) : DriveOnce(request, experiment);
 }
 
 }  // namespace rift::commands

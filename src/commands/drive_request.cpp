@@ -26,6 +26,34 @@ void AddReplayFlags(CLI::App& app, DriveRequest& request) {
       ->type_name("FILE.mp4");
 }
 
+void AddSeriesFlags(CLI::App& app, DriveRequest& request) {
+  CLI::Option* dry_run =
+      app.add_flag("--dry-run", request.dry_run,
+                   "all of a drive but motor power: the robot is sent zeros alone, and may be "
+                   "carried along the waypoints");
+  app.add_option("--seconds", request.seconds, "ends a dry run after so long (trial.timeout_s)")
+      ->type_name("S")
+      ->check(InRange(0.01, 3600.0))
+      ->needs(dry_run);
+  CLI::Option* repeat =
+      app.add_option("--repeat", request.repeat,
+                     "drive so many times, into DIR/1, DIR/2, ...; the same command goes on after "
+                     "a break")
+          ->type_name("N")
+          ->check(CLI::Range(1, 1000))
+          ->excludes(dry_run);
+  app.add_flag("--grid", request.grid,
+               "drive every setting of the experiment's space, reference.trials times each, and "
+               "report on them against the simulator; the same command goes on after a break")
+      ->excludes(dry_run)
+      ->excludes(repeat);
+  app.add_option("--before-each", request.before_each,
+                 "program to run before each trial of --repeat or --grid; {trial} and the "
+                 "settings' names such as {surface} are filled in. It ends with 0, or prints "
+                 "port, camera and calibration as a line of JSON and is ended after the trial")
+      ->type_name("COMMAND");
+}
+
 void AddDriveFlags(CLI::App& app, DriveRequest& request) {
   CLI::Option* experiment = app.add_option("EXPERIMENT", request.experiment,
                                            "YAML file with the waypoints; its key hardware: holds "
@@ -50,7 +78,15 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
   app.add_option("--out", request.out, "folder of the run; must not hold one [out/NAME_drive]")
       ->type_name("DIR");
   app.add_flag("--view", request.view, "show the camera's picture; closing it stops the robot");
-  app.add_flag("--yes", request.yes, "start at once instead of when Enter is pressed");
+  app.add_flag("--yes", request.yes, "answers Enter to every question: starts without a person");
+  app.add_option("--countdown", request.countdown_s,
+                 "time between Enter and the start, in which any key cancels; 0: none "
+                 "(hardware.start.countdown_s)")
+      ->type_name("S")
+      ->check(InRange(0.0, 60.0));
+  app.add_flag("--any-start", request.any_start,
+               "start even when the robot stands far off its start (hardware.start)");
+  AddSeriesFlags(app, request);
   app.add_flag("--ping", request.ping, "only measure the link, with the motors at zero");
   app.add_flag("--json", request.json, "print JSON instead of text");
   AddReplayFlags(app, request);
@@ -60,14 +96,19 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
 
 void DriveRequest::Check() const {
   if (!replay.empty()) return;
-  if (port.empty()) {
+  const bool is_told_later = IsSeries() && !before_each.empty();
+  if (port.empty() && !is_told_later) {
     throw std::invalid_argument(
         "--port is missing: name the robot's serial port, such as /dev/rfcomm0");
   }
   if (ping) return;
+  if (!before_each.empty() && !IsSeries()) {
+    throw std::invalid_argument("--before-each goes with --repeat or --grid");
+  }
   if (experiment.empty()) {
     throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
   }
+  if (is_told_later) return;
   if (camera.empty()) {
     throw std::invalid_argument(
         "--camera is missing: name a device such as /dev/video0, or an http:// stream");
@@ -95,7 +136,10 @@ void AddDrive(CLI::App& app, int& exit_code, const CameraUses& camera) {
       "         rift drive configs/waypoints/paper.yaml --port /dev/rfcomm0 --camera /dev/video0 "
       "\\\n"
       "             --calibration cam.yaml --out out/real1\n"
-      "         rift drive --replay out/real1");
+      "         rift drive --replay out/real1\n"
+      "         rift drive EXPERIMENT --grid --set reference.trials=3 --port ... (whole table)\n"
+      "         rift drive configs/twin.yaml --repeat 3 --yes --before-each \\\n"
+      "             'rift simulate configs/twin.yaml --twin --seed {trial} --out out/twin{trial}'");
   app.callback([request, drive = camera.drive, &exit_code] {
     request->Check();
     exit_code = drive(*request);

@@ -1,5 +1,8 @@
 #include "print.hpp"
 
+#include <unistd.h>
+
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <string>
@@ -21,12 +24,33 @@ void WriteToStderr(const std::string& text) {
   std::fflush(stderr);
 }
 
+constexpr const char* kClear = "\r\x1b[K";
+
+std::atomic<bool> is_live = false;  // a LiveLine stands on the terminal's line
+
 }  // namespace
 
-void Say(std::string_view line) { WriteToStderr(TerminalText(line, LineBreaks::kEscaped) + '\n'); }
+void Say(std::string_view line) {
+  const std::string clear = is_live.exchange(false) ? kClear : "";
+  WriteToStderr(clear + TerminalText(line, LineBreaks::kEscaped) + '\n');
+}
 
 void SayInPlace(std::string_view line) {
-  WriteToStderr("\r\x1b[K" + TerminalText(line, LineBreaks::kEscaped));
+  WriteToStderr(kClear + TerminalText(line, LineBreaks::kEscaped));
+}
+
+LiveLine::~LiveLine() {
+  if (is_live.exchange(false)) WriteToStderr(kClear);
+}
+
+void LiveLine::Show(const std::string& line) {
+  if (::isatty(STDERR_FILENO) == 0) return;
+  is_live = true;
+  SayInPlace(line);
+}
+
+void RingBell() {
+  if (::isatty(STDERR_FILENO) == 1) WriteToStderr("\a");
 }
 
 void PrintText(std::string_view text) { PrintData(TerminalText(text, LineBreaks::kKept)); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 /// The only place that writes to stdout and stderr (a test holds the tree to it). None of these
@@ -12,6 +13,21 @@ void Say(std::string_view line);
 
 /// The same without a line's end, in place of what stands on the terminal's line.
 void SayInPlace(std::string_view line);
+
+/// A line of stderr that is replaced by the next one, where stderr is a terminal; nothing
+/// elsewhere. Say() takes its place, and so does the end of this.
+class LiveLine {
+ public:
+  LiveLine() = default;
+  ~LiveLine();
+  LiveLine(const LiveLine&) = delete;
+  LiveLine& operator=(const LiveLine&) = delete;
+
+  static void Show(const std::string& line);
+};
+
+/// Sounds the terminal's bell, where stderr is one.
+void RingBell();
 
 /// Results on stdout for people; line breaks stay.
 void PrintText(std::string_view text);

@@ -245,7 +245,7 @@ PingResult MeasureLink(ByteLine& line, Clock& clock, const HardwareOptions& opti
 
 DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   control::CheckWaypoints(task.waypoints);
-  DriveRun run;
+  DriveRun run{.dry_run = parts.dry_run};
   try {
     AskingClock clock(parts);
     run.ping = MeasureLink(parts.line, clock, task.hardware);
@@ -260,7 +260,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   run.stopping_distance_m = PrintStoppingDistance(parts, task, run.ping);
 
   RealRobot robot(parts.line, parts.poses, parts.clock,
-                  {task.hardware, run.ping.protocol, parts.threads});
+                  {task.hardware, run.ping.protocol, parts.threads, parts.dry_run});
   for (const Stopper& stopper : parts.stoppers) robot.AddStopper(stopper);
   if (WaitForFirstPose(robot)) {
     SayWhereItStands(parts, robot, task);
@@ -268,7 +268,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   }
   if (run.has_begun) {
     robot.Arm();
-    run.latency = MeasureCamera(robot, parts, task, run.ping);
+    if (!parts.dry_run) run.latency = MeasureCamera(robot, parts, task, run.ping);
     Forward forward(robot, parts.observer);
     run.trial = trial::RunTrial(robot, task.waypoints, task.control, task.trial, &forward);
   } else {

@@ -149,7 +149,7 @@ void DriveGuard::Tick(double now_s, double link_lag_s) {
 }
 
 control::WheelPower DriveGuard::Allowed() const {
-  return state_ == DriveState::kArmed ? power_ : control::WheelPower{};
+  return state_ == DriveState::kArmed && !dry_run_ ? power_ : control::WheelPower{};
 }
 
 }  // namespace rift::hardware

@@ -28,7 +28,7 @@ class RealRobot::Core {
         is_threaded_(options.thread),
         start_s_(clock.Now_s()),
         hardware_(options.hardware),
-        guard_(options.hardware.guard),
+        guard_(options.hardware.guard, options.dry_run),
         motion_(options.hardware.evidence, options.hardware.odometry.drive.track_m),
         link_(line, options.hardware.line, options.protocol) {
     options.hardware.Check();

@@ -18,19 +18,25 @@ void Follow(const vision::Sighting& sighting, TrackScene& scene) {
 
 DriveView::DriveView(const vision::CameraModel& camera,
                      const std::vector<control::Waypoint>& waypoints)
-    : scene_{.camera = &camera}, window_("rift drive") {
+    : start_(control::StartPose(waypoints)), scene_{.camera = &camera}, window_("rift drive") {
   for (const control::Waypoint& waypoint : waypoints) {
     scene_.path_m.push_back(waypoint.Position());
     scene_.waypoints.push_back({waypoint.name, waypoint.Position()});
   }
-  scene_.prompts = {"close the window or press q in it to stop the robot"};
 }
 
 bool DriveView::Show(const vision::Frame* frame, const std::optional<vision::Sighting>& sighting,
-                     const vision::CaptureStatus& status) {
+                     const vision::CaptureStatus& status, const std::string& placement) {
   scene_.frame = frame;
   scene_.sighting = sighting;
   scene_.status = status;
+  scene_.prompts.clear();
+  scene_.stand_at.reset();
+  if (!placement.empty()) {
+    scene_.stand_at = start_;
+    scene_.prompts.push_back("put the robot into the outline: " + placement);
+  }
+  scene_.prompts.emplace_back("close the window or press q in it to stop the robot");
   if (sighting) Follow(*sighting, scene_);
   return !window_.Show(scene_).quit;
 }

@@ -17,6 +17,7 @@ constexpr int kWidest_px = 1280, kShift = 4;
 constexpr double kArrow_m = 0.06;
 constexpr double kLegStep_m = 0.02;  // a lens bends straight legs
 constexpr double kNearest_m = 0.05;
+constexpr double kChassisRadius_m = 0.0485;  // of a 3pi+
 
 const cv::Scalar kGreen{40, 220, 40}, kRed{40, 40, 235}, kBlack{0, 0, 0}, kYellow{0, 225, 255};
 const cv::Scalar kBlue{235, 110, 30}, kWhite{255, 255, 255}, kPanel{32, 28, 26};
@@ -108,6 +109,22 @@ void DrawMap(const MapPen& pen, const TrackScene& scene) {
   }
 }
 
+/// The outline of a robot that stands where it has to, nose and all.
+void DrawPlace(const MapPen& pen, const geometry::Pose2& map_from_robot) {
+  constexpr int kCorners = 36;
+  std::vector<Eigen::Vector2d> outline;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle_rad = 2.0 * std::numbers::pi * i / kCorners;
+    outline.push_back(map_from_robot * Eigen::Vector2d(kChassisRadius_m * std::cos(angle_rad),
+                                                       kChassisRadius_m * std::sin(angle_rad)));
+  }
+  pen.Line(pen.FromMap(outline), kBlack, 4, true);
+  pen.Line(pen.FromMap(outline), kWhite, 2, true);
+  const Eigen::Vector2d nose = map_from_robot * Eigen::Vector2d(kArrow_m, 0.0);
+  const std::vector<cv::Point> arrow = pen.FromMap({map_from_robot.Position(), nose});
+  if (arrow.size() == 2) pen.Arrow(arrow[0], arrow[1], kWhite);
+}
+
 void DrawTag(const MapPen& pen, const vision::Sighting& sighting) {
   std::vector<cv::Point> outline;
   for (const Eigen::Vector2d& corner : sighting.corners) outline.push_back(pen.FromPixel(corner));
@@ -187,6 +204,7 @@ TrackPicture DrawTrack(const TrackScene& scene) {
   shown.px_per_shown = std::max(1.0, 1.0 * width_px / shown.bgr.cols);
   const MapPen pen(shown.bgr, scene, 1.0 / shown.px_per_shown);
   DrawMap(pen, scene);
+  if (scene.stand_at) DrawPlace(pen, *scene.stand_at);
   if (scene.sighting) DrawTag(pen, *scene.sighting);
   DrawLines(shown.bgr, PoseText(scene), true);
   std::vector<std::string> foot = scene.prompts;

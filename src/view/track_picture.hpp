@@ -14,7 +14,8 @@ struct TrackPicture {
 
 /// The camera's picture, at most 1280 px wide, with the tag's outline in green and its heading in
 /// red, the trail in red, the path in black, waypoints in yellow, how far the trail lies off the
-/// path in blue, pose, rate and latency in words, and the keys. Same scene, same pixels.
+/// path in blue, where the robot has to stand in white, pose, rate and latency in words, and the
+/// keys. Same scene, same pixels.
 TrackPicture DrawTrack(const TrackScene& scene);
 
 /// From points of a trail, some centimetres apart, to the nearest point of the path.

@@ -98,7 +98,7 @@ TEST_CASE("Help, wrong usage and a plain simulation need no camera program") {
         {"track --calibrate", "--images DIR or --camera"},
         {"track --no-such-flag", "--no-such-flag"},
         {"drive --port /dev/x", "EXPERIMENT is missing"},
-        {"drive --ping", "--port is required"},
+        {"drive --ping", "--port is missing"},
         {"simulate --twin --video run.mp4", "--video excludes --twin"}}) {
     const test::ProcessResult result = installed.Run(arguments);
     INFO(arguments << ": " << result.out);

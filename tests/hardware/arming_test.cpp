@@ -57,6 +57,62 @@ TEST_CASE("Nothing moves until the operator says yes") {
   CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
 }
 
+TEST_CASE("A dry run goes through the whole trial and no power but zero is ever written") {
+  Bench bench;
+  Operator person;
+  DriveParts parts = person.PartsOf(bench);
+  parts.dry_run = true;
+  DriveTask task = PaperTask();
+  task.trial.timeout_s = 4.0;
+  const DriveRun run = Drive(parts, task);
+  CHECK(run.has_begun);
+  CHECK(run.dry_run);
+  CHECK(run.trial.outcome == trial::Outcome::kTimedOut);
+  CHECK(std::any_of(run.trial.commands.begin(), run.trial.commands.end(),
+                    [](const auto& command) { return command.power.left != 0.0; }));
+  CHECK(bench.written == std::set<std::pair<int, int>>{{0, 0}});
+  CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
+  CHECK(bench.Travelled_m() == 0.0);
+}
+
+TEST_CASE("A robot that is carried along the waypoints reaches the end of a dry run") {
+  Bench bench;
+  const std::vector<control::Waypoint> waypoints = test::PaperWaypoints();
+  std::optional<double> begun_s;
+  bench.bend = [&](trial::PoseMeasurement& pose) {
+    constexpr double kLeg_s = 3.0;
+    const double leg = begun_s ? (pose.captured_s - *begun_s) / kLeg_s : 0.0;
+    const auto from = std::min(static_cast<std::size_t>(leg), waypoints.size() - 2);
+    const double share = std::min(leg - static_cast<double>(from), 1.0);
+    const Eigen::Vector2d at =
+        waypoints[from].Position() * (1.0 - share) + waypoints[from + 1].Position() * share;
+    pose.world_from_robot = {at.x(), at.y(), 0.0};
+  };
+  Operator person;
+  DriveParts parts = person.PartsOf(bench);
+  parts.dry_run = true;
+  parts.may_arm = [&] {
+    begun_s = bench.Now_s();
+    return true;
+  };
+  const DriveRun run = Drive(parts, PaperTask());
+  INFO(run.trial.reason);
+  CHECK(run.trial.outcome == trial::Outcome::kReached);
+  CHECK(bench.written == std::set<std::pair<int, int>>{{0, 0}});
+}
+
+TEST_CASE("A guard in a dry run allows no power and still stops what it would stop") {
+  DriveGuard guard({}, true);
+  guard.SeePose({.newest = PoseSample{.measured = {.captured_s = 1.0}}, .looked_s = 1.0}, 1.0);
+  guard.Arm(1.0);
+  guard.Command({0.3, -0.3}, 1.0);
+  CHECK(guard.state() == DriveState::kArmed);
+  CHECK(guard.Allowed() == control::WheelPower{});
+  guard.Tick(1.2, 0.0);
+  REQUIRE(guard.stop());
+  CHECK(guard.stop()->reason == StopReason::kPoseStale);
+}
+
 TEST_CASE("A robot that no camera sees is not driven") {
   Bench bench;
   bench.tag_is_hidden = true;

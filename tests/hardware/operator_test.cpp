@@ -68,6 +68,24 @@ TEST_CASE("Enter starts the robot once it was asked for and the next key stops i
   CHECK(stopper()->first == hardware::StopReason::kOperator);
 }
 
+TEST_CASE("A start that was taken back is given by the next Enter and no key before it stops") {
+  Keyboard keyboard;
+  Operator person(false);
+  const hardware::Stopper stopper = person.Stopper();
+  Listening listening;
+  person.MayArm(listening.say);
+  keyboard.Type('\n');
+  CHECK_FALSE(stopper());
+  CHECK(person.MayArm(listening.say));
+  person.AskAgain();
+  CHECK_FALSE(person.MayArm(listening.say));
+  keyboard.Type('x');
+  CHECK_FALSE(stopper());
+  keyboard.Type('\n');
+  CHECK_FALSE(stopper());
+  CHECK(person.MayArm(listening.say));
+}
+
 TEST_CASE("Before the start q gives up") {
   Keyboard keyboard;
   Operator person(false);

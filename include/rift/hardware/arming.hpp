@@ -48,6 +48,8 @@ class Operator {
 
   /// Asks `say` for the start the first time; then whether it was given.
   bool MayArm(const std::function<void(const std::string&)>& say);
+  /// Takes a start back that was given: the next Enter gives it.
+  void AskAgain() { phase_ = Phase::kAsked; }
   /// Why the robot must stop; called by the link's thread.
   hardware::Stopper Stopper();
   /// From the window, in place of a key.
@@ -87,11 +89,13 @@ struct DriveParts {
   std::function<bool()> may_arm;
   /// Of the trial; may be none.
   DriveObserver* observer = nullptr;
-  bool threads = true;  ///< false where `clock` is no real one
+  bool threads = true;   ///< false where `clock` is no real one
+  bool dry_run = false;  ///< all of a drive but power: the robot is sent zeros alone
 };
 
 struct DriveRun {
   bool has_begun = false;  ///< false: a person stopped it before the start
+  bool dry_run = false;    ///< the powers of the trial were decided on and never sent
   PingResult ping;
   std::optional<LatencyResult> latency;  ///< none: not measured
   /// Of the camera, over the whole drive by its own turns; none without encoders or turns.

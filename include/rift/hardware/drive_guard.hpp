@@ -61,7 +61,9 @@ struct DriveStop {
 /// are or not at all. Knows no clock and no line.
 class DriveGuard {
  public:
-  explicit DriveGuard(const GuardOptions& options) : options_(options) {}
+  /// `dry_run`: everything is checked as ever, and Allowed() is zero whatever is commanded.
+  explicit DriveGuard(const GuardOptions& options, bool dry_run = false)
+      : options_(options), dry_run_(dry_run) {}
 
   /// Throws std::runtime_error unless there is a fresh pose; clears an earlier stop.
   void Arm(double now_s);
@@ -75,7 +77,7 @@ class DriveGuard {
   /// To be called often: what has grown too old, or whether this process stood still.
   void Tick(double now_s, double link_lag_s);
 
-  /// What may be sent now: the last command while all is well, else zero.
+  /// What may be sent now: the last command while all is well, else zero; zero in a dry run.
   control::WheelPower Allowed() const;
   DriveState state() const { return state_; }
   const std::optional<DriveStop>& stop() const { return stop_; }
@@ -87,6 +89,7 @@ class DriveGuard {
   bool RequireFreshPose(double now_s);
 
   GuardOptions options_;
+  bool dry_run_;
   DriveState state_ = DriveState::kDisarmed;
   std::optional<DriveStop> stop_;
   std::optional<trial::PoseMeasurement> pose_;

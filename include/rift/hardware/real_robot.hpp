@@ -74,6 +74,7 @@ struct RealRobotOptions {
   /// Link and guard run in a thread of their own, so that zeros go out even while the trial loop
   /// hangs; without it they run in Advance(), which fake clocks need.
   bool thread = true;
+  bool dry_run = false;  ///< the robot is sent zeros alone: see DriveGuard
 };
 
 /// The robot on the floor behind the interface of the simulated one: camera poses in, powers out,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "rift/control/waypoint.hpp"
@@ -16,10 +17,13 @@ class DriveView {
   DriveView(const vision::CameraModel& camera, const std::vector<control::Waypoint>& waypoints);
 
   /// False when the user wants the robot to be stopped. `frame` is none before the first picture.
+  /// `placement`: how far the robot is from its start, in words, while it waits for it; the outline
+  /// of where it has to stand is drawn as well. Empty once it drives.
   bool Show(const vision::Frame* frame, const std::optional<vision::Sighting>& sighting,
-            const vision::CaptureStatus& status);
+            const vision::CaptureStatus& status, const std::string& placement);
 
  private:
+  geometry::Pose2 start_;
   TrackScene scene_;
   TrackWindow window_;
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rift/geometry/floor.hpp"
+#include "rift/geometry/pose2.hpp"
 #include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/camera/frame.hpp"
@@ -21,6 +22,7 @@ struct TrackScene {
   std::vector<Eigen::Vector2d> trail_m;         ///< where the tag was, in the map
   std::vector<Eigen::Vector2d> path_m;          ///< to hold the trail against; may be empty
   std::vector<geometry::NamedPoint> waypoints;  ///< in the map
+  std::optional<geometry::Pose2> stand_at;      ///< where the robot has to be put; none: anywhere
   double plane_z_m = 0.0;                       ///< of the map: path, waypoints and trail lie in it
   vision::CaptureStatus status;
   double latency_s = 0.0;            ///< from the light to the pose; NaN of a recording

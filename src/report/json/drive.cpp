@@ -158,6 +158,7 @@ std::string DriveJson(const experiment::Experiment& experiment, const hardware::
   ordered_json json{{"name", experiment.name},
                     {"rift_version", RIFT_VERSION},
                     {"state", yaml::NameOf(state)},
+                    {"dry_run", run.dry_run},
                     {"outcome", yaml::NameOf(result.outcome)},
                     {"reason", result.reason},
                     {"duration_s", result.Duration_s()},
@@ -185,6 +186,7 @@ std::string DriveText(const hardware::DriveRun& run) {
   std::string text =
       fmt::format("{}: {}\n{:.2f} s, {} poses logged\n", yaml::NameOf(result.outcome),
                   result.reason, result.Duration_s(), result.trajectory.poses.size());
+  if (run.dry_run) text += "dry run: the robot was sent zeros alone\n";
   const std::vector<double> latency_s = Times_s(run.evidence.poses, kCaptureToCommand);
   if (!latency_s.empty()) {
     text += fmt::format("capture to command p50 {:.1f} ms, p95 {:.1f}, p99 {:.1f}\n",

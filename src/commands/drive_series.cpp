@@ -1,0 +1,320 @@
+#include "drive_series.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <stdexcept>
+
+#include "before_each.hpp"
+#include "files.hpp"
+#include "print.hpp"
+#include "prompt.hpp"
+#include "rift/commands/command.hpp"
+#include "rift/experiment/path_template.hpp"
+#include "rift/files/files.hpp"
+#include "rift/files/folder_lock.hpp"
+#include "rift/report/json/json.hpp"
+#include "rift/sweep/falsify/result.hpp"
+
+namespace rift::commands {
+namespace {
+
+namespace fs = std::filesystem;
+using experiment::Experiment;
+using experiment::Parameter;
+
+constexpr const char* kSurface = "simulation.terrain.surface";
+
+std::size_t IndexOfSurface(const std::vector<Parameter>& parameters) {
+  const auto is_surface = [](const Parameter& parameter) { return parameter.key == kSurface; };
+  return static_cast<std::size_t>(std::find_if(parameters.begin(), parameters.end(), is_surface) -
+                                  parameters.begin());
+}
+
+/// A robot on the floor is the same whatever the simulator's keys say.
+void CheckDrivable(const Experiment& experiment) {
+  if (experiment.candidate.kind != experiment::CandidateKind::kSimulation) {
+    throw std::invalid_argument(fmt::format(
+        "{}: candidate.kind is logs, and a grid is driven to be held against the simulator",
+        experiment.name));
+  }
+  if (experiment.goal != experiment::Goal::kGrid) {
+    throw std::invalid_argument(
+        fmt::format("{}: only goal: grid has a table of settings to drive", experiment.name));
+  }
+  for (const Parameter& parameter : experiment.space.parameters) {
+    if (parameter.key == kSurface || !parameter.key.starts_with("simulation.")) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: {} changes the simulator and no robot: of simulation, a grid that is "
+                    "driven may vary terrain.surface alone",
+                    parameter.origin, parameter.key));
+  }
+}
+
+/// "{surface}_v_min{v_min}_{trial}": words say what they are, numbers need their names.
+std::string FolderTemplate(const std::vector<Parameter>& parameters) {
+  std::string text;
+  for (const Parameter& parameter : parameters) {
+    text += fmt::format("{0}{{{1}}}_", parameter.IsCategorical() ? "" : parameter.Name(),
+                        parameter.Name());
+  }
+  return text + "{trial}";
+}
+
+fs::path FolderOf(const fs::path& out, const std::string& folder_template,
+                  const std::vector<Parameter>& parameters, const experiment::Theta& theta,
+                  const std::string& trial) {
+  const std::string name = experiment::FillTemplate(folder_template, parameters, theta, trial);
+  if (name.find('/') == std::string::npos && !name.starts_with('.')) return out / name;
+  throw std::invalid_argument(fmt::format(
+      "'{}' is no folder name: name the trials and levels without '/' and a leading '.'", name));
+}
+
+/// The logs of the drives in the place of the truth, the simulator started where they did.
+Experiment SweepOf(Experiment experiment, const fs::path& out, const std::string& folder_template) {
+  experiment.candidate = {};
+  experiment.reference.kind = experiment::ReferenceKind::kLogs;
+  experiment.reference.path.text =
+      (fs::absolute(out).lexically_normal() / folder_template / "trajectory.csv").string();
+  experiment.reference.format = trajectory::Format::kRift;
+  experiment.reference.tag_offset_m = 0.0;
+  experiment.start = experiment::Start::kReference;
+  experiment.goal = experiment::Goal::kGrid;
+  return experiment;
+}
+
+SeriesPlan PlanOf(const Experiment& experiment, const fs::path& out,
+                  const std::string& folder_template) {
+  const std::vector<Parameter>& parameters = experiment.space.parameters;
+  SeriesPlan plan{.sweep = SweepOf(experiment, out, folder_template)};
+  for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
+    const std::string setting = sweep::SettingText(parameters, theta);
+    for (const std::string& trial : experiment.reference.trials.names) {
+      plan.trials.push_back({theta, trial, experiment::ExperimentAt(experiment, theta),
+                             FolderOf(out, folder_template, parameters, theta, trial),
+                             fmt::format("{}, trial {}", setting, trial)});
+    }
+  }
+  return plan;
+}
+
+/// Floors take longest to change.
+void PutFloorsFirst(SeriesPlan& plan, const std::vector<Parameter>& parameters) {
+  const std::size_t surface = IndexOfSurface(parameters);
+  if (surface == parameters.size()) return;
+  plan.has_floors = true;
+  const std::vector<experiment::ParameterValue>& levels = parameters[surface].levels;
+  const auto rank = [&](const PlannedTrial& trial) {
+    return std::find(levels.begin(), levels.end(), trial.theta[surface]) - levels.begin();
+  };
+  std::stable_sort(plan.trials.begin(), plan.trials.end(),
+                   [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+}
+
+}  // namespace
+
+SeriesPlan PlanGrid(const Experiment& loaded, const fs::path& out) {
+  Experiment experiment = loaded;
+  if (experiment.space.parameters.empty()) experiment.space = experiment::PaperSpace();
+  CheckDrivable(experiment);
+  const std::vector<Parameter>& parameters = experiment.space.parameters;
+  SeriesPlan plan = PlanOf(experiment, out, FolderTemplate(parameters));
+  PutFloorsFirst(plan, parameters);
+  return plan;
+}
+
+SeriesPlan PlanRepeats(const Experiment& loaded, int count, const fs::path& out) {
+  Experiment experiment = loaded;
+  experiment.space.parameters.clear();
+  experiment.reference.trials.names.clear();
+  for (int i = 1; i <= count; ++i) experiment.reference.trials.names.push_back(std::to_string(i));
+  SeriesPlan plan = PlanOf(experiment, out, "{trial}");
+  for (PlannedTrial& trial : plan.trials) trial.label = "trial " + trial.trial;
+  // A sweep of the simulator over no space would be the paper's.
+  plan.sweep.space.parameters = {
+      {.key = kSurface, .levels = {{experiment.simulation.terrain.surface, std::nullopt}}}};
+  return plan;
+}
+
+namespace {
+
+/// What a drive depends on; limits of the line or the camera may change from day to day.
+bool ChangesDrives(const std::string& key) {
+  for (const char* block : {"control.", "trial.", "space", "waypoints", "reference.path"}) {
+    if (key.starts_with(block)) return true;
+  }
+  return false;
+}
+
+/// Drives of two experiments must not end up in one table. --repeat may be given a larger number.
+void CheckSameSeries(const fs::path& file, const Experiment& sweep) {
+  if (!fs::exists(file)) return;
+  const Experiment before = experiment::LoadExperiment(
+      file.string(), {}, [](const std::string& path) { return files::ReadFile(path); });
+  std::map<std::string, std::string> old_values = experiment::FlatValues(before);
+  for (const auto& [key, value] : experiment::FlatValues(sweep)) {
+    if (!ChangesDrives(key) || old_values[key] == value) continue;
+    throw std::invalid_argument(fmt::format(
+        "{} is the table of other drives: {} was {} and is {} now; choose another --out",
+        file.string(), key, old_values[key].empty() ? "not there" : old_values[key], value));
+  }
+}
+
+/// An earlier try is evidence as well.
+void SetAside(const fs::path& folder) {
+  for (int i = 1;; ++i) {
+    const fs::path aside = folder.string() + std::to_string(i);
+    if (fs::exists(aside)) continue;
+    fs::rename(folder, aside);
+    return;
+  }
+}
+
+class Series {
+ public:
+  enum class End { kDone, kLeft, kQuit };
+
+  Series(const DriveRequest& request, const SeriesPlan& plan)
+      : request_(request), plan_(plan), session_(request) {}
+
+  /// Drives the trial unless it is done.
+  End Drive(const PlannedTrial& trial);
+  /// Before a sweep takes the processors.
+  void Close() {
+    session_.Close();
+    scene_.reset();
+  }
+
+ private:
+  std::optional<End> AskAboutUnfinished(const PlannedTrial& trial) const;
+  bool LayFloor(const PlannedTrial& trial);
+  void SetScene(const PlannedTrial& trial);
+
+  const DriveRequest& request_;
+  const SeriesPlan& plan_;
+  std::optional<SceneCommand> scene_;  // it outlives the port and the camera that it may serve
+  DriveSession session_;
+  std::optional<std::string> floor_;
+};
+
+Series::End Series::Drive(const PlannedTrial& trial) {
+  for (int tries = 0;; ++tries) {
+    if (fs::exists(trial.Unfinished())) {
+      if (tries > 0 && request_.yes) return End::kLeft;  // or it would go on for ever
+      if (const std::optional<End> end = AskAboutUnfinished(trial)) return *end;
+    }
+    if (!LayFloor(trial)) return End::kQuit;
+    SetScene(trial);
+    const hardware::DriveRun run = session_.DriveInto(trial.Unfinished(), trial.experiment);
+    if (scene_) Close();
+    Say(fmt::format("{}: {}", trial.label, run.trial.reason));
+    session_.RequireLog();
+    if (!run.has_begun) {
+      fs::remove_all(trial.Unfinished());
+      return End::kQuit;
+    }
+    if (run.trial.outcome == trial::Outcome::kReached) {
+      fs::rename(trial.Unfinished(), trial.folder);
+      return End::kDone;
+    }
+    if (run.evidence.stop->reason == hardware::StopReason::kSignal) return End::kQuit;
+  }
+}
+
+std::optional<Series::End> Series::AskAboutUnfinished(const PlannedTrial& trial) const {
+  const bool has_log = fs::exists(trial.Unfinished() / "trajectory.csv");
+  const char answer =
+      Ask(fmt::format("{} was begun and did not reach the end: {}s: skip, q: quit", trial.label,
+                      has_log ? "Enter: again, k: keep it as it is, " : "Enter: again, "),
+          has_log ? "aks" : "as", request_.yes);
+  switch (answer) {
+    case 'a':
+      SetAside(trial.Unfinished());
+      return std::nullopt;
+    case 'k':
+      fs::rename(trial.Unfinished(), trial.folder);
+      return End::kDone;
+    case 's':
+      return End::kLeft;
+    default:
+      return End::kQuit;
+  }
+}
+
+bool Series::LayFloor(const PlannedTrial& trial) {
+  const std::string& floor = trial.experiment.simulation.terrain.surface;
+  if (!plan_.has_floors || floor_ == floor) return true;
+  if (Ask(fmt::format("lay the {}; Enter (q: quit)", floor), "y", request_.yes) == 'q')
+    return false;
+  floor_ = floor;
+  return true;
+}
+
+void Series::SetScene(const PlannedTrial& trial) {
+  if (request_.before_each.empty()) return;
+  std::vector<std::string> words = WordsOf(request_.before_each);
+  // Those of a repeat are none: its space was made for the sweep.
+  const std::vector<Parameter> parameters =
+      trial.theta.empty() ? std::vector<Parameter>() : plan_.sweep.space.parameters;
+  for (std::string& word : words) {
+    word = experiment::FillTemplate(word, parameters, trial.theta, trial.trial);
+  }
+  scene_.emplace(words);
+  const DriveAddress to = scene_->address().value_or(DriveAddress{});
+  session_.MoveTo(to.port, to.camera, to.calibration);
+}
+
+int RunSweep(const fs::path& out, bool json) {
+  std::vector<std::string> words{"rift", "sweep", (out / "sweep.yaml").string(), "--out",
+                                 (out / "sweep").string()};
+  if (json) words.emplace_back("--json");
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  return RunCommandLine(static_cast<int>(arguments.size()), arguments.data(), {});
+}
+
+}  // namespace
+
+int DriveSeries(const DriveRequest& request, const Experiment& experiment) {
+  const fs::path out = NewFolder(request, experiment);
+  RefuseSweepFolder(out);
+  const SeriesPlan plan =
+      request.grid ? PlanGrid(experiment, out) : PlanRepeats(experiment, request.repeat, out);
+  const files::FolderLock lock(out);
+  CheckSameSeries(out / "sweep.yaml", plan.sweep);
+  files::WriteFile(out / "sweep.yaml", experiment::WriteExperiment(plan.sweep));
+
+  const auto is_done = [](const PlannedTrial& trial) { return fs::exists(trial.folder); };
+  const auto count = plan.trials.size();
+  Say(fmt::format("{} drives into {}, {} of them done", count, out.string(),
+                  std::count_if(plan.trials.begin(), plan.trials.end(), is_done)));
+  Series series(request, plan);
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const PlannedTrial& trial = plan.trials[i];
+    if (is_done(trial)) continue;
+    Say(fmt::format("drive {} of {}: {}", i + 1, count, trial.label));
+    const Series::End end = series.Drive(trial);
+    if (end == Series::End::kQuit) {
+      Say("stopped; the same command goes on where it was");
+      return kNotReached;
+    }
+    left += end == Series::End::kLeft;
+  }
+  series.Close();
+  if (left > 0)
+    Say(
+        fmt::format("{} of {} drives did not reach the end; the same command asks "
+                    "about them again",
+                    left, count));
+  const int reported = request.grid ? RunSweep(out, request.json) : kDone;
+  if (!request.grid) {
+    Say(fmt::format("against the simulator: rift sweep {} --out {}", (out / "sweep.yaml").string(),
+                    (out / "sweep").string()));
+  }
+  return left > 0 ? kNotReached : reported;
+}
+
+}  // namespace rift::commands

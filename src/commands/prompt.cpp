@@ -1,0 +1,38 @@
+#include "prompt.hpp"
+
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "print.hpp"
+#include "rift/hardware/arming.hpp"
+
+namespace rift::commands {
+namespace {
+
+constexpr std::chrono::milliseconds kPoll{20};
+}  // namespace
+
+char Ask(const std::string& question, std::string_view keys, bool says_yes) {
+  Say(question);
+  if (says_yes) return keys.front();
+  const hardware::SignalWatch signals;
+  hardware::OperatorKeys pressed;
+  if (!pressed.IsTerminal()) {
+    throw std::invalid_argument(
+        "stdin is no terminal, so nobody can answer: give --yes to answer Enter to everything");
+  }
+  while (!signals.Seen()) {
+    const std::optional<char> key = pressed.Pressed();
+    if (!key) {
+      std::this_thread::sleep_for(kPoll);
+    } else if (*key == '\n' || *key == '\r') {
+      return keys.front();
+    } else if (*key == 'q' || keys.find(*key) != std::string_view::npos) {
+      return *key;
+    }
+  }
+  return 'q';
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,134 @@
+#include "commands/drive_series.hpp"
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <set>
+#include <thread>
+
+#include "commands/before_each.hpp"
+#include "rift/files/files.hpp"
+#include "support/paper_waypoints.hpp"
+#include "support/process.hpp"
+#include "support/until.hpp"
+
+namespace rift::commands {
+namespace {
+
+experiment::ParameterValue Word(const std::string& text) { return {text, std::nullopt}; }
+
+experiment::Experiment TwoFloors() {
+  experiment::Experiment experiment;
+  experiment.name = "floors";
+  experiment.waypoints = test::PaperWaypoints();
+  experiment.reference.trials.names = {"1", "2"};
+  experiment.space.parameters = {
+      {.key = "control.v_max",
+       .levels = {experiment::NumberValue(0.3), experiment::NumberValue(0.4)}},
+      {.key = "simulation.terrain.surface", .levels = {Word("parchment"), Word("ground")}}};
+  return experiment;
+}
+
+TEST_CASE("A grid is driven floor by floor and every trial has a folder of its own") {
+  const SeriesPlan plan = PlanGrid(TwoFloors(), "/out");
+  REQUIRE(plan.trials.size() == 8);
+  CHECK(plan.has_floors);
+  int changes = 0;
+  std::set<std::string> folders;
+  for (std::size_t i = 0; i < plan.trials.size(); ++i) {
+    const auto floor_of = [&](std::size_t k) {
+      return plan.trials[k].experiment.simulation.terrain.surface;
+    };
+    changes += i > 0 && floor_of(i) != floor_of(i - 1);
+    folders.insert(plan.trials[i].folder);
+  }
+  CHECK(changes == 1);
+  CHECK(folders.size() == 8);
+  CHECK(plan.trials[0].folder == "/out/v_max0.3_parchment_1");
+  CHECK(plan.trials[0].experiment.control.v_max == 0.3);
+  CHECK(plan.trials[7].folder == "/out/v_max0.4_ground_2");
+  CHECK(plan.trials[7].experiment.control.v_max == 0.4);
+  CHECK(plan.trials[7].label == "v_max 0.4, surface ground, trial 2");
+}
+
+TEST_CASE("The sweep of a grid holds the simulator, started as its log, against the drives") {
+  const experiment::Experiment sweep = PlanGrid(TwoFloors(), "/out").sweep;
+  CHECK(sweep.candidate.kind == experiment::CandidateKind::kSimulation);
+  CHECK(sweep.start == experiment::Start::kReference);
+  CHECK(sweep.reference.kind == experiment::ReferenceKind::kLogs);
+  CHECK(sweep.reference.path.text == "/out/v_max{v_max}_{surface}_{trial}/trajectory.csv");
+  CHECK(sweep.reference.trials.names == std::vector<std::string>{"1", "2"});
+}
+
+TEST_CASE("A grid without a space is the paper's") {
+  experiment::Experiment experiment = TwoFloors();
+  experiment.space.parameters.clear();
+  CHECK(PlanGrid(experiment, "/out").trials.size() == 5 * 2 * 3 * 2);
+}
+
+TEST_CASE("What no drive can vary is refused with its name") {
+  experiment::Experiment experiment = TwoFloors();
+  experiment.space.parameters[0].key = "simulation.motor.lag_s";
+  CHECK_THROWS_WITH(PlanGrid(experiment, "/out"), Catch::Contains("simulation.motor.lag_s"));
+  experiment = TwoFloors();
+  experiment.space.parameters[0].levels.clear();  // a range
+  CHECK_THROWS_AS(PlanGrid(experiment, "/out"), std::invalid_argument);
+  experiment = TwoFloors();
+  experiment.candidate.kind = experiment::CandidateKind::kLogs;
+  CHECK_THROWS_WITH(PlanGrid(experiment, "/out"), Catch::Contains("candidate.kind is logs"));
+  experiment = TwoFloors();
+  experiment.reference.trials.names = {"../1"};
+  CHECK_THROWS_WITH(PlanGrid(experiment, "/out"), Catch::Contains("is no folder name"));
+}
+
+TEST_CASE("Repeats go into numbered folders that a sweep of one setting reads") {
+  const SeriesPlan plan = PlanRepeats(TwoFloors(), 3, "/out");
+  REQUIRE(plan.trials.size() == 3);
+  CHECK_FALSE(plan.has_floors);
+  CHECK(plan.trials[2].folder == "/out/3");
+  CHECK(plan.sweep.reference.path.text == "/out/{trial}/trajectory.csv");
+  CHECK(plan.sweep.reference.trials.names.size() == 3);
+  REQUIRE(plan.sweep.space.parameters.size() == 1);  // none would mean the paper's grid
+  CHECK(plan.sweep.space.parameters[0].levels ==
+        std::vector{Word(TwoFloors().simulation.terrain.surface)});
+}
+
+TEST_CASE("A command is parted into words at its blanks and no shell reads them") {
+  CHECK(WordsOf("twin --set 'a b' $HOME") ==
+        std::vector<std::string>{"twin", "--set", "a b", "$HOME"});
+}
+
+TEST_CASE("A scene that says where it is goes on until it is no longer needed") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "scene",
+                  "echo ready\necho '{\"port\": \"/dev/p\", \"camera\": \"c\"}'\n"
+                  "echo $$ > " +
+                      folder /
+                          "pid\n"
+                          "trap 'echo over > " +
+                      folder /
+                          "over; exit' TERM\n"
+                          "while :; do sleep 0.01; done\n");
+  {
+    const SceneCommand scene({"sh", folder / "scene"});
+    REQUIRE(scene.address());
+    CHECK(scene.address()->port == "/dev/p");
+    CHECK(scene.address()->camera == "c");
+    CHECK(scene.address()->calibration.empty());
+    test::WaitUntil("it went on", [&] { return std::filesystem::exists(folder / "pid"); });
+    test::WaitUntil("it can be told", [&] { return !files::ReadFile(folder / "pid").empty(); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // for the trap
+  }
+  CHECK(std::filesystem::exists(folder / "over"));
+  CHECK(::kill(std::stoi(files::ReadFile(folder / "pid")), 0) != 0);
+}
+
+TEST_CASE("A scene that was reset needs no address and one that fails ends the series") {
+  CHECK_FALSE(SceneCommand({"true"}).address());
+  CHECK_THROWS_WITH(SceneCommand({"false"}), Catch::Contains("false ended with 1"));
+  CHECK_THROWS_WITH(SceneCommand({"/no/such/program"}), Catch::Contains("could not be run"));
+  CHECK_THROWS_WITH(SceneCommand({"echo", "{port}"}), Catch::Contains("no object of port"));
+}
+
+}  // namespace
+}  // namespace rift::commands

@@ -1,0 +1,116 @@
+#include "commands/start_gate.hpp"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+namespace rift::commands {
+namespace {
+
+const geometry::Pose2 kStart{1.0, 2.0, geometry::kPi};
+const geometry::Pose2 kNear{1.01, 2.0, -geometry::RadFromDeg(179.0)};
+const geometry::Pose2 kFar{1.0, 2.12, geometry::kPi};
+const geometry::Pose2 kTurned{1.0, 2.0, geometry::kPi - 0.2};
+
+/// A person who presses Enter, and what this person was told.
+struct Person {
+  bool has_agreed = false;
+  std::vector<std::string> told, shown;
+
+  StartGate::Person AtTerminal() {
+    StartGate::Person person = Absent();
+    person.ask_again = [this] { has_agreed = false; };
+    person.show = [this](const std::string& line) { shown.push_back(line); };
+    return person;
+  }
+  StartGate::Person Absent() {
+    return {.has_agreed = [this] { return has_agreed; },
+            .say = [this](const std::string& line) { told.push_back(line); }};
+  }
+};
+
+TEST_CASE("How far off a robot stands does not depend on how its angle is written") {
+  const Placement placement = PlacementOf(kNear, kStart);
+  CHECK(placement.off_m == Approx(0.01));
+  CHECK(placement.off_deg == Approx(1.0));
+  CHECK(PlacementText(placement) == "1.0 cm, 1 deg off");
+}
+
+TEST_CASE("A robot starts when the countdown after Enter is over") {
+  Person person;
+  StartGate gate({}, kStart, false, person.AtTerminal());
+  CHECK_FALSE(gate.MayStart(0.0, kNear));
+  CHECK_FALSE(gate.MayStart(60.0, kNear));
+  person.has_agreed = true;
+  CHECK_FALSE(gate.MayStart(60.1, kNear));
+  CHECK_FALSE(gate.MayStart(62.5, kNear));
+  CHECK_FALSE(gate.MayStart(63.0, kNear));
+  CHECK(gate.MayStart(63.2, kNear));
+  REQUIRE(person.told.size() == 1);
+  CHECK_THAT(person.told[0], Catch::Contains("starts in 3 s") && Catch::Contains("cancels"));
+  CHECK_THAT(person.shown.back(), Catch::Contains("any key"));
+  CHECK(person.shown[person.shown.size() - 2] == "1 ...");
+}
+
+TEST_CASE("No countdown starts with Enter") {
+  Person person{.has_agreed = true};
+  StartGate gate({.countdown_s = 0.0}, kStart, false, person.AtTerminal());
+  CHECK(gate.MayStart(0.0, kNear));
+  CHECK(person.told.empty());
+}
+
+TEST_CASE("While nobody agreed the distance from the start is shown as it changes") {
+  Person person;
+  StartGate gate({}, kStart, false, person.AtTerminal());
+  gate.MayStart(0.0, kFar);
+  gate.MayStart(0.01, kNear);  // too soon to be read
+  gate.MayStart(0.2, kNear);
+  gate.MayStart(0.4, std::nullopt);
+  REQUIRE(person.shown.size() == 3);
+  CHECK(person.shown[0] == "put the robot at the start: 12.0 cm, 0 deg off; Enter");
+  CHECK(person.shown[1] == "put the robot at the start: 1.0 cm, 1 deg off; Enter");
+  CHECK_THAT(person.shown[2], Catch::Contains("not seen"));
+}
+
+TEST_CASE("A robot that stands far off or turned is refused until it is put right") {
+  for (const geometry::Pose2& wrong : {kFar, kTurned}) {
+    Person person{.has_agreed = true};
+    StartGate gate({}, kStart, false, person.AtTerminal());
+    CHECK_FALSE(gate.MayStart(0.0, wrong));
+    CHECK_FALSE(person.has_agreed);
+    REQUIRE(person.told.size() == 1);
+    CHECK_THAT(person.told[0], Catch::Contains("0.05 m and 5 deg are allowed") &&
+                                   Catch::Contains("x 1.000 m, y 2.000 m, heading 180 deg"));
+    CHECK_FALSE(gate.MayStart(10.0, kNear));  // Enter was not pressed again
+    person.has_agreed = true;
+    CHECK_FALSE(gate.MayStart(11.0, kNear));
+    CHECK(gate.MayStart(14.1, kNear));
+  }
+}
+
+TEST_CASE("A robot that is pushed away during the countdown does not start") {
+  Person person{.has_agreed = true};
+  StartGate gate({}, kStart, false, person.AtTerminal());
+  CHECK_FALSE(gate.MayStart(0.0, kNear));
+  CHECK_FALSE(gate.MayStart(3.5, kFar));
+  CHECK_FALSE(person.has_agreed);
+}
+
+TEST_CASE("Where nobody can be asked a robot that is far off ends the drive with what to do") {
+  Person person{.has_agreed = true};
+  StartGate gate({}, kStart, false, person.Absent());
+  CHECK_THROWS_WITH(gate.MayStart(0.0, kFar),
+                    Catch::Contains("0.120 m and 0.0 deg off") && Catch::Contains("--any-start"));
+}
+
+TEST_CASE("With any start a robot that is far off is warned of once") {
+  Person person{.has_agreed = true};
+  StartGate gate({.countdown_s = 0.5}, kStart, true, person.Absent());
+  CHECK_FALSE(gate.MayStart(0.0, kFar));
+  CHECK_FALSE(gate.MayStart(0.1, kFar));
+  CHECK(gate.MayStart(0.6, kFar));
+  REQUIRE(person.told.size() == 2);
+  CHECK_THAT(person.told[0], Catch::StartsWith("warning: the robot stands 0.120 m"));
+}
+
+}  // namespace
+}  // namespace rift::commands
