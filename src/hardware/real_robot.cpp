@@ -26,6 +26,7 @@ class RealRobot::Core {
       : clock_(clock),
         poses_(poses),
         is_threaded_(options.thread),
+        is_dry_run_(options.dry_run),
         start_s_(clock.Now_s()),
         hardware_(options.hardware),
         guard_(options.hardware.guard, options.dry_run),
@@ -78,6 +79,7 @@ class RealRobot::Core {
   Clock& clock_;
   PoseSource& poses_;
   bool is_threaded_;
+  bool is_dry_run_;
   double start_s_;
   std::mutex mutex_;
   HardwareOptions hardware_;
@@ -161,10 +163,11 @@ void RealRobot::Core::Exchange(double now_s) {
   CheckMotion(now_s);
 }
 
-// Only what an armed robot does on its own counts: before, it may be carried to its start.
+// Only what an armed robot does on its own counts: before, it may be carried to its start, and in a
+// dry run along the waypoints.
 void RealRobot::Core::CheckMotion(double now_s) {
   const std::optional<Disagreement> found = motion_.Check();
-  if (!found || guard_.state() != DriveState::kArmed) return;
+  if (!found || is_dry_run_ || guard_.state() != DriveState::kArmed) return;
   guard_.Stop(found->reason, found->text, now_s);
 }
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"

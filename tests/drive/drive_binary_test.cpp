@@ -129,328 +129,330 @@ TEST_CASE("A drive whose streams are closed or full arrives and its robot hears 
       return true;
     });
   }
-  TEST_CASE("A dry run of the binary decides and the robot stands where it stood") {
-    Scene scene;
-    const geometry::Pose2 start = scene.floor.Pose();
-    std::vector<std::string> arguments = scene.Arguments();
-    arguments.insert(arguments.end(), {"--dry-run", "--seconds", "2"});
-    const test::ProcessResult result = test::RunRift(arguments);
-    INFO(result.out << result.err);
-    CHECK(result.exit_code == 0);
-    CHECK_THAT(result.err, Catch::Contains("nothing moves"));
-    CHECK_THAT(result.out, Catch::Contains("zeros alone"));
-    CHECK(scene.floor.Pose() == start);
-    CHECK(scene.Summary()["dry_run"] == true);
-    CHECK(scene.Summary()["outcome"] == "timed_out");
-    const std::string decided = files::ReadFile(scene.folder / "run/commands.csv");
-    const auto count = [&decided](const std::string& text) {
-      int found = 0;
-      for (std::size_t at = 0; (at = decided.find(text, at)) != decided.npos; ++at) ++found;
-      return found;
-    };
-    CHECK(count(",0,0\n") < count("\n") - 1);  // and not only while it settled
-  }
+}
 
-  TEST_CASE("Ctrl-C in the countdown ends the drive before anything moves") {
-    Scene scene;
-    const geometry::Pose2 start = scene.floor.Pose();
-    std::vector<std::string> arguments = scene.Arguments();
-    arguments.insert(arguments.end(), {"--countdown", "60"});
-    test::RunningRift rift(arguments);
-    rift.WaitUntil("the countdown began",
-                   [&] { return rift.Err().find("starts in 60 s") != std::string::npos; });
-    rift.Signal(SIGINT);
-    const test::ProcessResult result = rift.Wait();
-    INFO(result.out << result.err);
-    CHECK(result.exit_code == 1);
-    CHECK_THAT(result.out, Catch::Contains("stopped before the start: SIGINT came"));
-    CHECK(scene.floor.Pose() == start);
-    CHECK_FALSE(std::filesystem::exists(scene.folder.Path() / "run/trajectory.csv"));
-  }
+TEST_CASE("A dry run of the binary decides and the robot stands where it stood") {
+  Scene scene;
+  const geometry::Pose2 start = scene.floor.Pose();
+  std::vector<std::string> arguments = scene.Arguments();
+  arguments.insert(arguments.end(), {"--dry-run", "--seconds", "2"});
+  const test::ProcessResult result = test::RunRift(arguments);
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 0);
+  CHECK_THAT(result.err, Catch::Contains("nothing moves"));
+  CHECK_THAT(result.out, Catch::Contains("zeros alone"));
+  CHECK(scene.floor.Pose() == start);
+  CHECK(scene.Summary()["dry_run"] == true);
+  CHECK(scene.Summary()["outcome"] == "timed_out");
+  const std::string decided = files::ReadFile(scene.folder / "run/commands.csv");
+  const auto count = [&decided](const std::string& text) {
+    int found = 0;
+    for (std::size_t at = 0; (at = decided.find(text, at)) != decided.npos; ++at) ++found;
+    return found;
+  };
+  CHECK(count(",0,0\n") < count("\n") - 1);  // and not only while it settled
+}
 
-  /// Or for the end of a drive that was interrupted.
-  void WaitForMotion(test::RunningRift & rift, Scene & scene) {
-    test::WaitUntil("the robot moves or the drive is over",
-                    [&] { return scene.floor.Moves() || !rift.IsRunning(); });
-  }
+TEST_CASE("Ctrl-C in the countdown ends the drive before anything moves") {
+  Scene scene;
+  const geometry::Pose2 start = scene.floor.Pose();
+  std::vector<std::string> arguments = scene.Arguments();
+  arguments.insert(arguments.end(), {"--countdown", "60"});
+  test::RunningRift rift(arguments);
+  rift.WaitUntil("the countdown began",
+                 [&] { return rift.Err().find("starts in 60 s") != std::string::npos; });
+  rift.Signal(SIGINT);
+  const test::ProcessResult result = rift.Wait();
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 1);
+  CHECK_THAT(result.out, Catch::Contains("stopped before the start: SIGINT came"));
+  CHECK(scene.floor.Pose() == start);
+  CHECK_FALSE(std::filesystem::exists(scene.folder.Path() / "run/trajectory.csv"));
+}
 
-  TEST_CASE("A signal to the binary stops the robot and the run is saved with its reason") {
-    for (const auto& [signal, name] :
-         {std::pair{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}) {
-      Uninterrupted(kAll, [signal = signal, name = name](Scene& scene) {
-        test::RunningRift rift(scene.Arguments());
-        WaitForMotion(rift, scene);
-        rift.Signal(signal);
-        const test::ProcessResult result = rift.Wait();
-        if (WasInterrupted(scene)) return false;
-        INFO(result.out << result.err);
-        CHECK(result.exit_code == 1);
-        CHECK_FALSE(scene.floor.Moves());
-        CHECK(scene.Summary()["stop"]["reason"] == "signal");
-        CHECK(scene.Summary()["stop"]["acknowledged"] == true);
-        CHECK_THAT(scene.Summary()["reason"].get<std::string>(), Catch::Contains(name));
-        return true;
-      });
-    }
-  }
+/// Or for the end of a drive that was interrupted.
+void WaitForMotion(test::RunningRift& rift, Scene& scene) {
+  test::WaitUntil("the robot moves or the drive is over",
+                  [&] { return scene.floor.Moves() || !rift.IsRunning(); });
+}
 
-  TEST_CASE("The robot of a killed binary stops by itself") {
-    Uninterrupted(kAll, [](Scene& scene) {
+TEST_CASE("A signal to the binary stops the robot and the run is saved with its reason") {
+  for (const auto& [signal, name] :
+       {std::pair{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}) {
+    Uninterrupted(kAll, [signal = signal, name = name](Scene& scene) {
       test::RunningRift rift(scene.Arguments());
       WaitForMotion(rift, scene);
-      rift.Signal(SIGKILL);
+      rift.Signal(signal);
       const test::ProcessResult result = rift.Wait();
-      if (WasInterrupted(scene)) return false;
-      INFO(result.out << result.err);
-      CHECK(result.exit_code == 128 + SIGKILL);
-      test::WaitUntil("the robot stands", [&] { return !scene.floor.Moves(); });
-      return true;
-    });
-  }
-
-  std::string LogOf(const Scene& scene) {
-    return files::ReadIfThere(scene.folder / "run/trajectory.csv").value_or("");
-  }
-
-  /// Or for the end of a drive that was interrupted.
-  void WaitForRows(test::RunningRift & rift, Scene & scene) {
-    WaitForMotion(rift, scene);
-    const size_t before = LogOf(scene).size();
-    test::WaitUntil("a second of the drive is on disk or the drive is over",
-                    [&] { return LogOf(scene).size() > before + 3000 || !rift.IsRunning(); });
-  }
-
-  TEST_CASE("A killed drive leaves its rows, which rift gap and a replay read") {
-    Uninterrupted(kAll, [](Scene& scene) {
-      test::RunningRift rift(scene.Arguments());
-      WaitForRows(rift, scene);
-      rift.Signal(SIGKILL);
-      const geometry::Pose2 end = scene.floor.Pose();
-      const test::ProcessResult result = rift.Wait();
-      if (WasInterrupted(scene)) return false;
-      INFO(result.out << result.err);
-      CHECK(result.exit_code == 128 + SIGKILL);
-      CHECK(scene.Summary()["state"] == "interrupted");
-      const auto rows = trajectory::ReadLog(LogOf(scene), "log").trajectory.poses;
-      CHECK((rows.back().Position() - end.Position()).norm() < 0.2);  // a second at most
-      const std::string log = scene.folder / "run/trajectory.csv";
-      test::WriteText(log, files::ReadFile(log) + "1.5,0.3");
-      const test::ProcessResult gap =
-          test::RunRift({"gap", log, test::SourceDir() + "/data/example/robot1.csv"});
-      INFO(gap.err);
-      CHECK(gap.exit_code == 0);
-      CHECK_THAT(gap.err, Catch::Contains("cut short"));
-
-      const test::ProcessResult shown = test::RunRift(
-          {"drive", "--replay", scene.folder / "run", "--video", scene.folder / "run.mp4"});
-      INFO(shown.err);
-      CHECK(shown.exit_code == 0);
-      CHECK_THAT(shown.out, Catch::StartsWith("interrupted: "));
-      CHECK(std::filesystem::file_size(scene.folder / "run.mp4") > 1000);
-      return true;
-    });
-  }
-
-  /// After the log can no longer be written: the robot is told to stop, then the operator why.
-  bool IsStoppedForItsLog(test::RunningRift & rift, Scene & scene, const std::string& says) {
-    const test::ProcessResult result = rift.Wait();
-    INFO(result.out << result.err);
-    const auto summary = nlohmann::json::parse(result.out);
-    if (summary["stop"]["reason"] != "log_failed") return false;  // a busy machine came first
-    CHECK(result.exit_code == 3);
-    CHECK_FALSE(scene.floor.Moves());
-    CHECK_THAT(result.err, Catch::Contains("rift: the log is not whole") && Catch::Contains(says));
-    CHECK(summary["state"] == "interrupted");
-    CHECK(summary["stop"]["acknowledged"] == true);
-    return true;
-  }
-
-  TEST_CASE("A run folder that is removed during the drive stops the robot first") {
-    Uninterrupted(kAll, [](Scene& scene) {
-      std::vector<std::string> arguments = scene.Arguments();
-      arguments.push_back("--json");
-      test::RunningRift rift(arguments);
-      WaitForRows(rift, scene);
-      if (!rift.IsRunning()) return false;
-      std::filesystem::remove_all(scene.folder / "run");
-      const bool is_stopped = IsStoppedForItsLog(rift, scene, "was removed or moved");
-      CHECK_FALSE(std::filesystem::exists(scene.folder / "run"));
-      return is_stopped;
-    });
-  }
-
-  TEST_CASE("A log that finds no room stops the robot first and keeps its rows") {
-    Uninterrupted(kAll, [](Scene& scene) {
-      std::vector<std::string> arguments = scene.Arguments();
-      arguments.push_back("--json");
-      rlimit before{};
-      REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
-      const rlimit limit{kRoom, before.rlim_max};
-      REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
-      test::RunningRift rift(arguments);
-      REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
-      const bool is_stopped = IsStoppedForItsLog(rift, scene, "File too large");
-      CHECK_THAT(LogOf(scene), Catch::EndsWith("\n"));
-      CHECK(LogOf(scene).size() > kRoom / 2);
-      CHECK(scene.Summary()["state"] == "interrupted");
-      return is_stopped;
-    });
-  }
-
-  TEST_CASE("What is no drive cannot be replayed and is refused in one line") {
-    const test::TemporaryFolder folder;
-    const auto refused = [](const std::vector<std::string>& words) {
-      std::vector<std::string> arguments{"drive", "--replay"};
-      arguments.insert(arguments.end(), words.begin(), words.end());
-      const test::ProcessResult result = test::RunRift(arguments);
-      CHECK(result.exit_code == 2);
-      CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
-      return result.err;
-    };
-    CHECK_THAT(refused({folder / "none"}), Catch::Contains("none holds no drive"));
-    CHECK_THAT(refused({folder.Path()}), Catch::Contains("no experiment.yaml in it"));
-    CHECK_THAT(refused({folder.Path(), "--port", "/dev/rfcomm0"}), Catch::Contains("--port"));
-  }
-
-  TEST_CASE("A camera that goes away in the middle stops the robot even without a display") {
-    const test::Environment display("DISPLAY", "");
-    Uninterrupted(10, [](Scene& scene) {
-      std::vector<std::string> arguments = scene.Arguments();
-      arguments.push_back("--view");
-      const test::ProcessResult result = test::RunRift(arguments);
       if (WasInterrupted(scene)) return false;
       INFO(result.out << result.err);
       CHECK(result.exit_code == 1);
       CHECK_FALSE(scene.floor.Moves());
-      CHECK_THAT(result.err, Catch::Contains("DISPLAY is not set") &&
-                                 Catch::Contains("driving without --view"));
-      CHECK(scene.Summary()["stop"]["reason"] == "camera_gone");
+      CHECK(scene.Summary()["stop"]["reason"] == "signal");
       CHECK(scene.Summary()["stop"]["acknowledged"] == true);
+      CHECK_THAT(scene.Summary()["reason"].get<std::string>(), Catch::Contains(name));
       return true;
     });
   }
+}
 
-  TEST_CASE("Nobody to press a key and no yes is refused before the port is opened") {
-    Scene scene;
+TEST_CASE("The robot of a killed binary stops by itself") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    test::RunningRift rift(scene.Arguments());
+    WaitForMotion(rift, scene);
+    rift.Signal(SIGKILL);
+    const test::ProcessResult result = rift.Wait();
+    if (WasInterrupted(scene)) return false;
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 128 + SIGKILL);
+    test::WaitUntil("the robot stands", [&] { return !scene.floor.Moves(); });
+    return true;
+  });
+}
+
+std::string LogOf(const Scene& scene) {
+  return files::ReadIfThere(scene.folder / "run/trajectory.csv").value_or("");
+}
+
+/// Or for the end of a drive that was interrupted.
+void WaitForRows(test::RunningRift& rift, Scene& scene) {
+  WaitForMotion(rift, scene);
+  const size_t before = LogOf(scene).size();
+  test::WaitUntil("a second of the drive is on disk or the drive is over",
+                  [&] { return LogOf(scene).size() > before + 3000 || !rift.IsRunning(); });
+}
+
+TEST_CASE("A killed drive leaves its rows, which rift gap and a replay read") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    test::RunningRift rift(scene.Arguments());
+    WaitForRows(rift, scene);
+    rift.Signal(SIGKILL);
+    const geometry::Pose2 end = scene.floor.Pose();
+    const test::ProcessResult result = rift.Wait();
+    if (WasInterrupted(scene)) return false;
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 128 + SIGKILL);
+    CHECK(scene.Summary()["state"] == "interrupted");
+    const auto rows = trajectory::ReadLog(LogOf(scene), "log").trajectory.poses;
+    CHECK((rows.back().Position() - end.Position()).norm() < 0.2);  // a second at most
+    const std::string log = scene.folder / "run/trajectory.csv";
+    test::WriteText(log, files::ReadFile(log) + "1.5,0.3");
+    const test::ProcessResult gap =
+        test::RunRift({"gap", log, test::SourceDir() + "/data/example/robot1.csv"});
+    INFO(gap.err);
+    CHECK(gap.exit_code == 0);
+    CHECK_THAT(gap.err, Catch::Contains("cut short"));
+
+    const test::ProcessResult shown = test::RunRift(
+        {"drive", "--replay", scene.folder / "run", "--video", scene.folder / "run.mp4"});
+    INFO(shown.err);
+    CHECK(shown.exit_code == 0);
+    CHECK_THAT(shown.out, Catch::StartsWith("interrupted: "));
+    CHECK(std::filesystem::file_size(scene.folder / "run.mp4") > 1000);
+    return true;
+  });
+}
+
+/// After the log can no longer be written: the robot is told to stop, then the operator why.
+bool IsStoppedForItsLog(test::RunningRift& rift, Scene& scene, const std::string& says) {
+  const test::ProcessResult result = rift.Wait();
+  INFO(result.out << result.err);
+  const auto summary = nlohmann::json::parse(result.out);
+  if (summary["stop"]["reason"] != "log_failed") return false;  // a busy machine came first
+  CHECK(result.exit_code == 3);
+  CHECK_FALSE(scene.floor.Moves());
+  CHECK_THAT(result.err, Catch::Contains("rift: the log is not whole") && Catch::Contains(says));
+  CHECK(summary["state"] == "interrupted");
+  CHECK(summary["stop"]["acknowledged"] == true);
+  return true;
+}
+
+TEST_CASE("A run folder that is removed during the drive stops the robot first") {
+  Uninterrupted(kAll, [](Scene& scene) {
     std::vector<std::string> arguments = scene.Arguments();
-    arguments.pop_back();
+    arguments.push_back("--json");
+    test::RunningRift rift(arguments);
+    WaitForRows(rift, scene);
+    if (!rift.IsRunning()) return false;
+    std::filesystem::remove_all(scene.folder / "run");
+    const bool is_stopped = IsStoppedForItsLog(rift, scene, "was removed or moved");
+    CHECK_FALSE(std::filesystem::exists(scene.folder / "run"));
+    return is_stopped;
+  });
+}
+
+TEST_CASE("A log that finds no room stops the robot first and keeps its rows") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    std::vector<std::string> arguments = scene.Arguments();
+    arguments.push_back("--json");
+    rlimit before{};
+    REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+    const rlimit limit{kRoom, before.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+    test::RunningRift rift(arguments);
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
+    const bool is_stopped = IsStoppedForItsLog(rift, scene, "File too large");
+    CHECK_THAT(LogOf(scene), Catch::EndsWith("\n"));
+    CHECK(LogOf(scene).size() > kRoom / 2);
+    CHECK(scene.Summary()["state"] == "interrupted");
+    return is_stopped;
+  });
+}
+
+TEST_CASE("What is no drive cannot be replayed and is refused in one line") {
+  const test::TemporaryFolder folder;
+  const auto refused = [](const std::vector<std::string>& words) {
+    std::vector<std::string> arguments{"drive", "--replay"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
     const test::ProcessResult result = test::RunRift(arguments);
     CHECK(result.exit_code == 2);
-    CHECK_THAT(result.err, Catch::Contains("give --yes"));
-    CHECK_FALSE(std::filesystem::exists(scene.folder.Path() / "run"));
-  }
-
-  /// A device that shows one of the recorded pictures of 960x720 for ever: the robot stands still.
-  struct Device {
-    Device() {
-      std::filesystem::create_directory(folder.Path() / "frames");
-      std::filesystem::copy_file(test::SourceDir() + "/data/camera/frames/000.jpg",
-                                 folder / "frames/000.jpg");
-    }
-    test::TemporaryFolder folder;
-    const test::Environment shim{"LD_PRELOAD", test::BuildDir() + "/tests/librift_v4l2_shim.so"};
-    const test::Environment jpegs{"RIFT_SHIM_JPEGS", folder / "frames"};
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    return result.err;
   };
+  CHECK_THAT(refused({folder / "none"}), Catch::Contains("none holds no drive"));
+  CHECK_THAT(refused({folder.Path()}), Catch::Contains("no experiment.yaml in it"));
+  CHECK_THAT(refused({folder.Path(), "--port", "/dev/rfcomm0"}), Catch::Contains("--port"));
+}
 
-  TEST_CASE("A device is asked for the size of its calibration as in tracking") {
-    Scene scene;
-    const std::string calibration = test::SourceDir() + "/data/camera/camera.yaml";
+TEST_CASE("A camera that goes away in the middle stops the robot even without a display") {
+  const test::Environment display("DISPLAY", "");
+  Uninterrupted(10, [](Scene& scene) {
     std::vector<std::string> arguments = scene.Arguments();
-    const auto set = [&arguments](const std::string& flag, const std::string& value) {
-      *(std::find(arguments.begin(), arguments.end(), flag) + 1) = value;
-    };
-    set("--camera", "/dev/video0");
-    set("--calibration", calibration);
-    arguments.insert(arguments.end(),
-                     {"--set", "trial.timeout_s=1", "--set", "track.capture.same_s=60", "--set",
-                      "hardware.turn.enabled=false", "--any-start"});
-    const Device device;
+    arguments.push_back("--view");
     const test::ProcessResult result = test::RunRift(arguments);
+    if (WasInterrupted(scene)) return false;
     INFO(result.out << result.err);
     CHECK(result.exit_code == 1);
-    CHECK_THAT(result.err, Catch::Contains("the robot stands at x"));
-    CHECK(scene.Summary()["outcome"] == "timed_out");
-    CHECK(scene.Summary()["poses"] > 5);
-    const std::string kept = files::ReadFile(scene.folder / "run/camera.yaml");
-    CHECK(vision::ReadCamera(kept, "camera.yaml").width_px == 960);
+    CHECK_FALSE(scene.floor.Moves());
+    CHECK_THAT(result.err,
+               Catch::Contains("DISPLAY is not set") && Catch::Contains("driving without --view"));
+    CHECK(scene.Summary()["stop"]["reason"] == "camera_gone");
+    CHECK(scene.Summary()["stop"]["acknowledged"] == true);
+    return true;
+  });
+}
 
-    const test::ProcessResult tracked = test::RunRift(
-        {"track", "--camera", "/dev/video0", "--calibration", calibration, "--out",
-         scene.folder / "log.csv", "--duration", "2", "--set", "track.capture.same_s=60"});
-    INFO(tracked.out << tracked.err);
-    CHECK(tracked.exit_code == 0);
-  }
+TEST_CASE("Nobody to press a key and no yes is refused before the port is opened") {
+  Scene scene;
+  std::vector<std::string> arguments = scene.Arguments();
+  arguments.pop_back();
+  const test::ProcessResult result = test::RunRift(arguments);
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.err, Catch::Contains("give --yes"));
+  CHECK_FALSE(std::filesystem::exists(scene.folder.Path() / "run"));
+}
 
-  TEST_CASE("How far the reference tags may lie off before a drive is an option of it") {
-    // Marks that the picture shows 20 px from where they set the frame.
-    const std::string calibration = test::SourceDir() + "/data/camera/camera.yaml";
-    Scene scene;
-    test::WriteText(scene.folder / "moved.yaml", files::ReadFile(calibration));
-    const Device device;
-    const test::ProcessResult framed = test::RunRift(
-        {"track", "--camera", "/dev/video0", "--calibration", scene.folder / "moved.yaml",
-         "--world", test::SourceDir() + "/data/camera/tags.yaml"});
-    INFO(framed.err);
-    REQUIRE(framed.exit_code == 0);
-    const std::string path = scene.folder / "moved.yaml";
-    vision::CameraModel camera = vision::ReadCamera(files::ReadFile(path), path);
-    for (vision::ReferenceMark& mark : camera.world->marks) mark.seen_px.x() += 20.0;
-    test::WriteText(path, vision::WriteCamera(camera));
-    for (const bool is_allowed : {false, true}) {
-      std::vector<std::string> arguments{
-          "drive",         scene.folder / "task.yaml",
-          "--port",        scene.floor.Port(),
-          "--camera",      "/dev/video0",
-          "--calibration", path,
-          "--out",         scene.folder / (is_allowed ? "allowed" : "warned"),
-          "--yes",         "--any-start",
-          "--set",         "trial.timeout_s=1",
-          "--set",         "track.capture.same_s=60",
-          "--set",         "hardware.turn.enabled=false"};
-      if (is_allowed) arguments.insert(arguments.end(), {"--moved", "0.1"});
-      const test::ProcessResult result = test::RunRift(arguments);
-      INFO(result.err);
-      CHECK(result.exit_code == 1);
-      const bool is_warned = result.err.find("the camera was moved") != std::string::npos;
-      CHECK(is_warned == !is_allowed);
-    }
+/// A device that shows one of the recorded pictures of 960x720 for ever: the robot stands still.
+struct Device {
+  Device() {
+    std::filesystem::create_directory(folder.Path() / "frames");
+    std::filesystem::copy_file(test::SourceDir() + "/data/camera/frames/000.jpg",
+                               folder / "frames/000.jpg");
   }
+  test::TemporaryFolder folder;
+  const test::Environment shim{"LD_PRELOAD", test::BuildDir() + "/tests/librift_v4l2_shim.so"};
+  const test::Environment jpegs{"RIFT_SHIM_JPEGS", folder / "frames"};
+};
 
-  TEST_CASE("Wrong inputs of a drive are answered with one line that says what to do") {
-    const Scene scene;
-    const auto replaced = [&scene](const std::string& flag, const std::string& value) {
-      std::vector<std::string> arguments = scene.Arguments();
-      *(std::find(arguments.begin(), arguments.end(), flag) + 1) = value;
-      return test::RunRift(arguments);
-    };
-    vision::CameraModel camera = test::SmallCamera();
-    camera.width_px = 640;
-    test::WriteText(scene.folder / "size.yaml", vision::WriteCamera(camera));
-    camera.world.reset();
-    test::WriteText(scene.folder / "nowhere.yaml", vision::WriteCamera(camera));
-    test::WriteText(scene.folder / "picture", "");
-    struct Wrong {
-      std::string flag, value;
-      int exit_code;
-      std::string says;
-    };
-    for (const Wrong& wrong : {
-             Wrong{"--port", "/dev/no_such_port", 3, "there is no serial port /dev/no_such_port"},
-             Wrong{"--port", "/dev/null", 3, "is no serial port"},
-             Wrong{"--calibration", scene.folder / "nowhere.yaml", 2, "has no world frame"},
-             Wrong{"--calibration", scene.folder / "none.yaml", 2, "No such file"},
-             Wrong{"--calibration", scene.folder / "size.yaml", 2, "960x540 pixels and its"},
-             Wrong{"--camera", "/dev/video99", 3, "/dev/video99"},
-             Wrong{"--camera", "http://127.0.0.1:1/video", 3, "http://127.0.0.1:1/video"},
-             Wrong{"drive", scene.folder / "none.yaml", 2, "No such file"},
-         }) {
-      const test::ProcessResult result = replaced(wrong.flag, wrong.value);
-      INFO(wrong.flag << " " << wrong.value << ": " << result.err);
-      CHECK(result.exit_code == wrong.exit_code);
-      CHECK_THAT(result.err, Catch::StartsWith("rift: ") && Catch::Contains(wrong.says));
-      CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
-    }
+TEST_CASE("A device is asked for the size of its calibration as in tracking") {
+  Scene scene;
+  const std::string calibration = test::SourceDir() + "/data/camera/camera.yaml";
+  std::vector<std::string> arguments = scene.Arguments();
+  const auto set = [&arguments](const std::string& flag, const std::string& value) {
+    *(std::find(arguments.begin(), arguments.end(), flag) + 1) = value;
+  };
+  set("--camera", "/dev/video0");
+  set("--calibration", calibration);
+  arguments.insert(arguments.end(),
+                   {"--set", "trial.timeout_s=1", "--set", "track.capture.same_s=60", "--set",
+                    "hardware.turn.enabled=false", "--any-start"});
+  const Device device;
+  const test::ProcessResult result = test::RunRift(arguments);
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 1);
+  CHECK_THAT(result.err, Catch::Contains("the robot stands at x"));
+  CHECK(scene.Summary()["outcome"] == "timed_out");
+  CHECK(scene.Summary()["poses"] > 5);
+  const std::string kept = files::ReadFile(scene.folder / "run/camera.yaml");
+  CHECK(vision::ReadCamera(kept, "camera.yaml").width_px == 960);
+
+  const test::ProcessResult tracked = test::RunRift(
+      {"track", "--camera", "/dev/video0", "--calibration", calibration, "--out",
+       scene.folder / "log.csv", "--duration", "2", "--set", "track.capture.same_s=60"});
+  INFO(tracked.out << tracked.err);
+  CHECK(tracked.exit_code == 0);
+}
+
+TEST_CASE("How far the reference tags may lie off before a drive is an option of it") {
+  // Marks that the picture shows 20 px from where they set the frame.
+  const std::string calibration = test::SourceDir() + "/data/camera/camera.yaml";
+  Scene scene;
+  test::WriteText(scene.folder / "moved.yaml", files::ReadFile(calibration));
+  const Device device;
+  const test::ProcessResult framed = test::RunRift(
+      {"track", "--camera", "/dev/video0", "--calibration", scene.folder / "moved.yaml", "--world",
+       test::SourceDir() + "/data/camera/tags.yaml"});
+  INFO(framed.err);
+  REQUIRE(framed.exit_code == 0);
+  const std::string path = scene.folder / "moved.yaml";
+  vision::CameraModel camera = vision::ReadCamera(files::ReadFile(path), path);
+  for (vision::ReferenceMark& mark : camera.world->marks) mark.seen_px.x() += 20.0;
+  test::WriteText(path, vision::WriteCamera(camera));
+  for (const bool is_allowed : {false, true}) {
+    std::vector<std::string> arguments{
+        "drive",         scene.folder / "task.yaml",
+        "--port",        scene.floor.Port(),
+        "--camera",      "/dev/video0",
+        "--calibration", path,
+        "--out",         scene.folder / (is_allowed ? "allowed" : "warned"),
+        "--yes",         "--any-start",
+        "--set",         "trial.timeout_s=1",
+        "--set",         "track.capture.same_s=60",
+        "--set",         "hardware.turn.enabled=false"};
+    if (is_allowed) arguments.insert(arguments.end(), {"--moved", "0.1"});
+    const test::ProcessResult result = test::RunRift(arguments);
+    INFO(result.err);
+    CHECK(result.exit_code == 1);
+    const bool is_warned = result.err.find("the camera was moved") != std::string::npos;
+    CHECK(is_warned == !is_allowed);
   }
+}
+
+TEST_CASE("Wrong inputs of a drive are answered with one line that says what to do") {
+  const Scene scene;
+  const auto replaced = [&scene](const std::string& flag, const std::string& value) {
+    std::vector<std::string> arguments = scene.Arguments();
+    *(std::find(arguments.begin(), arguments.end(), flag) + 1) = value;
+    return test::RunRift(arguments);
+  };
+  vision::CameraModel camera = test::SmallCamera();
+  camera.width_px = 640;
+  test::WriteText(scene.folder / "size.yaml", vision::WriteCamera(camera));
+  camera.world.reset();
+  test::WriteText(scene.folder / "nowhere.yaml", vision::WriteCamera(camera));
+  test::WriteText(scene.folder / "picture", "");
+  struct Wrong {
+    std::string flag, value;
+    int exit_code;
+    std::string says;
+  };
+  for (const Wrong& wrong : {
+           Wrong{"--port", "/dev/no_such_port", 3, "there is no serial port /dev/no_such_port"},
+           Wrong{"--port", "/dev/null", 3, "is no serial port"},
+           Wrong{"--calibration", scene.folder / "nowhere.yaml", 2, "has no world frame"},
+           Wrong{"--calibration", scene.folder / "none.yaml", 2, "No such file"},
+           Wrong{"--calibration", scene.folder / "size.yaml", 2, "960x540 pixels and its"},
+           Wrong{"--camera", "/dev/video99", 3, "/dev/video99"},
+           Wrong{"--camera", "http://127.0.0.1:1/video", 3, "http://127.0.0.1:1/video"},
+           Wrong{"drive", scene.folder / "none.yaml", 2, "No such file"},
+       }) {
+    const test::ProcessResult result = replaced(wrong.flag, wrong.value);
+    INFO(wrong.flag << " " << wrong.value << ": " << result.err);
+    CHECK(result.exit_code == wrong.exit_code);
+    CHECK_THAT(result.err, Catch::StartsWith("rift: ") && Catch::Contains(wrong.says));
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  }
+}
 
 }  // namespace
 }  // namespace rift
