@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "rift/control/waypoint.hpp"
+#include "rift/hardware/options.hpp"
 #include "rift/simulation/options.hpp"
 #include "rift/trial/loop_delay.hpp"
 #include "rift/trial/trial.hpp"
@@ -19,6 +20,7 @@ struct GridStudy {
   control::NavigatorOptions control;
   trial::TrialOptions trial;
   simulation::SimulationOptions simulation;
+  hardware::HardwareOptions hardware;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -26,6 +28,7 @@ struct GridStudy {
     field("control", self.control, "the controller");
     field("trial", self.trial, "the loop");
     field("simulation", self.simulation, "the simulated robot");
+    field("hardware", self.hardware, "of no matter here");
   }
 };
 
