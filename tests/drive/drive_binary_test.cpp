@@ -176,6 +176,27 @@ void WaitForMotion(test::RunningRift& rift, Scene& scene) {
                   [&] { return scene.floor.Moves() || !rift.IsRunning(); });
 }
 
+TEST_CASE("A camera that repeats its last picture stops the robot whatever else changes in it") {
+  for (const bool with_noise : {false, true}) {
+    Uninterrupted(kAll, [with_noise](Scene& scene) {
+      test::RunningRift rift(scene.Arguments());
+      rift.WaitUntil("the first leg began or the drive is over", [&] {
+        return rift.Err().find("loop delay") != std::string::npos || !rift.IsRunning();
+      });
+      WaitForMotion(rift, scene);
+      scene.floor.RepeatPicture(with_noise);
+      const test::ProcessResult result = rift.Wait();
+      if (WasInterrupted(scene)) return false;
+      INFO(with_noise << result.out << result.err << scene.floor.Told());
+      CHECK(result.exit_code == 1);
+      const std::string reason = scene.Summary()["stop"]["reason"];
+      CHECK((reason == "picture_repeats" || reason == "pose_stands"));
+      CHECK(scene.Summary()["stop"]["acknowledged"] == true);
+      return true;
+    });
+  }
+}
+
 TEST_CASE("A signal to the binary stops the robot and the run is saved with its reason") {
   for (const auto& [signal, name] :
        {std::pair{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}) {

@@ -66,6 +66,13 @@ class Floor {
     const std::lock_guard lock(mutex_);
     return BytesThatAreNoCommands(heard_);
   }
+  /// From now on the camera shows its last picture again and again, `with_noise` with other bytes
+  /// in a comment of each, while the robot goes on.
+  void RepeatPicture(bool with_noise) {
+    const std::lock_guard lock(mutex_);
+    repeats_ = true;
+    with_noise_ = with_noise;
+  }
   bool Moves() {
     const std::lock_guard lock(mutex_);
     return !listener_.Motors().IsZero();
@@ -99,15 +106,29 @@ class Floor {
       rolled_right_m_ += kFull_mps * 1e-3 * motors.right * kStep_s;
       pose_ = drive_.Drive(pose_, {1e-3 * motors.left, 1e-3 * motors.right}, kStep_s);
       pose = pose_;
+      if (repeats_) return with_noise_ ? WithComment(last_) : last_;
     }
-    return camera_
-        .Render(RobotAt(pose.x_m, pose.y_m, pose.yaw_rad), vision::PixelFormat::kJpeg, generator_)
-        .bytes;
+    last_ = camera_
+                .Render(RobotAt(pose.x_m, pose.y_m, pose.yaw_rad), vision::PixelFormat::kJpeg,
+                        generator_)
+                .bytes;
+    return last_;
+  }
+
+  /// The same picture with a JPEG comment of random bytes behind its first marker.
+  std::vector<std::uint8_t> WithComment(std::vector<std::uint8_t> jpeg) {
+    std::vector<std::uint8_t> comment{0xff, 0xfe, 0x00, 0x0a};
+    for (int i = 0; i < 8; ++i) comment.push_back(static_cast<std::uint8_t>(generator_()));
+    jpeg.insert(jpeg.begin() + 2, comment.begin(), comment.end());
+    return jpeg;
   }
 
   std::mutex mutex_;
   geometry::Pose2 pose_;
   int moving_pictures_;
+  bool repeats_ = false;
+  bool with_noise_ = false;
+  std::vector<std::uint8_t> last_;  ///< used by the camera's thread alone
   double rolled_left_m_ = 0.0, rolled_right_m_ = 0.0;
   std::vector<std::uint8_t> heard_;
   control::DiffDrive drive_;

@@ -72,6 +72,11 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   }
 
   const geometry::Pose2& Pose() const { return pose_; }
+  /// Where a robot that stood there would be a little later, as the wheels turn now.
+  geometry::Pose2 PoseAfter(const geometry::Pose2& pose, double dt_s) const {
+    return dt_s < 0.0 ? drive_.Drive(pose, {-left_, -right_}, -dt_s)
+                      : drive_.Drive(pose, {left_, right_}, dt_s);
+  }
   double SpeedOfWheels() const { return std::abs(left_) + std::abs(right_); }
   double LastMoving_s() const { return moving_s_; }
   double Travelled_m() const { return travelled_m_; }
