@@ -146,7 +146,7 @@ std::optional<Disagreement> MotionCheck::CheckRepeats(const Sample& now) const {
 
 /// Of the faster wheel, over the last moments.
 double MotionCheck::Speed_mps(const Sample& now) const {
-  constexpr double kOver_s = 0.15;
+  constexpr double kOver_s = 0.1;
   const std::optional<WheelTravel> before = WheelsAt(now.t_s - kOver_s);
   return before ? Largest(*before, now.wheels) / kOver_s : 0.0;
 }
@@ -157,8 +157,10 @@ std::optional<Disagreement> MotionCheck::CheckPoseStands(const Sample& now) {
                        Turned_deg(pose_anchor_->pose, now.pose) > options_.still_deg);
   if (!pose_anchor_ || has_moved) pose_anchor_ = now;
   const double rolled_m = Largest(pose_anchor_->wheels, now.wheels);
+  // A robot that has just stopped as well: times of poses and readings may be apart by this.
+  const double speed_mps = std::max(Speed_mps(*pose_anchor_), Speed_mps(now));
   const double blind_s = options_.blind_s + (is_latency_known_ ? 0.0 : options_.max_latency_s);
-  if (rolled_m <= Loosened(options_.blind_m + blind_s * Speed_mps(now))) return std::nullopt;
+  if (rolled_m <= Loosened(options_.blind_m + blind_s * speed_mps)) return std::nullopt;
   return Disagreement{
       StopReason::kPoseStands,
       fmt::format("the wheels turned by {:.3f} m and the pose stands: an old picture, wheels that "
@@ -195,13 +197,17 @@ std::optional<Disagreement> MotionCheck::CheckOrder(const Sample& before, const 
     return std::nullopt;
   }
   backward_s_.push_back(now.t_s);
+  // As far back as the wheels went forward is no jitter: it counts twice.
+  if (against_m > std::max(1.5 * kStep_m, std::abs(rolled.forward_m))) {
+    backward_s_.push_back(now.t_s);
+  }
   while (backward_s_.front() < now.t_s - kDisorder_s) backward_s_.pop_front();
   if (backward_s_.size() < kBackwardSteps) return std::nullopt;
   return Disagreement{
       StopReason::kPoseDisorder,
-      fmt::format("the pose ran against the wheels {} times within {:.1f} s: the camera's pictures "
-                  "come out of order",
-                  backward_s_.size(), kDisorder_s)};
+      fmt::format("the pose ran against the wheels again and again within {:.1f} s: the camera's "
+                  "pictures come out of order",
+                  kDisorder_s)};
 }
 
 std::optional<Disagreement> MotionCheck::CheckWindow(const Sample& now) {
