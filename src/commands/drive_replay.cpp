@@ -73,10 +73,7 @@ int ReplayDrive(const DriveRequest& request) {
                   .truth = OnTheFloor(seen),
                   .logged = seen,
                   .outcome = ending};
-  for (const control::Waypoint& waypoint : experiment.waypoints) {
-    shown.waypoints.push_back({waypoint.name, waypoint.Position()});
-    shown.reference_m.push_back(waypoint.Position());
-  }
+  ShowTask(shown, experiment.waypoints);
   PrintText(
       fmt::format("{}\n{} poses over {:.2f} s\n", ending, seen.poses.size(), seen.Duration_s()));
   FlushResults();

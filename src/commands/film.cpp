@@ -15,6 +15,13 @@ view::BodyShape ShapeOf(const simulation::BodyOptions& body) {
           .track_m = body.track_m};
 }
 
+void ShowTask(view::Run& shown, const std::vector<control::Waypoint>& waypoints) {
+  for (const control::Waypoint& waypoint : waypoints) {
+    shown.waypoints.push_back({waypoint.name, waypoint.Position()});
+    shown.reference_m.push_back(waypoint.Position());
+  }
+}
+
 void ShowFilm(const view::Film& film, const std::string& video, bool window) {
   if (!video.empty()) view::WriteVideo(film, video, {});
   if (!window) return;

@@ -105,10 +105,7 @@ view::Film FilmOf(const experiment::Experiment& experiment, const sweep::Simulat
       .truth = run.truth,
       .logged = run.result.trajectory,
       .outcome = run.result.reason};
-  for (const control::Waypoint& waypoint : trial.waypoints) {
-    shown.waypoints.push_back({waypoint.name, waypoint.Position()});
-    shown.reference_m.push_back(waypoint.Position());
-  }
+  ShowTask(shown, trial.waypoints);
   for (const geometry::FloorArea& area : AreasOf(trial.simulation.terrain)) {
     shown.patches.push_back({area.label, area.x_min_m, area.x_max_m, area.y_min_m, area.y_max_m});
   }

@@ -11,14 +11,9 @@
 #include <tuple>
 #include <utility>
 
+#include "descriptor.hpp"
+
 namespace rift::files {
-namespace {
-
-[[noreturn]] void CannotWrite(const std::filesystem::path& path, int reason) {
-  throw std::runtime_error(fmt::format("cannot write {}: {}", path.string(), strerror(reason)));
-}
-
-}  // namespace
 
 AppendFile::AppendFile(std::filesystem::path path)
     : path_(std::move(path)),

@@ -11,27 +11,11 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "descriptor.hpp"
+
 namespace rift::files {
 
 namespace {
-
-/// An open file, closed at the end of its scope.
-class Descriptor {
- public:
-  Descriptor(const std::filesystem::path& path, int flags)
-      : number_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  bool IsOpen() const { return number_ >= 0; }
-  int Number() const { return number_; }
-
- private:
-  int number_;
-};
 
 [[noreturn]] void CannotRead(const std::filesystem::path& path) {
   throw std::invalid_argument(fmt::format("cannot read {}: {}", path.string(), strerror(errno)));
@@ -51,10 +35,6 @@ size_t SizeOf(const Descriptor& file) {
   struct stat about {};
   const bool has_size = ::fstat(file.Number(), &about) == 0 && S_ISREG(about.st_mode);
   return has_size ? static_cast<size_t>(about.st_size) : 0;
-}
-
-[[noreturn]] void CannotWrite(const std::filesystem::path& path) {
-  throw std::runtime_error(fmt::format("cannot write {}: {}", path.string(), strerror(errno)));
 }
 
 bool WriteWhole(int file, std::string_view text) {

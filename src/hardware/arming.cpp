@@ -174,8 +174,7 @@ std::optional<double> LatencyOver(const DriveRun& run, const control::OdometryOp
   constexpr double kLeastScale = 0.4, kMost_s = 1.0;
   std::vector<Angle> seen;
   for (const trajectory::StampedPose& pose : run.trial.trajectory.poses) {
-    const double before_rad = seen.empty() ? pose.yaw_rad : seen.back().rad;
-    seen.push_back({pose.t_s, before_rad + geometry::WrapToPi(pose.yaw_rad - before_rad)});
+    AddAngle(seen, pose.t_s, pose.yaw_rad);
   }
   const std::vector<Angle> wheels =
       WheelTurns(run.evidence.encoders, control::YawPerCount_rad(odometry));

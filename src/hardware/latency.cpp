@@ -48,7 +48,6 @@ std::optional<Lag> FitAt(std::span<const Angle> follower, std::span<const Angle>
     x.push_back(At(leader, angle.t_s - lag_s));
     y.push_back(angle.rad);
   }
-  if (x.size() < kLeastSamples) return std::nullopt;
   const double mean_x = statistics::Mean(x), mean_y = statistics::Mean(y);
   double xx = 0.0, xy = 0.0, yy = 0.0;
   for (size_t i = 0; i < x.size(); ++i) {
@@ -64,9 +63,15 @@ std::optional<Lag> FitAt(std::span<const Angle> follower, std::span<const Angle>
 
 }  // namespace
 
+void AddAngle(std::vector<Angle>& angles, double t_s, double rad) {
+  const double before_rad = angles.empty() ? rad : angles.back().rad;
+  angles.push_back({t_s, before_rad + geometry::WrapToPi(rad - before_rad)});
+}
+
 std::optional<Lag> EstimateLag(std::span<const Angle> follower, std::span<const Angle> leader,
                                double least_s, double most_s) {
   constexpr double kLeastTurn_rad = 1e-3;
+  if (follower.size() < kLeastSamples) return std::nullopt;
   if (Range(follower) < kLeastTurn_rad || Range(leader) < kLeastTurn_rad) return std::nullopt;
   std::vector<Lag> fits;
   for (double lag_s = least_s; lag_s <= most_s + 1e-9; lag_s += kLagStep_s) {
@@ -129,16 +134,12 @@ class Turn {
   }
   const std::vector<Angle>& Seen() const { return seen_; }
   const std::vector<Angle>& Commanded() const { return commanded_; }
-  double Began_s() const { return seen_.empty() ? 0.0 : seen_.front().t_s; }
 
  private:
   double Look() {
     const trial::Sensed sensed = robot_.Sense();
     if (sensed.pose && (seen_.empty() || sensed.pose->captured_s > seen_.back().t_s)) {
-      const double yaw_rad = sensed.pose->world_from_robot.yaw_rad;
-      const double before_rad = seen_.empty() ? yaw_rad : seen_.back().rad;
-      seen_.push_back(
-          {sensed.pose->captured_s, before_rad + geometry::WrapToPi(yaw_rad - before_rad)});
+      AddAngle(seen_, sensed.pose->captured_s, sensed.pose->world_from_robot.yaw_rad);
     }
     return sensed.now_s;
   }
@@ -148,10 +149,6 @@ class Turn {
   std::vector<Angle> seen_, commanded_;
   control::WheelPower last_;
 };
-
-}  // namespace
-
-namespace {
 
 std::optional<double> HostTime_s(const std::vector<PoseStages>& poses) {
   std::vector<double> times_s;
@@ -197,11 +194,6 @@ LoopDelay DelayOf(const std::vector<Angle>& wheels, const std::vector<double>& p
   return delay;
 }
 
-/// Without encoders the commands lead, and only the sum of all parts is seen.
-const std::vector<Angle>& LeaderOf(const Turn& turn, const std::vector<Angle>& wheels) {
-  return wheels.empty() ? turn.Commanded() : wheels;
-}
-
 void RequireSeen(const std::optional<Lag>& lag, double turned_rad, double seen_rad) {
   constexpr double kLeastScale = 0.4, kMostScale = 2.5, kMostNoise = 0.25;
   const bool is_seen = lag && lag->scale > kLeastScale && lag->scale < kMostScale &&
@@ -238,12 +230,13 @@ std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
   }
   if (!turn.Run({}, kMostLag_s - kRest_s)) return std::nullopt;  // for the latest of pictures
   wheels = turn.Wheels();
-  const std::vector<Angle>& leader = LeaderOf(turn, wheels);
+  // Without encoders the commands lead, and only the sum of all parts is seen.
+  const std::vector<Angle>& leader = wheels.empty() ? turn.Commanded() : wheels;
   const std::optional<Lag> lag = EstimateLag(turn.Seen(), leader, kLeastLag_s, kMostLag_s);
   LatencyResult result{.turned_deg = geometry::DegFromRad(Range(wheels)),
                        .seen_deg = geometry::DegFromRad(Range(turn.Seen()))};
   if (wheels.empty()) {
-    if (!lag) RequireSeen(lag, Range(turn.Commanded()), Range(turn.Seen()));
+    if (!lag) RequireSeen(lag, Range(leader), Range(turn.Seen()));
     result.delay.total_s = lag->lag_s;
     return result;
   }

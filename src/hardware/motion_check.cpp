@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rift/control/diff_drive.hpp"
 #include "rift/geometry/pose2.hpp"
 
 namespace rift::hardware {
@@ -58,7 +59,7 @@ Step Rolled(const WheelTravel& from, const WheelTravel& to) {
 Step Seen(const Pose2& from, const Pose2& to, double track_m) {
   const double yaw_rad = 0.5 * (from.yaw_rad + to.yaw_rad);
   const Eigen::Vector2d moved = to.Position() - from.Position();
-  return {moved.x() * std::cos(yaw_rad) + moved.y() * std::sin(yaw_rad),
+  return {moved.dot(Pose2{0.0, 0.0, yaw_rad}.Forward()),
           0.5 * track_m * (to.yaw_rad - from.yaw_rad)};
 }
 
@@ -221,11 +222,7 @@ std::optional<Disagreement> MotionCheck::CheckWindow(const Sample& now) {
   for (auto before = from; before != samples_.end(); ++before) {
     const auto next = before + 1;
     const Step rolled = Rolled(before->wheels, next == samples_.end() ? now.wheels : next->wheels);
-    const double turn_rad = 2.0 * rolled.turn_m / track_m_;
-    const double yaw_rad = by_wheels.yaw_rad + 0.5 * turn_rad;
-    by_wheels.x_m += rolled.forward_m * std::cos(yaw_rad);
-    by_wheels.y_m += rolled.forward_m * std::sin(yaw_rad);
-    by_wheels.yaw_rad += turn_rad;
+    by_wheels = by_wheels * control::ArcMotion(rolled.forward_m, 2.0 * rolled.turn_m / track_m_);
     path_m += std::abs(rolled.forward_m);
   }
   const double apart_m = Moved_m(by_wheels, now.pose);

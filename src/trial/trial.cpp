@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -15,11 +16,11 @@ namespace {
 
 void Count(LimitCounts& counts, const control::Decision& decision) {
   ++counts.decisions;
-  std::vector<bool> binds;
-  control::Limits::Fields(decision.limits,
-                          [&](const char*, bool limit) { binds.push_back(limit); });
-  auto bind = binds.begin();
-  LimitCounts::Fields(counts, [&](const char*, size_t& count) { count += *bind++; });
+  std::bitset<32> binds;  // every trial step passes here: nothing is allocated
+  size_t at = 0;
+  control::Limits::Fields(decision.limits, [&](const char*, bool bind) { binds.set(at++, bind); });
+  at = 0;
+  LimitCounts::Fields(counts, [&](const char*, size_t& count) { count += binds[at++]; });
   counts.largest_raw_v = std::max(counts.largest_raw_v, decision.raw_v);
   counts.largest_raw_w = std::max(counts.largest_raw_w, std::abs(decision.raw_w));
 }

@@ -17,6 +17,9 @@ struct Angle {
   double rad = 0.0;
 };
 
+/// Appends an angle that is known up to whole turns.
+void AddAngle(std::vector<Angle>& angles, double t_s, double rad);
+
 /// How one angle follows another: `follower(t) = scale * leader(t - lag) + offset`.
 struct Lag {
   double lag_s = 0.0;
@@ -25,7 +28,7 @@ struct Lag {
 };
 
 /// By least squares over all lags from `least_s` to `most_s`. Times rise. None when either angle
-/// stands still or the two have too little time in common.
+/// stands still or has too few samples.
 std::optional<Lag> EstimateLag(std::span<const Angle> follower, std::span<const Angle> leader,
                                double least_s, double most_s);
 
