@@ -12,6 +12,8 @@ rift_room(geometry
   LIBRARIES Eigen3::Eigen)
 rift_room(yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES yaml-cpp)
+rift_room(terminal ROOMS yaml
+  PRIVATE_LIBRARIES fmt::fmt)
 rift_room(trajectory ROOMS geometry statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES FastFloat::fast_float)
 rift_room(control ROOMS geometry
@@ -63,7 +65,7 @@ rift_room(view ROOMS control geometry trajectory trial vision/camera vision/trac
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
 rift_room(commands ROOMS experiment files gap geometry hardware report/figures report/json
-    report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run trajectory
+    report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run terminal trajectory
     twin view vision/calibration vision/camera
     vision/tracking yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)

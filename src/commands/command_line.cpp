@@ -12,9 +12,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "print.hpp"
-#include "process_start.hpp"
-#include "rift/yaml/node.hpp"
+#include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
+#include "rift/terminal/process_start.hpp"
 #include "rift/yaml/suggest.hpp"
 
 namespace rift::commands {
@@ -37,14 +37,14 @@ void CheckSubcommand(int argc, char** argv, const std::vector<Command>& commands
 int ShowHelp(const CLI::App& app, const CLI::ParseError& error) {
   std::ostringstream text;
   const int exit_code = app.exit(error, text, text);
-  PrintText(text.str());
+  terminal::PrintText(text.str());
   return exit_code;
 }
 
 int Run(int argc, char** argv, const CameraUses& camera) {
   const std::vector<Command> commands = Commands(camera);
   CheckSubcommand(argc, argv, commands);
-  int exit_code = kDone;
+  int exit_code = terminal::kDone;
   CLI::App app("rift: where a simulator and its robot part ways, and why");
   app.set_version_flag("--version", "rift " RIFT_VERSION);
   app.require_subcommand(1);
@@ -67,33 +67,22 @@ int Run(int argc, char** argv, const CameraUses& camera) {
   return exit_code;
 }
 
-int Fail(const std::string& what, int exit_code) {
-  Say("rift: " + what);
-  return exit_code;
-}
-
 /// A reader that went away, as head does, has seen what it wanted and is not told.
 int Deliver(int exit_code) {
-  const int error = FlushResults();
+  const int error = terminal::FlushResults();
   if (error == 0) return exit_code;
-  if (error == EPIPE) return kRunTimeFailure;
+  if (error == EPIPE) return terminal::kRunTimeFailure;
   const std::string reason = error == EBADF ? "it is closed" : strerror(error);
-  return Fail("cannot write to stdout: " + reason, kRunTimeFailure);
+  return terminal::Fail("cannot write to stdout: " + reason, terminal::kRunTimeFailure);
 }
 
 }  // namespace
 
 int RunCommandLine(int argc, char** argv, const CameraUses& camera) {
-  try {
-    GuardProcessStart();
+  return terminal::ReportErrors([&] {
+    terminal::GuardProcessStart();
     return Deliver(Run(argc, argv, camera));
-  } catch (const std::invalid_argument& error) {
-    return Fail(error.what(), kBadInput);
-  } catch (const yaml::Error& error) {
-    return Fail(error.what(), kBadInput);
-  } catch (const std::exception& error) {
-    return Fail(error.what(), kRunTimeFailure);
-  }
+  });
 }
 
 std::vector<Command> Commands(const CameraUses& camera) {

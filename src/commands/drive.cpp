@@ -9,7 +9,6 @@
 
 #include "drive_series.hpp"
 #include "files.hpp"
-#include "print.hpp"
 #include "prompt.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
@@ -17,6 +16,8 @@
 #include "rift/hardware/camera_poses.hpp"
 #include "rift/hardware/serial_port.hpp"
 #include "rift/report/json/json.hpp"
+#include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
 #include "rift/view/drive_view.hpp"
 #include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
@@ -44,10 +45,10 @@ int PingRobot(const DriveRequest& request) {
   hardware::SerialPort port(request.port, options.line.baud, options.line.write_timeout_s);
   hardware::SteadyClock clock;
   const hardware::PingResult ping = hardware::MeasureLink(port, clock, options);
-  request.json ? PrintData(report::PingJson(ping, options))
-               : PrintText(report::PingText(ping, options));
+  request.json ? terminal::PrintData(report::PingJson(ping, options))
+               : terminal::PrintText(report::PingText(ping, options));
   const bool is_good = ping.IsMeasured() && hardware::BrokenBudget(ping, options.ping).empty();
-  return is_good ? kDone : kNotReached;
+  return is_good ? terminal::kDone : terminal::kNotReached;
 }
 
 /// Throws std::invalid_argument, saying what to do, when the calibration has no world frame: the
@@ -78,9 +79,9 @@ void CheckFirstPicture(const DriveRequest& request, vision::CameraSession& sessi
         look.robot_tags, tag.id));
   }
   const auto moved = vision::MovedWarning(look.moved_m, request.session.moved_m);
-  if (moved) Say("warning: " + *moved);
+  if (moved) terminal::Say("warning: " + *moved);
   if (look.robot_tags == 0) {
-    Say("the robot's tag is not in the picture yet: put the robot on its place");
+    terminal::Say("the robot's tag is not in the picture yet: put the robot on its place");
   }
 }
 
@@ -90,12 +91,12 @@ bool HasArrived(const hardware::DriveRun& run) {
 
 /// A dry run has nowhere to arrive: it is well when only time or a person ended it.
 int ExitCodeOf(const hardware::DriveRun& run) {
-  if (HasArrived(run)) return kDone;
+  if (HasArrived(run)) return terminal::kDone;
   const bool is_whole = run.dry_run && run.has_begun && run.evidence.stop &&
                         (run.trial.outcome == trial::Outcome::kTimedOut ||
                          run.evidence.stop->reason == hardware::StopReason::kOperator ||
                          run.evidence.stop->reason == hardware::StopReason::kSignal);
-  return is_whole ? kDone : kNotReached;
+  return is_whole ? terminal::kDone : terminal::kNotReached;
 }
 
 int DriveOnce(const DriveRequest& request, const experiment::Experiment& experiment) {
@@ -103,10 +104,10 @@ int DriveOnce(const DriveRequest& request, const experiment::Experiment& experim
   DriveSession session(request);
   const hardware::DriveRun run = session.DriveInto(folder, experiment);
   const bool is_whole = session.LogFailure().empty();
-  if (run.has_begun && is_whole) Say("log: " + (folder / "trajectory.csv").string());
+  if (run.has_begun && is_whole) terminal::Say("log: " + (folder / "trajectory.csv").string());
   const auto state = is_whole ? report::RunState::kFinished : report::RunState::kInterrupted;
-  request.json ? PrintData(report::DriveJson(experiment, run, state))
-               : PrintText(report::DriveText(run));
+  request.json ? terminal::PrintData(report::DriveJson(experiment, run, state))
+               : terminal::PrintText(report::DriveText(run));
   session.RequireLog();
   return ExitCodeOf(run);
 }
@@ -138,7 +139,7 @@ class DriveSession::Drivers {
                             .poses = *poses_,
                             .clock = clock_,
                             .stoppers = {person.Stopper(), log.Stopper()},
-                            .say = Say,
+                            .say = terminal::Say,
                             .may_arm =
                                 [&] {
                                   has_started_ = gate.MayStart(clock_.Now_s(), SeenNow());
@@ -154,7 +155,7 @@ class DriveSession::Drivers {
                                  hardware::Operator& person, DriveLog& log) {
     const std::string missing = view::MissingDisplay();
     if (!missing.empty()) {
-      Say(missing + "; driving without --view");
+      terminal::Say(missing + "; driving without --view");
       return Drive(experiment, person, log);
     }
     view::DriveView view(session_.camera(), experiment.waypoints);
@@ -172,9 +173,10 @@ class DriveSession::Drivers {
 
  private:
   StartGate::Person PersonAtGate(hardware::Operator& person) const {
-    StartGate::Person at_gate{.has_agreed = [&person] { return person.MayArm(Say); }, .say = Say};
+    StartGate::Person at_gate{.has_agreed = [&person] { return person.MayArm(terminal::Say); },
+                              .say = terminal::Say};
     if (!request_.yes) at_gate.ask_again = [&person] { person.AskAgain(); };
-    if (!request_.yes) at_gate.show = LiveLine::Show;
+    if (!request_.yes) at_gate.show = terminal::LiveLine::Show;
     return at_gate;
   }
 
@@ -217,7 +219,7 @@ void DriveSession::MoveTo(const std::string& port, const std::string& camera,
 
 hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
                                            const experiment::Experiment& experiment) {
-  const LiveLine line;
+  const terminal::LiveLine line;
   hardware::Operator person(request_.yes);  // first, and last to go: a signal must not end a save
   log_failure_.clear();
   DriveLog log(WriterInto(folder, experiment));
@@ -226,10 +228,10 @@ hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
         std::make_unique<Drivers>(request_, experiment, ReadCameraWithWorld(request_.calibration));
   }
   BeginDriveFolder(folder, experiment, drivers_->camera());
-  if (request_.dry_run) Say("dry run: nothing moves, the robot is sent zeros alone");
+  if (request_.dry_run) terminal::Say("dry run: nothing moves, the robot is sent zeros alone");
   const hardware::DriveRun run = request_.view ? drivers_->DriveInView(experiment, person, log)
                                                : drivers_->Drive(experiment, person, log);
-  if (run.has_begun && !HasArrived(run)) RingBell();
+  if (run.has_begun && !HasArrived(run)) terminal::RingBell();
   if (run.has_begun) log_failure_ = CloseDrive(folder, experiment, run, log);
   const bool was_slow =
       run.evidence.stop && run.evidence.stop->reason == hardware::StopReason::kLogFailed;

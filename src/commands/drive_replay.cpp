@@ -6,9 +6,10 @@
 
 #include "drive.hpp"
 #include "film.hpp"
-#include "print.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
+#include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/view/window.hpp"
 
@@ -29,7 +30,7 @@ void RequireDrive(const fs::path& folder) {
 trajectory::Trajectory ReadDriven(const fs::path& path) {
   trajectory::Log log = trajectory::ReadLog(files::ReadFile(path), path.string());
   for (const std::string& note : log.notes) {
-    Say(fmt::format("note: {}: {}", path.string(), note));
+    terminal::Say(fmt::format("note: {}: {}", path.string(), note));
   }
   return std::move(log.trajectory);
 }
@@ -74,11 +75,11 @@ int ReplayDrive(const DriveRequest& request) {
                   .logged = seen,
                   .outcome = ending};
   ShowTask(shown, experiment.waypoints);
-  PrintText(
+  terminal::PrintText(
       fmt::format("{}\n{} poses over {:.2f} s\n", ending, seen.poses.size(), seen.Duration_s()));
-  FlushResults();
+  terminal::FlushResults();
   ShowFilm(view::MakeFilm(shown), request.video, window);
-  return kDone;
+  return terminal::kDone;
 }
 
 }  // namespace rift::commands

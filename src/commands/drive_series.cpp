@@ -9,7 +9,6 @@
 
 #include "before_each.hpp"
 #include "files.hpp"
-#include "print.hpp"
 #include "prompt.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/experiment/path_template.hpp"
@@ -17,6 +16,8 @@
 #include "rift/files/folder_lock.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
 
 namespace rift::commands {
 namespace {
@@ -209,7 +210,7 @@ Series::End Series::Drive(const PlannedTrial& trial) {
     SetScene(trial);
     const hardware::DriveRun run = session_.DriveInto(trial.Unfinished(), trial.experiment);
     if (scene_) Close();
-    Say(fmt::format("{}: {}", trial.label, run.trial.reason));
+    terminal::Say(fmt::format("{}: {}", trial.label, run.trial.reason));
     session_.RequireLog();
     if (!run.has_begun) {
       fs::remove_all(trial.Unfinished());
@@ -288,33 +289,33 @@ int DriveSeries(const DriveRequest& request, const Experiment& experiment) {
 
   const auto is_done = [](const PlannedTrial& trial) { return fs::exists(trial.folder); };
   const auto count = plan.trials.size();
-  Say(fmt::format("{} drives into {}, {} of them done", count, out.string(),
-                  std::count_if(plan.trials.begin(), plan.trials.end(), is_done)));
+  terminal::Say(fmt::format("{} drives into {}, {} of them done", count, out.string(),
+                            std::count_if(plan.trials.begin(), plan.trials.end(), is_done)));
   Series series(request, plan);
   std::size_t left = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const PlannedTrial& trial = plan.trials[i];
     if (is_done(trial)) continue;
-    Say(fmt::format("drive {} of {}: {}", i + 1, count, trial.label));
+    terminal::Say(fmt::format("drive {} of {}: {}", i + 1, count, trial.label));
     const Series::End end = series.Drive(trial);
     if (end == Series::End::kQuit) {
-      Say("stopped; the same command goes on where it was");
-      return kNotReached;
+      terminal::Say("stopped; the same command goes on where it was");
+      return terminal::kNotReached;
     }
     left += end == Series::End::kLeft;
   }
   series.Close();
   if (left > 0)
-    Say(
+    terminal::Say(
         fmt::format("{} of {} drives did not reach the end; the same command asks "
                     "about them again",
                     left, count));
-  const int reported = request.grid ? RunSweep(out, request.json) : kDone;
+  const int reported = request.grid ? RunSweep(out, request.json) : terminal::kDone;
   if (!request.grid) {
-    Say(fmt::format("against the simulator: rift sweep {} --out {}", (out / "sweep.yaml").string(),
-                    (out / "sweep").string()));
+    terminal::Say(fmt::format("against the simulator: rift sweep {} --out {}",
+                              (out / "sweep.yaml").string(), (out / "sweep").string()));
   }
-  return left > 0 ? kNotReached : reported;
+  return left > 0 ? terminal::kNotReached : reported;
 }
 
 }  // namespace rift::commands

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "print.hpp"
 #include "rift/files/files.hpp"
+#include "rift/terminal/print.hpp"
 
 namespace rift::commands {
 
@@ -25,7 +25,7 @@ std::filesystem::path OutputOf(const std::string& out, const std::string& name) 
 
 sweep::Inputs FileInputs() {
   return {[](const std::string& path) { return files::ReadIfThere(path); },
-          [](const std::string& line) { Say("note: " + line); }};
+          [](const std::string& line) { terminal::Say("note: " + line); }};
 }
 
 void CheckOutputs(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {

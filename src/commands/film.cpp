@@ -1,6 +1,6 @@
 #include "film.hpp"
 
-#include "print.hpp"
+#include "rift/terminal/print.hpp"
 #include "rift/view/video.hpp"
 #include "rift/view/window.hpp"
 
@@ -29,7 +29,7 @@ void ShowFilm(const view::Film& film, const std::string& video, bool window) {
   if (no_display.empty()) {
     view::PlayInWindow(film, {});
   } else {
-    Say("note: --view shows nothing: " + no_display);
+    terminal::Say("note: --view shows nothing: " + no_display);
   }
 }
 

@@ -8,7 +8,6 @@
 
 #include "files.hpp"
 #include "flags.hpp"
-#include "print.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/gap/result.hpp"
@@ -16,6 +15,8 @@
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
 #include "rift/sweep/falsify/recorded_logs.hpp"
+#include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
 
 namespace rift::commands {
 namespace {
@@ -38,13 +39,14 @@ struct GapRequest {
 
 /// What was mended, and why there may be no yaw errors.
 void SayNotes(const trajectory::Log& log, const std::string& path, const std::string& flag) {
-  for (const std::string& note : log.notes) Say(fmt::format("note: {}: {}", path, note));
+  for (const std::string& note : log.notes) terminal::Say(fmt::format("note: {}: {}", path, note));
   if (log.line_without_yaw) {
-    Say(fmt::format("note: {}:{}: has no yaw: yaw errors are told where it is logged", path,
-                    *log.line_without_yaw));
+    terminal::Say(fmt::format("note: {}:{}: has no yaw: yaw errors are told where it is logged",
+                              path, *log.line_without_yaw));
   }
   if (log.unknown_angles.empty()) return;
-  Say(fmt::format("note: {}: yaw errors are left out: {}: set {}", path, log.unknown_angles, flag));
+  terminal::Say(
+      fmt::format("note: {}: yaw errors are left out: {}: set {}", path, log.unknown_angles, flag));
 }
 
 gap::GapResult Measure(const GapRequest& request) {
@@ -81,11 +83,11 @@ void Save(const GapRequest& request, const gap::GapResult& result) {
   if (!request.profile.empty()) files::WriteFile(request.profile, report::ProfileCsv(result));
   if (!request.figure.empty()) WriteFigure(request.figure, report::GapFigure(result));
   if (request.json == "-") {
-    PrintData(report::GapJson(result));
+    terminal::PrintData(report::GapJson(result));
     return;
   }
   if (!request.json.empty()) files::WriteFile(request.json, report::GapJson(result));
-  PrintText(report::GapText(result));
+  terminal::PrintText(report::GapText(result));
 }
 
 /// A log that counts twice would pass for a repeat.
@@ -153,7 +155,7 @@ void AddGap(CLI::App& app, int& exit_code) {
     if (!request->sim_repeats.empty()) result.likeness = MeasureRepeats(*request, result);
     Save(*request, result);
     const bool falsified = result.verdict.verdict == gap::Verdict::kFalsified;
-    exit_code = request->exit_code && falsified ? kFalsified : kDone;
+    exit_code = request->exit_code && falsified ? terminal::kFalsified : terminal::kDone;
   });
 }
 

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "print.hpp"
 #include "rift/hardware/arming.hpp"
+#include "rift/terminal/print.hpp"
 
 namespace rift::commands {
 namespace {
@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds kPoll{20};
 }  // namespace
 
 char Ask(const std::string& question, std::string_view keys, bool says_yes) {
-  Say(question);
+  terminal::Say(question);
   if (says_yes) return keys.front();
   const hardware::SignalWatch signals;
   hardware::OperatorKeys pressed;

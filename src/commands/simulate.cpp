@@ -11,7 +11,6 @@
 
 #include "files.hpp"
 #include "flags.hpp"
-#include "print.hpp"
 #include "replay.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
@@ -19,6 +18,8 @@
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/yaml/bind.hpp"
 
@@ -188,7 +189,7 @@ Simulated ReplayFor(const SimulateRequest& request) {
   const fs::path folder = request.replay[0];
   const std::string& id = request.replay[1];
   Replay replay = ReplayRow(folder, id);
-  Say(replay.verdict);
+  terminal::Say(replay.verdict);
   const fs::path out = request.out.empty() ? folder / "replay" / id : fs::path(request.out);
   CheckNames(request, out, replay.experiment,
              {folder / "table.csv", folder / "experiment.yaml", folder / "journal.sqlite",
@@ -216,10 +217,11 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
     DrawFigure(request.pictures.figure, made.experiment, made.trial, made.run);
   }
   if (show) show(made);
-  Say("log: " + RunFiles(made.out).trajectory.string());
-  request.json ? PrintData(report::SimulationJson(made.experiment, made.run))
-               : PrintText(report::SimulationText(made.experiment, made.run));
-  return made.run.result.outcome == trial::Outcome::kReached ? kDone : kNotReached;
+  terminal::Say("log: " + RunFiles(made.out).trajectory.string());
+  request.json ? terminal::PrintData(report::SimulationJson(made.experiment, made.run))
+               : terminal::PrintText(report::SimulationText(made.experiment, made.run));
+  return made.run.result.outcome == trial::Outcome::kReached ? terminal::kDone
+                                                             : terminal::kNotReached;
 }
 
 TwinJob LoadTwinJob(const SimulateRequest& request) {

@@ -5,16 +5,17 @@
 #include "files.hpp"
 #include "film.hpp"
 #include "flags.hpp"
-#include "print.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/fields.hpp"
+#include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
+#include "rift/terminal/stop_signal.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/twin/twin.hpp"
 #include "rift/view/film.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "simulate.hpp"
-#include "stop_signal.hpp"
 
 namespace rift::commands {
 namespace {
@@ -27,8 +28,8 @@ void Announce(const twin::TwinAddress& address, const fs::path& calibration) {
   const ordered_json json{{"port", address.port},
                           {"camera", address.camera},
                           {"calibration", fs::absolute(calibration).string()}};
-  PrintData(json.dump() + '\n');
-  if (FlushResults() != 0) {
+  terminal::PrintData(json.dump() + '\n');
+  if (terminal::FlushResults() != 0) {
     throw std::runtime_error("cannot write to stdout: nobody can learn where the twin is");
   }
 }
@@ -85,14 +86,15 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
   files::WriteFile(calibration, vision::WriteCamera(setup.camera));
   files::WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(as_twin));
 
-  const StopSignal stop;
+  const terminal::StopSignal stop;
   const twin::TwinRun run = twin::RunTwin(
       setup, [&](const twin::TwinAddress& address) { Announce(address, calibration); },
       [&] { return stop.IsAsked(); });
   Save(folder, as_twin, run);
-  Say(fmt::format("{}; {} pictures at {:.1f} ms of one core each; true path: {}", Ending(run),
-                  run.pictures, 1e3 * run.picture_cpu_s, (folder / "truth.csv").string()));
-  return kDone;
+  terminal::Say(fmt::format("{}; {} pictures at {:.1f} ms of one core each; true path: {}",
+                            Ending(run), run.pictures, 1e3 * run.picture_cpu_s,
+                            (folder / "truth.csv").string()));
+  return terminal::kDone;
 }
 
 view::Film FilmOf(const experiment::Experiment& experiment, const sweep::SimulatedTrial& trial,

@@ -7,7 +7,6 @@
 
 #include "files.hpp"
 #include "flags.hpp"
-#include "print.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
@@ -19,6 +18,8 @@
 #include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
+#include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
 #include "sweep_explain.hpp"
 #include "sweep_run.hpp"
 
@@ -99,8 +100,8 @@ int EndWithoutGap(const SweepRequest& request, const fs::path& out,
       fmt::format("{}: not one of {} trials could be compared; the first: {}", request.experiment,
                   result.rows.size(), result.rows.front().reason);
   if (result.candidate_kind == "logs") throw std::invalid_argument(message);
-  Say("rift: " + message);
-  return kNotReached;
+  terminal::Say("rift: " + message);
+  return terminal::kNotReached;
 }
 
 void Save(const fs::path& out, const experiment::Experiment& experiment,
@@ -118,7 +119,8 @@ bool IsFalsified(const sweep::SweepResult& result) {
 
 void NotePlan(const SweepRequest& request, const experiment::Experiment& loaded) {
   if (LacksSpace(loaded)) {
-    Say(fmt::format("note: {} names no space: the paper's grid of surface, v_min and v_max",
+    terminal::Say(
+        fmt::format("note: {} names no space: the paper's grid of surface, v_min and v_max",
                     request.experiment));
   }
 }
@@ -128,7 +130,7 @@ void NoteTooFewRepeats(const experiment::Experiment& experiment) {
   const bool is_enough =
       experiment.goal != experiment::Goal::kFalsify || experiment.falsify.most_repeats >= needed;
   if (is_enough) return;
-  Say(fmt::format(
+  terminal::Say(fmt::format(
       "note: falsify.most_repeats is {}, and it takes {} failing trials to falsify a setting "
       "at {:g} % confidence: settings that fail stay undecided",
       experiment.falsify.most_repeats, needed, 100.0 * experiment.falsify.confidence));
@@ -137,12 +139,12 @@ void NoteTooFewRepeats(const experiment::Experiment& experiment) {
 /// Logs are compared in seconds and keep no journal.
 int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
   if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
-    Say("stopped; nothing was written, and the same command starts over");
-    return kStopped;
+    terminal::Say("stopped; nothing was written, and the same command starts over");
+    return terminal::kStopped;
   }
-  Say(fmt::format("stopped; the same command goes on where it was (rift sweep --status {})",
-                  out.string()));
-  return kStopped;
+  terminal::Say(fmt::format(
+      "stopped; the same command goes on where it was (rift sweep --status {})", out.string()));
+  return terminal::kStopped;
 }
 
 void SaveReport(const fs::path& out, const sweep::SweepResult& result,
@@ -158,19 +160,20 @@ void Print(const SweepRequest& request, const sweep::SweepResult& result,
            const sweep::Explanation& explanation,
            const std::vector<sweep::GroupLikeness>& likeness) {
   if (request.json) {
-    PrintData(report::SummaryJson(result));
+    terminal::PrintData(report::SummaryJson(result));
     return;
   }
-  PrintText(report::SweepText(result));
-  if (!likeness.empty()) PrintText("\n" + report::LikenessText(likeness));
-  PrintText(report::ExplanationText(result, explanation, request.explain.suggest > 0));
+  terminal::PrintText(report::SweepText(result));
+  if (!likeness.empty()) terminal::PrintText("\n" + report::LikenessText(likeness));
+  terminal::PrintText(report::ExplanationText(result, explanation, request.explain.suggest > 0));
 }
 
 void WriteFigures(const std::filesystem::path& folder, const std::string& name,
                   const sweep::CalibrationReport& found) {
   const std::optional<report::Figure> figure = report::CalibrationFigure(name, found);
   if (!figure) {
-    Say("note: no figure: no log has a simulated run that reached the end, both before and after "
+    terminal::Say(
+        "note: no figure: no log has a simulated run that reached the end, both before and after "
         "the fit");
     return;
   }
@@ -186,7 +189,7 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
   const fs::path out = OutputOf(request.out, experiment.name);
   const files::FolderLock lock(out);
   const auto say = [&request](const std::string& line) {
-    if (!request.quiet) Say(line);
+    if (!request.quiet) terminal::Say(line);
   };
   sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
   const sweep::CalibrationReport found = sweep::Identify(evaluator, request.jobs, say);
@@ -199,10 +202,10 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
         request.write_robot,
         report::RobotYaml(experiment, found, evaluator.InputsText(), request.experiment));
   }
-  request.json ? PrintData(json) : PrintText(report::CalibrationText(found));
+  request.json ? terminal::PrintData(json) : terminal::PrintText(report::CalibrationText(found));
   WriteFigures(out / "figures", experiment.name, found);
   say(fmt::format("written: {}", (out / "calibration.json").string()));
-  return kDone;
+  return terminal::kDone;
 }
 
 int Sweep(const SweepRequest& request) {
@@ -230,9 +233,9 @@ int Sweep(const SweepRequest& request) {
 
   const bool is_done =
       SpendTrials(out, *judged, request.explain, evaluator, {request.jobs, progress}, request.json);
-  if (!is_done) return kStopped;
-  if (!request.quiet) Say("report: " + (out / "report.html").string());
-  return request.exit_code && IsFalsified(*judged) ? kFalsified : kDone;
+  if (!is_done) return terminal::kStopped;
+  if (!request.quiet) terminal::Say("report: " + (out / "report.html").string());
+  return request.exit_code && IsFalsified(*judged) ? terminal::kFalsified : terminal::kDone;
 }
 
 void AddOptions(CLI::App& app, SweepRequest& request) {
@@ -279,7 +282,7 @@ void AddSweep(CLI::App& app, int& exit_code) {
   app.callback([request, &exit_code] {
     if (!request->status.empty()) {
       const std::string status = SweepStatus(request->status, request->json);
-      request->json ? PrintData(status) : PrintText(status);
+      request->json ? terminal::PrintData(status) : terminal::PrintText(status);
       return;
     }
     if (request->experiment.empty()) {

@@ -6,7 +6,6 @@
 
 #include "files.hpp"
 #include "flags.hpp"
-#include "print.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/json/json.hpp"
@@ -15,13 +14,14 @@
 #include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/grid.hpp"
+#include "rift/terminal/print.hpp"
+#include "rift/terminal/stop_signal.hpp"
 #include "rift/yaml/enum_name.hpp"
-#include "stop_signal.hpp"
 
 namespace rift::commands {
 
 FurtherTrials::FurtherTrials(sweep::Evaluator& evaluator, const Style& style,
-                             const StopSignal& stop)
+                             const terminal::StopSignal& stop)
     : style_(style),
       runner_([&evaluator](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
               [&evaluator](const sweep::TrialRequest& trial) { return evaluator.KeyOf(trial); },
@@ -127,7 +127,7 @@ bool SpendTrials(const std::filesystem::path& folder, const sweep::SweepResult& 
   const bool is_asked = !request.shrink.empty() || request.rare_event;
   if (!is_asked) return true;
   const experiment::Experiment& experiment = evaluator.experiment();
-  const StopSignal stop;
+  const terminal::StopSignal stop;
   FurtherTrials trials(evaluator, style, stop);
   std::string text;
   try {
@@ -140,7 +140,7 @@ bool SpendTrials(const std::filesystem::path& folder, const sweep::SweepResult& 
   } catch (const FurtherTrials::Stopped&) {
     return false;
   }
-  if (!is_silent) PrintText(text);
+  if (!is_silent) terminal::PrintText(text);
   return true;
 }
 
@@ -271,7 +271,7 @@ void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepRes
     files::WriteFile(path.string() + ".png", report::Render(figure, report::FigureFormat::kPng));
   }
   for (const report::OmittedFigure& omitted : set.omitted) {
-    Say(fmt::format("note: {} is not drawn: {}", omitted.name, omitted.reason));
+    terminal::Say(fmt::format("note: {} is not drawn: {}", omitted.name, omitted.reason));
   }
   files::WriteFile(folder / "report.html",
                    report::RenderPage(result, explanation,

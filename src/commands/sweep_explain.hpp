@@ -14,7 +14,7 @@
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
-#include "stop_signal.hpp"
+#include "rift/terminal/stop_signal.hpp"
 #include "sweep_progress.hpp"
 
 namespace rift::commands {
@@ -29,7 +29,7 @@ class FurtherTrials {
     ProgressStyle progress = ProgressStyle::kQuiet;
   };
 
-  FurtherTrials(sweep::Evaluator& evaluator, const Style& style, const StopSignal& stop);
+  FurtherTrials(sweep::Evaluator& evaluator, const Style& style, const terminal::StopSignal& stop);
 
   std::vector<sweep::TrialRow> Run(std::vector<sweep::TrialRequest> requests);
   /// The same for what computes with them; must not outlive this.

@@ -7,7 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "print.hpp"
+#include "rift/terminal/print.hpp"
 
 namespace rift::commands {
 namespace {
@@ -57,7 +57,7 @@ SweepProgress::SweepProgress(ProgressStyle style, const SweepSize& size)
 
 SweepProgress::~SweepProgress() {
   const bool is_open = style_ == ProgressStyle::kBar && printed_ != begun_ && !is_over_;
-  if (is_open) Say("");
+  if (is_open) terminal::Say("");
 }
 
 void SweepProgress::Seen(const sweep::TrialRow& row, bool from_journal) {
@@ -109,10 +109,10 @@ void SweepProgress::Print(const std::string& state) {
     case ProgressStyle::kQuiet:
       return;
     case ProgressStyle::kBar:
-      SayInPlace(fmt::format("{} {}", BarText(Steps(), size_.most), Text()));
+      terminal::SayInPlace(fmt::format("{} {}", BarText(Steps(), size_.most), Text()));
       break;
     case ProgressStyle::kLines:
-      Say(fmt::format("{}: {}", state, Text()));
+      terminal::Say(fmt::format("{}: {}", state, Text()));
       break;
     case ProgressStyle::kJson: {
       nlohmann::ordered_json json{
@@ -123,7 +123,7 @@ void SweepProgress::Print(const std::string& state) {
       if (size_.is_settings) json["settings"] = Steps();
       if (const std::optional<double> left_s = Left_s()) json["left_s"] = *left_s;
       if (largest_gap_m_) json["largest_gap_m"] = *largest_gap_m_;
-      Say(json.dump());
+      terminal::Say(json.dump());
       break;
     }
   }
@@ -141,7 +141,7 @@ void SweepProgress::End(const std::string& state) {
   is_over_ = true;
   if (style_ == ProgressStyle::kLines && !has_spoken) return;  // too short to be worth a line
   Print(state);
-  if (style_ == ProgressStyle::kBar) Say("");
+  if (style_ == ProgressStyle::kBar) terminal::Say("");
 }
 
 }  // namespace rift::commands

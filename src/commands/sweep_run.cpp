@@ -1,5 +1,5 @@
 #include "sweep_run.hpp"
-#include "stop_signal.hpp"
+#include "rift/terminal/stop_signal.hpp"
 
 #include <fmt/format.h>
 #include <sched.h>
@@ -79,7 +79,8 @@ class Stopwatch {
 
 std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
                                                const SweepRunRequest& request,
-                                               SweepProgress& progress, const StopSignal& stop) {
+                                               SweepProgress& progress,
+                                               const terminal::StopSignal& stop) {
   const experiment::Experiment& experiment = evaluator.experiment();
   const std::filesystem::path file = request.out / kJournalName;
   if (request.fresh) Journal::Remove(file);
@@ -126,7 +127,7 @@ int CoresToUse() {
 
 std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
                                            const SweepRunRequest& request) {
-  const StopSignal stop;
+  const terminal::StopSignal stop;
   SweepProgress progress(request.progress, SizeOf(evaluator.experiment()));
   std::optional<sweep::SweepResult> result;
   if (evaluator.experiment().candidate.kind == experiment::CandidateKind::kSimulation) {

@@ -6,12 +6,14 @@
 
 #include "files.hpp"
 #include "flags.hpp"
-#include "print.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/statistics/hash.hpp"
+#include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
+#include "rift/terminal/stop_signal.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/view/track_view.hpp"
 #include "rift/view/track_window.hpp"
@@ -23,7 +25,6 @@
 #include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/tracking/track_run.hpp"
 #include "rift/vision/tracking/world_setting.hpp"
-#include "stop_signal.hpp"
 #include "track_log.hpp"
 #include "track_request.hpp"
 
@@ -72,7 +73,8 @@ std::unique_ptr<view::TrackView> ViewFor(const TrackRequest& request,
                                          view::TrackView::Content content) {
   if (!request.view && request.record_waypoints.empty()) return nullptr;
   if (const std::string missing = view::MissingDisplay(); !missing.empty()) {
-    Say(fmt::format("{}; tracking goes on without{}", missing,
+    terminal::Say(
+        fmt::format("{}; tracking goes on without{}", missing,
                     request.record_waypoints.empty() ? "" : ", no waypoints can be recorded"));
     return nullptr;
   }
@@ -83,7 +85,8 @@ std::unique_ptr<view::TrackView> ViewFor(const TrackRequest& request,
 void TakeSize(const TrackRequest& request, vision::CameraSession& session) {
   if (session.camera().width_px > 0 && session.camera().height_px > 0) return;
   session.FirstPicture();
-  Say(fmt::format("note: {} does not say for which size it was made; {}x{} is taken as given",
+  terminal::Say(
+      fmt::format("note: {} does not say for which size it was made; {}x{} is taken as given",
                   request.calibration, session.camera().width_px, session.camera().height_px));
 }
 
@@ -109,8 +112,8 @@ void SetAndSaveWorld(const TrackRequest& request, const std::function<bool()>& i
   files::WriteFile(request.calibration, HeadOf(files::ReadFile(request.calibration)) +
                                             vision::WriteCamera(session.camera()));
   const vision::WorldFrame& world = *session.camera().world;
-  Say(fmt::format("world frame from {}, {:.2f} mm off at its points, is now in {}", world.origin,
-                  1e3 * world.residual_m, request.calibration));
+  terminal::Say(fmt::format("world frame from {}, {:.2f} mm off at its points, is now in {}",
+                            world.origin, 1e3 * world.residual_m, request.calibration));
 }
 
 int Report(const TrackRequest& request, const vision::CameraModel& camera,
@@ -121,11 +124,11 @@ int Report(const TrackRequest& request, const vision::CameraModel& camera,
                                       statistics::Hash128Text(files::ReadFile(request.calibration)),
                                       request.session},
                                      camera, options, run, run.rows));
-  PrintText(report::TrackText(run, run.rows));
+  terminal::PrintText(report::TrackText(run, run.rows));
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
-  Say(fmt::format("{}; run: {}", log, run_file.string()));
-  if (run.has_failed) return kRunTimeFailure;
-  return run.rows > 0 ? kDone : kNotReached;
+  terminal::Say(fmt::format("{}; run: {}", log, run_file.string()));
+  if (run.has_failed) return terminal::kRunTimeFailure;
+  return run.rows > 0 ? terminal::kDone : terminal::kNotReached;
 }
 
 int TrackRobot(const TrackRequest& request) {
@@ -133,14 +136,14 @@ int TrackRobot(const TrackRequest& request) {
   view::TrackView::Content content = ContentOf(request);
   const vision::CameraModel camera =
       vision::ReadCamera(files::ReadFile(request.calibration), request.calibration);
-  const StopSignal stop;
+  const terminal::StopSignal stop;
   const auto is_stopped = [&stop] { return stop.IsAsked(); };
   vision::CameraSession session(request.camera, camera, options.capture, options.tag);
   options.capture = session.options();
   TakeSize(request, session);
   if (!request.world.empty()) {
     SetAndSaveWorld(request, is_stopped, session);
-    if (request.out.empty()) return kDone;
+    if (request.out.empty()) return terminal::kDone;
   }
   session.Restart();  // what was read so far of a recording belongs to its log as well
   TrackLog log(request.out);
@@ -150,7 +153,7 @@ int TrackRobot(const TrackRequest& request) {
                            .log = [&log](double t_s, const auto& s) { return log.Add(t_s, s); },
                            .duration_s = request.duration_s,
                            .is_stopped = is_stopped,
-                           .say = Say};
+                           .say = terminal::Say};
   if (view) parts.show = [&view](const auto&... moment) { return view->Show(moment...); };
   const vision::TrackRun run = RunTracking(parts);
   log.Close();
@@ -160,8 +163,8 @@ int TrackRobot(const TrackRequest& request) {
 vision::Calibration CalibrateFor(const TrackRequest& request) {
   request.board.Check();
   const experiment::TrackOptions options = OptionsOf(request);
-  const StopSignal stop;
-  const vision::ViewListener listener{[&stop] { return stop.IsAsked(); }, Say};
+  const terminal::StopSignal stop;
+  const vision::ViewListener listener{[&stop] { return stop.IsAsked(); }, terminal::Say};
   std::vector<vision::BoardView> views;
   if (request.images.empty()) {
     const auto capture = vision::OpenCapture(request.camera, options.capture);
@@ -174,20 +177,20 @@ vision::Calibration CalibrateFor(const TrackRequest& request) {
 
 int CalibrateAndSave(const TrackRequest& request) {
   vision::Calibration calibration = CalibrateFor(request);
-  PrintText(report::CalibrationText(calibration));
+  terminal::PrintText(report::CalibrationText(calibration));
   const fs::path picture = request.picture.empty() ? fs::path(request.out).replace_extension(".png")
                                                    : fs::path(request.picture);
   vision::DrawCalibration(calibration, picture);
-  Say(fmt::format("picture: {}", picture.string()));
+  terminal::Say(fmt::format("picture: {}", picture.string()));
   if (calibration.verdict == vision::CalibrationVerdict::kRefuse) {
-    Say(fmt::format("{} is not written: the verdict is refuse", request.out));
-    return kNotReached;
+    terminal::Say(fmt::format("{} is not written: the verdict is refuse", request.out));
+    return terminal::kNotReached;
   }
   calibration.camera.name = fs::path(request.out).stem().string();
   files::WriteFile(request.out, report::CalibrationComment(calibration) +
                                     vision::WriteCamera(calibration.camera));
-  Say(fmt::format("calibration: {}", request.out));
-  return kDone;
+  terminal::Say(fmt::format("calibration: {}", request.out));
+  return terminal::kDone;
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ const std::vector<Reserved> kReserved{
     {"xcb/.*", {"view"}},
     {"sqlite3.*|SQLiteCpp/.*", {"sweep/run"}},
     {"termios.h|asm/termbits.h|boost/asio.*", {"hardware", "twin"}},
-    {"fstream|iostream|cstdio", {"commands", "files", "hardware", "vision", "twin", "report"}},
+    {"fstream|iostream|cstdio",
+     {"commands", "files", "hardware", "report", "terminal", "twin", "vision"}},
     {"thread|mutex|condition_variable|future",
      {"commands", "files", "hardware", "vision", "twin", "sweep"}},
 };

@@ -10,16 +10,6 @@ class App;
 
 namespace rift::commands {
 
-/// What the process ends with.
-enum ExitCode : int {
-  kDone = 0,
-  kFalsified = 1,   ///< only with --exit-code
-  kNotReached = 1,  ///< a trial ended before the last waypoint
-  kBadInput = 2,    ///< usage, configuration or a log
-  kRunTimeFailure = 3,
-  kStopped = 130,  ///< by Ctrl-C, as shells have it
-};
-
 struct DriveRequest;
 struct SimulateRequest;
 struct TrackRequest;

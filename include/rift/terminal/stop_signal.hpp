@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-namespace rift::commands {
+namespace rift::terminal {
 
 /// While it lives, Ctrl-C and SIGTERM ask for a clean stop instead of ending the process; a second
 /// one ends it.
@@ -20,4 +20,4 @@ class StopSignal {
   struct sigaction terminate_ {};
 };
 
-}  // namespace rift::commands
+}  // namespace rift::terminal

@@ -1,6 +1,6 @@
-#include "stop_signal.hpp"
+#include "rift/terminal/stop_signal.hpp"
 
-namespace rift::commands {
+namespace rift::terminal {
 namespace {
 
 volatile std::sig_atomic_t asked = 0;  // all that a handler may touch
@@ -25,4 +25,4 @@ StopSignal::~StopSignal() {
 
 bool StopSignal::IsAsked() const { return asked != 0; }
 
-}  // namespace rift::commands
+}  // namespace rift::terminal

@@ -1,4 +1,4 @@
-#include "terminal_text.hpp"
+#include "text.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "rift/yaml/utf8.hpp"
 
-namespace rift::commands {
+namespace rift::terminal {
 namespace {
 
 unsigned Byte(char c) { return static_cast<unsigned char>(c); }
@@ -50,4 +50,4 @@ std::string TerminalText(std::string_view text, LineBreaks line_breaks) {
   return shown;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::terminal

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace rift::commands {
+namespace rift::terminal {
 
 /// Makes a process that somebody else started safe to work in; to be called before anything is
 /// opened. Everything holds across exec and fork.
@@ -13,4 +13,4 @@ namespace rift::commands {
 /// Throws std::runtime_error when a descriptor cannot be opened.
 void GuardProcessStart();
 
-}  // namespace rift::commands
+}  // namespace rift::terminal

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace rift::commands {
+namespace rift::terminal {
 
 /// What a line break in a text is: a part of a name that somebody else chose, or our own.
 enum class LineBreaks { kEscaped, kKept };
@@ -15,4 +15,4 @@ enum class LineBreaks { kEscaped, kKept };
 /// A backslash stays as it is: the result is for people and cannot be read back.
 std::string TerminalText(std::string_view text, LineBreaks line_breaks);
 
-}  // namespace rift::commands
+}  // namespace rift::terminal

@@ -1,4 +1,4 @@
-#include "print.hpp"
+#include "rift/terminal/print.hpp"
 
 #include <unistd.h>
 
@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <string>
 
-#include "terminal_text.hpp"
+#include "text.hpp"
 
-namespace rift::commands {
+namespace rift::terminal {
 namespace {
 
 int stdout_errno = 0;  // of the first write that failed
@@ -66,4 +66,4 @@ int FlushResults() {
   return stdout_errno;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::terminal

@@ -1,4 +1,4 @@
-#include "process_start.hpp"
+#include "rift/terminal/process_start.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace rift::commands {
+namespace rift::terminal {
 namespace {
 
 /// Open for reading alone, so writes fail (EBADF). The lower descriptors must be open.
@@ -31,4 +31,4 @@ void GuardProcessStart() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-}  // namespace rift::commands
+}  // namespace rift::terminal

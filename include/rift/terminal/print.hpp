@@ -6,7 +6,7 @@
 /// The only place that writes to stdout and stderr (a test holds the tree to it). None of these
 /// throws because a stream cannot be written: a robot must not stop, and a sweep must not be lost,
 /// because a note could not be shown. What is for people passes TerminalText().
-namespace rift::commands {
+namespace rift::terminal {
 
 /// One line on stderr: a note, a warning or an error. Lost when stderr cannot be written.
 void Say(std::string_view line);
@@ -39,4 +39,4 @@ void PrintData(std::string_view data);
 /// take since the program began, 0 when it took all.
 int FlushResults();
 
-}  // namespace rift::commands
+}  // namespace rift::terminal
