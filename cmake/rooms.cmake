@@ -62,6 +62,7 @@ rift_room(report/json ROOMS control experiment gap hardware report/text statisti
 rift_room(report/page ROOMS report/figures report/text sweep/explain sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
+  OPTIONS simulation
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
 rift_room(commands ROOMS experiment files gap geometry hardware report/figures report/json

@@ -5,12 +5,12 @@
 #include <stdexcept>
 
 #include "drive.hpp"
-#include "film.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/trajectory/log.hpp"
+#include "rift/view/film.hpp"
 #include "rift/view/window.hpp"
 
 namespace rift::commands {
@@ -70,15 +70,15 @@ int ReplayDrive(const DriveRequest& request) {
   const trajectory::Trajectory seen = ReadDriven(folder / "trajectory.csv");
   const std::string ending = EndingOf(folder);
   view::Run shown{.title = fmt::format("{}, {}", experiment.name, folder.string()),
-                  .body = ShapeOf(experiment.simulation.body),
+                  .body = view::ShapeOf(experiment.simulation.body),
                   .truth = OnTheFloor(seen),
                   .logged = seen,
                   .outcome = ending};
-  ShowTask(shown, experiment.waypoints);
+  view::ShowTask(shown, experiment.waypoints);
   terminal::PrintText(
       fmt::format("{}\n{} poses over {:.2f} s\n", ending, seen.poses.size(), seen.Duration_s()));
   terminal::FlushResults();
-  ShowFilm(view::MakeFilm(shown), request.video, window);
+  view::ShowFilm(view::MakeFilm(shown), request.video, window, terminal::Say);
   return terminal::kDone;
 }
 

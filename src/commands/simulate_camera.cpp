@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
-#include "film.hpp"
 #include "flags.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
@@ -14,6 +13,7 @@
 #include "rift/trajectory/log.hpp"
 #include "rift/twin/twin.hpp"
 #include "rift/view/film.hpp"
+#include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "simulate.hpp"
 
@@ -102,12 +102,12 @@ view::Film FilmOf(const experiment::Experiment& experiment, const sweep::Simulat
   const simulation::Terrain terrain(trial.simulation.terrain, trial.image);
   view::Run shown{
       .title = fmt::format("{} on {}", experiment.name, trial.simulation.terrain.surface),
-      .body = ShapeOf(trial.simulation.body),
+      .body = view::ShapeOf(trial.simulation.body),
       .height_at = [&](double x_m, double y_m) { return terrain.HeightAt(x_m, y_m); },
       .truth = run.truth,
       .logged = run.result.trajectory,
       .outcome = run.result.reason};
-  ShowTask(shown, trial.waypoints);
+  view::ShowTask(shown, trial.waypoints);
   for (const geometry::FloorArea& area : AreasOf(trial.simulation.terrain)) {
     shown.patches.push_back({area.label, area.x_min_m, area.x_max_m, area.y_min_m, area.y_max_m});
   }
@@ -122,8 +122,8 @@ int SimulateWithCamera(const SimulateRequest& request) {
     return RunTwin(request.experiment, job.experiment, job.folder);
   }
   return Simulate(request, [&request](const Simulated& made) {
-    ShowFilm(FilmOf(made.experiment, made.trial, made.run), request.pictures.video,
-             request.pictures.window);
+    view::ShowFilm(FilmOf(made.experiment, made.trial, made.run), request.pictures.video,
+                   request.pictures.window, terminal::Say);
   });
 }
 

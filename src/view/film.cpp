@@ -11,6 +11,22 @@
 
 namespace rift::view {
 
+BodyShape ShapeOf(const simulation::BodyOptions& body) {
+  return {.chassis_radius_m = body.chassis_radius_m,
+          .chassis_height_m = body.chassis_height_m,
+          .chassis_bottom_m = body.rim_clearance_m - body.wheel_radius_m,
+          .wheel_radius_m = body.wheel_radius_m,
+          .wheel_width_m = body.wheel_width_m,
+          .track_m = body.track_m};
+}
+
+void ShowTask(Run& shown, const std::vector<control::Waypoint>& waypoints) {
+  for (const control::Waypoint& waypoint : waypoints) {
+    shown.waypoints.push_back({waypoint.name, waypoint.Position()});
+    shown.reference_m.push_back(waypoint.Position());
+  }
+}
+
 namespace {
 
 // H.264 in 4:2:0 keeps one colour for two by two pixels.

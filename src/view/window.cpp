@@ -14,6 +14,7 @@
 
 #include "painter.hpp"
 #include "rift/view/film.hpp"
+#include "rift/view/video.hpp"
 
 namespace rift::view {
 
@@ -82,6 +83,18 @@ void PlayInWindow(const Film& film, const ViewOptions& options) {
     then = now;
   } while (!playback.left && window.IsOpen() &&
            !(playback.t_s >= duration_s && playback.over_since_s >= options.hold_s));
+}
+
+void ShowFilm(const Film& film, const std::string& video, bool window,
+              const std::function<void(const std::string&)>& say) {
+  if (!video.empty()) WriteVideo(film, video, {});
+  if (!window) return;
+  const std::string no_display = MissingDisplay();
+  if (no_display.empty()) {
+    PlayInWindow(film, {});
+  } else {
+    say("note: --view shows nothing: " + no_display);
+  }
 }
 
 }  // namespace rift::view

@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "rift/control/waypoint.hpp"
 #include "rift/geometry/floor.hpp"
 #include "rift/geometry/pose2.hpp"
+#include "rift/simulation/options.hpp"
 #include "rift/trajectory/trajectory.hpp"
 #include "rift/trial/robot.hpp"
 #include "rift/view/options.hpp"
@@ -24,6 +26,9 @@ struct BodyShape {
   double wheel_width_m = 0.0068;
   double track_m = 0.083;
 };
+
+/// The robot's outline as its simulation has it.
+BodyShape ShapeOf(const simulation::BodyOptions& body);
 
 /// Heights in m on a grid: height_m[row * columns + column], row 0 at y_min_m; -infinity where
 /// there is no ground.
@@ -92,6 +97,9 @@ struct Run {
   trajectory::Trajectory logged;
   std::string outcome;  ///< "reached"
 };
+
+/// The task in the picture: its waypoints, and the polyline through them as the path to keep.
+void ShowTask(Run& shown, const std::vector<control::Waypoint>& waypoints);
 
 /// Pictures at start, start + 1/fps, ...: as many as duration times fps (rounded, at least one),
 /// the last of them at the end of the run.

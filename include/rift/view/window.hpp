@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "rift/view/film.hpp"
@@ -17,5 +18,10 @@ void RequireDisplay();
 /// Plays the film in a window until it is over or the user leaves. Throws std::runtime_error with
 /// MissingDisplay() where that is not empty.
 void PlayInWindow(const Film& film, const ViewOptions& options);
+
+/// Writes the film to `video` where one is named; then plays it in a window, if asked, or tells
+/// `say` why there is none.
+void ShowFilm(const Film& film, const std::string& video, bool window,
+              const std::function<void(const std::string&)>& say);
 
 }  // namespace rift::view
