@@ -8,8 +8,9 @@
 #include <stdexcept>
 
 #include "drive_series.hpp"
-#include "files.hpp"
 #include "prompt.hpp"
+#include "rift/commands/arguments/inputs.hpp"
+#include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/hardware/arming.hpp"
@@ -34,14 +35,10 @@ constexpr std::chrono::milliseconds kRedraw{100};
 // A robot at rest that was not seen for longer may stand elsewhere by now.
 constexpr double kSeen_s = 0.5;
 
-experiment::Experiment LoadFor(const DriveRequest& request) {
-  return experiment::LoadExperiment(request.experiment, request.overrides,
-                                    [](const std::string& path) { return files::ReadFile(path); });
-}
-
 int PingRobot(const DriveRequest& request) {
   hardware::HardwareOptions options;
-  if (!request.experiment.empty()) options = LoadFor(request).hardware;
+  if (!request.experiment.empty())
+    options = ReadExperiment(request.experiment, request.overrides).hardware;
   hardware::SerialPort port(request.port, options.line.baud, options.line.write_timeout_s);
   hardware::SteadyClock clock;
   const hardware::PingResult ping = hardware::MeasureLink(port, clock, options);
@@ -242,7 +239,7 @@ hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
 }
 
 experiment::Experiment LoadTask(const DriveRequest& request) {
-  experiment::Experiment experiment = LoadFor(request);
+  experiment::Experiment experiment = ReadExperiment(request.experiment, request.overrides);
   if (request.countdown_s) experiment.hardware.start.countdown_s = *request.countdown_s;
   if (request.seconds) experiment.trial.timeout_s = *request.seconds;
   try {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "drive.hpp"
+#include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/terminal/exit_code.hpp"
@@ -64,9 +65,7 @@ int ReplayDrive(const DriveRequest& request) {
   RequireDrive(folder);
   const bool window = request.video.empty() || request.view;
   if (request.video.empty()) view::RequireDisplay();
-  const experiment::Experiment experiment =
-      experiment::LoadExperiment((folder / "experiment.yaml").string(), {},
-                                 [](const std::string& path) { return files::ReadFile(path); });
+  const experiment::Experiment experiment = ReadExperiment(folder / "experiment.yaml");
   const trajectory::Trajectory seen = ReadDriven(folder / "trajectory.csv");
   const std::string ending = EndingOf(folder);
   view::Run shown{.title = fmt::format("{}, {}", experiment.name, folder.string()),

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "drive.hpp"
-#include "flags.hpp"
+#include "rift/commands/arguments/flags.hpp"
 #include "rift/commands/command.hpp"
 
 namespace rift::commands {
@@ -58,10 +58,7 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
   CLI::Option* experiment = app.add_option("EXPERIMENT", request.experiment,
                                            "YAML file with the waypoints; its key hardware: holds "
                                            "the link's settings and limits");
-  app.add_option("--set", request.overrides, "sets one key, such as hardware.line.baud=115200")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false)
-      ->needs(experiment);
+  AddSetFlag(app, request.overrides, "hardware.line.baud=115200")->needs(experiment);
   app.add_option("--port", request.port, "the robot's serial port, such as /dev/rfcomm0")
       ->type_name("TTY");
   app.add_option("--camera", request.camera,

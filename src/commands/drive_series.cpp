@@ -8,8 +8,9 @@
 #include <stdexcept>
 
 #include "before_each.hpp"
-#include "files.hpp"
 #include "prompt.hpp"
+#include "rift/commands/arguments/inputs.hpp"
+#include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/files/files.hpp"
@@ -152,8 +153,7 @@ bool ChangesDrives(const std::string& key) {
 /// Drives of two experiments must not end up in one table. --repeat may be given a larger number.
 void CheckSameSeries(const fs::path& file, const Experiment& sweep) {
   if (!fs::exists(file)) return;
-  const Experiment before = experiment::LoadExperiment(
-      file.string(), {}, [](const std::string& path) { return files::ReadFile(path); });
+  const Experiment before = ReadExperiment(file);
   std::map<std::string, std::string> old_values = experiment::FlatValues(before);
   for (const auto& [key, value] : experiment::FlatValues(sweep)) {
     if (!ChangesDrives(key) || old_values[key] == value) continue;

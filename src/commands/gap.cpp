@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "files.hpp"
-#include "flags.hpp"
+#include "rift/commands/arguments/flags.hpp"
+#include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/gap/result.hpp"

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "files.hpp"
+#include "rift/commands/arguments/inputs.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
@@ -43,8 +43,7 @@ Replay ReplayRow(const std::filesystem::path& folder, const std::string& id) {
   const std::filesystem::path table = folder / "table.csv";
   const report::TableRow row = report::TableRowOf(files::ReadFile(table), id, table.string());
   const std::string file = (folder / "experiment.yaml").string();
-  const experiment::Experiment experiment = experiment::LoadExperiment(
-      file, {}, [](const std::string& path) { return files::ReadFile(path); });
+  const experiment::Experiment experiment = ReadExperiment(file);
   if (experiment.candidate.kind != experiment::CandidateKind::kSimulation) {
     throw std::invalid_argument(
         fmt::format("{}: candidate.kind is logs: there is nothing to simulate again", file));

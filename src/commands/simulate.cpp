@@ -9,9 +9,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "files.hpp"
-#include "flags.hpp"
 #include "replay.hpp"
+#include "rift/commands/arguments/flags.hpp"
+#include "rift/commands/arguments/inputs.hpp"
+#include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/figures/figures.hpp"
@@ -104,6 +105,9 @@ void PutStart(const std::string& text, experiment::Experiment& experiment) {
 
 /// The start and the seed become part of the experiment, so that what is saved is what was run.
 experiment::Experiment LoadFor(const SimulateRequest& request, std::vector<fs::path>& inputs) {
+  if (request.experiment.empty()) {
+    throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
+  }
   std::vector<std::string> overrides = request.overrides;
   if (!request.seed.empty()) overrides.push_back("seed=" + request.seed);
   const auto read = [&inputs](const std::string& path) {
@@ -164,9 +168,6 @@ void Save(const fs::path& out, const experiment::Experiment& experiment,
 }
 
 Simulated SimulateFile(const SimulateRequest& request) {
-  if (request.experiment.empty()) {
-    throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
-  }
   std::vector<fs::path> inputs;
   Simulated made{.experiment = LoadFor(request, inputs)};
   const experiment::Experiment& experiment = made.experiment;
@@ -225,9 +226,6 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
 }
 
 TwinJob LoadTwinJob(const SimulateRequest& request) {
-  if (request.experiment.empty()) {
-    throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
-  }
   std::vector<fs::path> inputs;
   TwinJob job{.experiment = LoadFor(request, inputs)};
   job.folder = OutputOf(request.out, job.experiment.name);
@@ -239,9 +237,7 @@ TwinJob LoadTwinJob(const SimulateRequest& request) {
 void AddSimulate(CLI::App& app, int& exit_code, const CameraUses& camera) {
   const auto request = std::make_shared<SimulateRequest>();
   app.add_option("EXPERIMENT", request->experiment, "YAML file with at least the waypoints");
-  app.add_option("--set", request->overrides, "sets one key, such as control.v_min=0.2")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  AddSetFlag(app, request->overrides, "control.v_min=0.2");
   app.add_option("--start", request->start, "where the robot stands, instead of the first waypoint")
       ->type_name("X,Y,YAW_DEG");
   app.add_option("--seed", request->seed, "of all random numbers, instead of the file's")

@@ -2,8 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "files.hpp"
-#include "flags.hpp"
+#include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/fields.hpp"

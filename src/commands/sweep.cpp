@@ -5,8 +5,9 @@
 #include <memory>
 #include <optional>
 
-#include "files.hpp"
-#include "flags.hpp"
+#include "rift/commands/arguments/flags.hpp"
+#include "rift/commands/arguments/inputs.hpp"
+#include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
@@ -71,8 +72,7 @@ experiment::Experiment LoadFor(const SweepRequest& request) {
   std::vector<std::string> overrides = request.overrides;
   if (!request.budget.empty()) overrides.push_back("search.budget=" + request.budget);
   if (!request.seconds.empty()) overrides.push_back("search.max_s=" + request.seconds);
-  const experiment::Experiment experiment = experiment::LoadExperiment(
-      request.experiment, overrides, [](const std::string& path) { return files::ReadFile(path); });
+  const experiment::Experiment experiment = ReadExperiment(request.experiment, overrides);
   CheckFlags(request, experiment);
   return experiment;
 }
@@ -240,9 +240,7 @@ int Sweep(const SweepRequest& request) {
 
 void AddOptions(CLI::App& app, SweepRequest& request) {
   app.add_option("EXPERIMENT", request.experiment, "YAML file of the experiment");
-  app.add_option("--set", request.overrides, "sets one key, such as gap.skip_start=0.1")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  AddSetFlag(app, request.overrides, "gap.skip_start=0.1");
   app.add_option("--out", request.out,
                  "folder for journal, table, summary, figures and report [out/NAME]")
       ->type_name("DIR");

@@ -4,8 +4,7 @@
 
 #include <stdexcept>
 
-#include "files.hpp"
-#include "flags.hpp"
+#include "rift/commands/arguments/flags.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/json/json.hpp"

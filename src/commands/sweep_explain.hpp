@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "flags.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/report/page/page.hpp"
 #include "rift/sweep/explain/explanation.hpp"

@@ -7,8 +7,6 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "files.hpp"
-#include "flags.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
 #include "rift/report/json/fields.hpp"

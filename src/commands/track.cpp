@@ -4,8 +4,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "files.hpp"
-#include "flags.hpp"
+#include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/files/files.hpp"
@@ -44,11 +43,6 @@ experiment::TrackOptions OptionsOf(const TrackRequest& request) {
   return options;
 }
 
-experiment::Experiment LoadPath(const std::string& path) {
-  return experiment::LoadExperiment(path, {},
-                                    [](const std::string& p) { return files::ReadFile(p); });
-}
-
 /// The path is a waypoint file or, told by its ending, a log.
 view::TrackView::Content ContentOf(const TrackRequest& request) {
   view::TrackView::Content content;
@@ -63,7 +57,7 @@ view::TrackView::Content ContentOf(const TrackRequest& request) {
     for (const auto& pose : log.trajectory.poses) content.path_m.push_back(pose.Position());
     return content;
   }
-  content.planned = LoadPath(request.path).waypoints;
+  content.planned = ReadExperiment(request.path).waypoints;
   for (const auto& waypoint : content.planned) content.path_m.push_back(waypoint.Position());
   return content;
 }

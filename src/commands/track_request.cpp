@@ -7,8 +7,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "files.hpp"
-#include "flags.hpp"
+#include "rift/commands/arguments/flags.hpp"
+#include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 
@@ -94,9 +94,7 @@ void AddCalibrationFlags(CLI::App& app, TrackRequest& request) {
 
 void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_option("EXPERIMENT", request.experiment, "YAML file; its key track: holds the settings");
-  app.add_option("--set", request.overrides, "sets one key, such as track.tag.id=3")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  AddSetFlag(app, request.overrides, "track.tag.id=3");
   app.add_option("--camera", request.camera,
                  "device, stream, video, or quoted pattern of pictures in the order of their names")
       ->type_name("/dev/video0|URL|FILE|'GLOB'");

@@ -1,4 +1,4 @@
-#include "files.hpp"
+#include "rift/commands/arguments/outputs.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "rift/files/files.hpp"
-#include "rift/terminal/print.hpp"
 
 namespace rift::commands {
 
@@ -21,11 +20,6 @@ std::filesystem::path OutputOf(const std::string& out, const std::string& name) 
         fmt::format("the name of the experiment, '{}', is no folder name: say --out DIR", name));
   }
   return std::filesystem::path("out") / name;
-}
-
-sweep::Inputs FileInputs() {
-  return {[](const std::string& path) { return files::ReadIfThere(path); },
-          [](const std::string& line) { terminal::Say("note: " + line); }};
 }
 
 void CheckOutputs(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {

@@ -1,9 +1,15 @@
-#include "flags.hpp"
+#include "rift/commands/arguments/flags.hpp"
 
 #include "rift/experiment/experiment.hpp"
 #include "rift/terminal/print.hpp"
 
 namespace rift::commands {
+
+CLI::Option* AddSetFlag(CLI::App& app, std::vector<std::string>& overrides, const char* example) {
+  return app.add_option("--set", overrides, fmt::format("sets one key, such as {}", example))
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
 
 void AddKeysFlag(CLI::App& app) {
   const auto list_and_end = [] {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace rift::commands {
 
@@ -84,6 +85,9 @@ template <class Options>
 void AddFlags(CLI::App& app, Options& options) {
   Options::Fields(options, FlagMaker(app));
 }
+
+/// `--set KEY=VALUE`, as often as one likes; `example` is one, such as control.v_min=0.2.
+CLI::Option* AddSetFlag(CLI::App& app, std::vector<std::string>& overrides, const char* example);
 
 /// `--keys`: lists every key that an experiment can have, and ends.
 void AddKeysFlag(CLI::App& app);

@@ -7,12 +7,8 @@
 #include <vector>
 
 #include "rift/report/figures/figure.hpp"
-#include "rift/sweep/falsify/recorded_logs.hpp"
 
 namespace rift::commands {
-
-/// Files for computation, whose notes go to stderr.
-sweep::Inputs FileInputs();
 
 /// `out`, or out/NAME where none was asked for. Throws std::invalid_argument when the name of an
 /// experiment would lead elsewhere.
