@@ -67,7 +67,10 @@ rift_room(view ROOMS control geometry trajectory trial vision/camera vision/trac
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
 rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal
   LIBRARIES CLI11::CLI11 fmt::fmt)
-rift_room(commands ROOMS commands/arguments experiment files gap geometry hardware report/figures
-    report/json report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify
-    sweep/run terminal trajectory twin view vision/calibration vision/camera vision/tracking yaml
+rift_room(commands/sweep ROOMS commands/arguments experiment files report/figures report/json
+    report/page report/text sweep/calibrate sweep/explain sweep/falsify sweep/run terminal yaml
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
+rift_room(commands ROOMS commands/arguments commands/sweep experiment files gap geometry hardware
+    report/figures report/json report/text statistics sweep/falsify terminal trajectory twin view
+    vision/calibration vision/camera vision/tracking yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)

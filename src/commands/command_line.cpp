@@ -1,5 +1,6 @@
 #include "rift/commands/camera_program.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/commands/sweep/sweep.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -11,7 +11,7 @@
 #include "prompt.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
-#include "rift/commands/command.hpp"
+#include "rift/commands/sweep/sweep.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
@@ -267,13 +267,9 @@ void Series::SetScene(const PlannedTrial& trial) {
   session_.MoveTo(to.port, to.camera, to.calibration);
 }
 
+/// The drives are there, whatever becomes of the sweep.
 int RunSweep(const fs::path& out, bool json) {
-  std::vector<std::string> words{"rift", "sweep", (out / "sweep.yaml").string(), "--out",
-                                 (out / "sweep").string()};
-  if (json) words.emplace_back("--json");
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  return RunCommandLine(static_cast<int>(arguments.size()), arguments.data(), {});
+  return terminal::ReportErrors([&] { return SweepFile(out / "sweep.yaml", out / "sweep", json); });
 }
 
 }  // namespace

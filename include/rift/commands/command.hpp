@@ -43,7 +43,6 @@ std::vector<Command> Commands(const CameraUses& camera);
 void AddDrive(CLI::App& app, int& exit_code, const CameraUses& camera);
 void AddGap(CLI::App& app, int& exit_code);
 void AddSimulate(CLI::App& app, int& exit_code, const CameraUses& camera);
-void AddSweep(CLI::App& app, int& exit_code);
 void AddTrack(CLI::App& app, int& exit_code, const CameraUses& camera);
 
 /// Runs the subcommand that the command line asks for; what it throws is one line on stderr.

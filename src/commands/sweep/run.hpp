@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "progress.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
-#include "sweep_progress.hpp"
 
 namespace rift::commands {
 

@@ -1,4 +1,4 @@
-#include "sweep_explain.hpp"
+#include "explain.hpp"
 
 #include <fmt/format.h>
 

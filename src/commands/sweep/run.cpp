@@ -1,4 +1,4 @@
-#include "sweep_run.hpp"
+#include "run.hpp"
 #include "rift/terminal/stop_signal.hpp"
 
 #include <fmt/format.h>

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "progress.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/report/page/page.hpp"
 #include "rift/sweep/explain/explanation.hpp"
@@ -14,7 +15,6 @@
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/terminal/stop_signal.hpp"
-#include "sweep_progress.hpp"
 
 namespace rift::commands {
 

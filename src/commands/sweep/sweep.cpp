@@ -5,10 +5,11 @@
 #include <memory>
 #include <optional>
 
+#include "explain.hpp"
 #include "rift/commands/arguments/flags.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
-#include "rift/commands/command.hpp"
+#include "rift/commands/sweep/sweep.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
 #include "rift/report/figures/figures.hpp"
@@ -21,8 +22,7 @@
 #include "rift/sweep/falsify/falsify.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
-#include "sweep_explain.hpp"
-#include "sweep_run.hpp"
+#include "run.hpp"
 
 namespace rift::commands {
 
@@ -273,6 +273,10 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
 }
 
 }  // namespace
+
+int SweepFile(const fs::path& file, const fs::path& out, bool json) {
+  return Sweep({.experiment = file.string(), .out = out.string(), .json = json});
+}
 
 void AddSweep(CLI::App& app, int& exit_code) {
   const auto request = std::make_shared<SweepRequest>();
