@@ -1,6 +1,7 @@
 #include "rift/commands/camera_program.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/commands/sweep/sweep.hpp"
+#include "rift/commands/track/track.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -91,7 +92,7 @@ std::vector<Command> Commands(const CameraUses& camera) {
       {"simulate", "Drive the simulated robot through a waypoint task",
        [camera](CLI::App& app, int& exit_code) { AddSimulate(app, exit_code, camera); }},
       {"track", "Track the robot's tag with a camera, or calibrate the camera",
-       [camera](CLI::App& app, int& exit_code) { AddTrack(app, exit_code, camera); }},
+       [camera](CLI::App& app, int& exit_code) { AddTrack(app, exit_code, camera.track); }},
       {"drive", "Drive the real robot through a waypoint task, or measure its radio link",
        [camera](CLI::App& app, int& exit_code) { AddDrive(app, exit_code, camera); }},
       {"gap", "Measure the Sim-to-Real gap of trajectories", AddGap},

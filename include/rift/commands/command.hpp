@@ -24,7 +24,6 @@ struct CameraUses {
 };
 
 /// The uses themselves, for rift-camera.
-int Track(const TrackRequest& request);
 int Drive(const DriveRequest& request);
 int SimulateWithCamera(const SimulateRequest& request);
 
@@ -43,7 +42,6 @@ std::vector<Command> Commands(const CameraUses& camera);
 void AddDrive(CLI::App& app, int& exit_code, const CameraUses& camera);
 void AddGap(CLI::App& app, int& exit_code);
 void AddSimulate(CLI::App& app, int& exit_code, const CameraUses& camera);
-void AddTrack(CLI::App& app, int& exit_code, const CameraUses& camera);
 
 /// Runs the subcommand that the command line asks for; what it throws is one line on stderr.
 /// Returns the exit code.

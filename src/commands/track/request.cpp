@@ -1,4 +1,4 @@
-#include "track_request.hpp"
+#include "request.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "rift/commands/arguments/flags.hpp"
 #include "rift/commands/arguments/outputs.hpp"
-#include "rift/commands/command.hpp"
+#include "rift/commands/track/track.hpp"
 #include "rift/files/files.hpp"
 
 namespace rift::commands {
@@ -130,7 +130,7 @@ fs::path RunFileOf(const fs::path& log) {
 
 void TrackRequest::Check() const { calibrate ? CheckCalibrating(*this) : CheckTracking(*this); }
 
-void AddTrack(CLI::App& app, int& exit_code, const CameraUses& camera) {
+void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const TrackRequest&)>& track) {
   const auto request = std::make_shared<TrackRequest>();
   AddTrackingFlags(app, *request);
   AddFlags(app, request->session);
@@ -143,7 +143,7 @@ void AddTrack(CLI::App& app, int& exit_code, const CameraUses& camera) {
       "Example: rift track --calibrate --board 13x9 --square 0.025 --images photos --out cam.yaml\n"
       "         rift track --camera /dev/video0 --calibration cam.yaml --world first --out "
       "log.csv");
-  app.callback([request, track = camera.track, &exit_code] {
+  app.callback([request, track, &exit_code] {
     request->Check();
     exit_code = track(*request);
   });

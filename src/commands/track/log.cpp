@@ -1,4 +1,4 @@
-#include "track_log.hpp"
+#include "log.hpp"
 
 #include <fmt/format.h>
 

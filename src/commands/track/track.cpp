@@ -4,8 +4,10 @@
 #include <memory>
 #include <stdexcept>
 
+#include "log.hpp"
+#include "request.hpp"
 #include "rift/commands/arguments/inputs.hpp"
-#include "rift/commands/command.hpp"
+#include "rift/commands/track/track.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
@@ -24,8 +26,6 @@
 #include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/tracking/track_run.hpp"
 #include "rift/vision/tracking/world_setting.hpp"
-#include "track_log.hpp"
-#include "track_request.hpp"
 
 namespace rift::commands {
 namespace {
