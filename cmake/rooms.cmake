@@ -70,10 +70,13 @@ rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify
 rift_room(commands/sweep ROOMS commands/arguments experiment files report/figures report/json
     report/page report/text sweep/calibrate sweep/explain sweep/falsify sweep/run terminal yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
+rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment files geometry hardware
+    report/json sweep/falsify terminal trajectory view vision/camera vision/tracking
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(commands/track ROOMS commands/arguments experiment files report/json statistics terminal
     trajectory view vision/calibration vision/camera vision/tracking
   LIBRARIES fmt::fmt)
-rift_room(commands ROOMS commands/arguments commands/sweep commands/track experiment files gap
-    geometry hardware report/figures report/json report/text sweep/falsify terminal trajectory twin
-    view vision/camera vision/tracking yaml
+rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
+    files gap report/figures report/json report/text sweep/falsify terminal trajectory twin view
+    vision/camera yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)

@@ -1,4 +1,5 @@
 #include "rift/commands/command.hpp"
+#include "rift/commands/drive/drive.hpp"
 #include "rift/commands/track/track.hpp"
 
 /// The program rift-camera: all of rift, with cameras, windows and videos.

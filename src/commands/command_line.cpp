@@ -1,5 +1,6 @@
 #include "rift/commands/camera_program.hpp"
 #include "rift/commands/command.hpp"
+#include "rift/commands/drive/drive.hpp"
 #include "rift/commands/sweep/sweep.hpp"
 #include "rift/commands/track/track.hpp"
 
@@ -94,7 +95,7 @@ std::vector<Command> Commands(const CameraUses& camera) {
       {"track", "Track the robot's tag with a camera, or calibrate the camera",
        [camera](CLI::App& app, int& exit_code) { AddTrack(app, exit_code, camera.track); }},
       {"drive", "Drive the real robot through a waypoint task, or measure its radio link",
-       [camera](CLI::App& app, int& exit_code) { AddDrive(app, exit_code, camera); }},
+       [camera](CLI::App& app, int& exit_code) { AddDrive(app, exit_code, camera.drive); }},
       {"gap", "Measure the Sim-to-Real gap of trajectories", AddGap},
       {"sweep", "Find where in a parameter space the gap is too large, and why", AddSweep},
   };

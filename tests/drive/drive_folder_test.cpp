@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "commands/drive.hpp"
+#include "commands/drive/drive.hpp"
 #include "hardware/bench.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"

@@ -1,4 +1,4 @@
-#include "commands/drive_log.hpp"
+#include "commands/drive/log.hpp"
 
 #include <sys/resource.h>
 
@@ -6,7 +6,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 
-#include "commands/drive.hpp"
+#include "commands/drive/drive.hpp"
 #include "hardware/bench.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"

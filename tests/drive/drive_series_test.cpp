@@ -1,4 +1,4 @@
-#include "commands/drive_series.hpp"
+#include "commands/drive/series.hpp"
 
 #include <catch2/catch.hpp>
 #include <csignal>
@@ -6,7 +6,7 @@
 #include <set>
 #include <thread>
 
-#include "commands/before_each.hpp"
+#include "commands/drive/before_each.hpp"
 #include "rift/files/files.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/process.hpp"

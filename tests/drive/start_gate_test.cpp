@@ -1,4 +1,4 @@
-#include "commands/start_gate.hpp"
+#include "commands/drive/start_gate.hpp"
 
 #include <catch2/catch.hpp>
 #include <vector>

@@ -23,8 +23,7 @@ struct CameraUses {
   std::function<int(const SimulateRequest&)> simulate;  ///< with --view, --video or --twin
 };
 
-/// The uses themselves, for rift-camera.
-int Drive(const DriveRequest& request);
+/// The use of simulate itself, for rift-camera.
 int SimulateWithCamera(const SimulateRequest& request);
 
 /// One subcommand of rift.
@@ -39,7 +38,6 @@ struct Command {
 /// Every subcommand that works, in the order of `rift --help`.
 std::vector<Command> Commands(const CameraUses& camera);
 
-void AddDrive(CLI::App& app, int& exit_code, const CameraUses& camera);
 void AddGap(CLI::App& app, int& exit_code);
 void AddSimulate(CLI::App& app, int& exit_code, const CameraUses& camera);
 

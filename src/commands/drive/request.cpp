@@ -5,7 +5,7 @@
 
 #include "drive.hpp"
 #include "rift/commands/arguments/flags.hpp"
-#include "rift/commands/command.hpp"
+#include "rift/commands/drive/drive.hpp"
 
 namespace rift::commands {
 namespace {
@@ -117,7 +117,7 @@ void DriveRequest::Check() const {
   }
 }
 
-void AddDrive(CLI::App& app, int& exit_code, const CameraUses& camera) {
+void AddDrive(CLI::App& app, int& exit_code, const std::function<int(const DriveRequest&)>& drive) {
   const auto request = std::make_shared<DriveRequest>();
   AddDriveFlags(app, *request);
   AddKeysFlag(app);
@@ -137,7 +137,7 @@ void AddDrive(CLI::App& app, int& exit_code, const CameraUses& camera) {
       "         rift drive EXPERIMENT --grid --set reference.trials=3 --port ... (whole table)\n"
       "         rift drive configs/twin.yaml --repeat 3 --yes --before-each \\\n"
       "             'rift simulate configs/twin.yaml --twin --seed {trial} --out out/twin{trial}'");
-  app.callback([request, drive = camera.drive, &exit_code] {
+  app.callback([request, drive, &exit_code] {
     request->Check();
     exit_code = drive(*request);
   });

@@ -1,4 +1,4 @@
-#include "drive_log.hpp"
+#include "log.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,6 @@
 
 #include "drive.hpp"
 #include "rift/commands/arguments/inputs.hpp"
-#include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drive_log.hpp"
+#include "log.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/hardware/arming.hpp"
 #include "rift/vision/camera/camera_model.hpp"

@@ -1,4 +1,4 @@
-#include "drive_series.hpp"
+#include "series.hpp"
 
 #include <fmt/format.h>
 

@@ -7,11 +7,9 @@
 #include <memory>
 #include <stdexcept>
 
-#include "drive_series.hpp"
-#include "prompt.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
-#include "rift/commands/command.hpp"
+#include "rift/commands/drive/drive.hpp"
 #include "rift/files/files.hpp"
 #include "rift/hardware/arming.hpp"
 #include "rift/hardware/camera_poses.hpp"
@@ -23,6 +21,7 @@
 #include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/tracking/session.hpp"
+#include "series.hpp"
 #include "start_gate.hpp"
 
 namespace rift::commands {
