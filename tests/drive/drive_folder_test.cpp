@@ -1,7 +1,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "commands/drive/drive.hpp"
+#include "commands/drive/folder.hpp"
+#include "commands/drive/session.hpp"
 #include "hardware/bench.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"

@@ -1,4 +1,4 @@
-#include "commands/drive/series.hpp"
+#include "commands/drive/plan.hpp"
 
 #include <catch2/catch.hpp>
 #include <csignal>

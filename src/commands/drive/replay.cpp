@@ -1,10 +1,11 @@
+#include "replay.hpp"
+
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "drive.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/files/files.hpp"
 #include "rift/terminal/exit_code.hpp"

@@ -1,9 +1,10 @@
+#include "request.hpp"
+
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 
-#include "drive.hpp"
 #include "rift/commands/arguments/flags.hpp"
 #include "rift/commands/drive/drive.hpp"
 

@@ -1,41 +1,9 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
-#include "drive.hpp"
+#include "request.hpp"
+#include "rift/experiment/experiment.hpp"
 
 namespace rift::commands {
-
-/// One drive of a table of them.
-struct PlannedTrial {
-  experiment::Theta theta;
-  std::string trial;                  ///< its name in reference.trials
-  experiment::Experiment experiment;  ///< at the setting
-  std::filesystem::path folder;       ///< it is there when the trial is done
-  std::string label;                  ///< "surface ground, v_min 0.15, trial 2"
-
-  /// Where it is driven into before it is done.
-  std::filesystem::path Unfinished() const { return folder.string() + ".unfinished"; }
-};
-
-struct SeriesPlan {
-  /// In the order of driving: floors change as seldom as can be.
-  std::vector<PlannedTrial> trials;
-  bool has_floors = false;  ///< the floor is part of the settings
-  /// What holds the simulator against the logs: `rift sweep` runs it.
-  experiment::Experiment sweep;
-};
-
-/// Every setting of the experiment's grid (the paper's without a space), reference.trials times
-/// each, below `out`. Throws std::invalid_argument for a space that is none of lists, or that
-/// varies what no drive can.
-SeriesPlan PlanGrid(const experiment::Experiment& experiment, const std::filesystem::path& out);
-
-/// The experiment `count` times, into out/1, out/2, ...
-SeriesPlan PlanRepeats(const experiment::Experiment& experiment, int count,
-                       const std::filesystem::path& out);
 
 /// `rift drive --grid` and `--repeat`: drives what is not done yet, asks about what was begun and
 /// not finished, writes sweep.yaml and, of a grid, runs it. Returns the exit code.

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rift/vision/tracking/session_options.hpp"
+
+namespace rift::commands {
+
+/// What `rift drive` was asked for.
+struct DriveRequest {
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::string port;
+  std::string camera;
+  std::string calibration;
+  std::string out;
+  std::string replay;              ///< folder of a drive to be shown, without a robot
+  std::string video;               ///< of it, FILE.mp4
+  vision::SessionOptions session;  ///< of it moved_m
+  bool view = false;
+  bool yes = false;
+  bool ping = false;
+  bool json = false;
+  bool dry_run = false;
+  std::optional<double> seconds;  ///< trial.timeout_s of a dry run
+  std::optional<double> countdown_s;
+  bool any_start = false;
+  int repeat = 0;  ///< 0: one drive
+  bool grid = false;
+  std::string before_each;
+
+  bool IsSeries() const { return grid || repeat > 0; }
+
+  /// Throws std::invalid_argument, saying what to give, when something is missing.
+  void Check() const;
+};
+
+}  // namespace rift::commands
