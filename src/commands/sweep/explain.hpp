@@ -8,7 +8,6 @@
 
 #include "progress.hpp"
 #include "rift/experiment/experiment.hpp"
-#include "rift/report/page/page.hpp"
 #include "rift/sweep/explain/explanation.hpp"
 #include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/explain/shrink.hpp"
@@ -88,11 +87,5 @@ sweep::ExplainOptions OptionsFor(const ExplainRequest& request);
 bool SpendTrials(const std::filesystem::path& folder, const sweep::SweepResult& result,
                  const ExplainRequest& request, sweep::Evaluator& evaluator,
                  const FurtherTrials::Style& style, bool is_silent);
-
-/// Draws the figures (SVG and PNG, in DIR/figures) and writes DIR/report.html. `sources` bring
-/// the paths of the worst trial and of a typical failure of each kind again. Figures that make no
-/// sense for this space are named on stderr.
-void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
-                      const sweep::Explanation& explanation, sweep::Evaluator& evaluator);
 
 }  // namespace rift::commands

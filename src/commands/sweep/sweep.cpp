@@ -5,47 +5,29 @@
 #include <memory>
 #include <optional>
 
-#include "explain.hpp"
+#include "calibrate.hpp"
+#include "report.hpp"
+#include "request.hpp"
 #include "rift/commands/arguments/flags.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/sweep/sweep.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
-#include "rift/report/figures/figures.hpp"
 #include "rift/report/json/fields.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
-#include "rift/sweep/calibrate/identification.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
-#include "run.hpp"
 
 namespace rift::commands {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-struct SweepRequest {
-  std::string experiment;
-  std::vector<std::string> overrides;
-  std::string out;
-  std::string budget;
-  std::string seconds;
-  int jobs = CoresToUse();
-  bool fresh = false;
-  bool quiet = false;
-  bool json_progress = false;
-  bool json = false;
-  bool exit_code = false;
-  std::string status;
-  ExplainRequest explain;
-  std::string write_robot;
-};
 
 /// A simulated sweep over nothing means the paper's grid; logs without a space are one setting.
 bool LacksSpace(const experiment::Experiment& experiment) {
@@ -166,46 +148,6 @@ void Print(const SweepRequest& request, const sweep::SweepResult& result,
   terminal::PrintText(report::SweepText(result));
   if (!likeness.empty()) terminal::PrintText("\n" + report::LikenessText(likeness));
   terminal::PrintText(report::ExplanationText(result, explanation, request.explain.suggest > 0));
-}
-
-void WriteFigures(const std::filesystem::path& folder, const std::string& name,
-                  const sweep::CalibrationReport& found) {
-  const std::optional<report::Figure> figure = report::CalibrationFigure(name, found);
-  if (!figure) {
-    terminal::Say(
-        "note: no figure: no log has a simulated run that reached the end, both before and after "
-        "the fit");
-    return;
-  }
-  files::WriteFile(folder / (figure->name + ".svg"),
-                   report::Render(*figure, report::FigureFormat::kSvg));
-  files::WriteFile(folder / (figure->name + ".png"),
-                   report::Render(*figure, report::FigureFormat::kPng));
-}
-
-/// Fits, judges, writes calibration.json, experiment.yaml, inputs.txt, figures and the robot's
-/// file, and prints the table; returns the exit code.
-int Calibrate(const SweepRequest& request, const experiment::Experiment& experiment) {
-  const fs::path out = OutputOf(request.out, experiment.name);
-  const files::FolderLock lock(out);
-  const auto say = [&request](const std::string& line) {
-    if (!request.quiet) terminal::Say(line);
-  };
-  sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
-  const sweep::CalibrationReport found = sweep::Identify(evaluator, request.jobs, say);
-  files::WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
-  files::WriteFile(out / "inputs.txt", evaluator.InputsText());
-  const std::string json = report::CalibrationJson(experiment, found);
-  files::WriteFile(out / "calibration.json", json);
-  if (!request.write_robot.empty()) {
-    files::WriteFile(
-        request.write_robot,
-        report::RobotYaml(experiment, found, evaluator.InputsText(), request.experiment));
-  }
-  request.json ? terminal::PrintData(json) : terminal::PrintText(report::CalibrationText(found));
-  WriteFigures(out / "figures", experiment.name, found);
-  say(fmt::format("written: {}", (out / "calibration.json").string()));
-  return terminal::kDone;
 }
 
 int Sweep(const SweepRequest& request) {

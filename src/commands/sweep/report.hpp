@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "rift/sweep/explain/explanation.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
+
+namespace rift::commands {
+
+/// Draws the figures (SVG and PNG, in DIR/figures) and writes DIR/report.html. `evaluator` brings
+/// the paths of the worst trial and of a typical failure of each kind again. Figures that make no
+/// sense for this space are named on stderr.
+void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
+                      const sweep::Explanation& explanation, sweep::Evaluator& evaluator);
+
+}  // namespace rift::commands

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "explain.hpp"
+#include "run.hpp"
+
+namespace rift::commands {
+
+/// What `rift sweep` was asked for.
+struct SweepRequest {
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::string out;
+  std::string budget;
+  std::string seconds;
+  int jobs = CoresToUse();
+  bool fresh = false;
+  bool quiet = false;
+  bool json_progress = false;
+  bool json = false;
+  bool exit_code = false;
+  std::string status;
+  ExplainRequest explain;
+  std::string write_robot;
+};
+
+}  // namespace rift::commands
