@@ -57,7 +57,7 @@ rift_room(report/text ROOMS experiment gap report/figures statistics sweep/calib
     sweep/falsify yaml
   LIBRARIES fmt::fmt)
 rift_room(report/json ROOMS control experiment gap hardware report/text statistics sweep/calibrate
-    sweep/explain sweep/falsify trial vision/calibration vision/tracking yaml
+    sweep/explain sweep/falsify sweep/run trial vision/calibration vision/tracking yaml
   LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
 rift_room(report/page ROOMS report/figures report/text sweep/explain sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/files/files.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/trajectory/log.hpp"
@@ -36,19 +36,6 @@ trajectory::Trajectory ReadDriven(const fs::path& path) {
   return std::move(log.trajectory);
 }
 
-/// In one line for people.
-std::string EndingOf(const fs::path& folder) {
-  const std::string text = files::ReadIfThere(folder / "summary.json").value_or("");
-  const auto summary = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!summary.is_object()) return "without a summary";
-  const auto word = [&summary](const char* key) {
-    const auto found = summary.find(key);
-    return found != summary.end() && found->is_string() ? found->get<std::string>() : "";
-  };
-  if (word("state") == "interrupted") return "interrupted: " + word("reason");
-  return fmt::format("{}: {}", word("outcome"), word("reason"));
-}
-
 /// The camera saw the tag, which is neither the axle nor without noise: the robot is drawn level on
 /// the floor.
 trajectory::Trajectory OnTheFloor(trajectory::Trajectory seen) {
@@ -67,7 +54,8 @@ int ReplayDrive(const DriveRequest& request) {
   if (request.video.empty()) view::RequireDisplay();
   const experiment::Experiment experiment = ReadExperiment(folder / "experiment.yaml");
   const trajectory::Trajectory seen = ReadDriven(folder / "trajectory.csv");
-  const std::string ending = EndingOf(folder);
+  const std::string ending =
+      report::DriveEnding(files::ReadIfThere(folder / "summary.json").value_or(""));
   view::Run shown{.title = fmt::format("{}, {}", experiment.name, folder.string()),
                   .body = view::ShapeOf(experiment.simulation.body),
                   .truth = OnTheFloor(seen),

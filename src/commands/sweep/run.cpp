@@ -1,5 +1,4 @@
 #include "run.hpp"
-#include "rift/terminal/stop_signal.hpp"
 
 #include <fmt/format.h>
 #include <sched.h>
@@ -9,10 +8,11 @@
 
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
-#include "rift/report/json/fields.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
 #include "rift/sweep/run/journal.hpp"
+#include "rift/terminal/stop_signal.hpp"
 
 namespace rift::commands {
 
@@ -154,48 +154,12 @@ std::string StateOf(const std::filesystem::path& folder, const sweep::JournalSum
   return is_done ? "done" : "stopped";
 }
 
-std::string NoteOf(const sweep::JournalSummary& summary, const std::string& name) {
-  const auto found = summary.notes.find(name);
-  return found == summary.notes.end() ? "0" : found->second;
-}
-
-std::string PlanText(const sweep::JournalSummary& summary) {
-  if (!summary.notes.contains("most_settings")) return NoteOf(summary, "most_trials");
-  return "at most " + NoteOf(summary, "most_settings") + " settings";
-}
-
 }  // namespace
 
 std::string SweepStatus(const std::filesystem::path& folder, bool json) {
   const sweep::JournalSummary summary = sweep::ReadJournal(folder / kJournalName);
   const std::string state = StateOf(folder, summary);
-  int done = 0;
-  for (const auto& [status, count] : summary.trials_by_status) done += count;
-  if (json) {
-    nlohmann::ordered_json status{{"state", state},
-                                  {"name", NoteOf(summary, "name")},
-                                  {"done", done},
-                                  {"most_trials", std::stoi(NoteOf(summary, "most_trials"))},
-                                  {"most_settings", std::stoi(NoteOf(summary, "most_settings"))},
-                                  {"elapsed_s", std::stod(NoteOf(summary, "elapsed_s"))},
-                                  {"falsified", summary.falsified},
-                                  {"largest_gap_m", nullptr},
-                                  {"largest_gap_at", summary.largest_key},
-                                  {"trials_by_status", summary.trials_by_status}};
-    if (summary.largest_gap_m) status["largest_gap_m"] = *summary.largest_gap_m;
-    return report::Dump(status);
-  }
-  std::string text = fmt::format("{}: {}, {} trials done (planned: {}) in {} s, {} falsified\n",
-                                 NoteOf(summary, "name"), state, done, PlanText(summary),
-                                 NoteOf(summary, "elapsed_s"), summary.falsified);
-  for (const auto& [status, count] : summary.trials_by_status) {
-    if (status != "ok") text += fmt::format("{}: {}\n", status, count);
-  }
-  if (summary.largest_gap_m) {
-    text +=
-        fmt::format("largest gap: {:.4f} m at {}\n", *summary.largest_gap_m, summary.largest_key);
-  }
-  return text;
+  return json ? report::StatusJson(summary, state) : report::StatusText(summary, state);
 }
 
 }  // namespace rift::commands

@@ -9,8 +9,7 @@
 namespace rift::commands {
 
 /// Writes sightings as they come in the rift dialect, so that what was seen until a power cut is
-/// there; the file appears with the first of them. The nine columns of the dialect (the target
-/// empty), then latency, quality and the 6 x 6 covariance's upper triangle in the map's axes.
+/// there; the file appears with the first of them.
 class TrackLog {
  public:
   explicit TrackLog(std::filesystem::path path) : path_(std::move(path)) {}

@@ -235,4 +235,15 @@ std::string EncodersRow(const std::vector<hardware::EncoderReading>& readings, d
   return fmt::format("{},{:.1f},{:.1f}\n", Cell(captured_s), counts->first, counts->second);
 }
 
+std::string DriveEnding(const std::string& summary_json) {
+  const auto summary = nlohmann::json::parse(summary_json, nullptr, /*allow_exceptions=*/false);
+  if (!summary.is_object()) return "without a summary";
+  const auto word = [&summary](const char* key) {
+    const auto found = summary.find(key);
+    return found != summary.end() && found->is_string() ? found->get<std::string>() : "";
+  };
+  if (word("state") == "interrupted") return "interrupted: " + word("reason");
+  return fmt::format("{}: {}", word("outcome"), word("reason"));
+}
+
 }  // namespace rift::report

@@ -21,9 +21,11 @@
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/sweep/run/journal.hpp"
 #include "rift/trial/trial.hpp"
 #include "rift/vision/calibration/calibration.hpp"
 #include "rift/vision/tracking/session_options.hpp"
+#include "rift/vision/tracking/tag_tracker.hpp"
 #include "rift/vision/tracking/track_run.hpp"
 
 namespace rift::report {
@@ -50,6 +52,8 @@ std::string DriveJson(const experiment::Experiment& experiment, const hardware::
 /// What stands in its place until the drive was closed, thus for ever when rift is killed.
 std::string InterruptedDriveJson(const experiment::Experiment& experiment);
 std::string DriveText(const hardware::DriveRun& run);
+/// How a drive ended, in one line for people, of its summary.json.
+std::string DriveEnding(const std::string& summary_json);
 
 /// One row a pose: when it went through each stage. Cells of stages never reached are empty.
 std::string StagesCsv(const hardware::DriveRecord& evidence);
@@ -76,6 +80,10 @@ nlohmann::ordered_json LikenessJson(const std::vector<sweep::GroupLikeness>& gro
 /// summary.json: {mean_gap_m, failures, n, not_ok, "by": {parameter: {value: the same}}, effects,
 /// settings, ...}
 std::string SummaryJson(const sweep::SweepResult& result);
+
+/// How far a sweep is, of its journal and whether it is running, stopped or done.
+std::string StatusJson(const sweep::JournalSummary& summary, const std::string& state);
+std::string StatusText(const sweep::JournalSummary& summary, const std::string& state);
 
 /// explanation.json, rows by their id in table.csv: {effects, sobol, parameters (inert and why),
 /// anatomy, failures, failing_region, failure_probability, undecided, suggestions}.
@@ -119,6 +127,11 @@ std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& came
                       const experiment::TrackOptions& options, const vision::TrackRun& run,
                       int rows);
 std::string TrackText(const vision::TrackRun& run, int rows);
+
+/// A log of sightings in the rift dialect: its nine columns (the target empty), then latency,
+/// quality and the 6 x 6 covariance's upper triangle in the map's axes.
+std::string SightingsHeader();
+std::string SightingRow(double t_s, const vision::Sighting& sighting);
 
 /// The verdict of a calibration with its reasons, parameters and views.
 std::string CalibrationText(const vision::Calibration& calibration);
