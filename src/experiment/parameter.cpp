@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
+
+#include "rift/yaml/scalar.hpp"
 
 namespace rift::experiment {
 
@@ -33,11 +34,7 @@ ParameterValue ParseValue(const Parameter& parameter, const std::string& text) {
   for (const ParameterValue& level : parameter.levels) {
     if (level.text == text) return level;
   }
-  double number = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  const bool is_number = !parameter.IsCategorical() && error == std::errc{} && stop == end;
-  return {text, is_number ? std::optional(number) : std::nullopt};
+  return {text, parameter.IsCategorical() ? std::nullopt : yaml::NumberOf(text)};
 }
 
 Space PaperSpace() {

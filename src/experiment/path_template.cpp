@@ -4,24 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+
+#include "rift/yaml/scalar.hpp"
 
 namespace rift::experiment {
 namespace {
 
 using NamedValue = std::pair<std::string, ParameterValue>;
 using Arguments = fmt::dynamic_format_arg_store<fmt::format_context>;
-
-ParameterValue TrialValue(const std::string& trial) {
-  ParameterValue value{trial, std::nullopt};
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(trial.data(), trial.data() + trial.size(), number);
-  if (error == std::errc{} && end == trial.data() + trial.size()) value.number = number;
-  return value;
-}
 
 bool IsWhole(const ParameterValue& value) {
   return value.number && *value.number == std::round(*value.number) &&
@@ -117,7 +110,7 @@ std::string FillTemplate(const std::string& path_template, const std::vector<Par
   for (size_t i = 0; i < parameters.size(); ++i) {
     values.emplace_back(parameters[i].Name(), theta[i]);
   }
-  values.emplace_back("trial", TrialValue(trial));
+  values.emplace_back("trial", ParameterValue{trial, yaml::NumberOf(trial)});
   for (const std::string& name : TemplateNames(path_template)) {
     const auto has_name = [&](const NamedValue& value) { return value.first == name; };
     if (std::none_of(values.begin(), values.end(), has_name)) {

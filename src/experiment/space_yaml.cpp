@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 
@@ -13,15 +12,6 @@
 
 namespace rift::yaml {
 namespace {
-
-/// A number where the text, not quoted, reads as one.
-std::optional<double> NumberOf(const Node& scalar) {
-  double number = 0.0;
-  const char* end = scalar.text.data() + scalar.text.size();
-  const auto [stop, error] = std::from_chars(scalar.text.data(), end, number);
-  if (scalar.quoted || error != std::errc{} || stop != end || !std::isfinite(number)) return {};
-  return number;
-}
 
 experiment::ParameterValue LevelFromNode(const Node& node, const std::string& key) {
   if (!node.IsScalar()) Fail(node, key, "every value of an axis must be a number or a text");

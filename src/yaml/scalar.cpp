@@ -32,23 +32,35 @@ bool SpellsNotFinite(std::string_view text) {
   return false;
 }
 
+/// What the whole text spells in decimal digits: `fault` is none, invalid_argument for no number,
+/// result_out_of_range for one that a double cannot hold. `inf` and `nan` count as numbers here.
+struct Spelled {
+  double value = 0.0;
+  std::errc fault{};
+
+  bool IsFinite() const { return fault == std::errc() && std::isfinite(value); }
+};
+
+Spelled Spell(std::string_view text) {
+  text = WithoutPlus(text);
+  Spelled spelled;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), spelled.value);
+  const bool is_whole_text = end == text.data() + text.size();
+  spelled.fault = is_whole_text ? fault : std::errc::invalid_argument;
+  return spelled;
+}
+
 /// The finite number that the whole text spells; `expected` names what is wanted in messages.
 double ParseNumber(const Node& node, const Place& place, const std::string& expected) {
   if (!node.IsScalar()) Refuse(node, place, expected);
   if (node.quoted) Refuse(node, place, expected + "; remove the quotes");
-  const std::string_view text = WithoutPlus(node.text);
-  double value = 0.0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole_text = !text.empty() && end == text.data() + text.size();
-  const bool spelled = whole_text && fault != std::errc::invalid_argument;
-  if (SpellsNotFinite(node.text) || (spelled && fault == std::errc() && !std::isfinite(value))) {
+  const Spelled spelled = Spell(node.text);
+  if (spelled.IsFinite()) return spelled.value;
+  if (spelled.fault == std::errc() || SpellsNotFinite(node.text)) {
     Refuse(node, place, expected + " that is finite");
   }
-  if (!spelled) Refuse(node, place, expected);
-  if (fault == std::errc::result_out_of_range) {
-    Refuse(node, place, expected + " that a double can hold");
-  }
-  return value;
+  const bool is_too_large = spelled.fault == std::errc::result_out_of_range;
+  Refuse(node, place, expected + (is_too_large ? " that a double can hold" : ""));
 }
 
 /// The whole text as digits; false when it is not that, or does not fit.
@@ -65,6 +77,15 @@ double ParseWhole(const Node& node, const Place& place) {
 }
 
 }  // namespace
+
+std::optional<double> NumberOf(std::string_view text) {
+  const Spelled spelled = Spell(text);
+  return spelled.IsFinite() ? std::optional(spelled.value) : std::nullopt;
+}
+
+std::optional<double> NumberOf(const Node& node) {
+  return node.IsScalar() && !node.quoted ? NumberOf(node.text) : std::nullopt;
+}
 
 double ReadDouble(const Node& node, const Place& place) {
   const double value = ParseNumber(node, place, "a number");

@@ -133,6 +133,19 @@ TEST_CASE("A simulated parameter is a key of the experiment and its values are t
   CHECK(refusal("space: {v_min: [0.9], v_max: [0.95]}") == "accepted");
 }
 
+TEST_CASE("A level is a number in every spelling that a key takes for one") {
+  for (const std::string text : {"0.30", "+0.30", ".30", "+.3", "3e-1", "3E-1"}) {
+    INFO(text);
+    const Experiment experiment =
+        LoadTexts({{"a.yaml", "space: {control.v_max: [" + text + ", 0.5]}"}});
+    const Parameter& axis = experiment.space.parameters.at(0);
+    CHECK(axis.levels[0].number == 0.3);
+    CHECK_FALSE(axis.IsCategorical());
+    CHECK(ParseValue(axis, text).number == 0.3);
+    CHECK(ExperimentAt(experiment, {axis.levels[0]}).control.v_max == 0.3);
+  }
+}
+
 TEST_CASE("An experiment at a setting has its values and leaves the rest") {
   const Experiment experiment =
       LoadTexts({{"a.yaml", "space: {surface: [ground, bump], v_min: [0.1]}"}});

@@ -23,6 +23,12 @@ struct Place {
   std::string help;
 };
 
+/// The finite decimal number that the whole text spells, perhaps with a sign; none for anything
+/// else. This is the one rule of what a number is.
+std::optional<double> NumberOf(std::string_view text);
+/// The same of a plain scalar; none for a quoted one, which is text.
+std::optional<double> NumberOf(const Node& node);
+
 /// Strict readers. Each throws Error naming place, key, value and rule. Numbers are decimal,
 /// finite and in range: no 0x, no 1_000, no 12abc; a whole number may be written 1e3.
 double ReadDouble(const Node& node, const Place& place);
