@@ -98,13 +98,6 @@ std::string QuotedWhenText(std::string_view text) {
   return plain ? std::string(text) : Quoted(text);
 }
 
-/// A scalar that was plain, as it was unless it holds what a plain scalar cannot.
-std::string QuotedWhenUnsafe(std::string_view text) {
-  const bool negative = text.size() > 1 && text[0] == '-' && (IsAlnum(text[1]) || text[1] == '.');
-  const bool plain = IsSafePlain(negative ? text.substr(1) : text);
-  return plain ? std::string(text) : Quoted(text);
-}
-
 /// A key: as text, and quoted when it has dots, which a plain key would open into nested maps.
 std::string KeyText(std::string_view key) {
   return key.find('.') == std::string_view::npos ? QuotedWhenText(key) : Quoted(key);
@@ -112,9 +105,16 @@ std::string KeyText(std::string_view key) {
 
 constexpr std::size_t kLineWidth = 90;
 
+/// A plain number or truth value, which quotes would make a text. Of other plain scalars the text
+/// is all there is, and it may be written with quotes.
+bool ReadsAsMoreThanText(const Node& node) {
+  if (node.quoted) return false;
+  return NumberOf(node.text) || node.text == "true" || node.text == "false";
+}
+
 std::string ScalarText(const Node& node) {
   if (node.IsNull()) return "null";
-  return node.quoted ? QuotedWhenText(node.text) : QuotedWhenUnsafe(node.text);
+  return ReadsAsMoreThanText(node) ? node.text : QuotedWhenText(node.text);
 }
 
 /// Lists of scalars, and whatever is empty, on one line; nothing for the rest.

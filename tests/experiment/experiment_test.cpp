@@ -143,6 +143,8 @@ TEST_CASE("A level is a number in every spelling that a key takes for one") {
     CHECK_FALSE(axis.IsCategorical());
     CHECK(ParseValue(axis, text).number == 0.3);
     CHECK(ExperimentAt(experiment, {axis.levels[0]}).control.v_max == 0.3);
+    const Experiment saved = LoadTexts({{"a.yaml", WriteExperiment(experiment)}});
+    CHECK(saved.space.parameters.at(0).levels == axis.levels);
   }
 }
 

@@ -1,7 +1,9 @@
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
+#include <string_view>
 
 #include <catch2/catch.hpp>
 
@@ -83,6 +85,44 @@ TEST_CASE("Any text comes back from the file as it was") {
     REQUIRE(back.entries[0].key == text);
     REQUIRE(back.entries[0].value.items[0].text == text);
   }
+}
+
+std::string RandomScalarText(std::mt19937_64& random) {
+  static constexpr std::array<std::string_view, 12> kWords{"true", "false", "null", "~",
+                                                           "yes",  ".inf",  "nan",  "2024-01-01",
+                                                           "0x10", "---",   "- a",  "a #b"};
+  const std::uint64_t kind = random() % 4;
+  if (kind == 0) return std::string(kWords.at(random() % kWords.size()));
+  if (kind == 1) return rift::test::RandomText(random);
+  static constexpr std::string_view kOfNumbers = "+-..0123456789eE";
+  std::string text;
+  for (std::uint64_t left = 1 + random() % 6; left > 0; --left) {
+    text += kOfNumbers.at(random() % kOfNumbers.size());
+  }
+  return text;
+}
+
+TEST_CASE("Any scalar comes back with its text and is a number or a truth value as before") {
+  std::mt19937_64 random(10);
+  const auto is_truth = [](const Node& node) {
+    return !node.quoted && (node.text == "true" || node.text == "false");
+  };
+  int numbers = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    const std::string text = RandomScalarText(random);
+    const Node scalar = random() % 2 == 0 ? Node::Text(text) : Node::Scalar(text);
+    const std::string page = Emit(Node::List({scalar}));
+    INFO(page);
+    const Node tree = Parse(page, "f");
+    const Node& back = tree.items.at(0);
+    REQUIRE(back.IsScalar());
+    REQUIRE(back.text == text);
+    REQUIRE(NumberOf(back) == NumberOf(scalar));
+    REQUIRE(is_truth(back) == is_truth(scalar));
+    REQUIRE(Emit(tree) == page);
+    numbers += NumberOf(scalar).has_value();
+  }
+  CHECK(numbers > 5'000);
 }
 
 TEST_CASE("Any number comes back from the file with the same bits") {

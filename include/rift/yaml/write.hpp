@@ -12,7 +12,8 @@
 namespace rift::yaml {
 
 /// Canonical YAML: maps as blocks, short lists of scalars on one line, text quoted only when it
-/// must be. Parse(Emit(node)) is the same tree and emits the same bytes.
+/// must be. Parse(Emit(node)) is the same tree, in which every scalar has the same text and is a
+/// number, a truth value or neither as before, and emits the same bytes.
 /// Throws Error for text that is not UTF-8.
 std::string Emit(const Node& node);
 
