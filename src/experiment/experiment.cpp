@@ -162,10 +162,9 @@ Experiment ExperimentAt(const Experiment& experiment, const std::vector<Paramete
 }
 
 Theta NominalTheta(const Experiment& experiment) {
-  const std::map<std::string, std::string> values = FlatValues(experiment);
   Theta theta;
   for (const Parameter& parameter : experiment.space.parameters) {
-    theta.push_back(ParseValue(parameter, values.at(parameter.key)));
+    theta.push_back(ValueFromNode(yaml::GetValue(experiment, parameter.key), parameter.key));
   }
   return theta;
 }

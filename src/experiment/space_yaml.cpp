@@ -10,13 +10,17 @@
 #include "rift/yaml/node.hpp"
 #include "rift/yaml/scalar.hpp"
 
+namespace rift::experiment {
+
+ParameterValue ValueFromNode(const yaml::Node& node, const std::string& key) {
+  if (!node.IsScalar()) yaml::Fail(node, key, "every value of an axis must be a number or a text");
+  return {node.text, yaml::NumberOf(node)};
+}
+
+}  // namespace rift::experiment
+
 namespace rift::yaml {
 namespace {
-
-experiment::ParameterValue LevelFromNode(const Node& node, const std::string& key) {
-  if (!node.IsScalar()) Fail(node, key, "every value of an axis must be a number or a text");
-  return {node.text, NumberOf(node)};
-}
 
 bool SameLevel(const experiment::ParameterValue& a, const experiment::ParameterValue& b) {
   return a.number && b.number ? *a.number == *b.number : a.text == b.text;
@@ -25,7 +29,7 @@ bool SameLevel(const experiment::ParameterValue& a, const experiment::ParameterV
 void ReadLevels(const Node& node, const std::string& key, experiment::Parameter& parameter) {
   if (node.items.empty()) Fail(node, key, "an axis needs at least one value");
   for (const Node& item : node.items) {
-    const experiment::ParameterValue level = LevelFromNode(item, key);
+    const experiment::ParameterValue level = experiment::ValueFromNode(item, key);
     for (const experiment::ParameterValue& earlier : parameter.levels) {
       if (SameLevel(earlier, level)) Fail(item, key, "an axis has each value once");
     }

@@ -94,6 +94,27 @@ TEST_CASE("A failure shrunk by rift sweep still falsifies and none of its change
   }
 }
 
+TEST_CASE("A failure of the experiment's own values shrinks to no change at all") {
+  // The polyline is a thousandth of a millimetre from no path: every setting fails.
+  const Sweep sweep(R"(waypoints: [{x: 0, y: 0, heading: 20}, {x: 0.25, y: 0.02, stop: true}]
+gap: {threshold_m: 0.000001}
+simulation:
+  terrain: {surface: "floor #2", surfaces: {"floor #2": {mu: 0.4}}}
+space:
+  surface: [ground, "floor #2"]
+  waypoints[0].x: [0.05]
+)");
+  const ProcessResult result = sweep.Run({"--shrink", "1"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  const json shrunk = sweep.File("shrunk.json");
+  CHECK(shrunk["nominal"] == json{{"surface", "floor #2"}, {"x", 0.0}});
+  CHECK(shrunk["changes"].empty());
+  CHECK(shrunk["shrunk"]["theta"] == shrunk["nominal"]);
+  CHECK(shrunk["shrunk"]["falsified"] == true);
+  CHECK_THAT(Replay(shrunk["shrunk"]["replay"]).err, Contains("to the last bit"));
+}
+
 TEST_CASE("A row that does not fail cannot be shrunk and neither can one that is not there") {
   const Sweep sweep;
   REQUIRE(sweep.Run().exit_code == 0);

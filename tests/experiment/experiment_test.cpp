@@ -5,6 +5,7 @@
 #include <map>
 #include <random>
 
+#include "rift/yaml/describe.hpp"
 #include "rift/yaml/node.hpp"
 #include "support/random_fill.hpp"
 
@@ -155,6 +156,44 @@ TEST_CASE("An experiment at a setting has its values and leaves the rest") {
   CHECK(at.simulation.terrain.surface == "bump");
   CHECK(at.control.v_min == 0.1);
   CHECK(at.control.v_max == experiment.control.v_max);
+}
+
+/// Every key that an axis may name and that holds a value.
+std::vector<Parameter> EveryAxis(const Experiment& experiment) {
+  std::vector<Parameter> axes;
+  for (const std::string& key : yaml::ListKeys(experiment)) {
+    const bool is_simulated = key.starts_with("control.") || key.starts_with("trial.") ||
+                              key.starts_with("simulation.") || key.starts_with("waypoints[");
+    if (is_simulated && yaml::GetValue(experiment, key).IsScalar()) axes.push_back({.key = key});
+  }
+  return axes;
+}
+
+TEST_CASE("An experiment at its own values is the experiment") {
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 100; ++i) {
+    Experiment experiment;
+    test::RandomFill(experiment, random);
+    experiment.space.parameters = EveryAxis(experiment);
+    REQUIRE(experiment.space.parameters.size() > 50);
+    const Theta nominal = NominalTheta(experiment);
+    const std::string written = WriteExperiment(experiment);
+    REQUIRE(WriteExperiment(ExperimentAt(experiment, nominal)) == written);
+  }
+}
+
+TEST_CASE("The own value of a word that needs quotes has none") {
+  Experiment experiment;
+  experiment.simulation.terrain.surface = "floor #2";
+  experiment.space.parameters = {{.key = "simulation.terrain.surface"}};
+  CHECK(NominalTheta(experiment) == Theta{{"floor #2", std::nullopt}});
+}
+
+TEST_CASE("The own value of a waypoint's coordinate is a number") {
+  Experiment experiment;
+  experiment.waypoints = {{.x_m = 0.25}};
+  experiment.space.parameters = {{.key = "waypoints[0].x"}};
+  CHECK(NominalTheta(experiment) == Theta{{"0.25", 0.25}});
 }
 
 TEST_CASE("Trials are a list or a count") {

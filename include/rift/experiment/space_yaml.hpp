@@ -1,9 +1,18 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "rift/experiment/options.hpp"
 #include "rift/yaml/fields.hpp"
+
+namespace rift::experiment {
+
+/// A value of a parameter that YAML holds: plain numbers are numbers, the rest are words. Throws
+/// Error naming `key` when it is no scalar.
+ParameterValue ValueFromNode(const yaml::Node& node, const std::string& key);
+
+}  // namespace rift::experiment
 
 /// How the values of a sweep that are no plain fields stand in YAML.
 namespace rift::yaml {

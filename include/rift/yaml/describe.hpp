@@ -35,6 +35,11 @@ std::string ResolveKey(std::string_view name, const S& block) {
   return ResolveKey(name, ListKeys(block));
 }
 
+/// The value under a key that ListKeys lists as a tree, the counterpart of SetValue; quoted where
+/// it is a text. Throws Error for any other key.
+template <Block S>
+Node GetValue(const S& block, std::string_view key);
+
 inline std::string ListTypeText(std::string_view item) {
   return item == "block" ? "list of blocks" : fmt::format("list, each {}", item);
 }
@@ -113,6 +118,16 @@ std::vector<std::string> ListKeys(const S& block) {
   WalkKeys(block, "", false,
            [&](const std::string& key, const FieldInfo&, const auto&) { keys.push_back(key); });
   return keys;
+}
+
+template <Block S>
+Node GetValue(const S& block, std::string_view key) {
+  std::optional<Node> value;
+  WalkKeys(block, "", false, [&](const std::string& at, const FieldInfo&, const auto& member) {
+    if (at == key) value = ValueNode(member, at);
+  });
+  if (!value) throw Error(fmt::format("no such key: '{}'", key));
+  return *value;
 }
 
 }  // namespace rift::yaml
