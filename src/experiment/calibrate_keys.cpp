@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <optional>
 
 #include "rift/yaml/describe.hpp"
 #include "rift/yaml/node.hpp"
@@ -35,23 +35,21 @@ std::vector<FreeParameter> Expand(const FreeParameter& free, const Space& space)
   return expanded;
 }
 
-double StartOf(const FreeParameter& free, const std::map<std::string, std::string>& values) {
-  const auto found = values.find(free.key);
-  const std::string text = found == values.end() ? "" : found->second;
-  double start = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), start);
-  if (error != std::errc{} || end != text.data() + text.size()) {
+double StartOf(const FreeParameter& free, const Experiment& experiment) {
+  const yaml::Node value = yaml::GetValue(experiment, free.key);
+  const std::optional<double> start = yaml::NumberOf(value);
+  if (!start) {
     throw yaml::Error(fmt::format("{}: calibrate.fit: {} is {}, and only a number can be fitted{}",
-                                  free.origin, free.key, text.empty() ? "a block" : text,
-                                  text == "null" ? "; give it a value to start from" : ""));
+                                  free.origin, free.key, yaml::Shown(value),
+                                  value.IsNull() ? "; give it a value to start from" : ""));
   }
-  if (start < free.min || start > free.max) {
+  if (*start < free.min || *start > free.max) {
     throw yaml::Error(
         fmt::format("{}: calibrate.fit: {} starts at {}, which the experiment gives it, but its "
                     "range is [{}, {}]; widen it or set another start",
-                    free.origin, free.key, start, free.min, free.max));
+                    free.origin, free.key, *start, free.min, free.max));
   }
-  return start;
+  return *start;
 }
 
 void RequireSimulatorAndLogs(const Experiment& experiment, const std::string& path) {
@@ -108,7 +106,6 @@ void ResolveCalibrate(Experiment& experiment, const std::string& path) {
   RequireSimulatorAndLogs(experiment, path);
   CheckHoldout(experiment, path);
   const std::vector<std::string> keys = yaml::ListKeys(experiment);
-  const std::map<std::string, std::string> values = FlatValues(experiment);
   std::vector<FreeParameter> resolved;
   for (const FreeParameter& written : experiment.calibrate.fit.list) {
     for (FreeParameter& free : Expand(written, experiment.space)) {
@@ -124,7 +121,7 @@ void ResolveCalibrate(Experiment& experiment, const std::string& path) {
                         free.origin, free.key));
       }
       CheckIsNotInSpace(free, experiment.space);
-      free.start = StartOf(free, values);
+      free.start = StartOf(free, experiment);
       resolved.push_back(free);
     }
   }
