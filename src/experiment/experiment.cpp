@@ -138,21 +138,13 @@ void ResolveSpace(Experiment& experiment) {
   TrySpace(experiment);
 }
 
-/// A text that was quoted for it would otherwise be taken for a number or for nothing.
-yaml::Node LevelNode(const ParameterValue& level) {
-  const yaml::Node plain = yaml::Node::Scalar(level.text);
-  const bool reads_as_number = level.text.find_first_of("0123456789+-.") == 0;
-  return !level.number && (reads_as_number || plain.IsNull()) ? yaml::Node::Text(level.text)
-                                                              : plain;
-}
-
 }  // namespace
 
 Experiment ExperimentAt(const Experiment& experiment, const std::vector<ParameterValue>& theta) {
   std::vector<yaml::KeyValue> values;
   for (size_t i = 0; i < theta.size(); ++i) {
     const Parameter& parameter = experiment.space.parameters[i];
-    yaml::Node value = LevelNode(theta[i]);
+    yaml::Node value = ValueToNode(theta[i]);
     value.origin.source = parameter.origin;
     values.push_back({parameter.key, value});
   }
@@ -173,7 +165,7 @@ Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>&
   std::vector<yaml::KeyValue> pairs;
   for (size_t i = 0; i < values.size(); ++i) {
     const FreeParameter& free = experiment.calibrate.fit.list[i];
-    yaml::Node value = yaml::Node::Scalar(NumberValue(values[i]).text);
+    yaml::Node value = ValueToNode(NumberValue(values[i]));
     value.origin.source = free.origin;
     pairs.push_back({free.key, value});
   }

@@ -27,7 +27,7 @@ bool Parameter::IsCategorical() const {
 ParameterValue NumberValue(double number) {
   if (!std::isfinite(number))
     throw std::invalid_argument("the value of a parameter must be finite");
-  return {fmt::format("{}", number), number};
+  return {yaml::NumberText(number), number};
 }
 
 ParameterValue ParseValue(const Parameter& parameter, const std::string& text) {

@@ -17,6 +17,11 @@ ParameterValue ValueFromNode(const yaml::Node& node, const std::string& key) {
   return {node.text, yaml::NumberOf(node)};
 }
 
+yaml::Node ValueToNode(const ParameterValue& value) {
+  const bool was_quoted = !value.number && yaml::NumberOf(value.text);
+  return was_quoted ? yaml::Node::Text(value.text) : yaml::Node::Scalar(value.text);
+}
+
 }  // namespace rift::experiment
 
 namespace rift::yaml {
@@ -105,10 +110,6 @@ void CheckNames(const Node& node, const std::vector<experiment::Parameter>& para
     }
     CheckIsNoColumn(node, parameters[i].Name());
   }
-}
-
-Node LevelToNode(const experiment::ParameterValue& level) {
-  return level.number ? Node::Scalar(level.text) : Node::Text(level.text);
 }
 
 }  // namespace
@@ -214,7 +215,7 @@ Node Hook<experiment::Space>::ToNode(const experiment::Space& space) {
   for (const experiment::Parameter& parameter : space.parameters) {
     Node axis = Node::List();
     for (const experiment::ParameterValue& level : parameter.levels) {
-      axis.items.push_back(LevelToNode(level));
+      axis.items.push_back(experiment::ValueToNode(level));
     }
     if (parameter.IsContinuous()) {
       axis = Node::Map();

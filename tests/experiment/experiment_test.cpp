@@ -149,6 +149,23 @@ TEST_CASE("A level is a number in every spelling that a key takes for one") {
   }
 }
 
+TEST_CASE("A word that is no number is refused for a number without a word of quotes") {
+  for (const std::string text : {"0.3.4", "fast", "+-1", "\"0.3.4\""}) {
+    INFO(text);
+    CHECK_THROWS_WITH(LoadTexts({{"a.yaml", "space: {control.v_max: [" + text + "]}"}}),
+                      Catch::Contains("must be a number; meaning"));
+  }
+  CHECK_THROWS_WITH(LoadTexts({{"a.yaml", "space: {control.v_max: [\"0.3\"]}"}}),
+                    Catch::Contains("must be a number; remove the quotes"));
+}
+
+TEST_CASE("Levels that are truth values stay without quotes in the saved experiment") {
+  const Experiment experiment =
+      LoadTexts({{"a.yaml", "space: {control.derivative_kick: [true, false]}"}});
+  CHECK_THAT(WriteExperiment(experiment),
+             Catch::Contains("control.derivative_kick\": [true, false]"));
+}
+
 TEST_CASE("An experiment at a setting has its values and leaves the rest") {
   const Experiment experiment =
       LoadTexts({{"a.yaml", "space: {surface: [ground, bump], v_min: [0.1]}"}});

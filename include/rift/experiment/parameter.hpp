@@ -36,7 +36,7 @@ struct Parameter {
   bool IsCategorical() const;
 };
 
-/// A number as a value: the one place where it becomes text, the shortest that reads back the same.
+/// A number as a value; its text is yaml::NumberText, the shortest that reads back the same.
 /// Throws std::invalid_argument unless it is finite.
 ParameterValue NumberValue(double number);
 

@@ -12,6 +12,9 @@ namespace rift::experiment {
 /// Error naming `key` when it is no scalar.
 ParameterValue ValueFromNode(const yaml::Node& node, const std::string& key);
 
+/// The way back, for a space as for a key: what ValueFromNode reads as the same value.
+yaml::Node ValueToNode(const ParameterValue& value);
+
 }  // namespace rift::experiment
 
 /// How the values of a sweep that are no plain fields stand in YAML.

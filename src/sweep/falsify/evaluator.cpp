@@ -80,7 +80,7 @@ control::NavigatorOptions ControllerAt(const experiment::Experiment& experiment,
     for (size_t i = 0; i < theta.size(); ++i) {
       const std::string& name = experiment.space.parameters[i].key;
       const bool is_meant = theta[i].number && (name == key || name == "control." + key);
-      if (is_meant) values.push_back({key, yaml::Node::Scalar(theta[i].text)});
+      if (is_meant) values.push_back({key, experiment::ValueToNode(theta[i])});
     }
   }
   yaml::SetValues(control, values);
