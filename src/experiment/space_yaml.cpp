@@ -12,12 +12,17 @@
 
 namespace rift::experiment {
 
+constexpr const char* kNull = "null";
+
 ParameterValue ValueFromNode(const yaml::Node& node, const std::string& key) {
+  if (node.IsNull()) return {kNull, std::nullopt};
+  if (node.text == kNull) yaml::Fail(node, key, "a text that cannot be told from no value");
   if (!node.IsScalar()) yaml::Fail(node, key, "every value of an axis must be a number or a text");
   return {node.text, yaml::NumberOf(node)};
 }
 
 yaml::Node ValueToNode(const ParameterValue& value) {
+  if (value.text == kNull) return {};
   const bool was_quoted = !value.number && yaml::NumberOf(value.text);
   return was_quoted ? yaml::Node::Text(value.text) : yaml::Node::Scalar(value.text);
 }

@@ -181,7 +181,10 @@ std::vector<Parameter> EveryAxis(const Experiment& experiment) {
   for (const std::string& key : yaml::ListKeys(experiment)) {
     const bool is_simulated = key.starts_with("control.") || key.starts_with("trial.") ||
                               key.starts_with("simulation.") || key.starts_with("waypoints[");
-    if (is_simulated && yaml::GetValue(experiment, key).IsScalar()) axes.push_back({.key = key});
+    if (!is_simulated) continue;
+    const yaml::Node value = yaml::GetValue(experiment, key);
+    const bool is_word_null = value.IsScalar() && value.text == "null";
+    if ((value.IsScalar() || value.IsNull()) && !is_word_null) axes.push_back({.key = key});
   }
   return axes;
 }
@@ -197,6 +200,19 @@ TEST_CASE("An experiment at its own values is the experiment") {
     const std::string written = WriteExperiment(experiment);
     REQUIRE(WriteExperiment(ExperimentAt(experiment, nominal)) == written);
   }
+}
+
+TEST_CASE("An axis of a key that may have no value can have none among its levels") {
+  const Experiment experiment =
+      LoadTexts({{"a.yaml", "space: {control.cruise_speed: [null, 0.3]}"}});
+  const std::vector<ParameterValue>& levels = experiment.space.parameters.at(0).levels;
+  CHECK_FALSE(ExperimentAt(experiment, {levels[0]}).control.cruise_speed);
+  CHECK(ExperimentAt(experiment, {levels[1]}).control.cruise_speed == 0.3);
+  CHECK(NominalTheta(experiment) == Theta{levels[0]});
+  const Experiment saved = LoadTexts({{"a.yaml", WriteExperiment(experiment)}});
+  CHECK(saved.space.parameters.at(0).levels == levels);
+  CHECK_THROWS_WITH(LoadTexts({{"a.yaml", "space: {control.v_max: [null]}"}}),
+                    Catch::Contains("must be a number"));
 }
 
 TEST_CASE("The own value of a word that needs quotes has none") {

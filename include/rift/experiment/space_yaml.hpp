@@ -8,8 +8,9 @@
 
 namespace rift::experiment {
 
-/// A value of a parameter that YAML holds: plain numbers are numbers, the rest are words. Throws
-/// Error naming `key` when it is no scalar.
+/// A value of a parameter that YAML holds: plain numbers are numbers, the rest are words. `null`,
+/// of a key that may have no value, is a word as well. Throws Error naming `key` for lists,
+/// maps and the text "null".
 ParameterValue ValueFromNode(const yaml::Node& node, const std::string& key);
 
 /// The way back, for a space as for a key: what ValueFromNode reads as the same value.
