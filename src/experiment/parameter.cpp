@@ -24,6 +24,10 @@ bool Parameter::IsCategorical() const {
                      [](const ParameterValue& level) { return !level.number; });
 }
 
+bool SameValue(const ParameterValue& a, const ParameterValue& b) {
+  return a.number && b.number ? *a.number == *b.number : a.text == b.text;
+}
+
 ParameterValue NumberValue(double number) {
   if (!std::isfinite(number))
     throw std::invalid_argument("the value of a parameter must be finite");

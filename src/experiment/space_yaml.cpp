@@ -32,16 +32,12 @@ yaml::Node ValueToNode(const ParameterValue& value) {
 namespace rift::yaml {
 namespace {
 
-bool SameLevel(const experiment::ParameterValue& a, const experiment::ParameterValue& b) {
-  return a.number && b.number ? *a.number == *b.number : a.text == b.text;
-}
-
 void ReadLevels(const Node& node, const std::string& key, experiment::Parameter& parameter) {
   if (node.items.empty()) Fail(node, key, "an axis needs at least one value");
   for (const Node& item : node.items) {
     const experiment::ParameterValue level = experiment::ValueFromNode(item, key);
     for (const experiment::ParameterValue& earlier : parameter.levels) {
-      if (SameLevel(earlier, level)) Fail(item, key, "an axis has each value once");
+      if (SameValue(earlier, level)) Fail(item, key, "an axis has each value once");
     }
     parameter.levels.push_back(level);
   }

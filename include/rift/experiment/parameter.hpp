@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,13 +9,17 @@
 
 namespace rift::experiment {
 
-/// A value of a parameter, as the experiment writes it.
+/// A value of a parameter, as the experiment writes it. Ordered by its text, so that values and
+/// settings are keys of maps and sets.
 struct ParameterValue {
   std::string text;              ///< canonical: "ground", "0.15"
   std::optional<double> number;  ///< set when it is one
 
-  friend bool operator==(const ParameterValue&, const ParameterValue&) = default;
+  friend auto operator<=>(const ParameterValue&, const ParameterValue&) = default;
 };
+
+/// The same number, however it is written ("0.3", "0.30"), or the same word.
+bool SameValue(const ParameterValue& a, const ParameterValue& b);
 
 /// One setting: a value for each parameter of the space, in their order.
 using Theta = std::vector<ParameterValue>;

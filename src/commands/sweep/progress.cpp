@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "rift/terminal/print.hpp"
@@ -29,12 +28,6 @@ std::string DurationText(double duration_s) {
   const int whole_s = static_cast<int>(duration_s + 0.5);
   if (whole_s < 3600) return fmt::format("{}:{:02}", whole_s / 60, whole_s % 60);
   return fmt::format("{}:{:02}:{:02}", whole_s / 3600, whole_s / 60 % 60, whole_s % 60);
-}
-
-std::size_t HashOf(const experiment::Theta& theta) {
-  std::string text;
-  for (const experiment::ParameterValue& value : theta) text += value.text + '\n';
-  return std::hash<std::string>()(text);
 }
 
 std::string BarText(int done, int most) {
@@ -63,7 +56,7 @@ SweepProgress::~SweepProgress() {
 void SweepProgress::Seen(const sweep::TrialRow& row, bool from_journal) {
   const int before = Steps();
   ++done_;
-  if (size_.is_settings) settings_.insert(HashOf(row.theta));
+  if (size_.is_settings) settings_.insert(row.theta);
   from_journal_ += from_journal;
   if (from_journal) steps_from_journal_ += Steps() - before;
   falsified_ += row.falsified;

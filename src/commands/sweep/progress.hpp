@@ -2,8 +2,8 @@
 
 #include <chrono>
 #include <optional>
+#include <set>
 #include <string>
-#include <unordered_set>
 
 #include "rift/sweep/falsify/result.hpp"
 
@@ -49,7 +49,7 @@ class SweepProgress {
 
   ProgressStyle style_;
   SweepSize size_;
-  std::unordered_set<std::size_t> settings_;  ///< hashes: a collision only shows one less
+  std::set<experiment::Theta> settings_;  ///< of a search, those seen
   int steps_from_journal_ = 0;
   bool is_over_ = false;
   int done_ = 0;

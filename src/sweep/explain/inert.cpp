@@ -33,26 +33,26 @@ const UpperLimit* LimitOf(const experiment::Parameter& parameter) {
   return found == kUpperLimits.end() ? nullptr : &*found;
 }
 
-/// Everything of a row but one parameter.
-std::vector<std::string> RestOf(const TrialRow& row, int parameter) {
-  std::vector<std::string> rest{row.trial};
-  for (int i = 0; i < static_cast<int>(row.theta.size()); ++i) {
-    if (i != parameter) rest.push_back(row.theta[i].text);
-  }
-  return rest;
+/// Everything of a row but one parameter: its repeat and the other values.
+std::pair<std::string, experiment::Theta> RestOf(const TrialRow& row, int parameter) {
+  experiment::Theta others = row.theta;
+  others.erase(others.begin() + parameter);
+  return {row.trial, std::move(others)};
 }
 
 void ComparePaths(const SweepResult& result, int parameter, Inertness& inert) {
-  std::map<std::vector<std::string>, std::map<std::string, std::uint64_t>> paths;
+  std::map<std::pair<std::string, experiment::Theta>,
+           std::map<experiment::ParameterValue, std::uint64_t>>
+      paths;
   for (const TrialRow& row : result.rows) {
     if (row.evidence.fingerprint == 0) continue;
-    paths[RestOf(row, parameter)].emplace(row.theta[parameter].text, row.evidence.fingerprint);
+    paths[RestOf(row, parameter)].emplace(row.theta[parameter], row.evidence.fingerprint);
   }
   const experiment::Theta& levels = result.parameters[parameter].levels;
   for (size_t i = 0; i + 1 < levels.size(); ++i) {
     ValuePair pair{levels[i].text, levels[i + 1].text};
     for (const auto& [rest, by_level] : paths) {
-      const auto a = by_level.find(pair.a), b = by_level.find(pair.b);
+      const auto a = by_level.find(levels[i]), b = by_level.find(levels[i + 1]);
       if (a == by_level.end() || b == by_level.end()) continue;
       ++pair.compared;
       pair.identical += a->second == b->second;
@@ -71,7 +71,7 @@ std::vector<LimitUse> UseOf(const SweepResult& result, int parameter, const Uppe
     LimitUse use{.level = level.text, .value = *level.number};
     for (const TrialRow& row : result.rows) {
       const std::optional<trial::LimitCounts>& counts = row.evidence.*side;
-      if (!counts || row.theta[parameter].text != level.text) continue;
+      if (!counts || row.theta[parameter] != level) continue;
       ++use.runs;
       use.runs_bound += (*counts).*limit.bound > 0;
       use.decisions += static_cast<long>(counts->decisions);

@@ -17,10 +17,6 @@
 namespace rift::sweep {
 namespace {
 
-bool SameValue(const experiment::ParameterValue& a, const experiment::ParameterValue& b) {
-  return a.number && b.number ? *a.number == *b.number : a.text == b.text;
-}
-
 /// Six digits, since a person reads it; what is tried is what is written.
 experiment::ParameterValue RoundedValue(double number) {
   return experiment::NumberValue(std::stod(fmt::format("{:.6g}", number)));
@@ -56,9 +52,7 @@ class Shrinker {
   bool HasBudget() const { return evaluations_ < options_.max_evaluations; }
 
   double Of(const experiment::Theta& theta) {
-    std::string key;
-    for (const experiment::ParameterValue& value : theta) key += value.text + '\n';
-    const auto [found, is_new] = known_.emplace(key, 0.0);
+    const auto [found, is_new] = known_.emplace(theta, 0.0);
     if (is_new) {
       found->second = robustness_(theta);
       ++evaluations_;
@@ -185,7 +179,7 @@ class Shrinker {
   const Robustness& robustness_;
   ShrinkOptions options_;
   experiment::Theta theta_;  ///< fails, always
-  std::map<std::string, double> known_;
+  std::map<experiment::Theta, double> known_;
   int evaluations_ = 0;
   bool is_fewest_ = false;
 };

@@ -74,19 +74,19 @@ struct Groups {
   std::vector<std::vector<int>> rows;
 };
 
-/// Values of a row that tell its group; labels would not do, since one may contain another's comma.
-std::vector<std::string> KeyOf(const TrialRow& row, const std::vector<int>& parameters) {
-  std::vector<std::string> key;
-  for (const int i : parameters) key.push_back(row.theta[i].text);
-  return key;
+/// Values that tell a row's group; labels would not do, since one may contain another's comma.
+experiment::Theta Part(const experiment::Theta& theta, const std::vector<int>& parameters) {
+  experiment::Theta part;
+  for (const int i : parameters) part.push_back(theta[i]);
+  return part;
 }
 
 Groups GroupBy(const SweepResult& result, const std::vector<int>& parameters) {
   Groups groups;
-  std::map<std::vector<std::string>, size_t> index_of;
+  std::map<experiment::Theta, size_t> index_of;
   for (size_t row = 0; row < result.rows.size(); ++row) {
     const auto [found, is_new] =
-        index_of.emplace(KeyOf(result.rows[row], parameters), groups.labels.size());
+        index_of.emplace(Part(result.rows[row].theta, parameters), groups.labels.size());
     if (is_new) {
       groups.labels.push_back(CombinationLabel(result.rows[row].theta, parameters));
       groups.rows.emplace_back();
