@@ -94,6 +94,14 @@ TEST_CASE("The key of a trial changes with its setting, repeat, seed and the byt
   CHECK(key_of(LogBeside(0.05), {.theta = {{"ground", {}}}, .trial = "1", .seed = 4}) != key);
 }
 
+TEST_CASE("The key of a setting names its values however their numbers are written") {
+  const std::vector<experiment::Parameter> axes{{.key = "a.surface"}, {.key = "a.v_min"}};
+  const std::string key = "a.surface=ground a.v_min=0.2 ";
+  CHECK(SettingKey(axes, {{"ground", {}}, {"0.20", 0.2}}) == key);
+  CHECK(SettingKey(axes, {{"ground", {}}, {"+.2", 0.2}}) == key);
+  CHECK(SettingKey(axes, {{"ground", {}}, {"0.2", 0.2}}) == key);
+}
+
 TEST_CASE("The fingerprints of the logs that were read stand in the inputs") {
   Files files{{{"ground_sim.csv", LogBeside(0.0)}, {"ground_1.csv", LogBeside(0.05)}}};
   const experiment::Experiment experiment = LogsAgainstLogs();

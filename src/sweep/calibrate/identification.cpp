@@ -90,13 +90,14 @@ void Identifier::Load() {
         missing_.push_back(fmt::format("{}: {}", real.source, real.reason));
         continue;
       }
-      entries_.push_back(
-          {theta,
-           {.level = MainLevel(parameters, theta),
-            .trial = request.trial,
-            .source = real.source,
-            .is_held_out = IsHeldOut(request.trial)},
-           {.name = real.source, .setting = SettingKey(theta), .log = real.trajectory}});
+      entries_.push_back({theta,
+                          {.level = MainLevel(parameters, theta),
+                           .trial = request.trial,
+                           .source = real.source,
+                           .is_held_out = IsHeldOut(request.trial)},
+                          {.name = real.source,
+                           .setting = SettingKey(parameters, theta),
+                           .log = real.trajectory}});
     }
   }
   if (Side(false).size() >= 2) return;

@@ -109,7 +109,7 @@ void AddSetting(Evaluator& evaluator, const experiment::Theta& theta,
     const Recording real = evaluator.Reference(request);
     if (real.status != TrialStatus::kOk) continue;
     Labelled labelled{MainLevel(experiment.space.parameters, theta),
-                      {.setting = SettingKey(theta),
+                      {.setting = SettingKey(experiment.space.parameters, theta),
                        .real = real.trajectory,
                        .waypoints = at.waypoints,
                        .control = at.control}};

@@ -335,13 +335,8 @@ void Evaluator::LoadLogs() {
 }
 
 std::string Evaluator::KeyOf(const TrialRequest& request) const {
-  std::string key;
-  for (size_t i = 0; i < request.theta.size(); ++i) {
-    const experiment::ParameterValue& value = request.theta[i];
-    key += fmt::format("{}={} ", experiment_.space.parameters[i].key,
-                       value.number ? experiment::NumberValue(*value.number).text : value.text);
-  }
-  key += fmt::format("trial={} seed={}", request.trial, request.seed.value_or(0));
+  std::string key = SettingKey(experiment_.space.parameters, request.theta) +
+                    fmt::format("trial={} seed={}", request.trial, request.seed.value_or(0));
   if (experiment_.reference.kind == ReferenceKind::kLogs) {
     const std::string path = ReferencePath(request.theta, request.trial);
     key += fmt::format(" log={}", reference_logs_.HashOf(path));

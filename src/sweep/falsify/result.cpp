@@ -60,9 +60,14 @@ std::string MainLevel(const std::vector<experiment::Parameter>& parameters,
   return parameters.empty() ? "" : theta[SplitFactors(parameters).main_factor].text;
 }
 
-std::string SettingKey(const experiment::Theta& theta) {
+std::string SettingKey(const std::vector<experiment::Parameter>& parameters,
+                       const experiment::Theta& theta) {
   std::string key;
-  for (const experiment::ParameterValue& value : theta) key += value.text + '\n';
+  for (size_t i = 0; i < theta.size(); ++i) {
+    const experiment::ParameterValue& value = theta[i];
+    key += fmt::format("{}={} ", parameters[i].key,
+                       value.number ? experiment::NumberValue(*value.number).text : value.text);
+  }
   return key;
 }
 
