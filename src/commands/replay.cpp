@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <stdexcept>
 
 #include "rift/commands/arguments/inputs.hpp"
@@ -14,19 +13,6 @@
 
 namespace rift::commands {
 namespace {
-
-sweep::TrialRequest RequestOf(const experiment::Experiment& experiment,
-                              const report::TableRow& row) {
-  sweep::TrialRequest request{.trial = row.at("trial")};
-  std::uint64_t seed = 0;
-  const std::string& text = row.at("seed");
-  std::from_chars(text.data(), text.data() + text.size(), seed);
-  request.seed = seed;
-  for (const experiment::Parameter& parameter : experiment.space.parameters) {
-    request.theta.push_back(experiment::ParseValue(parameter, row.at(parameter.Name())));
-  }
-  return request;
-}
 
 /// Cells that the trial alone decides.
 std::string Evidence(const report::TableRow& row) {
@@ -50,7 +36,7 @@ Replay ReplayRow(const std::filesystem::path& folder, const std::string& id) {
   }
   sweep::Evaluator evaluator(experiment, file, FileInputs());
   evaluator.LoadLogs();
-  const sweep::TrialRequest request = RequestOf(experiment, row);
+  const sweep::TrialRequest request = report::RequestOf(experiment, row);
   Replay replay{.experiment = experiment::ExperimentAt(experiment, request.theta)};
   replay.experiment.seed = *request.seed;
   replay.trial = evaluator.TrialFor(request, evaluator.Reference(request));

@@ -83,6 +83,10 @@ TEST_CASE("A failure shrunk by rift sweep still falsifies and none of its change
   CHECK_THAT(again.err, Contains("to the last bit as in the table"));
   CHECK_THAT(Line(ReadFile(sweep.out + "/shrunk/table.csv"), 2), Contains(",true,ok,"));
   for (const json& change : shrunk["changes"]) {
+    const std::string& name = change["parameter"].get_ref<const std::string&>();
+    CHECK(change["nominal"] == shrunk["nominal"][name]);
+    CHECK(change["failing"] == shrunk["failing"]["theta"][name]);
+    CHECK(change["shrunk"] == shrunk["shrunk"]["theta"][name]);
     CHECK(change["without"]["falsified"] == false);
     CHECK_THAT(Replay(change["without"]["replay"]).err, Contains("to the last bit"));
   }

@@ -35,9 +35,9 @@ std::string ShrunkJson(const sweep::SweepResult& result, const sweep::ShrunkRow&
   for (size_t i = 0; i < found.shrunk.changed.size(); ++i) {
     const int parameter = found.shrunk.changed[i];
     json["changes"].push_back({{"parameter", parameters[parameter].Name()},
-                               {"nominal", found.nominal[parameter].text},
-                               {"failing", failing.theta[parameter].text},
-                               {"shrunk", found.shrunk.theta[parameter].text},
+                               {"nominal", ValueJson(found.nominal[parameter])},
+                               {"failing", ValueJson(failing.theta[parameter])},
+                               {"shrunk", ValueJson(found.shrunk.theta[parameter])},
                                {"without", TrialJson(folder, parameters, found, 2 + i)}});
   }
   json["is_minimal"] = found.shrunk.is_minimal;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
@@ -100,6 +101,29 @@ TableRow TableRowOf(const std::string& table_csv, const std::string& id, const s
   }
   throw std::invalid_argument(
       fmt::format("{} has no row with id {}: its ids are 1 to {}", name, id, rows));
+}
+
+sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row) {
+  sweep::TrialRequest request{.trial = row.at("trial")};
+  std::uint64_t seed = 0;
+  const std::string& text = row.at("seed");
+  std::from_chars(text.data(), text.data() + text.size(), seed);
+  request.seed = seed;
+  for (const experiment::Parameter& parameter : experiment.space.parameters) {
+    request.theta.push_back(experiment::ParseValue(parameter, row.at(parameter.Name())));
+  }
+  return request;
+}
+
+nlohmann::ordered_json ValueJson(const experiment::ParameterValue& value) {
+  return value.number ? nlohmann::ordered_json(*value.number) : nlohmann::ordered_json(value.text);
+}
+
+nlohmann::ordered_json ThetaJson(const std::vector<experiment::Parameter>& parameters,
+                                 const experiment::Theta& theta) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (size_t i = 0; i < theta.size(); ++i) json[parameters[i].Name()] = ValueJson(theta[i]);
+  return json;
 }
 
 }  // namespace rift::report

@@ -4,9 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <type_traits>
-#include <vector>
 
-#include "rift/experiment/parameter.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {
@@ -32,10 +30,5 @@ nlohmann::ordered_json FieldsToJson(const Options& options) {
   });
   return json;
 }
-
-/// A setting as an object whose keys are the parameters' columns in table.csv:
-/// {"surface": "ground", "v_min": 0.15}.
-nlohmann::ordered_json ThetaJson(const std::vector<experiment::Parameter>& parameters,
-                                 const experiment::Theta& theta);
 
 }  // namespace rift::report

@@ -21,6 +21,7 @@
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"
 #include "rift/trial/trial.hpp"
 #include "rift/vision/calibration/calibration.hpp"
@@ -112,6 +113,17 @@ TableRow FirstTableRow(const std::string& table_csv);
 /// The row with this `id`. Throws std::invalid_argument, naming the table and the ids there are,
 /// when there is none.
 TableRow TableRowOf(const std::string& table_csv, const std::string& id, const std::string& name);
+
+/// The trial of a row of an experiment's table, to be run again.
+sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row);
+
+/// A value in JSON: a number where it is one, else its text.
+nlohmann::ordered_json ValueJson(const experiment::ParameterValue& value);
+
+/// A setting as an object whose keys are the parameters' columns in table.csv:
+/// {"surface": "ground", "v_min": 0.15}.
+nlohmann::ordered_json ThetaJson(const std::vector<experiment::Parameter>& parameters,
+                                 const experiment::Theta& theta);
 
 /// What a tracking run was asked for, as far as its record says so.
 struct TrackInputs {
