@@ -100,6 +100,15 @@ TEST_CASE("A click on a heading sorts the table and a second one turns it round"
              Contains("PROBE none|0.0260|0.0740|ascending|0.0260|–|descending|0.0740|– END"));
 }
 
+TEST_CASE("Cells that are numbers sort by their value before words and the empty cell") {
+  const std::string probe = R"(
+    const cells = ['word', '10', '0.5', '-0.03', '', '0.15', '-0.06', '9', '0.0123', '1e-3'];
+    document.body.append('PROBE ' + cells.sort(compare).join('|') + ' END');)";
+  const BrowserVisit visit = Visit(WithScript(RenderPage(synthetic::Grid()), probe));
+  SKIP_WITHOUT_BROWSER(visit);
+  CHECK_THAT(visit.dom, Contains("PROBE -0.06|-0.03|1e-3|0.0123|0.15|0.5|9|10||word END"));
+}
+
 TEST_CASE("Tooltips show what a mark stands for as plain text") {
   const std::string probe = R"(
     setTimeout(() => {

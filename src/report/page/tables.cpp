@@ -29,7 +29,7 @@ json EmptyTable(const sweep::SweepResult& result) {
   return {{"columns", columns}, {"rows", json::array()}, {"marks", json::array()}};
 }
 
-// Numbers stay numbers, so that 10 sorts after 9; their text shows as the experiment wrote it.
+// As the experiment wrote them; the page sorts those that are numbers by their value.
 json Theta(const experiment::Theta& theta) {
   json cells = json::array();
   for (const experiment::ParameterValue& value : theta) cells.push_back(value.text);

@@ -64,10 +64,17 @@ function cellText(value, column) {
   return column.digits === undefined ? String(value) : value.toFixed(column.digits);
 }
 
-// Values that are missing come last, whichever way is up.
+// Parameters stand in cells as text, in the experiment's own spelling.
+function asNumber(cell) {
+  return String(cell).trim() === '' ? NaN : Number(cell);
+}
+
+// Values that are missing come last, whichever way is up; numbers come before words.
 function compare(a, b) {
   if (a === null || b === null) return a === b ? 0 : a === null ? Infinity : -Infinity;
-  if (typeof a === 'number' && typeof b === 'number') return a - b;
+  const x = asNumber(a), y = asNumber(b);
+  if (Number.isFinite(x) && Number.isFinite(y)) return x - y;
+  if (Number.isFinite(x) !== Number.isFinite(y)) return Number.isFinite(x) ? -1 : 1;
   return String(a).localeCompare(String(b), undefined, { numeric: true });
 }
 
