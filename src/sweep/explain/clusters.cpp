@@ -126,16 +126,16 @@ std::string WhereOf(const SweepResult& result, const std::vector<int>& rows) {
   std::string text;
   for (size_t p = 0; p < result.parameters.size(); ++p) {
     if (result.parameters[p].IsContinuous()) continue;  // repeats of a draw would share its value
-    std::map<std::string, int> here, everywhere;
-    for (const int row : rows) ++here[result.rows[row].theta[p].text];
-    for (const TrialRow& row : result.rows) ++everywhere[row.theta[p].text];
+    std::map<experiment::ParameterValue, int> here, everywhere;
+    for (const int row : rows) ++here[result.rows[row].theta[p]];
+    for (const TrialRow& row : result.rows) ++everywhere[row.theta[p]];
     for (const auto& [level, n] : here) {
       const double share = static_cast<double>(n) / static_cast<double>(rows.size());
       const double usual =
           static_cast<double>(everywhere[level]) / static_cast<double>(result.rows.size());
       if (share < kMostly || share < kLift * usual) continue;
       text += fmt::format("{}{} {} ({} of {})", text.empty() ? "" : ", ",
-                          result.parameters[p].Name(), level, n, rows.size());
+                          result.parameters[p].Name(), level.text, n, rows.size());
     }
   }
   return text.empty() ? "at no particular value of a parameter" : "mostly at " + text;

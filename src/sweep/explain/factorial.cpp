@@ -22,20 +22,20 @@ class Coding {
  public:
   Coding(const SweepResult& result, int parameter) : parameter_(parameter) {
     for (const TrialRow& row : result.rows) {
-      if (row.IsOk()) index_.emplace(row.theta[parameter].text, static_cast<int>(index_.size()));
+      if (row.IsOk()) index_.emplace(row.theta[parameter], static_cast<int>(index_.size()));
     }
   }
   int parameter() const { return parameter_; }
   int Columns() const { return static_cast<int>(index_.size()) - 1; }
   Eigen::VectorXd Of(const TrialRow& row) const {
-    const int level = index_.at(row.theta[parameter_].text);
+    const int level = index_.at(row.theta[parameter_]);
     if (level == Columns()) return Eigen::VectorXd::Constant(Columns(), -1.0);
     return Eigen::VectorXd::Unit(Columns(), level);
   }
 
  private:
   int parameter_;
-  std::map<std::string, int> index_;
+  std::map<experiment::ParameterValue, int> index_;
 };
 
 struct Term {
