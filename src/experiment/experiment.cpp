@@ -26,13 +26,14 @@ void MakeAbsolute(PathTemplate& path) {
 
 /// Keys that a simulated trial reads; an axis of any other would repeat the same rows.
 void RequireEffect(const Parameter& parameter) {
-  for (const std::string_view block : {"control.", "trial.", "simulation.", "waypoints"}) {
+  for (const std::string_view block :
+       {"control.", "trial.", "simulation.", "waypoints", "program."}) {
     if (parameter.key.starts_with(block)) return;
   }
   throw yaml::Error(fmt::format("{} does not change a simulated trial; {}", parameter.key,
                                 parameter.key == "seed"
                                     ? "for repeats set reference.trials"
-                                    : "vary keys of control, trial or simulation"));
+                                    : "vary keys of control, trial, program or simulation"));
 }
 
 std::set<std::string> WholeNumberKeys(const Experiment& experiment) {
@@ -151,6 +152,32 @@ Experiment ExperimentAt(const Experiment& experiment, const std::vector<Paramete
   Experiment at = experiment;
   yaml::SetValues(at, values);
   return at;
+}
+
+control::Task TaskOf(const Experiment& experiment) {
+  if (experiment.program.segments.empty()) {
+    control::CheckWaypoints(experiment.waypoints);
+    return experiment.waypoints;
+  }
+  if (experiment.waypoints.size() > 1) {
+    throw std::invalid_argument(
+        fmt::format("{} waypoints beside a program: it starts at the first and makes its own "
+                    "ends, leave the others out",
+                    experiment.waypoints.size()));
+  }
+  geometry::Pose2 start;
+  if (!experiment.waypoints.empty()) {
+    const control::Waypoint& first = experiment.waypoints.front();
+    start = {first.x_m, first.y_m, geometry::RadFromDeg(first.heading_deg.value_or(0.0))};
+  }
+  const control::Program program(experiment.program, experiment.hardware.odometry.drive, start);
+  const double needed_s =
+      experiment.trial.settle_s + program.Duration_s() + experiment.program.rest_s;
+  if (needed_s < experiment.trial.timeout_s) return program;
+  throw std::invalid_argument(
+      fmt::format("the program takes {:.1f} s with settling and rest, and trial.timeout_s is {:g}: "
+                  "raise it",
+                  needed_s, experiment.trial.timeout_s));
 }
 
 Theta NominalTheta(const Experiment& experiment) {

@@ -160,7 +160,7 @@ bool WaitForFirstPose(RealRobot& robot) {
 
 void SayWhereItStands(const DriveParts& parts, RealRobot& robot, const DriveTask& task) {
   const geometry::Pose2 pose = robot.Sense().pose->world_from_robot;
-  const geometry::Pose2 start = control::StartPose(task.waypoints);
+  const geometry::Pose2 start = task.task.Start();
   const double off_m = (pose.Position() - start.Position()).norm();
   parts.say(
       fmt::format("the robot stands at x {:.3f} m, y {:.3f} m, {:.3f} m from the first "
@@ -170,14 +170,14 @@ void SayWhereItStands(const DriveParts& parts, RealRobot& robot, const DriveTask
 }
 
 /// By how much the poses of a drive lag its encoders, on top of what was subtracted already.
-std::optional<double> LatencyOver(const DriveRun& run, const control::OdometryOptions& odometry) {
+std::optional<double> LatencyOver(const DriveRun& run, const odometry::OdometryOptions& odometry) {
   constexpr double kLeastScale = 0.4, kMost_s = 1.0;
   std::vector<Angle> seen;
   for (const trajectory::StampedPose& pose : run.trial.trajectory.poses) {
     AddAngle(seen, pose.t_s, pose.yaw_rad);
   }
   const std::vector<Angle> wheels =
-      WheelTurns(run.evidence.encoders, control::YawPerCount_rad(odometry));
+      WheelTurns(run.evidence.encoders, odometry::YawPerCount_rad(odometry));
   if (seen.empty() || wheels.empty()) return std::nullopt;
   const std::optional<Lag> lag = EstimateLag(seen, wheels, -kMost_s, kMost_s);
   if (!lag || lag->scale < kLeastScale) return std::nullopt;
@@ -243,7 +243,7 @@ PingResult MeasureLink(ByteLine& line, Clock& clock, const HardwareOptions& opti
 }
 
 DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
-  control::CheckWaypoints(task.waypoints);
+  control::CheckWaypoints(task.task.waypoints);
   DriveRun run{.dry_run = parts.dry_run};
   try {
     AskingClock clock(parts);
@@ -269,7 +269,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
     robot.Arm();
     if (!parts.dry_run) run.latency = MeasureCamera(robot, parts, task, run.ping);
     Forward forward(robot, parts.observer);
-    run.trial = trial::RunTrial(robot, task.waypoints, task.control, task.trial, &forward);
+    run.trial = trial::RunTrial(robot, task.task, task.control, task.trial, &forward);
   } else {
     run.trial.reason = "stopped before the start: " + robot.Record().stop->text;
   }

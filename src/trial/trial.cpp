@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -40,7 +41,7 @@ Recorder::Recorder(const std::vector<control::Waypoint>& waypoints, double log_p
   result_.trajectory.channels = RecordedChannels();
 }
 
-void Recorder::Pose(const PoseMeasurement& measured, const control::Waypoint& target,
+void Recorder::Pose(const PoseMeasurement& measured, const Eigen::Vector2d& target_m,
                     const control::Decision& decision) {
   std::vector<trajectory::StampedPose>& poses = result_.trajectory.poses;
   const double since_s = poses.empty() ? measured.captured_s : poses.back().t_s;
@@ -50,7 +51,7 @@ void Recorder::Pose(const PoseMeasurement& measured, const control::Waypoint& ta
   }
   const geometry::Pose2& pose = measured.world_from_robot;
   poses.push_back({measured.captured_s, pose.x_m, pose.y_m, measured.z_m, measured.roll_rad,
-                   measured.pitch_rad, pose.yaw_rad, target.x_m, target.y_m});
+                   measured.pitch_rad, pose.yaw_rad, target_m.x(), target_m.y()});
   std::vector<trajectory::Channel>& channels = result_.trajectory.channels;
   const std::array<double, 4> values{decision.power.left, decision.power.right, decision.v,
                                      decision.w};
@@ -97,13 +98,12 @@ class StopGuard {
 
 class Loop {
  public:
-  Loop(Robot& robot, const std::vector<control::Waypoint>& waypoints,
-       const control::NavigatorOptions& navigator_options, const TrialOptions& options,
+  Loop(Robot& robot, std::unique_ptr<control::Controller> controller, const TrialOptions& options,
        Observer* observer)
       : robot_(robot),
         options_(options),
-        navigator_(navigator_options, waypoints),
-        recorder_(waypoints, options.log_period_s, observer) {}
+        controller_(std::move(controller)),
+        recorder_(controller_->waypoints(), options.log_period_s, observer) {}
 
   TrialResult Run();
 
@@ -120,7 +120,7 @@ class Loop {
 
   Robot& robot_;
   const TrialOptions& options_;
-  control::Navigator navigator_;
+  std::unique_ptr<control::Controller> controller_;
   Recorder recorder_;
   std::optional<double> looked_at_s_;  ///< capture time of the newest pose seen, believed or not
   PoseMeasurement measured_;           ///< the newest pose believed
@@ -169,8 +169,8 @@ bool Loop::TakePose(const Sensed& sensed) {
   if (!sensed.pose || sensed.pose->captured_s == looked_at_s_) return false;
   looked_at_s_ = sensed.pose->captured_s;
   const bool believed = sensed.pose->captured_s <= sensed.now_s + options_.control_period_s &&
-                        navigator_.Observe({sensed.now_s, 0.0, sensed.pose->captured_s,
-                                            sensed.pose->world_from_robot});
+                        controller_->Observe({sensed.now_s, 0.0, sensed.pose->captured_s,
+                                              sensed.pose->world_from_robot});
   if (!believed) {
     recorder_.Refused();
     return false;
@@ -195,7 +195,7 @@ bool Loop::IsOver(const Sensed& sensed) {
                                            options_.fall_angle_deg, *tilted_since_s_));
   }
   const geometry::Pose2& pose = measured_.world_from_robot;
-  if (navigator_.pose() && !options_.arena.Contains(pose.x_m, pose.y_m)) {
+  if (controller_->pose() && !options_.arena.Contains(pose.x_m, pose.y_m)) {
     return End(Outcome::kLeftArena,
                fmt::format("the robot is at x {:.3f} m, y {:.3f} m, outside the arena", pose.x_m,
                            pose.y_m));
@@ -205,7 +205,7 @@ bool Loop::IsOver(const Sensed& sensed) {
                fmt::format("no believable pose for {:.2f} s", PoseAge_s(sensed.now_s)));
   }
   if (sensed.now_s - start_s_ >= options_.timeout_s) {
-    const control::Waypoint& target = navigator_.waypoints()[navigator_.active()];
+    const control::Waypoint& target = controller_->waypoints()[controller_->active()];
     return End(Outcome::kTimedOut, fmt::format("waypoint '{}' was not reached within {} s",
                                                target.name, options_.timeout_s));
   }
@@ -214,18 +214,18 @@ bool Loop::IsOver(const Sensed& sensed) {
 
 // A robot that has shown no pose yet is as old as the trial.
 double Loop::PoseAge_s(double now_s) const {
-  return now_s - (navigator_.pose() ? navigator_.pose()->captured_s : start_s_);
+  return now_s - (controller_->pose() ? controller_->pose()->captured_s : start_s_);
 }
 
 void Loop::Act(double now_s, bool is_new_pose) {
-  const size_t target = navigator_.active();
+  const Eigen::Vector2d target_m = controller_->Target_m();
   decision_ = Decide(now_s, is_new_pose);
   Send(now_s, decision_.power);
-  if (is_new_pose) recorder_.Pose(measured_, navigator_.waypoints()[target], decision_);
+  if (is_new_pose) recorder_.Pose(measured_, target_m, decision_);
 }
 
 control::Decision Loop::Decide(double now_s, bool is_new_pose) {
-  if (!navigator_.pose() || now_s - start_s_ < options_.settle_s) return {};
+  if (!controller_->pose() || now_s - start_s_ < options_.settle_s) return {};
   if (PoseAge_s(now_s) > options_.pose_stale_s) {
     recorder_.Stale();
     return {};
@@ -234,16 +234,16 @@ control::Decision Loop::Decide(double now_s, bool is_new_pose) {
 
   const double dt_s = decided_s_ ? now_s - *decided_s_ : options_.control_period_s;
   decided_s_ = now_s;
-  const control::TimedPose& pose = *navigator_.pose();
+  const control::TimedPose& pose = *controller_->pose();
   const control::Decision decision =
-      navigator_.Step({now_s, dt_s, pose.captured_s, pose.world_from_robot});
-  recorder_.Decided(now_s, decision, navigator_.active());
+      controller_->Step({now_s, dt_s, pose.captured_s, pose.world_from_robot});
+  recorder_.Decided(now_s, decision, controller_->active());
   return decision;
 }
 
 void Loop::Send(double now_s, const control::WheelPower& power) {
   robot_.Command(power);
-  navigator_.NoteSent(now_s, power);
+  controller_->NoteSent(now_s, power);
   recorder_.Sent(now_s, power);
 }
 
@@ -255,12 +255,12 @@ bool Loop::End(Outcome outcome, std::string reason) {
 
 }  // namespace
 
-TrialResult RunTrial(Robot& robot, const std::vector<control::Waypoint>& waypoints,
+TrialResult RunTrial(Robot& robot, const control::Task& task,
                      const control::NavigatorOptions& navigator_options,
                      const TrialOptions& options, Observer* observer) {
   const StopGuard stop_at_the_end(robot);
   options.Check();
-  return Loop(robot, waypoints, navigator_options, options, observer).Run();
+  return Loop(robot, control::MakeController(task, navigator_options), options, observer).Run();
 }
 
 }  // namespace rift::trial

@@ -33,9 +33,9 @@ constexpr int kHeight_px = 1080;
 constexpr double kFocal_px = 1092.0;
 constexpr double kMargin_m = 0.10;  // the robot's body, and how far it may stray
 
-Eigen::AlignedBox2d BoxOf(const std::vector<control::Waypoint>& waypoints) {
+Eigen::AlignedBox2d BoxOf(const control::Task& task) {
   Eigen::AlignedBox2d box;
-  for (const control::Waypoint& waypoint : waypoints) box.extend(waypoint.Position());
+  for (const control::TimedPose& at : task.IdealPath()) box.extend(at.world_from_robot.Position());
   return box;
 }
 
@@ -66,14 +66,13 @@ simulation::SimulationOptions AsTwin(simulation::SimulationOptions simulation,
   return simulation;
 }
 
-vision::CameraModel OverheadCamera(const std::vector<control::Waypoint>& waypoints,
-                                   const TwinOptions& options) {
-  const Eigen::AlignedBox2d box = BoxOf(waypoints);
+vision::CameraModel OverheadCamera(const control::Task& task, const TwinOptions& options) {
+  const Eigen::AlignedBox2d box = BoxOf(task);
   if (const double needed_m = NeededHeight_m(box); needed_m > options.camera_height_m) {
-    throw std::invalid_argument(
-        fmt::format("twin.camera_height_m is {:g}, but to see all waypoints and {:g} m around them "
-                    "the camera must hang at {:.2f} m",
-                    options.camera_height_m, kMargin_m, std::ceil(100.0 * needed_m) / 100.0));
+    throw std::invalid_argument(fmt::format(
+        "twin.camera_height_m is {:g}, but to see the whole path and {:g} m around them "
+        "the camera must hang at {:.2f} m",
+        options.camera_height_m, kMargin_m, std::ceil(100.0 * needed_m) / 100.0));
   }
   vision::CameraModel camera;
   camera.name = "twin";

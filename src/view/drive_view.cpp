@@ -16,11 +16,12 @@ void Follow(const vision::Sighting& sighting, TrackScene& scene) {
 
 }  // namespace
 
-DriveView::DriveView(const vision::CameraModel& camera,
-                     const std::vector<control::Waypoint>& waypoints)
-    : start_(control::StartPose(waypoints)), scene_{.camera = &camera}, window_("rift drive") {
-  for (const control::Waypoint& waypoint : waypoints) {
-    scene_.path_m.push_back(waypoint.Position());
+DriveView::DriveView(const vision::CameraModel& camera, const control::Task& task)
+    : start_(task.Start()), scene_{.camera = &camera}, window_("rift drive") {
+  for (const control::TimedPose& at : task.IdealPath()) {
+    scene_.path_m.push_back(at.world_from_robot.Position());
+  }
+  for (const control::Waypoint& waypoint : task.waypoints) {
     scene_.waypoints.push_back({waypoint.name, waypoint.Position()});
   }
 }

@@ -20,10 +20,12 @@ BodyShape ShapeOf(const simulation::BodyOptions& body) {
           .track_m = body.track_m};
 }
 
-void ShowTask(Run& shown, const std::vector<control::Waypoint>& waypoints) {
-  for (const control::Waypoint& waypoint : waypoints) {
+void ShowTask(Run& shown, const control::Task& task) {
+  for (const control::Waypoint& waypoint : task.waypoints) {
     shown.waypoints.push_back({waypoint.name, waypoint.Position()});
-    shown.reference_m.push_back(waypoint.Position());
+  }
+  for (const control::TimedPose& at : task.IdealPath()) {
+    shown.reference_m.push_back(at.world_from_robot.Position());
   }
 }
 

@@ -51,8 +51,8 @@ sweep::TrialRow TenMilliseconds(const sweep::TrialRequest& request) {
 
 sweep::TrialRow PaperTask(const sweep::TrialRequest& request) {
   sweep::SimulatedTrial trial;
-  trial.waypoints = test::PaperWaypoints();
-  trial.start = control::StartPose(trial.waypoints);
+  trial.task = test::PaperWaypoints();
+  trial.start = trial.task.Start();
   trial.seed = *request.seed;
   benchmark::DoNotOptimize(sweep::Simulate(trial));
   return {.theta = request.theta, .trial = request.trial, .seed = request.seed};

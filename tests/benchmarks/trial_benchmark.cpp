@@ -22,8 +22,8 @@ double Since(Clock::time_point begin) {
 
 sweep::SimulatedTrial PaperTrial() {
   sweep::SimulatedTrial trial;
-  trial.waypoints = test::PaperWaypoints();
-  trial.start = control::StartPose(trial.waypoints);
+  trial.task = test::PaperWaypoints();
+  trial.start = trial.task.Start();
   return trial;
 }
 

@@ -30,8 +30,9 @@ sweep::SimulatedTrial RandomTrial(std::mt19937_64& random) {
   trial.trial.settle_s = std::min(trial.trial.settle_s, 0.1);
   trial.trial.control_period_s = std::clamp(trial.trial.control_period_s, 0.01, 0.1);
   trial.simulation.step_s = std::max(trial.simulation.step_s, 0.001);
-  for (size_t i = 2 + random() % 3; i > 0; --i) trial.waypoints.push_back(RandomWaypoint(random));
-  trial.start = control::StartPose(trial.waypoints);
+  for (size_t i = 2 + random() % 3; i > 0; --i)
+    trial.task.waypoints.push_back(RandomWaypoint(random));
+  trial.start = trial.task.Start();
   trial.seed = random();
   simulation::HeightImage image{.columns = 8, .rows = 6};
   for (int i = 0; i < 48; ++i) image.samples.push_back(static_cast<double>(random() % 256) / 255.0);

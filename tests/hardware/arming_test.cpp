@@ -10,7 +10,7 @@ namespace {
 
 DriveTask PaperTask() {
   DriveTask task;
-  task.waypoints = test::PaperWaypoints();
+  task.task = test::PaperWaypoints();
   task.trial.pace = trial::Pace::kNewPose;
   return task;
 }

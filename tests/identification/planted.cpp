@@ -33,7 +33,7 @@ geometry::Pose2 PutDown(const GridStudy& robot, std::mt19937_64& random) {
 
 sweep::SimulatedTrial TrialOf(const GridStudy& robot, double v_min, const geometry::Pose2& start,
                               std::uint64_t seed) {
-  sweep::SimulatedTrial trial{.waypoints = robot.waypoints,
+  sweep::SimulatedTrial trial{.task = robot.waypoints,
                               .control = robot.control,
                               .trial = robot.trial,
                               .simulation = robot.simulation,

@@ -47,7 +47,7 @@ sweep::SimulatedTrial TwinOf(const GridStudy& study, const GridTrial& trial, std
   simulation.terrain.surface = trial.surface;
   const geometry::Pose2 robot_from_tag =
       geometry::Inverse(geometry::Pose2{simulation.mocap.tag_ahead_m, 0.0, 0.0});
-  return {.waypoints = study.waypoints,
+  return {.task = study.waypoints,
           .control = trial.control,
           .trial = study.trial,
           .simulation = simulation,

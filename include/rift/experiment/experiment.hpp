@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "rift/control/controller.hpp"
 #include "rift/control/options.hpp"
+#include "rift/control/program.hpp"
 #include "rift/control/waypoint.hpp"
 #include "rift/experiment/options.hpp"
 #include "rift/experiment/space_yaml.hpp"
@@ -25,7 +27,9 @@ namespace rift::experiment {
 struct Experiment {
   std::string name;
   std::vector<control::Waypoint> waypoints;
+  control::ProgramOptions program;
   Goal goal = Goal::kGrid;
+  Objective objective = Objective::kGap;
   Space space;
   sweep::SearchPlan search;
   sweep::FalsifyOptions falsify;
@@ -48,8 +52,14 @@ struct Experiment {
   static void Fields(Self& self, Visitor&& field) {
     field("name", self.name, "what reports call it; by default the name of the file");
     field("waypoints", self.waypoints, "the task: name, x, y, heading (of the first), stop");
+    field("program", self.program,
+          "in place of the waypoints after the first: segments driven without looking");
     field("goal", self.goal,
           "what a sweep is for: visit every combination, look for failures, or fit the simulator");
+    field(
+        "objective", self.objective,
+        "what a trial is judged by: the gap to the reference, or that of the robot's own odometry "
+        "to the camera");
     field("space", self.space, "the parameters to vary: a list of values, or a range to search");
     field("search", self.search, "how a sweep that is no grid looks for its goal");
     field("falsify", self.falsify, "what counts as a failure, and how sure it must be");
@@ -79,6 +89,11 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
 /// The experiment with the parameters of its space at one setting. Throws Error, naming where the
 /// parameter was written, when a value breaks a rule.
 Experiment ExperimentAt(const Experiment& experiment, const std::vector<ParameterValue>& theta);
+
+/// What the robot is to do: the waypoints, or the program from the first of them on (from the
+/// origin where there is none), for the robot of hardware.odometry.drive. Throws
+/// std::invalid_argument when that is no task, or takes longer than trial.timeout_s.
+control::Task TaskOf(const Experiment& experiment);
 
 /// The experiment's own values of its space's parameters.
 Theta NominalTheta(const Experiment& experiment);

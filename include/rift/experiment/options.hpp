@@ -23,8 +23,15 @@ constexpr std::array<std::string_view, 3> EnumNames(Goal) {
   return {"grid", "falsify", "calibrate"};
 }
 
+/// What a trial is judged by.
+enum class Objective {
+  kGap,       ///< between candidate and reference
+  kOdometry,  ///< between the encoders and the camera of one run
+};
+constexpr std::array<std::string_view, 2> EnumNames(Objective) { return {"gap", "odometry"}; }
+
 enum class ReferenceKind {
-  kPath,     ///< the polyline through the waypoints
+  kPath,     ///< the polyline through the waypoints, or the path of the program
   kNominal,  ///< a simulated run with the experiment's own values
   kLogs,
 };

@@ -70,7 +70,7 @@ class Operator {
 
 /// What the robot is to do, and within which limits.
 struct DriveTask {
-  std::vector<control::Waypoint> waypoints;
+  control::Task task;
   control::NavigatorOptions control;
   trial::TrialOptions trial;
   HardwareOptions hardware;

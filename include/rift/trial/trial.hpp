@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rift/control/navigator.hpp"
+#include "rift/control/controller.hpp"
 #include "rift/trajectory/trajectory.hpp"
 #include "rift/trial/options.hpp"
 #include "rift/trial/robot.hpp"
@@ -79,12 +79,13 @@ class Observer {
 std::vector<trajectory::Channel> RecordedChannels();
 
 /// The one loop for simulator and hardware: sense, decide, command, record, advance, until the
-/// last waypoint is reached or the trial fails. Deterministic in what the robot reports.
+/// last waypoint is reached, the program is over, or the trial fails. Deterministic in what the
+/// robot reports.
 ///
 /// Robot::Stop() is called on every way out, exceptions of the robot included, and no power but
 /// zero is ever sent without a believable pose younger than pose_stale_s.
-/// Throws std::invalid_argument on bad options or waypoints, before the robot moves.
-TrialResult RunTrial(Robot& robot, const std::vector<control::Waypoint>& waypoints,
+/// Throws std::invalid_argument on bad options or a bad task, before the robot moves.
+TrialResult RunTrial(Robot& robot, const control::Task& task,
                      const control::NavigatorOptions& navigator_options,
                      const TrialOptions& options, Observer* observer = nullptr);
 
@@ -95,7 +96,7 @@ class Recorder {
            Observer* observer = nullptr);
 
   /// Once for each believable new pose, after the decision made on it (none while settling).
-  void Pose(const PoseMeasurement& measured, const control::Waypoint& target,
+  void Pose(const PoseMeasurement& measured, const Eigen::Vector2d& target_m,
             const control::Decision& decision);
   void Sent(double now_s, const control::WheelPower& power);
   /// Once for each decision; `active_after` is the waypoint the navigator drives to from now on.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/control/waypoint.hpp"
+#include "rift/control/controller.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/trajectory/trajectory.hpp"
 #include "rift/twin/options.hpp"
@@ -14,12 +14,11 @@
 
 namespace rift::twin {
 
-/// A 1080p camera that looks straight down on the middle of the waypoints, calibrated without
+/// A 1080p camera that looks straight down on the middle of the path, calibrated without
 /// error. Its intrinsics are about those of the authors' webcam, whose own distortion (2.83 px RMS)
-/// bends the picture's rim over. Throws std::invalid_argument when a waypoint lies outside the
+/// bends the picture's rim over. Throws std::invalid_argument when the path leaves the
 /// picture and says how high the camera would have to hang.
-vision::CameraModel OverheadCamera(const std::vector<control::Waypoint>& waypoints,
-                                   const TwinOptions& options);
+vision::CameraModel OverheadCamera(const control::Task& task, const TwinOptions& options);
 
 /// Everything one twin depends on.
 struct TwinSetup {

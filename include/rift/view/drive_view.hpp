@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/control/waypoint.hpp"
+#include "rift/control/controller.hpp"
 #include "rift/view/track_window.hpp"
 
 namespace rift::view {
@@ -14,7 +14,7 @@ class DriveView {
  public:
   /// `camera` must outlive it. Throws std::runtime_error with MissingDisplay() where that is not
   /// empty.
-  DriveView(const vision::CameraModel& camera, const std::vector<control::Waypoint>& waypoints);
+  DriveView(const vision::CameraModel& camera, const control::Task& task);
 
   /// False when the user wants the robot to be stopped. `frame` is none before the first picture.
   /// `placement`: how far the robot is from its start, in words, while it waits for it; the outline

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/control/waypoint.hpp"
+#include "rift/control/controller.hpp"
 #include "rift/geometry/floor.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/simulation/options.hpp"
@@ -98,8 +98,8 @@ struct Run {
   std::string outcome;  ///< "reached"
 };
 
-/// The task in the picture: its waypoints, and the polyline through them as the path to keep.
-void ShowTask(Run& shown, const std::vector<control::Waypoint>& waypoints);
+/// The task in the picture: its waypoints, and the path to keep.
+void ShowTask(Run& shown, const control::Task& task);
 
 /// Pictures at start, start + 1/fps, ...: as many as duration times fps (rounded, at least one),
 /// the last of them at the end of the run.

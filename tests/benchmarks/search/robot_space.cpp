@@ -52,7 +52,7 @@ RobotSpace::RobotSpace()
       reference_(Drive(nominal_)) {}
 
 trajectory::Trajectory RobotSpace::Drive(const experiment::Experiment& experiment) const {
-  sweep::SimulatedRun run = sweep::Simulate({.waypoints = experiment.waypoints,
+  sweep::SimulatedRun run = sweep::Simulate({.task = experiment.waypoints,
                                              .control = experiment.control,
                                              .trial = experiment.trial,
                                              .simulation = experiment.simulation,
