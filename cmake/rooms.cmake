@@ -22,6 +22,8 @@ rift_room(trial ROOMS control geometry trajectory
   LIBRARIES fmt::fmt)
 rift_room(gap ROOMS geometry statistics trajectory
   LIBRARIES fmt::fmt)
+rift_room(odometry ROOMS control gap geometry statistics trajectory
+  LIBRARIES Eigen3::Eigen PRIVATE_LIBRARIES fmt::fmt)
 rift_room(search ROOMS statistics
   PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt)
 rift_room(simulation ROOMS geometry statistics trial
@@ -35,7 +37,7 @@ rift_room(vision/tracking ROOMS geometry statistics vision/camera yaml
   PRIVATE_LIBRARIES fmt::fmt PkgConfig::APRILTAG)
 rift_room(vision/rendering ROOMS vision/camera vision/calibration vision/tracking
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
-rift_room(hardware ROOMS control geometry statistics trial vision/camera vision/tracking
+rift_room(hardware ROOMS control geometry odometry statistics trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Threads::Threads)
 rift_room(twin ROOMS control geometry hardware simulation statistics trajectory trial vision/camera vision/rendering
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
@@ -45,21 +47,21 @@ rift_room(experiment ROOMS control trajectory yaml
   OPTIONS gap hardware simulation trial twin sweep/run sweep/falsify sweep/calibrate
           vision/camera vision/calibration vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen)
-rift_room(sweep/falsify ROOMS control experiment gap search simulation statistics sweep/run trajectory trial yaml
+rift_room(sweep/falsify ROOMS control experiment gap odometry search simulation statistics sweep/run trajectory trial yaml
   LIBRARIES fmt::fmt)
-rift_room(sweep/explain ROOMS experiment search statistics sweep/falsify yaml
+rift_room(sweep/explain ROOMS experiment odometry search statistics sweep/falsify yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
 rift_room(sweep/calibrate ROOMS experiment gap geometry statistics sweep/falsify trajectory trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
 rift_room(report/figures ROOMS gap geometry statistics sweep/calibrate sweep/falsify trajectory
   LIBRARIES fmt::fmt)
-rift_room(report/text ROOMS experiment gap report/figures statistics sweep/calibrate sweep/explain
+rift_room(report/text ROOMS experiment gap geometry odometry report/figures statistics sweep/calibrate sweep/explain
     sweep/falsify yaml
   LIBRARIES fmt::fmt)
-rift_room(report/json ROOMS control experiment gap hardware report/text statistics sweep/calibrate
+rift_room(report/json ROOMS control experiment gap hardware odometry report/text statistics sweep/calibrate
     sweep/explain sweep/falsify sweep/run trial vision/calibration vision/tracking yaml
   LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
-rift_room(report/page ROOMS report/figures report/text sweep/explain sweep/falsify
+rift_room(report/page ROOMS odometry report/figures report/text sweep/explain sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
   OPTIONS simulation
@@ -71,12 +73,12 @@ rift_room(commands/sweep ROOMS commands/arguments experiment files report/figure
     report/page report/text sweep/calibrate sweep/explain sweep/falsify sweep/run terminal yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment files geometry hardware
-    report/json sweep/falsify terminal trajectory view vision/camera vision/tracking
+    odometry report/json sweep/falsify terminal trajectory view vision/camera vision/tracking
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(commands/track ROOMS commands/arguments experiment files report/json statistics terminal
     trajectory view vision/calibration vision/camera vision/tracking
   LIBRARIES fmt::fmt)
 rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
-    files gap report/figures report/json report/text sweep/falsify terminal trajectory twin view
+    files gap odometry report/figures report/json report/text sweep/falsify terminal trajectory twin view
     vision/camera yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)

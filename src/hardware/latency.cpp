@@ -108,8 +108,8 @@ namespace {
 /// Collects what the turn shows.
 class Turn {
  public:
-  Turn(RealRobot& robot, const control::OdometryOptions& odometry) : robot_(robot) {
-    yaw_per_count_rad_ = control::YawPerCount_rad(odometry);
+  Turn(RealRobot& robot, const odometry::OdometryOptions& odometry) : robot_(robot) {
+    yaw_per_count_rad_ = odometry::YawPerCount_rad(odometry);
   }
 
   /// False when the drive was stopped.
@@ -210,7 +210,7 @@ void RequireSeen(const std::optional<Lag>& lag, double turned_rad, double seen_r
 }  // namespace
 
 std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
-                                            const control::OdometryOptions& odometry,
+                                            const odometry::OdometryOptions& odometry,
                                             const TurnOptions& options, double one_way_s) {
   Turn turn(robot, odometry);
   if (!turn.Run({}, kTurn_s)) return std::nullopt;

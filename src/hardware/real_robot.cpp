@@ -199,7 +199,7 @@ void RealRobot::Core::HandleAnswer(const RobotLink::Heard& heard, double now_s) 
   const double sent_s = heard.sent ? heard.sent->at_s : heard.at_s;
   const double read_s = 0.5 * (sent_s + heard.at_s);
   record_.encoders.push_back({read_s - start_s_, *counts_, battery_v});
-  const double m_per_count = control::MetresPerCount(hardware_.odometry);
+  const double m_per_count = odometry::MetresPerCount(hardware_.odometry);
   motion_.SeeWheels({read_s, m_per_count * static_cast<double>(counts_->left),
                      m_per_count * static_cast<double>(counts_->right)},
                     true);
@@ -350,27 +350,6 @@ void RealRobot::Advance(double dt_s) {
 void RealRobot::ConfirmStop(double timeout_s) {
   const double end_s = core_->Now_s() + timeout_s;
   while (core_->Now_s() < end_s && !core_->StopIsAnswered()) core_->Wait(kTick_s);
-}
-
-std::optional<std::pair<double, double>> CountsAt(const std::vector<EncoderReading>& readings,
-                                                  double t_s) {
-  const auto after =
-      std::lower_bound(readings.begin(), readings.end(), t_s,
-                       [](const EncoderReading& reading, double t) { return reading.t_s < t; });
-  if (after == readings.end() || (after == readings.begin() && after->t_s > t_s)) {
-    return std::nullopt;
-  }
-  if (after == readings.begin()) {
-    return std::pair(static_cast<double>(after->counts.left),
-                     static_cast<double>(after->counts.right));
-  }
-  const EncoderReading& before = *(after - 1);
-  const double share = (t_s - before.t_s) / (after->t_s - before.t_s);
-  const auto between = [share](std::int64_t low, std::int64_t high) {
-    return static_cast<double>(low) + share * static_cast<double>(high - low);
-  };
-  return std::pair(between(before.counts.left, after->counts.left),
-                   between(before.counts.right, after->counts.right));
 }
 
 }  // namespace rift::hardware

@@ -37,6 +37,11 @@ void BodyOptions::Check() const {
   }
 }
 
+double BodyOptions::WheelRadius_m(int side) const {
+  const double left_m = 2.0 / (1.0 + right_over_left) * wheel_radius_m;
+  return side == 0 ? left_m : right_over_left * left_m;
+}
+
 double BodyOptions::WeightOnWheel_n() const {
   const double on_caster = std::clamp(com_ahead_m / caster_ahead_m, 0.0, 1.0);
   return 0.5 * gravity_mps2 * (chassis_mass_kg * (1.0 - on_caster) + 2.0 * wheel_mass_kg);

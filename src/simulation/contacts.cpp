@@ -182,11 +182,11 @@ std::optional<GroundContact> WheelContact(const BodyOptions& body, const Terrain
                                           double wheel_load_n) {
   const Vector3d axle = state.world_from_robot.col(1);
   const auto contact =
-      WheelContactPoint(terrain, centre, axle, body.wheel_radius_m, body.wheel_width_m);
+      WheelContactPoint(terrain, centre, axle, body.WheelRadius_m(side), body.wheel_width_m);
   if (!contact) return std::nullopt;
   const Grip grip = terrain.GripAt(contact->point.x(), contact->point.y());
   const Vector3d sideways = (axle - axle.dot(contact->normal) * contact->normal).normalized();
-  const double rim_mps = std::abs(state.wheel_rate_rad_s[side]) * body.wheel_radius_m;
+  const double rim_mps = std::abs(state.wheel_rate_rad_s[side]) * body.WheelRadius_m(side);
   const double creep =
       grip.slip > 0.0 && grip.mu > 0.0 ? grip.slip * rim_mps / (grip.mu * wheel_load_n) : 0.0;
   return GroundContact{*contact, grip.mu, sideways, kLeastSlip_mps_per_n + creep};

@@ -1,4 +1,4 @@
-#include "csv.hpp"
+#include "rift/trajectory/csv.hpp"
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "csv.hpp"
 #include "plausibility.hpp"
 #include "rift/geometry/pose2.hpp"
+#include "rift/trajectory/csv.hpp"
 
 namespace rift::trajectory {
 namespace {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "csv.hpp"
 #include "dialect.hpp"
 #include "plausibility.hpp"
+#include "rift/trajectory/csv.hpp"
 #include "rift/trajectory/log.hpp"
 
 namespace rift::trajectory {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "rift/control/odometry.hpp"
 #include "rift/hardware/options.hpp"
 #include "rift/hardware/real_robot.hpp"
+#include "rift/odometry/odometry.hpp"
 
 namespace rift::hardware {
 
@@ -57,7 +57,7 @@ std::vector<Angle> WheelTurns(std::span<const EncoderReading> readings, double r
 /// None when somebody stopped it. Throws std::runtime_error, with what was measured, when the
 /// picture does not show the turn.
 std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
-                                            const control::OdometryOptions& odometry,
+                                            const odometry::OdometryOptions& odometry,
                                             const TurnOptions& options, double one_way_s);
 
 }  // namespace rift::hardware

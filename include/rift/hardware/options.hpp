@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "rift/control/odometry.hpp"
+#include "rift/odometry/odometry.hpp"
 
 namespace rift::hardware {
 
@@ -195,7 +195,7 @@ struct HardwareOptions {
   GuardOptions guard;
   EvidenceOptions evidence;
   TurnOptions turn;
-  control::OdometryOptions odometry;
+  odometry::OdometryOptions odometry;
   StoppingOptions stopping;
   PingOptions ping;
   StartOptions start;

@@ -11,6 +11,7 @@
 #include "rift/hardware/pose_source.hpp"
 #include "rift/hardware/robot_link.hpp"
 #include "rift/hardware/serial_port.hpp"
+#include "rift/odometry/odometry.hpp"
 #include "rift/trial/robot.hpp"
 #include "rift/trial/trial.hpp"
 
@@ -28,12 +29,8 @@ struct PoseStages {
   double answered_s = -1.0;   ///< the robot said it obeys
 };
 
-/// The wheels as the robot told, at the middle of the round trip of the command it answered.
-struct EncoderReading {
-  double t_s = 0.0;
-  control::EncoderCounts counts;
-  double battery_v = 0.0;
-};
+/// A reading's time is the middle of the round trip of the command it answered.
+using odometry::EncoderReading;
 
 /// What is recorded of a drive beside its trial.
 struct DriveRecord {
@@ -60,10 +57,6 @@ class DriveObserver : public trial::Observer {
  public:
   virtual void Recorded(const DriveNews& news) = 0;
 };
-
-/// Counts at `t_s` between two readings; none outside of them.
-std::optional<std::pair<double, double>> CountsAt(const std::vector<EncoderReading>& readings,
-                                                  double t_s);
 
 /// Why a drive is to be stopped from outside, when that is so: a key, a signal.
 using Stopper = std::function<std::optional<std::pair<StopReason, std::string>>()>;

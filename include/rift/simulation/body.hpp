@@ -13,6 +13,7 @@ struct BodyOptions {
   double com_above_m = 0.0;
   double wheel_mass_kg = 0.0032;
   double wheel_radius_m = 0.016;
+  double right_over_left = 1.0;
   double wheel_width_m = 0.0068;
   double track_m = 0.083;
   double caster_ahead_m = -0.0404;
@@ -41,6 +42,8 @@ struct BodyOptions {
     field("wheel_mass_kg", self.wheel_mass_kg, 1e-4, 1.0, "one wheel in kg (Pololu 32x7 mm wheel)");
     field("wheel_radius_m", self.wheel_radius_m, 0.002, 0.2,
           "in m (authors' world; Pololu: 32 mm)");
+    field("right_over_left", self.right_over_left, 0.9, 1.1,
+          "radius of the right wheel over that of the left one, wheel_radius_m being their mean");
     field("wheel_width_m", self.wheel_width_m, 0.0005, 0.1, "in m (Pololu wheel)");
     field("track_m", self.track_m, 0.01, 1.0,
           "between the wheel centres in m (authors' world: 0.083; others: 0.0845 to 0.085)");
@@ -63,6 +66,8 @@ struct BodyOptions {
   void Check() const;
 
   double WeightOnWheel_n() const;
+  /// `side`: 0 left, 1 right.
+  double WheelRadius_m(int side) const;
 };
 
 /// How the robot stands on a plane at rest, its wheels locked.

@@ -1,0 +1,158 @@
+#include "rift/odometry/calibration.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "rift/control/program.hpp"
+
+namespace rift::odometry {
+namespace {
+
+struct Planted {
+  double wheel_radius_m = 0.0162;
+  double right_over_left = 1.008;
+  double track_m = 0.0851;
+};
+
+struct CameraNoise {
+  double place_m = 0.001;
+  double yaw_rad = 0.015;
+};
+
+OdometryOptions With(const Planted& planted) {
+  OdometryOptions options;
+  options.drive.wheel_radius_m = planted.wheel_radius_m;
+  options.right_over_left = planted.right_over_left;
+  options.drive.track_m = planted.track_m;
+  return options;
+}
+
+/// A square driven by a robot with the planted wheels, whose program knows nothing of them: what
+/// the wheels roll is that of the ideal robot, with a little unsteadiness of each.
+RunLog DriveSquare(const Planted& planted, double turn_deg, const CameraNoise& noise,
+                   std::mt19937_64& generator) {
+  control::ProgramOptions square{.power = 0.25, .laps = 4};
+  square.segments = {{.straight_m = 0.8}, {.turn_deg = turn_deg}};
+  const control::Program program(square, {}, {});
+  const OdometryOptions truth = With(planted);
+  std::normal_distribution<double> normal;
+  const double left_pull = 1.0 + 0.01 * normal(generator);
+  geometry::Pose2 at{0.2, -0.1, 0.4};
+  double left = 0.0, right = 0.0;
+  RunLog run{.name = "square"};
+  constexpr double kStep_s = 0.02, kRest_s = 1.0;
+  for (int i = 0; i * kStep_s < program.Duration_s() + 2.0 * kRest_s; ++i) {
+    const double t_s = i * kStep_s;
+    run.encoders.push_back({t_s,
+                            {static_cast<std::int64_t>(std::floor(left)),
+                             static_cast<std::int64_t>(std::floor(right))}});
+    if (i % 3 == 0) {
+      run.camera.poses.push_back({.t_s = t_s,
+                                  .x_m = at.x_m + noise.place_m * normal(generator),
+                                  .y_m = at.y_m + noise.place_m * normal(generator),
+                                  .yaw_rad = at.yaw_rad + noise.yaw_rad * normal(generator)});
+    }
+    const control::WheelPower power = program.MeanPower(t_s - kRest_s, t_s - kRest_s + kStep_s);
+    const double counts_per_power = 75.4 / (2.0 * geometry::kPi) * 358.3 * kStep_s;
+    const double left_by = left_pull * power.left * counts_per_power;
+    const double right_by = power.right * counts_per_power;
+    left += left_by;
+    right += right_by;
+    const double left_m = left_by * LeftMetresPerCount(truth);
+    const double right_m = right_by * RightMetresPerCount(truth);
+    at = at * control::ArcMotion(0.5 * (left_m + right_m), (right_m - left_m) / planted.track_m);
+  }
+  return run;
+}
+
+std::vector<RunLog> Squares(const Planted& planted, int each, std::uint64_t seed,
+                            const CameraNoise& noise = {}) {
+  std::mt19937_64 generator(seed);
+  std::vector<RunLog> runs;
+  for (int i = 0; i < each; ++i) {
+    runs.push_back(DriveSquare(planted, 90.0, noise, generator));
+    runs.push_back(DriveSquare(planted, -90.0, noise, generator));
+  }
+  return runs;
+}
+
+bool Holds(const Estimate& estimate, double planted) {
+  return estimate.interval.low <= planted && planted <= estimate.interval.high;
+}
+
+TEST_CASE("Planted wheels and track lie inside the 95 % intervals of calibrations as promised") {
+  constexpr int kRepeats = 60;
+  std::mt19937_64 generator(11);
+  std::uniform_real_distribution<double> share(-1.0, 1.0);
+  int radius = 0, ratio = 0, track = 0;
+  for (int i = 0; i < kRepeats; ++i) {
+    const Planted planted{0.016 * (1.0 + 0.03 * share(generator)), 1.0 + 0.02 * share(generator),
+                          0.083 * (1.0 + 0.04 * share(generator))};
+    const OdometryCalibration found =
+        CalibrateOdometry(Squares(planted, 2, 100 + static_cast<std::uint64_t>(i)), {});
+    radius += Holds(found.wheel_radius_m, planted.wheel_radius_m);
+    ratio += Holds(found.right_over_left, planted.right_over_left);
+    track += Holds(found.track_m, planted.track_m);
+    CHECK(found.track_m.is_told);
+    CHECK(found.noise_m == Approx(0.001).epsilon(0.2));
+  }
+  // 18 of 20 and more; 60 of 60 in all three would be intervals that promise too little.
+  CHECK(radius >= 53);
+  CHECK(ratio >= 53);
+  CHECK(track >= 53);
+  CHECK(radius + ratio + track < 3 * kRepeats);
+}
+
+TEST_CASE("A calibration takes most of the drift away") {
+  const Planted planted;
+  const std::vector<RunLog> runs = Squares(planted, 2, 5);
+  const OdometryCalibration found = CalibrateOdometry(runs, {});
+  const std::optional<Umbmark> before = UmbmarkOf(runs, {});
+  const std::optional<Umbmark> after = UmbmarkOf(runs, found.Applied({}));
+  REQUIRE((before && after));
+  CHECK(before->ccw_runs == 2);
+  CHECK(before->cw_runs == 2);
+  CHECK(before->largest_m > 0.05);
+  CHECK(after->largest_m < 0.2 * before->largest_m);
+}
+
+TEST_CASE("Poses of another tag hardly move a calibration") {
+  const Planted planted;
+  std::vector<RunLog> runs = Squares(planted, 2, 6);
+  for (RunLog& run : runs) {
+    for (size_t i = 7; i < run.camera.poses.size(); i += 40) run.camera.poses[i].x_m += 0.3;
+  }
+  const OdometryCalibration found = CalibrateOdometry(runs, {});
+  CHECK(found.wheel_radius_m.value == Approx(planted.wheel_radius_m).epsilon(0.005));
+  CHECK(found.track_m.value == Approx(planted.track_m).epsilon(0.01));
+}
+
+TEST_CASE("Runs without turns tell no track and say so") {
+  control::ProgramOptions line{.power = 0.25};
+  std::vector<RunLog> runs;
+  std::mt19937_64 generator(4);
+  for (int i = 0; i < 4; ++i) {
+    RunLog run = DriveSquare({.right_over_left = 1.0}, 90.0, {}, generator);
+    // The first side alone.
+    const double end_s = 1.0 + 0.8 / (0.25 * 75.4 * 0.016) - 0.1;
+    std::erase_if(run.camera.poses, [&](const auto& pose) { return pose.t_s > end_s; });
+    std::erase_if(run.encoders, [&](const auto& reading) { return reading.t_s > end_s; });
+    runs.push_back(std::move(run));
+  }
+  const OdometryCalibration found = CalibrateOdometry(runs, {}, {.window_s = 0.8});
+  CHECK_FALSE(found.track_m.is_told);
+  CHECK(found.wheel_radius_m.is_told);
+  CHECK(found.Applied({}).drive.track_m == OdometryOptions{}.drive.track_m);
+}
+
+TEST_CASE("Too few windows are refused with what to do") {
+  std::mt19937_64 generator(4);
+  const std::vector<RunLog> runs{DriveSquare({}, 90.0, {}, generator)};
+  CHECK_THROWS_WITH(CalibrateOdometry(runs, {}, {.window_s = 1000.0}),
+                    Catch::Contains("smaller window_s"));
+}
+
+}  // namespace
+}  // namespace rift::odometry

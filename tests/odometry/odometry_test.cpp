@@ -1,0 +1,102 @@
+#include "rift/odometry/odometry.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <stdexcept>
+
+#include "rift/geometry/pose2.hpp"
+
+namespace rift::odometry {
+namespace {
+
+TEST_CASE("One turn of both wheels is one circumference ahead") {
+  OdometryOptions options;
+  options.counts_per_wheel_turn = 360.0;
+  Odometry odometry(options, {1.0, 2.0, 0.0});
+  odometry.Update({1000, -500});
+  const geometry::Pose2 end = odometry.Update({1360, -140});
+  CHECK(end.x_m == Approx(1.0 + 2.0 * geometry::kPi * 0.016));
+  CHECK(end.y_m == Approx(2.0));
+}
+
+TEST_CASE("The first reading moves nothing whatever the counters say") {
+  Odometry odometry({});
+  CHECK(odometry.Update({123456, -98765}) == geometry::Pose2{});
+}
+
+TEST_CASE("Odometry follows a known arc within the resolution of its counts") {
+  const OdometryOptions options;
+  const control::DiffDrive drive(options.drive);
+  Odometry odometry(options);
+  odometry.Update({0, 0});
+  const control::WheelPower power{0.12, 0.2};
+  geometry::Pose2 truth, measured;
+  for (int step = 1; step <= 300; ++step) {
+    truth = drive.Drive(truth, power, 0.01);
+    const double turns_at_full_power = 75.4 * 0.01 * step / (2.0 * geometry::kPi);
+    const auto counts = [&](double share) {
+      return static_cast<std::int64_t>(
+          std::floor(share * turns_at_full_power * options.counts_per_wheel_turn));
+    };
+    measured = odometry.Update({counts(power.left), counts(power.right)});
+  }
+  const double metres_per_count = 2.0 * geometry::kPi * 0.016 / options.counts_per_wheel_turn;
+  CHECK(std::abs(geometry::WrapToPi(measured.yaw_rad - truth.yaw_rad)) <
+        2.0 * metres_per_count / 0.083);
+  CHECK((measured.Position() - truth.Position()).norm() < 5.0 * metres_per_count);
+}
+
+TEST_CASE("An encoder without counts is refused") {
+  OdometryOptions options;
+  options.counts_per_wheel_turn = 0.0;
+  CHECK_THROWS_AS(Odometry(options), std::invalid_argument);
+}
+
+TEST_CASE("A larger right wheel rolls further on the same counts and turns the robot left") {
+  OdometryOptions options;
+  options.right_over_left = 1.02;
+  CHECK(RightMetresPerCount(options) == Approx(1.02 * LeftMetresPerCount(options)));
+  CHECK(0.5 * (RightMetresPerCount(options) + LeftMetresPerCount(options)) ==
+        Approx(MetresPerCount(options)));
+  Odometry odometry(options);
+  odometry.Update({0, 0});
+  const double way_m = 1000.0 * MetresPerCount(options);
+  CHECK(odometry.Update({1000, 1000}).yaw_rad ==
+        Approx(way_m * 2.0 * 0.02 / 2.02 / options.drive.track_m));
+}
+
+TEST_CASE("Encoder readings come back from their file as they were") {
+  const std::vector<EncoderReading> readings{
+      {0.02, {0, 0}}, {0.04, {-3, 12}, 5.25}, {1.0 / 3.0, {100000, -7}}};
+  const std::vector<EncoderReading> read = ReadEncoders(EncodersCsv(readings), "encoders.csv");
+  REQUIRE(read.size() == readings.size());
+  for (size_t i = 0; i < read.size(); ++i) {
+    CHECK(read[i].t_s == readings[i].t_s);
+    CHECK(read[i].counts == readings[i].counts);
+    CHECK(std::isnan(read[i].battery_v) == std::isnan(readings[i].battery_v));
+  }
+  CHECK(read[1].battery_v == 5.25);
+}
+
+TEST_CASE("A file that is no encoder log is refused with its place") {
+  const auto refused = [](const char* text, const char* words) {
+    CHECK_THROWS_WITH(ReadEncoders(text, "e.csv"), Catch::Contains(words));
+  };
+  refused("t_s,left\n0,1\n1,2\n", "e.csv: has no column 'right'");
+  refused("t_s,left,right\n0,1,1\n", "has 1 reading(s)");
+  refused("t_s,left,right\n0,1,1\n0,2,2\n", "e.csv:3: t_s is 0");
+  refused("t_s,left,right\n0,1,1\n1,,2\n", "e.csv:3: t_s, left and right must be there");
+  refused("t_s,left,right\n0,1,1\n1,1e30,2\n", "e.csv:3: a count beyond");
+}
+
+TEST_CASE("Counts between two readings lie between them and there are none outside") {
+  const std::vector<EncoderReading> readings{{1.0, {10, -10}}, {3.0, {20, -30}}};
+  CHECK(*CountsAt(readings, 1.0) == std::pair(10.0, -10.0));
+  CHECK(*CountsAt(readings, 1.5) == std::pair(12.5, -15.0));
+  CHECK(*CountsAt(readings, 3.0) == std::pair(20.0, -30.0));
+  CHECK_FALSE(CountsAt(readings, 0.99));
+  CHECK_FALSE(CountsAt(readings, 3.01));
+}
+
+}  // namespace
+}  // namespace rift::odometry

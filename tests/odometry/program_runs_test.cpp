@@ -1,0 +1,165 @@
+#include "rift/odometry/program_runs.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <stdexcept>
+
+namespace rift::odometry {
+namespace {
+
+using trajectory::Trajectory;
+
+/// What a run is made of: the wheels roll `left` and `right` metres a second, and the ground gives
+/// them these shares of it.
+struct Motion {
+  double left_mps = 0.3;
+  double right_mps = 0.3;
+  double left_grip = 1.0;
+  double right_grip = 1.0;
+  double seconds = 5.0;
+};
+
+RunLog Drive(const Motion& motion) {
+  const OdometryOptions wheels;
+  RunLog run{.name = "run"};
+  geometry::Pose2 at{0.1, 0.2, 0.3};
+  double left_m = 0.0, right_m = 0.0;
+  constexpr double kStep_s = 0.01, kStands_s = 0.5;
+  for (int i = 0; i * kStep_s < motion.seconds + 2.0 * kStands_s; ++i) {
+    const double t_s = i * kStep_s;
+    const auto counts = [&](double way_m) {
+      return static_cast<std::int64_t>(std::floor(way_m / MetresPerCount(wheels)));
+    };
+    run.encoders.push_back({t_s, {counts(left_m), counts(right_m)}});
+    if (i % 5 == 0) {
+      run.camera.poses.push_back({.t_s = t_s, .x_m = at.x_m, .y_m = at.y_m, .yaw_rad = at.yaw_rad});
+    }
+    const bool drives = t_s >= kStands_s && t_s < kStands_s + motion.seconds;
+    if (!drives) continue;
+    const double left_by = motion.left_mps * kStep_s, right_by = motion.right_mps * kStep_s;
+    left_m += left_by;
+    right_m += right_by;
+    const double left_on = motion.left_grip * left_by, right_on = motion.right_grip * right_by;
+    at = at * control::ArcMotion(0.5 * (left_on + right_on),
+                                 (right_on - left_on) / wheels.drive.track_m);
+  }
+  return run;
+}
+
+Trajectory Line(double length_m, double aside_m = 0.0) {
+  Trajectory path;
+  for (int i = 0; i <= 50; ++i) {
+    path.poses.push_back({.t_s = 0.1 * i,
+                          .x_m = 0.1 + std::cos(0.3) * length_m * i / 50 - std::sin(0.3) * aside_m,
+                          .y_m = 0.2 + std::sin(0.3) * length_m * i / 50 + std::cos(0.3) * aside_m,
+                          .yaw_rad = 0.3});
+  }
+  return path;
+}
+
+TEST_CASE("A run that rolls has no slip and no drift beyond its counts") {
+  const RunMeasures run = MeasureRun(Drive({.right_mps = 0.33}), std::nullopt, {}, {});
+  CHECK(run.slip_left == Approx(0.0).margin(0.002));
+  CHECK(run.slip_right == Approx(0.0).margin(0.002));
+  CHECK(run.odometry_gap_m < 0.002);
+  CHECK(std::abs(run.yaw_drift_rad) < 0.01);
+  CHECK(std::isnan(run.deviation_m));
+}
+
+TEST_CASE("Slip is told for the wheel that slips and along the way") {
+  RunLog run = Drive({.left_grip = 0.9, .right_grip = 0.8});
+  const RunMeasures both = MeasureRun(run, std::nullopt, {}, {});
+  CHECK(both.slip_left == Approx(0.1).margin(0.003));
+  CHECK(both.slip_right == Approx(0.2).margin(0.003));
+  REQUIRE(both.slip.size() == 20);
+  for (const Slip& part : both.slip) {
+    CHECK(part.left == Approx(0.1).margin(0.02));
+    CHECK(part.right == Approx(0.2).margin(0.02));
+  }
+  CHECK(both.slip.front().u == Approx(0.025));
+
+  const RunMeasures backwards = MeasureRun(
+      Drive({.left_mps = -0.3, .right_mps = -0.3, .left_grip = 0.9}), std::nullopt, {}, {});
+  CHECK(backwards.slip_left == Approx(0.1).margin(0.003));
+  CHECK(backwards.slip_right == Approx(0.0).margin(0.003));
+}
+
+TEST_CASE("A wheel that is dragged has a slip below zero and one that stands has none") {
+  const RunMeasures dragged = MeasureRun(Drive({.left_grip = 1.1}), std::nullopt, {}, {});
+  CHECK(dragged.slip_left == Approx(-0.1).margin(0.003));
+  const RunMeasures pivot = MeasureRun(Drive({.left_mps = 0.0}), std::nullopt, {}, {});
+  CHECK(std::isnan(pivot.slip_left));
+  CHECK(pivot.slip_right == Approx(0.0).margin(0.003));
+}
+
+TEST_CASE("The distance from a program is taken at equal arc length, standing left out") {
+  const RunMeasures run = MeasureRun(Drive({}), Line(1.5, 0.04), {}, {});
+  CHECK(run.did_move);
+  CHECK(run.length_m == Approx(1.5).epsilon(0.01));
+  CHECK(run.deviation_m == Approx(0.04).epsilon(0.02));
+  CHECK(run.end_error_m == Approx(0.04).epsilon(0.02));
+  // At equal u a run of half the length is behind by half of what there is so far.
+  const RunMeasures half = MeasureRun(Drive({}), Line(3.0), {}, {});
+  CHECK(half.deviation_m == Approx(0.75).epsilon(0.02));
+  CHECK(half.largest_deviation_m == Approx(1.5).epsilon(0.02));
+}
+
+TEST_CASE("A robot that stays where it is did not move and has no numbers") {
+  const RunMeasures stuck =
+      MeasureRun(Drive({.left_grip = 0.01, .right_grip = 0.01}), Line(1.5), {}, {});
+  CHECK_FALSE(stuck.did_move);
+  CHECK(std::isnan(stuck.deviation_m));
+  CHECK(std::isnan(stuck.slip_left));
+  const CellMeasures cell = MeasureCell(std::vector{stuck, stuck}, std::vector<Trajectory>(2));
+  CHECK(cell.runs == 2);
+  CHECK(cell.moved == 0);
+  CHECK_FALSE(cell.DidMove());
+  CHECK(std::isnan(cell.deviation_m));
+}
+
+TEST_CASE("A program that only turns is judged by its turn") {
+  Trajectory turn;
+  for (int i = 0; i <= 90; ++i) {
+    turn.poses.push_back({.t_s = 0.1 * i, .yaw_rad = 0.1 * i});
+  }
+  RunLog run = Drive({.left_mps = -0.05, .right_mps = 0.05});
+  for (trajectory::StampedPose& pose : run.camera.poses) pose.x_m += 1e-4 * std::sin(pose.t_s);
+  CHECK_NOTHROW(MeasureRun(run, std::nullopt, {}, {}));
+  RunLog still = run;
+  for (trajectory::StampedPose& pose : still.camera.poses) pose.yaw_rad = 0.3;
+  CHECK_FALSE(MeasureRun(still, turn, {}, {}).did_move);
+}
+
+TEST_CASE("The spread is the root of both variances at equal u") {
+  // Two lines 0.1 apart: at every u the standard deviation across is 0.1 / sqrt 2.
+  CHECK(Spread_m(std::vector{Line(1.0), Line(1.0, 0.1)}) == Approx(0.1 / std::sqrt(2.0)));
+  // Lengths 1 and 1.2: at u they are 0.2 u apart, 0.1 on average.
+  CHECK(Spread_m(std::vector{Line(1.0), Line(1.2)}) == Approx(0.1 / std::sqrt(2.0)).epsilon(0.001));
+  CHECK(Spread_m(std::vector{Line(1.0), Line(1.0)}) == Approx(0.0).margin(1e-12));
+  CHECK(std::isnan(Spread_m(std::vector{Line(1.0)})));
+}
+
+TEST_CASE("A cell is the mean of its runs that moved") {
+  const RunLog a = Drive({}), b = Drive({.right_mps = 0.31});
+  const RunLog stuck = Drive({.left_grip = 0.0, .right_grip = 0.0});
+  const std::optional<Trajectory> program = Line(1.5, 0.02);
+  const std::vector<RunMeasures> runs{MeasureRun(a, program, {}, {}),
+                                      MeasureRun(stuck, program, {}, {}),
+                                      MeasureRun(b, program, {}, {})};
+  const CellMeasures cell = MeasureCell(runs, std::vector{a.camera, stuck.camera, b.camera});
+  CHECK(cell.runs == 3);
+  CHECK(cell.moved == 2);
+  CHECK(cell.DidMove());
+  CHECK(cell.deviation_m == Approx(0.5 * (runs[0].deviation_m + runs[2].deviation_m)));
+  CHECK(cell.spread_m == Approx(Spread_m(std::vector{a.camera, b.camera})));
+  CHECK(cell.deviation_interval_m.low < cell.deviation_m);
+}
+
+TEST_CASE("Encoders of another time than the camera are refused") {
+  RunLog run = Drive({});
+  for (EncoderReading& reading : run.encoders) reading.t_s += 100.0;
+  CHECK_THROWS_WITH(MeasureRun(run, std::nullopt, {}, {}), Catch::Contains("on one clock"));
+}
+
+}  // namespace
+}  // namespace rift::odometry
