@@ -14,9 +14,10 @@ double LengthWithin_m(double longest_m, const SimulatedTrial& twin) {
 }
 
 TEST_CASE("A simulated log that makes a detour is driven again, and the last try stands") {
-  SimulatedTrial twin{.waypoints = {{.name = "a", .x_m = 0.0, .y_m = 0.0},
-                                    {.name = "b", .x_m = 0.4, .y_m = 0.0},
-                                    {.name = "c", .x_m = 0.4, .y_m = 0.4}}};
+  SimulatedTrial twin{.task =
+                          std::vector<control::Waypoint>{{.name = "a", .x_m = 0.0, .y_m = 0.0},
+                                                         {.name = "b", .x_m = 0.4, .y_m = 0.0},
+                                                         {.name = "c", .x_m = 0.4, .y_m = 0.4}}};
   const double first_m = LengthWithin_m(std::numeric_limits<double>::infinity(), twin);
   CHECK(LengthByStrides_m(Simulate(twin).result.trajectory) == first_m);
   const double last_m = LengthWithin_m(0.0, twin);

@@ -25,7 +25,8 @@ gap::GapOptions SpreadGap() {
 Traits TraitsOf(const Trajectory& path, const SimulatedTrial& twin) {
   try {
     const gap::PathTraits shape = gap::TraitsOf(path, {});
-    const trial::LoopDelay delay = trial::EstimateLoopDelay(path, twin.waypoints, twin.control);
+    const trial::LoopDelay delay =
+        trial::EstimateLoopDelay(path, twin.task.waypoints, twin.control);
     const Eigen::Vector4d traits(std::log(shape.weave_m), std::log(shape.speed_mps), delay.lag_s,
                                  delay.gain_rad_s);
     if (delay.lag_s >= 0.0 && traits.allFinite()) return traits;

@@ -150,7 +150,7 @@ std::vector<RepeatedTrial> Identifier::Drive(const std::vector<double>& values) 
     SimulatedTrial twin = TwinOf(entry, values, kJudgeSeeds);
     RepeatedTrial trial{.setting = entry.log.setting,
                         .real = entry.log.log,
-                        .waypoints = twin.waypoints,
+                        .waypoints = twin.task.waypoints,
                         .control = twin.control};
     for (int run = 0; run < experiment_.calibrate.judge_runs; ++run, ++twin.seed) {
       SimulatedRun driven = Simulate(twin);

@@ -116,7 +116,7 @@ Trajectory Replay(const SimulatedTrial& trial, const Trajectory& log) {
   RobotOfLog robot(trial, log);
   trial::TrialOptions options = trial.trial;
   options.timeout_s = std::max(options.timeout_s, log.Duration_s() + 1.0);
-  trial::RunTrial(robot, trial.waypoints, trial.control, options);
+  trial::RunTrial(robot, trial.task, trial.control, options);
   return robot.Path();
 }
 

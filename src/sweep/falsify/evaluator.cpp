@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -22,12 +23,14 @@ namespace {
 using experiment::CandidateKind;
 using experiment::ReferenceKind;
 
-/// The polyline through the waypoints, a second from each to the next.
-trajectory::Trajectory WaypointPath(const std::vector<control::Waypoint>& waypoints) {
+/// What a robot would do that keeps to its task exactly.
+trajectory::Trajectory IdealPath(const control::Task& task) {
   trajectory::Trajectory path;
-  for (size_t i = 0; i < waypoints.size(); ++i) {
-    path.poses.push_back(
-        {.t_s = static_cast<double>(i), .x_m = waypoints[i].x_m, .y_m = waypoints[i].y_m});
+  for (const control::TimedPose& at : task.IdealPath()) {
+    path.poses.push_back({.t_s = at.captured_s,
+                          .x_m = at.world_from_robot.x_m,
+                          .y_m = at.world_from_robot.y_m,
+                          .yaw_rad = at.world_from_robot.yaw_rad});
   }
   return path;
 }
@@ -167,6 +170,12 @@ Evaluator::Evaluator(const experiment::Experiment& experiment, std::string exper
   if (!candidate_is_logs || !reference_is_logs) {
     TrialOf(experiment, {}, experiment.seed);  // complains now, not in trial 1
   }
+  if (experiment.objective == experiment::Objective::kOdometry && reference_is_logs) {
+    throw std::invalid_argument(fmt::format(
+        "{}: objective is odometry, which holds each run of the candidate against its own camera, "
+        "and reference.kind is logs: name logs as candidate.path",
+        experiment_file_));
+  }
   if (experiment.start == experiment::Start::kReference && !reference_is_logs) {
     throw std::invalid_argument(fmt::format(
         "{}: start is reference, and reference.kind is {}: only logs tell where the robot stood",
@@ -204,24 +213,32 @@ SimulatedTrial Evaluator::TrialFor(const TrialRequest& request, const Recording&
   const geometry::Pose2 start =
       starts_as_reference ? StartFromLog(reference.trajectory, experiment_.reference.tag_offset_m,
                                          at.simulation.mocap)
-                          : control::StartPose(at.waypoints);
+                          : experiment::TaskOf(at).Start();
   return TrialOf(at, start, *request.seed);
 }
 
 Recording Evaluator::Candidate(const TrialRequest& request, const Recording& reference) {
+  return RunOf(request, reference).camera;
+}
+
+CandidateRun Evaluator::RunOf(const TrialRequest& request, const Recording& reference) {
   if (experiment_.candidate.kind == CandidateKind::kLogs) {
     const std::string path = Filled(experiment_.candidate.path, request.theta, request.trial);
-    return WithLimits(candidate_logs_.At(path), experiment_, request.theta, 0.0);
+    return {WithLimits(candidate_logs_.At(path), experiment_, request.theta, 0.0),
+            EncodersBeside(path)};
   }
-  if (reference.status != TrialStatus::kOk) return reference;  // nothing to compare with
+  if (reference.status != TrialStatus::kOk) return {reference, {}};  // nothing to compare with
   const bool lacks_start =
       experiment_.start == experiment::Start::kReference && !reference.trajectory.HasYaw();
   if (lacks_start) {
-    return {.status = TrialStatus::kUnreadable,
-            .reason = "start: reference needs its yaw: set reference.format",
-            .source = reference.source};
+    return {{.status = TrialStatus::kUnreadable,
+             .reason = "start: reference needs its yaw: set reference.format",
+             .source = reference.source},
+            {}};
   }
-  Recording simulated = RecordingOf(Simulate(TrialFor(request, reference)), *request.seed);
+  SimulatedRun run = Simulate(TrialFor(request, reference));
+  std::vector<odometry::EncoderReading> encoders = std::move(run.encoders);
+  Recording simulated = RecordingOf(std::move(run), *request.seed);
   const bool is_moved =
       experiment_.reference.kind == ReferenceKind::kLogs && simulated.status == TrialStatus::kOk;
   // The same point of the body on both sides.
@@ -229,7 +246,14 @@ Recording Evaluator::Candidate(const TrialRequest& request, const Recording& ref
     simulated.trajectory =
         trajectory::OffsetAlongHeading(simulated.trajectory, experiment_.reference.tag_offset_m);
   }
-  return simulated;
+  return {std::move(simulated), std::move(encoders)};
+}
+
+std::vector<odometry::EncoderReading> Evaluator::EncodersBeside(const std::string& log) const {
+  const std::string path = std::filesystem::path(log).replace_filename("encoders.csv").string();
+  const std::optional<std::string> text = inputs_.read(path);
+  if (!text) return {};
+  return odometry::ReadEncoders(*text, path);
 }
 
 /// The nominal run depends on the trial alone, and every setting is held against it.
@@ -239,7 +263,7 @@ const Recording& Evaluator::Nominal(const TrialRequest& request) {
   const auto found = nominal_runs_.find(seed);
   if (found != nominal_runs_.end()) return found->second;
   if (nominal_runs_.size() >= kMostKept) nominal_runs_.clear();
-  const geometry::Pose2 start = control::StartPose(experiment_.waypoints);
+  const geometry::Pose2 start = experiment::TaskOf(experiment_).Start();
   const SimulatedTrial trial = TrialOf(experiment_, start, seed);
   return nominal_runs_[seed] = RecordingOf(Simulate(trial), seed);
 }
@@ -254,10 +278,45 @@ Recording Evaluator::Reference(const TrialRequest& request) {
     case ReferenceKind::kPath:
       break;
   }
-  return {.source = "waypoint path", .trajectory = WaypointPath(experiment_.waypoints)};
+  return {.source = experiment_.program.segments.empty() ? "waypoint path" : "program path",
+          .trajectory = IdealPathAt(request.theta)};
+}
+
+// The parameters of logs are parts of their names.
+trajectory::Trajectory Evaluator::IdealPathAt(const experiment::Theta& theta) const {
+  const bool is_simulated = experiment_.candidate.kind == CandidateKind::kSimulation;
+  return IdealPath(experiment::TaskOf(is_simulated ? experiment::ExperimentAt(experiment_, theta)
+                                                   : experiment_));
+}
+
+/// The camera of a run is the truth that its odometry is held against.
+TrialRow Evaluator::EvaluateOdometry(const TrialRequest& request) {
+  CandidateRun run;
+  try {
+    run = RunOf(request, {});
+  } catch (const yaml::Error& broken_rule) {
+    run.camera = {
+        .status = TrialStatus::kInvalid, .reason = broken_rule.what(), .source = "experiment"};
+  }
+  Recording wheels = run.camera;
+  wheels.source += ", its encoders";
+  if (run.camera.status == TrialStatus::kOk) {
+    if (run.encoders.size() < 2 || !run.camera.trajectory.HasYaw()) {
+      wheels.status = TrialStatus::kUnreadable;
+      wheels.reason = run.encoders.size() < 2
+                          ? "objective: odometry needs encoders (encoders.csv beside the log)"
+                          : "objective: odometry needs the yaw of the log";
+    } else {
+      const geometry::Pose2 start = trajectory::StandingPose(run.camera.trajectory);
+      wheels.trajectory =
+          odometry::OdometryPath(run.encoders, experiment_.hardware.odometry, start);
+    }
+  }
+  return CompareTrial(experiment_, request, wheels, run.camera);
 }
 
 TrialRow Evaluator::Evaluate(const TrialRequest& request) {
+  if (experiment_.objective == experiment::Objective::kOdometry) return EvaluateOdometry(request);
   const Recording reference = Reference(request);
   try {
     return CompareTrial(experiment_, request, Candidate(request, reference), reference);

@@ -10,15 +10,20 @@ namespace rift::sweep {
 
 namespace {
 
-/// The simulated robot, with its true path written down as it goes.
+/// The simulated robot, with its true path and its encoders written down as it goes.
 class RobotWithTruth : public trial::Robot {
  public:
-  RobotWithTruth(simulation::SimulatedRobot& robot, trajectory::Trajectory& truth)
-      : robot_(robot), truth_(truth) {
+  RobotWithTruth(simulation::SimulatedRobot& robot, SimulatedRun& run)
+      : robot_(robot), truth_(run.truth), encoders_(run.encoders) {
     RecordTruth();
   }
 
-  trial::Sensed Sense() override { return robot_.Sense(); }
+  trial::Sensed Sense() override {
+    trial::Sensed sensed = robot_.Sense();
+    const bool is_new = encoders_.empty() || sensed.now_s > encoders_.back().t_s;
+    if (sensed.encoders && is_new) encoders_.push_back({sensed.now_s, *sensed.encoders});
+    return sensed;
+  }
   void Command(const control::WheelPower& power) override { robot_.Command(power); }
   void Advance(double dt_s) override {
     robot_.Advance(dt_s);
@@ -42,6 +47,7 @@ class RobotWithTruth : public trial::Robot {
 
   simulation::SimulatedRobot& robot_;
   trajectory::Trajectory& truth_;
+  std::vector<odometry::EncoderReading>& encoders_;
 };
 
 std::shared_ptr<const simulation::HeightImage> ImageOf(const simulation::TerrainOptions& terrain,
@@ -65,20 +71,21 @@ std::shared_ptr<const simulation::HeightImage> ImageOf(const simulation::Terrain
 SimulatedRun Simulate(const SimulatedTrial& trial) {
   SimulatedRun run;
   simulation::SimulatedRobot robot(trial.simulation, trial.start, trial.seed, trial.image);
-  RobotWithTruth with_truth(robot, run.truth);
-  run.result = trial::RunTrial(with_truth, trial.waypoints, trial.control, trial.trial);
+  RobotWithTruth with_truth(robot, run);
+  run.result = trial::RunTrial(with_truth, trial.task, trial.control, trial.trial);
   return run;
 }
 
 SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
                                 const geometry::Pose2& start, std::uint64_t seed,
                                 const std::string& experiment_file, const Inputs& inputs) {
+  control::Task task;
   try {
-    control::CheckWaypoints(experiment.waypoints);
+    task = experiment::TaskOf(experiment);
   } catch (const std::invalid_argument& no_task) {
     throw std::invalid_argument(fmt::format("{}: {}", experiment_file, no_task.what()));
   }
-  return {.waypoints = experiment.waypoints,
+  return {.task = std::move(task),
           .control = experiment.control,
           .trial = experiment.trial,
           .simulation = experiment.simulation,

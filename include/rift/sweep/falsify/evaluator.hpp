@@ -10,6 +10,12 @@
 
 namespace rift::sweep {
 
+/// One run of the candidate as the camera and its wheels saw it.
+struct CandidateRun {
+  Recording camera;
+  std::vector<odometry::EncoderReading> encoders;  ///< none where there are none
+};
+
 /// The evaluator of an experiment: one trial at one setting, theta -> gap. Grid, search, shrinking,
 /// rare events, suggestions, calibration and replay all ask it. Trajectories come from where the
 /// experiment says: logs, simulated runs, the waypoint path.
@@ -24,6 +30,10 @@ class Evaluator {
   Recording Reference(const TrialRequest& request);
   /// May start where the reference did.
   Recording Candidate(const TrialRequest& request, const Recording& reference);
+  /// The same with its encoders: those of a log lie beside it in encoders.csv.
+  CandidateRun RunOf(const TrialRequest& request, const Recording& reference);
+  /// What the task of a setting looks like when it is kept exactly.
+  trajectory::Trajectory IdealPathAt(const experiment::Theta& theta) const;
   /// The simulated trial of a request; throws yaml::Error when the setting breaks a rule.
   SimulatedTrial TrialFor(const TrialRequest& request, const Recording& reference) const;
   /// The simulated trial of an experiment: where `TrialOf` takes its files from is the evaluator's.
@@ -45,10 +55,12 @@ class Evaluator {
   const std::string& experiment_file() const { return experiment_file_; }
 
  private:
+  std::vector<odometry::EncoderReading> EncodersBeside(const std::string& log) const;
   void RequirePath(const experiment::PathTemplate& path, const std::string& key) const;
   std::string Filled(const experiment::PathTemplate& path, const experiment::Theta& theta,
                      const std::string& trial) const;
   std::string ReferencePath(const experiment::Theta& theta, const std::string& trial) const;
+  TrialRow EvaluateOdometry(const TrialRequest& request);
   const Recording& Nominal(const TrialRequest& request);
   double NominalNoiseFloor_m();
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rift/experiment/experiment.hpp"
+#include "rift/odometry/odometry.hpp"
 #include "rift/simulation/simulated_robot.hpp"
 #include "rift/sweep/falsify/recorded_logs.hpp"
 #include "rift/trial/trial.hpp"
@@ -14,7 +15,7 @@ namespace rift::sweep {
 
 /// Everything one simulated trial depends on.
 struct SimulatedTrial {
-  std::vector<control::Waypoint> waypoints;
+  control::Task task;
   control::NavigatorOptions control;
   trial::TrialOptions trial;
   simulation::SimulationOptions simulation;
@@ -27,10 +28,12 @@ struct SimulatedRun {
   trial::TrialResult result;
   /// Where the robot really was after each control period, on the clock of the log.
   trajectory::Trajectory truth;
+  /// The wheels at each decision, on that clock; none where the robot does not report them.
+  std::vector<odometry::EncoderReading> encoders;
 };
 
 /// The trial that an experiment describes. Throws std::invalid_argument, naming `experiment_file`,
-/// when its waypoints make no task, or a heightfield image cannot be read.
+/// when it describes no task, or a heightfield image cannot be read.
 SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
                                 const geometry::Pose2& start, std::uint64_t seed,
                                 const std::string& experiment_file, const Inputs& inputs);

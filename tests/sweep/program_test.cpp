@@ -1,0 +1,131 @@
+#include "rift/sweep/explain/program_cells.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "rift/sweep/falsify/grid.hpp"
+
+namespace rift::sweep {
+namespace {
+
+const Inputs kNoFiles{[](const std::string&) { return std::nullopt; }, [](const std::string&) {}};
+
+experiment::Experiment Lap(double power) {
+  experiment::Experiment experiment;
+  experiment.program.power = power;
+  experiment.program.laps = 2;
+  experiment.program.segments = {{.straight_m = 0.5}, {.turn_deg = 180.0, .radius_m = 0.16}};
+  experiment.trial.settle_s = 1.0;
+  experiment.trial.timeout_s = 60.0;
+  experiment.reference.trials.names = {"1", "2", "3"};
+  return experiment;
+}
+
+/// No noise, no slip, and encoders of a thousandth of a degree.
+void MakeExact(simulation::SimulationOptions& simulation) {
+  simulation.mocap.rate_hz = 0.0;
+  simulation.mocap.noise_across_m = simulation.mocap.noise_along_m = 0.0;
+  simulation.mocap.blur_across_s = simulation.mocap.stamp_jitter_s = 0.0;
+  simulation.mocap.noise_yaw_rad = simulation.mocap.blur_yaw_rad_per_mps = 0.0;
+  simulation.encoder.counts_per_rev = 100'000.0;
+  simulation.terrain.surfaces["ground"].slip = 0.0;
+  simulation.terrain.surfaces["ground"].mu = 5.0;
+}
+
+TEST_CASE("Without slip the odometry of fine encoders is the true path") {
+  experiment::Experiment experiment = Lap(0.1);
+  experiment.program.laps = 3;
+  experiment.trial.control_period_s = 0.004;  // between readings the wheels turn evenly
+  MakeExact(experiment.simulation);
+  const SimulatedTrial trial = SimulatedTrialOf(experiment, {}, 1, "lap.yaml", kNoFiles);
+  SimulatedTrial started = trial;
+  started.start = trial.task.Start();
+  const SimulatedRun run = Simulate(started);
+  REQUIRE(run.result.outcome == trial::Outcome::kReached);
+  odometry::OdometryOptions wheels = experiment.hardware.odometry;
+  wheels.counts_per_wheel_turn = 100'000.0;
+  const trajectory::Trajectory path =
+      odometry::OdometryPath(run.encoders, wheels, run.truth.poses.front().Planar());
+  CHECK(path.ArcLength_m() > 2.0);
+  double largest_m = 0.0;
+  for (size_t i = 0; i < path.poses.size(); ++i) {
+    REQUIRE(path.poses[i].t_s == Approx(run.truth.poses[i].t_s).margin(1e-9));
+    largest_m =
+        std::max(largest_m, (path.poses[i].Position() - run.truth.poses[i].Position()).norm());
+  }
+  CHECK(largest_m < 1e-4);
+}
+
+TEST_CASE("A program is what a run of it is held against and every run of a seed is the same") {
+  const experiment::Experiment experiment = Lap(0.2);
+  Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
+  const TrialRequest request = TrialsAt(experiment, {}).front();
+  const trajectory::Trajectory ideal = evaluator.IdealPathAt({});
+  CHECK((ideal.poses.back().Position() - ideal.poses.front().Position()).norm() < 1e-9);
+  CHECK(ideal.ArcLength_m() == Approx(2.0 * (0.5 + geometry::kPi * 0.16)).epsilon(1e-4));
+  const TrialRow row = evaluator.Evaluate(request);
+  CHECK(row.status == TrialStatus::kOk);
+  CHECK(row.reference == "program path");
+  CHECK(row.comparison.gap_m > 0.0);
+  CHECK(evaluator.Evaluate(request).comparison.gap_m == row.comparison.gap_m);
+}
+
+TEST_CASE("Judged by odometry a slippery floor is worse and the gap is that of wheels to camera") {
+  experiment::Experiment experiment = Lap(0.6);
+  experiment.objective = experiment::Objective::kOdometry;
+  const auto gap_m = [&](double slip) {
+    experiment.simulation.terrain.surfaces["ground"].slip = slip;
+    experiment.simulation.terrain.surfaces["ground"].mu = slip > 0.0 ? 0.3 : 2.0;
+    Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
+    return evaluator.Evaluate(TrialsAt(experiment, {}).front()).comparison.gap_m;
+  };
+  const double grips_m = gap_m(0.0), slips_m = gap_m(0.05);
+  CHECK(grips_m < 0.1);
+  CHECK(slips_m > 2.0 * grips_m);
+}
+
+TEST_CASE("Odometry as the objective needs encoders, and logs of its own") {
+  experiment::Experiment experiment = Lap(0.2);
+  experiment.objective = experiment::Objective::kOdometry;
+  experiment.simulation.encoder.reported = false;
+  Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
+  const TrialRow row = evaluator.Evaluate(TrialsAt(experiment, {}).front());
+  CHECK(row.status == TrialStatus::kUnreadable);
+  CHECK_THAT(row.reason, Catch::Contains("needs encoders"));
+  experiment.reference.kind = experiment::ReferenceKind::kLogs;
+  experiment.reference.path.text = "{trial}.csv";
+  CHECK_THROWS_WITH(Evaluator(experiment, "lap.yaml", kNoFiles), Catch::Contains("candidate.path"));
+}
+
+TEST_CASE("The cells of a grid over a program tell its repeats apart from a robot that is stuck") {
+  experiment::Experiment experiment = Lap(0.25);
+  experiment.space.parameters = {
+      {.key = "program.power",
+       .levels = {experiment::NumberValue(0.25), experiment::NumberValue(0.02)}}};
+  Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
+  experiment.trial.timeout_s = 200.0;
+  const std::vector<ProgramCell> cells = MeasurePrograms(evaluator);
+  REQUIRE(cells.size() == 2);
+  CHECK(cells[0].measures.moved == 3);
+  CHECK(cells[0].measures.spread_m > 0.0);
+  CHECK(cells[0].measures.drift_per_m > 0.0);
+  CHECK(cells[0].runs.size() == 3);
+  CHECK_FALSE(cells[1].measures.DidMove());  // the gear's friction is stronger than 2 % of power
+  experiment.program.segments.clear();
+  CHECK(MeasurePrograms(evaluator).empty());
+}
+
+TEST_CASE("A program and waypoints after its start exclude each other") {
+  experiment::Experiment experiment = Lap(0.2);
+  experiment.waypoints = {{.name = "a", .x_m = 0.3, .y_m = 0.1, .heading_deg = 90.0}};
+  CHECK(experiment::TaskOf(experiment).Start().x_m == 0.3);
+  CHECK(experiment::TaskOf(experiment).Start().yaw_rad == Approx(geometry::kPi / 2.0));
+  experiment.waypoints.push_back({.name = "b"});
+  CHECK_THROWS_WITH(experiment::TaskOf(experiment), Catch::Contains("beside a program"));
+  experiment.waypoints.clear();
+  experiment.trial.timeout_s = 2.0;
+  CHECK_THROWS_WITH(experiment::TaskOf(experiment), Catch::Contains("trial.timeout_s is 2"));
+}
+
+}  // namespace
+}  // namespace rift::sweep
