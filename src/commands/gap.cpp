@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "odometry.hpp"
 #include "rift/commands/arguments/flags.hpp"
 #include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
@@ -35,6 +36,10 @@ struct GapRequest {
   Format real_format = Format::kAuto;
   std::string json, profile, figure;
   bool exit_code = false;
+  bool odometry = false;
+  OdometryRequest runs;  ///< with --odometry or --program
+
+  bool IsOdometry() const { return odometry || runs.calibrate || !runs.program.empty(); }
 };
 
 /// What was mended, and why there may be no yaw errors.
@@ -122,12 +127,41 @@ void CheckNames(const GapRequest& request) {
   CheckOutputs(inputs, outputs);
 }
 
+void AddOdometryFlags(CLI::App& app, GapRequest& request) {
+  app.add_flag("--odometry", request.odometry,
+               "SIM and REAL are run folders: hold camera, encoders and program of each together");
+  app.add_option("--program", request.runs.program,
+                 "the same for runs of this experiment's program, with or without encoders")
+      ->type_name("EXPERIMENT");
+  app.add_flag(
+      "--calibrate-odometry", request.runs.calibrate,
+      "the same, and find wheel radii and track from all runs (squares both ways tell them "
+      "best)");
+  FlagMaker flags(app);
+  odometry::RunOptions::Fields(request.runs.options, flags);
+  odometry::CalibrationOptions::Fields(request.runs.calibration, flags);
+}
+
+OdometryRequest OdometryOf(const GapRequest& request) {
+  OdometryRequest runs = request.runs;
+  runs.runs = request.reals;
+  runs.runs.insert(runs.runs.begin(), request.sim);
+  runs.json = request.json;
+  RefuseTwins(runs.runs);
+  for (const std::string& other : {request.profile, request.figure}) {
+    if (other.empty()) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: --profile and --figure are of two logs, leave them out with --odometry", other));
+  }
+  return runs;
+}
+
 }  // namespace
 
 void AddGap(CLI::App& app, int& exit_code) {
   const auto request = std::make_shared<GapRequest>();
   app.add_option("SIM", request->sim, "log of the simulator (CSV)")->required();
-  app.add_option("REAL", request->reals, "logs of the robot, one a repeat")->required();
+  app.add_option("REAL", request->reals, "logs of the robot, one a repeat");
   AddFlags(app, request->options);
   FlagMaker flags(app);
   flags(
@@ -146,9 +180,20 @@ void AddGap(CLI::App& app, int& exit_code) {
   app.add_option("--figure", request->figure, "draw paths, error over u and its distribution")
       ->type_name("FILE.svg|FILE.png");
   app.add_flag("--exit-code", request->exit_code, "end with 1 when the verdict is falsified");
+  AddOdometryFlags(app, *request);
   app.footer(
-      "Example: rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03");
+      "Example: rift gap out/square1 out/square2 --odometry --calibrate-odometry\n"
+      "         rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03");
   app.callback([request, &exit_code] {
+    if (request->IsOdometry()) {
+      exit_code = MeasureOdometry(OdometryOf(*request));
+      return;
+    }
+    if (request->reals.empty()) {
+      throw std::invalid_argument(
+          "REAL is required: name logs of the robot (or --odometry for the encoders of run "
+          "folders)");
+    }
     CheckInputs(*request);
     CheckNames(*request);
     gap::GapResult result = Measure(*request);

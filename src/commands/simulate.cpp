@@ -76,7 +76,7 @@ void DrawFigure(const std::string& path, const experiment::Experiment& experimen
                                .logged = run.result.trajectory,
                                .areas = AreasOf(trial.simulation.terrain),
                                .ground_xz_m = GroundProfile(terrain, run.truth)};
-  for (const control::Waypoint& waypoint : trial.waypoints) {
+  for (const control::Waypoint& waypoint : trial.task.waypoints) {
     drawn.waypoints.push_back({waypoint.name, waypoint.Position()});
   }
   WriteFigure(path, report::SimulationFigure(drawn));
@@ -129,13 +129,14 @@ struct RunFiles {
     trajectory = is_file ? out : out / "trajectory.csv";
     for (const auto& [path, name] : {std::pair{&truth, "truth.csv"},
                                      {&commands, "commands.csv"},
+                                     {&encoders, "encoders.csv"},
                                      {&experiment, "experiment.yaml"},
                                      {&summary, "summary.json"}}) {
       *path = is_file ? fs::path(stem + name) : out / name;
     }
   }
 
-  fs::path trajectory, truth, commands, experiment, summary;
+  fs::path trajectory, truth, commands, encoders, experiment, summary;
 };
 
 /// The same text again in the file it was read from does no harm.
@@ -149,7 +150,8 @@ void CheckNames(const SimulateRequest& request, const fs::path& out,
   CheckPictureNames(request.pictures);
   RefuseSweepFolder(out);
   const RunFiles files(out);
-  std::vector<fs::path> outputs{files.trajectory, files.truth, files.commands, files.summary};
+  std::vector<fs::path> outputs{files.trajectory, files.truth, files.commands, files.encoders,
+                                files.summary};
   if (!IsSaved(experiment, files.experiment)) outputs.push_back(files.experiment);
   for (const std::string& name : {request.tum, request.pictures.figure, request.pictures.video}) {
     if (!name.empty()) outputs.emplace_back(name);
@@ -163,6 +165,9 @@ void Save(const fs::path& out, const experiment::Experiment& experiment,
   files::WriteFile(files.experiment, experiment::WriteExperiment(experiment));
   files::WriteFile(files.truth, trajectory::WriteRift(run.truth));
   files::WriteFile(files.commands, report::CommandsCsv(run.result));
+  if (!run.encoders.empty()) {
+    files::WriteFile(files.encoders, odometry::EncodersCsv(run.encoders));
+  }
   files::WriteFile(files.summary, report::SimulationJson(experiment, run));
   files::WriteFile(files.trajectory, trajectory::WriteRift(run.result.trajectory));
 }
@@ -175,7 +180,7 @@ Simulated SimulateFile(const SimulateRequest& request) {
   CheckNames(request, made.out, experiment, inputs);
   made.trial =
       sweep::SimulatedTrialOf(experiment, {}, experiment.seed, request.experiment, FileInputs());
-  made.trial.start = control::StartPose(experiment.waypoints);
+  made.trial.start = made.trial.task.Start();
   made.run = sweep::Simulate(made.trial);
   return made;
 }

@@ -76,10 +76,10 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
   look.shutter_s = as_twin.simulation.mocap.exposure_s;
   const twin::TwinSetup setup{as_twin.simulation,
                               experiment.twin,
-                              control::StartPose(experiment.waypoints),
+                              experiment::TaskOf(experiment).Start(),
                               experiment.seed,
                               trial.image,
-                              twin::OverheadCamera(experiment.waypoints, experiment.twin),
+                              twin::OverheadCamera(experiment::TaskOf(experiment), experiment.twin),
                               look};
   const fs::path calibration = folder / "camera.yaml";
   files::WriteFile(calibration, vision::WriteCamera(setup.camera));
@@ -106,7 +106,7 @@ view::Film FilmOf(const experiment::Experiment& experiment, const sweep::Simulat
       .truth = run.truth,
       .logged = run.result.trajectory,
       .outcome = run.result.reason};
-  view::ShowTask(shown, trial.waypoints);
+  view::ShowTask(shown, trial.task);
   for (const geometry::FloorArea& area : AreasOf(trial.simulation.terrain)) {
     shown.patches.push_back({area.label, area.x_min_m, area.x_max_m, area.y_min_m, area.y_max_m});
   }

@@ -136,7 +136,9 @@ TEST_CASE("rift gap says in one line what is wrong with its input") {
            ": a tag offset of 0.03 m needs the yaw, and its header does not tell degrees "
            "(tracker) from radians (webots); an angle of 33.0 looks like degrees: set "
            "--real-format\n"},
-      {{logs.sim}, "rift: REAL is required\n"},
+      {{logs.sim},
+       "rift: REAL is required: name logs of the robot (or --odometry for the encoders of run "
+       "folders)\n"},
       {{logs.sim, logs.real, "--samples", "1"},
        "rift: --samples: '1' must be a number in [2, 1e+07]\n"},
       {{logs.sim, logs.real, "--threshold", "nan"},

@@ -40,7 +40,7 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
                        .may_arm = [] { return true; },
                        .observer = &log,
                        .threads = false},
-                      TaskOf(experiment));
+                      DriveTaskOf(experiment));
   CHECK(run.trial.outcome == trial::Outcome::kReached);
   CHECK(run.evidence.stop_acknowledged == true);
   CHECK(run.ping.protocol == hardware::Protocol::kFramed);

@@ -37,7 +37,7 @@ hardware::DriveRun DriveOnBench(const experiment::Experiment& experiment,
                                 hardware::Protocol protocol, DriveLog& log) {
   hardware::Bench bench;
   bench.line_delay_s = 0.005;
-  hardware::DriveTask task = TaskOf(experiment);
+  hardware::DriveTask task = DriveTaskOf(experiment);
   task.hardware.line.protocol = protocol;
   return hardware::Drive({.line = bench,
                           .poses = bench,
@@ -60,7 +60,7 @@ TEST_CASE("The files that grew during a drive are those of its whole record to t
   CHECK(files::ReadFile(folder / "trajectory.csv") == trajectory::WriteRift(run.trial.trajectory));
   CHECK(files::ReadFile(folder / "commands.csv") == report::CommandsCsv(run.trial));
   CHECK(files::ReadFile(folder / "stages.csv") == report::StagesCsv(run.evidence));
-  CHECK(files::ReadFile(folder / "encoders.csv") == report::EncodersCsv(run.evidence));
+  CHECK(files::ReadFile(folder / "encoders.csv") == odometry::EncodersCsv(run.evidence.encoders));
   CHECK(files::ReadFile(folder / "summary.json") == report::DriveJson(experiment, run));
 }
 
@@ -88,8 +88,7 @@ TEST_CASE("Rows are on disk a moment after they were recorded and the summary sa
     test::WaitUntil("the row is on disk", [&] {
       return Lines(folder / "trajectory.csv") == 1u + row &&
              Lines(folder / "commands.csv") == 1u + row &&
-             Lines(folder / "stages.csv") == 1u + row &&
-             Lines(folder / "encoders.csv") == 0u + row;  // the last waits for a later reading
+             Lines(folder / "stages.csv") == 1u + row && Lines(folder / "encoders.csv") == 1u + row;
     });
     CHECK(Since_s(start) < 1.0);
     CHECK_FALSE(stopper());
@@ -113,7 +112,7 @@ TEST_CASE("A folder that vanishes during a drive stops it within a second") {
   DriveLog log(WriterInto(run, PaperExperiment()));
   const hardware::Stopper stopper = log.Stopper();
   Record(log, 1.0);
-  test::WaitUntil("the files are there", [&] { return Lines(run / "encoders.csv") == 1; });
+  test::WaitUntil("the files are there", [&] { return Lines(run / "encoders.csv") == 2; });
   REQUIRE_FALSE(stopper());
   if (is_moved) {
     std::filesystem::rename(run, folder / "elsewhere");

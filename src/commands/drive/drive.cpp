@@ -40,7 +40,7 @@ experiment::Experiment LoadTask(const DriveRequest& request) {
   if (request.countdown_s) experiment.hardware.start.countdown_s = *request.countdown_s;
   if (request.seconds) experiment.trial.timeout_s = *request.seconds;
   try {
-    control::CheckWaypoints(experiment.waypoints);
+    experiment::TaskOf(experiment);
   } catch (const std::invalid_argument& no_task) {
     throw std::invalid_argument(fmt::format("{}: {}", request.experiment, no_task.what()));
   }

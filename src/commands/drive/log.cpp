@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "rift/files/files.hpp"
+#include "rift/odometry/odometry.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/trajectory/log.hpp"
 
@@ -39,7 +40,7 @@ void DriveFiles::Make() {
       {"trajectory.csv", trajectory::WriteRift({{}, trial::RecordedChannels()})},
       {"commands.csv", report::CommandsCsv({})},
       {"stages.csv", report::StagesCsv({})},
-      {"encoders.csv", report::EncodersCsv({})}};
+      {"encoders.csv", odometry::EncodersHeader()}};
   for (const auto& [name, header] : headers) {
     files_.push_back(std::make_unique<files::AppendFile>(folder_ / name));
     files_.back()->Append(header);
@@ -52,7 +53,10 @@ void DriveFiles::Write(const DriveRows& rows, std::atomic<unsigned>& progress) {
   if (files_.empty()) Make();
   std::string stages;
   for (const hardware::PoseStages& pose : rows.news.poses) stages += report::StagesRow(pose);
-  const std::string encoders = EncoderRows(rows);
+  std::string encoders;
+  for (const odometry::EncoderReading& reading : rows.news.encoders) {
+    encoders += odometry::EncodersRow(reading);
+  }
   const std::string* const texts[]{&rows.trajectory, &rows.commands, &stages, &encoders};
   for (size_t i = 0; i < files_.size(); ++i) {
     files_[i]->RequireInPlace();
@@ -63,20 +67,6 @@ void DriveFiles::Write(const DriveRows& rows, std::atomic<unsigned>& progress) {
     if (!texts[i]->empty()) files_[i]->Sync();
     ++progress;
   }
-}
-
-// A row lies between two readings, so it waits for the one after it.
-std::string DriveFiles::EncoderRows(const DriveRows& rows) {
-  for (const hardware::PoseStages& pose : rows.news.poses) captured_s_.push_back(pose.captured_s);
-  encoders_.insert(encoders_.end(), rows.news.encoders.begin(), rows.news.encoders.end());
-  std::string text;
-  const auto is_ready = [&](double captured_s) {
-    return rows.is_last || (!encoders_.empty() && encoders_.back().t_s > captured_s);
-  };
-  for (; !captured_s_.empty() && is_ready(captured_s_.front()); captured_s_.pop_front()) {
-    text += report::EncodersRow(encoders_, captured_s_.front());
-  }
-  return text;
 }
 
 struct DriveLog::Shared {

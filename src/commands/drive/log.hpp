@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -37,17 +36,14 @@ class DriveFiles {
 
  private:
   void Make();
-  std::string EncoderRows(const DriveRows& rows);
 
   std::filesystem::path folder_;
   std::string interrupted_summary_;
   std::vector<std::unique_ptr<files::AppendFile>> files_;
-  std::vector<hardware::EncoderReading> encoders_;
-  std::deque<double> captured_s_;  ///< of poses that wait for a reading after them
 };
 
 /// Puts a drive on disk while it goes on: a thread writes every 0.25 s what came in since. The
-/// caller never waits for the disk. When the thread cannot write, or stands still for a second, the
+/// caller never waits for the disk. When the thread cannot write, or stands still for four, the
 /// drive is stopped.
 class DriveLog : public hardware::DriveObserver {
  public:

@@ -61,7 +61,7 @@ int ReplayDrive(const DriveRequest& request) {
                   .truth = OnTheFloor(seen),
                   .logged = seen,
                   .outcome = ending};
-  view::ShowTask(shown, experiment.waypoints);
+  view::ShowTask(shown, experiment::TaskOf(experiment));
   terminal::PrintText(
       fmt::format("{}\n{} poses over {:.2f} s\n", ending, seen.poses.size(), seen.Duration_s()));
   terminal::FlushResults();

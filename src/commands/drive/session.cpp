@@ -66,8 +66,9 @@ bool HasArrived(const hardware::DriveRun& run) {
 
 }  // namespace
 
-hardware::DriveTask TaskOf(const experiment::Experiment& experiment) {
-  return {experiment.waypoints, experiment.control, experiment.trial, experiment.hardware};
+hardware::DriveTask DriveTaskOf(const experiment::Experiment& experiment) {
+  return {experiment::TaskOf(experiment), experiment.control, experiment.trial,
+          experiment.hardware};
 }
 
 /// All that a drive is made of, opened in the order in which it is cheap to fail.
@@ -89,7 +90,7 @@ class DriveSession::Drivers {
   hardware::DriveRun Drive(const experiment::Experiment& experiment, hardware::Operator& person,
                            DriveLog& log) {
     has_started_ = false;
-    StartGate gate(experiment.hardware.start, control::StartPose(experiment.waypoints),
+    StartGate gate(experiment.hardware.start, experiment::TaskOf(experiment).Start(),
                    request_.any_start || request_.dry_run, PersonAtGate(person));
     return hardware::Drive({.line = port_,
                             .poses = *poses_,
@@ -103,7 +104,7 @@ class DriveSession::Drivers {
                                 },
                             .observer = &log,
                             .dry_run = request_.dry_run},
-                           TaskOf(experiment));
+                           DriveTaskOf(experiment));
   }
 
   /// The window needs the main thread, so the robot is driven from another one.
@@ -114,7 +115,7 @@ class DriveSession::Drivers {
       terminal::Say(missing + "; driving without --view");
       return Drive(experiment, person, log);
     }
-    view::DriveView view(session_.camera(), experiment.waypoints);
+    view::DriveView view(session_.camera(), experiment::TaskOf(experiment));
     auto drive = std::async(std::launch::async, [&] { return Drive(experiment, person, log); });
     while (drive.wait_for(kRedraw) != std::future_status::ready) {
       const hardware::CameraPoses::View seen = poses_->Seen();
@@ -146,7 +147,7 @@ class DriveSession::Drivers {
     if (has_started_) return "";
     const std::optional<geometry::Pose2> seen = SeenNow();
     if (!seen) return "it is not seen";
-    return PlacementText(PlacementOf(*seen, control::StartPose(experiment.waypoints)));
+    return PlacementText(PlacementOf(*seen, experiment::TaskOf(experiment).Start()));
   }
 
   const DriveRequest& request_;

@@ -11,7 +11,7 @@
 namespace rift::commands {
 
 /// What the robot has to know of an experiment.
-hardware::DriveTask TaskOf(const experiment::Experiment& experiment);
+hardware::DriveTask DriveTaskOf(const experiment::Experiment& experiment);
 
 /// Port and camera of a robot, open from its first drive to its last.
 class DriveSession {

@@ -134,7 +134,9 @@ void RemoveFigures(const std::filesystem::path& folder) {
 }  // namespace
 
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
-                      const sweep::Explanation& explanation, sweep::Evaluator& evaluator) {
+                      const sweep::Explanation& explanation,
+                      const std::vector<sweep::ProgramCell>& programs,
+                      sweep::Evaluator& evaluator) {
   const report::SweepFigureSet set = report::SweepFigures(result, WorstPair(result, evaluator));
   RemoveFigures(folder / "figures");
   for (const report::Figure& figure : set.figures) {
@@ -146,7 +148,7 @@ void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepRes
   files::WriteFile(folder / "report.html",
                    report::RenderPage(result, explanation,
                                       {TypicalFailures(result, explanation, evaluator),
-                                       GapFlags(evaluator.experiment())}));
+                                       GapFlags(evaluator.experiment()), programs}));
 }
 
 }  // namespace rift::commands

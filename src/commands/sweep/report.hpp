@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "rift/sweep/explain/explanation.hpp"
+#include "rift/sweep/explain/program_cells.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 
 namespace rift::commands {
@@ -11,6 +13,7 @@ namespace rift::commands {
 /// the paths of the worst trial and of a typical failure of each kind again. Figures that make no
 /// sense for this space are named on stderr.
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
-                      const sweep::Explanation& explanation, sweep::Evaluator& evaluator);
+                      const sweep::Explanation& explanation,
+                      const std::vector<sweep::ProgramCell>& programs, sweep::Evaluator& evaluator);
 
 }  // namespace rift::commands

@@ -18,6 +18,7 @@
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
+#include "rift/sweep/explain/program_cells.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "rift/terminal/exit_code.hpp"
@@ -68,7 +69,8 @@ experiment::Experiment PlanFor(const SweepRequest& request, experiment::Experime
 
 /// An earlier run's report beside a table without a gap would tell of other trials.
 void RemoveReport(const fs::path& out) {
-  for (const char* name : {"report.html", "explanation.json", "likeness.json", "figures"}) {
+  for (const char* name :
+       {"report.html", "explanation.json", "likeness.json", "programs.json", "figures"}) {
     fs::remove_all(out / name);
   }
 }
@@ -131,9 +133,13 @@ int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
 
 void SaveReport(const fs::path& out, const sweep::SweepResult& result,
                 const sweep::Explanation& explanation,
-                const std::vector<sweep::GroupLikeness>& likeness, sweep::Evaluator& evaluator) {
+                const std::vector<sweep::GroupLikeness>& likeness,
+                const std::vector<sweep::ProgramCell>& programs, sweep::Evaluator& evaluator) {
   files::WriteFile(out / "explanation.json", report::ExplanationJson(result, explanation));
-  WriteSweepReport(out, result, explanation, evaluator);
+  WriteSweepReport(out, result, explanation, programs, evaluator);
+  if (!programs.empty()) {
+    files::WriteFile(out / "programs.json", report::ProgramsJson(result.parameters, programs));
+  }
   if (!likeness.empty())
     files::WriteFile(out / "likeness.json", report::Dump(report::LikenessJson(likeness)));
 }
@@ -170,8 +176,10 @@ int Sweep(const SweepRequest& request) {
 
   const sweep::Explanation explanation = sweep::Explain(*judged, OptionsFor(request.explain));
   const std::vector<sweep::GroupLikeness> likeness = sweep::MeasureSweepLikeness(evaluator);
-  SaveReport(out, *judged, explanation, likeness, evaluator);
+  const std::vector<sweep::ProgramCell> programs = sweep::MeasurePrograms(evaluator);
+  SaveReport(out, *judged, explanation, likeness, programs, evaluator);
   Print(request, *judged, explanation, likeness);
+  if (!request.json) terminal::PrintText(report::ProgramText(judged->parameters, programs));
 
   const bool is_done =
       SpendTrials(out, *judged, request.explain, evaluator, {request.jobs, progress}, request.json);

@@ -221,20 +221,6 @@ std::string StagesRow(const PoseStages& pose) {
   return text + "\n";
 }
 
-std::string EncodersCsv(const hardware::DriveRecord& evidence) {
-  std::string text = "t_s,left,right\n";
-  for (const PoseStages& pose : evidence.poses) {
-    text += EncodersRow(evidence.encoders, pose.captured_s);
-  }
-  return text;
-}
-
-std::string EncodersRow(const std::vector<hardware::EncoderReading>& readings, double captured_s) {
-  const auto counts = hardware::CountsAt(readings, captured_s);
-  if (!counts) return "";
-  return fmt::format("{},{:.1f},{:.1f}\n", Cell(captured_s), counts->first, counts->second);
-}
-
 std::string DriveEnding(const std::string& summary_json) {
   const auto summary = nlohmann::json::parse(summary_json, nullptr, /*allow_exceptions=*/false);
   if (!summary.is_object()) return "without a summary";

@@ -146,7 +146,10 @@ std::string RenderPage(const sweep::SweepResult& result, const sweep::Explanatio
   page.set("definition", gap::DefinitionText(result.gap, result.tag_offset_m));
   page.set("threshold", Number(result.gap.threshold_m));
   AddUnmeasured(result, &page);
-  std::vector<PageChart> charts = WhyCharts(result, explanation, evidence.failures);
+  std::vector<PageChart> charts = ProgramCharts(result, evidence.programs);
+  for (PageChart& chart : WhyCharts(result, explanation, evidence.failures)) {
+    charts.push_back(std::move(chart));
+  }
   for (PageChart& chart : PageCharts(result, options)) charts.push_back(std::move(chart));
   AddScripts(result, std::move(charts), evidence, options, &page);
   mustache html(File("page.html"));

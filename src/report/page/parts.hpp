@@ -31,6 +31,10 @@ PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& o
 PageTable TrialsTable(const sweep::SweepResult& result, const std::string& gap_flags,
                       const ReportOptions& options);
 
+/// Figure 14 of the paper, and the slip of the wheels along the way.
+std::vector<PageChart> ProgramCharts(const sweep::SweepResult& result,
+                                     const std::vector<sweep::ProgramCell>& programs);
+
 /// What matters, what the gap is made of, where it fails, and typical failures.
 std::vector<PageChart> WhyCharts(const sweep::SweepResult& result,
                                  const sweep::Explanation& explanation,

@@ -14,10 +14,12 @@
 #include "rift/gap/likeness.hpp"
 #include "rift/gap/result.hpp"
 #include "rift/hardware/arming.hpp"
+#include "rift/odometry/program_runs.hpp"
 #include "rift/sweep/calibrate/identification.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/sweep/explain/explanation.hpp"
 #include "rift/sweep/explain/failure_probability.hpp"
+#include "rift/sweep/explain/program_cells.hpp"
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
@@ -59,11 +61,6 @@ std::string DriveEnding(const std::string& summary_json);
 /// One row a pose: when it went through each stage. Cells of stages never reached are empty.
 std::string StagesCsv(const hardware::DriveRecord& evidence);
 std::string StagesRow(const hardware::PoseStages& pose);
-/// The wheels in step with the camera: at the capture time of each pose, between two readings.
-/// Poses before the first reading or after the last have no row.
-std::string EncodersCsv(const hardware::DriveRecord& evidence);
-/// Empty where there is no row.
-std::string EncodersRow(const std::vector<hardware::EncoderReading>& readings, double captured_s);
 
 /// `rift gap --json`: {definition, trials, mean_gap_m, noise_floor_m, verdict, repeats, likeness}.
 std::string GapJson(const gap::GapResult& result);
@@ -77,6 +74,13 @@ nlohmann::ordered_json LikenessJson(const gap::Likeness& likeness);
 nlohmann::ordered_json LikenessJson(const sweep::DriveLikeness& likeness);
 /// likeness.json: {level: the same}.
 nlohmann::ordered_json LikenessJson(const std::vector<sweep::GroupLikeness>& groups);
+
+/// `rift gap --odometry --json`: {definition, runs, cell, umbmark, calibration}.
+std::string OdometryJson(const odometry::OdometryResult& result);
+
+/// programs.json: {definition, cells: [{theta, deviation_m, spread_m, ..., trials}]}.
+std::string ProgramsJson(const std::vector<experiment::Parameter>& parameters,
+                         const std::vector<sweep::ProgramCell>& cells);
 
 /// summary.json: {mean_gap_m, failures, n, not_ok, "by": {parameter: {value: the same}}, effects,
 /// settings, ...}

@@ -7,6 +7,7 @@
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/figures/options.hpp"
 #include "rift/sweep/explain/explanation.hpp"
+#include "rift/sweep/explain/program_cells.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::report {
@@ -29,6 +30,7 @@ struct PageEvidence {
   /// Of `rift gap`, behind the two logs of a row, so that it comes out as in the table; where the
   /// candidates are simulated, `rift simulate --replay` drives a row again.
   std::string gap_flags;
+  std::vector<sweep::ProgramCell> programs;  ///< of a grid over a program
 };
 
 /// The same with an explanation at hand.

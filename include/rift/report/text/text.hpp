@@ -6,10 +6,12 @@
 #include "rift/experiment/experiment.hpp"
 #include "rift/gap/likeness.hpp"
 #include "rift/gap/result.hpp"
+#include "rift/odometry/program_runs.hpp"
 #include "rift/sweep/calibrate/identification.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/sweep/explain/explanation.hpp"
 #include "rift/sweep/explain/failure_probability.hpp"
+#include "rift/sweep/explain/program_cells.hpp"
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
@@ -33,6 +35,13 @@ std::string FlagOf(const sweep::CalibratedParameter& parameter);
 /// Definition, a table with a row for each trial, mean gap, noise floor, what the gap consists of,
 /// verdict and likeness.
 std::string GapText(const gap::GapResult& result);
+
+/// The tables of figure 14 over the cells of a grid, and what its encoders add. Empty without
+/// cells.
+std::string ProgramText(const std::vector<experiment::Parameter>& parameters,
+                        const std::vector<sweep::ProgramCell>& cells);
+
+std::string OdometryText(const odometry::OdometryResult& result);
 
 /// A table, a line for each group, with what its columns mean.
 std::string LikenessText(const std::vector<sweep::GroupLikeness>& groups);
