@@ -41,6 +41,7 @@ TEST_CASE("A segment lasts as long as its wheels need at their power") {
   CHECK(program.MeanPower(back_s + 0.01, back_s + 0.02) == WheelPower{-0.25, 0.25});
   CHECK(program.MeanPower(back_s + turn_s + 0.1, back_s + turn_s + 0.2) == WheelPower{});
   CHECK(program.PoseAt(back_s).x_m == Approx(-1.0));
+  CHECK(program.Length_m() == Approx(1.0));
 }
 
 TEST_CASE("The ideal path is what the ideal robot drives with the program's powers") {
@@ -112,6 +113,7 @@ TEST_CASE("A program that is none is refused with the rule that it breaks") {
 
 struct Driven {
   double driven_s = 0.0;  ///< in which the power was not zero
+  double ended_s = 0.0;
   bool is_finished = false;
 };
 
@@ -131,6 +133,7 @@ Driven RunOver(ProgramController& controller, double step_s, int steps, int held
     controller.NoteSent(now_s, decision.power);
     driven.driven_s += decision.power.left * step_s / 0.25;
     driven.is_finished = decision.finished;
+    driven.ended_s = now_s;
   }
   return driven;
 }
@@ -144,6 +147,7 @@ TEST_CASE("What a guard holds back is driven later") {
     const Driven driven = RunOver(controller, 0.02, 200, 10, 10 + held);
     CHECK(driven.is_finished);
     CHECK(driven.driven_s == Approx(program.Duration_s()));
+    CHECK(driven.ended_s == Approx(program.Duration_s() + 0.2 + 0.02 * held).margin(0.021));
   }
 }
 

@@ -82,27 +82,40 @@ bool Holds(const Estimate& estimate, double planted) {
   return estimate.interval.low <= planted && planted <= estimate.interval.high;
 }
 
+/// How far estimates are off, in half widths of their intervals: 0.5 where these are honest.
+struct Scatter {
+  double squares = 0.0;
+  int inside = 0;
+
+  void Add(const Estimate& estimate, double planted) {
+    const double half = 0.5 * (estimate.interval.high - estimate.interval.low);
+    squares += std::pow((estimate.value - planted) / half, 2);
+    inside += Holds(estimate, planted);
+  }
+};
+
 TEST_CASE("Planted wheels and track lie inside the 95 % intervals of calibrations as promised") {
   constexpr int kRepeats = 60;
   std::mt19937_64 generator(11);
   std::uniform_real_distribution<double> share(-1.0, 1.0);
-  int radius = 0, ratio = 0, track = 0;
+  Scatter radius, ratio, track;
   for (int i = 0; i < kRepeats; ++i) {
     const Planted planted{0.016 * (1.0 + 0.03 * share(generator)), 1.0 + 0.02 * share(generator),
                           0.083 * (1.0 + 0.04 * share(generator))};
     const OdometryCalibration found =
         CalibrateOdometry(Squares(planted, 2, 100 + static_cast<std::uint64_t>(i)), {});
-    radius += Holds(found.wheel_radius_m, planted.wheel_radius_m);
-    ratio += Holds(found.right_over_left, planted.right_over_left);
-    track += Holds(found.track_m, planted.track_m);
+    radius.Add(found.wheel_radius_m, planted.wheel_radius_m);
+    ratio.Add(found.right_over_left, planted.right_over_left);
+    track.Add(found.track_m, planted.track_m);
     CHECK(found.track_m.is_told);
     CHECK(found.noise_m == Approx(0.001).epsilon(0.2));
   }
-  // 18 of 20 and more; 60 of 60 in all three would be intervals that promise too little.
-  CHECK(radius >= 53);
-  CHECK(ratio >= 53);
-  CHECK(track >= 53);
-  CHECK(radius + ratio + track < 3 * kRepeats);
+  for (const Scatter& scatter : {radius, ratio, track}) {
+    CHECK(scatter.inside >= 53);  // 18 of 20 is 54 of 60
+    const double rms = std::sqrt(scatter.squares / kRepeats);
+    CHECK(rms > 0.3);
+    CHECK(rms < 0.7);
+  }
 }
 
 TEST_CASE("A calibration takes most of the drift away") {
@@ -115,6 +128,17 @@ TEST_CASE("A calibration takes most of the drift away") {
   CHECK(before->ccw_runs == 2);
   CHECK(before->cw_runs == 2);
   CHECK(before->largest_m > 0.05);
+  Eigen::Vector2d ccw_m = Eigen::Vector2d::Zero();
+  for (const RunLog* run : {&runs[0], &runs[2]}) {
+    const auto path = OdometryPath(run->encoders, {}, OdometryStart(*run));
+    const Eigen::Vector2d error_m =
+        path.poses.back().Position() - run->camera.poses.back().Position();
+    const geometry::Pose2 start_from_world =
+        geometry::Inverse(geometry::Pose2{0.0, 0.0, OdometryStart(*run).yaw_rad});
+    ccw_m += 0.5 * (start_from_world * error_m);
+  }
+  CHECK((before->ccw_m - ccw_m).norm() < 1e-9);
+  CHECK((before->cw_m - ccw_m).norm() > 0.01);
   CHECK(after->largest_m < 0.2 * before->largest_m);
 }
 
