@@ -79,6 +79,10 @@ report::ComparedPair PathsOf(const sweep::SweepResult& result, const sweep::Tria
                              result.gap);
 }
 
+std::string PathName(const experiment::Experiment& experiment) {
+  return experiment.program.segments.empty() ? "waypoint path" : "program path";
+}
+
 std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& result,
                                                     const sweep::Explanation& explanation,
                                                     sweep::Evaluator& evaluator) {
@@ -87,9 +91,10 @@ std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& re
     const int index = explanation.clusters[kind].rows.front();
     const sweep::TrialRow& row = result.rows.at(index);
     if (!row.IsOk()) continue;  // it ended early: there is no path to hold against the other
-    const std::string name = result.reference_kind == "logs"      ? "robot"
-                             : result.reference_kind == "nominal" ? "nominal run"
-                                                                  : "waypoint path";
+    const std::string name = result.reference_kind == "logs" ? "robot"
+                             : result.reference_kind == "nominal"
+                                 ? "nominal run"
+                                 : PathName(evaluator.experiment());
     failures.push_back({index, static_cast<int>(kind), PathsOf(result, row, name, evaluator)});
   }
   return failures;

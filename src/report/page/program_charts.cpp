@@ -51,7 +51,9 @@ PageChart HeatChart(const sweep::SweepResult& result,
     const std::string column = sweep::CombinationLabel(cell.theta, {split.main_factor});
     if (std::find(columns.begin(), columns.end(), column) == columns.end())
       columns.push_back(column);
-    values.push_back({{"line", sweep::CombinationLabel(cell.theta, split.others)},
+    const std::string line =
+        split.others.empty() ? "all" : sweep::CombinationLabel(cell.theta, split.others);
+    values.push_back({{"line", line},
                       {"column", column},
                       {"value", std::isfinite(value) ? json(value) : json(nullptr)},
                       {"word", word},

@@ -44,7 +44,8 @@ std::string Table(const std::vector<experiment::Parameter>& parameters,
   };
   for (const sweep::ProgramCell& cell : cells) {
     const std::string column = sweep::CombinationLabel(cell.theta, {split.main_factor});
-    const std::string line = sweep::CombinationLabel(cell.theta, split.others);
+    const std::string line =
+        split.others.empty() ? "all" : sweep::CombinationLabel(cell.theta, split.others);
     place(columns, column);
     place(lines, line);
     texts[{line, column}] = CellText(cell.measures, value(cell.measures), format);
