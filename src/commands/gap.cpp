@@ -31,6 +31,7 @@ struct GapRequest {
   gap::LikenessOptions likeness;
   std::uint64_t seed = 1;
   gap::GapOptions options;
+  gap::VerdictOptions verdict;
   double tag_offset_m = 0.0;
   Format sim_format = Format::kAuto;
   Format real_format = Format::kAuto;
@@ -55,8 +56,10 @@ void SayNotes(const trajectory::Log& log, const std::string& path, const std::st
 }
 
 gap::GapResult Measure(const GapRequest& request) {
-  gap::GapResult result{
-      .options = request.options, .tag_offset_m = request.tag_offset_m, .sim_path = request.sim};
+  gap::GapResult result{.options = request.options,
+                        .tag_offset_m = request.tag_offset_m,
+                        .sim_path = request.sim,
+                        .judged_by = request.verdict};
   trajectory::Log sim =
       trajectory::ReadLog(files::ReadFile(request.sim), request.sim, request.sim_format);
   SayNotes(sim, request.sim, "--sim-format");
@@ -163,6 +166,7 @@ void AddGap(CLI::App& app, int& exit_code) {
   app.add_option("SIM", request->sim, "log of the simulator (CSV)")->required();
   app.add_option("REAL", request->reals, "logs of the robot, one a repeat");
   AddFlags(app, request->options);
+  AddFlags(app, request->verdict);
   FlagMaker flags(app);
   flags(
       "tag_offset_m", request->tag_offset_m, -1.0, 1.0,
@@ -179,7 +183,8 @@ void AddGap(CLI::App& app, int& exit_code) {
       ->type_name("FILE.csv");
   app.add_option("--figure", request->figure, "draw paths, error over u and its distribution")
       ->type_name("FILE.svg|FILE.png");
-  app.add_flag("--exit-code", request->exit_code, "end with 1 when the verdict is falsified");
+  app.add_flag("--exit-code", request->exit_code,
+               "end with 1 when the verdict is falsified, or undecided with a failure");
   AddOdometryFlags(app, *request);
   app.footer(
       "Example: rift gap out/square1 out/square2 --odometry --calibrate-odometry\n"
@@ -199,8 +204,10 @@ void AddGap(CLI::App& app, int& exit_code) {
     gap::GapResult result = Measure(*request);
     if (!request->sim_repeats.empty()) result.likeness = MeasureRepeats(*request, result);
     Save(*request, result);
-    const bool falsified = result.verdict.verdict == gap::Verdict::kFalsified;
-    exit_code = request->exit_code && falsified ? terminal::kFalsified : terminal::kDone;
+    const bool may_fail =
+        result.verdict.verdict == gap::Verdict::kFalsified ||
+        (result.verdict.verdict == gap::Verdict::kUndecided && result.verdict.above > 0);
+    exit_code = request->exit_code && may_fail ? terminal::kFalsified : terminal::kDone;
   });
 }
 

@@ -64,8 +64,7 @@ Interval AnytimeInterval(int successes, int trials, double confidence) {
     throw std::invalid_argument("a share: the confidence must lie between 0 and 1");
   }
   const double needed = NeededEvidence(1, 1, 1.0 - confidence);
-  return {LowerEnd(successes, trials, needed),
-          1.0 - LowerEnd(trials - successes, trials, needed)};
+  return {LowerEnd(successes, trials, needed), 1.0 - LowerEnd(trials - successes, trials, needed)};
 }
 
 double NeededEvidence(int hypotheses, int discoveries, double alpha) {

@@ -166,13 +166,15 @@ TEST_CASE("A sweep in which nothing could be compared leaves no report of an ear
   }
 }
 
-TEST_CASE("Robots that never arrive are rows and end with 1") {
+TEST_CASE("Robots that never arrive are failures and end with 1") {
   const test::TemporaryFolder folder;
   const ProcessResult result =
       RunRift({"sweep", test::SourceDir() + "/configs/waypoints/paper.yaml", "--out",
                folder / "out", "--set", "trial.timeout_s=1", "--set", "space.v_min=[0.15]"});
   CHECK(result.exit_code == 1);
-  CHECK(test::ReadFile(folder / "out/table.csv").find("0.15,1,,,timed_out,") != std::string::npos);
+  CHECK(result.out.find("0 passed, 0 not seen to fail") != std::string::npos);
+  CHECK(test::ReadFile(folder / "out/table.csv").find("0.15,1,,true,timed_out,") !=
+        std::string::npos);
 }
 
 TEST_CASE("A key that is true or false can be an axis") {

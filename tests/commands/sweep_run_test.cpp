@@ -193,7 +193,9 @@ TEST_CASE("A worker that stands still or crashes costs its trial and the sweep e
       sweep.Command("out", {"--set", "reference.trials=30", "--set", "run.timeout_s=3", "--set",
                             "run.retries=0", "--jobs", "1"}));
   pid_t last = 0;
-  running.WaitUntil("a worker", [&] { return !running.Workers().empty(); });
+  // The first process only runs the references.
+  running.WaitUntil("a worker that runs trials",
+                    [&] { return sweep.Committed("out") > 0 && !running.Workers().empty(); });
   last = running.Workers().front();
   REQUIRE(::kill(last, SIGSTOP) == 0);
   // One that is hit between two trials costs none: then the next worker is.

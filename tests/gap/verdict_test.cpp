@@ -9,34 +9,52 @@
 namespace rift::gap {
 namespace {
 
-TEST_CASE("Repeats that agree decide and repeats that do not are undecided") {
-  CHECK(JudgeRepeats(std::vector{0.07, 0.08}, 0.06).verdict == Verdict::kFalsified);
-  CHECK(JudgeRepeats(std::vector{0.05, 0.06}, 0.06).verdict == Verdict::kNotFalsified);
-  CHECK(JudgeRepeats(std::vector{0.05, 0.07}, 0.06).verdict == Verdict::kUndecided);
-  CHECK(JudgeRepeats(std::vector<double>{}, 0.06).verdict == Verdict::kUndecided);
+TEST_CASE("A setting is falsified or passed once its share of failures is shown") {
+  CHECK(JudgeCounts(3, 3, {}).verdict == Verdict::kFalsified);
+  CHECK(JudgeCounts(1, 1, {}).verdict == Verdict::kUndecided);
+  CHECK(JudgeCounts(2, 20, {}).verdict == Verdict::kUndecided);
+  CHECK(JudgeCounts(0, 3, {}).verdict == Verdict::kNotSeenToFail);
+  CHECK(JudgeCounts(0, 100, {}).verdict == Verdict::kPassed);
+  CHECK(JudgeCounts(1, 200, {}).verdict == Verdict::kPassed);
+  CHECK(JudgeCounts(0, 0, {}).verdict == Verdict::kUndecided);
+  CHECK(JudgeCounts(3, 3, {.share = 0.5}).verdict == Verdict::kUndecided);
+}
+
+TEST_CASE("The words of a verdict say how many trials or why") {
+  CHECK(VerdictText(JudgeCounts(3, 3, {})) == "falsified");
+  CHECK(VerdictText(JudgeCounts(0, 100, {})) == "passed");
+  CHECK(VerdictText(JudgeCounts(0, 1, {})) == "not seen to fail (1 trial)");
+  CHECK(VerdictText(JudgeCounts(1, 1, {})) == "undecided (1 of 1 trial fails)");
+  CHECK(VerdictText(JudgeCounts(2, 20, {})) == "undecided (2 of 20 trials fail)");
+  CHECK(VerdictText(JudgeCounts(0, 0, {})) == "undecided (no trial tells)");
+}
+
+TEST_CASE("The interval of a share never contradicts its verdict") {
+  for (int repeats = 1; repeats <= 60; ++repeats) {
+    for (int above = 0; above <= repeats; ++above) {
+      const RepeatVerdict verdict = JudgeCounts(above, repeats, {});
+      CHECK((verdict.verdict == Verdict::kFalsified) == (verdict.share_low > 0.1));
+      CHECK((verdict.verdict == Verdict::kPassed) == (verdict.share_high < 0.1));
+    }
+  }
+}
+
+TEST_CASE("Among many settings one needs more failures and less once others are falsified too") {
+  const auto judged = [](int failing, int settings) {
+    std::vector<RepeatVerdict> verdicts(static_cast<size_t>(failing), JudgeCounts(4, 4, {}));
+    JudgeTogether(verdicts, settings, {});
+    return VerdictText(verdicts.front());
+  };
+  CHECK(judged(1, 1) == "falsified");
+  CHECK(judged(1, 500) == "undecided (4 of 4 trials fail, too few among so many settings)");
+  CHECK(judged(100, 500) == "falsified");
 }
 
 TEST_CASE("A repeat without a gap has no vote") {
   const double missing = std::numeric_limits<double>::quiet_NaN();
-  const RepeatVerdict verdict = JudgeRepeats(std::vector{0.07, missing}, 0.06);
-  CHECK(verdict.verdict == Verdict::kFalsified);
-  CHECK(verdict.repeats == 1);
-}
-
-TEST_CASE("The interval for the share of failing trials is that of Clopper and Pearson") {
-  // 3 of 3 and 0 of 3: (alpha / 2)^(1/3) and its mirror image.
-  const RepeatVerdict all = JudgeRepeats(std::vector{1.0, 1.0, 1.0}, 0.06);
-  CHECK(all.share_low == Approx(std::cbrt(0.025)));
-  CHECK(all.share_high == 1.0);
-  const RepeatVerdict none = JudgeRepeats(std::vector{0.0, 0.0, 0.0}, 0.06);
-  CHECK(none.share_low == 0.0);
-  CHECK(none.share_high == Approx(1.0 - std::cbrt(0.025)));
-  // 4 of 10 at 95 %: 0.1216 to 0.7376 (table of Clopper and Pearson).
-  std::vector<double> gaps_m(10, 0.0);
-  for (int i = 0; i < 4; ++i) gaps_m[i] = 1.0;
-  const RepeatVerdict some = JudgeRepeats(gaps_m, 0.06);
-  CHECK(some.share_low == Approx(0.1216).margin(5e-5));
-  CHECK(some.share_high == Approx(0.7376).margin(5e-5));
+  const RepeatVerdict verdict = JudgeRepeats(std::vector{0.07, missing, 0.06}, 0.06);
+  CHECK(verdict.above == 1);
+  CHECK(verdict.repeats == 2);
 }
 
 TEST_CASE("The noise floor is the mean gap between every two real trials") {

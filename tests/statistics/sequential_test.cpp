@@ -107,9 +107,14 @@ TEST_CASE("Streams end after 0.6 of the trials that a fixed number with equal er
   struct Case {
     double bound, share;
   };
-  for (const auto [bound, share] :
-       {Case{0.1, 0.025}, {0.1, 0.05}, {0.1, 0.2}, {0.1, 0.4}, {0.2, 0.1}, {0.2, 0.4}, {0.5, 0.1},
-        {0.5, 0.25}}) {
+  for (const auto [bound, share] : {Case{0.1, 0.025},
+                                    {0.1, 0.05},
+                                    {0.1, 0.2},
+                                    {0.1, 0.4},
+                                    {0.2, 0.1},
+                                    {0.2, 0.4},
+                                    {0.5, 0.1},
+                                    {0.5, 0.25}}) {
     Random random(2, static_cast<std::uint64_t>(1e6 * bound + 1e3 * share));
     int wrong = 0, open = 0;
     double trials = 0.0;

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include "rift/statistics/random.hpp"
+#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/search_space.hpp"
+#include "rift/sweep/falsify/verdict.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -84,13 +87,13 @@ TEST_CASE("A search finds a failure and stops at the first that is sure") {
   const SettingResult& worst = result->settings[*found.worst_setting];
   CHECK(worst.theta[4].text == "ice");
   CHECK(worst.mean_gap_m > 0.06);
-  CHECK(worst.rows.size() == 6);  // repeated until it is sure
+  const size_t needed = static_cast<size_t>(TrialsToFalsify({}, 500));
+  CHECK(worst.rows.size() == needed);  // all of them fail, and it stops as soon as it is sure
   std::set<std::uint64_t> seeds;
   for (const int row : worst.rows) seeds.insert(*result->rows[row].seed);
-  CHECK(seeds == std::set<std::uint64_t>{1, 2, 3, 4, 5, 6});
-  // Far from the threshold one trial is enough.
-  CHECK(result->settings.front().rows.size() <= 6);
-  CHECK(result->rows.size() < 6 * result->settings.size());
+  CHECK(seeds.size() == needed);
+  CHECK(*seeds.rbegin() == needed);
+  CHECK(result->rows.size() < needed * result->settings.size());
 }
 
 TEST_CASE("A search maps all failures when asked and spends its budget") {
@@ -100,7 +103,7 @@ TEST_CASE("A search maps all failures when asked and spends its budget") {
   REQUIRE(result);
   CHECK(result->falsification->evaluations == 200);
   CHECK(result->falsification->ended == "the budget");
-  CHECK(result->falsification->falsified > 1);
+  CHECK(result->Count(gap::Verdict::kFalsified) > 1);
   CHECK(result->settings.size() == 200);
 }
 
@@ -112,68 +115,137 @@ TEST_CASE("The same seed gives the same search and its rows say when they are ra
   CHECK((*Search(Budget(10, search::Method::kRandom))).rows[0].is_random_draw);
 }
 
-TEST_CASE("Time that is up ends a search before the next batch") {
-  int batches = 0;
+TEST_CASE("Time that is up ends a search before the next trials") {
+  int asked = 0;  // for the first batch, for its repeats, and no more
   const std::optional<SweepResult> result =
       Falsify(Plan(Budget(500, search::Method::kRandom), {.until = Until::kBudget}),
-              RunHere(Simulated, {}), [&](const auto&) { return ++batches <= 2; });
+              RunHere(Simulated, {}), [&](const auto&) { return ++asked <= 2; });
   REQUIRE(result);
   CHECK(result->falsification->ended == "the time");
-  CHECK(result->falsification->evaluations == 16);
+  CHECK(result->falsification->evaluations == 8);
 }
 
-TEST_CASE("A verdict needs enough repeats that agree") {
-  std::vector<TrialRow> rows(6);
-  for (TrialRow& row : rows) row.falsified = true;
-  CHECK(JudgeSetting(rows, {}) == gap::Verdict::kFalsified);
-  CHECK(JudgeSetting(std::span(rows).first(5), {}) == gap::Verdict::kUndecided);
-  CHECK(JudgeSetting(std::span(rows).first(5), {.confidence = 0.9}) == gap::Verdict::kFalsified);
-  rows[0].falsified = false;
-  CHECK(JudgeSetting(rows, {}) == gap::Verdict::kUndecided);
-  for (TrialRow& row : rows) row.falsified = false;
-  CHECK(JudgeSetting(rows, {}) == gap::Verdict::kNotFalsified);
-  for (TrialRow& row : rows) row.status = TrialStatus::kCrashed;
-  CHECK(JudgeSetting(rows, {}) == gap::Verdict::kUndecided);
+std::vector<TrialRow> Rows(int failing, int passing) {
+  std::vector<TrialRow> rows(static_cast<size_t>(failing + passing));
+  for (int i = 0; i < failing; ++i) rows[static_cast<size_t>(i)].falsified = true;
+  for (size_t i = 0; i < rows.size(); ++i) rows[i].seed = i;
+  return rows;
+}
+
+TEST_CASE("Trials that do not tell have no vote") {
+  std::vector<TrialRow> rows = Rows(3, 2);
+  rows[0].status = TrialStatus::kFell;  // a failure that counts
+  rows[4].status = TrialStatus::kCrashed;
+  const gap::RepeatVerdict verdict = CountFailures(rows, {});
+  CHECK(verdict.above == 3);
+  CHECK(verdict.repeats == 4);
 }
 
 TEST_CASE("As many failing trials falsify as are said to be needed") {
-  for (const double share : {0.0, 0.1, 0.5, 0.9}) {
-    for (const double confidence : {0.8, 0.95, 0.99}) {
-      const FalsifyOptions options{.share = share, .confidence = confidence};
-      std::vector<TrialRow> rows(static_cast<size_t>(TrialsToFalsify(options)));
-      for (TrialRow& row : rows) row.falsified = true;
-      CHECK(JudgeSetting(rows, options) == gap::Verdict::kFalsified);
-      rows.pop_back();
-      CHECK(JudgeSetting(rows, options) == gap::Verdict::kUndecided);
+  for (const double share : {0.01, 0.1, 0.5, 0.9}) {
+    for (const int settings : {1, 500}) {
+      const gap::VerdictOptions options{.share = share};
+      const int needed = TrialsToFalsify(options, settings);
+      std::vector<gap::RepeatVerdict> verdicts{CountFailures(Rows(needed, 0), options)};
+      gap::JudgeTogether(verdicts, settings, options);
+      CHECK(verdicts[0].verdict == gap::Verdict::kFalsified);
+      verdicts[0] = CountFailures(Rows(needed - 1, 0), options);
+      gap::JudgeTogether(verdicts, settings, options);
+      CHECK(verdicts[0].verdict == gap::Verdict::kUndecided);
     }
   }
-  CHECK(TrialsToFalsify({}) == 6.0);
-  CHECK(std::isinf(TrialsToFalsify({.share = 1.0})));
 }
 
-TEST_CASE("Settings carry the verdicts that the search counts") {
-  FalsifyOptions options{.until = Until::kBudget, .most_repeats = 8, .confidence = 0.8};
+TEST_CASE("Identical runs count once and a setting without chance needs no more of them") {
+  std::vector<TrialRow> rows = Rows(3, 0);
+  for (TrialRow& row : rows) {
+    row.comparison.gap_m = 0.07;
+    row.evidence.fingerprint = 7;
+  }
+  CHECK(CountFailures(rows, {}).repeats == 1);
+  CHECK(CountFailures(rows, {}).verdict == gap::Verdict::kFalsified);
+  for (TrialRow& row : rows) row.falsified = false;
+  CHECK(CountFailures(rows, {}).verdict == gap::Verdict::kPassed);
+  for (TrialRow& row : rows) row.seed.reset();  // logs: one run, named several times
+  CHECK(CountFailures(rows, {}).verdict == gap::Verdict::kNotSeenToFail);
+  rows[2].comparison.gap_m = 0.05;  // the same run against another log
+  CHECK(CountFailures(rows, {}).repeats == 2);
+}
+
+TEST_CASE("Settings carry the verdicts of a search that counts its whole budget") {
+  FalsifyOptions options{.until = Until::kBudget};
   const SweepResult result = *Search(Budget(120), options);
-  int falsified = 0, undecided = 0;
+  CHECK(result.judged_settings == 120);
+  CHECK(result.Count(gap::Verdict::kFalsified) > 0);
   for (const SettingResult& setting : result.settings) {
-    CHECK(setting.verdict.confidence == 0.8);
-    falsified += setting.verdict.verdict == gap::Verdict::kFalsified;
-    undecided += setting.verdict.verdict == gap::Verdict::kUndecided && setting.verdict.above > 0;
+    CHECK(setting.verdict.settings == 120);
     if (setting.verdict.above == 0 && setting.verdict.repeats > 0) {
-      CHECK(setting.verdict.verdict == gap::Verdict::kNotFalsified);
+      CHECK(setting.verdict.verdict == gap::Verdict::kNotSeenToFail);
     }
   }
-  CHECK(falsified == result.falsification->falsified);
-  CHECK(undecided == result.falsification->undecided);
-  CHECK(falsified > 0);
+  CHECK(result.falsification->verdict == gap::Verdict::kFalsified);
 }
 
-TEST_CASE("A fall tells only where falls count") {
-  TrialRow fall;
-  fall.status = TrialStatus::kFell;
-  CHECK(std::isnan(Robustness_m(std::span(&fall, 1), 0.06)));
-  fall.falsified = true;
-  CHECK(Robustness_m(std::span(&fall, 1), 0.06) == Approx(-0.06));
+TEST_CASE("A run that does not arrive costs the more the further it was from the end") {
+  TrialRow row;
+  row.status = TrialStatus::kTimedOut;
+  row.left_m = 0.3;
+  CHECK(std::isnan(Robustness_m(std::span(&row, 1), 0.06)));  // where it does not count
+  row.falsified = true;
+  CHECK(Robustness_m(std::span(&row, 1), 0.06) == Approx(-0.3));
+  row.left_m = 0.1;
+  CHECK(Robustness_m(std::span(&row, 1), 0.06) == Approx(-0.1));
+  row.left_m = gap::kNotComputed;
+  CHECK(Robustness_m(std::span(&row, 1), 0.06) == Approx(-0.06));
+}
+
+/// The share of failures is the value of the only parameter.
+RunTrials Planted() {
+  return RunHere(
+      [](const TrialRequest& request) {
+        const double share = *request.theta[0].number;
+        statistics::Random random(*request.seed, static_cast<std::uint64_t>(1e6 * share));
+        TrialRow row{.theta = request.theta, .trial = request.trial, .seed = request.seed};
+        row.falsified = random.Uniform() < share;
+        row.comparison.gap_m = row.falsified ? 0.08 : 0.04;
+        return row;
+      },
+      {});
+}
+
+TEST_CASE("Of 200 settings with known shares of failures few are judged wrongly or left open") {
+  experiment::Experiment plan;
+  experiment::Parameter shares{.key = "share"};
+  for (int i = 0; i < 200; ++i) {
+    shares.levels.push_back(experiment::NumberValue(0.02 + 0.96 * i / 199.0));
+  }
+  plan.space.parameters = {shares};
+  plan.falsify.repeat = Repeat::kEvery;
+  for (const double share : {0.1, 0.5}) {
+    plan.falsify.share = share;
+    plan.falsify.most_repeats = 300;
+    int decided = 0, wrong = 0, clear = 0, open = 0, trials = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      plan.seed = 1000 * seed;
+      const SweepResult result = *SweepGrid(plan, Planted());
+      trials += static_cast<int>(result.rows.size());
+      for (const SettingResult& setting : result.settings) {
+        const double truth = *setting.theta[0].number;
+        const bool is_falsified = setting.verdict.verdict == gap::Verdict::kFalsified;
+        const bool is_passed = setting.verdict.verdict == gap::Verdict::kPassed;
+        decided += is_falsified || is_passed;
+        wrong += (is_falsified && truth <= share) || (is_passed && truth >= share);
+        const bool is_clear =
+            truth < share / 3.0 || truth > std::min(3.0 * share, 1.0 - (1.0 - share) / 3.0);
+        clear += is_clear;
+        open += is_clear && !is_falsified && !is_passed;
+      }
+    }
+    CAPTURE(share, decided, wrong, clear, open, trials);
+    CHECK(decided >= 450);
+    CHECK(wrong <= 0.05 * decided);
+    CHECK(open <= 0.2 * clear);
+  }
 }
 
 TEST_CASE("A search over logs or over nothing is refused") {

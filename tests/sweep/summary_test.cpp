@@ -57,8 +57,9 @@ TEST_CASE("Means and failures and verdicts follow from the rows") {
   CHECK(by_surface[1].failures == 4);
   CHECK(by_surface[1].mean_gap_m == Approx(0.07));
   REQUIRE(result.settings.size() == 4);
-  CHECK(result.settings[0].verdict.verdict == gap::Verdict::kNotFalsified);
-  CHECK(result.settings[3].verdict.verdict == gap::Verdict::kFalsified);
+  CHECK(result.settings[0].verdict.verdict == gap::Verdict::kNotSeenToFail);
+  CHECK(result.settings[3].verdict.verdict == gap::Verdict::kUndecided);
+  CHECK(result.settings[3].verdict.above == 2);
 }
 
 TEST_CASE("A trial without a gap is counted and never averaged") {

@@ -41,6 +41,23 @@ struct GapOptions {
   }
 };
 
+/// When repeats of a setting decide: a setting is falsified when more than this share of all its
+/// runs would fail, passed when fewer would.
+struct VerdictOptions {
+  double share = 0.1;
+  double confidence = 0.95;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("share", self.share, 0.001, 0.999,
+          "a setting is falsified when more than this share of its runs is shown to fail, passed "
+          "when less is");
+    field("confidence", self.confidence, 0.5, 0.999999,
+          "of falsified and passed, however often the trials are looked at; among many settings "
+          "this share of the decided ones is right");
+  }
+};
+
 /// The definition in force in one line, to stand beside every number.
 /// `tag_offset_m`: how far ahead of the tag the real path was taken.
 std::string DefinitionText(const GapOptions& options, double tag_offset_m = 0.0);

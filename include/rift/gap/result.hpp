@@ -10,30 +10,49 @@
 #include "rift/gap/comparison.hpp"
 #include "rift/gap/likeness.hpp"
 #include "rift/gap/options.hpp"
+#include "rift/statistics/sequential.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
 namespace rift::gap {
 
-enum class Verdict { kNotFalsified, kFalsified, kUndecided };
+enum class Verdict {
+  kNotSeenToFail,  ///< no repeat failed, and they are too few to show more
+  kPassed,         ///< the share of runs that fail is shown to be below VerdictOptions::share
+  kFalsified,      ///< it is shown to be above
+  kUndecided,      ///< some repeats failed, or there are none
+};
 
-constexpr std::array<std::string_view, 3> EnumNames(Verdict) {
-  return {"not falsified", "falsified", "undecided"};
+constexpr std::array<std::string_view, 4> EnumNames(Verdict) {
+  return {"not seen to fail", "passed", "falsified", "undecided"};
 }
 
-/// What repeats of one setting say together.
+/// What repeats of one setting say together about the share of all its runs that would fail.
 struct RepeatVerdict {
-  Verdict verdict = Verdict::kUndecided;  ///< falsified or not only when every repeat agrees
-  int above = 0;                          ///< repeats whose gap exceeds the threshold
-  int repeats = 0;
-  /// Clopper-Pearson interval for the share of all such trials that would exceed the threshold.
+  Verdict verdict = Verdict::kUndecided;
+  int above = 0;  ///< repeats that fail: the gap exceeds the threshold, or the robot did not arrive
+  int repeats = 0;  ///< that tell
+  /// The share is above `share_low` with `confidence` at every look, below `share_high` likewise.
   double share_low = 0.0;
   double share_high = 1.0;
   double confidence = 0.95;
+  statistics::ShareEvidence evidence;  ///< about VerdictOptions::share
+  int settings = 1;                    ///< judged together
 };
 
-/// Repeats that disagree are undecided; so is a setting without a single gap.
+/// By the counts alone: the setting is the only one that is judged.
+RepeatVerdict JudgeCounts(int above, int repeats, const VerdictOptions& options);
+
+/// NaN does not tell.
 RepeatVerdict JudgeRepeats(std::span<const double> gaps_m, double threshold_m,
-                           double confidence = 0.95);
+                           const VerdictOptions& options = {});
+
+/// Judges `settings` settings at once, of which the verdicts (as JudgeCounts gives them) are those
+/// that were tried: of the falsified and of the passed ones at most a share of 1 - confidence is
+/// wrong on average (statistics::NeededEvidence), so that a setting among many needs more repeats.
+void JudgeTogether(std::span<RepeatVerdict> verdicts, int settings, const VerdictOptions& options);
+
+/// "falsified", "passed", "not seen to fail (3 trials)", "undecided (2 of 5 trials fail)".
+std::string VerdictText(const RepeatVerdict& verdict);
 
 /// Mean gap between every two of the real trajectories: no simulator can be expected to be closer
 /// to them than they are to each other. NaN for fewer than two.
@@ -54,6 +73,7 @@ struct GapResult {
   std::vector<trajectory::Trajectory> reals;  ///< one for each trial
   double mean_gap_m = kNotComputed;
   double noise_floor_m = kNotComputed;  ///< NaN for one real log
+  VerdictOptions judged_by;
   RepeatVerdict verdict;
   std::optional<Likeness> likeness;  ///< only with repeats of the simulator
 };

@@ -15,10 +15,10 @@ struct ShareEvidence {
 
 /// Evidence that may be looked at after every trial: where the share is at or below the bound,
 /// `above` ever reaches log(1/alpha) with a probability of at most alpha, however long the trials
-/// go on and whatever makes them end (Ville 1939); `below` likewise where it is at or above. Each is
-/// a mixture of likelihood ratios (Robbins 1970) against shares whose odds are 2 to 100 times those
-/// of the bound, most of the weight on the nearest. Throws std::invalid_argument unless
-/// 0 <= successes <= trials and 0 < bound < 1.
+/// go on and whatever makes them end (Ville 1939); `below` likewise where it is at or above. Each
+/// is a mixture of likelihood ratios (Robbins 1970) against shares whose odds are 2 to 100 times
+/// those of the bound, most of the weight on the nearest. Throws std::invalid_argument unless 0 <=
+/// successes <= trials and 0 < bound < 1.
 ShareEvidence EvidenceOnShare(int successes, int trials, double bound);
 
 /// The shares that the evidence does not exclude: the share is above `low` at every look with this

@@ -63,13 +63,10 @@ std::string ShrinkInto(const std::filesystem::path& folder,
 std::string RareEventInto(const std::filesystem::path& folder,
                           const experiment::Experiment& experiment,
                           const sweep::RareEventOptions& options, FurtherTrials& trials) {
-  trials.Begin(options.samples_per_level * options.most_levels *
-               static_cast<int>(experiment.reference.trials.names.size()));
+  trials.Begin(options.replicas * options.samples_per_level * options.most_levels);
   const sweep::RareEvent event = sweep::EstimateRareEvent(experiment, trials.AsRun(), options);
   trials.End();
-  const size_t trials_per_setting = experiment.reference.trials.names.size();
-  files::WriteFile(folder / "rare_event.json",
-                   report::RareEventJson(event, options, trials_per_setting));
+  files::WriteFile(folder / "rare_event.json", report::RareEventJson(event, options));
   return fmt::format("\nrare event: {}\n", report::RareEventSentence(event));
 }
 

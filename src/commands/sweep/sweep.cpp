@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -21,6 +22,7 @@
 #include "rift/sweep/explain/program_cells.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
+#include "rift/sweep/falsify/verdict.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 
@@ -96,9 +98,12 @@ void Save(const fs::path& out, const experiment::Experiment& experiment,
   files::WriteFile(out / "summary.json", report::SummaryJson(result));
 }
 
-bool IsFalsified(const sweep::SweepResult& result) {
-  if (!result.falsification) return result.all.failures > 0;
-  return result.falsification->verdict == gap::Verdict::kFalsified;
+/// A failure that leaves its setting undecided may be one of many.
+bool MayFail(const sweep::SweepResult& result) {
+  return result.Count(gap::Verdict::kFalsified) > 0 ||
+         std::any_of(result.settings.begin(), result.settings.end(), [](const auto& setting) {
+           return setting.verdict.verdict == gap::Verdict::kUndecided && setting.verdict.above > 0;
+         });
 }
 
 void NotePlan(const SweepRequest& request, const experiment::Experiment& loaded) {
@@ -110,14 +115,14 @@ void NotePlan(const SweepRequest& request, const experiment::Experiment& loaded)
 }
 
 void NoteTooFewRepeats(const experiment::Experiment& experiment) {
-  const double needed = sweep::TrialsToFalsify(experiment.falsify);
-  const bool is_enough =
-      experiment.goal != experiment::Goal::kFalsify || experiment.falsify.most_repeats >= needed;
-  if (is_enough) return;
+  if (experiment.goal != experiment::Goal::kFalsify) return;
+  const int needed = sweep::TrialsToFalsify(experiment.falsify, experiment.search.budget);
+  if (experiment.falsify.most_repeats >= needed) return;
   terminal::Say(fmt::format(
-      "note: falsify.most_repeats is {}, and it takes {} failing trials to falsify a setting "
-      "at {:g} % confidence: settings that fail stay undecided",
-      experiment.falsify.most_repeats, needed, 100.0 * experiment.falsify.confidence));
+      "note: falsify.most_repeats is {}, and it takes {} failing trials to falsify the first of {} "
+      "settings at {:g} % confidence: settings that fail may stay undecided",
+      experiment.falsify.most_repeats, needed, experiment.search.budget,
+      100.0 * experiment.falsify.confidence));
 }
 
 /// Logs are compared in seconds and keep no journal.
@@ -172,7 +177,7 @@ int Sweep(const SweepRequest& request) {
       RunSweep(evaluator, {out, request.jobs, request.fresh, progress});
   if (!judged) return SayStopped(experiment, out);
   Save(out, experiment, evaluator, *judged);
-  if (judged->all.n == 0) return EndWithoutGap(request, out, *judged);
+  if (judged->all.told == 0) return EndWithoutGap(request, out, *judged);
 
   const sweep::Explanation explanation = sweep::Explain(*judged, OptionsFor(request.explain));
   const std::vector<sweep::GroupLikeness> likeness = sweep::MeasureSweepLikeness(evaluator);
@@ -185,7 +190,8 @@ int Sweep(const SweepRequest& request) {
       SpendTrials(out, *judged, request.explain, evaluator, {request.jobs, progress}, request.json);
   if (!is_done) return terminal::kStopped;
   if (!request.quiet) terminal::Say("report: " + (out / "report.html").string());
-  return request.exit_code && IsFalsified(*judged) ? terminal::kFalsified : terminal::kDone;
+  if (judged->all.n == 0) return terminal::kNotReached;
+  return request.exit_code && MayFail(*judged) ? terminal::kFalsified : terminal::kDone;
 }
 
 void AddOptions(CLI::App& app, SweepRequest& request) {
@@ -213,7 +219,7 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
                  "goal: calibrate: write the fitted robot, to be used as include:")
       ->type_name("FILE.yaml");
   app.add_flag("--exit-code", request.exit_code,
-               "end with 1 when any trial of a grid is falsified, or a search falsifies");
+               "end with 1 when a setting is falsified, or undecided with a failure");
   app.footer(
       "Ctrl-C stops a sweep, and the same command goes on with it, also after a crash.\n"
       "goal: calibrate fits the simulator to logs (configs/calibrate.yaml).\n"

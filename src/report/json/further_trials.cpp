@@ -46,8 +46,7 @@ std::string ShrunkJson(const sweep::SweepResult& result, const sweep::ShrunkRow&
   return Dump(json);
 }
 
-std::string RareEventJson(const sweep::RareEvent& event, const sweep::RareEventOptions& options,
-                          size_t trials_per_setting) {
+std::string RareEventJson(const sweep::RareEvent& event, const sweep::RareEventOptions& options) {
   const ordered_json json{
       {"probability", NumberOrNull(event.probability)},
       {"low", event.low},
@@ -56,8 +55,7 @@ std::string RareEventJson(const sweep::RareEvent& event, const sweep::RareEventO
       {"coefficient_of_variation", NumberOrNull(event.coefficient_of_variation)},
       {"is_reached", event.is_reached},
       {"levels", event.levels},
-      {"settings", event.evaluations},
-      {"trials_per_setting", trials_per_setting},
+      {"runs", event.evaluations},
       {"options", FieldsToJson(options)},
       {"sentence", RareEventSentence(event)}};
   return Dump(json);

@@ -61,11 +61,13 @@ std::string GapJson(const gap::GapResult& result) {
   json["mean_gap_m"] = result.mean_gap_m;
   json["noise_floor_m"] = NumberOrNull(result.noise_floor_m);
   json["verdict"] = yaml::NameOf(verdict.verdict);
+  json["verdict_text"] = gap::VerdictText(verdict);
   json["repeats"] = {{"n", verdict.repeats},
                      {"above_threshold", verdict.above},
+                     {"share", result.judged_by.share},
                      {"confidence", verdict.confidence},
-                     {"share_above_low", verdict.share_low},
-                     {"share_above_high", verdict.share_high}};
+                     {"share_low", verdict.share_low},
+                     {"share_high", verdict.share_high}};
   if (result.likeness) json["likeness"] = LikenessJson(*result.likeness);
   return Dump(json);
 }

@@ -18,6 +18,7 @@ ordered_json LevelJson(const sweep::LevelSummary& level) {
   return {{"mean_gap_m", NumberOrNull(level.mean_gap_m)},
           {"failures", level.failures},
           {"n", level.n},
+          {"told", level.told},
           {"not_ok", level.not_ok},
           {"sd_gap_m", NumberOrNull(level.sd_gap_m)}};
 }
@@ -42,11 +43,15 @@ ordered_json SettingJson(const sweep::SweepResult& result, const sweep::SettingR
   const gap::RepeatVerdict& verdict = setting.verdict;
   return {{"theta", ThetaJson(result.parameters, setting.theta)},
           {"mean_gap_m", NumberOrNull(setting.mean_gap_m)},
+          {"mean_loss_m", NumberOrNull(setting.mean_loss_m)},
+          {"loss_low_m", NumberOrNull(setting.loss_m.low)},
+          {"loss_high_m", NumberOrNull(setting.loss_m.high)},
           {"verdict", yaml::NameOf(verdict.verdict)},
+          {"verdict_text", gap::VerdictText(verdict)},
           {"failures", verdict.above},
           {"n", verdict.repeats},
-          {"share_above_low", verdict.share_low},
-          {"share_above_high", verdict.share_high},
+          {"share_low", verdict.share_low},
+          {"share_high", verdict.share_high},
           {"noise_floor_m", NumberOrNull(setting.noise_floor_m)}};
 }
 
@@ -57,10 +62,6 @@ ordered_json FalsificationJson(const sweep::SweepResult& result,
                     {"evaluations", found.evaluations},
                     {"budget", found.budget},
                     {"ended_by", found.ended},
-                    {"confidence", found.confidence},
-                    {"share", found.share},
-                    {"falsified", found.falsified},
-                    {"undecided", found.undecided},
                     {"first_evaluation", nullptr},
                     {"worst", nullptr}};
   if (found.first_evaluation) json["first_evaluation"] = *found.first_evaluation;
@@ -115,12 +116,24 @@ std::string SummaryJson(const sweep::SweepResult& result) {
   json["definition"]["tag_offset_m"] = result.tag_offset_m;
   json["definition"]["text"] = gap::DefinitionText(result.gap, result.tag_offset_m);
   json.update(LevelJson(result.all));
+  json["verdicts"] = {{"share", result.judged_by.share},
+                      {"confidence", result.judged_by.confidence},
+                      {"settings_judged_together",
+                       std::max(result.judged_settings, static_cast<int>(result.settings.size()))}};
+  for (const gap::Verdict verdict : {gap::Verdict::kFalsified, gap::Verdict::kPassed,
+                                     gap::Verdict::kNotSeenToFail, gap::Verdict::kUndecided}) {
+    json["verdicts"][std::string(yaml::NameOf(verdict))] = result.Count(verdict);
+  }
+  json["replaced_references"] = ordered_json::array();
+  for (const sweep::ReplacedReference& replaced : result.replaced) {
+    json["replaced_references"].push_back(
+        {{"seed", replaced.seed}, {"used", replaced.used}, {"reason", replaced.reason}});
+  }
   if (result.all.n > 0) json["attribution"] = AttributionJson(result);
   if (result.falsification) {
     json["falsification"] = FalsificationJson(result, *result.falsification);
   }
-  ordered_json& by = json["by"] = ordered_json::object();
-  ordered_json& effects = json["effects"] = ordered_json::object();
+  ordered_json by = ordered_json::object(), effects = ordered_json::object();
   for (size_t i = 0; i < result.parameters.size(); ++i) {
     if (result.parameters[i].IsContinuous()) continue;  // every setting would be its own level
     by[result.parameters[i].Name()] = LevelsJson(sweep::SummariseBy(result, {static_cast<int>(i)}));
@@ -134,6 +147,8 @@ std::string SummaryJson(const sweep::SweepResult& result) {
       by[split.others_name] = LevelsJson(sweep::SummariseBy(result, split.others));
     }
   }
+  json["by"] = std::move(by);
+  json["effects"] = std::move(effects);
   AddSettings(result, json);
   return Dump(json);
 }

@@ -57,7 +57,7 @@ json LevelBar(const sweep::LevelSummary& level) {
   json tip = {{"value", level.level},
               {"mean gap", Metres(level.mean_gap_m)},
               {"standard deviation", Metres(level.sd_gap_m)},
-              {"above threshold", fmt::format("{} of {}", level.failures, level.n)}};
+              {"above threshold", fmt::format("{} of {}", level.failures, level.told)}};
   if (level.not_ok > 0) tip["without a gap"] = std::to_string(level.not_ok);
   return {{"label", Shortened(level.level, kLongestLabel)},
           {"value", Value(level.mean_gap_m)},

@@ -98,7 +98,7 @@ json TrialCells(const sweep::TrialRow& row, std::ptrdiff_t number, const std::st
 
 PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& options) {
   json table = EmptyTable(result);
-  for (json column : {Mark("verdict"), Number("mean gap (m)", 4), Number("above", 0),
+  for (json column : {Mark("verdict"), Number("mean gap (m)", 4), Number("failed", 0),
                       Number("trials", 0), Number("without gap", 0), Number("noise floor (m)", 4),
                       Number("share from (%)", 0), Number("share to (%)", 0)}) {
     table["columns"].push_back(std::move(column));
@@ -109,7 +109,7 @@ PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& o
   for (const sweep::SettingResult* setting : settings) {
     const gap::RepeatVerdict& verdict = setting->verdict;
     json cells = Theta(setting->theta);
-    cells.push_back(EnumNames(verdict.verdict)[static_cast<int>(verdict.verdict)]);
+    cells.push_back(gap::VerdictText(verdict));
     cells.push_back(Value(setting->mean_gap_m));
     cells.push_back(verdict.above);
     cells.push_back(verdict.repeats);
@@ -120,9 +120,8 @@ PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& o
     table["rows"].push_back(std::move(cells));
     table["marks"].push_back(MarkOf(verdict.verdict));
   }
-  return {std::move(table),
-          Note(settings.size(), all, "settings, the worst first") +
-              " \"share\" is the interval for the share of such trials above the threshold."};
+  return {std::move(table), Note(settings.size(), all, "settings, the worst first") +
+                                " \"share\" is the interval for the share of such runs that fail."};
 }
 
 PageTable TrialsTable(const sweep::SweepResult& result, const std::string& gap_flags,
@@ -141,7 +140,7 @@ PageTable TrialsTable(const sweep::SweepResult& result, const std::string& gap_f
   const auto rows = RowsToShow(result, options.table_rows);
   for (const sweep::TrialRow* row : rows) {
     table["rows"].push_back(TrialCells(*row, row - result.rows.data() + 1, gap_flags));
-    table["marks"].push_back(row->IsOk() ? (row->falsified ? "fail" : "") : "unknown");
+    table["marks"].push_back(row->falsified ? "fail" : row->IsOk() ? "" : "unknown");
   }
   table["complete"] = rows.size() == result.rows.size();
   const char* again =

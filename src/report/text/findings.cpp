@@ -9,6 +9,7 @@
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/figures/gnuplot_text.hpp"
 #include "rift/report/figures/setting_grid.hpp"
+#include "rift/sweep/explain/anatomy.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/enum_name.hpp"
 #include "trial_query.hpp"
@@ -28,7 +29,7 @@ std::string Count(long n, std::string_view noun) {
 }
 
 double FailureShare(const sweep::LevelSummary& level) {
-  return level.n == 0 ? -1.0 : static_cast<double>(level.failures) / level.n;
+  return level.told == 0 ? -1.0 : static_cast<double>(level.failures) / level.told;
 }
 
 void SayLevel(const std::string& parameter, const sweep::LevelSummary& level, Sentence* sentence) {
@@ -36,7 +37,7 @@ void SayLevel(const std::string& parameter, const sweep::LevelSummary& level, Se
   sentence->Say(level.level + " (")
       .Link(std::to_string(level.failures), Both(query, AboveThreshold()))
       .Say(" of ")
-      .Link(fmt::format("{} trials", level.n), query)
+      .Link(fmt::format("{} trials", level.told), query)
       .Say(")");
 }
 
@@ -45,7 +46,7 @@ void SayMostAndLeast(const sweep::SweepResult& result, Finding* finding) {
   const int main = sweep::SplitFactors(result.parameters).main_factor;
   if (result.parameters[main].IsContinuous()) return;
   std::vector<sweep::LevelSummary> levels = sweep::SummariseBy(result, {main});
-  std::erase_if(levels, [](const auto& level) { return level.n == 0; });
+  std::erase_if(levels, [](const auto& level) { return level.told == 0; });
   if (levels.size() < 2) return;
   const auto [least, most] =
       std::minmax_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
@@ -101,27 +102,6 @@ Finding Where(const sweep::SweepResult& result, const sweep::Explanation& explan
   return finding;
 }
 
-struct Verdicts {
-  int falsified = 0, held = 0, disagree = 0, unmeasured = 0;
-  const gap::RepeatVerdict* unanimous = nullptr;  ///< of the most repeats
-};
-
-Verdicts CountVerdicts(const sweep::SweepResult& result) {
-  Verdicts verdicts;
-  for (const sweep::SettingResult& setting : result.settings) {
-    const gap::RepeatVerdict& verdict = setting.verdict;
-    if (verdict.verdict == gap::Verdict::kUndecided) {
-      ++(verdict.repeats == 0 ? verdicts.unmeasured : verdicts.disagree);
-      continue;
-    }
-    ++(verdict.verdict == gap::Verdict::kFalsified ? verdicts.falsified : verdicts.held);
-    if (verdicts.unanimous == nullptr || verdict.repeats > verdicts.unanimous->repeats) {
-      verdicts.unanimous = &verdict;
-    }
-  }
-  return verdicts;
-}
-
 /// Which settings their repeats leave open, for as many as can be read.
 void SayUndecided(const sweep::SweepResult& result, Finding* finding) {
   constexpr int kMostNamed = 12;
@@ -137,34 +117,15 @@ void SayUndecided(const sweep::SweepResult& result, Finding* finding) {
     }
     sentence.Say(named++ == 0 ? "" : "; ")
         .Link(SettingLabel(result, setting.theta), TrialsOf(result, setting.theta))
-        .Say(fmt::format(" ({} of {} above)", verdict.above, verdict.repeats));
+        .Say(fmt::format(" ({} of {} failed)", verdict.above, verdict.repeats));
   }
   if (named > 0) finding->sentences.push_back(sentence.Say("."));
 }
 
 Finding HowSure(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
-  const Verdicts verdicts = CountVerdicts(result);
   Finding finding{"How sure is that?", {}};
-  finding.sentences.push_back(fmt::format(
-      "Of {}, {} falsified, {} not falsified and {} undecided because the repeats disagree.",
-      Count(static_cast<long>(result.settings.size()), "setting"), verdicts.falsified,
-      verdicts.held, verdicts.disagree));
+  finding.sentences.push_back(VerdictCounts(result).Say("."));
   SayUndecided(result, &finding);
-  if (verdicts.unmeasured > 0) {
-    finding.sentences.push_back(fmt::format("{} undecided because no repeat has a gap.",
-                                            Count(verdicts.unmeasured, "setting")));
-  }
-  if (verdicts.unanimous != nullptr) {
-    const gap::RepeatVerdict& verdict = *verdicts.unanimous;
-    const std::string repeats =
-        verdict.repeats == 1 ? std::string("From a single repeat,")
-                             : fmt::format("Even where all {} repeats agree,", verdict.repeats);
-    finding.sentences.push_back(
-        fmt::format("{} the share of such trials above the threshold is known only to "
-                    "lie between {} and {} ({} confidence).",
-                    repeats, Percent(verdict.share_low), Percent(verdict.share_high),
-                    Percent(verdict.confidence)));
-  }
   finding.sentences.push_back(explanation.probability.sentence + ".");
   return finding;
 }
@@ -259,20 +220,75 @@ std::string Sentence::Text() const {
   return text;
 }
 
-Headline Summary(const sweep::SweepResult& result) {
-  const std::string threshold = Number(result.gap.threshold_m);
-  const sweep::LevelSummary& all = result.all;
-  if (all.n == 0)
-    return {Outcome::kUnknown, Sentence("Not known whether it fails: no trial has a gap.")};
-  if (all.failures == 0) {
-    return {Outcome::kHolds,
-            fmt::format("No failure: none of {} exceeds {} m; mean gap {}.",
-                        Count(all.n, "measured trial"), threshold, Metres(all.mean_gap_m))};
+Sentence VerdictCounts(const sweep::SweepResult& result) {
+  const int settings = std::max(result.judged_settings, static_cast<int>(result.settings.size()));
+  return fmt::format(
+      "{} of {} falsified, {} passed, {} not seen to fail, {} undecided (falsified: more than {:g} "
+      "% "
+      "of its runs are shown to fail, passed: fewer; of {} judged together at most {:g} % of the "
+      "decided ones are wrong on average)",
+      result.Count(gap::Verdict::kFalsified), result.settings.size(),
+      result.Count(gap::Verdict::kPassed), result.Count(gap::Verdict::kNotSeenToFail),
+      result.Count(gap::Verdict::kUndecided), 100.0 * result.judged_by.share, settings,
+      100.0 * (1.0 - result.judged_by.confidence));
+}
+
+namespace {
+
+/// The gap beside the scatter of the repeats of its reference; empty without repeats.
+std::string BesideScatter(const sweep::SweepResult& result) {
+  /// A mean gap that exceeds the scatter by less than this share of it makes no difference.
+  constexpr double kSlight = 0.25;
+  const sweep::Anatomy anatomy = sweep::Dissect(result);
+  const sweep::Estimate& beyond = anatomy.removable_m;
+  if (std::isnan(beyond.low)) return "";
+  const bool is_robot = result.reference_kind == "logs";
+  const std::string it = is_robot ? "the robot" : "the nominal run";
+  const std::string numbers = fmt::format(
+      "mean gap {} against {} between its own runs, difference {:+.4f} m ({:.4f} to "
+      "{:.4f})",
+      Metres(anatomy.gap_m.mean), Metres(anatomy.noise_m.mean), beyond.mean, beyond.low,
+      beyond.high);
+  if (beyond.low > 0.0) {
+    return fmt::format("Further from {} than {} from itself: {}. ", it, it, numbers);
   }
-  Sentence sentence("It fails: ");
-  sentence.Link(std::to_string(all.failures), AboveThreshold())
-      .Say(fmt::format(" of {} exceed {} m ({}); mean gap {}.", Count(all.n, "measured trial"),
-                       threshold, Percent(FailureShare(all)), Metres(all.mean_gap_m)));
+  if (beyond.high <= kSlight * anatomy.noise_m.mean) {
+    return fmt::format("As near to {} as {} to itself: {}. ", it, it, numbers);
+  }
+  return fmt::format("It cannot be told whether it is further from {} than {} from itself: {}. ",
+                     it, it, numbers);
+}
+
+std::string HowTheyFail(const sweep::SweepResult& result) {
+  const long ended = std::count_if(result.rows.begin(), result.rows.end(),
+                                   [](const auto& row) { return row.falsified && !row.IsOk(); });
+  const std::string above = fmt::format("exceed {} m", Number(result.gap.threshold_m));
+  if (ended == 0) return above;
+  if (ended == result.all.failures) return "do not arrive";
+  return fmt::format("fail, {} as they {} and {} as they do not arrive",
+                     result.all.failures - ended, above, ended);
+}
+
+}  // namespace
+
+Headline Summary(const sweep::SweepResult& result) {
+  const sweep::LevelSummary& all = result.all;
+  if (all.told == 0) {
+    return {Outcome::kUnknown, Sentence("Not known whether it fails: no trial has a gap.")};
+  }
+  Sentence sentence(BesideScatter(result));
+  if (all.failures == 0) {
+    sentence.Say(fmt::format("No failure: none of {} exceeds {} m; mean gap {}.",
+                             Count(all.told, "measured trial"), Number(result.gap.threshold_m),
+                             Metres(all.mean_gap_m)));
+    return {Outcome::kHolds, sentence};
+  }
+  const std::string mean =
+      std::isnan(all.mean_gap_m) ? "" : fmt::format("; mean gap {}", Metres(all.mean_gap_m));
+  sentence.Say("It fails: ")
+      .Link(std::to_string(all.failures), AboveThreshold())
+      .Say(fmt::format(" of {} {} ({}){}.", Count(all.told, "measured trial"), HowTheyFail(result),
+                       Percent(FailureShare(all)), mean));
   return {Outcome::kFails, sentence};
 }
 

@@ -104,10 +104,11 @@ std::string StandstillText(const gap::GapResult& result) {
 std::string VerdictText(const gap::GapResult& result) {
   const gap::RepeatVerdict& verdict = result.verdict;
   return fmt::format(
-      "verdict: {} ({} of {} above {:g} m; at {:g} % confidence {:.0f} to {:.0f} % of such trials "
-      "are)\n",
-      yaml::NameOf(verdict.verdict), verdict.above, verdict.repeats, result.options.threshold_m,
-      100.0 * verdict.confidence, 100.0 * verdict.share_low, 100.0 * verdict.share_high);
+      "verdict: {}: {} of {} above {:g} m; the share of such runs is above {:.0f} % and below "
+      "{:.0f} %, each with {:g} % confidence; falsified: above {:g} %\n",
+      gap::VerdictText(verdict), verdict.above, verdict.repeats, result.options.threshold_m,
+      100.0 * verdict.share_low, 100.0 * verdict.share_high, 100.0 * verdict.confidence,
+      100.0 * result.judged_by.share);
 }
 
 }  // namespace

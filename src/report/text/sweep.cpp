@@ -32,16 +32,10 @@ std::string LevelTable(const std::string& head, std::vector<sweep::LevelSummary>
     const std::string mean =
         std::isnan(level.mean_gap_m) ? "-" : fmt::format("{:.4f}", level.mean_gap_m);
     text += fmt::format("{:<{}}  {:>10}  {:>8}  {:>6}  {:>11}\n", level.level, width, mean,
-                        level.failures, level.n, level.not_ok);
+                        level.failures, level.told, level.not_ok);
   }
   if (omitted > 0) text += fmt::format("and {} more, all of them in summary.json\n", omitted);
   return text + '\n';
-}
-
-int CountVerdict(const sweep::SweepResult& result, gap::Verdict verdict) {
-  return static_cast<int>(std::count_if(
-      result.settings.begin(), result.settings.end(),
-      [&](const sweep::SettingResult& setting) { return setting.verdict.verdict == verdict; }));
 }
 
 std::string EffectsText(const sweep::SweepResult& result) {
@@ -74,19 +68,20 @@ std::string NotOkText(const sweep::SweepResult& result) {
 }
 
 std::string FalsificationText(const sweep::SweepResult& result, const sweep::Falsification& found) {
-  std::string text = fmt::format(
-      "{}: {} settings falsified and {} undecided of {} tried ({}, ended by {}); falsified: more "
-      "than {:.0f} % of its trials would fail, at {:g} % confidence\n",
-      yaml::NameOf(found.verdict), found.falsified, found.undecided, found.evaluations,
-      found.strategy, found.ended, 100.0 * found.share, 100.0 * found.confidence);
+  std::string text =
+      fmt::format("{}: {} settings tried of {} ({}, ended by {})\n", yaml::NameOf(found.verdict),
+                  found.evaluations, found.budget, found.strategy, found.ended);
   if (found.first_evaluation) {
     text += fmt::format("first falsified setting: number {}\n", *found.first_evaluation);
   }
   if (found.worst_setting) {
     const sweep::SettingResult& worst = result.settings.at(*found.worst_setting);
-    text += fmt::format("worst setting: mean gap {:.4f} m in {} trials, {} of them failed ({})\n",
-                        worst.mean_gap_m, worst.rows.size(), worst.verdict.above,
-                        sweep::SettingText(result.parameters, worst.theta));
+    const std::string gap = std::isnan(worst.mean_gap_m)
+                                ? "no run arrived"
+                                : fmt::format("mean gap {:.4f} m", worst.mean_gap_m);
+    text +=
+        fmt::format("worst setting: {}, {} of {} trials failed ({})\n", gap, worst.verdict.above,
+                    worst.verdict.repeats, sweep::SettingText(result.parameters, worst.theta));
   }
   return text;
 }
@@ -124,6 +119,15 @@ std::string OutcomeText(const sweep::TrialRow& row) {
                     : std::string(yaml::NameOf(row.status));
 }
 
+std::string ReplacedText(const sweep::SweepResult& result) {
+  std::string text;
+  for (const sweep::ReplacedReference& replaced : result.replaced) {
+    text += fmt::format("reference: the nominal run with seed {} failed ({}): seed {} instead\n",
+                        replaced.seed, replaced.reason, replaced.used);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string SweepText(const sweep::SweepResult& result) {
@@ -132,13 +136,9 @@ std::string SweepText(const sweep::SweepResult& result) {
                   gap::DefinitionText(result.gap, result.tag_offset_m), result.gap.threshold_m);
   if (!result.parameters.empty()) text += LevelTables(result);
   text += LevelTable("", {result.all});
-  text += EffectsText(result) + WorstText(result) + NotOkText(result);
-  if (result.falsification) return text + FalsificationText(result, *result.falsification);
-  text += fmt::format("settings: {} falsified, {} not, {} undecided (their repeats disagree)\n",
-                      CountVerdict(result, gap::Verdict::kFalsified),
-                      CountVerdict(result, gap::Verdict::kNotFalsified),
-                      CountVerdict(result, gap::Verdict::kUndecided));
-  return text;
+  text += EffectsText(result) + WorstText(result) + NotOkText(result) + ReplacedText(result);
+  if (result.falsification) text += FalsificationText(result, *result.falsification);
+  return text + "settings: " + VerdictCounts(result).Text() + "\n";
 }
 
 std::string ExplanationText(const sweep::SweepResult& result, const sweep::Explanation& explanation,
@@ -190,13 +190,15 @@ std::string ShrunkText(const sweep::SweepResult& result, const sweep::ShrunkRow&
 std::string RareEventSentence(const sweep::RareEvent& event) {
   if (!event.is_reached) {
     return fmt::format(
-        "no failure was reached in {} levels: a setting drawn at random fails with a probability "
+        "no failure was reached in {} levels: a run at a setting drawn at random fails with a "
+        "probability "
         "of about {:.2g} at most",
         event.levels, event.high);
   }
   return fmt::format(
-      "a setting drawn at random fails with a probability of {:.2g}, between {:.2g} and {:.2g} "
-      "with 95 % confidence ({} settings in {})",
+      "a run at a setting drawn at random fails with a probability of {:.2g}, between {:.2g} and "
+      "{:.2g} "
+      "with 95 % confidence ({} runs in {})",
       event.probability, event.low, event.high, event.evaluations,
       event.levels == 1 ? std::string("1 level: it is not rare")
                         : fmt::format("{} levels of subset simulation", event.levels));

@@ -20,9 +20,10 @@ constexpr double kFewestResidualDf = 2.0;
 /// last one is -1 everywhere.
 class Coding {
  public:
-  Coding(const SweepResult& result, int parameter) : parameter_(parameter) {
-    for (const TrialRow& row : result.rows) {
-      if (row.IsOk()) index_.emplace(row.theta[parameter], static_cast<int>(index_.size()));
+  Coding(const SweepResult& result, const std::vector<int>& rows, int parameter)
+      : parameter_(parameter) {
+    for (const int row : rows) {
+      index_.emplace(result.rows[row].theta[parameter], static_cast<int>(index_.size()));
     }
   }
   int parameter() const { return parameter_; }
@@ -52,8 +53,8 @@ struct Fit {
 /// The normal equations of all terms, of which any subset of terms can be fitted.
 class LinearModel {
  public:
-  LinearModel(const SweepResult& result, const std::vector<Coding>& codings,
-              std::vector<Term> terms)
+  LinearModel(const SweepResult& result, const std::vector<int>& rows,
+              const std::vector<Coding>& codings, std::vector<Term> terms)
       : terms_(std::move(terms)) {
     int columns = 1;
     for (Term& term : terms_) {
@@ -62,12 +63,14 @@ class LinearModel {
     }
     xx_ = Eigen::MatrixXd::Zero(columns, columns);
     xy_ = Eigen::VectorXd::Zero(columns);
-    const double mean = result.all.mean_gap_m;
+    double mean_m = 0.0;
+    for (const int row : rows) {
+      mean_m += Loss_m(result.rows[row], result.gap.threshold_m) / static_cast<double>(rows.size());
+    }
     Eigen::VectorXd x(columns);
-    for (const TrialRow& row : result.rows) {
-      if (!row.IsOk()) continue;
-      FillRow(codings, row, x);
-      const double y = row.comparison.gap_m - mean;
+    for (const int row : rows) {
+      FillRow(codings, result.rows[row], x);
+      const double y = Loss_m(result.rows[row], result.gap.threshold_m) - mean_m;
       xx_.selfadjointView<Eigen::Lower>().rankUpdate(x);
       xy_ += y * x;
       yy_ += y * y;
@@ -122,11 +125,11 @@ class LinearModel {
   double yy_ = 0.0;
 };
 
-std::vector<Coding> VariedParameters(const SweepResult& result) {
+std::vector<Coding> VariedParameters(const SweepResult& result, const std::vector<int>& rows) {
   std::vector<Coding> codings;
   for (int i = 0; i < static_cast<int>(result.parameters.size()); ++i) {
     if (result.parameters[i].IsContinuous()) continue;
-    Coding coding(result, i);
+    Coding coding(result, rows, i);
     if (coding.Columns() > 0) codings.push_back(std::move(coding));
   }
   return codings;
@@ -223,8 +226,9 @@ const FactorialTerm* FactorialAnalysis::Main(int parameter) const {
 
 FactorialAnalysis AnalyseFactors(const SweepResult& result) {
   FactorialAnalysis analysis;
-  analysis.n = result.all.n;
-  std::vector<Coding> codings = VariedParameters(result);
+  const std::vector<int> rows = RowsThatCount(result);
+  analysis.n = static_cast<int>(rows.size());
+  std::vector<Coding> codings = VariedParameters(result, rows);
   std::erase_if(codings, [](const Coding& coding) { return coding.Columns() > kMostColumns; });
   if (codings.empty() || ColumnCount(MainTerms(codings)) > kMostColumns) return analysis;
   std::vector<Term> terms = WithInteractions(codings);
@@ -234,7 +238,7 @@ FactorialAnalysis AnalyseFactors(const SweepResult& result) {
   analysis.has_interactions = codings.size() > 1 && leaves_enough(terms);
   if (!analysis.has_interactions) terms = MainTerms(codings);
 
-  const LinearModel model(result, codings, terms);
+  const LinearModel model(result, rows, codings, terms);
   const Fit all = model.With([](int) { return true; });
   analysis.residual_df = analysis.n - all.rank;
   if (model.Total() > 0.0) analysis.explained = 1.0 - all.sse / model.Total();

@@ -74,7 +74,8 @@ std::vector<Dot> DotsOf(const SweepResult& result, const Side& x, int xp, const 
   const size_t step = 1 + result.rows.size() / (kMostTrials + 1);
   for (size_t i = 0; i < result.rows.size(); i += step) {
     const TrialRow& row = result.rows[i];
-    if (row.IsOk()) dots.push_back({x.Place(row.theta[xp]), y.Place(row.theta[yp]), row.falsified});
+    if (row.Tells())
+      dots.push_back({x.Place(row.theta[xp]), y.Place(row.theta[yp]), row.falsified});
   }
   return dots;
 }

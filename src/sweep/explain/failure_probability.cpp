@@ -15,43 +15,48 @@
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/inference.hpp"
+#include "rift/statistics/random.hpp"
 
 namespace rift::sweep {
 
 FailureProbability EstimateFailureProbability(const SweepResult& result) {
   FailureProbability estimate;
-  std::vector<double> is_failure;
   for (const SettingResult& setting : result.settings) {
     const bool is_draw = result.rows[setting.rows.front()].is_random_draw;
     if (!is_draw) continue;
-    if (setting.verdict.repeats == 0) {
-      ++estimate.without_gap;
+    // Further trials are made of settings that failed: they would count those twice.
+    const auto first = std::find_if(setting.rows.begin(), setting.rows.end(),
+                                    [&](int row) { return result.rows[row].Tells(); });
+    if (first == setting.rows.end()) {
+      ++estimate.untold;
     } else {
-      is_failure.push_back(setting.verdict.above > 0 ? 1.0 : 0.0);
+      ++estimate.draws;
+      estimate.failures += result.rows[*first].falsified;
     }
   }
-  const gap::RepeatVerdict verdict = gap::JudgeRepeats(is_failure, 0.5, estimate.confidence);
-  estimate.draws = verdict.repeats;
-  estimate.failures = verdict.above;
   if (estimate.draws == 0) {
     estimate.sentence =
         "How often it fails over the whole space is not known: the settings were chosen, not drawn "
         "at random";
     return estimate;
   }
-  estimate.low = verdict.share_low;
-  estimate.high = verdict.share_high;
+  const statistics::Interval share =
+      statistics::ClopperPearson(estimate.failures, estimate.draws, estimate.confidence);
+  estimate.low = share.low;
+  estimate.high = share.high;
   estimate.share = static_cast<double>(estimate.failures) / estimate.draws;
   estimate.sentence = fmt::format(
-      "Over the space {:.3g} % of the settings fail, between {:.3g} and {:.3g} % with 95 % "
-      "confidence (Clopper-Pearson, {} of {} settings drawn at random{})",
+      "Over the space {:.3g} % of the runs fail, between {:.3g} and {:.3g} % with 95 % "
+      "confidence (Clopper-Pearson, {} of {} runs, each at a setting drawn at random{})",
       100.0 * estimate.share, 100.0 * estimate.low, 100.0 * estimate.high, estimate.failures,
       estimate.draws,
-      estimate.without_gap > 0 ? fmt::format("; {} more gave no gap", estimate.without_gap) : "");
+      estimate.untold > 0 ? fmt::format("; {} more do not tell", estimate.untold) : "");
   return estimate;
 }
 
 namespace {
+
+constexpr double kConfidence = 0.95;
 
 /// In [0, 1), the same on every platform.
 double Uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1.0p-53; }
@@ -69,34 +74,41 @@ struct Sample {
 
 using Chain = std::vector<Sample>;
 
+struct Replica {
+  double bound = 1.0;
+  int levels = 0;
+  int evaluations = 0;
+  bool is_reached = false;
+};
+
 class SubsetSimulation {
  public:
   SubsetSimulation(int dimensions, const UnitRobustness& robustness, std::uint64_t seed,
                    const RareEventOptions& options)
       : dimensions_(dimensions), robustness_(robustness), random_(seed), options_(options) {}
 
-  RareEvent Run() {
+  /// `bound` is what the levels that were passed leave; the estimate when failures were reached.
+  Replica Run() {
     std::vector<Chain> chains;
     for (int i = 0; i < options_.samples_per_level; ++i) chains.push_back({Draw()});
-    double probability = 1.0, variance = 0.0;
-    for (event_.levels = 1;; ++event_.levels) {
+    Replica replica{.bound = 1.0};
+    for (replica.levels = 1;; ++replica.levels) {
       const double level = std::max(0.0, LevelOf(chains));
       const double share = ShareBelow(chains, level);
-      variance += SquaredError(chains, level, share);
-      probability *= share;
-      event_.is_reached = level <= 0.0 && share > 0.0;
-      if (level <= 0.0 || event_.levels == options_.most_levels) break;
+      replica.bound *= share;
+      replica.is_reached = level <= 0.0 && share > 0.0;
+      if (level <= 0.0 || replica.levels == options_.most_levels) break;
       chains = Climb(chains, level);
     }
-    Conclude(probability, variance);
-    return event_;
+    replica.evaluations = evaluations_;
+    return replica;
   }
 
  private:
   Sample Evaluated(std::vector<double> point) {
     double robustness = robustness_(point);
     if (std::isnan(robustness)) robustness = std::numeric_limits<double>::infinity();
-    ++event_.evaluations;
+    ++evaluations_;
     return {std::move(point), robustness};
   }
 
@@ -123,20 +135,6 @@ class SubsetSimulation {
       }
     }
     return below / all;
-  }
-
-  /// Squared coefficient of variation of the share, samples of a chain being alike (Au and Beck,
-  /// equation 28): the variance of the chains' sums, which are independent of each other.
-  static double SquaredError(const std::vector<Chain>& chains, double level, double share) {
-    if (share <= 0.0) return std::numeric_limits<double>::infinity();
-    double squares = 0.0, all = 0.0;
-    for (const Chain& chain : chains) {
-      double sum = 0.0;
-      for (const Sample& sample : chain) sum += (sample.robustness <= level) - share;
-      squares += sum * sum;
-      all += static_cast<double>(chain.size());
-    }
-    return squares / std::pow(all * share, 2);
   }
 
   /// From every sample below the level a Markov chain within it, as many samples as before.
@@ -174,25 +172,18 @@ class SubsetSimulation {
     }
   }
 
+  /// Some moves are finer: regions that lie apart make the reach wide, and each of them may be
+  /// narrow.
   Sample Step(const Sample& from, double level) {
+    constexpr double kWide = 0.6, kMiddle = 0.28;
+    const double kind = Uniform(random_);
+    const double scale = kind < kWide ? 1.0 : kind < kWide + kMiddle ? 0.1 : 0.01;
     std::vector<double> point = from.point;
     for (size_t i = 0; i < point.size(); ++i) {
-      point[i] = Reflected(point[i] + reach_[i] * (2.0 * Uniform(random_) - 1.0));
+      point[i] = Reflected(point[i] + scale * reach_[i] * (2.0 * Uniform(random_) - 1.0));
     }
     Sample to = Evaluated(std::move(point));
     return to.robustness <= level ? to : from;
-  }
-
-  void Conclude(double probability, double variance) {
-    event_.probability = probability;
-    if (!event_.is_reached) {
-      event_.high = probability;
-      return;
-    }
-    event_.coefficient_of_variation = std::sqrt(variance);
-    const double spread = statistics::NormalQuantile(0.975) * std::sqrt(std::log1p(variance));
-    event_.low = probability * std::exp(-spread);
-    event_.high = std::min(1.0, probability * std::exp(spread));
   }
 
   int dimensions_;
@@ -200,8 +191,48 @@ class SubsetSimulation {
   std::mt19937_64 random_;
   RareEventOptions options_;
   std::vector<double> reach_;
-  RareEvent event_;
+  int evaluations_ = 0;
 };
+
+/// Of draws that all failed or not at once.
+void CountDraws(const std::vector<Replica>& replicas, RareEvent& event) {
+  double failures = 0.0;
+  for (const Replica& replica : replicas) failures += replica.bound * replica.evaluations;
+  const statistics::Interval share = statistics::ClopperPearson(
+      static_cast<int>(std::lround(failures)), event.evaluations, kConfidence);
+  event.low = share.low;
+  event.high = share.high;
+}
+
+/// Around the mean of the replicas, even in the logarithm, since their estimates are skewed; by
+/// what skewness is left, Student's quantile of 97 % covers 95 % (tests/sweep/failures_test.cpp).
+void MeasureScatter(const std::vector<double>& estimates, RareEvent& event) {
+  constexpr double kQuantile = 0.986;
+  event.coefficient_of_variation = statistics::StandardError(estimates) / event.probability;
+  const double df = static_cast<double>(estimates.size()) - 1.0;
+  const double reach = statistics::StudentQuantile(df, kQuantile) * event.coefficient_of_variation;
+  event.low = event.probability * std::exp(-reach);
+  event.high = std::min(1.0, event.probability * std::exp(reach));
+}
+
+RareEvent Conclude(const std::vector<Replica>& replicas) {
+  RareEvent event;
+  std::vector<double> estimates, bounds;
+  for (const Replica& replica : replicas) {
+    estimates.push_back(replica.is_reached ? replica.bound : 0.0);
+    bounds.push_back(replica.bound);
+    event.levels = std::max(event.levels, replica.levels);
+    event.evaluations += replica.evaluations;
+    event.is_reached = event.is_reached || replica.is_reached;
+  }
+  if (!event.is_reached) {
+    event.probability = event.high = statistics::Mean(bounds);
+    return event;
+  }
+  event.probability = statistics::Mean(estimates);
+  event.levels == 1 ? CountDraws(replicas, event) : MeasureScatter(estimates, event);
+  return event;
+}
 
 }  // namespace
 
@@ -210,7 +241,13 @@ RareEvent EstimateRareEvent(int dimensions, const UnitRobustness& robustness, st
   if (dimensions < 1) {
     throw std::invalid_argument("a rare event needs a space of at least one parameter");
   }
-  return SubsetSimulation(dimensions, robustness, seed, options).Run();
+  std::vector<Replica> replicas;
+  for (int i = 0; i < options.replicas; ++i) {
+    const std::uint64_t own_seed =
+        statistics::SeedOfStream(seed, static_cast<std::uint64_t>(i) + 1);
+    replicas.push_back(SubsetSimulation(dimensions, robustness, own_seed, options).Run());
+  }
+  return Conclude(replicas);
 }
 
 namespace {
@@ -228,25 +265,19 @@ experiment::Theta ThetaAtUnit(const std::vector<experiment::Parameter>& paramete
   return ThetaAt(parameters, point);
 }
 
-/// Of the worst trial; NaN when none tells.
-double WorstRobustness_m(std::span<const TrialRow> rows, double threshold_m) {
-  double worst_m = std::numeric_limits<double>::quiet_NaN();
-  for (size_t i = 0; i < rows.size(); ++i) {
-    worst_m = std::fmin(worst_m, Robustness_m(rows.subspan(i, 1), threshold_m));
-  }
-  return worst_m;
-}
-
 }  // namespace
 
 RareEvent EstimateRareEvent(const experiment::Experiment& experiment, const RunAllTrials& run,
                             const RareEventOptions& options) {
   const std::vector<experiment::Parameter>& parameters = experiment.space.parameters;
   const std::vector<search::Axis> axes = AxesOf(parameters);
+  int runs = 0;
   const UnitRobustness robustness_m = [&](std::span<const double> unit) {
-    const std::vector<TrialRow> rows =
-        run(TrialsAt(experiment, ThetaAtUnit(parameters, axes, unit)));
-    return WorstRobustness_m(rows, experiment.gap.threshold_m);
+    const experiment::Theta theta = ThetaAtUnit(parameters, axes, unit);
+    std::vector<TrialRequest> trial =
+        FurtherTrials(experiment, theta, TrialKind::kComparison, runs, 1);
+    trial.front().seed = FreshSeed(experiment.seed, static_cast<std::uint64_t>(++runs));
+    return Robustness_m(run(std::move(trial)), experiment.gap.threshold_m);
   };
   return EstimateRareEvent(static_cast<int>(parameters.size()), robustness_m, experiment.seed,
                            options);

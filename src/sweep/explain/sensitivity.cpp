@@ -87,15 +87,13 @@ struct Data {
 
 Data Pick(const SweepResult& result, int most) {
   std::vector<const TrialRow*> all;
-  for (const TrialRow& row : result.rows) {
-    if (row.IsOk()) all.push_back(&row);
-  }
+  for (const int row : RowsThatCount(result)) all.push_back(&result.rows[row]);
   Data data;
   const size_t step = 1 + all.size() / static_cast<size_t>(most + 1);
   for (size_t i = 0; i < all.size(); i += step) data.rows.push_back(all[i]);
   data.gaps_m.resize(static_cast<Eigen::Index>(data.rows.size()));
   for (size_t i = 0; i < data.rows.size(); ++i) {
-    data.gaps_m[static_cast<Eigen::Index>(i)] = data.rows[i]->comparison.gap_m;
+    data.gaps_m[static_cast<Eigen::Index>(i)] = Loss_m(*data.rows[i], result.gap.threshold_m);
   }
   return data;
 }

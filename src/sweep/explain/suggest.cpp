@@ -45,11 +45,9 @@ struct Knowledge {
   }
 };
 
-double Width(int above, int trials, double threshold_m) {
-  std::vector<double> gaps_m(static_cast<size_t>(trials), threshold_m);
-  std::fill_n(gaps_m.begin(), above, threshold_m + 1.0);
-  const gap::RepeatVerdict verdict = gap::JudgeRepeats(gaps_m, threshold_m, kConfidence);
-  return verdict.share_high - verdict.share_low;
+double Width(int above, int trials) {
+  const statistics::Interval share = statistics::AnytimeInterval(above, trials, kConfidence);
+  return share.high - share.low;
 }
 
 /// Expected over how many of the further trials are above, given the scatter.
@@ -57,8 +55,7 @@ double WidthAfter(const gap::RepeatVerdict& now, const Knowledge& knowledge, int
   const double share = statistics::NormalCdf(knowledge.above_m / knowledge.scatter_m);
   double width = 0.0;
   for (int k = 0; k <= more; ++k) {
-    width +=
-        statistics::BinomialPdf(more, share, k) * Width(now.above + k, now.repeats + more, 0.0);
+    width += statistics::BinomialPdf(more, share, k) * Width(now.above + k, now.repeats + more);
   }
   return width;
 }
@@ -72,10 +69,10 @@ int TrialsToDecide(const Knowledge& knowledge) {
 
 Suggestion Describe(const SweepResult& result, int setting_index, int more, double scatter_m) {
   const SettingResult& setting = result.settings[setting_index];
-  const Knowledge knowledge{setting.mean_gap_m - result.gap.threshold_m, scatter_m,
+  const Knowledge knowledge{setting.mean_loss_m - result.gap.threshold_m, scatter_m,
                             setting.verdict.repeats};
   Suggestion suggestion{.setting = setting_index, .repeats = more};
-  suggestion.mean_gap_m = setting.mean_gap_m;
+  suggestion.mean_gap_m = setting.mean_loss_m;
   suggestion.wrong_now = knowledge.Wrong();
   suggestion.above_now = knowledge.above_m > 0.0 ? 1.0 - knowledge.Wrong() : knowledge.Wrong();
   suggestion.wrong_after = knowledge.WrongAfter(more);
@@ -104,7 +101,7 @@ Suggestion Describe(const SweepResult& result, int setting_index, int more, doub
 /// fail most surely; then those next to the threshold, where it may do either.
 std::vector<Suggestion> FirstTrials(const SweepResult& result, const SuggestOptions& options) {
   const auto above_m = [&](int setting) {
-    return result.settings[setting].mean_gap_m - result.gap.threshold_m;
+    return result.settings[setting].mean_loss_m - result.gap.threshold_m;
   };
   std::vector<int> order;
   for (int i = 0; i < static_cast<int>(result.settings.size()); ++i) {
@@ -119,7 +116,7 @@ std::vector<Suggestion> FirstTrials(const SweepResult& result, const SuggestOpti
   order.resize(std::min(order.size(), static_cast<size_t>(options.experiments)));
   std::vector<Suggestion> suggestions;
   for (const int i : order) {
-    const double gap_m = result.settings[i].mean_gap_m;
+    const double gap_m = result.settings[i].mean_loss_m;
     Suggestion suggestion{.setting = i, .repeats = options.repeats, .mean_gap_m = gap_m};
     suggestion.sentence = fmt::format(
         "{} of {}: does the robot go with the {:.4f} m that this sweep found there, {} {:g} m? "
@@ -140,9 +137,9 @@ double RepeatScatter_m(const SweepResult& result) {
   int df = 0;
   for (const SettingResult& setting : result.settings) {
     if (setting.verdict.repeats < 2) continue;
-    for (const int row : setting.rows) {
-      if (!result.rows[row].IsOk()) continue;
-      squares += std::pow(result.rows[row].comparison.gap_m - setting.mean_gap_m, 2);
+    for (const int row : DistinctRows(result.rows, setting.rows)) {
+      const double loss_m = Loss_m(result.rows[row], result.gap.threshold_m);
+      if (std::isfinite(loss_m)) squares += std::pow(loss_m - setting.mean_loss_m, 2);
     }
     df += setting.verdict.repeats - 1;
   }
@@ -161,7 +158,7 @@ std::vector<Suggestion> SuggestExperiments(const SweepResult& result,
     for (size_t i = 0; i < result.settings.size(); ++i) {
       const SettingResult& setting = result.settings[i];
       if (setting.verdict.repeats == 0) continue;
-      const Knowledge knowledge{setting.mean_gap_m - result.gap.threshold_m, scatter_m,
+      const Knowledge knowledge{setting.mean_loss_m - result.gap.threshold_m, scatter_m,
                                 setting.verdict.repeats};
       const double before = more[i] == 0 ? knowledge.Wrong() : knowledge.WrongAfter(more[i]);
       const double gain = before - knowledge.WrongAfter(more[i] + options.repeats);

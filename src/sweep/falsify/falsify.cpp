@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
-#include "rift/statistics/descriptive.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/search_space.hpp"
+#include "rift/sweep/falsify/verdict.hpp"
 
 namespace rift::sweep {
 
@@ -54,16 +54,22 @@ Asked Ask(search::Strategy& strategy, const SearchGoal& goal, int most) {
   return asked;
 }
 
-bool RunMore(Points& batch, const SearchGoal& goal, const RunTrials& run) {
-  if (!goal.more) return true;
-  Requests requests;
-  std::vector<size_t> counts;
-  for (const TriedPoint& tried : batch) {
-    Requests more = goal.more(tried.point, tried.rows);
-    counts.push_back(more.size());
-    Append(requests, std::move(more));
+/// How the repeats of a batch ended.
+enum class Repeats { kDone, kOutOfTime, kStopped };
+
+Repeats RunMore(Points& batch, const SearchGoal& goal, const RunTrials& run,
+                const MayStart& may_start) {
+  while (true) {
+    Requests requests;
+    std::vector<size_t> counts;
+    for (Requests& more : goal.more(batch)) {
+      counts.push_back(more.size());
+      Append(requests, std::move(more));
+    }
+    if (requests.empty()) return Repeats::kDone;
+    if (!may_start(requests)) return Repeats::kOutOfTime;
+    if (!RunAll(batch, counts, std::move(requests), run)) return Repeats::kStopped;
   }
-  return requests.empty() || RunAll(batch, counts, std::move(requests), run);
 }
 
 void Tell(search::Strategy& strategy, const Points& batch) {
@@ -89,17 +95,15 @@ std::optional<SearchOutcome> Search(search::Strategy& strategy, const SearchGoal
       return outcome;
     }
     Points& batch = asked.batch;
-    const bool is_whole =
-        RunAll(batch, asked.counts, std::move(asked.requests), run) && RunMore(batch, goal, run);
-    if (!is_whole) return std::nullopt;
+    if (!RunAll(batch, asked.counts, std::move(asked.requests), run)) return std::nullopt;
+    const Repeats repeats = RunMore(batch, goal, run, may_start);
+    if (repeats == Repeats::kStopped) return std::nullopt;
     for (TriedPoint& tried : batch) tried.loss = goal.loss(tried.rows);
     Tell(strategy, batch);
-    const bool is_enough = std::any_of(batch.begin(), batch.end(), [&](const TriedPoint& tried) {
-      return goal.is_enough(tried.rows);
-    });
+    const bool is_enough = goal.is_enough(batch);
     std::move(batch.begin(), batch.end(), std::back_inserter(outcome.points));
-    if (is_enough) {
-      outcome.ended = "the first hit";
+    if (is_enough || repeats == Repeats::kOutOfTime) {
+      outcome.ended = is_enough ? "the first hit" : "the time";
       return outcome;
     }
   }
@@ -109,88 +113,70 @@ std::optional<SearchOutcome> Search(search::Strategy& strategy, const SearchGoal
 
 namespace {
 
-bool HasFailure(std::span<const TrialRow> rows) {
-  return std::any_of(rows.begin(), rows.end(), [](const TrialRow& row) { return row.falsified; });
+RepeatPlan::Settings RowsOf(std::span<const TriedPoint> batch) {
+  RepeatPlan::Settings rows;
+  for (const TriedPoint& tried : batch) rows.emplace_back(tried.rows);
+  return rows;
 }
 
-/// The repeats that a setting gets beyond its first trials: all or none of them, at once.
-std::vector<TrialRequest> MoreTrials(const experiment::Experiment& experiment,
-                                     const experiment::Theta& theta,
-                                     std::span<const TrialRow> rows) {
-  const double robustness_m = Robustness_m(rows, experiment.gap.threshold_m);
-  const bool is_near = HasFailure(rows) || std::abs(robustness_m) <= experiment.falsify.near_m;
-  std::vector<TrialRequest> requests;
-  if (!is_near) return requests;
-  const size_t most = static_cast<size_t>(experiment.falsify.most_repeats);
-  for (int repeat = 1; rows.size() + requests.size() < most; ++repeat) {
-    for (TrialRequest& request : TrialsAt(experiment, theta, repeat)) {
-      requests.push_back(std::move(request));
-    }
-  }
-  return requests;
-}
-
-/// The experiment must outlive the goal.
-SearchGoal GoalOf(const experiment::Experiment& experiment) {
+/// The experiment and the plan must outlive the goal.
+SearchGoal GoalOf(const experiment::Experiment& experiment, RepeatPlan& plan) {
   const std::vector<experiment::Parameter>& parameters = experiment.space.parameters;
   SearchGoal goal{.budget = experiment.search.budget, .batch = experiment.search.batch};
-  const bool is_random = experiment.search.strategy == search::Method::kRandom;
-  goal.trials = [&, is_random](const search::Point& point) {
-    std::vector<TrialRequest> requests = TrialsAt(experiment, ThetaAt(parameters, point));
-    for (TrialRequest& request : requests) request.is_random_draw = is_random;
-    return requests;
+  const TrialKind kind = experiment.search.strategy == search::Method::kRandom
+                             ? TrialKind::kRandomDraw
+                             : TrialKind::kComparison;
+  goal.trials = [&, kind](const search::Point& point) {
+    return TrialsAt(experiment, ThetaAt(parameters, point), kind);
   };
-  goal.more = [&](const search::Point& point, std::span<const TrialRow> rows) {
-    return MoreTrials(experiment, ThetaAt(parameters, point), rows);
+  goal.more = [&, kind](std::span<const TriedPoint> batch) {
+    const std::vector<int> more = plan.More(RowsOf(batch));
+    std::vector<Requests> requests;
+    for (size_t i = 0; i < batch.size(); ++i) {
+      requests.push_back(FurtherTrials(experiment, ThetaAt(parameters, batch[i].point), kind,
+                                       static_cast<int>(batch[i].rows.size()), more[i]));
+    }
+    return requests;
   };
   goal.loss = [&](std::span<const TrialRow> rows) {
     return Robustness_m(rows, experiment.gap.threshold_m);
   };
-  goal.is_enough = [&](std::span<const TrialRow> rows) {
-    return experiment.falsify.until == Until::kFirst &&
-           JudgeSetting(rows, experiment.falsify) == gap::Verdict::kFalsified;
+  goal.is_enough = [&](std::span<const TriedPoint> batch) {
+    plan.Add(RowsOf(batch));
+    return experiment.falsify.until == Until::kFirst && plan.HasFalsified();
   };
   return goal;
 }
 
-/// A setting far from the threshold had one trial, which proves little, but nothing speaks against
-/// it either: only failures leave a doubt.
-std::vector<gap::RepeatVerdict> JudgeAll(const SearchOutcome& outcome,
-                                         const FalsifyOptions& options) {
-  std::vector<gap::RepeatVerdict> verdicts;
-  for (const TriedPoint& tried : outcome.points) {
-    verdicts.push_back(CountFailures(tried.rows, options.confidence));
-    if (verdicts.back().above > 0) verdicts.back().verdict = JudgeSetting(tried.rows, options);
+gap::Verdict VerdictOf(const SweepResult& result) {
+  const auto has = [&](gap::Verdict verdict) { return result.Count(verdict) > 0; };
+  for (const gap::Verdict verdict :
+       {gap::Verdict::kFalsified, gap::Verdict::kUndecided, gap::Verdict::kNotSeenToFail}) {
+    if (has(verdict)) return verdict;
   }
-  return verdicts;
+  return gap::Verdict::kPassed;
 }
 
-Falsification Judge(const SearchOutcome& outcome, const std::vector<gap::RepeatVerdict>& verdicts,
-                    const SearchPlan& search, const FalsifyOptions& options) {
-  Falsification found{.confidence = options.confidence,
-                      .share = options.share,
+Falsification Judge(const SearchOutcome& outcome, const SweepResult& result,
+                    const SearchPlan& search) {
+  Falsification found{.verdict = VerdictOf(result),
                       .evaluations = static_cast<int>(outcome.points.size()),
                       .budget = search.budget,
                       .ended = outcome.ended};
   found.strategy = EnumNames(search.strategy)[static_cast<size_t>(search.strategy)];
   double worst_loss = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < outcome.points.size(); ++i) {
-    const TriedPoint& tried = outcome.points[i];
-    const bool is_falsified = verdicts[i].verdict == gap::Verdict::kFalsified;
-    found.falsified += is_falsified;
-    found.undecided += verdicts[i].verdict == gap::Verdict::kUndecided && verdicts[i].above > 0;
+    const bool is_falsified = result.settings[i].verdict.verdict == gap::Verdict::kFalsified;
     if (is_falsified && !found.first_evaluation) {
       found.first_evaluation = static_cast<int>(i) + 1;
       worst_loss = std::numeric_limits<double>::infinity();  // only falsified ones from here on
     }
     const bool may_be_worst = is_falsified || !found.first_evaluation;
-    if (may_be_worst && tried.loss < worst_loss) {
-      worst_loss = tried.loss;
+    if (may_be_worst && outcome.points[i].loss < worst_loss) {
+      worst_loss = outcome.points[i].loss;
       found.worst_setting = static_cast<int>(i);
     }
   }
-  if (found.undecided > 0) found.verdict = gap::Verdict::kUndecided;
-  if (found.falsified > 0) found.verdict = gap::Verdict::kFalsified;
   return found;
 }
 
@@ -210,17 +196,18 @@ std::optional<SweepResult> Falsify(const experiment::Experiment& experiment, con
   const SearchPlan& search = experiment.search;
   const std::unique_ptr<search::Strategy> strategy =
       search::MakeStrategy(search, AxesOf(parameters), search.budget, *seed);
-  std::optional<SearchOutcome> outcome = Search(*strategy, GoalOf(experiment), run, may_start);
+  RepeatPlan plan(experiment.falsify, search.budget, experiment.gap.threshold_m);
+  std::optional<SearchOutcome> outcome =
+      Search(*strategy, GoalOf(experiment, plan), run, may_start);
   if (!outcome) return std::nullopt;
   SweepResult result = EmptyResult(experiment);
-  const std::vector<gap::RepeatVerdict> verdicts = JudgeAll(*outcome, experiment.falsify);
-  result.falsification = Judge(*outcome, verdicts, search, experiment.falsify);
-  for (TriedPoint& tried : outcome->points) {
-    std::move(tried.rows.begin(), tried.rows.end(), std::back_inserter(result.rows));
+  result.judged_settings = search.budget;
+  for (const TriedPoint& tried : outcome->points) {
+    result.rows.insert(result.rows.end(), tried.rows.begin(), tried.rows.end());
   }
   Summarise(result);
-  assert(result.settings.size() == verdicts.size());  // no point is proposed twice
-  for (size_t i = 0; i < verdicts.size(); ++i) result.settings[i].verdict = verdicts[i];
+  assert(result.settings.size() == outcome->points.size());  // no point is proposed twice
+  result.falsification = Judge(*outcome, result, search);
   return result;
 }
 

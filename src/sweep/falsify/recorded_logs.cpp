@@ -72,6 +72,21 @@ std::string RecordedLogs::HashesText() const {
 
 namespace {
 
+bool Counts(const CountOptions& count, TrialStatus status) {
+  switch (status) {
+    case TrialStatus::kTimedOut:
+      return count.timed_out;
+    case TrialStatus::kFell:
+      return count.fell;
+    case TrialStatus::kLeftArena:
+      return count.left_arena;
+    case TrialStatus::kLost:
+      return count.lost;
+    default:
+      return false;
+  }
+}
+
 void Fail(TrialRow& row, const Recording& recording) {
   row.status = recording.status;
   // A reader's message begins with the path already.
@@ -121,7 +136,9 @@ TrialRow CompareTrial(const experiment::Experiment& experiment, const TrialReque
     Fail(row, real);
   } else if (simulated.status != TrialStatus::kOk) {
     Fail(row, simulated);
-    row.falsified = experiment.falsify.falls_count && simulated.status == TrialStatus::kFell;
+    row.falsified = Counts(experiment.falsify.count, simulated.status);
+    row.left_m = simulated.left_m;
+    if (row.falsified) row.evidence.fingerprint = Fingerprint(simulated.trajectory);
   } else {
     Measure(experiment.gap, simulated, real, row);
     row.falsified = row.comparison.gap_m > experiment.gap.threshold_m;

@@ -11,6 +11,7 @@
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/inference.hpp"
+#include "rift/sweep/falsify/verdict.hpp"
 
 namespace rift::sweep {
 
@@ -71,6 +72,41 @@ std::string SettingKey(const std::vector<experiment::Parameter>& parameters,
   return key;
 }
 
+double Loss_m(const TrialRow& row, double threshold_m) {
+  if (row.IsOk()) return row.comparison.gap_m;
+  if (!row.falsified) return gap::kNotComputed;
+  return threshold_m + (std::isfinite(row.left_m) ? row.left_m : threshold_m);
+}
+
+bool AreIdentical(const TrialRow& a, const TrialRow& b) {
+  const bool is_same_path =
+      a.evidence.fingerprint != 0 && a.evidence.fingerprint == b.evidence.fingerprint;
+  if (!is_same_path || a.status != b.status) return false;
+  return a.IsOk() ? a.comparison.gap_m == b.comparison.gap_m : a.falsified == b.falsified;
+}
+
+std::vector<int> DistinctRows(std::span<const TrialRow> rows, const std::vector<int>& indices) {
+  std::vector<int> distinct;
+  std::multimap<std::uint64_t, int> by_path;
+  for (const int index : indices) {
+    const std::uint64_t path = rows[index].evidence.fingerprint;
+    const auto [begin, end] = by_path.equal_range(path);
+    const bool is_known = std::any_of(begin, end, [&](const auto& known) {
+      return AreIdentical(rows[known.second], rows[index]);
+    });
+    if (is_known) continue;
+    distinct.push_back(index);
+    if (path != 0) by_path.emplace(path, index);
+  }
+  return distinct;
+}
+
+int SweepResult::Count(gap::Verdict verdict) const {
+  return static_cast<int>(std::count_if(
+      settings.begin(), settings.end(),
+      [verdict](const SettingResult& setting) { return setting.verdict.verdict == verdict; }));
+}
+
 namespace {
 
 /// Indices of rows by the label of their group, groups in the order of their first row.
@@ -109,14 +145,14 @@ std::vector<double> GapsOf(const SweepResult& result, const std::vector<int>& ro
   return gaps_m;
 }
 
-/// A fall that counts is above any threshold.
-std::vector<double> GapsToJudge(const SweepResult& result, const std::vector<int>& rows) {
-  std::vector<double> gaps_m = GapsOf(result, rows);
-  for (const int row : rows) {
-    const bool is_fall = !result.rows[row].IsOk() && result.rows[row].falsified;
-    if (is_fall) gaps_m.push_back(std::numeric_limits<double>::infinity());
+/// Of the distinct trials that tell.
+std::vector<double> LossesOf(const SweepResult& result, const std::vector<int>& rows) {
+  std::vector<double> losses_m;
+  for (const int row : DistinctRows(result.rows, rows)) {
+    const double loss_m = Loss_m(result.rows[row], result.gap.threshold_m);
+    if (std::isfinite(loss_m)) losses_m.push_back(loss_m);
   }
-  return gaps_m;
+  return losses_m;
 }
 
 LevelSummary SummariseRows(const SweepResult& result, const std::string& level,
@@ -125,6 +161,7 @@ LevelSummary SummariseRows(const SweepResult& result, const std::string& level,
   LevelSummary summary{.level = level, .n = static_cast<int>(gaps_m.size())};
   for (const int row : rows) {
     summary.failures += result.rows[row].falsified;
+    summary.told += result.rows[row].Tells();
     summary.not_ok += !result.rows[row].IsOk();
   }
   summary.mean_gap_m = statistics::Mean(gaps_m);
@@ -145,9 +182,9 @@ std::string EffectSentence(const Effect& effect) {
 
 Effect EffectOf(const SweepResult& result, int parameter) {
   const Groups groups = GroupBy(result, {parameter});
-  std::vector<std::vector<double>> gaps_m;
-  for (const std::vector<int>& rows : groups.rows) gaps_m.push_back(GapsOf(result, rows));
-  const statistics::AnalysisOfVariance analysis = statistics::AnalyseVariance(gaps_m);
+  std::vector<std::vector<double>> losses_m;
+  for (const std::vector<int>& rows : groups.rows) losses_m.push_back(LossesOf(result, rows));
+  const statistics::AnalysisOfVariance analysis = statistics::AnalyseVariance(losses_m);
   Effect effect{.parameter = result.parameters[parameter].Name(),
                 .levels = SummariseBy(result, {parameter}),
                 .f = analysis.f,
@@ -167,14 +204,26 @@ std::vector<SettingResult> SettingsOf(const SweepResult& result) {
   std::vector<SettingResult> settings;
   for (std::vector<int>& rows : GroupBy(result, all).rows) {
     const double mean_gap_m = statistics::Mean(GapsOf(result, rows));
-    const std::vector<double> gaps_m = GapsToJudge(result, rows);
-    SettingResult setting{.theta = result.rows[rows.front()].theta,
+    const std::vector<double> losses_m = LossesOf(result, rows);
+    std::vector<TrialRow> trials;
+    for (const int row : rows) trials.push_back(result.rows[row]);
+    SettingResult setting{.theta = trials.front().theta,
                           .rows = std::move(rows),
                           .mean_gap_m = mean_gap_m,
-                          .verdict = gap::JudgeRepeats(gaps_m, result.gap.threshold_m)};
+                          .mean_loss_m = statistics::Mean(losses_m),
+                          .loss_m = statistics::MeanInterval(losses_m, 0.95),
+                          .verdict = CountFailures(trials, result.judged_by)};
     settings.push_back(std::move(setting));
   }
   return settings;
+}
+
+void JudgeSettings(SweepResult& result) {
+  std::vector<gap::RepeatVerdict> verdicts;
+  for (const SettingResult& setting : result.settings) verdicts.push_back(setting.verdict);
+  const int settings = std::max(result.judged_settings, static_cast<int>(verdicts.size()));
+  gap::JudgeTogether(verdicts, settings, result.judged_by);
+  for (size_t i = 0; i < verdicts.size(); ++i) result.settings[i].verdict = verdicts[i];
 }
 
 }  // namespace
@@ -194,12 +243,23 @@ void Summarise(SweepResult& result) {
   std::iota(every_row.begin(), every_row.end(), 0);
   result.all = SummariseRows(result, "all", every_row);
   result.settings = SettingsOf(result);
+  JudgeSettings(result);
   result.effects.clear();
   for (size_t i = 0; i < result.parameters.size(); ++i) {
     const experiment::Parameter& parameter = result.parameters[i];
     if (parameter.levels.size() > 1)
       result.effects.push_back(EffectOf(result, static_cast<int>(i)));
   }
+}
+
+std::vector<int> RowsThatCount(const SweepResult& result) {
+  std::vector<int> rows;
+  for (size_t i = 0; i < result.rows.size(); ++i) {
+    if (std::isfinite(Loss_m(result.rows[i], result.gap.threshold_m))) {
+      rows.push_back(static_cast<int>(i));
+    }
+  }
+  return DistinctRows(result.rows, rows);
 }
 
 std::optional<int> WorstRow(const SweepResult& result) {

@@ -22,8 +22,10 @@ std::optional<SweepResult> RunGoal(const experiment::Experiment& experiment, con
 
 std::optional<SweepResult> Sweep(Evaluator& evaluator, const RunTrials& run,
                                  const MayStart& may_start) {
+  std::vector<ReplacedReference> replaced = evaluator.CheckReferences();
   std::optional<SweepResult> result = RunGoal(evaluator.experiment(), run, may_start);
   if (!result) return result;
+  result->replaced = std::move(replaced);
   for (SettingResult& setting : result->settings) {
     setting.noise_floor_m = evaluator.NoiseFloor_m(setting.theta);
   }

@@ -129,12 +129,14 @@ namespace {
 // One list of members for both directions; Row is const for a writer.
 template <class Codec, class Row>
 void Members(Codec& codec, Row& row) {
+  codec(row.seed);
   codec(row.status);
   codec(row.reason);
   codec(row.candidate);
   codec(row.reference);
   codec(row.comparison);
   codec(row.falsified);
+  codec(row.left_m);
   codec(row.evidence.fingerprint);
   codec(row.evidence.candidate_limits);
   codec(row.evidence.reference_limits);

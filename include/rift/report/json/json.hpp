@@ -101,8 +101,7 @@ std::string ShrunkJson(const sweep::SweepResult& result, const sweep::ShrunkRow&
                        const std::string& folder);
 
 /// rare_event.json.
-std::string RareEventJson(const sweep::RareEvent& event, const sweep::RareEventOptions& options,
-                          size_t trials_per_setting);
+std::string RareEventJson(const sweep::RareEvent& event, const sweep::RareEventOptions& options);
 
 /// One row a trial: a column for each parameter by its last name, then trial, gap_m, falsified,
 /// status and further evidence; cells of what could not be computed are empty.

@@ -52,6 +52,9 @@ struct Headline {
 
 Headline Summary(const sweep::SweepResult& result);
 
+/// How many settings are falsified, passed, not seen to fail, undecided, and by which rule.
+Sentence VerdictCounts(const sweep::SweepResult& result);
+
 /// Where, because of what, how sure, what next; then what the gap is made of, the noise, what is
 /// missing.
 std::vector<Finding> Findings(const sweep::SweepResult& result,

@@ -7,7 +7,7 @@
 
 namespace rift::sweep {
 
-/// A parameter, or two of them together, in the linear model of the gap.
+/// A parameter, or two of them together, in the linear model of the loss.
 struct FactorialTerm {
   std::vector<int> parameters;  ///< indices; one for a main effect, two for an interaction
   std::string name;             ///< "surface", "surface x v_min"
@@ -28,7 +28,7 @@ struct FactorialTerm {
 /// squares), so an uneven table blames no parameter for what another one does.
 struct FactorialAnalysis {
   std::vector<FactorialTerm> terms;  ///< main effects in the order of the parameters first
-  int n = 0;                         ///< trials with a gap
+  int n = 0;                         ///< distinct trials that tell
   double residual_df = 0.0;
   double residual_sd_m = gap::kNotComputed;  ///< what no term explains
   double explained = gap::kNotComputed;      ///< share of the variance that all terms explain

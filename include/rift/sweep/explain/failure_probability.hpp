@@ -11,12 +11,12 @@
 
 namespace rift::sweep {
 
-/// How often a setting drawn evenly from the space fails, from rows that were drawn so and from no
-/// others. A draw with several trials fails when any of them does.
+/// How often a run fails at a setting drawn evenly from the space: from the first trial that tells
+/// of each setting that was drawn so, and from no others.
 struct FailureProbability {
   int draws = 0;
   int failures = 0;
-  int without_gap = 0;  ///< draws of which no trial has a gap; not among `draws`
+  int untold = 0;  ///< draws of which no trial tells; not among `draws`
   double share = gap::kNotComputed;
   double low = 0.0;  ///< Clopper and Pearson 1934
   double high = 1.0;
@@ -27,15 +27,18 @@ struct FailureProbability {
 FailureProbability EstimateFailureProbability(const SweepResult& result);
 
 struct RareEventOptions {
-  int samples_per_level = 500;
+  int replicas = 8;
+  int samples_per_level = 300;
   double level_share = 0.1;
   int most_levels = 10;
   double step = 2.0;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
+    field("replicas", self.replicas, 4, 10'000,
+          "estimates that are independent of each other: how far they are apart is the error");
     field("samples_per_level", self.samples_per_level, 20, 1'000'000,
-          "trials of each level; the error falls with their square root");
+          "trials of each level of a replica; the error falls with their square root");
     field("level_share", self.level_share, 0.01, 0.5,
           "share of a level's samples that lie in the next one");
     field("most_levels", self.most_levels, 1, 50, "levels after which it gives up");
@@ -47,25 +50,28 @@ struct RareEventOptions {
 /// A small failure probability.
 struct RareEvent {
   double probability = gap::kNotComputed;  ///< an upper bound when not reached
-  double low = 0.0;                        ///< 95 % interval, lognormal
+  double low = 0.0;                        ///< 95 % interval, from the scatter of the replicas
   double high = 1.0;
   double coefficient_of_variation = gap::kNotComputed;
-  int levels = 0;
+  int levels = 0;  ///< of the replica with the most
   int evaluations = 0;
   bool is_reached = false;  ///< failures were found; else the probability is below `high`
 };
 
-/// Robustness at a point of the unit cube: below or at zero it fails; NaN: it does not.
+/// Robustness at a point of the unit cube: below or at zero it fails; NaN: it does not. It may
+/// depend on chance, drawn anew for each call.
 using UnitRobustness = std::function<double(std::span<const double>)>;
 
 /// Subset simulation (Au and Beck 2001) over the unit cube: a chain of levels of falling
 /// robustness, each reached with probability `level_share` from the one before. Needs some hundred
-/// trials for each factor of ten, where plain sampling needs ten times as many.
+/// trials for each factor of ten, where plain sampling needs ten times as many. Replicas start from
+/// draws of their own, and what one of them misses (a second region, a category) shows in their
+/// scatter; where all of them find failures at once, their draws are counted (Clopper-Pearson).
 RareEvent EstimateRareEvent(int dimensions, const UnitRobustness& robustness, std::uint64_t seed,
                             const RareEventOptions& options = {});
 
-/// The same over the experiment's space: how often a setting drawn evenly from it fails. A setting
-/// fails when any of its trials does.
+/// The same over the experiment's space: how often a run fails at a setting drawn evenly from it.
+/// Every run has a noise seed of its own.
 RareEvent EstimateRareEvent(const experiment::Experiment& experiment, const RunAllTrials& run,
                             const RareEventOptions& options);
 

@@ -26,8 +26,15 @@ class Evaluator {
   Evaluator(const experiment::Experiment& experiment, std::string experiment_file, Inputs inputs);
 
   /// One trial as its row. A setting that breaks a rule of the experiment is a row that says so.
+  /// Where the nominal run of its seed fails, another seed takes its place for both sides: the row
+  /// names the one that was used.
   TrialRow Evaluate(const TrialRequest& request);
   Recording Reference(const TrialRequest& request);
+  /// Runs the nominal trial of the seeds that trials of one setting count up from the experiment's,
+  /// in a process of their own, before the first trial: which of them failed, and what took their
+  /// place. Empty for references that are no runs. Throws std::invalid_argument when the nominal
+  /// run never arrives: nothing can be compared with it.
+  std::vector<ReplacedReference> CheckReferences();
   /// May start where the reference did.
   Recording Candidate(const TrialRequest& request, const Recording& reference);
   /// The same with its encoders: those of a log lie beside it in encoders.csv.
@@ -61,7 +68,9 @@ class Evaluator {
                      const std::string& trial) const;
   std::string ReferencePath(const experiment::Theta& theta, const std::string& trial) const;
   TrialRow EvaluateOdometry(const TrialRequest& request);
-  const Recording& Nominal(const TrialRequest& request);
+  const Recording& Nominal(std::uint64_t seed);
+  std::uint64_t SeedWithReference(std::uint64_t seed);
+  std::string ReplacedText(int seeds);
   double NominalNoiseFloor_m();
 
   const experiment::Experiment& experiment_;
@@ -70,6 +79,7 @@ class Evaluator {
   RecordedLogs candidate_logs_;
   RecordedLogs reference_logs_;
   std::map<std::uint64_t, Recording> nominal_runs_;  ///< by seed
+  std::map<std::uint64_t, std::uint64_t> used_;      ///< seeds with a reference, by those asked for
   std::map<std::string, double> noise_floors_m_;     ///< by the references' sources
 };
 

@@ -14,20 +14,6 @@
 
 namespace rift::sweep {
 
-/// What a search over points of a space needs to know of its goal.
-struct SearchGoal {
-  int budget = 1;  ///< points
-  int batch = 1;   ///< asked for at once; never the number of workers, on which nothing may depend
-  /// The trials that tell what a point costs.
-  std::function<std::vector<TrialRequest>(const search::Point&)> trials;
-  /// Further trials of a point whose rows leave a doubt; may be empty.
-  std::function<std::vector<TrialRequest>(const search::Point&, std::span<const TrialRow>)> more;
-  /// What it costs, of all its rows; NaN where they do not tell.
-  std::function<double(std::span<const TrialRow>)> loss;
-  /// True when a point with such rows ends the search.
-  std::function<bool(std::span<const TrialRow>)> is_enough;
-};
-
 /// A point that was tried.
 struct TriedPoint {
   search::Point point;
@@ -35,12 +21,26 @@ struct TriedPoint {
   double loss = 0.0;
 };
 
+/// What a search over points of a space needs to know of its goal.
+struct SearchGoal {
+  int budget = 1;  ///< points
+  int batch = 1;   ///< asked for at once; never the number of workers, on which nothing may depend
+  /// The trials that tell what a point costs.
+  std::function<std::vector<TrialRequest>(const search::Point&)> trials;
+  /// Further trials of each point of a batch, asked again when they are run until there are none.
+  std::function<std::vector<std::vector<TrialRequest>>(std::span<const TriedPoint>)> more;
+  /// What it costs, of all its rows; NaN where they do not tell.
+  std::function<double(std::span<const TrialRow>)> loss;
+  /// Told each batch once it has all its trials; true ends the search.
+  std::function<bool(std::span<const TriedPoint>)> is_enough;
+};
+
 struct SearchOutcome {
   std::vector<TriedPoint> points;  ///< in the order in which they were proposed
   std::string ended;               ///< "the budget", "the first hit", "every point", "the time"
 };
 
-/// Asked before each batch with its trials: false ends the search in time.
+/// Asked before trials are run: false ends the search in time.
 using MayStart = std::function<bool(const std::vector<TrialRequest>&)>;
 
 /// Asks a strategy, runs the trials, tells it, until the goal is met, the budget is spent, or
@@ -48,8 +48,8 @@ using MayStart = std::function<bool(const std::vector<TrialRequest>&)>;
 std::optional<SearchOutcome> Search(search::Strategy& strategy, const SearchGoal& goal,
                                     const RunTrials& run, const MayStart& may_start);
 
-/// Looks for settings whose gap exceeds the threshold. Those that fail or come near it are
-/// repeated. The result depends on the experiment alone. Nothing when it was told to stop. Throws
+/// Looks for settings that fail, repeats those that do until they are decided (RepeatPlan). The
+/// result depends on the experiment alone. Nothing when it was told to stop. Throws
 /// std::invalid_argument for a space without parameters or candidates that are logs.
 std::optional<SweepResult> Falsify(const experiment::Experiment& experiment, const RunTrials& run,
                                    const MayStart& may_start);

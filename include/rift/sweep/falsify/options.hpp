@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "rift/gap/options.hpp"
 #include "rift/search/options.hpp"
 
 namespace rift::sweep {
@@ -26,28 +27,49 @@ struct SearchPlan : search::SearchOptions {
   }
 };
 
+/// Ends of a trial that count as failures beside a gap above the threshold.
+struct CountOptions {
+  bool timed_out = true;
+  bool fell = true;
+  bool left_arena = true;
+  bool lost = true;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("timed_out", self.timed_out, "the robot did not arrive in time");
+    field("fell", self.fell, "it fell");
+    field("left_arena", self.left_arena, "it left the arena");
+    field("lost", self.lost, "motion capture saw it no more");
+  }
+};
+
+/// Which settings are repeated until they are decided.
+enum class Repeat { kNone, kDoubtful, kEvery };
+constexpr std::array<std::string_view, 3> EnumNames(Repeat) {
+  return {"none", "doubtful", "every"};
+}
+
 /// What counts as a falsification, and how sure it must be.
-struct FalsifyOptions {
+struct FalsifyOptions : gap::VerdictOptions {
   Until until = Until::kFirst;
-  bool falls_count = false;
-  int most_repeats = 6;
+  CountOptions count;
+  Repeat repeat = Repeat::kDoubtful;
+  int most_repeats = 100;
   double near_m = 0.005;
-  double share = 0.5;
-  double confidence = 0.95;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("until", self.until, "stop at the first falsified setting, or map them all");
-    field("falls_count", self.falls_count, "a trial in which the robot fell counts as falsified");
-    field("most_repeats", self.most_repeats, 1, 1000,
-          "trials of a setting, each with random numbers of its own, when the first of them fails "
-          "or is near the threshold (6 that agree decide at 95 %)");
-    field("near_m", self.near_m, 0.0, 1000.0, "so near the threshold a setting is repeated");
-    field("share", self.share, 0.0, 1.0,
-          "a setting is falsified when more than this share of all its trials would fail");
-    field("confidence", self.confidence, 0.5, 0.999999,
-          "of falsified and not falsified; between them a setting is undecided");
+    field("count", self.count, "which ends of a trial count as failures");
+    field("repeat", self.repeat,
+          "settings that get further trials until they are decided: none; in a search those with a "
+          "failure or near the threshold; every one, in a grid of simulated trials too");
+    field("most_repeats", self.most_repeats, 1, 100'000,
+          "trials of a setting at most, each with random numbers of its own");
+    field("near_m", self.near_m, 0.0, 1000.0,
+          "so near the threshold a setting without a failure is looked at again");
+    gap::VerdictOptions::Fields(self, field);
   }
 };
 

@@ -17,6 +17,7 @@ struct Recording {
   std::string source;  ///< a file, or what made it
   trajectory::Trajectory trajectory;
   std::optional<trial::LimitCounts> limits{};  ///< what its controller asked for, where known
+  double left_m = gap::kNotComputed;           ///< see TrialRow
 };
 
 /// What computation needs of the world around it: files and somebody to tell.

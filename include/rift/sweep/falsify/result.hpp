@@ -48,20 +48,37 @@ struct TrialRow {
   std::string candidate;  ///< file of the candidate trajectory
   std::string reference;
   gap::Comparison comparison;  ///< all NaN unless ok
-  bool falsified = false;      ///< gap_m > threshold, or it fell where falls count
+  bool falsified = false;      ///< gap_m > threshold, or an end that counts as a failure
+  /// Along the path from where a run that did not arrive ended to the last waypoint.
+  double left_m = gap::kNotComputed;
   TrialEvidence evidence;
   /// Theta was drawn independently of all other rows, evenly over the space. Only such rows tell
   /// how often it fails; a grid and a search go where they like.
   bool is_random_draw = false;
 
   bool IsOk() const { return status == TrialStatus::kOk; }
+  /// It fails or it does not; a missing log or a crash tells neither.
+  bool Tells() const { return IsOk() || falsified; }
 };
+
+/// What a trial costs: its gap; of a failure without a gap the threshold and how far the robot
+/// still had to go, so that one that never starts is worse than one that stops just before the end.
+/// NaN of a trial that does not tell.
+double Loss_m(const TrialRow& row, double threshold_m);
+
+/// The same candidate path held against the same reference, to the last bit.
+bool AreIdentical(const TrialRow& a, const TrialRow& b);
+
+/// Of these rows the first of each that are identical: what statistics count.
+std::vector<int> DistinctRows(std::span<const TrialRow> rows, const std::vector<int>& indices);
 
 /// All repeats of one setting.
 struct SettingResult {
   experiment::Theta theta;
   std::vector<int> rows;  ///< indices into SweepResult::rows
   double mean_gap_m = gap::kNotComputed;
+  double mean_loss_m = gap::kNotComputed;  ///< of the distinct trials that tell
+  statistics::Interval loss_m{gap::kNotComputed, gap::kNotComputed};  ///< 95 % for it (Student)
   gap::RepeatVerdict verdict;
   double noise_floor_m = gap::kNotComputed;  ///< mean gap between its real trials; NaN below two
 };
@@ -70,13 +87,14 @@ struct SettingResult {
 struct LevelSummary {
   std::string level;  ///< "ground", "0.15"; "[0.15, 0.30]" for a combination
   int n = 0;          ///< trials with a gap
-  int failures = 0;   ///< of them, above the threshold
+  int failures = 0;   ///< trials that fail, some of them without a gap
+  int told = 0;       ///< trials that fail or do not
   int not_ok = 0;     ///< trials without a gap
   double mean_gap_m = gap::kNotComputed;
   double sd_gap_m = gap::kNotComputed;  ///< NaN below two
 };
 
-/// One-way analysis of variance of the gap over the values of one parameter.
+/// One-way analysis of variance of the loss over the values of one parameter.
 struct Effect {
   std::string parameter;  ///< its name
   std::vector<LevelSummary> levels;
@@ -94,16 +112,19 @@ struct Effect {
 /// How a search for failures ended.
 struct Falsification {
   std::string strategy;
-  gap::Verdict verdict = gap::Verdict::kNotFalsified;  ///< of the whole search
-  double confidence = 0.95;
-  double share = 0.5;   ///< falsified: more than this share of a setting's trials would fail
-  int evaluations = 0;  ///< settings tried
+  gap::Verdict verdict = gap::Verdict::kNotSeenToFail;  ///< of the whole search
+  int evaluations = 0;                                  ///< settings tried
   int budget = 0;
-  int falsified = 0;                    ///< settings, at that confidence
-  int undecided = 0;                    ///< settings with failures, too few to be sure
   std::optional<int> first_evaluation;  ///< the first falsified setting, counted from 1
   std::optional<int> worst_setting;     ///< index into settings: the falsified one, else the worst
   std::string ended;                    ///< why: "the first falsified setting", "the budget"
+};
+
+/// A reference seed at which the nominal run failed, and the one that took its place.
+struct ReplacedReference {
+  std::uint64_t seed = 0;
+  std::uint64_t used = 0;
+  std::string reason;
 };
 
 /// Everything a sweep found out.
@@ -112,6 +133,8 @@ struct SweepResult {
   std::string candidate_kind;  ///< "logs", "simulation"
   std::string reference_kind;  ///< "logs", "nominal", "path"
   gap::GapOptions gap;
+  gap::VerdictOptions judged_by;
+  int judged_settings = 0;    ///< settings that are judged together; 0: those there are
   double tag_offset_m = 0.0;  ///< how far ahead of the tag the reference logs were taken
   std::vector<experiment::Parameter> parameters;
   std::vector<TrialRow> rows;
@@ -119,6 +142,9 @@ struct SweepResult {
   std::vector<Effect> effects;  ///< one for each parameter with more than one value
   LevelSummary all;
   std::optional<Falsification> falsification;  ///< of a search
+  std::vector<ReplacedReference> replaced;     ///< of nominal references
+
+  int Count(gap::Verdict verdict) const;  ///< settings
 };
 
 /// The two sides of figures 7, 8, 10 and 13: the first categorical parameter (else the first)
@@ -164,6 +190,9 @@ void Summarise(SweepResult& result);
 
 /// A parameter with a p below this has a detected effect.
 inline constexpr double kSignificance = 0.05;
+
+/// The distinct rows that tell: what the statistics of a whole sweep are made of.
+std::vector<int> RowsThatCount(const SweepResult& result);
 
 /// Index of the row with the largest gap; empty when no trial has one.
 std::optional<int> WorstRow(const SweepResult& result);

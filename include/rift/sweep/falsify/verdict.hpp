@@ -1,26 +1,58 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "rift/sweep/falsify/options.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
 
-/// How many of the trials that tell fail, with the interval for the share of all such trials.
-gap::RepeatVerdict CountFailures(std::span<const TrialRow> rows, double confidence);
+/// How many of the distinct trials that tell fail, judged alone. A setting of which several trials
+/// with different seeds are identical does not depend on chance: every further trial would be the
+/// same, and the one there is decides.
+gap::RepeatVerdict CountFailures(std::span<const TrialRow> rows,
+                                 const gap::VerdictOptions& options);
 
-/// What the repeats of a setting say at a stated confidence: falsified when the Clopper-Pearson
-/// interval for the share of such trials that fail lies above `share`, not falsified when it lies
-/// below; in between, and without a trial that tells, undecided.
-gap::Verdict JudgeSetting(std::span<const TrialRow> rows, const FalsifyOptions& options);
+/// How many trials of a setting, all of them failing, it takes to falsify the first of so many
+/// settings.
+int TrialsToFalsify(const gap::VerdictOptions& options, int settings);
 
-/// How many trials of a setting, all of them failing, it takes to falsify it; infinite for a share
-/// of 1.
-double TrialsToFalsify(const FalsifyOptions& options);
-
-/// Threshold minus mean gap: below zero is a failure. A fall that counts is as bad as twice the
-/// threshold. NaN when no row tells.
+/// Threshold minus mean loss: below zero is a failure. NaN when no row tells.
 double Robustness_m(std::span<const TrialRow> rows, double threshold_m);
+
+/// The settings of a search as they are tried: which of them are decided, and how many further
+/// trials the others are worth. What it says depends on the trials alone.
+class RepeatPlan {
+ public:
+  /// `settings`: how many are judged together, known before the first trial.
+  RepeatPlan(const FalsifyOptions& options, int settings, double threshold_m)
+      : options_(options), settings_(settings), threshold_m_(threshold_m) {}
+
+  using Settings = std::vector<std::span<const TrialRow>>;
+
+  /// Further trials of each setting of a batch: 0 for one that is decided, that has had
+  /// most_repeats, or that no number of trials left could decide.
+  std::vector<int> More(const Settings& batch) const;
+  /// The settings of a batch are done.
+  void Add(const Settings& batch);
+  bool HasFalsified() const;
+
+ private:
+  /// Evidence about the share of failures, or what is needed of it.
+  struct Evidence {
+    std::vector<double> above, below;
+    void Note(const gap::RepeatVerdict& verdict, double least);
+  };
+  double Least() const;  ///< less decides nothing, however many others are decided
+  double Needed(std::vector<double> evidence) const;  ///< by one more decision
+  int Worth(std::span<const TrialRow> rows, const gap::RepeatVerdict& verdict, double above,
+            double below) const;
+
+  FalsifyOptions options_;
+  int settings_;
+  double threshold_m_;
+  Evidence done_;
+};
 
 }  // namespace rift::sweep
