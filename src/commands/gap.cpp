@@ -142,7 +142,9 @@ void AddOdometryFlags(CLI::App& app, GapRequest& request) {
       "best)");
   FlagMaker flags(app);
   odometry::RunOptions::Fields(request.runs.options, flags);
-  odometry::CalibrationOptions::Fields(request.runs.calibration, flags);
+  flags("window_s", request.runs.calibration.window_s, 0.2, 1e4,
+        "of --calibrate-odometry: runs are cut into pieces of this length, and each counts as one "
+        "observation");
 }
 
 OdometryRequest OdometryOf(const GapRequest& request) {
@@ -150,6 +152,7 @@ OdometryRequest OdometryOf(const GapRequest& request) {
   runs.runs = request.reals;
   runs.runs.insert(runs.runs.begin(), request.sim);
   runs.json = request.json;
+  runs.calibration.confidence = request.verdict.confidence;
   RefuseTwins(runs.runs);
   for (const std::string& other : {request.profile, request.figure}) {
     if (other.empty()) continue;

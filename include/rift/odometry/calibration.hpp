@@ -22,16 +22,8 @@ struct RunLog {
 };
 
 struct CalibrationOptions {
-  double window_s = 3.0;
-  double confidence = 0.95;
-
-  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor&& field) {
-    field("window_s", self.window_s, 0.2, 1e4,
-          "runs are cut into pieces of this length, and each counts as one observation");
-    field("confidence", self.confidence, 0.5, 0.9999, "of the intervals");
-  }
+  double window_s = 3.0;     ///< runs are cut into pieces of this length, each one observation
+  double confidence = 0.95;  ///< of the intervals
 };
 
 struct Estimate {
