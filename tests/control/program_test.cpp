@@ -44,6 +44,16 @@ TEST_CASE("A segment lasts as long as its wheels need at their power") {
   CHECK(program.Length_m() == Approx(1.0));
 }
 
+TEST_CASE("A speed asks for the power that the ideal robot needs, and a segment's own power wins") {
+  ProgramOptions options{.power = 0.9, .speed_mps = 0.3};
+  options.segments = {{.straight_m = 0.6}, {.straight_m = 0.6, .power = 0.5}};
+  const Program program(options, {}, {});
+  const double full_mps = 75.4 * 0.016;
+  CHECK(program.MeanPower(0.0, 0.1).left == Approx(0.3 / full_mps));
+  CHECK(program.MeanPower(2.1, 2.2).right == 0.5);
+  CHECK(program.Duration_s() == Approx(2.0 + 0.6 / (0.5 * full_mps)));
+}
+
 TEST_CASE("The ideal path is what the ideal robot drives with the program's powers") {
   std::mt19937_64 generator(3);
   std::uniform_real_distribution<double> share(0.0, 1.0);
