@@ -11,6 +11,18 @@
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::report {
+nlohmann::json Template(std::string_view name) { return nlohmann::json::parse(Embedded(name)); }
+
+void SetSignal(nlohmann::json& spec, std::string_view name, const nlohmann::json& value) {
+  for (nlohmann::json& signal : spec["signals"]) {
+    if (signal["name"] == name) signal["value"] = value;
+  }
+}
+
+nlohmann::json Value(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
 namespace {
 
 using nlohmann::json;
@@ -19,18 +31,7 @@ constexpr std::size_t kLongestLabel = 32;
 constexpr int kHistogramBins = 30;
 constexpr int kMostBars = 60;
 
-json Template(std::string_view name) { return json::parse(Embedded(name)); }
-
-void SetSignal(json& spec, std::string_view name, const json& value) {
-  for (json& signal : spec["signals"]) {
-    if (signal["name"] == name) signal["value"] = value;
-  }
-}
-
 void SetTable(json& spec, json values) { spec["data"][0]["values"] = std::move(values); }
-
-// JSON has no NaN; null is what the charts understand as "not there".
-json Value(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 std::string Metres(double value_m) {
   return std::isfinite(value_m) ? fmt::format("{:.4f} m", value_m) : "none";

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rift/report/figures/options.hpp"
@@ -17,6 +18,13 @@ struct PageChart {
   std::string sentence;
   nlohmann::json spec;
 };
+
+/// The Vega specification of that name, without data.
+nlohmann::json Template(std::string_view name);
+/// Sets a signal that a specification has.
+void SetSignal(nlohmann::json& spec, std::string_view name, const nlohmann::json& value);
+/// JSON has no NaN; null is what charts and tables understand as "not there".
+nlohmann::json Value(double value);
 
 std::vector<PageChart> PageCharts(const sweep::SweepResult& result, const ReportOptions& options);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 
-#include "embedded.hpp"
 #include "parts.hpp"
 #include "rift/odometry/program_runs.hpp"
 #include "rift/report/figures/setting_grid.hpp"
@@ -14,14 +13,6 @@ namespace {
 
 using nlohmann::json;
 using odometry::CellMeasures;
-
-json Template(std::string_view name) { return json::parse(Embedded(name)); }
-
-void SetSignal(json& spec, std::string_view name, const json& value) {
-  for (json& signal : spec["signals"]) {
-    if (signal["name"] == name) signal["value"] = value;
-  }
-}
 
 std::string WordOf(const CellMeasures& cell) {
   if (cell.runs == 0) return "no run";
@@ -55,7 +46,7 @@ PageChart HeatChart(const sweep::SweepResult& result,
         split.others.empty() ? "all" : sweep::CombinationLabel(cell.theta, split.others);
     values.push_back({{"line", line},
                       {"column", column},
-                      {"value", std::isfinite(value) ? json(value) : json(nullptr)},
+                      {"value", Value(value)},
                       {"word", word},
                       {"tip", tip}});
     if (!std::isfinite(value)) continue;

@@ -13,8 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-json Value(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 json Text(std::string title) { return {{"title", std::move(title)}}; }
 json Mark(std::string title) { return {{"title", std::move(title)}, {"mark", true}}; }
 json Number(std::string title, int digits) {

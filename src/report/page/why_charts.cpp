@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "embedded.hpp"
 #include "rift/report/figures/gnuplot_text.hpp"
 #include "rift/report/figures/setting_grid.hpp"
 
@@ -16,16 +15,6 @@ using nlohmann::json;
 
 constexpr std::size_t kMostTerms = 12;
 constexpr std::size_t kMostDots = 1500;
-
-json Template(std::string_view name) { return json::parse(Embedded(name)); }
-
-void SetSignal(json& spec, std::string_view name, const json& value) {
-  for (json& signal : spec["signals"]) {
-    if (signal["name"] == name) signal["value"] = value;
-  }
-}
-
-json Value(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json Bar(const std::string& label, double value, double low, double high, std::string_view colour,
          json tip) {
