@@ -12,6 +12,7 @@
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/trajectory/log.hpp"
@@ -37,16 +38,6 @@ struct RunFiles {
   fs::path trajectory, encoders, experiment;
 };
 
-trajectory::Trajectory PathOf(const control::Task& task) {
-  trajectory::Trajectory path;
-  for (const control::TimedPose& at : task.IdealPath()) {
-    const geometry::Pose2& pose = at.world_from_robot;
-    path.poses.push_back(
-        {.t_s = at.captured_s, .x_m = pose.x_m, .y_m = pose.y_m, .yaw_rad = pose.yaw_rad});
-  }
-  return path;
-}
-
 /// A run and the experiment that it was of.
 struct LoadedRun {
   odometry::ProgramRun run;
@@ -65,7 +56,7 @@ LoadedRun Load(const OdometryRequest& request, const std::string& name) {
   if (is_told || fs::exists(files.experiment)) {
     loaded.experiment = ReadExperiment(is_told ? request.program : files.experiment.string(), {});
     if (!loaded.experiment->program.segments.empty()) {
-      loaded.run.program = PathOf(experiment::TaskOf(*loaded.experiment));
+      loaded.run.program = sweep::IdealPath(experiment::TaskOf(*loaded.experiment));
     } else if (is_told) {
       throw std::invalid_argument(fmt::format(
           "{}: has no program: name an experiment with program.segments", request.program));

@@ -24,18 +24,6 @@ namespace {
 using experiment::CandidateKind;
 using experiment::ReferenceKind;
 
-/// What a robot would do that keeps to its task exactly.
-trajectory::Trajectory IdealPath(const control::Task& task) {
-  trajectory::Trajectory path;
-  for (const control::TimedPose& at : task.IdealPath()) {
-    path.poses.push_back({.t_s = at.captured_s,
-                          .x_m = at.world_from_robot.x_m,
-                          .y_m = at.world_from_robot.y_m,
-                          .yaw_rad = at.world_from_robot.yaw_rad});
-  }
-  return path;
-}
-
 /// What is wrong with the paths of an experiment is said with its file.
 template <class Call>
 auto InFile(const std::string& experiment_file, Call&& call) {

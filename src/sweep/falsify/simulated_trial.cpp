@@ -76,6 +76,17 @@ SimulatedRun Simulate(const SimulatedTrial& trial) {
   return run;
 }
 
+trajectory::Trajectory IdealPath(const control::Task& task) {
+  trajectory::Trajectory path;
+  for (const control::TimedPose& at : task.IdealPath()) {
+    path.poses.push_back({.t_s = at.captured_s,
+                          .x_m = at.world_from_robot.x_m,
+                          .y_m = at.world_from_robot.y_m,
+                          .yaw_rad = at.world_from_robot.yaw_rad});
+  }
+  return path;
+}
+
 SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
                                 const geometry::Pose2& start, std::uint64_t seed,
                                 const std::string& experiment_file, const Inputs& inputs) {

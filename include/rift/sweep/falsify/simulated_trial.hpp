@@ -38,6 +38,9 @@ SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
                                 const geometry::Pose2& start, std::uint64_t seed,
                                 const std::string& experiment_file, const Inputs& inputs);
 
+/// What a robot would do that keeps to its task exactly: Task::IdealPath as a trajectory.
+trajectory::Trajectory IdealPath(const control::Task& task);
+
 /// Where a robot stood whose tag was seen at the start of a log, `tag_offset_m` ahead of it:
 /// world_from_robot.
 geometry::Pose2 StartFromLog(const trajectory::Trajectory& log, double tag_offset_m,
