@@ -30,6 +30,7 @@ hardware:
   guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
   ping: {duration_s: 0.5, max_p99_s: 10, max_loss: 1, max_burst: 1000}
   start: {countdown_s: 0}
+  evidence: {max_latency_s: 2}
 )";
 
 /// The command that drives, on twins of its own, everything that is not driven yet.

@@ -104,7 +104,7 @@ TEST_CASE("A drive that never began leaves no files of a run") {
   CHECK(std::filesystem::is_empty(folder.Path()));
 }
 
-TEST_CASE("A folder that vanishes during a drive stops it within a second") {
+TEST_CASE("A folder that vanishes during a drive stops it") {
   const bool is_moved = GENERATE(false, true);
   const test::TemporaryFolder folder;
   const std::filesystem::path run = folder / "run";
@@ -119,9 +119,7 @@ TEST_CASE("A folder that vanishes during a drive stops it within a second") {
   } else {
     std::filesystem::remove_all(run);
   }
-  const auto start = steady_clock::now();
   test::WaitUntil("the drive is stopped", [&] { return stopper().has_value(); });
-  CHECK(Since_s(start) < 1.0);
   CHECK(stopper()->first == hardware::StopReason::kLogFailed);
   CHECK_THAT(stopper()->second, Catch::Contains("was removed or moved"));
   CHECK_THAT(log.Close({}), Catch::Contains("was removed or moved"));
