@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "blocks.hpp"
+
 namespace rift::simulation {
 namespace {
 
@@ -113,15 +115,33 @@ Vector3d Lowest(const Vector3d& axis, const Vector3d& normal) {
   return length > 1e-9 ? Vector3d(down / length) : Vector3d(axis.unitOrthogonal());
 }
 
-using Eigen::Vector3d;
-
-/// Both wheels hold the same sideways freedom; this much give keeps the two solvable, and lets the
-/// robot creep by less than a micrometre a second on a slope.
-constexpr double kLeastSlip_mps_per_n = 1e-6;
+constexpr double kRimBall_m = 0.003;
+constexpr int kRimBalls = 16;
+constexpr double kStanding_mps = 1e-9;
 
 constexpr double kTippedOver_rad = 1.05;
 constexpr double kThroughFloor_m = 0.012;
 constexpr double kFallen_m = 0.5;
+
+/// The unit vector in the ground nearest to `axis`.
+Vector3d Across(const Vector3d& normal, const Vector3d& axis) {
+  const Vector3d across = axis - axis.dot(normal) * normal;
+  const double length = across.norm();
+  return length > 1e-6 ? Vector3d(across / length) : Vector3d(normal.unitOrthogonal());
+}
+
+/// Coulomb friction of a body that slides on the ground. Along the motion it is mu times the load.
+/// Across it, mu load v / |v| turns with the motion, hence grows by mu load / |v| for each m/s of
+/// speed across: to a first order the limit is reached at a creep of |v|.
+GroundContact Sliding(const ContactPoint& at, double mu, const WorldState& state, double load_n) {
+  const Vector3d v = state.velocity_mps + state.spin_rad_s.cross(at.point - state.position_m);
+  const Vector3d in_ground = v - v.dot(at.normal) * at.normal;
+  const double speed_mps = in_ground.norm();
+  const Vector3d direction = speed_mps > kStanding_mps
+                                 ? Vector3d(in_ground / speed_mps)
+                                 : Across(at.normal, state.world_from_robot.col(0));
+  return {at, mu, direction, 0.0, speed_mps, load_n};
+}
 
 bool IsFinite(const WorldState& state) {
   return state.position_m.allFinite() && state.velocity_mps.allFinite() &&
@@ -177,40 +197,79 @@ std::optional<ContactPoint> RimContactPoint(const Terrain& terrain, const Vector
   return deepest;
 }
 
-std::optional<GroundContact> WheelContact(const BodyOptions& body, const Terrain& terrain,
-                                          const WorldState& state, int side, const Vector3d& centre,
-                                          double wheel_load_n) {
-  const Vector3d axle = state.world_from_robot.col(1);
-  const auto contact =
-      WheelContactPoint(terrain, centre, axle, body.WheelRadius_m(side), body.wheel_width_m);
-  if (!contact) return std::nullopt;
-  const Grip grip = terrain.GripAt(contact->point.x(), contact->point.y());
-  const Vector3d sideways = (axle - axle.dot(contact->normal) * contact->normal).normalized();
-  const double rim_mps = std::abs(state.wheel_rate_rad_s[side]) * body.WheelRadius_m(side);
-  const double creep =
-      grip.slip > 0.0 && grip.mu > 0.0 ? grip.slip * rim_mps / (grip.mu * wheel_load_n) : 0.0;
-  return GroundContact{*contact, grip.mu, sideways, kLeastSlip_mps_per_n + creep};
+void AddWheelContacts(const ContactScene& scene, int side, const Vector3d& centre,
+                      std::vector<GroundContact>& contacts) {
+  const BodyOptions& body = scene.body;
+  const Vector3d axle = scene.state.world_from_robot.col(1);
+  const double radius_m = body.WheelRadius_m(side);
+  const double rim_mps = std::abs(scene.state.wheel_rate_rad_s[side]) * radius_m;
+  const auto add = [&](const ContactPoint& at) {
+    const Grip grip = scene.terrain.GripAt(at.point.x(), at.point.y());
+    const double creep_mps = grip.slip * rim_mps;
+    contacts.push_back(
+        {at, grip.mu, Across(at.normal, axle), creep_mps, creep_mps, body.WeightOnWheel_n()});
+  };
+  if (!scene.terrain.IsStepped()) {
+    const auto contact =
+        WheelContactPoint(scene.terrain, centre, axle, radius_m, body.wheel_width_m);
+    if (contact) add(*contact);
+    return;
+  }
+  const double sweep_m = std::min(0.5 * body.wheel_width_m, 0.5 * radius_m);
+  std::vector<ContactPoint> points;
+  BumpContacts(scene.terrain, {centre, axle, radius_m - sweep_m, sweep_m}, scene.margin_m, points);
+  for (const ContactPoint& at : points) add(at);
 }
 
-std::optional<GroundContact> CasterContact(const BodyOptions& body, const Terrain& terrain,
-                                           const WorldState& state) {
+void AddCasterContacts(const ContactScene& scene, std::vector<GroundContact>& contacts) {
+  const BodyOptions& body = scene.body;
+  const WorldState& state = scene.state;
   const Vector3d caster =
       state.position_m +
       state.world_from_robot * Vector3d(body.caster_ahead_m, 0.0, -body.caster_below_m);
-  const auto contact =
-      BallContactPoint(terrain, caster, state.world_from_robot.col(0), body.caster_radius_m);
-  if (!contact) return std::nullopt;
-  const Grip grip = terrain.GripAt(contact->point.x(), contact->point.y());
-  return GroundContact{*contact, grip.caster_factor * body.caster_mu};
+  const auto add = [&](const ContactPoint& at) {
+    const Grip grip = scene.terrain.GripAt(at.point.x(), at.point.y());
+    contacts.push_back(
+        Sliding(at, grip.caster_factor * body.caster_mu, state, body.WeightOnCaster_n()));
+  };
+  if (!scene.terrain.IsStepped()) {
+    const Vector3d forward = state.world_from_robot.col(0);
+    const auto contact = BallContactPoint(scene.terrain, caster, forward, body.caster_radius_m);
+    if (contact) add(*contact);
+    return;
+  }
+  std::vector<ContactPoint> points;
+  BumpContacts(scene.terrain, {caster, Vector3d::UnitZ(), 0.0, body.caster_radius_m},
+               scene.margin_m, points);
+  for (const ContactPoint& at : points) add(at);
 }
 
-std::optional<GroundContact> RimContact(const BodyOptions& body, const Terrain& terrain,
-                                        const WorldState& state) {
+void AddRimContacts(const ContactScene& scene, std::vector<GroundContact>& contacts) {
+  const BodyOptions& body = scene.body;
+  const WorldState& state = scene.state;
   const Vector3d up = state.world_from_robot.col(2);
-  const Vector3d rim = state.position_m - (body.wheel_radius_m - body.rim_clearance_m) * up;
-  const auto contact = RimContactPoint(terrain, rim, up, body.chassis_radius_m);
-  if (!contact) return std::nullopt;
-  return GroundContact{*contact, body.rim_mu};
+  const double weight_n = body.Weight_n();
+  const double drop_m = body.wheel_radius_m - body.rim_clearance_m;
+  if (!scene.terrain.IsStepped()) {
+    const auto contact =
+        RimContactPoint(scene.terrain, state.position_m - drop_m * up, up, body.chassis_radius_m);
+    if (contact) contacts.push_back(Sliding(*contact, body.rim_mu, state, weight_n));
+    return;
+  }
+  // The edge as balls, closer to each other than a block is wide.
+  const double ball_m = std::min(kRimBall_m, 0.5 * body.chassis_radius_m);
+  std::vector<ContactPoint> points;
+  for (int i = 0; i < kRimBalls; ++i) {
+    const double angle_rad = 2.0 * std::numbers::pi * i / kRimBalls;
+    const Vector3d at =
+        (body.chassis_radius_m - ball_m) * Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0);
+    const Vector3d centre =
+        state.position_m + state.world_from_robot * (at - (drop_m - ball_m) * Vector3d::UnitZ());
+    BumpContacts(scene.terrain, {centre, Vector3d::UnitZ(), 0.0, ball_m}, scene.margin_m, points);
+  }
+  for (const ContactPoint& at : points) {
+    contacts.push_back(Sliding(at, body.rim_mu, state, weight_n));
+  }
 }
 
 std::optional<std::string> FaultOf(const WorldState& state, const Terrain& terrain) {

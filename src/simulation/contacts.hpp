@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "rift/simulation/body.hpp"
 #include "rift/simulation/ode_world.hpp"
@@ -14,7 +15,7 @@ namespace rift::simulation {
 struct ContactPoint {
   Eigen::Vector3d point;   ///< of the body, deepest below the ground, in the world frame
   Eigen::Vector3d normal;  ///< unit, from the ground into the body
-  double depth_m = 0.0;    ///< positive inside the ground
+  double depth_m = 0.0;    ///< positive inside the ground, negative above it
 };
 
 /// An upright wheel as a disc: one point, the deepest. On a plane it is the lowest point of the
@@ -32,28 +33,34 @@ std::optional<ContactPoint> BallContactPoint(const Terrain& terrain, const Eigen
 std::optional<ContactPoint> RimContactPoint(const Terrain& terrain, const Eigen::Vector3d& centre,
                                             const Eigen::Vector3d& up, double radius_m);
 
-/// Where the robot touches the ground and how well it holds there.
+/// Where the robot touches the ground and how well it holds there. Friction acts along `direction`
+/// and across it, each up to mu times the load; at that limit the ground gives way by its creep.
 struct GroundContact {
   ContactPoint at;
   double mu = 0.0;
-  /// Unit, in the ground: friction acts along it and across it, and gives way to a force by
-  /// `slip_mps_per_n` in both. Without it friction acts against the motion and does not give way.
-  std::optional<Eigen::Vector3d> sideways = {};
-  double slip_mps_per_n = 0.0;
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< unit, in the ground
+  double creep_along_mps = 0.0;
+  double creep_across_mps = 0.0;
+  double usual_load_n = 0.0;  ///< at rest on level ground
 };
 
-/// `side` is 0 for the left wheel and 1 for the right one; `wheel_load_n` presses it on level
-/// ground.
-std::optional<GroundContact> WheelContact(const BodyOptions& body, const Terrain& terrain,
-                                          const WorldState& state, int side,
-                                          const Eigen::Vector3d& centre, double wheel_load_n);
+/// The robot and the ground under it, as the contacts of one step see them.
+struct ContactScene {
+  const BodyOptions& body;
+  const Terrain& terrain;
+  const WorldState& state;
+  /// On bumps a contact counts from this far above the ground, so that no step ends inside a block.
+  double margin_m = 0.0;
+};
 
-std::optional<GroundContact> CasterContact(const BodyOptions& body, const Terrain& terrain,
-                                           const WorldState& state);
-
+/// Each appends its contacts. `side` is 0 for the left wheel and 1 for the right one, `centre` the
+/// wheel's in the world frame.
+void AddWheelContacts(const ContactScene& scene, int side, const Eigen::Vector3d& centre,
+                      std::vector<GroundContact>& contacts);
+/// The caster's ball slides: its friction points against its motion, whatever the heading.
+void AddCasterContacts(const ContactScene& scene, std::vector<GroundContact>& contacts);
 /// The lower edge of the chassis, which touches where the robot pitches or an obstacle lies.
-std::optional<GroundContact> RimContact(const BodyOptions& body, const Terrain& terrain,
-                                        const WorldState& state);
+void AddRimContacts(const ContactScene& scene, std::vector<GroundContact>& contacts);
 
 /// Why the motion cannot go on from this state: a number that is not finite, a robot that tipped
 /// over, sank through the floor or fell off the table. Nothing when it can.

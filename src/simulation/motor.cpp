@@ -1,10 +1,13 @@
 #include "rift/simulation/motor.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
 namespace rift::simulation {
 namespace {
@@ -12,34 +15,35 @@ namespace {
 constexpr double kNmPerKgCm = 0.0980665;
 constexpr double kCountsPerMotorRev = 12.0;  // Pololu 0J86/6.4
 
-/// The no-load speed is known for 30:1 alone (720 rpm, Pololu 0J83/5.3); the others follow from the
-/// ratio of the gears (75:1: 284 rpm, 15:1: 1410 rpm), which holds for the same motor winding.
-GearingData FromGears(double ratio, double stall_kg_cm) {
-  constexpr double kMotorRpm = 720.0 * 29.86;
-  return {kMotorRpm / ratio * 2.0 * std::numbers::pi / 60.0, stall_kg_cm * kNmPerKgCm,
-          kCountsPerMotorRev * ratio};
-}
+constexpr double kRest_rad_s = 1e-6;
 
-/// Ground drag and friction hold a wheel that the motor cannot turn, and stop one that still rolls.
-/// The target is rest and the limit the whole decelerating torque, so no step overshoots it.
-WheelDrive Brake(double motor_nm, double rate_rad_s, double drag_nm) {
-  const double against_nm = std::copysign(1.0, rate_rad_s) * -motor_nm;
-  return {0.0, 0.0, std::max(0.0, drag_nm + against_nm)};
+GearingData Published(double no_load_rpm, double stall_kg_cm, double ratio) {
+  return {no_load_rpm * 2.0 * std::numbers::pi / 60.0, stall_kg_cm * kNmPerKgCm,
+          kCountsPerMotorRev * ratio};
 }
 
 }  // namespace
 
 GearingData DataOf(Gearing gearing) {
-  switch (gearing) {  // ratios: Pololu 0J86/6.4 and product pages; stall: Pololu 0J83/5.3
+  // Speed and torque: Pololu 0J83/5.3. The motors differ, so neither follows from the ratio of the
+  // gears (0J86/6.4 and product pages), which gives the counts.
+  switch (gearing) {
     case Gearing::k30To1:
-      return FromGears(29.86, 0.33);
+      return Published(720.0, 0.33, 29.86);
     case Gearing::k75To1:
-      return FromGears(75.81, 0.64);
+      return Published(180.0, 0.64, 75.81);
     case Gearing::k15To1:
-      return FromGears(15.25, 0.25);
+      return Published(2100.0, 0.25, 15.25);
   }
   assert(false);
   return {};
+}
+
+void MotorOptions::Check() const {
+  if (Breakaway_nm() >= friction_torque_nm) return;
+  throw std::invalid_argument(
+      fmt::format("breakaway_torque_nm is {}, but it must be at least friction_torque_nm, {}",
+                  Breakaway_nm(), friction_torque_nm));
 }
 
 Motor::Motor(const MotorOptions& options, Side side)
@@ -48,36 +52,60 @@ Motor::Motor(const MotorOptions& options, Side side)
                      (1.0 + (side == Side::kLeft ? 0.5 : -0.5) * options.mismatch)),
       nm_per_rad_s_(options.StallTorque_nm() / no_load_rad_s_) {}
 
-WheelDrive Motor::Drive(double power, double rate_rad_s, double drag_nm, double step_s) {
+WheelDrive Motor::Drive(const StepPower& power, double rate_rad_s, double drag_nm, double step_s) {
   if (options_.model == MotorModel::kServo) {
-    return {power * options_.supply_ratio * no_load_rad_s_, 0.0,
+    return {power.mean * options_.supply_ratio * no_load_rad_s_, 0.0,
             options_.servo_torque_nm.value_or(std::numeric_limits<double>::infinity())};
   }
-  const double driven_power = std::abs(power) < options_.dead_band ? 0.0 : power;
-  return TorqueLine(MeanThroughLag(driven_power, step_s), rate_rad_s, drag_nm);
+  const StepPower driven = ThroughLag(ThroughDeadBand(power), step_s);
+  const double free_rad_s = driven.mean * options_.supply_ratio * no_load_rad_s_;
+  const double friction_nm = options_.friction_torque_nm + drag_nm;
+  WheelDrive drive{free_rad_s, 1.0 / nm_per_rad_s_, std::numeric_limits<double>::infinity()};
+  const double running_rad_s = free_rad_s - std::copysign(friction_nm, rate_rad_s) / nm_per_rad_s_;
+  if (std::abs(rate_rad_s) < kRest_rad_s) {
+    drive.friction_nm = FrictionFromRest_nm(driven, drag_nm);
+  } else if (running_rad_s * rate_rad_s > 0.0) {
+    drive.target_rad_s = running_rad_s;  // it will not come to rest: one line holds all
+  } else {
+    drive.friction_nm = friction_nm;
+  }
+  return drive;
 }
 
-double Motor::MeanThroughLag(double power, double step_s) {
+StepPower Motor::ThroughDeadBand(const StepPower& power) const {
+  const auto driven = [this](double p) { return std::abs(p) < options_.dead_band ? 0.0 : p; };
+  const double before = driven(power.before), after = driven(power.after);
+  return {before, before + power.ShareAfter() * (after - before), after};
+}
+
+StepPower Motor::ThroughLag(const StepPower& power, double step_s) {
   if (options_.lag_s == 0.0) return power;
   const double steps = step_s / options_.lag_s;
-  const double passed = -std::expm1(-steps);
-  const double mean = power + (lagged_power_ - power) * passed / steps;
-  lagged_power_ += (power - lagged_power_) * passed;
-  return mean;
+  const double passed = -std::expm1(-steps), before = lagged_power_;
+  lagged_power_ += (power.mean - before) * passed;
+  return {before, power.mean + (before - power.mean) * passed / steps, lagged_power_};
 }
 
-WheelDrive Motor::TorqueLine(double power, double rate_rad_s, double drag_nm) const {
-  const double free_rad_s = power * options_.supply_ratio * no_load_rad_s_;
-  const double stall_nm = nm_per_rad_s_ * free_rad_s;
-  const double friction_nm = options_.friction_torque_nm + drag_nm;
-  if (friction_nm > 0.0 && std::abs(stall_nm) <= friction_nm) {
-    return Brake(stall_nm - nm_per_rad_s_ * rate_rad_s, rate_rad_s, friction_nm);
+/// Mean friction over a step that begins at rest. While the wheel is held, friction is what the
+/// motor asks for; from where the motor breaks it away, it is running friction. Without a lag the
+/// power changes at one moment of the step, with it evenly.
+double Motor::FrictionFromRest_nm(const StepPower& power, double drag_nm) const {
+  const double running_nm = options_.friction_torque_nm + drag_nm;
+  const double breakaway_nm = options_.Breakaway_nm() + drag_nm;
+  const double stall_nm = nm_per_rad_s_ * options_.supply_ratio * no_load_rad_s_;
+  const double side = std::copysign(1.0, power.after);
+  const double before_nm = side * stall_nm * power.before,
+               after_nm = std::abs(power.after) * stall_nm;
+  if (after_nm <= breakaway_nm) return breakaway_nm;
+  double driven = 1.0, held_nm = 0.0;
+  if (options_.lag_s == 0.0) {
+    driven = power.ShareAfter();
+    held_nm = before_nm;
+  } else if (before_nm < breakaway_nm) {
+    driven = (after_nm - breakaway_nm) / (after_nm - before_nm);
+    held_nm = 0.5 * (before_nm + breakaway_nm);
   }
-  // A wheel still turning the other way is slowed by friction, hence helped along.
-  const bool reversing = rate_rad_s * free_rad_s < 0.0;
-  const double opposing_nm = std::copysign(friction_nm, reversing ? -free_rad_s : free_rad_s);
-  return {free_rad_s - opposing_nm / nm_per_rad_s_, 1.0 / nm_per_rad_s_,
-          std::numeric_limits<double>::infinity()};
+  return driven * running_nm + (1.0 - driven) * std::abs(held_nm);
 }
 
 std::int64_t CountsAt(double angle_rad, double counts_per_rev) {

@@ -4,11 +4,13 @@
 #include <ode/ode.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "contacts.hpp"
 
@@ -22,6 +24,11 @@ using Eigen::Vector3d;
 constexpr double kWorldErp = 0.8;
 constexpr double kMaxCorrection_mps = 0.5;
 constexpr double kSettle_s = 0.4;
+/// Both wheels hold the same sideways freedom; this much give keeps the two solvable, and lets the
+/// robot creep by less than a micrometre a second on a slope.
+constexpr double kLeastSlip_mps_per_n = 1e-6;
+constexpr double kSameNormal = 0.95;  // cosine of the angle between two
+constexpr double kFastest_mps = 2.0;  // a part nears the ground by no more in a step
 
 /// Thrown by ODE's own error reports, which must not return; caught at every call that can raise
 /// it.
@@ -76,6 +83,22 @@ void SetPosition(dBodyID body, const Vector3d& p) { dBodySetPosition(body, p.x()
 
 }  // namespace
 
+/// Contacts of one part with the ground, with the forces that the last step needed.
+struct PartContacts {
+  dBodyID part = nullptr;
+  std::vector<Vector3d> normals;
+  std::vector<dJointFeedback> forces;  ///< on the part, filled by the step
+
+  /// Load of the last step's contact with about this normal; none for one that is new.
+  std::optional<double> LastLoad_n(const Vector3d& normal) const {
+    for (size_t i = 0; i < normals.size(); ++i) {
+      if (normals[i].dot(normal) > kSameNormal)
+        return std::max(0.0, Vector(forces[i].f1).dot(normal));
+    }
+    return std::nullopt;
+  }
+};
+
 struct OdeWorld::Bodies {
   Bodies(const BodyOptions& body_options, const Terrain& ground, double step);
 
@@ -88,7 +111,8 @@ struct OdeWorld::Bodies {
   void Abandon();
   void SetDrive(int side, const WheelDrive& drive);
   void MakeContacts();
-  void Add(const std::optional<GroundContact>& ground, dBodyID part, bool sticks);
+  void Add(PartContacts& part, bool sticks);
+  dContact ContactOf(const GroundContact& ground, std::optional<double> load_n) const;
   void ReadState();
 
   BodyOptions body;
@@ -100,15 +124,18 @@ struct OdeWorld::Bodies {
   dBodyID chassis = nullptr;
   std::array<dBodyID, 2> wheels{};
   std::array<dJointID, 2> hinges{};
+  std::array<dJointID, 2> frictions{};  ///< hold a wheel against the chassis
   double contact_erp, contact_cfm;
-  double wheel_load_n;
+  std::vector<GroundContact> found;
+  std::array<PartContacts, 2> wheel_contacts;
+  PartContacts caster_contacts, rim_contacts;
   bool settling = false;
   WorldState state;
   std::optional<std::string> fault;
 };
 
 OdeWorld::Bodies::Bodies(const BodyOptions& body_options, const Terrain& ground, double step)
-    : body(body_options), terrain(ground), step_s(step), wheel_load_n(body.WeightOnWheel_n()) {
+    : body(body_options), terrain(ground), step_s(step) {
   SetUpOde();
   // With ODE's shared default two worlds stepped in two threads abort the process.
   threading.reset(dThreadingAllocateSelfThreadedImplementation());
@@ -145,7 +172,14 @@ void OdeWorld::Bodies::AddBodies() {
     const Vector3d anchor = Vector(dBodyGetPosition(wheels[side]));
     dJointSetHingeAnchor(hinges[side], anchor.x(), anchor.y(), anchor.z());
     dJointSetHingeAxis(hinges[side], 0.0, 1.0, 0.0);
+    frictions[side] = dJointCreateAMotor(world.get(), nullptr);
+    dJointAttach(frictions[side], wheels[side], chassis);
+    dJointSetAMotorNumAxes(frictions[side], 1);
+    dJointSetAMotorAxis(frictions[side], 0, 2, 0.0, 1.0, 0.0);
+    dJointSetAMotorParam(frictions[side], dParamVel, 0.0);
+    wheel_contacts[side].part = wheels[side];
   }
+  caster_contacts.part = rim_contacts.part = chassis;
 }
 
 void OdeWorld::Bodies::Place(const geometry::Pose2& start) {
@@ -215,7 +249,7 @@ void OdeWorld::Bodies::Abandon() {
 void OdeWorld::Bodies::Step(const std::array<WheelDrive, 2>& drives) {
   if (fault) return;
   for (const WheelDrive& drive : drives) {
-    if (!std::isfinite(drive.target_rad_s + drive.compliance_rad_s_per_nm) ||
+    if (!std::isfinite(drive.target_rad_s + drive.compliance_rad_s_per_nm + drive.friction_nm) ||
         std::isnan(drive.limit_nm)) {
       fault = "a wheel drive is not a number";
       return;
@@ -239,39 +273,76 @@ void OdeWorld::Bodies::Step(const std::array<WheelDrive, 2>& drives) {
 }
 
 /// ODE's hinge motor solves rate + cfm x torque = target [ODE manual, "CFM"], which is the drive's
-/// torque line at the rate the step ends with.
+/// torque line at the rate the step ends with. Dry friction is a second motor that asks for rest.
 void OdeWorld::Bodies::SetDrive(int side, const WheelDrive& drive) {
   dJointSetHingeParam(hinges[side], dParamVel, drive.target_rad_s);
   dJointSetHingeParam(hinges[side], dParamFMax, drive.limit_nm);
   dJointSetHingeParam(hinges[side], dParamCFM, drive.compliance_rad_s_per_nm);
+  dJointSetAMotorParam(frictions[side], dParamFMax, drive.friction_nm);
 }
 
 void OdeWorld::Bodies::MakeContacts() {
+  const ContactScene scene{body, terrain, state, kFastest_mps * step_s};
   for (int side = 0; side < 2; ++side) {
-    const Vector3d centre = Vector(dBodyGetPosition(wheels[side]));
-    Add(WheelContact(body, terrain, state, side, centre, wheel_load_n), wheels[side], settling);
+    AddWheelContacts(scene, side, Vector(dBodyGetPosition(wheels[side])), found);
+    Add(wheel_contacts[side], settling);
   }
-  Add(CasterContact(body, terrain, state), chassis, settling);
-  Add(RimContact(body, terrain, state), chassis, false);
+  AddCasterContacts(scene, found);
+  Add(caster_contacts, settling);
+  AddRimContacts(scene, found);
+  Add(rim_contacts, false);
 }
 
-/// `sticks`: whatever the friction.
-void OdeWorld::Bodies::Add(const std::optional<GroundContact>& ground, dBodyID part, bool sticks) {
-  if (!ground) return;
-  dContact contact{};
-  contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
-  contact.surface.mu = sticks ? dInfinity : ground->mu;
-  contact.surface.soft_erp = contact_erp;
-  contact.surface.soft_cfm = contact_cfm;
-  contact.geom.depth = ground->at.depth_m;
-  Eigen::Map<Vector3d>(contact.geom.pos) = ground->at.point;
-  Eigen::Map<Vector3d>(contact.geom.normal) = ground->at.normal;
-  if (ground->sideways) {
-    Eigen::Map<Vector3d>(contact.fdir1) = *ground->sideways;
-    contact.surface.slip1 = contact.surface.slip2 = ground->slip_mps_per_n;
-    contact.surface.mode |= dContactFDir1 | dContactSlip1 | dContactSlip2;
+/// Gives the contacts found to ODE and forgets them. `sticks`: whatever the friction.
+void OdeWorld::Bodies::Add(PartContacts& part, bool sticks) {
+  std::vector<std::optional<double>> loads_n;
+  for (const GroundContact& ground : found) loads_n.push_back(part.LastLoad_n(ground.at.normal));
+  part.normals.clear();
+  part.forces.resize(found.size());  // ODE keeps pointers into it until the step is done
+  for (size_t i = 0; i < found.size(); ++i) {
+    dContact contact = ContactOf(found[i], loads_n[i]);
+    if (sticks && found[i].at.depth_m >= 0.0) contact.surface.mu = dInfinity;
+    const dJointID joint = dJointCreateContact(world.get(), contacts.get(), &contact);
+    dJointAttach(joint, part.part, nullptr);
+    dJointSetFeedback(joint, &part.forces[i]);
+    part.normals.push_back(found[i].at.normal);
   }
-  dJointAttach(dJointCreateContact(world.get(), contacts.get(), &contact), part, nullptr);
+  found.clear();
+}
+
+/// The limit of friction is that of the last step's load: of this step ODE knows it only without
+/// friction, that is with wheels that spin freely, which leans the robot by more the longer the
+/// step is. A new contact has no other. A part above the ground may come down by its height in this
+/// step, and no further.
+dContact OdeWorld::Bodies::ContactOf(const GroundContact& ground,
+                                     std::optional<double> load_n) const {
+  dContact contact{};
+  dSurfaceParameters& surface = contact.surface;
+  surface.mode = dContactSoftERP | dContactSoftCFM | dContactFDir1 | dContactSlip1 | dContactSlip2;
+  surface.mu = ground.mu;
+  if (load_n) {
+    surface.mu *= *load_n;
+  } else {
+    surface.mode |= dContactApprox1;
+  }
+  surface.soft_erp = contact_erp;
+  surface.soft_cfm = contact_cfm;
+  const double limit_n =
+      ground.mu * std::max(load_n.value_or(ground.usual_load_n), 0.1 * ground.usual_load_n);
+  const auto slip = [&](double creep_mps) {
+    return kLeastSlip_mps_per_n + (limit_n > 0.0 ? creep_mps / limit_n : 0.0);
+  };
+  surface.slip1 = slip(ground.creep_along_mps);
+  surface.slip2 = slip(ground.creep_across_mps);
+  if (ground.at.depth_m < 0.0) {
+    surface.mode |= dContactMotionN;
+    surface.motionN = ground.at.depth_m / step_s;
+  }
+  contact.geom.depth = std::max(0.0, ground.at.depth_m);
+  Eigen::Map<Vector3d>(contact.geom.pos) = ground.at.point;
+  Eigen::Map<Vector3d>(contact.geom.normal) = ground.at.normal;
+  Eigen::Map<Vector3d>(contact.fdir1) = ground.direction;
+  return contact;
 }
 
 void OdeWorld::Bodies::ReadState() {
@@ -317,6 +388,20 @@ std::array<Grip, 2> OdeWorld::WheelGrip() const {
     grips[side] = bodies_->terrain.GripAt(p.x(), p.y());
   }
   return grips;
+}
+
+double OdeWorld::Energy_j() const {
+  double energy_j = 0.0;
+  for (const dBodyID part : {bodies_->chassis, bodies_->wheels[0], bodies_->wheels[1]}) {
+    dMass mass;
+    dBodyGetMass(part, &mass);
+    const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> inertia(mass.I);
+    const Vector3d spin = Rotation(part).transpose() * Vector(dBodyGetAngularVel(part));
+    energy_j += 0.5 * mass.mass * Vector(dBodyGetLinearVel(part)).squaredNorm() +
+                0.5 * spin.dot(inertia.leftCols<3>() * spin) +
+                mass.mass * bodies_->body.gravity_mps2 * dBodyGetPosition(part)[2];
+  }
+  return energy_j;
 }
 
 const std::optional<std::string>& OdeWorld::Fault() const { return bodies_->fault; }

@@ -149,11 +149,17 @@ void SimulatedRobot::Step() {
   ++steps_;
   const double t_s = 1e-9 * static_cast<double>(steps_ * step_ns_);
   const control::WheelPower mean = link_.Advance(t_s);
-  const control::WheelPower power = options_.sampling == Sampling::kRamped ? mean : at_start;
+  const control::WheelPower at_end = link_.Held();
+  const auto power = [&](double control::WheelPower::*wheel) {
+    if (options_.sampling == Sampling::kStepped) return StepPower::Constant(at_start.*wheel);
+    return StepPower{at_start.*wheel, mean.*wheel, at_end.*wheel};
+  };
   const auto& rate_rad_s = world_.State().wheel_rate_rad_s;
   const std::array<Grip, 2> grip = world_.WheelGrip();
-  world_.Step({motors_[0].Drive(power.left, rate_rad_s[0], Drag_nm(grip[0]), options_.step_s),
-               motors_[1].Drive(power.right, rate_rad_s[1], Drag_nm(grip[1]), options_.step_s)});
+  const StepPower left = power(&control::WheelPower::left);
+  const StepPower right = power(&control::WheelPower::right);
+  world_.Step({motors_[0].Drive(left, rate_rad_s[0], Drag_nm(grip[0]), options_.step_s),
+               motors_[1].Drive(right, rate_rad_s[1], Drag_nm(grip[1]), options_.step_s)});
   const TruePose before = truth_;
   truth_ = PoseOf(world_.State(), t_s);
   mocap_.Observe(before, truth_);

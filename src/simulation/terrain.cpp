@@ -41,11 +41,13 @@ void SurfaceOptions::Check() const {
 }
 
 std::map<std::string, SurfaceOptions> PaperSurfaces() {
+  SurfaceOptions uphill = Surface(Shape::kRampUp, 0.7, 0.01, 0.01);
+  uphill.ramp_edge_x_m = 0.31;  // where the axle is when z of the uphill logs stops to rise
   return {{"ground", Surface(Shape::kFlat, 0.8, 0.01, 0.01)},
           {"cardboard", Surface(Shape::kFlat, 0.8, 0.02, 0.01)},
           {"parchment", Surface(Shape::kFlat, 0.4, 0.01, 0.02)},
           {"wet_parchment", Surface(Shape::kFlat, 0.3, 0.02, 0.04)},
-          {"uphill", Surface(Shape::kRampUp, 0.7, 0.01, 0.01)},
+          {"uphill", uphill},
           {"downhill", Surface(Shape::kRampDown, 0.7, 0.01, 0.01)},
           {"bump", Surface(Shape::kBumps, 0.85, 0.02, 0.01)}};
 }

@@ -13,45 +13,78 @@ double Torque(const WheelDrive& drive, double rate_rad_s) {
 TEST_CASE("The torque line passes through stall and no load speed") {
   const MotorOptions options;
   Motor motor(options, Side::kLeft);
-  const WheelDrive full = motor.Drive(1.0, 0.0, 0.0, 0.004);
+  const WheelDrive full = motor.Drive(StepPower::Constant(1.0), 0.0, 0.0, 0.004);
   CHECK(Torque(full, 0.0) == Approx(0.33 * 0.0980665));
   CHECK(Torque(full, 720.0 * 2.0 * M_PI / 60.0) == Approx(0.0).margin(1e-12));
-  const WheelDrive half = motor.Drive(0.5, 0.0, 0.0, 0.004);
+  const WheelDrive half = motor.Drive(StepPower::Constant(0.5), 0.0, 0.0, 0.004);
   CHECK(Torque(half, 0.0) == Approx(0.5 * 0.33 * 0.0980665));
 }
 
-TEST_CASE("Each gearing has the torque of its data sheet and speed and counts of its ratio") {
+TEST_CASE("Each gearing has speed and torque of its data sheet and the counts of its ratio") {
   const GearingData standard = DataOf(Gearing::k30To1), slow = DataOf(Gearing::k75To1),
                     fast = DataOf(Gearing::k15To1);
   CHECK(standard.no_load_rad_s == Approx(75.4).epsilon(0.001));
   CHECK(standard.encoder_counts_per_rev == Approx(358.3).margin(0.05));
   CHECK(slow.encoder_counts_per_rev == Approx(909.7).margin(0.05));
-  CHECK(fast.no_load_rad_s * 60.0 / (2.0 * M_PI) == Approx(1410.0).margin(5.0));
-  CHECK(slow.stall_torque_nm > standard.stall_torque_nm);
-  CHECK(fast.stall_torque_nm < standard.stall_torque_nm);
+  CHECK(fast.encoder_counts_per_rev == Approx(183.0).margin(0.05));
+  const auto rpm = [](const GearingData& data) { return data.no_load_rad_s * 30.0 / M_PI; };
+  CHECK(rpm(standard) == Approx(720.0));  // Pololu 0J83/5.3
+  CHECK(rpm(slow) == Approx(180.0));
+  CHECK(rpm(fast) == Approx(2100.0));
+  CHECK(standard.stall_torque_nm == Approx(0.33 * 0.0980665));
+  CHECK(slow.stall_torque_nm == Approx(0.64 * 0.0980665));
+  CHECK(fast.stall_torque_nm == Approx(0.25 * 0.0980665));
 }
 
 TEST_CASE("Powers in the dead band do not drive and those beyond it do in full") {
   MotorOptions options;
   options.dead_band = 0.1;
   Motor motor(options, Side::kLeft);
-  CHECK(motor.Drive(0.099, 0.0, 0.0, 0.004).target_rad_s == 0.0);
-  CHECK(motor.Drive(-0.101, 0.0, 0.0, 0.004).target_rad_s ==
+  CHECK(motor.Drive(StepPower::Constant(0.099), 0.0, 0.0, 0.004).target_rad_s == 0.0);
+  CHECK(motor.Drive(StepPower::Constant(-0.101), 0.0, 0.0, 0.004).target_rad_s ==
         Approx(-0.101 * options.NoLoad_rad_s()));
 }
 
-TEST_CASE("Friction takes its torque from a driven wheel and holds one that is not") {
+TEST_CASE("Friction takes its torque from a driven wheel and brakes one that is not") {
   MotorOptions options;
   options.dead_band = 0.0;
   options.friction_torque_nm = 0.002;
   Motor motor(options, Side::kLeft);
-  const double stall_nm = 0.33 * 0.0980665;
-  CHECK(Torque(motor.Drive(0.5, 10.0, 0.001, 0.004), 0.0) == Approx(0.5 * stall_nm - 0.003));
-  CHECK(Torque(motor.Drive(-0.5, -10.0, 0.001, 0.004), 0.0) == Approx(-0.5 * stall_nm + 0.003));
-  const WheelDrive held = motor.Drive(0.01, 0.0, 0.001, 0.004);
-  CHECK(held.target_rad_s == 0.0);
-  CHECK(held.compliance_rad_s_per_nm == 0.0);
-  CHECK(held.limit_nm > 0.0);
+  const double stall_nm = 0.33 * 0.0980665, sign = GENERATE(-1.0, 1.0);
+  const WheelDrive driven = motor.Drive(StepPower::Constant(sign * 0.5), sign * 10.0, 0.001, 0.004);
+  CHECK(Torque(driven, 0.0) == Approx(sign * (0.5 * stall_nm - 0.003)));
+  CHECK(driven.friction_nm == 0.0);
+  // Towards rest friction stands by itself: the line alone would turn the wheel back.
+  const WheelDrive braked = motor.Drive(StepPower::Constant(0.0), sign * 10.0, 0.001, 0.004);
+  CHECK(sign * Torque(braked, sign * 10.0) < 0.0);
+  CHECK(Torque(braked, 0.0) == Approx(0.0).margin(1e-12));
+  CHECK(braked.friction_nm == Approx(0.003));
+  CHECK(motor.Drive(StepPower::Constant(sign * 0.5), -sign * 10.0, 0.001, 0.004).friction_nm ==
+        Approx(0.003));
+}
+
+TEST_CASE("A wheel at rest breaks away beyond its static friction, in either direction") {
+  MotorOptions options;
+  options.dead_band = 0.0;
+  options.friction_torque_nm = 0.002;
+  options.breakaway_torque_nm = 0.004;
+  Motor motor(options, Side::kRight);
+  const double stall_nm = 0.33 * 0.0980665, sign = GENERATE(-1.0, 1.0);
+  const double held_power = sign * 0.0039 / stall_nm, moving_power = sign * 0.0041 / stall_nm;
+  CHECK(motor.Drive(StepPower::Constant(held_power), 0.0, 0.0005, 0.004).friction_nm ==
+        Approx(0.0045));
+  CHECK(motor.Drive(StepPower::Constant(moving_power), 0.0, 0.0, 0.004).friction_nm ==
+        Approx(0.002));
+  // Once it turns, running friction is all there is.
+  CHECK(Torque(motor.Drive(StepPower::Constant(held_power), sign * 1.0, 0.0, 0.004), 0.0) ==
+        Approx(sign * 0.0019));
+}
+
+TEST_CASE("Static friction below the running one is refused") {
+  MotorOptions options;
+  options.friction_torque_nm = 0.002;
+  options.breakaway_torque_nm = 0.001;
+  CHECK_THROWS_WITH(options.Check(), Catch::Contains("breakaway_torque_nm is 0.001"));
 }
 
 TEST_CASE("A lagging motor follows a step of power exponentially whatever the step") {
@@ -62,7 +95,7 @@ TEST_CASE("A lagging motor follows a step of power exponentially whatever the st
     Motor motor(options, Side::kLeft);
     double integral = 0.0;
     for (int i = 0; i < std::lround(0.1 / step_s); ++i) {
-      integral += step_s * motor.Drive(0.4, 0.0, 0.0, step_s).target_rad_s;
+      integral += step_s * motor.Drive(StepPower::Constant(0.4), 0.0, 0.0, step_s).target_rad_s;
     }
     const double expected =
         0.4 * options.NoLoad_rad_s() * (0.1 - 0.05 * (1.0 - std::exp(-0.1 / 0.05)));
@@ -74,8 +107,10 @@ TEST_CASE("Mismatch parts the wheels by its share and keeps their mean") {
   MotorOptions options;
   options.mismatch = 0.04;
   options.model = GENERATE(MotorModel::kDc, MotorModel::kServo);
-  const double left = Motor(options, Side::kLeft).Drive(0.5, 0.0, 0.0, 0.004).target_rad_s;
-  const double right = Motor(options, Side::kRight).Drive(0.5, 0.0, 0.0, 0.004).target_rad_s;
+  const double left =
+      Motor(options, Side::kLeft).Drive(StepPower::Constant(0.5), 0.0, 0.0, 0.004).target_rad_s;
+  const double right =
+      Motor(options, Side::kRight).Drive(StepPower::Constant(0.5), 0.0, 0.0, 0.004).target_rad_s;
   CHECK(0.5 * (left + right) == Approx(0.5 * options.NoLoad_rad_s()));
   CHECK((left - right) / (0.5 * (left + right)) == Approx(0.04));
 }

@@ -65,7 +65,10 @@ struct BodyOptions {
   /// Rules between fields; throws std::invalid_argument naming field, value and rule.
   void Check() const;
 
+  double Weight_n() const { return gravity_mps2 * (chassis_mass_kg + 2.0 * wheel_mass_kg); }
+  /// On one wheel, and on the caster, at rest on level ground.
   double WeightOnWheel_n() const;
+  double WeightOnCaster_n() const { return Weight_n() - 2.0 * WeightOnWheel_n(); }
   /// `side`: 0 left, 1 right.
   double WheelRadius_m(int side) const;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -32,6 +33,7 @@ struct MotorOptions {
   double lag_s = 0.0;
   double mismatch = 0.0;
   double friction_torque_nm = 0.0;
+  std::optional<double> breakaway_torque_nm;
   std::optional<double> servo_torque_nm;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
@@ -59,42 +61,67 @@ struct MotorOptions {
     field("mismatch", self.mismatch, -0.5, 0.5,
           "left wheel faster than the right by this share of the mean at equal power");
     field("friction_torque_nm", self.friction_torque_nm, 0.0, 0.1,
-          "Coulomb friction of gear and bearing at the wheel in N m (dc only)");
+          "friction of gear and bearing at a turning wheel in N m (dc only; 40 mA without load of "
+          "0.67 A at stall, Pololu 0J83/5.3, make 0.0019)");
+    field(
+        "breakaway_torque_nm", self.breakaway_torque_nm, 0.0, 0.1,
+        "friction at a wheel at rest in N m, at least friction_torque_nm; none: the same (dc only; "
+        "the robot stands on a ramp of 0.255 rad: more than 0.0031)");
     field("servo_torque_nm", self.servo_torque_nm, 1e-3, 100.0,
           "largest torque of the servo in N m; none: any (Webots' 10 is never reached here)");
   }
+  /// Rules between fields; throws std::invalid_argument naming field, value and rule.
+  void Check() const;
 
   double NoLoad_rad_s() const { return no_load_rad_s.value_or(DataOf(gearing).no_load_rad_s); }
+  double Breakaway_nm() const { return breakaway_torque_nm.value_or(friction_torque_nm); }
   double StallTorque_nm() const {
     return stall_torque_nm.value_or(DataOf(gearing).stall_torque_nm);
   }
 };
 
-/// What a motor does to its wheel during one step, as the straight line
-/// torque = (target - rate) / compliance, never beyond +-limit. A compliance of zero is a servo.
+/// What a motor does to its wheel during one step: the straight line
+/// torque = (target - rate) / compliance, never beyond +-limit, and dry friction, which holds a
+/// wheel at rest as long as it can. A compliance of zero is a servo.
 /// The physics solves the line together with the contacts, at the rate the step ends with: however
 /// steep it is and however long the step, it cannot oscillate.
 struct WheelDrive {
   double target_rad_s = 0.0;
   double compliance_rad_s_per_nm = 0.0;
   double limit_nm = 0.0;
+  double friction_nm = 0.0;
+};
+
+/// The power of a motor over one step: at its start, its mean and at its end.
+struct StepPower {
+  double before = 0.0;
+  double mean = 0.0;
+  double after = 0.0;
+
+  static StepPower Constant(double power) { return {power, power, power}; }
+  /// Share of the step after the change, where the power changes once.
+  double ShareAfter() const {
+    return after == before ? 1.0 : std::clamp((mean - before) / (after - before), 0.0, 1.0);
+  }
 };
 
 enum class Side { kLeft, kRight };
 
 /// One motor with its driver. The torque of a brushed motor at 6 V x supply_ratio:
-/// torque = stall (power supply - rate / no_load) - friction sign(rate).
+/// torque = stall (power supply - rate / no_load) - friction sign(rate). A wheel at rest stays so,
+/// without creep, while motor and load together turn it with no more than the breakaway torque.
 class Motor {
  public:
   Motor(const MotorOptions& options, Side side);
 
-  /// The drive for the next `step_s` seconds. `power` is the mean of the commanded power over them,
-  /// `rate_rad_s` the wheel's rate now, `drag_nm` what the ground adds to the Coulomb friction.
-  WheelDrive Drive(double power, double rate_rad_s, double drag_nm, double step_s);
+  /// The drive for the next `step_s` seconds; `rate_rad_s` is the wheel's rate now, `drag_nm` what
+  /// the ground adds to the friction.
+  WheelDrive Drive(const StepPower& power, double rate_rad_s, double drag_nm, double step_s);
 
  private:
-  double MeanThroughLag(double power, double step_s);
-  WheelDrive TorqueLine(double power, double rate_rad_s, double drag_nm) const;
+  StepPower ThroughDeadBand(const StepPower& power) const;
+  StepPower ThroughLag(const StepPower& power, double step_s);
+  double FrictionFromRest_nm(const StepPower& power, double drag_nm) const;
 
   MotorOptions options_;
   double no_load_rad_s_;  ///< of this side

@@ -45,6 +45,8 @@ class OdeWorld {
   const WorldState& State() const;
   /// Grip under each wheel, left and right.
   std::array<Grip, 2> WheelGrip() const;
+  /// Kinetic and potential energy of chassis and wheels; heights count from z = 0.
+  double Energy_j() const;
   const std::optional<std::string>& Fault() const;
 
  private:

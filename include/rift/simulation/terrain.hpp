@@ -30,7 +30,7 @@ struct SurfaceOptions {
   double rolling_resistance = 0.0;
   double slip = 0.0;
   double caster_factor = 1.0;
-  double ramp_rad = 0.2404;
+  double ramp_rad = 0.255;
   double ramp_top_m = 0.24;
   double ramp_edge_x_m = 0.05;
   double bump_size_m = 0.020;
@@ -56,11 +56,12 @@ struct SurfaceOptions {
     field("caster_factor", self.caster_factor, 0.0, 20.0,
           "friction of the caster's ball here as a multiple of body.caster_mu");
     field("ramp_rad", self.ramp_rad, 0.001, 0.7,
-          "inclination of the board in rad (z in the downhill logs: 0.2404)");
+          "inclination of the board in rad (z in the downhill logs; authors' world: 0.2404)");
     field("ramp_top_m", self.ramp_top_m, 0.0, 2.0,
           "height of the plateau above the floor in m (z in the downhill logs: 0.24)");
     field("ramp_edge_x_m", self.ramp_edge_x_m, -10.0, 10.0,
-          "x at which plateau and slope meet, in m (z in the downhill logs: 0.05)");
+          "x at which plateau and slope meet, in m (z of the logs, axle: downhill 0.05, uphill "
+          "0.31)");
     field("bump_size_m", self.bump_size_m, 0.001, 1.0,
           "side of a block in m (paper's board: 0.02)");
     field("bump_pitch_m", self.bump_pitch_m, 0.002, 2.0,
@@ -166,6 +167,8 @@ class Terrain {
   /// Whether height changes in steps (bumps, edge of a table), so that it has no useful slope
   /// there.
   bool IsStepped() const { return surface_.shape == Shape::kBumps; }
+  const SurfaceOptions& Surface() const { return surface_; }
+  bool IsOnTable(double x_m, double y_m) const { return OnTable(x_m, y_m, 0.0); }
 
  private:
   bool OnTable(double x_m, double y_m, double margin_m) const;
