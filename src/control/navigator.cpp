@@ -40,7 +40,12 @@ Decision Navigator::Step(const PoseInput& input) {
   const geometry::Pose2 world_from_robot =
       predictor_.Predict(gate_.last()->world_from_robot, arrived_s_, input.now_s);
   Aim(decision, world_from_robot);
-  if (decision.finished || Arrive(decision, world_from_robot)) return decision;
+  if (decision.finished || Arrive(decision, world_from_robot)) {
+    clock_is_set_ = false;
+    return decision;
+  }
+  decision.set_clock = options_.clock_starts_anew && !std::exchange(clock_is_set_, true);
+  if (decision.set_clock) return decision;
 
   const double dt_s = std::isfinite(input.dt_s)
                           ? std::clamp(input.dt_s, options_.dt_min_s, options_.dt_max_s)

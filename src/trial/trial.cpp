@@ -76,7 +76,7 @@ void Recorder::Decided(double now_s, const control::Decision& decision, size_t a
     active_ = active_after;
     return;
   }
-  Count(result_.limits, decision);
+  if (!decision.set_clock) Count(result_.limits, decision);
 }
 
 namespace {

@@ -107,6 +107,29 @@ TEST_CASE("A stop is one decision of zero power and then the next leg begins") {
   CHECK(next.v == 0.3);
 }
 
+TEST_CASE("A clock that starts anew costs a decision at the start and after each stop") {
+  NavigatorOptions options;
+  options.clock_starts_anew = true;
+  Navigator navigator(options, Line(true));
+  const auto step = [&](double x_m, double dt_s = 0.053) {
+    return navigator.Step({0.0, dt_s, x_m, {x_m, 0.0, 0.1}});
+  };
+  CHECK(step(0.0).set_clock);
+  const Decision first = step(0.01);
+  CHECK_FALSE(first.set_clock);
+  CHECK(first.power.left > 0.0);
+  // The derivative of the first step that drives is over a true interval.
+  CHECK(first.raw_v == Approx(0.99 * (0.9 + 0.01 / 0.053)));
+  CHECK(step(0.97).reached);
+  const Decision anew = step(0.98);
+  CHECK(anew.set_clock);
+  CHECK(anew.power == WheelPower{});
+  CHECK(step(0.99).power.left > 0.0);
+  Navigator through(options, Line(false));
+  through.Step({0.0, 0.053, 0.0, {0.0, 0.0, 0.1}});
+  CHECK_FALSE(through.Step({0.0, 0.053, 0.1, {0.97, 0.0, 0.1}}).set_clock);
+}
+
 TEST_CASE("A waypoint without stop hands over to the next leg in the same decision") {
   Navigator navigator({}, Line(false));
   const Decision at = navigator.Step({0.0, kStep_s, 0.0, {0.96, 0.0, 0.1}});

@@ -57,6 +57,7 @@ struct Decision {
   WheelPower power;
   size_t waypoint = 0;        ///< index of the waypoint driven to; the last one when finished
   bool pose_refused = false;  ///< the pose given was no believable one; the last good one was used
+  bool set_clock = false;     ///< zero power: this step only sets the clock
   bool reached = false;       ///< `waypoint` was reached at this step and the robot stops there
   bool finished = false;      ///< the last waypoint has been reached; power stays zero
   double v = 0.0;             ///< forward and steering power after their limits

@@ -49,6 +49,7 @@ struct NavigatorOptions {
   /// The authors' Webots logs show it: |w| is 0.027 to 0.045 in the first step of each new leg
   /// and 0.02 elsewhere, and v_max 0.30 and 0.40 part in exactly one such step.
   bool derivative_kick = true;
+  bool clock_starts_anew = false;
   double reach_radius_m = 0.05;
   double v_min = 0.15;
   double v_max = 0.30;
@@ -71,6 +72,9 @@ struct NavigatorOptions {
     field("integral_limit", self.integral_limit, 0.0, 1e3, "bound of both error integrals");
     field("derivative_kick", self.derivative_kick,
           "the error before a leg counts as zero, so its first step has a derivative");
+    field("clock_starts_anew", self.clock_starts_anew,
+          "at the start and after a stop the first decision only sets the clock, at zero power, as "
+          "in the authors' loop: the first that drives knows a true interval");
     field("reach_radius_m", self.reach_radius_m, 1e-4, 10.0, "a waypoint is reached within this");
     field("v_min", self.v_min, 0.0, 1.0, "least forward power between waypoints");
     field("v_max", self.v_max, 0.0, 1.0, "largest forward power");
