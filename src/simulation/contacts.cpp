@@ -202,12 +202,13 @@ void AddWheelContacts(const ContactScene& scene, int side, const Vector3d& centr
   const BodyOptions& body = scene.body;
   const Vector3d axle = scene.state.world_from_robot.col(1);
   const double radius_m = body.WheelRadius_m(side);
-  const double rim_mps = std::abs(scene.state.wheel_rate_rad_s[side]) * radius_m;
+  const double rolling_mps = scene.state.wheel_rate_rad_s[side] * radius_m;
+  const double rim_mps = std::abs(rolling_mps), uneven_mps = scene.uneven[side] * rolling_mps;
   const auto add = [&](const ContactPoint& at) {
     const Grip grip = scene.terrain.GripAt(at.point.x(), at.point.y());
     const double creep_mps = grip.slip * rim_mps;
-    contacts.push_back(
-        {at, grip.mu, Across(at.normal, axle), creep_mps, creep_mps, body.WeightOnWheel_n()});
+    contacts.push_back({at, grip.mu, Across(at.normal, axle), creep_mps, creep_mps,
+                        body.WeightOnWheel_n(), uneven_mps});
   };
   if (!scene.terrain.IsStepped()) {
     const auto contact =

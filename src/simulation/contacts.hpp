@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,8 @@ struct GroundContact {
   double creep_along_mps = 0.0;
   double creep_across_mps = 0.0;
   double usual_load_n = 0.0;  ///< at rest on level ground
+  /// A wheel rolls across `direction` faster than its rim turns by this.
+  double uneven_mps = 0.0;
 };
 
 /// The robot and the ground under it, as the contacts of one step see them.
@@ -51,6 +54,8 @@ struct ContactScene {
   const WorldState& state;
   /// On bumps a contact counts from this far above the ground, so that no step ends inside a block.
   double margin_m = 0.0;
+  /// For each wheel: the way it makes beyond what its rim turns, as a share of it.
+  std::array<double, 2> uneven{};
 };
 
 /// Each appends its contacts. `side` is 0 for the left wheel and 1 for the right one, `centre` the

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "rift/geometry/pose2.hpp"
 
@@ -20,7 +21,8 @@ enum Draw : std::uint64_t {
   kHeight = 8,
   kRoll = 10,
   kPitch = 12,
-  kDropout = 14
+  kDropout = 14,
+  kHostPeriod = 15
 };
 
 constexpr double kClockTick_s = 1e-6;
@@ -57,13 +59,17 @@ Eigen::Vector3d TagInWorld(const TruePose& pose, const MocapOptions& options) {
 
 }  // namespace
 
-Mocap::Mocap(const MocapOptions& options, std::uint64_t seed)
+Mocap::Mocap(const MocapOptions& options, std::uint64_t seed, std::optional<double> host_period_s)
     : options_(options),
       noise_(seed, kPoseStream),
       phase_s_(options.rate_hz > 0.0
                    ? statistics::CounterRandom(seed, kPhaseStream).Uniform(0, 0) / options.rate_hz
                    : 0.0),
-      last_stamp_s_(-std::numeric_limits<double>::infinity()) {}
+      last_stamp_s_(-std::numeric_limits<double>::infinity()) {
+  if (options_.host_period_s && host_period_s) options_.host_period_s = host_period_s;
+  host_done_s_ = options_.host_period_s.value_or(0.0) *
+                 statistics::CounterRandom(seed, kPhaseStream).Uniform(1, 0);
+}
 
 double Mocap::FrameTime_s(std::uint64_t frame) const {
   // Half a frame at most, so that frames stay in order.
@@ -84,17 +90,43 @@ void Mocap::Observe(const TruePose& before, const TruePose& after) {
     TakeFrame(Interpolate(before, after, t_s), speed_mps, next_frame_);
     ++next_frame_;
   }
+  if (options_.host_period_s) RunHost(after.t_s);
 }
 
 void Mocap::TakeFrame(const TruePose& pose, double speed_mps, std::uint64_t frame) {
   if (noise_.Uniform(frame, kDropout) < options_.dropout) return;
-  const double arrives_s = pose.t_s + 0.5 * options_.exposure_s + options_.processing_s;
+  const double arrives_s = pose.t_s + Latency_s();
   trial::PoseMeasurement measurement = Measure(pose, speed_mps, frame);
+  if (options_.host_period_s) {
+    measurement.captured_s = pose.t_s;  // until the host stamps it
+    in_camera_.push_back(measurement);
+    return;
+  }
   // A stamp lies after the last one and not after the arrival, whatever its jitter.
   measurement.captured_s =
       std::min(std::max(measurement.captured_s, last_stamp_s_ + kClockTick_s), arrives_s);
   last_stamp_s_ = measurement.captured_s;
   on_the_way_.push_back({arrives_s, measurement});
+}
+
+/// Every turn of the host ends with the newest picture that is old enough to have been worked on,
+/// if there is one since the last turn, stamped with the end of the turn.
+void Mocap::RunHost(double until_s) {
+  while (host_done_s_ <= until_s) {
+    std::optional<trial::PoseMeasurement> taken;
+    while (!in_camera_.empty() && in_camera_.front().captured_s <= host_done_s_ - Latency_s()) {
+      taken = in_camera_.front();
+      in_camera_.pop_front();
+    }
+    if (taken) {
+      taken->captured_s = host_done_s_;
+      on_the_way_.push_back({host_done_s_, *taken});
+    }
+    // An exponential scatter about its median.
+    const double late = -std::log(noise_.Uniform(host_turns_++, kHostPeriod)) - std::numbers::ln2;
+    host_done_s_ += std::max(0.5 * *options_.host_period_s,
+                             *options_.host_period_s + options_.host_jitter_s * late);
+  }
 }
 
 trial::PoseMeasurement Mocap::Measure(const TruePose& pose, double speed_mps,

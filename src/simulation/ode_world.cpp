@@ -107,10 +107,10 @@ struct OdeWorld::Bodies {
   void PlaceOn(const Plane& plane, double yaw_rad);
   void Settle();
 
-  void Step(const std::array<WheelDrive, 2>& drives);
+  void Step(const std::array<WheelDrive, 2>& drives, const std::array<double, 2>& uneven = {});
   void Abandon();
   void SetDrive(int side, const WheelDrive& drive);
-  void MakeContacts();
+  void MakeContacts(const std::array<double, 2>& uneven);
   void Add(PartContacts& part, bool sticks);
   dContact ContactOf(const GroundContact& ground, std::optional<double> load_n) const;
   void ReadState();
@@ -246,7 +246,8 @@ void OdeWorld::Bodies::Abandon() {
   static_cast<void>(threading.release());
 }
 
-void OdeWorld::Bodies::Step(const std::array<WheelDrive, 2>& drives) {
+void OdeWorld::Bodies::Step(const std::array<WheelDrive, 2>& drives,
+                            const std::array<double, 2>& uneven) {
   if (fault) return;
   for (const WheelDrive& drive : drives) {
     if (!std::isfinite(drive.target_rad_s + drive.compliance_rad_s_per_nm + drive.friction_nm) ||
@@ -258,7 +259,7 @@ void OdeWorld::Bodies::Step(const std::array<WheelDrive, 2>& drives) {
   for (int side = 0; side < 2; ++side) SetDrive(side, drives[side]);
   try {
     dJointGroupEmpty(contacts.get());
-    MakeContacts();
+    MakeContacts(uneven);
     dWorldStep(world.get(), step_s);
   } catch (const OdeFailure& failure) {
     fault = failure.what();
@@ -281,8 +282,8 @@ void OdeWorld::Bodies::SetDrive(int side, const WheelDrive& drive) {
   dJointSetAMotorParam(frictions[side], dParamFMax, drive.friction_nm);
 }
 
-void OdeWorld::Bodies::MakeContacts() {
-  const ContactScene scene{body, terrain, state, kFastest_mps * step_s};
+void OdeWorld::Bodies::MakeContacts(const std::array<double, 2>& uneven) {
+  const ContactScene scene{body, terrain, state, kFastest_mps * step_s, uneven};
   for (int side = 0; side < 2; ++side) {
     AddWheelContacts(scene, side, Vector(dBodyGetPosition(wheels[side])), found);
     Add(wheel_contacts[side], settling);
@@ -334,6 +335,10 @@ dContact OdeWorld::Bodies::ContactOf(const GroundContact& ground,
   };
   surface.slip1 = slip(ground.creep_along_mps);
   surface.slip2 = slip(ground.creep_across_mps);
+  if (ground.uneven_mps != 0.0) {
+    surface.mode |= dContactMotion2;  // along normal x direction, to the rear
+    surface.motion2 = -ground.uneven_mps;
+  }
   if (ground.at.depth_m < 0.0) {
     surface.mode |= dContactMotionN;
     surface.motionN = ground.at.depth_m / step_s;
@@ -365,7 +370,9 @@ OdeWorld::~OdeWorld() = default;
 OdeWorld::OdeWorld(OdeWorld&&) noexcept = default;
 OdeWorld& OdeWorld::operator=(OdeWorld&&) noexcept = default;
 
-void OdeWorld::Step(const std::array<WheelDrive, 2>& drives) { bodies_->Step(drives); }
+void OdeWorld::Step(const std::array<WheelDrive, 2>& drives, const std::array<double, 2>& uneven) {
+  bodies_->Step(drives, uneven);
+}
 
 void OdeWorld::Launch(double speed_mps) {
   const Matrix3d& world_from_robot = bodies_->state.world_from_robot;

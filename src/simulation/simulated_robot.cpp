@@ -99,15 +99,27 @@ TruePose PoseOf(const WorldState& state, double t_s) {
           std::atan2(r(1, 0), r(0, 0))};
 }
 
+enum Stream : std::uint64_t { kMotorStream = 30, kGroundStream = 31 };
+constexpr double kGrain_m = 0.005;
+
+/// With the mismatch that this run draws.
+MotorOptions OfRun(MotorOptions options, std::uint64_t seed) {
+  options.mismatch +=
+      options.mismatch_spread * statistics::CounterRandom(seed, kMotorStream).Normal(0, 0);
+  return options;
+}
+
 }  // namespace
 
 SimulatedRobot::SimulatedRobot(const SimulationOptions& options, const geometry::Pose2& start,
                                std::uint64_t seed, std::shared_ptr<const HeightImage> image)
     : options_(Checked(options, start)),
       world_(options.body, Terrain(options.terrain, std::move(image)), start, options.step_s),
-      motors_{Motor(options.motor, Side::kLeft), Motor(options.motor, Side::kRight)},
+      motors_{Motor(OfRun(options.motor, seed), Side::kLeft),
+              Motor(OfRun(options.motor, seed), Side::kRight)},
       link_(options.link, seed),
-      mocap_(options.mocap, seed),
+      mocap_(options.mocap, seed, options.terrain.Chosen().host_period_s),
+      ground_(seed, kGroundStream),
       counts_per_rev_(options.encoder.counts_per_rev.value_or(
           DataOf(options.motor.gearing).encoder_counts_per_rev)),
       step_ns_(std::llround(options.step_s * 1e9)),
@@ -159,7 +171,8 @@ void SimulatedRobot::Step() {
   const StepPower left = power(&control::WheelPower::left);
   const StepPower right = power(&control::WheelPower::right);
   world_.Step({motors_[0].Drive(left, rate_rad_s[0], Drag_nm(grip[0]), options_.step_s),
-               motors_[1].Drive(right, rate_rad_s[1], Drag_nm(grip[1]), options_.step_s)});
+               motors_[1].Drive(right, rate_rad_s[1], Drag_nm(grip[1]), options_.step_s)},
+              {Uneven(0, grip[0]), Uneven(1, grip[1])});
   const TruePose before = truth_;
   truth_ = PoseOf(world_.State(), t_s);
   mocap_.Observe(before, truth_);
@@ -168,6 +181,19 @@ void SimulatedRobot::Step() {
 /// Rolling resistance under the weight at rest, as a torque on the wheel.
 double SimulatedRobot::Drag_nm(const Grip& grip) const {
   return grip.rolling_resistance * options_.body.WeightOnWheel_n() * options_.body.wheel_radius_m;
+}
+
+/// Along the way that the rim has turned: normal values a grain apart, straight lines between, so
+/// that nothing depends on the step or on the speed.
+double SimulatedRobot::Uneven(int side, const Grip& grip) const {
+  if (grip.unevenness == 0.0) return 0.0;
+  const double way_m = world_.State().wheel_angle_rad[side] * options_.body.WheelRadius_m(side);
+  const double grain = std::floor(way_m / kGrain_m), share = way_m / kGrain_m - grain;
+  const auto at = [&](double k) {
+    const auto event = static_cast<std::uint64_t>(static_cast<std::int64_t>(k));
+    return ground_.Normal(event, 2 * static_cast<std::uint64_t>(side));
+  };
+  return grip.unevenness * ((1.0 - share) * at(grain) + share * at(grain + 1.0));
 }
 
 }  // namespace rift::simulation

@@ -118,7 +118,9 @@ Eigen::Vector3d Terrain::NormalAt(double x_m, double y_m) const {
 
 Grip Terrain::GripAt(double x_m, double y_m) const {
   for (auto patch = patches_.rbegin(); patch != patches_.rend(); ++patch) {
-    if (patch->Covers(x_m, y_m)) return {patch->mu, patch->rolling_resistance, patch->slip};
+    if (patch->Covers(x_m, y_m)) {
+      return {patch->mu, patch->rolling_resistance, patch->slip, 1.0, surface_.unevenness};
+    }
   }
   return surface_.GripOf();
 }

@@ -62,6 +62,7 @@ simulation::SimulationOptions AsTwin(simulation::SimulationOptions simulation,
   simulation.link.watchdog_s = 1e-3 * hardware::Listener::kWatchdog_ms;
   simulation.mocap.rate_hz = options.fps;
   simulation.mocap.frame_jitter_s = 0.0;
+  simulation.mocap.host_period_s.reset();  // the host is a real one
   simulation.encoder.reported = true;
   return simulation;
 }

@@ -1,8 +1,11 @@
 #include "rift/simulation/mocap.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
+
+#include "rift/statistics/descriptive.hpp"
 
 namespace rift::simulation {
 namespace {
@@ -153,6 +156,57 @@ TEST_CASE("A camera without a rate shows the present pose") {
   mocap.Observe(Moving(0.0), Moving(0.1));
   CHECK(mocap.Newest(0.1)->captured_s == 0.1);
   CHECK(mocap.Newest(0.1)->world_from_robot == Moving(0.1).Planar());
+}
+
+/// Stamps and true times of what a host saw of a robot that drives 1 m a second along x.
+struct Seen {
+  std::vector<double> stamps_s, captures_s;
+};
+
+Seen SeenByHost(const MocapOptions& options) {
+  Mocap mocap(options, 3);
+  Seen seen;
+  TruePose before;
+  std::optional<double> last_s;
+  for (int i = 1; i <= 5000; ++i) {
+    const TruePose after{.t_s = 0.004 * i, .x_m = 0.004 * i};
+    mocap.Observe(before, after);
+    before = after;
+    const auto newest = mocap.Newest(after.t_s);
+    if (!newest || newest->captured_s == last_s) continue;
+    last_s = newest->captured_s;
+    seen.stamps_s.push_back(newest->captured_s);
+    seen.captures_s.push_back(newest->world_from_robot.x_m);
+  }
+  return seen;
+}
+
+TEST_CASE("A host that samples the camera stamps its own time and sees whole frames") {
+  MocapOptions options;
+  options.rate_hz = 30.0;
+  options.host_period_s = 0.055;
+  options.noise_across_m = options.blur_across_s = options.noise_along_m = 0.0;
+  options.noise_yaw_rad = options.blur_yaw_rad_per_mps = options.frame_jitter_s = 0.0;
+  const Seen seen = SeenByHost(options);
+  REQUIRE(seen.stamps_s.size() > 300);
+  int of_one = 0, of_two = 0;
+  std::vector<double> periods_s, ages_s;
+  for (size_t i = 1; i < seen.stamps_s.size(); ++i) {
+    const double frames = 30.0 * (seen.captures_s[i] - seen.captures_s[i - 1]);
+    CHECK(frames == Approx(std::round(frames)).margin(1e-6));
+    of_one += std::lround(frames) == 1;
+    of_two += std::lround(frames) == 2;
+    periods_s.push_back(seen.stamps_s[i] - seen.stamps_s[i - 1]);
+    ages_s.push_back(seen.stamps_s[i] - seen.captures_s[i]);
+  }
+  CHECK(statistics::Median(periods_s) == Approx(0.055).margin(0.001));
+  const double all = static_cast<double>(periods_s.size());
+  CHECK(of_two / all == Approx(0.055 * 30.0 - 1.0).margin(0.15));
+  CHECK(of_one + of_two > 0.95 * all);
+  // As old as camera and detection make it, and up to a frame more.
+  const double latency_s = 0.5 * options.exposure_s + options.processing_s;
+  CHECK(*std::min_element(ages_s.begin(), ages_s.end()) >= latency_s - 1e-9);
+  CHECK(*std::max_element(ages_s.begin(), ages_s.end()) <= latency_s + 1.0 / 30.0 + 1e-9);
 }
 
 }  // namespace

@@ -93,9 +93,8 @@ TEST_CASE("Turning and moving the whole scene turns and moves the run") {
   const Run there = Drive(Robot(surface), there_from_here * PaperStart(),
                           Moved(test::PaperWaypoints(), there_from_here));
   CHECK(here.outcome == trial::Outcome::kReached);
-  const double off_m = Farthest_m(there.path, here.path, [&](const geometry::Pose2& pose) {
-    return there_from_here * pose;
-  });
+  const double off_m = Farthest_m(
+      there.path, here.path, [&](const geometry::Pose2& pose) { return there_from_here * pose; });
   CAPTURE(surface, turn_rad);
   CHECK(off_m < 1e-9);
 }
@@ -108,8 +107,8 @@ TEST_CASE("The mirror image of the scene gives the mirror image of the run") {
   std::vector<control::Waypoint> waypoints = test::PaperWaypoints();
   const Run run = Drive(options, PaperStart(), waypoints);
   for (control::Waypoint& waypoint : waypoints) waypoint.y_m = -waypoint.y_m;
-  const Run image = Drive(mirrored, {PaperStart().x_m, -PaperStart().y_m, -PaperStart().yaw_rad},
-                          waypoints);
+  const Run image =
+      Drive(mirrored, {PaperStart().x_m, -PaperStart().y_m, -PaperStart().yaw_rad}, waypoints);
   CAPTURE(surface);
   CHECK(Farthest_m(run.path, image.path, [](const geometry::Pose2& pose) {
           return geometry::Pose2{pose.x_m, -pose.y_m, -pose.yaw_rad};
@@ -139,8 +138,8 @@ TEST_CASE("Halving the step hardly changes a run where the ground is smooth") {
   std::vector<double> parted_m;
   for (int run = 0; run < 15; ++run) {
     options.link.poll_phase = 0.2 * (run % 5);
-    const geometry::Pose2 start{PaperStart().x_m + 0.001 * run, PaperStart().y_m + 0.002 * (run % 7),
-                                PaperStart().yaw_rad};
+    const geometry::Pose2 start{PaperStart().x_m + 0.001 * run,
+                                PaperStart().y_m + 0.002 * (run % 7), PaperStart().yaw_rad};
     parted_m.push_back(PartedBy_m(options, start));
   }
   // A few part further at any step: the controller steers to the side of a sign.

@@ -25,6 +25,8 @@ struct TruePose {
 struct MocapOptions {
   double rate_hz = 18.9;
   double frame_jitter_s = 0.003;
+  std::optional<double> host_period_s;
+  double host_jitter_s = 0.004;
   double exposure_s = 0.010;
   double processing_s = 0.070;
   double noise_across_m = 0.00035;
@@ -48,6 +50,13 @@ struct MocapOptions {
           "moment and there is no delay (authors' Webots)");
     field("frame_jitter_s", self.frame_jitter_s, 0.0, 0.1,
           "scatter of the moment of a frame about its tick in s (trials: 48 to 64 ms apart)");
+    field(
+        "host_period_s", self.host_period_s, 0.005, 2.0,
+        "the host takes the newest picture this often and stamps its pose when it is done, as the "
+        "authors' does (median; 0.051 to 0.063 in the logs): intervals between captures are whole "
+        "frames, stamps are the host's; none: every frame is measured, stamped when captured");
+    field("host_jitter_s", self.host_jitter_s, 0.0, 0.2,
+          "scatter of host_period_s, skewed to the long side, in s (logs: 0.004)");
     field("exposure_s", self.exposure_s, 0.0, 0.2,
           "shutter time in s; the pose is that of its middle (estimate)");
     field("processing_s", self.processing_s, 0.0, 2.0,
@@ -78,10 +87,13 @@ struct MocapOptions {
 };
 
 /// An overhead camera that measures the tag's pose. What it sees arrives later than it was seen;
-/// frame k has its own random values, so nothing depends on how often anyone looks.
+/// frame k has its own random values, so nothing depends on how often anyone looks. With a host's
+/// period, the camera's frames are a grid that the host's loop samples.
 class Mocap {
  public:
-  Mocap(const MocapOptions& options, std::uint64_t seed);
+  /// `host_period_s`: instead of that of the options, for a surface with one of its own.
+  Mocap(const MocapOptions& options, std::uint64_t seed,
+        std::optional<double> host_period_s = std::nullopt);
 
   /// The robot moved from `before` to `after`, with before.t_s <= after.t_s: takes every frame due
   /// in between, the pose interpolated to its moment.
@@ -97,7 +109,9 @@ class Mocap {
   };
 
   double FrameTime_s(std::uint64_t frame) const;
+  double Latency_s() const { return 0.5 * options_.exposure_s + options_.processing_s; }
   void TakeFrame(const TruePose& pose, double speed_mps, std::uint64_t frame);
+  void RunHost(double until_s);
   trial::PoseMeasurement Measure(const TruePose& pose, double speed_mps, std::uint64_t frame) const;
 
   MocapOptions options_;
@@ -105,6 +119,9 @@ class Mocap {
   double phase_s_;
   std::uint64_t next_frame_ = 0;
   double last_stamp_s_;
+  double host_done_s_ = 0.0;  ///< when the host's next turn ends
+  std::uint64_t host_turns_ = 0;
+  std::deque<trial::PoseMeasurement> in_camera_;  ///< captured, not yet taken by the host
   std::deque<Arrival> on_the_way_;
   std::optional<trial::PoseMeasurement> newest_;
 };

@@ -32,6 +32,7 @@ struct MotorOptions {
   double dead_band = 0.10;
   double lag_s = 0.0;
   double mismatch = 0.0;
+  double mismatch_spread = 0.0;
   double friction_torque_nm = 0.0;
   std::optional<double> breakaway_torque_nm;
   std::optional<double> servo_torque_nm;
@@ -60,6 +61,9 @@ struct MotorOptions {
           "time constant of the driver in s, on top of the motor's own inertia (dc only)");
     field("mismatch", self.mismatch, -0.5, 0.5,
           "left wheel faster than the right by this share of the mean at equal power");
+    field("mismatch_spread", self.mismatch_spread, 0.0, 0.2,
+          "standard deviation of the mismatch from run to run: each run draws its own about "
+          "mismatch");
     field("friction_torque_nm", self.friction_torque_nm, 0.0, 0.1,
           "friction of gear and bearing at a turning wheel in N m (dc only; 40 mA without load of "
           "0.67 A at stall, Pololu 0J83/5.3, make 0.0019)");

@@ -37,8 +37,9 @@ class OdeWorld {
   OdeWorld(OdeWorld&&) noexcept;
   OdeWorld& operator=(OdeWorld&&) noexcept;
 
-  /// One step of step_s under the drives of the left and the right wheel.
-  void Step(const std::array<WheelDrive, 2>& drives);
+  /// One step of step_s under the drives of the left and the right wheel. `uneven`: the way that
+  /// each makes beyond what its rim turns, as a share of it.
+  void Step(const std::array<WheelDrive, 2>& drives, const std::array<double, 2>& uneven = {});
   /// Sets the robot rolling straight ahead without slip.
   void Launch(double speed_mps);
 

@@ -39,12 +39,14 @@ class SimulatedRobot : public trial::Robot {
   double Now_s() const { return 1e-9 * static_cast<double>(now_ns_); }
   void Step();
   double Drag_nm(const Grip& grip) const;
+  double Uneven(int side, const Grip& grip) const;
 
   SimulationOptions options_;
   OdeWorld world_;
   std::array<Motor, 2> motors_;
   Link link_;
   Mocap mocap_;
+  statistics::CounterRandom ground_;
   double counts_per_rev_;
   std::int64_t step_ns_;
   std::int64_t now_ns_ = 0;

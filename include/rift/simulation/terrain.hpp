@@ -22,6 +22,7 @@ struct Grip {
   double rolling_resistance = 0.0;
   double slip = 0.0;
   double caster_factor = 1.0;
+  double unevenness = 0.0;
 };
 
 struct SurfaceOptions {
@@ -30,6 +31,8 @@ struct SurfaceOptions {
   double rolling_resistance = 0.0;
   double slip = 0.0;
   double caster_factor = 1.0;
+  double unevenness = 0.0;
+  std::optional<double> host_period_s;
   double ramp_rad = 0.255;
   double ramp_top_m = 0.24;
   double ramp_edge_x_m = 0.05;
@@ -55,6 +58,12 @@ struct SurfaceOptions {
           "creep of a wheel at the limit of its friction, as a share of its speed");
     field("caster_factor", self.caster_factor, 0.0, 20.0,
           "friction of the caster's ball here as a multiple of body.caster_mu");
+    field(
+        "unevenness", self.unevenness, 0.0, 1.0,
+        "scatter of the way a wheel makes for each way its rim turns, over some millimetres, as a "
+        "share: dust, fibres, a tyre that is not round; it turns the robot at random");
+    field("host_period_s", self.host_period_s, 0.005, 2.0,
+          "mocap.host_period_s in the session on this surface; none: that of mocap");
     field("ramp_rad", self.ramp_rad, 0.001, 0.7,
           "inclination of the board in rad (z in the downhill logs; authors' world: 0.2404)");
     field("ramp_top_m", self.ramp_top_m, 0.0, 2.0,
@@ -78,7 +87,7 @@ struct SurfaceOptions {
   /// Rules between fields; throws std::invalid_argument naming field, value and rule.
   void Check() const;
 
-  Grip GripOf() const { return {mu, rolling_resistance, slip, caster_factor}; }
+  Grip GripOf() const { return {mu, rolling_resistance, slip, caster_factor, unevenness}; }
 };
 
 /// The surfaces of the paper by name: ground, cardboard, parchment, wet_parchment, uphill, downhill

@@ -17,14 +17,26 @@ constexpr std::uint64_t kOffsetStream = 40;
 /// How long the loop runs on after the last pose of the log has arrived.
 constexpr double kRunOut_s = 0.1;
 
+double Latency_s(const simulation::MocapOptions& mocap) {
+  return 0.5 * mocap.exposure_s + mocap.processing_s;
+}
+
+/// How long before its stamp a pose was captured: a host that stamps what it has done takes a frame
+/// that is up to a frame older than need be.
+double StampAge_s(const simulation::MocapOptions& mocap) {
+  return mocap.host_period_s ? Latency_s(mocap) + 0.5 / mocap.rate_hz : 0.0;
+}
+
 /// The simulated robot seen through the eyes of a log: it moves as it is told, and reports what the
-/// real one reported.
+/// real one reported. Its path has the times at which the log would have stamped it.
 class RobotOfLog : public trial::Robot {
  public:
   RobotOfLog(const SimulatedTrial& trial, const Trajectory& log)
       : robot_(trial.simulation, trial.start, trial.seed, trial.image),
         log_(log),
-        arrival_s_(0.5 * trial.simulation.mocap.exposure_s + trial.simulation.mocap.processing_s),
+        arrival_s_(StampAge_s(trial.simulation.mocap) > 0.0 ? 0.0
+                                                            : Latency_s(trial.simulation.mocap)),
+        stamp_age_s_(StampAge_s(trial.simulation.mocap)),
         point_from_robot_{trial.simulation.mocap.tag_ahead_m, 0.0, 0.0} {
     RecordTruth();
   }
@@ -56,7 +68,7 @@ class RobotOfLog : public trial::Robot {
   void RecordTruth() {
     const simulation::TruePose truth = robot_.Truth();
     const Pose2 tag = truth.Planar() * point_from_robot_;
-    path_.poses.push_back({.t_s = log_.poses.front().t_s + truth.t_s,
+    path_.poses.push_back({.t_s = log_.poses.front().t_s + truth.t_s + stamp_age_s_,
                            .x_m = tag.x_m,
                            .y_m = tag.y_m,
                            .yaw_rad = tag.yaw_rad});
@@ -65,6 +77,7 @@ class RobotOfLog : public trial::Robot {
   simulation::SimulatedRobot robot_;
   const Trajectory& log_;
   double arrival_s_;
+  double stamp_age_s_;
   Pose2 point_from_robot_;
   size_t next_ = 0;
   Trajectory path_;
