@@ -14,12 +14,13 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kKept_s = 4.0;      // of wheels and samples
-constexpr double kWindow_s = 0.4;    // over which displacements are compared
-constexpr double kStep_m = 0.003;    // less is jitter
-constexpr double kRolls_m = 0.0005;  // of the wheels from picture to picture
-constexpr double kBackward = 0.5;    // of what the wheels rolled: the pose ran back
-constexpr double kDisorder_s = 0.7;  // in which kBackwardSteps of them are no accident
+constexpr double kKept_s = 4.0;         // of wheels and samples
+constexpr double kWindow_s = 0.4;       // over which displacements are compared
+constexpr double kStep_m = 0.003;       // less is jitter
+constexpr double kBackStep_m = 0.0025;  // against the wheels; less is jitter
+constexpr double kRolls_m = 0.0005;     // of the wheels from picture to picture
+constexpr double kBackward = 0.5;       // of what the wheels rolled: the pose ran back
+constexpr double kDisorder_s = 0.7;     // in which kBackwardSteps of them are no accident
 constexpr size_t kBackwardSteps = 3;
 constexpr double kLagWindow_s = 2.0;
 constexpr double kLagSpan_s = 0.15;
@@ -194,12 +195,12 @@ std::optional<Disagreement> MotionCheck::CheckOrder(const Sample& before, const 
   // Against the wheels, by more than a standing tag jitters.
   const double against_m = rolled.forward_m > 0.0 ? -seen.forward_m : seen.forward_m;
   const bool rolls = std::abs(rolled.forward_m) > kRolls_m;
-  if (!rolls || against_m < std::max(kStep_m, kBackward * std::abs(rolled.forward_m))) {
+  if (!rolls || against_m < std::max(kBackStep_m, kBackward * std::abs(rolled.forward_m))) {
     return std::nullopt;
   }
   backward_s_.push_back(now.t_s);
   // As far back as the wheels went forward is no jitter: it counts twice.
-  if (against_m > std::max(1.5 * kStep_m, std::abs(rolled.forward_m))) {
+  if (against_m > std::max(1.5 * kBackStep_m, std::abs(rolled.forward_m))) {
     backward_s_.push_back(now.t_s);
   }
   while (backward_s_.front() < now.t_s - kDisorder_s) backward_s_.pop_front();
