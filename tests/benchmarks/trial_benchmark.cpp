@@ -36,10 +36,11 @@ double PhysicsSeconds(const sweep::SimulatedTrial& trial, const sweep::Simulated
   simulation::Motor left(options.motor, simulation::Side::kLeft);
   simulation::Motor right(options.motor, simulation::Side::kRight);
   const int steps = static_cast<int>(run.result.end_s / options.step_s);
+  const auto power = simulation::StepPower::Constant(0.17);
   for (int i = 0; i < steps; ++i) {
     const auto& rate_rad_s = world.State().wheel_rate_rad_s;
-    world.Step({left.Drive(0.17, rate_rad_s[0], 0.0, options.step_s),
-                right.Drive(0.17, rate_rad_s[1], 0.0, options.step_s)});
+    world.Step({left.Drive(power, rate_rad_s[0], 0.0, options.step_s),
+                right.Drive(power, rate_rad_s[1], 0.0, options.step_s)});
   }
   benchmark::DoNotOptimize(world.State());
   return Since(begin);

@@ -1,5 +1,5 @@
-// What no robot does twice: the ground's unevenness, and a pull to one side that differs from run to
-// run.
+// What no robot does twice: the ground's unevenness, and a pull to one side that differs from run
+// to run.
 
 #include <catch2/catch.hpp>
 #include <cmath>
