@@ -1,0 +1,45 @@
+#include "rift/statistics/bootstrap.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "rift/statistics/descriptive.hpp"
+#include "rift/statistics/random.hpp"
+
+namespace rift::statistics {
+namespace {
+
+double MeanOf(std::span<const size_t> drawn, const std::vector<double>& values) {
+  std::vector<double> chosen;
+  for (const size_t i : drawn) chosen.push_back(values[i]);
+  return Mean(chosen);
+}
+
+TEST_CASE("A bootstrap interval of a mean covers it about as often as it promises") {
+  Random random(1, 1);
+  int covered = 0;
+  constexpr int kRounds = 400;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> values(24);
+    for (double& value : values) value = 5.0 + 2.0 * random.Normal();
+    const Interval interval = BootstrapGroups(
+        values.size(), [&](auto drawn) { return MeanOf(drawn, values); },
+        {.resamples = 300, .confidence = 0.9}, static_cast<size_t>(round));
+    covered += interval.low <= 5.0 && 5.0 <= interval.high;
+  }
+  // Percentile intervals of 24 values are a little short: 0.88 rather than 0.9.
+  CHECK(covered == Approx(0.88 * kRounds).margin(0.06 * kRounds));
+}
+
+TEST_CASE("Draws that tell nothing are left out and fewer than two groups have no interval") {
+  const std::vector<double> values{1.0, NAN, 1.0, 1.0};
+  const Interval interval = BootstrapGroups(
+      values.size(), [&](auto drawn) { return MeanOf(drawn, values); }, {}, 1);
+  CHECK(interval.low == 1.0);
+  CHECK(interval.high == 1.0);
+  CHECK(std::isnan(BootstrapGroups(1, [](auto) { return 1.0; }, {}, 1).low));
+  CHECK(std::isnan(BootstrapGroups(3, [](auto) { return NAN; }, {}, 1).high));
+}
+
+}  // namespace
+}  // namespace rift::statistics
