@@ -5,7 +5,7 @@
 # this table, and docs/rooms.md is made from it.
 
 rift_room(statistics
-  LIBRARIES Boost::headers PRIVATE_LIBRARIES fmt::fmt)
+  LIBRARIES Boost::headers PRIVATE_LIBRARIES Eigen3::Eigen fmt::fmt)
 rift_room(files
   PRIVATE_LIBRARIES fmt::fmt)
 rift_room(geometry

@@ -1,0 +1,132 @@
+#include "rift/statistics/two_sample.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <stdexcept>
+
+#include "rift/statistics/random.hpp"
+
+namespace rift::statistics {
+namespace {
+
+constexpr size_t kFeatures = 4;
+
+/// Settings with two observations of the first sample and `second` of the other. Each setting moves
+/// all its observations alike; `shift` (in standard deviations) moves feature 2 of the first.
+std::vector<Observation> Drawn(size_t groups, int second, double shift, Random& random) {
+  std::vector<Observation> observations;
+  for (size_t group = 0; group < groups; ++group) {
+    std::vector<double> of_group(kFeatures);
+    for (double& value : of_group) value = random.Normal();
+    for (int i = 0; i < 2 + second; ++i) {
+      Observation one{.features = of_group, .is_first = i < 2, .group = group};
+      for (double& value : one.features) value += random.Normal();
+      one.features[2] += one.is_first ? shift : 0.0;
+      observations.push_back(one);
+    }
+  }
+  return observations;
+}
+
+TEST_CASE("Two samples of one distribution are told apart no better than by guessing") {
+  Random random(1, 1);
+  constexpr int kRounds = 200;
+  int covered = 0, below_a_tenth = 0, below_a_half = 0;
+  double sum = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    const TwoSampleTest test = TestTwoSamples(Drawn(24, 6, 0.0, random), {.permutations = 39},
+                                              {.resamples = 200}, static_cast<size_t>(round));
+    covered += test.accuracy_interval.low <= 0.5 && 0.5 <= test.accuracy_interval.high;
+    below_a_tenth += test.p <= 0.1;
+    below_a_half += test.p <= 0.5;
+    sum += test.accuracy;
+  }
+  CHECK(sum / kRounds == Approx(0.5).margin(0.02));
+  CHECK(covered >= 0.85 * kRounds);
+  // p is uniform: 20 and 100 expected, of which 4 standard deviations are 17 and 28.
+  CHECK(below_a_tenth == Approx(20).margin(17));
+  CHECK(below_a_half == Approx(100).margin(28));
+}
+
+TEST_CASE("A difference in one feature is found and that feature is named") {
+  Random random(2, 1);
+  const TwoSampleTest test =
+      TestTwoSamples(Drawn(24, 20, 3.0, random), {.permutations = 99}, {}, 1);
+  CHECK(test.first == 48);
+  CHECK(test.second == 480);
+  CHECK(test.groups == 24);
+  CHECK(test.accuracy > 0.8);
+  CHECK(test.accuracy_interval.low > 0.7);
+  CHECK(test.accuracy_interval.low < test.accuracy);
+  CHECK(test.accuracy_interval.high > test.accuracy);
+  CHECK(test.p == Approx(0.01));
+  REQUIRE(test.features.size() == kFeatures);
+  CHECK(test.features[0].feature == 2);
+  CHECK(test.features[0].accuracy_interval.low > 0.5);
+  CHECK(test.features[0].weight > 0.5);
+  for (size_t i = 1; i < kFeatures; ++i) {
+    INFO("feature " << test.features[i].feature);
+    CHECK(test.features[i].accuracy < 0.65);
+    CHECK(std::abs(test.features[i].weight) < 0.5 * test.features[0].weight);
+  }
+}
+
+TEST_CASE("What only tells the settings apart tells nothing of settings not seen") {
+  Random random(3, 1);
+  std::vector<Observation> observations = Drawn(10, 2, 0.0, random);
+  // A classifier that had seen the settings would know each by this.
+  for (Observation& one : observations) one.features[0] = static_cast<double>(one.group);
+  const TwoSampleTest test = TestTwoSamples(observations, {.permutations = 39}, {}, 1);
+  CHECK(test.accuracy < 0.7);
+  CHECK(test.p > 0.02);
+}
+
+TEST_CASE("Neither the unit of a feature nor what is not known changes what can be told") {
+  Random random(4, 1);
+  std::vector<Observation> observations = Drawn(16, 6, 6.0, random);
+  const TwoSampleTest before = TestTwoSamples(observations, {.permutations = 0}, {}, 1);
+  CHECK(std::isnan(before.p));
+  for (Observation& one : observations) one.features[2] = 1e-6 * one.features[2] + 40.0;
+  const TwoSampleTest scaled = TestTwoSamples(observations, {.permutations = 0}, {}, 1);
+  CHECK(scaled.accuracy == Approx(before.accuracy));
+  CHECK(scaled.features[0].weight == Approx(before.features[0].weight).epsilon(1e-3));
+  for (Observation& one : observations) one.features[1] = NAN;
+  CHECK(TestTwoSamples(observations, {.permutations = 0}, {}, 1).accuracy > 0.9);
+  for (Observation& one : observations) one.features.assign(kFeatures, NAN);
+  CHECK(TestTwoSamples(observations, {.permutations = 0}, {}, 1).accuracy == 0.5);
+}
+
+TEST_CASE("Separable samples have finite weights and all are told") {
+  Random random(5, 1);
+  const TwoSampleTest test = TestTwoSamples(Drawn(8, 4, 50.0, random), {.permutations = 19}, {}, 1);
+  CHECK(test.accuracy == 1.0);
+  CHECK(std::isfinite(test.features[0].weight));
+  CHECK(test.p == Approx(0.05));
+}
+
+TEST_CASE("A test of one sample or of one setting is not a number, and ragged rows are refused") {
+  Random random(6, 1);
+  std::vector<Observation> observations = Drawn(4, 2, 0.0, random);
+  std::vector<Observation> one_setting(observations.begin(), observations.begin() + 4);
+  CHECK(std::isnan(TestTwoSamples(one_setting, {}, {}, 1).accuracy));
+  CHECK(std::isnan(TestTwoSamples({}, {}, {}, 1).accuracy_interval.low));
+  for (Observation& one : observations) one.is_first = true;
+  CHECK(std::isnan(TestTwoSamples(observations, {}, {}, 1).p));
+  observations[1].features.pop_back();
+  CHECK_THROWS_AS(TestTwoSamples(observations, {}, {}, 1), std::invalid_argument);
+}
+
+TEST_CASE("The same seed gives the same test") {
+  Random random(7, 1);
+  const std::vector<Observation> observations = Drawn(8, 3, 0.5, random);
+  const TwoSampleTest a = TestTwoSamples(observations, {.permutations = 19}, {}, 5);
+  const TwoSampleTest b = TestTwoSamples(observations, {.permutations = 19}, {}, 5);
+  const TwoSampleTest other = TestTwoSamples(observations, {.permutations = 19}, {}, 6);
+  CHECK(a.accuracy == b.accuracy);
+  CHECK(a.accuracy_interval.low == b.accuracy_interval.low);
+  CHECK(a.p == b.p);
+  CHECK(a.accuracy == other.accuracy);
+}
+
+}  // namespace
+}  // namespace rift::statistics
