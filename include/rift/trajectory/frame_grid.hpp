@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+
+#include "rift/trajectory/trajectory.hpp"
+
+namespace rift::trajectory {
+
+/// What the frames of a camera explain of a log. NaN: not computed.
+struct FrameGrid {
+  bool is_found = false;  ///< false: the stamps stay as they were logged
+  bool is_best = false;   ///< grids of rates 10 % off explain less
+  double period_s = StampedPose::kNotLogged;
+  /// Robust scatter of the second difference of the speed from row to row, over the median speed:
+  /// with the stamps as logged, and with those of the grid.
+  double roughness_before = StampedPose::kNotLogged;
+  double roughness_after = StampedPose::kNotLogged;
+  double outside_share = StampedPose::kNotLogged;  ///< rows that are not of the newest frame
+
+  double Smoother() const { return roughness_before / roughness_after; }
+  /// One line for people: what was done, or why nothing was.
+  std::string Text() const;
+};
+
+/// A log whose time stamps stand on the frames of a camera of about `fps` frames a second.
+///
+/// A loop that takes the newest frame and stamps the pose when it was found sees frames 33 and 67 ms
+/// apart at stamps that are 60 ms apart: speeds from row to row jump by a factor of two. Here each
+/// row gets the frame that makes the speeds change least, from those that were at most about a
+/// frame old (Viterbi over the rows; period within 0.2 % and phase by search). The mean of all
+/// stamps stays: a constant delay cannot be seen.
+///
+/// Nothing is changed unless the speeds become smoother by `kLeastSmoother`, since a grid that is not
+/// there makes them rougher, and unless grids of rates 10 % off explain less; nor for fewer than 12
+/// rows in motion or more than 100 s. Throws std::invalid_argument unless fps lies in [1, 1000].
+struct OnFrames {
+  Trajectory trajectory;
+  FrameGrid grid;
+};
+OnFrames PutOnFrames(Trajectory log, double fps);
+
+inline constexpr double kLeastSmoother = 1.5;
+
+}  // namespace rift::trajectory

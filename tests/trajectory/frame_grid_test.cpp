@@ -1,0 +1,139 @@
+#include "rift/trajectory/frame_grid.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "rift/statistics/descriptive.hpp"
+#include "rift/statistics/random.hpp"
+#include "support/trials.hpp"
+
+namespace rift::trajectory {
+namespace {
+
+/// A robot that waits, drives with a little weave, and stops once.
+Eigen::Vector2d At(double t_s) {
+  const double driven_s = std::max(0.0, t_s - 0.5) - std::clamp(t_s - 2.0, 0.0, 0.15);
+  const double x_m = 0.3 * driven_s + 0.004 * std::sin(4.0 * driven_s);
+  return {x_m, 0.01 * std::sin(20.0 * x_m)};
+}
+
+struct Made {
+  Trajectory log;                ///< stamped when the pose was found
+  std::vector<double> captured_s;  ///< when each frame was taken
+};
+
+/// A loop of `loop_s` that takes the newest frame of a camera and stamps the pose 20 ms later.
+Made Logged(double period_s, double loop_s, std::uint64_t seed, double duration_s = 5.0) {
+  statistics::Random random(seed, 1);
+  const double phase_s = period_s * random.Uniform();
+  Made made;
+  for (double now_s = 0.2; now_s < duration_s; now_s += loop_s + 0.003 * random.Normal()) {
+    const double captured_s = phase_s + period_s * std::floor((now_s - phase_s) / period_s);
+    if (!made.captured_s.empty() && captured_s <= made.captured_s.back()) continue;
+    const Eigen::Vector2d p = At(captured_s);
+    made.captured_s.push_back(captured_s);
+    made.log.poses.push_back({.t_s = 7.0 + now_s + 0.02 + 0.001 * random.Normal(),
+                              .x_m = p.x() + 3e-4 * random.Normal(),
+                              .y_m = p.y() + 3e-4 * random.Normal()});
+  }
+  return made;
+}
+
+/// Scatter of what is added to the times of capture, which no constant delay changes.
+double ErrorOf_s(const Trajectory& log, const std::vector<double>& captured_s) {
+  std::vector<double> errors_s;
+  for (size_t i = 0; i < captured_s.size(); ++i) {
+    if (captured_s[i] < 0.7) continue;  // a robot at rest tells nothing of its frames
+    errors_s.push_back(log.poses[i].t_s - captured_s[i]);
+  }
+  return statistics::StandardDeviation(errors_s);
+}
+
+TEST_CASE("Stamps go back to the frames they were taken on, whatever the loop and the camera") {
+  for (const double period_s : {1.0 / 30.0, 1.001 / 30.0, 0.997 / 30.0}) {
+    for (const double loop_s : {0.051, 0.058, 0.064}) {
+      const Made made = Logged(period_s, loop_s, static_cast<size_t>(1e4 * loop_s));
+      const OnFrames found = PutOnFrames(made.log, 30.0);
+      INFO("period " << period_s << ", loop " << loop_s << ": " << found.grid.Text());
+      CHECK(found.grid.is_found);
+      CHECK(found.grid.period_s == Approx(period_s).epsilon(0.002));
+      CHECK(ErrorOf_s(made.log, made.captured_s) > 0.008);
+      CHECK(ErrorOf_s(found.trajectory, made.captured_s) < 0.0045);
+      CHECK(found.grid.Smoother() > 2.0);
+      CHECK(found.grid.outside_share < 0.2);
+    }
+  }
+}
+
+TEST_CASE("The mean of the stamps stays, they rise, and nothing but them changes") {
+  const Made made = Logged(1.0 / 30.0, 0.06, 3);
+  const Trajectory after = PutOnFrames(made.log, 30.0).trajectory;
+  double change_s = 0.0;
+  for (size_t i = 0; i < after.poses.size(); ++i) {
+    change_s += after.poses[i].t_s - made.log.poses[i].t_s;
+    CHECK(after.poses[i].x_m == made.log.poses[i].x_m);
+    if (i > 0) CHECK(after.poses[i].t_s > after.poses[i - 1].t_s);
+  }
+  CHECK(change_s / static_cast<double>(after.poses.size()) == Approx(0.0).margin(1e-9));
+}
+
+TEST_CASE("A log without a grid keeps its stamps") {
+  statistics::Random random(5, 1);
+  Trajectory log;
+  for (double t_s = 0.2; t_s < 5.0; t_s += 0.05 + 0.012 * random.Uniform()) {
+    const Eigen::Vector2d p = At(t_s);
+    log.poses.push_back({.t_s = t_s,
+                         .x_m = p.x() + 3e-4 * random.Normal(),
+                         .y_m = p.y() + 3e-4 * random.Normal()});
+  }
+  const OnFrames result = PutOnFrames(log, 30.0);
+  CHECK_FALSE(result.grid.is_found);
+  CHECK(result.grid.Smoother() < 1.0);
+  CHECK(result.grid.Text().find("no frame grid") == 0);
+  for (size_t i = 0; i < log.poses.size(); ++i) {
+    CHECK(result.trajectory.poses[i].t_s == log.poses[i].t_s);
+  }
+}
+
+TEST_CASE("A grid of another rate, a robot at rest and a long log keep their stamps") {
+  const Made made = Logged(1.0 / 25.0, 0.058, 6);
+  INFO(PutOnFrames(made.log, 30.0).grid.outside_share);
+  CHECK_FALSE(PutOnFrames(made.log, 30.0).grid.is_found);
+  CHECK(PutOnFrames(made.log, 25.0).grid.is_found);
+  Trajectory still = Logged(1.0 / 30.0, 0.058, 7, 0.6).log;
+  CHECK_FALSE(PutOnFrames(still, 30.0).grid.is_found);
+  CHECK(std::isnan(PutOnFrames(still, 30.0).grid.roughness_after));
+  Trajectory late = made.log;
+  late.poses.back().t_s += 200.0;
+  CHECK(PutOnFrames(late, 25.0).grid.Text().find("more than 100 s") != std::string::npos);
+  CHECK_THROWS_AS(PutOnFrames(made.log, 0.0), std::invalid_argument);
+  CHECK_THROWS_AS(PutOnFrames(made.log, NAN), std::invalid_argument);
+}
+
+TEST_CASE("The authors' logs stand on 30 frames a second: speeds twice as smooth at least") {
+  RIFT_SKIP_WITHOUT_TRIALS();
+  for (const char* surface : {"ground", "cardboard", "parchment", "downhill", "bump"}) {
+    std::vector<double> smoother, periods_s, outside;
+    int found = 0;
+    const auto logs = test::LogsOn(surface, Format::kTracker);
+    for (const test::TrialLog& trial : logs) {
+      const FrameGrid grid = PutOnFrames(trial.log, 30.0).grid;
+      smoother.push_back(grid.Smoother());
+      periods_s.push_back(grid.period_s);
+      outside.push_back(grid.outside_share);
+      found += grid.is_found;
+    }
+    INFO(surface << ": " << found << " of " << logs.size() << ", "
+                 << statistics::Median(smoother) << " times smoother, period "
+                 << 1e3 * statistics::Median(periods_s) << " ms, outside "
+                 << statistics::Median(outside));
+    CHECK(found >= static_cast<int>(logs.size()) - 1);
+    CHECK(statistics::Median(smoother) > 2.0);
+    CHECK(statistics::Median(outside) < 0.25);
+  }
+}
+
+}  // namespace
+}  // namespace rift::trajectory
