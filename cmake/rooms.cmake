@@ -51,7 +51,7 @@ rift_room(sweep/falsify ROOMS control experiment gap odometry search simulation 
   LIBRARIES fmt::fmt)
 rift_room(sweep/explain ROOMS experiment odometry search statistics sweep/falsify yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
-rift_room(sweep/calibrate ROOMS experiment gap geometry statistics sweep/falsify trajectory trial
+rift_room(sweep/calibrate ROOMS control experiment gap geometry statistics sweep/falsify trajectory trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
 rift_room(report/figures ROOMS gap geometry statistics sweep/calibrate sweep/falsify trajectory
   LIBRARIES fmt::fmt)

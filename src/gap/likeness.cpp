@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "path_shape.hpp"
 #include "rift/gap/result.hpp"
+#include "rift/statistics/bootstrap.hpp"
 #include "rift/statistics/descriptive.hpp"
 
 namespace rift::gap {
@@ -155,12 +157,43 @@ AllPaths Gather(std::span<const RepeatedSetting> settings) {
   return all;
 }
 
-template <class Value>
-BothSides MeanOf(const AllPaths& all, Value value) {
+/// What is known of a number on both sides in one setting.
+struct KnownValues {
   std::vector<double> sim, real;
-  for (const Trajectory& path : all.sims) sim.push_back(value(path));
-  for (const Trajectory& path : all.reals) real.push_back(value(path));
-  return {statistics::MeanOfKnown(sim), statistics::MeanOfKnown(real)};
+};
+
+/// The means over all, and the interval of their ratio over settings drawn anew.
+BothSides MeanOf(const std::vector<KnownValues>& settings, const LikenessOptions& options,
+                 std::uint64_t seed) {
+  const auto mean_of = [&](std::span<const size_t> chosen) {
+    std::vector<double> sim, real;
+    for (const size_t i : chosen) {
+      sim.insert(sim.end(), settings[i].sim.begin(), settings[i].sim.end());
+      real.insert(real.end(), settings[i].real.begin(), settings[i].real.end());
+    }
+    return BothSides{statistics::MeanOfKnown(sim), statistics::MeanOfKnown(real)};
+  };
+  std::vector<size_t> every(settings.size());
+  std::iota(every.begin(), every.end(), size_t{0});
+  BothSides both = mean_of(every);
+  both.ratio_interval = statistics::BootstrapGroups(
+      settings.size(), [&](std::span<const size_t> drawn) { return mean_of(drawn).Ratio(); },
+      options.bootstrap, seed);
+  return both;
+}
+
+template <class Value>
+BothSides MeanOfPaths(std::span<const RepeatedSetting> settings, const LikenessOptions& options,
+                      std::uint64_t seed, Value value) {
+  std::vector<KnownValues> known;
+  for (const RepeatedSetting& setting : settings) {
+    KnownValues& values = known.emplace_back();
+    for (const Trajectory& path : setting.reals) values.real.push_back(value(path));
+    for (const std::vector<Trajectory>& sims : setting.sims) {
+      for (const Trajectory& path : sims) values.sim.push_back(value(path));
+    }
+  }
+  return MeanOf(known, options, seed);
 }
 
 void Check(std::span<const RepeatedSetting> settings) {
@@ -181,6 +214,10 @@ PathTraits TraitsOf(const Trajectory& path, const LikenessOptions& options) {
     squares_m2 += residual_m * residual_m;
   }
   return {Speed_mps(path, options), std::sqrt(squares_m2 / options.points)};
+}
+
+Trajectory MeanPath(std::span<const Trajectory> paths, const LikenessOptions& options) {
+  return AsPath(MeanShape(ShapesOf(paths, options.points)));
 }
 
 double DominantWavelength_m(std::span<const Trajectory> paths, const LikenessOptions& options) {
@@ -207,28 +244,31 @@ Likeness MeasureLikeness(std::span<const RepeatedSetting> settings, const GapOpt
   Check(settings);
   const AllPaths all = Gather(settings);
   Likeness likeness{.reals = all.reals.size(), .sims = all.sims.size()};
-  likeness.weave_m =
-      MeanOf(all, [&](const Trajectory& path) { return TraitsOf(path, options).weave_m; });
-  likeness.speed_mps =
-      MeanOf(all, [&](const Trajectory& path) { return TraitsOf(path, options).speed_mps; });
   likeness.wavelength_m = {DominantWavelength_m(all.sims, options),
                            DominantWavelength_m(all.reals, options)};
-  std::vector<double> sim_spread_m, real_spread_m;
+  std::vector<KnownValues> spread_m;
   Closeness closeness(gap, options);
   std::vector<ShuffleGroup> groups;
   for (const RepeatedSetting& setting : settings) {
-    AddSpread(setting, gap, sim_spread_m, real_spread_m);
+    KnownValues& spread = spread_m.emplace_back();
+    AddSpread(setting, gap, spread.sim, spread.real);
     AddGroups(setting, options.points, groups);
     for (size_t i = 0; i < setting.reals.size(); ++i) {
       closeness.Add(setting.reals[i], SimsOf(setting, i));
     }
   }
-  likeness.spread_m = {statistics::MeanOfKnown(sim_spread_m),
-                       statistics::MeanOfKnown(real_spread_m)};
   closeness.Put(likeness);
   const EnergyTest test = TestEnergy(groups, options.shuffles, generator);
   likeness.energy_m = test.energy_m;
   likeness.energy_p = test.p;
+  const std::uint64_t seed = generator();
+  likeness.spread_m = MeanOf(spread_m, options, seed);
+  likeness.weave_m = MeanOfPaths(settings, options, seed, [&](const Trajectory& path) {
+    return TraitsOf(path, options).weave_m;
+  });
+  likeness.speed_mps = MeanOfPaths(settings, options, seed, [&](const Trajectory& path) {
+    return TraitsOf(path, options).speed_mps;
+  });
   return likeness;
 }
 

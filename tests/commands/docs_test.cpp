@@ -67,7 +67,9 @@ TEST_CASE("The output of rift gap is as documented") {
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   CHECK(KeysOf(JsonOf(evidence)) == DocumentedKeys("rift gap --json"));
-  const Names of_sweeps{"loop_delay_s", "steering_gain_rad_s", "failed_runs"};
+  const Names of_sweeps{"loop_delay_s", "loop_r2",     "steering_gain_rad_s",
+                        "runs",         "failed_runs", "circled_runs",
+                        "prediction",   "ranks",       "classifier"};
   CHECK(KeysOf(JsonOf(evidence)["likeness"]) ==
         Without(DocumentedKeys("likeness.json"), of_sweeps));
   CHECK(Columns(ReadFile(profile)) == Documented("files.md", "Columns of the profile of rift gap"));
@@ -94,6 +96,29 @@ TEST_CASE("The files of a sweep are as documented") {
     INFO(name);
     CHECK(files.find("`" + name + "`") != std::string::npos);
   }
+}
+
+TEST_CASE("The likeness of a sweep and the features of its classifier are as documented") {
+  const test::TemporaryFolder folder;
+  for (const int trial : {1, 2}) {
+    const std::string n = std::to_string(trial);
+    RunInto(folder, "log" + n + ".csv", {"simulate", kTask, "--seed", n});
+  }
+  test::WriteText(folder / "like.yaml", "include: " + kTask + R"(
+name: like
+space: {control.v_max: [0.30, 0.31]}
+start: reference
+reference: {kind: logs, path: "log{trial}.csv", trials: [1, 2]}
+likeness: {runs: 3, shuffles: 19, bootstrap: {resamples: 20}, classifier: {permutations: 3}}
+)");
+  const std::string out = RunInto(folder, "out", {"sweep", folder / "like.yaml", "--quiet"});
+  const json all = JsonOf(out + "/likeness.json")["all"];
+  CHECK(KeysOf(all) == DocumentedKeys("likeness.json"));
+  CHECK(all["runs"] == 12);
+  CHECK(all["classifier"]["reals"] == 4);
+  std::set<std::string> features;
+  for (const json& feature : all["classifier"]["features"]) features.insert(feature["name"]);
+  CHECK(features == DocumentedKeys("Features of the classifier"));
 }
 
 TEST_CASE("The summary of a grid lacks only what a search adds") {

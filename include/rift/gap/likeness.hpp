@@ -7,6 +7,7 @@
 
 #include "rift/gap/comparison.hpp"
 #include "rift/gap/options.hpp"
+#include "rift/statistics/inference.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
 namespace rift::gap {
@@ -25,6 +26,10 @@ PathTraits TraitsOf(const trajectory::Trajectory& path, const LikenessOptions& o
 double DominantWavelength_m(std::span<const trajectory::Trajectory> paths,
                             const LikenessOptions& options);
 
+/// The mean point of the paths at each u, over `options.points` of them; at least one path.
+trajectory::Trajectory MeanPath(std::span<const trajectory::Trajectory> paths,
+                                const LikenessOptions& options);
+
 /// Repeats of one setting on both sides.
 struct RepeatedSetting {
   std::vector<trajectory::Trajectory> reals;
@@ -39,6 +44,8 @@ struct RepeatedSetting {
 struct BothSides {
   double sim = kNotComputed;
   double real = kNotComputed;
+  /// Of the ratio, bootstrap over settings; NaN where it was not asked for, or for one setting.
+  statistics::Interval ratio_interval{kNotComputed, kNotComputed};
 
   double Ratio() const { return sim / real; }
 };

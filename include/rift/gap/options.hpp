@@ -4,6 +4,9 @@
 #include <string>
 #include <string_view>
 
+#include "rift/statistics/bootstrap_options.hpp"
+#include "rift/statistics/two_sample_options.hpp"
+
 namespace rift::gap {
 
 /// What is taken away from the simulated path before it is compared.
@@ -64,16 +67,23 @@ std::string DefinitionText(const GapOptions& options, double tag_offset_m = 0.0)
 
 /// How likeness is measured; the gap within it has options of its own.
 struct LikenessOptions {
+  int runs = 1;
   int points = 64;
   int shuffles = 999;
   int speed_stride = 3;
   double moving_mps = 0.1;
   double wavelength_min_m = 0.06;
   double longest_run = 1.5;
+  statistics::BootstrapOptions bootstrap;
+  statistics::TwoSampleOptions classifier;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
+    field(
+        "runs", self.runs, 1, 1000,
+        "simulated runs of each real trial of a sweep: its own, and from the second on with seeds "
+        "that no other trial has");
     field("points", self.points, 8, 10'000,
           "points along a path, for its weave, its spectrum, the mean path and the test");
     field("shuffles", self.shuffles, 19, 1'000'000, "shuffles of the two-sample test");
@@ -85,6 +95,8 @@ struct LikenessOptions {
         "longest_run", self.longest_run, 1.0, 1e6,
         "a run longer than this many times the longest real path of its setting passed a waypoint "
         "and circled: it counts as failed, as no log shows what became of such trials");
+    field("bootstrap", self.bootstrap, "of the intervals over settings");
+    field("classifier", self.classifier, "that is to tell simulated from real logs");
   }
 };
 

@@ -180,7 +180,8 @@ int Sweep(const SweepRequest& request) {
   if (judged->all.told == 0) return EndWithoutGap(request, out, *judged);
 
   const sweep::Explanation explanation = sweep::Explain(*judged, OptionsFor(request.explain));
-  const std::vector<sweep::GroupLikeness> likeness = sweep::MeasureSweepLikeness(evaluator);
+  const std::vector<sweep::GroupLikeness> likeness =
+      sweep::MeasureSweepLikeness(evaluator, request.jobs);
   const std::vector<sweep::ProgramCell> programs = sweep::MeasurePrograms(evaluator);
   SaveReport(out, *judged, explanation, likeness, programs, evaluator);
   Print(request, *judged, explanation, likeness);

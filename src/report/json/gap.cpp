@@ -99,15 +99,23 @@ ordered_json BothJson(const BothSides& both) {
           {"ratio", NumberOrNull(both.Ratio())}};
 }
 
+/// With the interval of the ratio over settings.
+ordered_json RatioJson(const BothSides& both) {
+  ordered_json json = BothJson(both);
+  json["low"] = NumberOrNull(both.ratio_interval.low);
+  json["high"] = NumberOrNull(both.ratio_interval.high);
+  return json;
+}
+
 }  // namespace
 
 ordered_json LikenessJson(const gap::Likeness& likeness) {
   return {{"sims", likeness.sims},
           {"reals", likeness.reals},
-          {"spread_m", BothJson(likeness.spread_m)},
-          {"weave_m", BothJson(likeness.weave_m)},
+          {"spread_m", RatioJson(likeness.spread_m)},
+          {"weave_m", RatioJson(likeness.weave_m)},
           {"wavelength_m", BothJson(likeness.wavelength_m)},
-          {"speed_mps", BothJson(likeness.speed_mps)},
+          {"speed_mps", RatioJson(likeness.speed_mps)},
           {"mean_gap_m", NumberOrNull(likeness.mean_gap_m)},
           {"mean_path_gap_m", NumberOrNull(likeness.mean_path_gap_m)},
           {"energy_m", NumberOrNull(likeness.energy_m)},
@@ -116,12 +124,78 @@ ordered_json LikenessJson(const gap::Likeness& likeness) {
           {"inside_expected", NumberOrNull(likeness.inside_expected)}};
 }
 
+namespace {
+
+ordered_json TestJson(const statistics::TwoSampleTest& test) {
+  return {{"accuracy", NumberOrNull(test.accuracy)},
+          {"low", NumberOrNull(test.accuracy_interval.low)},
+          {"high", NumberOrNull(test.accuracy_interval.high)},
+          {"p", NumberOrNull(test.p)}};
+}
+
+/// The one that tells most first.
+ordered_json FeaturesJson(const sweep::Distinction& told) {
+  ordered_json json = ordered_json::array();
+  for (const statistics::FeatureEvidence& evidence : told.all.features) {
+    const sweep::DriveFeature& feature = sweep::DriveFeatures()[evidence.feature];
+    const sweep::FeatureSummary& summary = told.features[evidence.feature];
+    json.push_back({{"name", feature.name},
+                    {"is_timing", feature.is_timing},
+                    {"accuracy", NumberOrNull(evidence.accuracy)},
+                    {"low", NumberOrNull(evidence.accuracy_interval.low)},
+                    {"high", NumberOrNull(evidence.accuracy_interval.high)},
+                    {"weight", NumberOrNull(evidence.weight)},
+                    {"mean_sim", NumberOrNull(summary.mean.sim)},
+                    {"mean_real", NumberOrNull(summary.mean.real)},
+                    {"sd_sim", NumberOrNull(summary.sd.sim)},
+                    {"sd_real", NumberOrNull(summary.sd.real)}});
+  }
+  return json;
+}
+
+ordered_json ClassifierJson(const sweep::Distinction& told) {
+  ordered_json json = TestJson(told.all);
+  json["without_timing"] = TestJson(told.without_timing);
+  json["reals"] = told.all.first;
+  json["sims"] = told.all.second;
+  json["settings"] = told.all.groups;
+  json["features"] = FeaturesJson(told);
+  return json;
+}
+
+ordered_json PredictionJson(const sweep::PathPrediction& prediction) {
+  return {{"reals", prediction.reals},
+          {"simulated_m", NumberOrNull(prediction.simulated_m)},
+          {"other_real_m", NumberOrNull(prediction.other_real_m)},
+          {"difference_m", NumberOrNull(prediction.difference_m)},
+          {"low_m", NumberOrNull(prediction.difference_interval_m.low)},
+          {"high_m", NumberOrNull(prediction.difference_interval_m.high)}};
+}
+
+ordered_json RanksJson(const sweep::RankAgreement& ranks) {
+  const auto entry = [](double value, const statistics::Interval& interval) {
+    return ordered_json{{"correlation", NumberOrNull(value)},
+                        {"low", NumberOrNull(interval.low)},
+                        {"high", NumberOrNull(interval.high)}};
+  };
+  return {{"settings", ranks.settings},
+          {"simulated", entry(ranks.simulated, ranks.simulated_interval)},
+          {"real", entry(ranks.real, ranks.real_interval)}};
+}
+
+}  // namespace
+
 ordered_json LikenessJson(const sweep::DriveLikeness& likeness) {
   ordered_json json = LikenessJson(likeness.path);
   json["loop_delay_s"] = BothJson(likeness.loop_delay_s);
   json["loop_r2"] = BothJson(likeness.loop_r2);
   json["steering_gain_rad_s"] = BothJson(likeness.steering_gain_rad_s);
+  json["runs"] = likeness.runs;
   json["failed_runs"] = likeness.failed_runs;
+  json["circled_runs"] = likeness.circled_runs;
+  json["prediction"] = PredictionJson(likeness.prediction);
+  json["ranks"] = RanksJson(likeness.ranks);
+  json["classifier"] = ClassifierJson(likeness.told_apart);
   return json;
 }
 

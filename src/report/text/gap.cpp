@@ -150,6 +150,78 @@ std::string Sentence(const char* name, const BothSides& both, double scale, cons
                      scale * both.sim, unit, scale * both.real, unit, both.Ratio());
 }
 
+/// "0.961 [0.93, 0.98]"
+std::string WithInterval(double value, const statistics::Interval& interval, int decimals = 3) {
+  if (std::isnan(interval.low)) return Number(value, decimals);
+  return fmt::format("{} [{}, {}]", Number(value, decimals), Number(interval.low, 2),
+                     Number(interval.high, 2));
+}
+
+/// "32.4 - 39.1 [-9.0, 2.1]" in millimetres: simulated, other real, interval of the difference.
+std::string PredictionText(const sweep::PathPrediction& prediction) {
+  const statistics::Interval& interval = prediction.difference_interval_m;
+  return fmt::format("{} - {} [{}, {}]", Number(1e3 * prediction.simulated_m, 1),
+                     Number(1e3 * prediction.other_real_m, 1), Number(1e3 * interval.low, 1),
+                     Number(1e3 * interval.high, 1));
+}
+
+std::string IntervalsText(const std::vector<sweep::GroupLikeness>& groups, size_t width) {
+  std::string text = fmt::format(
+      "with intervals over settings; path_mm: gap of the mean simulated path to a real one - gap "
+      "of the other real trials to it; rank: correlation of the gap to the task over settings\n"
+      "{:<{}}  {:>18}  {:>18}  {:>18}  {:>26}  {:>20}  {:>20}  {:>10}\n",
+      "", width, "spread", "weave", "speed", "path_mm", "rank simulated", "rank real", "circled");
+  for (const auto& [level, likeness] : groups) {
+    const gap::Likeness& path = likeness.path;
+    const sweep::RankAgreement& ranks = likeness.ranks;
+    text += fmt::format("{:<{}}  {:>18}  {:>18}  {:>18}  {:>26}  {:>20}  {:>20}  {:>10}\n", level,
+                        width, WithInterval(path.spread_m.Ratio(), path.spread_m.ratio_interval, 2),
+                        WithInterval(path.weave_m.Ratio(), path.weave_m.ratio_interval, 2),
+                        WithInterval(path.speed_mps.Ratio(), path.speed_mps.ratio_interval, 2),
+                        PredictionText(likeness.prediction),
+                        WithInterval(ranks.simulated, ranks.simulated_interval, 2),
+                        WithInterval(ranks.real, ranks.real_interval, 2),
+                        fmt::format("{}/{}", likeness.circled_runs, likeness.runs));
+  }
+  return text;
+}
+
+std::string ClassifierText(const std::vector<sweep::GroupLikeness>& groups, size_t width) {
+  std::string text = fmt::format(
+      "classifier: share of simulated and real logs, each half, that are told right in settings "
+      "it has not seen; 0.5: it cannot tell\n{:<{}}  {:>20}  {:>6}  {:>20}  {:>6}  {}\n",
+      "", width, "all features", "p", "without timing", "p", "settings");
+  for (const auto& [level, likeness] : groups) {
+    const statistics::TwoSampleTest &all = likeness.told_apart.all,
+                                    &without = likeness.told_apart.without_timing;
+    text += fmt::format("{:<{}}  {:>20}  {:>6}  {:>20}  {:>6}  {:>8}\n", level, width,
+                        WithInterval(all.accuracy, all.accuracy_interval), Number(all.p, 3),
+                        WithInterval(without.accuracy, without.accuracy_interval),
+                        Number(without.p, 3), all.groups);
+  }
+  return text;
+}
+
+/// Of all trials together: each feature whose interval leaves out guessing.
+std::string FeaturesText(const sweep::Distinction& told) {
+  std::string text = fmt::format(
+      "what gives the simulator away (a classifier of this feature alone):\n"
+      "{:<28}  {:>20}  {:>20}  {:>20}\n",
+      "", "accuracy", "simulated (sd)", "real (sd)");
+  const auto side = [](double mean, double sd) { return fmt::format("{:.3g} ({:.2g})", mean, sd); };
+  int shown = 0;
+  for (const statistics::FeatureEvidence& evidence : told.all.features) {
+    if (!(evidence.accuracy_interval.low > 0.5)) continue;
+    ++shown;
+    const sweep::FeatureSummary& summary = told.features[evidence.feature];
+    text += fmt::format(
+        "{:<28}  {:>20}  {:>20}  {:>20}\n", sweep::DriveFeatures()[evidence.feature].name,
+        WithInterval(evidence.accuracy, evidence.accuracy_interval),
+        side(summary.mean.sim, summary.sd.sim), side(summary.mean.real, summary.sd.real));
+  }
+  return shown > 0 ? text : "";
+}
+
 }  // namespace
 
 std::string LikenessText(const std::vector<sweep::GroupLikeness>& groups) {
@@ -169,7 +241,8 @@ std::string LikenessText(const std::vector<sweep::GroupLikeness>& groups) {
                                     Number(1e3 * path.wavelength_m.real, 0)),
                         Number(path.energy_p, 3), Number(path.inside_share, 2));
   }
-  return text;
+  text += '\n' + IntervalsText(groups, width) + '\n' + ClassifierText(groups, width);
+  return groups.empty() ? text : text + FeaturesText(groups.back().likeness.told_apart);
 }
 
 std::string LikenessText(const gap::Likeness& likeness) {
