@@ -8,8 +8,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "blocks.hpp"
-
 namespace rift::simulation {
 namespace {
 
@@ -115,8 +113,6 @@ Vector3d Lowest(const Vector3d& axis, const Vector3d& normal) {
   return length > 1e-9 ? Vector3d(down / length) : Vector3d(axis.unitOrthogonal());
 }
 
-constexpr double kRimBall_m = 0.003;
-constexpr int kRimBalls = 16;
 constexpr double kStanding_mps = 1e-9;
 
 constexpr double kTippedOver_rad = 1.05;
@@ -210,16 +206,8 @@ void AddWheelContacts(const ContactScene& scene, int side, const Vector3d& centr
     contacts.push_back({at, grip.mu, Across(at.normal, axle), creep_mps, creep_mps,
                         body.WeightOnWheel_n(), uneven_mps});
   };
-  if (!scene.terrain.IsStepped()) {
-    const auto contact =
-        WheelContactPoint(scene.terrain, centre, axle, radius_m, body.wheel_width_m);
-    if (contact) add(*contact);
-    return;
-  }
-  const double sweep_m = std::min(0.5 * body.wheel_width_m, 0.5 * radius_m);
-  std::vector<ContactPoint> points;
-  BumpContacts(scene.terrain, {centre, axle, radius_m - sweep_m, sweep_m}, scene.margin_m, points);
-  for (const ContactPoint& at : points) add(at);
+  const auto contact = WheelContactPoint(scene.terrain, centre, axle, radius_m, body.wheel_width_m);
+  if (contact) add(*contact);
 }
 
 void AddCasterContacts(const ContactScene& scene, std::vector<GroundContact>& contacts) {
@@ -228,49 +216,21 @@ void AddCasterContacts(const ContactScene& scene, std::vector<GroundContact>& co
   const Vector3d caster =
       state.position_m +
       state.world_from_robot * Vector3d(body.caster_ahead_m, 0.0, -body.caster_below_m);
-  const auto add = [&](const ContactPoint& at) {
-    const Grip grip = scene.terrain.GripAt(at.point.x(), at.point.y());
-    contacts.push_back(
-        Sliding(at, grip.caster_factor * body.caster_mu, state, body.WeightOnCaster_n()));
-  };
-  if (!scene.terrain.IsStepped()) {
-    const Vector3d forward = state.world_from_robot.col(0);
-    const auto contact = BallContactPoint(scene.terrain, caster, forward, body.caster_radius_m);
-    if (contact) add(*contact);
-    return;
-  }
-  std::vector<ContactPoint> points;
-  BumpContacts(scene.terrain, {caster, Vector3d::UnitZ(), 0.0, body.caster_radius_m},
-               scene.margin_m, points);
-  for (const ContactPoint& at : points) add(at);
+  const auto contact =
+      BallContactPoint(scene.terrain, caster, state.world_from_robot.col(0), body.caster_radius_m);
+  if (!contact) return;
+  const Grip grip = scene.terrain.GripAt(contact->point.x(), contact->point.y());
+  contacts.push_back(
+      Sliding(*contact, grip.caster_factor * body.caster_mu, state, body.WeightOnCaster_n()));
 }
 
 void AddRimContacts(const ContactScene& scene, std::vector<GroundContact>& contacts) {
   const BodyOptions& body = scene.body;
   const WorldState& state = scene.state;
   const Vector3d up = state.world_from_robot.col(2);
-  const double weight_n = body.Weight_n();
-  const double drop_m = body.wheel_radius_m - body.rim_clearance_m;
-  if (!scene.terrain.IsStepped()) {
-    const auto contact =
-        RimContactPoint(scene.terrain, state.position_m - drop_m * up, up, body.chassis_radius_m);
-    if (contact) contacts.push_back(Sliding(*contact, body.rim_mu, state, weight_n));
-    return;
-  }
-  // The edge as balls, closer to each other than a block is wide.
-  const double ball_m = std::min(kRimBall_m, 0.5 * body.chassis_radius_m);
-  std::vector<ContactPoint> points;
-  for (int i = 0; i < kRimBalls; ++i) {
-    const double angle_rad = 2.0 * std::numbers::pi * i / kRimBalls;
-    const Vector3d at =
-        (body.chassis_radius_m - ball_m) * Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0);
-    const Vector3d centre =
-        state.position_m + state.world_from_robot * (at - (drop_m - ball_m) * Vector3d::UnitZ());
-    BumpContacts(scene.terrain, {centre, Vector3d::UnitZ(), 0.0, ball_m}, scene.margin_m, points);
-  }
-  for (const ContactPoint& at : points) {
-    contacts.push_back(Sliding(at, body.rim_mu, state, weight_n));
-  }
+  const Vector3d rim = state.position_m - (body.wheel_radius_m - body.rim_clearance_m) * up;
+  const auto contact = RimContactPoint(scene.terrain, rim, up, body.chassis_radius_m);
+  if (contact) contacts.push_back(Sliding(*contact, body.rim_mu, state, body.Weight_n()));
 }
 
 std::optional<std::string> FaultOf(const WorldState& state, const Terrain& terrain) {

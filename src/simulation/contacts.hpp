@@ -16,7 +16,7 @@ namespace rift::simulation {
 struct ContactPoint {
   Eigen::Vector3d point;   ///< of the body, deepest below the ground, in the world frame
   Eigen::Vector3d normal;  ///< unit, from the ground into the body
-  double depth_m = 0.0;    ///< positive inside the ground, negative above it
+  double depth_m = 0.0;    ///< positive inside the ground
 };
 
 /// An upright wheel as a disc: one point, the deepest. On a plane it is the lowest point of the
@@ -52,8 +52,6 @@ struct ContactScene {
   const BodyOptions& body;
   const Terrain& terrain;
   const WorldState& state;
-  /// On bumps a contact counts from this far above the ground, so that no step ends inside a block.
-  double margin_m = 0.0;
   /// For each wheel: the way it makes beyond what its rim turns, as a share of it.
   std::array<double, 2> uneven{};
 };

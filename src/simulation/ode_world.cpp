@@ -28,7 +28,6 @@ constexpr double kSettle_s = 0.4;
 /// robot creep by less than a micrometre a second on a slope.
 constexpr double kLeastSlip_mps_per_n = 1e-6;
 constexpr double kSameNormal = 0.95;  // cosine of the angle between two
-constexpr double kFastest_mps = 2.0;  // a part nears the ground by no more in a step
 
 /// Thrown by ODE's own error reports, which must not return; caught at every call that can raise
 /// it.
@@ -283,7 +282,7 @@ void OdeWorld::Bodies::SetDrive(int side, const WheelDrive& drive) {
 }
 
 void OdeWorld::Bodies::MakeContacts(const std::array<double, 2>& uneven) {
-  const ContactScene scene{body, terrain, state, kFastest_mps * step_s, uneven};
+  const ContactScene scene{body, terrain, state, uneven};
   for (int side = 0; side < 2; ++side) {
     AddWheelContacts(scene, side, Vector(dBodyGetPosition(wheels[side])), found);
     Add(wheel_contacts[side], settling);
@@ -297,12 +296,15 @@ void OdeWorld::Bodies::MakeContacts(const std::array<double, 2>& uneven) {
 /// Gives the contacts found to ODE and forgets them. `sticks`: whatever the friction.
 void OdeWorld::Bodies::Add(PartContacts& part, bool sticks) {
   std::vector<std::optional<double>> loads_n;
-  for (const GroundContact& ground : found) loads_n.push_back(part.LastLoad_n(ground.at.normal));
+  for (const GroundContact& ground : found) {
+    // Over blocks a load comes and goes from step to step, so that the last one tells little.
+    loads_n.push_back(terrain.IsStepped() ? std::nullopt : part.LastLoad_n(ground.at.normal));
+  }
   part.normals.clear();
   part.forces.resize(found.size());  // ODE keeps pointers into it until the step is done
   for (size_t i = 0; i < found.size(); ++i) {
     dContact contact = ContactOf(found[i], loads_n[i]);
-    if (sticks && found[i].at.depth_m >= 0.0) contact.surface.mu = dInfinity;
+    if (sticks) contact.surface.mu = dInfinity;
     const dJointID joint = dJointCreateContact(world.get(), contacts.get(), &contact);
     dJointAttach(joint, part.part, nullptr);
     dJointSetFeedback(joint, &part.forces[i]);
@@ -339,11 +341,7 @@ dContact OdeWorld::Bodies::ContactOf(const GroundContact& ground,
     surface.mode |= dContactMotion2;  // along normal x direction, to the rear
     surface.motion2 = -ground.uneven_mps;
   }
-  if (ground.at.depth_m < 0.0) {
-    surface.mode |= dContactMotionN;
-    surface.motionN = ground.at.depth_m / step_s;
-  }
-  contact.geom.depth = std::max(0.0, ground.at.depth_m);
+  contact.geom.depth = ground.at.depth_m;
   Eigen::Map<Vector3d>(contact.geom.pos) = ground.at.point;
   Eigen::Map<Vector3d>(contact.geom.normal) = ground.at.normal;
   Eigen::Map<Vector3d>(contact.fdir1) = ground.direction;

@@ -184,8 +184,8 @@ TwoSampleTest TestTwoSamples(const std::vector<Observation>& observations,
   test.groups = samples.groups.size();
   if (!samples.CanBeTold()) return test;
   const std::vector<Split> splits = SplitsOf(samples, options.folds);
-  const std::vector<Tally> tallies = TallyByGroup(
-      samples, ToldRight(samples.features, samples.is_first, splits, options.ridge));
+  const std::vector<Tally> tallies =
+      TallyByGroup(samples, ToldRight(samples.features, samples.is_first, splits, options.ridge));
   test.accuracy = AccuracyOf(tallies);
   test.accuracy_interval = IntervalOf(tallies, bootstrap, seed);
   test.p = PermutationP(samples, splits, test.accuracy, options, seed);

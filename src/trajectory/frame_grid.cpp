@@ -63,8 +63,8 @@ double RoughnessOf(const std::vector<double>& t_s, const Rows& rows) {
   const double limit = kMoving * rows.speed_mps;
   std::vector<double> bends;
   for (size_t i = 1; i + 1 < speeds.size(); ++i) {
-    const double slowest = std::min({rows.steps_m[i - 1] + rows.steps_m[i],
-                                     rows.steps_m[i] + rows.steps_m[i + 1]});
+    const double slowest =
+        std::min({rows.steps_m[i - 1] + rows.steps_m[i], rows.steps_m[i] + rows.steps_m[i + 1]});
     const double span_s = rows.t_s[i + 2] - rows.t_s[i - 1];
     if (slowest / (2.0 / 3.0 * span_s) < limit) continue;
     bends.push_back(std::abs(speeds[i + 1] - 2.0 * speeds[i] + speeds[i - 1]));
@@ -108,9 +108,7 @@ class Solver {
   using Origins = std::array<std::array<int, kChoices>, kChoices>;
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  long FrameOf(size_t row, int choice) const {
-    return grid_.NewestAt(rows_.t_s[row]) + 1 - choice;
-  }
+  long FrameOf(size_t row, int choice) const { return grid_.NewestAt(rows_.t_s[row]) + 1 - choice; }
   double AgeCost(size_t row, int choice) const {
     const double age = grid_.AgeOf(rows_.t_s[row], FrameOf(row, choice));
     const double beyond = age < 0.0 ? -age : std::max(0.0, age - 1.0);
@@ -235,9 +233,10 @@ std::string FrameGrid::Text() const {
         1e3 * period_s, Smoother());
   }
   if (std::isnan(roughness_after)) {
-    return fmt::format("no frame grid is looked for in fewer than {} rows in motion or in more "
-                       "than {:g} s: the stamps stay",
-                       kFewestMoving, kLongest_s);
+    return fmt::format(
+        "no frame grid is looked for in fewer than {} rows in motion or in more "
+        "than {:g} s: the stamps stay",
+        kFewestMoving, kLongest_s);
   }
   if (!is_best) {
     return "no frame grid of this rate: one of a rate 10 % off explains the log better: the stamps "

@@ -391,27 +391,5 @@ TEST_CASE("Dry friction in the gears holds the robot on the ramp and gives way b
   CHECK(moved(0.98 * holding_nm) > 1e-3);
 }
 
-TEST_CASE("A robot that rolls freely over blocks never gains energy") {
-  const double step_s = GENERATE(0.008, 0.004, 0.002);
-  TerrainOptions options;
-  options.surface = "bump";
-  for (int run = 0; run < 40; ++run) {
-    const double angle_rad = 0.37 * run;
-    OdeWorld world(BodyOptions{}, Terrain(options),
-                   {0.1 * std::sin(3.0 * run), 0.1 * std::cos(5.0 * run), angle_rad}, step_s);
-    world.Launch(0.1 + 0.005 * run);
-    double least_j = world.Energy_j(), gained_j = 0.0;
-    Run(world, 1.5, step_s, [&](double) {
-      gained_j = std::max(gained_j, world.Energy_j() - least_j);
-      least_j = std::min(least_j, world.Energy_j());
-      return std::array<WheelDrive, 2>{Drag(kFree), Drag(kFree)};
-    });
-    INFO("run " << run << ", step " << step_s);
-    CHECK_FALSE(world.Fault());
-    // What the springs of the contacts hold for a moment is not counted: 2 N press them by 80 um.
-    CHECK(gained_j < 1e-4);
-  }
-}
-
 }  // namespace
 }  // namespace rift::simulation

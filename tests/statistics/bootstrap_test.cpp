@@ -37,8 +37,12 @@ TEST_CASE("Draws that tell nothing are left out and fewer than two groups have n
       values.size(), [&](auto drawn) { return MeanOf(drawn, values); }, {}, 1);
   CHECK(interval.low == 1.0);
   CHECK(interval.high == 1.0);
-  CHECK(std::isnan(BootstrapGroups(1, [](auto) { return 1.0; }, {}, 1).low));
-  CHECK(std::isnan(BootstrapGroups(3, [](auto) { return NAN; }, {}, 1).high));
+  CHECK(std::isnan(BootstrapGroups(
+                       1, [](auto) { return 1.0; }, {}, 1)
+                       .low));
+  CHECK(std::isnan(BootstrapGroups(
+                       3, [](auto) { return NAN; }, {}, 1)
+                       .high));
 }
 
 }  // namespace

@@ -117,7 +117,8 @@ TEST_CASE("Frames of a camera that are stamped evenly show in the way from row t
 
 TEST_CASE("No feature depends on the frame or on the clock") {
   Trajectory log = Drive(Weaving);
-  for (size_t i = 0; i < log.poses.size(); ++i) log.poses[i].t_s += 0.004 * std::sin(1.7 * static_cast<double>(i));
+  for (size_t i = 0; i < log.poses.size(); ++i)
+    log.poses[i].t_s += 0.004 * std::sin(1.7 * static_cast<double>(i));
   Trajectory moved = test::Moved(log, {0.7, -0.3, 2.0});
   const double cosine = std::cos(2.0), sine = std::sin(2.0);
   for (auto& pose : moved.poses) {
@@ -129,8 +130,8 @@ TEST_CASE("No feature depends on the frame or on the clock") {
   const std::vector<double> before = FeaturesOf(log, {}), after = FeaturesOf(moved, {});
   for (size_t i = 0; i < before.size(); ++i) {
     INFO(DriveFeatures()[i].name << ": " << before[i] << " and " << after[i]);
-    const bool is_same = std::isnan(before[i]) ? std::isnan(after[i])
-                                               : std::abs(after[i] - before[i]) < 1e-6;
+    const bool is_same =
+        std::isnan(before[i]) ? std::isnan(after[i]) : std::abs(after[i] - before[i]) < 1e-6;
     CHECK(is_same);
   }
 }
@@ -196,9 +197,9 @@ TEST_CASE("A simulator that is too fast is told by its speed") {
   CHECK(fast.all.accuracy > 0.9);
   CHECK(fast.all.p == Approx(1.0 / 40.0));
   CHECK(fast.without_timing.features[0].accuracy > 0.9);
-  const auto of_speed = std::find_if(
-      fast.all.features.begin(), fast.all.features.end(),
-      [](const auto& one) { return one.feature == PlaceOf("cruise_mps"); });
+  const auto of_speed =
+      std::find_if(fast.all.features.begin(), fast.all.features.end(),
+                   [](const auto& one) { return one.feature == PlaceOf("cruise_mps"); });
   CHECK(of_speed->accuracy > 0.9);
   CHECK(of_speed->accuracy_interval.low > 0.8);
   CHECK(of_speed->weight < 0.0);
@@ -214,9 +215,8 @@ TEST_CASE("The authors' Webots logs are told from their robot's in settings not 
   std::vector<RepeatedTrial> trials;
   for (const test::TrialPair& pair : test::PublishedPairs()) {
     const std::string setting = pair.surface + pair.v_min + pair.v_max;
-    const bool is_new = std::none_of(trials.begin(), trials.end(), [&](const auto& trial) {
-      return trial.setting == setting;
-    });
+    const bool is_new = std::none_of(trials.begin(), trials.end(),
+                                     [&](const auto& trial) { return trial.setting == setting; });
     trials.push_back({.setting = setting,
                       .real = test::LoadTrajectory(pair.real, trajectory::Format::kTracker)});
     // One run for each setting.

@@ -20,7 +20,7 @@ Eigen::Vector2d At(double t_s) {
 }
 
 struct Made {
-  Trajectory log;                ///< stamped when the pose was found
+  Trajectory log;                  ///< stamped when the pose was found
   std::vector<double> captured_s;  ///< when each frame was taken
 };
 
@@ -84,9 +84,8 @@ TEST_CASE("A log without a grid keeps its stamps") {
   Trajectory log;
   for (double t_s = 0.2; t_s < 5.0; t_s += 0.05 + 0.012 * random.Uniform()) {
     const Eigen::Vector2d p = At(t_s);
-    log.poses.push_back({.t_s = t_s,
-                         .x_m = p.x() + 3e-4 * random.Normal(),
-                         .y_m = p.y() + 3e-4 * random.Normal()});
+    log.poses.push_back(
+        {.t_s = t_s, .x_m = p.x() + 3e-4 * random.Normal(), .y_m = p.y() + 3e-4 * random.Normal()});
   }
   const OnFrames result = PutOnFrames(log, 30.0);
   CHECK_FALSE(result.grid.is_found);
@@ -125,10 +124,9 @@ TEST_CASE("The authors' logs stand on 30 frames a second: speeds twice as smooth
       outside.push_back(grid.outside_share);
       found += grid.is_found;
     }
-    INFO(surface << ": " << found << " of " << logs.size() << ", "
-                 << statistics::Median(smoother) << " times smoother, period "
-                 << 1e3 * statistics::Median(periods_s) << " ms, outside "
-                 << statistics::Median(outside));
+    INFO(surface << ": " << found << " of " << logs.size() << ", " << statistics::Median(smoother)
+                 << " times smoother, period " << 1e3 * statistics::Median(periods_s)
+                 << " ms, outside " << statistics::Median(outside));
     CHECK(found >= static_cast<int>(logs.size()) - 1);
     CHECK(statistics::Median(smoother) > 2.0);
     CHECK(statistics::Median(outside) < 0.25);

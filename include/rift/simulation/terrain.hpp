@@ -176,8 +176,6 @@ class Terrain {
   /// Whether height changes in steps (bumps, edge of a table), so that it has no useful slope
   /// there.
   bool IsStepped() const { return surface_.shape == Shape::kBumps; }
-  const SurfaceOptions& Surface() const { return surface_; }
-  bool IsOnTable(double x_m, double y_m) const { return OnTable(x_m, y_m, 0.0); }
 
  private:
   bool OnTable(double x_m, double y_m, double margin_m) const;

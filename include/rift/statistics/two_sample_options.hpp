@@ -15,8 +15,9 @@ struct TwoSampleOptions {
           "holds the weights of standardised features near zero: half this times their squares is "
           "added to the loss of the observations, of which each sample counts as many as the "
           "smaller one has");
-    field("folds", self.folds, 2, 1000,
-          "parts into which settings are dealt; each is told by a classifier trained on the others");
+    field(
+        "folds", self.folds, 2, 1000,
+        "parts into which settings are dealt; each is told by a classifier trained on the others");
     field("permutations", self.permutations, 0, 1'000'000,
           "times the labels are shuffled within each setting, for the p-value; 0: none");
   }

@@ -54,8 +54,8 @@ FeatureSummary SummaryOf(const std::vector<Observation>& observations, size_t pl
 
 }  // namespace
 
-Distinction Distinguish(const std::vector<RepeatedTrial>& trials, const gap::LikenessOptions& options,
-                        std::uint64_t seed) {
+Distinction Distinguish(const std::vector<RepeatedTrial>& trials,
+                        const gap::LikenessOptions& options, std::uint64_t seed) {
   const std::vector<Observation> observations = ObservationsOf(trials, options);
   std::vector<size_t> all, without_timing;
   Distinction distinction;

@@ -34,8 +34,7 @@ double StepGrid(const DriveMeasures& drive) {
     const double local_mps =
         way_m / (drive.intervals_s[i - 1] + drive.intervals_s[i] + drive.intervals_s[i + 1]);
     if (!(local_mps > 0.7 * drive.cruise_mps)) continue;
-    fits.push_back(
-        std::cos(2.0 * std::numbers::pi * drive.steps_m[i] / (local_mps * kFrame_s)));
+    fits.push_back(std::cos(2.0 * std::numbers::pi * drive.steps_m[i] / (local_mps * kFrame_s)));
   }
   return statistics::Mean(fits);
 }
@@ -195,7 +194,8 @@ const Entry kEntries[] = {
       "mean cosine of the way from row to row in frames of 1/30 s at cruising speed: 1 on a grid, "
       "0 without one"},
      [](D d, O) { return StepGrid(d); }},
-    {{"speed_roughness", true, "robust scatter of the second difference of the speed from row to row, over cruise"},
+    {{"speed_roughness", true,
+      "robust scatter of the second difference of the speed from row to row, over cruise"},
      [](D d, O) { return SpeedRoughness(d); }},
     {{"first_motion_s", false, "time of the first row of motion after that of the log"},
      [](D d, O) {
@@ -228,7 +228,8 @@ const Entry kEntries[] = {
      [](D d, O) { return Autocorrelation(d.yaw_rates_rad_s, 8); }},
     {{"yaw_rate_correlation_800ms", false, "800 ms apart"},
      [](D d, O) { return Autocorrelation(d.yaw_rates_rad_s, 16); }},
-    {{"yaw_residual_rad", false, "robust scatter of the turn that the last row's yaw rate does not foretell"},
+    {{"yaw_residual_rad", false,
+      "robust scatter of the turn that the last row's yaw rate does not foretell"},
      [](D d, O) { return YawResidual(d); }},
     {{"reversals_per_s", false, "changes of side of a yaw rate above 0.2 rad/s"},
      [](D d, O) { return Reversals(d); }},

@@ -65,9 +65,8 @@ Pairs PairsOf(const std::vector<RepeatedTrial>& trials, const std::vector<size_t
 Trajectory LinesOf(const std::vector<control::Waypoint>& waypoints) {
   Trajectory path;
   for (const control::Waypoint& waypoint : waypoints) {
-    path.poses.push_back({.t_s = static_cast<double>(path.poses.size()),
-                          .x_m = waypoint.x_m,
-                          .y_m = waypoint.y_m});
+    path.poses.push_back(
+        {.t_s = static_cast<double>(path.poses.size()), .x_m = waypoint.x_m, .y_m = waypoint.y_m});
   }
   return path;
 }
@@ -121,25 +120,24 @@ PathPrediction MeasurePrediction(const std::vector<RepeatedTrial>& trials,
     for (const size_t i : drawn) sum.Add(settings[i]);
     return difference_m(sum);
   };
-  return {
-      .reals = static_cast<size_t>(all.count),
-      .simulated_m = all.simulated_m / all.count,
-      .other_real_m = all.other_real_m / all.count,
-      .difference_m = difference_m(all),
-      .difference_interval_m =
-          statistics::BootstrapGroups(settings.size(), of_drawn, options.bootstrap, seed)};
+  return {.reals = static_cast<size_t>(all.count),
+          .simulated_m = all.simulated_m / all.count,
+          .other_real_m = all.other_real_m / all.count,
+          .difference_m = difference_m(all),
+          .difference_interval_m =
+              statistics::BootstrapGroups(settings.size(), of_drawn, options.bootstrap, seed)};
 }
 
 RankAgreement MeasureRanks(const std::vector<RepeatedTrial>& trials, const gap::GapOptions& gap,
                            const gap::LikenessOptions& options, std::uint64_t seed) {
   const RankedSettings ranked = RankedOf(trials, gap);
-  return {.settings = ranked.judged_m.size(),
-          .simulated = statistics::RankCorrelation(ranked.judged_m, ranked.simulated_m),
-          .simulated_interval =
-              IntervalOf(ranked.judged_m, ranked.simulated_m, options.bootstrap, seed),
-          .real = statistics::RankCorrelation(ranked.judged_m, ranked.other_real_m),
-          .real_interval =
-              IntervalOf(ranked.judged_m, ranked.other_real_m, options.bootstrap, seed)};
+  return {
+      .settings = ranked.judged_m.size(),
+      .simulated = statistics::RankCorrelation(ranked.judged_m, ranked.simulated_m),
+      .simulated_interval =
+          IntervalOf(ranked.judged_m, ranked.simulated_m, options.bootstrap, seed),
+      .real = statistics::RankCorrelation(ranked.judged_m, ranked.other_real_m),
+      .real_interval = IntervalOf(ranked.judged_m, ranked.other_real_m, options.bootstrap, seed)};
 }
 
 }  // namespace rift::sweep

@@ -26,7 +26,7 @@ struct Distinction {
 };
 
 /// Settings are the groups of statistics::TestTwoSamples, real logs its first sample.
-Distinction Distinguish(const std::vector<RepeatedTrial>& trials, const gap::LikenessOptions& options,
-                        std::uint64_t seed);
+Distinction Distinguish(const std::vector<RepeatedTrial>& trials,
+                        const gap::LikenessOptions& options, std::uint64_t seed);
 
 }  // namespace rift::sweep

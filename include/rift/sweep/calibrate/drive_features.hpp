@@ -11,7 +11,7 @@ namespace rift::sweep {
 
 /// One number of a log by which a simulated log might be told from a real one.
 struct DriveFeature {
-  std::string_view name;  ///< ends in its unit
+  std::string_view name;   ///< ends in its unit
   bool is_timing = false;  ///< it looks at time stamps, or at the distance from one row to the next
   std::string_view meaning;
 };
