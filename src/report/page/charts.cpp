@@ -69,7 +69,7 @@ json LevelBar(const sweep::LevelSummary& level) {
           {"tip", tip}};
 }
 
-PageChart Bars(std::string title, std::string sentence, std::string x_title, json values) {
+PageChart Bars(std::string title, std::string sentence, const std::string& x_title, json values) {
   PageChart chart{std::move(title), std::move(sentence), Template("bars.json")};
   chart.spec["height"] = 28 * std::max<std::size_t>(values.size(), 1);
   SetSignal(chart.spec, "x_title", x_title);

@@ -27,7 +27,7 @@ json Bar(const std::string& label, double value, double low, double high, std::s
           {"tip", std::move(tip)}};
 }
 
-PageChart Bars(std::string title, std::string sentence, std::string x_title, json values) {
+PageChart Bars(std::string title, std::string sentence, const std::string& x_title, json values) {
   PageChart chart{std::move(title), std::move(sentence), Template("bars.json")};
   chart.spec["height"] = 28 * std::max<std::size_t>(values.size(), 1);
   SetSignal(chart.spec, "x_title", x_title);
