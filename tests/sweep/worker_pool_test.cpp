@@ -21,10 +21,13 @@ namespace {
 /// Runs `count` jobs whose bytes are their indices.
 std::map<int, JobResult> RunAll(WorkerPool& pool, int count) {
   std::map<int, JobResult> results;
-  const bool is_whole = pool.Run(
-      {count, [](int i) { return std::to_string(i); },
-       [&](int i, JobResult result) { REQUIRE(results.emplace(i, std::move(result)).second); },
-       [] { return true; }});
+  const bool is_whole = pool.Run({count, [](int i) { return std::to_string(i); },
+                                  [&](int i, JobResult result) {
+                                    const bool is_first =
+                                        results.emplace(i, std::move(result)).second;
+                                    REQUIRE(is_first);
+                                  },
+                                  [] { return true; }});
   REQUIRE(is_whole);
   return results;
 }
