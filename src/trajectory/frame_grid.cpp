@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "rift/statistics/descriptive.hpp"
@@ -248,12 +249,17 @@ std::string FrameGrid::Text() const {
       Smoother(), kLeastSmoother);
 }
 
+Trajectory OnFramesOf(Trajectory log, double fps) {
+  return fps == 0.0 ? log : PutOnFrames(std::move(log), fps).trajectory;
+}
+
 OnFrames PutOnFrames(Trajectory log, double fps) {
   if (!(fps >= 1.0 && fps <= 1000.0)) {
     throw std::invalid_argument(
         fmt::format("a frame grid of {:g} frames a second: must be within [1, 1000]", fps));
   }
   OnFrames result{.trajectory = std::move(log)};
+  if (result.trajectory.poses.size() < kFewestMoving) return result;
   const Rows rows = RowsOf(result.trajectory);
   if (!(rows.speed_mps > 0.0) || rows.t_s.back() > kLongest_s) return result;
   FrameGrid& grid = result.grid;

@@ -1,6 +1,7 @@
 #include "rift/sweep/falsify/evaluator.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 
 #include "rift/sweep/falsify/grid.hpp"
@@ -59,6 +60,38 @@ TEST_CASE("A sweep of logs tells each trial's gap and how far the repeats are ap
   CHECK(result->settings[0].noise_floor_m == Approx(0.03));
   CHECK(result->rows[2].status == TrialStatus::kMissing);
   CHECK(result->rows[2].reason == "ice_1.csv: no such file");
+}
+
+/// 0.3 m/s seen by a camera of 30 frames a second in a loop of 58 ms that stamps what it found.
+trajectory::Trajectory StampedByALoop() {
+  trajectory::Trajectory log;
+  for (double now_s = 0.2; now_s < 4.0; now_s += 0.058) {
+    const double captured_s = std::floor(now_s * 30.0) / 30.0;
+    log.poses.push_back({.t_s = now_s, .x_m = 0.3 * captured_s, .y_m = 0.0});
+  }
+  return log;
+}
+
+TEST_CASE("Stamps go back to the camera's frames where the experiment asks for it") {
+  const trajectory::Trajectory stamped = StampedByALoop();
+  Files files{{{"ground_1.csv", trajectory::WriteRift(stamped)}, {"ice_1.csv", LogBeside(0.1)}}};
+  experiment::Experiment experiment = LogsAgainstLogs();
+  const auto reference = [&](const char* surface) {
+    Evaluator evaluator(experiment, "logs.yaml", files.AsInputs());
+    return evaluator.Reference({.theta = {{surface, {}}}, .trial = "1"}).trajectory;
+  };
+  CHECK(reference("ground").poses[5].t_s == stamped.poses[5].t_s);
+  experiment.reference.grid_fps = 30.0;
+  const trajectory::Trajectory on_frames = reference("ground");
+  REQUIRE(on_frames.poses.size() == stamped.poses.size());
+  for (size_t i = 1; i < on_frames.poses.size(); ++i) {
+    const auto &a = on_frames.poses[i - 1], &b = on_frames.poses[i];
+    CHECK((b.x_m - a.x_m) / (b.t_s - a.t_s) == Approx(0.3).epsilon(0.01));
+  }
+  CHECK(files.notes.empty());
+  CHECK(reference("ice").poses[5].t_s == test::StraightPath(0.7, 40).poses[5].t_s);
+  REQUIRE(files.notes.size() == 1);
+  CHECK(files.notes[0].find("ice_1.csv: no frame grid") == 0);
 }
 
 TEST_CASE("A log that cannot be read or breaks a rule is a row with its reason") {

@@ -69,6 +69,7 @@ struct ReferenceOptions {
   TrialList trials;
   trajectory::Format format = trajectory::Format::kAuto;
   double tag_offset_m = 0.0;
+  double grid_fps = 0.0;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -79,6 +80,9 @@ struct ReferenceOptions {
     field(
         "tag_offset_m", self.tag_offset_m, -1.0, 1.0,
         "moves the logs forward along their yaw, from the tag to the robot's front (paper: 0.03)");
+    field("grid_fps", self.grid_fps, 0.0, 1000.0,
+          "puts time stamps back on the frames of a camera of this rate, where the log shows them "
+          "(the authors' logs: 30); 0: as logged");
   }
 };
 
@@ -87,12 +91,15 @@ struct CandidateOptions {
   CandidateKind kind = CandidateKind::kSimulation;
   PathTemplate path;
   trajectory::Format format = trajectory::Format::kAuto;
+  double grid_fps = 0.0;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("kind", self.kind, "the simulator of rift, or recorded logs");
     field("path", self.path, "of the logs, such as webots/{surface}.csv");
     field("format", self.format, "dialect of the logs");
+    field("grid_fps", self.grid_fps, 0.0, 1000.0,
+          "as reference.grid_fps, of the candidate's logs, recorded or simulated");
   }
 };
 

@@ -40,6 +40,9 @@ struct OnFrames {
 };
 OnFrames PutOnFrames(Trajectory log, double fps);
 
+/// The same without the evidence; 0 frames a second leave the log as it is.
+Trajectory OnFramesOf(Trajectory log, double fps);
+
 inline constexpr double kLeastSmoother = 1.5;
 
 }  // namespace rift::trajectory

@@ -10,6 +10,7 @@
 #include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/trajectory/frame_grid.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -123,8 +124,10 @@ std::vector<Labelled> Gathering::Drive(int threads) {
     RepeatedTrial& trial = trials_[planned_[i].trial].trial;
     if (runs[i].result.outcome == trial::Outcome::kReached) {
       // The same point of the body on both sides.
-      trial.runs.push_back(trajectory::OffsetAlongHeading(std::move(runs[i].result.trajectory),
-                                                          experiment_.reference.tag_offset_m));
+      trial.runs.push_back(trajectory::OnFramesOf(
+          trajectory::OffsetAlongHeading(std::move(runs[i].result.trajectory),
+                                         experiment_.reference.tag_offset_m),
+          experiment_.candidate.grid_fps));
     } else {
       ++trial.failed_runs;
     }

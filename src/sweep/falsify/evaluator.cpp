@@ -15,6 +15,7 @@
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
+#include "rift/trajectory/frame_grid.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/enum_name.hpp"
 
@@ -163,9 +164,10 @@ Evaluator::Evaluator(const experiment::Experiment& experiment, std::string exper
     : experiment_(experiment),
       experiment_file_(std::move(experiment_file)),
       inputs_(std::move(inputs)),
-      candidate_logs_(inputs_, {experiment.candidate.format, 0.0, "candidate.format"}),
+      candidate_logs_(inputs_, {experiment.candidate.format, 0.0, "candidate.format",
+                                experiment.candidate.grid_fps}),
       reference_logs_(inputs_, {experiment.reference.format, experiment.reference.tag_offset_m,
-                                "reference.format"}) {
+                                "reference.format", experiment.reference.grid_fps}) {
   const bool candidate_is_logs = experiment.candidate.kind == CandidateKind::kLogs;
   const bool reference_is_logs = experiment.reference.kind == ReferenceKind::kLogs;
   if (candidate_is_logs) RequirePath(experiment.candidate.path, "candidate.path");
@@ -249,6 +251,8 @@ CandidateRun Evaluator::RunOf(const TrialRequest& request, const Recording& refe
   const bool is_moved =
       experiment_.reference.kind == ReferenceKind::kLogs && simulated.status == TrialStatus::kOk;
   // The same point of the body on both sides.
+  simulated.trajectory =
+      trajectory::OnFramesOf(std::move(simulated.trajectory), experiment_.candidate.grid_fps);
   if (is_moved) {
     simulated.trajectory =
         trajectory::OffsetAlongHeading(simulated.trajectory, experiment_.reference.tag_offset_m);

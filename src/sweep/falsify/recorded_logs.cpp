@@ -8,6 +8,7 @@
 
 #include "rift/statistics/hash.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
+#include "rift/trajectory/frame_grid.hpp"
 
 namespace rift::sweep {
 
@@ -30,6 +31,12 @@ trajectory::Log ReadMovedLog(const std::string& text, const std::string& path,
                                             WhyNoYaw(log, options.format_key)));
   }
   log.trajectory = trajectory::OffsetAlongHeading(std::move(log.trajectory), options.tag_offset_m);
+  if (options.grid_fps > 0.0) {
+    trajectory::OnFrames found =
+        trajectory::PutOnFrames(std::move(log.trajectory), options.grid_fps);
+    if (!found.grid.is_found) log.notes.push_back(found.grid.Text());
+    log.trajectory = std::move(found.trajectory);
+  }
   return log;
 }
 

@@ -34,10 +34,12 @@ struct LogOptions {
   trajectory::Format format = trajectory::Format::kAuto;
   double tag_offset_m = 0.0;  ///< logs are moved so far forward along their yaw
   std::string format_key;     ///< what the user sets to tell the dialect ("reference.format")
+  double grid_fps = 0.0;      ///< of trajectory::PutOnFrames; 0: stamps as logged
 };
 
-/// A log moved from the tag to the point `tag_offset_m` ahead of it. Throws std::invalid_argument
-/// for text that breaks a rule, and for an offset of a log whose yaw is not known.
+/// A log moved from the tag to the point `tag_offset_m` ahead of it, its stamps put back on frames;
+/// where there are none the log's notes say so. Throws std::invalid_argument for text that breaks a
+/// rule, and for an offset of a log whose yaw is not known.
 trajectory::Log ReadMovedLog(const std::string& text, const std::string& path,
                              const LogOptions& options);
 
