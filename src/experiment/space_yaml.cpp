@@ -86,6 +86,31 @@ experiment::Parameter ParameterFromEntry(const FlatEntry& entry) {
   return parameter;
 }
 
+constexpr const char* kRangeOfFit =
+    "must be {min: a, max: b}, or with what is known of it {min: a, max: b, mean: m, sd: s}";
+
+/// A map with one of these keys is a range, and not the rest of a dotted key.
+bool IsRangeOfFit(const Node& node) {
+  return node.IsMap() && (node.Find("min") != nullptr || node.Find("max") != nullptr);
+}
+
+void ReadPrior(const Node& node, const std::string& key, experiment::FreeParameter& free) {
+  for (const Node::Entry& entry : node.entries) {
+    const bool is_bound = entry.key == "min" || entry.key == "max";
+    if (is_bound) continue;
+    if (entry.key != "mean" && entry.key != "sd") Fail(node, key, kRangeOfFit);
+    const std::optional<double> number = NumberOf(entry.value);
+    if (!number) Fail(entry.value, Join(key, entry.key), "must be a number");
+    (entry.key == "sd" ? free.prior_sd : free.prior_mean) = *number;
+  }
+  if (node.entries.size() == 2) return;
+  if (node.entries.size() != 4) Fail(node, key, kRangeOfFit);
+  if (!(free.prior_sd > 0.0)) Fail(node, Join(key, "sd"), "must be above 0");
+  if (free.prior_mean < free.min || free.prior_mean > free.max) {
+    Fail(node, Join(key, "mean"), "must lie in the range");
+  }
+}
+
 /// Names that table.csv, or a path template, has for something else.
 void CheckIsNoColumn(const Node& node, const std::string& name) {
   if (name == "trial") {
@@ -174,11 +199,9 @@ Node Hook<experiment::HeldOutTrials>::ToNode(const experiment::HeldOutTrials& tr
 experiment::FreeParameters Hook<experiment::FreeParameters>::FromNode(const Node& node) {
   if (!node.IsMap()) throw std::invalid_argument("must be a map of keys, each with {min, max}");
   experiment::FreeParameters fit;
-  for (const FlatEntry& entry : Flatten(node)) {
+  for (const FlatEntry& entry : Flatten(node, IsRangeOfFit)) {
     const std::string key = Join("calibrate.fit", entry.key);
-    if (!IsContinuousAxis(*entry.value) || entry.value->entries.size() != 2) {
-      Fail(*entry.value, key, "must be {min: a, max: b}");
-    }
+    if (!IsRangeOfFit(*entry.value)) Fail(*entry.value, key, kRangeOfFit);
     experiment::Parameter range;
     ReadRange(*entry.value, key, range);
     fit.list.push_back({.key = entry.key,
@@ -186,6 +209,7 @@ experiment::FreeParameters Hook<experiment::FreeParameters>::FromNode(const Node
                         .max = range.max,
                         .start = range.min,
                         .origin = entry.origin.Text()});
+    ReadPrior(*entry.value, key, fit.list.back());
   }
   return fit;
 }
@@ -196,6 +220,10 @@ Node Hook<experiment::FreeParameters>::ToNode(const experiment::FreeParameters& 
     Node range = Node::Map();
     range.Add("min", Node::Scalar(NumberText(free.min, free.key)));
     range.Add("max", Node::Scalar(NumberText(free.max, free.key)));
+    if (free.prior_sd > 0.0) {
+      range.Add("mean", Node::Scalar(NumberText(free.prior_mean, free.key)));
+      range.Add("sd", Node::Scalar(NumberText(free.prior_sd, free.key)));
+    }
     map.Add(free.key, range);
   }
   return map;

@@ -92,6 +92,54 @@ TEST_CASE("A calibration finds the mismatch and its robot file is used as an inc
   CHECK(ReadFile(bench.folder / "out/calibration.json") == first);
 }
 
+TEST_CASE(
+    "What is known beside the logs holds what they cannot tell, and a wrong prior holds all") {
+  Bench bench;
+  const std::string known = Replaced(kCalibrate, "surfaces.bump.mu: {min: 0.5, max: 1.2}",
+                                     "surfaces.bump.mu: {min: 0.5, max: 1.2, mean: 0.9, sd: 0.05}");
+  const auto fitted = [&](const std::string& experiment) {
+    const ProcessResult run = bench.Run(experiment);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return json::parse(ReadFile(bench.folder / "out/calibration.json"))["fit"]["parameters"];
+  };
+  const json loose = fitted(known);
+  const json& mu = loose["simulation.terrain.surfaces.bump.mu"];
+  CHECK(mu["value"].get<double>() == Approx(0.9).margin(0.005));
+  CHECK(mu["is_from_prior"] == true);
+  CHECK(mu["prior_sd"] == 0.05);
+  // 1.96 standard deviations to either side, wider for three logs.
+  CHECK(mu["high"].get<double>() - mu["low"].get<double>() > 2.0 * 1.5 * 0.05);
+  CHECK(loose["simulation.motor.mismatch"]["is_from_prior"] == false);
+  CHECK(loose["simulation.motor.mismatch"]["prior_mean"].is_null());
+  CHECK(loose["simulation.motor.mismatch"]["value"].get<double>() == Approx(0.05).margin(0.03));
+  const json tight = fitted(
+      Replaced(known, "min: -0.1, max: 0.1", "min: -0.1, max: 0.1, mean: -0.02, sd: 0.0001"));
+  const json& mismatch = tight["simulation.motor.mismatch"];
+  CHECK(mismatch["value"].get<double>() == Approx(-0.02).margin(0.002));
+  CHECK(mismatch["is_from_prior"] == true);
+}
+
+TEST_CASE("Fits from several starts stand beside each other, and the first one counts") {
+  Bench bench;
+  const std::string one = Replaced(kCalibrate, ", surfaces.bump.mu: {min: 0.5, max: 1.2}", "");
+  REQUIRE(bench.Run(one).exit_code == 0);
+  const json alone = json::parse(ReadFile(bench.folder / "out/calibration.json"));
+  CHECK(alone["agreement"].empty());
+  const ProcessResult run = bench.Run(one, {"--set", "calibrate.starts=2"});
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const json twice = json::parse(ReadFile(bench.folder / "out/calibration.json"));
+  CHECK(twice["fit"]["parameters"] == alone["fit"]["parameters"]);
+  const json& mismatch = twice["agreement"]["simulation.motor.mismatch"];
+  REQUIRE(mismatch["values"].size() == 2);
+  CHECK(mismatch["values"][0] == alone["fit"]["parameters"]["simulation.motor.mismatch"]["value"]);
+  CHECK(mismatch["values"][1].get<double>() == Approx(0.05).margin(0.04));
+  CHECK(mismatch["values"][0] != mismatch["values"][1]);
+  CHECK((mismatch["difference"].get<double>() <= 0.3) == mismatch["agrees"].get<bool>());
+  CHECK(run.out.find("fits from 2 starts") != std::string::npos);
+}
+
 TEST_CASE("What held-out logs hold changes nothing that is fitted") {
   Bench bench;
   REQUIRE(bench.Run(kCalibrate).exit_code == 0);
@@ -117,6 +165,10 @@ TEST_CASE("A calibration that cannot be is refused with one line that says why")
   CHECK_THAT(refused("motor.mismatch", "motor.mismtach"), Contains("is unknown"));
   CHECK_THAT(refused("min: -0.1, max: 0.1", "min: -0.1"), Contains("{min: a, max: b}"));
   CHECK_THAT(refused("min: -0.1, max: 0.1", "min: -0.1, max: 7"), Contains("7"));
+  CHECK_THAT(refused("max: 0.1", "max: 0.1, mean: 0"), Contains("mean: m, sd: s"));
+  CHECK_THAT(refused("max: 0.1", "max: 0.1, mean: 0, sd: 0"), Contains("must be above 0"));
+  CHECK_THAT(refused("max: 0.1", "max: 0.1, mean: 1, sd: 1"), Contains("must lie in the range"));
+  CHECK_THAT(refused("max: 0.1", "max: 0.1, mean: 0, width: 1"), Contains("mean: m, sd: s"));
   CHECK_THAT(refused("min: -0.1, max: 0.1", "min: 0.01, max: 0.1"), Contains("starts at 0"));
   CHECK_THAT(refused("motor.mismatch", "motor.model"), Contains("only a number can be fitted"));
   CHECK_THAT(refused("motor.mismatch", "\"surfaces.{surface}.mu\""),

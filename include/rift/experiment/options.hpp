@@ -110,11 +110,14 @@ struct FreeParameter {
   double max = 1.0;
   double start = 0.5;
   std::string origin{};  ///< where it was written, for messages
+  /// Of what is known beside the logs, as a normal distribution; sd 0: nothing.
+  double prior_mean = 0.0;
+  double prior_sd = 0.0;
 };
 
 /// `fit: {motor.mismatch: {min: -0.1, max: 0.1}, surfaces.{surface}.mu: {min: 0.1, max: 1}}`: keys
 /// of the experiment, whose values are where the fit starts; {surface} stands for each level of
-/// that parameter of the space.
+/// that parameter of the space. `{min: 0, max: 0.2, mean: 0.1, sd: 0.02}` has a prior.
 struct FreeParameters {
   std::vector<FreeParameter> list;
 };
@@ -128,6 +131,7 @@ struct HeldOutTrials {
 struct CalibrateOptions {
   FreeParameters fit;
   HeldOutTrials holdout;
+  int starts = 1;
   int judge_runs = 20;
   sweep::CalibrationOptions method;
 
@@ -135,10 +139,14 @@ struct CalibrateOptions {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("fit", self.fit,
-          "parameters of the simulator to fit and their ranges; {surface} in a key makes one for "
-          "each surface of the space");
+          "parameters of the simulator to fit, their ranges and, as mean and sd, what is known of "
+          "them beside the logs; {surface} in a key makes one for each surface of the space");
     field("holdout", self.holdout,
           "trials of reference.trials that the fit never sees and that judge it");
+    field(
+        "starts", self.starts, 1, 100,
+        "fits, each with random numbers of its own: the first from the experiment's values, whose "
+        "result counts, the others from values drawn within the ranges, which must agree with it");
     field("judge_runs", self.judge_runs, 2, 1000,
           "simulated runs of each trial, before and after the fit, that whole paths are judged by");
     field("method", self.method, "how it is fitted");

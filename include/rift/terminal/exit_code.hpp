@@ -8,9 +8,10 @@ namespace rift::terminal {
 /// What the process ends with.
 enum ExitCode : int {
   kDone = 0,
-  kFalsified = 1,   ///< only with --exit-code
-  kNotReached = 1,  ///< a trial ended before the last waypoint
-  kBadInput = 2,    ///< usage, configuration or a log
+  kFalsified = 1,       ///< only with --exit-code
+  kNotReached = 1,      ///< a trial ended before the last waypoint
+  kWorseThanStart = 1,  ///< a fit that is worse than its start is not written
+  kBadInput = 2,        ///< usage, configuration or a log
   kRunTimeFailure = 3,
   kStopped = 130,  ///< by Ctrl-C, as shells have it
 };

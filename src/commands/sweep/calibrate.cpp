@@ -48,7 +48,9 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
   files::WriteFile(out / "inputs.txt", evaluator.InputsText());
   const std::string json = report::CalibrationJson(experiment, found);
   files::WriteFile(out / "calibration.json", json);
-  if (!request.write_robot.empty()) {
+  const std::string refusal = report::WhyNotWritten(found.calibration, request.write_robot);
+  const bool is_written = !request.write_robot.empty() && refusal.empty();
+  if (is_written) {
     files::WriteFile(
         request.write_robot,
         report::RobotYaml(experiment, found, evaluator.InputsText(), request.experiment));
@@ -56,7 +58,8 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
   request.json ? terminal::PrintData(json) : terminal::PrintText(report::CalibrationText(found));
   WriteFigures(out / "figures", experiment.name, found);
   say(fmt::format("written: {}", (out / "calibration.json").string()));
-  return terminal::kDone;
+  if (request.write_robot.empty() || is_written) return terminal::kDone;
+  return terminal::Fail(refusal, terminal::kWorseThanStart);
 }
 
 }  // namespace rift::commands

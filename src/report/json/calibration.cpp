@@ -9,15 +9,19 @@ using nlohmann::ordered_json;
 using sweep::CalibratedParameter;
 
 ordered_json ParameterJson(const CalibratedParameter& p) {
-  return {{"start", p.parameter.start},
-          {"value", p.value},
-          {"low", p.low},
-          {"high", p.high},
-          {"min", p.parameter.min},
-          {"max", p.parameter.max},
-          {"has_effect", p.has_effect},
-          {"is_at_bound", p.is_at_bound},
-          {"is_identified", p.is_identified}};
+  return {
+      {"start", p.parameter.start},
+      {"value", p.value},
+      {"low", p.low},
+      {"high", p.high},
+      {"min", p.parameter.min},
+      {"max", p.parameter.max},
+      {"has_effect", p.has_effect},
+      {"prior_mean", p.parameter.prior_sd > 0.0 ? ordered_json(p.parameter.prior_mean) : nullptr},
+      {"prior_sd", p.parameter.prior_sd > 0.0 ? ordered_json(p.parameter.prior_sd) : nullptr},
+      {"is_from_prior", p.is_from_prior},
+      {"is_at_bound", p.is_at_bound},
+      {"is_identified", p.is_identified}};
 }
 
 ordered_json ErrorJson(const sweep::ErrorStructure& e) {
@@ -63,6 +67,12 @@ std::string CalibrationJson(const experiment::Experiment& experiment,
   ordered_json json = {{"name", experiment.name},
                        {"confidence", experiment.calibrate.method.confidence},
                        {"fit", FitJson(report.calibration)}};
+  ordered_json& agreement = json["agreement"] = ordered_json::object();
+  for (size_t i = 0; i < report.agreement.size(); ++i) {
+    const sweep::StartAgreement& one = report.agreement[i];
+    agreement[report.calibration.parameters[i].parameter.key] = {
+        {"values", one.values}, {"difference", one.difference}, {"agrees", one.agrees}};
+  }
   for (const sweep::JudgedGroup& group : report.judged) {
     ordered_json& entry = json["judged"][group.level][group.side];
     entry["before"] = LikenessJson(group.before);

@@ -49,6 +49,23 @@ std::string CorrelationText(const sweep::Calibration& fit) {
   return text;
 }
 
+std::string AgreementText(const sweep::CalibrationReport& report) {
+  if (report.agreement.empty()) return "";
+  std::string text = fmt::format(
+      "fits from {} starts; difference: largest distance of two over half the interval's width, at "
+      "most {:g} where they agree\n",
+      report.agreement.front().values.size(), sweep::StartAgreement::kAgreement);
+  for (size_t i = 0; i < report.agreement.size(); ++i) {
+    const sweep::StartAgreement& one = report.agreement[i];
+    std::string values;
+    for (const double value : one.values) values += fmt::format("{:>10.4g}", value);
+    text += fmt::format("  {}:{}  difference {:.2f}{}\n",
+                        report.calibration.parameters[i].parameter.key, values, one.difference,
+                        one.agrees ? "" : ", does not agree");
+  }
+  return text;
+}
+
 std::string JudgedText(const std::vector<sweep::JudgedGroup>& judged) {
   std::string text = fmt::format(
       "before > after the fit, whole paths; ratios are simulated / real, 1 is like the robot\n"
@@ -97,10 +114,19 @@ std::string ErrorText(const sweep::CalibrationReport::Errors& errors) {
 }  // namespace
 
 std::string FlagOf(const CalibratedParameter& parameter) {
+  if (parameter.is_from_prior) return "from the prior, not the logs";
   if (!parameter.has_effect) return "no effect";
   std::string flag = parameter.is_at_bound ? "at a bound" : "";
   if (!parameter.is_identified) flag += flag.empty() ? "not identifiable" : ", not identifiable";
   return flag;
+}
+
+std::string WhyNotWritten(const sweep::Calibration& fit, const std::string& file) {
+  if (!fit.IsWorseThanStart()) return "";
+  return fmt::format(
+      "{} is not written: the fit is worse than its start, with a loss of {:.4f} after {:.4f}: "
+      "raise calibrate.method.iterations, or set calibrate.method.corrections=0",
+      file, fit.loss_after, fit.loss_before);
 }
 
 std::string CalibrationText(const sweep::CalibrationReport& report) {
@@ -110,7 +136,8 @@ std::string CalibrationText(const sweep::CalibrationReport& report) {
                   fit.loss_after, fit.steps,
                   fit.has_converged ? "" : " (not converged: raise calibrate.method.iterations)",
                   fit.trials_simulated);
-  text += ParameterText(fit) + CorrelationText(fit) + '\n' + JudgedText(report.judged) + '\n';
+  text += ParameterText(fit) + CorrelationText(fit) + AgreementText(report) + '\n' +
+          JudgedText(report.judged) + '\n';
   for (const sweep::CalibrationReport::Errors& errors : report.errors) text += ErrorText(errors);
   return text;
 }

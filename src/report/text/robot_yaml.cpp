@@ -17,7 +17,7 @@ using yaml::Node;
 
 std::string CommentOf(const CalibratedParameter& p, double confidence) {
   const std::string flag = FlagOf(p);
-  if (!p.has_effect) return "kept: the logs do not depend on it";
+  if (!p.has_effect && !p.is_from_prior) return "kept: the logs do not depend on it";
   return fmt::format("fitted, {:.0f} % interval {:.4g} to {:.4g}, from {:.4g}{}{}",
                      100.0 * confidence, p.low, p.high, p.parameter.start, flag.empty() ? "" : "; ",
                      flag);

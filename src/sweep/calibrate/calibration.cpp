@@ -27,6 +27,7 @@ class Fit {
       : parameters_(parameters),
         options_(options),
         shares_(StartOf(parameters)),
+        prior_(PriorOf(parameters)),
         model_(parameters, logs, twin, options, threads, shares_),
         step_(std::max(options.step, options.first_step)) {}
 
@@ -46,6 +47,7 @@ class Fit {
   const std::vector<experiment::FreeParameter>& parameters_;
   const CalibrationOptions& options_;
   Eigen::VectorXd shares_;
+  Prior prior_;
   ErrorModel model_;
   double step_;
   double damping_ = kFirstDamping;
@@ -90,13 +92,14 @@ Eigen::VectorXd Fit::StepFor(const Eigen::MatrixXd& hessian, const Eigen::Vector
 
 /// One step of Levenberg and Marquardt, damped until it helps; false when none does.
 bool Fit::Improve() {
-  const Eigen::MatrixXd hessian = Sum(at_.hessians);
-  const Eigen::VectorXd gradient = Sum(at_.gradients);
-  const double loss = SquaredSum(at_.errors);
+  const Eigen::MatrixXd hessian = Sum(at_.hessians) + prior_.Hessian();
+  const Eigen::VectorXd gradient = Sum(at_.gradients) + prior_.GradientAt(shares_);
+  const double loss = SquaredSum(at_.errors) + prior_.LossAt(shares_);
   for (; damping_ < kLargestDamping; damping_ *= 10.0) {
     const Eigen::VectorXd tried = Moved(StepFor(hessian, gradient, damping_));
     if ((tried - shares_).cwiseAbs().maxCoeff() < kConverged) return false;
-    if (SquaredSum(model_.ErrorsAt(tried, scale_)) >= loss) continue;
+    const double tried_loss = SquaredSum(model_.ErrorsAt(tried, scale_)) + prior_.LossAt(tried);
+    if (tried_loss >= loss) continue;
     shares_ = tried;
     damping_ = std::max(1e-4, 0.1 * damping_);
     return true;
@@ -138,12 +141,13 @@ void Fit::Correct() {
     Append(made, model.LinearisedAt(shares_, model.RawErrorsAt(shares_), scale_, step_));
     trials_of_simulated_ += model.TrialsSimulated();
   }
-  Eigen::VectorXd gradient = Sum(at_.gradients);
+  Eigen::VectorXd gradient = Sum(at_.gradients) + prior_.GradientAt(shares_);
   if (repeats > 0) {
     gradient -= Sum(made.gradients) / repeats;
     simulated_.push_back(std::move(made));
   }
-  const Eigen::VectorXd step = StepFor(Sum(at_.hessians), gradient, kFirstDamping);
+  const Eigen::VectorXd step =
+      StepFor(Sum(at_.hessians) + prior_.Hessian(), gradient, kFirstDamping);
   shares_ = Moved(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step));
 }
 
@@ -156,10 +160,13 @@ Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step)
   if (options_.corrections == 0) {
     at_ = model_.LinearisedAt(shares_, model_.RawErrorsAt(shares_), scale_, step_);
   }
-  Judge(parameters_, options_, shares_, at_, simulated_, generator, result);
+  Judge(parameters_, options_, shares_, at_, simulated_, prior_, generator, result);
   const auto count = static_cast<double>(Count(at_.errors));
-  result.loss_after = SquaredSum(model_.ErrorsAt(shares_, scale_)) / count;
-  result.loss_before = SquaredSum(model_.ErrorsAt(start, scale_)) / count;
+  const auto loss_at = [&](const Eigen::VectorXd& shares) {
+    return (SquaredSum(model_.ErrorsAt(shares, scale_)) + prior_.LossAt(shares)) / count;
+  };
+  result.loss_after = loss_at(shares_);
+  result.loss_before = loss_at(start);
   result.trials_simulated = model_.TrialsSimulated() + trials_of_simulated_;
   return result;
 }
@@ -186,6 +193,20 @@ Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
                       const CalibrationStep& on_step) {
   Check(parameters, logs);
   return Fit(parameters, logs, twin, options, threads).Run(generator, on_step);
+}
+
+std::vector<StartAgreement> AgreementOf(const std::vector<Calibration>& fits) {
+  std::vector<StartAgreement> agreement;
+  if (fits.size() < 2) return agreement;
+  for (size_t k = 0; k < fits.front().parameters.size(); ++k) {
+    StartAgreement& one = agreement.emplace_back();
+    for (const Calibration& fit : fits) one.values.push_back(fit.parameters[k].value);
+    const auto [least, most] = std::minmax_element(one.values.begin(), one.values.end());
+    const CalibratedParameter& first = fits.front().parameters[k];
+    one.difference = *most > *least ? (*most - *least) / (0.5 * (first.high - first.low)) : 0.0;
+    one.agrees = one.difference <= StartAgreement::kAgreement;
+  }
+  return agreement;
 }
 
 }  // namespace rift::sweep

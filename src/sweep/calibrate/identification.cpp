@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "rift/experiment/parameter.hpp"
+#include "rift/statistics/random.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/trajectory/frame_grid.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -18,6 +20,9 @@ constexpr int kRunsShown = 3;
 // Runs that judge are none of those that were fitted with.
 constexpr std::uint64_t kSeedsOfLog = 100'000;
 constexpr std::uint64_t kJudgeSeeds = 50'000;
+constexpr std::uint64_t kSeedsOfStart = 100;  // the phases of a replay count up from there
+constexpr std::uint64_t kStartStream = 80;
+constexpr double kOffEnds = 0.1;  // of a range
 
 /// A log with its setting; its place in the list gives its seeds.
 struct Entry {
@@ -46,7 +51,8 @@ class Identifier {
   std::vector<const Entry*> Side(bool held_out) const;
   SimulatedTrial TwinOf(const Entry& entry, const std::vector<double>& values,
                         std::uint64_t seed) const;
-  TwinAt TwinsOf(const std::vector<const Entry*>& entries) const;
+  TwinAt TwinsOf(const std::vector<const Entry*>& entries, std::uint64_t seed = 0) const;
+  Calibration Fit(const std::vector<const Entry*>& fitted, int start) const;
   std::vector<RepeatedTrial> Drive(const std::vector<double>& values) const;
   void JudgePaths(CalibrationReport& report) const;
   void JudgeErrors(CalibrationReport& report) const;
@@ -123,9 +129,9 @@ SimulatedTrial Identifier::TwinOf(const Entry& entry, const std::vector<double>&
   return evaluator_.TrialOf(at, start, experiment_.seed + number * kSeedsOfLog + seed);
 }
 
-TwinAt Identifier::TwinsOf(const std::vector<const Entry*>& entries) const {
-  return [this, entries](size_t log, const std::vector<double>& values) {
-    return TwinOf(*entries[log], values, 0);
+TwinAt Identifier::TwinsOf(const std::vector<const Entry*>& entries, std::uint64_t seed) const {
+  return [this, entries, seed](size_t log, const std::vector<double>& values) {
+    return TwinOf(*entries[log], values, seed);
   };
 }
 
@@ -155,7 +161,8 @@ std::vector<RepeatedTrial> Identifier::Drive(const std::vector<double>& values) 
     for (int run = 0; run < experiment_.calibrate.judge_runs; ++run, ++twin.seed) {
       SimulatedRun driven = Simulate(twin);
       if (driven.result.outcome == trial::Outcome::kReached) {
-        trial.runs.push_back(std::move(driven.result.trajectory));
+        trial.runs.push_back(trajectory::OnFramesOf(std::move(driven.result.trajectory),
+                                                    experiment_.candidate.grid_fps));
       } else {
         ++trial.failed_runs;
       }
@@ -168,7 +175,14 @@ std::vector<RepeatedTrial> Identifier::Drive(const std::vector<double>& values) 
 DriveLikeness Identifier::LikenessOf(const std::vector<RepeatedTrial>& trials,
                                      const std::vector<size_t>& chosen) const {
   std::vector<RepeatedTrial> group;
-  for (const size_t i : chosen) group.push_back(trials[i]);
+  for (const size_t i : chosen) {
+    group.push_back(trials[i]);
+    for (size_t k = 0; k < trials.size(); ++k) {
+      const bool is_chosen = std::find(chosen.begin(), chosen.end(), k) != chosen.end();
+      if (is_chosen || trials[k].setting != trials[i].setting) continue;
+      group.back().other_reals.push_back(trials[k].real);
+    }
+  }
   std::mt19937_64 generator(experiment_.seed);
   return MeasureDriveLikeness(group, true, experiment_.gap, experiment_.likeness, generator);
 }
@@ -247,17 +261,35 @@ void Identifier::JudgeErrors(CalibrationReport& report) const {
   }
 }
 
+/// Start 0 is the experiment's; the others are drawn, off the ends of the ranges.
+Calibration Identifier::Fit(const std::vector<const Entry*>& fitted, int start) const {
+  std::vector<experiment::FreeParameter> parameters = experiment_.calibrate.fit.list;
+  statistics::Random random(experiment_.seed, kStartStream + static_cast<std::uint64_t>(start));
+  for (experiment::FreeParameter& p : parameters) {
+    const double share = kOffEnds + (1.0 - 2.0 * kOffEnds) * random.Uniform();
+    if (start > 0) p.start = p.min + share * (p.max - p.min);
+  }
+  std::mt19937_64 generator(experiment_.seed + static_cast<std::uint64_t>(start));
+  return Calibrate(parameters, LogsToFit(fitted, experiment_.likeness.longest_run),
+                   TwinsOf(fitted, static_cast<std::uint64_t>(start) * kSeedsOfStart),
+                   experiment_.calibrate.method, generator, jobs_, [&](int steps, double loss) {
+                     say_(fmt::format("step {}: loss {:.4f}", steps, loss));
+                   });
+}
+
 CalibrationReport Identifier::Run() {
   const std::vector<const Entry*> fitted = Side(false);
   for (const std::string& why : missing_) say_("note: left out: " + why);
   say_(fmt::format("fitting {} parameters to {} logs; {} held out", values_.size(), fitted.size(),
                    entries_.size() - fitted.size()));
-  std::mt19937_64 generator(experiment_.seed);
   CalibrationReport report;
-  report.calibration = Calibrate(
-      experiment_.calibrate.fit.list, LogsToFit(fitted, experiment_.likeness.longest_run),
-      TwinsOf(fitted), experiment_.calibrate.method, generator, jobs_,
-      [&](int steps, double loss) { say_(fmt::format("step {}: loss {:.4f}", steps, loss)); });
+  std::vector<Calibration> fits;
+  for (int start = 0; start < experiment_.calibrate.starts; ++start) {
+    if (start > 0) say_(fmt::format("start {} of {}", start + 1, experiment_.calibrate.starts));
+    fits.push_back(Fit(fitted, start));
+  }
+  report.calibration = fits.front();
+  report.agreement = AgreementOf(fits);
   for (const CalibratedParameter& parameter : report.calibration.parameters) {
     report.values.push_back(parameter.value);
   }

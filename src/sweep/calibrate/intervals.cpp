@@ -29,19 +29,37 @@ struct Pool {
   std::vector<Eigen::VectorXd> scatter;
 };
 
+/// A prior where the estimate stands. What it is known by could have come out otherwise, as the
+/// logs could: a parameter that no log tells scatters as its prior does.
+struct PriorAt {
+  Eigen::VectorXd weight, gradient;
+
+  Eigen::VectorXd Drawn(std::mt19937_64& generator) const {
+    Eigen::VectorXd scatter = Eigen::VectorXd::Zero(weight.size());
+    for (Eigen::Index k = 0; k < weight.size(); ++k) {
+      if (weight[k] == 0.0) continue;
+      const double share = (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53;
+      scatter[k] = std::sqrt(weight[k]) * statistics::NormalQuantile(share);
+    }
+    return scatter;
+  }
+};
+
 /// Estimates from as many logs drawn anew out of `real`, the simulated logs that a correction came
 /// from drawn anew out of `simulated` as well; one row each.
 Eigen::MatrixXd Draws(const Linearised& at, const Linearised& corrected_by, const Pool& real,
-                      const Pool& simulated, int resamples, std::mt19937_64& generator) {
+                      const Pool& simulated, const PriorAt& prior, int resamples,
+                      std::mt19937_64& generator) {
   const size_t logs = at.gradients.size(), made = corrected_by.gradients.size();
   const Eigen::Index n = at.gradients.front().size();
   const double share = made > 0 ? static_cast<double>(logs) / static_cast<double>(made) : 0.0;
   Eigen::VectorXd mean = Sum(at.gradients);
   if (made > 0) mean -= share * Sum(corrected_by.gradients);
+  mean += prior.gradient;
   Eigen::MatrixXd draws(resamples, n);
   for (Eigen::Index row = 0; row < draws.rows(); ++row) {
-    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd gradient = mean;
+    Eigen::MatrixXd hessian = prior.weight.asDiagonal();
+    Eigen::VectorXd gradient = mean + prior.Drawn(generator);
     for (size_t i = 0; i < logs; ++i) {
       const size_t drawn = generator() % real.hessians.size();
       hessian += real.hessians[drawn];
@@ -83,9 +101,11 @@ Scatter ScatterOf(Eigen::MatrixXd draws, double confidence) {
 /// much less than the next dozen would, and simulated ones do not know what the model lacks. The
 /// wider of the two, parameter by parameter, with the correlations of the larger pool.
 Scatter ScatterOf(const Linearised& at, const std::vector<Linearised>& simulated,
-                  const CalibrationOptions& options, std::mt19937_64& generator) {
+                  const PriorAt& prior, const CalibrationOptions& options,
+                  std::mt19937_64& generator) {
   const auto from = [&](const Linearised& by, const Pool& real, const Pool& made) {
-    return ScatterOf(Draws(at, by, real, made, options.resamples, generator), options.confidence);
+    return ScatterOf(Draws(at, by, real, made, prior, options.resamples, generator),
+                     options.confidence);
   };
   Pool real;
   real.Add(at);
@@ -103,10 +123,11 @@ Scatter ScatterOf(const Linearised& at, const std::vector<Linearised>& simulated
 
 void Judge(const std::vector<experiment::FreeParameter>& parameters,
            const CalibrationOptions& options, const Eigen::VectorXd& estimate, const Linearised& at,
-           const std::vector<Linearised>& simulated, std::mt19937_64& generator,
+           const std::vector<Linearised>& simulated, const Prior& prior, std::mt19937_64& generator,
            Calibration& result) {
   const auto logs = static_cast<double>(at.gradients.size());
-  const Scatter scatter = ScatterOf(at, simulated, options, generator);
+  const Scatter scatter =
+      ScatterOf(at, simulated, {prior.weight, prior.GradientAt(estimate)}, options, generator);
   // Few logs tell their own scatter badly.
   const double upper = 0.5 + 0.5 * options.confidence;
   const double few_logs = statistics::StudentQuantile(std::max(1.0, logs - 1.0), upper) /
@@ -123,13 +144,14 @@ void Judge(const std::vector<experiment::FreeParameter>& parameters,
     has_effect.push_back(effect > 0.0);
     CalibratedParameter one{.parameter = p, .value = value, .low = p.min, .high = p.max};
     one.has_effect = has_effect.back();
-    if (one.has_effect) {
+    one.is_from_prior = prior.weight[k] > effect;
+    if (one.has_effect || one.is_from_prior) {
       one.low = std::max(p.min, value - reach * (p.max - p.min));
       one.high = std::min(p.max, value + reach * (p.max - p.min));
     }
     // The steps of the fit end at a bound only when they would have gone on beyond.
     one.is_at_bound = one.has_effect && (estimate[k] <= 0.0 || estimate[k] >= 1.0);
-    one.is_identified = one.has_effect && reach <= options.identified_share;
+    one.is_identified = (one.has_effect || one.is_from_prior) && reach <= options.identified_share;
     result.parameters.push_back(one);
   }
   result.correlation = Eigen::MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN());

@@ -12,7 +12,7 @@ namespace rift::sweep {
 /// none for a fit that was not corrected.
 void Judge(const std::vector<experiment::FreeParameter>& parameters,
            const CalibrationOptions& options, const Eigen::VectorXd& estimate, const Linearised& at,
-           const std::vector<Linearised>& simulated, std::mt19937_64& generator,
+           const std::vector<Linearised>& simulated, const Prior& prior, std::mt19937_64& generator,
            Calibration& result);
 
 }  // namespace rift::sweep

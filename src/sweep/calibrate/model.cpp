@@ -36,6 +36,19 @@ std::vector<double> ValuesAt(const std::vector<experiment::FreeParameter>& param
   return values;
 }
 
+Prior PriorOf(const std::vector<experiment::FreeParameter>& parameters) {
+  const auto n = static_cast<Eigen::Index>(parameters.size());
+  Prior prior{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const experiment::FreeParameter& p = parameters[static_cast<size_t>(k)];
+    if (p.prior_sd == 0.0) continue;
+    const double width = p.max - p.min;
+    prior.mean[k] = (p.prior_mean - p.min) / width;
+    prior.weight[k] = (width / p.prior_sd) * (width / p.prior_sd);
+  }
+  return prior;
+}
+
 double SquaredSum(const Blocks& blocks) {
   double sum = 0.0;
   for (const Eigen::VectorXd& block : blocks) sum += block.squaredNorm();

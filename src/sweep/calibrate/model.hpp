@@ -16,6 +16,22 @@ std::vector<double> ValuesAt(const std::vector<experiment::FreeParameter>& param
 /// the next nine; without any such run the last of them.
 trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin);
 
+/// What is known of the parameters beside the logs: independent normal distributions, in shares of
+/// the ranges.
+struct Prior {
+  Eigen::VectorXd mean;
+  Eigen::VectorXd weight;  ///< 1 / sd^2; 0: nothing is known
+
+  double LossAt(const Eigen::VectorXd& shares) const {
+    return weight.dot((shares - mean).cwiseAbs2());
+  }
+  Eigen::VectorXd GradientAt(const Eigen::VectorXd& shares) const {
+    return weight.cwiseProduct(shares - mean);
+  }
+  Eigen::MatrixXd Hessian() const { return weight.asDiagonal(); }
+};
+Prior PriorOf(const std::vector<experiment::FreeParameter>& parameters);
+
 using Blocks = std::vector<Eigen::VectorXd>;  ///< weighted errors of each log
 
 double SquaredSum(const Blocks& blocks);

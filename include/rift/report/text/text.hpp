@@ -22,6 +22,9 @@ namespace rift::report {
 /// left of the errors.
 std::string CalibrationText(const sweep::CalibrationReport& report);
 
+/// Why the fitted robot is not written to a file; empty when nothing speaks against it.
+std::string WhyNotWritten(const sweep::Calibration& fit, const std::string& file);
+
 /// The fitted robot as YAML to be used as `include:`: every key of trial and simulation that is not
 /// at its default, the fitted ones with their intervals, and on top how and from which logs.
 /// `inputs` are the logs' fingerprints, one a line.
@@ -29,7 +32,8 @@ std::string RobotYaml(const experiment::Experiment& experiment,
                       const sweep::CalibrationReport& report, const std::string& inputs,
                       const std::string& experiment_file);
 
-/// "at a bound", "not identifiable" or "no effect"; empty when there is nothing to warn of.
+/// "at a bound", "not identifiable", "no effect" or "from the prior, not the logs"; empty when
+/// there is nothing to warn of.
 std::string FlagOf(const sweep::CalibratedParameter& parameter);
 
 /// Definition, a table with a row for each trial, mean gap, noise floor, what the gap consists of,

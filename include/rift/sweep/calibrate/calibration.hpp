@@ -34,9 +34,21 @@ struct CalibratedParameter {
   double value = 0.0;
   double low = 0.0;  ///< of the interval, within the range
   double high = 0.0;
-  bool has_effect = true;     ///< false: no prediction and no run changed at all
-  bool is_at_bound = false;   ///< the fit would go beyond the range
-  bool is_identified = true;  ///< false: the logs leave too much of the range open
+  bool has_effect = true;      ///< false: no prediction and no run changed at all
+  bool is_at_bound = false;    ///< the fit would go beyond the range
+  bool is_identified = true;   ///< false: the logs leave too much of the range open
+  bool is_from_prior = false;  ///< what was known before tells more than the logs
+};
+
+/// What fits from several starts found for one parameter.
+struct StartAgreement {
+  std::vector<double> values;  ///< one for each start
+  /// Largest distance of two of them over half the width of the first one's interval; infinite for
+  /// an interval without width.
+  double difference = 0.0;
+  bool agrees = true;  ///< by at most kAgreement
+
+  static constexpr double kAgreement = 0.3;
 };
 
 struct Calibration {
@@ -47,14 +59,21 @@ struct Calibration {
   int steps = 0;  ///< of the fit
   bool has_converged = false;
   size_t trials_simulated = 0;
+
+  /// Both losses are of one scale: that of the last step.
+  bool IsWorseThanStart() const { return loss_after > loss_before; }
 };
+
+/// Compares fits of the same parameters; empty for fewer than two.
+std::vector<StartAgreement> AgreementOf(const std::vector<Calibration>& fits);
 
 /// Fits the parameters to the logs. What is made small: errors of short-horizon predictions over
 /// their standard deviation, and how the runs of each log differ from it in weave, spread, speed
 /// and loop delay over the scatter of these among the logs. Whole paths have no say: of a delayed
-/// bang-bang loop they are chaotic. Intervals and correlations: bootstrap over logs, each draw
-/// fitted by one Gauss-Newton step; over the logs alone and over logs and the simulated ones of the
-/// corrections together, whichever is wider. Throws std::invalid_argument for no logs, no
+/// bang-bang loop they are chaotic. A prior adds the square of the distance from its mean over its
+/// standard deviation, as one more error. Intervals and correlations: bootstrap over logs, each
+/// draw fitted by one Gauss-Newton step; over the logs alone and over logs and the simulated ones
+/// of the corrections together, whichever is wider. Throws std::invalid_argument for no logs, no
 /// parameters or a start out of range. `threads` evaluate logs at once and change no result.
 Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, const TwinAt& twin,

@@ -29,8 +29,9 @@ struct CalibrationTrial {
 
 /// Everything that `goal: calibrate` found.
 struct CalibrationReport {
-  Calibration calibration;
-  std::vector<double> values;  ///< of calibrate.fit, in its order
+  Calibration calibration;                  ///< from the experiment's own values
+  std::vector<StartAgreement> agreement{};  ///< one for each parameter; none for a single start
+  std::vector<double> values;               ///< of calibrate.fit, in its order
   std::vector<CalibrationTrial> trials;
   std::vector<std::string> missing;  ///< why a log of the plan takes no part
   std::vector<JudgedGroup> judged;

@@ -1,0 +1,46 @@
+#include <catch2/catch.hpp>
+
+#include "rift/report/text/text.hpp"
+
+namespace rift::report {
+namespace {
+
+TEST_CASE("A fit that is worse than its start is not written, and both losses say so") {
+  sweep::Calibration fit;
+  fit.loss_before = 1.25;
+  fit.loss_after = 1.5;
+  const std::string why = WhyNotWritten(fit, "robot.yaml");
+  CHECK(why.find("robot.yaml is not written") == 0);
+  CHECK(why.find("1.5000 after 1.2500") != std::string::npos);
+  CHECK(why.find('\n') == std::string::npos);
+  fit.loss_after = fit.loss_before;
+  CHECK(WhyNotWritten(fit, "robot.yaml").empty());
+}
+
+sweep::Calibration FitOf(double value, double low, double high) {
+  return {.parameters = {
+              {.parameter = {.key = "simulation.link.delay_s"}, .value = value, .low = low, .high = high}}};
+}
+
+TEST_CASE("Starts agree when they differ by at most 0.3 of half the interval") {
+  const auto of = [](double other) {
+    return sweep::AgreementOf({FitOf(0.10, 0.08, 0.12), FitOf(other, 0.0, 1.0)}).front();
+  };
+  CHECK(of(0.105).difference == Approx(0.25));
+  CHECK(of(0.105).agrees);
+  CHECK(of(0.09).difference == Approx(0.5));
+  CHECK_FALSE(of(0.09).agrees);
+  CHECK(of(0.10).agrees);
+  CHECK(sweep::AgreementOf({FitOf(0.1, 0.1, 0.1)}).empty());
+  CHECK_FALSE(sweep::AgreementOf({FitOf(0.1, 0.1, 0.1), FitOf(0.2, 0.1, 0.1)}).front().agrees);
+}
+
+TEST_CASE("The flag of a parameter says when the prior and not the logs tell it") {
+  sweep::CalibratedParameter parameter;
+  CHECK(FlagOf(parameter).empty());
+  parameter.is_from_prior = true;
+  CHECK(FlagOf(parameter) == "from the prior, not the logs");
+}
+
+}  // namespace
+}  // namespace rift::report
