@@ -1,7 +1,9 @@
 #include "rift/vision/camera/camera_file.hpp"
 
 #include <catch2/catch.hpp>
+#include <opencv2/core.hpp>
 
+#include "rift/yaml/load.hpp"
 #include "rift/yaml/node.hpp"
 
 namespace rift::vision {
@@ -43,6 +45,38 @@ TEST_CASE("A camera file reads back to the same camera") {
   CHECK(read.world->marks[0].tag_id == 7);
   CHECK(read.world->marks[0].p_in_world == wrote.world->marks[0].p_in_world);
   CHECK(read.world->marks[0].seen_px == wrote.world->marks[0].seen_px);
+}
+
+TEST_CASE("A camera file of ours is read by OpenCV's FileStorage and has the fields of ROS") {
+  CameraModel camera = SomeCamera();
+  camera.name = "3 of \"them\": \\ all";
+  const std::string text = WriteCamera(camera, "# hung over the table\n# in May\n");
+  const cv::FileStorage file(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+  cv::Mat1d k, distortion;
+  file["camera_matrix"] >> k;
+  file["distortion_coefficients"] >> distortion;
+  REQUIRE(k.size() == cv::Size(3, 3));
+  REQUIRE(distortion.size() == cv::Size(5, 1));
+  for (int i = 0; i < 9; ++i) CHECK(k(i / 3, i % 3) == camera.k(i / 3, i % 3));
+  for (int i = 0; i < 5; ++i) CHECK(distortion(0, i) == camera.distortion[i]);
+  CHECK(static_cast<int>(file["image_width"]) == 1920);
+  CHECK(static_cast<std::string>(file["distortion_model"]) == "plumb_bob");
+  CHECK(CommentOfCamera(text) == "# hung over the table\n# in May\n");
+  CHECK(static_cast<std::string>(file["camera_name"]) == camera.name);
+  CHECK(ReadCamera(text, "cam.yaml").name == camera.name);
+  CHECK(ReadCamera(text, "cam.yaml").k == camera.k);
+  // The fields that ROS's camera_calibration_parsers requires (parse_yml.cpp).
+  const yaml::Node root = yaml::Parse(text, "cam.yaml");
+  for (const char* key : {"image_width", "image_height", "camera_name", "distortion_model"}) {
+    CHECK(root.Find(key) != nullptr);
+  }
+  for (const char* matrix :
+       {"camera_matrix", "distortion_coefficients", "rectification_matrix", "projection_matrix"}) {
+    REQUIRE(root.Find(matrix) != nullptr);
+    for (const char* key : {"rows", "cols", "data"}) {
+      CHECK(root.Find(matrix)->value.Find(key) != nullptr);
+    }
+  }
 }
 
 TEST_CASE("A fisheye camera keeps its lens") {

@@ -177,8 +177,8 @@ int main(int argc, char** argv) {
   Write(folder / "truth.csv", trajectory::WriteRift(truth));
   Write(folder / "tags.yaml", PlacesYaml(recording));
   Write(folder / "camera.yaml",
-        "# The camera that rendered frames/, with its true place above the floor.\n" +
-            vision::WriteCamera(camera));
+        vision::WriteCamera(
+            camera, "# The camera that rendered frames/, with its true place above the floor.\n"));
   Write(folder / "print/tag36h11_0.svg", vision::TagSheet(0, 0.0475));
   Write(folder / "print/chessboard_13x9_25mm.svg", vision::ChessboardSheet({13, 9, 0.025}));
   return 0;

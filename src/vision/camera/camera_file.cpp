@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <initializer_list>
 #include <limits>
@@ -16,10 +17,24 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+constexpr std::string_view kDirective = "%YAML";
+
+/// Where the comment lines at the head of a file end, its directive and its "---" among them.
+std::size_t EndOfHead(std::string_view text) {
+  std::size_t end = 0;
+  while (end < text.size()) {
+    const std::string_view line = text.substr(end, text.find('\n', end) - end);
+    if (!line.starts_with('#') && !line.starts_with(kDirective) && line != "---") break;
+    end = std::min(end + line.size() + 1, text.size());
+  }
+  return end;
+}
+
 // OpenCV writes a directive and tags that are no YAML of today; blanks keep every column.
 std::string WithoutOpenCvTags(std::string_view text) {
   std::string plain(text);
-  if (plain.starts_with("%YAML")) plain[0] = '#';
+  const std::size_t directive = plain.find(kDirective);
+  if (directive < EndOfHead(text)) plain[directive] = '#';
   constexpr std::string_view kTag = "!!opencv-matrix";
   for (std::size_t at = 0; (at = plain.find(kTag, at)) != std::string::npos;) {
     plain.replace(at, kTag.size(), kTag.size(), ' ');
@@ -192,6 +207,7 @@ yaml::Node MatrixNode(int rows, int columns, const yaml::Node& data) {
   yaml::Node map = yaml::Node::Map();
   map.Add("rows", yaml::Node::Scalar(std::to_string(rows)));
   map.Add("cols", yaml::Node::Scalar(std::to_string(columns)));
+  map.Add("dt", yaml::Node::Text("d"));  // OpenCV: doubles; the readers of ROS pass over it
   map.Add("data", data);
   return map;
 }
@@ -202,15 +218,34 @@ yaml::Node MatrixNode(const Eigen::Matrix<double, Rows, Columns>& matrix) {
   return MatrixNode(Rows, Columns, Numbers(by_rows.data(), Rows * Columns));
 }
 
-yaml::Node WorldNode(const WorldFrame& world) {
-  WorldBlock block{world.origin, world.residual_m, {}, {}};
-  const Eigen::Matrix4d by_rows = world.world_from_camera.matrix().transpose();
-  block.world_from_camera.assign(by_rows.data(), by_rows.data() + 16);
+/// cv::FileStorage takes a text that begins with a digit for a number.
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+/// Written by hand: cv::FileStorage reads maps in lists only between braces.
+std::string WorldText(const WorldFrame& world) {
+  std::vector<std::string> numbers;
+  for (int i = 0; i < 16; ++i) {
+    numbers.push_back(yaml::NumberText(world.world_from_camera.matrix()(i / 4, i % 4)));
+  }
+  std::string text = fmt::format(
+      "world_frame:\n  origin: {}\n  residual_m: {}\n  world_from_camera: [{}]\n",
+      Quoted(world.origin), yaml::NumberText(world.residual_m), fmt::join(numbers, ", "));
+  if (!world.marks.empty()) text += "  tags:\n";
   for (const ReferenceMark& mark : world.marks) {
     const Eigen::Vector3d& p = mark.p_in_world;
-    block.tags.push_back({mark.tag_id, p.x(), p.y(), p.z(), mark.seen_px.x(), mark.seen_px.y()});
+    text += fmt::format("    - {{ id: {}, x_m: {}, y_m: {}, z_m: {}, u_px: {}, v_px: {} }}\n",
+                        mark.tag_id, yaml::NumberText(p.x()), yaml::NumberText(p.y()),
+                        yaml::NumberText(p.z()), yaml::NumberText(mark.seen_px.x()),
+                        yaml::NumberText(mark.seen_px.y()));
   }
-  return yaml::ToNode(block);
+  return text;
 }
 
 std::string_view ModelName(const CameraModel& camera) {
@@ -238,11 +273,19 @@ CameraModel ReadCamera(std::string_view text, const std::string& source) {
   return camera;
 }
 
-std::string WriteCamera(const CameraModel& camera) {
+std::string CommentOfCamera(std::string_view text) {
+  std::string comment;
+  const std::string_view head = text.substr(0, EndOfHead(text));
+  for (std::size_t at = 0; at < head.size();) {
+    const std::size_t end = std::min(head.find('\n', at), head.size() - 1) + 1;
+    if (head[at] == '#') comment += head.substr(at, end - at);
+    at = end;
+  }
+  return comment;
+}
+
+std::string WriteCamera(const CameraModel& camera, const std::string& comment) {
   yaml::Node root = yaml::Node::Map();
-  root.Add("image_width", yaml::Node::Scalar(std::to_string(camera.width_px)));
-  root.Add("image_height", yaml::Node::Scalar(std::to_string(camera.height_px)));
-  root.Add("camera_name", yaml::Node::Text(camera.name));
   root.Add("camera_matrix", MatrixNode<3, 3>(camera.k));
   root.Add("distortion_model", yaml::Node::Text(std::string(ModelName(camera))));
   root.Add("distortion_coefficients",
@@ -255,8 +298,10 @@ std::string WriteCamera(const CameraModel& camera) {
   yaml::Node own = yaml::Node::Map();
   own.Add("rms_px", yaml::Node::Scalar(yaml::NumberText(camera.rms_px)));
   root.Add("calibration", own);
-  if (camera.world) root.Add("world_frame", WorldNode(*camera.world));
-  return yaml::Emit(root);
+  // OpenCV tells YAML by its first bytes, and takes no comment before them.
+  return fmt::format("%YAML 1.1\n---\n{}image_width: {}\nimage_height: {}\ncamera_name: {}\n{}{}",
+                     comment, camera.width_px, camera.height_px, Quoted(camera.name),
+                     yaml::Emit(root), camera.world ? WorldText(*camera.world) : "");
 }
 
 }  // namespace rift::vision

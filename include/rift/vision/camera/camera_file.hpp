@@ -17,7 +17,12 @@ namespace rift::vision {
 /// Throws Error with file:line:column, key and rule.
 CameraModel ReadCamera(std::string_view text, const std::string& source);
 
-/// The ROS layout with our blocks. Reading it gives the same camera to the last bit.
-std::string WriteCamera(const CameraModel& camera);
+/// The ROS layout with our blocks, which cv::FileStorage reads as well (its matrices by
+/// `file["camera_matrix"] >> mat`). `comment`: lines that begin with '#', put at the head. Reading
+/// it gives the same camera to the last bit.
+std::string WriteCamera(const CameraModel& camera, const std::string& comment = {});
+
+/// The comment lines at the head of a camera file, where people wrote what they know of the camera.
+std::string CommentOfCamera(std::string_view text);
 
 }  // namespace rift::vision
