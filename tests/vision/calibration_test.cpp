@@ -56,6 +56,39 @@ TEST_CASE("A view far off the others is dropped and named") {
   CHECK(found.rms_px < 0.2);
 }
 
+TEST_CASE("One to three views are refused with what to do next, and drawn all the same") {
+  const int count = GENERATE(0, 1, 2, 3);
+  const Calibration found = Calibrate(Views(WideCamera(), kBoard, count, 2), kBoard);
+  CHECK(found.verdict == CalibrationVerdict::kRefuse);
+  CHECK_THAT(All(found.reasons), Contains("at least 4 are needed"));
+  CHECK_THAT(found.next.text, Contains("hold the board"));
+  const test::TemporaryFolder folder;
+  DrawCalibration(found, folder / "few.png");
+  CHECK(std::filesystem::file_size(folder / "few.png") > 1000);
+}
+
+TEST_CASE("Copies of one picture count as one") {
+  const std::vector<BoardView> views(13, Views(WideCamera(), kBoard, 1, 2).front());
+  const Calibration found = Calibrate(views, kBoard);
+  CHECK(found.verdict == CalibrationVerdict::kRefuse);
+  CHECK_THAT(All(found.reasons), Contains("only 1 of 13 views") && Contains("12 show the same"));
+  // Beside enough others a copy is no blemish.
+  std::vector<BoardView> good = Views(WideCamera(), kBoard, 24, 7);
+  good.push_back(good.front());
+  CHECK(Calibrate(good, kBoard).verdict == CalibrationVerdict::kGood);
+}
+
+TEST_CASE("The next view is where the board is missing") {
+  std::vector<ViewResult> left;
+  for (BoardView& view : Views(WideCamera(), kBoard, 24, 7)) {
+    if (PlaceOf(view, kBoard).x < 0.5) left.push_back({.view = view, .used = true});
+  }
+  REQUIRE(left.size() > 3);
+  const NextView next = NextViewFor(left, kBoard, 0.75);
+  CHECK(next.place.x > 0.9);
+  CHECK_THAT(next.text, Contains("right"));
+}
+
 TEST_CASE("A fisheye lens is told from an ordinary one") {
   CameraModel truth = WideCamera();
   truth.lens = Lens::kEquidistant;
@@ -67,6 +100,13 @@ TEST_CASE("A fisheye lens is told from an ordinary one") {
   CHECK(found.equidistant_px < 0.2);
   CHECK(found.plumb_bob_px > found.equidistant_px / 0.9);
   CHECK(found.camera.k(0, 0) == Approx(620.0).epsilon(2e-3));
+  const std::vector<double> exact{620.0, 622.0, 955.0, 545.0, 0.02, -0.01, 0.004, -0.001};
+  REQUIRE(found.parameters.size() == exact.size());
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    INFO(found.parameters[i].name << " " << found.parameters[i].deviation);
+    CHECK(found.parameters[i].deviation > 0.0);
+    CHECK(std::abs(found.parameters[i].value - exact[i]) < 4.0 * found.parameters[i].deviation);
+  }
 }
 
 TEST_CASE("A board that is not flat is named with how far it bends") {

@@ -29,6 +29,19 @@ ordered_json MissesJson(const vision::TrackRun& run) {
   return json;
 }
 
+/// Pictures by what their pose is worth, each tag's counted by itself.
+ordered_json StatesJson(const vision::TrackRun& run) {
+  ordered_json json = ordered_json::object();
+  for (std::size_t i = 0; i < run.states.size(); ++i) {
+    json[std::string(yaml::NameOf(static_cast<vision::TrackState>(i)))] = run.states[i];
+  }
+  return json;
+}
+
+int CountOf(const vision::TrackRun& run, vision::TrackState state) {
+  return run.states[static_cast<std::size_t>(state)];
+}
+
 std::string MissesText(const vision::TrackRun& run) {
   if (run.frames == 0) return "none came";
   std::string kinds;
@@ -64,6 +77,11 @@ ordered_json SpanJson(const std::vector<double>& values) {
 /// Tenths of a millimetre: finer than anybody clicks.
 yaml::Node Metres(double value) { return yaml::Node::Scalar(fmt::format("{:.4f}", value)); }
 
+std::string NextText(const vision::Calibration& c) {
+  if (c.verdict == vision::CalibrationVerdict::kGood || c.next.text.empty()) return "";
+  return fmt::format("next picture: {}\n", c.next.text);
+}
+
 }  // namespace
 
 std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& camera,
@@ -86,7 +104,10 @@ std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& came
       {"pictures", run.frames},
       {"delivered", run.status.delivered},
       {"dropped", run.status.dropped},
+      {"skipped", run.status.skipped},
+      {"reconnects", run.status.reconnects},
       {"misses", MissesJson(run)},
+      {"states", StatesJson(run)},
       {"repeated_times", run.repeated},
       {"most_tags_of_this_id", run.most_tags_of_this_id},
       {"latency_s", SpanJson(run.latencies_s)},
@@ -106,6 +127,11 @@ std::string TrackText(const vision::TrackRun& run, int rows) {
   }
   text += fmt::format("; {} pictures, {}, {} dropped\n", run.frames, MissesText(run),
                       run.status.dropped);
+  if (run.status.skipped > 0 || run.status.reconnects > 0) {
+    text +=
+        fmt::format("{} damaged, too large or odd-sized pictures passed over, {} reconnections\n",
+                    run.status.skipped, run.status.reconnects);
+  }
   if (!run.latencies_s.empty()) {
     text += fmt::format("latency from light to pose: p50 {:.0f} ms, p95 {:.0f} ms\n",
                         1e3 * statistics::Quantile(run.latencies_s, 0.5),
@@ -115,6 +141,11 @@ std::string TrackText(const vision::TrackRun& run, int rows) {
     text += fmt::format("finding the tag: p50 {:.1f} ms, p95 {:.1f} ms\n",
                         1e3 * statistics::Quantile(run.costs_s, 0.5),
                         1e3 * statistics::Quantile(run.costs_s, 0.95));
+  }
+  if (const int doubtful = CountOf(run, vision::TrackState::kAmbiguous); doubtful > 0) {
+    text += fmt::format(
+        "{} rows are ambiguous (track_state 2): another tag of this id may be the robot's\n",
+        doubtful);
   }
   if (run.most_tags_of_this_id > 1) {
     text += fmt::format("{} tags of this id were in the picture: take the others away\n",
@@ -126,7 +157,7 @@ std::string TrackText(const vision::TrackRun& run, int rows) {
 std::string CalibrationText(const vision::Calibration& c) {
   std::string text = fmt::format("verdict: {}\n", yaml::NameOf(c.verdict));
   for (const std::string& reason : c.reasons) text += fmt::format("  {}\n", reason);
-  if (c.camera.width_px == 0) return text;
+  if (c.camera.width_px == 0) return text + NextText(c);
   text += fmt::format("{} {}x{}, error {:.3f} px RMS (plumb_bob {:.3f}, equidistant {:.3f})\n",
                       yaml::NameOf(c.camera.lens), c.camera.width_px, c.camera.height_px, c.rms_px,
                       c.plumb_bob_px, c.equidistant_px);
@@ -140,8 +171,9 @@ std::string CalibrationText(const vision::Calibration& c) {
   }
   for (const vision::ViewResult& view : c.views) {
     if (view.used) text += fmt::format("  {}: {:.3f} px\n", view.view.name, view.rms_px);
+    if (view.is_copy) text += fmt::format("  {}: ignored, {}\n", view.view.name, view.dropped);
   }
-  return text;
+  return text + NextText(c);
 }
 
 std::string CalibrationComment(const vision::Calibration& c) {

@@ -33,12 +33,19 @@ class Judgement {
   Calibration& calibration_;
 };
 
+std::string CopiesText(const Calibration& calibration) {
+  const auto copies = std::count_if(calibration.views.begin(), calibration.views.end(),
+                                    [](const ViewResult& result) { return result.is_copy; });
+  return copies == 0 ? "" : fmt::format(" ({} show the same as another)", copies);
+}
+
 void JudgeViews(Judgement& judgement, const Calibration& calibration,
                 const CalibrationOptions& options) {
   int used = 0;
   std::string drawn_over;
   for (const ViewResult& result : calibration.views) {
     used += result.used;
+    if (result.is_copy) continue;
     if (!result.used) {
       judgement.AtMostUsable(fmt::format("{} is left out: {}", result.view.name, result.dropped));
     } else if (result.view.coloured > options.coloured_share) {
@@ -52,8 +59,9 @@ void JudgeViews(Judgement& judgement, const Calibration& calibration,
                     drawn_over));
   }
   if (used < options.least_views) {
-    judgement.Refuse(fmt::format("only {} of {} views can be used, at least {} are needed", used,
-                                 calibration.views.size(), options.least_views));
+    judgement.Refuse(fmt::format("only {} of {} views can be used{}, at least {} are needed", used,
+                                 calibration.views.size(), CopiesText(calibration),
+                                 options.least_views));
   } else if (used < options.good_views) {
     judgement.AtMostUsable(
         fmt::format("only {} views are used, good ones have {} or more", used, options.good_views));
@@ -138,6 +146,32 @@ FitInput InputOf(const std::vector<ViewResult*>& used, const Board& board) {
   FitInput input{.board = board};
   for (const ViewResult* result : used) input.views.push_back(&result->view);
   return input;
+}
+
+double Distance_px(const BoardView& a, const BoardView& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.corners.size(); ++i) {
+    sum += (a.corners[i] - b.corners[i]).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(a.corners.size()));
+}
+
+/// Copies count as one view: thirteen of them would agree with each other perfectly.
+void IgnoreCopies(Calibration& calibration, double same_px) {
+  std::vector<const ViewResult*> kept;
+  for (ViewResult& result : calibration.views) {
+    if (!result.used) continue;
+    const auto original = std::find_if(kept.begin(), kept.end(), [&](const ViewResult* other) {
+      return Distance_px(result.view, other->view) <= same_px;
+    });
+    if (original == kept.end()) {
+      kept.push_back(&result);
+      continue;
+    }
+    result.used = false;
+    result.is_copy = true;
+    result.dropped = fmt::format("it shows the same as {}", (*original)->view.name);
+  }
 }
 
 /// Views with corners and of the size that most have.
@@ -255,9 +289,11 @@ Calibration Calibrate(const std::vector<BoardView>& views, const Board& board,
   Calibration calibration{.board = board};
   for (const BoardView& view : views) calibration.views.push_back({.view = view});
   Admit(calibration);
+  IgnoreCopies(calibration, options.same_px);
   const std::optional<LensFit> fit = ChooseLens(calibration, options);
   if (fit) TakeFit(calibration, *fit, options);
   calibration.coverage = CoverageOf(calibration.views, board);
+  calibration.next = NextViewFor(calibration.views, board, options.good_coverage);
   Judge(calibration, options);
   return calibration;
 }

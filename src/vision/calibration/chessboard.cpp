@@ -179,14 +179,19 @@ class ViewCollector {
     return true;
   }
   bool IsCovered(double good_coverage) const {
-    std::vector<ViewResult> used;
-    for (const BoardView& view : views_) used.push_back({.view = view, .used = true});
-    const Coverage c = CoverageOf(used, board_);
+    const Coverage c = CoverageOf(Used(), board_);
     return std::min({c.x, c.y, c.size, c.skew}) >= good_coverage;
   }
+  NextView Next(double good_coverage) const { return NextViewFor(Used(), board_, good_coverage); }
   const std::vector<BoardView>& Views() const { return views_; }
 
  private:
+  std::vector<ViewResult> Used() const {
+    std::vector<ViewResult> used;
+    for (const BoardView& view : views_) used.push_back({.view = view, .used = true});
+    return used;
+  }
+
   Board board_;
   std::vector<BoardView> views_;
   std::vector<ViewPlace> places_;
@@ -218,9 +223,16 @@ std::vector<BoardView> ViewsFromCamera(Capture& capture, const Board& board,
   while (!listener.is_stopped() && collector.Views().size() < kMostViews) {
     const std::optional<Frame> frame = capture.Next(kTick_s);
     if (frame) {
-      const std::string name = fmt::format("frame{:06}", frame->index);
-      if (!collector.Add(FindBoard(*frame, board, name))) continue;
-      listener.say(fmt::format("view {}: {}", collector.Views().size(), name));
+      const BoardView view = FindBoard(*frame, board, fmt::format("frame{:06}", frame->index));
+      const bool is_new = collector.Add(view);
+      const NextView next = collector.Next(options.good_coverage);
+      if (is_new) {
+        listener.say(
+            fmt::format("view {}: {}; {}", collector.Views().size(), view.name,
+                        next.text.empty() ? "everything is covered" : "next, " + next.text));
+      }
+      if (listener.show && !listener.show(*frame, view, next)) break;
+      if (!is_new) continue;
     }
     const bool is_plenty =
         collector.Views().size() >= needed && collector.IsCovered(options.good_coverage);

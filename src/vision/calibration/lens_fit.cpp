@@ -66,6 +66,39 @@ void Name(LensFit& fit, const std::array<const char*, N>& names, const cv::Mat& 
   }
 }
 
+/// Of the eight parameters of the fisheye, since cv::fisheye::calibrate states none: the inverse of
+/// the normal equations, the poses of the board eliminated (Schur complement), times the variance
+/// of what is left of a corner's coordinate. Eight rows; empty when they cannot be told apart.
+cv::Mat FisheyeDeviations(const FitInput& input, const LensFit& fit, const cv::Mat& k,
+                          const cv::Mat& distortion, const Poses& poses) {
+  constexpr int kLens = 8, kPose = 6;
+  const auto board = input.BoardPoints();
+  cv::Mat information = cv::Mat::zeros(kLens, kLens, CV_64F);
+  double squares = 0.0;
+  int numbers = 0;
+  for (std::size_t view = 0; view < board.size(); ++view) {
+    std::vector<cv::Point2f> predicted;
+    cv::Mat jacobian;  // columns: fx fy, cx cy, k1 to k4, rotation, translation, skew
+    cv::fisheye::projectPoints(board[view], predicted, poses.rotations[view],
+                               poses.translations[view], k, distortion, 0.0, jacobian);
+    const cv::Mat of_lens = jacobian.colRange(0, kLens);
+    const cv::Mat of_pose = jacobian.colRange(kLens, kLens + kPose);
+    const cv::Mat both = of_lens.t() * of_pose;
+    information += of_lens.t() * of_lens -
+                   both * cv::Mat(of_pose.t() * of_pose).inv(cv::DECOMP_SVD) * both.t();
+    for (const Eigen::Vector2d& residual : fit.residuals_px[view])
+      squares += residual.squaredNorm();
+    numbers += jacobian.rows - kPose;
+  }
+  cv::Mat covariance;
+  if (numbers <= kLens || cv::invert(information, covariance, cv::DECOMP_CHOLESKY) == 0.0) {
+    return {};
+  }
+  cv::Mat deviations;
+  cv::sqrt(covariance.diag() * (squares / (numbers - kLens)), deviations);
+  return deviations;
+}
+
 LensFit FitPlumbBob(const FitInput& input) {
   cv::Mat k, distortion, intrinsic, extrinsic, errors;
   Poses poses;
@@ -88,7 +121,7 @@ LensFit FitEquidistant(const FitInput& input) {
   LensFit fit =
       FitOf(input, ModelOf(input, Lens::kEquidistant, k, distortion.reshape(1, 1), rms_px), k,
             distortion, poses);
-  Name(fit, kEquidistant, {});
+  Name(fit, kEquidistant, FisheyeDeviations(input, fit, k, distortion, poses));
   return fit;
 }
 

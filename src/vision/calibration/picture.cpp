@@ -1,12 +1,9 @@
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <set>
 #include <stdexcept>
 
 #include "rift/vision/calibration/calibration.hpp"
@@ -78,7 +75,8 @@ class CornerMap {
     for (std::size_t i = 0; i < result.view.corners.size(); ++i) {
       const Eigen::Vector2d& corner = result.view.corners[i];
       cv::circle(picture_, At(corner), 2, colour, cv::FILLED, cv::LINE_AA);
-      if (!result.used) continue;
+      // Views that no fit has used have no errors: there were too few of them.
+      if (!result.used || result.residuals_px.empty()) continue;
       cv::line(picture_, At(corner), At(corner + longer_ * result.residuals_px[i]), colour, 1,
                cv::LINE_AA);
     }
@@ -156,91 +154,6 @@ void DrawCalibration(const Calibration& calibration, const std::filesystem::path
         "cannot write the picture {}: it must end in .png or .jpg in a folder that is there",
         path.string()));
   }
-}
-
-namespace {
-
-// What good views span, from ROS's camera_calibration (calibrator.py, _param_ranges).
-constexpr double kSpanX = 0.7, kSpanY = 0.7, kSpanSize = 0.4, kSpanSkew = 0.5;
-
-struct Outline {
-  Eigen::Vector2d upper_left, upper_right, lower_right, lower_left;
-
-  double Area() const {
-    const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-      return a.x() * b.y() - a.y() * b.x();
-    };
-    return 0.5 * std::abs(cross(lower_right - upper_left, lower_left - upper_right));
-  }
-  double UpperRightAngle_rad() const {
-    const Eigen::Vector2d a = upper_left - upper_right, b = lower_right - upper_right;
-    return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0));
-  }
-};
-
-Outline OutlineOf(const BoardView& view, const Board& board) {
-  const auto& c = view.corners;
-  const std::size_t last = c.size() - 1, width = static_cast<std::size_t>(board.columns) - 1;
-  return {c[0], c[width], c[last], c[last - width]};
-}
-
-class Span {
- public:
-  void Cover(double value) {
-    low_ = std::min(low_, value);
-    high_ = std::max(high_, value);
-  }
-  double ShareOf(double plenty) const { return std::clamp((high_ - low_) / plenty, 0.0, 1.0); }
-
- private:
-  double low_ = HUGE_VAL, high_ = -HUGE_VAL;
-};
-
-double ShareOfPicture(const std::vector<ViewResult>& views) {
-  constexpr int kColumns = 8, kRows = 6;
-  std::set<std::pair<int, int>> cells;
-  for (const ViewResult& result : views) {
-    if (!result.used) continue;
-    for (const Eigen::Vector2d& corner : result.view.corners) {
-      cells.emplace(static_cast<int>(corner.x() * kColumns / result.view.width_px),
-                    static_cast<int>(corner.y() * kRows / result.view.height_px));
-    }
-  }
-  return static_cast<double>(cells.size()) / (kColumns * kRows);
-}
-
-}  // namespace
-
-ViewPlace PlaceOf(const BoardView& view, const Board& board) {
-  const Outline outline = OutlineOf(view, board);
-  const double side_px = std::sqrt(outline.Area());
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& corner : view.corners) mean += corner;
-  mean /= static_cast<double>(view.corners.size());
-  const auto share = [side_px](double at_px, double room_px) {
-    return std::clamp((at_px - side_px / 2.0) / std::max(1.0, room_px - side_px), 0.0, 1.0);
-  };
-  const double skew = 2.0 * std::abs(std::numbers::pi / 2.0 - outline.UpperRightAngle_rad());
-  return {share(mean.x(), view.width_px), share(mean.y(), view.height_px),
-          side_px / std::sqrt(static_cast<double>(view.width_px) * view.height_px),
-          std::min(1.0, skew)};
-}
-
-// Size and skew count from none at all: far and flat views are easy to come by.
-Coverage CoverageOf(const std::vector<ViewResult>& views, const Board& board) {
-  Span x, y, size, skew;
-  size.Cover(0.0);
-  skew.Cover(0.0);
-  for (const ViewResult& result : views) {
-    if (!result.used) continue;
-    const ViewPlace place = PlaceOf(result.view, board);
-    x.Cover(place.x);
-    y.Cover(place.y);
-    size.Cover(place.size);
-    skew.Cover(place.skew);
-  }
-  return {x.ShareOf(kSpanX), y.ShareOf(kSpanY), size.ShareOf(kSpanSize), skew.ShareOf(kSpanSkew),
-          ShareOfPicture(views)};
 }
 
 }  // namespace rift::vision

@@ -24,7 +24,8 @@ inline constexpr double kNotComputed = std::numeric_limits<double>::quiet_NaN();
 struct ViewResult {
   BoardView view;
   bool used = false;
-  std::string dropped;  ///< why not used; empty when it was
+  std::string dropped;   ///< why not used; empty when it was
+  bool is_copy = false;  ///< not used since it shows the same as an earlier view
   double rms_px = kNotComputed;
   std::vector<Eigen::Vector2d> residuals_px;  ///< seen minus predicted, of each corner
 };
@@ -61,6 +62,7 @@ struct Calibration {
   Coverage coverage;
   std::vector<ParameterEstimate> parameters;
   std::vector<ViewResult> views;
+  NextView next;  ///< what would improve it most; its text is empty when nothing is missing
 };
 
 /// Fits a camera to pictures of a board. Views without corners, of another size than most or far
@@ -73,12 +75,12 @@ struct Calibration {
 Calibration Calibrate(const std::vector<BoardView>& views, const Board& board,
                       const CalibrationOptions& options = {});
 
-/// Where one view has the board, to compare views with (ROS's camera_calibration).
-struct ViewPlace {
-  double x = 0.0, y = 0.0, size = 0.0, skew = 0.0;
-};
 ViewPlace PlaceOf(const BoardView& view, const Board& board);
 Coverage CoverageOf(const std::vector<ViewResult>& views, const Board& board);
+
+/// The view unlike all others that raises the coverage most. `enough`: the coverage in x, y, size
+/// and skew from which nothing is missing (CalibrationOptions::good_coverage).
+NextView NextViewFor(const std::vector<ViewResult>& views, const Board& board, double enough);
 
 /// Draws where the corners were, their errors, and the bars of coverage and of each view. The name
 /// ends in .png or .jpg; throws std::runtime_error when it cannot be written.

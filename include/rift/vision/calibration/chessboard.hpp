@@ -47,11 +47,26 @@ struct BoardView {
 BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name);
 BoardView FindBoard(const std::string& path, const Board& board);
 
+/// Where one view has the board, to compare views with (ROS's camera_calibration): shares of the
+/// picture, 0 to 1.
+struct ViewPlace {
+  double x = 0.0, y = 0.0, size = 0.0, skew = 0.0;
+};
+
+/// What picture to take next: where the board is missing most.
+struct NextView {
+  ViewPlace place;   ///< of the board's middle, its size and skew there
+  std::string text;  ///< one line for people: position, distance, tilt; "" when nothing is missing
+};
+
 /// Whoever waits while views of the board are gathered.
 struct ViewListener {
   std::function<bool()> is_stopped;
   /// One line for the user.
   std::function<void(const std::string&)> say;
+  /// Shows what the camera sees and what view to take next; false when the user has asked to end.
+  /// None: no window.
+  std::function<bool(const Frame& frame, const BoardView& view, const NextView& next)> show = {};
 };
 
 /// The board in each of the pictures, with those that do not show it. Throws std::runtime_error

@@ -6,6 +6,7 @@ namespace rift::vision {
 struct CalibrationOptions {
   double outlier_factor = 3.0;
   double outlier_px = 0.5;
+  double same_px = 1.0;
   int least_views = 4;
   int good_views = 10;
   double good_px = 0.5;
@@ -24,6 +25,8 @@ struct CalibrationOptions {
     field("outlier_factor", self.outlier_factor, 1.0, 100.0,
           "a view is dropped when its error exceeds so many times the median of all views ...");
     field("outlier_px", self.outlier_px, 0.0, 100.0, "... and this");
+    field("same_px", self.same_px, 0.0, 100.0,
+          "a view whose corners lie this near to those of another one, RMS, is a copy and ignored");
     field("least_views", self.least_views, 3, 1000, "fewer usable views: refuse");
     field("good_views", self.good_views, 3, 1000, "fewer usable views: not good");
     field("good_px", self.good_px, 0.01, 100.0, "largest RMS error of a good calibration");
