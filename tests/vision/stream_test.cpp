@@ -5,6 +5,7 @@
 #include "support/until.hpp"
 #include "vision/camera/sources.hpp"
 #include "vision/mjpeg_server.hpp"
+#include "vision/scripted_server.hpp"
 
 namespace rift::vision {
 namespace {
@@ -22,7 +23,7 @@ std::vector<std::uint8_t> LargeJpeg() {
 }
 
 CaptureThread Capturing(const std::string& url, const CaptureOptions& options = {}) {
-  return CaptureThread([url] { return OpenCamera(url, {}); }, options);
+  return CaptureThread([url, options] { return OpenCamera(url, options); }, options);
 }
 
 void WaitForState(const CaptureThread& capture, CameraState state) {
@@ -55,10 +56,11 @@ TEST_CASE("A slow reader of an http camera is given the newest picture") {
 }
 
 TEST_CASE("A stream that ends is unplugged and one that falls silent is frozen") {
-  const CaptureOptions options;
+  CaptureOptions options;
   CHECK(options.silent_s < 1.0);
+  options.reconnect_s = 0.0;
   MjpegServer ending(LargeJpeg(), {.pictures = 10});
-  CaptureThread ended = Capturing(ending.Url());
+  CaptureThread ended = Capturing(ending.Url(), options);
   WaitForState(ended, CameraState::kUnplugged);
   CHECK_THAT(ended.Status().reason, Contains("ended the stream"));
   CHECK(ended.Status().delivered == 10);
@@ -89,13 +91,94 @@ TEST_CASE("Parts are cut the same however the bytes are split") {
       "\r\n--b\r\nContent-Type: image/jpeg\r\nContent-Length: 5\r\n\r\nab\r\nc"
       "\r\n--b\r\nContent-Type: image/jpeg\r\n\r\nxyz\r\n--b\r\n";
   const std::size_t piece = GENERATE(1U, 2U, 7U, 1000U);
-  MultipartReader reader("multipart/x-mixed-replace;boundary=\"--b\"");
+  MultipartReader reader("multipart/x-mixed-replace;boundary=\"--b\"", 1'000'000);
   std::vector<std::string> parts;
   for (std::size_t at = 0; at < body.size(); at += piece) {
     reader.Feed(std::string_view(body).substr(at, piece));
     while (const auto part = reader.Take()) parts.emplace_back(part->begin(), part->end());
   }
   CHECK(parts == std::vector<std::string>{"ab\r\nc", "xyz"});
+}
+
+constexpr std::string_view kOk =
+    "HTTP/1.0 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=b\r\n\r\n";
+
+std::string SmallJpeg(int width_px = 64, int height_px = 48) {
+  const cv::Mat picture(height_px, width_px, CV_8UC3, cv::Scalar(90, 120, 150));
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".jpg", picture, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+/// The same with another size in its frame header.
+std::string Claiming(std::string jpeg, int width_px, int height_px) {
+  const std::size_t at = jpeg.find("\xFF\xC0") + 5;
+  for (const int value : {height_px, width_px}) {
+    const std::size_t here = at + (value == width_px && width_px != height_px ? 2 : 0);
+    jpeg[here] = static_cast<char>(value >> 8);
+    jpeg[here + 1] = static_cast<char>(value & 0xFF);
+  }
+  if (width_px == height_px) {
+    jpeg[at + 2] = jpeg[at];
+    jpeg[at + 3] = jpeg[at + 1];
+  }
+  return jpeg;
+}
+
+std::string Part(const std::string& body, const std::string& head = "", bool bare_lf = false) {
+  const std::string end = bare_lf ? "\n" : "\r\n";
+  return end + "--b" + end + head + "Content-Length: " + std::to_string(body.size()) + end + end +
+         body;
+}
+
+TEST_CASE("What a server answers is said in words and ends the session at once") {
+  struct Answer {
+    std::string status, says;
+    CameraState state;
+  };
+  const std::vector<Answer> answers{
+      {"401 Unauthorized", "user and password", CameraState::kRefused},
+      {"404 Not Found", "nothing at this path", CameraState::kRefused},
+      {"500 Oops", "error of its own", CameraState::kUnplugged}};
+  for (const Answer& answer : answers) {
+    synthetic::ScriptedServer server(
+        {"HTTP/1.0 " + answer.status + "\r\nContent-Length: 0\r\n\r\n", ""});
+    CaptureThread capture = Capturing(server.Url());
+    WaitForState(capture, answer.state);
+    CHECK_THAT(capture.Status().reason, Contains(answer.says));
+  }
+}
+
+TEST_CASE("Damaged parts and odd heads are passed over and counted") {
+  const std::string jpeg = SmallJpeg();
+  const std::string huge = "\r\n--b\r\nContent-Length: 18446744073709551610\r\n\r\n";
+  synthetic::ScriptedServer server(
+      {std::string(kOk) + Part(jpeg) + Part("this is no picture") +
+       Part(jpeg, "X-Old-Content-Length: 3\r\n") + Part(jpeg, "", true) + huge + Part(jpeg) +
+       Part(Claiming(jpeg, 883, 720)) + Part(Claiming(jpeg, 20000, 20000)) + Part(jpeg)});
+  CaptureThread capture = Capturing(server.Url());
+  test::WaitUntil("the good ones were read", [&] { return capture.Status().delivered == 5; });
+  CHECK(capture.Status().skipped == 4);
+  CHECK(capture.Next(0.0)->width_px == 64);
+}
+
+TEST_CASE("Heads without an end hold no more than the budget") {
+  MultipartReader reader("multipart/x-mixed-replace;boundary=b", 1'000'000);
+  for (int i = 0; i < 100; ++i) {
+    reader.Feed("--b\nContent-Type: image/jpeg\n" + std::string(100'000, 'x'));
+    CHECK_FALSE(reader.Take());
+  }
+  CHECK(reader.Skipped() > 50);
+}
+
+TEST_CASE("A stream that breaks off is asked for again and goes on") {
+  const std::string once = std::string(kOk) + Part(SmallJpeg()) + Part(SmallJpeg());
+  synthetic::ScriptedServer server({once, once});
+  CaptureThread capture = Capturing(server.Url());
+  WaitForState(capture, CameraState::kReconnecting);
+  CHECK_THAT(capture.Status().reason, Contains("ended the stream"));
+  test::WaitUntil("it went on", [&] { return capture.Status().delivered == 4; });
+  CHECK(capture.Status().reconnects == 1);
 }
 
 }  // namespace

@@ -80,6 +80,32 @@ std::string PictureHealth::Reason() const {
   return {};
 }
 
+/// Passes over pictures that claim too many pixels or another size than the others: one damaged
+/// byte of a JPEG's head must not end a session.
+class SizeGuard {
+ public:
+  explicit SizeGuard(const CaptureOptions& options) : most_px_(1e6 * options.most_mpixel) {}
+
+  bool IsGood(const Frame& frame) {
+    if (static_cast<double>(frame.width_px) * frame.height_px > most_px_) return false;
+    const cv::Size size(frame.width_px, frame.height_px);
+    if (size_.empty()) size_ = size;
+    if (size == size_) return other_count_ = 0, true;
+    other_count_ = size == other_ ? other_count_ + 1 : 1;
+    other_ = size;
+    if (other_count_ < kMeant) return false;
+    size_ = size;  // the camera was really switched; whoever cannot use that says so
+    return true;
+  }
+
+ private:
+  static constexpr int kMeant = 10;
+
+  double most_px_;
+  cv::Size size_, other_;
+  int other_count_ = 0;
+};
+
 using Lock = std::unique_lock<std::mutex>;
 using std::chrono::duration;
 
@@ -106,17 +132,23 @@ class RateMeter {
 
 struct CaptureThread::Shared {
   Shared(Opener opener, const CaptureOptions& capture_options)
-      : open(std::move(opener)), options(capture_options), health(capture_options) {}
+      : open(std::move(opener)),
+        options(capture_options),
+        health(capture_options),
+        sizes(capture_options) {}
 
   void Run();
   void ReadAll();
+  void TakeNotes();
   void Keep(Frame frame, CameraState state, std::string reason);
   void End(CameraState state, const std::string& reason);
   CaptureStatus StatusAt(double now_s);
 
   const Opener open;
   const CaptureOptions options;
-  PictureHealth health;  // used by the thread alone
+  PictureHealth health;  // used by the thread alone, and so are the next two
+  SizeGuard sizes;
+  std::uint64_t other_sizes = 0;
 
   std::mutex mutex;  // guards all that follows
   std::condition_variable changed;
@@ -161,11 +193,25 @@ void CaptureThread::Shared::ReadAll() {
       if (stop) return;
     }
     Frame frame;
-    if (!source->Read(frame)) continue;
+    const bool came = source->Read(frame);
+    const bool is_good = came && sizes.IsGood(frame);
+    other_sizes += came && !is_good;
+    TakeNotes();
+    if (!is_good) continue;
     frame.index = index++;
     const CameraState state = recording ? CameraState::kRunning : health.Check(frame);
     Keep(std::move(frame), state, recording ? std::string() : health.Reason());
   }
+}
+
+void CaptureThread::Shared::TakeNotes() {
+  SourceNotes notes = source->Notes();
+  const Lock lock(mutex);
+  status.skipped = notes.skipped + other_sizes;
+  status.reconnects = notes.reconnects;
+  if (notes.interruption.empty() || IsFinal(status.state)) return;
+  status.state = CameraState::kReconnecting;
+  status.reason = std::move(notes.interruption);
 }
 
 void CaptureThread::Shared::Keep(Frame frame, CameraState state, std::string reason) {
@@ -195,6 +241,7 @@ CaptureStatus CaptureThread::Shared::StatusAt(double now_s) {
   seen.rate_hz = rate.Rate_hz();
   const bool waits_for_reader = newest.has_value() && source && source->IsRecording();
   if (IsFinal(seen.state) || waits_for_reader) return seen;
+  if (seen.state == CameraState::kReconnecting) return seen.rate_hz = 0.0, seen;
   const bool silent = seen.delivered > 0 ? now_s - last_s > options.silent_s
                                          : now_s - started_s > options.open_timeout_s;
   if (source && !source->IsPresent()) {

@@ -163,6 +163,22 @@ std::optional<GreyPatch> JpegReader::Read(const std::vector<std::uint8_t>& bytes
   return patch;
 }
 
+cv::Mat DecodeJpeg(std::span<const std::uint8_t> bytes, bool colour, int eighths) {
+  const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), tjDestroy);
+  int width = 0, height = 0, subsampling = 0, colours = 0;
+  if (tjDecompressHeader3(decoder.get(), bytes.data(), bytes.size(), &width, &height, &subsampling,
+                          &colours) != 0) {
+    return {};
+  }
+  const tjscalingfactor factor{eighths, 8};
+  cv::Mat picture(TJSCALED(height, factor), TJSCALED(width, factor), colour ? CV_8UC3 : CV_8UC1);
+  const int failed =
+      tjDecompress2(decoder.get(), bytes.data(), bytes.size(), picture.data, picture.cols,
+                    static_cast<int>(picture.step), picture.rows, colour ? TJPF_BGR : TJPF_GRAY, 0);
+  const bool is_usable = failed == 0 || tjGetErrorCode(decoder.get()) == TJERR_WARNING;
+  return is_usable ? picture : cv::Mat();
+}
+
 std::vector<std::uint8_t> WriteJpeg(const cv::Mat1b& picture, int quality, bool colour) {
   constexpr std::uint8_t kNeutralChroma = 128;
   // 4:2:0 halves an even width and height.

@@ -1,7 +1,6 @@
 #include "rift/vision/camera/picture_reader.hpp"
 
 #include <cstring>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace rift::vision {
@@ -11,13 +10,6 @@ namespace {
 cv::Mat Raw(const Frame& frame, int type) {
   return {cv::Size(frame.width_px, frame.height_px), type,
           const_cast<std::uint8_t*>(frame.bytes.data())};
-}
-
-cv::Mat Decoded(const Frame& frame, int how) {
-  if (frame.bytes.empty()) return {};
-  return cv::imdecode(cv::Mat(1, static_cast<int>(frame.bytes.size()), CV_8U,
-                              const_cast<std::uint8_t*>(frame.bytes.data())),
-                      how);
 }
 
 int BytesPerPixel(PixelFormat format) {
@@ -52,7 +44,7 @@ cv::Mat BgrOf(const Frame& frame) {
   cv::Mat picture;
   switch (frame.format) {
     case PixelFormat::kJpeg:
-      return Decoded(frame, cv::IMREAD_COLOR);
+      return DecodeJpeg(frame.bytes, true, 8);
     case PixelFormat::kGrey:
       cv::cvtColor(Raw(frame, CV_8UC1), picture, cv::COLOR_GRAY2BGR);
       break;
@@ -69,7 +61,7 @@ cv::Mat SmallGreyOf(const Frame& frame) {
   cv::Mat grey;
   switch (frame.format) {
     case PixelFormat::kJpeg:
-      return Decoded(frame, cv::IMREAD_REDUCED_GRAYSCALE_8);
+      return DecodeJpeg(frame.bytes, false, 1);
     case PixelFormat::kGrey:
       return Raw(frame, CV_8UC1);
     case PixelFormat::kBgr:

@@ -1,10 +1,10 @@
 #include <curl/curl.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
+#include <chrono>
 #include <optional>
 #include <stdexcept>
+#include <thread>
 
 #include "rift/vision/camera/jpeg.hpp"
 #include "sources.hpp"
@@ -12,30 +12,10 @@
 namespace rift::vision {
 namespace {
 
-constexpr std::size_t kLargestPart = 64U << 20U;
-constexpr std::string_view kBlankLine = "\r\n\r\n";
-
-std::string Lower(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
-std::optional<std::size_t> ContentLength(std::string_view headers) {
-  constexpr std::string_view kName = "content-length:";
-  const std::size_t name = Lower(headers).find(kName);
-  if (name == std::string::npos) return {};
-  const std::size_t digits = headers.find_first_of("0123456789", name + kName.size());
-  std::size_t length = 0;
-  if (digits == std::string::npos) return {};
-  std::from_chars(headers.data() + digits, headers.data() + headers.size(), length);
-  return length;
-}
-
 constexpr long kConnect_ms = 900;  // a camera that is off is named within a second
 constexpr int kWait_ms = 100;
 constexpr long kReceiveBuffer = 512 * 1024;
+constexpr double kSilent_s = 5.0;  // then the connection is taken to be dead, and made again
 
 struct EasyCleanup {
   void operator()(CURL* easy) const { curl_easy_cleanup(easy); }
@@ -44,153 +24,199 @@ struct MultiCleanup {
   void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
 };
 
-/// An MJPEG stream over http with its JPEGs as they were sent. OpenCV's readers decode each and
-/// pile up 1.75 s of latency behind a slow reader.
-class StreamSource : public CameraSource {
+/// What a person can do about an answer of a web server.
+std::string StatusText(long status) {
+  switch (status) {
+    case 401:
+      return "it wants a user and password: http://USER:PASSWORD@host/path (http 401)";
+    case 403:
+      return "it refuses this user (http 403)";
+    case 404:
+      return "it has nothing at this path: look up the stream's address in its manual (http 404)";
+    case 503:
+      return "it is busy, often with too many viewers (http 503)";
+    default:
+      break;
+  }
+  if (status >= 500) return fmt::format("it has an error of its own (http {})", status);
+  return fmt::format("it refuses the request (http {})", status);
+}
+
+/// Asking again is of no use.
+bool IsRefusal(long status) {
+  return status >= 400 && status < 500 && status != 408 && status != 429;
+}
+
+/// One connection to a server.
+class Connection {
  public:
-  explicit StreamSource(std::string url)
-      : url_(std::move(url)), multi_(curl_multi_init()), easy_(curl_easy_init()) {
+  explicit Connection(const std::string& url) : multi_(curl_multi_init()), easy_(curl_easy_init()) {
     CURL* easy = easy_.get();
-    curl_easy_setopt(easy, CURLOPT_URL, url_.c_str());
+    curl_easy_setopt(easy, CURLOPT_URL, url.c_str());
     curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, 1L);
     curl_easy_setopt(easy, CURLOPT_FAILONERROR, 1L);
     curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
+    curl_easy_setopt(easy, CURLOPT_HTTPAUTH, CURLAUTH_ANY);
     curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, kConnect_ms);
     curl_easy_setopt(easy, CURLOPT_BUFFERSIZE, kReceiveBuffer);
-    curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, &StreamSource::Receive);
+    curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, &Connection::Receive);
     curl_easy_setopt(easy, CURLOPT_WRITEDATA, this);
     curl_multi_add_handle(multi_.get(), easy);
   }
-  ~StreamSource() override { curl_multi_remove_handle(multi_.get(), easy_.get()); }
-  StreamSource(const StreamSource&) = delete;
-  StreamSource& operator=(const StreamSource&) = delete;
+  ~Connection() { curl_multi_remove_handle(multi_.get(), easy_.get()); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
 
-  bool Read(Frame& frame) override {
-    if (TakePart(frame)) return true;
+  /// Takes what has come; false when the connection is over.
+  bool Advance() {
     int running = 0;
     curl_multi_perform(multi_.get(), &running);
-    if (TakePart(frame)) return true;
-    if (running == 0) Fail();
-    curl_multi_poll(multi_.get(), nullptr, 0, kWait_ms, nullptr);
-    return false;
+    return running > 0;
+  }
+  void Wait() { curl_multi_poll(multi_.get(), nullptr, 0, kWait_ms, nullptr); }
+
+  std::string& Received() { return received_; }
+  std::string ContentType() const {
+    const char* type = nullptr;
+    curl_easy_getinfo(easy_.get(), CURLINFO_CONTENT_TYPE, &type);
+    return type == nullptr ? "" : type;
+  }
+  long Status() const {
+    long status = 0;
+    curl_easy_getinfo(easy_.get(), CURLINFO_RESPONSE_CODE, &status);
+    return status;
+  }
+  /// Why it is over.
+  std::string Reason() {
+    if (Status() >= 400) return StatusText(Status());
+    int left = 0;
+    const CURLMsg* message = curl_multi_info_read(multi_.get(), &left);
+    const CURLcode code = message != nullptr ? message->data.result : CURLE_OK;
+    return code == CURLE_OK ? "the server ended the stream" : curl_easy_strerror(code);
   }
 
  private:
   static std::size_t Receive(char* bytes, std::size_t size, std::size_t count, void* self) {
-    static_cast<StreamSource*>(self)->received_.append(bytes, size * count);
+    static_cast<Connection*>(self)->received_.append(bytes, size * count);
     return size * count;
   }
 
-  [[noreturn]] void Fail() {
-    int left = 0;
-    const CURLMsg* message = curl_multi_info_read(multi_.get(), &left);
-    const CURLcode code = message != nullptr ? message->data.result : CURLE_OK;
-    throw CameraError(
-        CameraState::kUnplugged,
-        fmt::format("{}: {}", url_,
-                    code == CURLE_OK ? "the server ended the stream" : curl_easy_strerror(code)));
+  std::string received_;
+  std::unique_ptr<CURLM, MultiCleanup> multi_;
+  std::unique_ptr<CURL, EasyCleanup> easy_;
+};
+
+/// An MJPEG stream over http with its JPEGs as they were sent. OpenCV's readers decode each and
+/// pile up 1.75 s of latency behind a slow reader.
+class StreamSource : public CameraSource {
+ public:
+  StreamSource(std::string url, const CaptureOptions& options)
+      : url_(std::move(url)), options_(options), again_(options.reconnect_s) {
+    Connect();
+  }
+
+  bool Read(Frame& frame) override {
+    if (!connection_ && !Reconnect()) return false;
+    if (TakePart(frame)) return true;
+    const bool goes_on = connection_->Advance();
+    if (TakePart(frame)) return true;
+    const double now_s = SteadyNow_s();
+    if (!goes_on) {
+      Break(connection_->Reason());
+    } else if (now_s - heard_s_ > kSilent_s) {
+      Break(fmt::format("nothing came for {:.0f} s", kSilent_s));
+    } else {
+      connection_->Wait();
+    }
+    return false;
+  }
+
+  SourceNotes Notes() const override {
+    return {.skipped = skipped_ + before_ + (parts_ ? parts_->Skipped() : 0),
+            .reconnects = again_.Count(),
+            .interruption = again_.Interruption()};
+  }
+
+ private:
+  void Connect() {
+    connection_ = std::make_unique<Connection>(url_);
+    heard_s_ = SteadyNow_s();
+  }
+
+  bool Reconnect() {
+    if (!again_.IsDue(SteadyNow_s())) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(kWait_ms));
+      return false;
+    }
+    again_.Tries();
+    Connect();
+    return true;
+  }
+
+  void Break(const std::string& reason) {
+    const std::string text = fmt::format("{}: {}", url_, reason);
+    if (IsRefusal(connection_->Status())) throw CameraError(CameraState::kRefused, text);
+    connection_.reset();
+    if (parts_) before_ += parts_->Skipped();
+    parts_.reset();
+    again_.Broke(text, SteadyNow_s());
   }
 
   MultipartReader& Parts() {
     if (parts_) return *parts_;
-    const char* type = nullptr;
-    curl_easy_getinfo(easy_.get(), CURLINFO_CONTENT_TYPE, &type);
-    return parts_.emplace(type == nullptr ? "" : type);
+    return parts_.emplace(connection_->ContentType(),
+                          static_cast<std::size_t>(options_.most_mbyte * 1e6));
   }
 
   bool TakePart(Frame& frame) {
-    if (received_.empty() && !parts_) return false;
+    std::string& received = connection_->Received();
+    if (received.empty() && !parts_) return false;
     try {
-      Parts().Feed(received_);
-      received_.clear();
-      auto part = parts_->Take();
-      return part && Fill(frame, std::move(*part));
-    } catch (const CameraError&) {
-      throw;
+      if (!received.empty()) heard_s_ = SteadyNow_s();
+      Parts().Feed(received);
+      received.clear();
+      while (auto part = parts_->Take()) {
+        if (Fill(frame, std::move(*part))) return true;
+        if (++skipped_ > kMostSkipped && !has_any_) {
+          throw std::runtime_error("the stream's parts are no JPEGs");
+        }
+      }
+      return false;
     } catch (const std::exception& error) {
       throw CameraError(CameraState::kWrongFormat, fmt::format("{}: {}", url_, error.what()));
     }
   }
 
-  bool Fill(Frame& frame, std::vector<std::uint8_t> part) const {
+  /// False for a part that is no JPEG.
+  bool Fill(Frame& frame, std::vector<std::uint8_t> part) {
     const auto size = SizeOfJpeg(part);
-    if (!size) {
-      throw CameraError(CameraState::kWrongFormat,
-                        fmt::format("{}: the stream's parts are no JPEGs", url_));
-    }
+    if (!size) return false;
     frame.arrived_s = frame.captured_s = SteadyNow_s();
     frame.format = PixelFormat::kJpeg;
     frame.width_px = size->width_px;
     frame.height_px = size->height_px;
     frame.bytes = std::move(part);
+    has_any_ = true;
+    again_.Works(frame.arrived_s);
     return true;
   }
 
+  static constexpr std::uint64_t kMostSkipped = 10;  // before the first picture
+
   std::string url_;
-  std::string received_;
+  CaptureOptions options_;
+  Reconnection again_;
+  std::unique_ptr<Connection> connection_;
   std::optional<MultipartReader> parts_;
-  std::unique_ptr<CURLM, MultiCleanup> multi_;
-  std::unique_ptr<CURL, EasyCleanup> easy_;
+  double heard_s_ = 0.0;
+  std::uint64_t skipped_ = 0, before_ = 0;
+  bool has_any_ = false;
 };
 
 }  // namespace
 
-MultipartReader::MultipartReader(std::string_view content_type) {
-  constexpr std::string_view kBoundary = "boundary=";
-  const std::string lower = Lower(content_type);
-  const std::size_t at = lower.find(kBoundary);
-  if (!lower.starts_with("multipart/") || at == std::string::npos) {
-    throw std::invalid_argument(
-        fmt::format("the server sends '{}', but rift reads MJPEG (multipart/x-mixed-replace)",
-                    content_type.empty() ? "no content type" : content_type));
-  }
-  std::string_view boundary = content_type.substr(at + kBoundary.size());
-  boundary = boundary.substr(0, boundary.find(';'));
-  while (!boundary.empty() && (boundary.back() == '"' || boundary.back() == ' ')) {
-    boundary.remove_suffix(1);
-  }
-  if (boundary.starts_with('"')) boundary.remove_prefix(1);
-  delimiter_ = boundary.starts_with("--") ? std::string(boundary) : "--" + std::string(boundary);
-}
-
-void MultipartReader::CheckSize() const {
-  if (waiting_.size() <= kLargestPart) return;
-  throw std::runtime_error(
-      fmt::format("{} bytes without an end of the picture: the stream's "
-                  "boundary '{}' does not come",
-                  waiting_.size(), delimiter_));
-}
-
-bool MultipartReader::SkipToHeaders() {
-  const std::size_t at = waiting_.find(delimiter_);
-  if (at == std::string::npos) {
-    CheckSize();
-    return false;
-  }
-  waiting_.erase(0, at);
-  return true;
-}
-
-std::optional<std::vector<std::uint8_t>> MultipartReader::Take() {
-  if (!SkipToHeaders()) return {};
-  const std::size_t blank = waiting_.find(kBlankLine);
-  if (blank == std::string::npos) return {};
-  const std::size_t begin = blank + kBlankLine.size();
-  std::size_t end = 0;
-  if (const auto length = ContentLength(std::string_view(waiting_).substr(0, blank))) {
-    end = begin + *length;
-    if (end > waiting_.size()) return CheckSize(), std::nullopt;
-  } else {
-    end = waiting_.find("\r\n" + delimiter_, begin);
-    if (end == std::string::npos) return CheckSize(), std::nullopt;
-  }
-  std::vector<std::uint8_t> part(waiting_.begin() + begin, waiting_.begin() + end);
-  waiting_.erase(0, end);
-  return part;
-}
-
-std::unique_ptr<CameraSource> OpenStream(const std::string& url, const CaptureOptions&) {
-  return std::make_unique<StreamSource>(url);
+std::unique_ptr<CameraSource> OpenStream(const std::string& url, const CaptureOptions& options) {
+  return std::make_unique<StreamSource>(url, options);
 }
 
 }  // namespace rift::vision

@@ -24,6 +24,9 @@ struct ReferenceMark {
   Eigen::Vector2d seen_px = Eigen::Vector2d::Zero();     ///< where it was seen then
 };
 
+/// The origin of a frame that the robot's own tag set: as good as one look at one tag.
+inline constexpr std::string_view kFirstPoseOrigin = "first pose";
+
 /// The floor's frame as this camera sees it: z up, y up in the picture's sense of a map, metres.
 struct WorldFrame {
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();

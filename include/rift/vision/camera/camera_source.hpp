@@ -17,21 +17,25 @@ namespace rift::vision {
 enum class CameraState {
   kOpening,
   kRunning,
-  kUnplugged,    ///< the device or the stream is gone; final
-  kFrozen,       ///< no picture comes, or always the same one
-  kBlack,        ///< pictures without light
-  kWrongFormat,  ///< no pixel format or size that rift can use; final
-  kBusy,         ///< another program has it; final
-  kEnded,        ///< the last picture of a recording was read; final
+  kUnplugged,     ///< the device or the stream is gone; final
+  kFrozen,        ///< no picture comes, or always the same one
+  kBlack,         ///< pictures without light
+  kWrongFormat,   ///< no pixel format or size that rift can use; final
+  kBusy,          ///< another program has it; final
+  kEnded,         ///< the last picture of a recording was read; final
+  kRefused,       ///< the server says that it will not give this stream; final
+  kReconnecting,  ///< a network camera is gone and is asked again
 };
-constexpr std::array<std::string_view, 8> EnumNames(CameraState) {
-  return {"opening", "running", "unplugged", "frozen", "black", "wrong format", "busy", "ended"};
+constexpr std::array<std::string_view, 10> EnumNames(CameraState) {
+  return {"opening",      "running", "unplugged", "frozen",  "black",
+          "wrong format", "busy",    "ended",     "refused", "reconnecting"};
 }
 
 /// No picture will come any more.
 constexpr bool IsFinal(CameraState state) {
   return state == CameraState::kUnplugged || state == CameraState::kWrongFormat ||
-         state == CameraState::kBusy || state == CameraState::kEnded;
+         state == CameraState::kBusy || state == CameraState::kEnded ||
+         state == CameraState::kRefused;
 }
 
 /// What a source throws when it cannot give pictures; `what()` is one line for people.
@@ -50,6 +54,15 @@ struct CaptureStatus {
   double latency_s = 0.0;       ///< from the light to memory, of the newest picture
   std::uint64_t delivered = 0;  ///< pictures that the camera gave
   std::uint64_t dropped = 0;    ///< of those, replaced by a newer one before anybody took them
+  std::uint64_t skipped = 0;    ///< beside those: damaged, of another size, or over the budget
+  int reconnects = 0;           ///< how often a network camera was asked again
+};
+
+/// What a source has met so far.
+struct SourceNotes {
+  std::uint64_t skipped = 0;  ///< parts, files or pictures that were passed over
+  int reconnects = 0;
+  std::string interruption;  ///< why no picture comes just now, one line; empty while they do
 };
 
 /// Where pictures come from. One thread uses it; only IsPresent may be called from another one.
@@ -60,6 +73,8 @@ class CameraSource {
   /// Waits for the next picture and fills all of `frame` but its index; false when none came for a
   /// while. Throws CameraError when there will be none. May hang where a driver does.
   virtual bool Read(Frame& frame) = 0;
+  /// Asked by the same thread after each Read.
+  virtual SourceNotes Notes() const { return {}; }
   /// False once a device is known to be gone, even while Read hangs in its driver.
   virtual bool IsPresent() const { return true; }
   /// A recording waits for its reader, loses nothing and has its own clock.
@@ -71,7 +86,7 @@ enum class SourceKind {
   kDevice,   ///< /dev/video0
   kStream,   ///< http://, https://: MJPEG in parts, its JPEGs untouched
   kNetwork,  ///< rtsp:// and whatever else FFmpeg opens
-  kImages,   ///< a glob, a folder, or one picture, in the order of the names
+  kImages,   ///< a glob, a folder, or one picture, in the order of the numbers in their names
   kVideo,    ///< any other file
 };
 SourceKind KindOf(std::string_view name);
@@ -83,8 +98,8 @@ double SteadyNow_s();
 /// and what to do), std::invalid_argument for a file or pattern that matches nothing.
 std::unique_ptr<CameraSource> OpenCamera(const std::string& name, const CaptureOptions& options);
 
-/// The pictures of a folder, of a glob (`run/*.jpg`), or one file, in the order of their names.
-/// Throws std::invalid_argument when there is none.
+/// The pictures of a folder, of a glob (`run/*.jpg`), or one file, in natural order: frame2 before
+/// frame10. Throws std::invalid_argument when there is none.
 std::vector<std::string> ImageFiles(const std::string& pattern);
 
 }  // namespace rift::vision

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 
 namespace rift::vision {
@@ -19,6 +20,10 @@ struct CaptureOptions {
   double black_level = 40.0;
   double look_s = 0.2;
   double open_timeout_s = 5.0;
+  double reconnect_s = 30.0;
+  double most_mbyte = 32.0;
+  double most_mpixel = 40.0;
+  std::string times;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
@@ -39,6 +44,16 @@ struct CaptureOptions {
     field("look_s", self.look_s, 0.0, 60.0, "how often a picture is decoded to see if it is black");
     field("open_timeout_s", self.open_timeout_s, 0.1, 600.0,
           "a camera that gives no first picture so long after it was opened is frozen for good");
+    field("reconnect_s", self.reconnect_s, 0.0, 1e6,
+          "a network camera that broke off is asked again for so long");
+    field("most_mbyte", self.most_mbyte, 0.01, 4096.0,
+          "a compressed picture of more is passed over, whatever the source");
+    field("most_mpixel", self.most_mpixel, 0.01, 1000.0,
+          "a picture that claims more is passed over before it is decoded (8K video: 33)");
+    field(
+        "times", self.times,
+        "file with the times of a pattern of pictures: a line each, seconds, or name and seconds; "
+        "without it the numbers in their names count, at fps a second");
   }
 };
 

@@ -44,6 +44,11 @@ class JpegReader {
   std::unique_ptr<State> state_;
 };
 
+/// The whole picture, in blue, green, red or in grey, at `eighths` / 8 of its size (1, 2, 4 or 8).
+/// Empty when it cannot be decoded; damaged data are grey where they are. Prints nothing, which
+/// OpenCV's reader does for every damaged picture.
+cv::Mat DecodeJpeg(std::span<const std::uint8_t> bytes, bool colour, int eighths);
+
 /// Compresses a grey picture at a quality of 1 to 100. colour: as YCbCr 4:2:0 with constant chroma,
 /// the form that webcams send; otherwise luma alone.
 std::vector<std::uint8_t> WriteJpeg(const cv::Mat1b& picture, int quality, bool colour);

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+
+#include "image_times.hpp"
+#include "rift/vision/camera/jpeg.hpp"
+#include "sources.hpp"
+
+namespace rift::vision {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 8> kEndings{".jpg", ".jpeg", ".png", ".bmp",
+                                                   ".tif", ".tiff", ".pgm", ".ppm"};
+
+bool IsPicture(const fs::path& path) {
+  std::string ending = path.extension().string();
+  for (char& letter : ending) letter = static_cast<char>(std::tolower(letter));
+  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+std::vector<std::string> Matches(const std::string& pattern) {
+  std::vector<std::string> files;
+  glob_t found{};
+  if (glob(pattern.c_str(), GLOB_TILDE, nullptr, &found) == 0) {
+    files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  }
+  globfree(&found);
+  return files;
+}
+
+std::vector<std::uint8_t> BytesOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string TextOf(const std::string& path) {
+  const std::vector<std::uint8_t> bytes = BytesOf(path);
+  return {bytes.begin(), bytes.end()};
+}
+
+/// Width and height as a PNG states them (ISO 15948 11.2.2), without decoding; 0 for another format.
+double PngPixels(const std::vector<std::uint8_t>& bytes) {
+  constexpr std::array<std::uint8_t, 4> kSignature{0x89, 'P', 'N', 'G'};
+  if (bytes.size() < 24 || !std::equal(kSignature.begin(), kSignature.end(), bytes.begin())) {
+    return 0.0;
+  }
+  const auto number = [&](std::size_t at) {
+    return 16777216.0 * bytes[at] + 65536.0 * bytes[at + 1] + 256.0 * bytes[at + 2] + bytes[at + 3];
+  };
+  return number(16) * number(20);
+}
+
+class ImageSource : public CameraSource {
+ public:
+  ImageSource(std::vector<std::string> files, const CaptureOptions& options)
+      : files_(std::move(files)), options_(options), opened_s_(SteadyNow_s()) {
+    times_s_ = options.times.empty()
+                   ? TimesByNames(files_, options.fps)
+                   : TimesFromText(TextOf(options.times), options.times, files_);
+  }
+
+  bool IsRecording() const override { return true; }
+  SourceNotes Notes() const override { return {.skipped = skipped_}; }
+
+  bool Read(Frame& frame) override {
+    if (next_ == files_.size()) {
+      if (skipped_ == next_) {
+        throw CameraError(CameraState::kWrongFormat,
+                          fmt::format("{}: none of {} pictures can be decoded", files_[0], next_));
+      }
+      throw CameraError(CameraState::kEnded,
+                        fmt::format("all {} pictures were read, {} of them passed over", next_,
+                                    skipped_));
+    }
+    const std::size_t index = next_++;
+    frame.captured_s = opened_s_ + times_s_[index];
+    if (Fill(files_[index], frame)) return true;
+    ++skipped_;
+    return false;
+  }
+
+ private:
+  /// False for a file over the budget or that is no picture.
+  bool Fill(const std::string& path, Frame& frame) const {
+    std::error_code unreadable;
+    if (static_cast<double>(fs::file_size(path, unreadable)) > 1e6 * options_.most_mbyte) {
+      return false;
+    }
+    frame.bytes = BytesOf(path);
+    frame.arrived_s = SteadyNow_s();
+    if (const auto size = SizeOfJpeg(frame.bytes)) {
+      frame.format = PixelFormat::kJpeg;
+      frame.width_px = size->width_px;
+      frame.height_px = size->height_px;
+      return true;
+    }
+    if (frame.bytes.empty() || PngPixels(frame.bytes) > 1e6 * options_.most_mpixel) return false;
+    const cv::Mat picture = cv::imdecode(frame.bytes, cv::IMREAD_GRAYSCALE);
+    if (picture.empty()) return false;
+    frame.format = PixelFormat::kGrey;
+    frame.width_px = picture.cols;
+    frame.height_px = picture.rows;
+    frame.bytes.assign(picture.datastart, picture.dataend);
+    return true;
+  }
+
+  std::vector<std::string> files_;
+  CaptureOptions options_;
+  std::vector<double> times_s_;
+  double opened_s_;
+  std::size_t next_ = 0;
+  std::uint64_t skipped_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::string> ImageFiles(const std::string& pattern) {
+  std::vector<std::string> files;
+  if (fs::is_directory(pattern)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(pattern)) {
+      if (entry.is_regular_file() && IsPicture(entry.path()))
+        files.push_back(entry.path().string());
+    }
+  } else if (fs::exists(pattern)) {
+    files = {pattern};
+  } else {
+    files = Matches(pattern);
+  }
+  if (files.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "'{}' matches no picture: give a folder or a quoted pattern such as 'run/*.jpg'", pattern));
+  }
+  std::sort(files.begin(), files.end(), IsBefore);
+  return files;
+}
+
+std::unique_ptr<CameraSource> OpenImages(const std::string& pattern,
+                                         const CaptureOptions& options) {
+  return std::make_unique<ImageSource>(ImageFiles(pattern), options);
+}
+
+}  // namespace rift::vision

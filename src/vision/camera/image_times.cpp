@@ -1,0 +1,154 @@
+#include "image_times.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "rift/statistics/descriptive.hpp"
+
+namespace rift::vision {
+namespace {
+
+bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+/// The digits from `at` on, zeros in front left out.
+std::string_view DigitsAt(const std::string& text, std::size_t at) {
+  std::size_t end = at;
+  while (end < text.size() && IsDigit(text[end])) ++end;
+  while (at + 1 < end && text[at] == '0') ++at;
+  return std::string_view(text).substr(at, end - at);
+}
+
+std::size_t EndOfDigits(const std::string& text, std::size_t at) {
+  while (at < text.size() && IsDigit(text[at])) ++at;
+  return at;
+}
+
+/// The last number in the name of a file, its folder and ending left out.
+std::optional<double> NumberIn(const std::string& file) {
+  const std::string stem = std::filesystem::path(file).stem().string();
+  const std::size_t last = stem.find_last_of("0123456789");
+  if (last == std::string::npos) return std::nullopt;
+  std::size_t first = last;
+  while (first > 0 && IsDigit(stem[first - 1])) --first;
+  return std::strtod(stem.substr(first, last - first + 1).c_str(), nullptr);
+}
+
+/// The numbers of all names; none unless they rise.
+std::optional<std::vector<double>> RisingNumbers(const std::vector<std::string>& files) {
+  std::vector<double> numbers;
+  for (const std::string& file : files) {
+    const std::optional<double> number = NumberIn(file);
+    if (!number || (!numbers.empty() && *number <= numbers.back())) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+/// The smallest step where all are multiples of it (counts, some missing), else the median (clock
+/// times). 1 for a single number.
+double UsualStep(const std::vector<double>& numbers) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < numbers.size(); ++i) steps.push_back(numbers[i] - numbers[i - 1]);
+  if (steps.empty()) return 1.0;
+  const double least = *std::min_element(steps.begin(), steps.end());
+  const bool are_multiples = std::all_of(steps.begin(), steps.end(), [least](double step) {
+    return std::fmod(step, least) == 0.0;
+  });
+  return are_multiples ? least : statistics::Median(steps);
+}
+
+struct TimeLine {
+  std::string name;  ///< none: the next picture's
+  double t_s = 0.0;
+};
+
+TimeLine ParseLine(std::string line, const std::string& where) {
+  std::replace(line.begin(), line.end(), ',', ' ');
+  std::istringstream words(line);
+  std::vector<std::string> word;
+  for (std::string each; words >> each;) word.push_back(each);
+  char* end = nullptr;
+  const double t_s = word.empty() ? 0.0 : std::strtod(word.back().c_str(), &end);
+  if (word.empty() || word.size() > 2 || *end != '\0') {
+    throw std::invalid_argument(fmt::format(
+        "{}: '{}' is no time: seconds, or a picture's name and seconds", where, line));
+  }
+  return {word.size() == 2 ? word[0] : "", t_s};
+}
+
+}  // namespace
+
+bool IsBefore(const std::string& a, const std::string& b) {
+  std::size_t i = 0, k = 0;
+  while (i < a.size() && k < b.size()) {
+    if (!IsDigit(a[i]) || !IsDigit(b[k])) {
+      if (a[i] != b[k]) return a[i] < b[k];
+      ++i, ++k;
+      continue;
+    }
+    const std::string_view x = DigitsAt(a, i), y = DigitsAt(b, k);
+    if (x.size() != y.size()) return x.size() < y.size();
+    if (x != y) return x < y;
+    i = EndOfDigits(a, i);
+    k = EndOfDigits(b, k);
+  }
+  if (a.size() - i != b.size() - k) return a.size() - i < b.size() - k;
+  return a < b;
+}
+
+std::vector<double> TimesByNames(const std::vector<std::string>& files, double fps) {
+  std::vector<double> times_s;
+  const auto numbers = RisingNumbers(files);
+  const double step = numbers ? UsualStep(*numbers) : 1.0;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const double count =
+        numbers ? ((*numbers)[i] - numbers->front()) / step : static_cast<double>(i);
+    times_s.push_back(count / fps);
+  }
+  return times_s;
+}
+
+std::vector<double> TimesFromText(std::string_view text, const std::string& source,
+                                  const std::vector<std::string>& files) {
+  std::map<std::string, double> by_name;
+  std::vector<double> in_order;
+  std::istringstream lines{std::string(text)};
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    line = line.substr(0, line.find('#'));
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const TimeLine read = ParseLine(line, fmt::format("{}:{}", source, number));
+    if (read.name.empty()) {
+      in_order.push_back(read.t_s);
+    } else {
+      by_name[std::filesystem::path(read.name).filename().string()] = read.t_s;
+    }
+  }
+  std::vector<double> times_s;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto named = by_name.find(std::filesystem::path(files[i]).filename().string());
+    if (named == by_name.end() && i >= in_order.size()) {
+      throw std::invalid_argument(
+          fmt::format("{}: no time for the picture {}", source, files[i]));
+    }
+    times_s.push_back(named != by_name.end() ? named->second : in_order[i]);
+    if (i > 0 && times_s[i] <= times_s[i - 1]) {
+      throw std::invalid_argument(
+          fmt::format("{}: {:.9g} s of {} is not later than {:.9g} s of the picture before", source,
+                      times_s[i], files[i], times_s[i - 1]));
+    }
+  }
+  return times_s;
+}
+
+}  // namespace rift::vision

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <opencv2/videoio.hpp>
+#include <thread>
+#include <vector>
+
+#include "sources.hpp"
+
+namespace rift::vision {
+namespace {
+
+constexpr double kUnknownRate_hz = 30.0;
+constexpr int kWait_ms = 100;
+
+void Take(const cv::Mat& picture, Frame& frame) {
+  frame.width_px = picture.cols;
+  frame.height_px = picture.rows;
+  frame.format = picture.channels() == 1 ? PixelFormat::kGrey : PixelFormat::kBgr;
+  frame.bytes.assign(picture.datastart, picture.dataend);
+}
+
+/// A file that FFmpeg decodes.
+class VideoSource : public CameraSource {
+ public:
+  explicit VideoSource(const std::string& name) : name_(name), opened_s_(SteadyNow_s()) {
+    if (!std::filesystem::exists(name)) {
+      throw std::invalid_argument(fmt::format("{}: there is no such file", name));
+    }
+    if (!capture_.open(name, cv::CAP_FFMPEG)) {
+      throw std::invalid_argument(fmt::format("{}: FFmpeg cannot open it: is it a video?", name));
+    }
+    const double rate_hz = capture_.get(cv::CAP_PROP_FPS);
+    period_s_ = 1.0 / (rate_hz > 0.0 && std::isfinite(rate_hz) ? rate_hz : kUnknownRate_hz);
+  }
+
+  bool IsRecording() const override { return true; }
+
+  bool Read(Frame& frame) override {
+    cv::Mat picture;
+    if (!capture_.read(picture) || picture.empty()) {
+      throw CameraError(CameraState::kEnded, fmt::format("{}: the last picture was read", name_));
+    }
+    frame.arrived_s = SteadyNow_s();
+    frame.captured_s = opened_s_ + FileTime_s();
+    Take(picture, frame);
+    return true;
+  }
+
+ private:
+  // Phones record at varying rates, so the file's own time counts where it moves on.
+  double FileTime_s() {
+    const double file_s = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000.0;
+    const bool moves_on = read_++ == 0 || file_s > last_s_;
+    last_s_ = moves_on ? file_s : last_s_ + period_s_;
+    return last_s_;
+  }
+
+  std::string name_;
+  double opened_s_;
+  double period_s_ = 0.0;
+  double last_s_ = 0.0;
+  int read_ = 0;
+  cv::VideoCapture capture_;
+};
+
+/// A network camera through FFmpeg. The capture thread drains it, so that FFmpeg's queue stays
+/// empty; FFmpeg itself is told not to hold pictures back.
+class NetworkSource : public CameraSource {
+ public:
+  NetworkSource(std::string url, const CaptureOptions& options)
+      : url_(std::move(url)), options_(options), again_(options.reconnect_s) {
+    // Read by OpenCV at each open; what a person has set stays. Over UDP single lost packets smear
+    // the picture for seconds.
+    setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", "rtsp_transport;tcp|fflags;nobuffer", 0);
+    if (!Open()) Break("FFmpeg cannot open it");
+  }
+
+  bool Read(Frame& frame) override {
+    if (!capture_.isOpened() && !Reconnect()) return false;
+    cv::Mat picture;
+    if (!capture_.read(picture) || picture.empty()) {
+      capture_.release();
+      Break("the stream ended");
+      return false;
+    }
+    frame.arrived_s = frame.captured_s = SteadyNow_s();
+    again_.Works(frame.arrived_s);
+    Take(picture, frame);
+    return true;
+  }
+
+  SourceNotes Notes() const override {
+    return {.reconnects = again_.Count(), .interruption = again_.Interruption()};
+  }
+
+ private:
+  bool Open() {
+    const int wait_ms = static_cast<int>(1e3 * options_.open_timeout_s);
+    return capture_.open(
+        url_, cv::CAP_FFMPEG,
+        {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, wait_ms, cv::CAP_PROP_READ_TIMEOUT_MSEC, wait_ms});
+  }
+  bool Reconnect() {
+    if (!again_.IsDue(SteadyNow_s())) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(kWait_ms));
+      return false;
+    }
+    again_.Tries();
+    if (Open()) return true;
+    Break("FFmpeg cannot open it");
+    return false;
+  }
+  void Break(const char* reason) { again_.Broke(fmt::format("{}: {}", url_, reason), SteadyNow_s()); }
+
+  std::string url_;
+  CaptureOptions options_;
+  Reconnection again_;
+  cv::VideoCapture capture_;
+};
+
+}  // namespace
+
+std::unique_ptr<CameraSource> OpenVideo(const std::string& path) {
+  return std::make_unique<VideoSource>(path);
+}
+
+std::unique_ptr<CameraSource> OpenNetwork(const std::string& url, const CaptureOptions& options) {
+  return std::make_unique<NetworkSource>(url, options);
+}
+
+}  // namespace rift::vision
