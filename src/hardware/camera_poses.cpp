@@ -82,7 +82,8 @@ void CameraPoses::TakePicture() {
     news_.repeats_since_s = view_.frame->captured_s;
   }
   news_.looked_s = frame->captured_s;
-  if (found.sighting) {
+  // Of two tags with the robot's id nobody knows which one to steer: no pose is news then.
+  if (found.sighting && found.sighting->state == vision::TrackState::kTracked) {
     news_.newest = PoseSample{MeasurementOf(*found.sighting), frame->arrived_s, ready_s};
   }
   view_ = {std::move(frame), std::move(found)};

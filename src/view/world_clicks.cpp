@@ -7,6 +7,7 @@
 
 #include "rift/view/track_window.hpp"
 #include "rift/view/window.hpp"
+#include "rift/vision/tracking/world_check.hpp"
 #include "rift/vision/tracking/world_frame.hpp"
 
 namespace rift::view {
@@ -45,9 +46,10 @@ vision::WorldFrame WorldFromClicks(const vision::WorldSetting& setting,
     for (const Eigen::Vector2d& pixel : input.clicks_px) {
       if (clicked.size() == points.size()) break;
       const vision::FloorMark& point = points[clicked.size()];
-      clicked.push_back({{point.x_m, point.y_m, point.z_m}, pixel});
+      clicked.push_back({{point.x_m, point.y_m, point.z_m}, pixel, point.name});
     }
   }
+  vision::CheckPoints(camera, clicked, setting.options.world_limit_m);
   return vision::WorldFromPoints(camera, clicked, fmt::format("{} clicked points", clicked.size()));
 }
 

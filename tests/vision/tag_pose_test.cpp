@@ -16,6 +16,10 @@ std::array<Eigen::Vector2d, 4> TrueRays(const Eigen::Isometry3d& camera_from_tag
   return rays;
 }
 
+MeasuredCorners Measured(const std::array<Eigen::Vector2d, 4>& rays) {
+  return {rays, 0.02 * 0.02 * CornerCovariance::Identity()};
+}
+
 Eigen::Isometry3d Leaning(double tilt_rad) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = Eigen::Vector3d(0.1, -0.15, 0.8);
@@ -26,7 +30,7 @@ Eigen::Isometry3d Leaning(double tilt_rad) {
 
 TEST_CASE("Exact corners give back the exact pose") {
   const Eigen::Isometry3d truth = Leaning(GENERATE(0.02, 0.3, -0.5));
-  const auto poses = SolveTagPoses(test::PaperCamera(), TrueRays(truth), 0.0475, 0.02);
+  const auto poses = SolveTagPoses(test::PaperCamera(), Measured(TrueRays(truth)), 0.0475);
   REQUIRE(poses);
   CHECK((poses->best.camera_from_tag.matrix() - truth.matrix()).norm() < 1e-6);
   CHECK(poses->best.reprojection_px < 1e-6);
@@ -34,7 +38,7 @@ TEST_CASE("Exact corners give back the exact pose") {
 
 TEST_CASE("Both planar solutions are proper rotations and the floor tells which") {
   const Eigen::Isometry3d truth = Leaning(0.05);
-  const auto poses = SolveTagPoses(test::PaperCamera(), TrueRays(truth), 0.0475, 0.02);
+  const auto poses = SolveTagPoses(test::PaperCamera(), Measured(TrueRays(truth)), 0.0475);
   REQUIRE(poses);
   REQUIRE(poses->other);
   for (const TagPose& pose : {poses->best, *poses->other}) {
@@ -59,7 +63,7 @@ TEST_CASE("The covariance is the scatter of the pose over many noisy corners") {
     for (Eigen::Vector2d& ray : rays) {
       ray += Eigen::Vector2d(noise(generator) / camera.k(0, 0), noise(generator) / camera.k(1, 1));
     }
-    const auto poses = SolveTagPoses(camera, rays, 0.0475, 0.02);
+    const auto poses = SolveTagPoses(camera, Measured(rays), 0.0475);
     REQUIRE(poses);
     const TagPose& pose = LikelierPose(*poses, truth.linear().col(2), 0.02, 0.25);
     const Eigen::AngleAxisd turn(
@@ -68,7 +72,7 @@ TEST_CASE("The covariance is the scatter of the pose over many noisy corners") {
     error << pose.camera_from_tag.translation() - truth.translation(), turn.angle() * turn.axis();
     scatter += error * error.transpose() / kTries;
   }
-  const auto poses = SolveTagPoses(camera, exact, 0.0475, 0.02);
+  const auto poses = SolveTagPoses(camera, Measured(exact), 0.0475);
   for (int i = 0; i < 6; ++i) {
     CHECK(scatter(i, i) == Approx(poses->best.covariance(i, i)).epsilon(0.15));
   }

@@ -75,9 +75,9 @@ struct Errors {
 };
 
 Errors Acquire(const CameraModel& camera, const std::vector<RobotMotion>& robots,
-               PixelFormat format) {
+               PixelFormat format, const TagOptions& options = {}) {
   Film film(camera);
-  TagTracker tracker(camera, {});
+  TagTracker tracker(camera, options);
   Errors errors;
   for (const RobotMotion& robot : robots) {
     tracker.Forget();
@@ -112,8 +112,10 @@ TEST_CASE("A 62 px tag is found wherever it is and its covariance says how well"
 
 TEST_CASE("A tag that leans as on the ramp is not flipped") {
   const CameraModel camera = test::PaperCamera(0.87);
+  TagOptions options;
+  options.ground = Ground::kFree;
   const Errors errors =
-      Acquire(camera, test::RandomRobots(camera, 100, 0.2404), PixelFormat::kGrey);
+      Acquire(camera, test::RandomRobots(camera, 100, 0.2404), PixelFormat::kGrey, options);
   CHECK(errors.missed == 0);
   CHECK(errors.flipped == 0);
 }
@@ -216,8 +218,9 @@ TEST_CASE("A second tag of the same id is counted and does not steal the track")
     const TrackResult result = tracker.Track(film.Next(test::RobotAt(-0.2, 0.0, 0.0)));
     REQUIRE(result.sighting);
     CHECK(result.sighting->Planar().x_m == Approx(-0.2).margin(0.0005));
-    CHECK(result.sighting->tags_of_this_id == (i < 4 ? 1 : 2));
-    CHECK((result.sighting->mode == TrackMode::kPicture) == (i == 4));
+    CHECK(result.sighting->tags_of_this_id == (i < 3 ? 1 : 2));
+    // The robot never stopped being where it can be; the other one is not in its reach.
+    CHECK(result.State() == TrackState::kTracked);
   }
 }
 

@@ -47,7 +47,7 @@ void CheckFirstPicture(const DriveRequest& request, vision::CameraSession& sessi
         request.camera));
   }
   const vision::TagOptions& tag = session.tag();
-  const vision::Look look = session.LookAt(first, tag.acquire_decimate);
+  const vision::Look look = session.LookAt(first, 1);
   if (look.robot_tags > 1) {
     throw std::runtime_error(fmt::format(
         "{} tags with the robot's id {} are in the picture: take away all but the robot's",
@@ -99,6 +99,7 @@ class DriveSession::Drivers {
                             .say = terminal::Say,
                             .may_arm =
                                 [&] {
+                                  RefuseTwoTags();
                                   has_started_ = gate.MayStart(clock_.Now_s(), SeenNow());
                                   return has_started_.load();
                                 },
@@ -135,6 +136,16 @@ class DriveSession::Drivers {
     if (!request_.yes) at_gate.ask_again = [&person] { person.AskAgain(); };
     if (!request_.yes) at_gate.show = terminal::LiveLine::Show;
     return at_gate;
+  }
+
+  /// Throws std::runtime_error: of two tags with the robot's id nobody knows which one to steer.
+  void RefuseTwoTags() const {
+    const std::optional<vision::Sighting> seen = poses_->Seen().found.sighting;
+    if (!seen || seen->tags_of_this_id < 2) return;
+    throw std::runtime_error(fmt::format(
+        "not armed: {} tags with the robot's id {} are in the picture: take away all but the "
+        "robot's",
+        seen->tags_of_this_id, session_.tag().id));
   }
 
   std::optional<geometry::Pose2> SeenNow() {

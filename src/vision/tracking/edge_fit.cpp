@@ -7,82 +7,12 @@
 #include <optional>
 #include <vector>
 
-#include "rift/statistics/descriptive.hpp"
+#include "edge_line.hpp"
 #include "rift/vision/camera/camera_model.hpp"
 
 namespace rift::vision {
 namespace {
 
-/// normal . p = offset, with a unit normal.
-struct EdgeLine {
-  Eigen::Vector2d normal;
-  double offset = 0.0;
-  double rms = 0.0;  ///< distance of the points that were kept
-
-  double Distance(const Eigen::Vector2d& point) const { return normal.dot(point) - offset; }
-};
-
-/// The line with the least squared distances, after points further than 3 sigma (by the median, at
-/// least `least_sigma`) are left out. None when fewer than half of the points are left.
-std::optional<EdgeLine> FitLine(const std::vector<Eigen::Vector2d>& points, double least_sigma);
-
-/// Where they meet; none when they are all but parallel.
-std::optional<Eigen::Vector2d> Meet(const EdgeLine& a, const EdgeLine& b);
-
-constexpr int kRounds = 3;
-
-EdgeLine LeastSquares(const std::vector<Eigen::Vector2d>& points) {
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& p : points) mean += p;
-  mean /= static_cast<double>(points.size());
-  double xx = 0.0, xy = 0.0, yy = 0.0;
-  for (const Eigen::Vector2d& p : points) {
-    const Eigen::Vector2d d = p - mean;
-    xx += d.x() * d.x();
-    xy += d.x() * d.y();
-    yy += d.y() * d.y();
-  }
-  const double along = 0.5 * std::atan2(2.0 * xy, xx - yy);
-  EdgeLine line{{-std::sin(along), std::cos(along)}, 0.0, 0.0};
-  line.offset = line.normal.dot(mean);
-  double sum = 0.0;
-  for (const Eigen::Vector2d& p : points) sum += line.Distance(p) * line.Distance(p);
-  line.rms = std::sqrt(sum / static_cast<double>(points.size()));
-  return line;
-}
-
-double MedianDistance(const EdgeLine& line, const std::vector<Eigen::Vector2d>& points) {
-  std::vector<double> distances;
-  distances.reserve(points.size());
-  for (const Eigen::Vector2d& p : points) distances.push_back(std::abs(line.Distance(p)));
-  return statistics::Median(std::move(distances));
-}
-
-std::optional<EdgeLine> FitLine(const std::vector<Eigen::Vector2d>& points, double least_sigma) {
-  if (points.size() < 4) return std::nullopt;
-  std::vector<Eigen::Vector2d> kept = points;
-  EdgeLine line = LeastSquares(kept);
-  for (int round = 0; round < kRounds; ++round) {
-    const double limit = 3.0 * std::max(least_sigma, statistics::kSigmaOfMedianDeviation *
-                                                         MedianDistance(line, points));
-    kept.clear();
-    std::copy_if(points.begin(), points.end(), std::back_inserter(kept),
-                 [&](const Eigen::Vector2d& p) { return std::abs(line.Distance(p)) <= limit; });
-    if (2 * kept.size() < points.size()) return std::nullopt;
-    line = LeastSquares(kept);
-    if (kept.size() == points.size()) break;
-  }
-  return line;
-}
-
-std::optional<Eigen::Vector2d> Meet(const EdgeLine& a, const EdgeLine& b) {
-  Eigen::Matrix2d normals;
-  normals << a.normal.transpose(), b.normal.transpose();
-  if (std::abs(normals.determinant()) < 0.1) return std::nullopt;
-  return normals.inverse() * Eigen::Vector2d(a.offset, b.offset);
-}
-
-constexpr int kCells = 8;  // along a side of the black square
 /// Below this a cell is too small for a plateau on both sides of the edge.
 constexpr double kLeastCell_px = 2.0;
 
@@ -105,10 +35,9 @@ struct Side {
 /// Calls visit(point) at about `step_px` along the side, a cell away from its ends.
 template <class Visit>
 void WalkAlong(const Side& side, double step_px, Visit&& visit) {
-  const double margin_px = side.Cell_px();
-  const int count = std::max(6, static_cast<int>((side.length_px - 2 * margin_px) / step_px));
+  const int count = PointCount(side.length_px, step_px);
   for (int i = 0; i < count; ++i) {
-    const double s = margin_px + (side.length_px - 2 * margin_px) * (i + 0.5) / count;
+    const double s = side.Cell_px() + MeasuredLength_px(side.length_px) * (i + 0.5) / count;
     visit(Eigen::Vector2d(side.from + s * side.along));
   }
 }
@@ -220,14 +149,17 @@ std::vector<Eigen::Vector2d> Straightened(const CameraModel& camera,
 
 /// Corner i is where the sides before and after it meet.
 bool JoinCorners(const CameraModel& camera, const std::array<EdgeLine, 4>& lines,
-                 FittedSquare& square) {
+                 const EdgeErrors& errors, FittedSquare& square) {
   std::vector<Eigen::Vector3d> points;
+  std::array<Eigen::Vector2d, 4> corners_px;
   for (int i = 0; i < 4; ++i) {
     const auto corner = Meet(lines[(i + 3) % 4], lines[i]);
     if (!corner) return false;
-    square.rays[i] = corner->cwiseQuotient(Eigen::Vector2d(camera.k(0, 0), camera.k(1, 1)));
-    points.emplace_back(square.rays[i].x(), square.rays[i].y(), 1.0);
+    corners_px[i] = *corner;
+    square.corners.rays[i] = corner->cwiseQuotient(Eigen::Vector2d(camera.k(0, 0), camera.k(1, 1)));
+    points.emplace_back(square.corners.rays[i].x(), square.corners.rays[i].y(), 1.0);
   }
+  square.corners.covariance = CovarianceOf(lines, corners_px, errors);
   const std::vector<Eigen::Vector2d> pixels = PixelsFromPoints(camera, points);
   std::copy(pixels.begin(), pixels.end(), square.pixels.begin());
   return true;
@@ -255,7 +187,7 @@ Eigen::Matrix3d RaysFromCells(const std::array<Eigen::Vector2d, 4>& rays) {
 
 /// Middles of the cells, rows from the top of the tag.
 std::vector<Eigen::Vector2d> CellPixels(const CameraModel& camera, const FittedSquare& square) {
-  const Eigen::Matrix3d rays_from_cells = RaysFromCells(square.rays);
+  const Eigen::Matrix3d rays_from_cells = RaysFromCells(square.corners.rays);
   std::vector<Eigen::Vector3d> points;
   for (int row = 0; row < kCells; ++row) {
     for (int column = 0; column < kCells; ++column) {
@@ -265,20 +197,14 @@ std::vector<Eigen::Vector2d> CellPixels(const CameraModel& camera, const FittedS
   return PixelsFromPoints(camera, points);
 }
 
-bool IsBit(int row, int column) {
-  return row > 0 && column > 0 && row < kCells - 1 && column < kCells - 1;
-}
-
-}  // namespace
-
-std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch& patch,
-                                      const TagCorners& guess, double least_contrast) {
-  const std::optional<TagCorners> near = Approach(patch, guess, least_contrast);
-  if (!near) return std::nullopt;
+/// Sub-pixel corners from corners that are good to about 0.3 px.
+std::optional<FittedSquare> FitOnce(const CameraModel& camera, const GreyPatch& patch,
+                                    const TagCorners& near, double least_contrast,
+                                    const EdgeErrors& errors) {
   FittedSquare square;
   std::array<EdgeLine, 4> lines;
   for (int i = 0; i < 4; ++i) {
-    const Side side((*near)[i], (*near)[(i + 1) % 4]);
+    const Side side(near[i], near[(i + 1) % 4]);
     if (side.Cell_px() < kLeastCell_px) return std::nullopt;
     const Profiles profiles = Sample(patch, side);
     // NaN, from outside the patch, fails here too.
@@ -290,8 +216,26 @@ std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch
     square.white_grey += 0.25 * profiles.white;
     square.rms_px = std::hypot(square.rms_px, 0.5 * line->rms);
   }
-  if (!JoinCorners(camera, lines, square)) return std::nullopt;
+  if (!JoinCorners(camera, lines, errors, square)) return std::nullopt;
   return square;
+}
+
+bool IsBit(int row, int column) {
+  return row > 0 && column > 0 && row < kCells - 1 && column < kCells - 1;
+}
+
+}  // namespace
+
+std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch& patch,
+                                      const TagCorners& guess, double least_contrast,
+                                      const EdgeErrors& errors) {
+  const std::optional<TagCorners> near = Approach(patch, guess, least_contrast);
+  if (!near) return std::nullopt;
+  std::optional<FittedSquare> square = FitOnce(camera, patch, *near, least_contrast, errors);
+  if (!square) return std::nullopt;
+  // The ends of a short profile are not quite black and white, and the less so the further the
+  // profile's middle is from the edge: 0.015 px on all of a 27 px tag.
+  return FitOnce(camera, patch, square->pixels, least_contrast, errors);
 }
 
 ReadBits CompareBits(const CameraModel& camera, const GreyPatch& patch, const FittedSquare& square,

@@ -4,16 +4,19 @@
 #include <array>
 #include <optional>
 
+#include "edge_line.hpp"
 #include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/camera/frame.hpp"
 #include "rift/vision/tracking/tag_detector.hpp"
+#include "rift/vision/tracking/tag_pose.hpp"
 
 namespace rift::vision {
 
 /// The black square of a tag, measured along its four edges.
 struct FittedSquare {
-  TagCorners pixels;                    ///< where the corners are in the picture
-  std::array<Eigen::Vector2d, 4> rays;  ///< the same without the lens
+  TagCorners pixels;  ///< where the corners are in the picture
+  MeasuredCorners
+      corners;  ///< the same without the lens, with what the edges' scatter says of them
   double black_grey = 0.0;
   double white_grey = 0.0;
   double rms_px = 0.0;  ///< of the edge points about their lines
@@ -22,10 +25,11 @@ struct FittedSquare {
 /// Sub-pixel corners from a guess that is off by up to half a cell of the tag: on each side the
 /// steps from black to white are located along its normal, freed of the lens, and joined by a line;
 /// the corners are where the lines meet. A straight edge is straight only without the lens, which
-/// is worth a third of the error. None where an edge is missing, too short, leaves the patch or has
-/// less than `least_contrast` grey values.
+/// is worth a third of the error. `errors` are added to the corners' scatter. None where an edge is
+/// missing, too short, leaves the patch or has less than `least_contrast` grey values.
 std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch& patch,
-                                      const TagCorners& guess, double least_contrast);
+                                      const TagCorners& guess, double least_contrast,
+                                      const EdgeErrors& errors);
 
 /// What the picture says inside a fitted square.
 struct ReadBits {

@@ -62,7 +62,9 @@ void CameraSession::Restart() {
   if (capture_->IsRecording()) capture_ = OpenCapture(name_, options_);
 }
 
-TagTracker CameraSession::MakeTracker() const { return {camera_, tag_, SteadyNow_s}; }
+TagTracker CameraSession::MakeTracker(const std::vector<int>& further_ids) const {
+  return {camera_, tag_, SteadyNow_s, further_ids};
+}
 
 std::optional<std::string> MovedWarning(const std::optional<double>& moved_m, double limit_m) {
   if (!moved_m || *moved_m <= limit_m) return std::nullopt;

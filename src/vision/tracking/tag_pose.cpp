@@ -57,29 +57,70 @@ Eigen::Isometry3d Moved(const Eigen::Isometry3d& pose, const Eigen::Matrix<doubl
   return moved;
 }
 
-/// Gauss-Newton; a step that makes it worse is halved.
-TagPose Refine(const CameraModel& camera, const std::array<Eigen::Vector2d, 4>& rays, double size_m,
-               double corner_sigma_px, Eigen::Isometry3d pose) {
-  const auto corners = CornersInTag(size_m);
-  Linearised now = Linearise(camera, rays, corners, pose);
+using Step = Eigen::Matrix<double, 6, 1>;
+
+/// The normal equations of a fit at one pose: information x step = -gradient.
+struct Normal {
+  PoseCovariance information;
+  Step gradient;
+  double cost;
+};
+
+/// Gauss-Newton; a step that makes it worse is halved. normal_at(pose) gives the equations there.
+template <class NormalAt>
+Eigen::Isometry3d Minimise(Eigen::Isometry3d pose, NormalAt&& normal_at) {
+  Normal now = normal_at(pose);
   for (int round = 0; round < kRounds; ++round) {
-    Eigen::Matrix<double, 6, 1> step = -(now.jacobian.transpose() * now.jacobian)
-                                            .ldlt()
-                                            .solve(now.jacobian.transpose() * now.error);
+    Step step = -now.information.ldlt().solve(now.gradient);
     Eigen::Isometry3d next = Moved(pose, step);
-    Linearised there = Linearise(camera, rays, corners, next);
-    for (int half = 0; half < 4 && there.error.norm() > now.error.norm(); ++half) {
+    Normal there = normal_at(next);
+    for (int half = 0; half < 4 && there.cost > now.cost; ++half) {
       step *= 0.5;
       next = Moved(pose, step);
-      there = Linearise(camera, rays, corners, next);
+      there = normal_at(next);
     }
-    if (there.error.norm() > now.error.norm()) break;
+    if (there.cost > now.cost) break;
     pose = next;
     now = there;
     if (step.norm() < 1e-10) break;
   }
-  const PoseCovariance information = now.jacobian.transpose() * now.jacobian;
-  return {pose, information.inverse() * corner_sigma_px * corner_sigma_px, now.error.norm() / 2.0};
+  return pose;
+}
+
+TagPose Refine(const CameraModel& camera, const MeasuredCorners& corners, double size_m,
+               const Eigen::Isometry3d& start) {
+  const auto in_tag = CornersInTag(size_m);
+  const Eigen::Isometry3d pose = Minimise(start, [&](const Eigen::Isometry3d& at) {
+    const Linearised l = Linearise(camera, corners.rays, in_tag, at);
+    return Normal{l.jacobian.transpose() * l.jacobian, l.jacobian.transpose() * l.error,
+                  l.error.squaredNorm()};
+  });
+  const Linearised l = Linearise(camera, corners.rays, in_tag, pose);
+  const Eigen::Matrix<double, 6, 8> pose_by_corners =
+      (l.jacobian.transpose() * l.jacobian).inverse() * l.jacobian.transpose();
+  return {pose, pose_by_corners * corners.covariance * pose_by_corners.transpose(),
+          l.error.norm() / 2.0};
+}
+
+/// How far the pose is from the floor's plane and normal, in sigmas: height, then two tilts.
+struct OffFloor {
+  Eigen::Vector3d error;
+  Eigen::Matrix<double, 3, 6> jacobian = Eigen::Matrix<double, 3, 6>::Zero();
+};
+
+OffFloor OffFloorOf(const FloorPrior& prior, const Eigen::Isometry3d& pose) {
+  const Eigen::Vector3d& up = prior.up_in_camera;
+  const Eigen::Vector3d across = up.unitOrthogonal();
+  const Eigen::Vector3d along = up.cross(across);
+  const Eigen::Vector3d normal = pose.linear().col(2);
+  const Eigen::Matrix3d normal_by_turn = -CrossMatrix(normal);
+  OffFloor off;
+  off.error << (up.dot(pose.translation()) - prior.offset_m) / prior.height_sigma_m,
+      across.dot(normal) / prior.tilt_sigma_rad, along.dot(normal) / prior.tilt_sigma_rad;
+  off.jacobian.block<1, 3>(0, 0) = up.transpose() / prior.height_sigma_m;
+  off.jacobian.block<1, 3>(1, 3) = across.transpose() * normal_by_turn / prior.tilt_sigma_rad;
+  off.jacobian.block<1, 3>(2, 3) = along.transpose() * normal_by_turn / prior.tilt_sigma_rad;
+  return off;
 }
 
 std::vector<Eigen::Isometry3d> PlanarSolutions(const std::array<Eigen::Vector2d, 4>& rays,
@@ -121,12 +162,47 @@ double Misfit(const TagPose& pose, const Eigen::Vector3d& up_in_camera, double l
 
 }  // namespace
 
-std::optional<TagPoses> SolveTagPoses(const CameraModel& camera,
-                                      const std::array<Eigen::Vector2d, 4>& rays, double size_m,
-                                      double corner_sigma_px) {
+std::optional<FloorPrior> FloorPriorOf(const CameraModel& camera, const TagOptions& options) {
+  const bool has_floor = camera.world && camera.world->origin != kFirstPoseOrigin;
+  if (!has_floor || options.ground == Ground::kFree) return std::nullopt;
+  const bool is_flat = options.ground == Ground::kFlat;
+  const Eigen::Isometry3d camera_from_world = camera.world->world_from_camera.inverse();
+  FloorPrior prior;
+  prior.up_in_camera = camera_from_world.linear().col(2);
+  prior.offset_m =
+      prior.up_in_camera.dot(camera_from_world * Eigen::Vector3d(0.0, 0.0, options.height_m));
+  prior.height_sigma_m = is_flat ? options.flat_height_sigma_m : options.bump_height_sigma_m;
+  prior.tilt_sigma_rad = is_flat ? options.flat_tilt_sigma_rad : options.bump_tilt_sigma_rad;
+  return prior;
+}
+
+TagPose PoseOnFloor(const CameraModel& camera, const MeasuredCorners& corners, double size_m,
+                    const FloorPrior& prior, double lens_sigma_px, const Eigen::Isometry3d& start) {
+  const auto in_tag = CornersInTag(size_m);
+  const CornerCovariance weight =
+      (corners.covariance + lens_sigma_px * lens_sigma_px * CornerCovariance::Identity()).inverse();
+  const Eigen::Isometry3d pose = Minimise(start, [&](const Eigen::Isometry3d& at) {
+    const Linearised l = Linearise(camera, corners.rays, in_tag, at);
+    const OffFloor off = OffFloorOf(prior, at);
+    return Normal{
+        l.jacobian.transpose() * weight * l.jacobian + off.jacobian.transpose() * off.jacobian,
+        l.jacobian.transpose() * weight * l.error + off.jacobian.transpose() * off.error,
+        l.error.dot(weight * l.error) + off.error.squaredNorm()};
+  });
+  const Linearised l = Linearise(camera, corners.rays, in_tag, pose);
+  const OffFloor off = OffFloorOf(prior, pose);
+  const PoseCovariance of_prior = off.jacobian.transpose() * off.jacobian;
+  const Eigen::Matrix<double, 6, 8> weighed = l.jacobian.transpose() * weight;
+  const PoseCovariance gain = (weighed * l.jacobian + of_prior).inverse();
+  const PoseCovariance spread = weighed * corners.covariance * weighed.transpose() + of_prior;
+  return {pose, gain * spread * gain.transpose(), l.error.norm() / 2.0};
+}
+
+std::optional<TagPoses> SolveTagPoses(const CameraModel& camera, const MeasuredCorners& corners,
+                                      double size_m) {
   std::vector<TagPose> found;
-  for (const Eigen::Isometry3d& start : PlanarSolutions(rays, size_m)) {
-    const TagPose pose = Refine(camera, rays, size_m, corner_sigma_px, start);
+  for (const Eigen::Isometry3d& start : PlanarSolutions(corners.rays, size_m)) {
+    const TagPose pose = Refine(camera, corners, size_m, start);
     if (!pose.camera_from_tag.matrix().allFinite() || !IsSeenFromTheFront(pose.camera_from_tag)) {
       continue;
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
 #include <thread>
 
 #include "rift/vision/camera/camera_source.hpp"
@@ -18,19 +19,24 @@ constexpr double kRedraw_s = 0.1;
 class Tracking {
  public:
   explicit Tracking(const TrackParts& parts)
-      : parts_(parts), tracker_(parts.session.MakeTracker()), started_s_(SteadyNow_s()) {}
+      : parts_(parts),
+        tracker_(parts.session.MakeTracker(parts.further_ids)),
+        started_s_(SteadyNow_s()) {}
 
   TrackRun Run();
 
  private:
   void Take(Frame frame);
-  void Keep(const Sighting& sighting);
+  void Keep(const TrackResult& result, int tag_id, const Frame& frame);
+  /// The row of a picture in which the tag was seen, predicted or lost.
+  static Sighting RowOf(const TrackResult& result, int tag_id, const Frame& frame);
   /// A recording's times begin at zero and are rounded, so that the same recording gives the same
   /// bytes.
   void Rebase(Frame& frame);
   void WatchState();
   void WatchReferences(const Frame& frame);
   void Show();
+  void HoldLastPicture();
   bool IsOver() const;
 
   const TrackParts& parts_;
@@ -40,6 +46,7 @@ class Tracking {
   std::optional<double> first_captured_s_;
   std::optional<Frame> frame_;
   std::optional<Sighting> sighting_;
+  std::set<int> seen_ids_;
   std::optional<double> failing_since_s_;
   double checked_s_ = -1e9;
   std::optional<std::uint64_t> shown_index_;
@@ -55,30 +62,51 @@ void Tracking::Rebase(Frame& frame) {
   }
 }
 
-void Tracking::Keep(const Sighting& sighting) {
+Sighting Tracking::RowOf(const TrackResult& result, int tag_id, const Frame& frame) {
+  if (result.sighting) return *result.sighting;
+  if (result.predicted) return *result.predicted;
+  Sighting lost;
+  lost.state = TrackState::kLost;
+  lost.corners.fill(Eigen::Vector2d::Zero());
+  lost.tag_id = tag_id;
+  lost.frame_index = frame.index;
+  lost.captured_s = frame.captured_s;
+  return lost;
+}
+
+void Tracking::Keep(const TrackResult& result, int tag_id, const Frame& frame) {
+  ++run_.misses[static_cast<std::size_t>(result.miss)];
+  ++run_.states[static_cast<std::size_t>(result.State())];
+  if (result.sighting) seen_ids_.insert(tag_id);
+  if (!seen_ids_.contains(tag_id)) return;  // nothing to tell yet
+  Sighting row = RowOf(result, tag_id, frame);
+  if (run_.is_recording) row.latency_s = std::nan("");  // its clock is its own
   const double t_s = run_.is_recording
-                         ? sighting.captured_s
-                         : std::round((sighting.captured_s - *first_captured_s_) * 1e6) / 1e6;
-  if (!parts_.log(t_s, sighting)) {
+                         ? row.captured_s
+                         : std::round((row.captured_s - *first_captured_s_) * 1e6) / 1e6;
+  if (!parts_.log(t_s, row)) {
     ++run_.repeated;
     return;
   }
+  if (!result.sighting) return;
   if (++run_.rows == 1) run_.first_t_s = t_s;
   run_.last_t_s = t_s;
-  if (!run_.is_recording) run_.latencies_s.push_back(sighting.latency_s);
-  run_.most_tags_of_this_id = std::max(run_.most_tags_of_this_id, sighting.tags_of_this_id);
+  if (!run_.is_recording) run_.latencies_s.push_back(row.latency_s);
+  run_.most_tags_of_this_id = std::max(run_.most_tags_of_this_id, row.tags_of_this_id);
 }
 
 void Tracking::Take(Frame frame) {
   if (run_.frames++ == 0) run_.is_recording = parts_.session.capture().IsRecording();
   Rebase(frame);
   const double begin_s = SteadyNow_s();
-  const TrackResult result = tracker_.Track(frame);
+  const std::vector<TrackResult> results = tracker_.TrackAll(frame);
   run_.costs_s.push_back(SteadyNow_s() - begin_s);
-  ++run_.misses[static_cast<std::size_t>(result.miss)];
-  sighting_ = result.sighting;
-  if (sighting_ && run_.is_recording) sighting_->latency_s = std::nan("");  // its clock is its own
-  if (sighting_) Keep(*sighting_);
+  Keep(results.front(), parts_.session.tag().id, frame);
+  for (std::size_t i = 1; i < results.size(); ++i) {
+    Keep(results[i], parts_.further_ids[i - 1], frame);
+  }
+  sighting_ = results.front().sighting;
+  if (sighting_ && run_.is_recording) sighting_->latency_s = std::nan("");
   WatchReferences(frame);
   frame_ = std::move(frame);
 }
@@ -102,8 +130,9 @@ void Tracking::WatchState() {
   const CameraState before = run_.status.state;
   run_.status = parts_.session.capture().Status();
   const CameraState state = run_.status.state;
+  // A camera that is asked again has its own limit (CaptureOptions::reconnect_s).
   const bool fails = state != CameraState::kOpening && state != CameraState::kRunning &&
-                     state != CameraState::kEnded;
+                     state != CameraState::kEnded && state != CameraState::kReconnecting;
   if (!fails) failing_since_s_.reset();
   if (fails && !failing_since_s_) failing_since_s_ = SteadyNow_s();
   const bool starts = before == CameraState::kOpening && state == CameraState::kRunning;
@@ -134,6 +163,15 @@ void Tracking::Show() {
   shown_s_ = SteadyNow_s();
 }
 
+/// A recording is over in seconds; what it showed is to be looked at.
+void Tracking::HoldLastPicture() {
+  if (!parts_.show || run_.status.state != CameraState::kEnded) return;
+  while (!quit_ && !parts_.is_stopped()) {
+    quit_ = !parts_.show(frame_, sighting_, run_.status, run_.moved_m);
+    std::this_thread::sleep_for(std::chrono::duration<double>(kTick_s));
+  }
+}
+
 TrackRun Tracking::Run() {
   while (!IsOver()) {
     std::optional<Frame> frame = parts_.session.capture().Next(kTick_s);
@@ -141,6 +179,7 @@ TrackRun Tracking::Run() {
     WatchState();
     Show();
   }
+  HoldLastPicture();
   run_.state = run_.status.state;
   run_.reason = run_.status.reason;
   run_.has_failed = failing_since_s_.has_value() && !quit_ && !parts_.is_stopped();

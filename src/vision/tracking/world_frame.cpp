@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "rift/vision/camera/camera_model.hpp"
+#include "rift/vision/tracking/world_check.hpp"
 
 namespace rift::vision {
 namespace {
@@ -134,7 +135,7 @@ WorldFrame WorldFromPoints(const CameraModel& camera, const std::vector<WorldPoi
 }
 
 WorldFrame WorldFromTags(const CameraModel& camera, const std::vector<ReferenceMark>& tags,
-                         const std::vector<TagDetection>& seen) {
+                         const std::vector<TagDetection>& seen, double limit_m) {
   std::vector<WorldPoint> points;
   std::vector<ReferenceMark> marks;
   std::string missing;
@@ -145,7 +146,7 @@ WorldFrame WorldFromTags(const CameraModel& camera, const std::vector<ReferenceM
       continue;
     }
     mark.seen_px = MiddlePixel(camera, tag->corners);
-    points.push_back({mark.p_in_world, mark.seen_px});
+    points.push_back({mark.p_in_world, mark.seen_px, fmt::format("tag {}", mark.tag_id)});
     marks.push_back(mark);
   }
   if (points.size() < kLeastPoints) {
@@ -153,6 +154,7 @@ WorldFrame WorldFromTags(const CameraModel& camera, const std::vector<ReferenceM
         fmt::format("a world frame needs {} reference tags, {} of {} are seen (not {})",
                     kLeastPoints, points.size(), tags.size(), missing.empty() ? "any" : missing));
   }
+  CheckPoints(camera, points, limit_m);
   WorldFrame world =
       WorldFromPoints(camera, points, fmt::format("{} reference tags", points.size()));
   world.marks = marks;
@@ -180,7 +182,7 @@ WorldFrame WorldFromFirstPose(const std::vector<Eigen::Isometry3d>& camera_from_
   WorldFrame world;
   world.world_from_camera = Eigen::Translation3d(0.0, 0.0, tag_height_m) * mean.inverse();
   world.residual_m = std::sqrt(scatter / static_cast<double>(camera_from_tag.size()));
-  world.origin = "first pose";
+  world.origin = kFirstPoseOrigin;
   return world;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "rift/vision/tracking/world_check.hpp"
 #include "rift/vision/tracking/world_frame.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/load.hpp"
@@ -38,6 +39,22 @@ class TimeLimit {
   bool has_begun_ = false;
   double begin_s_ = 0.0;
 };
+
+/// Four tags laid out in centimetres fit each other perfectly; only a tag of known size tells.
+void CheckScaleOf(const WorldSetting& setting, const WorldFrame& world,
+                  const std::vector<TagDetection>& seen) {
+  CameraModel camera = setting.session.camera();
+  camera.world = world;
+  const TagOptions& tag = setting.session.tag();
+  const auto scale = ScaleByTag(camera, seen, tag.id, tag.size_m, tag.height_m);
+  if (scale) {
+    CheckScale(*scale, tag.size_m, setting.options.world_scale);
+  } else if (setting.say) {
+    setting.say(fmt::format(
+        "note: the robot's tag {} is not in the picture, so the scale of the frame is not checked",
+        tag.id));
+  }
+}
 
 }  // namespace
 
@@ -81,7 +98,7 @@ WorldFrame WorldFromRobot(const WorldSetting& setting) {
                       setting.session.tag().id, setting.options.world_patience_s));
     }
   }
-  return WorldFromFirstPose(poses, setting.options.tag_height_m);
+  return WorldFromFirstPose(poses, setting.session.tag().height_m);
 }
 
 WorldFrame WorldFromFloorTags(const WorldSetting& setting, const std::vector<FloorMark>& tags) {
@@ -102,7 +119,10 @@ WorldFrame WorldFromFloorTags(const WorldSetting& setting, const std::vector<Flo
     // With some missing, the last try says which.
     const bool is_last = search.IsOver(frame) || setting.session.capture().IsRecording();
     if (found >= marks.size() || is_last) {
-      return WorldFromTags(setting.session.camera(), marks, seen);
+      WorldFrame world =
+          WorldFromTags(setting.session.camera(), marks, seen, setting.options.world_limit_m);
+      CheckScaleOf(setting, world, seen);
+      return world;
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/camera/capture_thread.hpp"
@@ -38,8 +39,8 @@ class CameraSession {
   const CameraModel& camera() const { return camera_; }
   const CaptureOptions& options() const { return options_; }  ///< as the camera was asked
   const TagOptions& tag() const { return tag_; }
-  /// With the latency of each sighting.
-  TagTracker MakeTracker() const;
+  /// With the latency of each sighting. further_ids: robots beside tag().id.
+  TagTracker MakeTracker(const std::vector<int>& further_ids = {}) const;
   Capture& capture() { return *capture_; }
   /// The capture for somebody else; this session has none any more.
   std::unique_ptr<Capture> TakeCapture() { return std::move(capture_); }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "rift/geometry/pose2.hpp"
 #include "rift/vision/camera/camera_model.hpp"
@@ -37,14 +38,29 @@ enum class Miss {
   kDoubtfulBits,
   kNoEdges,
   kNoPose,
+  kRival,  ///< a tag of the id was seen, but one that is known not to be the robot's
 };
-constexpr std::array<std::string_view, 7> EnumNames(Miss) {
-  return {"none",          "damaged frame", "no tag", "only other tags",
-          "doubtful bits", "no edges",      "no pose"};
+constexpr std::array<std::string_view, 8> EnumNames(Miss) {
+  return {"none",          "damaged frame", "no tag",  "only other tags",
+          "doubtful bits", "no edges",      "no pose", "a second tag of this id"};
+}
+
+/// What a pose is worth.
+enum class TrackState {
+  kTracked,    ///< measured, and the robot's
+  kPredicted,  ///< not seen in this picture; where its motion so far leads
+  kAmbiguous,  ///< measured, but another tag of this id may be the robot's
+  kLost,       ///< neither seen nor predicted
+};
+constexpr std::array<std::string_view, 4> EnumNames(TrackState) {
+  return {"tracked", "predicted", "ambiguous", "lost"};
 }
 
 /// Where the tag was in one frame, with the quality of the measurement.
 struct Sighting {
+  int tag_id = 0;
+  TrackState state = TrackState::kTracked;
+  bool is_on_floor = false;  ///< held to the height and tilt of a tag on the floor (FloorPrior)
   std::uint64_t frame_index = 0;
   double captured_s = 0.0;  ///< the frame's
   Eigen::Isometry3d camera_from_tag = Eigen::Isometry3d::Identity();
@@ -68,29 +84,39 @@ struct Sighting {
 };
 
 struct TrackResult {
-  std::optional<Sighting> sighting;
-  Miss miss = Miss::kNone;  ///< kNone exactly when there is a sighting
+  std::optional<Sighting> sighting;   ///< tracked or ambiguous
+  std::optional<Sighting> predicted;  ///< without a sighting, while the last one is fresh
+  Miss miss = Miss::kNone;            ///< kNone exactly when there is a sighting
+
+  TrackState State() const {
+    if (sighting) return sighting->state;
+    return predicted ? TrackState::kPredicted : TrackState::kLost;
+  }
 };
 
-/// Follows one tag from frame to frame. The same frames in the same order give the same sightings.
+/// Follows tags from frame to frame, each by itself: one robot's, or several robots' with an id
+/// each. The same frames in the same order give the same sightings.
 class TagTracker {
  public:
-  /// now_s: the steady clock of Frame, for the latency alone; none leaves it NaN.
-  /// std::invalid_argument for an id that the family lacks.
+  /// now_s: the steady clock of Frame, for the latency alone; none leaves it NaN. further_ids:
+  /// robots beside options.id. std::invalid_argument for an id that the family lacks.
   TagTracker(const CameraModel& camera, const TagOptions& options,
-             std::function<double()> now_s = {});
+             std::function<double()> now_s = {}, const std::vector<int>& further_ids = {});
   ~TagTracker();
   TagTracker(TagTracker&&) noexcept;
   TagTracker& operator=(TagTracker&&) noexcept;
 
-  /// std::invalid_argument when the frame's size is not the camera's.
+  /// The tag of options.id. std::invalid_argument when the frame's size is not the camera's.
   TrackResult Track(const Frame& frame);
+  /// The same of every id, options.id first.
+  std::vector<TrackResult> TrackAll(const Frame& frame);
   /// The next frame is searched as a whole.
   void Forget();
 
  private:
-  class Search;
-  std::unique_ptr<Search> search_;
+  class FollowedTag;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace rift::vision

@@ -15,10 +15,13 @@ namespace rift::vision {
 struct TrackParts {
   CameraSession& session;
   const SessionOptions& options;
-  /// Takes a row of the log; false when `t_s` is not later than that of the row before.
+  /// Robots beside the session's tag.
+  std::vector<int> further_ids;
+  /// Takes a row of the log, from the first sighting of a tag on one for each picture and tag:
+  /// seen, predicted or lost (no pose). False when `t_s` is not later than that of the row before.
   std::function<bool(double t_s, const Sighting& sighting)> log;
   /// Shows a moment of the run, `moved_m` being the largest so far; false when the user has asked
-  /// to end. None: no window.
+  /// to end. A recording's last picture stays until then. None: no window.
   std::function<bool(const std::optional<Frame>& frame, const std::optional<Sighting>& sighting,
                      const CaptureStatus& status, const std::optional<double>& moved_m)>
       show;
@@ -36,9 +39,10 @@ struct TrackRun {
   CaptureStatus status;
   bool is_recording = false;
   int frames = 0;
-  int rows = 0;                 ///< of the log
-  std::array<int, 7> misses{};  ///< by Miss
-  int repeated = 0;             ///< sightings that were not later than the one before
+  int rows = 0;  ///< of the log, with a pose that was measured
+  std::array<int, EnumNames(Miss{}).size()> misses{};        ///< by Miss
+  std::array<int, EnumNames(TrackState{}).size()> states{};  ///< pictures by TrackState
+  int repeated = 0;  ///< sightings that were not later than the one before
   int most_tags_of_this_id = 1;
   double zero_s = 0.0;  ///< of the rows' times, on the steady clock of this machine
   double first_t_s = 0.0, last_t_s = 0.0;  ///< of the rows

@@ -14,6 +14,7 @@ namespace rift::vision {
 struct WorldPoint {
   Eigen::Vector3d p_in_world = Eigen::Vector3d::Zero();  ///< metres, z = 0 on the floor
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  std::string name;  ///< for messages: "tag 3"
 };
 
 /// Poses the camera by four or more points (both planar solutions [Collins and Bartoli 2014], the
@@ -24,9 +25,10 @@ WorldFrame WorldFromPoints(const CameraModel& camera, const std::vector<WorldPoi
                            const std::string& origin);
 
 /// The same from reference tags; `tags` holds where the middle of each lies, `seen` what was
-/// detected. Tags that are not seen are left out; throws as above when fewer than four are left.
+/// detected. Tags that are not seen are left out; throws as above when fewer than four are left,
+/// and when they do not fit each other within `limit_m` (see CheckPoints).
 WorldFrame WorldFromTags(const CameraModel& camera, const std::vector<ReferenceMark>& tags,
-                         const std::vector<TagDetection>& seen);
+                         const std::vector<TagDetection>& seen, double limit_m);
 
 /// Origin on the floor below the robot's tag, x where the robot looks, z along the tag's normal;
 /// several sightings of the robot at rest are averaged. The residual is their scatter, RMS.

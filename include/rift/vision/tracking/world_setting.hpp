@@ -47,6 +47,8 @@ struct WorldSetting {
   CameraSession& session;
   const SessionOptions& options;
   std::function<bool()> is_stopped;
+  /// One line for the user; none: nothing is said.
+  std::function<void(const std::string&)> say = {};
 
   /// Throws when no picture will come any more or the user has ended it.
   void ThrowIfOver() const;
