@@ -72,10 +72,17 @@ class ColumnMap {
     }
     for (size_t column = 0; column < taken.size(); ++column) {
       if (!taken[column]) channels_.push_back(column);
+      if (header[column] == "track_state") state_ = column;
     }
   }
 
   const std::vector<size_t>& Channels() const { return channels_; }
+
+  /// rift track marks what it has not measured for certain: 0 is tracked, all else is predicted,
+  /// ambiguous or lost.
+  bool IsTracked(const csv::RowReader& row) const {
+    return !state_ || !(row.Cells()[*state_] != 0.0);
+  }
 
   StampedPose PoseOf(const csv::RowReader& row) const {
     StampedPose pose;
@@ -99,12 +106,26 @@ class ColumnMap {
   const std::string& name_;
   std::vector<Source> fields_;
   std::vector<size_t> channels_;
+  std::optional<size_t> state_;
 };
 
 void AddPose(LogRows& rows, const StampedPose& pose, const std::string& name, int line) {
   CheckMagnitudes(pose, name, line);
   if (std::isnan(pose.yaw_rad) && !rows.first_line_without_yaw) rows.first_line_without_yaw = line;
   rows.trajectory.poses.push_back(pose);
+}
+
+/// A log of several robots has their rows among each other.
+void RequireOneRobot(const Trajectory& trajectory, const std::string& name) {
+  for (const Channel& channel : trajectory.channels) {
+    if (channel.name != "tag_id" || channel.values.empty()) continue;
+    const auto [least, greatest] =
+        std::minmax_element(channel.values.begin(), channel.values.end());
+    if (*least == *greatest) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: it holds several robots, tags {:g} to {:g}: keep the rows of one tag_id",
+                    name, *least, *greatest));
+  }
 }
 
 void ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& names,
@@ -114,11 +135,16 @@ void ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& name
     rows.trajectory.channels.push_back({row.Columns()[column], {}});
   }
   while (row.Next()) {
+    if (!columns.IsTracked(row)) {
+      ++rows.untracked;
+      continue;
+    }
     AddPose(rows, columns.PoseOf(row), name, row.Line());
     for (size_t i = 0; i < columns.Channels().size(); ++i) {
       rows.trajectory.channels[i].values.push_back(row.Cells()[columns.Channels()[i]]);
     }
   }
+  RequireOneRobot(rows.trajectory, name);
 }
 
 StampedPose TumPose(const csv::RowReader& row, const std::string& name) {

@@ -16,6 +16,7 @@ Format FormatFromHeader(std::string_view text, const std::string& name);
 struct LogRows {
   Trajectory trajectory;
   std::optional<int> first_line_without_yaw;
+  size_t untracked = 0;  ///< rows that say themselves that their pose was not measured for certain
 };
 
 /// kAuto stands for the authors' header. Throws std::invalid_argument `name:line: ...`.

@@ -121,6 +121,10 @@ Log ReadLog(std::string_view text, const std::string& name, Format format) {
   if (log.format == Format::kRift) text = WithoutTornRow(text, log);
   LogRows rows = ReadRows(text, name, log.format);
   log.trajectory = std::move(rows.trajectory);
+  if (rows.untracked > 0) {
+    log.notes.push_back(fmt::format(
+        "{} rows are left out: by their track_state predicted, ambiguous or lost", rows.untracked));
+  }
   NoteDoubtfulAngles(log);
   ConvertUnitsAndFrame(log);
   if (!TimeRises(log.trajectory)) SortByTime(log);

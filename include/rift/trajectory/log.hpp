@@ -37,6 +37,8 @@ struct Log {
 };
 
 /// Reads a whole log or throws std::invalid_argument with one line `name:row: what is wrong`.
+/// Rows whose column track_state is not 0 (rift track: predicted, ambiguous, lost) are left out and
+/// noted; a log of several tag_id is refused.
 /// Rows out of order are sorted by time and of rows with equal time the last is kept, both noted.
 /// Refused: NaN or infinite values, |x|, |y| or |z| above 1e6 m, |t| above 1e12 s, angles above 1e6
 /// (degrees or radians), ragged rows, two columns of one name, fewer than two poses, a path of zero

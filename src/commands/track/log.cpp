@@ -26,11 +26,11 @@ void TrackLog::Open() {
 }
 
 bool TrackLog::Add(double t_s, const vision::Sighting& sighting) {
-  if (t_s <= last_t_s_) return false;
+  const auto [last, is_first] = last_t_s_.try_emplace(sighting.tag_id, t_s);
+  if (!is_first && t_s <= last->second) return false;
+  last->second = t_s;
   if (!file_.is_open()) Open();
   file_ << report::SightingRow(t_s, sighting);
-  last_t_s_ = t_s;
-  ++rows_;
   if (t_s - flushed_t_s_ < kFlushEvery_s) return true;
   flushed_t_s_ = t_s;
   file_.flush();

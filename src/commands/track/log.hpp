@@ -2,7 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
-#include <limits>
+#include <map>
 
 #include "rift/vision/tracking/tag_tracker.hpp"
 
@@ -14,22 +14,19 @@ class TrackLog {
  public:
   explicit TrackLog(std::filesystem::path path) : path_(std::move(path)) {}
 
-  /// `t_s` must be later than that of the row before; a sighting at or before it is left out.
+  /// `t_s` must be later than that of the row before of the same tag; a sighting at or before it is
+  /// left out.
   /// Throws std::runtime_error when the file cannot be written.
   bool Add(double t_s, const vision::Sighting& sighting);
   void Close();
-
-  int Rows() const { return rows_; }
-  const std::filesystem::path& Path() const { return path_; }
 
  private:
   void Open();
 
   std::filesystem::path path_;
   std::ofstream file_;
-  double last_t_s_ = -std::numeric_limits<double>::infinity();
+  std::map<int, double> last_t_s_;  // by tag
   double flushed_t_s_ = 0.0;
-  int rows_ = 0;
 };
 
 }  // namespace rift::commands

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include "rift/commands/arguments/flags.hpp"
@@ -45,6 +46,20 @@ void CheckLogName(const TrackRequest& request) {
   CheckOutputs(inputs, outputs);
 }
 
+/// Hours of a session are not replaced by a slip of the shell's history.
+void RefuseOverwriting(const TrackRequest& request) {
+  std::error_code not_there;
+  std::vector<fs::path> outputs{request.out};
+  if (!request.calibrate) outputs.push_back(RunFileOf(request.out));
+  for (const fs::path& output : outputs) {
+    if (request.force || request.out.empty() || !fs::exists(output, not_there)) continue;
+    throw std::invalid_argument(
+        fmt::format("--out {}: {} is there already: name another file, or give --force to replace "
+                    "it",
+                    request.out, output.string()));
+  }
+}
+
 void CheckTracking(const TrackRequest& request) {
   if (request.camera.empty()) throw std::invalid_argument("--camera is missing");
   if (request.calibration.empty()) {
@@ -65,6 +80,16 @@ void CheckCalibrating(const TrackRequest& request) {
     throw std::invalid_argument("--calibrate wants either --images DIR or --camera");
   }
   if (request.out.empty()) throw std::invalid_argument("--out CAM.yaml is missing");
+}
+
+void CheckIds(const std::vector<int>& ids) {
+  std::set<int> seen;
+  for (const int id : ids) {
+    if (!seen.insert(id).second) {
+      throw std::invalid_argument(
+          fmt::format("--id: {} is named twice: each robot has its own", id));
+    }
+  }
 }
 
 /// `13x9`
@@ -95,13 +120,31 @@ void AddCalibrationFlags(CLI::App& app, TrackRequest& request) {
 void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_option("EXPERIMENT", request.experiment, "YAML file; its key track: holds the settings");
   AddSetFlag(app, request.overrides, "track.tag.id=3");
-  app.add_option("--camera", request.camera,
-                 "device, stream, video, or quoted pattern of pictures in the order of their names")
+  app.add_option(
+         "--camera", request.camera,
+         "device, stream, video, or quoted pattern of pictures in the order of the numbers in "
+         "their names")
       ->type_name("/dev/video0|URL|FILE|'GLOB'");
   app.add_option("--calibration", request.calibration,
                  "of the camera: ROS camera_info, OpenCV's, the authors', or from --calibrate")
       ->type_name("CAM.yaml");
   app.add_option("--out", request.out, "the log; with --calibrate, the calibration")
+      ->type_name("FILE");
+  app.add_flag("--force", request.force,
+               "replace what --out names, and a better world frame of the calibration");
+  app.add_option("--id", request.ids,
+                 "the robot's tag [track.tag.id]; several robots go into one log, a row each")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 586))
+      ->type_name("N,N,...");
+  app.add_option("--tag-height", request.tag_height_m,
+                 "of the tag above the floor "
+                 "[track.tag.height_m]")
+      ->check(InRange(0.0, 2.0))
+      ->type_name("m");
+  app.add_option("--times", request.times,
+                 "when the pictures of a pattern were taken: a line each, seconds, or name and "
+                 "seconds [the numbers in their names, at --fps a second]")
       ->type_name("FILE");
   app.add_option("--fps", request.fps, "asked of a device; rate of a pattern of pictures")
       ->check(InRange(0.1, 1000.0))
@@ -128,7 +171,11 @@ fs::path RunFileOf(const fs::path& log) {
   return fs::path(log).replace_extension().string() + ".run.json";
 }
 
-void TrackRequest::Check() const { calibrate ? CheckCalibrating(*this) : CheckTracking(*this); }
+void TrackRequest::Check() const {
+  calibrate ? CheckCalibrating(*this) : CheckTracking(*this);
+  CheckIds(ids);
+  RefuseOverwriting(*this);
+}
 
 void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const TrackRequest&)>& track) {
   const auto request = std::make_shared<TrackRequest>();

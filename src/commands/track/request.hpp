@@ -20,6 +20,10 @@ struct TrackRequest {
   std::string world;  ///< "first", or a file with tags or points
   std::string path;
   std::string record_waypoints;
+  std::vector<int> ids;  ///< of the robots' tags; none: track.tag.id
+  std::optional<double> tag_height_m;
+  bool force = false;
+  std::string times;  ///< file with the times of a pattern of pictures
   std::optional<double> fps;
   std::optional<double> duration_s;
   bool view = false;

@@ -24,7 +24,9 @@
 #include "rift/vision/calibration/chessboard.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/tracking/tag_visibility.hpp"
 #include "rift/vision/tracking/track_run.hpp"
+#include "rift/vision/tracking/world_check.hpp"
 #include "rift/vision/tracking/world_setting.hpp"
 
 namespace rift::commands {
@@ -40,6 +42,9 @@ experiment::TrackOptions OptionsOf(const TrackRequest& request) {
   experiment::TrackOptions options =
       experiment::LoadExperiment(path, request.overrides, read).track;
   if (request.fps) options.capture.fps = *request.fps;
+  options.capture.times = request.times;
+  if (!request.ids.empty()) options.tag.id = request.ids.front();
+  if (request.tag_height_m) options.tag.height_m = *request.tag_height_m;
   return options;
 }
 
@@ -84,14 +89,6 @@ void TakeSize(const TrackRequest& request, vision::CameraSession& session) {
                   request.calibration, session.camera().width_px, session.camera().height_px));
 }
 
-/// The comment lines that a file begins with, where people wrote what they know of the camera.
-std::string HeadOf(const std::string& text) {
-  std::size_t end = 0;
-  while (end < text.size() && text[end] == '#')
-    end = std::min(text.find('\n', end), text.size() - 1) + 1;
-  return text.substr(0, end);
-}
-
 vision::WorldFrame WorldFor(const TrackRequest& request, const vision::WorldSetting& setting) {
   if (request.world == "first") return WorldFromRobot(setting);
   const vision::FloorMarks marks =
@@ -100,11 +97,28 @@ vision::WorldFrame WorldFor(const TrackRequest& request, const vision::WorldSett
                             : WorldFromFloorTags(setting, marks.tags);
 }
 
+/// Throws std::invalid_argument when the file holds a better frame than the new one.
+void RefuseWorse(const TrackRequest& request, const vision::CameraModel& camera,
+                 const vision::WorldFrame& next) {
+  if (request.force || !camera.world) return;
+  const auto reason = vision::IsWorseThan(next, *camera.world);
+  if (!reason) return;
+  throw std::invalid_argument(
+      fmt::format("--world: {} is left as it is, since {}: give --force to "
+                  "replace it all the same",
+                  request.calibration, *reason));
+}
+
 void SetAndSaveWorld(const TrackRequest& request, const std::function<bool()>& is_stopped,
                      vision::CameraSession& session) {
-  session.SetWorld(WorldFor(request, {session, request.session, is_stopped}));
-  files::WriteFile(request.calibration, HeadOf(files::ReadFile(request.calibration)) +
-                                            vision::WriteCamera(session.camera()));
+  const vision::WorldFrame found =
+      WorldFor(request, {session, request.session, is_stopped, terminal::Say});
+  RefuseWorse(request, session.camera(), found);
+  session.SetWorld(found);
+  files::WriteFile(
+      request.calibration,
+      vision::WriteCamera(session.camera(),
+                          vision::CommentOfCamera(files::ReadFile(request.calibration))));
   const vision::WorldFrame& world = *session.camera().world;
   terminal::Say(fmt::format("world frame from {}, {:.2f} mm off at its points, is now in {}",
                             world.origin, 1e3 * world.residual_m, request.calibration));
@@ -125,6 +139,29 @@ int Report(const TrackRequest& request, const vision::CameraModel& camera,
   return run.rows > 0 ? terminal::kDone : terminal::kNotReached;
 }
 
+/// What is wrong with the poses to come, while it can still be changed.
+void SayWhatToExpect(const TrackRequest& request, const vision::CameraSession& session) {
+  if (!session.camera().world) {
+    terminal::Say(fmt::format(
+        "note: {} holds no world frame: the poses are in the camera's own frame (z below 0, no "
+        "floor to hold the tag to); rift track --world sets one",
+        request.calibration));
+  }
+  const auto small = vision::SmallTagWarning(session.camera(), session.tag());
+  if (small) terminal::Say("warning: " + *small);
+}
+
+/// An old log beside the run file of a new one would be taken for its own.
+void RemoveOld(const fs::path& log) {
+  fs::remove(log);
+  fs::remove(RunFileOf(log));
+}
+
+std::vector<int> FurtherIds(const TrackRequest& request) {
+  if (request.ids.empty()) return {};
+  return {request.ids.begin() + 1, request.ids.end()};
+}
+
 int TrackRobot(const TrackRequest& request) {
   experiment::TrackOptions options = OptionsOf(request);
   view::TrackView::Content content = ContentOf(request);
@@ -139,11 +176,14 @@ int TrackRobot(const TrackRequest& request) {
     SetAndSaveWorld(request, is_stopped, session);
     if (request.out.empty()) return terminal::kDone;
   }
+  SayWhatToExpect(request, session);
+  if (request.force) RemoveOld(request.out);
   session.Restart();  // what was read so far of a recording belongs to its log as well
   TrackLog log(request.out);
   const auto view = ViewFor(request, session.camera(), std::move(content));
   vision::TrackParts parts{.session = session,
                            .options = request.session,
+                           .further_ids = FurtherIds(request),
                            .log = [&log](double t_s, const auto& s) { return log.Add(t_s, s); },
                            .duration_s = request.duration_s,
                            .is_stopped = is_stopped,
@@ -181,8 +221,8 @@ int CalibrateAndSave(const TrackRequest& request) {
     return terminal::kNotReached;
   }
   calibration.camera.name = fs::path(request.out).stem().string();
-  files::WriteFile(request.out, report::CalibrationComment(calibration) +
-                                    vision::WriteCamera(calibration.camera));
+  files::WriteFile(request.out, vision::WriteCamera(calibration.camera,
+                                                    report::CalibrationComment(calibration)));
   terminal::Say(fmt::format("calibration: {}", request.out));
   return terminal::kDone;
 }

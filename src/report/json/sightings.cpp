@@ -29,7 +29,8 @@ std::array<double, 3> RollPitchYaw(const Eigen::Matrix3d& turn) {
 std::string SightingsHeader() {
   std::string line =
       "t_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad,target_x_m,target_y_m,frame,latency_s,mode,"
-      "hamming,margin_grey,edge_px,reprojection_px,other_reprojection_px,tags_of_this_id";
+      "hamming,margin_grey,edge_px,reprojection_px,other_reprojection_px,tags_of_this_id,"
+      "track_state,tag_id,on_floor";
   for (int i = 0; i < 6; ++i) {
     for (int k = i; k < 6; ++k) {
       const char* unit = k < 3 ? "m2" : i < 3 ? "m_rad" : "rad2";
@@ -40,18 +41,24 @@ std::string SightingsHeader() {
 }
 
 std::string SightingRow(double t_s, const vision::Sighting& s) {
+  const bool has_pose = s.state != vision::TrackState::kLost;
+  const bool is_seen = has_pose && s.state != vision::TrackState::kPredicted;
+  const auto if_seen = [&](double value) { return is_seen ? value : std::nan(""); };
+  const auto if_posed = [&](double value) { return has_pose ? value : std::nan(""); };
   std::string line;
   Append(line, t_s);
-  for (const double value : s.map_from_tag.translation()) Append(line, value);
-  for (const double angle : RollPitchYaw(s.map_from_tag.linear())) Append(line, angle);
+  for (const double value : s.map_from_tag.translation()) Append(line, if_posed(value));
+  for (const double angle : RollPitchYaw(s.map_from_tag.linear())) Append(line, if_posed(angle));
   for (const double value :
        {std::nan(""), std::nan(""), static_cast<double>(s.frame_index), s.latency_s,
-        static_cast<double>(s.mode), static_cast<double>(s.hamming), s.decision_margin, s.edge_px,
-        s.reprojection_px, s.other_reprojection_px, static_cast<double>(s.tags_of_this_id)}) {
+        if_seen(static_cast<double>(s.mode)), if_seen(s.hamming), if_seen(s.decision_margin),
+        if_seen(s.edge_px), if_seen(s.reprojection_px), if_seen(s.other_reprojection_px),
+        if_seen(s.tags_of_this_id), static_cast<double>(s.state), static_cast<double>(s.tag_id),
+        if_seen(s.is_on_floor ? 1.0 : 0.0)}) {
     Append(line, value);
   }
   for (int i = 0; i < 6; ++i) {
-    for (int k = i; k < 6; ++k) Append(line, s.covariance(i, k));
+    for (int k = i; k < 6; ++k) Append(line, if_posed(s.covariance(i, k)));
   }
   return line + "\n";
 }

@@ -144,7 +144,8 @@ std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& came
 std::string TrackText(const vision::TrackRun& run, int rows);
 
 /// A log of sightings in the rift dialect: its nine columns (the target empty), then latency,
-/// quality and the 6 x 6 covariance's upper triangle in the map's axes.
+/// quality, state and the 6 x 6 covariance's upper triangle in the map's axes. A lost tag's row has
+/// no pose.
 std::string SightingsHeader();
 std::string SightingRow(double t_s, const vision::Sighting& sighting);
 
