@@ -11,6 +11,18 @@ experiment::Experiment ReadExperiment(const std::filesystem::path& file,
                                     [](const std::string& path) { return files::ReadFile(path); });
 }
 
+vision::TagOptions TagOn(const experiment::Experiment& experiment) {
+  vision::TagOptions tag = experiment.track.tag;
+  const auto& terrain = experiment.simulation.terrain;
+  const auto surface = terrain.surfaces.find(terrain.surface);
+  if (tag.ground != vision::Ground::kFlat || surface == terrain.surfaces.end()) return tag;
+  const simulation::Shape shape = surface->second.shape;
+  if (shape == simulation::Shape::kBumps) tag.ground = vision::Ground::kBumps;
+  const bool is_sloped = shape != simulation::Shape::kFlat && shape != simulation::Shape::kBumps;
+  if (is_sloped) tag.ground = vision::Ground::kFree;
+  return tag;
+}
+
 sweep::Inputs FileInputs() {
   return {[](const std::string& path) { return files::ReadIfThere(path); },
           [](const std::string& line) { terminal::Say("note: " + line); }};

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "folder.hpp"
+#include "rift/commands/arguments/inputs.hpp"
 #include "rift/files/files.hpp"
 #include "rift/hardware/camera_poses.hpp"
 #include "rift/hardware/serial_port.hpp"
@@ -79,7 +80,7 @@ class DriveSession::Drivers {
       : request_(request),
         port_(request.port, experiment.hardware.line.baud,
               experiment.hardware.line.write_timeout_s),
-        session_(request.camera, camera, experiment.track.capture, experiment.track.tag) {
+        session_(request.camera, camera, experiment.track.capture, TagOn(experiment)) {
     CheckFirstPicture(request, session_);
     const auto tracker = std::make_shared<vision::TagTracker>(session_.MakeTracker());
     poses_ = std::make_unique<hardware::CameraPoses>(
@@ -128,6 +129,7 @@ class DriveSession::Drivers {
   }
 
   const vision::CameraModel& camera() const { return session_.camera(); }
+  vision::Ground ground() const { return session_.tag().ground; }
 
  private:
   StartGate::Person PersonAtGate(hardware::Operator& person) const {
@@ -191,6 +193,8 @@ hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
   hardware::Operator person(request_.yes);  // first, and last to go: a signal must not end a save
   log_failure_.clear();
   DriveLog log(WriterInto(folder, experiment));
+  // The next setting may be on a ramp, where the tag is not held to the floor.
+  if (drivers_ && drivers_->ground() != TagOn(experiment).ground) Close();
   if (!drivers_) {
     drivers_ =
         std::make_unique<Drivers>(request_, experiment, ReadCameraWithWorld(request_.calibration));

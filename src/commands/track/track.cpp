@@ -39,10 +39,12 @@ experiment::TrackOptions OptionsOf(const TrackRequest& request) {
     return request.experiment.empty() ? std::string("{}") : files::ReadFile(path);
   };
   const std::string path = request.experiment.empty() ? "defaults" : request.experiment;
-  experiment::TrackOptions options =
-      experiment::LoadExperiment(path, request.overrides, read).track;
+  const experiment::Experiment experiment =
+      experiment::LoadExperiment(path, request.overrides, read);
+  experiment::TrackOptions options = experiment.track;
+  options.tag = TagOn(experiment);
   if (request.fps) options.capture.fps = *request.fps;
-  options.capture.times = request.times;
+  if (!request.times.empty()) options.capture.times = request.times;
   if (!request.ids.empty()) options.tag.id = request.ids.front();
   if (request.tag_height_m) options.tag.height_m = *request.tag_height_m;
   return options;

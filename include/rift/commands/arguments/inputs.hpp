@@ -13,6 +13,10 @@ namespace rift::commands {
 experiment::Experiment ReadExperiment(const std::filesystem::path& file,
                                       const std::vector<std::string>& overrides = {});
 
+/// The experiment's tag. Where its surface is bumps, a ramp or a heightfield the tag is not held to
+/// a flat floor (TagOptions::ground): `flat` becomes what the surface allows.
+vision::TagOptions TagOn(const experiment::Experiment& experiment);
+
 /// Files for computation, whose notes go to stderr.
 sweep::Inputs FileInputs();
 
