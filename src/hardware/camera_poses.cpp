@@ -38,7 +38,9 @@ bool IsSamePicture(const vision::TagCorners& a, const vision::TagCorners& b) {
 // A live camera that was silent may come back; one that never spoke will not.
 std::optional<std::string> FaultOf(const vision::CaptureStatus& status) {
   const bool never_spoke = status.state == vision::CameraState::kFrozen && status.delivered == 0;
-  if (!vision::IsFinal(status.state) && !never_spoke) return std::nullopt;
+  // A stream that broke off may come back too, but elsewhere in time: no robot waits for that.
+  const bool broke_off = status.state == vision::CameraState::kReconnecting;
+  if (!vision::IsFinal(status.state) && !never_spoke && !broke_off) return std::nullopt;
   return fmt::format("the camera is {}: {}",
                      vision::EnumNames(status.state)[static_cast<size_t>(status.state)],
                      status.reason);
