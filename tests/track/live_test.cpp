@@ -97,6 +97,7 @@ TEST_CASE("A camera that fails ends the tracking with its state and exit code 3"
   const bool is_raw = fault.name == "black";
   words.insert(words.end(),
                {"--set", is_raw ? "track.capture.format=yuyv" : "track.capture.format=mjpg"});
+  words.insert(words.end(), {"--give-up", "0.3"});
   const bool falls_silent = fault.name == "eio" || fault.name == "hang";
   if (!falls_silent) words.insert(words.end(), {"--set", kPatient});
   const ProcessResult result = RunRift(words);
@@ -153,11 +154,11 @@ TEST_CASE("A reader that is too slow for its http camera leaves pictures out and
   robot.world_from_tag.translation() = Eigen::Vector3d(0.1, 0.05, 0.03);
   const auto jpeg = renderer.Render(robot, vision::PixelFormat::kJpeg, generator).bytes;
   MjpegServer server([&] { return jpeg; }, {.pictures = kPictures});
-  const ProcessResult result =
-      RunRift({"track", "--camera", server.Url(), "--calibration", folder / "cam.yaml", "--out",
-               folder / "log.csv", "--set", "track.tag.acquire_decimate=2", "--set",
-               "track.tag.recheck_every=1", "--set", "track.tag.least_contrast=5", "--set",
-               "track.capture.same_s=60", "--set", kPatient});
+  const ProcessResult result = RunRift(
+      {"track", "--camera", server.Url(), "--calibration", folder / "cam.yaml", "--out",
+       folder / "log.csv", "--set", "track.tag.acquire_decimate=2", "--set",
+       "track.tag.recheck_every=1", "--set", "track.tag.least_contrast=5", "--set",
+       "track.capture.same_s=60", "--set", "track.capture.reconnect_s=0", "--set", kPatient});
   INFO(result.out << result.err);
   CHECK(result.exit_code == 3);
   CHECK_THAT(result.err, Contains("camera unplugged"));

@@ -222,11 +222,56 @@ TEST_CASE("What is wrong with a request for tracking is said in one line") {
     CHECK(result.exit_code == wrong.exit_code);
     CHECK_THAT(result.err, Contains(wrong.says));
   }
-  const ProcessResult other = RunRift(With(Tracking(log), {"--set", "track.tag.id=77"}));
+  const std::string none = folder / "none.csv";
+  const ProcessResult other = RunRift(With(Tracking(none), {"--id", "77"}));
   CHECK(other.exit_code == 1);
   CHECK_THAT(other.err, Contains("the tag was never seen"));
   CHECK_THAT(other.out, Contains("only other tags"));
   CHECK_FALSE(fs::exists(log));
+  CHECK_FALSE(fs::exists(none));
+}
+
+TEST_CASE("A log that is there is replaced only on request, and with its run file") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "log.csv", "hours of work\n");
+  const ProcessResult refused = RunRift(Tracking(folder / "log.csv"));
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, Contains("is there already") && Contains("--force"));
+  CHECK(test::ReadFile(folder / "log.csv") == "hours of work\n");
+  CHECK(RunRift(With(Tracking(folder / "log.csv"), {"--force"})).exit_code == 0);
+  CHECK_THAT(test::ReadFile(folder / "log.csv"), Catch::Matchers::StartsWith("t_s,"));
+}
+
+TEST_CASE("Several robots go into one log, a row each, and one of them is compared at a time") {
+  const test::TemporaryFolder folder;
+  // A reference tag stands in for a second robot.
+  const ProcessResult result = RunRift(With(Tracking(folder / "log.csv"), {"--id", "0,10"}));
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.out, Contains("60 rows"));
+  const ProcessResult gap = RunRift({"gap", kData + "/truth.csv", folder / "log.csv"});
+  CHECK(gap.exit_code == 2);
+  CHECK_THAT(gap.err, Contains("several robots"));
+  CHECK(RunRift(With(Tracking(folder / "twice.csv"), {"--id", "3,3"})).exit_code == 2);
+}
+
+TEST_CASE("A tag that lies elsewhere than told, and a worse frame, are refused by name") {
+  const test::TemporaryFolder folder;
+  const std::string calibration = folder / "cam.yaml";
+  test::WriteText(calibration, test::ReadFile(kCamera));
+  const auto set = [&](const std::string& world) {
+    return RunRift({"track", "--camera", kFrames, "--calibration", calibration, "--world", world});
+  };
+  const ProcessResult kept = set("first");
+  CHECK(kept.exit_code == 2);
+  CHECK_THAT(kept.err, Contains("is left as it is") && Contains("--force"));
+  std::string places = test::ReadFile(kData + "/tags.yaml");
+  places.replace(places.find("-0.24"), 5, "-0.44");
+  test::WriteText(folder / "tags.yaml", places);
+  const ProcessResult wrong = set(folder / "tags.yaml");
+  CHECK(wrong.exit_code == 2);
+  CHECK_THAT(wrong.err, Contains("do not fit what the camera sees"));
+  CHECK(test::ReadFile(calibration) == test::ReadFile(kCamera));
 }
 
 TEST_CASE("Help and the gap load no camera library") {

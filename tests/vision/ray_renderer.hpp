@@ -174,7 +174,8 @@ class RayRenderer {
   void AddNoise(cv::Mat1f& picture) {
     if (noise_grey_ <= 0.0) return;
     for (int y = 0; y < picture.rows; ++y) {
-      const int at = static_cast<int>(random_() % static_cast<unsigned>(noise_.cols - picture.cols));
+      const int at =
+          static_cast<int>(random_() % static_cast<unsigned>(noise_.cols - picture.cols));
       cv::Mat row = picture.row(y);
       cv::add(row, noise_(cv::Rect(at, 0, picture.cols, 1)), row);
     }

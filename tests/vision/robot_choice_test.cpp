@@ -9,7 +9,8 @@ using Places = std::vector<Eigen::Vector3d>;
 
 const Eigen::Vector3d kHere(0.0, 0.0, 0.03), kThere(0.7, 0.0, 0.03);
 
-TEST_CASE("A tag that the robot cannot have reached is ambiguous until nothing speaks for another") {
+TEST_CASE(
+    "A tag that the robot cannot have reached is ambiguous until nothing speaks for another") {
   TagOptions options;
   RobotChoice choice(options);
   CHECK_FALSE(choice.Choose(0.0, {kHere}, true).is_ambiguous);

@@ -1,6 +1,6 @@
 // Sequences of a robot below a camera 1.9 m up, rendered by rays and not by rift's own renderer:
-// how far poses are off, whether their covariance says so, and what becomes of them where the tag is
-// hidden, dazzled or not the only one of its id.
+// how far poses are off, whether their covariance says so, and what becomes of them where the tag
+// is hidden, dazzled or not the only one of its id.
 #include <Eigen/LU>
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -92,8 +92,7 @@ TEST_CASE("Poses hold their error wherever the tag has 20 px, and their covarian
       const double p50_m = statistics::Quantile(errors.off_m, 0.5);
       const double p95_m = statistics::Quantile(errors.off_m, 0.95);
       const double max_m = statistics::Quantile(errors.off_m, 1.0);
-      const double yaw_p95_deg =
-          geometry::DegFromRad(statistics::Quantile(errors.yaw_rad, 0.95));
+      const double yaw_p95_deg = geometry::DegFromRad(statistics::Quantile(errors.yaw_rad, 0.95));
       INFO("focal " << focal_px << " px, tilt " << tilt_deg << " deg: p50 " << 1e3 * p50_m
                     << " mm, p95 " << 1e3 * p95_m << " mm, max " << 1e3 * max_m << " mm; yaw p95 "
                     << yaw_p95_deg << " deg; error over sigma " << errors.SigmaRatio() << ", yaw "
@@ -234,9 +233,8 @@ TEST_CASE("No pose flips in ten thousand frames", "[.]") {
     frame.captured_s = t_s;
     errors.Add(tag, tracker.Track(frame));
   }
-  INFO("unseen " << errors.unseen << ", p95 "
-                 << 1e3 * statistics::Quantile(errors.off_m, 0.95) << " mm, error over sigma "
-                 << errors.SigmaRatio());
+  INFO("unseen " << errors.unseen << ", p95 " << 1e3 * statistics::Quantile(errors.off_m, 0.95)
+                 << " mm, error over sigma " << errors.SigmaRatio());
   CHECK(errors.flips == 0);
   CHECK(errors.unmarked_jumps == 0);
   CHECK(errors.unseen == 0);

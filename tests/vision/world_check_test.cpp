@@ -17,12 +17,12 @@ std::vector<WorldPoint> SixTags(const CameraModel& camera) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> noise(0.0, 0.1);
   std::vector<WorldPoint> points;
-  const std::vector<Eigen::Vector2d> places{{-0.5, -0.2}, {0.0, -0.25}, {0.5, -0.2},
-                                            {-0.45, 0.35}, {0.05, 0.3}, {0.55, 0.35}};
+  const std::vector<Eigen::Vector2d> places{{-0.5, -0.2},  {0.0, -0.25}, {0.5, -0.2},
+                                            {-0.45, 0.35}, {0.05, 0.3},  {0.55, 0.35}};
   for (const Eigen::Vector2d& place : places) {
     WorldPoint point{{place.x(), place.y(), 0.0}, {}, "tag " + std::to_string(points.size() + 1)};
-    point.pixel = PixelsFromPoints(camera, {camera.world->world_from_camera.inverse() *
-                                            point.p_in_world})[0];
+    point.pixel =
+        PixelsFromPoints(camera, {camera.world->world_from_camera.inverse() * point.p_in_world})[0];
     point.pixel += Eigen::Vector2d(noise(random), noise(random));
     points.push_back(point);
   }
@@ -45,7 +45,8 @@ TEST_CASE("A tag that lies elsewhere, two that are swapped and a stretched axis 
   }
   SECTION("two swapped") {
     std::swap(points[1].p_in_world, points[5].p_in_world);
-    CHECK_THROWS_WITH(CheckPoints(camera, points, kLimit_m), Contains("tag 2 and tag 6 are swapped"));
+    CHECK_THROWS_WITH(CheckPoints(camera, points, kLimit_m),
+                      Contains("tag 2 and tag 6 are swapped"));
   }
   SECTION("two swapped of four") {
     points.resize(5);

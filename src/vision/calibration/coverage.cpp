@@ -149,9 +149,10 @@ std::string TextOf(const ViewPlace& place) {
   const std::string column = kColumns[third(place.x)];
   if (!where.empty() && !column.empty()) where += " ";
   where += column;
-  where = where.empty() ? "in the middle of the picture"
-                        : fmt::format("at the {} {} of the picture", where,
-                                      third(place.x) != 1 && third(place.y) != 1 ? "corner" : "edge");
+  where = where.empty()
+              ? "in the middle of the picture"
+              : fmt::format("at the {} {} of the picture", where,
+                            third(place.x) != 1 && third(place.y) != 1 ? "corner" : "edge");
   return fmt::format("hold the board {}, {}, {}", where,
                      place.size > 0.4 ? "near, so that it fills half of the picture"
                                       : "farther away, a quarter of the picture wide",

@@ -50,7 +50,8 @@ std::string TextOf(const std::string& path) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Width and height as a PNG states them (ISO 15948 11.2.2), without decoding; 0 for another format.
+/// Width and height as a PNG states them (ISO 15948 11.2.2), without decoding; 0 for another
+/// format.
 double PngPixels(const std::vector<std::uint8_t>& bytes) {
   constexpr std::array<std::uint8_t, 4> kSignature{0x89, 'P', 'N', 'G'};
   if (bytes.size() < 24 || !std::equal(kSignature.begin(), kSignature.end(), bytes.begin())) {
@@ -66,9 +67,8 @@ class ImageSource : public CameraSource {
  public:
   ImageSource(std::vector<std::string> files, const CaptureOptions& options)
       : files_(std::move(files)), options_(options), opened_s_(SteadyNow_s()) {
-    times_s_ = options.times.empty()
-                   ? TimesByNames(files_, options.fps)
-                   : TimesFromText(TextOf(options.times), options.times, files_);
+    times_s_ = options.times.empty() ? TimesByNames(files_, options.fps)
+                                     : TimesFromText(TextOf(options.times), options.times, files_);
   }
 
   bool IsRecording() const override { return true; }
@@ -80,9 +80,9 @@ class ImageSource : public CameraSource {
         throw CameraError(CameraState::kWrongFormat,
                           fmt::format("{}: none of {} pictures can be decoded", files_[0], next_));
       }
-      throw CameraError(CameraState::kEnded,
-                        fmt::format("all {} pictures were read, {} of them passed over", next_,
-                                    skipped_));
+      throw CameraError(
+          CameraState::kEnded,
+          fmt::format("all {} pictures were read, {} of them passed over", next_, skipped_));
     }
     const std::size_t index = next_++;
     frame.captured_s = opened_s_ + times_s_[index];

@@ -60,9 +60,8 @@ double UsualStep(const std::vector<double>& numbers) {
   for (std::size_t i = 1; i < numbers.size(); ++i) steps.push_back(numbers[i] - numbers[i - 1]);
   if (steps.empty()) return 1.0;
   const double least = *std::min_element(steps.begin(), steps.end());
-  const bool are_multiples = std::all_of(steps.begin(), steps.end(), [least](double step) {
-    return std::fmod(step, least) == 0.0;
-  });
+  const bool are_multiples = std::all_of(
+      steps.begin(), steps.end(), [least](double step) { return std::fmod(step, least) == 0.0; });
   return are_multiples ? least : statistics::Median(steps);
 }
 
@@ -79,8 +78,8 @@ TimeLine ParseLine(std::string line, const std::string& where) {
   char* end = nullptr;
   const double t_s = word.empty() ? 0.0 : std::strtod(word.back().c_str(), &end);
   if (word.empty() || word.size() > 2 || *end != '\0') {
-    throw std::invalid_argument(fmt::format(
-        "{}: '{}' is no time: seconds, or a picture's name and seconds", where, line));
+    throw std::invalid_argument(
+        fmt::format("{}: '{}' is no time: seconds, or a picture's name and seconds", where, line));
   }
   return {word.size() == 2 ? word[0] : "", t_s};
 }
@@ -138,8 +137,7 @@ std::vector<double> TimesFromText(std::string_view text, const std::string& sour
   for (std::size_t i = 0; i < files.size(); ++i) {
     const auto named = by_name.find(std::filesystem::path(files[i]).filename().string());
     if (named == by_name.end() && i >= in_order.size()) {
-      throw std::invalid_argument(
-          fmt::format("{}: no time for the picture {}", source, files[i]));
+      throw std::invalid_argument(fmt::format("{}: no time for the picture {}", source, files[i]));
     }
     times_s.push_back(named != by_name.end() ? named->second : in_order[i]);
     if (i > 0 && times_s[i] <= times_s[i - 1]) {

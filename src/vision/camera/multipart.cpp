@@ -78,8 +78,8 @@ bool MultipartReader::SkipToBoundary() {
     return true;
   }
   if (waiting_.size() > most_bytes_) {
-    throw std::runtime_error(fmt::format("{} bytes without the stream's boundary '{}'",
-                                         waiting_.size(), delimiter_));
+    throw std::runtime_error(
+        fmt::format("{} bytes without the stream's boundary '{}'", waiting_.size(), delimiter_));
   }
   return false;
 }

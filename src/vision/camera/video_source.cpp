@@ -114,7 +114,9 @@ class NetworkSource : public CameraSource {
     Break("FFmpeg cannot open it");
     return false;
   }
-  void Break(const char* reason) { again_.Broke(fmt::format("{}: {}", url_, reason), SteadyNow_s()); }
+  void Break(const char* reason) {
+    again_.Broke(fmt::format("{}: {}", url_, reason), SteadyNow_s());
+  }
 
   std::string url_;
   CaptureOptions options_;

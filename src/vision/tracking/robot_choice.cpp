@@ -100,8 +100,7 @@ std::optional<std::size_t> RobotChoice::Mover(double t_s,
 }
 
 void RobotChoice::Resolve(double t_s) {
-  std::erase_if(rivals_,
-                [&](const Rival& rival) { return t_s - rival.seen_s > options_.doubt_s; });
+  std::erase_if(rivals_, [&](const Rival& rival) { return t_s - rival.seen_s > options_.doubt_s; });
   if (!doubt_since_s_) return;
   const bool drove_away = (*robot_in_map_ - doubt_in_map_).norm() > kDroveAway_m;
   const bool rivals_rest = std::all_of(rivals_.begin(), rivals_.end(), [](const Rival& rival) {

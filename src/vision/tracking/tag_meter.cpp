@@ -8,7 +8,8 @@
 namespace rift::vision {
 namespace {
 
-/// From here on the sensor clips: white spreads over black, and a tag that looks larger is no nearer.
+/// From here on the sensor clips: white spreads over black, and a tag that looks larger is no
+/// nearer.
 constexpr double kClipped_grey = 245.0;
 
 }  // namespace
@@ -50,8 +51,7 @@ TagPose TagMeter::Choose(const TagPoses& poses, const FittedSquare& square,
 
 TrackResult TagMeter::Believe(const FittedSquare& square, const ReadBits& bits, TrackMode mode,
                               const std::optional<Eigen::Vector3d>& normal_in_camera) const {
-  const std::optional<TagPoses> poses =
-      SolveTagPoses(camera_, square.corners, options_.size_m);
+  const std::optional<TagPoses> poses = SolveTagPoses(camera_, square.corners, options_.size_m);
   if (!poses) return {.miss = Miss::kNoPose};
   Eigen::Vector3d up = poses->best.camera_from_tag.linear().col(2);
   if (camera_.world) {
@@ -60,8 +60,7 @@ TrackResult TagMeter::Believe(const FittedSquare& square, const ReadBits& bits, 
     up = *normal_in_camera;
   }
   Sighting sighting;
-  const TagPose pose =
-      Choose(*poses, square, up, sighting.is_on_floor);
+  const TagPose pose = Choose(*poses, square, up, sighting.is_on_floor);
   if (pose.reprojection_px > options_.max_fit_px) return {.miss = Miss::kNoPose};
   sighting.camera_from_tag = pose.camera_from_tag;
   sighting.map_from_tag = map_from_camera_ * pose.camera_from_tag;

@@ -20,8 +20,7 @@ class TagMeter {
   /// `normal_in_camera` tells which of the two planar poses is likelier. The sighting lacks what is
   /// not of the picture: index, times, state, the number of tags.
   TrackResult Measure(const GreyPatch& patch, const TagCorners& guess, const TagCells& cells,
-                      TrackMode mode,
-                      const std::optional<Eigen::Vector3d>& normal_in_camera) const;
+                      TrackMode mode, const std::optional<Eigen::Vector3d>& normal_in_camera) const;
 
  private:
   TrackResult Believe(const FittedSquare& square, const ReadBits& bits, TrackMode mode,

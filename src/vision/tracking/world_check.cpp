@@ -111,8 +111,7 @@ std::vector<double> LeaveOneOut_m(const CameraModel& camera,
   return off_m;
 }
 
-void CheckPoints(const CameraModel& camera, const std::vector<WorldPoint>& points,
-                 double limit_m) {
+void CheckPoints(const CameraModel& camera, const std::vector<WorldPoint>& points, double limit_m) {
   const std::vector<double> off_m = LeaveOneOut_m(camera, points);
   const double worst_m = *std::max_element(off_m.begin(), off_m.end());
   const double residual_m = Residual_m(camera, points);
@@ -139,9 +138,11 @@ std::optional<double> ScaleByTag(const CameraModel& camera, const std::vector<Ta
 
 void CheckScale(double scale, double size_m, double tolerance) {
   if (std::abs(scale - 1.0) <= tolerance) return;
-  const char* reason = "is the tag's size right (--set track.tag.size_m), and are the places metres?";
+  const char* reason =
+      "is the tag's size right (--set track.tag.size_m), and are the places metres?";
   if (scale > 80.0 && scale < 125.0) reason = "the places are centimetres: x_m and y_m are metres";
-  if (scale > 800.0 && scale < 1250.0) reason = "the places are millimetres: x_m and y_m are metres";
+  if (scale > 800.0 && scale < 1250.0)
+    reason = "the places are millimetres: x_m and y_m are metres";
   if (scale > 31.0 && scale < 49.0) reason = "the places are inches: x_m and y_m are metres";
   throw std::invalid_argument(
       fmt::format("in this frame the robot's tag is {:.4g} m wide, printed it is {:g} m: {}",
@@ -156,9 +157,9 @@ std::optional<std::string> IsWorseThan(const WorldFrame& next, const WorldFrame&
                             ? next.residual_m > 1.5 * present.residual_m + kSame_m
                             : was_from_floor;
   if (!is_worse) return std::nullopt;
-  return fmt::format("it holds a frame from {}, {:.2f} mm off; the new one is from {}, {:.2f} mm off",
-                     present.origin, 1e3 * present.residual_m, next.origin,
-                     1e3 * next.residual_m);
+  return fmt::format(
+      "it holds a frame from {}, {:.2f} mm off; the new one is from {}, {:.2f} mm off",
+      present.origin, 1e3 * present.residual_m, next.origin, 1e3 * next.residual_m);
 }
 
 }  // namespace rift::vision

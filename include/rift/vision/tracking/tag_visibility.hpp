@@ -13,9 +13,9 @@ inline constexpr double kLeastSide_px = 16.0;
 /// From here on a pose is good to the errors that docs/concepts.md states.
 inline constexpr double kGoodSide_px = 20.0;
 
-/// The shortest side, in pixels, of the tag that lies at `p_in_world` (its middle, metres) and looks
-/// away from the camera, which is how it looks smallest; the lens left out. Needs a world frame;
-/// none behind the camera.
+/// The shortest side, in pixels, of the tag that lies at `p_in_world` (its middle, metres) and
+/// looks away from the camera, which is how it looks smallest; the lens left out. Needs a world
+/// frame; none behind the camera.
 std::optional<double> ShortSide_px(const CameraModel& camera, double size_m,
                                    const Eigen::Vector3d& p_in_world);
 

@@ -9,9 +9,9 @@
 
 namespace rift::vision {
 
-/// How far each point lies off where all the others put it, metres on its plane, in the order of the
-/// points. Of four points, where three that are left put a camera in up to four places, the nearest
-/// place counts, so that it is a lower bound.
+/// How far each point lies off where all the others put it, metres on its plane, in the order of
+/// the points. Of four points, where three that are left put a camera in up to four places, the
+/// nearest place counts, so that it is a lower bound.
 std::vector<double> LeaveOneOut_m(const CameraModel& camera, const std::vector<WorldPoint>& points);
 
 /// The points when they fit; throws std::invalid_argument, saying which point is wrong or which two
@@ -19,8 +19,8 @@ std::vector<double> LeaveOneOut_m(const CameraModel& camera, const std::vector<W
 /// Names are the points'.
 void CheckPoints(const CameraModel& camera, const std::vector<WorldPoint>& points, double limit_m);
 
-/// The side of the robot's tag as this world frame measures it at `height_m`, over its printed side:
-/// 1 where the frame's metres are metres. None when the tag is not among those seen.
+/// The side of the robot's tag as this world frame measures it at `height_m`, over its printed
+/// side: 1 where the frame's metres are metres. None when the tag is not among those seen.
 std::optional<double> ScaleByTag(const CameraModel& camera, const std::vector<TagDetection>& seen,
                                  int id, double size_m, double height_m);
 
