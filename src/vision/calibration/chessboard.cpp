@@ -224,15 +224,10 @@ std::vector<BoardView> ViewsFromCamera(Capture& capture, const Board& board,
     const std::optional<Frame> frame = capture.Next(kTick_s);
     if (frame) {
       const BoardView view = FindBoard(*frame, board, fmt::format("frame{:06}", frame->index));
-      const bool is_new = collector.Add(view);
+      if (!collector.Add(view)) continue;
       const NextView next = collector.Next(options.good_coverage);
-      if (is_new) {
-        listener.say(
-            fmt::format("view {}: {}; {}", collector.Views().size(), view.name,
-                        next.text.empty() ? "everything is covered" : "next, " + next.text));
-      }
-      if (listener.show && !listener.show(*frame, view, next)) break;
-      if (!is_new) continue;
+      listener.say(fmt::format("view {}: {}; {}", collector.Views().size(), view.name,
+                               next.text.empty() ? "everything is covered" : "next, " + next.text));
     }
     const bool is_plenty =
         collector.Views().size() >= needed && collector.IsCovered(options.good_coverage);

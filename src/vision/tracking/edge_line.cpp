@@ -135,18 +135,4 @@ CornerCovariance CovarianceOf(const std::array<EdgeLine, 4>& sides,
   return CovarianceOf(sides, corners_px, PointVariance_px2(sides), errors);
 }
 
-CornerCovariance PredictedCovariance(const std::array<Eigen::Vector2d, 4>& corners_px,
-                                     double point_sigma_px, const EdgeErrors& errors) {
-  std::array<EdgeLine, 4> sides;
-  for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector2d side = corners_px[(i + 1) % 4] - corners_px[i];
-    const double used_px = MeasuredLength_px(side.norm());
-    sides[i].normal = Eigen::Vector2d(-side.y(), side.x()).normalized();
-    sides[i].middle = 0.5 * (corners_px[i] + corners_px[(i + 1) % 4]);
-    sides[i].count = PointCount(side.norm(), 1.0);
-    sides[i].length2 = sides[i].count * used_px * used_px / 12.0;
-  }
-  return CovarianceOf(sides, corners_px, point_sigma_px * point_sigma_px, errors);
-}
-
 }  // namespace rift::vision

@@ -51,9 +51,4 @@ CornerCovariance CovarianceOf(const std::array<EdgeLine, 4>& sides,
                               const std::array<Eigen::Vector2d, 4>& corners_px,
                               const EdgeErrors& errors);
 
-/// The same for a square that has not been seen: sides of `count` points each, one a pixel, that
-/// scatter by point_sigma_px.
-CornerCovariance PredictedCovariance(const std::array<Eigen::Vector2d, 4>& corners_px,
-                                     double point_sigma_px, const EdgeErrors& errors);
-
 }  // namespace rift::vision

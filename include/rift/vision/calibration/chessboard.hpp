@@ -64,9 +64,6 @@ struct ViewListener {
   std::function<bool()> is_stopped;
   /// One line for the user.
   std::function<void(const std::string&)> say;
-  /// Shows what the camera sees and what view to take next; false when the user has asked to end.
-  /// None: no window.
-  std::function<bool(const Frame& frame, const BoardView& view, const NextView& next)> show = {};
 };
 
 /// The board in each of the pictures, with those that do not show it. Throws std::runtime_error
