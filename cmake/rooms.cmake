@@ -25,7 +25,7 @@ rift_room(gap ROOMS geometry statistics trajectory
 rift_room(odometry ROOMS control gap geometry statistics trajectory
   LIBRARIES Eigen3::Eigen PRIVATE_LIBRARIES fmt::fmt)
 rift_room(search ROOMS statistics
-  PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt)
+  PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt PkgConfig::NLOPT)
 rift_room(simulation ROOMS geometry statistics trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES PkgConfig::ODE PNG::PNG)
 rift_room(vision/camera ROOMS statistics yaml

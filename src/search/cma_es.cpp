@@ -9,6 +9,8 @@ namespace rift::search {
 namespace {
 
 constexpr std::uint64_t kStream = 0x200;
+/// First step size as a share of every axis.
+constexpr double kFirstSpread = 0.25;
 /// Populations stop doubling here: 2^9 times the first.
 constexpr int kMostDoublings = 9;
 
@@ -222,13 +224,11 @@ bool CmaEs::IsDone(double best_known) const {
   return largest < kLastSpread || condition > kLargestCondition;
 }
 
-Restarts::Restarts(const Known& known, const CmaEsOptions& options, int batch, std::uint64_t seed)
+Restarts::Restarts(const Known& known, int batch, std::uint64_t seed)
     : known_(known),
-      options_(options),
       batch_(batch),
       random_(seed, kStream),
-      default_population_(options.population > 0 ? options.population
-                                                 : DefaultPopulation(known.space.Size())) {}
+      default_population_(DefaultPopulation(known.space.Size())) {}
 
 Eigen::VectorXd Restarts::StartPoint() {
   if (runs_ == 0 && std::isfinite(known_.archive.BestLoss())) {
@@ -241,7 +241,7 @@ Eigen::VectorXd Restarts::StartPoint() {
 
 void Restarts::Begin() {
   const Eigen::VectorXd start = StartPoint();
-  double population = default_population_, sigma = options_.sigma;
+  double population = default_population_, sigma = kFirstSpread;
   is_large_ = runs_ == 0 || spent_large_ <= spent_small_;
   if (runs_ > 0 && is_large_) {
     doublings_ = std::min(doublings_ + 1, kMostDoublings);

@@ -75,7 +75,7 @@ class CmaEs {
 /// with short steps: BIPOP (Hansen 2009). The first run starts at the best point known then.
 class Restarts : public Strategy {
  public:
-  Restarts(const Known& known, const CmaEsOptions& options, int batch, std::uint64_t seed);
+  Restarts(const Known& known, int batch, std::uint64_t seed);
 
   std::vector<Point> Ask(int most) override;
   void Tell(std::span<const Evaluation> batch) override;
@@ -88,7 +88,6 @@ class Restarts : public Strategy {
   void FinishGeneration();
 
   const Known& known_;
-  CmaEsOptions options_;
   int batch_;
   statistics::Random random_;
   std::optional<CmaEs> run_;

@@ -5,7 +5,8 @@
 
 #include "archive.hpp"
 #include "cma_es.hpp"
-#include "polish.hpp"
+#include "differential_evolution.hpp"
+#include "local_model.hpp"
 #include "portfolio.hpp"
 #include "rift/search/options.hpp"
 #include "samplers.hpp"
@@ -32,23 +33,18 @@ std::unique_ptr<Strategy> Proposer(const SearchOptions& options, const Known& kn
     case Method::kCorners:
       return std::make_unique<CornerSampler>(known.space, seed);
     case Method::kCmaEs:
-      return std::make_unique<Restarts>(known, options.cmaes, options.batch, seed);
+      return std::make_unique<Restarts>(known, options.batch, seed);
     case Method::kSurrogate:
-      return std::make_unique<Surrogate>(known, options.surrogate, seed);
-    case Method::kPolish:
-      return std::make_unique<Polish>(known, options.polish, seed);
+      return std::make_unique<Surrogate>(known, seed);
+    case Method::kBobyqa:
+      return std::make_unique<LocalModel>(known, seed);
+    case Method::kEvolution:
+      return std::make_unique<DifferentialEvolution>(known, seed);
   }
   throw std::invalid_argument("search: no such strategy");
 }
 
 }  // namespace
-
-void PolishOptions::Check() const {
-  if (last_step > first_step) {
-    throw std::invalid_argument(
-        fmt::format("last_step {} must not exceed first_step {}", last_step, first_step));
-  }
-}
 
 std::unique_ptr<Strategy> MakeStrategy(const SearchOptions& options, const std::vector<Axis>& axes,
                                        int budget, std::uint64_t seed) {
@@ -56,7 +52,6 @@ std::unique_ptr<Strategy> MakeStrategy(const SearchOptions& options, const std::
     throw std::invalid_argument(
         fmt::format("search: a budget of {} evaluations must be at least 1", budget));
   }
-  options.polish.Check();
   auto known = std::make_unique<Known>(axes);
   auto proposer = Proposer(options, *known, budget, seed);
   return std::make_unique<WithoutRepeats>(std::move(known), std::move(proposer), options.batch,

@@ -6,68 +6,75 @@
 namespace rift::search {
 namespace {
 
-/// Share of the budget for corners and space-filling points before anything adapts, and at most so
-/// many points: what the others start from need not grow with a long search.
-constexpr double kExploreShare = 0.2;
-constexpr int kExploreMost = 100;
-/// Share of the exploring points that goes to corners, where simulators often fail first.
+/// Points before anything adapts: so many, so many more for each axis, and at most this share of
+/// the budget. Half of them are corners, where simulators often fail first.
+constexpr int kDesignLeast = 8;
+constexpr int kDesignPerAxis = 4;
+constexpr double kDesignShare = 0.25;
 constexpr double kCornerShare = 0.5;
+/// Share of the points that lie anywhere, while the learners gain and while they do not.
+constexpr double kAnywhereGaining = 0.15;
+constexpr double kAnywhereStuck = 0.6;
 /// Evaluations after which the surrogate proposes no more: its model keeps its size while the
 /// others sharpen.
 constexpr int kSurrogateMost = 600;
-/// Share of all evaluations that polishing gets at most.
-constexpr double kPolishShare = 0.1;
 /// Weight of trying a method that was tried little against one that found much. UCB1 has sqrt(2)
 /// for rewards anywhere in [0, 1]; most batches earn nothing here.
 constexpr double kCuriosity = 0.3;
+/// Evaluations that count as one batch in the records.
+constexpr double kBatch = 8.0;
+/// A better point of a member that asks for one at a time pays as so much of a batch.
+constexpr double kLeastPaid = 1.0;
 /// Share of the records that a batch leaves: a memory of about 30 batches.
 constexpr double kMemory = 0.97;
 /// A batch pays when one of its points is among so many best.
 constexpr double kElite = 10.0;
-/// Share of the later evaluations that explores on. Without, one search in five of the 3pi+ space
-/// of search_study sharpened the same few rough peaks to its end.
-constexpr double kExploreLater = 1.0 / 3.0;
+/// What the local model has earned before it began: it goes first, since where the loss is smooth
+/// it needs a third of the evaluations of the others, and where it is not, these few are soon
+/// spent.
+constexpr double kCreditGain = 1.5, kCreditSpent = 0.5;
+/// Share of the progress that an evaluation leaves, and the least gain that is any, as a share of
+/// how far the best point is from the median one: a loss sharpened in its sixth digit is no nearer
+/// to a failure.
+constexpr double kProgressMemory = 0.96;
+constexpr double kLeastGain = 2e-3;
 
 }  // namespace
 
 Portfolio::Portfolio(const Known& known, const SearchOptions& options, int budget,
                      std::uint64_t seed)
-    : known_(known) {
-  explore_ = std::min(kExploreMost, static_cast<int>(kExploreShare * budget));
+    : known_(known),
+      design_(std::min(kDesignLeast + kDesignPerAxis * known.space.Size(),
+                       static_cast<int>(kDesignShare * budget))) {
   members_[kSobol] = std::make_unique<SobolSampler>(known.space, seed);
   members_[kCorners] = std::make_unique<CornerSampler>(known.space, seed);
-  members_[kSurrogate] = std::make_unique<Surrogate>(known, options.surrogate, seed);
-  members_[kCmaEs] = std::make_unique<Restarts>(known, options.cmaes, options.batch, seed);
-  members_[kPolish] = std::make_unique<Polish>(known, options.polish, seed);
+  members_[kSurrogate] = std::make_unique<Surrogate>(known, seed);
+  members_[kCmaEs] = std::make_unique<Restarts>(known, options.batch, seed);
+  members_[kLocalModel] = std::make_unique<LocalModel>(known, seed);
+  members_[kEvolution] = std::make_unique<DifferentialEvolution>(known, seed);
+  records_[kLocalModel] = {kCreditGain, kCreditSpent};
 }
 
-bool Portfolio::IsExploring() const {
-  const int evaluations = static_cast<int>(known_.archive.Size());
-  if (evaluations < explore_) return true;
-  const double later = explored_points_ - explore_;
-  return evaluations < kSurrogateMost &&
-         later < kExploreLater * static_cast<double>(evaluations - explore_);
-}
+bool Portfolio::IsDesign() const { return static_cast<int>(known_.archive.Size()) < design_; }
 
-Portfolio::Member Portfolio::Explorer() const {
-  const double corners_due = kCornerShare * static_cast<double>(known_.archive.Size());
-  return corner_points_ < corners_due ? kCorners : kSobol;
+double Portfolio::DueAnywhere(double total) const {
+  const double share = progress_ > kLeastGain ? kAnywhereGaining : kAnywhereStuck;
+  return (1.0 - kCornerShare) * design_ + share * (total - design_);
 }
 
 bool Portfolio::MayPropose(Member member) const {
-  const auto evaluations = static_cast<double>(known_.archive.Size());
-  if (member == kSurrogate) return evaluations < kSurrogateMost;
-  if (member == kPolish) return polish_points_ < kPolishShare * evaluations;
-  return true;
+  return member != kSurrogate || known_.archive.Size() < static_cast<std::size_t>(kSurrogateMost);
 }
 
 Portfolio::Member Portfolio::Choose() const {
-  if (IsExploring()) return Explorer();
+  const auto evaluations = static_cast<double>(known_.archive.Size());
+  if (IsDesign()) return corner_points_ < kCornerShare * evaluations ? kCorners : kSobol;
+  if (anywhere_points_ < DueAnywhere(evaluations)) return kSobol;
   double all_spent = 1.0;
-  for (const Member member : {kSurrogate, kCmaEs, kPolish}) all_spent += records_[member].spent;
+  for (const Member member : kLearners) all_spent += records_[member].spent;
   Member choice = kCmaEs;
   double highest = -1.0;
-  for (const Member member : {kSurrogate, kCmaEs, kPolish}) {
+  for (const Member member : kLearners) {
     if (!MayPropose(member)) continue;
     const Record& record = records_[member];
     const double spent = std::max(record.spent, 1e-3);
@@ -84,7 +91,16 @@ Portfolio::Member Portfolio::Choose() const {
 std::vector<Point> Portfolio::Ask(int most) {
   active_ = Choose();
   best_before_ = known_.archive.BestLoss();
-  return members_[active_]->Ask(most);
+  std::vector<Point> points = members_[active_]->Ask(most);
+  proposed_ = points.size();
+  if (active_ == kSobol || active_ == kCorners) return points;
+  // A member that asks for few points leaves room for those that are due anywhere.
+  const auto before = static_cast<double>(known_.archive.Size());
+  const double due = DueAnywhere(before + static_cast<double>(points.size())) - anywhere_points_;
+  for (int i = 0; i < static_cast<int>(due) && static_cast<int>(points.size()) < most; ++i) {
+    points.push_back(members_[kSobol]->Ask(1).front());
+  }
+  return points;
 }
 
 double Portfolio::RewardOf(std::span<const Evaluation> batch) const {
@@ -99,20 +115,38 @@ double Portfolio::RewardOf(std::span<const Evaluation> batch) const {
   return 0.5 * (1.0 - better / kElite);
 }
 
+void Portfolio::NoteProgress(std::span<const Evaluation> batch) {
+  double least = best_before_;
+  for (const Evaluation& evaluation : batch) {
+    if (evaluation.loss < least) least = evaluation.loss;
+  }
+  const std::size_t half = known_.archive.Size() / 2;
+  const double median = known_.archive[known_.archive.Best(half + 1).back()].loss;
+  const double spread = median - least;
+  const bool has_spread = std::isfinite(spread) && spread > 0.0 && std::isfinite(best_before_);
+  const double gain = has_spread ? (best_before_ - least) / spread : 0.0;
+  const double kept = std::pow(kProgressMemory, static_cast<double>(batch.size()));
+  progress_ = kept * progress_ + gain;
+}
+
 void Portfolio::Tell(std::span<const Evaluation> batch) {
-  members_[active_]->Tell(batch);
-  if (active_ == kCorners) corner_points_ += static_cast<double>(batch.size());
-  if (active_ == kPolish) polish_points_ += static_cast<double>(batch.size());
-  if (active_ == kSobol || active_ == kCorners) {
-    explored_points_ += static_cast<double>(batch.size());
+  const std::span<const Evaluation> own = batch.first(proposed_);
+  members_[active_]->Tell(own);
+  if (active_ == kCorners) {
+    corner_points_ += static_cast<double>(own.size());
     return;
   }
+  anywhere_points_ +=
+      static_cast<double>(active_ == kSobol ? batch.size() : batch.size() - own.size());
+  if (active_ == kSobol) return;
+  NoteProgress(own);
+  const double spent = static_cast<double>(own.size()) / kBatch;
   for (Record& record : records_) {
-    record.gain *= kMemory;
-    record.spent *= kMemory;
+    record.gain *= std::pow(kMemory, spent);
+    record.spent *= std::pow(kMemory, spent);
   }
-  records_[active_].gain += RewardOf(batch);
-  records_[active_].spent += 1.0;
+  records_[active_].gain += RewardOf(own) * std::max(spent, kLeastPaid);
+  records_[active_].spent += spent;
 }
 
 }  // namespace rift::search

@@ -6,17 +6,19 @@
 
 #include "archive.hpp"
 #include "cma_es.hpp"
-#include "polish.hpp"
+#include "differential_evolution.hpp"
+#include "local_model.hpp"
 #include "rift/search/options.hpp"
 #include "samplers.hpp"
 #include "surrogate.hpp"
 
 namespace rift::search {
 
-/// The default: corners and Sobol points in turn for a share of the budget, then batch by batch the
-/// method that found most for its evaluations, with an allowance for what was tried little (UCB1,
-/// Auer 2002, over forgetting averages). While the surrogate may propose, every third point still
-/// explores.
+/// The default: a small design of corners and Sobol points, then the method that found most for its
+/// evaluations, with an allowance for what was tried little (UCB1, Auer 2002, over forgetting
+/// averages). A share of all points stays a Sobol sequence over the whole space to the end, since
+/// what the others learn may lead away from a failure that nothing points to: a small share while
+/// the others gain, more than half when they do not.
 class Portfolio : public Strategy {
  public:
   Portfolio(const Known& known, const SearchOptions& options, int budget, std::uint64_t seed);
@@ -25,26 +27,31 @@ class Portfolio : public Strategy {
   void Tell(std::span<const Evaluation> batch) override;
 
  private:
-  enum Member { kSobol, kCorners, kSurrogate, kCmaEs, kPolish, kMembers };
+  enum Member { kSobol, kCorners, kSurrogate, kCmaEs, kLocalModel, kEvolution, kMembers };
+  static constexpr std::array kLearners{kSurrogate, kCmaEs, kLocalModel, kEvolution};
   struct Record {
     double gain = 0.0;   ///< forgetting sum of rewards
-    double spent = 0.0;  ///< forgetting count of batches
+    double spent = 0.0;  ///< forgetting count of evaluations, in batches of eight
   };
 
   Member Choose() const;
-  bool IsExploring() const;
-  Member Explorer() const;
+  bool IsDesign() const;
+  /// Points over the whole space that there should be among `total` evaluations.
+  double DueAnywhere(double total) const;
   bool MayPropose(Member member) const;
   /// 1 for a new best, less for points among the best, 0 for none.
   double RewardOf(std::span<const Evaluation> batch) const;
+  void NoteProgress(std::span<const Evaluation> batch);
 
   const Known& known_;
-  int explore_;  ///< evaluations
-  double explored_points_ = 0.0, corner_points_ = 0.0, polish_points_ = 0.0;
+  int design_;  ///< evaluations
+  double anywhere_points_ = 0.0, corner_points_ = 0.0;
   std::array<std::unique_ptr<Strategy>, kMembers> members_;
   std::array<Record, kMembers> records_;
   Member active_ = kSobol;
+  std::size_t proposed_ = 0;  ///< points of the active member at the front of the batch
   double best_before_ = std::numeric_limits<double>::infinity();
+  double progress_ = 1.0;  ///< forgetting mean of what the learners gain
 };
 
 }  // namespace rift::search

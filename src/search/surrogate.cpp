@@ -10,6 +10,8 @@
 namespace rift::search {
 namespace {
 
+/// Space-filling points for each axis before the first model when it searches alone.
+constexpr int kFirstPerAxis = 4;
 constexpr double kFirstLength = 0.5;
 constexpr double kFirstNoise = 1e-2;
 constexpr double kLeastNoise = 1e-6;
@@ -150,18 +152,15 @@ Eigen::VectorXd Kriging::Correlation(const Eigen::MatrixXd& points,
   return KernelBetween(Stretched(points, scales_), Stretched(point.transpose(), scales_)).col(0);
 }
 
-Surrogate::Surrogate(const Known& known, const SurrogateOptions& options, std::uint64_t seed)
+Surrogate::Surrogate(const Known& known, std::uint64_t seed)
     : known_(known),
-      options_(options),
       random_(seed, kStream),
       sequence_(known.space.Size(), seed + kStream),
-      model_(known.space) {
-  if (options_.initial == 0) options_.initial = 4 * known.space.Size();
-}
+      model_(known.space) {}
 
 std::vector<Point> Surrogate::Ask(int most) {
   std::vector<Point> points;
-  if (known_.archive.Size() < static_cast<std::size_t>(options_.initial)) {
+  if (static_cast<int>(known_.archive.Size()) < kFirstPerAxis * known_.space.Size()) {
     for (int i = 0; i < most; ++i) points.push_back(known_.space.FromUnit(sequence_.Next()));
     return points;
   }

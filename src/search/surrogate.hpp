@@ -69,7 +69,7 @@ class Kriging {
 /// best ones. The points of a batch differ in how bold they are and keep apart by correlation.
 class Surrogate : public Strategy {
  public:
-  Surrogate(const Known& known, const SurrogateOptions& options, std::uint64_t seed);
+  Surrogate(const Known& known, std::uint64_t seed);
 
   std::vector<Point> Ask(int most) override;
   void Tell(std::span<const Evaluation>) override {}
@@ -81,7 +81,6 @@ class Surrogate : public Strategy {
   Eigen::VectorXd Near(const Eigen::VectorXd& centre);
 
   const Known& known_;
-  SurrogateOptions options_;
   statistics::Random random_;
   SobolSequence sequence_;
   Kriging model_;

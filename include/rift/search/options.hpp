@@ -18,60 +18,17 @@ enum class Method {
   kCorners,         ///< every numeric axis at a bound; Sobol points once the corners are used up
   kCmaEs,           ///< evolution strategy with restarts of growing and of small populations
   kSurrogate,       ///< Kriging of the losses so far
-  kPolish,          ///< pattern search from the best points so far
+  kBobyqa,          ///< quadratic models around the best points so far, one point at a time
+  kEvolution,       ///< differential evolution
 };
-constexpr std::array<std::string_view, 8> EnumNames(Method) {
-  return {"portfolio", "random", "sobol", "lhs", "corners", "cmaes", "surrogate", "polish"};
+constexpr std::array<std::string_view, 9> EnumNames(Method) {
+  return {"portfolio", "random",    "sobol",  "lhs",      "corners",
+          "cmaes",     "surrogate", "bobyqa", "evolution"};
 }
-
-/// Covariance matrix adaptation.
-struct CmaEsOptions {
-  double sigma = 0.25;
-  int population = 0;
-
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor&& field) {
-    field("sigma", self.sigma, 1e-3, 1.0, "first step size as a share of every axis");
-    field("population", self.population, 0, 10'000,
-          "points in a generation of the first run; 0: 4 + 3 ln(axes) (Hansen 2016)");
-  }
-};
-
-/// Kriging over the ranks of the losses.
-struct SurrogateOptions {
-  int initial = 0;
-
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor&& field) {
-    field("initial", self.initial, 0, 100'000,
-          "space-filling points before the first model when it searches alone; 0: 4 an axis");
-  }
-};
-
-/// Pattern search. Lengths are shares of the axes' ranges.
-struct PolishOptions {
-  double first_step = 0.1;
-  double last_step = 1e-4;
-  double apart = 0.1;
-
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor&& field) {
-    field("first_step", self.first_step, 1e-6, 1.0, "step from the start point");
-    field("last_step", self.last_step, 1e-12, 1.0,
-          "a polish whose step fell below this goes on to another start point");
-    field("apart", self.apart, 0.0, 1.0,
-          "start points are at least so far apart on some axis, or differ in a category");
-  }
-  /// Throws std::invalid_argument when last_step exceeds first_step.
-  void Check() const;
-};
 
 struct SearchOptions {
   Method strategy = Method::kPortfolio;
   int batch = 8;
-  CmaEsOptions cmaes;
-  SurrogateOptions surrogate;
-  PolishOptions polish;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -80,9 +37,6 @@ struct SearchOptions {
     field(
         "batch", self.batch, 1, 10'000,
         "points proposed at once, whatever the number of workers, so that the same come with any");
-    field("cmaes", self.cmaes, "evolution strategy with restarts");
-    field("surrogate", self.surrogate, "Kriging, for small budgets");
-    field("polish", self.polish, "local search from the best points");
   }
 };
 

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -145,7 +146,71 @@ Task ManyPeaks(Dice dice) {
   return On("peaks", loss, [](double target) { return EvaluationsInto(std::sqrt(target), 1.0); });
 }
 
+constexpr int kRanges = 4, kCategories = 5;
+constexpr double kFailingShare = 7.4e-4;
+
+/// A box in one category, of the failing share of the whole space.
+struct Box {
+  int category = 0;
+  std::array<double, kRanges> middle{};
+  double half = 0.5 * std::pow(kFailingShare * kCategories, 1.0 / kRanges);
+
+  bool Holds(const search::Point& point) const {
+    if (static_cast<int>(point[kRanges]) != category) return false;
+    for (int i = 0; i < kRanges; ++i) {
+      if (std::abs(point[i] - middle[i]) > half) return false;
+    }
+    return true;
+  }
+};
+
+Task Mixed(std::string name, std::function<double(const search::Point&)> loss) {
+  Task task{std::move(name), {}, std::move(loss)};
+  for (int i = 0; i < kRanges; ++i) {
+    task.axes.push_back({"x" + std::to_string(i), search::AxisKind::kContinuous, 0.0, 1.0});
+  }
+  task.axes.push_back({"c", search::AxisKind::kCategorical, 0, kCategories - 1});
+  return task;
+}
+
+double SquaredDistance(const search::Point& point, const std::array<double, kRanges>& to) {
+  double sum = 0.0;
+  for (int i = 0; i < kRanges; ++i) sum += (point[i] - to[i]) * (point[i] - to[i]);
+  return sum;
+}
+
+Task Deceiving(Dice dice) {
+  Box box{.category = static_cast<int>(dice.Between(0.0, kCategories))};
+  std::array<double, kRanges> lure{};
+  for (double& x : box.middle) x = dice.Between(box.half, 1.0 - box.half);
+  for (double& x : lure) x = dice.Between(0.1, 0.9);
+  return Mixed("deceiving", [box, lure](const search::Point& point) {
+    if (box.Holds(point)) return -1.0;
+    if (static_cast<int>(point[kRanges]) == box.category) return 2.0;
+    return 0.1 + SquaredDistance(point, lure);
+  });
+}
+
+/// The box lies where the loss is flat: beyond 0.5 from the middle of the bowl on its first axis.
+Task FlatFurtherOut(Dice dice) {
+  Box box{.category = static_cast<int>(dice.Between(0.0, kCategories))};
+  const double side = dice.Between(0.0, 1.0);
+  std::array<double, kRanges> lure{};
+  for (double& x : box.middle) x = dice.Between(box.half, 1.0 - box.half);
+  for (double& x : lure) x = dice.Between(0.3, 0.7);
+  lure[0] = side < 0.5 ? 0.2 : 0.8;
+  box.middle[0] = side < 0.5 ? dice.Between(0.75, 1.0 - box.half) : dice.Between(box.half, 0.25);
+  return Mixed("flat", [box, lure](const search::Point& point) {
+    if (box.Holds(point)) return -1.0;
+    return 0.1 + std::min(0.1, SquaredDistance(point, lure));
+  });
+}
+
 }  // namespace
+
+std::vector<Task> DeceivingSpaces(std::uint64_t seed) {
+  return {Deceiving(Dice(7000 + 2 * seed)), FlatFurtherOut(Dice(7001 + 2 * seed))};
+}
 
 std::vector<Task> Functions(std::uint64_t seed) {
   return {Rastrigin(Dice(4 * seed)), Rosenbrock(Dice(4 * seed + 1)), Ellipsoid(Dice(4 * seed + 2)),

@@ -1,5 +1,6 @@
 #include "search/run_until.hpp"
 
+#include <algorithm>
 #include <ctime>
 
 namespace rift::test {
@@ -38,6 +39,10 @@ RunResult RunUntil(const Task& task, search::Method method, int budget, double t
 Summary Summarise(const std::vector<RunResult>& runs) {
   Summary summary;
   double all = 0.0, of_successes = 0.0, asked = 0.0;
+  std::vector<double> best;
+  for (const RunResult& run : runs) best.push_back(run.best);
+  std::sort(best.begin(), best.end());
+  if (!best.empty()) summary.median_best = best[best.size() / 2];
   for (const RunResult& run : runs) {
     ++summary.runs;
     all += run.reached_at.value_or(run.evaluations);

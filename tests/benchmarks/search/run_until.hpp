@@ -29,6 +29,7 @@ struct Summary {
   int successes = 0;
   double mean = NAN;  ///< evaluations of the successful runs
   double ert = INFINITY;
+  double median_best = NAN;  ///< of the least losses
   double overhead_ms = 0.0;  ///< an evaluation
 };
 Summary Summarise(const std::vector<RunResult>& runs);

@@ -1,0 +1,43 @@
+// The short form of search_study: bounds of counts, for what the tables in tests/benchmarks/README.md
+// say of the portfolio.
+
+#include <catch2/catch.hpp>
+
+#include "benchmarks/search/functions.hpp"
+#include "benchmarks/search/run_until.hpp"
+
+namespace rift::test {
+namespace {
+
+int Successes(const std::string& name, search::Method method, int seeds, double target) {
+  constexpr int kBudget = 500;
+  int successes = 0;
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
+    std::vector<Task> tasks = Functions(seed);
+    for (Task& task : DeceivingSpaces(seed)) tasks.push_back(std::move(task));
+    for (const Task& task : tasks) {
+      if (task.name != name) continue;
+      successes += RunUntil(task, method, kBudget, target, 1000 + seed).reached_at.has_value();
+    }
+  }
+  return successes;
+}
+
+TEST_CASE("In 500 evaluations the portfolio reaches what random search does in 100,000") {
+  CHECK(Successes("ellipsoid", search::Method::kPortfolio, 12, 802.0) >= 8);
+  CHECK(Successes("rosenbrock", search::Method::kPortfolio, 12, 28.0) >= 10);
+  CHECK(Successes("rastrigin", search::Method::kPortfolio, 12, 11.5) >= 6);
+}
+
+TEST_CASE("Where nothing points to a failure the portfolio finds half as many as random search") {
+  for (const char* name : {"deceiving", "flat"}) {
+    INFO(name);
+    const int random = Successes(name, search::Method::kRandom, 60, 0.0);
+    const int portfolio = Successes(name, search::Method::kPortfolio, 60, 0.0);
+    CHECK(random >= 10);
+    CHECK(2 * portfolio >= random);
+  }
+}
+
+}  // namespace
+}  // namespace rift::test
