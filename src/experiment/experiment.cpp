@@ -8,6 +8,7 @@
 
 #include "calibrate_keys.hpp"
 #include "rift/experiment/parameter.hpp"
+#include "rift/experiment/settable.hpp"
 #include "rift/experiment/space_yaml.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/describe.hpp"
@@ -217,12 +218,24 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   return experiment;
 }
 
+namespace {
+
+std::string SettableText(const std::string& key) {
+  const std::optional<Settable> settable = FindSettable(key);
+  if (!settable || key.find('.') == key.npos) return "";
+  if (!(settable->step > 0.0)) return " (a person can set it on the robot)";
+  return fmt::format(" (a person can set it on the robot, in steps of {:g})", settable->step);
+}
+
+}  // namespace
+
 std::string DescribeKeys() {
   std::string text;
   for (const yaml::KeyInfo& key : yaml::Describe<Experiment>()) {
     const std::string standard =
         key.default_text.empty() ? "" : fmt::format(" [{}]", key.default_text);
-    text += fmt::format("{}: {}{}\n    {}\n", key.key, key.type, standard, key.help);
+    text += fmt::format("{}: {}{}\n    {}{}\n", key.key, key.type, standard, key.help,
+                        SettableText(key.key));
   }
   return text;
 }

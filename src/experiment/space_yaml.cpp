@@ -73,13 +73,41 @@ void ReadRange(const Node& node, const std::string& key, experiment::Parameter& 
   ReadRangeKind(node, key, parameter);
 }
 
+/// What may stand in the map of an axis beside its values.
+void ReadSettable(const Node& node, const std::string& key, experiment::Parameter& parameter) {
+  if (const Node::Entry* entry = node.Find("settable")) {
+    parameter.settable = ReadBool(entry->value, {Join(key, "settable"), {}, ""});
+  }
+  const Node::Entry* entry = node.Find("step");
+  if (entry == nullptr) return;
+  parameter.step = NumberOf(entry->value);
+  const bool is_step = parameter.step && *parameter.step > 0.0;
+  if (!is_step) Fail(entry->value, Join(key, "step"), "must be a number above 0");
+  if (!parameter.IsContinuous()) {
+    Fail(entry->value, Join(key, "step"), "belongs to a range: a list is set as it is written");
+  }
+}
+
+void ReadAxis(const Node& node, const std::string& key, experiment::Parameter& parameter) {
+  if (const Node::Entry* values = node.Find("values")) {
+    for (const char* other : {"min", "max", "scale", "integer"}) {
+      if (node.Find(other)) Fail(node, key, "has values, or min and max: not both");
+    }
+    if (!values->value.IsList()) Fail(values->value, Join(key, "values"), "must be a list");
+    ReadLevels(values->value, key, parameter);
+  } else {
+    ReadRange(node, key, parameter);
+  }
+  ReadSettable(node, key, parameter);
+}
+
 experiment::Parameter ParameterFromEntry(const FlatEntry& entry) {
   const std::string key = Join("space", entry.key);
   experiment::Parameter parameter{.key = entry.key, .origin = entry.origin.Text()};
   if (entry.value->IsList()) {
     ReadLevels(*entry.value, key, parameter);
-  } else if (IsContinuousAxis(*entry.value)) {
-    ReadRange(*entry.value, key, parameter);
+  } else if (IsAxis(*entry.value)) {
+    ReadAxis(*entry.value, key, parameter);
   } else {
     Fail(*entry.value, key, "must be a list of values, or {min: a, max: b}");
   }
@@ -252,6 +280,16 @@ Node Hook<experiment::Space>::ToNode(const experiment::Space& space) {
       axis.Add("max", Node::Scalar(NumberText(parameter.max, parameter.key)));
       if (parameter.is_integer) axis.Add("integer", Node::Scalar("true"));
       if (parameter.is_logarithmic) axis.Add("scale", Node::Scalar("log"));
+      if (parameter.step) {
+        axis.Add("step", Node::Scalar(NumberText(*parameter.step, parameter.key)));
+      }
+    } else if (parameter.settable) {
+      Node with_values = Node::Map();
+      with_values.Add("values", std::move(axis));
+      axis = std::move(with_values);
+    }
+    if (parameter.settable) {
+      axis.Add("settable", Node::Scalar(*parameter.settable ? "true" : "false"));
     }
     map.Add(parameter.key, axis);
   }

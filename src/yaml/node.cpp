@@ -140,8 +140,9 @@ void Merge(Node& base, const Node& over) {
   }
 }
 
-bool IsContinuousAxis(const Node& node) {
-  constexpr std::array<std::string_view, 4> kAxisKeys{"min", "max", "scale", "integer"};
+bool IsAxis(const Node& node) {
+  constexpr std::array<std::string_view, 7> kAxisKeys{"min",    "max",      "scale", "integer",
+                                                      "values", "settable", "step"};
   return node.IsMap() && !node.entries.empty() &&
          std::all_of(node.entries.begin(), node.entries.end(), [&](const Node::Entry& entry) {
            return std::find(kAxisKeys.begin(), kAxisKeys.end(), entry.key) != kAxisKeys.end();

@@ -32,7 +32,11 @@ struct Parameter {
   double max = 0.0;
   bool is_integer = false;      ///< of a range: whole numbers only
   bool is_logarithmic = false;  ///< of a range: even in the logarithm
-  std::string origin{};         ///< where it was written, for messages: "file:line:column"
+  /// Whether a person can set it on the robot, and in which steps, where the space says so; else
+  /// the schema does (settable.hpp).
+  std::optional<bool> settable{};
+  std::optional<double> step{};
+  std::string origin{};  ///< where it was written, for messages: "file:line:column"
 
   /// The last part of the key: the column in table.csv and the name in path templates.
   std::string Name() const;
@@ -65,10 +69,10 @@ void CheckGrid(const std::vector<Parameter>& parameters);
 std::vector<Theta> GridPoints(const std::vector<Parameter>& parameters);
 
 /// Columns of table.csv behind those of the parameters; a parameter cannot be called so.
-inline constexpr std::array<std::string_view, 18> kFixedColumns{
+inline constexpr std::array<std::string_view, 20> kFixedColumns{
     "trial",       "gap_m",        "falsified",   "status",         "u",
     "exact_gap_m", "mean_error_m", "rms_error_m", "start_offset_m", "start_aligned_gap_m",
-    "shape_gap_m", "length_ratio", "end_error_m", "reason",         "candidate",
-    "reference",   "seed",         "id"};
+    "shape_gap_m", "length_ratio", "end_error_m", "way_gap_m",      "left_m",
+    "reason",      "candidate",    "reference",   "seed",           "id"};
 
 }  // namespace rift::experiment

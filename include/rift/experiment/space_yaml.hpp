@@ -37,7 +37,8 @@ struct Hook<experiment::TrialList> {
 
 template <>
 struct Hook<experiment::Space> {
-  static constexpr std::string_view kTypeText = "parameter: [values], or {min, max}";
+  static constexpr std::string_view kTypeText =
+      "parameter: [values], or {min, max}; see docs/concepts.md";
   static experiment::Space FromNode(const Node& node);
   static Node ToNode(const experiment::Space& space);
 };

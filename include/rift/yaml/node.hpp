@@ -78,9 +78,9 @@ std::string Join(std::string_view path, std::string_view key);
 /// keeps the origin of its first writer, each value that of its last.
 void Merge(Node& base, const Node& over);
 
-/// A map whose keys are all among min, max, scale and integer: a continuous axis of a parameter
-/// space, not a block of further names.
-bool IsContinuousAxis(const Node& node);
+/// A map whose keys are all among min, max, scale, integer, values, settable and step: an axis of a
+/// parameter space, not a block of further names.
+bool IsAxis(const Node& node);
 
 struct FlatEntry {
   std::string key;  ///< dotted
@@ -93,7 +93,7 @@ struct FlatEntry {
 /// unless it is empty or `is_leaf` says that it is a value. The entries point into `map`.
 /// Throws Error when two ways of writing a key meet.
 std::vector<FlatEntry> Flatten(const Node& map,
-                               const std::function<bool(const Node&)>& is_leaf = IsContinuousAxis);
+                               const std::function<bool(const Node&)>& is_leaf = IsAxis);
 
 /// Opens keys with dots into nested maps, the inverse of Flatten: `{a.b: 1}` -> `{a: {b: 1}}`.
 /// Throws Error when two ways of writing a key meet.

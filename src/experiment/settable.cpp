@@ -1,0 +1,103 @@
+#include "rift/experiment/settable.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace rift::experiment {
+namespace {
+
+struct SettableKey {
+  std::string_view key;
+  double step;
+};
+
+/// What the host's controller takes at each drive, and the floor that is laid. Waypoints are marked
+/// on the floor by hand, to half a centimetre.
+constexpr std::array<SettableKey, 26> kSettable{{
+    {"control.distance.p", 0.05},
+    {"control.distance.i", 0.01},
+    {"control.distance.d", 0.005},
+    {"control.heading.p", 0.005},
+    {"control.heading.i", 0.001},
+    {"control.heading.d", 0.0005},
+    {"control.derivative_kick", 0.0},
+    {"control.reach_radius_m", 0.005},
+    {"control.v_min", 0.01},
+    {"control.v_max", 0.01},
+    {"control.w_min", 0.005},
+    {"control.w_max", 0.05},
+    {"control.cruise_speed", 0.01},
+    {"control.cruise_cap_angle_deg", 1.0},
+    {"control.through_angle_deg", 1.0},
+    {"control.slew_rate_per_s", 0.1},
+    {"control.latency.delay_s", 0.01},
+    {"trial.control_period_s", 0.005},
+    {"trial.pace", 0.0},
+    {"simulation.terrain.surface", 0.0},
+    {"program.power", 0.01},
+    {"program.speed_mps", 0.01},
+    {"program.segments[].power", 0.01},
+    {"waypoints[].x", 0.005},
+    {"waypoints[].y", 0.005},
+    {"waypoints[].heading", 1.0},
+}};
+
+/// "waypoints[2].x" -> "waypoints[].x"
+std::string PatternOf(std::string_view key) {
+  std::string pattern;
+  bool is_inside = false;
+  for (const char c : key) {
+    if (c == ']') is_inside = false;
+    if (!is_inside) pattern += c;
+    if (c == '[') is_inside = true;
+  }
+  return pattern;
+}
+
+double NiceStep(double least) {
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= least) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+}  // namespace
+
+std::optional<Settable> FindSettable(std::string_view key) {
+  const std::string pattern = PatternOf(key);
+  const bool is_column = key.find('.') == key.npos;
+  const auto found = std::find_if(kSettable.begin(), kSettable.end(), [&](const SettableKey& known) {
+    return known.key == pattern || (is_column && known.key.ends_with("." + pattern));
+  });
+  if (found == kSettable.end()) return std::nullopt;
+  return Settable{found->step};
+}
+
+bool IsSettable(const Parameter& parameter) {
+  return parameter.settable.value_or(FindSettable(parameter.key).has_value());
+}
+
+double StepOf(const Parameter& parameter) {
+  if (parameter.step) return *parameter.step;
+  const std::optional<Settable> known = FindSettable(parameter.key);
+  double step = known ? known->step : 0.0;
+  if (!(step > 0.0)) step = NiceStep((parameter.max - parameter.min) / 20.0);
+  return parameter.is_integer ? std::max(1.0, std::round(step)) : step;
+}
+
+ParameterValue NearestSettable(const Parameter& parameter, const ParameterValue& value) {
+  if (!parameter.IsContinuous() || !value.number) return value;
+  const double step = StepOf(parameter);
+  double steps = std::round(*value.number / step);
+  if (steps * step > parameter.max) steps = std::floor(parameter.max / step);
+  if (steps * step < parameter.min) steps = std::ceil(parameter.min / step);
+  // Divided where the step is one over a whole number, so that 3 steps of 0.1 are 0.3.
+  const double inverse = std::round(1.0 / step);
+  const bool is_inverse = step < 1.0 && std::abs(inverse * step - 1.0) < 1e-9;
+  const double nearest = is_inverse ? steps / inverse : steps * step;
+  return NumberValue(std::clamp(nearest, parameter.min, parameter.max));
+}
+
+}  // namespace rift::experiment
