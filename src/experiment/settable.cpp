@@ -68,9 +68,10 @@ double NiceStep(double least) {
 std::optional<Settable> FindSettable(std::string_view key) {
   const std::string pattern = PatternOf(key);
   const bool is_column = key.find('.') == key.npos;
-  const auto found = std::find_if(kSettable.begin(), kSettable.end(), [&](const SettableKey& known) {
-    return known.key == pattern || (is_column && known.key.ends_with("." + pattern));
-  });
+  const auto found =
+      std::find_if(kSettable.begin(), kSettable.end(), [&](const SettableKey& known) {
+        return known.key == pattern || (is_column && known.key.ends_with("." + pattern));
+      });
   if (found == kSettable.end()) return std::nullopt;
   return Settable{found->step};
 }

@@ -9,10 +9,10 @@
 namespace rift::search {
 
 /// Differential evolution, current-to-pbest/1 with rates that adapt (JADE, Zhang and Sanderson
-/// 2009, without its archive), over the unit cube. It finds the many separate valleys of a loss that
-/// CMA-ES needs large populations for. A category takes the level of one of the parents. Begins anew
-/// when its population is one place. Own code, because pagmo's de1220 calls the loss from inside
-/// evolve().
+/// 2009, without its archive), over the unit cube. It finds the many separate valleys of a loss
+/// that CMA-ES needs large populations for. A category takes the level of one of the parents.
+/// Begins anew when its population is one place. Own code, because pagmo's de1220 calls the loss
+/// from inside evolve().
 class DifferentialEvolution : public Strategy {
  public:
   DifferentialEvolution(const Known& known, std::uint64_t seed);

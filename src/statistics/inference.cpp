@@ -35,6 +35,8 @@ double BinomialPdf(int trials, double share, int successes) {
   return math::pdf(math::binomial(trials, share), successes);
 }
 
+double BetaCdf(double a, double b, double x) { return math::ibeta(a, b, x); }
+
 double FUpperTail(double df1, double df2, double f) {
   return math::cdf(math::complement(math::fisher_f(df1, df2), f));
 }

@@ -77,11 +77,9 @@ void RunNlopt(Counted& loss, bool is_mlsl, std::uint64_t seed) {
   }
   optimiser.set_lower_bounds(low);
   optimiser.set_upper_bounds(high);
-  optimiser.set_min_objective(
-      [](const std::vector<double>& at, std::vector<double>&, void* data) {
-        return (*static_cast<Counted*>(data))(at.data());
-      },
-      &loss);
+  optimiser.set_min_objective([](const std::vector<double>& at, std::vector<double>&,
+                                 void* data) { return (*static_cast<Counted*>(data))(at.data()); },
+                              &loss);
   if (is_mlsl) {
     nlopt::opt local(nlopt::LN_BOBYQA, axes);
     local.set_xtol_rel(1e-6);
@@ -115,8 +113,8 @@ void RunPagmo(Counted& loss, const std::string& name, std::uint64_t seed) {
   if (name == "de1220") algorithm = pagmo::algorithm{pagmo::de1220(generations)};
   if (name == "sade") algorithm = pagmo::algorithm{pagmo::sade(generations)};
   if (name == "cmaes") {
-    algorithm = pagmo::algorithm{
-        pagmo::cmaes(generations, -1, -1, -1, -1, 0.5, 1e-12, 1e-12, false, true)};
+    algorithm =
+        pagmo::algorithm{pagmo::cmaes(generations, -1, -1, -1, -1, 0.5, 1e-12, 1e-12, false, true)};
   }
   algorithm.set_seed(seed32);
   algorithm.evolve(population);
@@ -152,7 +150,7 @@ test::RunResult RunPeer(const std::string& name, const test::StudyTask& study, i
     } else {
       RunPagmo(loss, name, seed);
     }
-  } catch (const BudgetSpent&) {       // as every run ends
+  } catch (const BudgetSpent&) {         // as every run ends
   } catch (const std::runtime_error&) {  // NLopt: rounding leaves nothing to gain
   }
   return loss.run();
@@ -176,12 +174,18 @@ Request ParseArguments(int count, char** arguments) {
   Request request;
   for (int i = 1; i + 1 < count; i += 2) {
     const std::string argument = arguments[i], value = arguments[i + 1];
-    if (argument == "--seeds") request.seeds = std::stoi(value);
-    else if (argument == "--first-seed") request.first_seed = std::stoi(value);
-    else if (argument == "--budgets") request.budgets = Split(value);
-    else if (argument == "--only") request.only = Split(value);
-    else if (argument == "--with") request.with = Split(value);
-    else throw std::invalid_argument(argument + ": no such option");
+    if (argument == "--seeds")
+      request.seeds = std::stoi(value);
+    else if (argument == "--first-seed")
+      request.first_seed = std::stoi(value);
+    else if (argument == "--budgets")
+      request.budgets = Split(value);
+    else if (argument == "--only")
+      request.only = Split(value);
+    else if (argument == "--with")
+      request.with = Split(value);
+    else
+      throw std::invalid_argument(argument + ": no such option");
   }
   return request;
 }

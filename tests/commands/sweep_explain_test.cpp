@@ -159,11 +159,76 @@ simulation.mocap: {noise_across_m: 0.002}
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   CHECK_THAT(result.out, Contains("1. ") && Contains("the risk of calling it wrongly falls from"));
-  const json suggestions = sweep.File("explanation.json")["suggestions"];
+  const json suggestions = sweep.File("explanation.json")["suggestions"]["experiments"];
   REQUIRE(suggestions.size() >= 1);
   CHECK(suggestions.size() <= 2);
   CHECK(suggestions[0]["repeats"].get<int>() >= 1);
   CHECK(suggestions[0]["wrong_after"] < suggestions[0]["wrong_now"]);
+  CHECK_THAT(ReadFile(sweep.out + "/suggested.yaml"),
+             Contains("\"simulation.terrain.surface\": ") && Contains("predicted: "));
+}
+
+/// The drive of a robot that is a simulation with other values, where rift drive saves it.
+void DriveInto(const Sweep& sweep, const std::string& name, const std::vector<std::string>& sets) {
+  std::vector<std::string> words{"simulate", sweep.file, "--out", sweep.out + "/suggested/" + name};
+  for (const std::string& set : sets) {
+    words.push_back("--set");
+    words.push_back(set);
+  }
+  const ProcessResult result = RunRift(words);
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+}
+
+TEST_CASE("Drives of suggested experiments come back into the sweep that suggested them") {
+  const Sweep sweep(R"(waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]
+gap: {threshold_m: 0.01}
+reference: {kind: nominal}
+goal: falsify
+space:
+  v_min: {min: 0.12, max: 0.2, step: 0.04}
+  mismatch: {min: -0.25, max: 0.25}
+search: {budget: 30}
+falsify: {until: budget, most_repeats: 3}
+)");
+  REQUIRE(sweep.Run({"--suggest", "2"}).exit_code == 0);
+  const std::string table = ReadFile(sweep.out + "/table.csv");
+  const json before = sweep.File("explanation.json");
+  REQUIRE(before["robot"].empty());
+  REQUIRE(before["suggestions"]["experiments"].size() >= 1);
+  const json first = before["suggestions"]["experiments"][0];
+  CHECK(first["predicted_to_fail"] == true);
+  CHECK_FALSE(first["set"].contains("mismatch"));
+  // A robot whose motors differ by as much as the worst of the space.
+  const std::string v_min = "control.v_min=" + first["set"]["v_min"].dump();
+  for (const char* trial : {"1_1", "1_2"}) {
+    DriveInto(sweep, trial, {v_min, "simulation.motor.mismatch=0.25"});
+  }
+  const ProcessResult result = sweep.Run({"--suggest", "2"});
+  INFO(result.out << result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.out, Contains("1 of 1 predicted failures confirmed by the robot (falsified)"));
+  CHECK(ReadFile(sweep.out + "/table.csv") == table);
+  const json after = sweep.File("explanation.json");
+  REQUIRE(after["robot"].size() == 1);
+  CHECK(after["robot"][0]["n"] == 2);
+  CHECK(after["robot"][0]["failures"] == 2);
+  CHECK(after["robot"][0]["verdict"] == "falsified");
+  CHECK(after["suggestions"]["trusted"] > before["suggestions"]["trusted"]);
+  // What was driven keeps its number.
+  CHECK_THAT(ReadFile(sweep.out + "/suggested.yaml"),
+             Contains("\"control.v_min\": " + first["set"]["v_min"].dump()));
+}
+
+TEST_CASE("A file of suggestions that sets what the space does not vary is refused") {
+  const Sweep sweep;
+  REQUIRE(sweep.Run().exit_code == 0);
+  WriteText(sweep.out + "/suggested.yaml",
+            "experiments:\n  - {set: {control.w_max: 0.4}, repeats: 1, predicted: fails}\n");
+  const ProcessResult result = sweep.Run();
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.err, Contains("suggested.yaml:2") && Contains("control.w_max") &&
+                             Contains("is no parameter of the sweep's space"));
 }
 
 TEST_CASE("A rare event is estimated over the space with an interval") {
@@ -225,7 +290,7 @@ TEST_CASE("The paper's grid says that v_max is inert and why and what matters") 
   CHECK(explanation["undecided"].size() == static_cast<size_t>(undecided));
   const std::string page = ReadFile(out + "/report.html");
   CHECK_THAT(page, Contains("v_max is inert") && Contains("never bound: the candidate"));
-  CHECK_THAT(page, Contains("surface matters") && Contains("Start placement matters"));
+  CHECK_THAT(page, Contains("surface: ") && Contains("Start placement matters"));
   CHECK_THAT(page, Contains("Undecided: ") && Contains("rift gap"));
 }
 

@@ -150,6 +150,42 @@ TEST_CASE("Repeats are driven into numbered folders and a sweep reads them") {
   CHECK(bench.Has("3/trajectory.csv"));
 }
 
+TEST_CASE("Suggested experiments are driven on twins and the sweep says what they confirmed") {
+  // The twin's left motor is weaker than the simulator of the sweep believes: it leaves its way.
+  const Bench bench;
+  const std::string sweep = bench.folder / "sweep";
+  test::WriteText(bench.folder / "falsify.yaml",
+                  "include: task.yaml\n"
+                  "goal: falsify\n"
+                  "space: {simulation.terrain.surface: {values: [ground, cardboard], settable: "
+                  "false}, control.v_min: {min: 0.12, max: 0.16, step: 0.02}, "
+                  "simulation.motor.mismatch: {min: -0.3, max: 0.3}}\n"
+                  "gap: {threshold_m: 0.01}\n"
+                  "reference: {kind: path, trials: 1}\n"
+                  "search: {budget: 16}\n"
+                  "falsify: {until: budget, most_repeats: 3}\n");
+  const std::vector<std::string> command{
+      "sweep", bench.folder / "falsify.yaml", "--out", sweep, "--suggest", "1", "--quiet"};
+  const test::ProcessResult first = test::RunRift(command);
+  INFO(first.out << first.err);
+  REQUIRE(first.exit_code == 0);
+  REQUIRE(fs::exists(sweep + "/suggested.yaml"));
+  const test::ProcessResult driven =
+      GoOn({"drive", "--suggested", sweep, "--yes", "--before-each",
+            test::BuildDir() + "/rift simulate " + (bench.folder / "task.yaml") +
+                " --twin --seed {trial} --set control.v_min={v_min} --set "
+                "simulation.motor.mismatch=-0.3 --out " +
+                (bench.folder / "twins/{v_min}_{trial}")});
+  INFO(driven.out << driven.err);
+  REQUIRE(driven.exit_code == 0);
+  CHECK(fs::exists(sweep + "/suggested/1_1/trajectory.csv"));
+  CHECK_THAT(driven.err, Catch::Contains("what they confirm: rift sweep"));
+  const test::ProcessResult again = test::RunRift(command);
+  INFO(again.out << again.err);
+  CHECK(again.exit_code == 0);
+  CHECK_THAT(again.out, Catch::Contains("1 of 1 predicted failures confirmed by the robot"));
+}
+
 TEST_CASE("A robot that is put down far off its start is not driven, with what to do") {
   const Bench bench;
   const test::ProcessResult result = test::RunRift(

@@ -1,5 +1,5 @@
-// The short form of search_study: bounds of counts, for what the tables in tests/benchmarks/README.md
-// say of the portfolio.
+// The short form of search_study: bounds of counts, for what the tables in
+// tests/benchmarks/README.md say of the portfolio.
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "rift/sweep/explain/sensitivity.hpp"
+#include "rift/sweep/explain/effects.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,6 +10,29 @@
 
 namespace rift::sweep {
 namespace {
+
+/// 3 values of a, 2 of b, `repeats` trials; gap = 0.05 + effect(a, b) + noise.
+template <class EffectAt>
+SweepResult Table(int repeats, double noise_m, std::uint64_t seed, const EffectAt& effect) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  SweepResult result;
+  result.parameters = {{.key = "a", .levels = {{"0", 0.0}, {"1", 1.0}, {"2", 2.0}}},
+                       {.key = "b", .levels = {{"x", {}}, {"y", {}}}}};
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 2; ++b) {
+      for (int trial = 0; trial < repeats; ++trial) {
+        TrialRow row;
+        row.theta = {result.parameters[0].levels[a], result.parameters[1].levels[b]};
+        row.trial = std::to_string(trial);
+        row.comparison.gap_m = 0.05 + effect(a, b) + noise_m * normal(random);
+        result.rows.push_back(row);
+      }
+    }
+  }
+  Summarise(result);
+  return result;
+}
 
 /// n trials drawn evenly over [-pi, pi]^3.
 template <class Gap>
@@ -40,41 +63,95 @@ double Ishigami(const double* x) {
          0.1 * std::pow(x[2], 4) * std::sin(x[0]);
 }
 
-const SobolIndex& Of(const Sensitivity& sensitivity, const std::string& name) {
-  for (const SobolIndex& index : sensitivity.indices) {
-    if (index.parameter == name) return index;
+const ParameterEffect& Of(const Effects& effects, int parameter) {
+  const ParameterEffect* effect = effects.Of(parameter);
+  if (effect == nullptr) throw std::runtime_error("no effect of that parameter");
+  return *effect;
+}
+
+TEST_CASE("The shares of the Ishigami function are its Sobol indices") {
+  const Effects found = MeasureEffects(Sampled(2000, Ishigami), {.most_terms = 130});
+  CHECK(found.predicted > 0.98);
+  CHECK(Of(found, 0).alone == Approx(0.3139).margin(0.04));
+  CHECK(Of(found, 1).alone == Approx(0.4424).margin(0.04));
+  CHECK(Of(found, 2).alone == Approx(0.0).margin(0.02));
+  CHECK(Of(found, 0).share == Approx(0.5576).margin(0.04));
+  CHECK(Of(found, 1).share == Approx(0.4424).margin(0.04));
+  CHECK(Of(found, 2).share == Approx(0.2437).margin(0.04));
+  CHECK(found.parameters.front().name == "a");
+  CHECK(Of(found, 0).together == std::vector<std::string>{"c"});
+  CHECK(Of(found, 1).together.empty());
+}
+
+TEST_CASE("A balanced table gives the sums of squares of the textbook") {
+  // Zar style 3 x 2 table with two trials a cell, worked by hand: of a total of 101.67, 77 go with
+  // b, alone or together with a; 16 are left in the cells.
+  SweepResult result = Table(2, 0.0, 1, [](int, int) { return 0.0; });
+  const double gaps[12] = {4, 6, 8, 10, 6, 6, 9, 13, 11, 13, 5, 7};
+  for (int i = 0; i < 12; ++i) result.rows[i].comparison.gap_m = gaps[i];
+  Summarise(result);
+  const Effects found = MeasureEffects(result);
+  REQUIRE(found.degree == 2);
+  CHECK(found.residual_df == 6.0);
+  CHECK(std::pow(found.residual_sd_m, 2) == Approx(16.0 / 6.0));
+  const double total = 101.0 + 2.0 / 3.0, mse = 16.0 / 6.0;
+  CHECK(found.explained == Approx(1.0 - 16.0 / total).epsilon(1e-6));
+  // Cell means 5 9 / 6 11 / 12 6: columns 23/3, 26/3; the b columns have 3 degrees of freedom.
+  const double with_b = 2.0 * (2.0 * (4.0 + 6.25 + 9.0));
+  CHECK(Of(found, 1).df == 3.0);
+  CHECK(Of(found, 1).share == Approx((with_b - 3.0 * mse) / (total + mse)).epsilon(1e-6));
+}
+
+TEST_CASE("The effects that are there are seen and the others are not") {
+  const SweepResult main_only = Table(6, 0.01, 3, [](int a, int) { return 0.02 * a; });
+  const Effects found = MeasureEffects(main_only);
+  CHECK(found.parameters.front().name == "a");
+  CHECK(Of(found, 0).share_low > 0.2);
+  CHECK(Of(found, 0).together.empty());
+  CHECK_FALSE(Of(found, 1).IsSeen());
+
+  const SweepResult crossed =
+      Table(6, 0.01, 4, [](int a, int b) { return 0.02 * (a - 1) * (b == 0 ? 1 : -1); });
+  const Effects both = MeasureEffects(crossed);
+  CHECK(Of(both, 0).IsSeen());
+  CHECK(Of(both, 0).together == std::vector<std::string>{"b"});
+  CHECK(Of(both, 0).alone < 0.05);
+}
+
+TEST_CASE("A parameter that does nothing is seen in few sweeps") {
+  int seen = 0;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    const Effects found = MeasureEffects(Table(8, 0.01, seed, [](int, int) { return 0.0; }));
+    seen += Of(found, 0).IsSeen();
+    seen += Of(found, 1).IsSeen();
   }
-  throw std::runtime_error("no index of " + name);
+  CHECK(seen <= 40);  // 5 % of 800: the interval's low end is one-sided 2.5 %, the degree is chosen
 }
 
-TEST_CASE("The indices of the Ishigami function are those of the textbook") {
-  const Sensitivity found =
-      EstimateSensitivity(Sampled(500, Ishigami), {.most_terms = 130, .bootstraps = 3});
-  CHECK(found.q2 > 0.98);
-  CHECK(Of(found, "a").first == Approx(0.3139).margin(0.03));
-  CHECK(Of(found, "b").first == Approx(0.4424).margin(0.03));
-  CHECK(Of(found, "c").first == Approx(0.0).margin(0.02));
-  CHECK(Of(found, "a").total == Approx(0.5576).margin(0.03));
-  CHECK(Of(found, "c").total == Approx(0.2437).margin(0.03));
-  CHECK(found.indices.front().parameter == "a");
+TEST_CASE("An uneven table blames no parameter for another one") {
+  // b does nothing, but most trials of y stand at the high values of a.
+  SweepResult result = Table(8, 0.002, 5, [](int a, int) { return 0.02 * a; });
+  std::erase_if(result.rows, [](const TrialRow& row) {
+    return row.trial > "1" && (row.theta[1].text == "x") == (row.theta[0].text == "2");
+  });
+  Summarise(result);
+  CHECK(result.anova[1].p < 0.05);  // one at a time it looks guilty
+  CHECK_FALSE(Of(MeasureEffects(result), 1).IsSeen());
 }
 
-TEST_CASE("Intervals hold the truth and an idle parameter has next to nothing") {
-  // Variances of a and b are 4 to 1; the noise is the trial's own.
+TEST_CASE("The interval of a share holds the truth about as often as it says") {
+  // Effect of a: means -d, 0, d; noise 1: share of the variance = (2/3 d^2) / (2/3 d^2 + 1).
+  const double d = 0.5, truth = (2.0 / 3.0 * d * d) / (2.0 / 3.0 * d * d + 1.0);
   int held = 0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    std::mt19937_64 random(seed + 100);
-    std::normal_distribution<double> noise(0.0, 0.3);
-    const Sensitivity found = EstimateSensitivity(Sampled(
-        200, [&](const double* x) { return 2.0 * x[0] + x[1] + noise(random); }, seed));
-    const SobolIndex a = Of(found, "a");
-    held += a.first_low <= 0.8 && 0.8 <= a.first_high;
-    CHECK(Of(found, "c").total < 0.02);
+  for (int seed = 0; seed < 100; ++seed) {
+    const Effects found =
+        MeasureEffects(Table(8, 1.0, 100 + seed, [&](int a, int) { return d * (a - 1); }));
+    held += Of(found, 0).share_low <= truth && truth <= Of(found, 0).share_high;
   }
-  CHECK(held >= 17);
+  CHECK(held >= 89);
 }
 
-TEST_CASE("Words take part as factors") {
+TEST_CASE("Words and ranges are measured alike") {
   SweepResult result = Sampled(300, [](const double* x) { return x[0]; });
   result.parameters[1] = {.key = "b", .levels = {{"x", {}}, {"y", {}}, {"z", {}}}};
   for (size_t i = 0; i < result.rows.size(); ++i) {
@@ -82,25 +159,39 @@ TEST_CASE("Words take part as factors") {
     row.theta[1] = result.parameters[1].levels[i % 3];
     row.comparison.gap_m = 0.1 * *row.theta[0].number + (i % 3 == 2 ? 1.0 : 0.0);
   }
-  const Sensitivity found = EstimateSensitivity(result);
   const double by_a = 0.01 * std::pow(std::numbers::pi, 2) / 3.0, by_b = 2.0 / 9.0;
-  CHECK(Of(found, "b").first == Approx(by_b / (by_a + by_b)).margin(0.03));
+  CHECK(Of(MeasureEffects(result), 1).share == Approx(by_b / (by_a + by_b)).margin(0.03));
 }
 
-TEST_CASE("Too few trials and no ranges give no indices") {
-  CHECK(EstimateSensitivity(Sampled(3, Ishigami)).indices.empty());
-  CHECK(EstimateSensitivity(Sampled(50, [](const double*) { return 1.0; })).indices.empty());
-  SweepResult grid;
-  grid.parameters = {{.key = "a", .levels = {{"1", 1.0}}}};
-  CHECK(EstimateSensitivity(grid).note.empty());
+TEST_CASE("The smallest detectable difference is detected as often as promised") {
+  const double detectable = SmallestDetectable({16, 16, 16}, 1.0, 42.0, 0.8);
+  int found = 0;
+  for (int seed = 0; seed < 300; ++seed) {
+    const Effects effects = MeasureEffects(
+        Table(8, 1.0, 500 + seed, [&](int a, int) { return 0.5 * detectable * (a - 1); }));
+    found += Of(effects, 0).p < kSignificance;
+  }
+  CHECK(found / 300.0 == Approx(0.8).margin(0.1));
+  CHECK(std::isnan(SmallestDetectable({16}, 1.0, 42.0, 0.8)));
+  CHECK(std::isnan(SmallestDetectable({4, 4}, 0.0, 6.0, 0.8)));
+}
+
+TEST_CASE("Too few trials and losses that do not vary say so") {
+  CHECK(MeasureEffects(Sampled(3, Ishigami)).parameters.empty());
+  CHECK_FALSE(MeasureEffects(Sampled(3, Ishigami)).note.empty());
+  const Effects flat = MeasureEffects(Sampled(50, [](const double*) { return 1.0; }));
+  CHECK(flat.parameters.empty());
+  CHECK_THAT(flat.note, Catch::Contains("does not vary"));
+  SweepResult one;
+  one.parameters = {{.key = "a", .levels = {{"1", 1.0}}}};
+  CHECK(MeasureEffects(one).note.empty());
 }
 
 TEST_CASE("The failing region is where the failures are") {
   const SweepResult result =
       Sampled(2000, [](const double* x) { return x[0] + x[1] > 0.0 ? 0.1 : 0.0; });
-  const Sensitivity sensitivity =
-      EstimateSensitivity(result, {.most_trials = 200, .most_terms = 20, .bootstraps = 3});
-  const std::array<int, 2> most = MostInfluential(result, AnalyseFactors(result), sensitivity);
+  const std::array<int, 2> most =
+      MostInfluential(result, MeasureEffects(result, {.most_trials = 200, .most_terms = 20}));
   CHECK(most[0] + most[1] == 1);  // a and b
   const FailingRegion region = MapFailures(result, most);
   CHECK(region.is_smoothed);

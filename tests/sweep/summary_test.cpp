@@ -32,18 +32,6 @@ SweepResult TwoSurfaces() {
   return result;
 }
 
-TEST_CASE("A planted effect is found and its absence said in words") {
-  SweepResult result = TwoSurfaces();
-  Summarise(result);
-  REQUIRE(result.effects.size() == 2);
-  CHECK(result.effects[0].parameter == "surface");
-  CHECK(result.effects[0].detected);
-  CHECK(result.effects[0].sentence.starts_with("effect found (F = "));
-  CHECK(result.effects[1].parameter == "v_min");
-  CHECK_FALSE(result.effects[1].detected);
-  CHECK(result.effects[1].sentence == "no effect found (p = 1.000)");
-}
-
 TEST_CASE("Means and failures and verdicts follow from the rows") {
   SweepResult result = TwoSurfaces();
   Summarise(result);
@@ -69,7 +57,7 @@ TEST_CASE("A trial without a gap is counted and never averaged") {
   Summarise(result);
   CHECK(result.all.n == 7);
   CHECK(result.all.not_ok == 1);
-  CHECK(result.effects[0].levels[0].n == 3);
+  CHECK(result.anova[0].levels[0].n == 3);
   CHECK(result.settings[0].verdict.repeats == 1);
 }
 

@@ -137,7 +137,7 @@ TEST_CASE("A map of min and max is one axis and other maps are names") {
   REQUIRE(flat.size() == 3);
   CHECK(flat[0].key == "control.v_min");
   CHECK(flat[0].origin.Text() == "f:1:11");
-  CHECK(IsContinuousAxis(*flat[0].value));
+  CHECK(IsAxis(*flat[0].value));
   CHECK(flat[1].key == "control.v_max");
   CHECK(flat[2].key == "empty");
 }

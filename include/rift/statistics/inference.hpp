@@ -17,6 +17,9 @@ double StudentQuantile(double degrees_of_freedom, double share);
 /// Probability of `successes` in `trials`, each with the probability `share`, which may be 0 or 1.
 double BinomialPdf(int trials, double share, int successes);
 
+/// Share below x, in [0, 1], of the beta distribution with a, b > 0.
+double BetaCdf(double a, double b, double x);
+
 /// Share of the F distribution above f: the p value of an F test.
 double FUpperTail(double df1, double df2, double f);
 /// The value that a share `upper_tail` of the F distribution exceeds.

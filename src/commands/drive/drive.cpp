@@ -36,13 +36,15 @@ int PingRobot(const DriveRequest& request) {
 /// The experiment as the request changes it; throws std::invalid_argument, naming the file, when it
 /// is no task to drive.
 experiment::Experiment LoadTask(const DriveRequest& request) {
-  experiment::Experiment experiment = ReadExperiment(request.experiment, request.overrides);
+  const fs::path file = request.suggested.empty() ? fs::path(request.experiment)
+                                                  : fs::path(request.suggested) / "experiment.yaml";
+  experiment::Experiment experiment = ReadExperiment(file, request.overrides);
   if (request.countdown_s) experiment.hardware.start.countdown_s = *request.countdown_s;
   if (request.seconds) experiment.trial.timeout_s = *request.seconds;
   try {
     experiment::TaskOf(experiment);
   } catch (const std::invalid_argument& no_task) {
-    throw std::invalid_argument(fmt::format("{}: {}", request.experiment, no_task.what()));
+    throw std::invalid_argument(fmt::format("{}: {}", file.string(), no_task.what()));
   }
   return experiment;
 }

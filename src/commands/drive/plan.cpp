@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "rift/commands/sweep/suggested.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
@@ -78,7 +79,7 @@ Experiment SweepOf(Experiment experiment, const fs::path& out, const std::string
 SeriesPlan PlanOf(const Experiment& experiment, const fs::path& out,
                   const std::string& folder_template) {
   const std::vector<Parameter>& parameters = experiment.space.parameters;
-  SeriesPlan plan{.sweep = SweepOf(experiment, out, folder_template)};
+  SeriesPlan plan{.parameters = parameters, .sweep = SweepOf(experiment, out, folder_template)};
   for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
     const std::string setting = sweep::SettingText(parameters, theta);
     for (const std::string& trial : experiment.reference.trials.names) {
@@ -93,7 +94,7 @@ SeriesPlan PlanOf(const Experiment& experiment, const fs::path& out,
 /// Floors take longest to change.
 void PutFloorsFirst(SeriesPlan& plan, const std::vector<Parameter>& parameters) {
   const std::size_t surface = IndexOfSurface(parameters);
-  if (surface == parameters.size()) return;
+  if (surface == parameters.size() || plan.trials.empty()) return;
   plan.has_floors = true;
   const std::vector<experiment::ParameterValue>& levels = parameters[surface].levels;
   const auto rank = [&](const PlannedTrial& trial) {
@@ -115,12 +116,36 @@ SeriesPlan PlanGrid(const Experiment& loaded, const fs::path& out) {
   return plan;
 }
 
+SeriesPlan PlanSuggested(const Experiment& experiment, const fs::path& folder) {
+  const std::vector<SuggestedExperiment> suggested = ReadSuggested(folder, experiment);
+  if (suggested.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "{} has no experiments to drive: rift sweep {} --out {} --suggest 3 writes them",
+        SuggestedFile(folder).string(), (folder / "experiment.yaml").string(), folder.string()));
+  }
+  SeriesPlan plan{.parameters = suggested.front().parameters, .sweep = experiment};
+  for (const SuggestedExperiment& one : suggested) {
+    Experiment settings = experiment;
+    settings.space.parameters = one.parameters;
+    const Experiment at = experiment::ExperimentAt(settings, one.values);
+    for (int trial = 1; trial <= one.repeats; ++trial) {
+      plan.trials.push_back({one.values, std::to_string(trial), at,
+                             SuggestedDrive(folder, one.number, trial),
+                             fmt::format("experiment {} ({}), trial {}", one.number,
+                                         sweep::SettingText(one.parameters, one.values), trial)});
+    }
+  }
+  PutFloorsFirst(plan, plan.parameters);
+  return plan;
+}
+
 SeriesPlan PlanRepeats(const Experiment& loaded, int count, const fs::path& out) {
   Experiment experiment = loaded;
   experiment.space.parameters.clear();
   experiment.reference.trials.names.clear();
   for (int i = 1; i <= count; ++i) experiment.reference.trials.names.push_back(std::to_string(i));
   SeriesPlan plan = PlanOf(experiment, out, "{trial}");
+  plan.parameters.clear();
   for (PlannedTrial& trial : plan.trials) trial.label = "trial " + trial.trial;
   // A sweep of the simulator over no space would be the paper's.
   plan.sweep.space.parameters = {

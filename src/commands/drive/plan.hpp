@@ -24,6 +24,8 @@ struct SeriesPlan {
   /// In the order of driving: floors change as seldom as can be.
   std::vector<PlannedTrial> trials;
   bool has_floors = false;  ///< the floor is part of the settings
+  /// Those of the trials' settings, whose names a scene command may use.
+  std::vector<experiment::Parameter> parameters;
   /// What holds the simulator against the logs: `rift sweep` runs it.
   experiment::Experiment sweep;
 };
@@ -32,6 +34,12 @@ struct SeriesPlan {
 /// each, below `out`. Throws std::invalid_argument for a space that is none of lists, or that
 /// varies what no drive can.
 SeriesPlan PlanGrid(const experiment::Experiment& experiment, const std::filesystem::path& out);
+
+/// The experiments of a sweep's suggested.yaml, each as often as it says, below DIR/suggested. The
+/// plan's sweep is the experiment itself. Throws std::invalid_argument when there is nothing to
+/// drive.
+SeriesPlan PlanSuggested(const experiment::Experiment& experiment,
+                         const std::filesystem::path& folder);
 
 /// The experiment `count` times, into out/1, out/2, ...
 SeriesPlan PlanRepeats(const experiment::Experiment& experiment, int count,

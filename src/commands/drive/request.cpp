@@ -18,7 +18,7 @@ void AddReplayFlags(CLI::App& app, DriveRequest& request) {
                      "show a drive that was, finished or interrupted, in a window: its folder");
   replay->type_name("DIR");
   for (const char* other : {"EXPERIMENT", "--set", "--port", "--camera", "--calibration", "--out",
-                            "--yes", "--ping", "--json"}) {
+                            "--yes", "--ping", "--json", "--suggested"}) {
     replay->excludes(app.get_option(other));
   }
   app.add_option("--video", request.video,
@@ -43,23 +43,32 @@ void AddSeriesFlags(CLI::App& app, DriveRequest& request) {
           ->type_name("N")
           ->check(CLI::Range(1, 1000))
           ->excludes(dry_run);
-  app.add_flag("--grid", request.grid,
-               "drive every setting of the experiment's space, reference.trials times each, and "
-               "report on them against the simulator; the same command goes on after a break")
-      ->excludes(dry_run)
-      ->excludes(repeat);
-  app.add_option("--before-each", request.before_each,
-                 "program to run before each trial of --repeat or --grid; {trial} and the "
-                 "settings' names such as {surface} are filled in. It ends with 0, or prints "
-                 "port, camera and calibration as a line of JSON and is ended after the trial")
+  CLI::Option* grid = app.add_flag(
+      "--grid", request.grid,
+      "drive every setting of the experiment's space, reference.trials times each, and "
+      "report on them against the simulator; the same command goes on after a break");
+  grid->excludes(dry_run)->excludes(repeat);
+  CLI::Option* suggested =
+      app.add_option("--suggested", request.suggested,
+                     "drive the experiments that rift sweep --suggest wrote into its folder, into "
+                     "DIR/suggested; the same sweep takes their logs in");
+  suggested->type_name("DIR")->excludes(dry_run)->excludes(repeat)->excludes(grid);
+  for (const char* other : {"EXPERIMENT", "--out", "--ping"}) {
+    suggested->excludes(app.get_option(other));
+  }
+  app.add_option(
+         "--before-each", request.before_each,
+         "program to run before each trial of --repeat, --grid or --suggested; {trial} and the "
+         "settings' names such as {surface} are filled in. It ends with 0, or prints "
+         "port, camera and calibration as a line of JSON and is ended after the trial")
       ->type_name("COMMAND");
 }
 
 void AddDriveFlags(CLI::App& app, DriveRequest& request) {
-  CLI::Option* experiment = app.add_option("EXPERIMENT", request.experiment,
-                                           "YAML file with the waypoints; its key hardware: holds "
-                                           "the link's settings and limits");
-  AddSetFlag(app, request.overrides, "hardware.line.baud=115200")->needs(experiment);
+  app.add_option("EXPERIMENT", request.experiment,
+                 "YAML file with the waypoints; its key hardware: holds "
+                 "the link's settings and limits");
+  AddSetFlag(app, request.overrides, "hardware.line.baud=115200");
   app.add_option("--port", request.port, "the robot's serial port, such as /dev/rfcomm0")
       ->type_name("TTY");
   app.add_option("--camera", request.camera,
@@ -84,8 +93,8 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
       ->check(InRange(0.0, 60.0));
   app.add_flag("--any-start", request.any_start,
                "start even when the robot stands far off its start (hardware.start)");
-  AddSeriesFlags(app, request);
   app.add_flag("--ping", request.ping, "only measure the link, with the motors at zero");
+  AddSeriesFlags(app, request);
   app.add_flag("--json", request.json, "print JSON instead of text");
   AddReplayFlags(app, request);
 }
@@ -99,11 +108,14 @@ void DriveRequest::Check() const {
     throw std::invalid_argument(
         "--port is missing: name the robot's serial port, such as /dev/rfcomm0");
   }
+  if (experiment.empty() && suggested.empty() && !overrides.empty()) {
+    throw std::invalid_argument("--set changes an experiment: name EXPERIMENT, its YAML file");
+  }
   if (ping) return;
   if (!before_each.empty() && !IsSeries()) {
-    throw std::invalid_argument("--before-each goes with --repeat or --grid");
+    throw std::invalid_argument("--before-each goes with --repeat, --grid or --suggested");
   }
-  if (experiment.empty()) {
+  if (experiment.empty() && suggested.empty()) {
     throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
   }
   if (is_told_later) return;
@@ -136,6 +148,7 @@ void AddDrive(CLI::App& app, int& exit_code, const std::function<int(const Drive
       "             --calibration cam.yaml --out out/real1\n"
       "         rift drive --replay out/real1\n"
       "         rift drive EXPERIMENT --grid --set reference.trials=3 --port ... (whole table)\n"
+      "         rift drive --suggested out/sweep --port ... (what rift sweep --suggest wrote)\n"
       "         rift drive configs/twin.yaml --repeat 3 --yes --before-each \\\n"
       "             'rift simulate configs/twin.yaml --twin --seed {trial} --out out/twin{trial}'");
   app.callback([request, drive, &exit_code] {

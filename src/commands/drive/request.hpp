@@ -29,9 +29,10 @@ struct DriveRequest {
   bool any_start = false;
   int repeat = 0;  ///< 0: one drive
   bool grid = false;
+  std::string suggested;  ///< folder of a sweep whose suggested.yaml is driven
   std::string before_each;
 
-  bool IsSeries() const { return grid || repeat > 0; }
+  bool IsSeries() const { return grid || repeat > 0 || !suggested.empty(); }
 
   /// Throws std::invalid_argument, saying what to give, when something is missing.
   void Check() const;

@@ -13,6 +13,7 @@
 #include "prompt.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
+#include "rift/commands/sweep/suggested.hpp"
 #include "rift/commands/sweep/sweep.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/files/files.hpp"
@@ -26,7 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using experiment::Experiment;
-using experiment::Parameter;
 
 /// What a drive depends on; limits of the line or the camera may change from day to day.
 bool ChangesDrives(const std::string& key) {
@@ -142,11 +142,8 @@ bool Series::LayFloor(const PlannedTrial& trial) {
 void Series::SetScene(const PlannedTrial& trial) {
   if (request_.before_each.empty()) return;
   std::vector<std::string> words = WordsOf(request_.before_each);
-  // Those of a repeat are none: its space was made for the sweep.
-  const std::vector<Parameter> parameters =
-      trial.theta.empty() ? std::vector<Parameter>() : plan_.sweep.space.parameters;
   for (std::string& word : words) {
-    word = experiment::FillTemplate(word, parameters, trial.theta, trial.trial);
+    word = experiment::FillTemplate(word, plan_.parameters, trial.theta, trial.trial);
   }
   scene_.emplace(words);
   const DriveAddress to = scene_->address().value_or(DriveAddress{});
@@ -160,11 +157,37 @@ int RunSweep(const fs::path& out, bool json) {
 
 }  // namespace
 
-int DriveSeries(const DriveRequest& request, const Experiment& experiment) {
-  const fs::path out = NewFolder(request, experiment);
+namespace {
+
+SeriesPlan PlanOf(const DriveRequest& request, const Experiment& experiment, const fs::path& out) {
+  if (!request.suggested.empty()) return PlanSuggested(experiment, request.suggested);
+  return request.grid ? PlanGrid(experiment, out) : PlanRepeats(experiment, request.repeat, out);
+}
+
+fs::path FolderOf(const DriveRequest& request, const Experiment& experiment) {
+  if (!request.suggested.empty()) return SuggestedFolder(request.suggested);
+  fs::path out = NewFolder(request, experiment);
   RefuseSweepFolder(out);
-  const SeriesPlan plan =
-      request.grid ? PlanGrid(experiment, out) : PlanRepeats(experiment, request.repeat, out);
+  return out;
+}
+
+/// What a person does with the drives, where they are not swept at once.
+void SayWhatNext(const DriveRequest& request, const fs::path& out) {
+  if (!request.suggested.empty()) {
+    const fs::path sweep = request.suggested;
+    terminal::Say(fmt::format("what they confirm: rift sweep {} --out {}",
+                              (sweep / "experiment.yaml").string(), sweep.string()));
+  } else if (!request.grid) {
+    terminal::Say(fmt::format("against the simulator: rift sweep {} --out {}",
+                              (out / "sweep.yaml").string(), (out / "sweep").string()));
+  }
+}
+
+}  // namespace
+
+int DriveSeries(const DriveRequest& request, const Experiment& experiment) {
+  const fs::path out = FolderOf(request, experiment);
+  const SeriesPlan plan = PlanOf(request, experiment, out);
   const files::FolderLock lock(out);
   CheckSameSeries(out / "sweep.yaml", plan.sweep);
   files::WriteFile(out / "sweep.yaml", experiment::WriteExperiment(plan.sweep));
@@ -193,10 +216,7 @@ int DriveSeries(const DriveRequest& request, const Experiment& experiment) {
                     "about them again",
                     left, count));
   const int reported = request.grid ? RunSweep(out, request.json) : terminal::kDone;
-  if (!request.grid) {
-    terminal::Say(fmt::format("against the simulator: rift sweep {} --out {}",
-                              (out / "sweep.yaml").string(), (out / "sweep").string()));
-  }
+  SayWhatNext(request, out);
   return left > 0 ? terminal::kNotReached : reported;
 }
 

@@ -71,8 +71,10 @@ std::string RareEventInto(const std::filesystem::path& folder,
 }
 
 void AddExplainFlags(CLI::App& app, ExplainRequest& request) {
-  app.add_option("--suggest", request.suggest,
-                 "print the next N experiments on the robot and what each would decide")
+  app.add_option(
+         "--suggest", request.suggest,
+         "suggest up to N experiments on the robot, print what each would decide and write them "
+         "to DIR/suggested.yaml, which rift drive --suggested DIR drives")
       ->type_name("N")
       ->check(CLI::Range(1, 1000));
   app.add_option("--shrink", request.shrink,

@@ -25,6 +25,7 @@
 #include "rift/sweep/falsify/verdict.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
+#include "robot_logs.hpp"
 
 namespace rift::commands {
 
@@ -179,7 +180,12 @@ int Sweep(const SweepRequest& request) {
   Save(out, experiment, evaluator, *judged);
   if (judged->all.told == 0) return EndWithoutGap(request, out, *judged);
 
-  const sweep::Explanation explanation = sweep::Explain(*judged, OptionsFor(request.explain));
+  sweep::ExplainOptions options = OptionsFor(request.explain);
+  options.robot = TakeRobotLogs(out, evaluator);
+  const sweep::Explanation explanation = sweep::Explain(*judged, options);
+  if (request.explain.suggest > 0) {
+    SaveSuggested(out, experiment, *judged, explanation.suggestions);
+  }
   const std::vector<sweep::GroupLikeness> likeness =
       sweep::MeasureSweepLikeness(evaluator, request.jobs);
   const std::vector<sweep::ProgramCell> programs = sweep::MeasurePrograms(evaluator);

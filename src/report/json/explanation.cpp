@@ -24,39 +24,27 @@ ordered_json EstimateJson(const sweep::Estimate& estimate) {
           {"n", estimate.n}};
 }
 
-ordered_json FactorsJson(const sweep::FactorialAnalysis& factors) {
-  ordered_json terms = ordered_json::array();
-  for (const sweep::FactorialTerm& term : factors.terms) {
-    terms.push_back({{"name", term.name},
-                     {"is_interaction", term.IsInteraction()},
-                     {"f", NumberOrNull(term.f)},
-                     {"df", {term.df, factors.residual_df}},
-                     {"p", NumberOrNull(term.p)},
-                     {"share", NumberOrNull(term.share)},
-                     {"share_low", NumberOrNull(term.share_low)},
-                     {"share_high", NumberOrNull(term.share_high)},
-                     {"matters", term.p < 0.05}});
+ordered_json EffectsJson(const sweep::Effects& effects) {
+  ordered_json parameters = ordered_json::array();
+  for (const sweep::ParameterEffect& effect : effects.parameters) {
+    parameters.push_back(
+        {{"parameter", effect.name},
+         {"share", NumberOrNull(effect.share)},
+         {"share_interval", {NumberOrNull(effect.share_low), NumberOrNull(effect.share_high)}},
+         {"alone", NumberOrNull(effect.alone)},
+         {"together_with", effect.together},
+         {"df", {effect.df, effects.residual_df}},
+         {"p", NumberOrNull(effect.p)},
+         {"seen", effect.IsSeen()},
+         {"sentence", effect.sentence}});
   }
-  return {{"terms", terms},
-          {"trials", factors.n},
-          {"residual_sd_m", NumberOrNull(factors.residual_sd_m)},
-          {"explained", NumberOrNull(factors.explained)}};
-}
-
-ordered_json SobolJson(const sweep::Sensitivity& sensitivity) {
-  ordered_json indices = ordered_json::array();
-  for (const sweep::SobolIndex& index : sensitivity.indices) {
-    indices.push_back({{"parameter", index.parameter},
-                       {"first", index.first},
-                       {"first_interval", {index.first_low, index.first_high}},
-                       {"total", index.total},
-                       {"total_interval", {index.total_low, index.total_high}}});
-  }
-  return {{"indices", indices},
-          {"q2", NumberOrNull(sensitivity.q2)},
-          {"degree", sensitivity.degree},
-          {"trials", sensitivity.trials},
-          {"note", sensitivity.note}};
+  return {{"parameters", parameters},
+          {"trials", effects.trials},
+          {"degree", effects.degree},
+          {"explained", NumberOrNull(effects.explained)},
+          {"predicted", NumberOrNull(effects.predicted)},
+          {"residual_sd_m", NumberOrNull(effects.residual_sd_m)},
+          {"note", effects.note}};
 }
 
 ordered_json LimitJson(const std::vector<sweep::LimitUse>& uses) {
@@ -101,6 +89,8 @@ ordered_json AnatomyJson(const sweep::Anatomy& anatomy) {
           {"shape_m", EstimateJson(anatomy.shape_m)},
           {"pace_m", EstimateJson(anatomy.pace_m)},
           {"timing_m", EstimateJson(anatomy.timing_m)},
+          {"goal_m", EstimateJson(anatomy.goal_m)},
+          {"only_at_goal", anatomy.only_at_goal},
           {"noise_m", EstimateJson(anatomy.noise_m)},
           {"removable_m", EstimateJson(anatomy.removable_m)},
           {"parts", parts}};
@@ -162,25 +152,45 @@ ordered_json UndecidedJson(const sweep::SweepResult& result) {
   return json;
 }
 
+std::vector<experiment::Parameter> SettableOf(const sweep::SweepResult& result,
+                                              const sweep::Suggestions& suggestions) {
+  std::vector<experiment::Parameter> parameters;
+  for (const int i : suggestions.settable) parameters.push_back(result.parameters[i]);
+  return parameters;
+}
+
 ordered_json SuggestionsJson(const sweep::SweepResult& result,
-                             const std::vector<sweep::Suggestion>& suggestions) {
+                             const sweep::Suggestions& suggestions) {
+  const std::vector<experiment::Parameter> parameters = SettableOf(result, suggestions);
   ordered_json json = ordered_json::array();
-  for (const sweep::Suggestion& suggestion : suggestions) {
-    const sweep::SettingResult& setting = result.settings[suggestion.setting];
-    json.push_back({{"theta", ThetaJson(result.parameters, setting.theta)},
+  for (const sweep::Suggestion& suggestion : suggestions.list) {
+    json.push_back({{"set", ThetaJson(parameters, suggestion.values)},
                     {"repeats", suggestion.repeats},
-                    {"rows", RowIds(setting.rows)},
-                    {"mean_gap_m", NumberOrNull(suggestion.mean_gap_m)},
-                    {"above_now", NumberOrNull(suggestion.above_now)},
+                    {"rows", RowIds(suggestion.rows)},
+                    {"failures", suggestion.failures},
+                    {"predicted_to_fail", suggestion.is_predicted_to_fail},
+                    {"mean_loss_m", NumberOrNull(suggestion.mean_loss_m)},
+                    {"fails_now", NumberOrNull(suggestion.fails_now)},
                     {"wrong_now", NumberOrNull(suggestion.wrong_now)},
                     {"wrong_after", NumberOrNull(suggestion.wrong_after)},
-                    {"flip", NumberOrNull(suggestion.flip)},
-                    {"width_now", NumberOrNull(suggestion.width_now)},
-                    {"width_after", NumberOrNull(suggestion.width_after)},
-                    {"trials_to_decide", suggestion.trials_to_decide < 0
-                                             ? ordered_json(nullptr)
-                                             : ordered_json(suggestion.trials_to_decide)},
                     {"sentence", suggestion.sentence}});
+  }
+  return {{"experiments", json},
+          {"trusted", NumberOrNull(suggestions.trusted)},
+          {"note", suggestions.note}};
+}
+
+ordered_json RobotJson(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+  const std::vector<experiment::Parameter> parameters = SettableOf(result, explanation.suggestions);
+  ordered_json json = ordered_json::array();
+  for (const sweep::RobotTrials& driven : explanation.robot) {
+    const gap::RepeatVerdict verdict =
+        gap::JudgeCounts(driven.failures, driven.trials, result.judged_by);
+    json.push_back({{"set", ThetaJson(parameters, driven.values)},
+                    {"predicted_to_fail", driven.is_predicted_to_fail},
+                    {"n", driven.trials},
+                    {"failures", driven.failures},
+                    {"verdict", yaml::NameOf(verdict.verdict)}});
   }
   return json;
 }
@@ -190,17 +200,18 @@ ordered_json SuggestionsJson(const sweep::SweepResult& result,
 std::string ExplanationJson(const sweep::SweepResult& result,
                             const sweep::Explanation& explanation) {
   ordered_json json{{"name", result.name}, {"rift_version", RIFT_VERSION}};
-  json["effects"] = FactorsJson(explanation.factors);
-  json["sobol"] = SobolJson(explanation.sensitivity);
-  ordered_json& parameters = json["parameters"] = ordered_json::object();
+  json["effects"] = EffectsJson(explanation.effects);
+  ordered_json parameters = ordered_json::object();
   for (const sweep::Inertness& inert : explanation.inert) {
     parameters[inert.parameter] = InertnessJson(inert);
   }
+  json["parameters"] = std::move(parameters);
   json["anatomy"] = AnatomyJson(explanation.anatomy);
   json["failures"] = ClustersJson(explanation.clusters);
   json["failing_region"] = RegionJson(result, explanation.region);
   json["failure_probability"] = ProbabilityJson(explanation.probability);
   json["undecided"] = UndecidedJson(result);
+  json["robot"] = RobotJson(result, explanation);
   json["suggestions"] = SuggestionsJson(result, explanation.suggestions);
   return Dump(json);
 }

@@ -29,14 +29,12 @@ ordered_json LevelsJson(const std::vector<sweep::LevelSummary>& levels) {
   return json;
 }
 
-ordered_json EffectJson(const sweep::Effect& effect) {
-  return {{"f", NumberOrNull(effect.f)},
-          {"df", {effect.df_between, effect.df_within}},
-          {"p", NumberOrNull(effect.p)},
-          {"eta_squared", NumberOrNull(effect.eta_squared)},
-          {"omega_squared", NumberOrNull(effect.omega_squared)},
-          {"detected", effect.detected},
-          {"sentence", effect.sentence}};
+ordered_json AnovaJson(const sweep::Anova& of_one) {
+  return {{"f", NumberOrNull(of_one.f)},
+          {"df", {of_one.df_between, of_one.df_within}},
+          {"p", NumberOrNull(of_one.p)},
+          {"eta_squared", NumberOrNull(of_one.eta_squared)},
+          {"omega_squared", NumberOrNull(of_one.omega_squared)}};
 }
 
 ordered_json SettingJson(const sweep::SweepResult& result, const sweep::SettingResult& setting) {
@@ -133,12 +131,12 @@ std::string SummaryJson(const sweep::SweepResult& result) {
   if (result.falsification) {
     json["falsification"] = FalsificationJson(result, *result.falsification);
   }
-  ordered_json by = ordered_json::object(), effects = ordered_json::object();
+  ordered_json by = ordered_json::object(), anova = ordered_json::object();
   for (size_t i = 0; i < result.parameters.size(); ++i) {
     if (result.parameters[i].IsContinuous()) continue;  // every setting would be its own level
     by[result.parameters[i].Name()] = LevelsJson(sweep::SummariseBy(result, {static_cast<int>(i)}));
   }
-  for (const sweep::Effect& effect : result.effects) effects[effect.parameter] = EffectJson(effect);
+  for (const sweep::Anova& of_one : result.anova) anova[of_one.parameter] = AnovaJson(of_one);
   if (!result.parameters.empty()) {
     const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
     const bool has_range = std::any_of(split.others.begin(), split.others.end(),
@@ -148,7 +146,7 @@ std::string SummaryJson(const sweep::SweepResult& result) {
     }
   }
   json["by"] = std::move(by);
-  json["effects"] = std::move(effects);
+  json["anova"] = std::move(anova);
   AddSettings(result, json);
   return Dump(json);
 }

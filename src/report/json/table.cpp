@@ -31,9 +31,9 @@ std::string RowCsv(const sweep::TrialRow& row, size_t id) {
   text += fmt::format("{},{},{},{}", CsvCell(row.trial), NumberCell(row.comparison.gap_m),
                       falsified, yaml::NameOf(row.status));
   const gap::Comparison& c = row.comparison;
-  for (const double value :
-       {c.gap_u, c.exact_gap_m, c.mean_error_m, c.rms_error_m, c.start_offset_m,
-        c.start_aligned_gap_m, c.shape_gap_m, c.length_ratio, c.end_error_m}) {
+  for (const double value : {c.gap_u, c.exact_gap_m, c.mean_error_m, c.rms_error_m,
+                             c.start_offset_m, c.start_aligned_gap_m, c.shape_gap_m, c.length_ratio,
+                             c.end_error_m, row.way_gap_m, row.left_m}) {
     text += ',' + NumberCell(value);
   }
   return text + ',' + CsvCell(row.reason) + ',' + CsvCell(row.candidate) + ',' +

@@ -147,11 +147,9 @@ PageChart LevelsChart(const sweep::SweepResult& result, int parameter) {
   for (const sweep::LevelSummary& level : sweep::SummariseBy(result, {parameter})) {
     values.push_back(LevelBar(level));
   }
-  std::string sentence = "Mean gap in metres, with the standard deviation of the trials.";
-  for (const sweep::Effect& effect : result.effects) {
-    if (effect.parameter == name) sentence += fmt::format(" {}: {}.", name, effect.sentence);
-  }
-  PageChart chart = Bars("Mean gap by " + name, sentence, "gap (m)", std::move(values));
+  PageChart chart =
+      Bars("Mean gap by " + name, "Mean gap in metres, with the standard deviation of the trials.",
+           "gap (m)", std::move(values));
   SetSignal(chart.spec, "threshold", result.gap.threshold_m);
   return chart;
 }

@@ -73,7 +73,7 @@ data FindingList(const sweep::SweepResult& result, const sweep::Explanation& exp
 
 data SuggestionList(const sweep::Explanation& explanation) {
   data list{data::type::list};
-  for (const sweep::Suggestion& suggestion : explanation.suggestions) {
+  for (const sweep::Suggestion& suggestion : explanation.suggestions.list) {
     list << data(PlainText(suggestion.sentence));
   }
   return list;
@@ -141,7 +141,7 @@ std::string RenderPage(const sweep::SweepResult& result, const sweep::Explanatio
   page.set("headline", PieceList(headline.sentence));
   page.set("headline_class", HeadlineClass(headline.outcome));
   page.set("findings", FindingList(result, explanation));
-  page.set("has_suggestions", !explanation.suggestions.empty());
+  page.set("has_suggestions", !explanation.suggestions.list.empty());
   page.set("suggestions", SuggestionList(explanation));
   page.set("definition", gap::DefinitionText(result.gap, result.tag_offset_m));
   page.set("threshold", Number(result.gap.threshold_m));

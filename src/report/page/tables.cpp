@@ -82,7 +82,7 @@ json TrialCells(const sweep::TrialRow& row, std::ptrdiff_t number, const std::st
   const gap::Comparison& c = row.comparison;
   const std::string_view status = EnumNames(row.status)[static_cast<int>(row.status)];
   cells.push_back(row.trial);
-  cells.push_back(row.IsOk() ? (row.falsified ? "above threshold" : "below") : status);
+  cells.push_back(row.IsOk() ? (row.falsified ? "above threshold" : "holds") : status);
   for (const double value : {c.gap_m, c.gap_u, c.exact_gap_m, c.mean_error_m, c.start_offset_m,
                              c.start_aligned_gap_m, c.shape_gap_m, c.end_error_m, c.length_ratio}) {
     cells.push_back(Value(value));

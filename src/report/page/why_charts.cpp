@@ -43,42 +43,18 @@ json Percent(const std::string& label, double share, double low, double high) {
               {"95 % interval", interval}});
 }
 
-void AddFactors(const sweep::Explanation& explanation, std::vector<PageChart>* charts) {
-  std::vector<const sweep::FactorialTerm*> terms;
-  for (const sweep::FactorialTerm& term : explanation.factors.terms) {
-    if (std::isfinite(term.share)) terms.push_back(&term);
-  }
-  if (terms.empty()) return;
-  std::stable_sort(terms.begin(), terms.end(),
-                   [](const auto* a, const auto* b) { return a->share > b->share; });
-  terms.resize(std::min(kMostTerms, terms.size()));
+void AddEffects(const sweep::Explanation& explanation, std::vector<PageChart>* charts) {
   json values = json::array();
-  for (const sweep::FactorialTerm* term : terms) {
-    values.push_back(Percent(term->name, term->share, term->share_low, term->share_high));
+  for (const sweep::ParameterEffect& effect : explanation.effects.parameters) {
+    if (!std::isfinite(effect.share) || values.size() == kMostTerms) continue;
+    values.push_back(Percent(effect.name, effect.share, effect.share_low, effect.share_high));
   }
-  charts->push_back(Bars(
-      "What the gap depends on",
-      "Share of the gap's variance that each parameter explains, and each two of them beyond their "
-      "own shares, of what the others leave; whiskers are 95 % intervals.",
-      "share of the variance (%)", std::move(values)));
-}
-
-void AddIndices(const sweep::Explanation& explanation, std::vector<PageChart>* charts) {
-  const sweep::Sensitivity& sensitivity = explanation.sensitivity;
-  if (sensitivity.indices.empty()) return;
-  json values = json::array();
-  for (const sweep::SobolIndex& index : sensitivity.indices) {
-    if (values.size() + 2 > 2 * kMostTerms) break;
-    values.push_back(
-        Percent(index.parameter + ", in all", index.total, index.total_low, index.total_high));
-    values.push_back(
-        Percent(index.parameter + ", alone", index.first, index.first_low, index.first_high));
-  }
+  if (values.empty()) return;
   charts->push_back(
-      Bars("What the gap depends on over the space",
-           "Sobol indices: share of the gap's variance by each parameter with all its "
-           "interactions and alone, " +
-               sensitivity.note + "; whiskers are 95 % intervals.",
+      Bars("What the loss depends on",
+           "Share of the loss's variance that goes with each parameter, by itself or together with "
+           "others, " +
+               explanation.effects.note + "; whiskers are 95 % intervals.",
            "share of the variance (%)", std::move(values)));
 }
 
@@ -255,8 +231,7 @@ std::vector<PageChart> WhyCharts(const sweep::SweepResult& result,
                                  const std::vector<TypicalFailure>& failures) {
   std::vector<PageChart> charts;
   if (result.all.n == 0) return charts;
-  AddFactors(explanation, &charts);
-  AddIndices(explanation, &charts);
+  AddEffects(explanation, &charts);
   AddAnatomy(explanation, &charts);
   AddRegion(result, explanation.region, &charts);
   for (const TypicalFailure& failure : failures) {

@@ -10,72 +10,32 @@ namespace {
 
 constexpr double kSmallShare = 0.05;
 
-std::string P(double p) { return p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", p); }
-
-std::string Capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
-  return text;
-}
-
 /// "0.0040 to 0.0110"
 std::string Between(double low, double high, double unit, int digits) {
   return fmt::format("{:.{}f} to {:.{}f}", unit * low, digits, unit * high, digits);
 }
 
-/// The terms of the linear model that are seen, the largest first.
-void SayFactors(const sweep::Explanation& explanation, Finding* finding) {
-  std::vector<const sweep::FactorialTerm*> seen;
-  for (const sweep::FactorialTerm& term : explanation.factors.terms) {
-    if (!(term.p < 0.05)) continue;
-    seen.push_back(&term);
-  }
-  std::stable_sort(seen.begin(), seen.end(),
-                   [](const auto* a, const auto* b) { return a->share > b->share; });
-  for (const sweep::FactorialTerm* term : seen) {
-    finding->sentences.push_back(
-        fmt::format("{} matters: {:.0f} % of the gap's variance beside the others, {} % with 95 % "
-                    "confidence ({}).",
-                    term->name, 100.0 * term->share,
-                    Between(term->share_low, term->share_high, 100.0, 0), P(term->p)));
-  }
-}
-
-void SayInteractions(const sweep::Explanation& explanation, Finding* finding) {
-  bool is_any_seen = false;
-  for (const sweep::FactorialTerm& term : explanation.factors.terms) {
-    if (term.p < 0.05 && term.IsInteraction()) return;
-    is_any_seen = is_any_seen || term.p < 0.05;
-  }
-  if (explanation.factors.has_interactions && is_any_seen) {
-    finding->sentences.push_back(Sentence("No two parameters are seen to act together."));
-  }
-}
-
-void SayIndices(const sweep::Explanation& explanation, Finding* finding) {
-  const sweep::Sensitivity& sensitivity = explanation.sensitivity;
+/// All parameters by the one measure, the largest share first, then how far it can be trusted.
+void SayEffects(const sweep::Explanation& explanation, Finding* finding) {
   std::string small;
-  for (const sweep::SobolIndex& index : sensitivity.indices) {
-    if (index.total_high < kSmallShare) {
-      small += (small.empty() ? "" : ", ") + index.parameter;
+  for (const sweep::ParameterEffect& effect : explanation.effects.parameters) {
+    if (!effect.IsSeen() && effect.share_high < kSmallShare) {
+      small += (small.empty() ? "" : ", ") + effect.name;
       continue;
     }
-    finding->sentences.push_back(
-        fmt::format("{}: {:.0f} % of the gap's variance ({}), of it {:.0f} % alone.",
-                    index.parameter, 100.0 * index.total,
-                    Between(index.total_low, index.total_high, 100.0, 0), 100.0 * index.first));
+    finding->sentences.push_back(effect.sentence + ".");
   }
   if (!small.empty()) {
     finding->sentences.push_back(
-        fmt::format("Less than {:.0f} % each: {}.", 100.0 * kSmallShare, small));
+        fmt::format("No effect seen, and less than {:.0f} % of the loss's variance each: {}.",
+                    100.0 * kSmallShare, small));
   }
-  if (!sensitivity.note.empty()) finding->sentences.push_back(Capital(sensitivity.note) + ".");
+  const std::string& note = explanation.effects.note;
+  if (!note.empty()) finding->sentences.push_back(Capital(note) + ".");
 }
 
-/// Of an inert parameter first why it is, which is what the controller or the paths tell.
 std::string InertText(const sweep::Inertness& inert) {
-  std::string text = inert.parameter + " is inert: ";
-  for (std::size_t i = 1; i < inert.sentences.size(); ++i) text += inert.sentences[i] + "; ";
-  return text + inert.sentences.front();
+  return fmt::format("{} is inert: {}", inert.parameter, fmt::join(inert.sentences, "; "));
 }
 
 void SayInert(const sweep::Explanation& explanation, bool is_inert, Finding* finding) {
@@ -108,8 +68,26 @@ std::string PartText(const sweep::GapPart& part) {
                      IntervalText(part.size_m), part.remedy);
 }
 
+/// How short of the goal a run stops is a tolerance of the task, so it is told apart.
+void SayGoal(const sweep::Anatomy& anatomy, Finding* finding) {
+  if (!std::isfinite(anatomy.goal_m.mean)) return;
+  std::string text = fmt::format(
+      "Stopping short of the goal: {:+.4f} m{} of it go when runs that stopped within "
+      "control.reach_radius_m go straight on until they are level with the last waypoint",
+      anatomy.goal_m.mean, IntervalText(anatomy.goal_m));
+  if (anatomy.only_at_goal > 0) {
+    text +=
+        fmt::format("; {} above the threshold by that alone, and no failure{}",
+                    anatomy.only_at_goal == 1 ? "1 trial is"
+                                              : fmt::format("{} trials are", anatomy.only_at_goal),
+                    anatomy.only_at_goal == 1 ? "" : "s");
+  }
+  finding->sentences.push_back(text + ".");
+}
+
 void SayParts(const sweep::Explanation& explanation, Finding* finding) {
   const sweep::Anatomy& anatomy = explanation.anatomy;
+  SayGoal(anatomy, finding);
   for (const sweep::GapPart& part : anatomy.parts) {
     if (std::isfinite(part.size_m.mean)) finding->sentences.push_back(PartText(part));
   }
@@ -144,18 +122,20 @@ double MeanOverTrials(const sweep::SweepResult& result, Field field) {
 
 }  // namespace
 
-Finding Because(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+std::string Capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
+  return text;
+}
+
+Finding Because(const sweep::Explanation& explanation) {
   Finding finding{"Because of what?", {}};
-  SayFactors(explanation, &finding);
-  SayIndices(explanation, &finding);
+  SayEffects(explanation, &finding);
   SayStart(explanation, &finding);
   SayInert(explanation, true, &finding);
   SayInert(explanation, false, &finding);
-  SayInteractions(explanation, &finding);
   if (finding.sentences.empty()) {
-    finding.sentences.push_back(Sentence(
-        result.effects.empty() ? "Not known: no parameter was varied over comparable values."
-                               : "Not known: too few trials with a gap to test any parameter."));
+    finding.sentences.push_back(
+        Sentence("Not known: no parameter was varied over comparable values."));
   }
   return finding;
 }

@@ -133,28 +133,22 @@ Finding HowSure(const sweep::SweepResult& result, const sweep::Explanation& expl
 Finding Next(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
   constexpr std::size_t kMostShown = 3;
   Finding finding{"What to test next?", {}};
-  const std::vector<sweep::Suggestion>& suggestions = explanation.suggestions;
+  const std::string robot = RobotSentence(result, explanation);
+  if (!robot.empty()) finding.sentences.push_back(Sentence(robot));
+  const std::vector<sweep::Suggestion>& suggestions = explanation.suggestions.list;
   for (std::size_t i = 0; i < std::min(kMostShown, suggestions.size()); ++i) {
     const sweep::Suggestion& suggestion = suggestions[i];
-    const sweep::SettingResult& setting = result.settings[suggestion.setting];
-    if (std::isnan(suggestion.wrong_now)) {
-      finding.sentences.push_back(
-          Sentence()
-              .Link(SettingLabel(result, setting.theta), TrialsOf(result, setting.theta))
-              .Say(": " + suggestion.sentence + "."));
-      continue;
-    }
-    Sentence sentence(Count(suggestion.repeats, "trial") + " of ");
-    sentence.Link(SettingLabel(result, setting.theta), TrialsOf(result, setting.theta))
-        .Say(fmt::format(": its mean gap is {:.4f} m so far, above {:g} m with {} probability; the "
-                         "risk of a wrong call falls from {} to {}.",
-                         suggestion.mean_gap_m, result.gap.threshold_m,
-                         Percent(suggestion.above_now), Percent(suggestion.wrong_now),
-                         Percent(suggestion.wrong_after)));
+    const std::size_t colon = suggestion.sentence.find(':');
+    Sentence sentence;
+    sentence.Link(suggestion.sentence.substr(0, colon), TrialsNumbered(suggestion.rows))
+        .Say(suggestion.sentence.substr(colon) + ".");
     finding.sentences.push_back(sentence);
   }
-  if (suggestions.empty()) {
-    finding.sentences.push_back(Sentence("Nothing can be said: no setting has a gap."));
+  if (!explanation.suggestions.note.empty()) {
+    finding.sentences.push_back(Sentence(Capital(explanation.suggestions.note) + "."));
+  }
+  if (finding.sentences.empty()) {
+    finding.sentences.push_back(Sentence("Nothing can be said: no trial tells."));
   }
   return finding;
 }
@@ -245,7 +239,8 @@ std::string BesideScatter(const sweep::SweepResult& result) {
   const bool is_robot = result.reference_kind == "logs";
   const std::string it = is_robot ? "the robot" : "the nominal run";
   const std::string numbers = fmt::format(
-      "mean gap {} against {} between its own runs, difference {:+.4f} m ({:.4f} to "
+      "over the settings a mean gap of {} against {} between its own runs, difference {:+.4f} m "
+      "({:.4f} to "
       "{:.4f})",
       Metres(anatomy.gap_m.mean), Metres(anatomy.noise_m.mean), beyond.mean, beyond.low,
       beyond.high);
@@ -257,6 +252,16 @@ std::string BesideScatter(const sweep::SweepResult& result) {
   }
   return fmt::format("It cannot be told whether it is further from {} than {} from itself: {}. ",
                      it, it, numbers);
+}
+
+/// Runs that are the same to the last bit are one run, and counting them all would say too much.
+std::string DistinctText(const sweep::SweepResult& result) {
+  const std::vector<int> distinct = sweep::RowsThatCount(result);
+  if (static_cast<int>(distinct.size()) == result.all.told) return "";
+  const long failures = std::count_if(distinct.begin(), distinct.end(),
+                                      [&](int row) { return result.rows[row].falsified; });
+  return fmt::format(" Of these trials {} are different runs, of which {} fail.", distinct.size(),
+                     failures);
 }
 
 std::string HowTheyFail(const sweep::SweepResult& result) {
@@ -278,8 +283,10 @@ Headline Summary(const sweep::SweepResult& result) {
   }
   Sentence sentence(BesideScatter(result));
   if (all.failures == 0) {
-    sentence.Say(fmt::format("No failure: none of {} exceeds {} m; mean gap {}.",
+    const bool is_above_at_goal = sweep::Dissect(result).only_at_goal > 0;
+    sentence.Say(fmt::format("No failure: none of {} exceeds {} m{}; mean gap {}.",
                              Count(all.told, "measured trial"), Number(result.gap.threshold_m),
+                             is_above_at_goal ? " on its way to the goal" : "",
                              Metres(all.mean_gap_m)));
     return {Outcome::kHolds, sentence};
   }
@@ -288,14 +295,15 @@ Headline Summary(const sweep::SweepResult& result) {
   sentence.Say("It fails: ")
       .Link(std::to_string(all.failures), AboveThreshold())
       .Say(fmt::format(" of {} {} ({}){}.", Count(all.told, "measured trial"), HowTheyFail(result),
-                       Percent(FailureShare(all)), mean));
+                       Percent(FailureShare(all)), mean))
+      .Say(DistinctText(result));
   return {Outcome::kFails, sentence};
 }
 
 std::vector<Finding> Findings(const sweep::SweepResult& result,
                               const sweep::Explanation& explanation) {
   return {Where(result, explanation),
-          Because(result, explanation),
+          Because(explanation),
           HowSure(result, explanation),
           Next(result, explanation),
           MadeOf(result, explanation),

@@ -38,14 +38,6 @@ std::string LevelTable(const std::string& head, std::vector<sweep::LevelSummary>
   return text + '\n';
 }
 
-std::string EffectsText(const sweep::SweepResult& result) {
-  std::string text;
-  for (const sweep::Effect& effect : result.effects) {
-    text += fmt::format("{}: {}\n", effect.parameter, effect.sentence);
-  }
-  return text;
-}
-
 std::string WorstText(const sweep::SweepResult& result) {
   const std::optional<int> index = WorstRow(result);
   if (!index) return "";
@@ -103,15 +95,17 @@ std::string LevelTables(const sweep::SweepResult& result) {
 }
 
 std::string SuggestionsText(const sweep::Explanation& explanation) {
-  if (explanation.suggestions.empty()) {
-    return "\nno experiment can be suggested: no setting has a gap\n";
-  }
-  std::string text = "\nnext experiments on the robot, the one that decides most first:\n";
+  const sweep::Suggestions& suggestions = explanation.suggestions;
+  std::string text;
+  if (!suggestions.list.empty()) text = "\nnext experiments on the robot, the best first:\n";
   int number = 0;
-  for (const sweep::Suggestion& suggestion : explanation.suggestions) {
+  for (const sweep::Suggestion& suggestion : suggestions.list) {
     text += fmt::format("{}. {}\n", ++number, suggestion.sentence);
   }
-  return text;
+  if (suggestions.list.empty() && suggestions.note.empty()) {
+    return "\nno experiment can be suggested: no trial tells\n";
+  }
+  return suggestions.note.empty() ? text : text + fmt::format("\n{}\n", suggestions.note);
 }
 
 std::string OutcomeText(const sweep::TrialRow& row) {
@@ -136,7 +130,7 @@ std::string SweepText(const sweep::SweepResult& result) {
                   gap::DefinitionText(result.gap, result.tag_offset_m), result.gap.threshold_m);
   if (!result.parameters.empty()) text += LevelTables(result);
   text += LevelTable("", {result.all});
-  text += EffectsText(result) + WorstText(result) + NotOkText(result) + ReplacedText(result);
+  text += WorstText(result) + NotOkText(result) + ReplacedText(result);
   if (result.falsification) text += FalsificationText(result, *result.falsification);
   return text + "settings: " + VerdictCounts(result).Text() + "\n";
 }
@@ -153,6 +147,8 @@ std::string ExplanationText(const sweep::SweepResult& result, const sweep::Expla
       text += fmt::format("- {}\n", sentence.Text());
     }
   }
+  const std::string robot = RobotSentence(result, explanation);
+  if (!robot.empty()) text += fmt::format("\nrobot: {}\n", robot);
   return suggest ? text + SuggestionsText(explanation) : text;
 }
 

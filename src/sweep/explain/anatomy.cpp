@@ -1,5 +1,6 @@
 #include "rift/sweep/explain/anatomy.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -9,7 +10,7 @@
 namespace rift::sweep {
 namespace {
 
-using OfTrial = std::function<double(const gap::Comparison&)>;
+using OfTrial = std::function<double(const TrialRow&)>;
 
 Estimate EstimateOf(const std::vector<double>& values) {
   const statistics::Interval interval = statistics::MeanInterval(values, 0.95);
@@ -21,7 +22,7 @@ std::vector<double> ValuesIn(const SweepResult& result, const SettingResult& set
   std::vector<double> values;
   for (const int row : setting.rows) {
     if (!result.rows[row].IsOk()) continue;
-    const double value = of_trial(result.rows[row].comparison);
+    const double value = of_trial(result.rows[row]);
     if (std::isfinite(value)) values.push_back(value);
   }
   return values;
@@ -67,15 +68,22 @@ std::vector<GapPart> PartsOf(const SweepResult& result, const Anatomy& anatomy) 
 
 Anatomy Dissect(const SweepResult& result) {
   using gap::Comparison;
+  const auto over = [&](const std::function<double(const Comparison&)>& of_paths) {
+    return Over(result, [&](const TrialRow& row) { return of_paths(row.comparison); });
+  };
   Anatomy anatomy;
-  anatomy.gap_m = Over(result, [](const Comparison& c) { return c.gap_m; });
-  anatomy.start_m =
-      Over(result, [](const Comparison& c) { return c.gap_m - c.start_aligned_gap_m; });
-  anatomy.frame_m =
-      Over(result, [](const Comparison& c) { return c.start_aligned_gap_m - c.shape_gap_m; });
-  anatomy.shape_m = Over(result, [](const Comparison& c) { return c.shape_gap_m; });
-  anatomy.pace_m = Over(result, [](const Comparison& c) { return c.gap_m - c.frechet_m; });
-  anatomy.timing_m = Over(result, [](const Comparison& c) { return c.equal_time_m - c.gap_m; });
+  anatomy.gap_m = over([](const Comparison& c) { return c.gap_m; });
+  anatomy.start_m = over([](const Comparison& c) { return c.gap_m - c.start_aligned_gap_m; });
+  anatomy.frame_m = over([](const Comparison& c) { return c.start_aligned_gap_m - c.shape_gap_m; });
+  anatomy.shape_m = over([](const Comparison& c) { return c.shape_gap_m; });
+  anatomy.pace_m = over([](const Comparison& c) { return c.gap_m - c.frechet_m; });
+  anatomy.timing_m = over([](const Comparison& c) { return c.equal_time_m - c.gap_m; });
+  anatomy.goal_m =
+      Over(result, [](const TrialRow& row) { return row.comparison.gap_m - row.way_gap_m; });
+  anatomy.only_at_goal = static_cast<int>(
+      std::count_if(result.rows.begin(), result.rows.end(), [&](const TrialRow& row) {
+        return row.IsOk() && !row.falsified && row.comparison.gap_m > result.gap.threshold_m;
+      }));
   anatomy.noise_m =
       OverSettings(result, [](const SettingResult& setting) { return setting.noise_floor_m; });
   anatomy.removable_m = OverSettings(result, [](const SettingResult& setting) {

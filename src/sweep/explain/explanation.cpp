@@ -4,15 +4,14 @@ namespace rift::sweep {
 
 Explanation Explain(const SweepResult& result, const ExplainOptions& options) {
   Explanation explanation;
-  explanation.factors = AnalyseFactors(result);
-  explanation.sensitivity = EstimateSensitivity(result);
-  explanation.inert = FindInert(result, explanation.factors);
+  explanation.effects = MeasureEffects(result);
+  explanation.inert = FindInert(result, explanation.effects);
   explanation.anatomy = Dissect(result);
   explanation.clusters = ClusterFailures(result);
-  explanation.region =
-      MapFailures(result, MostInfluential(result, explanation.factors, explanation.sensitivity));
+  explanation.region = MapFailures(result, MostInfluential(result, explanation.effects));
   explanation.probability = EstimateFailureProbability(result);
-  explanation.suggestions = SuggestExperiments(result, options.suggest);
+  explanation.robot = options.robot;
+  explanation.suggestions = SuggestExperiments(result, options.suggest, options.robot);
   return explanation;
 }
 

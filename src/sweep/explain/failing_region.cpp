@@ -82,17 +82,16 @@ std::vector<Dot> DotsOf(const SweepResult& result, const Side& x, int xp, const 
 
 }  // namespace
 
-std::array<int, 2> MostInfluential(const SweepResult& result, const FactorialAnalysis& factors,
-                                   const Sensitivity& sensitivity) {
+std::array<int, 2> MostInfluential(const SweepResult& result, const Effects& effects) {
   std::vector<double> weight(result.parameters.size(), -1.0);
   for (size_t i = 0; i < weight.size(); ++i) {
-    const FactorialTerm* term = factors.Main(static_cast<int>(i));
-    if (term != nullptr && std::isfinite(term->f)) weight[i] = term->share + 1e-6 * term->f;
     const bool varies =
         result.parameters[i].IsContinuous() || result.parameters[i].levels.size() > 1;
-    if (varies) weight[i] = std::max(weight[i], 0.0);
+    if (varies) weight[i] = 0.0;
   }
-  for (const SobolIndex& index : sensitivity.indices) weight[index.index] = index.total;
+  for (const ParameterEffect& effect : effects.parameters) {
+    if (std::isfinite(effect.share)) weight[effect.parameter] = effect.share;
+  }
   std::vector<int> order(weight.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return weight[a] > weight[b]; });

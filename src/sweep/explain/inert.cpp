@@ -129,19 +129,11 @@ void SayLimit(Inertness& inert, const std::vector<LimitUse>& uses, std::string_v
 }
 
 void SayEffect(Inertness& inert) {
-  if (std::isnan(inert.p)) return;
-  if (inert.is_detected) return;
-  std::string text = fmt::format(
-      "no effect of {} on the gap is seen (p = {:.2f} beside the other "
-      "parameters)",
-      inert.parameter, inert.p);
-  if (!std::isnan(inert.smallest_detectable_m)) {
-    text += fmt::format(
-        "; a difference of {:.4f} m between two of its values would have been seen "
-        "with {:.0f} % probability",
-        inert.smallest_detectable_m, 100.0 * kPower);
-  }
-  inert.sentences.push_back(text);
+  if (std::isnan(inert.p) || inert.is_detected || std::isnan(inert.smallest_detectable_m)) return;
+  inert.sentences.push_back(fmt::format(
+      "a difference of {:.4f} m between two values of {} would have been seen with {:.0f} % "
+      "probability",
+      inert.smallest_detectable_m, inert.parameter, 100.0 * kPower));
 }
 
 std::vector<int> CountsOf(const SweepResult& result, int parameter) {
@@ -152,16 +144,15 @@ std::vector<int> CountsOf(const SweepResult& result, int parameter) {
   return counts;
 }
 
-Inertness Look(const SweepResult& result, int parameter, const FactorialAnalysis& factors) {
+Inertness Look(const SweepResult& result, int parameter, const Effects& effects) {
   Inertness inert{.parameter = result.parameters[parameter].Name()};
   ComparePaths(result, parameter, inert);
-  if (const FactorialTerm* term = factors.Main(parameter)) {
-    inert.p = term->p;
-    inert.is_detected = term->p < kSignificance;
+  if (const ParameterEffect* effect = effects.Of(parameter)) {
+    inert.p = effect->p;
+    inert.is_detected = effect->IsSeen();
     inert.smallest_detectable_m = SmallestDetectable(
-        CountsOf(result, parameter), factors.residual_sd_m, factors.residual_df, kPower);
+        CountsOf(result, parameter), effects.residual_sd_m, effects.residual_df, kPower);
   }
-  SayEffect(inert);
   SayPaths(inert);
   if (const UpperLimit* limit = LimitOf(result.parameters[parameter])) {
     inert.candidate_limit = UseOf(result, parameter, *limit, &TrialEvidence::candidate_limits);
@@ -169,15 +160,16 @@ Inertness Look(const SweepResult& result, int parameter, const FactorialAnalysis
     SayLimit(inert, inert.candidate_limit, "candidate");
     SayLimit(inert, inert.reference_limit, "reference");
   }
+  SayEffect(inert);
   return inert;
 }
 
 }  // namespace
 
-std::vector<Inertness> FindInert(const SweepResult& result, const FactorialAnalysis& factors) {
+std::vector<Inertness> FindInert(const SweepResult& result, const Effects& effects) {
   std::vector<Inertness> all;
   for (int i = 0; i < static_cast<int>(result.parameters.size()); ++i) {
-    if (result.parameters[i].levels.size() > 1) all.push_back(Look(result, i, factors));
+    if (result.parameters[i].levels.size() > 1) all.push_back(Look(result, i, effects));
   }
   return all;
 }

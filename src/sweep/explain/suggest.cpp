@@ -4,176 +4,257 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
+#include "rift/experiment/settable.hpp"
 #include "rift/statistics/inference.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
 namespace {
 
-constexpr double kConfidence = 0.95, kPower = 0.8;
-constexpr int kMostTrials = 1000;
+using experiment::Parameter;
+using experiment::Theta;
 
-/// What is known of the mean gap of a setting: normal around the mean of its trials.
-struct Knowledge {
-  double above_m = 0.0;    ///< mean so far less the threshold
-  double scatter_m = 0.0;  ///< of a single trial
-  int trials = 0;
+/// Probability of `failures` of `trials` where the share of failing runs lies evenly in [low,
+/// high].
+double Likelihood(int failures, int trials, double low, double high) {
+  const double a = failures + 1.0, b = trials - failures + 1.0;
+  const double inside = statistics::BetaCdf(a, b, high) - statistics::BetaCdf(a, b, low);
+  return inside / (trials + 1.0) / (high - low);
+}
 
-  double Wrong() const {
-    return statistics::NormalCdf(-std::abs(above_m) / (scatter_m / std::sqrt(trials)));
+/// Whether more than a share q of the runs fail.
+struct Belief {
+  double fails = 0.5;  ///< probability
+  double q = 0.1;
+
+  double Wrong() const { return std::min(fails, 1.0 - fails); }
+
+  Belief After(int failures, int trials) const {
+    const double above = fails * Likelihood(failures, trials, q, 1.0);
+    const double below = (1.0 - fails) * Likelihood(failures, trials, 0.0, q);
+    return {above + below > 0.0 ? above / (above + below) : fails, q};
   }
 
-  /// How far the mean will move with `more` trials (its predictive standard deviation).
-  double Movement_m(int more) const {
-    return scatter_m * std::sqrt(1.0 / trials - 1.0 / (trials + more));
-  }
-
-  /// Expected risk after them: the mean moves, then the rest of the risk is that of more trials.
-  double WrongAfter(int more) const {
-    constexpr int kHalf = 40;
-    constexpr double kReach = 4.0;
-    double sum = 0.0, weights = 0.0;
-    for (int i = -kHalf; i <= kHalf; ++i) {
-      const double z = kReach * i / kHalf;
-      const double weight = std::exp(-0.5 * z * z);
-      Knowledge later{above_m + z * Movement_m(more), scatter_m, trials + more};
-      sum += weight * later.Wrong();
-      weights += weight;
+  /// Expected risk after so many trials.
+  double WrongAfter(int trials) const {
+    double risk = 0.0;
+    for (int k = 0; k <= trials; ++k) {
+      risk += std::min(fails * Likelihood(k, trials, q, 1.0),
+                       (1.0 - fails) * Likelihood(k, trials, 0.0, q));
     }
-    return sum / weights;
+    return risk;
   }
 };
 
-double Width(int above, int trials) {
-  const statistics::Interval share = statistics::AnytimeInterval(above, trials, kConfidence);
-  return share.high - share.low;
-}
+/// Fingerprint of a path and its loss: what is the same for runs that are to the last bit.
+using Run = std::pair<std::uint64_t, double>;
 
-/// Expected over how many of the further trials are above, given the scatter.
-double WidthAfter(const gap::RepeatVerdict& now, const Knowledge& knowledge, int more) {
-  const double share = statistics::NormalCdf(knowledge.above_m / knowledge.scatter_m);
-  double width = 0.0;
-  for (int k = 0; k <= more; ++k) {
-    width += statistics::BinomialPdf(more, share, k) * Width(now.above + k, now.repeats + more);
+/// The rows of a sweep that one experiment on the robot stands for.
+struct Candidate {
+  Theta values;
+  std::vector<int> rows;  ///< distinct ones that tell
+  std::vector<Run> runs;  ///< of all its paths, sorted
+  int failures = 0;
+  double mean_loss_m = gap::kNotComputed;
+};
+
+std::vector<int> SettableParameters(const SweepResult& result) {
+  std::vector<int> settable;
+  for (int i = 0; i < static_cast<int>(result.parameters.size()); ++i) {
+    if (experiment::IsSettable(result.parameters[i])) settable.push_back(i);
   }
-  return width;
+  return settable;
 }
 
-int TrialsToDecide(const Knowledge& knowledge) {
-  const double z =
-      statistics::NormalQuantile(0.5 + 0.5 * kConfidence) + statistics::NormalQuantile(kPower);
-  const double trials = std::pow(z * knowledge.scatter_m / knowledge.above_m, 2);
-  return trials <= kMostTrials ? static_cast<int>(std::ceil(trials)) : -1;
+void Describe(const SweepResult& result, Candidate& candidate) {
+  for (const int row : candidate.rows) {
+    const TrialRow& trial = result.rows[row];
+    const std::uint64_t path = trial.evidence.fingerprint;
+    if (path != 0) candidate.runs.emplace_back(path, Loss_m(trial, result.gap.threshold_m));
+  }
+  std::sort(candidate.runs.begin(), candidate.runs.end());
+  candidate.rows = DistinctRows(result.rows, candidate.rows);
+  double sum_m = 0.0;
+  for (const int row : candidate.rows) {
+    candidate.failures += result.rows[row].falsified;
+    sum_m += Loss_m(result.rows[row], result.gap.threshold_m);
+  }
+  candidate.mean_loss_m = sum_m / static_cast<double>(candidate.rows.size());
 }
 
-Suggestion Describe(const SweepResult& result, int setting_index, int more, double scatter_m) {
-  const SettingResult& setting = result.settings[setting_index];
-  const Knowledge knowledge{setting.mean_loss_m - result.gap.threshold_m, scatter_m,
-                            setting.verdict.repeats};
-  Suggestion suggestion{.setting = setting_index, .repeats = more};
-  suggestion.mean_gap_m = setting.mean_loss_m;
-  suggestion.wrong_now = knowledge.Wrong();
-  suggestion.above_now = knowledge.above_m > 0.0 ? 1.0 - knowledge.Wrong() : knowledge.Wrong();
-  suggestion.wrong_after = knowledge.WrongAfter(more);
-  suggestion.flip =
-      statistics::NormalCdf(-std::abs(knowledge.above_m) / knowledge.Movement_m(more));
-  suggestion.width_now = setting.verdict.share_high - setting.verdict.share_low;
-  suggestion.width_after = WidthAfter(setting.verdict, knowledge, more);
-  suggestion.trials_to_decide = TrialsToDecide(knowledge);
+/// In the order of their first rows; of those that are the same runs to the last bit the first.
+std::vector<Candidate> CandidatesOf(const SweepResult& result, const std::vector<int>& settable,
+                                    int* identical) {
+  std::map<Theta, size_t> index_of;
+  std::vector<Candidate> all;
+  for (size_t row = 0; row < result.rows.size(); ++row) {
+    if (!result.rows[row].Tells()) continue;
+    const Theta values = SettableValues(result, settable, result.rows[row].theta);
+    const auto [found, is_new] = index_of.emplace(values, all.size());
+    if (is_new) all.push_back({.values = values});
+    all[found->second].rows.push_back(static_cast<int>(row));
+  }
+  std::set<std::vector<Run>> seen;
+  std::vector<Candidate> candidates;
+  for (Candidate& candidate : all) {
+    Describe(result, candidate);
+    const bool is_known = !candidate.runs.empty() && !seen.insert(candidate.runs).second;
+    *identical += is_known;
+    if (!is_known) candidates.push_back(std::move(candidate));
+  }
+  return candidates;
+}
+
+/// Laplace's rule over the predictions that the robot's own trials tell of.
+double TrustOf(const std::vector<RobotTrials>& robot, double q) {
+  int told = 0, held = 0;
+  for (const RobotTrials& checked : robot) {
+    const Belief belief = Belief{0.5, q}.After(checked.failures, checked.trials);
+    if (checked.trials == 0 || belief.fails == 0.5) continue;
+    ++told;
+    held += checked.is_predicted_to_fail == (belief.fails > 0.5);
+  }
+  return (1.0 + held) / (2.0 + told);
+}
+
+class Judge {
+ public:
+  Judge(const SweepResult& result, const std::vector<RobotTrials>& robot)
+      : q_(result.judged_by.share),
+        is_robot_(result.reference_kind == "logs"),
+        trusted_(TrustOf(robot, q_)),
+        robot_(robot) {}
+
+  double trusted() const { return trusted_; }
+  bool IsRobot() const { return is_robot_; }
+  bool IsPredictedToFail(const Candidate& candidate) const {
+    return candidate.failures > q_ * static_cast<double>(candidate.rows.size());
+  }
+
+  Belief Of(const Candidate& candidate) const {
+    Belief belief =
+        Belief{0.5, q_}.After(candidate.failures, static_cast<int>(candidate.rows.size()));
+    if (!is_robot_) belief.fails = trusted_ * belief.fails + (1.0 - trusted_) * 0.5;
+    for (const RobotTrials& driven : robot_) {
+      if (driven.values == candidate.values) belief = belief.After(driven.failures, driven.trials);
+    }
+    return belief;
+  }
+
+ private:
+  double q_;
+  bool is_robot_;
+  double trusted_;
+  const std::vector<RobotTrials>& robot_;
+};
+
+std::string ValuesText(const SweepResult& result, const std::vector<int>& settable,
+                       const Theta& values) {
+  std::vector<Parameter> parameters;
+  for (const int i : settable) parameters.push_back(result.parameters[i]);
+  return SettingText(parameters, values);
+}
+
+Suggestion SuggestionOf(const SweepResult& result, const std::vector<int>& settable,
+                        const Candidate& candidate, const Judge& judge, int repeats) {
+  const Belief belief = judge.Of(candidate);
+  Suggestion suggestion{.values = candidate.values,
+                        .repeats = repeats,
+                        .rows = candidate.rows,
+                        .failures = candidate.failures,
+                        .is_predicted_to_fail = judge.IsPredictedToFail(candidate),
+                        .mean_loss_m = candidate.mean_loss_m,
+                        .fails_now = belief.fails,
+                        .wrong_now = belief.Wrong(),
+                        .wrong_after = belief.WrongAfter(repeats)};
+  const double share = 100.0 * result.judged_by.share;
   suggestion.sentence = fmt::format(
-      "{} of {}: is its mean gap above {:g} m? So far {:.4f} m from {}, above with {:.0f} % "
-      "probability; the risk of calling it wrongly falls from {:.0f} to {:.0f} %, the call flips "
-      "with {:.0f} %, and the interval for the share above narrows from {:.0f} to {:.0f} points",
-      more == 1 ? "1 more trial" : fmt::format("{} more trials", more),
-      SettingText(result.parameters, setting.theta), result.gap.threshold_m, setting.mean_gap_m,
-      setting.verdict.repeats == 1 ? "1 trial" : fmt::format("{} trials", setting.verdict.repeats),
-      100.0 * suggestion.above_now, 100.0 * suggestion.wrong_now, 100.0 * suggestion.wrong_after,
-      100.0 * suggestion.flip, 100.0 * suggestion.width_now, 100.0 * suggestion.width_after);
-  suggestion.sentence +=
-      suggestion.trials_to_decide < 0
-          ? fmt::format("; too near the threshold to be decided by {} trials", kMostTrials)
-          : fmt::format("; about {} trials in all decide it", suggestion.trials_to_decide);
+      "{} of {}: {} of {} {} there; does the robot fail in more than {:g} % of its runs? {:.0f} % "
+      "likely so far, and the risk of calling it wrongly falls from {:.0f} to {:.0f} %",
+      repeats == 1 ? "1 trial" : fmt::format("{} trials", repeats),
+      ValuesText(result, settable, candidate.values), candidate.failures, candidate.rows.size(),
+      judge.IsRobot() ? "runs failed" : "simulated runs failed", share, 100.0 * belief.fails,
+      100.0 * suggestion.wrong_now, 100.0 * suggestion.wrong_after);
   return suggestion;
 }
 
-/// Without a scatter no risk can be told. The worst setting first, where the robot would have to
-/// fail most surely; then those next to the threshold, where it may do either.
-std::vector<Suggestion> FirstTrials(const SweepResult& result, const SuggestOptions& options) {
-  const auto above_m = [&](int setting) {
-    return result.settings[setting].mean_loss_m - result.gap.threshold_m;
-  };
-  std::vector<int> order;
-  for (int i = 0; i < static_cast<int>(result.settings.size()); ++i) {
-    if (result.settings[i].verdict.repeats > 0) order.push_back(i);
+double Gain(const Suggestion& suggestion) {
+  return (suggestion.wrong_now - suggestion.wrong_after) / suggestion.repeats;
+}
+
+/// The best by gain, predicted failures for at least half of the places.
+std::vector<Suggestion> Choose(std::vector<Suggestion> all, int most) {
+  std::stable_sort(all.begin(), all.end(), [](const Suggestion& a, const Suggestion& b) {
+    if (Gain(a) != Gain(b)) return Gain(a) > Gain(b);
+    return a.mean_loss_m > b.mean_loss_m;
+  });
+  std::stable_partition(all.begin(), all.end(), [left = (most + 1) / 2](const auto& one) mutable {
+    return one.is_predicted_to_fail && left-- > 0;
+  });
+  if (static_cast<int>(all.size()) > most) all.resize(static_cast<size_t>(most));
+  return all;
+}
+
+std::string NoteOn(const SweepResult& result, const std::vector<int>& settable, size_t considered,
+                   size_t worth, int identical, const SuggestOptions& options) {
+  std::string fixed;
+  for (size_t i = 0; i < result.parameters.size(); ++i) {
+    if (std::find(settable.begin(), settable.end(), static_cast<int>(i)) != settable.end())
+      continue;
+    fixed += (fixed.empty() ? "" : ", ") + result.parameters[i].Name();
   }
-  if (order.empty()) return {};
-  std::iter_swap(order.begin(), std::max_element(order.begin(), order.end(), [&](int a, int b) {
-                   return above_m(a) < above_m(b);
-                 }));
-  std::stable_sort(order.begin() + 1, order.end(),
-                   [&](int a, int b) { return std::abs(above_m(a)) < std::abs(above_m(b)); });
-  order.resize(std::min(order.size(), static_cast<size_t>(options.experiments)));
-  std::vector<Suggestion> suggestions;
-  for (const int i : order) {
-    const double gap_m = result.settings[i].mean_loss_m;
-    Suggestion suggestion{.setting = i, .repeats = options.repeats, .mean_gap_m = gap_m};
-    suggestion.sentence = fmt::format(
-        "{} of {}: does the robot go with the {:.4f} m that this sweep found there, {} {:g} m? "
-        "Repeats on the robot also give its scatter, without which no risk can be told",
-        options.repeats == 1 ? "1 trial" : fmt::format("{} trials", options.repeats),
-        SettingText(result.parameters, result.settings[i].theta), gap_m,
-        i == order.front() ? "the most of all settings, against" : "next to the threshold of",
-        result.gap.threshold_m);
-    suggestions.push_back(suggestion);
+  if (settable.empty()) {
+    return fmt::format(
+        "no parameter can be set on the robot ({}): mark one that can in space, with "
+        "settable: true",
+        fixed.empty() ? "there are none" : fixed);
   }
-  return suggestions;
+  std::string note;
+  const auto add = [&](const std::string& text) { note += (note.empty() ? "" : "; ") + text; };
+  if (worth == 0) {
+    add(
+        fmt::format("of {} settings that can be set none is worth a trial: each would take less "
+                    "than {:g} points from the risk of a wrong call",
+                    considered, 100.0 * options.least_gain));
+  }
+  if (!fixed.empty()) add(fmt::format("not set by a person, as they are on the robot: {}", fixed));
+  if (identical > 0) add(fmt::format("{} left out as the same runs to the last bit", identical));
+  return note;
 }
 
 }  // namespace
 
-double RepeatScatter_m(const SweepResult& result) {
-  double squares = 0.0;
-  int df = 0;
-  for (const SettingResult& setting : result.settings) {
-    if (setting.verdict.repeats < 2) continue;
-    for (const int row : DistinctRows(result.rows, setting.rows)) {
-      const double loss_m = Loss_m(result.rows[row], result.gap.threshold_m);
-      if (std::isfinite(loss_m)) squares += std::pow(loss_m - setting.mean_loss_m, 2);
-    }
-    df += setting.verdict.repeats - 1;
+Theta SettableValues(const SweepResult& result, const std::vector<int>& settable,
+                     const Theta& theta) {
+  Theta values;
+  for (const int i : settable) {
+    values.push_back(experiment::NearestSettable(result.parameters[i], theta[i]));
   }
-  return df > 0 ? std::sqrt(squares / df) : gap::kNotComputed;
+  return values;
 }
 
-std::vector<Suggestion> SuggestExperiments(const SweepResult& result,
-                                           const SuggestOptions& options) {
-  const double scatter_m = RepeatScatter_m(result);
-  if (!(scatter_m > 0.0)) return FirstTrials(result, options);
-  std::vector<int> more(result.settings.size(), 0);
-  std::vector<int> order;
-  for (int experiment = 0; experiment < options.experiments; ++experiment) {
-    int best = -1;
-    double best_gain = 0.0;
-    for (size_t i = 0; i < result.settings.size(); ++i) {
-      const SettingResult& setting = result.settings[i];
-      if (setting.verdict.repeats == 0) continue;
-      const Knowledge knowledge{setting.mean_loss_m - result.gap.threshold_m, scatter_m,
-                                setting.verdict.repeats};
-      const double before = more[i] == 0 ? knowledge.Wrong() : knowledge.WrongAfter(more[i]);
-      const double gain = before - knowledge.WrongAfter(more[i] + options.repeats);
-      if (gain <= best_gain) continue;
-      best_gain = gain;
-      best = static_cast<int>(i);
-    }
-    if (best < 0) break;
-    if (more[best] == 0) order.push_back(best);
-    more[best] += options.repeats;
+Suggestions SuggestExperiments(const SweepResult& result, const SuggestOptions& options,
+                               const std::vector<RobotTrials>& robot) {
+  Suggestions suggestions{.settable = SettableParameters(result)};
+  const Judge judge(result, robot);
+  suggestions.trusted = judge.IsRobot() ? 1.0 : judge.trusted();
+  int identical = 0;
+  std::vector<Candidate> candidates;
+  if (!suggestions.settable.empty() || result.parameters.empty()) {
+    candidates = CandidatesOf(result, suggestions.settable, &identical);
   }
-  std::vector<Suggestion> suggestions;
-  for (const int setting : order) {
-    suggestions.push_back(Describe(result, setting, more[setting], scatter_m));
+  std::vector<Suggestion> worth;
+  for (const Candidate& candidate : candidates) {
+    const Suggestion one =
+        SuggestionOf(result, suggestions.settable, candidate, judge, options.repeats);
+    if (Gain(one) > 0.0 && Gain(one) >= options.least_gain) worth.push_back(one);
   }
+  suggestions.note =
+      NoteOn(result, suggestions.settable, candidates.size(), worth.size(), identical, options);
+  suggestions.list = Choose(std::move(worth), options.experiments);
   return suggestions;
 }
 

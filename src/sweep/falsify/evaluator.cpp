@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -14,10 +12,10 @@
 #include "rift/experiment/path_template.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
-#include "rift/sweep/run/byte_codec.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/enum_name.hpp"
+#include "simulated_recording.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -33,51 +31,6 @@ auto InFile(const std::string& experiment_file, Call&& call) {
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", experiment_file, error.what()));
   }
-}
-
-TrialStatus StatusOf(trial::Outcome outcome) {
-  switch (outcome) {
-    case trial::Outcome::kReached:
-      return TrialStatus::kOk;
-    case trial::Outcome::kTimedOut:
-      return TrialStatus::kTimedOut;
-    case trial::Outcome::kFell:
-      return TrialStatus::kFell;
-    case trial::Outcome::kLeftArena:
-      return TrialStatus::kLeftArena;
-    case trial::Outcome::kLost:
-      return TrialStatus::kLost;
-    case trial::Outcome::kFault:
-      return TrialStatus::kFault;
-  }
-  return TrialStatus::kFault;
-}
-
-/// Along the path from where the robot ended to the last waypoint.
-double DistanceLeft_m(const SimulatedRun& run, const std::vector<control::Waypoint>& waypoints) {
-  size_t next = 1;
-  while (next < waypoints.size() && run.result.visits[next - 1].reached_s) ++next;
-  const Eigen::Vector2d end = run.truth.poses.empty() ? waypoints.front().Position()
-                                                      : Eigen::Vector2d(run.truth.poses.back().x_m,
-                                                                        run.truth.poses.back().y_m);
-  double left_m = next < waypoints.size() ? (waypoints[next].Position() - end).norm() : 0.0;
-  for (; next + 1 < waypoints.size(); ++next) {
-    left_m += (waypoints[next + 1].Position() - waypoints[next].Position()).norm();
-  }
-  return left_m;
-}
-
-/// A finished run as a sweep takes it: its log, or why it is no trajectory to be compared.
-Recording RecordingOf(SimulatedRun run, const SimulatedTrial& trial) {
-  Recording recording{.status = StatusOf(run.result.outcome),
-                      .source = fmt::format("simulation with seed {}", trial.seed),
-                      .limits = run.result.limits};
-  if (recording.status != TrialStatus::kOk) {
-    recording.reason = run.result.reason;
-    recording.left_m = DistanceLeft_m(run, trial.task.waypoints);
-  }
-  recording.trajectory = std::move(run.result.trajectory);
-  return recording;
 }
 
 /// Parameters of a sweep over logs name columns and parts of file names; some of them are also keys
@@ -267,77 +220,6 @@ std::vector<odometry::EncoderReading> Evaluator::EncodersBeside(const std::strin
   return odometry::ReadEncoders(*text, path);
 }
 
-/// The nominal run depends on the trial alone, and every setting is held against it.
-const Recording& Evaluator::Nominal(std::uint64_t seed) {
-  constexpr size_t kMostKept = 1000;
-  const auto found = nominal_runs_.find(seed);
-  if (found != nominal_runs_.end()) return found->second;
-  if (nominal_runs_.size() >= kMostKept) nominal_runs_.clear();
-  const geometry::Pose2 start = experiment::TaskOf(experiment_).Start();
-  const SimulatedTrial trial = TrialOf(experiment_, start, seed);
-  return nominal_runs_[seed] = RecordingOf(Simulate(trial), trial);
-}
-
-std::uint64_t Evaluator::SeedWithReference(std::uint64_t seed) {
-  constexpr std::uint64_t kMostTries = 50;
-  if (experiment_.reference.kind != ReferenceKind::kNominal) return seed;
-  if (const auto known = used_.find(seed); known != used_.end()) return known->second;
-  std::uint64_t used = seed;
-  for (std::uint64_t i = 1; Nominal(used).status != TrialStatus::kOk && i <= kMostTries; ++i) {
-    used = FreshSeed(seed, i);
-  }
-  return used_[seed] = used;
-}
-
-std::string Evaluator::ReplacedText(int seeds) {
-  ByteWriter write;
-  const std::optional<std::uint64_t> first = FirstSeed(experiment_);
-  for (int i = 0; i < seeds; ++i) {
-    const std::uint64_t seed = *first + static_cast<std::uint64_t>(i);
-    const std::uint64_t used = SeedWithReference(seed);
-    if (Nominal(used).status != TrialStatus::kOk) used_[seed] = seed;
-    write(seed);
-    write(used_[seed]);
-    write(Nominal(seed).reason);
-  }
-  return write.Take();
-}
-
-std::vector<ReplacedReference> Evaluator::CheckReferences() {
-  const bool is_run = experiment_.reference.kind == ReferenceKind::kNominal &&
-                      experiment_.candidate.kind == CandidateKind::kSimulation;
-  if (!is_run) return {};
-  int seeds = static_cast<int>(experiment_.reference.trials.names.size());
-  const bool is_repeated = experiment_.falsify.repeat == Repeat::kEvery ||
-                           experiment_.goal == experiment::Goal::kFalsify;
-  if (is_repeated) seeds = std::max(seeds, std::min(experiment_.falsify.most_repeats, 100));
-  JobResult found{.end = JobEnd::kThrew};
-  RunOptions options = experiment_.run;
-  options.timeout_s *= 2.0 * seeds;
-  WorkerPool([&](const std::string&) { return ReplacedText(seeds); }, 1, options)
-      .Run({1, [](int) { return std::string(); },
-            [&](int, const JobResult& result) { found = result; }, [] { return true; }});
-  if (found.end != JobEnd::kDone) return {};  // its trials are rows that say why
-  ByteReader read(found.bytes);
-  std::vector<ReplacedReference> replaced;
-  while (!read.IsAtEnd()) {
-    ReplacedReference reference;
-    read(reference.seed);
-    read(reference.used);
-    read(reference.reason);
-    used_[reference.seed] = reference.used;
-    if (!reference.reason.empty()) replaced.push_back(reference);
-  }
-  for (const ReplacedReference& reference : replaced) {
-    if (reference.used != reference.seed) continue;
-    throw std::invalid_argument(fmt::format(
-        "{}: reference.kind is nominal, and the run with the experiment's own values does not "
-        "arrive, with seed {} nor with 50 others: {}",
-        experiment_file_, reference.seed, reference.reason));
-  }
-  return replaced;
-}
-
 Recording Evaluator::Reference(const TrialRequest& request) {
   switch (experiment_.reference.kind) {
     case ReferenceKind::kLogs:
@@ -399,26 +281,25 @@ TrialRow Evaluator::Evaluate(const TrialRequest& asked) {
   }
 }
 
-double Evaluator::NominalNoiseFloor_m() {
-  const auto floor_m = [this](const std::string&) {
-    std::vector<trajectory::Trajectory> runs;
-    for (const TrialRequest& request : TrialsAt(experiment_, {})) {
-      const Recording& run = Nominal(SeedWithReference(request.seed.value_or(experiment_.seed)));
-      if (run.status == TrialStatus::kOk) runs.push_back(run.trajectory);
-    }
-    return fmt::format("{}", gap::NoiseFloor_m(runs, experiment_.gap));
-  };
-  double result_m = gap::kNotComputed;
-  RunOptions options = experiment_.run;
-  options.timeout_s *= static_cast<double>(experiment_.reference.trials.names.size());
-  WorkerPool(floor_m, 1, options)
-      .Run({1, [](int) { return std::string(); },
-            [&](int, const JobResult& result) {
-              if (result.end == JobEnd::kDone)
-                result_m = std::strtod(result.bytes.c_str(), nullptr);
-            },
-            [] { return true; }});
-  return result_m;
+TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string& path,
+                                   trial::Outcome outcome) {
+  if (experiment_.objective == experiment::Objective::kOdometry) {
+    throw std::invalid_argument(fmt::format(
+        "{}: objective is odometry, and suggested drives are judged by the gap of their poses",
+        experiment_file_));
+  }
+  RecordedLogs logs(inputs_, {trajectory::Format::kRift, 0.0, "the format of rift drive"});
+  Recording driven = logs.At(path);
+  if (driven.status == TrialStatus::kOk && outcome != trial::Outcome::kReached) {
+    driven.status = StatusOf(outcome);
+    driven.reason = "the robot did not reach the end";
+  }
+  TrialRequest request = asked;
+  if (request.seed) request.seed = SeedWithReference(*request.seed);
+  if (experiment_.reference.kind != ReferenceKind::kLogs) {
+    return CompareTrial(experiment_, request, driven, Reference(request));
+  }
+  return CompareTrial(experiment_, request, Candidate(request, driven), driven);
 }
 
 double Evaluator::NoiseFloor_m(const experiment::Theta& theta) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "rift/gap/goal.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/trajectory/frame_grid.hpp"
@@ -108,9 +109,22 @@ bool IsFinite(const trajectory::Trajectory& path) {
   });
 }
 
+/// Where the runs of a setting may end; nothing where their ends count as all their other points.
+std::optional<gap::Goal> GoalOf(const experiment::Experiment& experiment,
+                                const experiment::Theta& theta) {
+  const bool has_goal = experiment.waypoints.size() > 1 && experiment.program.segments.empty() &&
+                        experiment.objective == experiment::Objective::kGap;
+  if (!has_goal || experiment.falsify.count.stop) return std::nullopt;
+  const bool is_simulated = experiment.candidate.kind == experiment::CandidateKind::kSimulation;
+  const experiment::Experiment at =
+      is_simulated ? experiment::ExperimentAt(experiment, theta) : experiment;
+  return gap::Goal{at.waypoints.back().Position(), at.control.reach_radius_m};
+}
+
 /// A path that never moves is a row of its own, not the sweep's end.
-void Measure(const gap::GapOptions& options, const Recording& candidate, const Recording& reference,
-             TrialRow& row) {
+void Measure(const experiment::Experiment& experiment, const Recording& candidate,
+             const Recording& reference, TrialRow& row) {
+  const gap::GapOptions& options = experiment.gap;
   if (!IsFinite(candidate.trajectory)) {
     row.status = TrialStatus::kNan;
     row.reason = fmt::format("{}: a position is not finite", candidate.source);
@@ -118,6 +132,9 @@ void Measure(const gap::GapOptions& options, const Recording& candidate, const R
   }
   try {
     row.comparison = gap::Compare(candidate.trajectory, reference.trajectory, options);
+    if (const std::optional<gap::Goal> goal = GoalOf(experiment, row.theta)) {
+      row.way_gap_m = gap::WayGap_m(candidate.trajectory, reference.trajectory, *goal, options);
+    }
     row.evidence.fingerprint = Fingerprint(candidate.trajectory);
     row.evidence.errors_m = ErrorsAlong(candidate.trajectory, reference.trajectory, options);
   } catch (const std::invalid_argument& no_path) {
@@ -147,8 +164,8 @@ TrialRow CompareTrial(const experiment::Experiment& experiment, const TrialReque
     row.left_m = simulated.left_m;
     if (row.falsified) row.evidence.fingerprint = Fingerprint(simulated.trajectory);
   } else {
-    Measure(experiment.gap, simulated, real, row);
-    row.falsified = row.comparison.gap_m > experiment.gap.threshold_m;
+    Measure(experiment, simulated, real, row);
+    row.falsified = row.CountedGap_m() > experiment.gap.threshold_m;
   }
   return row;
 }

@@ -73,7 +73,7 @@ std::string SettingKey(const std::vector<experiment::Parameter>& parameters,
 }
 
 double Loss_m(const TrialRow& row, double threshold_m) {
-  if (row.IsOk()) return row.comparison.gap_m;
+  if (row.IsOk()) return row.CountedGap_m();
   if (!row.falsified) return gap::kNotComputed;
   return threshold_m + (std::isfinite(row.left_m) ? row.left_m : threshold_m);
 }
@@ -169,33 +169,19 @@ LevelSummary SummariseRows(const SweepResult& result, const std::string& level,
   return summary;
 }
 
-std::string EffectSentence(const Effect& effect) {
-  if (std::isnan(effect.p) && effect.df_within >= 1.0 && effect.df_between >= 1.0) {
-    return "no test possible: the trials of each value do not differ";
-  }
-  if (std::isnan(effect.p)) return "no test possible: too few trials with a gap";
-  const std::string p = effect.p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", effect.p);
-  if (!effect.detected) return fmt::format("no effect found ({})", p);
-  return fmt::format("effect found (F = {:.1f}, {}, {:.0f} % of the variance)", effect.f, p,
-                     100.0 * effect.eta_squared);
-}
-
-Effect EffectOf(const SweepResult& result, int parameter) {
+Anova AnovaOf(const SweepResult& result, int parameter) {
   const Groups groups = GroupBy(result, {parameter});
   std::vector<std::vector<double>> losses_m;
   for (const std::vector<int>& rows : groups.rows) losses_m.push_back(LossesOf(result, rows));
   const statistics::AnalysisOfVariance analysis = statistics::AnalyseVariance(losses_m);
-  Effect effect{.parameter = result.parameters[parameter].Name(),
-                .levels = SummariseBy(result, {parameter}),
-                .f = analysis.f,
-                .df_between = analysis.df_between,
-                .df_within = analysis.df_within,
-                .p = analysis.p,
-                .eta_squared = analysis.eta_squared,
-                .omega_squared = analysis.omega_squared,
-                .detected = analysis.p < kSignificance};
-  effect.sentence = EffectSentence(effect);
-  return effect;
+  return {.parameter = result.parameters[parameter].Name(),
+          .levels = SummariseBy(result, {parameter}),
+          .f = analysis.f,
+          .df_between = analysis.df_between,
+          .df_within = analysis.df_within,
+          .p = analysis.p,
+          .eta_squared = analysis.eta_squared,
+          .omega_squared = analysis.omega_squared};
 }
 
 std::vector<SettingResult> SettingsOf(const SweepResult& result) {
@@ -244,11 +230,10 @@ void Summarise(SweepResult& result) {
   result.all = SummariseRows(result, "all", every_row);
   result.settings = SettingsOf(result);
   JudgeSettings(result);
-  result.effects.clear();
+  result.anova.clear();
   for (size_t i = 0; i < result.parameters.size(); ++i) {
     const experiment::Parameter& parameter = result.parameters[i];
-    if (parameter.levels.size() > 1)
-      result.effects.push_back(EffectOf(result, static_cast<int>(i)));
+    if (parameter.levels.size() > 1) result.anova.push_back(AnovaOf(result, static_cast<int>(i)));
   }
 }
 

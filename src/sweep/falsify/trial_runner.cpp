@@ -137,6 +137,7 @@ void Members(Codec& codec, Row& row) {
   codec(row.comparison);
   codec(row.falsified);
   codec(row.left_m);
+  codec(row.way_gap_m);
   codec(row.evidence.fingerprint);
   codec(row.evidence.candidate_limits);
   codec(row.evidence.reference_limits);

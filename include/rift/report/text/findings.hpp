@@ -50,6 +50,10 @@ struct Headline {
   Sentence sentence;
 };
 
+/// What the robot did at the settings that were suggested, and how many predicted failures it
+/// confirmed; empty before any drive came back.
+std::string RobotSentence(const sweep::SweepResult& result, const sweep::Explanation& explanation);
+
 Headline Summary(const sweep::SweepResult& result);
 
 /// How many settings are falsified, passed, not seen to fail, undecided, and by which rule.

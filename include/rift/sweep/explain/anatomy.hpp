@@ -25,12 +25,14 @@ struct GapPart {
 /// What the gaps of a whole table are made of. start + frame + shape = gap.
 struct Anatomy {
   Estimate gap_m;
-  Estimate start_m;   ///< goes when the first points are laid together
-  Estimate frame_m;   ///< goes beyond that with the best rigid motion: heading, camera frame
-  Estimate shape_m;   ///< what no motion removes
-  Estimate pace_m;    ///< equal arc length against the best pairing of points: gap - Frechet
-  Estimate timing_m;  ///< what comparing at equal times would add: no part of the gap
-  Estimate noise_m;   ///< the references of one setting among each other
+  Estimate start_m;      ///< goes when the first points are laid together
+  Estimate frame_m;      ///< goes beyond that with the best rigid motion: heading, camera frame
+  Estimate shape_m;      ///< what no motion removes
+  Estimate pace_m;       ///< equal arc length against the best pairing of points: gap - Frechet
+  Estimate timing_m;     ///< what comparing at equal times would add: no part of the gap
+  Estimate goal_m;       ///< goes when runs that stopped short of the goal go on: gap - way gap
+  int only_at_goal = 0;  ///< trials above the threshold by that alone, which are no failures
+  Estimate noise_m;      ///< the references of one setting among each other
   /// Gap less noise floor, setting by setting: the most that a perfect simulator could take away.
   Estimate removable_m;
   std::vector<GapPart> parts;

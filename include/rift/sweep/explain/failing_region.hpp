@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/sweep/explain/factorial.hpp"
-#include "rift/sweep/explain/sensitivity.hpp"
+#include "rift/sweep/explain/effects.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
@@ -27,8 +26,7 @@ struct FailingRegion {
 };
 
 /// The two parameters that matter most, by their shares.
-std::array<int, 2> MostInfluential(const SweepResult& result, const FactorialAnalysis& factors,
-                                   const Sensitivity& sensitivity);
+std::array<int, 2> MostInfluential(const SweepResult& result, const Effects& effects);
 
 /// The failing region over two parameters, all others being what the trials had. Lists of values
 /// give a cell for each pair; with a range, the plane is cut into patches that count their nearest

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/sweep/explain/factorial.hpp"
+#include "rift/sweep/explain/effects.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
@@ -32,8 +32,8 @@ struct Inertness {
   std::vector<ValuePair> pairs;
   int compared = 0;  ///< pairs of trials that differ in this parameter alone
   int identical = 0;
-  double p = gap::kNotComputed;  ///< of its main effect beside the others
-  bool is_detected = false;
+  double p = gap::kNotComputed;                      ///< of its effect (ParameterEffect)
+  bool is_detected = false;                          ///< ParameterEffect::IsSeen
   double smallest_detectable_m = gap::kNotComputed;  ///< with 80 % power
   std::vector<LimitUse> candidate_limit;             ///< by value; empty for what is no limit
   std::vector<LimitUse> reference_limit;
@@ -47,6 +47,6 @@ struct Inertness {
 };
 
 /// One for each parameter with a list of values, in their order.
-std::vector<Inertness> FindInert(const SweepResult& result, const FactorialAnalysis& factors);
+std::vector<Inertness> FindInert(const SweepResult& result, const Effects& effects);
 
 }  // namespace rift::sweep

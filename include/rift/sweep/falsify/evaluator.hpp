@@ -29,6 +29,12 @@ class Evaluator {
   /// Where the nominal run of its seed fails, another seed takes its place for both sides: the row
   /// names the one that was used.
   TrialRow Evaluate(const TrialRequest& request);
+  /// A drive of the real robot at a setting as a row, from its log (rift's format) and how it
+  /// ended: held against the reference of the request, or, where references are logs, the reference
+  /// of a simulated run that starts where it stood. Throws std::invalid_argument for objective:
+  /// odometry.
+  TrialRow EvaluateDriven(const TrialRequest& request, const std::string& path,
+                          trial::Outcome outcome);
   Recording Reference(const TrialRequest& request);
   /// Runs the nominal trial of the seeds that trials of one setting count up from the experiment's,
   /// in a process of their own, before the first trial: which of them failed, and what took their

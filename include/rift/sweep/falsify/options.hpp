@@ -33,6 +33,7 @@ struct CountOptions {
   bool fell = true;
   bool left_arena = true;
   bool lost = true;
+  bool stop = false;
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
@@ -40,6 +41,10 @@ struct CountOptions {
     field("fell", self.fell, "it fell");
     field("left_arena", self.left_arena, "it left the arena");
     field("lost", self.lost, "motion capture saw it no more");
+    field(
+        "stop", self.stop,
+        "a gap above the threshold where two runs stopped short of the last waypoint, both within "
+        "control.reach_radius_m, and nowhere on the way");
   }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -48,7 +49,9 @@ struct TrialRow {
   std::string candidate;  ///< file of the candidate trajectory
   std::string reference;
   gap::Comparison comparison;  ///< all NaN unless ok
-  bool falsified = false;      ///< gap_m > threshold, or an end that counts as a failure
+  /// gap::WayGap_m; NaN where the task has no goal, or stopping short of it counts as any error.
+  double way_gap_m = gap::kNotComputed;
+  bool falsified = false;  ///< CountedGap_m() > threshold, or an end that counts as a failure
   /// Along the path from where a run that did not arrive ended to the last waypoint.
   double left_m = gap::kNotComputed;
   TrialEvidence evidence;
@@ -59,11 +62,14 @@ struct TrialRow {
   bool IsOk() const { return status == TrialStatus::kOk; }
   /// It fails or it does not; a missing log or a crash tells neither.
   bool Tells() const { return IsOk() || falsified; }
+  /// What is held against the threshold: how short of the goal a run may stop is a tolerance of
+  /// the task and no failure of a simulator.
+  double CountedGap_m() const { return std::fmin(comparison.gap_m, way_gap_m); }
 };
 
-/// What a trial costs: its gap; of a failure without a gap the threshold and how far the robot
-/// still had to go, so that one that never starts is worse than one that stops just before the end.
-/// NaN of a trial that does not tell.
+/// What a trial costs: its counted gap; of a failure without a gap the threshold and how far the
+/// robot still had to go, so that one that never starts is worse than one that stops just before
+/// the end. NaN of a trial that does not tell.
 double Loss_m(const TrialRow& row, double threshold_m);
 
 /// The same candidate path held against the same reference, to the last bit.
@@ -94,8 +100,9 @@ struct LevelSummary {
   double sd_gap_m = gap::kNotComputed;  ///< NaN below two
 };
 
-/// One-way analysis of variance of the loss over the values of one parameter.
-struct Effect {
+/// One-way analysis of variance of the loss over the values of one parameter, as in the paper: for
+/// the record. What is said of a parameter comes from sweep/explain (Effects).
+struct Anova {
   std::string parameter;  ///< its name
   std::vector<LevelSummary> levels;
   double f = gap::kNotComputed;  ///< NaN where the data do not allow one
@@ -104,9 +111,6 @@ struct Effect {
   double p = gap::kNotComputed;
   double eta_squared = gap::kNotComputed;    ///< share of the variance it explains
   double omega_squared = gap::kNotComputed;  ///< the same, less what chance would explain
-  bool detected = false;                     ///< p < 0.05
-  /// One sentence: "effect found (F = ..., p = ...)" or "no effect found (p = ...)".
-  std::string sentence;
 };
 
 /// How a search for failures ended.
@@ -139,7 +143,7 @@ struct SweepResult {
   std::vector<experiment::Parameter> parameters;
   std::vector<TrialRow> rows;
   std::vector<SettingResult> settings;
-  std::vector<Effect> effects;  ///< one for each parameter with more than one value
+  std::vector<Anova> anova;  ///< one for each parameter with a list of several values
   LevelSummary all;
   std::optional<Falsification> falsification;  ///< of a search
   std::vector<ReplacedReference> replaced;     ///< of nominal references
@@ -184,11 +188,11 @@ std::vector<LevelSummary> SummariseBy(const SweepResult& result,
                                       const std::vector<int>& parameters);
 
 /// Fills in everything of a result that follows from its parameters and rows: the settings with
-/// their verdicts, the effects of the parameters and the summary of all rows. Settings stand in
+/// their verdicts, the analyses of variance and the summary of all rows. Settings stand in
 /// the order of their first rows; their noise floor is left alone.
 void Summarise(SweepResult& result);
 
-/// A parameter with a p below this has a detected effect.
+/// Error rate of the F test that SmallestDetectable plans for.
 inline constexpr double kSignificance = 0.05;
 
 /// The distinct rows that tell: what the statistics of a whole sweep are made of.

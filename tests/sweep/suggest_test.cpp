@@ -1,0 +1,161 @@
+#include "rift/sweep/explain/suggest.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <random>
+#include <set>
+
+#include "rift/experiment/settable.hpp"
+#include "rift/sweep/falsify/result.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using Catch::Matchers::Contains;
+
+experiment::ParameterValue Numeric(double value) { return experiment::NumberValue(value); }
+
+TrialRow Row(experiment::Theta theta, bool fails, std::uint64_t path) {
+  TrialRow row{.theta = std::move(theta), .trial = std::to_string(path)};
+  row.seed = path;
+  row.comparison.gap_m = fails ? 0.08 : 0.04;
+  row.falsified = fails;
+  row.evidence.fingerprint = path;
+  return row;
+}
+
+/// A floor that a person lays, a power that a person sets, a mismatch that nobody can set. On ice
+/// every run fails, on ground none, on sand every second one.
+SweepResult Sampled(int runs = 4) {
+  SweepResult result;
+  result.reference_kind = "nominal";
+  result.parameters = {
+      {.key = "simulation.terrain.surface", .levels = {{"ice", {}}, {"ground", {}}, {"sand", {}}}},
+      {.key = "control.v_min", .min = 0.1, .max = 0.2},
+      {.key = "simulation.motor.mismatch", .min = -0.1, .max = 0.1}};
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> even(0.0, 1.0);
+  std::uint64_t path = 1;
+  for (const experiment::ParameterValue& surface : result.parameters[0].levels) {
+    for (int i = 0; i < runs; ++i) {
+      const bool fails = surface.text == "ice" || (surface.text == "sand" && i % 2 == 0);
+      result.rows.push_back(
+          Row({surface, Numeric(0.1496 + 0.0008 * even(random)), Numeric(0.2 * even(random) - 0.1)},
+              fails, path++));
+    }
+  }
+  Summarise(result);
+  return result;
+}
+
+TEST_CASE("Only what a person can set is suggested, in steps that a person can set") {
+  const SweepResult result = Sampled();
+  const Suggestions suggestions = SuggestExperiments(result);
+  CHECK(suggestions.settable == std::vector<int>{0, 1});
+  REQUIRE_FALSE(suggestions.list.empty());
+  for (const Suggestion& suggestion : suggestions.list) {
+    REQUIRE(suggestion.values.size() == 2);
+    CHECK(suggestion.values[1].text == "0.15");
+    CHECK(suggestion.rows.size() == 4);
+    CHECK_THAT(suggestion.sentence, !Contains("mismatch"));
+  }
+  CHECK(suggestions.list.front().is_predicted_to_fail);
+  CHECK_THAT(suggestions.note, Contains("as they are on the robot: mismatch"));
+}
+
+TEST_CASE("The space overrides what can be set and in which steps") {
+  SweepResult result = Sampled();
+  result.parameters[0].settable = false;
+  result.parameters[1].settable = false;
+  result.parameters[2].settable = true;
+  result.parameters[2].step = 0.05;
+  const Suggestions suggestions = SuggestExperiments(result, {.least_gain = 0.0});
+  CHECK(suggestions.settable == std::vector<int>{2});
+  for (const Suggestion& suggestion : suggestions.list) {
+    const double steps = *suggestion.values[0].number / 0.05;
+    CHECK(steps == Approx(std::round(steps)));
+  }
+  result.parameters[2].settable = false;
+  CHECK(SuggestExperiments(result).list.empty());
+  CHECK_THAT(SuggestExperiments(result).note, Contains("settable: true"));
+}
+
+TEST_CASE("Trials that take too little from the risk are not suggested") {
+  // 200 runs of the robot itself tell: none of them is worth repeating.
+  SweepResult result = Sampled(200);
+  result.reference_kind = "logs";
+  const Suggestions suggestions = SuggestExperiments(result);
+  CHECK(suggestions.list.empty());
+  CHECK_THAT(suggestions.note, Contains("none is worth a trial"));
+  for (const Suggestion& suggestion : SuggestExperiments(Sampled()).list) {
+    CHECK(suggestion.wrong_now - suggestion.wrong_after >= 3 * SuggestOptions{}.least_gain);
+  }
+}
+
+TEST_CASE("Runs that are the same to the last bit are proposed once") {
+  SweepResult result = Sampled();
+  result.parameters[0].levels.push_back({"ice again", {}});
+  for (int i = 0; i < 4; ++i) {
+    TrialRow row = result.rows[static_cast<size_t>(i)];
+    row.theta[0] = result.parameters[0].levels.back();
+    result.rows.push_back(row);
+  }
+  Summarise(result);
+  const Suggestions suggestions = SuggestExperiments(result, {.experiments = 20});
+  std::set<std::string> surfaces;
+  for (const Suggestion& suggestion : suggestions.list) surfaces.insert(suggestion.values[0].text);
+  CHECK(surfaces.contains("ice"));
+  CHECK_FALSE(surfaces.contains("ice again"));
+  CHECK_THAT(suggestions.note, Contains("1 left out as the same runs to the last bit"));
+}
+
+TEST_CASE("The risk expected after more trials is what simulation finds") {
+  const Suggestions suggestions = SuggestExperiments(Sampled(1), {.least_gain = 0.0});
+  REQUIRE_FALSE(suggestions.list.empty());
+  const Suggestion& suggestion = suggestions.list.front();
+  const double q = gap::VerdictOptions{}.share;
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> even(0.0, 1.0);
+  // The side, then the share within it, then three runs; called by which side is likelier of all
+  // rounds with that count.
+  std::array<int, 4> fails{}, holds{};
+  const int rounds = 200'000;
+  for (int i = 0; i < rounds; ++i) {
+    const bool is_failing = even(random) < suggestion.fails_now;
+    const double share = is_failing ? q + (1.0 - q) * even(random) : q * even(random);
+    int failures = 0;
+    for (int k = 0; k < 3; ++k) failures += even(random) < share;
+    ++(is_failing ? fails : holds)[static_cast<size_t>(failures)];
+  }
+  int wrong = 0;
+  for (size_t k = 0; k < 4; ++k) wrong += std::min(fails[k], holds[k]);
+  CHECK(suggestion.wrong_after == Approx(double(wrong) / rounds).margin(0.005));
+}
+
+TEST_CASE("What the robot did counts and moves the trust in the other predictions") {
+  const SweepResult result = Sampled();
+  const Suggestions before = SuggestExperiments(result, {.experiments = 20});
+  CHECK(before.trusted == 0.5);
+  const experiment::Theta ice = before.list.front().values;
+  const Suggestions confirmed =
+      SuggestExperiments(result, {.experiments = 20}, {{ice, true, 3, 3}});
+  CHECK(confirmed.trusted == Approx(2.0 / 3.0));
+  for (const Suggestion& suggestion : confirmed.list) CHECK(suggestion.values != ice);  // decided
+  const Suggestions refuted = SuggestExperiments(result, {.experiments = 20}, {{ice, true, 8, 0}});
+  CHECK(refuted.trusted == Approx(1.0 / 3.0));
+}
+
+TEST_CASE("A value is rounded to the next step within its range") {
+  using experiment::NearestSettable;
+  const experiment::Parameter v_min{.key = "control.v_min", .min = 0.104, .max = 0.255};
+  CHECK(NearestSettable(v_min, Numeric(0.17341)).text == "0.17");
+  CHECK(NearestSettable(v_min, Numeric(0.1041)).text == "0.11");
+  CHECK(NearestSettable(v_min, Numeric(0.2549)).text == "0.25");
+  const experiment::Parameter column{.key = "v_min", .min = 0.1, .max = 0.3};
+  CHECK(experiment::IsSettable(column));
+  CHECK_FALSE(experiment::IsSettable({.key = "simulation.motor.mismatch"}));
+  CHECK(experiment::IsSettable({.key = "waypoints[2].x"}));
+}
+
+}  // namespace
+}  // namespace rift::sweep
