@@ -63,6 +63,10 @@ simulation::SimulationOptions AsTwin(simulation::SimulationOptions simulation,
   simulation.mocap.rate_hz = options.fps;
   simulation.mocap.frame_jitter_s = 0.0;
   simulation.mocap.host_period_s.reset();  // the host is a real one
+  // A log may be of the robot's point on the floor; a picture shows the tag where it is.
+  if (simulation.mocap.tag_above_m == 0.0) {
+    simulation.mocap.tag_above_m = options.camera.body_height_m;
+  }
   simulation.encoder.reported = true;
   return simulation;
 }

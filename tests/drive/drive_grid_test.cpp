@@ -160,7 +160,7 @@ TEST_CASE("Suggested experiments are driven on twins and the sweep says what the
                   "space: {simulation.terrain.surface: {values: [ground, cardboard], settable: "
                   "false}, control.v_min: {min: 0.12, max: 0.16, step: 0.02}, "
                   "simulation.motor.mismatch: {min: -0.3, max: 0.3}}\n"
-                  "gap: {threshold_m: 0.01}\n"
+                  "gap: {threshold_m: 0.004}\n"
                   "reference: {kind: path, trials: 1}\n"
                   "search: {budget: 16}\n"
                   "falsify: {until: budget, most_repeats: 3}\n");

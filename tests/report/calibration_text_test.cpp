@@ -18,8 +18,10 @@ TEST_CASE("A fit that is worse than its start is not written, and both losses sa
 }
 
 sweep::Calibration FitOf(double value, double low, double high) {
-  return {.parameters = {
-              {.parameter = {.key = "simulation.link.delay_s"}, .value = value, .low = low, .high = high}}};
+  return {.parameters = {{.parameter = {.key = "simulation.link.delay_s"},
+                          .value = value,
+                          .low = low,
+                          .high = high}}};
 }
 
 TEST_CASE("Starts agree when they differ by at most 0.3 of half the interval") {

@@ -260,7 +260,9 @@ TEST_CASE("A tag that lies elsewhere than told, and a worse frame, are refused b
   const std::string calibration = folder / "cam.yaml";
   test::WriteText(calibration, test::ReadFile(kCamera));
   const auto set = [&](const std::string& world) {
-    return RunRift({"track", "--camera", kFrames, "--calibration", calibration, "--world", world});
+    // Ten pictures a second, so that they last as long as the mean of a first pose is taken over.
+    return RunRift({"track", "--camera", kFrames, "--fps", "10", "--calibration", calibration,
+                    "--world", world});
   };
   const ProcessResult kept = set("first");
   CHECK(kept.exit_code == 2);
