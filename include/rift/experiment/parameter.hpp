@@ -15,7 +15,8 @@ struct ParameterValue {
   std::string text;              ///< canonical: "ground", "0.15"
   std::optional<double> number;  ///< set when it is one
 
-  friend auto operator<=>(const ParameterValue&, const ParameterValue&) = default;
+  friend auto operator<=>(const ParameterValue&,
+                          const ParameterValue&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// The same number, however it is written ("0.3", "0.30"), or the same word.

@@ -108,7 +108,7 @@ void AddUnmeasured(const sweep::SweepResult& result, data* page) {
   page->set("unmeasured", list);
 }
 
-void AddScripts(const sweep::SweepResult& result, std::vector<PageChart> charts,
+void AddScripts(const sweep::SweepResult& result, const std::vector<PageChart>& charts,
                 const PageEvidence& evidence, const ReportOptions& options, data* page) {
   PageTable settings = SettingsTable(result, options);
   PageTable trials = TrialsTable(result, evidence.gap_flags, options);
@@ -151,7 +151,7 @@ std::string RenderPage(const sweep::SweepResult& result, const sweep::Explanatio
     charts.push_back(std::move(chart));
   }
   for (PageChart& chart : PageCharts(result, options)) charts.push_back(std::move(chart));
-  AddScripts(result, std::move(charts), evidence, options, &page);
+  AddScripts(result, charts, evidence, options, &page);
   mustache html(File("page.html"));
   std::string text = html.render(page);
   if (!html.is_valid()) throw std::logic_error("page.html: " + html.error_message());
