@@ -35,7 +35,7 @@ rift_room(vision/calibration ROOMS statistics vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs)
 rift_room(vision/tracking ROOMS geometry statistics vision/camera yaml
   PRIVATE_LIBRARIES fmt::fmt PkgConfig::APRILTAG)
-rift_room(vision/rendering ROOMS vision/camera vision/calibration vision/tracking
+rift_room(vision/rendering ROOMS geometry vision/camera vision/calibration vision/tracking
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs PkgConfig::JPEG)
 rift_room(hardware ROOMS control geometry odometry statistics trial vision/camera vision/tracking
   LIBRARIES fmt::fmt Threads::Threads)
@@ -58,8 +58,9 @@ rift_room(report/figures ROOMS gap geometry statistics sweep/calibrate sweep/fal
 rift_room(report/text ROOMS experiment gap geometry odometry report/figures statistics sweep/calibrate sweep/explain
     sweep/falsify yaml
   LIBRARIES fmt::fmt)
-rift_room(report/json ROOMS control experiment gap hardware odometry report/text statistics sweep/calibrate
-    sweep/explain sweep/falsify sweep/run trial vision/calibration vision/tracking yaml
+rift_room(report/json ROOMS control experiment gap geometry hardware odometry report/text statistics sweep/calibrate
+    sweep/explain sweep/falsify sweep/run trial vision/calibration vision/rendering vision/tracking
+    yaml
   LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
 rift_room(report/page ROOMS odometry report/figures report/text sweep/explain sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
@@ -76,7 +77,7 @@ rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment file
     odometry report/json sweep/falsify terminal trajectory view vision/camera vision/tracking
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(commands/track ROOMS commands/arguments experiment files report/json statistics terminal
-    trajectory view vision/calibration vision/camera vision/tracking
+    trajectory view vision/calibration vision/camera vision/rendering vision/tracking
   LIBRARIES fmt::fmt)
 rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
     files gap odometry report/figures report/json report/text sweep/falsify terminal trajectory twin view

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rift/vision/camera/camera_file.hpp"
+#include "support/documented.hpp"
 #include "support/environment.hpp"
 #include "support/process.hpp"
 #include "support/tree.hpp"
@@ -69,6 +70,34 @@ TEST_CASE("The recording is tracked to within half a millimetre of its truth in 
   }
   CHECK(squares / (2.0 * static_cast<double>(xx.size())) < 16.0);
   CHECK(squares / (2.0 * static_cast<double>(xx.size())) > 1.0 / 16.0);
+}
+
+TEST_CASE("What precision to expect is said before anything is driven, as a map and as JSON") {
+  const test::TemporaryFolder folder;
+  const ProcessResult result = RunRift({"track", "--check", "--calibration", kCamera, "--out",
+                                        folder / "map.json", "--set", "twin.camera.noise_grey=2"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.out, Contains("position, RMS error in mm") && Contains("smallest tag"));
+  const auto map = nlohmann::json::parse(test::ReadFile(folder / "map.json"));
+  CHECK(test::KeysOf(map) == test::DocumentedKeys("MAP.json of rift track --check"));
+  CHECK(map["places"].size() == map["columns"].get<std::size_t>() * map["rows"].get<std::size_t>());
+  CHECK(map["look"]["noise_grey"] == 2.0);
+  CHECK(map["found"] == map["views"]);
+  CHECK(map["position_p95_m"].get<double>() < 1e-4);
+  CHECK(map["least_side_px"].get<double>() < map["places"][0]["side_px"].get<double>());
+  // The same error of a tag that is hardly larger than the smallest one is many times as large.
+  const ProcessResult small = RunRift({"track", "--check", "--calibration", kCamera, "--set",
+                                       "track.tag.size_m=0.017", "--out", folder / "small.json"});
+  REQUIRE(small.exit_code == 0);
+  const auto coarse = nlohmann::json::parse(test::ReadFile(folder / "small.json"));
+  CHECK(coarse["position_p95_m"].get<double>() > 4.0 * map["position_p95_m"].get<double>());
+
+  const ProcessResult camera =
+      RunRift({"track", "--check", "--calibration", kCamera, "--camera", "x"});
+  CHECK(camera.exit_code == 2);
+  CHECK_THAT(camera.err, Contains("--check opens no camera"));
+  CHECK(RunRift({"track", "--check"}).exit_code == 2);
 }
 
 TEST_CASE("The same recording gives the same bytes") {

@@ -50,7 +50,7 @@ void CheckLogName(const TrackRequest& request) {
 void RefuseOverwriting(const TrackRequest& request) {
   std::error_code not_there;
   std::vector<fs::path> outputs{request.out};
-  if (!request.calibrate) outputs.push_back(RunFileOf(request.out));
+  if (!request.calibrate && !request.check) outputs.push_back(RunFileOf(request.out));
   for (const fs::path& output : outputs) {
     if (request.force || request.out.empty() || !fs::exists(output, not_there)) continue;
     throw std::invalid_argument(
@@ -73,6 +73,21 @@ void CheckTracking(const TrackRequest& request) {
   if (!request.images.empty() || !request.picture.empty()) {
     throw std::invalid_argument("--images and --picture belong to --calibrate");
   }
+}
+
+void CheckPrecisionCheck(const TrackRequest& request) {
+  if (request.calibrate) throw std::invalid_argument("--check and --calibrate exclude each other");
+  if (request.calibration.empty()) {
+    throw std::invalid_argument("--calibration is missing: --check is about one camera");
+  }
+  if (!request.camera.empty() || !request.world.empty() || request.view) {
+    throw std::invalid_argument(
+        "--check opens no camera: --camera, --world and --view do not belong to it");
+  }
+  if (request.out.empty()) return;
+  std::vector<fs::path> inputs{request.calibration};
+  if (!request.experiment.empty()) inputs.emplace_back(request.experiment);
+  CheckOutputs(inputs, {request.out});
 }
 
 void CheckCalibrating(const TrackRequest& request) {
@@ -157,6 +172,9 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
                  "first pose, or from a file with tags: (id, x_m, y_m) to be seen or points: "
                  "(name, x_m, y_m) to be clicked")
       ->type_name("first|FILE.yaml");
+  app.add_flag("--check", request.check,
+               "say how precise poses will be over the floor and which tag is too small, tried on "
+               "rendered pictures (twin.camera: blur, noise); --out keeps the map as JSON");
   app.add_flag("--view", request.view, "show it in a window");
   app.add_option("--path", request.path, "what the view holds the robot's trail against")
       ->type_name("WAYPOINTS.yaml|LOG.csv");
@@ -172,7 +190,11 @@ fs::path RunFileOf(const fs::path& log) {
 }
 
 void TrackRequest::Check() const {
-  calibrate ? CheckCalibrating(*this) : CheckTracking(*this);
+  if (check) {
+    CheckPrecisionCheck(*this);
+  } else {
+    calibrate ? CheckCalibrating(*this) : CheckTracking(*this);
+  }
   CheckIds(ids);
   RefuseOverwriting(*this);
 }
@@ -189,7 +211,8 @@ void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const Track
       "when the camera fails (unplugged, frozen, black, busy, wrong format).\n"
       "Example: rift track --calibrate --board 13x9 --square 0.025 --images photos --out cam.yaml\n"
       "         rift track --camera /dev/video0 --calibration cam.yaml --world first --out "
-      "log.csv");
+      "log.csv\n"
+      "         rift track --check --calibration cam.yaml");
   app.callback([request, track, &exit_code] {
     request->Check();
     exit_code = track(*request);

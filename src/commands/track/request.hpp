@@ -30,6 +30,8 @@ struct TrackRequest {
 
   vision::SessionOptions session;
 
+  bool check = false;  ///< what precision is to be expected
+
   bool calibrate = false;
   vision::Board board;
   std::string images;

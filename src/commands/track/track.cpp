@@ -11,6 +11,7 @@
 #include "rift/experiment/experiment.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
+#include "rift/report/json/precision.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
@@ -24,6 +25,7 @@
 #include "rift/vision/calibration/chessboard.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/rendering/precision_map.hpp"
 #include "rift/vision/tracking/tag_visibility.hpp"
 #include "rift/vision/tracking/track_run.hpp"
 #include "rift/vision/tracking/world_check.hpp"
@@ -34,13 +36,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-experiment::TrackOptions OptionsOf(const TrackRequest& request) {
+experiment::Experiment ExperimentOf(const TrackRequest& request) {
   const auto read = [&](const std::string& path) {
     return request.experiment.empty() ? std::string("{}") : files::ReadFile(path);
   };
   const std::string path = request.experiment.empty() ? "defaults" : request.experiment;
-  const experiment::Experiment experiment =
-      experiment::LoadExperiment(path, request.overrides, read);
+  return experiment::LoadExperiment(path, request.overrides, read);
+}
+
+experiment::TrackOptions OptionsOf(const TrackRequest& request,
+                                   const experiment::Experiment& experiment) {
   experiment::TrackOptions options = experiment.track;
   options.tag = TagOn(experiment);
   if (request.fps) options.capture.fps = *request.fps;
@@ -165,7 +170,7 @@ std::vector<int> FurtherIds(const TrackRequest& request) {
 }
 
 int TrackRobot(const TrackRequest& request) {
-  experiment::TrackOptions options = OptionsOf(request);
+  experiment::TrackOptions options = OptionsOf(request, ExperimentOf(request));
   view::TrackView::Content content = ContentOf(request);
   const vision::CameraModel camera =
       vision::ReadCamera(files::ReadFile(request.calibration), request.calibration);
@@ -198,7 +203,7 @@ int TrackRobot(const TrackRequest& request) {
 
 vision::Calibration CalibrateFor(const TrackRequest& request) {
   request.board.Check();
-  const experiment::TrackOptions options = OptionsOf(request);
+  const experiment::TrackOptions options = OptionsOf(request, ExperimentOf(request));
   const terminal::StopSignal stop;
   const vision::ViewListener listener{[&stop] { return stop.IsAsked(); }, terminal::Say};
   std::vector<vision::BoardView> views;
@@ -229,9 +234,31 @@ int CalibrateAndSave(const TrackRequest& request) {
   return terminal::kDone;
 }
 
+/// What tracking will be worth, before anything is driven. No camera is opened.
+int CheckPrecision(const TrackRequest& request) {
+  const experiment::Experiment experiment = ExperimentOf(request);
+  const vision::TagOptions tag = OptionsOf(request, experiment).tag;
+  const vision::CameraModel camera =
+      vision::ReadCamera(files::ReadFile(request.calibration), request.calibration);
+  const vision::SyntheticCameraOptions& look = experiment.twin.camera;
+  vision::PrecisionMap map;
+  {
+    const terminal::LiveLine progress;
+    map = PredictPrecision(camera, tag, look, {}, [](int done, int all) {
+      terminal::LiveLine::Show(fmt::format("trying the tag at place {} of {}", done, all));
+    });
+  }
+  terminal::PrintText(report::PrecisionText(map, tag));
+  if (request.out.empty()) return terminal::kDone;
+  files::WriteFile(request.out, report::PrecisionJson(map, tag, look));
+  terminal::Say(fmt::format("map: {}", request.out));
+  return terminal::kDone;
+}
+
 }  // namespace
 
 int Track(const TrackRequest& request) {
+  if (request.check) return CheckPrecision(request);
   return request.calibrate ? CalibrateAndSave(request) : TrackRobot(request);
 }
 
