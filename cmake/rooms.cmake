@@ -41,7 +41,7 @@ rift_room(hardware ROOMS control geometry odometry statistics trial vision/camer
   LIBRARIES fmt::fmt Threads::Threads)
 rift_room(twin ROOMS control geometry hardware simulation statistics trajectory trial vision/camera vision/rendering
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
-rift_room(sweep/run
+rift_room(sweep/run ROOMS statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES SQLiteCpp sqlite3)
 rift_room(experiment ROOMS control trajectory yaml
   OPTIONS gap hardware simulation trial twin sweep/run sweep/falsify sweep/calibrate

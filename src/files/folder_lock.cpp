@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -32,7 +33,7 @@ bool LockWithin(int descriptor, std::chrono::milliseconds patience) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder) {
+FolderLock::FolderLock(const std::filesystem::path& folder) : folder_(folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
@@ -53,6 +54,17 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
 }
 
 FolderLock::~FolderLock() { ::close(descriptor_); }
+
+void FolderLock::RequireInPlace() const {
+  struct stat held {};
+  struct stat named {};
+  const bool is_there = ::fstat(descriptor_, &held) == 0 && ::stat(folder_.c_str(), &named) == 0;
+  if (is_there && held.st_dev == named.st_dev && held.st_ino == named.st_ino) return;
+  throw std::runtime_error(fmt::format(
+      "folder {} was removed, moved or replaced while it was being worked in: what was written "
+      "may be lost; run the same command again",
+      folder_.string()));
+}
 
 bool FolderLock::IsHeld(const std::filesystem::path& folder) {
   const int descriptor = Open(folder);

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -230,6 +231,50 @@ TEST_CASE("Limits of a search are refused by a grid") {
     CHECK(refused.exit_code == 2);
     CHECK(refused.err.find("goal is grid") != std::string::npos);
   }
+}
+
+TEST_CASE("A sweep whose folder is removed, moved or replaced while it runs is exit 3") {
+  const Sweep sweep(kGrid);
+  const fs::path out = sweep.folder / "out", elsewhere = sweep.folder / "elsewhere";
+  const std::vector<std::function<void()>> troubles{[&] { fs::remove_all(out); },
+                                                    [&] { fs::rename(out, elsewhere); },
+                                                    [&] {
+                                                      fs::remove_all(elsewhere);
+                                                      fs::rename(out, elsewhere);
+                                                      fs::create_directory(out);
+                                                    }};
+  for (const auto& make_trouble : troubles) {
+    test::RunningRift running(
+        sweep.Command("out", {"--set", "reference.trials=500", "--jobs", "1"}));
+    running.WaitUntil("its first trials", [&] { return sweep.Committed("out") > 0; });
+    REQUIRE(running.Freeze());
+    make_trouble();
+    running.Thaw();
+    const ProcessResult result = running.Wait();
+    CHECK(result.exit_code == 3);
+    CHECK(result.err.find("out/journal.sqlite was removed, moved or replaced") !=
+          std::string::npos);
+    CHECK_FALSE(fs::exists(out / "table.csv"));
+  }
+}
+
+TEST_CASE("A damaged row of a journal is told, run again, and the table stays as it was") {
+  const Sweep sweep(kGrid);
+  REQUIRE(RunRift(sweep.Command("out")).exit_code == 0);
+  const std::string table = sweep.Table("out"), file = sweep.folder / "out/journal.sqlite";
+  std::string bytes = ReadFile(file);
+  const size_t at = bytes.find("simulation with seed");
+  REQUIRE(at != std::string::npos);
+  bytes[at] = 'S';
+  WriteText(file, bytes);
+  const ProcessResult status = RunRift({"sweep", "--status", sweep.folder / "out", "--json"});
+  CHECK(json::parse(status.out)["damaged"] == 1);
+  CHECK(json::parse(status.out)["done"] == 11);
+  const ProcessResult again = RunRift(sweep.Command("out"));
+  CHECK(again.exit_code == 0);
+  CHECK(again.err.find("1 of its entries were damaged and are left out") != std::string::npos);
+  CHECK(sweep.Table("out") == table);
+  CHECK(RunRift(sweep.Command("out")).err.find("damaged") == std::string::npos);
 }
 
 TEST_CASE("Folders and journals that cannot be used end with one line") {

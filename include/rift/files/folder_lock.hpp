@@ -14,10 +14,13 @@ class FolderLock {
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
+  /// Throws std::runtime_error when the folder is no longer where it was: removed, moved, replaced.
+  void RequireInPlace() const;
   /// True while some process holds the lock of a folder.
   static bool IsHeld(const std::filesystem::path& folder);
 
  private:
+  std::filesystem::path folder_;
   int descriptor_ = -1;
 };
 

@@ -44,6 +44,7 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
   };
   sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
   const sweep::CalibrationReport found = sweep::Identify(evaluator, request.jobs, say);
+  lock.RequireInPlace();
   files::WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
   files::WriteFile(out / "inputs.txt", evaluator.InputsText());
   const std::string json = report::CalibrationJson(experiment, found);
@@ -57,6 +58,7 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
   }
   request.json ? terminal::PrintData(json) : terminal::PrintText(report::CalibrationText(found));
   WriteFigures(out / "figures", experiment.name, found);
+  lock.RequireInPlace();
   say(fmt::format("written: {}", (out / "calibration.json").string()));
   if (request.write_robot.empty() || is_written) return terminal::kDone;
   return terminal::Fail(refusal, terminal::kWorseThanStart);

@@ -12,6 +12,7 @@
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
 #include "rift/sweep/run/journal.hpp"
+#include "rift/terminal/print.hpp"
 #include "rift/terminal/stop_signal.hpp"
 
 namespace rift::commands {
@@ -83,6 +84,11 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
   const std::filesystem::path file = request.out / kJournalName;
   if (request.fresh) Journal::Remove(file);
   Journal journal(file, FactsOf(experiment));
+  if (journal.Damaged() > 0) {
+    terminal::Say(fmt::format(
+        "note: {}: {} of its entries were damaged and are left out; what is missing is run again",
+        file.string(), journal.Damaged()));
+  }
   files::WriteFile(request.out / "experiment.yaml", experiment::WriteExperiment(experiment));
   evaluator.LoadLogs();  // now, since workers are copies of what is there when they start
   journal.SetNote("name", experiment.name);

@@ -177,6 +177,7 @@ int Sweep(const SweepRequest& request) {
   const std::optional<sweep::SweepResult> judged =
       RunSweep(evaluator, {out, request.jobs, request.fresh, progress});
   if (!judged) return SayStopped(experiment, out);
+  lock.RequireInPlace();
   Save(out, experiment, evaluator, *judged);
   if (judged->all.told == 0) return EndWithoutGap(request, out, *judged);
 
@@ -196,6 +197,7 @@ int Sweep(const SweepRequest& request) {
   const bool is_done =
       SpendTrials(out, *judged, request.explain, evaluator, {request.jobs, progress}, request.json);
   if (!is_done) return terminal::kStopped;
+  lock.RequireInPlace();
   if (!request.quiet) terminal::Say("report: " + (out / "report.html").string());
   if (judged->all.n == 0) return terminal::kNotReached;
   return request.exit_code && MayFail(*judged) ? terminal::kFalsified : terminal::kDone;

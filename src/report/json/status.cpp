@@ -33,6 +33,7 @@ std::string StatusJson(const sweep::JournalSummary& summary, const std::string& 
                                 {"most_settings", std::stoi(NoteOf(summary, "most_settings"))},
                                 {"elapsed_s", std::stod(NoteOf(summary, "elapsed_s"))},
                                 {"falsified", summary.falsified},
+                                {"damaged", summary.damaged},
                                 {"largest_gap_m", nullptr},
                                 {"largest_gap_at", summary.largest_key},
                                 {"trials_by_status", summary.trials_by_status}};
@@ -46,6 +47,9 @@ std::string StatusText(const sweep::JournalSummary& summary, const std::string& 
                                  NoteOf(summary, "elapsed_s"), summary.falsified);
   for (const auto& [status, count] : summary.trials_by_status) {
     if (status != "ok") text += fmt::format("{}: {}\n", status, count);
+  }
+  if (summary.damaged > 0) {
+    text += fmt::format("damaged, to be run again: {}\n", summary.damaged);
   }
   if (summary.largest_gap_m) {
     text +=

@@ -52,7 +52,7 @@ WorkerPool::Work WorkOf(Evaluate evaluate) {
 
 RunTrials RunHere(Evaluate evaluate, Watch watch) {
   return [evaluate = std::move(evaluate), watch = std::move(watch)](
-             std::vector<TrialRequest> requests) -> std::optional<std::vector<TrialRow>> {
+             const std::vector<TrialRequest>& requests) -> std::optional<std::vector<TrialRow>> {
     std::vector<TrialRow> rows;
     rows.reserve(requests.size());
     for (const TrialRequest& request : requests) {
@@ -161,9 +161,7 @@ std::string EncodeRequest(const TrialRequest& request) {
 TrialRequest DecodeRequest(std::string_view bytes) {
   ByteReader read(bytes);
   TrialRequest request;
-  size_t size = 0;
-  read(size);
-  request.theta.resize(size);
+  request.theta.resize(read.Count(sizeof(size_t) + sizeof(double)));
   for (experiment::ParameterValue& value : request.theta) {
     read(value.text);
     read(value.number);
@@ -188,8 +186,7 @@ std::string EncodeFindings(const TrialRow& row) {
 void DecodeFindings(std::string_view bytes, TrialRow& row) {
   ByteReader read(bytes);
   Members(read, row);
-  size_t errors = 0;
-  read(errors);
+  const size_t errors = read.Count(2 * sizeof(double));
   row.evidence.errors_m.clear();
   for (size_t i = 0; i < errors; ++i) {
     double x_m = 0.0, y_m = 0.0;

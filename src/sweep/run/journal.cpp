@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "rift/statistics/hash.hpp"
+
 namespace rift::sweep {
 namespace {
 
@@ -17,9 +19,15 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kSchema = R"(
   CREATE TABLE IF NOT EXISTS made_from(key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
-  CREATE TABLE IF NOT EXISTS note(name TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
+  CREATE TABLE IF NOT EXISTS note(name TEXT PRIMARY KEY, value TEXT, sum TEXT) WITHOUT ROWID;
   CREATE TABLE IF NOT EXISTS trial(key TEXT PRIMARY KEY, status TEXT, gap_m REAL, falsified INTEGER,
-                                   row BLOB) WITHOUT ROWID;)";
+                                   row BLOB, sum TEXT) WITHOUT ROWID;)";
+
+// The rows that are believed: their sum is that of their values under their key in this journal.
+constexpr const char* kSoundRows = R"(
+  CREATE TEMP VIEW sound_note AS SELECT * FROM note WHERE sum = sum_of('note', name, value);
+  CREATE TEMP VIEW sound_trial AS SELECT * FROM trial
+    WHERE sum = sum_of('trial', key, status, gap_m, falsified, row);)";
 
 /// How a user gets on from what SQLite reports.
 std::string Advice(int code) {
@@ -88,6 +96,73 @@ Facts ReadTable(SQLite::Database& database, const char* query) {
   return facts;
 }
 
+Facts ReadFacts(SQLite::Database& database) {
+  return ReadTable(database, "SELECT key, value FROM made_from");
+}
+
+/// Two different lists of values never give the same bytes.
+void AppendValue(std::string& bytes, sqlite3_value* value) {
+  const int type = sqlite3_value_type(value);
+  const double number = type == SQLITE_NULL ? 0.0 : sqlite3_value_double(value);
+  const bool is_number = type == SQLITE_INTEGER || type == SQLITE_FLOAT;
+  const void* start = is_number ? &number : sqlite3_value_blob(value);
+  const size_t size = is_number ? sizeof number : static_cast<size_t>(sqlite3_value_bytes(value));
+  bytes += fmt::format("{} {} ", type, size);
+  if (size > 0) bytes.append(static_cast<const char*>(start), size);
+}
+
+/// The SQL function sum_of(...): a hash of its arguments and of what the journal was made from.
+void SumOf(sqlite3_context* context, int count, sqlite3_value** values) {
+  std::string bytes = *static_cast<const std::string*>(sqlite3_user_data(context));
+  for (int i = 0; i < count; ++i) AppendValue(bytes, values[i]);
+  const std::string sum = statistics::Hash128Text(bytes);
+  sqlite3_result_text(context, sum.data(), static_cast<int>(sum.size()), SQLITE_TRANSIENT);
+}
+
+std::string HashOf(const Facts& made_from) {
+  std::string facts;
+  for (const auto& [key, value] : made_from) facts += fmt::format("{}\n{}\n", key, value);
+  return statistics::Hash128Text(facts);
+}
+
+/// `facts` must outlive the database.
+void DefineSoundRows(SQLite::Database& database, std::string& facts) {
+  database.createFunction("sum_of", -1, true, &facts, SumOf);
+  database.exec(kSoundRows);
+}
+
+int Count(SQLite::Database& database, const char* query) {
+  SQLite::Statement count(database, query);
+  return count.executeStep() ? count.getColumn(0).getInt() : 0;
+}
+
+int CountDamagedTrials(SQLite::Database& database) {
+  return Count(database,
+               "SELECT (SELECT COUNT(*) FROM trial) - (SELECT COUNT(*) FROM sound_trial)");
+}
+
+int CountDamagedNotes(SQLite::Database& database) {
+  return Count(database, "SELECT (SELECT COUNT(*) FROM note) - (SELECT COUNT(*) FROM sound_note)");
+}
+
+std::string TablesOf(SQLite::Database& database) {
+  std::string tables;
+  SQLite::Statement select(database, "SELECT sql FROM sqlite_master ORDER BY name");
+  while (select.executeStep()) tables += select.getColumn(0).getString() + '\n';
+  return tables;
+}
+
+/// Throws std::invalid_argument for tables other than those that this version makes.
+void RequireOurTables(SQLite::Database& database, const fs::path& file) {
+  SQLite::Database ours(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  ours.exec(kSchema);
+  if (TablesOf(database) == TablesOf(ours)) return;
+  throw std::invalid_argument(fmt::format(
+      "{}: its tables are not those of this version of rift: another version wrote it, or it is "
+      "damaged; choose another folder with --out, or start over with --fresh",
+      file.string()));
+}
+
 }  // namespace
 
 struct Journal::Store {
@@ -99,8 +174,22 @@ struct Journal::Store {
     // may lack the last commits.
     database.exec("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL;");
     database.exec(kSchema);
-    find.emplace(database, "SELECT row FROM trial WHERE key = ?");
-    add.emplace(database, "INSERT OR REPLACE INTO trial VALUES (?, ?, ?, ?, ?)");
+    RequireOurTables(database, file);
+  }
+
+  /// Removes what is damaged.
+  void Prepare(const Facts& made_from) {
+    facts = HashOf(made_from);
+    DefineSoundRows(database, facts);
+    damaged = CountDamagedTrials(database) + CountDamagedNotes(database);
+    if (damaged > 0) {
+      database.exec("DELETE FROM trial WHERE key NOT IN (SELECT key FROM sound_trial)");
+      database.exec("DELETE FROM note WHERE name NOT IN (SELECT name FROM sound_note)");
+    }
+    find.emplace(database, "SELECT row FROM sound_trial WHERE key = ?");
+    add.emplace(database,
+                "INSERT OR REPLACE INTO trial VALUES "
+                "(?1, ?2, ?3, ?4, ?5, sum_of('trial', ?1, ?2, ?3, ?4, ?5))");
   }
 
   /// A statement of its own, since one that has not ended keeps the journal from WAL mode.
@@ -111,6 +200,17 @@ struct Journal::Store {
     }
   }
 
+  /// What goes into a file without a name is lost when the process ends.
+  void RequireInPlace() {
+    int has_moved = 0;
+    sqlite3_file_control(database.getHandle(), nullptr, SQLITE_FCNTL_HAS_MOVED, &has_moved);
+    if (has_moved == 0) return;
+    throw std::runtime_error(
+        fmt::format("{} was removed, moved or replaced while the sweep was running: put it back "
+                    "and run the same command again, or start over",
+                    file.string()));
+  }
+
   void Begin() {
     if (transaction) return;
     transaction.emplace(database);
@@ -118,16 +218,18 @@ struct Journal::Store {
   }
 
   fs::path file;
+  std::string facts;  ///< as one hash
   SQLite::Database database;
   std::optional<SQLite::Statement> find, add;
   std::optional<SQLite::Transaction> transaction;
   Clock::time_point begun;
+  int damaged = 0;
 };
 
 Journal::Journal(const fs::path& file, const Facts& made_from) {
   Told(file, [&] {
     store_ = std::make_unique<Store>(file);
-    const Facts then = ReadTable(store_->database, "SELECT key, value FROM made_from");
+    const Facts then = ReadFacts(store_->database);
     if (then.empty()) {
       SQLite::Transaction transaction(store_->database);
       SQLite::Statement insert(store_->database, "INSERT INTO made_from VALUES (?, ?)");
@@ -144,6 +246,7 @@ Journal::Journal(const fs::path& file, const Facts& made_from) {
           "start over with --fresh",
           file.string(), Differences(then, made_from)));
     }
+    store_->Prepare(made_from);
   });
 }
 
@@ -177,7 +280,7 @@ void Journal::Add(const std::string& key, const JournalEntry& entry) {
     if (std::isnan(entry.gap_m)) {
       add.bind(3);
     } else {
-      add.bind(3, entry.gap_m);
+      add.bind(3, entry.gap_m + 0.0);  // SQLite keeps no negative zero
     }
     add.bind(4, static_cast<int>(entry.falsified));
     add.bindNoCopy(5, entry.bytes.data(), static_cast<int>(entry.bytes.size()));
@@ -198,12 +301,17 @@ void Journal::Commit() {
     store_->transaction->commit();
     store_->transaction.reset();
   });
+  store_->RequireInPlace();
 }
+
+int Journal::Damaged() const { return store_->damaged; }
 
 void Journal::SetNote(const std::string& name, const std::string& value) {
   Told(store_->file, [&] {
     store_->Begin();
-    SQLite::Statement insert(store_->database, "INSERT OR REPLACE INTO note VALUES (?, ?)");
+    SQLite::Statement insert(store_->database,
+                             "INSERT OR REPLACE INTO note VALUES "
+                             "(?1, ?2, sum_of('note', ?1, ?2))");
     insert.bind(1, name);
     insert.bind(2, value);
     insert.exec();
@@ -212,7 +320,7 @@ void Journal::SetNote(const std::string& name, const std::string& value) {
 
 std::optional<std::string> Journal::Note(const std::string& name) {
   return Told(store_->file, [&]() -> std::optional<std::string> {
-    SQLite::Statement select(store_->database, "SELECT value FROM note WHERE name = ?");
+    SQLite::Statement select(store_->database, "SELECT value FROM sound_note WHERE name = ?");
     select.bind(1, name);
     if (!select.executeStep()) return std::nullopt;
     return select.getColumn(0).getString();
@@ -221,6 +329,7 @@ std::optional<std::string> Journal::Note(const std::string& name) {
 
 void Journal::Close() {
   Commit();
+  store_->RequireInPlace();
   Told(store_->file, [&] {
     store_->find.reset();
     store_->add.reset();
@@ -247,19 +356,25 @@ JournalSummary ReadJournal(const fs::path& file) {
         "{}: no such file; a sweep of simulated trials keeps its journal there", file.string()));
   }
   return Told(file, [&] {
+    std::string facts;
     SQLite::Database database(file.string(), SQLite::OPEN_READONLY);
     database.setBusyTimeout(2000);
+    RequireOurTables(database, file);
+    facts = HashOf(ReadFacts(database));
+    DefineSoundRows(database, facts);
     JournalSummary summary;
-    summary.notes = ReadTable(database, "SELECT name, value FROM note");
-    SQLite::Statement count(database,
-                            "SELECT status, COUNT(*), SUM(falsified) FROM trial GROUP BY status");
+    summary.damaged = CountDamagedTrials(database);
+    summary.notes = ReadTable(database, "SELECT name, value FROM sound_note");
+    SQLite::Statement count(
+        database, "SELECT status, COUNT(*), SUM(falsified) FROM sound_trial GROUP BY status");
     while (count.executeStep()) {
       summary.trials_by_status[count.getColumn(0).getString()] = count.getColumn(1).getInt();
       summary.falsified += count.getColumn(2).getInt();
     }
     SQLite::Statement worst(
         database,
-        "SELECT key, gap_m FROM trial WHERE gap_m IS NOT NULL ORDER BY gap_m DESC, key LIMIT 1");
+        "SELECT key, gap_m FROM sound_trial WHERE gap_m IS NOT NULL ORDER BY gap_m DESC, key "
+        "LIMIT 1");
     if (worst.executeStep()) {
       summary.largest_key = worst.getColumn(0).getString();
       summary.largest_gap_m = worst.getColumn(1).getDouble();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
@@ -43,21 +44,25 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what ByteWriter wrote, in the same order. Throws std::runtime_error when bytes are
-/// missing.
+/// Reads what ByteWriter wrote, in the same order. Throws std::runtime_error when bytes are missing
+/// and for a bool or a value of an enum (which has EnumNames) that is none.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
 
   template <Plain T>
   void operator()(T& value) {
-    std::memcpy(&value, Next(sizeof value).data(), sizeof value);
+    const std::string_view bytes = Next(sizeof value);
+    if constexpr (std::is_same_v<T, bool>) {
+      if (bytes[0] != 0 && bytes[0] != 1) NoSuchValue();
+    } else if constexpr (std::is_enum_v<T>) {
+      std::underlying_type_t<T> index{};
+      std::memcpy(&index, bytes.data(), sizeof index);
+      if (index < 0 || static_cast<size_t>(index) >= EnumNames(T{}).size()) NoSuchValue();
+    }
+    std::memcpy(&value, bytes.data(), sizeof value);
   }
-  void operator()(std::string& text) {
-    size_t size = 0;
-    (*this)(size);
-    text = Next(size);
-  }
+  void operator()(std::string& text) { text = Next(Count(1)); }
   template <class T>
   void operator()(std::optional<T>& value) {
     bool has_value = false;
@@ -66,14 +71,29 @@ class ByteReader {
     if (has_value) (*this)(value.emplace());
   }
 
+  /// How many items follow, each of at least that many bytes.
+  size_t Count(size_t bytes_each) {
+    size_t count = 0;
+    (*this)(count);
+    if (count > bytes_.size() / bytes_each) CutShort();
+    return count;
+  }
+
   bool IsAtEnd() const { return bytes_.empty(); }
 
  private:
   std::string_view Next(size_t count) {
-    if (count > bytes_.size()) throw std::runtime_error("a row of the sweep is cut short");
+    if (count > bytes_.size()) CutShort();
     const std::string_view next = bytes_.substr(0, count);
     bytes_.remove_prefix(count);
     return next;
+  }
+
+  [[noreturn]] static void CutShort() {
+    throw std::runtime_error("a row of the sweep is cut short");
+  }
+  [[noreturn]] static void NoSuchValue() {
+    throw std::runtime_error("a row of the sweep holds a value that there is none of");
   }
 
   std::string_view bytes_;

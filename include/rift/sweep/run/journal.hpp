@@ -23,19 +23,26 @@ struct JournalEntry {
 /// Finished trials in an SQLite file, which survive a `kill -9` of the process at any moment: what
 /// is lost is what was added in the last kCommitEvery_s. One process writes; others may read.
 ///
+/// Each row carries a hash of its values, its key and the facts. A row that does not fit its hash
+/// is not there: Find does not give it, and opening the journal removes it.
+///
 /// Whatever SQLite reports (a full disk, a folder that cannot be written, a damaged file) is thrown
-/// as std::runtime_error that names the file and what to do; what was committed stays.
+/// as std::runtime_error that names the file and what to do; what was committed stays. So is a file
+/// that is no longer where it was made.
 class Journal {
  public:
   static constexpr double kCommitEvery_s = 0.2;
 
   /// Opens the journal or makes an empty one, in a folder that exists.
-  /// Throws std::invalid_argument for a journal made from other facts, naming those that differ.
+  /// Throws std::invalid_argument for a journal made from other facts, naming those that differ,
+  /// and for one whose tables are not those of this version.
   Journal(const std::filesystem::path& file, const Facts& made_from);
   /// Commits; what cannot be committed any more is lost silently: call Close before.
   ~Journal();
 
   std::optional<std::string> Find(const std::string& key);
+  /// Rows and notes that did not fit their hash when the journal was opened.
+  int Damaged() const;
   /// Adding a key again replaces it.
   void Add(const std::string& key, const JournalEntry& entry);
   /// Commits when the last commit was long ago.
@@ -60,6 +67,7 @@ struct JournalSummary {
   std::map<std::string, std::string> notes;
   std::map<std::string, int> trials_by_status;
   int falsified = 0;
+  int damaged = 0;  ///< trials that do not fit their hash and are counted nowhere else
   std::optional<double> largest_gap_m;
   std::string largest_key;  ///< of the trial with that gap
 };
