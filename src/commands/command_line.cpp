@@ -19,22 +19,74 @@
 #include "rift/terminal/print.hpp"
 #include "rift/terminal/process_start.hpp"
 #include "rift/yaml/suggest.hpp"
+#include "version.hpp"
 
 namespace rift::commands {
 
 namespace {
 
+using Words = std::vector<std::string>;
+
 /// CLI11 calls a mistyped subcommand "an argument that was not expected".
-void CheckSubcommand(int argc, char** argv, const std::vector<Command>& commands) {
-  if (argc < 2 || argv[1][0] == '-') return;
-  std::vector<std::string> names;
+void CheckSubcommand(const std::string& word, const std::vector<Command>& commands) {
+  Words names;
   for (const Command& command : commands) names.push_back(command.name);
-  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
-  const std::string nearest = yaml::Nearest(argv[1], names);
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  names.emplace_back("help");
+  const std::string nearest = yaml::Nearest(word, names);
   throw std::invalid_argument(
       nearest.empty()
-          ? fmt::format("'{}' is no subcommand; there are {}", argv[1], fmt::join(names, ", "))
-          : fmt::format("'{}' is no subcommand; did you mean '{}'?", argv[1], nearest));
+          ? fmt::format("'{}' is no subcommand; there are {}", word, fmt::join(names, ", "))
+          : fmt::format("'{}' is no subcommand; did you mean '{}'?", word, nearest));
+}
+
+/// `rift`, `rift help` and `rift help COMMAND` in the words of flags.
+Words WordsOf(int argc, char** argv) {
+  Words words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty()) return {"--help"};
+  if (words.front() != "help") return words;
+  words.erase(words.begin());
+  if (words.size() > 1) {
+    throw std::invalid_argument(
+        fmt::format("help takes one subcommand, and there are '{}'", fmt::join(words, "', '")));
+  }
+  words.emplace_back("--help");
+  return words;
+}
+
+std::string Examples(const std::vector<Command>& commands) {
+  std::string text = "Examples:\n";
+  for (const Command& command : commands) text += "  " + command.example + "\n";
+  return text;
+}
+
+Words FlagsOf(const CLI::App& app) {
+  Words flags;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+  }
+  return flags;
+}
+
+/// What is wrong with the command line, and what to do: the nearest flag, or where help is.
+std::string UsageError(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const CLI::App& command = chosen.empty() ? app : *chosen.front();
+  const std::string name = chosen.empty() ? "rift" : "rift " + command.get_name();
+  const std::string help = fmt::format("; {} --help lists what it takes", name);
+  const Words extras = app.remaining(true);
+  const bool has_said_how = dynamic_cast<const CLI::ValidationError*>(&error) != nullptr;
+  if (has_said_how) return error.what();
+  if (extras.empty()) return error.what() + help;
+  const auto is_flag = [](const std::string& word) { return word.starts_with("-"); };
+  const auto flag = std::find_if(extras.begin(), extras.end(), is_flag);
+  if (flag == extras.end()) {
+    return fmt::format("'{}' is one argument too many for {}{}", extras.front(), name, help);
+  }
+  const std::string word = flag->substr(0, flag->find('='));
+  const std::string nearest = yaml::Nearest(word, FlagsOf(command));
+  return nearest.empty() ? fmt::format("{} has no flag {}{}", name, word, help)
+                         : fmt::format("{} has no flag {}; did you mean {}?", name, word, nearest);
 }
 
 int ShowHelp(const CLI::App& app, const CLI::ParseError& error) {
@@ -46,26 +98,29 @@ int ShowHelp(const CLI::App& app, const CLI::ParseError& error) {
 
 int Run(int argc, char** argv, const CameraUses& camera) {
   const std::vector<Command> commands = Commands(camera);
-  CheckSubcommand(argc, argv, commands);
+  const Words words = WordsOf(argc, argv);
+  if (!words.front().starts_with("-")) CheckSubcommand(words.front(), commands);
   int exit_code = terminal::kDone;
-  CLI::App app("rift: where a simulator and its robot part ways, and why");
-  app.set_version_flag("--version", "rift " RIFT_VERSION);
+  CLI::App app("rift: where a simulator and its robot part ways, and why", "rift");
+  app.set_version_flag("-v,--version", VersionText(), "commit and libraries too");
   app.require_subcommand(1);
   app.footer(
+      Examples(commands) +
+      "\nrift help COMMAND tells the flags of one, rift sweep --keys every key of an experiment.\n"
       "Exit codes: 0 done, 1 falsified (with --exit-code) or not reached, 2 usage or input, 3 "
       "failure, also to write the results.");
   for (const Command& command : commands) {
     CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
     // A word that is not there chooses no subcommand, and options take time to make.
-    if (std::find(argv, argv + argc, std::string_view(command.name)) == argv + argc) continue;
+    if (std::find(words.begin(), words.end(), command.name) == words.end()) continue;
     command.add(subcommand, exit_code);
   }
   try {
-    app.parse(argc, argv);
+    app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes them from the back
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
     if (asked_for_help) return ShowHelp(app, error);
-    throw std::invalid_argument(error.what());
+    throw std::invalid_argument(UsageError(app, error));
   }
   return exit_code;
 }
@@ -91,13 +146,19 @@ int RunCommandLine(int argc, char** argv, const CameraUses& camera) {
 std::vector<Command> Commands(const CameraUses& camera) {
   return {
       {"simulate", "Drive the simulated robot through a waypoint task",
+       "rift simulate configs/waypoints/paper.yaml --out out/run --figure out/run.svg",
        [camera](CLI::App& app, int& exit_code) { AddSimulate(app, exit_code, camera); }},
       {"track", "Track the robot's tag with a camera, or calibrate the camera",
+       "rift track --camera /dev/video0 --calibration cam.yaml --out log.csv",
        [camera](CLI::App& app, int& exit_code) { AddTrack(app, exit_code, camera.track); }},
       {"drive", "Drive the real robot through a waypoint task, or measure its radio link",
+       "rift drive --ping --port /dev/rfcomm0",
        [camera](CLI::App& app, int& exit_code) { AddDrive(app, exit_code, camera.drive); }},
-      {"gap", "Measure the Sim-to-Real gap of trajectories", AddGap},
-      {"sweep", "Find where in a parameter space the gap is too large, and why", AddSweep},
+      {"gap", "Measure the Sim-to-Real gap of trajectories",
+       "rift gap data/example/simulator.csv data/example/robot1.csv data/example/robot2.csv",
+       AddGap},
+      {"sweep", "Find where in a parameter space the gap is too large, and why",
+       "rift sweep configs/waypoints/paper.yaml --out out/paper", AddSweep},
   };
 }
 

@@ -37,6 +37,7 @@ struct GapRequest {
   Format real_format = Format::kAuto;
   std::string json, profile, figure;
   bool exit_code = false;
+  bool force = false;
   bool odometry = false;
   OdometryRequest runs;  ///< with --odometry or --program
 
@@ -88,14 +89,18 @@ gap::Likeness MeasureRepeats(const GapRequest& request, const gap::GapResult& re
 }
 
 void Save(const GapRequest& request, const gap::GapResult& result) {
-  if (!request.profile.empty()) files::WriteFile(request.profile, report::ProfileCsv(result));
+  const bool is_piped = request.profile == "-";
+  if (is_piped) terminal::PrintData(report::ProfileCsv(result));
+  if (!request.profile.empty() && !is_piped) {
+    files::WriteFile(request.profile, report::ProfileCsv(result));
+  }
   if (!request.figure.empty()) WriteFigure(request.figure, report::GapFigure(result));
   if (request.json == "-") {
     terminal::PrintData(report::GapJson(result));
     return;
   }
   if (!request.json.empty()) files::WriteFile(request.json, report::GapJson(result));
-  terminal::PrintText(report::GapText(result));
+  if (!is_piped) terminal::PrintText(report::GapText(result));
 }
 
 /// A log that counts twice would pass for a repeat.
@@ -122,12 +127,14 @@ void CheckNames(const GapRequest& request) {
   for (const auto* logs : {&request.reals, &request.sim_repeats}) {
     inputs.insert(inputs.end(), logs->begin(), logs->end());
   }
-  const std::string json = request.json == "-" ? "" : request.json;
-  for (const std::string& output : {json, request.profile, request.figure}) {
-    if (output == "-") throw std::invalid_argument("- is stdout for --json only: name a file");
-    if (!output.empty()) outputs.emplace_back(output);
+  if (request.json == "-" && request.profile == "-") {
+    throw std::invalid_argument("--json - and --profile - are both stdout: name a file for one");
   }
-  CheckOutputs(inputs, outputs);
+  for (const std::string& output : {request.json, request.profile}) {
+    if (!output.empty() && output != "-") outputs.emplace_back(output);
+  }
+  if (!request.figure.empty()) outputs.emplace_back(request.figure);
+  CheckOutputs(inputs, {.files = outputs, .force = request.force});
 }
 
 void AddOdometryFlags(CLI::App& app, GapRequest& request) {
@@ -152,6 +159,7 @@ OdometryRequest OdometryOf(const GapRequest& request) {
   runs.runs = request.reals;
   runs.runs.insert(runs.runs.begin(), request.sim);
   runs.json = request.json;
+  runs.force = request.force;
   runs.calibration.confidence = request.verdict.confidence;
   RefuseTwins(runs.runs);
   for (const std::string& other : {request.profile, request.figure}) {
@@ -182,12 +190,14 @@ void AddGap(CLI::App& app, int& exit_code) {
   app.add_option("--json", request->json,
                  "write everything as JSON; - for stdout, without the text")
       ->type_name("FILE|-");
-  app.add_option("--profile", request->profile, "write the error along the path")
-      ->type_name("FILE.csv");
+  app.add_option("--profile", request->profile,
+                 "write the error along the path; - for stdout, without the text")
+      ->type_name("FILE.csv|-");
   app.add_option("--figure", request->figure, "draw paths, error over u and its distribution")
       ->type_name("FILE.svg|FILE.png");
   app.add_flag("--exit-code", request->exit_code,
                "end with 1 when the verdict is falsified, or undecided with a failure");
+  AddForceFlag(app, request->force);
   AddOdometryFlags(app, *request);
   app.footer(
       "Example: rift gap out/square1 out/square2 --odometry --calibrate-odometry\n"

@@ -96,7 +96,7 @@ int MeasureOdometry(const OdometryRequest& request) {
     inputs.insert(inputs.end(), {files.trajectory, files.encoders, files.experiment});
   }
   if (!request.json.empty() && request.json != "-") outputs.emplace_back(request.json);
-  CheckOutputs(inputs, outputs);
+  CheckOutputs(inputs, {.files = outputs, .force = request.force});
 
   odometry::OdometryOptions wheels;
   odometry::RunOptions options = request.options;

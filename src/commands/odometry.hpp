@@ -15,7 +15,8 @@ struct OdometryRequest {
   bool calibrate = false;
   odometry::RunOptions options;
   odometry::CalibrationOptions calibration;
-  std::string json;  ///< a file, - for stdout, or empty
+  std::string json;    ///< a file, - for stdout, or empty
+  bool force = false;  ///< replace that file
 };
 
 /// Compares camera, encoders and program of runs, and prints it; returns the exit code.

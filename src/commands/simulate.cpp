@@ -117,6 +117,7 @@ experiment::Experiment LoadFor(const SimulateRequest& request, std::vector<fs::p
   experiment::Experiment experiment =
       experiment::LoadExperiment(request.experiment, overrides, read);
   if (!request.start.empty()) PutStart(request.start, experiment);
+  if (!request.any_waypoints) RequireReachableWaypoints(experiment, request.experiment);
   return experiment;
 }
 
@@ -139,24 +140,42 @@ struct RunFiles {
   fs::path trajectory, truth, commands, encoders, experiment, summary;
 };
 
-/// The same text again in the file it was read from does no harm.
+/// The run of the same experiment again comes out the same, and replacing it does no harm.
 bool IsSaved(const experiment::Experiment& experiment, const fs::path& path) {
   return fs::is_regular_file(path) &&
          files::ReadFile(path) == experiment::WriteExperiment(experiment);
 }
 
+/// The log alone, for a pipe.
+bool IsStdout(const SimulateRequest& request) { return request.out == "-"; }
+
 void CheckNames(const SimulateRequest& request, const fs::path& out,
                 const experiment::Experiment& experiment, const std::vector<fs::path>& inputs) {
   CheckPictureNames(request.pictures);
   RefuseSweepFolder(out);
-  const RunFiles files(out);
-  std::vector<fs::path> outputs{files.trajectory, files.truth, files.commands, files.encoders,
-                                files.summary};
-  if (!IsSaved(experiment, files.experiment)) outputs.push_back(files.experiment);
-  for (const std::string& name : {request.tum, request.pictures.figure, request.pictures.video}) {
-    if (!name.empty()) outputs.emplace_back(name);
+  if (IsStdout(request) && request.json) {
+    throw std::invalid_argument("--out - and --json are both stdout: name a file for the log");
   }
-  CheckOutputs(inputs, outputs);
+  if (!IsStdout(request) && out.extension() != ".csv") {
+    RequireFolderName(out.string(), "what has no name ending in .csv");
+  }
+  Outputs named{.folder = out.extension() == ".csv" ? fs::path() : out, .force = request.force};
+  for (const std::string& name : {request.tum, request.pictures.figure, request.pictures.video}) {
+    if (!name.empty()) named.files.emplace_back(name);
+  }
+  const RunFiles files(out);
+  const bool is_repeat = IsSaved(experiment, files.experiment);
+  Outputs run{
+      .files = {files.trajectory, files.truth, files.commands, files.encoders, files.summary},
+      .folder = named.folder,
+      .force = request.force || is_repeat};
+  if (!is_repeat) run.files.push_back(files.experiment);
+  std::vector<fs::path> all = inputs;
+  if (!IsStdout(request)) {
+    CheckOutputs(inputs, run);
+    all.insert(all.end(), run.files.begin(), run.files.end());
+  }
+  CheckOutputs(all, named);
 }
 
 void Save(const fs::path& out, const experiment::Experiment& experiment,
@@ -193,7 +212,10 @@ Simulated ReplayFor(const SimulateRequest& request) {
         "--replay takes everything from the sweep: leave EXPERIMENT, --set, --start, --seed out");
   }
   const fs::path folder = request.replay[0];
-  const std::string& id = request.replay[1];
+  const std::string table = (folder / "table.csv").string();
+  const std::string id = request.replay[1] == "worst"
+                             ? report::WorstIdOf(files::ReadFile(table), table)
+                             : request.replay[1];
   Replay replay = ReplayRow(folder, id);
   terminal::Say(replay.verdict);
   const fs::path out = request.out.empty() ? folder / "replay" / id : fs::path(request.out);
@@ -215,7 +237,7 @@ void ExcludeFromTwin(CLI::App& app) {
 
 int Simulate(const SimulateRequest& request, const std::function<void(const Simulated&)>& show) {
   const Simulated made = request.replay.empty() ? SimulateFile(request) : ReplayFor(request);
-  Save(made.out, made.experiment, made.run);
+  if (!IsStdout(request)) Save(made.out, made.experiment, made.run);
   if (!request.tum.empty()) {
     files::WriteFile(request.tum, trajectory::WriteTum(made.run.result.trajectory));
   }
@@ -223,9 +245,13 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
     DrawFigure(request.pictures.figure, made.experiment, made.trial, made.run);
   }
   if (show) show(made);
-  terminal::Say("log: " + RunFiles(made.out).trajectory.string());
-  request.json ? terminal::PrintData(report::SimulationJson(made.experiment, made.run))
-               : terminal::PrintText(report::SimulationText(made.experiment, made.run));
+  if (IsStdout(request)) {
+    terminal::PrintData(trajectory::WriteRift(made.run.result.trajectory));
+  } else {
+    terminal::Say("log: " + RunFiles(made.out).trajectory.string());
+    request.json ? terminal::PrintData(report::SimulationJson(made.experiment, made.run))
+                 : terminal::PrintText(report::SimulationText(made.experiment, made.run));
+  }
   return made.run.result.outcome == trial::Outcome::kReached ? terminal::kDone
                                                              : terminal::kNotReached;
 }
@@ -235,7 +261,13 @@ TwinJob LoadTwinJob(const SimulateRequest& request) {
   TwinJob job{.experiment = LoadFor(request, inputs)};
   job.folder = OutputOf(request.out, job.experiment.name);
   RefuseSweepFolder(job.folder);
-  CheckOutputs(inputs, {job.folder / "experiment.yaml", job.folder / "camera.yaml"});
+  RequireFolderName(request.out, "a twin's run");
+  Outputs outputs{.folder = job.folder, .force = request.force};
+  for (const char* name :
+       {"experiment.yaml", "camera.yaml", "truth.csv", "trajectory.csv", "summary.json"}) {
+    outputs.files.push_back(job.folder / name);
+  }
+  CheckOutputs(inputs, outputs);
   return job;
 }
 
@@ -247,15 +279,18 @@ void AddSimulate(CLI::App& app, int& exit_code, const CameraUses& camera) {
       ->type_name("X,Y,YAW_DEG");
   app.add_option("--seed", request->seed, "of all random numbers, instead of the file's")
       ->type_name("N");
-  app.add_option("--out", request->out,
-                 "where the log goes; its commands, true path, experiment and summary go beside it "
-                 "[out/NAME]")
-      ->type_name("FILE.csv|DIR");
+  app.add_option(
+         "--out", request->out,
+         "where the log goes; its commands, true path, experiment and summary go beside it; "
+         "- for stdout, the log alone [out/NAME]")
+      ->type_name("FILE.csv|DIR|-");
+  AddForceFlag(app, request->force);
+  AddAnyWaypointsFlag(app, request->any_waypoints);
   app.add_option("--tum", request->tum, "write the log for evo as well")->type_name("FILE.tum");
   app.add_option("--replay", request->replay,
                  "simulate a row of a sweep's table again, bit for bit: the sweep's folder and the "
-                 "row's id")
-      ->type_name("DIR ID")
+                 "row's id, or worst")
+      ->type_name("DIR ID|worst")
       ->expected(2);
   AddPictureFlags(app, request->pictures);
   app.add_flag(
@@ -267,7 +302,7 @@ void AddSimulate(CLI::App& app, int& exit_code, const CameraUses& camera) {
   app.footer(
       "Ends with 1 when the robot does not reach the last waypoint.\n"
       "Example: rift simulate configs/waypoints/paper.yaml --seed 7 --out sim.csv\n"
-      "         rift simulate --replay out/paper 17 --video 17.mp4\n"
+      "         rift simulate --replay out/paper worst --video worst.mp4\n"
       "         rift simulate configs/twin.yaml --twin --out out/twin");
   ExcludeFromTwin(app);
   app.callback([request, with_camera = camera.simulate, &exit_code] {

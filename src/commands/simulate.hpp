@@ -43,6 +43,8 @@ struct SimulateRequest {
   std::vector<std::string> replay;  ///< folder of a sweep and id of a row
   bool json = false;
   bool twin = false;
+  bool force = false;
+  bool any_waypoints = false;
   PictureRequest pictures;
 };
 

@@ -141,6 +141,8 @@ void WriteFile(const std::filesystem::path& target, std::string_view text) {
   }
 }
 
+bool IsStandardStream(const std::filesystem::path& path) { return StreamTo(path) != nullptr; }
+
 bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code not_there;
   return std::filesystem::absolute(a).lexically_normal() ==

@@ -30,11 +30,23 @@ void SteadyClock::Wait(double dt_s) {
 
 namespace {
 
-std::string GroupOf(const std::string& path) {
+/// Only membership in a group that is there for serial ports is advised: that of root gives far
+/// more than a port.
+std::string PermissionAdvice(const std::string& path) {
   struct stat about {};
-  if (::stat(path.c_str(), &about) != 0) return "dialout";
-  const group* owner = ::getgrgid(about.st_gid);
-  return owner != nullptr ? owner->gr_name : std::to_string(about.st_gid);
+  const bool is_known = ::stat(path.c_str(), &about) == 0;
+  const group* owner = is_known ? ::getgrgid(about.st_gid) : nullptr;
+  const std::string name = owner != nullptr ? owner->gr_name : "";
+  const bool is_for_ports = name == "dialout" || name == "uucp" || name == "plugdev";
+  const bool may_group = (about.st_mode & (S_IRGRP | S_IWGRP)) == (S_IRGRP | S_IWGRP);
+  if (is_for_ports && may_group) {
+    return fmt::format("it belongs to group {0}: run sudo usermod -aG {0} $USER and log in again",
+                       name);
+  }
+  return fmt::format(
+      "its group ({}) does not give it to people: run sudo chgrp dialout {} && sudo chmod g+rw {}, "
+      "which holds until it is plugged in again, and be a member of dialout",
+      name.empty() ? "unknown" : name, path, path);
 }
 
 std::string WhyNotOpened(const std::string& path, int reason) {
@@ -48,10 +60,7 @@ std::string WhyNotOpened(const std::string& path, int reason) {
           path);
     case EACCES:
     case EPERM:
-      return fmt::format(
-          "no permission to open {}: it belongs to group {}; run sudo usermod -aG {} $USER and log "
-          "in again",
-          path, GroupOf(path), GroupOf(path));
+      return fmt::format("no permission to open {}: {}", path, PermissionAdvice(path));
     case EBUSY:
     case EWOULDBLOCK:
       return fmt::format("{} is in use by another program: end it first (fuser {} names it)", path,

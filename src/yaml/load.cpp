@@ -41,7 +41,11 @@ class Loader {
     try {
       return read_(path);
     } catch (const std::exception& fault) {
-      throw Error(fmt::format("{}: '{}' cannot be read: {}", asked_at, path, fault.what()));
+      const std::string reason = fault.what();
+      if (reason.find(path) != std::string::npos) {
+        throw Error(fmt::format("{}: {}", asked_at, reason));
+      }
+      throw Error(fmt::format("{}: '{}' cannot be read: {}", asked_at, path, reason));
     }
   }
 

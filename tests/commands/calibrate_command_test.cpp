@@ -114,6 +114,7 @@ TEST_CASE(
   CHECK(loose["simulation.motor.mismatch"]["is_from_prior"] == false);
   CHECK(loose["simulation.motor.mismatch"]["prior_mean"].is_null());
   CHECK(loose["simulation.motor.mismatch"]["value"].get<double>() == Approx(0.05).margin(0.03));
+  std::filesystem::remove_all(bench.folder / "out");
   const json tight = fitted(
       Replaced(known, "min: -0.1, max: 0.1", "min: -0.1, max: 0.1, mean: -0.02, sd: 0.0001"));
   const json& mismatch = tight["simulation.motor.mismatch"];
@@ -127,7 +128,7 @@ TEST_CASE("Fits from several starts stand beside each other, and the first one c
   REQUIRE(bench.Run(one).exit_code == 0);
   const json alone = json::parse(ReadFile(bench.folder / "out/calibration.json"));
   CHECK(alone["agreement"].empty());
-  const ProcessResult run = bench.Run(one, {"--set", "calibrate.starts=2"});
+  const ProcessResult run = bench.Run(one, {"--set", "calibrate.starts=2", "--force"});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   const json twice = json::parse(ReadFile(bench.folder / "out/calibration.json"));

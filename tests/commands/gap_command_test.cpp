@@ -157,13 +157,13 @@ TEST_CASE("rift gap says in one line what is wrong with its input") {
   }
 }
 
-TEST_CASE("rift gap that cannot write ends with 3 and leaves nothing half written") {
+TEST_CASE("rift gap that cannot write says so first and leaves nothing half written") {
   const TwoLogs logs(0.05);
   WriteText(logs.folder / "file", "in the way");
   const ProcessResult result =
       RunRift({"gap", logs.sim, logs.real, "--json", logs.folder / "file/gap.json"});
-  CHECK(result.exit_code == 3);
-  CHECK(result.err.starts_with("rift: cannot make folder "));
+  CHECK(result.exit_code == 2);
+  CHECK(result.err.find("there is no folder") != std::string::npos);
   size_t files = 0;
   for ([[maybe_unused]] const auto& entry :
        std::filesystem::directory_iterator(logs.folder.Path())) {
@@ -185,7 +185,7 @@ TEST_CASE("rift gap counts a log once and writes each output to a file of its ow
   refused({"gap", logs.sim, logs.real, logs.real}, "are one log");
   refused({"gap", logs.sim, logs.real, "--sim-repeats", logs.sim}, "are one log");
   refused({"gap", logs.sim, logs.real, "--figure", one, "--profile", one}, "another output");
-  refused({"gap", logs.sim, logs.real, "--profile", "-"}, "name a file");
+  refused({"gap", logs.sim, logs.real, "--profile", "-", "--json", "-"}, "name a file");
   refused({"gap", logs.sim, logs.real, "--profile", one, "--json", logs.folder / ""},
           "is a folder");
   CHECK_FALSE(std::filesystem::exists(one));
@@ -230,7 +230,6 @@ TEST_CASE("A mistyped subcommand is met with the nearest one") {
   const ProcessResult result = RunRift({"gapp"});
   CHECK(result.exit_code == 2);
   CHECK(result.err == "rift: 'gapp' is no subcommand; did you mean 'gap'?\n");
-  CHECK(RunRift({}).exit_code == 2);
   CHECK(RunRift({"--version"}).out.starts_with("rift 0."));
   CHECK(RunRift({"gap", "--help"}).out.find("Example: rift gap") != std::string::npos);
 }

@@ -68,6 +68,7 @@ TEST_CASE(
     "With streams that are closed or full every file is written and lost results are exit 3") {
   const Work& work = kWorks[GENERATE(range(0, 4))];
   const test::TemporaryFolder folder;
+  for (const char* name : {"usual", "out"}) std::filesystem::create_directories(folder / name);
   const ProcessResult usual = RunRift(work.words(folder / "usual"));
   INFO(work.name << ": " << usual.err);
   REQUIRE(usual.exit_code == 0);
@@ -82,6 +83,7 @@ TEST_CASE(
     if (streams.says.empty()) CHECK_THAT(result.err, !Contains("rift: "));
     CHECK(test::ReadFile(out + "/" + work.file) == test::ReadFile(folder / "usual/" + work.file));
     std::filesystem::remove_all(out);
+    std::filesystem::create_directories(out);
   }
 }
 

@@ -48,7 +48,7 @@ struct Bench {
                                    folder / "run",
                                    "--before-each",
                                    test::BuildDir() + "/rift simulate " + (folder / "task.yaml") +
-                                       " --twin --seed {trial} " + twin};
+                                       " --twin --force --seed {trial} " + twin};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
@@ -173,7 +173,7 @@ TEST_CASE("Suggested experiments are driven on twins and the sweep says what the
   const test::ProcessResult driven =
       GoOn({"drive", "--suggested", sweep, "--yes", "--before-each",
             test::BuildDir() + "/rift simulate " + (bench.folder / "task.yaml") +
-                " --twin --seed {trial} --set control.v_min={v_min} --set "
+                " --twin --force --seed {trial} --set control.v_min={v_min} --set "
                 "simulation.motor.mismatch=-0.3 --out " +
                 (bench.folder / "twins/{v_min}_{trial}")});
   INFO(driven.out << driven.err);

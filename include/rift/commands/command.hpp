@@ -30,6 +30,7 @@ int SimulateWithCamera(const SimulateRequest& request);
 struct Command {
   std::string name;
   std::string summary;  ///< one line, for `rift --help`
+  std::string example;  ///< one command line, for `rift --help`
   /// Adds the options; when the command line chose this subcommand, its callback does the work and
   /// leaves the exit code in `exit_code`.
   std::function<void(CLI::App& app, int& exit_code)> add;

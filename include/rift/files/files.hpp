@@ -18,6 +18,10 @@ std::optional<std::string> ReadIfThere(const std::filesystem::path& path);
 /// std::runtime_error with the path and the system's reason.
 void WriteFile(const std::filesystem::path& target, std::string_view text);
 
+/// True for the file that stdout or stderr of this process goes to, as /dev/stdout is. WriteFile()
+/// puts the text behind what the stream holds and replaces nothing.
+bool IsStandardStream(const std::filesystem::path& path);
+
 /// One file behind two names, there or not.
 bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 

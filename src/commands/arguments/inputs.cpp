@@ -1,5 +1,11 @@
 #include "rift/commands/arguments/inputs.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
 #include "rift/files/files.hpp"
 #include "rift/terminal/print.hpp"
 
@@ -9,6 +15,46 @@ experiment::Experiment ReadExperiment(const std::filesystem::path& file,
                                       const std::vector<std::string>& overrides) {
   return experiment::LoadExperiment(file.string(), overrides,
                                     [](const std::string& path) { return files::ReadFile(path); });
+}
+
+namespace {
+
+std::string NameOf(const control::Waypoint& waypoint, size_t index) {
+  const std::string name = waypoint.name.empty() ? "" : fmt::format(" ({})", waypoint.name);
+  return fmt::format("waypoints[{}]{} at x {:g} m, y {:g} m", index, name, waypoint.x_m,
+                     waypoint.y_m);
+}
+
+}  // namespace
+
+void RequireReachableWaypoints(const experiment::Experiment& experiment, const std::string& file) {
+  constexpr double kFar_m = 20.0;           // farther than any floor below one camera
+  constexpr double kFastest_m_per_s = 5.0;  // the fastest 3pi+ there is drives 4 m/s
+  const std::vector<control::Waypoint>& waypoints = experiment.waypoints;
+  double path_m = 0.0, farthest_m = 0.0;
+  for (size_t i = 0; i < waypoints.size(); ++i) {
+    const control::Waypoint& waypoint = waypoints[i];
+    if (!experiment.trial.arena.Contains(waypoint.x_m, waypoint.y_m)) {
+      throw std::invalid_argument(fmt::format(
+          "{}: {} lies outside trial.arena, where a run ends: move it, widen the arena, "
+          "or give --any-waypoints",
+          file, NameOf(waypoint, i)));
+    }
+    if (i > 0) path_m += (waypoint.Position() - waypoints[i - 1].Position()).norm();
+    farthest_m = std::max({farthest_m, std::abs(waypoint.x_m), std::abs(waypoint.y_m)});
+  }
+  const double reach_m = kFastest_m_per_s * experiment.trial.timeout_s;
+  if (farthest_m < kFar_m || path_m <= reach_m) return;
+  throw std::invalid_argument(fmt::format(
+      "{}: its waypoints are {:g} m apart in all, as far as {:g} m out, and no 3pi+ drives that in "
+      "trial.timeout_s, {:g} s: waypoints are metres, so divide millimetres by 1000, or give "
+      "--any-waypoints",
+      file, path_m, farthest_m, experiment.trial.timeout_s));
+}
+
+void AddAnyWaypointsFlag(CLI::App& app, bool& any_waypoints) {
+  app.add_flag("--any-waypoints", any_waypoints,
+               "drive waypoints outside trial.arena, or too far apart to be metres, all the same");
 }
 
 vision::TagOptions TagOn(const experiment::Experiment& experiment) {

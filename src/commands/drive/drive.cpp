@@ -46,6 +46,7 @@ experiment::Experiment LoadTask(const DriveRequest& request) {
   } catch (const std::invalid_argument& no_task) {
     throw std::invalid_argument(fmt::format("{}: {}", file.string(), no_task.what()));
   }
+  if (!request.any_waypoints) RequireReachableWaypoints(experiment, file.string());
   return experiment;
 }
 

@@ -19,6 +19,7 @@ std::filesystem::path NewFolder(const DriveRequest& request,
                                 const experiment::Experiment& experiment) {
   fs::path folder =
       request.out.empty() ? OutputOf("", experiment.name + "_drive") : fs::path(request.out);
+  RefuseSweepFolder(folder);
   if (!fs::exists(folder / "trajectory.csv")) return folder;
   throw std::invalid_argument(fmt::format(
       "{} holds a run already, and a robot does not repeat itself: choose another --out",

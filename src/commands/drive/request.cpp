@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "rift/commands/arguments/flags.hpp"
+#include "rift/commands/arguments/inputs.hpp"
+#include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/drive/drive.hpp"
 
 namespace rift::commands {
@@ -25,6 +27,8 @@ void AddReplayFlags(CLI::App& app, DriveRequest& request) {
                  "with --replay: write a film instead; --view shows it as well")
       ->needs(replay)
       ->type_name("FILE.mp4");
+  app.add_flag("--force", request.force, "with --video: replace a film that is there already")
+      ->needs(replay);
 }
 
 void AddSeriesFlags(CLI::App& app, DriveRequest& request) {
@@ -93,6 +97,7 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
       ->check(InRange(0.0, 60.0));
   app.add_flag("--any-start", request.any_start,
                "start even when the robot stands far off its start (hardware.start)");
+  AddAnyWaypointsFlag(app, request.any_waypoints);
   app.add_flag("--ping", request.ping, "only measure the link, with the motors at zero");
   AddSeriesFlags(app, request);
   app.add_flag("--json", request.json, "print JSON instead of text");
@@ -102,7 +107,12 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
 }  // namespace
 
 void DriveRequest::Check() const {
+  if (!video.empty() && !video.ends_with(".mp4")) {
+    throw std::invalid_argument("--video " + video + ": the name must end in .mp4");
+  }
+  if (!video.empty()) CheckOutputs({}, {.files = {video}, .folder = replay, .force = force});
   if (!replay.empty()) return;
+  RequireFolderName(out, "a drive");
   const bool is_told_later = IsSeries() && !before_each.empty();
   if (port.empty() && !is_told_later) {
     throw std::invalid_argument(
@@ -150,7 +160,8 @@ void AddDrive(CLI::App& app, int& exit_code, const std::function<int(const Drive
       "         rift drive EXPERIMENT --grid --set reference.trials=3 --port ... (whole table)\n"
       "         rift drive --suggested out/sweep --port ... (what rift sweep --suggest wrote)\n"
       "         rift drive configs/twin.yaml --repeat 3 --yes --before-each \\\n"
-      "             'rift simulate configs/twin.yaml --twin --seed {trial} --out out/twin{trial}'");
+      "             'rift simulate configs/twin.yaml --twin --force --seed {trial} --out "
+      "out/twin{trial}'");
   app.callback([request, drive, &exit_code] {
     request->Check();
     exit_code = drive(*request);

@@ -27,7 +27,9 @@ struct DriveRequest {
   std::optional<double> seconds;  ///< trial.timeout_s of a dry run
   std::optional<double> countdown_s;
   bool any_start = false;
-  int repeat = 0;  ///< 0: one drive
+  bool any_waypoints = false;
+  bool force = false;  ///< replace the film of --video
+  int repeat = 0;      ///< 0: one drive
   bool grid = false;
   std::string suggested;  ///< folder of a sweep whose suggested.yaml is driven
   std::string before_each;

@@ -38,6 +38,10 @@ void WriteFigures(const std::filesystem::path& folder, const std::string& name,
 
 int Calibrate(const SweepRequest& request, const experiment::Experiment& experiment) {
   const fs::path out = OutputOf(request.out, experiment.name);
+  if (!request.write_robot.empty()) {
+    CheckOutputs({request.experiment},
+                 {.files = {request.write_robot}, .folder = out, .force = request.fresh});
+  }
   const files::FolderLock lock(out);
   const auto say = [&request](const std::string& line) {
     if (!request.quiet) terminal::Say(line);

@@ -16,7 +16,8 @@ struct SweepRequest {
   std::string budget;
   std::string seconds;
   int jobs = CoresToUse();
-  bool fresh = false;
+  bool fresh = false;  ///< --force as well: replace what is in the folder
+  bool any_waypoints = false;
   bool quiet = false;
   bool json_progress = false;
   bool json = false;

@@ -60,6 +60,11 @@ experiment::Experiment LoadFor(const SweepRequest& request) {
   if (!request.seconds.empty()) overrides.push_back("search.max_s=" + request.seconds);
   const experiment::Experiment experiment = ReadExperiment(request.experiment, overrides);
   CheckFlags(request, experiment);
+  RequireFolderName(request.out, "a sweep");
+  if (!request.any_waypoints &&
+      experiment.candidate.kind == experiment::CandidateKind::kSimulation) {
+    RequireReachableWaypoints(experiment, request.experiment);
+  }
   return experiment;
 }
 
@@ -126,6 +131,24 @@ void NoteTooFewRepeats(const experiment::Experiment& experiment) {
       100.0 * experiment.falsify.confidence));
 }
 
+/// A sweep that has a journal goes on with it, or says what differs. Without one, only the same
+/// experiment may be written once more.
+void RefuseOtherSweep(const SweepRequest& request, const experiment::Experiment& experiment,
+                      const fs::path& out) {
+  RefuseRunFolder(out);
+  const bool goes_on = experiment.candidate.kind == experiment::CandidateKind::kSimulation &&
+                       experiment.goal != experiment::Goal::kCalibrate &&
+                       fs::exists(out / "journal.sqlite");
+  const fs::path saved = out / "experiment.yaml";
+  if (request.fresh || goes_on || !fs::exists(saved)) return;
+  if (files::ReadFile(saved) == experiment::WriteExperiment(experiment)) return;
+  throw std::invalid_argument(
+      fmt::format("{} holds another experiment ({}): name another folder with --out, or give "
+                  "--force to replace "
+                  "it",
+                  out.string(), saved.string()));
+}
+
 /// Logs are compared in seconds and keep no journal.
 int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
   if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
@@ -164,7 +187,10 @@ void Print(const SweepRequest& request, const sweep::SweepResult& result,
 
 int Sweep(const SweepRequest& request) {
   const experiment::Experiment loaded = LoadFor(request);
-  if (loaded.goal == experiment::Goal::kCalibrate) return Calibrate(request, loaded);
+  if (loaded.goal == experiment::Goal::kCalibrate) {
+    RefuseOtherSweep(request, loaded, OutputOf(request.out, loaded.name));
+    return Calibrate(request, loaded);
+  }
 
   const experiment::Experiment experiment = PlanFor(request, loaded);
   sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
@@ -172,6 +198,7 @@ int Sweep(const SweepRequest& request) {
   NoteTooFewRepeats(experiment);
 
   const fs::path out = OutputOf(request.out, experiment.name);
+  RefuseOtherSweep(request, experiment, out);
   const files::FolderLock lock(out);
   const ProgressStyle progress = StyleFor(request.quiet, request.json_progress);
   const std::optional<sweep::SweepResult> judged =
@@ -198,7 +225,12 @@ int Sweep(const SweepRequest& request) {
       SpendTrials(out, *judged, request.explain, evaluator, {request.jobs, progress}, request.json);
   if (!is_done) return terminal::kStopped;
   lock.RequireInPlace();
-  if (!request.quiet) terminal::Say("report: " + (out / "report.html").string());
+  if (!request.quiet) {
+    if (experiment.candidate.kind == experiment::CandidateKind::kSimulation) {
+      terminal::Say(fmt::format("worst row again: rift simulate --replay {} worst", out.string()));
+    }
+    terminal::Say("report: " + (out / "report.html").string());
+  }
   if (judged->all.n == 0) return terminal::kNotReached;
   return request.exit_code && MayFail(*judged) ? terminal::kFalsified : terminal::kDone;
 }
@@ -216,7 +248,10 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
   app.add_option("--jobs", request.jobs, "worker processes; the results are the same for any")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  app.add_flag("--fresh", request.fresh, "start over instead of going on with an earlier journal");
+  app.add_flag("--fresh,--force", request.fresh,
+               "start over instead of going on with an earlier journal, and replace what another "
+               "experiment left");
+  AddAnyWaypointsFlag(app, request.any_waypoints);
   app.add_option("--status", request.status, "tell how far the sweep in a folder is, and end")
       ->type_name("DIR");
   AddExplainFlags(app, request.explain);

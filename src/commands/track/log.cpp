@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "rift/report/json/json.hpp"
+#include "rift/terminal/print.hpp"
 
 namespace rift::commands {
 namespace {
@@ -25,10 +26,24 @@ void TrackLog::Open() {
   file_ << report::SightingsHeader();
 }
 
+/// Each row at once: whoever reads the pipe follows the robot.
+void TrackLog::Print(double t_s, const vision::Sighting& sighting) {
+  if (!has_header_) terminal::PrintData(report::SightingsHeader());
+  has_header_ = true;
+  terminal::PrintData(report::SightingRow(t_s, sighting));
+  if (const int error = terminal::FlushResults(); error != 0) {
+    throw std::runtime_error(fmt::format("cannot write to stdout: {}", strerror(error)));
+  }
+}
+
 bool TrackLog::Add(double t_s, const vision::Sighting& sighting) {
   const auto [last, is_first] = last_t_s_.try_emplace(sighting.tag_id, t_s);
   if (!is_first && t_s <= last->second) return false;
   last->second = t_s;
+  if (is_piped_) {
+    Print(t_s, sighting);
+    return true;
+  }
   if (!file_.is_open()) Open();
   file_ << report::SightingRow(t_s, sighting);
   if (t_s - flushed_t_s_ < kFlushEvery_s) return true;

@@ -12,7 +12,8 @@ namespace rift::commands {
 /// there; the file appears with the first of them.
 class TrackLog {
  public:
-  explicit TrackLog(std::filesystem::path path) : path_(std::move(path)) {}
+  /// "-" is stdout.
+  explicit TrackLog(std::filesystem::path path) : path_(std::move(path)), is_piped_(path_ == "-") {}
 
   /// `t_s` must be later than that of the row before of the same tag; a sighting at or before it is
   /// left out.
@@ -22,8 +23,11 @@ class TrackLog {
 
  private:
   void Open();
+  void Print(double t_s, const vision::Sighting& sighting);
 
   std::filesystem::path path_;
+  bool is_piped_;
+  bool has_header_ = false;  // on stdout
   std::ofstream file_;
   std::map<int, double> last_t_s_;  // by tag
   double flushed_t_s_ = 0.0;

@@ -41,27 +41,21 @@ void CheckLogName(const TrackRequest& request) {
   }
   if (fs::exists(request.camera, not_there)) inputs.emplace_back(request.camera);
   RefuseAmongPictures(request.camera, request.out);
-  std::vector<fs::path> outputs{request.out, RunFileOf(request.out)};
+  std::vector<fs::path> outputs;
+  if (!request.IsPiped()) outputs.emplace_back(request.out);
   if (!request.record_waypoints.empty()) outputs.emplace_back(request.record_waypoints);
-  CheckOutputs(inputs, outputs);
-}
-
-/// Hours of a session are not replaced by a slip of the shell's history.
-void RefuseOverwriting(const TrackRequest& request) {
-  std::error_code not_there;
-  std::vector<fs::path> outputs{request.out};
-  if (!request.calibrate && !request.check) outputs.push_back(RunFileOf(request.out));
-  for (const fs::path& output : outputs) {
-    if (request.force || request.out.empty() || !fs::exists(output, not_there)) continue;
-    throw std::invalid_argument(
-        fmt::format("--out {}: {} is there already: name another file, or give --force to replace "
-                    "it",
-                    request.out, output.string()));
-  }
+  CheckOutputs(inputs, {.files = outputs, .force = request.force});
+  // Without its log it is of a camera that showed no tag, and tells nothing.
+  inputs.insert(inputs.end(), outputs.begin(), outputs.end());
+  if (!request.IsPiped()) CheckOutputs(inputs, {.files = {RunFileOf(request.out)}, .force = true});
 }
 
 void CheckTracking(const TrackRequest& request) {
-  if (request.camera.empty()) throw std::invalid_argument("--camera is missing");
+  if (request.camera.empty()) {
+    throw std::invalid_argument(
+        "--camera is missing: name a device such as /dev/video0, a stream, a video, or a quoted "
+        "pattern of pictures");
+  }
   if (request.calibration.empty()) {
     throw std::invalid_argument(
         "--calibration is missing: rift track --calibrate makes one from pictures of a chessboard");
@@ -87,14 +81,17 @@ void CheckPrecisionCheck(const TrackRequest& request) {
   if (request.out.empty()) return;
   std::vector<fs::path> inputs{request.calibration};
   if (!request.experiment.empty()) inputs.emplace_back(request.experiment);
-  CheckOutputs(inputs, {request.out});
+  CheckOutputs(inputs, {.files = {request.out}, .force = request.force});
 }
 
 void CheckCalibrating(const TrackRequest& request) {
   if (request.images.empty() == request.camera.empty()) {
-    throw std::invalid_argument("--calibrate wants either --images DIR or --camera");
+    throw std::invalid_argument(
+        "--calibrate wants either --images DIR or --camera: photographs, or a camera to take them");
   }
-  if (request.out.empty()) throw std::invalid_argument("--out CAM.yaml is missing");
+  if (request.out.empty())
+    throw std::invalid_argument("--out CAM.yaml is missing: where shall the calibration go?");
+  CheckOutputs({}, {.files = {request.out, PictureOf(request)}, .force = request.force});
 }
 
 void CheckIds(const std::vector<int>& ids) {
@@ -143,10 +140,11 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_option("--calibration", request.calibration,
                  "of the camera: ROS camera_info, OpenCV's, the authors', or from --calibrate")
       ->type_name("CAM.yaml");
-  app.add_option("--out", request.out, "the log; with --calibrate, the calibration")
-      ->type_name("FILE");
+  app.add_option("--out", request.out,
+                 "the log, - for stdout, the log alone; with --calibrate, the calibration")
+      ->type_name("FILE|-");
   app.add_flag("--force", request.force,
-               "replace what --out names, and a better world frame of the calibration");
+               "replace files that are there already, and a better world frame of the calibration");
   app.add_option("--id", request.ids,
                  "the robot's tag [track.tag.id]; several robots go into one log, a row each")
       ->delimiter(',')
@@ -189,6 +187,11 @@ fs::path RunFileOf(const fs::path& log) {
   return fs::path(log).replace_extension().string() + ".run.json";
 }
 
+fs::path PictureOf(const TrackRequest& request) {
+  return request.picture.empty() ? fs::path(request.out).replace_extension(".png")
+                                 : fs::path(request.picture);
+}
+
 void TrackRequest::Check() const {
   if (check) {
     CheckPrecisionCheck(*this);
@@ -196,7 +199,6 @@ void TrackRequest::Check() const {
     calibrate ? CheckCalibrating(*this) : CheckTracking(*this);
   }
   CheckIds(ids);
-  RefuseOverwriting(*this);
 }
 
 void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const TrackRequest&)>& track) {

@@ -37,6 +37,9 @@ struct TrackRequest {
   std::string images;
   std::string picture;
 
+  /// The log goes to stdout, and nothing beside it.
+  bool IsPiped() const { return out == "-"; }
+
   /// Throws std::invalid_argument for what is missing or does not go together, and for a log that
   /// is no file, an input, a picture of the camera or another output.
   void Check() const;
@@ -44,5 +47,8 @@ struct TrackRequest {
 
 /// Beside the log: what it was made from.
 std::filesystem::path RunFileOf(const std::filesystem::path& log);
+
+/// Where the picture of a calibration goes.
+std::filesystem::path PictureOf(const TrackRequest& request);
 
 }  // namespace rift::commands

@@ -131,9 +131,15 @@ void SetAndSaveWorld(const TrackRequest& request, const std::function<bool()>& i
                             world.origin, 1e3 * world.residual_m, request.calibration));
 }
 
+int EndOf(const vision::TrackRun& run) {
+  if (run.has_failed) return terminal::kRunTimeFailure;
+  return run.rows > 0 ? terminal::kDone : terminal::kNotReached;
+}
+
 int Report(const TrackRequest& request, const vision::CameraModel& camera,
            const experiment::TrackOptions& options, const vision::TrackRun& run) {
   const fs::path run_file = RunFileOf(request.out);
+  if (request.IsPiped()) return EndOf(run);
   files::WriteFile(run_file,
                    report::TrackJson({request.camera, request.calibration,
                                       statistics::Hash128Text(files::ReadFile(request.calibration)),
@@ -142,8 +148,7 @@ int Report(const TrackRequest& request, const vision::CameraModel& camera,
   terminal::PrintText(report::TrackText(run, run.rows));
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
   terminal::Say(fmt::format("{}; run: {}", log, run_file.string()));
-  if (run.has_failed) return terminal::kRunTimeFailure;
-  return run.rows > 0 ? terminal::kDone : terminal::kNotReached;
+  return EndOf(run);
 }
 
 /// What is wrong with the poses to come, while it can still be changed.
@@ -184,7 +189,7 @@ int TrackRobot(const TrackRequest& request) {
     if (request.out.empty()) return terminal::kDone;
   }
   SayWhatToExpect(request, session);
-  if (request.force) RemoveOld(request.out);
+  if (request.force && !request.IsPiped()) RemoveOld(request.out);
   session.Restart();  // what was read so far of a recording belongs to its log as well
   TrackLog log(request.out);
   const auto view = ViewFor(request, session.camera(), std::move(content));
@@ -219,8 +224,7 @@ vision::Calibration CalibrateFor(const TrackRequest& request) {
 int CalibrateAndSave(const TrackRequest& request) {
   vision::Calibration calibration = CalibrateFor(request);
   terminal::PrintText(report::CalibrationText(calibration));
-  const fs::path picture = request.picture.empty() ? fs::path(request.out).replace_extension(".png")
-                                                   : fs::path(request.picture);
+  const fs::path picture = PictureOf(request);
   vision::DrawCalibration(calibration, picture);
   terminal::Say(fmt::format("picture: {}", picture.string()));
   if (calibration.verdict == vision::CalibrationVerdict::kRefuse) {

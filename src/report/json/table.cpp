@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -101,6 +102,23 @@ TableRow TableRowOf(const std::string& table_csv, const std::string& id, const s
   }
   throw std::invalid_argument(
       fmt::format("{} has no row with id {}: its ids are 1 to {}", name, id, rows));
+}
+
+std::string WorstIdOf(const std::string& table_csv, const std::string& name) {
+  std::string_view text = table_csv;
+  const std::vector<std::string> columns = NextRecord(text);
+  std::string worst;
+  double worst_gap_m = 0.0;
+  while (!text.empty()) {
+    const TableRow row = RowOf(columns, NextRecord(text));
+    if (!row.contains("id") || !row.contains("gap_m") || row.at("status") != "ok") continue;
+    const double gap_m = std::strtod(row.at("gap_m").c_str(), nullptr);
+    if (!worst.empty() && gap_m <= worst_gap_m) continue;
+    worst = row.at("id");
+    worst_gap_m = gap_m;
+  }
+  if (worst.empty()) throw std::invalid_argument(name + " has no row with a gap: name a row's id");
+  return worst;
 }
 
 sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row) {

@@ -42,18 +42,19 @@ std::string WorstText(const sweep::SweepResult& result) {
   const std::optional<int> index = WorstRow(result);
   if (!index) return "";
   const sweep::TrialRow& worst = result.rows[*index];
-  return fmt::format("worst: {:.4f} m at u = {:.2f} ({}, trial {})\n", worst.comparison.gap_m,
-                     worst.comparison.gap_u, sweep::SettingText(result.parameters, worst.theta),
-                     worst.trial);
+  return fmt::format("worst: row {}, {:.4f} m at u = {:.2f} ({}, trial {})\n", *index + 1,
+                     worst.comparison.gap_m, worst.comparison.gap_u,
+                     sweep::SettingText(result.parameters, worst.theta), worst.trial);
 }
 
 std::string NotOkText(const sweep::SweepResult& result) {
   constexpr int kMostShown = 3;
   std::string text;
   int shown = 0;
-  for (const sweep::TrialRow& row : result.rows) {
+  for (size_t i = 0; i < result.rows.size(); ++i) {
+    const sweep::TrialRow& row = result.rows[i];
     if (row.IsOk() || ++shown > kMostShown) continue;
-    text += fmt::format("without gap: {}\n", row.reason);
+    text += fmt::format("without gap: row {}: {}\n", i + 1, row.reason);
   }
   if (shown > kMostShown) text += fmt::format("without gap: {} more\n", shown - kMostShown);
   return text;

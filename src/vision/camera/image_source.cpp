@@ -3,14 +3,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
+#include <stdexcept>
 
 #include "image_times.hpp"
 #include "rift/vision/camera/jpeg.hpp"
@@ -46,6 +49,10 @@ std::vector<std::uint8_t> BytesOf(const std::string& path) {
 }
 
 std::string TextOf(const std::string& path) {
+  errno = 0;
+  if (!std::ifstream(path)) {
+    throw std::invalid_argument(fmt::format("cannot read {}: {}", path, strerror(errno)));
+  }
   const std::vector<std::uint8_t> bytes = BytesOf(path);
   return {bytes.begin(), bytes.end()};
 }

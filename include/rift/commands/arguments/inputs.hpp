@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,6 +13,14 @@ namespace rift::commands {
 /// The experiment in a file, with `overrides` (`a.b=c`) on top. Throws as LoadExperiment does.
 experiment::Experiment ReadExperiment(const std::filesystem::path& file,
                                       const std::vector<std::string>& overrides = {});
+
+/// Waypoints that no run can reach: throws std::invalid_argument, naming file and waypoint, for one
+/// outside trial.arena, and for a path so long and so far out that its metres must be millimetres
+/// or centimetres.
+void RequireReachableWaypoints(const experiment::Experiment& experiment, const std::string& file);
+
+/// `--any-waypoints`: drive them all the same.
+void AddAnyWaypointsFlag(CLI::App& app, bool& any_waypoints);
 
 /// The experiment's tag. Where its surface is bumps, a ramp or a heightfield the tag is not held to
 /// a flat floor (TagOptions::ground): `flat` becomes what the surface allows.

@@ -117,6 +117,10 @@ TableRow FirstTableRow(const std::string& table_csv);
 /// when there is none.
 TableRow TableRowOf(const std::string& table_csv, const std::string& id, const std::string& name);
 
+/// The id of the row with the largest gap: sweep::WorstRow() of a table. Throws
+/// std::invalid_argument, naming the table, when no row has one.
+std::string WorstIdOf(const std::string& table_csv, const std::string& name);
+
 /// The trial of a row of an experiment's table, to be run again.
 sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row);
 

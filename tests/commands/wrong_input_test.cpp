@@ -1,0 +1,355 @@
+// The contract with a person who mistypes: every wrong input ends with exit code 2 (or what is said),
+// prints nothing on stdout and one line on stderr that names the thing and the mend, and leaves no
+// file behind.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "support/process.hpp"
+#include "support/tree.hpp"
+#include "support/trials.hpp"
+
+namespace rift {
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+
+/// Words are split at spaces; @ is the test's folder and % the source tree.
+struct WrongInput {
+  std::string words;
+  std::string message;
+  int exit_code = 2;
+};
+
+void Prepare(const test::TemporaryFolder& folder) {
+  const std::map<std::string, std::string> texts{
+      {"mm.yaml", "waypoints: [{x: -282, y: -65}, {x: 383, y: -60, stop: true}]\n"},
+      {"arena.yaml",
+       "waypoints: [{x: 0, y: 0}, {x: 1, y: 0, stop: true}]\ntrial: {arena: {x_max_m: 0.5}}\n"},
+      {"broken.yaml", "waypoints: [\n"},
+      {"none.yaml", "name: x\n"},
+      {"other/experiment.yaml", "name: other\n"},
+      {"run/trajectory.csv", "t_s,x_m,y_m\n"},
+      {"run/experiment.yaml", "name: run\n"},
+      {"swept/table.csv", "id,gap_m,status\n1,,fell\n"},
+      {"empty.csv", ""},
+      {"odd.csv", "a,b\n"},
+      {"cell.csv", "t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,x,0,0\n"},
+      {"there.svg", "x"},
+      {"there.json", "x"},
+      {"there.csv", "x"}};
+  fs::create_directories(folder / "dir");
+  for (const auto& [name, text] : texts) {
+    fs::create_directories(fs::path(folder / name).parent_path());
+    test::WriteText(folder / name, text);
+  }
+}
+
+std::vector<std::string> Split(const std::string& words, const test::TemporaryFolder& folder) {
+  std::istringstream text(words);
+  std::vector<std::string> split;
+  for (std::string word; text >> word;) {
+    for (const auto& [sign, meant] :
+         {std::pair{'@', folder / ""}, std::pair{'%', test::SourceDir() + "/"}}) {
+      if (const size_t at = word.find(sign); at != word.npos) word.replace(at, 1, meant);
+    }
+    split.push_back(word);
+  }
+  return split;
+}
+
+std::set<std::string> FilesIn(const test::TemporaryFolder& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder.Path())) {
+    names.insert(entry.path().string());
+  }
+  return names;
+}
+
+void Check(const std::vector<WrongInput>& table) {
+  const test::TemporaryFolder folder;
+  Prepare(folder);
+  const std::set<std::string> before = FilesIn(folder);
+  for (const WrongInput& wrong : table) {
+    const test::ProcessResult result = test::RunRift(Split(wrong.words, folder), "</dev/null");
+    INFO("rift " << wrong.words << "\n" << result.err);
+    CHECK(result.exit_code == wrong.exit_code);
+    CHECK(result.out.empty());
+    CHECK_THAT(result.err, Contains(wrong.message));
+    CHECK_THAT(result.err, Contains("rift: ") && !Contains("filesystem error"));
+    CHECK(FilesIn(folder) == before);
+  }
+}
+
+const std::string kTask = " %configs/waypoints/paper.yaml ";
+const std::string kLogs = " %data/example/simulator.csv %data/example/robot1.csv ";
+const std::string kFilm =
+    "track --camera %data/camera/frames/*.jpg --fps 15 --calibration %data/camera/camera.yaml "
+    "--out @l.csv ";
+const std::string kLong(300, 'n');
+
+TEST_CASE("Wrong input: rift") {
+  Check({
+      {"sweeep", "did you mean 'sweep'?"},
+      {"swim", "no subcommand"},
+      {"elp", "did you mean 'help'?"},
+      {"help sweeep", "did you mean 'sweep'?"},
+      {"help simulate gap", "help takes one subcommand"},
+      {"--versin", "did you mean --version?"},
+      {"--verbose", "has no flag --verbose"},
+      {"-x", "has no flag -x"},
+      {"configs/waypoints/paper.yaml", "no subcommand; there are"},
+  });
+}
+
+TEST_CASE("Wrong input: rift simulate") {
+  Check({
+      {"simulate", "EXPERIMENT is missing"},
+      {"simulate @gone.yaml", "cannot read"},
+      {"simulate @dir", "Is a directory"},
+      {"simulate @broken.yaml", "broken.yaml:2:1"},
+      {"simulate @none.yaml", "0 waypoint(s) given"},
+      {"simulate @mm.yaml", "divide millimetres by 1000, or give --any-waypoints"},
+      {"simulate @arena.yaml", "waypoints[1] at x 1 m, y 0 m lies outside trial.arena"},
+      {"simulate" + kTask + "@mm.yaml", "one argument too many"},
+      {"simulate" + kTask + "--sed 3", "has no flag --sed; did you mean --se"},
+      {"simulate" + kTask + "--ouut @x", "did you mean --out?"},
+      {"simulate" + kTask + "--seed", "--seed: 1 required N missing; rift simulate --help"},
+      {"simulate" + kTask + "--seed abc", "must be a whole number"},
+      {"simulate" + kTask + "--seed -1", "must be in [0"},
+      {"simulate" + kTask + "--set v_min", "must be key=value"},
+      {"simulate" + kTask + "--set control.v_mni=1", "did you mean 'control.v_min'"},
+      {"simulate" + kTask + "--set control.v_min=9", "must be in [0, 1]"},
+      {"simulate" + kTask + "--start 1,2", "give X,Y,YAW_DEG"},
+      {"simulate" + kTask + "--start a,b,c", "must be a number"},
+      {"simulate" + kTask + "--out @l.csv --figure @x.pdf", "must end in .svg or .png"},
+      {"simulate" + kTask + "--out @l.csv --figure @gone/x.svg", "there is no folder"},
+      {"simulate" + kTask + "--out @l.csv --figure @there.svg", "give --force"},
+      {"simulate" + kTask + "--out @l.csv --video @x.avi", "must end in .mp4"},
+      {"simulate" + kTask + "--out @l.csv --tum @dir", "is a folder: name a file"},
+      {"simulate" + kTask + "--out @gone/l.csv", "there is no folder"},
+      {"simulate" + kTask + "--out @there.csv", "there.csv is there already"},
+      {"simulate" + kTask + "--out @run", "trajectory.csv is there already"},
+      {"simulate" + kTask + "--out @swept", "holds a sweep"},
+      {"simulate" + kTask + "--out @there.svg", "is a file"},
+      {"simulate" + kTask + "--out " + kLong, "File name too long", 3},
+      {"simulate" + kTask + "--out - --json", "both stdout"},
+      {"simulate" + kTask + "--out - --tum -", "- is stdout"},
+      {"simulate" + kTask + "--twin --json", "--twin excludes --json"},
+      {"simulate --replay @swept", "--replay"},
+      {"simulate --replay @dir 1", "table.csv"},
+      {"simulate --replay @swept 7", "no row with id 7"},
+      {"simulate --replay @swept worst", "has no row with a gap"},
+      {"simulate --replay @swept 1 --seed 3", "leave EXPERIMENT, --set, --start, --seed out"},
+  });
+}
+
+TEST_CASE("Wrong input: rift gap") {
+  Check({
+      {"gap", "SIM is required; rift gap --help"},
+      {"gap %data/example/simulator.csv", "REAL is required"},
+      {"gap @gone.csv %data/example/robot1.csv", "cannot read"},
+      {"gap %data/example/simulator.csv @dir", "Is a directory"},
+      {"gap @empty.csv %data/example/robot1.csv", "the file is empty"},
+      {"gap @odd.csv %data/example/robot1.csv", "odd.csv:1"},
+      {"gap @cell.csv %data/example/robot1.csv", "cell.csv:3: column x_m is 'x'"},
+      {"gap" + kLogs + "%data/example/robot1.csv", "name it once"},
+      {"gap" + kLogs + "--figur @x.svg", "did you mean --figure?"},
+      {"gap" + kLogs + "--figure @x.pdf", "must end in .svg or .png"},
+      {"gap" + kLogs + "--figure @gone/x.svg", "mend the name, or make the folder"},
+      {"gap" + kLogs + "--figure @there.svg", "give --force to replace it"},
+      {"gap" + kLogs + "--json @there.json", "give --force to replace it"},
+      {"gap" + kLogs + "--json @dir", "is a folder: name a file"},
+      {"gap" + kLogs + "--json - --profile -", "both stdout"},
+      {"gap" + kLogs + "--json @x --profile @x", "is an input or another output"},
+      {"gap" + kLogs + "--profile %data/example/robot1.csv", "is an input or another output"},
+      {"gap" + kLogs + "--threshold abc", "'abc' must be a number"},
+      {"gap" + kLogs + "--threshold -1", "must be a number in [0"},
+      {"gap" + kLogs + "--samples 1.5", "--samples"},
+      {"gap" + kLogs + "--tag-offset nan", "must be a number in [-1, 1]"},
+      {"gap" + kLogs + "--real-format foo", "auto,rift,tum,tracker,webots"},
+      {"gap" + kLogs + "--real-format webots", "rift"},
+      {"gap" + kLogs + "--sim-repeats @gone.csv", "cannot read"},
+      {"gap" + kLogs + "--odometry", "has neither encoders"},
+      {"gap" + kLogs + "--odometry --figure @x.svg", "leave them out with --odometry"},
+      {"gap" + kLogs + "--program @gone.yaml", "cannot read"},
+  });
+}
+
+TEST_CASE("Wrong input: rift sweep") {
+  const std::string out = " --out @new ";
+  Check({
+      {"sweep", "EXPERIMENT is missing"},
+      {"sweep @gone.yaml" + out, "cannot read"},
+      {"sweep @dir" + out, "Is a directory"},
+      {"sweep @broken.yaml" + out, "broken.yaml:2:1"},
+      {"sweep @mm.yaml" + out, "--any-waypoints"},
+      {"sweep @arena.yaml" + out, "lies outside trial.arena"},
+      {"sweep" + kTask + out + "extra", "one argument too many"},
+      {"sweep" + kTask + out + "--buget 3", "did you mean --budget?"},
+      {"sweep" + kTask + out + "--budget 3", "limit a search"},
+      {"sweep" + kTask + out + "--seconds 3", "limit a search"},
+      {"sweep" + kTask + out + "--jobs 0", "--jobs: Value 0 not in range 1 to 4096"},
+      {"sweep" + kTask + out + "--jobs many", "--jobs: Value many"},
+      {"sweep" + kTask + out + "--suggest 0", "--suggest: Value 0"},
+      {"sweep" + kTask + out + "--shrink first", "must be the id of a row"},
+      {"sweep" + kTask + out + "--write-robot @r.yaml", "needs goal: calibrate"},
+      {"sweep" + kTask + out + "--set space.v_mi=[1,2]", "did you mean 'control.v_min'?"},
+      {"sweep" + kTask + out + "--set space.v_min=[]", "an axis needs at least one value"},
+      {"sweep" + kTask + out + "--set goal=find", "must be one of grid, falsify, calibrate"},
+      {"sweep" + kTask + out + "--set reference.kind=logs", "reference.path is missing"},
+      {"sweep" + kTask + out + "--set candidate.kind=logs", "candidate.path is missing"},
+      {"sweep" + kTask + "--out -", "name a folder"},
+      {"sweep" + kTask + "--out @there.svg", "is a file"},
+      {"sweep" + kTask + "--out @run", "holds a run: name another folder"},
+      {"sweep" + kTask + "--out @other", "holds another experiment"},
+      {"sweep" + kTask + "--status", "--status: 1 required DIR missing"},
+      {"sweep --status @dir", "no such file; a sweep of simulated trials"},
+  });
+}
+
+TEST_CASE("Wrong input: rift track") {
+  const std::string board = "track --calibrate --images @dir ";
+  Check({
+      {"track", "--camera is missing: name a device"},
+      {"track --camera @x", "--calibration is missing"},
+      {"track --camera @x --calibration %data/camera/camera.yaml", "--out LOG.csv is missing"},
+      {"track --camera @x --calibration @gone.yaml --out @l.csv", "cannot read"},
+      {"track --camera @x --calibration @broken.yaml --out @l.csv", "broken.yaml:2:1"},
+      {"track --camera @no*.jpg --calibration %data/camera/camera.yaml --out @l.csv",
+       "matches no picture"},
+      {kFilm + "--fsp 3", "did you mean --fps?"},
+      {kFilm + "--id 3,3", "3 is named twice"},
+      {kFilm + "--id 999", "--id: Value 999 not in range 0 to 586"},
+      {kFilm + "--id a", "--id: Value a"},
+      {kFilm + "--tag-height 9", "must be a number in [0, 2]"},
+      {kFilm + "--duration -3", "--duration: '-3'"},
+      {kFilm + "--images @dir", "belong to --calibrate"},
+      {kFilm + "--world @gone.yaml", "cannot read"},
+      {kFilm + "--path @gone.csv", "cannot read"},
+      {kFilm + "--times @gone.txt", "cannot read"},
+      {kFilm + "--set track.tag.id=a", "must be a whole number"},
+      {kFilm + "--record-waypoints @there.json", "give --force to replace it"},
+      {"track --camera %data/camera/frames/*.jpg --calibration %data/camera/camera.yaml --out "
+       "@gone/l.csv",
+       "there is no folder"},
+      {"track --camera %data/camera/frames/*.jpg --calibration %data/camera/camera.yaml --out "
+       "@there.csv",
+       "give --force to replace it"},
+      {"track --camera %data/camera/frames/*.jpg --calibration %data/camera/camera.yaml --out "
+       "%data/camera/frames/000.jpg",
+       "one of the camera's pictures"},
+      {"track --calibrate --out @c.yaml", "either --images DIR or --camera"},
+      {board, "--out CAM.yaml is missing"},
+      {board + "--out @c.yaml", "matches no picture"},
+      {board + "--out @there.json", "give --force to replace it"},
+      {board + "--out @c.yaml --picture @there.svg", "give --force to replace it"},
+      {board + "--out @c.yaml --board 13", "--board '13'"},
+      {board + "--out @c.yaml --board 1x1", "there must be 3 to 100 both ways"},
+      {board + "--out @c.yaml --square 0", "the side of one square in metres"},
+  });
+}
+
+TEST_CASE("Wrong input: rift drive") {
+  const std::string rest = " --port @gone --camera x --calibration %data/camera/camera.yaml ";
+  Check({
+      {"drive", "--port is missing"},
+      {"drive" + kTask, "--port is missing"},
+      {"drive" + kTask + "--prot @x", "did you mean --port?"},
+      {"drive" + kTask + "--port @gone", "--camera is missing"},
+      {"drive" + kTask + "--port @gone --camera x", "--calibration is missing"},
+      {"drive --port @gone --camera x --calibration x", "EXPERIMENT is missing"},
+      {"drive @gone.yaml" + rest, "cannot read"},
+      {"drive @none.yaml" + rest, "none.yaml: "},
+      {"drive @mm.yaml" + rest, "--any-waypoints"},
+      {"drive @arena.yaml" + rest, "lies outside trial.arena"},
+      {"drive" + kTask + rest + "--out @run", "holds a run already"},
+      {"drive" + kTask + rest + "--out @swept", "holds a sweep"},
+      {"drive" + kTask + rest + "--out -", "name a folder"},
+      {"drive" + kTask + rest + "--out @new", "stdin is no terminal"},
+      {"drive" + kTask + rest + "--countdown 99", "must be a number in [0, 60]"},
+      {"drive" + kTask + rest + "--seconds 3", "--seconds requires --dry-run"},
+      {"drive" + kTask + rest + "--before-each true", "goes with --repeat, --grid or --suggested"},
+      {"drive" + kTask + rest + "--repeat 0", "--repeat: Value 0"},
+      {"drive" + kTask + rest + "--repeat 2 --grid", "--repeat excludes --grid"},
+      {"drive --ping", "--port is missing"},
+      {"drive --ping --port @x --set hardware.line.baud=9", "name EXPERIMENT, its YAML file"},
+      {"drive --ping --port @gone", "there is no serial port", 3},
+      {"drive --ping --port @there.svg", "is no serial port", 3},
+      {"drive --replay @dir", "holds no drive"},
+      {"drive --replay @run --video @x.avi", "must end in .mp4"},
+      {"drive --replay @run --video @gone/x.mp4", "there is no folder"},
+      {"drive --replay @run --json", "--json excludes --replay"},
+      {"drive --video @x.mp4", "--video requires --replay"},
+  });
+}
+
+TEST_CASE("Bare rift, rift help, -v and rift help COMMAND answer on stdout") {
+  const test::ProcessResult bare = test::RunRift({});
+  CHECK(bare.exit_code == 0);
+  CHECK(bare.err.empty());
+  for (const std::string name : {"simulate", "track", "drive", "gap", "sweep"}) {
+    CHECK_THAT(bare.out, Contains("\n  rift " + name + " "));  // an example of each
+  }
+  CHECK(test::RunRift({"help"}).out == bare.out);
+  CHECK(test::RunRift({"--help"}).out == bare.out);
+  CHECK(test::RunRift({"help", "gap"}).out == test::RunRift({"gap", "--help"}).out);
+  const std::string version = test::RunRift({"-v"}).out;
+  CHECK(version == test::RunRift({"--version"}).out);
+  for (const std::string word : {"rift ", "commit: ", "ODE 0.", "OpenCV 4."}) {
+    CHECK_THAT(version, Contains(word));
+  }
+}
+
+TEST_CASE("--out - and --profile - are the log and the profile, and nothing else") {
+  const test::TemporaryFolder folder;
+  const std::string task = test::SourceDir() + "/configs/waypoints/paper.yaml";
+  REQUIRE(test::RunRift({"simulate", task, "--out", folder / "l.csv"}).exit_code == 0);
+  const test::ProcessResult piped = test::RunRift({"simulate", task, "--out", "-"});
+  CHECK(piped.exit_code == 0);
+  CHECK(piped.out == test::ReadFile(folder / "l.csv"));
+  const std::string example = test::SourceDir() + "/data/example/";
+  const std::vector<std::string> gap{"gap", example + "simulator.csv", example + "robot1.csv",
+                                     "--profile"};
+  auto to_file = gap, to_stdout = gap;
+  to_file.push_back(folder / "p.csv");
+  to_stdout.emplace_back("-");
+  REQUIRE(test::RunRift(to_file).exit_code == 0);
+  CHECK(test::RunRift(to_stdout).out == test::ReadFile(folder / "p.csv"));
+}
+
+TEST_CASE("Files that are there are replaced with --force, and by the same run again") {
+  const test::TemporaryFolder folder;
+  const std::string task = test::SourceDir() + "/configs/waypoints/paper.yaml";
+  const std::vector<std::string> run{"simulate", task, "--out", folder / "run"};
+  REQUIRE(test::RunRift(run).exit_code == 0);
+  const std::string log = test::ReadFile(folder / "run/trajectory.csv");
+  CHECK(test::RunRift(run).exit_code == 0);
+  auto other = run;
+  other.insert(other.end(), {"--seed", "2"});
+  CHECK(test::RunRift(other).exit_code == 2);
+  CHECK(test::ReadFile(folder / "run/trajectory.csv") == log);
+  other.emplace_back("--force");
+  CHECK(test::RunRift(other).exit_code == 0);
+  CHECK(test::ReadFile(folder / "run/trajectory.csv") != log);
+}
+
+TEST_CASE("The worst row of a sweep is driven again by its name") {
+  const test::TemporaryFolder folder;
+  const std::string out = folder / "sweep";
+  const test::ProcessResult sweep =
+      test::RunRift({"sweep", test::SourceDir() + "/configs/waypoints/paper.yaml", "--set",
+                     "space={surface: [ground, parchment], v_min: [0.14, 0.16]}", "--out", out});
+  REQUIRE(sweep.exit_code == 0);
+  const test::ProcessResult worst = test::RunRift({"simulate", "--replay", out, "worst"});
+  INFO(worst.err);
+  REQUIRE(worst.exit_code == 0);
+  const std::string row = worst.err.substr(worst.err.find("row "), worst.err.find(": status") - 6);
+  CHECK_THAT(sweep.out, Contains("worst: " + row.substr(0, row.find(':')) + ", "));
+}
+
+}  // namespace
+}  // namespace rift
