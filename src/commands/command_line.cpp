@@ -15,6 +15,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "manual.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/terminal/process_start.hpp"
@@ -96,9 +97,22 @@ int ShowHelp(const CLI::App& app, const CLI::ParseError& error) {
   return exit_code;
 }
 
+/// What a package needs of the options: `rift help --man [COMMAND]`, `--bash`, `--zsh`. Empty when
+/// the words ask for something else.
+std::string Manual(const Words& words, const CLI::App& app) {
+  if (words.size() < 2 || words.size() > 3 || words[0] != "help") return "";
+  const std::string name = words.size() == 3 ? words[2] : "";
+  if (words[1] == "--man") return ManPage(app, name);
+  if (words[1] == "--bash") return BashCompletion(app);
+  return words[1] == "--zsh" ? ZshCompletion(app) : "";
+}
+
 int Run(int argc, char** argv, const CameraUses& camera) {
   const std::vector<Command> commands = Commands(camera);
-  const Words words = WordsOf(argc, argv);
+  const Words given(argv + std::min(argc, 1), argv + argc);
+  const bool is_manual = given.size() > 1 && given[0] == "help" && given[1].starts_with("--");
+  const Words words = is_manual ? Words{"--help"} : WordsOf(argc, argv);
+  if (is_manual && given.size() == 3) CheckSubcommand(given[2], commands);
   if (!words.front().starts_with("-")) CheckSubcommand(words.front(), commands);
   int exit_code = terminal::kDone;
   CLI::App app("rift: where a simulator and its robot part ways, and why", "rift");
@@ -112,8 +126,18 @@ int Run(int argc, char** argv, const CameraUses& camera) {
   for (const Command& command : commands) {
     CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
     // A word that is not there chooses no subcommand, and options take time to make.
-    if (std::find(words.begin(), words.end(), command.name) == words.end()) continue;
+    const bool is_named = std::find(words.begin(), words.end(), command.name) != words.end();
+    if (!is_named && !is_manual) continue;
     command.add(subcommand, exit_code);
+  }
+  if (is_manual) {
+    const std::string manual = Manual(given, app);
+    if (manual.empty()) {
+      throw std::invalid_argument(given[1] +
+                                  ": rift help takes a subcommand, --man, --bash or --zsh");
+    }
+    terminal::PrintData(manual);
+    return terminal::kDone;
   }
   try {
     app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes them from the back
@@ -172,7 +196,7 @@ void RunCameraProgram(char** argv) {
   if (!fs::exists(program)) {
     throw std::runtime_error(fmt::format(
         "cameras, windows and videos need the program {}, which is not there: build and install "
-        "rift again, with libopencv-dev",
+        "rift again, with its OpenCV packages (./bootstrap install)",
         program.string()));
   }
   ::execv(program.c_str(), argv);

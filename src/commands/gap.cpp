@@ -8,6 +8,7 @@
 
 #include "odometry.hpp"
 #include "rift/commands/arguments/flags.hpp"
+#include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
@@ -212,6 +213,8 @@ void AddGap(CLI::App& app, int& exit_code) {
           "REAL is required: name logs of the robot (or --odometry for the encoders of run "
           "folders)");
     }
+    request->sim = FindInput(request->sim);
+    for (std::string& real : request->reals) real = FindInput(real);
     CheckInputs(*request);
     CheckNames(*request);
     gap::GapResult result = Measure(*request);

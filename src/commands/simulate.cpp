@@ -306,6 +306,7 @@ void AddSimulate(CLI::App& app, int& exit_code, const CameraUses& camera) {
       "         rift simulate configs/twin.yaml --twin --out out/twin");
   ExcludeFromTwin(app);
   app.callback([request, with_camera = camera.simulate, &exit_code] {
+    request->experiment = FindInput(request->experiment);
     const PictureRequest& pictures = request->pictures;
     const bool needs_camera = request->twin || pictures.window || !pictures.video.empty();
     exit_code = needs_camera ? with_camera(*request) : Simulate(*request, {});

@@ -17,6 +17,20 @@ experiment::Experiment ReadExperiment(const std::filesystem::path& file,
                                     [](const std::string& path) { return files::ReadFile(path); });
 }
 
+std::string FindInput(const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code not_there;
+  if (name.empty() || fs::path(name).is_absolute() || fs::exists(name, not_there)) return name;
+  const fs::path program = fs::read_symlink("/proc/self/exe", not_there);
+  // PREFIX/bin/rift, or PREFIX/lib/rift/rift-camera.
+  for (const fs::path& prefix :
+       {program.parent_path().parent_path(), program.parent_path().parent_path().parent_path()}) {
+    const fs::path installed = prefix / "share" / "rift" / name;
+    if (fs::exists(installed, not_there)) return installed.string();
+  }
+  return name;
+}
+
 namespace {
 
 std::string NameOf(const control::Waypoint& waypoint, size_t index) {

@@ -163,6 +163,7 @@ void AddDrive(CLI::App& app, int& exit_code, const std::function<int(const Drive
       "             'rift simulate configs/twin.yaml --twin --force --seed {trial} --out "
       "out/twin{trial}'");
   app.callback([request, drive, &exit_code] {
+    request->experiment = FindInput(request->experiment);
     request->Check();
     exit_code = drive(*request);
   });

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "rift/commands/arguments/flags.hpp"
+#include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/track/track.hpp"
 #include "rift/files/files.hpp"
@@ -216,6 +217,7 @@ void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const Track
       "log.csv\n"
       "         rift track --check --calibration cam.yaml");
   app.callback([request, track, &exit_code] {
+    request->calibration = FindInput(request->calibration);
     request->Check();
     exit_code = track(*request);
   });

@@ -14,6 +14,10 @@ namespace rift::commands {
 experiment::Experiment ReadExperiment(const std::filesystem::path& file,
                                       const std::vector<std::string>& overrides = {});
 
+/// `name`, or, where there is no such file and rift is installed, the file of that name among those
+/// that came with it (PREFIX/share/rift): configs/waypoints/paper.yaml works in any folder.
+std::string FindInput(const std::string& name);
+
 /// Waypoints that no run can reach: throws std::invalid_argument, naming file and waypoint, for one
 /// outside trial.arena, and for a path so long and so far out that its metres must be millimetres
 /// or centimetres.

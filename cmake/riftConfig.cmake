@@ -1,0 +1,12 @@
+# find_package(rift): the rooms that need no camera, as rift::gap, rift::simulation ... (C++20).
+include(CMakeFindDependencyMacro)
+find_dependency(Boost)
+find_dependency(Eigen3)
+find_dependency(fmt)
+find_dependency(FastFloat)
+find_dependency(PNG)
+find_dependency(yaml-cpp)
+find_dependency(PkgConfig)
+pkg_check_modules(ODE REQUIRED IMPORTED_TARGET ode)
+pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt)
+include("${CMAKE_CURRENT_LIST_DIR}/riftTargets.cmake")
