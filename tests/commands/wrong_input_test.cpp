@@ -1,6 +1,6 @@
-// The contract with a person who mistypes: every wrong input ends with exit code 2 (or what is said),
-// prints nothing on stdout and one line on stderr that names the thing and the mend, and leaves no
-// file behind.
+// The contract with a person who mistypes: every wrong input ends with exit code 2 (or what is
+// said), prints nothing on stdout and one line on stderr that names the thing and the mend, and
+// leaves no file behind.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <map>
@@ -304,7 +304,9 @@ TEST_CASE("Bare rift, rift help, -v and rift help COMMAND answer on stdout") {
   }
 }
 
-TEST_CASE("--out - and --profile - are the log and the profile, and nothing else") {
+TEST_CASE(
+    "A log and a profile go to stdout: --out - and --profile - are the log and the profile, and "
+    "nothing else") {
   const test::TemporaryFolder folder;
   const std::string task = test::SourceDir() + "/configs/waypoints/paper.yaml";
   REQUIRE(test::RunRift({"simulate", task, "--out", folder / "l.csv"}).exit_code == 0);
@@ -335,6 +337,23 @@ TEST_CASE("Files that are there are replaced with --force, and by the same run a
   other.emplace_back("--force");
   CHECK(test::RunRift(other).exit_code == 0);
   CHECK(test::ReadFile(folder / "run/trajectory.csv") != log);
+}
+
+TEST_CASE("A brief sweep answers five questions in five lines, from the run's own counts") {
+  const test::TemporaryFolder folder;
+  const test::ProcessResult sweep = test::RunRift(
+      {"sweep", test::SourceDir() + "/data/example/demo.yaml", "--set", "reference.trials=6",
+       "--set", "space.control.v_min=[0.2]", "--out", folder / "s", "--brief", "--quiet"});
+  INFO(sweep.out << sweep.err);
+  REQUIRE(sweep.exit_code == 0);
+  std::istringstream lines(sweep.out);
+  for (const std::string label : {"what fails:", "where:", "why:", "how sure:", "what next:"}) {
+    std::string line;
+    REQUIRE(std::getline(lines, line));
+    CHECK(line.starts_with(label));
+  }
+  CHECK_THAT(sweep.out, Contains("of 36 runs leave the path by more than 0.06 m") &&
+                            Contains("processing_s 0.25, v_min 0.2 (6 of 6 failed)"));
 }
 
 TEST_CASE("The worst row of a sweep is driven again by its name") {

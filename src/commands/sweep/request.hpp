@@ -21,6 +21,7 @@ struct SweepRequest {
   bool quiet = false;
   bool json_progress = false;
   bool json = false;
+  bool brief = false;  ///< five lines
   bool exit_code = false;
   std::string status;
   ExplainRequest explain;

@@ -180,6 +180,10 @@ void Print(const SweepRequest& request, const sweep::SweepResult& result,
     terminal::PrintData(report::SummaryJson(result));
     return;
   }
+  if (request.brief) {
+    terminal::PrintText(report::BriefText(result, explanation));
+    return;
+  }
   terminal::PrintText(report::SweepText(result));
   if (!likeness.empty()) terminal::PrintText("\n" + report::LikenessText(likeness));
   terminal::PrintText(report::ExplanationText(result, explanation, request.explain.suggest > 0));
@@ -219,7 +223,8 @@ int Sweep(const SweepRequest& request) {
   const std::vector<sweep::ProgramCell> programs = sweep::MeasurePrograms(evaluator);
   SaveReport(out, *judged, explanation, likeness, programs, evaluator);
   Print(request, *judged, explanation, likeness);
-  if (!request.json) terminal::PrintText(report::ProgramText(judged->parameters, programs));
+  if (!request.json && !request.brief)
+    terminal::PrintText(report::ProgramText(judged->parameters, programs));
 
   const bool is_done =
       SpendTrials(out, *judged, request.explain, evaluator, {request.jobs, progress}, request.json);
@@ -256,6 +261,8 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
       ->type_name("DIR");
   AddExplainFlags(app, request.explain);
   AddKeysFlag(app);
+  app.add_flag("--brief", request.brief,
+               "print five lines: what fails, where, why, how sure, what next");
   app.add_flag("--quiet", request.quiet, "no progress");
   app.add_flag("--json-progress", request.json_progress, "progress as lines of JSON on stderr");
   app.add_flag("--json", request.json, "print the summary (or status) as JSON instead of text");
@@ -290,6 +297,7 @@ void AddSweep(CLI::App& app, int& exit_code) {
     if (request->experiment.empty()) {
       throw std::invalid_argument("EXPERIMENT is missing: name the YAML file of the experiment");
     }
+    request->experiment = FindInput(request->experiment);
     exit_code = Sweep(*request);
   });
 }

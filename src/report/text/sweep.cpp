@@ -153,6 +153,65 @@ std::string ExplanationText(const sweep::SweepResult& result, const sweep::Expla
   return suggest ? text + SuggestionsText(explanation) : text;
 }
 
+namespace {
+
+/// The settings of which the largest share of runs failed, worst first.
+std::string WorstSettingsText(const sweep::SweepResult& result) {
+  constexpr size_t kMostNamed = 3;
+  const auto share = [](const sweep::SettingResult* setting) {
+    return static_cast<double>(setting->verdict.above) / setting->verdict.repeats;
+  };
+  std::vector<const sweep::SettingResult*> failing;
+  for (const sweep::SettingResult& setting : result.settings) {
+    if (setting.verdict.above > 0) failing.push_back(&setting);
+  }
+  std::stable_sort(failing.begin(), failing.end(),
+                   [&](const auto* a, const auto* b) { return share(a) > share(b); });
+  if (failing.empty()) return "nowhere: no run failed";
+  std::string text;
+  for (size_t i = 0; i < std::min(kMostNamed, failing.size()); ++i) {
+    text += fmt::format("{}{} ({} of {} failed)", i == 0 ? "" : "; ",
+                        sweep::SettingText(result.parameters, failing[i]->theta),
+                        failing[i]->verdict.above, failing[i]->verdict.repeats);
+  }
+  if (failing.size() <= kMostNamed) return text;
+  return text + fmt::format("; {} more settings saw a failure", failing.size() - kMostNamed);
+}
+
+std::string FirstSentence(const std::vector<Finding>& findings, const std::string& question) {
+  for (const Finding& finding : findings) {
+    if (finding.question == question && !finding.sentences.empty()) {
+      return finding.sentences.front().Text();
+    }
+  }
+  return "not known";
+}
+
+}  // namespace
+
+std::string BriefText(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+  const std::vector<Finding> findings = Findings(result, explanation);
+  const std::string fails = fmt::format(
+      "{} of {} settings; {} of {} runs leave the path by more than {:g} m, and {} do "
+      "not arrive",
+      result.Count(gap::Verdict::kFalsified), result.settings.size(),
+      std::count_if(result.rows.begin(), result.rows.end(),
+                    [&](const sweep::TrialRow& row) {
+                      return row.IsOk() && row.comparison.gap_m > result.gap.threshold_m;
+                    }),
+      result.rows.size(), result.gap.threshold_m, result.all.not_ok);
+  std::string text;
+  for (const auto& [label, answer] :
+       {std::pair<const char*, std::string>{"what fails:", fails},
+        {"where:", WorstSettingsText(result)},
+        {"why:", FirstSentence(findings, "Because of what?")},
+        {"how sure:", FirstSentence(findings, "How sure is that?")},
+        {"what next:", FirstSentence(findings, "What to test next?")}}) {
+    text += fmt::format("{:<11} {}\n", label, answer);
+  }
+  return text;
+}
+
 std::string ReplayCommand(const std::string& folder, size_t row) {
   return fmt::format("rift simulate --replay {} {}", folder, row + 1);
 }

@@ -56,6 +56,10 @@ std::string LikenessText(const gap::Likeness& likeness);
 /// What a person wants to know of a sweep first.
 std::string SweepText(const sweep::SweepResult& result);
 
+/// Five lines for a person in a hurry: what fails, where (the settings with the largest share of
+/// failures), why, how sure, what next (the first sentence of the finding).
+std::string BriefText(const sweep::SweepResult& result, const sweep::Explanation& explanation);
+
 /// Because of what and how sure; with `suggest` the next experiments as well.
 std::string ExplanationText(const sweep::SweepResult& result, const sweep::Explanation& explanation,
                             bool suggest);
