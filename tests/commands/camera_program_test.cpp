@@ -79,7 +79,7 @@ TEST_CASE("A camera program that is not there is named in one line that says wha
     CHECK(result.exit_code == 3);
     CHECK_THAT(result.out, Catch::StartsWith("rift: cameras, windows and videos need") &&
                                Contains("lib/rift/rift-camera, which is not there") &&
-                               EndsWith("libopencv-dev\n"));
+                               EndsWith("(./bootstrap install)\n"));
     CHECK(std::count(result.out.begin(), result.out.end(), '\n') == 1);
   }
   CHECK_FALSE(fs::exists(installed.folder / "run"));
