@@ -266,7 +266,7 @@ TEST_CASE("Evaluations of other points than those asked are refused") {
 TEST_CASE("Axes that make no sense are refused by name") {
   using enum AxisKind;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto make = [](Axis axis) { MakeStrategy({}, {axis}, 10, 1); };
+  const auto make = [](const Axis& axis) { MakeStrategy({}, {axis}, 10, 1); };
   CHECK_THROWS_WITH(make({"mu", kContinuous, 1.0, 0.5}), Catch::Contains("axis mu from 1 to 0.5"));
   CHECK_THROWS_WITH(make({"mu", kContinuous, nan, 0.5}), Catch::Contains("finite"));
   CHECK_THROWS_WITH(make({"n", kInteger, 0.5, 2.0}), Catch::Contains("whole"));

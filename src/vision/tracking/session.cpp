@@ -25,7 +25,7 @@ CameraSession::CameraSession(std::string name, CameraModel camera, CaptureOption
                              const TagOptions& tag)
     : name_(std::move(name)),
       camera_(std::move(camera)),
-      options_(AtSizeOf(camera_, capture)),
+      options_(AtSizeOf(camera_, std::move(capture))),
       tag_(tag),
       capture_(OpenCapture(name_, options_)) {}
 
