@@ -12,6 +12,7 @@
 #include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
+#include "rift/gap/doubts.hpp"
 #include "rift/gap/result.hpp"
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/json/json.hpp"
@@ -36,18 +37,40 @@ struct GapRequest {
   double tag_offset_m = 0.0;
   Format sim_format = Format::kAuto;
   Format real_format = Format::kAuto;
+  /// Of both sides, and of one; see trajectory::ReadOptions.
+  std::string columns, sim_columns, real_columns, units, sim_units, real_units;
   std::string json, profile, figure;
   bool exit_code = false;
   bool force = false;
   bool odometry = false;
   OdometryRequest runs;  ///< with --odometry or --program
 
+  trajectory::ReadOptions SimLogs() const {
+    return LogsOf(sim_format, sim_columns, sim_units, "--sim-columns ");
+  }
+  trajectory::ReadOptions RealLogs() const {
+    return LogsOf(real_format, real_columns, real_units, "--real-columns ");
+  }
   bool IsOdometry() const { return odometry || runs.calibrate || !runs.program.empty(); }
+
+ private:
+  /// What holds for both sides is not meant for the one that has a format.
+  trajectory::ReadOptions LogsOf(Format format, const std::string& own_columns,
+                                 const std::string& own_units, const char* flag) const {
+    const bool is_dialect = format != Format::kAuto;
+    const auto either = [&](const std::string& own, const std::string& both) {
+      return own.empty() && !is_dialect ? both : own;
+    };
+    return {format, either(own_columns, columns), either(own_units, units), flag};
+  }
 };
 
 /// What was mended, and why there may be no yaw errors.
 void SayNotes(const trajectory::Log& log, const std::string& path, const std::string& flag) {
   for (const std::string& note : log.notes) terminal::Say(fmt::format("note: {}: {}", path, note));
+  for (const std::string& doubt : log.doubts) {
+    terminal::Say(fmt::format("warning: {}: {}", path, doubt));
+  }
   if (log.line_without_yaw) {
     terminal::Say(fmt::format("note: {}:{}: has no yaw: yaw errors are told where it is logged",
                               path, *log.line_without_yaw));
@@ -57,16 +80,52 @@ void SayNotes(const trajectory::Log& log, const std::string& path, const std::st
       fmt::format("note: {}: yaw errors are left out: {}: set {}", path, log.unknown_angles, flag));
 }
 
+bool Names(const std::string& path, std::initializer_list<std::string_view> words) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return name.find(word) != name.npos; });
+}
+
+/// The two sides by what the user says of them.
+void SayIfSwapped(const GapRequest& request) {
+  constexpr auto kSim = {"sim", "webots", "gazebo", "mujoco"};
+  constexpr auto kReal = {"real", "robot", "tracker", "mocap"};
+  const auto names = [](const std::string& path, auto words) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const char* word) { return Names(path, {word}); });
+  };
+  const std::string& real = request.reals.front();
+  const bool by_name = names(request.sim, kReal) && !names(request.sim, kSim) &&
+                       names(real, kSim) && !names(real, kReal);
+  const bool by_format =
+      request.sim_format == Format::kTracker || request.real_format == Format::kWebots;
+  if (!by_name && !by_format) return;
+  terminal::Say(fmt::format(
+      "warning: {} and {}: by their {} the two are swapped: the simulator's log comes first",
+      request.sim, real, by_name ? "names" : "formats"));
+}
+
+void SayDoubts(const gap::GapResult& result) {
+  for (size_t i = 0; i < result.reals.size(); ++i) {
+    for (const std::string& doubt : gap::Doubts(result.sim, result.reals[i])) {
+      const bool falsifies = result.trials[i].comparison.gap_m > result.options.threshold_m;
+      terminal::Say(fmt::format("warning: SIM {} and REAL {}{}: {}", result.sim_path,
+                                result.trials[i].real_path,
+                                falsifies ? ", whose gap falsifies" : "", doubt));
+    }
+  }
+}
+
 gap::GapResult Measure(const GapRequest& request) {
   gap::GapResult result{.options = request.options,
                         .tag_offset_m = request.tag_offset_m,
                         .sim_path = request.sim,
                         .judged_by = request.verdict};
   trajectory::Log sim =
-      trajectory::ReadLog(files::ReadFile(request.sim), request.sim, request.sim_format);
+      trajectory::ReadLog(files::ReadFile(request.sim), request.sim, request.SimLogs());
   SayNotes(sim, request.sim, "--sim-format");
   result.sim = std::move(sim.trajectory);
-  const sweep::LogOptions real_logs{request.real_format, request.tag_offset_m, "--real-format"};
+  const sweep::LogOptions real_logs{request.RealLogs(), request.tag_offset_m, "--real-format"};
   for (const std::string& path : request.reals) {
     trajectory::Log real = sweep::ReadMovedLog(files::ReadFile(path), path, real_logs);
     SayNotes(real, path, "--real-format");
@@ -74,6 +133,8 @@ gap::GapResult Measure(const GapRequest& request) {
     result.reals.push_back(std::move(real.trajectory));
   }
   Judge(result);
+  SayIfSwapped(request);
+  SayDoubts(result);
   return result;
 }
 
@@ -81,7 +142,7 @@ gap::GapResult Measure(const GapRequest& request) {
 gap::Likeness MeasureRepeats(const GapRequest& request, const gap::GapResult& result) {
   gap::RepeatedSetting setting{.reals = result.reals, .sims = {{result.sim}}};
   for (const std::string& path : request.sim_repeats) {
-    trajectory::Log sim = trajectory::ReadLog(files::ReadFile(path), path, request.sim_format);
+    trajectory::Log sim = trajectory::ReadLog(files::ReadFile(path), path, request.SimLogs());
     SayNotes(sim, path, "--sim-format");
     setting.sims.front().push_back(std::move(sim.trajectory));
   }
@@ -117,6 +178,8 @@ void RefuseTwins(const std::vector<std::string>& logs) {
 
 void CheckInputs(const GapRequest& request) {
   RefuseTwins(request.reals);
+  trajectory::CheckColumns(request.SimLogs());
+  trajectory::CheckColumns(request.RealLogs());
   std::vector<std::string> sims = request.sim_repeats;
   sims.insert(sims.begin(), request.sim);
   RefuseTwins(sims);
@@ -136,6 +199,22 @@ void CheckNames(const GapRequest& request) {
   }
   if (!request.figure.empty()) outputs.emplace_back(request.figure);
   CheckOutputs(inputs, {.files = outputs, .force = request.force});
+}
+
+void AddColumnFlags(CLI::App& app, GapRequest& request) {
+  const auto add = [&](const char* flag, std::string& text, const char* help, const char* type) {
+    app.add_option(flag, text, help)->type_name(type);
+  };
+  constexpr auto kColumns = "t=NAME,x=NAME,y=NAME,yaw=NAME:deg";
+  constexpr auto kUnits = "mm,ms,deg";
+  add("--columns", request.columns,
+      "which columns of the logs hold what (docs/logs.md), for each side without a format",
+      kColumns);
+  add("--units", request.units, "the units of such logs, where they are not m, s and rad", kUnits);
+  add("--sim-columns", request.sim_columns, "the same for SIM alone", kColumns);
+  add("--sim-units", request.sim_units, "the same for SIM alone", kUnits);
+  add("--real-columns", request.real_columns, "the same for REAL alone", kColumns);
+  add("--real-units", request.real_units, "the same for REAL alone", kUnits);
 }
 
 void AddOdometryFlags(CLI::App& app, GapRequest& request) {
@@ -185,6 +264,7 @@ void AddGap(CLI::App& app, int& exit_code) {
       "moves the real path forward along its yaw, from the tag to the robot's front (paper: 0.03)");
   flags("sim_format", request->sim_format, "dialect of SIM");
   flags("real_format", request->real_format, "dialect of REAL");
+  AddColumnFlags(app, *request);
   app.add_option("--sim-repeats", request->sim_repeats,
                  "further runs of the simulator: adds how like the robot they are")
       ->type_name("SIM...");
@@ -202,7 +282,9 @@ void AddGap(CLI::App& app, int& exit_code) {
   AddOdometryFlags(app, *request);
   app.footer(
       "Example: rift gap out/square1 out/square2 --odometry --calibrate-odometry\n"
-      "         rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03");
+      "         rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03\n"
+      "         rift gap sim.csv real.csv --real-columns t=time,x=pose_x,y=pose_y,yaw=theta:deg "
+      "--real-units mm,ms");
   app.callback([request, &exit_code] {
     if (request->IsOdometry()) {
       exit_code = MeasureOdometry(OdometryOf(*request));

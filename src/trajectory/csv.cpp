@@ -47,6 +47,8 @@ std::string_view WithoutPlus(std::string_view cell) {
   return plus ? cell.substr(1) : cell;
 }
 
+}  // namespace
+
 void RefuseRepeatedColumns(const std::vector<std::string>& columns, const std::string& where) {
   for (auto column = columns.begin(); column != columns.end(); ++column) {
     if (column->empty() || std::find(columns.begin(), column, *column) == column) continue;
@@ -55,8 +57,6 @@ void RefuseRepeatedColumns(const std::vector<std::string>& columns, const std::s
                     Shown(*column)));
   }
 }
-
-}  // namespace
 
 std::string_view WithoutMark(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -71,10 +71,9 @@ std::string_view TakeLine(std::string_view& rest) {
   return line;
 }
 
-std::string Shown(std::string_view text) {
-  constexpr size_t kMost = 60;
+std::string Shown(std::string_view text, size_t most) {
   std::string shown;
-  for (const char c : text.substr(0, kMost)) {
+  for (const char c : text.substr(0, most)) {
     const auto byte = static_cast<unsigned char>(c);
     const bool is_visible = byte >= 0x20 && byte != 0x7F && byte < 0xF8;
     shown += is_visible ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
@@ -82,17 +81,28 @@ std::string Shown(std::string_view text) {
   return shown;
 }
 
-std::vector<std::string> SplitHeader(std::string_view line) {
+std::vector<std::string> SplitHeader(std::string_view line, char separator) {
   std::vector<std::string> cells;
   while (true) {
     line = Trim(line);
     std::string quoted;
     if (line.starts_with('"')) quoted = TakeQuoted(line);
-    const size_t end = CellEnd(line, ',');
+    const size_t end = CellEnd(line, separator);
     cells.push_back(quoted + std::string(Trim(line.substr(0, end))));
     if (end == line.size()) return cells;
     line.remove_prefix(end + 1);
   }
+}
+
+std::optional<double> NumberOf(std::string_view cell) {
+  if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const std::string_view digits = WithoutPlus(cell);
+  const char* const digits_end = digits.data() + digits.size();
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(digits.data(), digits_end, value);
+  const bool is_number = error == std::errc{} && end == digits_end;
+  if (!is_number || !std::isfinite(value)) return std::nullopt;
+  return value;
 }
 
 RowReader::RowReader(std::string_view text, const std::string& name, bool has_header,
@@ -155,14 +165,9 @@ void RowReader::ReadCells(std::string_view line) {
 }
 
 double RowReader::Number(std::string_view cell, size_t column) const {
-  if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const std::string_view digits = WithoutPlus(cell);
-  const char* const digits_end = digits.data() + digits.size();
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits_end, value);
-  const bool is_number = error == std::errc{} && end == digits_end;
-  if (!is_number || !std::isfinite(value)) Refuse(cell, column);
-  return value;
+  const std::optional<double> value = NumberOf(cell);
+  if (!value) Refuse(cell, column);
+  return *value;
 }
 
 void RowReader::Refuse(std::string_view cell, size_t column) const {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "columns.hpp"
 #include "plausibility.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/trajectory/csv.hpp"
@@ -109,12 +109,6 @@ class ColumnMap {
   std::optional<size_t> state_;
 };
 
-void AddPose(LogRows& rows, const StampedPose& pose, const std::string& name, int line) {
-  CheckMagnitudes(pose, name, line);
-  if (std::isnan(pose.yaw_rad) && !rows.first_line_without_yaw) rows.first_line_without_yaw = line;
-  rows.trajectory.poses.push_back(pose);
-}
-
 /// A log of several robots has their rows among each other.
 void RequireOneRobot(const Trajectory& trajectory, const std::string& name) {
   for (const Channel& channel : trajectory.channels) {
@@ -154,18 +148,8 @@ StampedPose TumPose(const csv::RowReader& row, const std::string& name) {
         fmt::format("{}:{}: {} columns, and tum has 8: t tx ty tz qx qy qz qw", name, row.Line(),
                     cells.size()));
   }
-  Eigen::Quaterniond quaternion(cells[7], cells[4], cells[5], cells[6]);
-  // Neither the squares of large numbers nor those of small ones may be lost.
-  quaternion.coeffs().stableNormalize();
-  if (!(quaternion.norm() > 0.0)) {
-    throw std::invalid_argument(
-        fmt::format("{}:{}: the quaternion has zero length", name, row.Line()));
-  }
-  const Eigen::Matrix3d r = quaternion.toRotationMatrix();
   StampedPose pose{.t_s = cells[0], .x_m = cells[1], .y_m = cells[2], .z_m = cells[3]};
-  pose.roll_rad = std::atan2(r(2, 1), r(2, 2));
-  pose.pitch_rad = std::asin(std::clamp(-r(2, 0), -1.0, 1.0));
-  pose.yaw_rad = std::atan2(r(1, 0), r(0, 0));
+  SetAngles(pose, cells[4], cells[5], cells[6], cells[7], fmt::format("{}:{}", name, row.Line()));
   return pose;
 }
 
@@ -210,7 +194,14 @@ void ForgetAngles(Log& log) {
 
 }  // namespace
 
-Format FormatFromHeader(std::string_view text, const std::string& name) {
+void AddPose(LogRows& rows, const StampedPose& pose, const std::string& name, int line) {
+  CheckMagnitudes(pose, name, line);
+  if (std::isnan(pose.yaw_rad) && !rows.first_line_without_yaw) rows.first_line_without_yaw = line;
+  rows.trajectory.poses.push_back(pose);
+}
+
+Format FormatFromHeader(std::string_view text, const std::string& name,
+                        const std::string& columns_flag) {
   std::string_view rest = csv::WithoutMark(text);
   std::string_view line;
   int number = 0;
@@ -219,10 +210,12 @@ Format FormatFromHeader(std::string_view text, const std::string& name) {
   if (Has(header, "t_s") && Has(header, "x_m") && Has(header, "y_m")) return Format::kRift;
   if (Has(header, "t") && Has(header, "x") && Has(header, "y")) return Format::kAuto;
   if (LooksLikeTum(line, rest)) return Format::kTum;
+  const std::string guess = GuessColumns(text, name, "");
   throw std::invalid_argument(fmt::format(
       "{}:{}: the header '{}' belongs to no dialect: it needs t_s,x_m,y_m (rift), t,x,y (tracker, "
-      "webots) or eight columns without header (tum)",
-      name, number, csv::Shown(line)));
+      "webots) or eight columns without header (tum); {} {}'{}'",
+      name, number, csv::Shown(line), guess.empty() ? "name its columns:" : "is it this?",
+      columns_flag, guess.empty() ? "t=...,x=...,y=...,yaw=...:deg" : guess));
 }
 
 LogRows ReadRows(std::string_view text, const std::string& name, Format format) {

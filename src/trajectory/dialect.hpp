@@ -9,15 +9,21 @@
 namespace rift::trajectory {
 
 /// The dialect that the header tells; kAuto where it is the authors', which is the same for their
-/// robot and their simulator. Throws std::invalid_argument `name:line: ...` when it is of none.
-Format FormatFromHeader(std::string_view text, const std::string& name);
+/// robot and their simulator. Throws std::invalid_argument `name:line: ...` when it is of none; the
+/// message offers a guess at its columns behind `columns_flag`.
+Format FormatFromHeader(std::string_view text, const std::string& name,
+                        const std::string& columns_flag);
 
 /// The poses of a log as they stand in the file, in the units and the frame of its dialect.
 struct LogRows {
   Trajectory trajectory;
   std::optional<int> first_line_without_yaw;
   size_t untracked = 0;  ///< rows that say themselves that their pose was not measured for certain
+  size_t without_position = 0;  ///< rows of a log in columns of its own that hold no pose
 };
+
+/// Adds a pose, checked by CheckMagnitudes().
+void AddPose(LogRows& rows, const StampedPose& pose, const std::string& name, int line);
 
 /// kAuto stands for the authors' header. Throws std::invalid_argument `name:line: ...`.
 LogRows ReadRows(std::string_view text, const std::string& name, Format format);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "columns.hpp"
 #include "dialect.hpp"
 #include "plausibility.hpp"
 #include "rift/trajectory/csv.hpp"
@@ -115,23 +116,42 @@ std::string_view WithoutTornRow(std::string_view text, Log& log) {
 }  // namespace
 
 Log ReadLog(std::string_view text, const std::string& name, Format format) {
+  return ReadLog(text, name, ReadOptions{.format = format});
+}
+
+Log ReadLog(std::string_view text, const std::string& name, const ReadOptions& options) {
+  CheckColumns(options);
   RefuseNoText(text, name);
+  const bool has_own_columns = !options.columns.empty() || !options.units.empty();
   Log log;
-  log.format = format == Format::kAuto ? FormatFromHeader(text, name) : format;
-  if (log.format == Format::kRift) text = WithoutTornRow(text, log);
-  LogRows rows = ReadRows(text, name, log.format);
+  LogRows rows;
+  if (has_own_columns) {
+    log.format = Format::kRift;
+    rows = ReadColumns(text, name, options);
+  } else {
+    log.format = options.format == Format::kAuto
+                     ? FormatFromHeader(text, name, options.columns_flag)
+                     : options.format;
+    if (log.format == Format::kRift) text = WithoutTornRow(text, log);
+    rows = ReadRows(text, name, log.format);
+  }
   log.trajectory = std::move(rows.trajectory);
   if (rows.untracked > 0) {
     log.notes.push_back(fmt::format(
         "{} rows are left out: by their track_state predicted, ambiguous or lost", rows.untracked));
   }
-  NoteDoubtfulAngles(log);
+  if (rows.without_position > 0) {
+    log.notes.push_back(
+        fmt::format("{} rows are left out: they hold no position", rows.without_position));
+  }
+  if (!has_own_columns) NoteDoubtfulAngles(log);
   ConvertUnitsAndFrame(log);
   if (!TimeRises(log.trajectory)) SortByTime(log);
   if (rows.first_line_without_yaw && LacksSomeYaw(log.trajectory)) {
     log.line_without_yaw = rows.first_line_without_yaw;
   }
   CheckMoves(log.trajectory, name);
+  log.doubts = Doubts(log.trajectory);
   return log;
 }
 

@@ -68,6 +68,8 @@ struct ReferenceOptions {
   PathTemplate path;
   TrialList trials;
   trajectory::Format format = trajectory::Format::kAuto;
+  std::string columns;
+  std::string units;
   double tag_offset_m = 0.0;
   double grid_fps = 0.0;
 
@@ -77,6 +79,10 @@ struct ReferenceOptions {
     field("path", self.path, "of the logs, such as real/{surface}_{trial}.csv");
     field("trials", self.trials, "repeats of every setting: their names, or how many");
     field("format", self.format, "dialect of the logs");
+    field("columns", self.columns,
+          "of logs in no dialect: which column holds what, such as "
+          "t=time,x=pose_x,y=pose_y,yaw=theta:deg (docs/logs.md)");
+    field("units", self.units, "of logs in no dialect, where they are not m, s and rad: mm,ms,deg");
     field(
         "tag_offset_m", self.tag_offset_m, -1.0, 1.0,
         "moves the logs forward along their yaw, from the tag to the robot's front (paper: 0.03)");
@@ -91,6 +97,8 @@ struct CandidateOptions {
   CandidateKind kind = CandidateKind::kSimulation;
   PathTemplate path;
   trajectory::Format format = trajectory::Format::kAuto;
+  std::string columns;
+  std::string units;
   double grid_fps = 0.0;
 
   template <class Self, class Visitor>
@@ -98,6 +106,8 @@ struct CandidateOptions {
     field("kind", self.kind, "the simulator of rift, or recorded logs");
     field("path", self.path, "of the logs, such as webots/{surface}.csv");
     field("format", self.format, "dialect of the logs");
+    field("columns", self.columns, "as reference.columns, of the candidate's logs");
+    field("units", self.units, "as reference.units, of the candidate's logs");
     field("grid_fps", self.grid_fps, 0.0, 1000.0,
           "as reference.grid_fps, of the candidate's logs, recorded or simulated");
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,11 +14,18 @@ std::string_view WithoutMark(std::string_view text);
 /// Takes the next line off `rest`, without its CR LF or LF.
 std::string_view TakeLine(std::string_view& rest);
 
-/// At most 60 bytes of it for a message, those that no terminal shows written as \xNN.
-std::string Shown(std::string_view text);
+/// At most so many bytes of it for a message, those that no terminal shows written as \xNN.
+std::string Shown(std::string_view text, size_t most = 60);
 
-/// Cells between commas, without the blanks or the double quotes around them.
-std::vector<std::string> SplitHeader(std::string_view line);
+/// Cells between separators, without the blanks or the double quotes around them. A blank stands
+/// for any run of blanks and tabs.
+std::vector<std::string> SplitHeader(std::string_view line, char separator = ',');
+
+/// The number of a cell; NaN of an empty one, nothing of one that is no finite number.
+std::optional<double> NumberOf(std::string_view cell);
+
+/// Throws std::invalid_argument `where: ...` for two columns of one name.
+void RefuseRepeatedColumns(const std::vector<std::string>& columns, const std::string& where);
 
 /// The numbers of a text table, one row after the other, separated by `separator` (a blank stands
 /// for any run of blanks and tabs). No two columns of a header may share a name. Blank lines are

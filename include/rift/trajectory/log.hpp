@@ -30,6 +30,8 @@ struct Log {
   Trajectory trajectory;
   Format format = Format::kAuto;   ///< kAuto: the authors' header, which of the two is not known
   std::vector<std::string> notes;  ///< what was mended or looks odd, one line each
+  /// Why it may have been read in wrong units, frames or columns, one line each: Doubts().
+  std::vector<std::string> doubts;
   /// Why the angles are unknown and what to do; empty when they are known or not logged.
   std::string unknown_angles;
   /// The first line of the file without a yaw when others have one; else nothing.
@@ -47,6 +49,12 @@ struct Log {
 /// Accepted: a byte order mark, CRLF, blank lines, header cells in double quotes, `+1.0`, empty
 /// cells in optional columns (not logged).
 Log ReadLog(std::string_view text, const std::string& name, Format format = Format::kAuto);
+
+/// What no robot on wheels logs, each with the mistake that makes a log look so: speeds above 10
+/// m/s, a path of a few millimetres, poses seconds apart, rows that are each there twice, a robot
+/// that lies on its side, a yaw that has nothing to do with the direction of travel (degrees for
+/// radians, a mirrored axis, swapped axes, a wrong column).
+std::vector<std::string> Doubts(const Trajectory& trajectory);
 
 /// The rift dialect; doubles in the shortest form that reads back to the same bits, values that
 /// are not logged as empty cells.

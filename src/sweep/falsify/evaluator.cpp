@@ -59,6 +59,12 @@ Recording WithLimits(Recording log, const experiment::Experiment& experiment,
   return log;
 }
 
+/// How the logs of one side are read; `key` is its block in the experiment.
+template <class Side>
+trajectory::ReadOptions ReadOptionsOf(const Side& side, const std::string& key) {
+  return {side.format, side.columns, side.units, fmt::format("--set {}.columns=", key)};
+}
+
 bool Has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -117,10 +123,15 @@ Evaluator::Evaluator(const experiment::Experiment& experiment, std::string exper
     : experiment_(experiment),
       experiment_file_(std::move(experiment_file)),
       inputs_(std::move(inputs)),
-      candidate_logs_(inputs_, {experiment.candidate.format, 0.0, "candidate.format",
-                                experiment.candidate.grid_fps}),
-      reference_logs_(inputs_, {experiment.reference.format, experiment.reference.tag_offset_m,
-                                "reference.format", experiment.reference.grid_fps}) {
+      candidate_logs_(inputs_, {ReadOptionsOf(experiment.candidate, "candidate"), 0.0,
+                                "candidate.format", experiment.candidate.grid_fps}),
+      reference_logs_(inputs_, {ReadOptionsOf(experiment.reference, "reference"),
+                                experiment.reference.tag_offset_m, "reference.format",
+                                experiment.reference.grid_fps}) {
+  InFile(experiment_file_, [&] {
+    trajectory::CheckColumns(ReadOptionsOf(experiment.candidate, "candidate"));
+    trajectory::CheckColumns(ReadOptionsOf(experiment.reference, "reference"));
+  });
   const bool candidate_is_logs = experiment.candidate.kind == CandidateKind::kLogs;
   const bool reference_is_logs = experiment.reference.kind == ReferenceKind::kLogs;
   if (candidate_is_logs) RequirePath(experiment.candidate.path, "candidate.path");
@@ -288,7 +299,7 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
         "{}: objective is odometry, and suggested drives are judged by the gap of their poses",
         experiment_file_));
   }
-  RecordedLogs logs(inputs_, {trajectory::Format::kRift, 0.0, "the format of rift drive"});
+  RecordedLogs logs(inputs_, {{.format = trajectory::Format::kRift}, 0.0, "the format of rift drive"});
   Recording driven = logs.At(path);
   if (driven.status == TrialStatus::kOk && outcome != trial::Outcome::kReached) {
     driven.status = StatusOf(outcome);

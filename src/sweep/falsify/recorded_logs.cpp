@@ -25,7 +25,7 @@ std::string WhyNoYaw(const trajectory::Log& log, const std::string& format_key) 
 
 trajectory::Log ReadMovedLog(const std::string& text, const std::string& path,
                              const LogOptions& options) {
-  trajectory::Log log = trajectory::ReadLog(text, path, options.format);
+  trajectory::Log log = trajectory::ReadLog(text, path, options.read);
   if (options.tag_offset_m != 0.0 && !log.trajectory.HasYaw()) {
     throw std::invalid_argument(fmt::format("{}: a tag offset of {:g} m needs the yaw, and {}",
                                             path, options.tag_offset_m,
@@ -58,7 +58,9 @@ Recording RecordedLogs::Load(const std::string& path) {
     }
     hash_of_[path] = statistics::Hash128Text(*bytes);
     trajectory::Log log = ReadMovedLog(*bytes, path, options_);
-    for (const std::string& note : log.notes) inputs_.note(fmt::format("{}: {}", path, note));
+    for (const auto* lines : {&log.notes, &log.doubts}) {
+      for (const std::string& line : *lines) inputs_.note(fmt::format("{}: {}", path, line));
+    }
     recording.trajectory = std::move(log.trajectory);
   } catch (const std::invalid_argument& bad_log) {  // a row of its own, not the sweep's end
     recording.status = TrialStatus::kUnreadable;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "rift/sweep/falsify/result.hpp"
-#include "rift/trajectory/log.hpp"
+#include "rift/trajectory/read_options.hpp"
 
 namespace rift::sweep {
 
@@ -31,7 +31,7 @@ struct Inputs {
 
 /// How the logs of one side are read.
 struct LogOptions {
-  trajectory::Format format = trajectory::Format::kAuto;
+  trajectory::ReadOptions read;
   double tag_offset_m = 0.0;  ///< logs are moved so far forward along their yaw
   std::string format_key;     ///< what the user sets to tell the dialect ("reference.format")
   double grid_fps = 0.0;      ///< of trajectory::PutOnFrames; 0: stamps as logged

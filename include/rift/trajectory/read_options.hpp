@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "rift/trajectory/log.hpp"
+
+namespace rift::trajectory {
+
+/// How a log is read: in a dialect, or in columns and units of its own.
+struct ReadOptions {
+  Format format = Format::kAuto;
+  /// Which column holds what: `t=time,x=pose_x,y=pose_y,yaw=theta:deg`. Quantities: t, x, y, z,
+  /// roll, pitch, yaw, qx, qy, qz, qw (a quaternion), target_x, target_y; of these t, x and y are
+  /// needed. A source is the name of a column, or its number from 1, with a unit behind a colon
+  /// where it is not that of `units`; a minus before it turns its sign, and sources joined by a
+  /// plus are added (`t=sec+nanosec:ns`). Empty: by the dialect, or, with `units`, by a guess.
+  std::string columns;
+  /// `mm,ms,deg`: lengths m, cm, mm, km, in, ft; times s, ms, us, ns, min; angles rad, deg. What is
+  /// not named is in m, s and rad.
+  std::string units;
+  /// What messages write before the columns that they offer.
+  std::string columns_flag = "--columns ";
+};
+
+/// Throws std::invalid_argument with one line for columns or units that break a rule.
+void CheckColumns(const ReadOptions& options);
+
+/// As ReadLog in log.hpp. A log in columns of its own is of Format::kRift once it is read.
+Log ReadLog(std::string_view text, const std::string& name, const ReadOptions& options);
+
+}  // namespace rift::trajectory

@@ -1,0 +1,223 @@
+#include "rift/gap/doubts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "arc_path.hpp"
+#include "rift/statistics/descriptive.hpp"
+
+namespace rift::gap {
+namespace {
+
+using trajectory::StampedPose;
+using trajectory::Trajectory;
+
+constexpr int kPoints = 160;
+constexpr size_t kFewestRows = 10;
+
+/// A path as points at equal arc length, the first of them at the origin.
+Points FromStart(const ArcPath& path) {
+  Points points = Resample(path, kPoints);
+  const Eigen::Vector2d start_m = points.front();
+  for (Eigen::Vector2d& point : points) point -= start_m;
+  return points;
+}
+
+double Extent_m(const Points& points) {
+  double extent_m = 0.0;
+  for (const Eigen::Vector2d& point : points) extent_m = std::max(extent_m, point.norm());
+  return extent_m;
+}
+
+double MeanDistance_m(const Points& a, const Points& b, const Eigen::Matrix2d& b_changed) {
+  double sum_m = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) sum_m += (a[i] - b_changed * b[i]).norm();
+  return sum_m / static_cast<double>(a.size());
+}
+
+void DoubtScale(const Points& sim, const Points& real, std::vector<std::string>& doubts) {
+  struct Factor {
+    double factor;
+    const char* units;
+  };
+  constexpr std::array<Factor, 5> kFactors{{{1000.0, "mm for m"},
+                                            {100.0, "cm for m"},
+                                            {39.37, "inches for m"},
+                                            {10.0, "mm for cm"},
+                                            {3.281, "feet for m"}}};
+  constexpr double kSameFactor = 0.15, kSameShape = 0.1;
+  const double sim_m = Extent_m(sim), real_m = Extent_m(real);
+  if (!(sim_m > 0.0) || !(real_m > 0.0)) return;
+  const double ratio = std::max(sim_m, real_m) / std::min(sim_m, real_m);
+  for (const Factor& factor : kFactors) {
+    if (std::abs(ratio / factor.factor - 1.0) > kSameFactor) continue;
+    const double to_sim = sim_m > real_m ? factor.factor : 1.0 / factor.factor;
+    const double rest_m = MeanDistance_m(sim, real, Eigen::Matrix2d::Identity() * to_sim);
+    if (rest_m > kSameShape * sim_m) continue;
+    doubts.push_back(fmt::format(
+        "the path of {} is {:.3g} times as large as that of {}: {}? name the unit, as in --units mm",
+        sim_m > real_m ? "SIM" : "REAL", ratio, sim_m > real_m ? "REAL" : "SIM", factor.units));
+    return;
+  }
+}
+
+void DoubtAxes(const Points& sim, const Points& real, std::vector<std::string>& doubts) {
+  struct Mistake {
+    Eigen::Matrix2d mended;
+    const char* what;
+  };
+  const auto matrix = [](double a, double b, double c, double d) {
+    return (Eigen::Matrix2d() << a, b, c, d).finished();
+  };
+  const std::array<Mistake, 4> mistakes{
+      {{matrix(1, 0, 0, -1), "mirrored y: turn its sign, as in y=-COLUMN"},
+       {matrix(-1, 0, 0, 1), "mirrored x: turn its sign, as in x=-COLUMN"},
+       {matrix(0, 1, 1, 0), "swapped axes: exchange the columns of x and y"},
+       {matrix(-1, 0, 0, -1), "a frame turned by half a turn: x=-COLUMN,y=-COLUMN"}}};
+  constexpr double kFar = 0.1, kMends = 0.3;
+  const double extent_m = std::max(Extent_m(sim), Extent_m(real));
+  const double distance_m = MeanDistance_m(sim, real, Eigen::Matrix2d::Identity());
+  if (distance_m < kFar * extent_m) return;
+  const Mistake* best = nullptr;
+  double best_m = kMends * distance_m;
+  for (const Mistake& mistake : mistakes) {
+    const double mended_m = MeanDistance_m(sim, real, mistake.mended);
+    if (mended_m > best_m) continue;
+    best = &mistake;
+    best_m = mended_m;
+  }
+  if (best == nullptr) return;
+  doubts.push_back(
+      fmt::format("REAL lies {:.3g} m from SIM on average and {:.2g} m once it is mended: {}",
+                  distance_m, best_m, best->what));
+}
+
+/// Speed over the rows [begin, end).
+double Speed_m_s(const Trajectory& log, size_t begin, size_t end) {
+  const StampedPose &first = log.poses[begin], &last = log.poses[end - 1];
+  const double time_s = last.t_s - first.t_s;
+  return time_s > 0.0 ? (last.Position() - first.Position()).norm() / time_s : 0.0;
+}
+
+/// Where a point stands on a path: the nearest of its points between two of them.
+struct Place {
+  double u;
+  double distance_m;
+};
+Place PlaceOn(const Points& path, const Eigen::Vector2d& point, double from_u, double to_u) {
+  Place best{0.0, HUGE_VAL};
+  for (size_t i = 0; i < path.size(); ++i) {
+    const double u = static_cast<double>(i) / static_cast<double>(path.size() - 1);
+    if (u < from_u || u > to_u || (path[i] - point).norm() >= best.distance_m) continue;
+    best = {u, (path[i] - point).norm()};
+  }
+  return best;
+}
+
+/// One of the logs covers a part of the other's path, and moves where it is cut.
+void DoubtPart(const Trajectory& log, const ArcPath& part, const ArcPath& whole, const char* name,
+               const char* other, std::vector<std::string>& doubts) {
+  constexpr double kWhole = 0.85, kNear = 0.1, kMoves = 0.5;
+  const double share = part.length_m / whole.length_m;
+  if (share > kWhole || log.poses.size() < kFewestRows) return;
+  const Points path = Resample(whole, kPoints), piece = Resample(part, kPoints);
+  const double near_m = kNear * whole.length_m;
+  const Place begin = PlaceOn(path, piece.front(), 0.0, 1.0 - 0.7 * share);
+  const Place end = PlaceOn(path, piece.back(), begin.u + 0.7 * share, begin.u + 1.3 * share + 0.02);
+  if (begin.distance_m > near_m || end.distance_m > near_m || end.u - begin.u > kWhole) return;
+  constexpr size_t kRows = 5;
+  const double mean_m_s = part.length_m / log.Duration_s();
+  const size_t rows = log.poses.size();
+  const bool lacks_begin =
+      begin.u > 1.0 - kWhole && Speed_m_s(log, 0, kRows) > kMoves * mean_m_s;
+  const bool lacks_end = end.u < kWhole && Speed_m_s(log, rows - kRows, rows) > kMoves * mean_m_s;
+  if (!lacks_begin && !lacks_end) return;
+  doubts.push_back(
+      fmt::format("{} covers only u = {:.2f} to {:.2f} of the path of {} and {} in motion: a log "
+                  "that was cut, so that its gap tells nothing of the robot?",
+                  name, begin.u, end.u, other,
+                  lacks_begin ? (lacks_end ? "begins and ends" : "begins") : "ends"));
+}
+
+void DoubtClocks(const Trajectory& sim, const Trajectory& real, std::vector<std::string>& doubts) {
+  constexpr double kRatio = 10.0, kOffset_s = 1e6;
+  const double ratio = sim.Duration_s() / real.Duration_s();
+  if (ratio > kRatio || ratio < 1.0 / kRatio) {
+    doubts.push_back(fmt::format(
+        "their clocks differ: SIM lasts {:.3g} s and REAL {:.3g} s: are the times of one in another "
+        "unit?",
+        sim.Duration_s(), real.Duration_s()));
+  }
+  const double sim_s = sim.poses.front().t_s, real_s = real.poses.front().t_s;
+  if (std::abs(sim_s - real_s) < kOffset_s) return;
+  doubts.push_back(
+      fmt::format("their clocks differ: SIM begins at {:.10g} s and REAL at {:.10g} s; the gap does "
+                  "not depend on time, and equal_time_m counts from the first row of each",
+                  sim_s, real_s));
+}
+
+bool AreSame(const Trajectory& sim, const Trajectory& real) {
+  return std::equal(sim.poses.begin(), sim.poses.end(), real.poses.begin(), real.poses.end(),
+                    [](const StampedPose& a, const StampedPose& b) {
+                      return a.Position() == b.Position() && a.t_s == b.t_s;
+                    });
+}
+
+/// How a log was made: the scatter of its rows' distances in time, and of its positions.
+struct Texture {
+  double step_scatter;  ///< largest deviation from the median step, over that
+  double noise_m;       ///< median size of the third differences
+};
+
+Texture TextureOf(const Trajectory& log) {
+  const auto& poses = log.poses;
+  std::vector<double> steps_s, noise_m;
+  for (size_t i = 1; i < poses.size(); ++i) steps_s.push_back(poses[i].t_s - poses[i - 1].t_s);
+  for (size_t i = 3; i < poses.size(); ++i) {
+    noise_m.push_back((poses[i].Position() - 3.0 * poses[i - 1].Position() +
+                       3.0 * poses[i - 2].Position() - poses[i - 3].Position())
+                          .norm());
+  }
+  const double step_s = statistics::Median(steps_s);
+  double scatter_s = 0.0;
+  for (const double s : steps_s) scatter_s = std::max(scatter_s, std::abs(s - step_s));
+  return {scatter_s / step_s, statistics::Median(noise_m)};
+}
+
+void DoubtSides(const Trajectory& sim, const Trajectory& real, std::vector<std::string>& doubts) {
+  constexpr double kEven = 1e-3, kUneven = 0.05, kSmooth_m = 1e-4, kNoisy_m = 4e-4;
+  if (sim.poses.size() < kFewestRows || real.poses.size() < kFewestRows) return;
+  const Texture of_sim = TextureOf(sim), of_real = TextureOf(real);
+  const bool real_is_computed = of_real.step_scatter < kEven && of_real.noise_m < kSmooth_m;
+  const bool sim_is_measured = of_sim.step_scatter > kUneven && of_sim.noise_m > kNoisy_m;
+  if (!real_is_computed || !sim_is_measured) return;
+  doubts.push_back(
+      "REAL has even time steps and no noise, SIM uneven ones and noise: are the two swapped? the "
+      "simulator's log comes first");
+}
+
+}  // namespace
+
+std::vector<std::string> Doubts(const Trajectory& sim, const Trajectory& real) {
+  std::vector<std::string> doubts;
+  if (AreSame(sim, real)) {
+    doubts.emplace_back("SIM and REAL are the same log: name the robot's own");
+    return doubts;
+  }
+  const ArcPath sim_path = MakeArcPath(sim, {}), real_path = MakeArcPath(real, {});
+  const Points sim_m = FromStart(sim_path), real_m = FromStart(real_path);
+  DoubtScale(sim_m, real_m, doubts);
+  if (doubts.empty()) {
+    DoubtAxes(sim_m, real_m, doubts);
+    DoubtPart(real, real_path, sim_path, "REAL", "SIM", doubts);
+    DoubtPart(sim, sim_path, real_path, "SIM", "REAL", doubts);
+  }
+  DoubtClocks(sim, real, doubts);
+  DoubtSides(sim, real, doubts);
+  return doubts;
+}
+
+}  // namespace rift::gap

@@ -1,0 +1,201 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "plausibility.hpp"
+#include "rift/geometry/pose2.hpp"
+#include "rift/statistics/descriptive.hpp"
+#include "rift/trajectory/log.hpp"
+
+namespace rift::trajectory {
+namespace {
+
+using geometry::kPi;
+using geometry::WrapToPi;
+
+/// A piece of the path: where it leads, and the yaw in its middle.
+struct Piece {
+  Eigen::Vector2d along_m;
+  double yaw_rad;
+};
+
+/// Pieces so long that measurement noise turns them little.
+std::vector<Piece> PiecesOf(const Trajectory& trajectory) {
+  constexpr double kShare = 1.0 / 30.0;
+  const auto& poses = trajectory.poses;
+  std::vector<Piece> pieces;
+  if (poses.empty()) return pieces;
+  Eigen::Vector2d low = poses.front().Position(), high = low;
+  for (const StampedPose& pose : poses) {
+    low = low.cwiseMin(pose.Position());
+    high = high.cwiseMax(pose.Position());
+  }
+  const double piece_m = kShare * (high - low).norm();
+  size_t begin = 0;
+  for (size_t i = 1; i < poses.size(); ++i) {
+    const Eigen::Vector2d along_m = poses[i].Position() - poses[begin].Position();
+    if (!(along_m.norm() > piece_m)) continue;
+    pieces.push_back({along_m, poses[(begin + i) / 2].yaw_rad});
+    begin = i;
+  }
+  return pieces;
+}
+
+using Change = std::function<Piece(Piece)>;
+
+double Agreement(const std::vector<Piece>& pieces, const Change& change) {
+  double sum = 0.0;
+  for (const Piece& piece : pieces) {
+    const Piece changed = change(piece);
+    const double travel_rad = std::atan2(changed.along_m.y(), changed.along_m.x());
+    sum += std::cos(2.0 * (changed.yaw_rad - travel_rad));
+  }
+  return pieces.empty() ? StampedPose::kNotLogged : sum / static_cast<double>(pieces.size());
+}
+
+/// How sure the yaw must contradict the path, and the mistake must mend it.
+constexpr double kContradicts = 0.4, kMends = 0.85;
+constexpr size_t kFewestPieces = 10;
+
+void DoubtYaw(const Trajectory& trajectory, std::vector<std::string>& doubts) {
+  const std::vector<Piece> pieces = PiecesOf(trajectory);
+  if (!trajectory.HasYaw() || pieces.size() < kFewestPieces) return;
+  const double agreement = Agreement(pieces, [](Piece piece) { return piece; });
+  if (agreement > kContradicts) return;
+  struct Mistake {
+    const char* what;
+    Change mended;
+  };
+  const std::array<Mistake, 5> mistakes{{
+      {"degrees read as radians? name the unit as in yaw=COLUMN:deg",
+       [](Piece piece) {
+         return Piece{piece.along_m, piece.yaw_rad * kPi / 180.0};
+       }},
+      {"radians read as degrees?",
+       [](Piece piece) {
+         return Piece{piece.along_m, piece.yaw_rad * 180.0 / kPi};
+       }},
+      {"x and y swapped?",
+       [](Piece piece) {
+         return Piece{{piece.along_m.y(), piece.along_m.x()}, piece.yaw_rad};
+       }},
+      {"y mirrored, or a yaw that counts clockwise? turn one of them as in y=-COLUMN",
+       [](Piece piece) {
+         return Piece{{piece.along_m.x(), -piece.along_m.y()}, piece.yaw_rad};
+       }},
+      {"a yaw of another zero, a quarter turn off?",
+       [](Piece piece) {
+         return Piece{piece.along_m, piece.yaw_rad + kPi / 2.0};
+       }},
+  }};
+  const Mistake* best = nullptr;
+  double best_agreement = kMends;
+  for (const Mistake& mistake : mistakes) {
+    const double mended = Agreement(pieces, mistake.mended);
+    if (!(mended > best_agreement)) continue;
+    best = &mistake;
+    best_agreement = mended;
+  }
+  doubts.push_back(fmt::format("the yaw disagrees with the direction of travel: {}",
+                               best ? best->what : "is it another column?"));
+}
+
+/// Speeds from row to row while it moves.
+std::vector<double> SpeedsOf(const Trajectory& trajectory) {
+  const auto& poses = trajectory.poses;
+  std::vector<double> speeds;
+  for (size_t i = 1; i < poses.size(); ++i) {
+    const double step_m = (poses[i].Position() - poses[i - 1].Position()).norm();
+    const double time_s = poses[i].t_s - poses[i - 1].t_s;
+    if (step_m > 0.0 && time_s > 0.0) speeds.push_back(step_m / time_s);
+  }
+  return speeds;
+}
+
+void DoubtUnits(const Trajectory& trajectory, std::vector<std::string>& doubts) {
+  const auto& poses = trajectory.poses;
+  constexpr double kShortest_m = 0.003, kSlowest_step_s = 2.0, kFastest_step_s = 1e-4;
+  const std::vector<double> speeds_m_s = SpeedsOf(trajectory);
+  std::vector<double> steps_s;
+  for (size_t i = 1; i < poses.size(); ++i) steps_s.push_back(poses[i].t_s - poses[i - 1].t_s);
+  const double step_s = steps_s.empty() ? 0.1 : statistics::Median(steps_s);
+  if (step_s > kSlowest_step_s) {
+    doubts.push_back(fmt::format(
+        "its poses are {:.3g} s apart: are its times in ms, us or ns? name the unit, as in --units "
+        "ms",
+        step_s));
+  } else if (step_s < kFastest_step_s) {
+    doubts.push_back(fmt::format(
+        "its poses are {:.3g} s apart: are its times in another unit than they are read in?",
+        step_s));
+  }
+  const double speed_m_s = speeds_m_s.empty() ? 0.0 : statistics::Median(speeds_m_s);
+  if (speed_m_s > kFastest_m_s && step_s >= kFastest_step_s) {
+    doubts.push_back(
+        fmt::format("it moves at {:.4g} m/s, and no robot here drives faster than {:g}: are its "
+                    "positions in mm or cm? name the unit, as in --units mm",
+                    speed_m_s, kFastest_m_s));
+  }
+  double extent_m = 0.0;
+  for (const StampedPose& pose : poses) {
+    extent_m = std::max(extent_m, (pose.Position() - poses.front().Position()).norm());
+  }
+  if (extent_m < kShortest_m && poses.size() >= kFewestPieces) {
+    doubts.push_back(fmt::format(
+        "the whole path lies within {:.3g} m: metres read as a smaller unit, or another column?",
+        extent_m));
+  }
+}
+
+/// Rows in motion, and how many of them only repeat the position of the row before.
+void DoubtRepeats(const Trajectory& trajectory, std::vector<std::string>& doubts) {
+  constexpr double kMost = 0.8;
+  const auto& poses = trajectory.poses;
+  int pairs = 0, others = 0;  // runs of two rows with one position; of any other number
+  for (size_t i = 0; i < poses.size();) {
+    size_t end = i + 1;
+    while (end < poses.size() && poses[end].Position() == poses[i].Position()) ++end;
+    ++(end - i == 2 ? pairs : others);
+    i = end;
+  }
+  if (pairs < 10 || pairs < kMost * (pairs + others)) return;
+  doubts.push_back(
+      fmt::format("{} of {} positions are there twice in a row: are its rows doubled?", pairs,
+                  pairs + others));
+}
+
+void DoubtTilt(const Trajectory& trajectory, std::vector<std::string>& doubts) {
+  constexpr double kLying_rad = 0.8;
+  std::vector<double> tilts_rad;
+  for (const StampedPose& pose : trajectory.poses) {
+    const double tilt_rad = std::max(std::abs(WrapToPi(pose.roll_rad)), std::abs(pose.pitch_rad));
+    if (std::isfinite(tilt_rad)) tilts_rad.push_back(tilt_rad);
+  }
+  if (tilts_rad.empty() || statistics::Median(tilts_rad) < kLying_rad) return;
+  doubts.push_back(
+      fmt::format("the robot lies on its side, {:.2g} rad of roll or pitch: degrees read as "
+                  "radians, or a quaternion in another order (w first)?",
+                  statistics::Median(tilts_rad)));
+}
+
+}  // namespace
+
+double TravelAgreement(const Trajectory& trajectory) {
+  const std::vector<Piece> pieces = PiecesOf(trajectory);
+  if (pieces.size() < 3) return StampedPose::kNotLogged;
+  return Agreement(pieces, [](Piece piece) { return piece; });
+}
+
+std::vector<std::string> Doubts(const Trajectory& trajectory) {
+  std::vector<std::string> doubts;
+  DoubtUnits(trajectory, doubts);
+  DoubtYaw(trajectory, doubts);
+  DoubtRepeats(trajectory, doubts);
+  DoubtTilt(trajectory, doubts);
+  return doubts;
+}
+
+}  // namespace rift::trajectory

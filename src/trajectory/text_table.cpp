@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "columns.hpp"
+#include "rift/trajectory/csv.hpp"
+
+namespace rift::trajectory {
+namespace {
+
+bool IsBlankLine(std::string_view line) { return line.find_first_not_of(" \t") == line.npos; }
+
+/// What stands between the cells of a line.
+char SeparatorOf(std::string_view line) {
+  char most = ' ';
+  std::ptrdiff_t count = 0;
+  for (const char separator : {',', ';', '\t'}) {
+    const std::ptrdiff_t found = std::count(line.begin(), line.end(), separator);
+    if (found > count) most = separator;
+    count = std::max(count, found);
+  }
+  return most;
+}
+
+/// `0,25` where commas do not separate cells.
+std::string WithPoint(std::string cell, char separator) {
+  if (separator != ';' || std::count(cell.begin(), cell.end(), ',') != 1) return cell;
+  if (cell.find('.') == cell.npos) cell[cell.find(',')] = '.';
+  return cell;
+}
+
+bool AreNumbers(const std::vector<std::string>& cells, char separator) {
+  return std::all_of(cells.begin(), cells.end(), [&](const std::string& cell) {
+    return csv::NumberOf(WithPoint(cell, separator)).has_value();
+  });
+}
+
+}  // namespace
+
+bool TextTable::NextLine(std::string_view& line) {
+  while (!rest_.empty()) {
+    line = csv::TakeLine(rest_);
+    ++line_number_;
+    if (!IsBlankLine(line)) return true;
+  }
+  return false;
+}
+
+TextTable::TextTable(std::string_view text, const std::string& name)
+    : rest_(csv::WithoutMark(text)), name_(name) {
+  std::string_view line;
+  std::vector<std::string> comment;
+  while (true) {
+    const std::string_view before = rest_;
+    const int line_before = line_number_;
+    if (!NextLine(line)) return;
+    if (line[line.find_first_not_of(" \t")] == '#') {  // the last one may name the columns
+      line.remove_prefix(std::min(line.find_first_not_of("# \t"), line.size()));
+      comment = csv::SplitHeader(line, SeparatorOf(line));
+      continue;
+    }
+    separator_ = SeparatorOf(line);
+    columns_ = csv::SplitHeader(line, separator_);
+    if (AreNumbers(columns_, separator_)) {
+      const bool is_named = comment.size() == columns_.size();
+      for (size_t i = 0; i < columns_.size(); ++i) {
+        columns_[i] = is_named ? comment[i] : fmt::format("{}", i + 1);
+      }
+      rest_ = before;  // it is a row
+      line_number_ = line_before;
+    }
+    csv::RefuseRepeatedColumns(columns_, fmt::format("{}:{}", name_, std::max(1, line_number_)));
+    return;
+  }
+}
+
+bool TextTable::Next() {
+  std::string_view line;
+  while (NextLine(line)) {
+    if (line[line.find_first_not_of(" \t")] == '#') continue;
+    cells_ = csv::SplitHeader(line, separator_);
+    if (cells_.size() == columns_.size()) return true;
+    throw std::invalid_argument(fmt::format("{}:{}: the row has {} cells where {} are expected",
+                                            name_, line_number_, cells_.size(), columns_.size()));
+  }
+  return false;
+}
+
+std::optional<double> TextTable::Number(size_t column) const {
+  return csv::NumberOf(WithPoint(cells_[column], separator_));
+}
+
+}  // namespace rift::trajectory
