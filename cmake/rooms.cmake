@@ -41,14 +41,14 @@ rift_room(hardware ROOMS control geometry odometry statistics trial vision/camer
   LIBRARIES fmt::fmt Threads::Threads)
 rift_room(twin ROOMS control geometry hardware simulation statistics trajectory trial vision/camera vision/rendering
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
-rift_room(sweep/run ROOMS statistics
+rift_room(sweep/run ROOMS files statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES SQLiteCpp sqlite3)
 rift_room(experiment ROOMS control trajectory yaml
   OPTIONS gap hardware simulation trial twin sweep/run sweep/falsify sweep/calibrate
           vision/camera vision/calibration vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen)
 rift_room(sweep/falsify ROOMS control experiment gap odometry search simulation statistics sweep/run trajectory trial yaml
-  LIBRARIES fmt::fmt)
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(sweep/explain ROOMS experiment odometry search statistics sweep/falsify yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
 rift_room(sweep/calibrate ROOMS control experiment gap geometry statistics sweep/falsify trajectory trial

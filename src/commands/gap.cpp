@@ -80,29 +80,34 @@ void SayNotes(const trajectory::Log& log, const std::string& path, const std::st
       fmt::format("note: {}: yaw errors are left out: {}: set {}", path, log.unknown_angles, flag));
 }
 
-bool Names(const std::string& path, std::initializer_list<std::string_view> words) {
+bool IsNamed(const std::string& path, std::initializer_list<std::string_view> words) {
   const std::string name = std::filesystem::path(path).filename().string();
   return std::any_of(words.begin(), words.end(),
                      [&](std::string_view word) { return name.find(word) != name.npos; });
 }
+bool IsNamedSimulated(const std::string& path) {
+  return IsNamed(path, {"sim", "webots", "gazebo", "mujoco"});
+}
+bool IsNamedReal(const std::string& path) {
+  return IsNamed(path, {"real", "robot", "tracker", "mocap"});
+}
 
-/// The two sides by what the user says of them.
-void SayIfSwapped(const GapRequest& request) {
-  constexpr auto kSim = {"sim", "webots", "gazebo", "mujoco"};
-  constexpr auto kReal = {"real", "robot", "tracker", "mocap"};
-  const auto names = [](const std::string& path, auto words) {
-    return std::any_of(words.begin(), words.end(),
-                       [&](const char* word) { return Names(path, {word}); });
-  };
+/// The true path of a simulated run is held against its log on purpose.
+void SayIfSwapped(const GapRequest& request, const gap::GapResult& result) {
   const std::string& real = request.reals.front();
-  const bool by_name = names(request.sim, kReal) && !names(request.sim, kSim) &&
-                       names(real, kSim) && !names(real, kReal);
+  const bool by_name = IsNamedReal(request.sim) && !IsNamedSimulated(request.sim) &&
+                       IsNamedSimulated(real) && !IsNamedReal(real);
   const bool by_format =
       request.sim_format == Format::kTracker || request.real_format == Format::kWebots;
-  if (!by_name && !by_format) return;
+  const bool by_noise =
+      !IsNamed(real, {"truth"}) && gap::LookSwapped(result.sim, result.reals.front());
+  if (!by_name && !by_format && !by_noise) return;
   terminal::Say(fmt::format(
       "warning: {} and {}: by their {} the two are swapped: the simulator's log comes first",
-      request.sim, real, by_name ? "names" : "formats"));
+      request.sim, real,
+      by_name     ? "names"
+      : by_format ? "formats"
+                  : "noise"));
 }
 
 void SayDoubts(const gap::GapResult& result) {
@@ -110,8 +115,8 @@ void SayDoubts(const gap::GapResult& result) {
     for (const std::string& doubt : gap::Doubts(result.sim, result.reals[i])) {
       const bool falsifies = result.trials[i].comparison.gap_m > result.options.threshold_m;
       terminal::Say(fmt::format("warning: SIM {} and REAL {}{}: {}", result.sim_path,
-                                result.trials[i].real_path,
-                                falsifies ? ", whose gap falsifies" : "", doubt));
+                                result.trials[i].path, falsifies ? ", whose gap falsifies" : "",
+                                doubt));
     }
   }
 }
@@ -133,7 +138,7 @@ gap::GapResult Measure(const GapRequest& request) {
     result.reals.push_back(std::move(real.trajectory));
   }
   Judge(result);
-  SayIfSwapped(request);
+  SayIfSwapped(request, result);
   SayDoubts(result);
   return result;
 }

@@ -23,11 +23,48 @@ std::string Evidence(const report::TableRow& row) {
   return text;
 }
 
+report::TableRow RowOf(const std::filesystem::path& folder, const std::string& id) {
+  const std::filesystem::path table = folder / "table.csv";
+  return report::TableRowOf(files::ReadFile(table), id, table.string());
+}
+
+/// Makes a row again and holds it against the table's.
+std::string Verify(sweep::Evaluator& evaluator, const sweep::TrialRequest& request,
+                   const report::TableRow& row, const std::string& id) {
+  sweep::SweepResult again = sweep::EmptyResult(evaluator.experiment());
+  again.rows = {evaluator.Evaluate(request)};
+  const report::TableRow made = report::FirstTableRow(report::TableCsv(again));
+  if (Evidence(made) != Evidence(row)) {
+    throw std::runtime_error(fmt::format(
+        "row {} comes out different (gap {} m, not {} m): another version of rift, of the program "
+        "or of its logs made the table",
+        id, made.at("gap_m"), row.at("gap_m")));
+  }
+  return fmt::format("row {}: status {}, gap {} m, to the last bit as in the table", id,
+                     row.at("status"), row.at("gap_m"));
+}
+
 }  // namespace
 
+std::optional<ProgramReplay> ReplayProgramRow(const std::filesystem::path& folder,
+                                              const std::string& id) {
+  const std::string file = (folder / "experiment.yaml").string();
+  const experiment::Experiment experiment = ReadExperiment(file);
+  if (experiment.candidate.kind != experiment::CandidateKind::kProgram) return std::nullopt;
+  const report::TableRow row = RowOf(folder, id);
+  sweep::Evaluator evaluator(experiment, file, FileInputs());
+  evaluator.LoadLogs();
+  const sweep::TrialRequest request = report::RequestOf(experiment, row);
+  ProgramReplay replay{.experiment = experiment};
+  replay.verdict = Verify(evaluator, request, row, id);
+  sweep::Recording run = evaluator.Candidate(request, evaluator.Reference(request));
+  replay.has_arrived = run.status == sweep::TrialStatus::kOk;
+  replay.trajectory = std::move(run.trajectory);
+  return replay;
+}
+
 Replay ReplayRow(const std::filesystem::path& folder, const std::string& id) {
-  const std::filesystem::path table = folder / "table.csv";
-  const report::TableRow row = report::TableRowOf(files::ReadFile(table), id, table.string());
+  const report::TableRow row = RowOf(folder, id);
   const std::string file = (folder / "experiment.yaml").string();
   const experiment::Experiment experiment = ReadExperiment(file);
   if (experiment.candidate.kind != experiment::CandidateKind::kSimulation) {
@@ -41,17 +78,7 @@ Replay ReplayRow(const std::filesystem::path& folder, const std::string& id) {
   replay.experiment.seed = *request.seed;
   replay.trial = evaluator.TrialFor(request, evaluator.Reference(request));
   replay.run = sweep::Simulate(replay.trial);
-  sweep::SweepResult again = sweep::EmptyResult(experiment);
-  again.rows = {evaluator.Evaluate(request)};
-  const report::TableRow made = report::FirstTableRow(report::TableCsv(again));
-  if (Evidence(made) != Evidence(row)) {
-    throw std::runtime_error(fmt::format(
-        "row {} comes out different (gap {} m, not {} m): another version of rift, or of its logs, "
-        "made the table",
-        id, made.at("gap_m"), row.at("gap_m")));
-  }
-  replay.verdict = fmt::format("row {}: status {}, gap {} m, to the last bit as in the table", id,
-                               row.at("status"), row.at("gap_m"));
+  replay.verdict = Verify(evaluator, request, row, id);
   return replay;
 }
 

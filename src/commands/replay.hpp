@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "rift/experiment/experiment.hpp"
@@ -15,6 +16,18 @@ struct Replay {
   sweep::SimulatedRun run;
   std::string verdict;  ///< one line: that the row came out the same
 };
+
+/// A row of a program's sweep made again.
+struct ProgramReplay {
+  experiment::Experiment experiment;
+  trajectory::Trajectory trajectory;  ///< empty where the run wrote none
+  bool has_arrived = false;
+  std::string verdict;
+};
+
+/// Nothing when the candidates of that sweep are no runs of a program; else as ReplayRow.
+std::optional<ProgramReplay> ReplayProgramRow(const std::filesystem::path& folder,
+                                              const std::string& id);
 
 /// Simulates the trial of row `id` in the folder of a sweep again and holds it against the table.
 /// Throws std::invalid_argument when the folder holds no such row or its candidates are logs, and

@@ -204,13 +204,50 @@ Simulated SimulateFile(const SimulateRequest& request) {
   return made;
 }
 
-Simulated ReplayFor(const SimulateRequest& request) {
+void RequireNothingBesideReplay(const SimulateRequest& request) {
+  if (request.replay.empty()) return;
   const bool is_changed = !request.experiment.empty() || !request.overrides.empty() ||
                           !request.start.empty() || !request.seed.empty();
   if (is_changed) {
     throw std::invalid_argument(
         "--replay takes everything from the sweep: leave EXPERIMENT, --set, --start, --seed out");
   }
+}
+
+std::vector<fs::path> SweepFiles(const fs::path& folder) {
+  return {folder / "table.csv", folder / "experiment.yaml", folder / "journal.sqlite",
+          folder / "inputs.txt", folder / "summary.json"};
+}
+
+/// A row of a sweep over somebody else's simulator: its trajectory is all there is of it.
+std::optional<int> ReplayProgram(const SimulateRequest& request) {
+  if (request.replay.empty()) return std::nullopt;
+  const fs::path folder = request.replay[0];
+  const std::string& id = request.replay[1];
+  const std::optional<ProgramReplay> replay = ReplayProgramRow(folder, id);
+  if (!replay) return std::nullopt;
+  const bool has_more = request.json || !request.pictures.figure.empty() ||
+                        !request.pictures.video.empty() || request.pictures.window;
+  if (has_more) {
+    throw std::invalid_argument(
+        "--json, --figure, --video and --view are of rift's own simulator, and candidate.kind is "
+        "program");
+  }
+  const fs::path out = (request.out.empty() ? folder / "replay" / id : fs::path(request.out));
+  const fs::path log = out.extension() == ".csv" ? out : out / "trajectory.csv";
+  CheckOutputs(SweepFiles(folder), {log});
+  if (!replay->trajectory.poses.empty()) {
+    files::WriteFile(log, trajectory::WriteRift(replay->trajectory));
+    if (!request.tum.empty()) {
+      files::WriteFile(request.tum, trajectory::WriteTum(replay->trajectory));
+    }
+    terminal::Say("log: " + log.string());
+  }
+  terminal::PrintText(replay->verdict + "\n");
+  return replay->has_arrived ? terminal::kDone : terminal::kNotReached;
+}
+
+Simulated ReplayFor(const SimulateRequest& request) {
   const fs::path folder = request.replay[0];
   const std::string table = (folder / "table.csv").string();
   const std::string id = request.replay[1] == "worst"
@@ -219,9 +256,7 @@ Simulated ReplayFor(const SimulateRequest& request) {
   Replay replay = ReplayRow(folder, id);
   terminal::Say(replay.verdict);
   const fs::path out = request.out.empty() ? folder / "replay" / id : fs::path(request.out);
-  CheckNames(request, out, replay.experiment,
-             {folder / "table.csv", folder / "experiment.yaml", folder / "journal.sqlite",
-              folder / "inputs.txt", folder / "summary.json"});
+  CheckNames(request, out, replay.experiment, SweepFiles(folder));
   return {out, std::move(replay.experiment), std::move(replay.trial), std::move(replay.run)};
 }
 
@@ -236,6 +271,8 @@ void ExcludeFromTwin(CLI::App& app) {
 }  // namespace
 
 int Simulate(const SimulateRequest& request, const std::function<void(const Simulated&)>& show) {
+  RequireNothingBesideReplay(request);
+  if (const std::optional<int> exit_code = ReplayProgram(request)) return *exit_code;
   const Simulated made = request.replay.empty() ? SimulateFile(request) : ReplayFor(request);
   if (!IsStdout(request)) Save(made.out, made.experiment, made.run);
   if (!request.tum.empty()) {

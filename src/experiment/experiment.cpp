@@ -143,6 +143,7 @@ void ResolveSpace(Experiment& experiment) {
 }  // namespace
 
 Experiment ExperimentAt(const Experiment& experiment, const std::vector<ParameterValue>& theta) {
+  if (experiment.candidate.kind == CandidateKind::kProgram) return experiment;  // names of its own
   std::vector<yaml::KeyValue> values;
   for (size_t i = 0; i < theta.size(); ++i) {
     const Parameter& parameter = experiment.space.parameters[i];
@@ -181,9 +182,42 @@ control::Task TaskOf(const Experiment& experiment) {
                   needed_s, experiment.trial.timeout_s));
 }
 
+namespace {
+
+/// Of a parameter that is no key: what its range says, else the middle of that; else the first of
+/// its values.
+ParameterValue OwnNominal(const Parameter& parameter) {
+  if (!parameter.IsContinuous()) return parameter.levels.front();
+  if (parameter.nominal) return NumberValue(*parameter.nominal);
+  const double middle = parameter.is_logarithmic ? std::sqrt(parameter.min * parameter.max)
+                                                 : 0.5 * (parameter.min + parameter.max);
+  return NumberValue(parameter.is_integer ? std::floor(middle) : middle);
+}
+
+/// The parameters of a program are names of its own, which its arguments or its JSON hold.
+void CheckProgramSpace(const Experiment& experiment) {
+  if (experiment.goal != Goal::kFalsify) CheckGrid(experiment.space.parameters);
+}
+
+/// Only a program has parameters whose values at rest the experiment does not hold already.
+void RefuseNominal(const Experiment& experiment) {
+  for (const Parameter& parameter : experiment.space.parameters) {
+    if (!parameter.nominal) continue;
+    throw yaml::Error(fmt::format(
+        "{}: space.{}: nominal is of a program's parameters: here the key {} has the value",
+        parameter.origin, parameter.key, parameter.key));
+  }
+}
+
+}  // namespace
+
 Theta NominalTheta(const Experiment& experiment) {
   Theta theta;
   for (const Parameter& parameter : experiment.space.parameters) {
+    if (experiment.candidate.kind == CandidateKind::kProgram) {
+      theta.push_back(OwnNominal(parameter));
+      continue;
+    }
     theta.push_back(ValueFromNode(yaml::GetValue(experiment, parameter.key), parameter.key));
   }
   return theta;
@@ -214,6 +248,8 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   MakeAbsolute(experiment.candidate.path);
   MakeAbsolute(experiment.reference.path);
   if (experiment.candidate.kind == CandidateKind::kSimulation) ResolveSpace(experiment);
+  if (experiment.candidate.kind == CandidateKind::kProgram) CheckProgramSpace(experiment);
+  if (experiment.candidate.kind != CandidateKind::kProgram) RefuseNominal(experiment);
   if (experiment.goal == Goal::kCalibrate) ResolveCalibrate(experiment, path);
   return experiment;
 }

@@ -75,6 +75,13 @@ void ReadRange(const Node& node, const std::string& key, experiment::Parameter& 
 
 /// What may stand in the map of an axis beside its values.
 void ReadSettable(const Node& node, const std::string& key, experiment::Parameter& parameter) {
+  if (const Node::Entry* entry = node.Find("nominal")) {
+    parameter.nominal = NumberOf(entry->value);
+    const bool is_value = parameter.nominal && parameter.IsContinuous() &&
+                          *parameter.nominal >= parameter.min &&
+                          *parameter.nominal <= parameter.max;
+    if (!is_value) Fail(entry->value, Join(key, "nominal"), "must be a number in its range");
+  }
   if (const Node::Entry* entry = node.Find("settable")) {
     parameter.settable = ReadBool(entry->value, {Join(key, "settable"), {}, ""});
   }
@@ -181,6 +188,28 @@ Node Hook<experiment::PathTemplate>::ToNode(const experiment::PathTemplate& path
   return Node::Text(path.text);
 }
 
+experiment::CommandLine Hook<experiment::CommandLine>::FromNode(const Node& node) {
+  if (!node.IsList()) throw std::invalid_argument("must be a list: [python3, sim.py, ...]");
+  experiment::CommandLine line;
+  for (const Node& item : node.items) {
+    if (!item.IsScalar()) throw std::invalid_argument("every argument must be a text or a number");
+    const std::filesystem::path beside =
+        std::filesystem::path(item.origin.source).parent_path() / item.text;
+    std::error_code none;
+    const bool is_file = item.origin.line > 0 && !item.text.empty() &&
+                         std::filesystem::is_regular_file(beside, none);
+    line.words.push_back(is_file ? std::filesystem::absolute(beside).lexically_normal().string()
+                                 : item.text);
+  }
+  return line;
+}
+
+Node Hook<experiment::CommandLine>::ToNode(const experiment::CommandLine& line) {
+  Node list = Node::List();
+  for (const std::string& word : line.words) list.items.push_back(Node::Text(word));
+  return list;
+}
+
 experiment::TrialList Hook<experiment::TrialList>::FromNode(const Node& node) {
   experiment::TrialList trials{{}};
   if (node.IsScalar()) {
@@ -282,6 +311,9 @@ Node Hook<experiment::Space>::ToNode(const experiment::Space& space) {
       if (parameter.is_logarithmic) axis.Add("scale", Node::Scalar("log"));
       if (parameter.step) {
         axis.Add("step", Node::Scalar(NumberText(*parameter.step, parameter.key)));
+      }
+      if (parameter.nominal) {
+        axis.Add("nominal", Node::Scalar(NumberText(*parameter.nominal, parameter.key)));
       }
     } else if (parameter.settable) {
       Node with_values = Node::Map();

@@ -167,10 +167,9 @@ class SourceResolver {
   }
 
   [[noreturn]] void Refuse(const std::string& quantity, const std::string& part) const {
-    throw std::invalid_argument(
-        fmt::format("{}: columns: {} is to be '{}', and there is no such column: there are {}",
-                    where_, quantity, part, csv::Shown(fmt::format("{}", fmt::join(header_, ", ")),
-                                                       400)));
+    throw std::invalid_argument(fmt::format(
+        "{}: columns: {} is to be '{}', and there is no such column: there are {}", where_,
+        quantity, part, csv::Shown(fmt::format("{}", fmt::join(header_, ", ")), 400)));
   }
 
   const std::vector<std::string>& header_;
@@ -183,8 +182,7 @@ class PoseReader {
   PoseReader(const TextTable& table, const Sources& sources, const Units& units,
              const std::string& name)
       : name_(name) {
-    const SourceResolver resolver(table.Columns(), units,
-                                  fmt::format("{}:{}", name, table.Line()));
+    const SourceResolver resolver(table.Columns(), units, fmt::format("{}:{}", name, table.Line()));
     for (const auto& [quantity, source] : sources) {
       quantities_.push_back(resolver.Resolve(quantity, source));
     }
@@ -196,8 +194,7 @@ class PoseReader {
     for (const Quantity& quantity : quantities_) values[quantity.name] = Sum(quantity, table);
     if (std::isnan(values["x"]) && std::isnan(values["y"])) return std::nullopt;
     for (const Quantity& quantity : quantities_) {
-      const bool is_needed =
-          quantity.name == "t" || quantity.name == "x" || quantity.name == "y";
+      const bool is_needed = quantity.name == "t" || quantity.name == "x" || quantity.name == "y";
       if (!is_needed || !std::isnan(values[quantity.name])) continue;
       throw std::invalid_argument(fmt::format("{}:{}: column {} is empty", name_, table.Line(),
                                               table.Columns()[quantity.terms.front().column]));
@@ -226,9 +223,14 @@ class PoseReader {
       const auto found = values.find(name);
       return found == values.end() ? otherwise : found->second;
     };
-    StampedPose pose{.t_s = value("t"), .x_m = value("x"), .y_m = value("y"), .z_m = value("z"),
-                     .roll_rad = value("roll"), .pitch_rad = value("pitch"),
-                     .yaw_rad = value("yaw"), .target_x_m = value("target_x"),
+    StampedPose pose{.t_s = value("t"),
+                     .x_m = value("x"),
+                     .y_m = value("y"),
+                     .z_m = value("z"),
+                     .roll_rad = value("roll"),
+                     .pitch_rad = value("pitch"),
+                     .yaw_rad = value("yaw"),
+                     .target_x_m = value("target_x"),
                      .target_y_m = value("target_y")};
     const double qz = value("qz"), qw = value("qw");
     if (!std::isnan(qz) && !std::isnan(qw)) {
@@ -264,9 +266,8 @@ Units ParseUnits(const std::string& text) {
         set(units.angle_rad, Find(kAngles, name))) {
       continue;
     }
-    throw std::invalid_argument(
-        fmt::format("units: '{}' is none of m, cm, mm, km, in, ft, s, ms, us, ns, min, rad, deg",
-                    name));
+    throw std::invalid_argument(fmt::format(
+        "units: '{}' is none of m, cm, mm, km, in, ft, s, ms, us, ns, min, rad, deg", name));
   }
   return units;
 }
@@ -309,8 +310,10 @@ LogRows ReadColumns(std::string_view text, const std::string& name, const ReadOp
   LogRows rows;
   while (table.Next()) {
     const std::optional<StampedPose> pose = reader.PoseOf(table);
-    if (pose) AddPose(rows, *pose, name, table.Line());
-    else ++rows.without_position;
+    if (pose)
+      AddPose(rows, *pose, name, table.Line());
+    else
+      ++rows.without_position;
   }
   return rows;
 }

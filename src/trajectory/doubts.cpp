@@ -162,9 +162,8 @@ void DoubtRepeats(const Trajectory& trajectory, std::vector<std::string>& doubts
     i = end;
   }
   if (pairs < 10 || pairs < kMost * (pairs + others)) return;
-  doubts.push_back(
-      fmt::format("{} of {} positions are there twice in a row: are its rows doubled?", pairs,
-                  pairs + others));
+  doubts.push_back(fmt::format("{} of {} positions are there twice in a row: are its rows doubled?",
+                               pairs, pairs + others));
 }
 
 void DoubtTilt(const Trajectory& trajectory, std::vector<std::string>& doubts) {

@@ -52,7 +52,8 @@ std::string QuantityOf(const std::vector<std::string>& words) {
       has({"orientation", "rotation", "quaternion", "quat", "rot"}) || last.starts_with('q');
   const std::string axis = last.size() == 2 && last[0] == 'q' ? last.substr(1) : last;
   if (is_rotation && IsOneOf(axis, {"x", "y", "z", "w"})) return "q" + axis;
-  if (IsOneOf(last, {"yaw", "theta", "heading", "psi", "phi", "angle", "orientation", "th", "rz"})) {
+  if (IsOneOf(last,
+              {"yaw", "theta", "heading", "psi", "phi", "angle", "orientation", "th", "rz"})) {
     return "yaw";
   }
   if (IsOneOf(last, {"roll", "pitch"})) return last;
@@ -178,8 +179,10 @@ Guess ByNames(const Numbers& numbers, std::map<std::string, std::string>& units)
     const auto [found, is_new] = best.try_emplace(column.quantity, column);
     if (!is_new && column.rank < found->second.rank) found->second = column;
   }
-  if (best.contains("qz") && best.contains("qw")) best.erase("yaw");
-  else for (const char* part : {"qx", "qy", "qz", "qw"}) best.erase(part);
+  if (best.contains("qz") && best.contains("qw"))
+    best.erase("yaw");
+  else
+    for (const char* part : {"qx", "qy", "qz", "qw"}) best.erase(part);
   Guess guess;
   for (const auto& [quantity, column] : best) {
     guess[quantity] = column.name;
@@ -207,7 +210,7 @@ void ByRanges(const Numbers& numbers, Guess& guess) {
 
 Trajectory PathOf(const Numbers& numbers, const Guess& guess) {
   const std::vector<double>*t = numbers.Of(guess.at("t")), *x = numbers.Of(guess.at("x")),
-                           *y = numbers.Of(guess.at("y"));
+        *y = numbers.Of(guess.at("y"));
   Trajectory path;
   for (size_t i = 0; i < std::min({t->size(), x->size(), y->size()}); ++i) {
     path.poses.push_back({.t_s = (*t)[i], .x_m = (*x)[i], .y_m = (*y)[i]});
@@ -284,7 +287,8 @@ std::string GuessColumns(std::string_view text, const std::string& name, const s
   const Trajectory path = PathOf(numbers, guess);
   if (!guess.contains("yaw") && !guess.contains("qz")) YawByTravel(numbers, path, guess, unit_of);
   const std::vector<double>& t = *numbers.Of(guess["t"]);
-  if (unit_of["t"].empty() && !given.time_s && !guess.contains("nanosec")) unit_of["t"] = TimeUnit(t);
+  if (unit_of["t"].empty() && !given.time_s && !guess.contains("nanosec"))
+    unit_of["t"] = TimeUnit(t);
   const double time_unit_s =
       unit_of["t"].empty() ? given.time_s.value_or(1.0) : UnitFor("t", unit_of["t"]).value_or(1.0);
   for (const char* length : {"x", "y", "z"}) {

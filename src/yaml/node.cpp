@@ -141,8 +141,8 @@ void Merge(Node& base, const Node& over) {
 }
 
 bool IsAxis(const Node& node) {
-  constexpr std::array<std::string_view, 7> kAxisKeys{"min",    "max",      "scale", "integer",
-                                                      "values", "settable", "step"};
+  constexpr std::array<std::string_view, 8> kAxisKeys{"min",    "max",      "scale", "integer",
+                                                      "values", "settable", "step",  "nominal"};
   return node.IsMap() && !node.entries.empty() &&
          std::all_of(node.entries.begin(), node.entries.end(), [&](const Node::Entry& entry) {
            return std::find(kAxisKeys.begin(), kAxisKeys.end(), entry.key) != kAxisKeys.end();

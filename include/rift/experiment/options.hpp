@@ -32,16 +32,21 @@ constexpr std::array<std::string_view, 2> EnumNames(Objective) { return {"gap", 
 
 enum class ReferenceKind {
   kPath,     ///< the polyline through the waypoints, or the path of the program
-  kNominal,  ///< a simulated run with the experiment's own values
+  kNominal,  ///< a run of the candidate with the experiment's own values
   kLogs,
+  kProgram,  ///< runs of somebody else's simulator
 };
-constexpr std::array<std::string_view, 3> EnumNames(ReferenceKind) {
-  return {"path", "nominal", "logs"};
+constexpr std::array<std::string_view, 4> EnumNames(ReferenceKind) {
+  return {"path", "nominal", "logs", "program"};
 }
 
-enum class CandidateKind { kSimulation, kLogs };
-constexpr std::array<std::string_view, 2> EnumNames(CandidateKind) {
-  return {"simulation", "logs"};
+enum class CandidateKind {
+  kSimulation,
+  kLogs,
+  kProgram,  ///< somebody else's simulator
+};
+constexpr std::array<std::string_view, 3> EnumNames(CandidateKind) {
+  return {"simulation", "logs", "program"};
 }
 
 /// Where a simulated trial begins.
@@ -57,6 +62,29 @@ struct PathTemplate {
   std::string text;
 };
 
+/// A program and its arguments, never given to a shell; `{mu}` in an argument stands for the value
+/// of that parameter. In a YAML file an argument that names a file beside that file is that file.
+struct CommandLine {
+  std::vector<std::string> words;
+};
+
+/// What the exit codes of a program say of its run: 0 is a run that arrived, any other than these a
+/// fault.
+struct ExitCodes {
+  int timed_out = 10;
+  int fell = 11;
+  int left_arena = 12;
+  int lost = 13;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("timed_out", self.timed_out, 1, 255, "the robot did not arrive in time");
+    field("fell", self.fell, 1, 255, "the robot fell");
+    field("left_arena", self.left_arena, 1, 255, "the robot left the arena");
+    field("lost", self.lost, 1, 255, "the robot was seen no more");
+  }
+};
+
 /// Which repeats of the reference there are: `trials: [1, 2, 3]`, or a count.
 struct TrialList {
   std::vector<std::string> names{"1"};
@@ -67,6 +95,9 @@ struct ReferenceOptions {
   ReferenceKind kind = ReferenceKind::kPath;
   PathTemplate path;
   TrialList trials;
+  CommandLine run;
+  bool persistent = false;
+  ExitCodes exit_codes;
   trajectory::Format format = trajectory::Format::kAuto;
   std::string columns;
   std::string units;
@@ -75,9 +106,14 @@ struct ReferenceOptions {
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("kind", self.kind, "waypoint path, a run with nominal values, or recorded logs");
+    field("kind", self.kind,
+          "waypoint path, a run of the candidate with nominal values, recorded logs, or runs of a "
+          "program");
     field("path", self.path, "of the logs, such as real/{surface}_{trial}.csv");
     field("trials", self.trials, "repeats of every setting: their names, or how many");
+    field("run", self.run, "as candidate.run, of the reference");
+    field("persistent", self.persistent, "as candidate.persistent");
+    field("exit_codes", self.exit_codes, "as candidate.exit_codes");
     field("format", self.format, "dialect of the logs");
     field("columns", self.columns,
           "of logs in no dialect: which column holds what, such as "
@@ -96,6 +132,9 @@ struct ReferenceOptions {
 struct CandidateOptions {
   CandidateKind kind = CandidateKind::kSimulation;
   PathTemplate path;
+  CommandLine run;
+  bool persistent = false;
+  ExitCodes exit_codes;
   trajectory::Format format = trajectory::Format::kAuto;
   std::string columns;
   std::string units;
@@ -103,8 +142,14 @@ struct CandidateOptions {
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("kind", self.kind, "the simulator of rift, or recorded logs");
+    field("kind", self.kind, "the simulator of rift, recorded logs, or a program");
     field("path", self.path, "of the logs, such as webots/{surface}.csv");
+    field("run", self.run,
+          "program and arguments, such as [python3, sim.py, --mu, \"{mu}\", --seed, \"{seed}\", "
+          "--out, \"{out}\"]: it writes the trajectory to {out} (docs/programs.md)");
+    field("persistent", self.persistent,
+          "one process a worker, which reads a line of JSON for each trial and answers with one");
+    field("exit_codes", self.exit_codes, "what its exit codes say of a run; 0: it arrived");
     field("format", self.format, "dialect of the logs");
     field("columns", self.columns, "as reference.columns, of the candidate's logs");
     field("units", self.units, "as reference.units, of the candidate's logs");

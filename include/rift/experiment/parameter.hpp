@@ -37,6 +37,8 @@ struct Parameter {
   /// the schema does (settable.hpp).
   std::optional<bool> settable{};
   std::optional<double> step{};
+  /// Of a program's parameter, which is no key of the experiment: its value at rest.
+  std::optional<double> nominal{};
   std::string origin{};  ///< where it was written, for messages: "file:line:column"
 
   /// The last part of the key: the column in table.csv and the name in path templates.

@@ -29,6 +29,13 @@ struct Hook<experiment::PathTemplate> {
 };
 
 template <>
+struct Hook<experiment::CommandLine> {
+  static constexpr std::string_view kTypeText = "list of a program and its arguments";
+  static experiment::CommandLine FromNode(const Node& node);
+  static Node ToNode(const experiment::CommandLine& line);
+};
+
+template <>
 struct Hook<experiment::TrialList> {
   static constexpr std::string_view kTypeText = "list of names, or a count";
   static experiment::TrialList FromNode(const Node& node);

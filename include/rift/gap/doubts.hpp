@@ -7,11 +7,14 @@
 
 namespace rift::gap {
 
-/// What makes a comparison of two logs doubtful though each log looks sound, one line each, in which
-/// the logs are called SIM and REAL: one is in another unit of length, mirrored, or has its axes
-/// swapped; one covers only a part of the other's path and begins or ends in motion; their clocks
-/// differ; they are the same log; REAL looks like the simulated one and SIM like the measured one.
+/// What makes a comparison of two logs doubtful though each log looks sound, one line each, in
+/// which the logs are called SIM and REAL: one is in another unit of length, mirrored, or has its
+/// axes swapped; one covers only a part of the other's path and begins or ends in motion; their
+/// clocks differ; they are the same log.
 std::vector<std::string> Doubts(const trajectory::Trajectory& sim,
                                 const trajectory::Trajectory& real);
+
+/// REAL has even time steps and no noise, SIM uneven ones and noise.
+bool LookSwapped(const trajectory::Trajectory& sim, const trajectory::Trajectory& real);
 
 }  // namespace rift::gap

@@ -109,6 +109,13 @@ std::string GapFlags(const experiment::Experiment& experiment) {
   };
   add("--sim-format", std::string(yaml::NameOf(experiment.candidate.format)));
   add("--real-format", std::string(yaml::NameOf(experiment.reference.format)));
+  const auto add_text = [&](const std::string& flag, const std::string& value) {
+    if (!value.empty()) add(flag, "'" + value + "'");
+  };
+  add_text("--sim-columns", experiment.candidate.columns);
+  add_text("--sim-units", experiment.candidate.units);
+  add_text("--real-columns", experiment.reference.columns);
+  add_text("--real-units", experiment.reference.units);
   if (experiment.reference.tag_offset_m != 0.0) {
     add("--tag-offset", fmt::format("{}", experiment.reference.tag_offset_m));
   }

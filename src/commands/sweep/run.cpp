@@ -132,9 +132,12 @@ int CoresToUse() {
 std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
                                            const SweepRunRequest& request) {
   const terminal::StopSignal stop;
-  SweepProgress progress(request.progress, SizeOf(evaluator.experiment()));
+  const experiment::Experiment& experiment = evaluator.experiment();
+  SweepProgress progress(request.progress, SizeOf(experiment));
   std::optional<sweep::SweepResult> result;
-  if (evaluator.experiment().candidate.kind == experiment::CandidateKind::kSimulation) {
+  const bool is_computed = experiment.candidate.kind != experiment::CandidateKind::kLogs ||
+                           experiment.reference.kind == experiment::ReferenceKind::kProgram;
+  if (is_computed) {
     result = RunSimulated(evaluator, request, progress, stop);
   } else {
     const sweep::RunTrials run =

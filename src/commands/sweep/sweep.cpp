@@ -276,7 +276,9 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
       "goal: calibrate fits the simulator to logs (configs/calibrate.yaml).\n"
       "Example: rift sweep configs/waypoints/paper.yaml --out out/paper\n"
       "         rift sweep configs/waypoints/paper.yaml --out out/paper --suggest 3 --shrink "
-      "worst");
+      "worst\n"
+      "         rift sweep configs/programs/diff_drive.yaml --out out/own (somebody else's "
+      "simulator)");
 }
 
 }  // namespace

@@ -8,8 +8,11 @@
 #include <set>
 #include <stdexcept>
 
+#include "program_side.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
+#include "rift/gap/doubts.hpp"
+#include "rift/statistics/hash.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/trajectory/frame_grid.hpp"
@@ -139,8 +142,43 @@ Evaluator::Evaluator(const experiment::Experiment& experiment, std::string exper
   if (candidate_is_logs && reference_is_logs) {
     InFile(experiment_file_, [&] { CheckPaths(experiment); });
   }
-  if (!candidate_is_logs || !reference_is_logs) {
-    TrialOf(experiment, {}, experiment.seed);  // complains now, not in trial 1
+  InFile(experiment_file_, [&] {
+    candidate_program_ = CandidateProgram(experiment,
+                                          {ReadOptionsOf(experiment.candidate, "candidate"), 0.0,
+                                           "candidate.format", experiment.candidate.grid_fps},
+                                          inputs_);
+    reference_program_ = ReferenceProgram(
+        experiment,
+        {ReadOptionsOf(experiment.reference, "reference"), experiment.reference.tag_offset_m,
+         "reference.format", experiment.reference.grid_fps},
+        inputs_);
+  });
+  // What is wrong with the task is said now, not in trial 1.
+  const bool is_simulated =
+      experiment.candidate.kind == CandidateKind::kSimulation ||
+      (candidate_is_logs && experiment.reference.kind == ReferenceKind::kNominal);
+  if (is_simulated || (experiment.reference.kind == ReferenceKind::kPath && candidate_is_logs)) {
+    TrialOf(experiment, {}, experiment.seed);
+  } else if (experiment.reference.kind == ReferenceKind::kPath) {
+    InFile(experiment_file_, [&] { experiment::TaskOf(experiment); });
+  }
+  CheckKinds();
+}
+
+/// Which of objective, start, candidate and reference go together.
+void Evaluator::CheckKinds() const {
+  const experiment::Experiment& experiment = experiment_;
+  const bool reference_is_logs = experiment.reference.kind == ReferenceKind::kLogs;
+  if (candidate_program_ && experiment.objective == experiment::Objective::kOdometry) {
+    throw std::invalid_argument(fmt::format(
+        "{}: objective is odometry, and a program (candidate.kind) has no encoders for rift",
+        experiment_file_));
+  }
+  if (candidate_program_ && experiment.start == experiment::Start::kReference) {
+    throw std::invalid_argument(
+        fmt::format("{}: start is reference, and candidate.kind is program: rift does not place "
+                    "somebody else's robot; leave start out",
+                    experiment_file_));
   }
   if (experiment.objective == experiment::Objective::kOdometry && reference_is_logs) {
     throw std::invalid_argument(fmt::format(
@@ -200,6 +238,7 @@ CandidateRun Evaluator::RunOf(const TrialRequest& request, const Recording& refe
             EncodersBeside(path)};
   }
   if (reference.status != TrialStatus::kOk) return {reference, {}};  // nothing to compare with
+  if (candidate_program_) return {candidate_program_->Run(request), {}};
   const bool lacks_start =
       experiment_.start == experiment::Start::kReference && !reference.trajectory.HasYaw();
   if (lacks_start) {
@@ -238,6 +277,8 @@ Recording Evaluator::Reference(const TrialRequest& request) {
                         experiment_, request.theta, experiment_.reference.tag_offset_m);
     case ReferenceKind::kNominal:
       return Nominal(request.seed.value_or(experiment_.seed));
+    case ReferenceKind::kProgram:
+      return reference_program_->Run(request);
     case ReferenceKind::kPath:
       break;
   }
@@ -278,13 +319,27 @@ TrialRow Evaluator::EvaluateOdometry(const TrialRequest& request) {
   return CompareTrial(experiment_, request, wheels, run.camera);
 }
 
+/// Only of two logs: what a worker process would say nobody hears.
+void Evaluator::NoteDoubts(const Recording& candidate, const Recording& reference) const {
+  const bool are_logs = experiment_.candidate.kind == CandidateKind::kLogs &&
+                        experiment_.reference.kind == ReferenceKind::kLogs;
+  const bool are_there =
+      candidate.status == TrialStatus::kOk && reference.status == TrialStatus::kOk;
+  if (!are_logs || !are_there) return;
+  for (const std::string& doubt : gap::Doubts(candidate.trajectory, reference.trajectory)) {
+    inputs_.note(fmt::format("SIM {} and REAL {}: {}", candidate.source, reference.source, doubt));
+  }
+}
+
 TrialRow Evaluator::Evaluate(const TrialRequest& asked) {
   if (experiment_.objective == experiment::Objective::kOdometry) return EvaluateOdometry(asked);
   TrialRequest request = asked;
   if (request.seed) request.seed = SeedWithReference(*request.seed);
   const Recording reference = Reference(request);
   try {
-    return CompareTrial(experiment_, request, Candidate(request, reference), reference);
+    const Recording candidate = Candidate(request, reference);
+    NoteDoubts(candidate, reference);
+    return CompareTrial(experiment_, request, candidate, reference);
   } catch (const yaml::Error& broken_rule) {
     const Recording none{
         .status = TrialStatus::kInvalid, .reason = broken_rule.what(), .source = "experiment"};
@@ -299,7 +354,8 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
         "{}: objective is odometry, and suggested drives are judged by the gap of their poses",
         experiment_file_));
   }
-  RecordedLogs logs(inputs_, {{.format = trajectory::Format::kRift}, 0.0, "the format of rift drive"});
+  RecordedLogs logs(inputs_,
+                    {{.format = trajectory::Format::kRift}, 0.0, "the format of rift drive"});
   Recording driven = logs.At(path);
   if (driven.status == TrialStatus::kOk && outcome != trial::Outcome::kReached) {
     driven.status = StatusOf(outcome);
@@ -315,7 +371,8 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
 
 double Evaluator::NoiseFloor_m(const experiment::Theta& theta) {
   const std::vector<std::string>& trials = experiment_.reference.trials.names;
-  const bool has_repeats = trials.size() > 1 && experiment_.reference.kind != ReferenceKind::kPath;
+  const bool has_repeats = trials.size() > 1 && !reference_program_ &&
+                           experiment_.reference.kind != ReferenceKind::kPath;
   if (!has_repeats) return gap::kNotComputed;
   std::set<std::string> sources;  // one path twice is no repeat
   if (experiment_.reference.kind == ReferenceKind::kLogs) {
@@ -364,11 +421,19 @@ std::string Evaluator::KeyOf(const TrialRequest& request) const {
     const std::string path = ReferencePath(request.theta, request.trial);
     key += fmt::format(" log={}", reference_logs_.HashOf(path));
   }
+  for (const auto& program : {candidate_program_, reference_program_}) {
+    if (!program || program->HashesText().empty()) continue;
+    key += fmt::format(" program={}", statistics::Hash128Text(program->HashesText()));
+  }
   return key;
 }
 
 std::string Evaluator::InputsText() const {
-  return candidate_logs_.HashesText() + reference_logs_.HashesText();
+  std::string text = candidate_logs_.HashesText() + reference_logs_.HashesText();
+  for (const auto& program : {candidate_program_, reference_program_}) {
+    if (program) text += program->HashesText();
+  }
+  return text;
 }
 
 }  // namespace rift::sweep

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "program_side.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
@@ -24,6 +25,12 @@ const Recording& Evaluator::Nominal(std::uint64_t seed) {
   const auto found = nominal_runs_.find(seed);
   if (found != nominal_runs_.end()) return found->second;
   if (nominal_runs_.size() >= kMostKept) nominal_runs_.clear();
+  if (candidate_program_) {
+    const TrialRequest nominal{.theta = experiment::NominalTheta(experiment_),
+                               .trial = experiment_.reference.trials.names.front(),
+                               .seed = seed};
+    return nominal_runs_[seed] = candidate_program_->Run(nominal);
+  }
   const geometry::Pose2 start = experiment::TaskOf(experiment_).Start();
   const SimulatedTrial trial = TrialOf(experiment_, start, seed);
   return nominal_runs_[seed] = RecordingOf(Simulate(trial), trial);
@@ -56,7 +63,7 @@ std::string Evaluator::ReplacedText(int seeds) {
 
 std::vector<ReplacedReference> Evaluator::CheckReferences() {
   const bool is_run = experiment_.reference.kind == ReferenceKind::kNominal &&
-                      experiment_.candidate.kind == CandidateKind::kSimulation;
+                      experiment_.candidate.kind != CandidateKind::kLogs;
   if (!is_run) return {};
   int seeds = static_cast<int>(experiment_.reference.trials.names.size());
   const bool is_repeated = experiment_.falsify.repeat == Repeat::kEvery ||

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 
 #include "rift/experiment/experiment.hpp"
@@ -10,6 +11,8 @@
 
 namespace rift::sweep {
 
+class ProgramSide;
+
 /// One run of the candidate as the camera and its wheels saw it.
 struct CandidateRun {
   Recording camera;
@@ -18,7 +21,7 @@ struct CandidateRun {
 
 /// The evaluator of an experiment: one trial at one setting, theta -> gap. Grid, search, shrinking,
 /// rare events, suggestions, calibration and replay all ask it. Trajectories come from where the
-/// experiment says: logs, simulated runs, the waypoint path.
+/// experiment says: logs, simulated runs, runs of a program, the waypoint path.
 class Evaluator {
  public:
   /// Throws std::invalid_argument, naming `experiment_file`, when the experiment lacks what its
@@ -72,6 +75,8 @@ class Evaluator {
   void RequirePath(const experiment::PathTemplate& path, const std::string& key) const;
   std::string Filled(const experiment::PathTemplate& path, const experiment::Theta& theta,
                      const std::string& trial) const;
+  void CheckKinds() const;
+  void NoteDoubts(const Recording& candidate, const Recording& reference) const;
   std::string ReferencePath(const experiment::Theta& theta, const std::string& trial) const;
   TrialRow EvaluateOdometry(const TrialRequest& request);
   const Recording& Nominal(std::uint64_t seed);
@@ -84,6 +89,8 @@ class Evaluator {
   Inputs inputs_;
   RecordedLogs candidate_logs_;
   RecordedLogs reference_logs_;
+  std::shared_ptr<ProgramSide> candidate_program_;  ///< where that side is a program
+  std::shared_ptr<ProgramSide> reference_program_;
   std::map<std::uint64_t, Recording> nominal_runs_;  ///< by seed
   std::map<std::uint64_t, std::uint64_t> used_;      ///< seeds with a reference, by those asked for
   std::map<std::string, double> noise_floors_m_;     ///< by the references' sources

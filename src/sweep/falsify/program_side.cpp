@@ -1,0 +1,280 @@
+#include "program_side.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "rift/experiment/path_template.hpp"
+#include "rift/statistics/hash.hpp"
+#include "rift/trajectory/csv.hpp"
+
+namespace rift::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr const char* kLogName = "trajectory.csv";
+constexpr const char* kThetaName = "theta.json";
+
+std::string Joined(const std::string& text, const std::string& words) {
+  return words.empty() ? text : text + ": " + words;
+}
+
+/// What a program is told of its trial.
+ordered_json TrialJson(const experiment::Experiment& experiment, const TrialRequest& request,
+                       const std::string& folder) {
+  ordered_json theta = ordered_json::object();
+  for (size_t i = 0; i < request.theta.size(); ++i) {
+    const experiment::ParameterValue& value = request.theta[i];
+    const std::string name = experiment.space.parameters[i].key;
+    if (value.number) theta[name] = *value.number;
+    else theta[name] = value.text;
+  }
+  return {{"theta", theta},
+          {"seed", request.seed.value_or(experiment.seed)},
+          {"trial", request.trial},
+          {"out", (fs::path(folder) / kLogName).string()}};
+}
+
+/// An argument with the values of the trial in the place of their names in braces.
+std::string FilledIn(const std::string& word, const experiment::Experiment& experiment,
+                     const TrialRequest& request, const std::string& folder) {
+  std::vector<experiment::Parameter> parameters = experiment.space.parameters;
+  experiment::Theta theta = request.theta;
+  const auto add = [&](const char* name, experiment::ParameterValue value) {
+    parameters.push_back({.key = name});
+    theta.push_back(std::move(value));
+  };
+  const std::uint64_t seed = request.seed.value_or(experiment.seed);
+  add("seed", {fmt::format("{}", seed), static_cast<double>(seed)});
+  add("folder", {folder, std::nullopt});
+  add("out", {(fs::path(folder) / kLogName).string(), std::nullopt});
+  add("theta", {(fs::path(folder) / kThetaName).string(), std::nullopt});
+  return experiment::FillTemplate(word, parameters, theta, request.trial);
+}
+
+/// rift mends a log that a killed writer left; of a program that says it is done it is a fault.
+bool IsCutShort(const trajectory::Log& log) {
+  return std::any_of(log.notes.begin(), log.notes.end(), [](const std::string& note) {
+    return note.find("cut short") != note.npos;
+  });
+}
+
+bool IsCrash(TrialStatus status) {
+  return status == TrialStatus::kCrashed || status == TrialStatus::kOutOfMemory;
+}
+
+}  // namespace
+
+ProgramSide::ProgramSide(const experiment::Experiment& experiment, ProgramOptions options,
+                         const Inputs& inputs)
+    : experiment_(experiment), options_(std::move(options)), inputs_(inputs) {
+  if (options_.run.words.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "{}.run is missing: name the program, such as {}.run: [python3, sim.py, --out, \"{{out}}\"]",
+        options_.key, options_.key));
+  }
+  const TrialRequest nominal{.theta = experiment::NominalTheta(experiment),
+                             .trial = experiment.reference.trials.names.front()};
+  for (const std::string& word : options_.run.words) {
+    try {
+      FilledIn(word, experiment, nominal, "/");
+      const std::vector<std::string> names = experiment::TemplateNames(word);
+      const bool names_folder_only =
+          std::all_of(names.begin(), names.end(), [](const auto& name) { return name == "folder"; });
+      if (options_.persistent && !names_folder_only) {
+        throw std::invalid_argument(fmt::format(
+            "'{}': a persistent program is told of its trials in lines of JSON", word));
+      }
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}.run: {}", options_.key, error.what()));
+    }
+    std::error_code none;
+    if (!fs::path(word).is_absolute() || !fs::is_regular_file(word, none)) continue;
+    const std::optional<std::string> bytes = inputs.read(word);
+    if (bytes) hashes_ += fmt::format("{}  {}\n", statistics::Hash128Text(*bytes), word);
+  }
+}
+
+ProgramSide::~ProgramSide() {
+  // A copy of the process that started it, which alone may end it.
+  if (program_ && program_->Owner() != ::getpid()) static_cast<void>(program_.release());
+}
+
+ProgramStart ProgramSide::StartOf(const TrialRequest& request, const std::string& folder) const {
+  ProgramStart start{.memory_mb = experiment_.run.memory_mb, .talks = options_.persistent};
+  for (const std::string& word : options_.run.words) {
+    start.arguments.push_back(FilledIn(word, experiment_, request, folder));
+  }
+  if (!options_.persistent) {
+    const ordered_json trial = TrialJson(experiment_, request, folder);
+    start.environment["RIFT_TRIAL"] = trial.dump();
+    start.files[kThetaName] = trial.dump(1) + "\n";
+  }
+  return start;
+}
+
+Recording ProgramSide::Run(const TrialRequest& request) {
+  Recording recording;
+  int runs = 0;
+  do {
+    recording = RunOnce(request);
+    ++runs;
+  } while (IsCrash(recording.status) && runs <= experiment_.run.retries);
+  if (IsCrash(recording.status) && runs > 1) {
+    recording.reason += runs == 2 ? ", twice" : fmt::format(", {} times", runs);
+  }
+  return recording;
+}
+
+Recording ProgramSide::RunOnce(const TrialRequest& request) {
+  Recording recording = options_.persistent ? RunPersistent(request) : RunSpawned(request);
+  recording.source =
+      fmt::format("program with seed {}", request.seed.value_or(experiment_.seed));
+  return recording;
+}
+
+Recording ProgramSide::RunSpawned(const TrialRequest& request) {
+  const std::string folder = ExternalProgram::MakeFolder();
+  const ProgramStart start = StartOf(request, folder);
+  ExternalProgram program(start, folder);
+  Recording recording;
+  TakeExit(program.Wait(), program.LastWords(), recording);
+  ReadLogFile(folder, recording);
+  return recording;
+}
+
+/// A program that breaks the protocol is ended: nobody knows what it would answer next.
+Recording ProgramSide::RunPersistent(const TrialRequest& request) {
+  Recording recording;
+  if (program_ && program_->Owner() != ::getpid()) static_cast<void>(program_.release());
+  if (!program_) {
+    const std::string folder = ExternalProgram::MakeFolder();
+    program_ = std::make_unique<ExternalProgram>(StartOf(request, folder), folder);
+  }
+  program_->ForgetWords();
+  std::error_code none;
+  fs::remove(fs::path(program_->Folder()) / kLogName, none);
+  std::optional<std::string> line;
+  if (program_->SendLine(TrialJson(experiment_, request, program_->Folder()).dump())) {
+    line = program_->ReceiveLine();
+  }
+  if (!line) {
+    const ExternalProgram::Exit exit = program_->Wait();
+    TakeExit(exit, program_->LastWords(), recording);
+    recording.reason = Joined("ended in the middle of a trial", recording.reason);
+    recording.status = TrialStatus::kCrashed;
+    program_.reset();
+    return recording;
+  }
+  const ordered_json answer = ordered_json::parse(*line, nullptr, false);
+  const bool is_answer =
+      answer.is_object() && answer.contains("status") && answer["status"].is_string();
+  const auto names = EnumNames(TrialStatus{});
+  const auto found =
+      is_answer ? std::find(names.begin(), names.end(), answer["status"].get<std::string>())
+                : names.end();
+  if (found == names.end()) {
+    recording.status = TrialStatus::kFault;
+    recording.reason = fmt::format(
+        "answered '{}', and a line of JSON with a status is expected, such as {{\"status\": \"ok\"}}",
+        trajectory::csv::Shown(*line));
+    program_.reset();
+    return recording;
+  }
+  recording.status = static_cast<TrialStatus>(found - names.begin());
+  if (answer.contains("reason") && answer["reason"].is_string()) {
+    recording.reason = answer["reason"].get<std::string>();
+  }
+  if (recording.status != TrialStatus::kOk && recording.reason.empty()) {
+    recording.reason = Joined("the program says so", program_->LastWords());
+  }
+  if (answer.contains("log") && answer["log"].is_string()) {
+    ReadLog(answer["log"].get<std::string>(), recording);
+  } else {
+    ReadLogFile(program_->Folder(), recording);
+  }
+  return recording;
+}
+
+void ProgramSide::TakeExit(const ExternalProgram::Exit& exit, const std::string& words,
+                           Recording& recording) const {
+  if (exit.signal != 0) {
+    recording.status = TrialStatus::kCrashed;
+    recording.reason =
+        Joined(fmt::format("ended by signal {} ({})", exit.signal, ::strsignal(exit.signal)), words);
+  } else if (exit.code != 0) {
+    const experiment::ExitCodes& codes = options_.exit_codes;
+    recording.status = exit.code == codes.timed_out    ? TrialStatus::kTimedOut
+                       : exit.code == codes.fell       ? TrialStatus::kFell
+                       : exit.code == codes.left_arena ? TrialStatus::kLeftArena
+                       : exit.code == codes.lost       ? TrialStatus::kLost
+                                                       : TrialStatus::kFault;
+    recording.reason = Joined(fmt::format("ended with exit code {}", exit.code), words);
+  }
+  const bool is_full = words.find("bad_alloc") != words.npos ||
+                       words.find("MemoryError") != words.npos;
+  if (recording.status != TrialStatus::kOk && is_full) {
+    recording.status = TrialStatus::kOutOfMemory;
+    recording.reason =
+        Joined(fmt::format("wanted more than {} MB of memory", experiment_.run.memory_mb), words);
+  }
+}
+
+void ProgramSide::ReadLogFile(const std::string& folder, Recording& recording) const {
+  const std::optional<std::string> text = inputs_.read((fs::path(folder) / kLogName).string());
+  if (text) {
+    ReadLog(*text, recording);
+  } else if (recording.status == TrialStatus::kOk) {
+    recording.status = TrialStatus::kFault;
+    recording.reason = "ended well and wrote no trajectory to {out}";
+  }
+}
+
+/// Of a run that did not arrive the log tells how far it came, if it can be read.
+void ProgramSide::ReadLog(const std::string& text, Recording& recording) const {
+  try {
+    trajectory::Log log = ReadMovedLog(text, "{out}", options_.log);
+    if (IsCutShort(log)) throw std::invalid_argument("{out}: its last row is cut short");
+    recording.trajectory = std::move(log.trajectory);
+    if (recording.status != TrialStatus::kOk) {
+      recording.left_m = DistanceLeft_m(recording.trajectory);
+    }
+  } catch (const std::invalid_argument& bad_log) {
+    if (recording.status != TrialStatus::kOk) return;
+    recording.status = TrialStatus::kUnreadable;
+    recording.reason = bad_log.what();
+  }
+}
+
+double ProgramSide::DistanceLeft_m(const trajectory::Trajectory& path) const {
+  if (experiment_.waypoints.size() < 2 || path.poses.empty()) return gap::kNotComputed;
+  return (experiment_.waypoints.back().Position() - path.poses.back().Position()).norm();
+}
+
+std::unique_ptr<ProgramSide> CandidateProgram(const experiment::Experiment& experiment,
+                                              LogOptions log, const Inputs& inputs) {
+  const experiment::CandidateOptions& side = experiment.candidate;
+  if (side.kind != experiment::CandidateKind::kProgram) return nullptr;
+  return std::make_unique<ProgramSide>(
+      experiment,
+      ProgramOptions{"candidate", side.run, side.persistent, side.exit_codes, std::move(log)},
+      inputs);
+}
+
+std::unique_ptr<ProgramSide> ReferenceProgram(const experiment::Experiment& experiment,
+                                              LogOptions log, const Inputs& inputs) {
+  const experiment::ReferenceOptions& side = experiment.reference;
+  if (side.kind != experiment::ReferenceKind::kProgram) return nullptr;
+  return std::make_unique<ProgramSide>(
+      experiment,
+      ProgramOptions{"reference", side.run, side.persistent, side.exit_codes, std::move(log)},
+      inputs);
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,298 @@
+#include "rift/sweep/run/external_program.hpp"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "rift/files/files.hpp"
+
+namespace rift::sweep {
+namespace {
+
+constexpr const char* kErrors = "stderr.txt";
+
+[[noreturn]] void CannotStart() {
+  throw std::runtime_error(fmt::format("cannot start a program: {}", strerror(errno)));
+}
+
+/// The two ends of a pipe or a socket, closed unless they are taken.
+struct Ends {
+  int ours = -1, theirs = -1;
+};
+
+Ends SocketPair() {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) CannotStart();
+  return {ends[0], ends[1]};
+}
+
+void CloseIfOpen(int descriptor) {
+  if (descriptor >= 0) ::close(descriptor);
+}
+
+/// Closes all from 3 on but those.
+void CloseAllBut(std::vector<int> kept) {
+  std::sort(kept.begin(), kept.end());
+  unsigned next = 3;
+  for (const int descriptor : kept) {
+    if (descriptor < 3) continue;
+    const auto number = static_cast<unsigned>(descriptor);
+    if (number > next) ::close_range(next, number - 1, 0);
+    next = number + 1;
+  }
+  ::close_range(next, ~0U, 0);
+}
+
+void SetLimits(int memory_mb) {
+  const rlim_t most = static_cast<rlim_t>(memory_mb) << 20;
+  const auto lower = [](int what, rlim_t limit) {
+    rlimit now{};
+    ::getrlimit(static_cast<__rlimit_resource>(what), &now);
+    now.rlim_cur = std::min(limit, now.rlim_max);
+    now.rlim_max = now.rlim_cur;
+    ::setrlimit(static_cast<__rlimit_resource>(what), &now);
+  };
+  lower(RLIMIT_DATA, most);
+  lower(RLIMIT_FSIZE, most);
+  lower(RLIMIT_CORE, 0);
+}
+
+void Write(int file, const std::string& text) {
+  for (size_t written = 0; written < text.size();) {
+    const ssize_t n = ::write(file, text.data() + written, text.size() - written);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) CannotStart();
+    written += static_cast<size_t>(n);
+  }
+}
+
+/// Not made durable: the folder is gone after the trial.
+void WriteInto(const std::string& folder, const std::string& name, const std::string& text) {
+  const std::string path = (std::filesystem::path(folder) / name).string();
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  if (file < 0) CannotStart();
+  Write(file, text);
+  ::close(file);
+}
+
+/// What becomes the program.
+[[noreturn]] void Become(const ProgramStart& start, const std::string& folder, int in, int out) noexcept {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::setpgid(0, 0);
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD}) {
+    std::signal(signal, SIG_DFL);
+  }
+  const bool is_there = ::chdir(folder.c_str()) == 0;
+  const int errors = ::open(kErrors, O_WRONLY | O_CREAT | O_APPEND, 0600);
+  const int nothing = ::open("/dev/null", O_RDWR);
+  ::dup2(start.talks ? in : nothing, 0);
+  ::dup2(start.talks ? out : nothing, 1);
+  ::dup2(errors, 2);
+  CloseAllBut({});
+  for (const auto& [name, value] : start.environment) ::setenv(name.c_str(), value.c_str(), 1);
+  SetLimits(start.memory_mb);
+  std::vector<char*> arguments;
+  for (const std::string& argument : start.arguments) {
+    arguments.push_back(const_cast<char*>(argument.c_str()));
+  }
+  arguments.push_back(nullptr);
+  if (is_there) ::execvp(arguments[0], arguments.data());
+  const std::string reason = fmt::format("cannot run {}: {}\n", arguments[0], strerror(errno));
+  Write(2, reason);
+  ::_exit(127);
+}
+
+/// Empty for a process that has gone.
+std::string StatOf(pid_t pid) {
+  try {
+    return files::ReadIfThere(fmt::format("/proc/{}/stat", pid)).value_or("");
+  } catch (const std::exception&) {
+    return "";
+  }
+}
+
+/// Processes of which this one is the parent (proc(5), stat: the fourth field).
+std::vector<pid_t> Children() {
+  std::vector<pid_t> children;
+  DIR* const all = ::opendir("/proc");
+  if (all == nullptr) return children;
+  while (const dirent* entry = ::readdir(all)) {
+    const int pid = std::atoi(entry->d_name);
+    if (pid <= 0) continue;
+    const std::string stat = StatOf(pid);
+    const size_t name_end = stat.rfind(')');
+    if (name_end == stat.npos || name_end + 4 >= stat.size()) continue;
+    if (std::atoi(stat.c_str() + name_end + 4) == ::getpid()) children.push_back(pid);
+  }
+  ::closedir(all);
+  return children;
+}
+
+/// Kills generation after generation: the children of one that died are children of this process.
+void KillDescendants() {
+  while (true) {
+    pid_t reaped = 0;
+    while ((reaped = ::waitpid(-1, nullptr, WNOHANG)) > 0) {
+    }
+    if (reaped < 0 && errno == ECHILD) return;
+    for (const pid_t child : Children()) ::kill(child, SIGKILL);
+    while (::waitpid(-1, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+}
+
+/// Serves until the caller closes its end: tells it of the program's end.
+[[noreturn]] void Keep(const ProgramStart& start, const std::string& folder, int control, int in,
+                       int out) noexcept {
+  ::setsid();
+  ::prctl(PR_SET_PDEATHSIG, 0);
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
+  CloseAllBut({control, in, out});
+  sigset_t child_signal;
+  ::sigemptyset(&child_signal);
+  ::sigaddset(&child_signal, SIGCHLD);
+  ::sigprocmask(SIG_BLOCK, &child_signal, nullptr);
+  const int ends = ::signalfd(-1, &child_signal, SFD_CLOEXEC | SFD_NONBLOCK);
+  const pid_t program = ::fork();
+  if (program == 0) Become(start, folder, in, out);
+  CloseIfOpen(in);
+  CloseIfOpen(out);
+  bool is_wanted = program > 0;
+  while (is_wanted) {
+    std::array<pollfd, 2> waiting{{{control, POLLIN, 0}, {ends, POLLIN, 0}}};
+    if (::poll(waiting.data(), waiting.size(), -1) < 0) continue;
+    signalfd_siginfo signal{};
+    while (::read(ends, &signal, sizeof signal) > 0) {
+    }
+    int status = 0;
+    for (pid_t pid = 0; (pid = ::waitpid(-1, &status, WNOHANG)) > 0;) {
+      if (pid == program) is_wanted = ::send(control, &status, sizeof status, MSG_NOSIGNAL) > 0;
+    }
+    if (waiting[0].revents != 0) is_wanted = false;  // nothing is ever sent: it was closed
+  }
+  KillDescendants();
+  std::error_code none;
+  std::filesystem::remove_all(folder, none);
+  ::_exit(0);
+}
+
+}  // namespace
+
+std::string ExternalProgram::MakeFolder() {
+  std::string path = (std::filesystem::temp_directory_path() / "rift-XXXXXX").string();
+  if (::mkdtemp(path.data()) == nullptr) {
+    throw std::runtime_error(fmt::format("cannot make a folder in {}: {}",
+                                         std::filesystem::temp_directory_path().string(),
+                                         strerror(errno)));
+  }
+  return path;
+}
+
+ExternalProgram::ExternalProgram(const ProgramStart& start, std::string folder)
+    : folder_(std::move(folder)), owner_(::getpid()) {
+  if (start.arguments.empty()) throw std::runtime_error("a program has no name");
+  for (const auto& [name, text] : start.files) WriteInto(folder_, name, text);
+  const Ends control = SocketPair();
+  Ends in, out;
+  if (start.talks) {
+    in = SocketPair();
+    out = SocketPair();
+  }
+  keeper_ = ::fork();
+  if (keeper_ == 0) Keep(start, folder_, control.theirs, in.theirs, out.theirs);
+  for (const int theirs : {control.theirs, in.theirs, out.theirs}) CloseIfOpen(theirs);
+  control_ = control.ours;
+  to_program_ = in.ours;
+  from_program_ = out.ours;
+  if (keeper_ < 0) CannotStart();
+}
+
+ExternalProgram::~ExternalProgram() {
+  for (const int ours : {control_, to_program_, from_program_}) CloseIfOpen(ours);
+  while (keeper_ > 0 && ::waitpid(keeper_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+ExternalProgram::Exit ExternalProgram::Wait() {
+  int status = 0;
+  ssize_t n = 0;
+  do {
+    n = ::recv(control_, &status, sizeof status, MSG_WAITALL);
+  } while (n < 0 && errno == EINTR);
+  if (n != sizeof status) return {0, SIGKILL};  // somebody killed the keeper
+  if (WIFSIGNALED(status)) return {0, WTERMSIG(status)};
+  return {WEXITSTATUS(status), 0};
+}
+
+bool ExternalProgram::SendLine(const std::string& line) {
+  const std::string bytes = line + '\n';
+  for (size_t sent = 0; sent < bytes.size();) {
+    const ssize_t n =
+        ::send(to_program_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    sent += static_cast<size_t>(n);
+  }
+  return true;
+}
+
+std::optional<std::string> ExternalProgram::ReceiveLine() {
+  constexpr size_t kLongest = size_t{64} << 20;
+  size_t searched = 0;
+  while (true) {
+    const size_t end = arrived_.find('\n', searched);
+    if (end != arrived_.npos) {
+      std::string line = arrived_.substr(0, end);
+      arrived_.erase(0, end + 1);
+      return line;
+    }
+    searched = arrived_.size();
+    if (searched > kLongest) return std::exchange(arrived_, "");
+    std::array<char, 65536> bytes;
+    const ssize_t n = ::recv(from_program_, bytes.data(), bytes.size(), 0);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return std::nullopt;
+    arrived_.append(bytes.data(), static_cast<size_t>(n));
+  }
+}
+
+std::string ExternalProgram::LastWords() const {
+  constexpr size_t kLongest = 200;
+  std::string last =
+      files::ReadIfThere(std::filesystem::path(folder_) / kErrors).value_or("");
+  last.resize(last.find_last_not_of(" \t\r\n") + 1);
+  last.erase(0, last.rfind('\n') + 1);
+  // Its name is drawn at random, and the same trial gives the same row.
+  for (size_t at = last.find(folder_); at != last.npos; at = last.find(folder_, at)) {
+    last.replace(at, folder_.size(), "{folder}");
+  }
+  return last.substr(0, kLongest);
+}
+
+void ExternalProgram::ForgetWords() {
+  std::error_code none;
+  std::filesystem::resize_file(std::filesystem::path(folder_) / kErrors, 0, none);
+}
+
+}  // namespace rift::sweep

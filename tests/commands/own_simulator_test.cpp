@@ -1,0 +1,351 @@
+// candidate.kind: program, end to end: somebody else's simulator swept, shrunk, replayed, killed.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/documented.hpp"
+#include "support/process.hpp"
+#include "support/running_rift.hpp"
+#include "support/tree.hpp"
+#include "support/trials.hpp"
+#include "support/until.hpp"
+
+namespace rift {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::ProcessResult;
+using test::ReadFile;
+using test::RunRift;
+using test::TemporaryFolder;
+using test::WriteText;
+
+/// Processes with this text among their arguments.
+int ProcessesWith(const std::string& text) {
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    std::ifstream file(entry.path() / "cmdline", std::ios::binary);
+    const std::string arguments{std::istreambuf_iterator<char>(file), {}};
+    count += arguments.find(text) != arguments.npos;
+  }
+  return count;
+}
+
+std::vector<std::map<std::string, std::string>> Table(const std::string& folder) {
+  std::istringstream lines(ReadFile(fs::path(folder) / "table.csv"));
+  std::string line, cell;
+  std::vector<std::string> header;
+  std::vector<std::map<std::string, std::string>> rows;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::vector<std::string> values;
+    while (std::getline(cells, cell, ',')) values.push_back(cell);
+    if (header.empty()) {
+      header = values;
+      continue;
+    }
+    rows.emplace_back();
+    for (size_t i = 0; i < values.size(); ++i) rows.back()[header[i]] = values[i];
+  }
+  return rows;
+}
+
+const std::string kSpawned = "/configs/programs/diff_drive.yaml";
+const std::string kPersistent = "/configs/programs/diff_drive_persistent.yaml";
+
+std::string Sweep(const TemporaryFolder& folder, const std::string& name, const std::string& config,
+                  const std::string& jobs) {
+  const ProcessResult result = RunRift({"sweep", test::SourceDir() + config, "--jobs", jobs, "--out",
+                                        folder / name, "--budget", "12"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  return folder / name;
+}
+
+TEST_CASE("A simulator of thirty lines of Python is falsified, shrunk and replayed") {
+  const TemporaryFolder folder;
+  const std::string out = Sweep(folder, "a", kSpawned, "2");
+  const json summary = json::parse(ReadFile(fs::path(out) / "summary.json"));
+  CHECK(ReadFile(fs::path(out) / "summary.json").find("falsified") != std::string::npos);
+  std::string failing;
+  for (const auto& row : Table(out)) {
+    CHECK(row.at("status") == "ok");
+    if (row.at("falsified") == "true" && failing.empty()) failing = row.at("id");
+  }
+  REQUIRE_FALSE(failing.empty());
+  const ProcessResult replay = RunRift({"simulate", "--replay", out, failing});
+  CHECK(replay.exit_code == 0);
+  CHECK(replay.out.find("to the last bit as in the table") != std::string::npos);
+  CHECK(fs::exists(fs::path(out) / "replay" / failing / "trajectory.csv"));
+  const ProcessResult shrunk =
+      RunRift({"sweep", test::SourceDir() + kSpawned, "--jobs", "2", "--out", out, "--budget", "12",
+               "--shrink", failing});
+  INFO(shrunk.err);
+  CHECK(shrunk.out.find("still fails with 1 of its 2 changes") != std::string::npos);
+  CHECK(shrunk.out.find("mu: ") != std::string::npos);
+  CHECK(RunRift({"simulate", "--replay", out + "/shrunk", "2"}).exit_code == 0);
+}
+
+TEST_CASE("Spawned and persistent, with one worker and two, a sweep gives the same bytes") {
+  const TemporaryFolder folder;
+  const std::string spawned = Sweep(folder, "spawned", kSpawned, "2");
+  const std::string one = Sweep(folder, "one", kPersistent, "1");
+  const std::string two = Sweep(folder, "two", kPersistent, "2");
+  for (const std::string file : {"table.csv", "summary.json"}) {
+    INFO(file);
+    CHECK(ReadFile(fs::path(one) / file) == ReadFile(fs::path(two) / file));
+  }
+  CHECK(ReadFile(fs::path(one) / "table.csv") == ReadFile(fs::path(spawned) / "table.csv"));
+}
+
+TEST_CASE("A row whose program has changed since is said to come out different") {
+  const TemporaryFolder folder;
+  const std::string script = ReadFile(test::SourceDir() + "/configs/programs/diff_drive.py");
+  WriteText(folder / "diff_drive.py", script);
+  fs::copy(test::SourceDir() + kSpawned, folder / "sweep.yaml");
+  REQUIRE(RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out", "--budget", "2"})
+              .exit_code == 0);
+  std::string changed = script;
+  changed.replace(changed.find("0.2 * error"), 3, "0.3");
+  WriteText(folder / "diff_drive.py", changed);
+  const ProcessResult replay = RunRift({"simulate", "--replay", folder / "out", "1"});
+  CHECK(replay.exit_code == 3);
+  CHECK(replay.err.find("row 1 comes out different") != std::string::npos);
+}
+
+/// A simulator with every fault that the issue of foreign programs has; its rows are by mode.
+const std::string kFaulty = R"py(
+import json, os, signal, subprocess, sys, time
+
+GOOD = "t_s,x_m,y_m\n" + "".join(f"{i / 10},{i / 20},0\n" for i in range(15))
+
+def leave_child(marker):
+    program = [sys.executable, "-c", "import time; time.sleep(7357)", marker]
+    subprocess.Popen(program, start_new_session=True)
+
+def run(mode, out, marker, write):
+    if mode == "good": write(GOOD)
+    if mode == "hang": leave_child(marker); time.sleep(7357)
+    if mode == "crash": os.kill(os.getpid(), signal.SIGSEGV)
+    if mode == "garbage": write("\x01 garbage\n1 2 3\n")
+    if mode == "half": write(GOOD[:-5])
+    if mode == "raise": raise ValueError("no such friction in " + out)
+    if mode == "memory": bytearray(3 << 30)
+    if mode == "orphan": leave_child(marker); write(GOOD)
+
+def file(out):
+    return lambda text: open(out, "w").write(text)
+
+if sys.argv[1] == "--serve":
+    for line in sys.stdin:
+        trial = json.loads(line)
+        mode = trial["theta"]["mode"]
+        if mode == "babble": print("hello", flush=True); continue
+        if mode == "late": print('{"status": "timed_out", "reason": "too slow"}', flush=True); continue
+        if mode == "nothing": print('{"status": "ok"}', flush=True); continue
+        run(mode, trial["out"], sys.argv[2], file(trial["out"]))
+        print('{"status": "ok"}', flush=True)
+else:
+    mode, out, marker = sys.argv[1:4]
+    if mode == "late": print("too slow", file=sys.stderr); sys.exit(10)
+    if mode == "fell": sys.exit(11)
+    run(mode, out, marker, file(out))
+)py";
+
+std::map<std::string, std::map<std::string, std::string>> FaultyRows(const TemporaryFolder& folder,
+                                                                     const std::string& modes,
+                                                                     const std::string& run) {
+  WriteText(folder / "faulty.py", kFaulty);
+  WriteText(folder / "faulty.yaml",
+            "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
+            "candidate: {kind: program, persistent: " +
+                std::string(run.find("--serve") == run.npos ? "false" : "true") + ", run: [" +
+                run + "]}\n" +
+            "reference: {kind: path}\n"
+            "run: {timeout_s: 1.5, memory_mb: 512, retries: 0}\n"
+            "space: {mode: [" + modes + "]}\n");
+  const ProcessResult result =
+      RunRift({"sweep", folder / "faulty.yaml", "--jobs", "2", "--out", folder / "out"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  std::map<std::string, std::map<std::string, std::string>> rows;
+  for (const auto& row : Table(folder / "out")) rows[row.at("mode")] = row;
+  return rows;
+}
+
+/// The folder is in the arguments of every process of the program.
+void CheckNothingIsLeft(const TemporaryFolder& folder) {
+  test::WaitUntil("no process is left", [&] { return ProcessesWith(folder / "marker") == 0; });
+}
+
+TEST_CASE("Each fault of a program is a row with its reason, and no process is left") {
+  const TemporaryFolder folder;
+  auto rows = FaultyRows(
+      folder, "good, hang, crash, garbage, half, raise, memory, orphan, late, fell, nothing",
+      "python3, faulty.py, '{mode}', '{out}', '" + (folder / "marker") + "'");
+  CHECK(rows["good"]["status"] == "ok");
+  CHECK(rows["orphan"]["status"] == "ok");
+  CHECK(rows["hang"]["status"] == "hung");
+  CHECK(rows["crash"]["status"] == "crashed");
+  CHECK(rows["crash"]["reason"].find("signal 11") != std::string::npos);
+  CHECK(rows["garbage"]["status"] == "unreadable");
+  CHECK(rows["half"]["status"] == "unreadable");
+  CHECK(rows["half"]["reason"].find("cut short") != std::string::npos);
+  CHECK(rows["raise"]["status"] == "fault");
+  CHECK(rows["raise"]["reason"].find("ValueError: no such friction in {folder}/trajectory.csv") !=
+        std::string::npos);
+  CHECK(rows["memory"]["status"] == "out_of_memory");
+  CHECK(rows["late"]["status"] == "timed_out");
+  CHECK(rows["late"]["falsified"] == "true");
+  CHECK(rows["late"]["reason"].find("too slow") != std::string::npos);
+  CHECK(rows["fell"]["status"] == "fell");
+  CHECK(rows["nothing"]["status"] == "fault");
+  CHECK(rows["nothing"]["reason"].find("no trajectory") != std::string::npos);
+  CheckNothingIsLeft(folder);
+}
+
+TEST_CASE("A persistent program that fails is started again for the next trial") {
+  const TemporaryFolder folder;
+  auto rows = FaultyRows(folder, "crash, good, babble, hang, raise, late, nothing, orphan",
+                         "python3, faulty.py, --serve, '" + (folder / "marker") + "'");
+  CHECK(rows["good"]["status"] == "ok");
+  CHECK(rows["orphan"]["status"] == "ok");
+  CHECK(rows["crash"]["status"] == "crashed");
+  CHECK(rows["babble"]["status"] == "fault");
+  CHECK(rows["babble"]["reason"].find("answered 'hello'") != std::string::npos);
+  CHECK(rows["hang"]["status"] == "hung");
+  CHECK(rows["raise"]["status"] == "crashed");
+  CHECK(rows["raise"]["reason"].find("ValueError") != std::string::npos);
+  CHECK(rows["late"]["status"] == "timed_out");
+  CHECK(rows["nothing"]["status"] == "fault");
+  CheckNothingIsLeft(folder);
+}
+
+TEST_CASE("A sweep of a program that is killed goes on and leaves no process") {
+  const TemporaryFolder folder;
+  const std::string script = folder / "diff_drive.py";
+  fs::copy(test::SourceDir() + "/configs/programs/diff_drive.py", script);
+  fs::copy(test::SourceDir() + kSpawned, folder / "sweep.yaml");
+  const std::vector<std::string> arguments{"sweep",  folder / "sweep.yaml", "--jobs",   "2",
+                                           "--out",  folder / "killed",     "--budget", "12"};
+  test::RunningRift killed(arguments);
+  killed.WaitUntil("programs run", [&] { return ProcessesWith(script) > 0; });
+  killed.Signal(SIGKILL);
+  killed.Wait();
+  test::WaitUntil("no process is left", [&] { return ProcessesWith(script) == 0; });
+  REQUIRE(RunRift(arguments).exit_code == 0);
+  std::vector<std::string> whole = arguments;
+  whole[5] = folder / "whole";
+  REQUIRE(RunRift(whole).exit_code == 0);
+  CHECK(ReadFile(fs::path(folder / "killed") / "table.csv") ==
+        ReadFile(fs::path(folder / "whole") / "table.csv"));
+}
+
+/// Rapier comes from npm: it is in a folder of node_modules above the configs, or it is not there.
+bool HasRapier() {
+  for (fs::path folder = test::SourceDir() + "/configs/programs"; folder != folder.root_path();
+       folder = folder.parent_path()) {
+    if (fs::exists(folder / "node_modules/@dimforge/rapier3d-deterministic-compat")) return true;
+  }
+  return false;
+}
+
+TEST_CASE("A robot in an engine of others is falsified and replayed, with the same bytes") {
+  if (!HasRapier()) {
+    WARN("SKIPPED: npm install --prefix configs/programs @dimforge/rapier3d-deterministic-compat");
+    return;
+  }
+  const TemporaryFolder folder;
+  const std::string config = "/configs/programs/rapier_robot.yaml";
+  const std::string one = Sweep(folder, "one", config, "1");
+  const std::string two = Sweep(folder, "two", config, "2");
+  CHECK(ReadFile(fs::path(one) / "table.csv") == ReadFile(fs::path(two) / "table.csv"));
+  std::string fallen;
+  for (const auto& row : Table(one)) {
+    if (row.at("status") == "fell" && row.at("falsified") == "true") fallen = row.at("id");
+  }
+  REQUIRE_FALSE(fallen.empty());
+  const ProcessResult replay = RunRift({"simulate", "--replay", one, fallen});
+  CHECK(replay.exit_code == 1);
+  CHECK(replay.out.find("status fell") != std::string::npos);
+}
+
+TEST_CASE("What a program's experiment lacks is said before the first trial") {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& yaml) {
+    WriteText(folder / "bad.yaml", yaml);
+    const ProcessResult result = RunRift({"sweep", folder / "bad.yaml", "--out", folder / "out"});
+    CHECK(result.exit_code == 2);
+    return result.err;
+  };
+  const std::string nominal = "reference: {kind: nominal}\nspace: {mu: [1, 2]}\n";
+  CHECK(refusal("candidate: {kind: program}\n" + nominal).find("candidate.run is missing") !=
+        std::string::npos);
+  CHECK(refusal("candidate: {kind: program, run: [a, '{nu}']}\n" + nominal)
+            .find("names {nu}, and the space has only mu, seed, folder, out, theta") !=
+        std::string::npos);
+  CHECK(refusal("candidate: {kind: program, persistent: true, run: [a, '{mu}']}\n" + nominal)
+            .find("told of its trials in lines of JSON") != std::string::npos);
+  CHECK(refusal("candidate: {kind: simulation}\nspace: {control.v_min: {min: 0.1, max: 0.2, "
+                "nominal: 0.15}}\ngoal: falsify\n")
+            .find("nominal is of a program's parameters") != std::string::npos);
+}
+
+TEST_CASE("A program's reference may be another program") {
+  const TemporaryFolder folder;
+  fs::copy(test::SourceDir() + "/configs/programs/diff_drive.py", folder / "sim.py");
+  WriteText(folder / "two.yaml",
+            "candidate: {kind: program, columns: 't=time,x=pose_x,y=pose_y', units: mm,\n"
+            "  run: [python3, sim.py, --mu, '{mu}', --mismatch, 0.1, --seed, '{seed}', --out, '{out}']}\n"
+            "reference: {kind: program, columns: 't=time,x=pose_x,y=pose_y', units: mm,\n"
+            "  run: [python3, sim.py, --mu, '{mu}', --mismatch, 0, --seed, '{seed}', --out, '{out}']}\n"
+            "space: {mu: [0.05, 0.8]}\n");
+  const ProcessResult result = RunRift({"sweep", folder / "two.yaml", "--out", folder / "out"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  const auto rows = Table(folder / "out");
+  REQUIRE(rows.size() == 2);
+  for (const auto& row : rows) {
+    CHECK(row.at("status") == "ok");
+    CHECK(std::stod(row.at("gap_m")) > 0.001);
+  }
+}
+
+TEST_CASE("The pages on programs and logs list what there is") {
+  const std::string keys = RunRift({"sweep", "--keys"}).out;
+  for (const std::string& key : test::Documented("programs.md", "What the exit codes say")) {
+    if (key.empty()) continue;
+    INFO(key);
+    CHECK(keys.find("candidate.exit_codes." + key + ":") != std::string::npos);
+  }
+  const TemporaryFolder folder;
+  WriteText(folder / "a.csv", "t_s,x_m,y_m\n0,0,0\n1,1,1\n");
+  const ProcessResult refused =
+      RunRift({"gap", folder / "a.csv", folder / "a.csv", "--columns", "no=t_s"});
+  std::string quantities, units;
+  for (const std::string& name : test::Documented("logs.md", "Quantities")) {
+    quantities += (quantities.empty() ? "" : ", ") + name;
+  }
+  CHECK(refused.err.find("they are " + quantities) != std::string::npos);
+  for (const std::string& name : test::Documented("logs.md", "Units")) {
+    units += (units.empty() ? "" : ", ") + name;
+  }
+  const ProcessResult no_unit =
+      RunRift({"gap", folder / "a.csv", folder / "a.csv", "--units", "furlong"});
+  CHECK(no_unit.err.find("is none of " + units) != std::string::npos);
+}
+
+}  // namespace
+}  // namespace rift
