@@ -73,23 +73,34 @@ struct Mistake {
 
 std::vector<Mistake> Mistakes() {
   return {
-      {"degrees for radians", OfReal([](Row& r) { r.yaw *= 180 / kPi; }), "degrees read as radians"},
+      {"degrees for radians", OfReal([](Row& r) { r.yaw *= 180 / kPi; }),
+       "degrees read as radians"},
       {"radians for degrees",
-       [](Logs& l) { l.flags = {"--real-columns", "t=t_s,x=x_m,y=y_m,yaw=yaw_rad:deg"}; },
+       [](Logs& l) {
+         l.flags = {"--real-columns", "t=t_s,x=x_m,y=y_m,yaw=yaw_rad:deg"};
+       },
        "radians read as degrees"},
       {"millimetres", OfReal([](Row& r) { r.x *= 1000, r.y *= 1000; }), "--units mm"},
       {"centimetres", OfReal([](Row& r) { r.x *= 100, r.y *= 100; }), "positions in mm or cm"},
       {"inches", OfReal([](Row& r) { r.x /= 0.0254, r.y /= 0.0254; }), "inches for m"},
-      {"metres read as millimetres", [](Logs& l) { l.flags = {"--real-units", "mm"}; },
+      {"metres read as millimetres",
+       [](Logs& l) {
+         l.flags = {"--real-units", "mm"};
+       },
        "the whole path lies within 0.00"},
       {"milliseconds", OfReal([](Row& r) { r.t *= 1000; }), "are its times in ms"},
       {"microseconds", OfReal([](Row& r) { r.t *= 1e6; }), "are its times in ms, us"},
-      {"seconds read as milliseconds", [](Logs& l) { l.flags = {"--real-units", "ms"}; },
+      {"seconds read as milliseconds",
+       [](Logs& l) {
+         l.flags = {"--real-units", "ms"};
+       },
        "are its times in another unit"},
       {"swapped, by name", [](Logs& l) { l.sim_name = "robot3.csv", l.real_name = "gazebo.csv"; },
        "by their names the two are swapped"},
       {"swapped, by format",
-       [](Logs& l) { l.header = "t,x,y,yaw", l.flags = {"--sim-format", "tracker"}; },
+       [](Logs& l) {
+         l.header = "t,x,y,yaw", l.flags = {"--sim-format", "tracker"};
+       },
        "by their formats the two are swapped"},
       {"swapped, by noise",
        [](Logs& l) {
@@ -116,7 +127,9 @@ std::vector<Mistake> Mistakes() {
       {"a yaw from another zero", OfReal([](Row& r) { r.yaw += kPi / 2; }), "a quarter turn off"},
       {"another column as yaw", OfReal([](Row& r) { r.yaw = 7.0 * r.t; }), "is it another column?"},
       {"one column for x and y",
-       [](Logs& l) { l.flags = {"--real-columns", "t=t_s,x=x_m,y=x_m"}; },
+       [](Logs& l) {
+         l.flags = {"--real-columns", "t=t_s,x=x_m,y=x_m"};
+       },
        "x and y are both column 'x_m'"},
       {"a quaternion with w first",
        [](Logs& l) {
@@ -164,8 +177,8 @@ ProcessResult GapOf(const Logs& logs) {
   const bool has_quaternion = logs.header.ends_with(",d");
   const std::string header = has_quaternion ? "t_s,x_m,y_m,yaw_rad" : logs.header;
   WriteText(folder / logs.sim_name, Csv(logs.sim, header));
-  WriteText(folder / logs.real_name, has_quaternion ? WithQuaternion(logs.real, logs.header)
-                                                    : Csv(logs.real, header));
+  WriteText(folder / logs.real_name,
+            has_quaternion ? WithQuaternion(logs.real, logs.header) : Csv(logs.real, header));
   std::vector<std::string> arguments{"gap", folder / logs.sim_name, folder / logs.real_name};
   arguments.insert(arguments.end(), logs.flags.begin(), logs.flags.end());
   return RunRift(arguments);
@@ -193,8 +206,8 @@ TEST_CASE("Sound logs are read without a word") {
 
 TEST_CASE("rift gap doubts neither its own logs nor the example's") {
   const std::string example = test::SourceDir() + "/data/example/";
-  const ProcessResult of_example = RunRift(
-      {"gap", example + "simulator.csv", example + "robot1.csv", example + "robot2.csv"});
+  const ProcessResult of_example =
+      RunRift({"gap", example + "simulator.csv", example + "robot1.csv", example + "robot2.csv"});
   CHECK(of_example.err.empty());
   const TemporaryFolder folder;
   const std::string task = test::SourceDir() + "/configs/waypoints/paper.yaml";
@@ -204,8 +217,8 @@ TEST_CASE("rift gap doubts neither its own logs nor the example's") {
     for (const std::string seed : {"1", "2"}) {
       RunRift({"simulate", task, "--seed", seed, "--set", set, "--out", folder / (surface + seed)});
     }
-    const ProcessResult result = RunRift({"gap", folder / (surface + "1/trajectory.csv"),
-                                          folder / (surface + "2/trajectory.csv")});
+    const ProcessResult result = RunRift(
+        {"gap", folder / (surface + "1/trajectory.csv"), folder / (surface + "2/trajectory.csv")});
     CHECK(result.err.find("warning") == std::string::npos);
   }
 }
@@ -262,7 +275,9 @@ std::vector<Sample> Samples() {
                             std::sin(r.yaw / 2), std::cos(r.yaw / 2));
        }},
       {"numbers without a name", "0.000000,0.1,-0.2,0.4",
-       [](const Row& r) { return fmt::format("{:.6f},{:.9f},{:.9f},{:.9f}", r.t + 1, r.x, r.y, r.yaw); }},
+       [](const Row& r) {
+         return fmt::format("{:.6f},{:.9f},{:.9f},{:.9f}", r.t + 1, r.x, r.y, r.yaw);
+       }},
   };
 }
 
@@ -282,7 +297,8 @@ TEST_CASE("A log of another program is read by pasting the flag that the message
       INFO(refused.err);
       REQUIRE(begin != std::string::npos);
       const size_t columns = begin + offer.size();
-      const std::string guess = refused.err.substr(columns, refused.err.find('\'', columns) - columns);
+      const std::string guess =
+          refused.err.substr(columns, refused.err.find('\'', columns) - columns);
       INFO(guess);
       const ProcessResult read = RunRift({"gap", sim, real, "--real-columns", guess});
       INFO(read.err);
@@ -323,8 +339,8 @@ TEST_CASE("A sweep reads logs by reference.columns and candidate.columns") {
   REQUIRE(result.exit_code == 0);
   const std::string table = test::ReadFile(std::filesystem::path(folder / "out") / "table.csv");
   CHECK(table.find(",ok,") != std::string::npos);
-  const ProcessResult bare = RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "bare",
-                                      "--set", "reference.columns=''"});
+  const ProcessResult bare = RunRift(
+      {"sweep", folder / "sweep.yaml", "--out", folder / "bare", "--set", "reference.columns=''"});
   const std::string reason = test::ReadFile(std::filesystem::path(folder / "bare") / "table.csv");
   CHECK(reason.find("--set reference.columns='t=time,x=east,y=north,yaw=heading'") !=
         std::string::npos);

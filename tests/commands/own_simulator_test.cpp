@@ -43,15 +43,29 @@ int ProcessesWith(const std::string& text) {
   return count;
 }
 
+/// A reason in double quotes may hold commas.
+std::vector<std::string> CellsOf(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool is_quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      is_quoted = !is_quoted;
+    } else if (c == ',' && !is_quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
 std::vector<std::map<std::string, std::string>> Table(const std::string& folder) {
   std::istringstream lines(ReadFile(fs::path(folder) / "table.csv"));
-  std::string line, cell;
+  std::string line;
   std::vector<std::string> header;
   std::vector<std::map<std::string, std::string>> rows;
   while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    std::vector<std::string> values;
-    while (std::getline(cells, cell, ',')) values.push_back(cell);
+    const std::vector<std::string> values = CellsOf(line);
     if (header.empty()) {
       header = values;
       continue;
@@ -67,8 +81,8 @@ const std::string kPersistent = "/configs/programs/diff_drive_persistent.yaml";
 
 std::string Sweep(const TemporaryFolder& folder, const std::string& name, const std::string& config,
                   const std::string& jobs) {
-  const ProcessResult result = RunRift({"sweep", test::SourceDir() + config, "--jobs", jobs, "--out",
-                                        folder / name, "--budget", "12"});
+  const ProcessResult result = RunRift({"sweep", test::SourceDir() + config, "--jobs", jobs,
+                                        "--out", folder / name, "--budget", "12"});
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   return folder / name;
@@ -89,9 +103,8 @@ TEST_CASE("A simulator of thirty lines of Python is falsified, shrunk and replay
   CHECK(replay.exit_code == 0);
   CHECK(replay.out.find("to the last bit as in the table") != std::string::npos);
   CHECK(fs::exists(fs::path(out) / "replay" / failing / "trajectory.csv"));
-  const ProcessResult shrunk =
-      RunRift({"sweep", test::SourceDir() + kSpawned, "--jobs", "2", "--out", out, "--budget", "12",
-               "--shrink", failing});
+  const ProcessResult shrunk = RunRift({"sweep", test::SourceDir() + kSpawned, "--jobs", "2",
+                                        "--out", out, "--budget", "12", "--shrink", failing});
   INFO(shrunk.err);
   CHECK(shrunk.out.find("still fails with 1 of its 2 changes") != std::string::npos);
   CHECK(shrunk.out.find("mu: ") != std::string::npos);
@@ -171,11 +184,12 @@ std::map<std::string, std::map<std::string, std::string>> FaultyRows(const Tempo
   WriteText(folder / "faulty.yaml",
             "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
             "candidate: {kind: program, persistent: " +
-                std::string(run.find("--serve") == run.npos ? "false" : "true") + ", run: [" +
-                run + "]}\n" +
-            "reference: {kind: path}\n"
-            "run: {timeout_s: 1.5, memory_mb: 512, retries: 0}\n"
-            "space: {mode: [" + modes + "]}\n");
+                std::string(run.find("--serve") == run.npos ? "false" : "true") + ", run: [" + run +
+                "]}\n" +
+                "reference: {kind: path}\n"
+                "run: {timeout_s: 1.5, memory_mb: 512, retries: 0}\n"
+                "space: {mode: [" +
+                modes + "]}\n");
   const ProcessResult result =
       RunRift({"sweep", folder / "faulty.yaml", "--jobs", "2", "--out", folder / "out"});
   INFO(result.err);
@@ -238,8 +252,8 @@ TEST_CASE("A sweep of a program that is killed goes on and leaves no process") {
   const std::string script = folder / "diff_drive.py";
   fs::copy(test::SourceDir() + "/configs/programs/diff_drive.py", script);
   fs::copy(test::SourceDir() + kSpawned, folder / "sweep.yaml");
-  const std::vector<std::string> arguments{"sweep",  folder / "sweep.yaml", "--jobs",   "2",
-                                           "--out",  folder / "killed",     "--budget", "12"};
+  const std::vector<std::string> arguments{"sweep", folder / "sweep.yaml", "--jobs",   "2",
+                                           "--out", folder / "killed",     "--budget", "12"};
   test::RunningRift killed(arguments);
   killed.WaitUntil("programs run", [&] { return ProcessesWith(script) > 0; });
   killed.Signal(SIGKILL);
@@ -306,12 +320,13 @@ TEST_CASE("What a program's experiment lacks is said before the first trial") {
 TEST_CASE("A program's reference may be another program") {
   const TemporaryFolder folder;
   fs::copy(test::SourceDir() + "/configs/programs/diff_drive.py", folder / "sim.py");
-  WriteText(folder / "two.yaml",
-            "candidate: {kind: program, columns: 't=time,x=pose_x,y=pose_y', units: mm,\n"
-            "  run: [python3, sim.py, --mu, '{mu}', --mismatch, 0.1, --seed, '{seed}', --out, '{out}']}\n"
-            "reference: {kind: program, columns: 't=time,x=pose_x,y=pose_y', units: mm,\n"
-            "  run: [python3, sim.py, --mu, '{mu}', --mismatch, 0, --seed, '{seed}', --out, '{out}']}\n"
-            "space: {mu: [0.05, 0.8]}\n");
+  WriteText(
+      folder / "two.yaml",
+      "candidate: {kind: program, columns: 't=time,x=pose_x,y=pose_y', units: mm,\n"
+      "  run: [python3, sim.py, --mu, '{mu}', --mismatch, 0.1, --seed, '{seed}', --out, '{out}']}\n"
+      "reference: {kind: program, columns: 't=time,x=pose_x,y=pose_y', units: mm,\n"
+      "  run: [python3, sim.py, --mu, '{mu}', --mismatch, 0, --seed, '{seed}', --out, '{out}']}\n"
+      "space: {mu: [0.05, 0.8]}\n");
   const ProcessResult result = RunRift({"sweep", folder / "two.yaml", "--out", folder / "out"});
   INFO(result.err);
   REQUIRE(result.exit_code == 0);

@@ -32,8 +32,10 @@ ordered_json TrialJson(const experiment::Experiment& experiment, const TrialRequ
   for (size_t i = 0; i < request.theta.size(); ++i) {
     const experiment::ParameterValue& value = request.theta[i];
     const std::string name = experiment.space.parameters[i].key;
-    if (value.number) theta[name] = *value.number;
-    else theta[name] = value.text;
+    if (value.number)
+      theta[name] = *value.number;
+    else
+      theta[name] = value.text;
   }
   return {{"theta", theta},
           {"seed", request.seed.value_or(experiment.seed)},
@@ -60,9 +62,8 @@ std::string FilledIn(const std::string& word, const experiment::Experiment& expe
 
 /// rift mends a log that a killed writer left; of a program that says it is done it is a fault.
 bool IsCutShort(const trajectory::Log& log) {
-  return std::any_of(log.notes.begin(), log.notes.end(), [](const std::string& note) {
-    return note.find("cut short") != note.npos;
-  });
+  return std::any_of(log.notes.begin(), log.notes.end(),
+                     [](const std::string& note) { return note.find("cut short") != note.npos; });
 }
 
 bool IsCrash(TrialStatus status) {
@@ -75,9 +76,10 @@ ProgramSide::ProgramSide(const experiment::Experiment& experiment, ProgramOption
                          const Inputs& inputs)
     : experiment_(experiment), options_(std::move(options)), inputs_(inputs) {
   if (options_.run.words.empty()) {
-    throw std::invalid_argument(fmt::format(
-        "{}.run is missing: name the program, such as {}.run: [python3, sim.py, --out, \"{{out}}\"]",
-        options_.key, options_.key));
+    throw std::invalid_argument(
+        fmt::format("{}.run is missing: name the program, such as {}.run: [python3, sim.py, --out, "
+                    "\"{{out}}\"]",
+                    options_.key, options_.key));
   }
   const TrialRequest nominal{.theta = experiment::NominalTheta(experiment),
                              .trial = experiment.reference.trials.names.front()};
@@ -85,11 +87,11 @@ ProgramSide::ProgramSide(const experiment::Experiment& experiment, ProgramOption
     try {
       FilledIn(word, experiment, nominal, "/");
       const std::vector<std::string> names = experiment::TemplateNames(word);
-      const bool names_folder_only =
-          std::all_of(names.begin(), names.end(), [](const auto& name) { return name == "folder"; });
+      const bool names_folder_only = std::all_of(names.begin(), names.end(),
+                                                 [](const auto& name) { return name == "folder"; });
       if (options_.persistent && !names_folder_only) {
-        throw std::invalid_argument(fmt::format(
-            "'{}': a persistent program is told of its trials in lines of JSON", word));
+        throw std::invalid_argument(
+            fmt::format("'{}': a persistent program is told of its trials in lines of JSON", word));
       }
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("{}.run: {}", options_.key, error.what()));
@@ -134,8 +136,7 @@ Recording ProgramSide::Run(const TrialRequest& request) {
 
 Recording ProgramSide::RunOnce(const TrialRequest& request) {
   Recording recording = options_.persistent ? RunPersistent(request) : RunSpawned(request);
-  recording.source =
-      fmt::format("program with seed {}", request.seed.value_or(experiment_.seed));
+  recording.source = fmt::format("program with seed {}", request.seed.value_or(experiment_.seed));
   return recording;
 }
 
@@ -144,7 +145,8 @@ Recording ProgramSide::RunSpawned(const TrialRequest& request) {
   const ProgramStart start = StartOf(request, folder);
   ExternalProgram program(start, folder);
   Recording recording;
-  TakeExit(program.Wait(), program.LastWords(), recording);
+  const ExternalProgram::Exit exit = program.Wait();  // before its last words are read
+  TakeExit(exit, program.LastWords(), recording);
   ReadLogFile(folder, recording);
   return recording;
 }
@@ -182,7 +184,8 @@ Recording ProgramSide::RunPersistent(const TrialRequest& request) {
   if (found == names.end()) {
     recording.status = TrialStatus::kFault;
     recording.reason = fmt::format(
-        "answered '{}', and a line of JSON with a status is expected, such as {{\"status\": \"ok\"}}",
+        "answered '{}', and a line of JSON with a status is expected, such as {{\"status\": "
+        "\"ok\"}}",
         trajectory::csv::Shown(*line));
     program_.reset();
     return recording;
@@ -206,8 +209,8 @@ void ProgramSide::TakeExit(const ExternalProgram::Exit& exit, const std::string&
                            Recording& recording) const {
   if (exit.signal != 0) {
     recording.status = TrialStatus::kCrashed;
-    recording.reason =
-        Joined(fmt::format("ended by signal {} ({})", exit.signal, ::strsignal(exit.signal)), words);
+    recording.reason = Joined(
+        fmt::format("ended by signal {} ({})", exit.signal, ::strsignal(exit.signal)), words);
   } else if (exit.code != 0) {
     const experiment::ExitCodes& codes = options_.exit_codes;
     recording.status = exit.code == codes.timed_out    ? TrialStatus::kTimedOut
@@ -217,8 +220,8 @@ void ProgramSide::TakeExit(const ExternalProgram::Exit& exit, const std::string&
                                                        : TrialStatus::kFault;
     recording.reason = Joined(fmt::format("ended with exit code {}", exit.code), words);
   }
-  const bool is_full = words.find("bad_alloc") != words.npos ||
-                       words.find("MemoryError") != words.npos;
+  const bool is_full =
+      words.find("bad_alloc") != words.npos || words.find("MemoryError") != words.npos;
   if (recording.status != TrialStatus::kOk && is_full) {
     recording.status = TrialStatus::kOutOfMemory;
     recording.reason =

@@ -93,7 +93,8 @@ void WriteInto(const std::string& folder, const std::string& name, const std::st
 }
 
 /// What becomes the program.
-[[noreturn]] void Become(const ProgramStart& start, const std::string& folder, int in, int out) noexcept {
+[[noreturn]] void Become(const ProgramStart& start, const std::string& folder, int in,
+                         int out) noexcept {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::setpgid(0, 0);
   sigset_t none;
@@ -248,8 +249,7 @@ ExternalProgram::Exit ExternalProgram::Wait() {
 bool ExternalProgram::SendLine(const std::string& line) {
   const std::string bytes = line + '\n';
   for (size_t sent = 0; sent < bytes.size();) {
-    const ssize_t n =
-        ::send(to_program_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+    const ssize_t n = ::send(to_program_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     sent += static_cast<size_t>(n);
@@ -279,8 +279,7 @@ std::optional<std::string> ExternalProgram::ReceiveLine() {
 
 std::string ExternalProgram::LastWords() const {
   constexpr size_t kLongest = 200;
-  std::string last =
-      files::ReadIfThere(std::filesystem::path(folder_) / kErrors).value_or("");
+  std::string last = files::ReadIfThere(std::filesystem::path(folder_) / kErrors).value_or("");
   last.resize(last.find_last_not_of(" \t\r\n") + 1);
   last.erase(0, last.rfind('\n') + 1);
   // Its name is drawn at random, and the same trial gives the same row.
