@@ -48,10 +48,10 @@ std::string Verify(sweep::Evaluator& evaluator, const sweep::TrialRequest& reque
 
 std::optional<ProgramReplay> ReplayProgramRow(const std::filesystem::path& folder,
                                               const std::string& id) {
+  const report::TableRow row = RowOf(folder, id);
   const std::string file = (folder / "experiment.yaml").string();
   const experiment::Experiment experiment = ReadExperiment(file);
   if (experiment.candidate.kind != experiment::CandidateKind::kProgram) return std::nullopt;
-  const report::TableRow row = RowOf(folder, id);
   sweep::Evaluator evaluator(experiment, file, FileInputs());
   evaluator.LoadLogs();
   const sweep::TrialRequest request = report::RequestOf(experiment, row);

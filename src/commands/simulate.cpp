@@ -219,11 +219,18 @@ std::vector<fs::path> SweepFiles(const fs::path& folder) {
           folder / "inputs.txt", folder / "summary.json"};
 }
 
+/// The row's id, or that of the worst row.
+std::string ReplayedId(const SimulateRequest& request) {
+  if (request.replay[1] != "worst") return request.replay[1];
+  const std::string table = (fs::path(request.replay[0]) / "table.csv").string();
+  return report::WorstIdOf(files::ReadFile(table), table);
+}
+
 /// A row of a sweep over somebody else's simulator: its trajectory is all there is of it.
 std::optional<int> ReplayProgram(const SimulateRequest& request) {
   if (request.replay.empty()) return std::nullopt;
   const fs::path folder = request.replay[0];
-  const std::string& id = request.replay[1];
+  const std::string id = ReplayedId(request);
   const std::optional<ProgramReplay> replay = ReplayProgramRow(folder, id);
   if (!replay) return std::nullopt;
   const bool has_more = request.json || !request.pictures.figure.empty() ||
@@ -235,7 +242,10 @@ std::optional<int> ReplayProgram(const SimulateRequest& request) {
   }
   const fs::path out = (request.out.empty() ? folder / "replay" / id : fs::path(request.out));
   const fs::path log = out.extension() == ".csv" ? out : out / "trajectory.csv";
-  CheckOutputs(SweepFiles(folder), {log});
+  // The same row gives the same bytes, in the place that is its own.
+  CheckOutputs(
+      SweepFiles(folder),
+      {.files = {log}, .folder = log.parent_path(), .force = request.force || request.out.empty()});
   if (!replay->trajectory.poses.empty()) {
     files::WriteFile(log, trajectory::WriteRift(replay->trajectory));
     if (!request.tum.empty()) {
@@ -249,10 +259,7 @@ std::optional<int> ReplayProgram(const SimulateRequest& request) {
 
 Simulated ReplayFor(const SimulateRequest& request) {
   const fs::path folder = request.replay[0];
-  const std::string table = (folder / "table.csv").string();
-  const std::string id = request.replay[1] == "worst"
-                             ? report::WorstIdOf(files::ReadFile(table), table)
-                             : request.replay[1];
+  const std::string id = ReplayedId(request);
   Replay replay = ReplayRow(folder, id);
   terminal::Say(replay.verdict);
   const fs::path out = request.out.empty() ? folder / "replay" / id : fs::path(request.out);

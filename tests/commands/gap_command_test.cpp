@@ -96,7 +96,7 @@ TEST_CASE("rift gap reads logs longer than one look at the file and through a pi
   writer.join();
   CHECK(piped.out.substr(piped.out.find("mean gap")) ==
         files.out.substr(files.out.find("mean gap")));
-  text.insert(text.find("\n", 500'000) + 1, "spoilt\n");
+  text.insert(text.find('\n', 500'000) + 1, "spoilt\n");
   WriteText(logs.sim, text);
   const auto line = 1 + std::count(text.begin(), text.begin() + text.find("spoilt"), '\n');
   const ProcessResult spoilt = RunRift({"gap", logs.sim, tum});

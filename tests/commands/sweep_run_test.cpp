@@ -311,7 +311,7 @@ TEST_CASE("A row of a sweep is replayed bit for bit with its trajectory and figu
   CHECK(none.exit_code == 2);
   CHECK(none.err.find("its ids are 1 to") != std::string::npos);
   std::string table = sweep.Table("out");
-  const size_t gap = table.find("\n") + 1;
+  const size_t gap = table.find('\n') + 1;
   const size_t at = table.find(",ok,", gap);
   table[table.rfind("0.", at) + 4] ^= 1;
   WriteText(sweep.folder / "out/table.csv", table);

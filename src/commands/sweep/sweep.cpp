@@ -231,7 +231,7 @@ int Sweep(const SweepRequest& request) {
   if (!is_done) return terminal::kStopped;
   lock.RequireInPlace();
   if (!request.quiet) {
-    if (experiment.candidate.kind == experiment::CandidateKind::kSimulation) {
+    if (experiment.candidate.kind != experiment::CandidateKind::kLogs) {
       terminal::Say(fmt::format("worst row again: rift simulate --replay {} worst", out.string()));
     }
     terminal::Say("report: " + (out / "report.html").string());
