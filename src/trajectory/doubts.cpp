@@ -44,7 +44,7 @@ std::vector<Piece> PiecesOf(const Trajectory& trajectory) {
   return pieces;
 }
 
-using Change = std::function<Piece(Piece)>;
+using Change = std::function<Piece(const Piece&)>;
 
 double Agreement(const std::vector<Piece>& pieces, const Change& change) {
   double sum = 0.0;
@@ -63,7 +63,7 @@ constexpr size_t kFewestPieces = 10;
 void DoubtYaw(const Trajectory& trajectory, std::vector<std::string>& doubts) {
   const std::vector<Piece> pieces = PiecesOf(trajectory);
   if (!trajectory.HasYaw() || pieces.size() < kFewestPieces) return;
-  const double agreement = Agreement(pieces, [](Piece piece) { return piece; });
+  const double agreement = Agreement(pieces, [](const Piece& piece) { return piece; });
   if (agreement > kContradicts) return;
   struct Mistake {
     const char* what;
@@ -71,23 +71,23 @@ void DoubtYaw(const Trajectory& trajectory, std::vector<std::string>& doubts) {
   };
   const std::array<Mistake, 5> mistakes{{
       {"degrees read as radians? name the unit as in yaw=COLUMN:deg",
-       [](Piece piece) {
+       [](const Piece& piece) {
          return Piece{piece.along_m, piece.yaw_rad * kPi / 180.0};
        }},
       {"radians read as degrees?",
-       [](Piece piece) {
+       [](const Piece& piece) {
          return Piece{piece.along_m, piece.yaw_rad * 180.0 / kPi};
        }},
       {"x and y swapped?",
-       [](Piece piece) {
+       [](const Piece& piece) {
          return Piece{{piece.along_m.y(), piece.along_m.x()}, piece.yaw_rad};
        }},
       {"y mirrored, or a yaw that counts clockwise? turn one of them as in y=-COLUMN",
-       [](Piece piece) {
+       [](const Piece& piece) {
          return Piece{{piece.along_m.x(), -piece.along_m.y()}, piece.yaw_rad};
        }},
       {"a yaw of another zero, a quarter turn off?",
-       [](Piece piece) {
+       [](const Piece& piece) {
          return Piece{piece.along_m, piece.yaw_rad + kPi / 2.0};
        }},
   }};
@@ -185,7 +185,7 @@ void DoubtTilt(const Trajectory& trajectory, std::vector<std::string>& doubts) {
 double TravelAgreement(const Trajectory& trajectory) {
   const std::vector<Piece> pieces = PiecesOf(trajectory);
   if (pieces.size() < 3) return StampedPose::kNotLogged;
-  return Agreement(pieces, [](Piece piece) { return piece; });
+  return Agreement(pieces, [](const Piece& piece) { return piece; });
 }
 
 std::vector<std::string> Doubts(const Trajectory& trajectory) {

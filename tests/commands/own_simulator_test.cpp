@@ -187,7 +187,7 @@ std::map<std::string, std::map<std::string, std::string>> FaultyRows(const Tempo
                 std::string(run.find("--serve") == run.npos ? "false" : "true") + ", run: [" + run +
                 "]}\n" +
                 "reference: {kind: path}\n"
-                "run: {timeout_s: 1.5, memory_mb: 512, retries: 0}\n"
+                "run: {timeout_s: 8, memory_mb: 512, retries: 0}\n"
                 "space: {mode: [" +
                 modes + "]}\n");
   const ProcessResult result =
