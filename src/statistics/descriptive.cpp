@@ -64,6 +64,11 @@ double MeanOfKnown(std::span<const double> values) {
 
 double StandardDeviation(std::span<const double> values) { return std::sqrt(Variance(values)); }
 
+double RootMeanSquare(std::span<const double> values) {
+  return std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0) /
+                   static_cast<double>(values.size()));
+}
+
 double StandardError(std::span<const double> values) {
   return std::sqrt(Variance(values) / static_cast<double>(values.size()));
 }

@@ -15,6 +15,8 @@ TEST_CASE("Means and standard deviations are those of the textbook") {
   CHECK(Mean(values) == 5.0);
   CHECK(StandardDeviation(values) == Approx(std::sqrt(32.0 / 7.0)));
   CHECK(StandardError(values) == Approx(std::sqrt(32.0 / 7.0 / 8.0)));
+  CHECK(RootMeanSquare(std::vector<double>{3.0, -4.0}) == Approx(std::sqrt(12.5)));
+  CHECK(std::isnan(RootMeanSquare(std::vector<double>{})));
 }
 
 TEST_CASE("A mean of nothing is NaN and so is a spread of one value") {

@@ -32,6 +32,9 @@ double Mean(std::span<const double> values);
 /// Of the values that are not NaN; NaN of none.
 double MeanOfKnown(std::span<const double> values);
 
+/// sqrt(mean of squares); NaN of none, or when one is NaN.
+double RootMeanSquare(std::span<const double> values);
+
 /// Of the population that the values are a sample of (n - 1 below the fraction). NaN for fewer than
 /// two values, or when one is NaN.
 double StandardDeviation(std::span<const double> values);

@@ -19,15 +19,7 @@ using nlohmann::ordered_json;
 using vision::PrecisionMap;
 using vision::PrecisionPlace;
 
-double P95(const std::vector<double>& values) {
-  return values.empty() ? std::nan("") : statistics::Quantile(values, 0.95);
-}
-
-double RootMeanSquare(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? std::nan("") : std::sqrt(sum / static_cast<double>(values.size()));
-}
+double P95(const std::vector<double>& values) { return statistics::Quantile(values, 0.95); }
 
 /// One number a place, in the order of the picture; `-` where there is none.
 std::string Laid(const PrecisionMap& map, const std::string& title, int decimals,
@@ -73,9 +65,9 @@ ordered_json PlaceJson(const PrecisionPlace& place) {
   json["side_px"] = place.side_px;
   json["views"] = place.views;
   json["found"] = place.found;
-  json["position_rms_m"] = NumberOrNull(RootMeanSquare(place.off_m));
+  json["position_rms_m"] = NumberOrNull(statistics::RootMeanSquare(place.off_m));
   json["position_p95_m"] = NumberOrNull(P95(place.off_m));
-  json["yaw_rms_rad"] = NumberOrNull(RootMeanSquare(place.yaw_off_rad));
+  json["yaw_rms_rad"] = NumberOrNull(statistics::RootMeanSquare(place.yaw_off_rad));
   json["yaw_p95_rad"] = NumberOrNull(P95(place.yaw_off_rad));
   json["shift_by_height"] = place.shift_by_height;
   json["least_size_m"] =
@@ -101,10 +93,11 @@ std::string PrecisionText(const PrecisionMap& map, const vision::TagOptions& tag
   text += Laid(map, "the tag's short side in px", 1, [](const PrecisionPlace& place) {
     return place.floor_m ? place.side_px : std::nan("");
   });
-  text += Laid(map, "position, RMS error in mm", 3,
-               [](const PrecisionPlace& place) { return 1e3 * RootMeanSquare(place.off_m); });
+  text += Laid(map, "position, RMS error in mm", 3, [](const PrecisionPlace& place) {
+    return 1e3 * statistics::RootMeanSquare(place.off_m);
+  });
   text += Laid(map, "heading, RMS error in deg", 3, [](const PrecisionPlace& place) {
-    return geometry::DegFromRad(RootMeanSquare(place.yaw_off_rad));
+    return geometry::DegFromRad(statistics::RootMeanSquare(place.yaw_off_rad));
   });
   text += Laid(map, "found, % of the views", 0, [](const PrecisionPlace& place) {
     return place.floor_m ? 100.0 * place.found / place.views : std::nan("");

@@ -242,7 +242,7 @@ const Entry kEntries[] = {
     {{"weave_m", false, "RMS distance from the best straight line, evenly by length"},
      [](D d, O o) { return gap::TraitsOf(d.log, o).weave_m; }},
     {{"lateral_rms_m", false, "RMS distance from the line from start to end, evenly by row"},
-     [](D d, O) { return RootMeanSquare(d.lateral_m); }},
+     [](D d, O) { return statistics::RootMeanSquare(d.lateral_m); }},
     {{"side_m", false, "mean distance left of that line"},
      [](D d, O) { return statistics::Mean(d.lateral_m); }},
     {{"lateral_jitter_m", false, "noise of a row across the motion, from third differences"},

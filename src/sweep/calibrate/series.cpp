@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "rift/gap/comparison.hpp"
@@ -14,12 +13,6 @@ double ShareOf(const std::vector<double>& values, const std::function<bool(doubl
   if (values.empty()) return gap::kNotComputed;
   const auto count = std::count_if(values.begin(), values.end(), is_meant);
   return static_cast<double>(count) / static_cast<double>(values.size());
-}
-
-double RootMeanSquare(const std::vector<double>& values) {
-  if (values.empty()) return gap::kNotComputed;
-  return std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0) /
-                   static_cast<double>(values.size()));
 }
 
 double RobustScatter(std::vector<double> values) {

@@ -10,8 +10,6 @@ namespace rift::sweep {
 
 double ShareOf(const std::vector<double>& values, const std::function<bool(double)>& is_meant);
 
-double RootMeanSquare(const std::vector<double>& values);
-
 /// The standard deviation of normal values about zero with this median size: two rows stamped
 /// nearly at once decide nothing.
 double RobustScatter(std::vector<double> values);
