@@ -177,9 +177,9 @@ else:
     run(mode, out, marker, file(out))
 )py";
 
-std::map<std::string, std::map<std::string, std::string>> FaultyRows(const TemporaryFolder& folder,
-                                                                     const std::string& modes,
-                                                                     const std::string& run) {
+std::map<std::string, std::map<std::string, std::string>> FaultyRows(
+    const TemporaryFolder& folder, const std::string& modes, const std::string& run,
+    const std::string& jobs = "2") {
   WriteText(folder / "faulty.py", kFaulty);
   WriteText(folder / "faulty.yaml",
             "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
@@ -191,7 +191,7 @@ std::map<std::string, std::map<std::string, std::string>> FaultyRows(const Tempo
                 "space: {mode: [" +
                 modes + "]}\n");
   const ProcessResult result =
-      RunRift({"sweep", folder / "faulty.yaml", "--jobs", "2", "--out", folder / "out"});
+      RunRift({"sweep", folder / "faulty.yaml", "--jobs", jobs, "--out", folder / "out"});
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   std::map<std::string, std::map<std::string, std::string>> rows;
@@ -244,6 +244,16 @@ TEST_CASE("A persistent program that fails is started again for the next trial")
   CHECK(rows["raise"]["reason"].find("ValueError") != std::string::npos);
   CHECK(rows["late"]["status"] == "timed_out");
   CHECK(rows["nothing"]["status"] == "fault");
+  CheckNothingIsLeft(folder);
+}
+
+TEST_CASE("The end of a persistent program is seen though its child holds its output open") {
+  const TemporaryFolder folder;
+  auto rows = FaultyRows(folder, "orphan, raise",
+                         "python3, faulty.py, --serve, '" + (folder / "marker") + "'", "1");
+  CHECK(rows["orphan"]["status"] == "ok");
+  CHECK(rows["raise"]["status"] == "crashed");
+  CHECK(rows["raise"]["reason"].find("ValueError") != std::string::npos);
   CheckNothingIsLeft(folder);
 }
 

@@ -269,9 +269,13 @@ std::optional<std::string> ExternalProgram::ReceiveLine() {
     }
     searched = arrived_.size();
     if (searched > kLongest) return std::exchange(arrived_, "");
+    // A child of the program may hold its output open for ever: its end is told by the keeper.
+    std::array<pollfd, 2> waiting{{{from_program_, POLLIN, 0}, {control_, POLLIN, 0}}};
+    if (::poll(waiting.data(), waiting.size(), -1) < 0) continue;
     std::array<char, 65536> bytes;
-    const ssize_t n = ::recv(from_program_, bytes.data(), bytes.size(), 0);
+    const ssize_t n = ::recv(from_program_, bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EAGAIN && waiting[1].revents == 0) continue;
     if (n <= 0) return std::nullopt;
     arrived_.append(bytes.data(), static_cast<size_t>(n));
   }
