@@ -32,7 +32,7 @@ install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT rift)
 install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT rift)
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright COMPONENT rift)
 
-set(exported statistics files geometry yaml trajectory control trial gap odometry search simulation)
+set(exported limits statistics files geometry yaml trajectory control trial gap odometry search simulation)
 foreach(room ${exported})
   install(TARGETS rift_${room} EXPORT riftTargets COMPONENT dev)
   set_target_properties(rift_${room} PROPERTIES EXPORT_NAME ${room})

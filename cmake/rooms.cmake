@@ -4,17 +4,19 @@
 # (options.hpp, *_options.hpp). Nothing is transitive. tests/architecture holds every #include to
 # this table, and docs/rooms.md is made from it.
 
+rift_room(limits
+  PRIVATE_LIBRARIES fmt::fmt)
 rift_room(statistics
   LIBRARIES Boost::headers PRIVATE_LIBRARIES Eigen3::Eigen fmt::fmt)
-rift_room(files
+rift_room(files ROOMS limits
   PRIVATE_LIBRARIES fmt::fmt)
 rift_room(geometry
   LIBRARIES Eigen3::Eigen)
-rift_room(yaml
+rift_room(yaml ROOMS limits
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES yaml-cpp)
 rift_room(terminal ROOMS yaml
   PRIVATE_LIBRARIES fmt::fmt)
-rift_room(trajectory ROOMS geometry statistics
+rift_room(trajectory ROOMS geometry limits statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES FastFloat::fast_float)
 rift_room(control ROOMS geometry
   LIBRARIES fmt::fmt)
@@ -26,7 +28,7 @@ rift_room(odometry ROOMS control gap geometry statistics trajectory
   LIBRARIES Eigen3::Eigen PRIVATE_LIBRARIES fmt::fmt)
 rift_room(search ROOMS statistics
   PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt PkgConfig::NLOPT)
-rift_room(simulation ROOMS geometry statistics trial
+rift_room(simulation ROOMS geometry limits statistics trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES PkgConfig::ODE PNG::PNG)
 rift_room(vision/camera ROOMS statistics yaml
   LIBRARIES Eigen3::Eigen opencv_core opencv_imgproc opencv_calib3d
@@ -43,7 +45,7 @@ rift_room(twin ROOMS control geometry hardware simulation statistics trajectory 
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
 rift_room(sweep/run ROOMS files statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES SQLiteCpp sqlite3)
-rift_room(experiment ROOMS control trajectory yaml
+rift_room(experiment ROOMS control limits trajectory yaml
   OPTIONS gap hardware simulation trial twin sweep/run sweep/falsify sweep/calibrate
           vision/camera vision/calibration vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen)
@@ -80,6 +82,6 @@ rift_room(commands/track ROOMS commands/arguments experiment files report/json s
     trajectory view vision/calibration vision/camera vision/rendering vision/tracking
   LIBRARIES fmt::fmt)
 rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
-    files gap odometry report/figures report/json report/text sweep/falsify terminal trajectory twin view
+    files gap limits odometry report/figures report/json report/text sweep/falsify terminal trajectory twin view
     vision/camera yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)

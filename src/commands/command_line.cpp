@@ -16,6 +16,7 @@
 #include <stdexcept>
 
 #include "manual.hpp"
+#include "rift/limits/limits.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/terminal/process_start.hpp"
@@ -129,6 +130,10 @@ int Run(int argc, char** argv, const CameraUses& camera) {
     const bool is_named = std::find(words.begin(), words.end(), command.name) != words.end();
     if (!is_named && !is_manual) continue;
     command.add(subcommand, exit_code);
+    subcommand
+        .add_flag_callback("--large-inputs", limits::Lift,
+                           "take inputs above the limits of docs/limits.md, whatever they cost")
+        ->trigger_on_parse();
   }
   if (is_manual) {
     const std::string manual = Manual(given, app);

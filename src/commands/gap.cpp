@@ -14,6 +14,7 @@
 #include "rift/files/files.hpp"
 #include "rift/gap/doubts.hpp"
 #include "rift/gap/result.hpp"
+#include "rift/limits/limits.hpp"
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
@@ -122,6 +123,7 @@ void SayDoubts(const gap::GapResult& result) {
 }
 
 gap::GapResult Measure(const GapRequest& request) {
+  limits::Require(limits::Amount::kSamples, request.options.samples, "--samples");
   gap::GapResult result{.options = request.options,
                         .tag_offset_m = request.tag_offset_m,
                         .sim_path = request.sim,

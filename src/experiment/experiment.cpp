@@ -10,6 +10,7 @@
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/settable.hpp"
 #include "rift/experiment/space_yaml.hpp"
+#include "rift/limits/limits.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/describe.hpp"
 #include "rift/yaml/node.hpp"
@@ -61,6 +62,19 @@ void ResolveImages(yaml::Node& tree) {
     image->value.text = path.text;
     image->value.quoted = true;
   }
+}
+
+void RequireTaken(const Experiment& experiment, const std::string& path) {
+  using limits::Amount;
+  const auto require = [&](Amount amount, double count) { limits::Require(amount, count, path); };
+  require(Amount::kSamples, experiment.gap.samples);
+  require(Amount::kWaypoints, static_cast<double>(experiment.waypoints.size()));
+  if (experiment.goal != Goal::kGrid) return;
+  auto trials = static_cast<double>(experiment.reference.trials.names.size());
+  for (const Parameter& parameter : experiment.space.parameters) {
+    if (!parameter.IsContinuous()) trials *= static_cast<double>(parameter.levels.size());
+  }
+  require(Amount::kGridTrials, trials);
 }
 
 /// Values to try a parameter with: its levels, or the ends of its range.
@@ -245,6 +259,7 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   experiment.name = std::filesystem::path(path).stem().string();
   ResolveImages(tree);
   yaml::Bind(tree, experiment);
+  RequireTaken(experiment, path);
   MakeAbsolute(experiment.candidate.path);
   MakeAbsolute(experiment.reference.path);
   if (experiment.candidate.kind == CandidateKind::kSimulation) ResolveSpace(experiment);

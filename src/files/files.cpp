@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "descriptor.hpp"
+#include "rift/limits/limits.hpp"
 
 namespace rift::files {
 
@@ -89,6 +90,7 @@ std::filesystem::path Followed(const std::filesystem::path& link) {
 std::string ReadFile(const std::filesystem::path& path) {
   const Descriptor file(path, O_RDONLY);
   if (!file.IsOpen()) CannotRead(path);
+  limits::Require(limits::Amount::kFileBytes, static_cast<double>(SizeOf(file)), path.string());
   // One byte more finds the end of the file without another, larger block.
   std::string text(std::max<size_t>(SizeOf(file) + 1, 4096), '\0');
   size_t used = 0;
@@ -97,6 +99,10 @@ std::string ReadFile(const std::filesystem::path& path) {
     const size_t got = ReadSome(file, text.data() + used, text.size() - used, path);
     used += got;
     if (got == 0) break;
+    // A pipe or a device may have no end.
+    if (used > SizeOf(file)) {
+      limits::Require(limits::Amount::kFileBytes, static_cast<double>(used), path.string());
+    }
   }
   text.resize(used);
   return text;

@@ -6,10 +6,12 @@
 #include <csetjmp>
 #include <stdexcept>
 
+#include "rift/limits/limits.hpp"
+
 namespace rift::simulation {
 namespace {
 
-constexpr png_uint_32 kMaxSide = 16384;
+constexpr png_uint_32 kMaxSide = 65536;
 
 void RememberError(png_structp png, png_const_charp message) {
   *static_cast<std::string*>(png_get_error_ptr(png)) = message;
@@ -82,6 +84,8 @@ double BigEndian16(const png_byte* bytes) {
 HeightImage DecodeHeightImage(std::string_view png_bytes) {
   PngReader reader(png_bytes);
   if (!reader.Open()) Fail(reader.Error());
+  limits::Require(limits::Amount::kPixels, 1.0 * reader.Columns() * reader.Rows(),
+                  "PNG height image");
 
   if (reader.BytesPerRow() != 2u * reader.Columns()) Fail("its pixels do not turn into grey");
   HeightImage image{reader.Columns(), reader.Rows(), {}};

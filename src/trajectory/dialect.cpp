@@ -12,6 +12,7 @@
 #include "columns.hpp"
 #include "plausibility.hpp"
 #include "rift/geometry/pose2.hpp"
+#include "rift/limits/limits.hpp"
 #include "rift/trajectory/csv.hpp"
 
 namespace rift::trajectory {
@@ -220,7 +221,9 @@ Format FormatFromHeader(std::string_view text, const std::string& name,
 
 LogRows ReadRows(std::string_view text, const std::string& name, Format format) {
   LogRows rows;
-  rows.trajectory.poses.reserve(std::count(text.begin(), text.end(), '\n') + 1);
+  const auto lines = std::count(text.begin(), text.end(), '\n') + 1;
+  limits::Require(limits::Amount::kRows, static_cast<double>(lines), name);
+  rows.trajectory.poses.reserve(lines);
   if (format == Format::kTum) {
     ReadTum(csv::RowReader(text, name, false, ' '), name, rows);
   } else {

@@ -9,7 +9,9 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/read_until.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
+#include <chrono>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -23,6 +25,7 @@ using boost::system::error_code;
 using Picture = std::shared_ptr<const std::vector<std::uint8_t>>;
 
 constexpr const char* kPath = "/stream.mjpg";
+constexpr std::chrono::milliseconds kRetry{100};
 constexpr size_t kLongestRequest = 16 * 1024;
 constexpr const char* kStreamHead =
     "HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=frame\r\n"
@@ -151,8 +154,12 @@ class MjpegServer::Core {
         const auto client = std::make_shared<Client>(std::move(socket), watching_);
         clients_.push_back(client);
         client->Start();
+        Accept();
+        return;
       }
-      Accept();
+      // Out of descriptors: the client still waits, so that the next try would fail at once too.
+      retry_.expires_after(kRetry);
+      retry_.async_wait([this](error_code) { Accept(); });
     });
   }
 
@@ -160,6 +167,7 @@ class MjpegServer::Core {
   std::vector<std::weak_ptr<Client>> clients_;
   asio::io_context context_;
   tcp::acceptor acceptor_;
+  asio::steady_timer retry_{context_};
   std::thread thread_;
 };
 

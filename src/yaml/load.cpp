@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "rift/limits/limits.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/node.hpp"
 
@@ -24,7 +25,9 @@ class Loader {
     if (++files_ > kMostFiles) {
       throw Error(fmt::format("{}: more than {} files are included", asked_at, kMostFiles));
     }
-    Node root = Parse(Read(path, asked_at), path);
+    const std::string text = Read(path, asked_at);
+    limits::Require(limits::Amount::kYamlBytes, static_cast<double>(text.size()), path);
+    Node root = Parse(text, path);
     if (root.IsNull()) root.kind = Node::Kind::kMap;
     if (!root.IsMap()) {
       throw Error(fmt::format("{}: the file holds {}: must be keys with values (key: value)",

@@ -72,6 +72,7 @@ TEST_CASE("A resolved experiment loads as the same experiment") {
     if (!experiment.space.parameters.empty()) {
       experiment.candidate.kind = CandidateKind::kLogs;
     }
+    experiment.gap.samples = std::min(experiment.gap.samples, 1'000'000);  // docs/limits.md
     experiment.reference.trials.names = {"1", "02", test::RandomText(random) + "x"};
     experiment.reference.path.text = "/logs/{surface}: " + test::RandomText(random);
     experiment.candidate.path.text = "/a/b.csv";

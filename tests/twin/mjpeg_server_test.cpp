@@ -2,12 +2,17 @@
 
 #include <arpa/inet.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <ctime>
+#include <optional>
 #include <string>
+#include <thread>
 
 #include "support/until.hpp"
 
@@ -113,6 +118,45 @@ TEST_CASE("Clients that go away are forgotten and do not end the server") {
   Client client(PortOf(server.Url()));
   client.Ask("/other");
   CHECK(client.Until("/stream.mjpg").starts_with("HTTP/1.1 404"));
+}
+
+/// Leaves this process as many descriptors as it has open, and `more`.
+class FewDescriptors {
+ public:
+  explicit FewDescriptors(rlim_t more) {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const int next = ::dup(0);  // the lowest free one
+    ::close(next);
+    const rlimit few{static_cast<rlim_t>(next) + more, before_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &few);
+  }
+  ~FewDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+  FewDescriptors(const FewDescriptors&) = delete;
+  FewDescriptors& operator=(const FewDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_CASE("A server out of descriptors waits for one instead of spinning, and then serves") {
+  using Clock = std::chrono::steady_clock;
+  MjpegServer server(0);
+  std::optional<Client> client;
+  {
+    const FewDescriptors one(1);
+    client.emplace(PortOf(server.Url()));
+    client->Ask("/stream.mjpg");
+    const Clock::time_point begun = Clock::now();
+    const std::clock_t used_before = std::clock();
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    const double used_s = static_cast<double>(std::clock() - used_before) / CLOCKS_PER_SEC;
+    const std::chrono::duration<double> passed = Clock::now() - begun;
+    CHECK(used_s < 0.3 * passed.count());
+    CHECK(server.Clients() == 0);
+  }
+  WaitForClients(server, 1);
+  server.Publish(Picture("[late]"));
+  CHECK(client->Until("[late]").ends_with("[late]\r\n"));
 }
 
 TEST_CASE("A port that is taken is refused in one line") {

@@ -7,7 +7,8 @@
 
 namespace rift::files {
 
-/// The whole file. Throws std::invalid_argument with the path and the system's reason.
+/// The whole file. Throws std::invalid_argument with the path and the system's reason, and for more
+/// bytes than limits::Amount::kFileBytes, also of a device without an end.
 std::string ReadFile(const std::filesystem::path& path);
 
 /// The whole file; nothing when there is no such file. Throws as ReadFile does.

@@ -61,7 +61,7 @@ std::shared_ptr<const simulation::HeightImage> ImageOf(const simulation::Terrain
   }
   try {
     return std::make_shared<const simulation::HeightImage>(simulation::DecodeHeightImage(*bytes));
-  } catch (const std::runtime_error& no_image) {
+  } catch (const std::exception& no_image) {
     throw std::invalid_argument(fmt::format("{}: {}", surface.image, no_image.what()));
   }
 }
