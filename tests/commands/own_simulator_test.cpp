@@ -76,13 +76,13 @@ std::vector<std::map<std::string, std::string>> Table(const std::string& folder)
   return rows;
 }
 
-const std::string kSpawned = "/configs/programs/diff_drive.yaml";
-const std::string kPersistent = "/configs/programs/diff_drive_persistent.yaml";
+const std::string kSpawned = test::SourceDir() + "/configs/programs/diff_drive.yaml";
+const std::string kPersistent = test::SourceDir() + "/configs/programs/diff_drive_persistent.yaml";
 
 std::string Sweep(const TemporaryFolder& folder, const std::string& name, const std::string& config,
                   const std::string& jobs) {
-  const ProcessResult result = RunRift({"sweep", test::SourceDir() + config, "--jobs", jobs,
-                                        "--out", folder / name, "--budget", "12"});
+  const ProcessResult result =
+      RunRift({"sweep", config, "--jobs", jobs, "--out", folder / name, "--budget", "12"});
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   return folder / name;
@@ -103,8 +103,8 @@ TEST_CASE("A simulator of thirty lines of Python is falsified, shrunk and replay
   CHECK(replay.exit_code == 0);
   CHECK(replay.out.find("to the last bit as in the table") != std::string::npos);
   CHECK(fs::exists(fs::path(out) / "replay" / failing / "trajectory.csv"));
-  const ProcessResult shrunk = RunRift({"sweep", test::SourceDir() + kSpawned, "--jobs", "2",
-                                        "--out", out, "--budget", "12", "--shrink", failing});
+  const ProcessResult shrunk = RunRift(
+      {"sweep", kSpawned, "--jobs", "2", "--out", out, "--budget", "12", "--shrink", failing});
   INFO(shrunk.err);
   CHECK(shrunk.out.find("still fails with 1 of its 2 changes") != std::string::npos);
   CHECK(shrunk.out.find("mu: ") != std::string::npos);
@@ -127,7 +127,7 @@ TEST_CASE("A row whose program has changed since is said to come out different")
   const TemporaryFolder folder;
   const std::string script = ReadFile(test::SourceDir() + "/configs/programs/diff_drive.py");
   WriteText(folder / "diff_drive.py", script);
-  fs::copy(test::SourceDir() + kSpawned, folder / "sweep.yaml");
+  fs::copy(kSpawned, folder / "sweep.yaml");
   REQUIRE(RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out", "--budget", "2"})
               .exit_code == 0);
   std::string changed = script;
@@ -261,7 +261,7 @@ TEST_CASE("A sweep of a program that is killed goes on and leaves no process") {
   const TemporaryFolder folder;
   const std::string script = folder / "diff_drive.py";
   fs::copy(test::SourceDir() + "/configs/programs/diff_drive.py", script);
-  fs::copy(test::SourceDir() + kSpawned, folder / "sweep.yaml");
+  fs::copy(kSpawned, folder / "sweep.yaml");
   const std::vector<std::string> arguments{"sweep", folder / "sweep.yaml", "--jobs",   "2",
                                            "--out", folder / "killed",     "--budget", "12"};
   test::RunningRift killed(arguments);
@@ -277,22 +277,18 @@ TEST_CASE("A sweep of a program that is killed goes on and leaves no process") {
         ReadFile(fs::path(folder / "whole") / "table.csv"));
 }
 
-/// Rapier comes from npm: it is in a folder of node_modules above the configs, or it is not there.
-bool HasRapier() {
-  for (fs::path folder = test::SourceDir() + "/configs/programs"; folder != folder.root_path();
-       folder = folder.parent_path()) {
-    if (fs::exists(folder / "node_modules/@dimforge/rapier3d-deterministic-compat")) return true;
-  }
-  return false;
-}
-
 TEST_CASE("A robot in an engine of others is falsified and replayed, with the same bytes") {
-  if (!HasRapier()) {
-    WARN("SKIPPED: npm install --prefix configs/programs @dimforge/rapier3d-deterministic-compat");
+  if (!fs::exists(test::BuildDir() + "/npm/installed")) {
+    WARN("SKIPPED: npm did not bring Rapier when this was built");
     return;
   }
   const TemporaryFolder folder;
-  const std::string config = "/configs/programs/rapier_robot.yaml";
+  // Node looks for packages beside a script and above it.
+  for (const std::string file : {"rapier_robot.mjs", "rapier_robot.yaml"}) {
+    fs::copy(test::SourceDir() + "/configs/programs/" + file, folder / file);
+  }
+  fs::create_directory_symlink(test::BuildDir() + "/npm/node_modules", folder / "node_modules");
+  const std::string config = folder / "rapier_robot.yaml";
   const std::string one = Sweep(folder, "one", config, "1");
   const std::string two = Sweep(folder, "two", config, "2");
   CHECK(ReadFile(fs::path(one) / "table.csv") == ReadFile(fs::path(two) / "table.csv"));

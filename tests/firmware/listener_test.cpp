@@ -42,7 +42,7 @@ std::string ScriptOf(const std::vector<Turn>& turns) {
 }
 
 bool CanRun() {
-  if (std::filesystem::exists(test::BuildDir() + "/micropython/installed")) return true;
+  if (std::filesystem::exists(test::BuildDir() + "/npm/installed")) return true;
   WARN("SKIPPED: npm did not bring MicroPython when this was built");
   return false;
 }
@@ -55,7 +55,7 @@ Run RunFirmware(const std::string& script) {
   const std::string command = fmt::format(
       "node '{0}/tests/firmware/run_firmware.mjs' '{1}' '{0}/src/firmware' "
       "'{0}/tests/firmware/stand_in' '{2}' > '{3}' 2>&1",
-      source, test::BuildDir() + "/micropython", folder / "script", folder / "out");
+      source, test::BuildDir() + "/npm", folder / "script", folder / "out");
   const int status = std::system(command.c_str());
   std::ifstream out(folder / "out");
   Run run;
