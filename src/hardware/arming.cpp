@@ -216,6 +216,22 @@ std::optional<LatencyResult> MeasureCamera(RealRobot& robot, const DriveParts& p
   return found;
 }
 
+/// rift's own listener stops by itself. Of another robot only its owner can say so.
+void RequireWatchdog(const DriveParts& parts, Protocol protocol, const HardwareOptions& options) {
+  if (protocol != Protocol::kPlain || options.plain.watchdog == Watchdog::kRobot) return;
+  if (options.plain.watchdog == Watchdog::kUnknown) {
+    throw std::invalid_argument(fmt::format(
+        "the robot speaks plain, and nobody said what stops it when the link breaks: copy "
+        "src/firmware to a 3pi+, or set hardware.plain.watchdog to robot where the robot stops by "
+        "itself within hardware.stopping.robot_watchdog_s ({} s) of the last command, to none "
+        "where nothing does and you drive it all the same",
+        options.stopping.robot_watchdog_s));
+  }
+  parts.say(
+      "nothing stops this robot when the link breaks (hardware.plain.watchdog: none): keep a hand "
+      "at its switch");
+}
+
 /// Hands on what the trial records, and with each row what the robot has recorded since the last.
 class Forward : public trial::Observer {
  public:
@@ -238,7 +254,7 @@ class Forward : public trial::Observer {
 }  // namespace
 
 PingResult MeasureLink(ByteLine& line, Clock& clock, const HardwareOptions& options) {
-  const Protocol protocol = FindProtocol(line, clock, options.line);
+  const Protocol protocol = FindProtocol(line, clock, options.line, options.plain);
   return Ping(line, clock, options.line, protocol, options.ping);
 }
 
@@ -255,6 +271,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   }
   parts.say(fmt::format("the robot speaks {}",
                         EnumNames(run.ping.protocol)[static_cast<std::size_t>(run.ping.protocol)]));
+  RequireWatchdog(parts, run.ping.protocol, task.hardware);
   RequireBudget(run.ping, task.hardware.ping);
   run.stopping_distance_m = PrintStoppingDistance(parts, task, run.ping);
 

@@ -31,7 +31,7 @@ class RealRobot::Core {
         hardware_(options.hardware),
         guard_(options.hardware.guard, options.dry_run),
         motion_(options.hardware.evidence, options.hardware.odometry.drive.track_m),
-        link_(line, options.hardware.line, options.protocol) {
+        link_(line, options.hardware.line, options.protocol, options.hardware.plain) {
     options.hardware.Check();
     if (is_threaded_) thread_ = std::jthread([this](std::stop_token stop) { Run(stop); });
   }

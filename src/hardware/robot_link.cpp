@@ -54,10 +54,12 @@ void AnswerDecoder::TakeText(std::uint8_t byte, std::vector<Answer>& answers) {
   line_.clear();
 }
 
-RobotLink::RobotLink(ByteLine& line, const LineOptions& options, Protocol protocol)
+RobotLink::RobotLink(ByteLine& line, const LineOptions& options, Protocol protocol,
+                     PlainOptions plain)
     : line_(line),
       options_(options),
       protocol_(protocol),
+      plain_(std::move(plain)),
       pacer_(options.baud, options.line_share) {}
 
 void RobotLink::Put(const control::WheelPower& power, bool at_once) {
@@ -77,7 +79,8 @@ void RobotLink::Tick(double now_s) {
 }
 
 size_t RobotLink::CommandSize() const {
-  return protocol_ == Protocol::kFramed ? CommandFrame::kSize : PlainLine({-1.0, -1.0}).size();
+  return protocol_ == Protocol::kFramed ? CommandFrame::kSize
+                                        : PlainLine({-1.0, -1.0}, plain_).size();
 }
 
 // A plain line is answered so rarely that it does not count.
@@ -91,7 +94,7 @@ void RobotLink::WriteCommand(double now_s) {
     taken = line_.Write(bytes);
     unanswered_.push_back(sent);
   } else {
-    taken = line_.Write(BytesOf(PlainLine(power_)));
+    taken = line_.Write(BytesOf(PlainLine(power_, plain_)));
   }
   pacer_.Wrote(now_s, CommandSize(), AnswerSize());
   if (taken) {
@@ -133,9 +136,10 @@ double RobotLink::Lag_s(double now_s) const {
   return lag_s;
 }
 
-Protocol FindProtocol(ByteLine& line, Clock& clock, const LineOptions& options) {
+Protocol FindProtocol(ByteLine& line, Clock& clock, const LineOptions& options,
+                      const PlainOptions& plain) {
   if (options.protocol != Protocol::kAuto) return options.protocol;
-  const std::string hello = PlainLine({});
+  const std::string hello = PlainLine({}, plain);
   AnswerDecoder decoder;
   const double end_s = clock.Now_s() + options.hello_s;
   double next_hello_s = clock.Now_s();

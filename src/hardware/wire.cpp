@@ -84,11 +84,6 @@ constexpr std::string_view kHello = "rift1 ";
 
 }  // namespace
 
-std::string PlainLine(const control::WheelPower& power) {
-  RequirePowers(power);
-  return fmt::format("{:.2f} {:.2f}\n", power.left, power.right);
-}
-
 MilliPower MilliOf(const control::WheelPower& power) {
   RequirePowers(power);
   return {static_cast<int>(std::lround(power.left * kFull)),

@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "rift/odometry/odometry.hpp"
 
@@ -35,6 +36,33 @@ struct LineOptions {
     field("write_timeout_s", self.write_timeout_s, 1e-3, 1.0, "a write gives up after this long");
     field("hello_s", self.hello_s, 0.1, 30.0, "how long a robot may take to answer the hello");
   }
+};
+
+/// What stops a robot whose link breaks.
+enum class Watchdog { kUnknown, kRobot, kNone };
+constexpr std::array<std::string_view, 3> EnumNames(Watchdog) {
+  return {"unknown", "robot", "none"};
+}
+
+/// The lines of a robot that does not answer. The defaults are the authors' listener's.
+struct PlainOptions {
+  std::string format = "{left:.2f} {right:.2f}\n";
+  std::vector<double> range{-1.0, 1.0};
+  Watchdog watchdog = Watchdog::kUnknown;
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("format", self.format,
+          "a command: {left} and {right} with formats as in Python, the text between, its ending");
+    field("range", self.range, -1e6, 1e6,
+          "what full power backward and full power forward are in the robot's own unit");
+    field("watchdog", self.watchdog,
+          "what stops it when the link breaks: robot, stopping.robot_watchdog_s after the last "
+          "command; none; unknown, and then it is not driven");
+  }
+  /// Rules between fields; throws std::invalid_argument naming field, value and rule.
+  void Check() const;
 };
 
 /// When the robot is stopped for good.
@@ -192,6 +220,7 @@ struct StartOptions {
 /// The real robot: its line, when it is stopped, how the link is judged.
 struct HardwareOptions {
   LineOptions line;
+  PlainOptions plain;
   GuardOptions guard;
   EvidenceOptions evidence;
   TurnOptions turn;
@@ -204,6 +233,7 @@ struct HardwareOptions {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("line", self.line, "the serial line to the robot");
+    field("plain", self.plain, "the commands of a robot that does not speak rift's protocol");
     field("guard", self.guard, "when the robot is stopped for good");
     field("evidence", self.evidence, "what camera and wheels must agree on");
     field("turn", self.turn, "the turn before a drive that measures the camera's latency");

@@ -62,7 +62,7 @@ class RobotLink {
   };
 
   /// `protocol` is plain or framed; FindProtocol tells which.
-  RobotLink(ByteLine& line, const LineOptions& options, Protocol protocol);
+  RobotLink(ByteLine& line, const LineOptions& options, Protocol protocol, PlainOptions plain = {});
 
   /// The command from now on. `at_once`: also when it is the one in force already.
   void Put(const control::WheelPower& power, bool at_once);
@@ -94,6 +94,7 @@ class RobotLink {
   ByteLine& line_;
   LineOptions options_;
   Protocol protocol_;
+  PlainOptions plain_;
   LinkPacer pacer_;
   AnswerDecoder decoder_;
   control::WheelPower power_;
@@ -109,6 +110,7 @@ class RobotLink {
 
 /// Says hello, which to every listener is the plain command to stand still, and waits for an answer
 /// as long as options.hello_s; without one the robot speaks plain. Throws LineGone.
-Protocol FindProtocol(ByteLine& line, Clock& clock, const LineOptions& options);
+Protocol FindProtocol(ByteLine& line, Clock& clock, const LineOptions& options,
+                      const PlainOptions& plain = {});
 
 }  // namespace rift::hardware

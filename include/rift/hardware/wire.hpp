@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "rift/hardware/options.hpp"
 #include "rift/trial/robot.hpp"
 
 /// The bytes between host and robot. Two languages, which the robot's listener (src/firmware) tells
@@ -24,9 +25,10 @@ namespace rift::hardware {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// The authors' line, "%.2f %.2f\n", left and right. Throws std::invalid_argument unless both
-/// powers are in [-1, 1].
-std::string PlainLine(const control::WheelPower& power);
+/// A command as text, by default the authors' line, "%.2f %.2f\n", left and right. Throws
+/// std::invalid_argument unless both powers are in [-1, 1], and for a format that PlainOptions
+/// would refuse.
+std::string PlainLine(const control::WheelPower& power, const PlainOptions& options = {});
 
 /// A power as the motors take it, in 1/1000 of full power.
 struct MilliPower {

@@ -1,0 +1,120 @@
+// Robots that do not answer, with commands in a format of their own.
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <string>
+
+#include "bench.hpp"
+#include "rift/hardware/arming.hpp"
+#include "support/paper_waypoints.hpp"
+
+namespace rift::hardware {
+namespace {
+
+const PlainOptions kWhole{.format = "M {left:d},{right:d}\r\n",
+                          .range = {-255.0, 255.0},
+                          .watchdog = Watchdog::kRobot};
+
+TEST_CASE("A command is written in the robot's own format and unit") {
+  CHECK(PlainLine({1.0, -1.0}, kWhole) == "M 255,-255\r\n");
+  CHECK(PlainLine({0.0, 0.5}, kWhole) == "M 0,128\r\n");
+  CHECK(PlainLine({-0.25, 0.0}, {.format = "<{right:+.1f}|{left:+.1f}>\n", .range = {-9.0, 9.0}}) ==
+        "<+0.0|-2.2>\n");
+  // Servos stand at the middle of their range, and one is mounted the other way round.
+  CHECK(PlainLine({0.0, 1.0}, {.format = "{left:.0f} {right:.0f}\n", .range = {180.0, 0.0}}) ==
+        "90 0\n");
+  CHECK_THROWS_AS(PlainLine({1.01, 0.0}, kWhole), std::invalid_argument);
+}
+
+TEST_CASE("A format that cannot command both wheels is refused with the rule it breaks") {
+  const auto refusal = [](const std::string& format, std::vector<double> range = {-1.0, 1.0}) {
+    try {
+      PlainOptions{.format = format, .range = std::move(range)}.Check();
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  CHECK(refusal("{left:.2f} {right:.2f}\n") == "taken");
+  CHECK(refusal("{left:d};{right:d}\r", {-100, 100}) == "taken");
+  CHECK_THAT(refusal("{left:.2f}\n"), Catch::Contains("the right power is not in it"));
+  CHECK_THAT(refusal("{right:.2f}\n"), Catch::Contains("the left power is not in it"));
+  CHECK_THAT(refusal("{left:d} {right:d}\n", {-0.4, 0.4}), Catch::Contains("the left power is not"));
+  CHECK_THAT(refusal("{left:.2f} {right:.2f}"), Catch::Contains("line ending"));
+  CHECK_THAT(refusal("{links:.2f} {right:.2f}\n"), Catch::Contains("argument not found"));
+  CHECK_THAT(refusal("{left:.2f} {right:.2f\n"), Catch::Contains("format is \"{left:.2f}"));
+  CHECK_THAT(refusal("{left:.60f} {right:.60f}\n"), Catch::Contains("at most 64"));
+  CHECK_THAT(refusal("{left:.2f} {right:.2f}\n", {1.0}), Catch::Contains("two different numbers"));
+  CHECK_THAT(refusal("{left:.2f} {right:.2f}\n", {1.0, 1.0}),
+             Catch::Contains("two different numbers"));
+}
+
+/// A robot of another make, on the bench: its lines are taken for what they mean.
+class OtherRobot : public ByteLine {
+ public:
+  explicit OtherRobot(Bench& bench) : bench_(bench) {}
+  bool Write(Bytes bytes) override {
+    text_.append(bytes.begin(), bytes.end());
+    for (size_t end = 0; (end = text_.find("\r\n")) != text_.npos; text_.erase(0, end + 2)) {
+      int left = 0, right = 0;
+      if (std::sscanf(text_.c_str(), "M %d,%d\r\n", &left, &right) != 2) continue;
+      const std::string line = PlainLine({left / 255.0, right / 255.0});
+      bench_.Write({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
+    }
+    return true;
+  }
+  std::vector<std::uint8_t> Read() override {
+    bench_.Read();  // it says nothing
+    return {};
+  }
+  size_t Unsent() override { return bench_.Unsent(); }
+
+ private:
+  Bench& bench_;
+  std::string text_;
+};
+
+DriveRun DriveOther(Bench& bench, std::vector<std::string>& told, const PlainOptions& plain) {
+  OtherRobot robot(bench);
+  DriveTask task;
+  task.task = test::PaperWaypoints();
+  task.trial.pace = trial::Pace::kNewPose;
+  task.hardware.plain = plain;
+  task.hardware.line.baud = 115200;
+  return Drive({.line = robot,
+                .poses = bench,
+                .clock = bench,
+                .stoppers = {},
+                .say = [&](const std::string& line) { told.push_back(line); },
+                .may_arm = [] { return true; },
+                .threads = false},
+               task);
+}
+
+TEST_CASE("A robot with a line format of its own drives to the last waypoint and stands") {
+  Bench bench;
+  std::vector<std::string> told;
+  const DriveRun run = DriveOther(bench, told, kWhole);
+  INFO(run.trial.reason);
+  CHECK(run.trial.outcome == trial::Outcome::kReached);
+  CHECK(bench.listener->Motors().IsZero());
+  CHECK(bench.Travelled_m() > 0.6);
+}
+
+TEST_CASE("A robot of which nobody said what stops it is not driven") {
+  Bench bench;
+  std::vector<std::string> told;
+  PlainOptions plain = kWhole;
+  plain.watchdog = Watchdog::kUnknown;
+  CHECK_THROWS_WITH(DriveOther(bench, told, plain),
+                    Catch::Contains("hardware.plain.watchdog") && Catch::Contains("0.3 s"));
+  CHECK(bench.Travelled_m() == 0.0);
+
+  plain.watchdog = Watchdog::kNone;
+  CHECK(DriveOther(bench, told, plain).has_begun);
+  CHECK(std::any_of(told.begin(), told.end(), [](const std::string& line) {
+    return line.find("nothing stops this robot") != line.npos;
+  }));
+}
+
+}  // namespace
+}  // namespace rift::hardware
