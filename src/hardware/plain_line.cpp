@@ -48,7 +48,8 @@ std::string PlainLine(const control::WheelPower& power, const PlainOptions& opti
 void PlainOptions::Check() const {
   if (range.size() != 2 || range[0] == range[1]) {
     throw std::invalid_argument(
-        "range must be two different numbers, full power backward and forward, such as [-255, 255]");
+        "range must be two different numbers, full power backward and forward, such as [-255, "
+        "255]");
   }
   const auto fail = [&](const std::string& rule) {
     throw std::invalid_argument(fmt::format("format is {}, but {}", Quoted(format), rule));

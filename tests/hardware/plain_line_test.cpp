@@ -10,9 +10,8 @@
 namespace rift::hardware {
 namespace {
 
-const PlainOptions kWhole{.format = "M {left:d},{right:d}\r\n",
-                          .range = {-255.0, 255.0},
-                          .watchdog = Watchdog::kRobot};
+const PlainOptions kWhole{
+    .format = "M {left:d},{right:d}\r\n", .range = {-255.0, 255.0}, .watchdog = Watchdog::kRobot};
 
 TEST_CASE("A command is written in the robot's own format and unit") {
   CHECK(PlainLine({1.0, -1.0}, kWhole) == "M 255,-255\r\n");
@@ -38,7 +37,8 @@ TEST_CASE("A format that cannot command both wheels is refused with the rule it 
   CHECK(refusal("{left:d};{right:d}\r", {-100, 100}) == "taken");
   CHECK_THAT(refusal("{left:.2f}\n"), Catch::Contains("the right power is not in it"));
   CHECK_THAT(refusal("{right:.2f}\n"), Catch::Contains("the left power is not in it"));
-  CHECK_THAT(refusal("{left:d} {right:d}\n", {-0.4, 0.4}), Catch::Contains("the left power is not"));
+  CHECK_THAT(refusal("{left:d} {right:d}\n", {-0.4, 0.4}),
+             Catch::Contains("the left power is not"));
   CHECK_THAT(refusal("{left:.2f} {right:.2f}"), Catch::Contains("line ending"));
   CHECK_THAT(refusal("{links:.2f} {right:.2f}\n"), Catch::Contains("argument not found"));
   CHECK_THAT(refusal("{left:.2f} {right:.2f\n"), Catch::Contains("format is \"{left:.2f}"));
