@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <span>
+#include <stdexcept>
 
 #include "rift/control/navigator.hpp"
 #include "rift/gap/comparison.hpp"
@@ -52,6 +53,30 @@ std::vector<Eigen::Vector2d> ErrorsAlong(const trajectory::Trajectory& candidate
     errors_m.push_back(profile.real_m[i] - profile.sim_m[i]);
   }
   return errors_m;
+}
+
+std::vector<Eigen::Vector2f> EvenPath(const trajectory::Trajectory& candidate,
+                                      const trajectory::Trajectory& reference,
+                                      const gap::GapOptions& options) {
+  gap::GapOptions coarse = options;
+  coarse.samples = kPathSteps + 1;
+  coarse.skip_start = 0.0;
+  std::vector<Eigen::Vector2f> points_m;
+  for (const Eigen::Vector2d& point_m : gap::ProfileAlong(candidate, reference, coarse).sim_m) {
+    points_m.emplace_back(point_m.cast<float>());
+  }
+  return points_m;
+}
+
+std::vector<Eigen::Vector2f> EvenPath(const trajectory::Trajectory& path,
+                                      const gap::GapOptions& options) {
+  gap::GapOptions as_it_is = options;
+  as_it_is.align = gap::GapOptions{}.align;
+  try {
+    return EvenPath(path, path, as_it_is);
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
 }
 
 std::optional<trial::LimitCounts> RebuildLimits(const trajectory::Trajectory& log,

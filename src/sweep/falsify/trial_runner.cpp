@@ -79,7 +79,7 @@ bool TrialRunner::HasAll(const std::vector<TrialRequest>& requests) {
   return true;
 }
 
-TrialRow TrialRunner::Finish(TrialRequest request, const JobResult& result) {
+TrialRow TrialRunner::Finish(TrialRequest request, const JobResult& result, bool keeps_path) {
   const std::string key = journal_ == nullptr ? "" : key_of_(request);
   TrialRow row = RowFor(std::move(request));
   if (result.end == JobEnd::kDone) {
@@ -88,6 +88,7 @@ TrialRow TrialRunner::Finish(TrialRequest request, const JobResult& result) {
     SetStatus(row, StatusOf(result.end), result.bytes);
     row.candidate = "simulation";
   }
+  if (!keeps_path) row.evidence.path_m = {};
   if (journal_ != nullptr) journal_->Add(key, EntryOf(row));
   watch_.seen(row, false);
   return row;
@@ -95,6 +96,7 @@ TrialRow TrialRunner::Finish(TrialRequest request, const JobResult& result) {
 
 std::optional<std::vector<TrialRow>> TrialRunner::Run(std::vector<TrialRequest> requests) {
   std::vector<TrialRow> rows(requests.size());
+  const auto keeps_path = [&](size_t i) { return run_ + i < kMostPaths; };
   std::vector<int> missing;
   for (size_t i = 0; i < requests.size(); ++i) {
     std::optional<std::string> bytes;
@@ -105,14 +107,15 @@ std::optional<std::vector<TrialRow>> TrialRunner::Run(std::vector<TrialRequest> 
     }
     rows[i] = RowFor(std::move(requests[i]));
     DecodeFindings(*bytes, rows[i]);
+    if (!keeps_path(i)) rows[i].evidence.path_m = {};
     watch_.seen(rows[i], true);
   }
   WorkerPool::Batch batch;
   batch.count = static_cast<int>(missing.size());
   batch.job = [&](int job) { return EncodeRequest(requests[missing[job]]); };
   batch.done = [&](int job, const JobResult& result) {
-    const int i = missing[job];
-    rows[i] = Finish(std::move(requests[i]), result);
+    const auto i = static_cast<size_t>(missing[job]);
+    rows[i] = Finish(std::move(requests[i]), result, keeps_path(i));
   };
   batch.go_on = [&] {
     if (journal_ != nullptr) journal_->Tick();
@@ -121,6 +124,7 @@ std::optional<std::vector<TrialRow>> TrialRunner::Run(std::vector<TrialRequest> 
   const bool is_whole = pool_.Run(batch);
   if (journal_ != nullptr) journal_->Commit();
   if (!is_whole) return std::nullopt;
+  run_ += rows.size();
   return rows;
 }
 
@@ -180,6 +184,11 @@ std::string EncodeFindings(const TrialRow& row) {
     write(error_m.x());
     write(error_m.y());
   }
+  write(row.evidence.path_m.size());
+  for (const Eigen::Vector2f& point_m : row.evidence.path_m) {
+    write(point_m.x());
+    write(point_m.y());
+  }
   return write.Take();
 }
 
@@ -193,6 +202,11 @@ void DecodeFindings(std::string_view bytes, TrialRow& row) {
     read(x_m);
     read(y_m);
     row.evidence.errors_m.emplace_back(x_m, y_m);
+  }
+  row.evidence.path_m.assign(read.Count(2 * sizeof(float)), Eigen::Vector2f::Zero());
+  for (Eigen::Vector2f& point_m : row.evidence.path_m) {
+    read(point_m.x());
+    read(point_m.y());
   }
   if (!read.IsAtEnd()) throw std::runtime_error("a row of the sweep is of another layout");
 }

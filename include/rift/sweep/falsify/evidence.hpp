@@ -18,7 +18,21 @@ struct TrialEvidence {
   std::optional<trial::LimitCounts> candidate_limits;
   std::optional<trial::LimitCounts> reference_limits;
   std::vector<Eigen::Vector2d> errors_m;  ///< ErrorsAlong; empty without a gap
+  std::vector<Eigen::Vector2f> path_m;    ///< EvenPath of the candidate, for pictures
 };
+
+/// Steps of an EvenPath.
+inline constexpr int kPathSteps = 64;
+
+/// The points of a path at u = 0, 1/kPathSteps, ... 1, trimmed as the options say: what is drawn of
+/// it. Empty when it does not move.
+std::vector<Eigen::Vector2f> EvenPath(const trajectory::Trajectory& path,
+                                      const gap::GapOptions& options);
+
+/// The same of a candidate as it was held against its reference: aligned as the options say.
+std::vector<Eigen::Vector2f> EvenPath(const trajectory::Trajectory& candidate,
+                                      const trajectory::Trajectory& reference,
+                                      const gap::GapOptions& options);
 
 /// Equal for paths whose poses are the same to the last bit, and never 0. Times are left out, since
 /// some simulators stamp their rows with a wall clock; so are channels and targets.

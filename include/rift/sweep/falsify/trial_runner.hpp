@@ -47,6 +47,9 @@ RunTrials RunHere(Evaluate evaluate, Watch watch);
 /// alone, not on the number of workers.
 class TrialRunner {
  public:
+  /// Later trials keep no TrialEvidence::path_m: no page shows more, and memory stays bounded.
+  static constexpr size_t kMostPaths = 5000;
+
   /// A text for everything that a request's trial depends on beside the facts of the journal.
   using KeyOf = std::function<std::string(const TrialRequest&)>;
 
@@ -59,12 +62,13 @@ class TrialRunner {
   bool HasAll(const std::vector<TrialRequest>& requests);
 
  private:
-  TrialRow Finish(TrialRequest request, const JobResult& result);
+  TrialRow Finish(TrialRequest request, const JobResult& result, bool keeps_path);
 
   KeyOf key_of_;
   Journal* journal_;
   Watch watch_;
   WorkerPool pool_;
+  size_t run_ = 0;  ///< trials of earlier calls
 };
 
 /// A request as bytes for a worker.
