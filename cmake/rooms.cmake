@@ -55,7 +55,7 @@ rift_room(sweep/explain ROOMS experiment odometry search statistics sweep/falsif
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
 rift_room(sweep/calibrate ROOMS control experiment gap geometry statistics sweep/falsify trajectory trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
-rift_room(report/figures ROOMS gap geometry statistics sweep/calibrate sweep/falsify trajectory
+rift_room(report/figures ROOMS experiment gap geometry statistics sweep/calibrate sweep/falsify trajectory
   LIBRARIES fmt::fmt)
 rift_room(report/text ROOMS experiment gap geometry odometry report/figures statistics sweep/calibrate sweep/explain
     sweep/falsify yaml
@@ -64,7 +64,8 @@ rift_room(report/json ROOMS control experiment gap geometry hardware odometry re
     sweep/explain sweep/falsify sweep/run trial vision/calibration vision/rendering vision/tracking
     yaml
   LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
-rift_room(report/page ROOMS odometry report/figures report/text sweep/explain sweep/falsify
+rift_room(report/page ROOMS experiment odometry report/figures report/text statistics sweep/explain
+    sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
   OPTIONS simulation

@@ -136,6 +136,38 @@ TEST_CASE("A row that does not fail cannot be shrunk and neither can one that is
   CHECK_FALSE(std::filesystem::exists(sweep.out + "/shrunk.json"));
 }
 
+/// What the page of a sweep is drawn from.
+json PageData(const std::string& report) {
+  const std::string page = ReadFile(report), open = R"(id="page-data">)";
+  const size_t begin = page.find(open) + open.size();
+  return json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+TEST_CASE("The report holds the path of every trial and what it is held against") {
+  const Sweep sweep;
+  REQUIRE(sweep.Run({"--jobs", "2"}).exit_code == 0);
+  const json paths = PageData(sweep.out + "/report.html")["paths"];
+  CHECK(paths["rows"].size() == 40);
+  REQUIRE(paths["references"].size() >= 1);
+  CHECK(paths["waypoints"].size() >= 2);
+  const json& worst = paths["rows"][std::to_string(paths["views"][0]["worst"].get<int>())];
+  CHECK(worst["fails"] == true);
+  CHECK(worst["reference"].get<int>() >= 0);
+  CHECK(worst["d"].size() == 130);  // 65 points
+  // The same from the journal alone: nothing is computed again.
+  REQUIRE(sweep.Run({"--jobs", "1"}).exit_code == 0);
+  CHECK(PageData(sweep.out + "/report.html")["paths"] == paths);
+  int drawn = 0;
+  for (const auto& file : std::filesystem::directory_iterator(sweep.out + "/figures")) {
+    drawn += file.path().extension() == ".svg";
+  }
+  const std::string page = ReadFile(sweep.out + "/report.html");
+  size_t shown = 0;
+  for (size_t at = page.find("base64,"); at != page.npos; at = page.find("base64,", at + 1))
+    ++shown;
+  CHECK(shown == static_cast<size_t>(drawn));
+}
+
 TEST_CASE("Each row of a sweep names its number and the report tells how to drive it again") {
   const Sweep sweep;
   REQUIRE(sweep.Run().exit_code == 0);

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -12,6 +15,7 @@
 #include "rift/files/files.hpp"
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/page/page.hpp"
+#include "rift/sweep/falsify/evidence.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/yaml/enum_name.hpp"
 
@@ -83,21 +87,69 @@ std::string PathName(const experiment::Experiment& experiment) {
   return experiment.program.segments.empty() ? "waypoint path" : "program path";
 }
 
-std::vector<report::TypicalFailure> TypicalFailures(const sweep::SweepResult& result,
-                                                    const sweep::Explanation& explanation,
-                                                    sweep::Evaluator& evaluator) {
-  std::vector<report::TypicalFailure> failures;
-  for (size_t kind = 0; kind < explanation.clusters.size(); ++kind) {
-    const int index = explanation.clusters[kind].rows.front();
-    const sweep::TrialRow& row = result.rows.at(index);
-    if (!row.IsOk()) continue;  // it ended early: there is no path to hold against the other
-    const std::string name = result.reference_kind == "logs" ? "robot"
-                             : result.reference_kind == "nominal"
-                                 ? "nominal run"
-                                 : PathName(evaluator.experiment());
-    failures.push_back({index, static_cast<int>(kind), PathsOf(result, row, name, evaluator)});
+std::string ReferenceName(const sweep::SweepResult& result, const sweep::TrialRow& row,
+                          const experiment::Experiment& experiment) {
+  if (result.reference_kind == "logs") return "robot, trial " + row.trial;
+  if (result.reference_kind == "nominal") return "undisturbed run";
+  if (result.reference_kind == "program") return "reference run " + row.trial;
+  return PathName(experiment);
+}
+
+/// The references of a page by what they are, equal ones once.
+class References {
+ public:
+  References(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
+             report::PageEvidence& evidence)
+      : result_(result), evaluator_(evaluator), evidence_(evidence) {
+    evidence.reference_of_row.assign(result.rows.size(), -1);
   }
-  return failures;
+
+  /// Takes that of the row. False when there is none.
+  bool Take(int index) {
+    const sweep::TrialRow& row = result_.rows[index];
+    if (row.status == sweep::TrialStatus::kInvalid) return false;
+    const sweep::Recording reference =
+        evaluator_.Reference({.theta = row.theta, .trial = row.trial, .seed = row.seed});
+    if (reference.status != sweep::TrialStatus::kOk) return false;
+    const auto [found, is_new] = known_.try_emplace(sweep::Fingerprint(reference.trajectory),
+                                                    static_cast<int>(evidence_.references.size()));
+    if (is_new) {
+      evidence_.references.push_back({ReferenceName(result_, row, evaluator_.experiment()),
+                                      sweep::EvenPath(reference.trajectory, result_.gap)});
+    }
+    evidence_.reference_of_row[index] = found->second;
+    return true;
+  }
+
+ private:
+  const sweep::SweepResult& result_;
+  sweep::Evaluator& evaluator_;
+  report::PageEvidence& evidence_;
+  std::map<std::uint64_t, int> known_;
+};
+
+/// What the paths are drawn against. The path of a task is that of all repeats; of logs each is
+/// read already; a reference that has to be computed is the worst trial's alone.
+void TakeReferences(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
+                    report::PageEvidence& evidence) {
+  constexpr size_t kMostReferences = 100;
+  if (evaluator.experiment().objective == experiment::Objective::kOdometry) return;
+  References references(result, evaluator, evidence);
+  if (result.reference_kind != "logs" && result.reference_kind != "path") {
+    if (const std::optional<int> worst = sweep::WorstRow(result)) references.Take(*worst);
+    return;
+  }
+  for (const sweep::SettingResult& setting : result.settings) {
+    for (const int row : setting.rows) {
+      if (evidence.references.size() >= kMostReferences) return;
+      if (!references.Take(row)) continue;
+      if (result.reference_kind == "logs") continue;
+      for (const int repeat : setting.rows) {
+        evidence.reference_of_row[repeat] = evidence.reference_of_row[row];
+      }
+      break;
+    }
+  }
 }
 
 std::string GapFlags(const experiment::Experiment& experiment) {
@@ -127,9 +179,18 @@ std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
   const std::optional<int> worst = sweep::WorstRow(result);
   if (!worst) return std::nullopt;
   const sweep::TrialRow& row = result.rows[*worst];
-  const std::string name =
-      result.reference_kind == "logs" ? "robot, trial " + row.trial : result.reference_kind;
-  return PathsOf(result, row, name, evaluator);
+  return PathsOf(result, row, ReferenceName(result, row, evaluator.experiment()), evaluator);
+}
+
+/// What a page is made of beside the result, the figures left out.
+report::PageEvidence EvidenceFor(const sweep::SweepResult& result, sweep::Evaluator& evaluator) {
+  report::PageEvidence evidence;
+  TakeReferences(result, evaluator, evidence);
+  evidence.gap_flags = GapFlags(evaluator.experiment());
+  for (const control::Waypoint& waypoint : evaluator.experiment().waypoints) {
+    evidence.waypoints.push_back({waypoint.name, waypoint.Position()});
+  }
+  return evidence;
 }
 
 /// Figures of an earlier sweep into the same folder, which this one may not draw again.
@@ -149,18 +210,27 @@ void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepRes
                       const sweep::Explanation& explanation,
                       const std::vector<sweep::ProgramCell>& programs,
                       sweep::Evaluator& evaluator) {
-  const report::SweepFigureSet set = report::SweepFigures(result, WorstPair(result, evaluator));
+  const std::optional<report::ComparedPair> worst = WorstPair(result, evaluator);
+  const report::SweepFigureSet set = report::SweepFigures(result, worst);
+  report::PageEvidence evidence = EvidenceFor(result, evaluator);
+  evidence.programs = programs;
+  if (worst) {
+    const std::vector<Eigen::Vector2d>& samples_m = worst->profile.sim_m;
+    for (size_t i = 0; i <= sweep::kPathSteps; ++i) {
+      const Eigen::Vector2d& sample_m = samples_m[i * (samples_m.size() - 1) / sweep::kPathSteps];
+      evidence.worst_path_m.emplace_back(sample_m.cast<float>());
+    }
+  }
   RemoveFigures(folder / "figures");
   for (const report::Figure& figure : set.figures) {
     WriteFigureFiles(folder / "figures", figure);
+    evidence.figures.push_back(
+        {figure.title, files::ReadFile(folder / "figures" / (figure.name + ".svg"))});
   }
   for (const report::OmittedFigure& omitted : set.omitted) {
     terminal::Say(fmt::format("note: {} is not drawn: {}", omitted.name, omitted.reason));
   }
-  files::WriteFile(folder / "report.html",
-                   report::RenderPage(result, explanation,
-                                      {TypicalFailures(result, explanation, evaluator),
-                                       GapFlags(evaluator.experiment()), programs}));
+  files::WriteFile(folder / "report.html", report::RenderPage(result, explanation, evidence));
 }
 
 }  // namespace rift::commands

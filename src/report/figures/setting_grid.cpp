@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "rift/experiment/words.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::report {
@@ -46,20 +47,18 @@ SettingGrid LayOut(const sweep::SweepResult& result) {
   return grid;
 }
 
-std::string SettingLabel(const sweep::SweepResult& result, const experiment::Theta& exact) {
-  experiment::Theta theta = exact;
-  for (std::size_t i = 0; i < theta.size(); ++i) {
-    theta[i].text = sweep::ShortText(result.parameters[i], theta[i]);
-  }
+std::string SettingLabel(const sweep::SweepResult& result, const experiment::Theta& theta) {
   if (result.parameters.empty()) return "the only setting";
-  const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
-  // Numbers alone do not say what they are.
-  if (!result.parameters[split.main_factor].IsCategorical()) {
-    return sweep::SettingText(result.parameters, exact);
+  const int main = sweep::SplitFactors(result.parameters).main_factor;
+  const auto named = [&](int i) {
+    return experiment::NamedValue(result.parameters[i],
+                                  sweep::ShortText(result.parameters[i], theta[i]));
+  };
+  std::string label = named(main);
+  for (int i = 0; i < static_cast<int>(theta.size()); ++i) {
+    if (i != main) label += ", " + named(i);
   }
-  const std::string main = sweep::CombinationLabel(theta, {split.main_factor});
-  if (split.others.empty()) return main;
-  return main + " " + sweep::CombinationLabel(theta, split.others);
+  return label;
 }
 
 std::vector<double> GapsOf(const sweep::SweepResult& result, const sweep::SettingResult& setting) {

@@ -11,16 +11,19 @@
 namespace rift::report {
 namespace {
 
-constexpr std::size_t kLongestLabel = 40;
+constexpr std::size_t kLongestLabel = 44;
 constexpr int kRow_px = 17;
 constexpr int kMostTrialColours = 8;
 
-// Grouped by the main factor when all fit; otherwise the worst.
+// Grouped by the main factor when all fit; otherwise the worst. Of many settings those without any
+// gap are left out: rows of nothing but crosses show nothing.
 std::vector<const sweep::SettingResult*> SettingsToDraw(const sweep::SweepResult& result,
                                                         int limit) {
   if (static_cast<int>(result.settings.size()) > limit) {
     auto settings = WorstSettings(result);
-    settings.resize(limit);
+    std::erase_if(settings,
+                  [](const auto* setting) { return !std::isfinite(setting->mean_gap_m); });
+    if (static_cast<int>(settings.size()) > limit) settings.resize(limit);
     return settings;
   }
   const int main_factor = sweep::SplitFactors(result.parameters).main_factor;
@@ -37,6 +40,12 @@ std::vector<const sweep::SettingResult*> SettingsToDraw(const sweep::SweepResult
   std::vector<const sweep::SettingResult*> settings;
   for (const auto& [place, setting] : placed) settings.push_back(setting);
   return settings;
+}
+
+std::size_t CountWithGap(const sweep::SweepResult& result) {
+  return static_cast<std::size_t>(
+      std::count_if(result.settings.begin(), result.settings.end(),
+                    [](const auto& setting) { return std::isfinite(setting.mean_gap_m); }));
 }
 
 std::vector<std::string> TrialNames(const sweep::SweepResult& result,
@@ -120,22 +129,27 @@ Figure GapByTrialFigure(const sweep::SweepResult& result, const ReportOptions& o
   const std::vector<std::string> names = TrialNames(result, settings);
   TrialDots dots;
   std::string tics;
+  std::size_t longest = 0;
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const double y = static_cast<double>(i);
     dots.Add(result, *settings[i], y, names);
     const std::string label = Shortened(SettingLabel(result, settings[i]->theta), kLongestLabel);
+    longest = std::max(longest, LetterCount(label));
     tics += fmt::format("{}{} {}", i == 0 ? "" : ", ", TicLabel({label}), i);
   }
   std::string data;
   const double threshold_m = result.gap.threshold_m;
   const std::string plot = TrialEntries(dots, names, threshold_m, &data);
   const int count = static_cast<int>(settings.size());
-  Figure figure{"fig08_gap_by_trial", "Sim-to-Real gap of every trial", options.width_px,
-                150 + kRow_px * std::max(count, 3)};
-  const std::string of =
-      settings.size() < result.settings.size()
-          ? fmt::format("gap (m), the {} worst of {} settings", count, result.settings.size())
-          : std::string("gap (m)");
+  // Long labels take room of their own, not the plot's.
+  constexpr std::size_t kFitting = 16, kLetter_px = 6;
+  const int labels_px = static_cast<int>(kLetter_px * (std::max(longest, kFitting) - kFitting));
+  Figure figure{"fig08_gap_by_trial", "Sim-to-Real gap of every trial",
+                options.width_px + labels_px, 150 + kRow_px * std::max(count, 3)};
+  const std::size_t with_gap = CountWithGap(result), all = result.settings.size();
+  std::string of = "gap (m)";
+  if (settings.size() < all) of += fmt::format(", the {} worst of {} settings", count, all);
+  if (settings.size() < all && with_gap < all) of += fmt::format(", {} with a gap", with_gap);
   // Long labels push the plot to the right; a legend centred on it would leave the page.
   const int key_lines =
       static_cast<int>(std::min<std::size_t>(names.size(), kMostTrialColours)) / 2 + 2;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
@@ -49,26 +51,28 @@ data PieceList(const Sentence& sentence) {
   return list;
 }
 
-// What a person reads first; the rest of an answer unfolds, or one screen would not hold them all.
-constexpr std::size_t kLeadSentences = 3;
-
-data FindingList(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+data SentenceList(const std::vector<Sentence>& sentences) {
   data list{data::type::list};
-  for (const Finding& finding : Findings(result, explanation)) {
-    data leads{data::type::list}, others{data::type::list};
-    for (std::size_t i = 0; i < finding.sentences.size(); ++i) {
-      data entry;
-      entry.set("pieces", PieceList(finding.sentences[i]));
-      (i < kLeadSentences ? leads : others) << entry;
-    }
+  for (const Sentence& sentence : sentences) {
     data entry;
-    entry.set("question", finding.question);
-    entry.set("sentences", leads);
-    entry.set("has_more", finding.sentences.size() > kLeadSentences);
-    entry.set("more", others);
+    entry.set("pieces", PieceList(sentence));
     list << entry;
   }
   return list;
+}
+
+/// The answers by the places that they have on the page; of the first three the leading sentence
+/// stands on the first screen as well.
+void AddFindings(const sweep::SweepResult& result, const sweep::Explanation& explanation,
+                 data* page) {
+  static constexpr std::array<const char*, 7> kPlaces = {"where",   "because", "sure",   "next",
+                                                         "made_of", "noise",   "missing"};
+  const std::vector<Finding> findings = Findings(result, explanation);
+  for (std::size_t i = 0; i < std::min(findings.size(), kPlaces.size()); ++i) {
+    page->set(kPlaces[i], SentenceList(findings[i].sentences));
+    if (findings[i].sentences.empty()) continue;
+    page->set(std::string(kPlaces[i]) + "_lead", SentenceList({findings[i].sentences.front()}));
+  }
 }
 
 data SuggestionList(const sweep::Explanation& explanation) {
@@ -79,20 +83,39 @@ data SuggestionList(const sweep::Explanation& explanation) {
   return list;
 }
 
-data ChartList(const std::vector<PageChart>& charts) {
-  data list{data::type::list};
-  for (std::size_t i = 0; i < charts.size(); ++i) {
-    data entry;
-    entry.set("title", PlainText(charts[i].title));
-    entry.set("sentence", PlainText(charts[i].sentence));
-    entry.set("index", std::to_string(i));
-    list << entry;
+/// The charts of the page: those of one section in a list, each with its place in the data.
+class ChartPlaces {
+ public:
+  void Add(const char* section, std::vector<PageChart> charts, data* page) {
+    data list{data::type::list};
+    for (PageChart& chart : charts) {
+      if (chart.spec.is_null()) continue;
+      data entry;
+      entry.set("title", PlainText(chart.title));
+      entry.set("sentence", PlainText(chart.sentence));
+      entry.set("index", std::to_string(specs_.size()));
+      entry.set("follows", !chart.views.empty());
+      list << entry;
+      specs_.push_back({{"spec", std::move(chart.spec)},
+                        {"fields", std::move(chart.fields)},
+                        {"views", std::move(chart.views)}});
+    }
+    page->set(std::string("has_") + section, !list.is_empty_list());
+    page->set(section, list);
   }
-  return list;
-}
+  json Take() { return std::move(specs_); }
+
+ private:
+  json specs_ = json::array();
+};
 
 // Above that many a list is no longer read, and the table holds them too.
 constexpr std::size_t kMostUnmeasuredListed = 500;
+
+bool HasPath(const sweep::SweepResult& result) {
+  return std::any_of(result.rows.begin(), result.rows.end(),
+                     [](const auto& row) { return !row.evidence.path_m.empty(); });
+}
 
 void AddUnmeasured(const sweep::SweepResult& result, data* page) {
   std::vector<std::string> lines = UnmeasuredTrials(result);
@@ -108,21 +131,89 @@ void AddUnmeasured(const sweep::SweepResult& result, data* page) {
   page->set("unmeasured", list);
 }
 
-void AddScripts(const sweep::SweepResult& result, const std::vector<PageChart>& charts,
-                const PageEvidence& evidence, const ReportOptions& options, data* page) {
+json Pieces(const Sentence& sentence) {
+  json pieces = json::array();
+  for (const Piece& piece : sentence.pieces()) pieces.push_back({piece.text, piece.query});
+  return pieces;
+}
+
+json ViewList(const std::vector<PageView>& views) {
+  json list = json::array();
+  for (const PageView& view : views) {
+    const Headline headline = Summary(*view.part);
+    list.push_back({{"query", view.query},
+                    {"name", (view.group.empty() ? "" : view.group + " ") + view.label},
+                    {"outcome", HeadlineClass(headline.outcome)},
+                    {"headline", Pieces(headline.sentence)}});
+  }
+  return list;
+}
+
+/// The choices of the filter, those of one parameter in a group.
+data ViewGroups(const std::vector<PageView>& views) {
+  data groups{data::type::list};
+  for (std::size_t i = 1; i < views.size();) {
+    data options{data::type::list}, group;
+    const std::string name = views[i].group;
+    for (; i < views.size() && views[i].group == name; ++i) {
+      data option;
+      option.set("index", std::to_string(i));
+      option.set("label", PlainText(views[i].label));
+      options << option;
+    }
+    group.set("group", PlainText(name));
+    group.set("options", options);
+    groups << group;
+  }
+  return groups;
+}
+
+std::string Base64(std::string_view bytes) {
+  static constexpr std::string_view kLetters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned long group = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      group = group << 8 | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0UL);
+    }
+    for (std::size_t j = 0; j < 4; ++j) {
+      text += i + j > bytes.size() ? '=' : kLetters[group >> (18 - 6 * j) & 63];
+    }
+  }
+  return text;
+}
+
+/// As pictures of their own: gnuplot gives the same ids in every file.
+data FigureList(const std::vector<PageFigure>& figures) {
+  data list{data::type::list};
+  for (const PageFigure& figure : figures) {
+    data entry;
+    entry.set("title", PlainText(figure.title));
+    entry.set("svg", Base64(figure.svg));
+    list << entry;
+  }
+  return list;
+}
+
+void AddScripts(const sweep::SweepResult& result, const std::vector<PageView>& views,
+                ChartPlaces& places, const PageEvidence& evidence, const ReportOptions& options,
+                data* page) {
   PageTable settings = SettingsTable(result, options);
   PageTable trials = TrialsTable(result, evidence.gap_flags, options);
-  json content = {{"charts", json::array()}};
-  for (const PageChart& chart : charts) content["charts"].push_back(chart.spec);
-  content["settings"] = std::move(settings.data);
-  content["trials"] = std::move(trials.data);
-  page->set("charts", ChartList(charts));
+  const json content = {{"charts", places.Take()},
+                        {"views", ViewList(views)},
+                        {"paths", PagePaths(result, evidence, views, options)},
+                        {"words", Glossary(result)},
+                        {"settings", std::move(settings.data)},
+                        {"trials", std::move(trials.data)},
+                        {"running", !evidence.running.empty()}};
   page->set("settings_note", settings.note);
   page->set("trials_note", trials.note);
   page->set("data", JsonForScript(content));
   page->set("css", File("page.css"));
   page->set("vega", File("vega_modules.js") + File("vega.js"));
-  page->set("script", File("page.js"));
+  page->set("script", File("page.js") + File("paths.js"));
 }
 
 }  // namespace
@@ -134,24 +225,40 @@ std::string RenderPage(const sweep::SweepResult& result, const ReportOptions& op
 std::string RenderPage(const sweep::SweepResult& result, const sweep::Explanation& explanation,
                        const PageEvidence& evidence, const ReportOptions& options) {
   const Headline headline = Summary(result);
+  const std::vector<PageView> views = PageViews(result);
   data page;
   page.set("name", PlainText(result.name));
   page.set("kinds", PlainText(fmt::format("candidate: {}, reference: {}", result.candidate_kind,
                                           result.reference_kind)));
-  page.set("headline", PieceList(headline.sentence));
+  page.set("say", data(kainjow::mustache::partial([] { return File("pieces.html"); })));
+  page.set("headline", SentenceList({headline.sentence}));
   page.set("headline_class", HeadlineClass(headline.outcome));
-  page.set("findings", FindingList(result, explanation));
+  page.set("groups", ViewGroups(views));
+  page.set("has_groups", views.size() > 1);
+  AddFindings(result, explanation, &page);
   page.set("has_suggestions", !explanation.suggestions.list.empty());
   page.set("suggestions", SuggestionList(explanation));
   page.set("definition", gap::DefinitionText(result.gap, result.tag_offset_m));
   page.set("threshold", Number(result.gap.threshold_m));
+  page.set("is_running", !evidence.running.empty());
+  page.set("running", PlainText(evidence.running));
+  page.set("figures", FigureList(evidence.figures));
+  page.set("has_figures", !evidence.figures.empty());
+  page.set("has_paths", !evidence.references.empty() || HasPath(result));
   AddUnmeasured(result, &page);
-  std::vector<PageChart> charts = ProgramCharts(result, evidence.programs);
-  for (PageChart& chart : WhyCharts(result, explanation, evidence.failures)) {
-    charts.push_back(std::move(chart));
-  }
-  for (PageChart& chart : PageCharts(result, options)) charts.push_back(std::move(chart));
-  AddScripts(result, charts, evidence, options, &page);
+  ChartPlaces places;
+  const bool has_gap = result.all.n > 0;
+  places.Add("map",
+             has_gap ? std::vector<PageChart>{FailureMap(result, explanation.region, views)}
+                     : std::vector<PageChart>{},
+             &page);
+  places.Add("why_charts", has_gap ? WhyCharts(explanation) : std::vector<PageChart>{}, &page);
+  places.Add(
+      "sure_charts",
+      has_gap ? std::vector<PageChart>{GapHistogram(result, views)} : std::vector<PageChart>{},
+      &page);
+  places.Add("program_charts", ProgramCharts(result, evidence.programs), &page);
+  AddScripts(result, views, places, evidence, options, &page);
   mustache html(File("page.html"));
   std::string text = html.render(page);
   if (!html.is_valid()) throw std::logic_error("page.html: " + html.error_message());

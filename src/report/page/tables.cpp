@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rift/experiment/words.hpp"
 #include "rift/report/figures/setting_grid.hpp"
 
 namespace rift::report {
@@ -22,7 +23,9 @@ json Number(std::string title, int digits) {
 json EmptyTable(const sweep::SweepResult& result) {
   json columns = json::array();
   for (const experiment::Parameter& parameter : result.parameters) {
-    columns.push_back(Text(parameter.Name()));
+    json column = Text(experiment::LabelOf(parameter.Name()));
+    column["name"] = parameter.Name();
+    columns.push_back(std::move(column));
   }
   return {{"columns", columns}, {"rows", json::array()}, {"marks", json::array()}};
 }
@@ -48,20 +51,6 @@ std::string ShellWord(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
   return quoted + "'";
-}
-
-// Trials without a gap are worst: nothing is known of them.
-std::vector<const sweep::TrialRow*> RowsToShow(const sweep::SweepResult& result, int limit) {
-  std::vector<const sweep::TrialRow*> rows;
-  for (const sweep::TrialRow& row : result.rows) rows.push_back(&row);
-  if (static_cast<int>(rows.size()) <= limit) return rows;
-  const auto rank = [](const sweep::TrialRow* row) {
-    return row->IsOk() ? row->comparison.gap_m : std::numeric_limits<double>::infinity();
-  };
-  std::stable_sort(rows.begin(), rows.end(),
-                   [&](const auto* a, const auto* b) { return rank(a) > rank(b); });
-  rows.resize(limit);
-  return rows;
 }
 
 const char* MarkOf(gap::Verdict verdict) {
@@ -93,6 +82,20 @@ json TrialCells(const sweep::TrialRow& row, std::ptrdiff_t number, const std::st
 }
 
 }  // namespace
+
+// Trials without a gap are worst: nothing is known of them.
+std::vector<const sweep::TrialRow*> RowsToShow(const sweep::SweepResult& result, int limit) {
+  std::vector<const sweep::TrialRow*> rows;
+  for (const sweep::TrialRow& row : result.rows) rows.push_back(&row);
+  if (static_cast<int>(rows.size()) <= limit) return rows;
+  const auto rank = [](const sweep::TrialRow* row) {
+    return row->IsOk() ? row->comparison.gap_m : std::numeric_limits<double>::infinity();
+  };
+  std::stable_sort(rows.begin(), rows.end(),
+                   [&](const auto* a, const auto* b) { return rank(a) > rank(b); });
+  rows.resize(limit);
+  return rows;
+}
 
 PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& options) {
   json table = EmptyTable(result);

@@ -9,10 +9,10 @@
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/figures/gnuplot_text.hpp"
 #include "rift/report/figures/setting_grid.hpp"
+#include "rift/report/text/trial_query.hpp"
 #include "rift/sweep/explain/anatomy.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/enum_name.hpp"
-#include "trial_query.hpp"
 
 namespace rift::report {
 namespace {

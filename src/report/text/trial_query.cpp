@@ -1,4 +1,4 @@
-#include "trial_query.hpp"
+#include "rift/report/text/trial_query.hpp"
 
 #include <fmt/format.h>
 

@@ -22,7 +22,7 @@ struct SettingGrid {
 
 SettingGrid LayOut(const sweep::SweepResult& result);
 
-/// "ground [0.15, 0.30]", or "friction 0.4, delay_s 0.2" where no parameter is a word.
+/// "ground, v_min 0.15, delay 0.2 s": values with their names and units, the main factor first.
 std::string SettingLabel(const sweep::SweepResult& result, const experiment::Theta& theta);
 
 /// Finite gaps of a setting's trials, in the order of its rows.

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <string>
+#include <Eigen/Core>
 
+#include <string>
 #include <vector>
 
-#include "rift/report/figures/figures.hpp"
 #include "rift/report/figures/options.hpp"
 #include "rift/sweep/explain/explanation.hpp"
 #include "rift/sweep/explain/program_cells.hpp"
@@ -13,24 +13,41 @@
 namespace rift::report {
 
 /// The report of a sweep as one HTML page that needs nothing else: no network, no second file.
-/// First screen: the findings in words; their numbers lead to their rows, and each row shows the
-/// command that drives it again. Then charts (Vega), then tables that sort.
+/// First screen: one sentence, the paths, where it fails, and why, how sure, what next. Then the
+/// details in the order of these questions, tables that sort, and the figures. A filter (a value of
+/// a parameter, or a setting) that sentence, pictures, charts and tables follow.
 std::string RenderPage(const sweep::SweepResult& result, const ReportOptions& options = {});
 
-/// The paths of a typical failure of one kind.
-struct TypicalFailure {
-  int row = 0;   ///< index into SweepResult::rows
-  int kind = 0;  ///< index into Explanation::clusters
-  ComparedPair paths;
+/// A path that candidates are drawn against, as sweep::EvenPath gives it.
+struct ReferencePath {
+  std::string name;  ///< "robot, trial 2"
+  std::vector<Eigen::Vector2f> path_m;
+};
+
+struct PagePoint {
+  std::string name;
+  Eigen::Vector2d p_in_world_m;
+};
+
+/// One of the figure files.
+struct PageFigure {
+  std::string title;
+  std::string svg;
 };
 
 /// What the page shows and the result does not hold.
 struct PageEvidence {
-  std::vector<TypicalFailure> failures;
+  std::vector<ReferencePath> references;      ///< each once
+  std::vector<int> reference_of_row;          ///< index into them; -1, or too short: not at hand
+  std::vector<Eigen::Vector2f> worst_path_m;  ///< of WorstRow, where its row has none
+  std::vector<PagePoint> waypoints;
+  std::vector<PageFigure> figures;
   /// Of `rift gap`, behind the two logs of a row, so that it comes out as in the table; where the
   /// candidates are simulated, `rift simulate --replay` drives a row again.
   std::string gap_flags;
   std::vector<sweep::ProgramCell> programs;  ///< of a grid over a program
+  /// Of a sweep that still runs: "340 of 960 trials"; the page asks for itself again.
+  std::string running;
 };
 
 /// The same with an explanation at hand.

@@ -42,19 +42,46 @@ function showTip(handler, event, item, value) {
   tip.style.top = Math.max(4, y) + 'px';
 }
 
+// The entries of a chart's first data set in a view; `fields` differ from view to view.
+function entriesIn(chart, view) {
+  if (chart.views.length === 0) return chart.base;
+  return chart.base.map((entry, i) => {
+    const own = { ...entry };
+    chart.fields.forEach((field, k) => { own[field] = chart.views[view][i][k]; });
+    if (own.tip && own.trials !== undefined) {
+      own.tip = { ...own.tip, failing: own.value === null ? 'not tried' : `${own.value} % of ${own.trials} runs` };
+    }
+    if (own.tip && own.count !== undefined) own.tip = { ...own.tip, trials: String(own.count) };
+    return own;
+  });
+}
+
 function drawChart(chart, index) {
   const place = document.getElementById('chart-' + index);
-  const view = new vega.View(vega.parse(chart, chartConfig), {
+  const table = chart.spec.data[0].name;
+  chart.base = chart.spec.data[0].values;
+  chart.spec.data[0].values = entriesIn(chart, 0);
+  const dots = chart.spec.data.find(set => set.name === 'trials')?.values;
+  const view = new vega.View(vega.parse(chart.spec, chartConfig), {
     renderer: 'svg', container: place, hover: true, tooltip: showTip,
   });
-  const fit = () => view.width(place.clientWidth).runAsync();
+  view.description(place.closest('figure').querySelector('h2, h3').textContent);
+  view.addEventListener('click', (event, item) => {
+    if (item?.datum?.query) location.hash = '#trials?' + item.datum.query;
+  });
   let width = place.clientWidth;
   new ResizeObserver(() => {
     if (place.clientWidth === width || place.clientWidth === 0) return;
     width = place.clientWidth;
-    fit();
+    view.width(width).runAsync();
   }).observe(place);
-  return fit();
+  chart.show = (k) => {
+    if (chart.views.length === 0) return;
+    view.data(table, entriesIn(chart, k));
+    if (dots) view.data('trials', dots.filter(dot => !page.rowsShown || page.rowsShown.has(dot.row)));
+    view.runAsync();
+  };
+  return view.width(width).runAsync();
 }
 
 // ---- tables ----
@@ -96,6 +123,8 @@ function fillBody(table, data, order) {
   for (const index of order) {
     const row = body.insertRow();
     row.className = data.marks[index];
+    row.dataset.index = index;
+    if (data === page.trials) row.dataset.row = data.rows[index][0];
     data.columns.forEach((column, i) => {
       const cell = row.insertCell();
       if (column.again && data.rows[index][i] !== null) {
@@ -120,14 +149,15 @@ function sortedOrder(data, column, descending) {
 
 // ---- from a number to its rows: #trials?surface=ground&row=3,5 ----
 
-const shown = { trials: () => true, settings: () => true };
+const everything = () => true;
+const shown = { linked: everything, trials: everything, settings: everything };
 
 function matcher(data, query) {
   const wanted = [];
-  for (const [title, text] of query) {
-    const i = data.columns.findIndex(column => column.title === title);
+  for (const [name, text] of query) {
+    const i = data.columns.findIndex(column => (column.name ?? column.title) === name);
     if (i < 0) return null;
-    const values = new Set(title === 'row' ? text.split(',') : [text]);
+    const values = new Set(name === 'row' ? text.split(',') : [text]);
     wanted.push(row => values.has(String(row[i])));
   }
   return index => wanted.every(holds => holds(data.rows[index]));
@@ -139,11 +169,11 @@ function followHash() {
   const data = page.trials, query = [...new URLSearchParams(text ?? '')];
   const holds = matcher(data, query);
   if (!holds) return;
-  shown.trials = holds;
-  const count = data.rows.filter((_, i) => holds(i)).length;
+  shown.linked = holds;
+  const count = data.rows.filter((_, i) => holds(i) && shown.trials(i)).length;
   const bar = document.getElementById('filter');
   bar.hidden = query.length === 0;
-  const words = query.map(([title, value]) => `${title} ${value.replaceAll(',', ', ')}`).join(' and ');
+  const words = query.map(([name, value]) => `${name} ${value.replaceAll(',', ', ')}`).join(' and ');
   bar.querySelector('span').textContent = `${count} of the ${data.rows.length} trials on this page have ${words}.` +
     (data.complete ? '' : ' table.csv has all trials.');
   refill.trials();
@@ -157,7 +187,8 @@ function makeTable(id) {
   const data = page[id];
   const head = table.createTHead().insertRow();
   let order = data.rows.map((_, i) => i);
-  refill[id] = () => fillBody(table, data, order.filter(index => shown[id](index)));
+  const isShown = id === 'trials' ? i => shown.trials(i) && shown.linked(i) : i => shown.settings(i);
+  refill[id] = () => fillBody(table, data, order.filter(isShown));
   data.columns.forEach((column, i) => {
     const th = document.createElement('th');
     th.scope = 'col';
@@ -166,6 +197,7 @@ function makeTable(id) {
     const button = document.createElement('button');
     button.type = 'button';
     button.textContent = column.title;
+    button.title = page.words[column.title] ?? '';
     button.addEventListener('click', () => {
       const descending = th.getAttribute('aria-sort') === 'ascending';
       for (const other of head.cells) other.setAttribute('aria-sort', 'none');
@@ -177,11 +209,99 @@ function makeTable(id) {
     head.append(th);
   });
   refill[id]();
+  const light = event => {
+    const row = event.target.closest?.('tbody tr');
+    if (row) lightRows(rowsOf(id, Number(row.dataset.index)));
+  };
+  for (const kind of ['mouseover', 'focusin']) table.addEventListener(kind, light);
+  for (const kind of ['mouseleave', 'focusout']) table.addEventListener(kind, () => lightRows([]));
+}
+
+// Numbers of the trials that a row of a table stands for.
+function rowsOf(id, index) {
+  const data = page[id];
+  if (id === 'trials') return [data.rows[index][0]];
+  const names = data.columns.flatMap((column, i) => column.name === undefined ? [] : [[column.name, String(data.rows[index][i])]]);
+  const holds = matcher(page.trials, names);
+  return page.trials.rows.flatMap((row, i) => holds?.(i) ? [row[0]] : []);
+}
+
+// ---- the filter ----
+
+function sentence(pieces) {
+  return pieces.map(([text, query]) => {
+    if (query === '') return document.createTextNode(text);
+    const link = document.createElement('a');
+    link.href = '#trials?' + query;
+    link.textContent = text;
+    return link;
+  });
+}
+
+function showView(k) {
+  const view = page.views[k], query = [...new URLSearchParams(view.query)];
+  shown.trials = matcher(page.trials, query) ?? everything;
+  const names = new Set(page.settings.columns.map(column => column.name));
+  shown.settings = matcher(page.settings, query.filter(([name]) => names.has(name))) ?? everything;
+  const whole = k === 0;
+  page.rowsShown = whole ? null : new Set(page.trials.rows.flatMap((row, i) => shown.trials(i) ? [row[0]] : []));
+  const headline = document.getElementById('headline');
+  headline.className = 'headline ' + view.outcome;
+  headline.replaceChildren(...(whole ? [] : [view.name + ': ']), ...sentence(view.headline));
+  document.body.dataset.view = k;
+  refill.trials();
+  refill.settings();
+  for (const chart of page.charts) chart.show?.(k);
+  drawPaths(k);
+}
+
+// ---- words explained ----
+
+function explainWords() {
+  const words = Object.entries(page.words).sort(([a], [b]) => b.length - a.length);
+  const list = document.getElementById('glossary');
+  for (const [word, meaning] of Object.entries(page.words)) {
+    const term = document.createElement('dt'), text = document.createElement('dd');
+    term.textContent = word;
+    text.textContent = meaning;
+    list.append(term, text);
+  }
+  const escaped = words.map(([word]) => word.replace(/[.*+?^${}()|[\]\\]/g, '\\$&'));
+  const any = new RegExp(`(?<![\\w-])(?:${escaped.join('|')})(?![\\w-])`);
+  for (const block of document.querySelectorAll('.explained')) {
+    const seen = new Set();
+    const walker = document.createTreeWalker(block, NodeFilter.SHOW_TEXT, {
+      acceptNode: node => node.parentElement.closest('a, button, table, abbr, svg, h2, h3, summary, select')
+        ? NodeFilter.FILTER_REJECT : NodeFilter.FILTER_ACCEPT,
+    });
+    const texts = [];
+    while (walker.nextNode()) texts.push(walker.currentNode);
+    for (let node of texts) {
+      for (let found = any.exec(node.data); found; found = any.exec(node.data)) {
+        const word = node.splitText(found.index);
+        node = word.splitText(found[0].length);
+        if (seen.has(found[0])) continue;
+        seen.add(found[0]);
+        const abbr = document.createElement('abbr');
+        abbr.title = page.words[found[0]];
+        word.replaceWith(abbr);
+        abbr.append(word);
+      }
+    }
+  }
+}
+
+// ---- a sweep that still runs: the page asks for itself again ----
+
+function followRun() {
+  const follow = document.getElementById('follow');
+  if (!follow || !page.running) return;
+  setInterval(() => { if (follow.checked && !document.hidden) location.reload(); }, 3000);
 }
 
 makeTable('settings');
 makeTable('trials');
 document.querySelector('#filter button').addEventListener('click', () => { location.hash = '#trials?'; });
 addEventListener('hashchange', followHash);
-followHash();
-Promise.all(page.charts.map(drawChart)).then(() => { document.body.dataset.drawn = page.charts.length; });
+explainWords();
+// What follows is in paths.js.
