@@ -1,0 +1,183 @@
+// What each strategy promises of its points, and the very points it proposed when that was approved.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "rift/search/options.hpp"
+#include "search/samplers.hpp"
+#include "search/surrogate.hpp"
+#include "support/pinned.hpp"
+
+namespace rift::search {
+namespace {
+
+const std::vector<Axis> kUnlike{{"a", AxisKind::kContinuous, -2.0, 3.0},
+                                {"b", AxisKind::kContinuous, 10.0, 12.0},
+                                {"n", AxisKind::kInteger, -3, 7},
+                                {"w", AxisKind::kCategorical, 0, 2}};
+
+/// Of all axes something else: no exchange of axes, signs or levels leaves it as it is.
+double Skewed(const Point& p) {
+  const double a = p[0] - 1.3, b = p[1] - 10.4, n = p[2] - 4.0;
+  if (std::sin(37.0 * p[0] + p[1]) > 0.93) return std::numeric_limits<double>::quiet_NaN();
+  return a * a + 3.0 * b * b + 0.8 * a * b + 0.05 * n * n + 0.4 * std::abs(p[3] - 1.0) +
+         0.1 * std::sin(5.0 * a);
+}
+
+std::vector<Evaluation> Run(Method method, int budget, std::uint64_t seed,
+                            const std::vector<Axis>& axes, double (*loss)(const Point&)) {
+  SearchOptions options;
+  options.strategy = method;
+  const auto strategy = MakeStrategy(options, axes, budget, seed);
+  std::vector<Evaluation> all;
+  while (static_cast<int>(all.size()) < budget) {
+    std::vector<Evaluation> batch;
+    for (const Point& p : strategy->Ask(budget - static_cast<int>(all.size()))) {
+      batch.push_back({p, loss(p)});
+    }
+    if (batch.empty()) break;
+    strategy->Tell(batch);
+    all.insert(all.end(), batch.begin(), batch.end());
+  }
+  return all;
+}
+
+TEST_CASE("Every strategy proposes the points that were approved, to six digits") {
+  constexpr auto kNames = EnumNames(Method{});
+  std::string text;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const auto method = static_cast<Method>(i);
+    const int budget = method == Method::kPortfolio ? 260 : 120;
+    const std::vector<Evaluation> all = Run(method, budget, 5, kUnlike, Skewed);
+    text += fmt::format("{}\n", kNames[i]);
+    for (std::size_t k = 0; k < all.size(); k += k < 24 ? 1 : 7) {
+      const Point& p = all[k].point;
+      text += fmt::format("  {}: {:.6g} {:.6g} {} {} > {:.6g}\n", k, p[0], p[1], p[2], p[3],
+                          all[k].loss);
+    }
+  }
+  CHECK(test::DifferenceFromPinned("search/proposals.txt", text) == "");
+}
+
+TEST_CASE("Each axis of a Latin hypercube has one point in each stratum, and axes are unrelated") {
+  const std::vector<Axis> axes{{"a", AxisKind::kContinuous, 0.0, 1.0},
+                               {"b", AxisKind::kContinuous, 0.0, 1.0},
+                               {"c", AxisKind::kContinuous, 0.0, 1.0}};
+  constexpr int kPoints = 64;
+  const auto all = Run(Method::kLatinHypercube, kPoints, 3, axes, [](const Point&) { return 0.0; });
+  REQUIRE(all.size() == kPoints);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::set<int> strata;
+    for (const Evaluation& one : all) {
+      strata.insert(static_cast<int>(one.point[axis] * kPoints));
+      const int other = (axis + 1) % 3;
+      CHECK(one.point[axis] != one.point[other]);
+    }
+    CHECK(strata.size() == kPoints);
+  }
+  for (const auto& [i, k] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+    double sum = 0.0;
+    for (const Evaluation& one : all) sum += (one.point[i] - 0.5) * (one.point[k] - 0.5);
+    CHECK(std::abs(sum / kPoints * 12.0) < 0.4);  // correlation; 1 on a diagonal
+  }
+}
+
+TEST_CASE("Projections of random and Sobol points fill every axis and every pair of axes evenly") {
+  const std::vector<Axis> axes(4, {"a", AxisKind::kContinuous, 0.0, 1.0});
+  for (const Method method : {Method::kRandom, Method::kSobol}) {
+    const auto all = Run(method, 1024, 7, axes, [](const Point&) { return 0.0; });
+    const double slack = method == Method::kSobol ? 0.13 : 0.45;
+    for (int i = 0; i < 4; ++i) {
+      for (int k = i + 1; k < 4; ++k) {
+        std::array<int, 16> cells{};
+        for (const Evaluation& one : all) {
+          ++cells[4 * static_cast<size_t>(4.0 * one.point[i]) +
+                  static_cast<size_t>(4.0 * one.point[k])];
+        }
+        const auto [least, most] = std::minmax_element(cells.begin(), cells.end());
+        CHECK(*least > 64 * (1.0 - slack));
+        CHECK(*most < 64 * (1.0 + slack));
+      }
+    }
+  }
+}
+
+TEST_CASE("Corners lie on the bounds and all of them are visited before anything else") {
+  const std::vector<Axis> axes(kUnlike);
+  const auto all = Run(Method::kCorners, 30, 2, axes, Skewed);
+  std::set<Point> corners;
+  for (std::size_t i = 0; i < 24; ++i) {  // 2 x 2 x 2 bounds x 3 words
+    for (int axis = 0; axis < 3; ++axis) {
+      CHECK((all[i].point[axis] == axes[axis].min || all[i].point[axis] == axes[axis].max));
+    }
+    corners.insert(all[i].point);
+  }
+  CHECK(corners.size() == 24);
+  CHECK(std::any_of(all.begin() + 24, all.end(), [](const Evaluation& one) {
+    return one.point[0] != -2.0 && one.point[0] != 3.0;
+  }));
+}
+
+TEST_CASE("Kriging knows the surface where it was told and is unsure elsewhere") {
+  const Space space({{"a", AxisKind::kContinuous, 0.0, 1.0},
+                     {"w", AxisKind::kCategorical, 0, 1}});
+  Eigen::MatrixXd points(24, 2);
+  Eigen::VectorXd values(24);
+  for (int i = 0; i < 24; ++i) {
+    points(i, 0) = (i / 2) / 22.0;  // the left half of the axis
+    points(i, 1) = i % 2 == 0 ? 0.25 : 0.75;
+    values[i] = std::sin(9.0 * points(i, 0)) + (i % 2 == 0 ? -0.6 : 0.6);
+  }
+  Kriging model(space);
+  statistics::Random random(1, 1);
+  model.Fit(points, values, 30, random);
+  const Kriging::Prediction there = model.Predict(points);
+  CHECK((there.mean - values).cwiseAbs().maxCoeff() < 0.05);
+  Eigen::MatrixXd between(2, 2), far(2, 2);
+  between << 0.21, 0.25, 0.21, 0.75;
+  far << 0.95, 0.25, 0.95, 0.75;
+  const Kriging::Prediction near_them = model.Predict(between), off = model.Predict(far);
+  CHECK(near_them.mean[0] == Approx(std::sin(9.0 * 0.21) - 0.6).margin(0.05));
+  CHECK(near_them.mean[1] == Approx(std::sin(9.0 * 0.21) + 0.6).margin(0.05));
+  for (int i = 0; i < 2; ++i) {
+    CHECK(off.variance[i] > 20.0 * near_them.variance[i]);
+    CHECK(near_them.variance[i] > 0.5 * there.variance.minCoeff());
+  }
+  // Far from all data the variance is the signal's own.
+  CHECK(off.variance[0] < 4.0 * values.squaredNorm() / 24.0);
+  const Eigen::VectorXd at = points.row(0);
+  const Eigen::VectorXd correlation = model.Correlation(points, at);
+  CHECK(correlation[0] == Approx(1.0));
+  CHECK(correlation[2] < 1.0);
+  CHECK(correlation[22] < correlation[2]);
+  CHECK(correlation[1] < correlation[0]);
+}
+
+TEST_CASE("Every strategy that learns comes nearer to the minimum than random points") {
+  const std::vector<Axis> axes{{"a", AxisKind::kContinuous, -2.0, 3.0},
+                               {"b", AxisKind::kContinuous, 10.0, 12.0},
+                               {"c", AxisKind::kContinuous, 0.0, 1.0}};
+  const auto loss = [](const Point& p) {
+    const double a = (p[0] - 1.3) / 5.0, b = (p[1] - 10.4) / 2.0, c = p[2] - 0.83;
+    return a * a + 2.0 * b * b + 4.0 * c * c + a * b;
+  };
+  const auto best = [&](Method method) {
+    double least = 1e9;
+    for (const Evaluation& one : Run(method, 150, 4, axes, loss)) least = std::min(least, one.loss);
+    return least;
+  };
+  const double random = best(Method::kRandom);
+  CHECK(best(Method::kSurrogate) < 0.05 * random);
+  CHECK(best(Method::kCmaEs) < 0.3 * random);
+  CHECK(best(Method::kBobyqa) < 0.01 * random);
+  CHECK(best(Method::kEvolution) < random);
+  CHECK(best(Method::kPortfolio) < 0.1 * random);
+}
+
+}  // namespace
+}  // namespace rift::search
