@@ -71,7 +71,7 @@ rift_room(view ROOMS control geometry trajectory trial vision/camera vision/trac
   OPTIONS simulation
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
-rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal
+rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal trajectory
   LIBRARIES CLI11::CLI11 fmt::fmt)
 rift_room(commands/sweep ROOMS commands/arguments experiment files report/figures report/json
     report/page report/text sweep/calibrate sweep/explain sweep/falsify sweep/run terminal yaml

@@ -160,7 +160,8 @@ void CheckNames(const SimulateRequest& request, const fs::path& out,
     RequireFolderName(out.string(), "what has no name ending in .csv");
   }
   Outputs named{.folder = out.extension() == ".csv" ? fs::path() : out, .force = request.force};
-  for (const std::string& name : {request.tum, request.pictures.figure, request.pictures.video}) {
+  named.files = request.copies.Files();
+  for (const std::string& name : {request.pictures.figure, request.pictures.video}) {
     if (!name.empty()) named.files.emplace_back(name);
   }
   const RunFiles files(out);
@@ -246,11 +247,10 @@ std::optional<int> ReplayProgram(const SimulateRequest& request) {
   CheckOutputs(
       SweepFiles(folder),
       {.files = {log}, .folder = log.parent_path(), .force = request.force || request.out.empty()});
+  CheckOutputs({log}, {.files = request.copies.Files(), .force = request.force});
   if (!replay->trajectory.poses.empty()) {
     files::WriteFile(log, trajectory::WriteRift(replay->trajectory));
-    if (!request.tum.empty()) {
-      files::WriteFile(request.tum, trajectory::WriteTum(replay->trajectory));
-    }
+    WriteLogCopies(request.copies, replay->trajectory);
     terminal::Say("log: " + log.string());
   }
   terminal::PrintText(replay->verdict + "\n");
@@ -270,7 +270,8 @@ Simulated ReplayFor(const SimulateRequest& request) {
 /// What cannot be asked of a robot in real time is refused beside --twin.
 void ExcludeFromTwin(CLI::App& app) {
   CLI::Option* twin = app.get_option("--twin");
-  for (const char* other : {"--replay", "--tum", "--json", "--video", "--figure", "--view"}) {
+  for (const char* other :
+       {"--replay", "--tum", "--mcap", "--json", "--video", "--figure", "--view"}) {
     twin->excludes(app.get_option(other));
   }
 }
@@ -282,9 +283,7 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
   if (const std::optional<int> exit_code = ReplayProgram(request)) return *exit_code;
   const Simulated made = request.replay.empty() ? SimulateFile(request) : ReplayFor(request);
   if (!IsStdout(request)) Save(made.out, made.experiment, made.run);
-  if (!request.tum.empty()) {
-    files::WriteFile(request.tum, trajectory::WriteTum(made.run.result.trajectory));
-  }
+  WriteLogCopies(request.copies, made.run.result.trajectory);
   if (!request.pictures.figure.empty()) {
     DrawFigure(request.pictures.figure, made.experiment, made.trial, made.run);
   }
@@ -330,7 +329,7 @@ void AddSimulate(CLI::App& app, int& exit_code, const CameraUses& camera) {
       ->type_name("FILE.csv|DIR|-");
   AddForceFlag(app, request->force);
   AddAnyWaypointsFlag(app, request->any_waypoints);
-  app.add_option("--tum", request->tum, "write the log for evo as well")->type_name("FILE.tum");
+  AddLogCopyFlags(app, request->copies);
   app.add_option("--replay", request->replay,
                  "simulate a row of a sweep's table again, bit for bit: the sweep's folder and the "
                  "row's id, or worst")

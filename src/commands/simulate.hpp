@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "rift/commands/arguments/log_copies.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/report/figures/figures.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
@@ -39,7 +40,7 @@ struct SimulateRequest {
   std::string start;
   std::string seed;
   std::string out;
-  std::string tum;
+  LogCopies copies;
   std::vector<std::string> replay;  ///< folder of a sweep and id of a row
   bool json = false;
   bool twin = false;

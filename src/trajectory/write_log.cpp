@@ -44,6 +44,12 @@ double ZeroIfNotLogged(double value) { return std::isnan(value) ? 0.0 : value; }
 
 }  // namespace
 
+Eigen::Quaterniond WorldFromBody(const StampedPose& pose) {
+  return Eigen::AngleAxisd(ZeroIfNotLogged(pose.yaw_rad), Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(ZeroIfNotLogged(pose.pitch_rad), Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(ZeroIfNotLogged(pose.roll_rad), Eigen::Vector3d::UnitX());
+}
+
 std::string WriteRift(const Trajectory& trajectory) {
   std::string text = "t_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad,target_x_m,target_y_m";
   for (const Channel& channel : trajectory.channels) text += "," + HeaderCell(channel.name);
@@ -65,10 +71,7 @@ std::string RiftRow(const StampedPose& pose, std::span<const double> channels) {
 std::string WriteTum(const Trajectory& trajectory) {
   std::string text;
   for (const StampedPose& pose : trajectory.poses) {
-    const Eigen::Quaterniond world_from_body =
-        Eigen::AngleAxisd(ZeroIfNotLogged(pose.yaw_rad), Eigen::Vector3d::UnitZ()) *
-        Eigen::AngleAxisd(ZeroIfNotLogged(pose.pitch_rad), Eigen::Vector3d::UnitY()) *
-        Eigen::AngleAxisd(ZeroIfNotLogged(pose.roll_rad), Eigen::Vector3d::UnitX());
+    const Eigen::Quaterniond world_from_body = WorldFromBody(pose);
     AppendNumber(text, pose.t_s);
     for (const double value : {pose.x_m, pose.y_m, ZeroIfNotLogged(pose.z_m), world_from_body.x(),
                                world_from_body.y(), world_from_body.z(), world_from_body.w()}) {

@@ -14,7 +14,8 @@ namespace {
 
 std::vector<std::string> RobotFiles() {
   std::vector<std::string> names;
-  for (const auto& file : std::filesystem::directory_iterator(test::SourceDir() + "/configs/robots")) {
+  for (const auto& file :
+       std::filesystem::directory_iterator(test::SourceDir() + "/configs/robots")) {
     names.push_back(file.path().filename().string());
   }
   std::sort(names.begin(), names.end());

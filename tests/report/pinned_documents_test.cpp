@@ -98,8 +98,19 @@ TEST_CASE("Likeness is told field by field as it was approved") {
 }
 
 sweep::ErrorStructure Structure(Numbers& next) {
-  return {static_cast<size_t>(next.Count()), next(), next(), next(), next(), next(), next(), next(),
-          next(), next(), next(), next(), next()};
+  return {static_cast<size_t>(next.Count()),
+          next(),
+          next(),
+          next(),
+          next(),
+          next(),
+          next(),
+          next(),
+          next(),
+          next(),
+          next(),
+          next(),
+          next()};
 }
 
 sweep::CalibrationReport Calibrated(Numbers& next) {
@@ -210,8 +221,8 @@ TEST_CASE("A gap between two crooked logs is told and drawn as it was approved")
   text += GapFigure(result).plot;
   std::vector<ComparedPair> pairs;
   for (size_t i = 0; i < 2; ++i) {
-    pairs.push_back(ComparePair("sim", result.sim, result.trials[i].path, result.reals[i],
-                                result.options));
+    pairs.push_back(
+        ComparePair("sim", result.sim, result.trials[i].path, result.reals[i], result.options));
   }
   for (const Figure& figure : GapFigures(pairs, result.options)) {
     text += fmt::format("{} {} {}\n{}\n", figure.name, figure.title, figure.height_px, figure.plot);
@@ -224,10 +235,9 @@ TEST_CASE("A gap between two crooked logs is told and drawn as it was approved")
 
 odometry::RunMeasures Run(Numbers& next) {
   odometry::RunMeasures run;
-  for (double* value :
-       {&run.length_m, &run.deviation_m, &run.largest_deviation_m, &run.end_error_m,
-        &run.drift_per_m, &run.odometry_gap_m, &run.yaw_drift_rad, &run.slip_left,
-        &run.slip_right}) {
+  for (double* value : {&run.length_m, &run.deviation_m, &run.largest_deviation_m, &run.end_error_m,
+                        &run.drift_per_m, &run.odometry_gap_m, &run.yaw_drift_rad, &run.slip_left,
+                        &run.slip_right}) {
     *value = next();
   }
   run.slip = {{0.25, next(), next()}, {0.75, next(), next()}};
@@ -383,11 +393,10 @@ TEST_CASE("Tracking, precision and a sweep's status are told as they were approv
 
   vision::Sighting sighting{.tag_id = 3, .frame_index = 17, .captured_s = 2.5};
   sighting.map_from_tag.translation() = Eigen::Vector3d(0.25, -0.5, 0.75);
-  sighting.map_from_tag.linear() =
-      (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
-       Eigen::AngleAxisd(-0.2, Eigen::Vector3d::UnitY()) *
-       Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()))
-          .toRotationMatrix();
+  sighting.map_from_tag.linear() = (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+                                    Eigen::AngleAxisd(-0.2, Eigen::Vector3d::UnitY()) *
+                                    Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()))
+                                       .toRotationMatrix();
   for (int i = 0; i < 6; ++i) {
     for (int k = 0; k < 6; ++k) sighting.covariance(i, k) = 0.01 * (10 * i + k);
   }
@@ -425,8 +434,8 @@ TEST_CASE("Tracking, precision and a sweep's status are told as they were approv
   text += PrecisionText({.columns = 1, .rows = 1, .places = {vision::PrecisionPlace{}}}, {});
 
   sweep::JournalSummary summary;
-  summary.notes = {{"name", "night"}, {"most_trials", "90"}, {"most_settings", "30"},
-                   {"elapsed_s", "12.5"}};
+  summary.notes = {
+      {"name", "night"}, {"most_trials", "90"}, {"most_settings", "30"}, {"elapsed_s", "12.5"}};
   summary.trials_by_status = {{"ok", 41}, {"fell", 3}, {"hung", 1}};
   summary.falsified = 6;
   summary.damaged = 2;

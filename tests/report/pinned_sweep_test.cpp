@@ -140,8 +140,7 @@ TEST_CASE("Words and links about sweeps of all kinds are those that were approve
     text += "## unmeasured\n";
     for (const std::string& line : UnmeasuredTrials(kind.result)) text += line + "\n";
     text += "## terminal\n" + SweepText(kind.result) +
-            ExplanationText(kind.result, explanation, true) +
-            BriefText(kind.result, explanation);
+            ExplanationText(kind.result, explanation, true) + BriefText(kind.result, explanation);
   }
   CHECK(DifferenceFromPinned("report/sweep_words.txt", text) == "");
 }

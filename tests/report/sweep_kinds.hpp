@@ -49,7 +49,8 @@ inline sweep::SweepResult RepeatedGrid(
 }
 
 inline sweep::SweepResult WithLost() {
-  sweep::SweepResult result = RepeatedGrid([](int s, int, int, double n) { return 0.03 + 0.01 * s + 0.004 * n; });
+  sweep::SweepResult result =
+      RepeatedGrid([](int s, int, int, double n) { return 0.03 + 0.01 * s + 0.004 * n; });
   for (size_t i = 0; i < result.rows.size(); i += 3) {
     sweep::TrialRow& row = result.rows[i];
     if (i % 2 == 0) {
@@ -67,7 +68,8 @@ inline sweep::SweepResult WithLost() {
 
 /// v_max never changes a run.
 inline sweep::SweepResult WithInert() {
-  sweep::SweepResult result = RepeatedGrid([](int s, int a, int, double) { return 0.03 + 0.02 * s + 0.01 * a; });
+  sweep::SweepResult result =
+      RepeatedGrid([](int s, int a, int, double) { return 0.03 + 0.02 * s + 0.01 * a; });
   for (sweep::TrialRow& row : result.rows) {
     row.evidence.fingerprint =
         static_cast<std::uint64_t>(1e6 * row.comparison.gap_m) * 10 + *row.seed;
@@ -77,7 +79,8 @@ inline sweep::SweepResult WithInert() {
 }
 
 inline sweep::SweepResult OnlyAtTheGoal() {
-  sweep::SweepResult result = RepeatedGrid([](int, int, int, double n) { return 0.065 + 0.002 * n; });
+  sweep::SweepResult result =
+      RepeatedGrid([](int, int, int, double n) { return 0.065 + 0.002 * n; });
   for (sweep::TrialRow& row : result.rows) {
     row.way_gap_m = 0.03;
     row.falsified = false;
@@ -87,7 +90,8 @@ inline sweep::SweepResult OnlyAtTheGoal() {
 }
 
 inline std::vector<Kind> Kinds() {
-  sweep::SweepResult noisy = RepeatedGrid([](int, int, int, double n) { return 0.055 + 0.02 * n; }, "logs");
+  sweep::SweepResult noisy =
+      RepeatedGrid([](int, int, int, double n) { return 0.055 + 0.02 * n; }, "logs");
   for (sweep::SettingResult& setting : noisy.settings) setting.noise_floor_m = 0.055;
   sweep::SweepResult nothing = synthetic::Grid();
   for (sweep::TrialRow& row : nothing.rows) synthetic::LoseGap(&row, "gone");
@@ -97,21 +101,21 @@ inline std::vector<Kind> Kinds() {
   sweep::Summarise(driven.result);
   driven.robot = {{{experiment::NumberValue(0.7)}, true, 3, 3},
                   {{experiment::NumberValue(0.75)}, true, 3, 0}};
-  return {
-      {"a grid over logs", synthetic::Grid()},
-      {"a grid that holds",
-       RepeatedGrid([](int s, int, int, double n) { return 0.02 + 0.005 * s + 0.002 * n; })},
-      {"a grid that always fails", RepeatedGrid([](int, int, int, double n) { return 0.1 + 0.002 * n; })},
-      {"without a gap", nothing},
-      {"ranges", synthetic::Continuous(300)},
-      {"two parameters that act together", RepeatedGrid([](int s, int a, int, double n) {
-         return 0.05 + 0.02 * (s - 1) * (a == 0 ? 1.0 : -1.0) + 0.002 * n;
-       })},
-      {"lost trials and such as do not arrive", WithLost()},
-      {"an inert parameter", WithInert()},
-      {"above the threshold at the goal alone", OnlyAtTheGoal()},
-      {"as far from the robot as the robot from itself", noisy},
-      driven};
+  return {{"a grid over logs", synthetic::Grid()},
+          {"a grid that holds",
+           RepeatedGrid([](int s, int, int, double n) { return 0.02 + 0.005 * s + 0.002 * n; })},
+          {"a grid that always fails",
+           RepeatedGrid([](int, int, int, double n) { return 0.1 + 0.002 * n; })},
+          {"without a gap", nothing},
+          {"ranges", synthetic::Continuous(300)},
+          {"two parameters that act together", RepeatedGrid([](int s, int a, int, double n) {
+             return 0.05 + 0.02 * (s - 1) * (a == 0 ? 1.0 : -1.0) + 0.002 * n;
+           })},
+          {"lost trials and such as do not arrive", WithLost()},
+          {"an inert parameter", WithInert()},
+          {"above the threshold at the goal alone", OnlyAtTheGoal()},
+          {"as far from the robot as the robot from itself", noisy},
+          driven};
 }
 
 }  // namespace rift::report::synthetic

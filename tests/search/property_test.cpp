@@ -1,4 +1,5 @@
-// What each strategy promises of its points, and the very points it proposed when that was approved.
+// What each strategy promises of its points, and the very points it proposed when that was
+// approved.
 
 #include <fmt/format.h>
 
@@ -124,8 +125,7 @@ TEST_CASE("Corners lie on the bounds and all of them are visited before anything
 }
 
 TEST_CASE("Kriging knows the surface where it was told and is unsure elsewhere") {
-  const Space space({{"a", AxisKind::kContinuous, 0.0, 1.0},
-                     {"w", AxisKind::kCategorical, 0, 1}});
+  const Space space({{"a", AxisKind::kContinuous, 0.0, 1.0}, {"w", AxisKind::kCategorical, 0, 1}});
   Eigen::MatrixXd points(24, 2);
   Eigen::VectorXd values(24);
   for (int i = 0; i < 24; ++i) {

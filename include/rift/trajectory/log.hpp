@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <optional>
 #include <span>
@@ -63,7 +64,17 @@ std::string WriteRift(const Trajectory& trajectory);
 /// One row of it with its line end; `channels` has a value for each channel.
 std::string RiftRow(const StampedPose& pose, std::span<const double> channels);
 
+/// Rotation of the body in the world: roll about x, then pitch about y, then yaw about z. Angles
+/// that are not logged count as zero.
+Eigen::Quaterniond WorldFromBody(const StampedPose& pose);
+
 /// evo's TUM dialect; angles and heights that are not logged are written as zero.
 std::string WriteTum(const Trajectory& trajectory);
+
+/// A file for Foxglove and PlotJuggler (mcap.dev): topics /pose and /target
+/// (foxglove.PoseInFrame in frame "world", metres) and /signals (rift.Signals, one number for each
+/// channel, null where not logged), as JSON; log times are t_s in nanoseconds, counted from the
+/// first row where that is below zero. Throws std::invalid_argument beyond 9e9 s.
+std::string WriteMcap(const Trajectory& trajectory);
 
 }  // namespace rift::trajectory

@@ -65,7 +65,10 @@ int DriveOnce(const DriveRequest& request, const experiment::Experiment& experim
   DriveSession session(request);
   const hardware::DriveRun run = session.DriveInto(folder, experiment);
   const bool is_whole = session.LogFailure().empty();
-  if (run.has_begun && is_whole) terminal::Say("log: " + (folder / "trajectory.csv").string());
+  if (run.has_begun && is_whole) {
+    terminal::Say("log: " + (folder / "trajectory.csv").string());
+    WriteLogCopies(request.copies, run.trial.trajectory);
+  }
   const auto state = is_whole ? report::RunState::kFinished : report::RunState::kInterrupted;
   request.json ? terminal::PrintData(report::DriveJson(experiment, run, state))
                : terminal::PrintText(report::DriveText(run));

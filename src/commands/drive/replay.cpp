@@ -50,8 +50,9 @@ trajectory::Trajectory OnTheFloor(trajectory::Trajectory seen) {
 int ReplayDrive(const DriveRequest& request) {
   const fs::path folder = request.replay;
   RequireDrive(folder);
-  const bool window = request.video.empty() || request.view;
-  if (request.video.empty()) view::RequireDisplay();
+  const bool has_files = !request.video.empty() || !request.copies.Files().empty();
+  const bool window = !has_files || request.view;
+  if (window) view::RequireDisplay();
   const experiment::Experiment experiment = ReadExperiment(folder / "experiment.yaml");
   const trajectory::Trajectory seen = ReadDriven(folder / "trajectory.csv");
   const std::string ending =
@@ -65,6 +66,8 @@ int ReplayDrive(const DriveRequest& request) {
   terminal::PrintText(
       fmt::format("{}\n{} poses over {:.2f} s\n", ending, seen.poses.size(), seen.Duration_s()));
   terminal::FlushResults();
+  WriteLogCopies(request.copies, seen);
+  if (!window && request.video.empty()) return terminal::kDone;
   view::ShowFilm(view::MakeFilm(shown), request.video, window, terminal::Say);
   return terminal::kDone;
 }

@@ -1,6 +1,7 @@
 #include "request.hpp"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -27,8 +28,8 @@ void AddReplayFlags(CLI::App& app, DriveRequest& request) {
                  "with --replay: write a film instead; --view shows it as well")
       ->needs(replay)
       ->type_name("FILE.mp4");
-  app.add_flag("--force", request.force, "with --video: replace a film that is there already")
-      ->needs(replay);
+  app.add_flag("--force", request.force,
+               "with --video, --tum or --mcap: replace a file that is there already");
 }
 
 void AddSeriesFlags(CLI::App& app, DriveRequest& request) {
@@ -88,6 +89,7 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
   });
   app.add_option("--out", request.out, "folder of the run; must not hold one [out/NAME_drive]")
       ->type_name("DIR");
+  AddLogCopyFlags(app, request.copies);
   app.add_flag("--view", request.view, "show the camera's picture; closing it stops the robot");
   app.add_flag("--yes", request.yes, "answers Enter to every question: starts without a person");
   app.add_option("--countdown", request.countdown_s,
@@ -110,7 +112,16 @@ void DriveRequest::Check() const {
   if (!video.empty() && !video.ends_with(".mp4")) {
     throw std::invalid_argument("--video " + video + ": the name must end in .mp4");
   }
-  if (!video.empty()) CheckOutputs({}, {.files = {video}, .folder = replay, .force = force});
+  std::vector<std::filesystem::path> files = copies.Files();
+  if (!files.empty() && (ping || IsSeries())) {
+    throw std::invalid_argument("--tum and --mcap are copies of one drive's log");
+  }
+  if (!video.empty()) files.emplace_back(video);
+  if (force && files.empty()) {
+    throw std::invalid_argument(
+        "--force is for --video, --tum and --mcap: a drive that is there is never replaced");
+  }
+  CheckOutputs({}, {.files = files, .folder = replay, .force = force});
   if (!replay.empty()) return;
   RequireFolderName(out, "a drive");
   const bool is_told_later = IsSeries() && !before_each.empty();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "rift/commands/arguments/log_copies.hpp"
 #include "rift/vision/tracking/session_options.hpp"
 
 namespace rift::commands {
@@ -16,6 +17,7 @@ struct DriveRequest {
   std::string camera;
   std::string calibration;
   std::string out;
+  LogCopies copies;
   std::string replay;              ///< folder of a drive to be shown, without a robot
   std::string video;               ///< of it, FILE.mp4
   vision::SessionOptions session;  ///< of it moved_m
@@ -28,7 +30,7 @@ struct DriveRequest {
   std::optional<double> countdown_s;
   bool any_start = false;
   bool any_waypoints = false;
-  bool force = false;  ///< replace the film of --video
+  bool force = false;  ///< replace the film of --video and the copies of a log
   int repeat = 0;      ///< 0: one drive
   bool grid = false;
   std::string suggested;  ///< folder of a sweep whose suggested.yaml is driven

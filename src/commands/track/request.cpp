@@ -45,10 +45,22 @@ void CheckLogName(const TrackRequest& request) {
   std::vector<fs::path> outputs;
   if (!request.IsPiped()) outputs.emplace_back(request.out);
   if (!request.record_waypoints.empty()) outputs.emplace_back(request.record_waypoints);
+  for (const fs::path& copy : request.copies.Files()) outputs.push_back(copy);
   CheckOutputs(inputs, {.files = outputs, .force = request.force});
   // Without its log it is of a camera that showed no tag, and tells nothing.
   inputs.insert(inputs.end(), outputs.begin(), outputs.end());
   if (!request.IsPiped()) CheckOutputs(inputs, {.files = {RunFileOf(request.out)}, .force = true});
+}
+
+/// They are of one robot, and made of the log when it is whole.
+void CheckCopies(const TrackRequest& request) {
+  if (request.copies.Files().empty()) return;
+  if (request.check || request.calibrate || request.out.empty() || request.IsPiped()) {
+    throw std::invalid_argument("--tum and --mcap are copies of a log: give --out LOG.csv as well");
+  }
+  if (request.ids.size() > 1) {
+    throw std::invalid_argument("--tum and --mcap hold one robot: give --id a single tag");
+  }
 }
 
 void CheckTracking(const TrackRequest& request) {
@@ -144,6 +156,7 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_option("--out", request.out,
                  "the log, - for stdout, the log alone; with --calibrate, the calibration")
       ->type_name("FILE|-");
+  AddLogCopyFlags(app, request.copies);
   app.add_flag("--force", request.force,
                "replace files that are there already, and a better world frame of the calibration");
   app.add_option("--id", request.ids,
@@ -194,6 +207,7 @@ fs::path PictureOf(const TrackRequest& request) {
 }
 
 void TrackRequest::Check() const {
+  CheckCopies(*this);
   if (check) {
     CheckPrecisionCheck(*this);
   } else {

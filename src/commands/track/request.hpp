@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "rift/commands/arguments/log_copies.hpp"
 #include "rift/vision/calibration/chessboard.hpp"
 #include "rift/vision/tracking/session_options.hpp"
 
@@ -17,6 +18,7 @@ struct TrackRequest {
   std::string camera;
   std::string calibration;
   std::string out;
+  LogCopies copies;
   std::string world;  ///< "first", or a file with tags or points
   std::string path;
   std::string record_waypoints;

@@ -148,6 +148,10 @@ int Report(const TrackRequest& request, const vision::CameraModel& camera,
   terminal::PrintText(report::TrackText(run, run.rows));
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
   terminal::Say(fmt::format("{}; run: {}", log, run_file.string()));
+  if (run.rows > 0 && !request.copies.Files().empty()) {
+    WriteLogCopies(request.copies,
+                   trajectory::ReadLog(files::ReadFile(request.out), request.out).trajectory);
+  }
   return EndOf(run);
 }
 

@@ -19,7 +19,7 @@ constexpr float kUnit_m = 0.0002F;      ///< of the whole numbers that paths are
 constexpr std::size_t kMostLines = 30;  ///< drawn behind the band of a view
 constexpr std::size_t kLeastBand = 8;   ///< paths that a band takes
 constexpr std::size_t kMostReferences = 9;
-constexpr double kBandShare = 0.05;     ///< of the paths left out on either side
+constexpr double kBandShare = 0.05;  ///< of the paths left out on either side
 
 /// First point, then steps: "[-1411,-327,55,-3,...]".
 json Steps(const Path& path_m) {
@@ -115,7 +115,8 @@ class PathMaker {
       if (PathOf(index).empty()) continue;
       const std::string end =
           row.IsOk() ? fmt::format("gap {:.4f} m", row.comparison.gap_m)
-                     : fmt::format("did not arrive ({})", EnumNames(row.status)[static_cast<int>(row.status)]);
+                     : fmt::format("did not arrive ({})",
+                                   EnumNames(row.status)[static_cast<int>(row.status)]);
       rows[std::to_string(index + 1)] = {
           {"d", Steps(PathOf(index))},
           {"fails", row.falsified},
@@ -175,9 +176,8 @@ nlohmann::json PagePaths(const sweep::SweepResult& result, const PageEvidence& e
   }
   paths["waypoints"] = json::array();
   for (const PagePoint& point : evidence.waypoints) {
-    paths["waypoints"].push_back({{"name", point.name},
-                                  {"x", point.p_in_world_m.x()},
-                                  {"y", point.p_in_world_m.y()}});
+    paths["waypoints"].push_back(
+        {{"name", point.name}, {"x", point.p_in_world_m.x()}, {"y", point.p_in_world_m.y()}});
   }
   paths["threshold_m"] = result.gap.threshold_m;
   return paths;

@@ -20,13 +20,13 @@ constexpr std::size_t kMostSettings = 60;
 void TakePart(const sweep::SweepResult& result, PageView* view) {
   auto part = std::make_shared<sweep::SweepResult>(
       sweep::SweepResult{.name = result.name,
-                                  .candidate_kind = result.candidate_kind,
-                                  .reference_kind = result.reference_kind,
-                                  .gap = result.gap,
-                                  .judged_by = result.judged_by,
-                                  .judged_settings = result.judged_settings,
-                                  .tag_offset_m = result.tag_offset_m,
-                                  .parameters = result.parameters});
+                         .candidate_kind = result.candidate_kind,
+                         .reference_kind = result.reference_kind,
+                         .gap = result.gap,
+                         .judged_by = result.judged_by,
+                         .judged_settings = result.judged_settings,
+                         .tag_offset_m = result.tag_offset_m,
+                         .parameters = result.parameters});
   for (const int setting : view->settings) {
     const std::vector<int>& rows = result.settings[setting].rows;
     view->rows.insert(view->rows.end(), rows.begin(), rows.end());
@@ -60,7 +60,8 @@ void AddLevels(const sweep::SweepResult& result, int parameter, std::vector<Page
                   .label = level.text,
                   .query = TrialsWhere(axis.Name(), level.text)};
     for (std::size_t i = 0; i < result.settings.size(); ++i) {
-      if (result.settings[i].theta[parameter] == level) view.settings.push_back(static_cast<int>(i));
+      if (result.settings[i].theta[parameter] == level)
+        view.settings.push_back(static_cast<int>(i));
     }
     if (view.settings.empty()) continue;
     TakePart(result, &view);
