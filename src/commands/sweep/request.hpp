@@ -24,6 +24,8 @@ struct SweepRequest {
   bool brief = false;  ///< five lines
   bool exit_code = false;
   std::string status;
+  std::vector<std::string> compare;  ///< two folders
+  std::string page;                  ///< of --compare
   ExplainRequest explain;
   std::string write_robot;
 };

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "calibrate.hpp"
+#include "compare.hpp"
 #include "report.hpp"
 #include "request.hpp"
 #include "rift/commands/arguments/flags.hpp"
@@ -259,6 +260,13 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
   AddAnyWaypointsFlag(app, request.any_waypoints);
   app.add_option("--status", request.status, "tell how far the sweep in a folder is, and end")
       ->type_name("DIR");
+  app.add_option("--compare", request.compare,
+                 "hold the folders of two sweeps over the same space against each other, before "
+                 "and after a change, and end")
+      ->expected(2)
+      ->type_name("DIR");
+  app.add_option("--page", request.page, "with --compare: write it as a page as well")
+      ->type_name("FILE.html");
   AddExplainFlags(app, request.explain);
   AddKeysFlag(app);
   app.add_flag("--brief", request.brief,
@@ -278,7 +286,8 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
       "         rift sweep configs/waypoints/paper.yaml --out out/paper --suggest 3 --shrink "
       "worst\n"
       "         rift sweep configs/programs/diff_drive.yaml --out out/own (somebody else's "
-      "simulator)");
+      "simulator)\n"
+      "         rift sweep --compare out/before out/after --page out/change.html");
 }
 
 }  // namespace
@@ -295,6 +304,14 @@ void AddSweep(CLI::App& app, int& exit_code) {
       const std::string status = SweepStatus(request->status, request->json);
       request->json ? terminal::PrintData(status) : terminal::PrintText(status);
       return;
+    }
+    if (!request->compare.empty()) {
+      CompareSweepFolders(request->compare, request->page, request->json, request->fresh);
+      return;
+    }
+    if (!request->page.empty()) {
+      throw std::invalid_argument("--page " + request->page +
+                                  ": it is the page of --compare DIR DIR");
     }
     if (request->experiment.empty()) {
       throw std::invalid_argument("EXPERIMENT is missing: name the YAML file of the experiment");

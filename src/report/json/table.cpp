@@ -91,6 +91,14 @@ TableRow FirstTableRow(const std::string& table_csv) {
   return RowOf(columns, NextRecord(text));
 }
 
+std::vector<TableRow> TableRows(const std::string& table_csv) {
+  std::string_view text = table_csv;
+  const std::vector<std::string> columns = NextRecord(text);
+  std::vector<TableRow> rows;
+  while (!text.empty()) rows.push_back(RowOf(columns, NextRecord(text)));
+  return rows;
+}
+
 TableRow TableRowOf(const std::string& table_csv, const std::string& id, const std::string& name) {
   std::string_view text = table_csv;
   const std::vector<std::string> columns = NextRecord(text);

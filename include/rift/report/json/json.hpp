@@ -112,6 +112,8 @@ using TableRow = std::map<std::string, std::string>;
 
 /// The first row of such a table.
 TableRow FirstTableRow(const std::string& table_csv);
+/// All rows, each by the names of its columns.
+std::vector<TableRow> TableRows(const std::string& table_csv);
 
 /// The row with this `id`. Throws std::invalid_argument, naming the table and the ids there are,
 /// when there is none.

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rift/statistics/inference.hpp"
+
+namespace rift::sweep {
+
+inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+/// A trial as table.csv holds it.
+struct TabledTrial {
+  std::string key;      ///< of its setting: SettingKey
+  std::string setting;  ///< the same for people
+  std::string trial;
+  bool is_told = false;  ///< it fails or it does not
+  bool falsified = false;
+  double gap_m = kNotKnown;
+};
+
+/// A finished sweep as its folder tells of it.
+struct TabledSweep {
+  std::string folder;
+  std::vector<TabledTrial> trials;
+  std::map<std::string, std::string> verdicts;  ///< by key of the setting
+};
+
+struct ChangedSide {
+  int failures = 0;
+  int told = 0;
+  double mean_gap_m = kNotKnown;  ///< of the trials with a gap
+  std::string verdict;                    ///< empty for several settings
+};
+
+/// A setting, or all of them, in two sweeps.
+struct SettingChange {
+  std::string setting;
+  ChangedSide before, after;
+  int pairs = 0;  ///< trials of the same name with a gap in both
+  double gap_change_m = kNotKnown;  ///< mean of after - before over the pairs
+  statistics::Interval gap_change_95_m{kNotKnown, kNotKnown};
+};
+
+/// A key of the experiment that is not the same in both.
+struct ChangedKey {
+  std::string key, before, after;
+};
+
+/// Two sweeps over the same space: before and after a calibration, or any other change.
+struct SweepChange {
+  std::string before, after;  ///< their folders
+  std::vector<ChangedKey> keys;
+  std::vector<SettingChange> settings;  ///< those of both, the largest change of failures first
+  int only_before = 0;                  ///< settings that the other does not have
+  int only_after = 0;
+  /// Over the settings of both; the interval of the change of the mean gap is over settings where
+  /// there are several, else over trials (Student).
+  SettingChange all;
+  int now_hold = 0;  ///< trials that failed before and hold after
+  int now_fail = 0;
+  /// 95 % (Clopper-Pearson) for the share of now_hold in the trials that changed: above a half, it
+  /// became better, below worse.
+  statistics::Interval better_share_95;
+};
+
+/// Throws std::invalid_argument when they have no setting in common.
+SweepChange CompareSweeps(const TabledSweep& before, const TabledSweep& after,
+                          std::vector<ChangedKey> keys);
+
+}  // namespace rift::sweep

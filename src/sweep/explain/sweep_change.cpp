@@ -1,0 +1,133 @@
+#include "rift/sweep/explain/sweep_change.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "rift/statistics/descriptive.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using Trials = std::map<std::string, const TabledTrial*>;  ///< by name
+
+struct Setting {
+  std::string text;
+  Trials trials;
+};
+
+std::map<std::string, Setting> BySetting(const TabledSweep& sweep) {
+  std::map<std::string, Setting> settings;
+  for (const TabledTrial& trial : sweep.trials) {
+    Setting& setting = settings[trial.key];
+    setting.text = trial.setting;
+    setting.trials[trial.trial] = &trial;
+  }
+  return settings;
+}
+
+class Side {
+ public:
+  void Add(const Trials& trials) {
+    for (const auto& [name, trial] : trials) {
+      side_.told += trial->is_told;
+      side_.failures += trial->is_told && trial->falsified;
+      if (std::isfinite(trial->gap_m)) gaps_m_.push_back(trial->gap_m);
+    }
+  }
+  ChangedSide Result(const std::string& verdict) {
+    side_.mean_gap_m = statistics::Mean(gaps_m_);
+    side_.verdict = verdict;
+    return side_;
+  }
+
+ private:
+  ChangedSide side_;
+  std::vector<double> gaps_m_;
+};
+
+std::string VerdictOf(const TabledSweep& sweep, const std::string& key) {
+  const auto found = sweep.verdicts.find(key);
+  return found == sweep.verdicts.end() ? "" : found->second;
+}
+
+/// Differences of the trials of one name, and how many of them fail in one sweep only.
+std::vector<double> Pair(const Trials& before, const Trials& after, SweepChange* change) {
+  std::vector<double> differences_m;
+  for (const auto& [name, earlier] : before) {
+    const auto found = after.find(name);
+    if (found == after.end()) continue;
+    const TabledTrial& later = *found->second;
+    const double difference_m = later.gap_m - earlier->gap_m;
+    if (std::isfinite(difference_m)) differences_m.push_back(difference_m);
+    if (!earlier->is_told || !later.is_told) continue;
+    change->now_hold += earlier->falsified && !later.falsified;
+    change->now_fail += !earlier->falsified && later.falsified;
+  }
+  return differences_m;
+}
+
+void SetChange(const std::vector<double>& differences_m, SettingChange* change) {
+  change->gap_change_m = statistics::Mean(differences_m);
+  change->gap_change_95_m = statistics::MeanInterval(differences_m, 0.95);
+}
+
+double ShareChange(const SettingChange& change) {
+  const auto share = [](const ChangedSide& side) {
+    return side.told == 0 ? 0.0 : static_cast<double>(side.failures) / side.told;
+  };
+  return std::abs(share(change.after) - share(change.before));
+}
+
+}  // namespace
+
+SweepChange CompareSweeps(const TabledSweep& before, const TabledSweep& after,
+                          std::vector<ChangedKey> keys) {
+  SweepChange change{.before = before.folder, .after = after.folder, .keys = std::move(keys)};
+  const std::map<std::string, Setting> earlier = BySetting(before), later = BySetting(after);
+  Side all_before, all_after;
+  std::vector<double> by_trial_m, by_setting_m;
+  for (const auto& [key, setting] : earlier) {
+    const auto found = later.find(key);
+    if (found == later.end()) {
+      ++change.only_before;
+      continue;
+    }
+    SettingChange one{.setting = setting.text};
+    Side side_before, side_after;
+    side_before.Add(setting.trials);
+    side_after.Add(found->second.trials);
+    all_before.Add(setting.trials);
+    all_after.Add(found->second.trials);
+    one.before = side_before.Result(VerdictOf(before, key));
+    one.after = side_after.Result(VerdictOf(after, key));
+    const std::vector<double> differences_m = Pair(setting.trials, found->second.trials, &change);
+    one.pairs = static_cast<int>(differences_m.size());
+    SetChange(differences_m, &one);
+    if (one.pairs > 0) by_setting_m.push_back(one.gap_change_m);
+    by_trial_m.insert(by_trial_m.end(), differences_m.begin(), differences_m.end());
+    change.settings.push_back(std::move(one));
+  }
+  if (change.settings.empty()) {
+    throw std::invalid_argument(fmt::format("{} and {} have no setting in common: nothing can be "
+                                            "compared",
+                                            before.folder, after.folder));
+  }
+  change.only_after = static_cast<int>(later.size() - change.settings.size());
+  change.all = {.setting = "all",
+                .before = all_before.Result(""),
+                .after = all_after.Result(""),
+                .pairs = static_cast<int>(by_trial_m.size())};
+  SetChange(by_setting_m.size() > 1 ? by_setting_m : by_trial_m, &change.all);
+  change.better_share_95 =
+      statistics::ClopperPearson(change.now_hold, change.now_hold + change.now_fail, 0.95);
+  std::stable_sort(
+      change.settings.begin(), change.settings.end(),
+      [](const auto& a, const auto& b) { return ShareChange(a) > ShareChange(b); });
+  return change;
+}
+
+}  // namespace rift::sweep
