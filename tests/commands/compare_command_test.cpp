@@ -35,9 +35,13 @@ struct Logs {
     }
     WriteText(folder / (name + ".yaml"),
               "space: {surface: [ground, ice]}\n"
-              "candidate: {kind: logs, path: \"" + name + "_{surface}{trial}_sim.csv\"}\n"
-              "reference: {kind: logs, path: \"" + name + "_{surface}{trial}_real.csv\", "
-              "trials: [1, 2, 3, 4, 5, 6]}\n");
+              "candidate: {kind: logs, path: \"" +
+                  name +
+                  "_{surface}{trial}_sim.csv\"}\n"
+                  "reference: {kind: logs, path: \"" +
+                  name +
+                  "_{surface}{trial}_real.csv\", "
+                  "trials: [1, 2, 3, 4, 5, 6]}\n");
     std::vector<std::string> words{"sweep", folder / (name + ".yaml"), "--quiet", "--out",
                                    folder / name};
     words.insert(words.end(), more.begin(), more.end());
@@ -55,8 +59,9 @@ TEST_CASE("Two sweeps are held against each other by setting and by trial") {
   const ProcessResult text = RunRift({"sweep", "--compare", before, after});
   INFO(text.err);
   REQUIRE(text.exit_code == 0);
-  CHECK_THAT(text.out, Contains("6 of 12 trials failed before and 0 of 12 fail after: better (6 now "
-                                "hold, 0 now fail)"));
+  CHECK_THAT(text.out,
+             Contains("6 of 12 trials failed before and 0 of 12 fail after: better (6 now "
+                      "hold, 0 now fail)"));
   const ProcessResult result = RunRift({"sweep", "--compare", before, after, "--json"});
   REQUIRE(result.exit_code == 0);
   const json change = json::parse(result.out);
@@ -79,7 +84,8 @@ TEST_CASE("Two sweeps are held against each other by setting and by trial") {
 TEST_CASE("What became worse is called worse and the other way round better") {
   const Logs logs;
   const std::string a = logs.Swept("a", 0.05), b = logs.Swept("b", 0.08);
-  CHECK_THAT(RunRift({"sweep", "--compare", a, b}).out, Contains(": worse (0 now hold, 6 now fail)"));
+  CHECK_THAT(RunRift({"sweep", "--compare", a, b}).out,
+             Contains(": worse (0 now hold, 6 now fail)"));
   CHECK_THAT(RunRift({"sweep", "--compare", a, a}).out,
              Contains("no trial changed sides") && Contains("no key differs"));
 }
@@ -91,8 +97,9 @@ TEST_CASE("Folders of different experiments are refused with the key that differ
   const ProcessResult refused = RunRift({"sweep", "--compare", a, b});
   CHECK(refused.exit_code == 2);
   CHECK(refused.out.empty());
-  CHECK_THAT(refused.err, Contains("hold different experiments: gap.threshold_m is 0.06 in the first "
-                                   "and 0.03 in the second"));
+  CHECK_THAT(refused.err,
+             Contains("hold different experiments: gap.threshold_m is 0.06 in the first "
+                      "and 0.03 in the second"));
   CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
   const ProcessResult no_sweep = RunRift({"sweep", "--compare", a, logs.folder / "nowhere"});
   CHECK(no_sweep.exit_code == 2);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -30,9 +30,8 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 /// What makes rows of two tables comparable, by the beginning of the keys.
-constexpr std::string_view kSame[] = {"waypoints",     "program",        "space",
-                                      "objective",     "gap.",           "reference.kind",
-                                      "falsify.count."};
+constexpr std::string_view kSame[] = {"waypoints", "program",        "space",         "objective",
+                                      "gap.",      "reference.kind", "falsify.count."};
 /// What says nothing of a trial.
 constexpr std::string_view kFree[] = {"name", "run.", "search.", "twin."};
 

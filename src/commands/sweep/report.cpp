@@ -130,12 +130,13 @@ class References {
 
 /// What the paths are drawn against. The path of a task is that of all repeats; of logs each is
 /// read already; a reference that has to be computed is the worst trial's alone.
-void TakeReferences(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
+void TakeReferences(const sweep::SweepResult& result, sweep::Evaluator& evaluator, bool may_compute,
                     report::PageEvidence& evidence) {
   constexpr size_t kMostReferences = 100;
   if (evaluator.experiment().objective == experiment::Objective::kOdometry) return;
   References references(result, evaluator, evidence);
   if (result.reference_kind != "logs" && result.reference_kind != "path") {
+    if (!may_compute) return;
     if (const std::optional<int> worst = sweep::WorstRow(result)) references.Take(*worst);
     return;
   }
@@ -183,9 +184,10 @@ std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
 }
 
 /// What a page is made of beside the result, the figures left out.
-report::PageEvidence EvidenceFor(const sweep::SweepResult& result, sweep::Evaluator& evaluator) {
+report::PageEvidence EvidenceFor(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
+                                 bool may_compute) {
   report::PageEvidence evidence;
-  TakeReferences(result, evaluator, evidence);
+  TakeReferences(result, evaluator, may_compute, evidence);
   evidence.gap_flags = GapFlags(evaluator.experiment());
   for (const control::Waypoint& waypoint : evaluator.experiment().waypoints) {
     evidence.waypoints.push_back({waypoint.name, waypoint.Position()});
@@ -212,7 +214,7 @@ void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepRes
                       sweep::Evaluator& evaluator) {
   const std::optional<report::ComparedPair> worst = WorstPair(result, evaluator);
   const report::SweepFigureSet set = report::SweepFigures(result, worst);
-  report::PageEvidence evidence = EvidenceFor(result, evaluator);
+  report::PageEvidence evidence = EvidenceFor(result, evaluator, true);
   evidence.programs = programs;
   if (worst) {
     const std::vector<Eigen::Vector2d>& samples_m = worst->profile.sim_m;
@@ -231,6 +233,13 @@ void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepRes
     terminal::Say(fmt::format("note: {} is not drawn: {}", omitted.name, omitted.reason));
   }
   files::WriteFile(folder / "report.html", report::RenderPage(result, explanation, evidence));
+}
+
+std::string RunningReport(const sweep::SweepResult& result, sweep::Evaluator& evaluator) {
+  report::PageEvidence evidence = EvidenceFor(result, evaluator, false);
+  evidence.running =
+      fmt::format("{} trials so far, {} of them failed", result.rows.size(), result.all.failures);
+  return report::RenderPage(result, sweep::Explain(result), evidence);
 }
 
 }  // namespace rift::commands

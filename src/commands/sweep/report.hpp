@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "rift/sweep/explain/explanation.hpp"
@@ -15,5 +16,8 @@ namespace rift::commands {
 void WriteSweepReport(const std::filesystem::path& folder, const sweep::SweepResult& result,
                       const sweep::Explanation& explanation,
                       const std::vector<sweep::ProgramCell>& programs, sweep::Evaluator& evaluator);
+
+/// The page of a sweep that still runs, of the trials so far, without figures.
+std::string RunningReport(const sweep::SweepResult& result, sweep::Evaluator& evaluator);
 
 }  // namespace rift::commands

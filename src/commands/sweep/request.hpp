@@ -23,6 +23,7 @@ struct SweepRequest {
   bool json = false;
   bool brief = false;  ///< five lines
   bool exit_code = false;
+  bool serve = false;  ///< a page that grows, at a local address
   std::string status;
   std::vector<std::string> compare;  ///< two folders
   std::string page;                  ///< of --compare

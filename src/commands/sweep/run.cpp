@@ -101,9 +101,13 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
       [&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
       [&](const sweep::TrialRequest& trial) { return evaluator.KeyOf(trial); }, &journal,
       request.jobs, experiment.run,
-      {[&](const sweep::TrialRow& row, bool from_journal) { progress.Seen(row, from_journal); },
+      {[&](const sweep::TrialRow& row, bool from_journal) {
+         progress.Seen(row, from_journal);
+         if (request.live != nullptr) request.live->Seen(row);
+       },
        [&] {
          progress.Tick();
+         if (request.live != nullptr) request.live->Tick();
          watch.Note();
          return !stop.IsAsked();
        }});
@@ -142,9 +146,13 @@ std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
   } else {
     const sweep::RunTrials run =
         sweep::RunHere([&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
-                       {[&](const sweep::TrialRow& row, bool) { progress.Seen(row, false); },
+                       {[&](const sweep::TrialRow& row, bool) {
+                          progress.Seen(row, false);
+                          if (request.live != nullptr) request.live->Seen(row);
+                        },
                         [&] {
                           progress.Tick();
+                          if (request.live != nullptr) request.live->Tick();
                           return !stop.IsAsked();
                         }});
     result = sweep::Sweep(evaluator, run, [](const auto&) { return true; });

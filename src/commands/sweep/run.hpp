@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "live_page.hpp"
 #include "progress.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 
@@ -15,6 +16,7 @@ struct SweepRunRequest {
   int jobs = 1;
   bool fresh = false;  ///< forget an earlier journal
   ProgressStyle progress = ProgressStyle::kQuiet;
+  LivePage* live = nullptr;  ///< told of each trial, where there is one
 };
 
 inline constexpr const char* kJournalName = "journal.sqlite";

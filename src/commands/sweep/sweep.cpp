@@ -193,6 +193,12 @@ void Print(const SweepRequest& request, const sweep::SweepResult& result,
 int Sweep(const SweepRequest& request) {
   const experiment::Experiment loaded = LoadFor(request);
   if (loaded.goal == experiment::Goal::kCalibrate) {
+    if (request.serve) {
+      throw std::invalid_argument(
+          request.experiment +
+          ": --serve shows the trials of a sweep as they come in, and goal: "
+          "calibrate has no such page");
+    }
     RefuseOtherSweep(request, loaded, OutputOf(request.out, loaded.name));
     return Calibrate(request, loaded);
   }
@@ -206,8 +212,10 @@ int Sweep(const SweepRequest& request) {
   RefuseOtherSweep(request, experiment, out);
   const files::FolderLock lock(out);
   const ProgressStyle progress = StyleFor(request.quiet, request.json_progress);
+  std::optional<LivePage> live;
+  if (request.serve) live.emplace(out, evaluator);
   const std::optional<sweep::SweepResult> judged =
-      RunSweep(evaluator, {out, request.jobs, request.fresh, progress});
+      RunSweep(evaluator, {out, request.jobs, request.fresh, progress, live ? &*live : nullptr});
   if (!judged) return SayStopped(experiment, out);
   lock.RequireInPlace();
   Save(out, experiment, evaluator, *judged);
@@ -223,6 +231,7 @@ int Sweep(const SweepRequest& request) {
       sweep::MeasureSweepLikeness(evaluator, request.jobs);
   const std::vector<sweep::ProgramCell> programs = sweep::MeasurePrograms(evaluator);
   SaveReport(out, *judged, explanation, likeness, programs, evaluator);
+  if (live) live->End();
   Print(request, *judged, explanation, likeness);
   if (!request.json && !request.brief)
     terminal::PrintText(report::ProgramText(judged->parameters, programs));
@@ -277,6 +286,9 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
   app.add_option("--write-robot", request.write_robot,
                  "goal: calibrate: write the fitted robot, to be used as include:")
       ->type_name("FILE.yaml");
+  app.add_flag("--serve", request.serve,
+               "show the report growing while the sweep runs, at an address of this machine alone "
+               "that is printed on stderr");
   app.add_flag("--exit-code", request.exit_code,
                "end with 1 when a setting is falsified, or undecided with a failure");
   app.footer(
@@ -287,6 +299,7 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
       "worst\n"
       "         rift sweep configs/programs/diff_drive.yaml --out out/own (somebody else's "
       "simulator)\n"
+      "         rift sweep configs/waypoints/paper.yaml --out out/paper --serve\n"
       "         rift sweep --compare out/before out/after --page out/change.html");
 }
 

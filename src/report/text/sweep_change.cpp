@@ -23,7 +23,8 @@ std::string Line(const sweep::SettingChange& change, size_t width) {
       change.before.verdict.empty()
           ? ""
           : "  " + change.before.verdict +
-                (change.after.verdict == change.before.verdict ? "" : " -> " + change.after.verdict);
+                (change.after.verdict == change.before.verdict ? ""
+                                                               : " -> " + change.after.verdict);
   return fmt::format("{:<{}}  {:>11}  {:>11}  {:>8}  {:>8}  {:>30}{}\n", change.setting, width,
                      Failed(change.before), Failed(change.after), Gap(change.before.mean_gap_m),
                      Gap(change.after.mean_gap_m), GapChangeText(change), verdicts);
@@ -35,7 +36,8 @@ std::string GapChangeText(const sweep::SettingChange& change) {
   if (std::isnan(change.gap_change_m)) return "-";
   const statistics::Interval& interval = change.gap_change_95_m;
   const std::string between =
-      std::isnan(interval.low) ? "" : fmt::format(" ({:+.4f} to {:+.4f})", interval.low, interval.high);
+      std::isnan(interval.low) ? ""
+                               : fmt::format(" ({:+.4f} to {:+.4f})", interval.low, interval.high);
   return fmt::format("{:+.4f} m{}", change.gap_change_m, between);
 }
 
@@ -51,14 +53,14 @@ std::string ChangeSentence(const sweep::SweepChange& change) {
 }
 
 std::string ChangeText(const sweep::SweepChange& change) {
-  std::string text = fmt::format("before: {}\nafter:  {}\n\n{}\nmean gap: {}, 95 % over {}\n\n",
-                                 change.before, change.after, ChangeSentence(change),
-                                 GapChangeText(change.all),
-                                 change.settings.size() > 1 ? "settings" : "trials");
+  std::string text =
+      fmt::format("before: {}\nafter:  {}\n\n{}\nmean gap: {}, 95 % over {}\n\n", change.before,
+                  change.after, ChangeSentence(change), GapChangeText(change.all),
+                  change.settings.size() > 1 ? "settings" : "trials");
   if (change.keys.empty()) text += "no key differs: the same experiment twice\n";
   for (size_t i = 0; i < std::min(kMostKeys, change.keys.size()); ++i) {
-    text += fmt::format("{}: {} -> {}\n", change.keys[i].key,
-                        Shortened(change.keys[i].before, 50), Shortened(change.keys[i].after, 50));
+    text += fmt::format("{}: {} -> {}\n", change.keys[i].key, Shortened(change.keys[i].before, 50),
+                        Shortened(change.keys[i].after, 50));
   }
   if (change.keys.size() > kMostKeys) {
     text += fmt::format("and {} more keys that differ\n", change.keys.size() - kMostKeys);

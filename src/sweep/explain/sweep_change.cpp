@@ -112,9 +112,10 @@ SweepChange CompareSweeps(const TabledSweep& before, const TabledSweep& after,
     change.settings.push_back(std::move(one));
   }
   if (change.settings.empty()) {
-    throw std::invalid_argument(fmt::format("{} and {} have no setting in common: nothing can be "
-                                            "compared",
-                                            before.folder, after.folder));
+    throw std::invalid_argument(
+        fmt::format("{} and {} have no setting in common: nothing can be "
+                    "compared",
+                    before.folder, after.folder));
   }
   change.only_after = static_cast<int>(later.size() - change.settings.size());
   change.all = {.setting = "all",
@@ -124,9 +125,8 @@ SweepChange CompareSweeps(const TabledSweep& before, const TabledSweep& after,
   SetChange(by_setting_m.size() > 1 ? by_setting_m : by_trial_m, &change.all);
   change.better_share_95 =
       statistics::ClopperPearson(change.now_hold, change.now_hold + change.now_fail, 0.95);
-  std::stable_sort(
-      change.settings.begin(), change.settings.end(),
-      [](const auto& a, const auto& b) { return ShareChange(a) > ShareChange(b); });
+  std::stable_sort(change.settings.begin(), change.settings.end(),
+                   [](const auto& a, const auto& b) { return ShareChange(a) > ShareChange(b); });
   return change;
 }
 

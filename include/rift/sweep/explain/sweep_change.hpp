@@ -32,14 +32,14 @@ struct ChangedSide {
   int failures = 0;
   int told = 0;
   double mean_gap_m = kNotKnown;  ///< of the trials with a gap
-  std::string verdict;                    ///< empty for several settings
+  std::string verdict;            ///< empty for several settings
 };
 
 /// A setting, or all of them, in two sweeps.
 struct SettingChange {
   std::string setting;
   ChangedSide before, after;
-  int pairs = 0;  ///< trials of the same name with a gap in both
+  int pairs = 0;                    ///< trials of the same name with a gap in both
   double gap_change_m = kNotKnown;  ///< mean of after - before over the pairs
   statistics::Interval gap_change_95_m{kNotKnown, kNotKnown};
 };

@@ -1,0 +1,159 @@
+#include "page_server.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+// After <utility>, which Boost.Asio 1.74 does not include where it needs it.
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+
+#include "rift/files/files.hpp"
+
+namespace rift::commands {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using asio::ip::tcp;
+
+constexpr double kWatching_s = 10.0;
+
+std::string Token() {
+  std::random_device random;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", random());
+  return token;
+}
+
+double Now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// A client that says nothing may not keep the next one waiting.
+void LimitWaiting(tcp::socket& socket) {
+  const timeval limit{2, 0};
+  ::setsockopt(socket.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+  ::setsockopt(socket.native_handle(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+}
+
+std::optional<std::string> PageOf(const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) {
+    if (auto text = files::ReadIfThere(file)) return text;
+  }
+  return std::nullopt;
+}
+
+void Answer(tcp::socket socket, const std::string& path,
+            const std::vector<std::filesystem::path>& files, int requests) {
+  LimitWaiting(socket);
+  beast::error_code failed;
+  beast::flat_buffer buffer;
+  http::request<http::empty_body> request;
+  http::read(socket, buffer, request, failed);
+  if (failed) return;
+  const bool is_asked = request.method() == http::verb::get && request.target() == path;
+  const std::optional<std::string> page = is_asked ? PageOf(files) : std::nullopt;
+  http::response<http::string_body> response{page ? http::status::ok : http::status::not_found,
+                                             request.version()};
+  response.set(http::field::content_type, "text/html; charset=utf-8");
+  response.set(http::field::cache_control, "no-store");
+  response.body() = page.value_or("");
+  response.keep_alive(false);
+  response.prepare_payload();
+  http::write(socket, response, failed);
+  socket.shutdown(tcp::socket::shutdown_both, failed);
+  if (page && ::write(requests, "r", 1) != 1) ::_exit(0);  // nobody is there any more
+}
+
+[[noreturn]] void Serve(tcp::acceptor& acceptor, const std::string& path,
+                        const std::vector<std::filesystem::path>& files, int requests) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the sweep, which ends this process as well
+  std::signal(SIGPIPE, SIG_IGN);
+  while (true) {
+    beast::error_code failed;
+    tcp::socket socket(acceptor.get_executor());
+    acceptor.accept(socket, failed);
+    if (failed) continue;
+    try {
+      Answer(std::move(socket), path, files, requests);
+    } catch (const std::exception&) {  // a page that cannot be read now is there the next time
+    }
+  }
+}
+
+}  // namespace
+
+PageServer::PageServer(std::vector<std::filesystem::path> files) {
+  asio::io_context context;
+  tcp::acceptor acceptor(context);
+  try {
+    acceptor = tcp::acceptor(context, tcp::endpoint(asio::ip::address_v4::loopback(), 0));
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(
+        fmt::format("--serve: no port of 127.0.0.1 to be had: {}", error.code().message()));
+  }
+  const std::string path = fmt::format("/{}/", Token());
+  url_ = fmt::format("http://127.0.0.1:{}{}", acceptor.local_endpoint().port(), path);
+  std::array<int, 2> pipe{};
+  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
+    throw std::runtime_error(fmt::format("--serve: no pipe: {}", std::strerror(errno)));
+  }
+  process_ = ::fork();
+  if (process_ == 0) {
+    ::close(pipe[0]);
+    Serve(acceptor, path, files, pipe[1]);
+  }
+  ::close(pipe[1]);
+  requests_ = pipe[0];
+  ::fcntl(requests_, F_SETFL, O_NONBLOCK);
+  if (process_ < 0) {
+    const std::string reason = std::strerror(errno);
+    ::close(requests_);
+    throw std::runtime_error(fmt::format("--serve: no process: {}", reason));
+  }
+}
+
+PageServer::~PageServer() {
+  ::kill(process_, SIGKILL);
+  while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  ::close(requests_);
+}
+
+void PageServer::NoteRequests() {
+  std::array<char, 64> bytes{};
+  while (::read(requests_, bytes.data(), bytes.size()) > 0) last_request_s_ = Now_s();
+}
+
+bool PageServer::IsWatched() {
+  NoteRequests();
+  return Now_s() - last_request_s_ < kWatching_s;
+}
+
+bool PageServer::WaitForRequest(int timeout_ms) {
+  NoteRequests();
+  pollfd entry{requests_, POLLIN, 0};
+  return ::poll(&entry, 1, timeout_ms) > 0;
+}
+
+}  // namespace rift::commands

@@ -1,0 +1,136 @@
+// rift sweep --serve: the report of a sweep that runs.
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <regex>
+
+#include "support/process.hpp"
+#include "support/running_rift.hpp"
+#include "support/trials.hpp"
+
+namespace rift {
+namespace {
+
+using Catch::Matchers::Contains;
+using test::ReadFile;
+
+struct Address {
+  int port = 0;
+  std::string path;
+};
+
+/// Where the sweep says that its page is.
+Address LiveAddress(const std::string& err) {
+  std::smatch found;
+  if (!std::regex_search(err, found, std::regex(R"(live: http://127\.0\.0\.1:(\d+)(/\w+/))"))) {
+    return {};
+  }
+  return {std::stoi(found[1]), found[2]};
+}
+
+/// The whole answer of a server on this machine; empty when there is none.
+std::string Get(int port, const std::string& path) {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  std::string answer;
+  if (::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
+    const std::string request = "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    REQUIRE(::write(socket, request.data(), request.size()) ==
+            static_cast<ssize_t>(request.size()));
+    char bytes[4096];
+    for (ssize_t n = 0; (n = ::read(socket, bytes, sizeof bytes)) > 0;) {
+      answer.append(bytes, static_cast<size_t>(n));
+    }
+  }
+  ::close(socket);
+  return answer;
+}
+
+/// Local addresses that listen at the port, as the kernel writes them.
+std::string Listening(int port) {
+  char wanted[8];
+  std::snprintf(wanted, sizeof wanted, ":%04X", port);
+  std::string addresses;
+  for (const char* table : {"/proc/net/tcp", "/proc/net/tcp6"}) {
+    std::istringstream lines(ReadFile(table));
+    for (std::string line, slot, local, remote, state; std::getline(lines, line);) {
+      std::istringstream(line) >> slot >> local >> remote >> state;
+      if (local.ends_with(wanted) && state == "0A") addresses += local + " ";
+    }
+  }
+  return addresses;
+}
+
+TEST_CASE("A sweep shows its report growing at an address of this machine alone") {
+  const test::TemporaryFolder folder;
+  // Far more trials than the test waits for.
+  test::WriteText(folder / "long.yaml",
+                  "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]\n"
+                  "gap: {threshold_m: 0.01}\nreference: {kind: path, trials: 4000}\n"
+                  "space: {surface: [ground, parchment], v_min: [0.14, 0.18]}\n");
+  const std::string out = folder / "out";
+  test::RunningRift sweep({"sweep", folder / "long.yaml", "--out", out, "--serve", "--quiet"});
+  sweep.WaitUntil("an address", [&] { return LiveAddress(sweep.Err()).port != 0; });
+  const Address at = LiveAddress(sweep.Err());
+  CHECK(at.path.size() >= 32);
+  CHECK(Listening(at.port) == "0100007F" + Listening(at.port).substr(8));
+  std::string page;
+  sweep.WaitUntil("trials on the page", [&] {
+    page = Get(at.port, at.path);
+    return page.find("trials so far") != page.npos;
+  });
+  CHECK_THAT(page, Contains("200 OK") && Contains("no-store") && Contains("\"running\":true") &&
+                       Contains("id=\"paths\""));
+  for (const std::string& path : {std::string("/"), "/" + std::string(32, '0') + "/", at.path + "x",
+                                  std::string("/live.html"), at.path + "../table.csv"}) {
+    INFO(path);
+    CHECK_THAT(Get(at.port, path), Contains("404 Not Found") && !Contains("html><"));
+  }
+  sweep.Signal(SIGINT);
+  sweep.Wait();
+  CHECK_FALSE(std::filesystem::exists(out + "/live.html"));
+  CHECK(Get(at.port, at.path).empty());
+}
+
+TEST_CASE("A sweep that was watched serves its finished report before it ends") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "short.yaml",
+                  "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]\n"
+                  "gap: {threshold_m: 0.01}\nreference: {kind: path, trials: 30}\n"
+                  "space: {surface: [ground, parchment]}\n");
+  const std::string out = folder / "out";
+  test::RunningRift sweep({"sweep", folder / "short.yaml", "--out", out, "--serve", "--quiet"});
+  sweep.WaitUntil("an address", [&] { return LiveAddress(sweep.Err()).port != 0; });
+  const Address at = LiveAddress(sweep.Err());
+  std::string page;
+  sweep.WaitUntil("the finished report", [&] {
+    page = Get(at.port, at.path);
+    return page.find("\"running\":false") != page.npos;
+  });
+  CHECK(sweep.Wait().exit_code == 0);
+  CHECK_THAT(page, Contains(ReadFile(out + "/report.html")));
+  CHECK_FALSE(std::filesystem::exists(out + "/live.html"));
+}
+
+TEST_CASE("A calibration has no page that grows") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "fit.yaml",
+                  "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]\n"
+                  "goal: calibrate\ncalibrate: {fit: {simulation.motor.mismatch: {min: -0.1, max: "
+                  "0.1}}}\nreference: {kind: logs, path: \"a{trial}.csv\", trials: [1]}\n");
+  const test::ProcessResult refused =
+      test::RunRift({"sweep", folder / "fit.yaml", "--serve", "--out", folder / "out"});
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, Contains("--serve"));
+}
+
+}  // namespace
+}  // namespace rift
