@@ -127,6 +127,31 @@ TEST_CASE("The key of a trial changes with its setting, repeat, seed and the byt
   CHECK(key_of(LogBeside(0.05), {.theta = {{"ground", {}}}, .trial = "1", .seed = 4}) != key);
 }
 
+TEST_CASE("Both sides of a simulated trial are taken at the same point ahead of the tag") {
+  experiment::Experiment experiment;
+  experiment.waypoints = {{.name = "start"}, {.name = "end", .x_m = 0.4, .y_m = 0.1}};
+  experiment.reference.kind = experiment::ReferenceKind::kLogs;
+  experiment.reference.path.text = "own.csv";
+  experiment.reference.trials.names = {"1"};
+  Files files;
+  const TrialRequest request{.theta = {}, .trial = "1", .seed = 5};
+  Evaluator untouched(experiment, "own.yaml", files.AsInputs());
+  const SimulatedRun run = Simulate(untouched.TrialFor(request, {}));
+  REQUIRE(run.result.outcome == trial::Outcome::kReached);
+  files.text["own.csv"] = trajectory::WriteRift(run.result.trajectory);
+  for (const double tag_offset_m : {0.0, 0.03, -0.05}) {
+    // The log is the very run: moved alike, both paths stay one.
+    experiment.reference.tag_offset_m = tag_offset_m;
+    Evaluator evaluator(experiment, "own.yaml", files.AsInputs());
+    const TrialRow row = evaluator.Evaluate(request);
+    INFO(row.reason);
+    REQUIRE(row.IsOk());
+    CHECK(row.comparison.gap_m < 1e-6);
+    // Another seed is another run, and told so.
+    CHECK(evaluator.Evaluate({.theta = {}, .trial = "1", .seed = 6}).comparison.gap_m > 1e-5);
+  }
+}
+
 TEST_CASE("The key of a setting names its values however their numbers are written") {
   const std::vector<experiment::Parameter> axes{{.key = "a.surface"}, {.key = "a.v_min"}};
   const std::string key = "a.surface=ground a.v_min=0.2 ";
