@@ -4,10 +4,11 @@
     tests/mutation/mutate.py --folder /tmp/mutation --count 60 --seed 1
     tests/mutation/mutate.py --folder /tmp/mutation --room gap --count 15 --seed 2 --resume
 
-It never edits the tree it lies in: the files git knows there, and new ones, are copied to FOLDER/tree0
-(tree1 ...; one for each of --jobs) and built there. A fault is found when a test program of its room,
-or of a room that uses it (TESTS below), fails or takes more than three times its time. Faults that do not compile do not count
-and are drawn anew. Every outcome is a line of FOLDER/outcomes.jsonl; --resume goes on after the last.
+It never edits the tree it lies in: the files that git knows there, and new ones, are copied to
+FOLDER/tree0 (tree1 ...; one for each of --jobs) and built there. A fault is found when a test program
+of its room, or of a room that uses it (TESTS below), fails or takes more than three times its time.
+Faults that do not compile do not count and are drawn anew. Every outcome is a line of
+FOLDER/outcomes.jsonl; --resume goes on after the last.
 """
 
 import argparse

@@ -24,6 +24,7 @@ bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 /// Numbers are equal within kSame of their size (of 1, for what is nearly nothing), all else is
 /// equal to the byte.
 bool IsSameLine(const std::string& a, const std::string& b) {
+  if (a == b) return true;
   const char *p = a.c_str(), *q = b.c_str();
   while (*p != 0 && *q != 0) {
     if (IsDigit(*p) && IsDigit(*q)) {
