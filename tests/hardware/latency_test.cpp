@@ -27,5 +27,52 @@ TEST_CASE("A camera's latency is measured by a turn to and fro") {
   }
 }
 
+/// A turn to and fro that never repeats itself, scaled and late.
+std::vector<Angle> Swing(double late_s, double scale, double offset_rad, double every_s) {
+  std::vector<Angle> angles;
+  for (double t_s = 0.0; t_s < 6.0; t_s += every_s) {
+    const double own_s = t_s - late_s;
+    AddAngle(
+        angles, t_s,
+        offset_rad + scale * (0.3 * std::sin(2.1 * own_s) + 0.2 * std::sin(5.3 * own_s + 0.4)));
+  }
+  return angles;
+}
+
+TEST_CASE("A lag is found with its scale, between its steps and at both ends of the search") {
+  const std::vector<Angle> leader = Swing(0.0, 1.0, 0.0, 0.01);
+  for (const double lag_s : {-0.2, 0.0, 0.0733, 0.2218, 0.4}) {
+    const std::optional<Lag> found = EstimateLag(Swing(lag_s, 0.8, 0.5, 0.033), leader, -0.2, 0.4);
+    REQUIRE(found);
+    INFO("lag " << lag_s);
+    CHECK(found->lag_s == Approx(lag_s).margin(0.002));
+    CHECK(found->scale == Approx(0.8).margin(0.03));
+  }
+  CHECK(EstimateLag(Swing(0.3, -1.0, 0.0, 0.033), leader, 0.2, 0.4)->scale ==
+        Approx(-1.0).margin(0.02));
+  CHECK_FALSE(EstimateLag(Swing(0.0, 0.0, 0.5, 0.033), leader, -0.2, 0.4));
+  CHECK_FALSE(EstimateLag(leader, Swing(0.0, 0.0, 0.5, 0.033), -0.2, 0.4));
+}
+
+TEST_CASE("An angle runs on through half a turn in both directions") {
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<Angle> angles;
+    for (int i = 0; i <= 20; ++i) {
+      const double rad = sign * 0.5 * i;
+      AddAngle(angles, 0.1 * i, std::atan2(std::sin(rad), std::cos(rad)));
+    }
+    CHECK(angles.back().rad == Approx(sign * 10.0));
+  }
+}
+
+TEST_CASE("The turn of the wheels is that of the right one less that of the left one") {
+  const std::vector<EncoderReading> readings{{0.0, {100, 50}}, {0.1, {110, 90}}, {0.1, {0, 0}}};
+  const std::vector<Angle> turns = WheelTurns(readings, 0.01);
+  REQUIRE(turns.size() == 2);
+  CHECK(turns[0].rad == Approx(-0.5));
+  CHECK(turns[1].rad == Approx(-0.2));
+  CHECK(turns[1].t_s == 0.1);
+}
+
 }  // namespace
 }  // namespace rift::hardware

@@ -6,8 +6,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "rift/geometry/pose2.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/fake_robot.hpp"
+#include "support/mirror.hpp"
 #include "support/paper_waypoints.hpp"
 
 namespace rift::trial {
@@ -256,6 +258,50 @@ TEST_CASE("A tilt that lasts is a fall and a flicker of the tracker is none") {
   const TrialResult result = Run(robot);
   CHECK(result.outcome == Outcome::kFell);
   CHECK(result.end_s == Approx(1.22 + 0.15).margin(0.03));
+}
+
+TEST_CASE("A fall is seen to every side and a tilt below the angle to none") {
+  test::OnBothSides("roll", "pitch", [](const test::Side& side) {
+    for (const double sign : {1.0, -1.0}) {
+      for (const bool is_fall : {true, false}) {
+        test::FakeRobot robot = RobotAtStart();
+        TrialOptions options;
+        const double angle_rad =
+            geometry::RadFromDeg(options.fall_angle_deg + (is_fall ? 1.0 : -1.0));
+        robot.spoil = [&](Sensed& sensed) {
+          if (sensed.now_s < 1.0) return;
+          side.In(*sensed.pose, &PoseMeasurement::roll_rad, &PoseMeasurement::pitch_rad) =
+              sign * angle_rad;
+        };
+        CHECK((Run(robot, options).outcome == Outcome::kFell) == is_fall);
+      }
+    }
+  });
+}
+
+TEST_CASE("The arena ends on all four sides") {
+  test::OnBothSides("x", "y", [](const test::Side& side) {
+    for (const bool is_upper : {true, false}) {
+      test::FakeRobot robot = RobotAtStart();
+      TrialOptions options;
+      robot.spoil = [&](Sensed& sensed) {
+        if (sensed.now_s < 0.5) return;
+        // Slowly, so that it is no jump: 1 m/s.
+        const double off_m = (is_upper ? 1.0 : -1.0) * (sensed.now_s - 0.5);
+        geometry::Pose2& pose = sensed.pose->world_from_robot;
+        side.In(pose, &geometry::Pose2::x_m, &geometry::Pose2::y_m) += off_m;
+      };
+      const geometry::Pose2 start = control::StartPose(test::PaperWaypoints());
+      const double start_m = side.IsFirst() ? start.x_m : start.y_m;
+      if (is_upper) {
+        side.In(options.arena, &Arena::x_max_m, &Arena::y_max_m) = start_m + 0.15;
+      } else {
+        side.In(options.arena, &Arena::x_min_m, &Arena::y_min_m) = start_m - 0.15;
+      }
+      const TrialResult result = Run(robot, options);
+      CHECK(result.outcome == Outcome::kLeftArena);
+    }
+  });
 }
 
 TEST_CASE("A robot outside the arena ends the trial") {

@@ -1,0 +1,74 @@
+// Poses against wheels, without a clock, a line or noise: what each contradiction is called.
+
+#include "hardware/motion_check.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/mirror.hpp"
+
+namespace rift::hardware {
+namespace {
+
+constexpr double kTrack_m = 0.09;
+
+/// What happens to the poses and the wheels of a robot that weaves slowly.
+struct Weave {
+  double late_s = 0.0;        ///< of the poses
+  double pose_stands_s = 99;  ///< from here on
+  double wheels_stand_s = 99;
+  bool is_first = true;  ///< weaves to this side first
+};
+
+/// Why it is stopped within eight seconds; none.
+std::optional<StopReason> Stopped(const Weave& weave, double known_latency_s = 0.0) {
+  MotionCheck check({}, kTrack_m);
+  check.SetLatency(known_latency_s);
+  std::vector<geometry::Pose2> poses;
+  std::vector<WheelTravel> wheels;
+  geometry::Pose2 pose;
+  WheelTravel travel;
+  constexpr double kStep_s = 0.001;
+  for (int i = 0; i < 8000; ++i) {
+    const double t_s = kStep_s * i;
+    poses.push_back(pose);
+    wheels.push_back(travel);
+    const double v_mps = 0.08 + 0.05 * std::sin(1.7 * t_s);
+    const double w_rad_s = (weave.is_first ? 1.0 : -1.0) * 1.6 * std::sin(3.1 * t_s);
+    pose.x_m += kStep_s * v_mps * std::cos(pose.yaw_rad);
+    pose.y_m += kStep_s * v_mps * std::sin(pose.yaw_rad);
+    pose.yaw_rad += kStep_s * w_rad_s;
+    travel.t_s = t_s + kStep_s;
+    travel.left_m += kStep_s * (v_mps - 0.5 * kTrack_m * w_rad_s);
+    travel.right_m += kStep_s * (v_mps + 0.5 * kTrack_m * w_rad_s);
+    if (i % 20 == 0) {
+      const int from = std::min(i, static_cast<int>(weave.wheels_stand_s / kStep_s));
+      check.SeeWheels({t_s, wheels[from].left_m, wheels[from].right_m}, true);
+    }
+    if (i % 33 == 0 && t_s > 1.0) {
+      const double seen_s = std::min(t_s - weave.late_s, weave.pose_stands_s);
+      check.SeePose({t_s, poses[static_cast<size_t>(seen_s / kStep_s)], 0.0, 0.0, 0.0});
+    }
+    if (const std::optional<Disagreement> found = check.Check()) return found->reason;
+  }
+  return std::nullopt;
+}
+
+TEST_CASE("Poses that agree with the wheels, or are late as known, stop nothing") {
+  test::OnBothSides("left first", "right first", [](const test::Side& side) {
+    CHECK_FALSE(Stopped({.is_first = side.IsFirst()}));
+    CHECK_FALSE(Stopped({.late_s = 0.2, .is_first = side.IsFirst()}, 0.2));
+  });
+}
+
+TEST_CASE("Poses that lag the wheels, stand or go on alone are told apart") {
+  test::OnBothSides("left first", "right first", [](const test::Side& side) {
+    CHECK(Stopped({.late_s = 0.4, .is_first = side.IsFirst()}) == StopReason::kPoseLags);
+    CHECK(Stopped({.pose_stands_s = 3.0, .is_first = side.IsFirst()}) == StopReason::kPoseStands);
+    CHECK(Stopped({.wheels_stand_s = 3.0, .is_first = side.IsFirst()}) ==
+          StopReason::kWheelsStand);
+  });
+}
+
+}  // namespace
+}  // namespace rift::hardware
