@@ -1,5 +1,6 @@
-// The container MCAP (mcap.dev/spec): records of an opcode, a length and fields, little-endian, each
-// text and block of bytes behind its length. Messages are JSON under schemas that Foxglove knows.
+// The container MCAP (mcap.dev/spec): records of an opcode, a length and fields, little-endian,
+// each text and block of bytes behind its length. Messages are JSON under schemas that Foxglove
+// knows.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -104,7 +105,8 @@ std::string SignalsSchema(const Trajectory& trajectory) {
     properties += fmt::format("{}{}:{{\"type\":[\"number\",\"null\"]}}",
                               properties.empty() ? "" : ",", Quoted(channel.name));
   }
-  return fmt::format(R"({{"title":"rift.Signals","type":"object","properties":{{{}}}}})", properties);
+  return fmt::format(R"({{"title":"rift.Signals","type":"object","properties":{{{}}}}})",
+                     properties);
 }
 
 std::string SignalsJson(const Trajectory& trajectory, size_t row) {
@@ -149,9 +151,9 @@ std::string WriteMcap(const Trajectory& trajectory) {
   for (size_t row = 0; row < trajectory.poses.size(); ++row) {
     const StampedPose& pose = trajectory.poses[row];
     const std::uint64_t time_ns = Time_ns(pose.t_s - zero_s);
-    PutMessage(file, kPose, row, time_ns,
-               PoseJson(time_ns, {pose.x_m, pose.y_m, ZeroIfNotLogged(pose.z_m)},
-                        WorldFromBody(pose)));
+    PutMessage(
+        file, kPose, row, time_ns,
+        PoseJson(time_ns, {pose.x_m, pose.y_m, ZeroIfNotLogged(pose.z_m)}, WorldFromBody(pose)));
     if (!std::isnan(pose.target_x_m) && !std::isnan(pose.target_y_m)) {
       PutMessage(file, kTarget, row, time_ns,
                  PoseJson(time_ns, {pose.target_x_m, pose.target_y_m, 0.0},

@@ -43,9 +43,8 @@ void CheckMcap(const std::string& path, const trajectory::Trajectory& log) {
     return;
   }
   const std::string seen = path + ".json";
-  const std::string command =
-      fmt::format("node '{}/tests/npm/read_mcap.mjs' '{}/npm' '{}' > '{}'", test::SourceDir(),
-                  test::BuildDir(), path, seen);
+  const std::string command = fmt::format("node '{}/tests/npm/read_mcap.mjs' '{}/npm' '{}' > '{}'",
+                                          test::SourceDir(), test::BuildDir(), path, seen);
   REQUIRE(std::system(command.c_str()) == 0);
   const json file = json::parse(ReadFile(seen));
   CHECK(file["done"] == true);
@@ -100,8 +99,9 @@ TEST_CASE("A simulated run and a drive are copied for evo and for Foxglove alike
   CHECK(RunRift({"gap", tum, tum}).exit_code == 0);
 
   // A simulated run's folder is laid out as a drive's is.
-  const std::vector<std::string> replay{"drive", "--replay", folder / "run", "--mcap",
-                                        folder / "drive.mcap", "--tum", folder / "drive.tum"};
+  const std::vector<std::string> replay{
+      "drive", "--replay",          folder / "run", "--mcap", folder / "drive.mcap",
+      "--tum", folder / "drive.tum"};
   const test::ProcessResult drive = RunRift(replay);
   INFO(drive.err);
   REQUIRE(drive.exit_code == 0);
@@ -138,10 +138,11 @@ TEST_CASE("Copies of a log that is no single file are refused") {
   };
   CHECK_THAT(refusal({"track", "--camera", "x.mp4", "--calibration", "c.yaml", "--out", "-"}),
              Catch::Contains("--out LOG.csv"));
-  CHECK_THAT(refusal({"track", "--camera", "x.mp4", "--calibration", "c.yaml", "--id", "0,3", "--out",
-                      folder / "a.csv"}),
+  CHECK_THAT(refusal({"track", "--camera", "x.mp4", "--calibration", "c.yaml", "--id", "0,3",
+                      "--out", folder / "a.csv"}),
              Catch::Contains("a single tag"));
-  CHECK_THAT(refusal({"drive", "--ping", "--port", "/dev/null"}), Catch::Contains("one drive's log"));
+  CHECK_THAT(refusal({"drive", "--ping", "--port", "/dev/null"}),
+             Catch::Contains("one drive's log"));
 }
 
 }  // namespace

@@ -22,11 +22,11 @@ TEST_CASE("Keys and ranges and defaults of the schema are those that were approv
 
 TEST_CASE("Defaults are the paper's where the paper has them") {
   const Experiment experiment;
-  CHECK(experiment.gap.samples == 2000);       // section 3.1
-  CHECK(experiment.gap.threshold_m == 0.06);   // section 6.1
-  CHECK(experiment.gap.skip_start == 0.0);     // the definition; the published numbers leave out 0.1
+  CHECK(experiment.gap.samples == 2000);      // section 3.1
+  CHECK(experiment.gap.threshold_m == 0.06);  // section 6.1
+  CHECK(experiment.gap.skip_start == 0.0);    // the definition; the published numbers leave out 0.1
   CHECK(experiment.gap.align == gap::Align::kNone);
-  const Space paper = PaperSpace();            // section 5.1
+  const Space paper = PaperSpace();  // section 5.1
   REQUIRE(paper.parameters.size() == 3);
   for (const Parameter& parameter : paper.parameters) {
     std::string levels;

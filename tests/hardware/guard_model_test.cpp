@@ -24,7 +24,8 @@ using test::Side;
 
 PoseNews NewsAt(double captured_s, double x_m = 0.0, double yaw_rad = 0.0) {
   PoseNews news;
-  news.newest = PoseSample{{captured_s, {x_m, 0.0, yaw_rad}, 0.0, 0.0, 0.0}, captured_s, captured_s};
+  news.newest =
+      PoseSample{{captured_s, {x_m, 0.0, yaw_rad}, 0.0, 0.0, 0.0}, captured_s, captured_s};
   news.looked_s = captured_s;
   return news;
 }
@@ -253,8 +254,8 @@ TEST_CASE("Over random sequences of all that can happen the guard does what its 
 
 /// An armed robot that turns its wheels.
 std::unique_ptr<RealRobot> Driving(Bench& bench) {
-  auto robot = std::make_unique<RealRobot>(
-      bench, bench, bench, RealRobotOptions{{}, Protocol::kFramed, false});
+  auto robot = std::make_unique<RealRobot>(bench, bench, bench,
+                                           RealRobotOptions{{}, Protocol::kFramed, false});
   for (int i = 0; i < 30; ++i) robot->Advance(0.02);
   robot->Arm();
   for (int i = 0; i < 10; ++i) {
@@ -293,7 +294,7 @@ TEST_CASE("The answer to a zero of before the stop is no acknowledgement of the 
   bench.line_delay_s = 0.06;
   RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
   for (int i = 0; i < 30; ++i) robot.Advance(0.02);  // zeros go out all the time
-  bench.to_robot_is_cut = true;                       // those on their way still arrive
+  bench.to_robot_is_cut = true;                      // those on their way still arrive
   robot.Stop();
   const size_t heard = robot.Record().answered;
   robot.ConfirmStop(0.5);

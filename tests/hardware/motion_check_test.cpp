@@ -65,8 +65,7 @@ TEST_CASE("Poses that lag the wheels, stand or go on alone are told apart") {
   test::OnBothSides("left first", "right first", [](const test::Side& side) {
     CHECK(Stopped({.late_s = 0.4, .is_first = side.IsFirst()}) == StopReason::kPoseLags);
     CHECK(Stopped({.pose_stands_s = 3.0, .is_first = side.IsFirst()}) == StopReason::kPoseStands);
-    CHECK(Stopped({.wheels_stand_s = 3.0, .is_first = side.IsFirst()}) ==
-          StopReason::kWheelsStand);
+    CHECK(Stopped({.wheels_stand_s = 3.0, .is_first = side.IsFirst()}) == StopReason::kWheelsStand);
   });
 }
 
