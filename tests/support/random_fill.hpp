@@ -9,6 +9,7 @@
 #include <string>
 #include <type_traits>
 
+#include "rift/hardware/options.hpp"
 #include "rift/yaml/fields.hpp"
 
 namespace rift::test {
@@ -100,6 +101,14 @@ bool KeepsItsRules(const S& block) {
   return true;
 }
 
+/// What chance never meets: a line format of a robot with both powers in it.
+inline void KeepFormat(hardware::PlainOptions& plain, std::mt19937_64& random) {
+  constexpr std::array kFormats{"{left:.2f} {right:.2f}\n", "M {left:d},{right:d}\r\n",
+                                "<{right:+.1f}|{left:+.1f}>\r"};
+  plain.format = kFormats[random() % kFormats.size()];
+  plain.range = {-RandomNumber({2.0, 1e6}, random), RandomNumber({2.0, 1e6}, random)};
+}
+
 /// Gives every member of a struct of fields a random value that its schema allows: within its
 /// range, and such that Check() of each struct holds. Throws std::runtime_error when the rules are
 /// too narrow to be met by chance.
@@ -111,6 +120,7 @@ void RandomFill(S& block, std::mt19937_64& random) {
     yaml::VisitFields(block, [&](const yaml::FieldInfo& field, auto& member) {
       RandomValue(member, field.range, random);
     });
+    if constexpr (std::is_same_v<S, hardware::PlainOptions>) KeepFormat(block, random);
     if (KeepsItsRules(block)) return;
   }
   throw std::runtime_error("no random struct keeps the rules of its Check()");
