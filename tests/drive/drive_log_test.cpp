@@ -39,6 +39,7 @@ hardware::DriveRun DriveOnBench(const experiment::Experiment& experiment,
   bench.line_delay_s = 0.005;
   hardware::DriveTask task = DriveTaskOf(experiment);
   task.hardware.line.protocol = protocol;
+  task.hardware.plain.watchdog = hardware::Watchdog::kRobot;
   return hardware::Drive({.line = bench,
                           .poses = bench,
                           .clock = bench,
