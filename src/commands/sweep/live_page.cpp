@@ -22,7 +22,7 @@ constexpr int kLastLook_ms = 6000;  ///< the page asks for itself every 3 s
 
 }  // namespace
 
-LivePage::LivePage(std::filesystem::path folder, sweep::Evaluator& evaluator)
+LivePage::LivePage(const std::filesystem::path& folder, sweep::Evaluator& evaluator)
     : file_(folder / kName), evaluator_(evaluator), server_({file_, folder / "report.html"}) {
   // An earlier report is not that of the running sweep.
   files::WriteFile(file_,

@@ -15,7 +15,7 @@ namespace rift::commands {
 class LivePage {
  public:
   /// Says on stderr where it is.
-  LivePage(std::filesystem::path folder, sweep::Evaluator& evaluator);
+  LivePage(const std::filesystem::path& folder, sweep::Evaluator& evaluator);
   /// Removes what only the running sweep needs.
   ~LivePage();
   LivePage(const LivePage&) = delete;

@@ -103,7 +103,7 @@ void Answer(tcp::socket socket, const std::string& path,
 
 }  // namespace
 
-PageServer::PageServer(std::vector<std::filesystem::path> files) {
+PageServer::PageServer(const std::vector<std::filesystem::path>& files) {
   asio::io_context context;
   tcp::acceptor acceptor(context);
   try {

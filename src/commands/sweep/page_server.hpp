@@ -15,7 +15,7 @@ namespace rift::commands {
 class PageServer {
  public:
   /// Throws std::runtime_error when there is no port or no process to be had.
-  explicit PageServer(std::vector<std::filesystem::path> files);
+  explicit PageServer(const std::vector<std::filesystem::path>& files);
   ~PageServer();
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;
