@@ -33,7 +33,7 @@ class RealRobot::Core {
         motion_(options.hardware.evidence, options.hardware.odometry.drive.track_m),
         link_(line, options.hardware.line, options.protocol, options.hardware.plain) {
     options.hardware.Check();
-    if (is_threaded_) thread_ = std::jthread([this](std::stop_token stop) { Run(stop); });
+    if (is_threaded_) thread_ = std::jthread([this](const std::stop_token& stop) { Run(stop); });
   }
 
   void AddStopper(Stopper stopper) {
