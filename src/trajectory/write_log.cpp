@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "not_logged.hpp"
 #include "rift/trajectory/log.hpp"
 
 namespace rift::trajectory {
@@ -39,8 +40,6 @@ void AppendRow(std::string& text, const StampedPose& pose, std::span<const doubl
   for (const double value : channels) append(value);
   text += '\n';
 }
-
-double ZeroIfNotLogged(double value) { return std::isnan(value) ? 0.0 : value; }
 
 }  // namespace
 

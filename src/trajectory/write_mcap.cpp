@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "not_logged.hpp"
 #include "rift/trajectory/log.hpp"
 
 namespace rift::trajectory {
@@ -125,8 +126,6 @@ std::uint64_t Time_ns(double t_s) {
   throw std::invalid_argument(
       fmt::format("a time of {} s: MCAP counts nanoseconds up to {:g} s", t_s, kLatest_s));
 }
-
-double ZeroIfNotLogged(double value) { return std::isnan(value) ? 0.0 : value; }
 
 }  // namespace
 
