@@ -9,6 +9,7 @@
 #include <string>
 
 #include "rift/trajectory/log.hpp"
+#include "support/npm.hpp"
 #include "support/process.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
@@ -38,13 +39,10 @@ void CheckTum(const std::string& path, const trajectory::Trajectory& log) {
 
 /// Read by the reader of the format's authors.
 void CheckMcap(const std::string& path, const trajectory::Trajectory& log) {
-  if (!fs::exists(test::BuildDir() + "/npm/installed")) {
-    WARN("SKIPPED: npm did not bring @mcap/core when this was built");
-    return;
-  }
+  if (!test::HasNpm("@mcap/core")) return;
   const std::string seen = path + ".json";
-  const std::string command = fmt::format("node '{}/tests/npm/read_mcap.mjs' '{}/npm' '{}' > '{}'",
-                                          test::SourceDir(), test::BuildDir(), path, seen);
+  const std::string command = fmt::format("node '{}/tests/npm/read_mcap.mjs' '{}' '{}' > '{}'",
+                                          test::SourceDir(), test::NpmDir(), path, seen);
   REQUIRE(std::system(command.c_str()) == 0);
   const json file = json::parse(ReadFile(seen));
   CHECK(file["done"] == true);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "support/documented.hpp"
+#include "support/npm.hpp"
 #include "support/process.hpp"
 #include "support/running_rift.hpp"
 #include "support/tree.hpp"
@@ -278,16 +279,13 @@ TEST_CASE("A sweep of a program that is killed goes on and leaves no process") {
 }
 
 TEST_CASE("A robot in an engine of others is falsified and replayed, with the same bytes") {
-  if (!fs::exists(test::BuildDir() + "/npm/installed")) {
-    WARN("SKIPPED: npm did not bring Rapier when this was built");
-    return;
-  }
+  if (!test::HasNpm("Rapier")) return;
   const TemporaryFolder folder;
   // Node looks for packages beside a script and above it.
   for (const std::string file : {"rapier_robot.mjs", "rapier_robot.yaml"}) {
     fs::copy(test::SourceDir() + "/configs/programs/" + file, folder / file);
   }
-  fs::create_directory_symlink(test::BuildDir() + "/npm/node_modules", folder / "node_modules");
+  fs::create_directory_symlink(test::NpmDir() + "/node_modules", folder / "node_modules");
   const std::string config = folder / "rapier_robot.yaml";
   const std::string one = Sweep(folder, "one", config, "1");
   const std::string two = Sweep(folder, "two", config, "2");

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "rift/hardware/wire.hpp"
+#include "support/npm.hpp"
 #include "support/process.hpp"
 #include "support/tree.hpp"
 
@@ -41,12 +42,6 @@ std::string ScriptOf(const std::vector<Turn>& turns) {
   return script;
 }
 
-bool CanRun() {
-  if (std::filesystem::exists(test::BuildDir() + "/npm/installed")) return true;
-  WARN("SKIPPED: npm did not bring MicroPython when this was built");
-  return false;
-}
-
 /// The firmware as it is copied to the robot, under MicroPython.
 Run RunFirmware(const std::string& script) {
   const test::TemporaryFolder folder;
@@ -55,7 +50,7 @@ Run RunFirmware(const std::string& script) {
   const std::string command = fmt::format(
       "node '{0}/tests/firmware/run_firmware.mjs' '{1}' '{0}/src/firmware' "
       "'{0}/tests/firmware/stand_in' '{2}' > '{3}' 2>&1",
-      source, test::BuildDir() + "/npm", folder / "script", folder / "out");
+      source, test::NpmDir(), folder / "script", folder / "out");
   const int status = std::system(command.c_str());
   std::ifstream out(folder / "out");
   Run run;
@@ -160,7 +155,7 @@ class Babble {
 };
 
 TEST_CASE("The robot does with random bytes exactly what its model does") {
-  if (!CanRun()) return;
+  if (!test::HasNpm("MicroPython")) return;
   for (const std::uint64_t seed : {1, 2, 3}) {
     const std::vector<Turn> turns = Babble(seed).Turns(4000);
     const Run run = RunFirmware(ScriptOf(turns));
@@ -179,7 +174,7 @@ TEST_CASE("The robot does with random bytes exactly what its model does") {
 }
 
 TEST_CASE("The robot's watchdog works across the wrap of its clock") {
-  if (!CanRun()) return;
+  if (!test::HasNpm("MicroPython")) return;
   constexpr std::uint32_t kWrap_ms = 0x4000'0000;
   const std::string script = fmt::format("{} {}\n{} -\n{} -\n", kWrap_ms - 100,
                                          Hex(Text("0.50 0.50\n")), kWrap_ms + 199, kWrap_ms + 200);
@@ -190,7 +185,7 @@ TEST_CASE("The robot's watchdog works across the wrap of its clock") {
 }
 
 TEST_CASE("The robot starts at zero and whatever ends its program stops the motors") {
-  if (!CanRun()) return;
+  if (!test::HasNpm("MicroPython")) return;
   const Run broken = RunFirmware(fmt::format("0 -\n10 {}\n20 !\n", Hex(Text("0.50 0.50\n"))));
   REQUIRE(broken.turns.size() == 2);
   CHECK(broken.turns[0] == "0 0 -");
@@ -204,7 +199,7 @@ TEST_CASE("The robot starts at zero and whatever ends its program stops the moto
 }
 
 TEST_CASE("The robot shows what it does while it stands") {
-  if (!CanRun()) return;
+  if (!test::HasNpm("MicroPython")) return;
   CHECK(RunFirmware("0 -\n").end.at("screen") == "rift waiting|L 0 R 0|stops 0|rejected 0|4000 mV");
   const std::string script =
       fmt::format("0 -\n10 {}\n400 -\n600 -\n", Hex(Text("0.50 0.50\n85 0.90\n")));
