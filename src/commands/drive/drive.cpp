@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "folder.hpp"
+#include "identification.hpp"
 #include "replay.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/hardware/ping.hpp"
@@ -39,6 +41,7 @@ experiment::Experiment LoadTask(const DriveRequest& request) {
   const fs::path file = request.suggested.empty() ? fs::path(request.experiment)
                                                   : fs::path(request.suggested) / "experiment.yaml";
   experiment::Experiment experiment = ReadExperiment(file, request.overrides);
+  if (request.identify) experiment = IdentificationDrive(std::move(experiment));
   if (request.countdown_s) experiment.hardware.start.countdown_s = *request.countdown_s;
   if (request.seconds) experiment.trial.timeout_s = *request.seconds;
   try {

@@ -21,7 +21,7 @@ void AddReplayFlags(CLI::App& app, DriveRequest& request) {
                      "show a drive that was, finished or interrupted, in a window: its folder");
   replay->type_name("DIR");
   for (const char* other : {"EXPERIMENT", "--set", "--port", "--camera", "--calibration", "--out",
-                            "--yes", "--ping", "--json", "--suggested"}) {
+                            "--yes", "--ping", "--json", "--suggested", "--identify"}) {
     replay->excludes(app.get_option(other));
   }
   app.add_option("--video", request.video,
@@ -53,17 +53,24 @@ void AddSeriesFlags(CLI::App& app, DriveRequest& request) {
       "drive every setting of the experiment's space, reference.trials times each, and "
       "report on them against the simulator; the same command goes on after a break");
   grid->excludes(dry_run)->excludes(repeat);
+  app.add_flag("--identify", request.identify,
+               "drive a program that tells what waypoint drives cannot, instead of the waypoints, "
+               "and write DIR/sweep.yaml, which fits the simulated robot to it; half a minute on "
+               "1 m by 1 m, as often as --repeat says [5]")
+      ->excludes(dry_run)
+      ->excludes(grid);
   CLI::Option* suggested =
       app.add_option("--suggested", request.suggested,
                      "drive the experiments that rift sweep --suggest wrote into its folder, into "
                      "DIR/suggested; the same sweep takes their logs in");
   suggested->type_name("DIR")->excludes(dry_run)->excludes(repeat)->excludes(grid);
-  for (const char* other : {"EXPERIMENT", "--out", "--ping"}) {
+  for (const char* other : {"EXPERIMENT", "--out", "--ping", "--identify"}) {
     suggested->excludes(app.get_option(other));
   }
   app.add_option(
          "--before-each", request.before_each,
-         "program to run before each trial of --repeat, --grid or --suggested; {trial} and the "
+         "program to run before each trial of --repeat, --grid, --identify or --suggested; {trial} "
+         "and the "
          "settings' names such as {surface} are filled in. It ends with 0, or prints "
          "port, camera and calibration as a line of JSON and is ended after the trial")
       ->type_name("COMMAND");
@@ -134,7 +141,8 @@ void DriveRequest::Check() const {
   }
   if (ping) return;
   if (!before_each.empty() && !IsSeries()) {
-    throw std::invalid_argument("--before-each goes with --repeat, --grid or --suggested");
+    throw std::invalid_argument(
+        "--before-each goes with --repeat, --grid, --identify or --suggested");
   }
   if (experiment.empty() && suggested.empty()) {
     throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
@@ -169,6 +177,8 @@ void AddDrive(CLI::App& app, int& exit_code, const std::function<int(const Drive
       "             --calibration cam.yaml --out out/real1\n"
       "         rift drive --replay out/real1\n"
       "         rift drive EXPERIMENT --grid --set reference.trials=3 --port ... (whole table)\n"
+      "         rift drive EXPERIMENT --identify --out out/identify --port ... (then: rift sweep "
+      "out/identify/sweep.yaml --write-robot robot.yaml)\n"
       "         rift drive --suggested out/sweep --port ... (what rift sweep --suggest wrote)\n"
       "         rift drive configs/twin.yaml --repeat 3 --yes --before-each \\\n"
       "             'rift simulate configs/twin.yaml --twin --force --seed {trial} --out "

@@ -33,10 +33,11 @@ struct DriveRequest {
   bool force = false;  ///< replace the film of --video and the copies of a log
   int repeat = 0;      ///< 0: one drive
   bool grid = false;
+  bool identify = false;  ///< drive the program of an identification instead of the waypoints
   std::string suggested;  ///< folder of a sweep whose suggested.yaml is driven
   std::string before_each;
 
-  bool IsSeries() const { return grid || repeat > 0 || !suggested.empty(); }
+  bool IsSeries() const { return grid || identify || repeat > 0 || !suggested.empty(); }
 
   /// Throws std::invalid_argument, saying what to give, when something is missing.
   void Check() const;

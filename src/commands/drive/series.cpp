@@ -6,9 +6,11 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "before_each.hpp"
 #include "folder.hpp"
+#include "identification.hpp"
 #include "plan.hpp"
 #include "prompt.hpp"
 #include "rift/commands/arguments/inputs.hpp"
@@ -161,7 +163,12 @@ namespace {
 
 SeriesPlan PlanOf(const DriveRequest& request, const Experiment& experiment, const fs::path& out) {
   if (!request.suggested.empty()) return PlanSuggested(experiment, request.suggested);
-  return request.grid ? PlanGrid(experiment, out) : PlanRepeats(experiment, request.repeat, out);
+  if (request.grid) return PlanGrid(experiment, out);
+  if (!request.identify) return PlanRepeats(experiment, request.repeat, out);
+  SeriesPlan plan =
+      PlanRepeats(experiment, request.repeat > 0 ? request.repeat : kIdentificationRuns, out);
+  plan.sweep = IdentificationFit(std::move(plan.sweep));
+  return plan;
 }
 
 fs::path FolderOf(const DriveRequest& request, const Experiment& experiment) {
@@ -177,6 +184,10 @@ void SayWhatNext(const DriveRequest& request, const fs::path& out) {
     const fs::path sweep = request.suggested;
     terminal::Say(fmt::format("what they confirm: rift sweep {} --out {}",
                               (sweep / "experiment.yaml").string(), sweep.string()));
+  } else if (request.identify) {
+    terminal::Say(fmt::format("fit the simulated robot: rift sweep {} --out {} --write-robot {}",
+                              (out / "sweep.yaml").string(), (out / "sweep").string(),
+                              (out / "robot.yaml").string()));
   } else if (!request.grid) {
     terminal::Say(fmt::format("against the simulator: rift sweep {} --out {}",
                               (out / "sweep.yaml").string(), (out / "sweep").string()));

@@ -1,0 +1,109 @@
+#include "commands/drive/identification.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "rift/files/files.hpp"
+#include "support/paper_waypoints.hpp"
+#include "support/process.hpp"
+#include "support/tree.hpp"
+
+namespace rift::commands {
+namespace {
+
+experiment::Experiment PaperTask() {
+  experiment::Experiment experiment;
+  experiment.name = "paper";
+  experiment.waypoints = test::PaperWaypoints();
+  return experiment;
+}
+
+TEST_CASE("The program of an identification turns and drives both ways within half a metre") {
+  const experiment::Experiment drive = IdentificationDrive(PaperTask());
+  REQUIRE(drive.waypoints.size() == 1);
+  CHECK(drive.waypoints[0].name == "start");
+  const control::Program program(drive.program, {}, {0.0, 0.0, 0.0});
+  CHECK(program.Duration_s() < 45.0);
+  CHECK(drive.trial.timeout_s > drive.trial.settle_s + program.Duration_s() + drive.program.rest_s);
+  double ahead_s = 0.0, back_s = 0.0, left_s = 0.0, right_s = 0.0, rest_s = 0.0;
+  for (double t_s = 0.0; t_s < program.Duration_s(); t_s += 0.01) {
+    CHECK(program.PoseAt(t_s).Position().norm() < 0.5);
+    const control::WheelPower power = program.MeanPower(t_s, t_s + 0.01);
+    const double sum = power.left + power.right, turn = power.right - power.left;
+    ahead_s += 0.01 * (sum > 0.05);
+    back_s += 0.01 * (sum < -0.05);
+    left_s += 0.01 * (turn > 0.01);
+    right_s += 0.01 * (turn < -0.01);
+    rest_s += 0.01 * (power == control::WheelPower{});
+  }
+  CHECK(ahead_s > 3.0);
+  CHECK(back_s > 3.0);
+  CHECK(left_s == Approx(right_s).margin(0.3));
+  CHECK(rest_s > 8.0);
+}
+
+TEST_CASE("The fit of an identification is to all its logs and keeps what an experiment fits") {
+  experiment::Experiment logs = PaperTask();
+  logs.calibrate.holdout.names = {"2"};
+  const experiment::Experiment fit = IdentificationFit(logs);
+  CHECK(fit.goal == experiment::Goal::kCalibrate);
+  CHECK(fit.calibrate.holdout.names.empty());
+  CHECK(fit.calibrate.method.runs == 0);
+  REQUIRE(fit.calibrate.fit.list.size() == 5);
+  for (const experiment::FreeParameter& free : fit.calibrate.fit.list) {
+    INFO(free.key);
+    CHECK(free.min < free.prior_mean);
+    CHECK(free.prior_mean < free.max);
+    CHECK(free.prior_sd > 0.0);
+  }
+  logs.calibrate.fit.list = {{.key = "simulation.motor.lag_s"}};
+  REQUIRE(IdentificationFit(logs).calibrate.fit.list.size() == 1);
+}
+
+TEST_CASE("An identification on the twin leaves a fit that the next command makes") {
+  const test::TemporaryFolder folder;
+  // Limits that a loaded machine keeps as well.
+  test::WriteText(folder / "task.yaml", "include: " + test::SourceDir() + R"(/configs/twin.yaml
+twin: {fps: 15, still_s: 60}
+track: {tag: {acquire_decimate: 2, lost_after_s: 5}, capture: {silent_s: 20, same_s: 20, open_timeout_s: 60}}
+trial: {pose_stale_s: 5, lost_after_s: 20}
+hardware:
+  line: {hello_s: 20}
+  guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
+  ping: {duration_s: 0.5, max_p99_s: 10, max_loss: 1, max_burst: 1000}
+  start: {countdown_s: 0}
+  turn: {enabled: false}
+)");
+  const std::vector<std::string> command{"drive",
+                                         folder / "task.yaml",
+                                         "--yes",
+                                         "--identify",
+                                         "--repeat",
+                                         "1",
+                                         "--out",
+                                         folder / "run",
+                                         "--before-each",
+                                         test::BuildDir() + "/rift simulate " +
+                                             (folder / "task.yaml") + " --twin --out " +
+                                             (folder / "twin")};
+  test::ProcessResult result;
+  // A busy machine may make the guard stop a drive.
+  for (int i = 0; i < 5 && (i == 0 || result.exit_code != 0); ++i) result = test::RunRift(command);
+  INFO(result.out << result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.err, Catch::Contains("fit the simulated robot: rift sweep"));
+
+  const test::ProcessResult fit = test::RunRift(
+      {"sweep", folder / "run/sweep.yaml", "--out", folder / "fit", "--write-robot",
+       folder / "robot.yaml", "--set", "calibrate.judge_runs=2", "--set",
+       "calibrate.method.iterations=2", "--set", "calibrate.method.horizon.phases=2"});
+  INFO(fit.out << fit.err);
+  // A fit that is not better than its start, the robot's own values, is refused in words.
+  const bool is_refused = fit.err.find("worse than") != std::string::npos;
+  CHECK((fit.exit_code == 0 || is_refused));
+  const auto calibration = nlohmann::json::parse(files::ReadFile(folder / "fit/calibration.json"));
+  CHECK(calibration.dump().find("simulation.motor.supply_ratio") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace rift::commands
