@@ -28,7 +28,8 @@ Navigator::Navigator(const NavigatorOptions& options, std::vector<Waypoint> wayp
       distance_loop_(options.distance, options.integral_limit, options.derivative_kick),
       heading_loop_(options.heading, options.integral_limit, options.derivative_kick),
       gate_(options.pose_gate),
-      predictor_(options.latency) {}
+      predictor_(options.latency),
+      clock_is_set_(!options.first_pose_sets_clock && !options.clock_starts_anew) {}
 
 Decision Navigator::Step(const PoseInput& input) {
   Decision decision;
@@ -41,10 +42,10 @@ Decision Navigator::Step(const PoseInput& input) {
       predictor_.Predict(gate_.last()->world_from_robot, arrived_s_, input.now_s);
   Aim(decision, world_from_robot);
   if (decision.finished || Arrive(decision, world_from_robot)) {
-    clock_is_set_ = false;
+    clock_is_set_ = !options_.clock_starts_anew;
     return decision;
   }
-  decision.set_clock = options_.clock_starts_anew && !std::exchange(clock_is_set_, true);
+  decision.set_clock = !std::exchange(clock_is_set_, true);
   if (decision.set_clock) return decision;
 
   const double dt_s = std::isfinite(input.dt_s)

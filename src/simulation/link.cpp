@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -17,7 +18,13 @@ constexpr double kNever_s = std::numeric_limits<double>::infinity();
 constexpr double kBitsPerByte = 10.0;  // 8N1: start, eight bits, stop
 constexpr std::uint64_t kLineLossDraw = 1'000'000;
 
-enum Stream : std::uint64_t { kPhaseStream = 10, kLossStream = 11 };
+enum Stream : std::uint64_t { kPhaseStream = 10, kLossStream = 11, kConnectionStream = 12 };
+
+double ConnectedAt_s(const LinkOptions& options, std::uint64_t seed) {
+  const statistics::CounterRandom drawn(seed, kConnectionStream);
+  if (drawn.Uniform(0, 0) >= options.late_share) return 0.0;
+  return -options.late_s * std::log(drawn.Uniform(0, 1));
+}
 
 std::string LineOf(const control::WheelPower& power, bool two_decimals) {
   return two_decimals ? fmt::format("{:.2f} {:.2f}\n", power.left, power.right)
@@ -50,6 +57,7 @@ Link::Link(const LinkOptions& options, std::uint64_t seed)
       phase_s_(options.poll_s * options.poll_phase.value_or(
                                     statistics::CounterRandom(seed, kPhaseStream).Uniform(0, 0))) {
   next_poll_s_ = phase_s_;
+  connected_s_ = ConnectedAt_s(options_, seed);
 }
 
 void Link::Send(double at_s, const control::WheelPower& power) {
@@ -67,7 +75,8 @@ void Link::Enqueue(double at_s, const std::string& line) {
   const std::uint64_t number = lines_sent_++;
   const double byte_s = options_.baud > 0.0 ? kBitsPerByte / options_.baud : 0.0;
   double free_s = std::max(at_s + options_.delay_s, line_free_s_);
-  const bool lost = noise_.Uniform(number, kLineLossDraw) < options_.line_loss;
+  const bool lost =
+      at_s < connected_s_ || noise_.Uniform(number, kLineLossDraw) < options_.line_loss;
   for (size_t i = 0; i < line.size() && !lost; ++i) {
     free_s += byte_s;
     if (noise_.Uniform(number, i) < options_.byte_loss) continue;

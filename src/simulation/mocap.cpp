@@ -11,7 +11,16 @@
 namespace rift::simulation {
 namespace {
 
-enum Stream : std::uint64_t { kPhaseStream = 20, kFrameStream = 21, kPoseStream = 22 };
+enum Stream : std::uint64_t {
+  kPhaseStream = 20,
+  kFrameStream = 21,
+  kPoseStream = 22,
+  kRunStream = 23,
+  kHostStream = 24
+};
+// Draws of a run and of a turn of the host; a normal value takes two.
+enum RunDraw : std::uint64_t { kRunNoise = 0, kRunPeriod = 2, kRunLateShare = 4 };
+enum TurnDraw : std::uint64_t { kWander = 0, kTurnJitter = 2, kLate = 4 };
 // Draws of one frame; a normal value takes two.
 enum Draw : std::uint64_t {
   kAcross = 0,
@@ -21,11 +30,11 @@ enum Draw : std::uint64_t {
   kHeight = 8,
   kRoll = 10,
   kPitch = 12,
-  kDropout = 14,
-  kHostPeriod = 15
+  kDropout = 14
 };
 
 constexpr double kClockTick_s = 1e-6;
+constexpr double kStanding_mps = 0.01;
 
 TruePose Interpolate(const TruePose& before, const TruePose& after, double t_s) {
   const double span_s = after.t_s - before.t_s;
@@ -57,16 +66,32 @@ Eigen::Vector3d TagInWorld(const TruePose& pose, const MocapOptions& options) {
               (Eigen::AngleAxisd(pose.roll_rad, Eigen::Vector3d::UnitX()) * tag_in_robot));
 }
 
+constexpr double kShortestPeriod_s = 0.005;
+
+MocapOptions OfThisRun(MocapOptions options, std::uint64_t seed,
+                       std::optional<double> host_period_s) {
+  const statistics::CounterRandom drawn(seed, kRunStream);
+  options.host_late_share *= 2.0 * drawn.Uniform(0, kRunLateShare);
+  if (options.host_period_s) {
+    options.host_period_s =
+        std::max(kShortestPeriod_s, host_period_s.value_or(*options.host_period_s) +
+                                        options.host_period_spread_s * drawn.Normal(0, kRunPeriod));
+  }
+  return options;
+}
+
 }  // namespace
 
 Mocap::Mocap(const MocapOptions& options, std::uint64_t seed, std::optional<double> host_period_s)
-    : options_(options),
+    : options_(OfThisRun(options, seed, host_period_s)),
       noise_(seed, kPoseStream),
+      host_noise_(seed, kHostStream),
+      standing_factor_(std::exp(options.noise_spread *
+                                statistics::CounterRandom(seed, kRunStream).Normal(0, kRunNoise))),
       phase_s_(options.rate_hz > 0.0
                    ? statistics::CounterRandom(seed, kPhaseStream).Uniform(0, 0) / options.rate_hz
                    : 0.0),
       last_stamp_s_(-std::numeric_limits<double>::infinity()) {
-  if (options_.host_period_s && host_period_s) options_.host_period_s = host_period_s;
   host_done_s_ = options_.host_period_s.value_or(0.0) *
                  statistics::CounterRandom(seed, kPhaseStream).Uniform(1, 0);
 }
@@ -122,21 +147,26 @@ void Mocap::RunHost(double until_s) {
       taken->captured_s = host_done_s_;
       on_the_way_.push_back({host_done_s_, *taken});
     }
-    // An exponential scatter about its median.
-    const double late = -std::log(noise_.Uniform(host_turns_++, kHostPeriod)) - std::numbers::ln2;
+    const std::uint64_t turn = host_turns_++;
+    host_wandered_s_ += options_.host_wander_s * host_noise_.Normal(turn, kWander);
+    const bool late = host_noise_.Uniform(turn, kLate) < options_.host_late_share;
     host_done_s_ += std::max(0.5 * *options_.host_period_s,
-                             *options_.host_period_s + options_.host_jitter_s * late);
+                             *options_.host_period_s + host_wandered_s_ +
+                                 options_.host_jitter_s * host_noise_.Normal(turn, kTurnJitter) +
+                                 (late ? options_.host_late_s : 0.0));
   }
 }
 
 trial::PoseMeasurement Mocap::Measure(const TruePose& pose, double speed_mps,
                                       std::uint64_t frame) const {
   const Eigen::Vector3d tag_in_world = TagInWorld(pose, options_);
-  const double across_m = std::hypot(options_.noise_across_m, options_.blur_across_s * speed_mps) *
-                          noise_.Normal(frame, kAcross);
-  const double along_m = options_.noise_along_m * noise_.Normal(frame, kAlong);
+  const double factor = speed_mps < kStanding_mps ? standing_factor_ : 1.0;
+  const double across_m =
+      std::hypot(factor * options_.noise_across_m, options_.blur_across_s * speed_mps) *
+      noise_.Normal(frame, kAcross);
+  const double along_m = factor * options_.noise_along_m * noise_.Normal(frame, kAlong);
   const double yaw_noise_rad =
-      std::hypot(options_.noise_yaw_rad, options_.blur_yaw_rad_per_mps * speed_mps) *
+      std::hypot(factor * options_.noise_yaw_rad, options_.blur_yaw_rad_per_mps * speed_mps) *
       noise_.HeavyTailed(frame, kYaw, options_.yaw_tail_dof);
   const geometry::Pose2 world_from_tag{tag_in_world.x(), tag_in_world.y(), pose.yaw_rad};
   trial::PoseMeasurement measurement;

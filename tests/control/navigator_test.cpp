@@ -130,6 +130,21 @@ TEST_CASE("A clock that starts anew costs a decision at the start and after each
   CHECK_FALSE(through.Step({0.0, 0.053, 0.1, {0.97, 0.0, 0.1}}).set_clock);
 }
 
+TEST_CASE("A clock that the first pose sets costs one decision of a drive") {
+  NavigatorOptions options;
+  options.first_pose_sets_clock = true;
+  Navigator navigator(options, Line(true));
+  const auto step = [&](double x_m) { return navigator.Step({0.0, 0.053, x_m, {x_m, 0.0, 0.1}}); };
+  const Decision clock = step(0.0);
+  CHECK(clock.set_clock);
+  CHECK(clock.power == WheelPower{});
+  CHECK(step(0.01).power.left > 0.0);
+  CHECK(step(0.97).reached);
+  const Decision next = step(0.98);
+  CHECK_FALSE(next.set_clock);
+  CHECK(next.power.left > 0.0);
+}
+
 TEST_CASE("A waypoint without stop hands over to the next leg in the same decision") {
   Navigator navigator({}, Line(false));
   const Decision at = navigator.Step({0.0, kStep_s, 0.0, {0.96, 0.0, 0.1}});

@@ -158,6 +158,31 @@ TEST_CASE("Lines get lost as often as asked") {
   CHECK(lost / 4000.0 == Approx(0.25).margin(0.03));
 }
 
+TEST_CASE("In the share of the runs that is asked nothing is heard before the link stands") {
+  LinkOptions options = Direct();
+  options.late_share = 0.25;
+  options.late_s = 1.7;
+  constexpr int kRuns = 2000;
+  int late = 0;
+  double sum_s = 0.0;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    Link link(options, seed);
+    link.Send(0.0, {0.5, 0.5});
+    link.Advance(0.0);
+    if (link.Held().left == 0.5) continue;
+    ++late;
+    double heard_s = 0.0;
+    while (link.Held().left != 0.5 && heard_s < 60.0) {
+      heard_s += 0.01;
+      link.Send(heard_s, {0.5, 0.5});
+      link.Advance(heard_s);
+    }
+    sum_s += heard_s;
+  }
+  CHECK(late == Approx(0.25 * kRuns).margin(60.0));
+  CHECK(sum_s / late == Approx(1.7).margin(0.25));
+}
+
 TEST_CASE("Without a watchdog the last command is held for ever and with one it ends") {
   LinkOptions options = Direct();
   Link forever(options, 1);

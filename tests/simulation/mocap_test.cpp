@@ -163,8 +163,8 @@ struct Seen {
   std::vector<double> stamps_s, captures_s;
 };
 
-Seen SeenByHost(const MocapOptions& options) {
-  Mocap mocap(options, 3);
+Seen SeenByHost(const MocapOptions& options, std::uint64_t seed = 3) {
+  Mocap mocap(options, seed);
   Seen seen;
   TruePose before;
   std::optional<double> last_s;
@@ -207,6 +207,90 @@ TEST_CASE("A host that samples the camera stamps its own time and sees whole fra
   const double latency_s = 0.5 * options.exposure_s + options.processing_s;
   CHECK(*std::min_element(ages_s.begin(), ages_s.end()) >= latency_s - 1e-9);
   CHECK(*std::max_element(ages_s.begin(), ages_s.end()) <= latency_s + 1.0 / 30.0 + 1e-9);
+}
+
+std::vector<double> Periods_s(const MocapOptions& options, std::uint64_t seed) {
+  const Seen seen = SeenByHost(options, seed);
+  std::vector<double> periods_s;
+  for (size_t i = 1; i < seen.stamps_s.size(); ++i) {
+    periods_s.push_back(seen.stamps_s[i] - seen.stamps_s[i - 1]);
+  }
+  return periods_s;
+}
+
+MocapOptions HostOf55ms() {
+  MocapOptions options;
+  options.rate_hz = 30.0;
+  options.host_period_s = 0.055;
+  options.host_jitter_s = 0.0;
+  return options;
+}
+
+TEST_CASE("A host's period is another in each run and drifts within one") {
+  MocapOptions options = HostOf55ms();
+  options.host_period_spread_s = 0.0026;
+  std::vector<double> medians_s;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const std::vector<double> periods_s = Periods_s(options, seed);
+    const auto [least, most] = std::minmax_element(periods_s.begin(), periods_s.end());
+    CHECK(*most - *least < 1e-9);
+    medians_s.push_back(statistics::Median(periods_s));
+  }
+  CHECK(statistics::Mean(medians_s) == Approx(0.055).margin(0.001));
+  CHECK(statistics::StandardDeviation(medians_s) == Approx(0.0026).margin(0.0008));
+
+  options.host_period_spread_s = 0.0;
+  options.host_wander_s = 0.0002;
+  std::vector<double> steps_s;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const std::vector<double> periods_s = Periods_s(options, seed);
+    for (size_t i = 1; i < periods_s.size(); ++i)
+      steps_s.push_back(periods_s[i] - periods_s[i - 1]);
+  }
+  CHECK(statistics::StandardDeviation(steps_s) == Approx(0.0002).margin(2e-5));
+}
+
+TEST_CASE("A late turn of a host is longer, in another share of them in each run") {
+  MocapOptions options = HostOf55ms();
+  options.host_late_share = 0.1;
+  options.host_late_s = 0.011;
+  std::vector<double> shares;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const std::vector<double> periods_s = Periods_s(options, seed);
+    double late = 0.0;
+    for (const double period_s : periods_s) {
+      const bool is_late = period_s > 0.060;
+      CHECK(period_s == Approx(is_late ? 0.066 : 0.055).margin(1e-9));
+      late += is_late;
+    }
+    shares.push_back(late / static_cast<double>(periods_s.size()));
+  }
+  CHECK(statistics::Mean(shares) == Approx(0.1).margin(0.025));
+  CHECK(statistics::StandardDeviation(shares) == Approx(0.1 / std::sqrt(3.0)).margin(0.02));
+}
+
+TEST_CASE("A run draws its own scatter at rest and none while that has no spread") {
+  MocapOptions options = Quiet();
+  options.noise_across_m = 0.0002;
+  const auto scatter_m = [&](std::uint64_t seed) {
+    Mocap mocap(options, seed);
+    std::vector<double> y_m;
+    for (int i = 1; i <= 400; ++i) {
+      mocap.Observe({.t_s = 0.1 * (i - 1)}, {.t_s = 0.1 * i});
+      y_m.push_back(mocap.Newest(0.1 * i + 1.0)->world_from_robot.y_m);
+    }
+    return statistics::StandardDeviation(y_m);
+  };
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CHECK(scatter_m(seed) == Approx(0.0002).epsilon(0.2));
+  }
+  options.noise_spread = 1.2;
+  std::vector<double> logarithms;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    logarithms.push_back(std::log(scatter_m(seed) / 0.0002));
+  }
+  CHECK(statistics::Mean(logarithms) == Approx(0.0).margin(0.3));
+  CHECK(statistics::StandardDeviation(logarithms) == Approx(1.2).margin(0.2));
 }
 
 }  // namespace

@@ -49,8 +49,8 @@ class Navigator : public Controller {
   Pid heading_loop_;
   PoseGate gate_;
   double arrived_s_ = 0.0;
-  bool clock_is_set_ = false;
   PosePredictor predictor_;
+  bool clock_is_set_;
   WheelPower last_sent_;
 };
 

@@ -49,6 +49,7 @@ struct NavigatorOptions {
   /// The authors' Webots logs show it: |w| is 0.027 to 0.045 in the first step of each new leg
   /// and 0.02 elsewhere, and v_max 0.30 and 0.40 part in exactly one such step.
   bool derivative_kick = true;
+  bool first_pose_sets_clock = false;
   bool clock_starts_anew = false;
   double reach_radius_m = 0.05;
   double v_min = 0.15;
@@ -72,9 +73,13 @@ struct NavigatorOptions {
     field("integral_limit", self.integral_limit, 0.0, 1e3, "bound of both error integrals");
     field("derivative_kick", self.derivative_kick,
           "the error before a leg counts as zero, so its first step has a derivative");
+    field("first_pose_sets_clock", self.first_pose_sets_clock,
+          "the first decision of a drive only sets the clock, at zero power, as in the authors' "
+          "loop: the first that drives knows a true interval");
     field("clock_starts_anew", self.clock_starts_anew,
-          "at the start and after a stop the first decision only sets the clock, at zero power, as "
-          "in the authors' loop: the first that drives knows a true interval");
+          "the same at the start and after each stop; off for the authors' robot: it is seen to "
+          "halt at 63 % of its stops, as with one frame of zero power and a listener that looks "
+          "every 0.1 s");
     field("reach_radius_m", self.reach_radius_m, 1e-4, 10.0, "a waypoint is reached within this");
     field("v_min", self.v_min, 0.0, 1.0, "least forward power between waypoints");
     field("v_max", self.v_max, 0.0, 1.0, "largest forward power");

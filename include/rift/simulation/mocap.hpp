@@ -26,7 +26,11 @@ struct MocapOptions {
   double rate_hz = 18.9;
   double frame_jitter_s = 0.003;
   std::optional<double> host_period_s;
-  double host_jitter_s = 0.004;
+  double host_period_spread_s = 0.0;
+  double host_wander_s = 0.0;
+  double host_jitter_s = 0.0016;
+  double host_late_share = 0.0;
+  double host_late_s = 0.011;
   double exposure_s = 0.010;
   double processing_s = 0.070;
   double noise_across_m = 0.00035;
@@ -36,6 +40,7 @@ struct MocapOptions {
   double noise_yaw_rad = 0.0016;
   double blur_yaw_rad_per_mps = 0.032;
   double yaw_tail_dof = 6.0;
+  double noise_spread = 0.0;
   double noise_z_m = 0.001;
   double noise_tilt_rad = 0.02;
   double dropout = 0.0;
@@ -55,8 +60,20 @@ struct MocapOptions {
         "the host takes the newest picture this often and stamps its pose when it is done, as the "
         "authors' does (median; 0.051 to 0.063 in the logs): intervals between captures are whole "
         "frames, stamps are the host's; none: every frame is measured, stamped when captured");
+    field("host_period_spread_s", self.host_period_spread_s, 0.0, 0.2,
+          "standard deviation of host_period_s from run to run in s (logs of a surface: 0.0024 to "
+          "0.0034)");
+    field("host_wander_s", self.host_wander_s, 0.0, 0.01,
+          "step of the random walk of the period from turn to turn in s (logs: the medians of "
+          "both halves differ by 0.001)");
     field("host_jitter_s", self.host_jitter_s, 0.0, 0.2,
-          "scatter of host_period_s, skewed to the long side, in s (logs: 0.004)");
+          "standard deviation of a turn about the period in s (logs, turns that are not late: "
+          "0.0016)");
+    field("host_late_share", self.host_late_share, 0.0, 1.0,
+          "share of the turns that take host_late_s longer; each run draws its own, evenly from 0 "
+          "to twice this (logs: 0.1)");
+    field("host_late_s", self.host_late_s, 0.0, 0.2,
+          "by how much a late turn is longer in s (logs: 0.011 on every surface)");
     field("exposure_s", self.exposure_s, 0.0, 0.2,
           "shutter time in s; the pose is that of its middle (estimate)");
     field("processing_s", self.processing_s, 0.0, 2.0,
@@ -75,6 +92,10 @@ struct MocapOptions {
           "further scatter of the yaw for each m/s of speed (trials: 0.56 deg at 0.3 m/s)");
     field("yaw_tail_dof", self.yaw_tail_dof, 2.1, 1e6,
           "degrees of freedom of Student's t for the yaw (trials: 99 % within 1.7 deg, hence 6)");
+    field(
+        "noise_spread", self.noise_spread, 0.0, 3.0,
+        "standard deviation from run to run of the logarithm of the three scatters while the robot "
+        "stands: where in its pixels a standing tag lies (logs: 1.2)");
     field("noise_z_m", self.noise_z_m, 0.0, 0.1, "scatter of the height in m (estimate)");
     field("noise_tilt_rad", self.noise_tilt_rad, 0.0, 1.0,
           "scatter of roll and pitch in rad (estimate)");
@@ -114,13 +135,16 @@ class Mocap {
   void RunHost(double until_s);
   trial::PoseMeasurement Measure(const TruePose& pose, double speed_mps, std::uint64_t frame) const;
 
-  MocapOptions options_;
+  MocapOptions options_;  ///< with what this run drew of the host's period and its late turns
   statistics::CounterRandom noise_;
+  statistics::CounterRandom host_noise_;
+  double standing_factor_;  ///< of this run's scatters while it stands
   double phase_s_;
   std::uint64_t next_frame_ = 0;
   double last_stamp_s_;
   double host_done_s_ = 0.0;  ///< when the host's next turn ends
   std::uint64_t host_turns_ = 0;
+  double host_wandered_s_ = 0.0;
   std::deque<trial::PoseMeasurement> in_camera_;  ///< captured, not yet taken by the host
   std::deque<Arrival> on_the_way_;
   std::optional<trial::PoseMeasurement> newest_;

@@ -138,6 +138,7 @@ std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial, const 
   if (!log.HasYaw()) throw std::invalid_argument("a replay needs the yaw of the log");
   std::vector<HorizonError> mean;
   SimulatedTrial phase = trial;
+  phase.simulation.link.late_share = 0.0;  // a log tells itself when its robot heard something
   const double offset = statistics::CounterRandom(trial.seed, kOffsetStream).Uniform(0, 0);
   for (int i = 0; i < options.phases; ++i, ++phase.seed) {
     // Even phases: over drawn ones the mean would change by leaps with a delay. Each log has its
