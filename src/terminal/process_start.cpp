@@ -29,6 +29,7 @@ void GuardProcessStart() {
   OpenWhenClosed(STDOUT_FILENO, "/dev/zero");
   OpenWhenClosed(STDERR_FILENO, "/dev/zero");
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 }  // namespace rift::terminal

@@ -1,8 +1,7 @@
 #include "commands/drive/log.hpp"
 
-#include <sys/resource.h>
-
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <future>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +11,7 @@
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/trajectory/log.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/process.hpp"
 #include "support/until.hpp"
@@ -137,28 +137,13 @@ TEST_CASE("A folder that vanishes before a drive stops it and is not made again"
   CHECK(std::filesystem::is_empty(folder.Path()));
 }
 
-/// What a full disk does to files: none may grow beyond `bytes`.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  rlimit before_{};
-};
-
 TEST_CASE("A file that cannot grow stops the drive and ends with a whole row") {
+  std::signal(SIGXFSZ, SIG_IGN);  // as in the program (terminal/process_start.hpp)
   const test::TemporaryFolder folder;
   DriveLog log(WriterInto(folder.Path(), PaperExperiment()));
   const hardware::Stopper stopper = log.Stopper();
   {
-    const FileSizeLimit limit(1000);
+    const test::FileSizeLimit limit(1000);
     double t_s = 0.0;
     test::WaitUntil("the drive is stopped", [&] {
       Record(log, t_s += 0.001);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <csignal>
 #include <mutex>
 #include <stdexcept>
 
@@ -84,8 +83,6 @@ struct DriveLog::Shared {
 };
 
 DriveLog::DriveLog(Write write) : shared_(std::make_shared<Shared>(std::move(write))) {
-  // Else a limit on the size of files (ulimit -f) ends the process while the robot drives.
-  std::signal(SIGXFSZ, SIG_IGN);
   thread_ = std::thread([shared = shared_] { Run(shared); });
 }
 
