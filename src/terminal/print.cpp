@@ -1,10 +1,12 @@
 #include "rift/terminal/print.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "text.hpp"
@@ -28,6 +30,13 @@ constexpr const char* kClear = "\r\x1b[K";
 
 std::atomic<bool> is_live = false;  // a LiveLine stands on the terminal's line
 
+/// The characters that stderr's terminal shows in a line; none where it does not tell.
+std::optional<std::size_t> Columns() {
+  winsize size{};
+  const bool is_told = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return is_told ? std::optional<std::size_t>(size.ws_col) : std::nullopt;
+}
+
 }  // namespace
 
 void Say(std::string_view line) {
@@ -36,7 +45,10 @@ void Say(std::string_view line) {
 }
 
 void SayInPlace(std::string_view line) {
-  WriteToStderr(kClear + TerminalText(line, LineBreaks::kEscaped));
+  std::string text = TerminalText(line, LineBreaks::kEscaped);
+  // Of a line that is wrapped only the last part could be cleared.
+  if (const auto columns = Columns()) text = FirstCharacters(text, *columns - 1);
+  WriteToStderr(kClear + text);
 }
 
 LiveLine::~LiveLine() {

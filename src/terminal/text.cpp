@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "rift/yaml/utf8.hpp"
@@ -48,6 +49,14 @@ std::string TerminalText(std::string_view text, LineBreaks line_breaks) {
     at += sequence.size();
   }
   return shown;
+}
+
+std::string FirstCharacters(const std::string& text, std::size_t most) {
+  std::size_t end = 0;
+  for (; most > 0 && end < text.size(); --most) {
+    end += std::max<std::size_t>(1, yaml::Utf8Length(text, end));
+  }
+  return text.substr(0, end);
 }
 
 }  // namespace rift::terminal

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -14,5 +15,8 @@ enum class LineBreaks { kEscaped, kKept };
 /// does), line separators, and the characters that turn the direction of writing as \u{...}.
 /// A backslash stays as it is: the result is for people and cannot be read back.
 std::string TerminalText(std::string_view text, LineBreaks line_breaks);
+
+/// At most so many characters of what TerminalText made, none of them cut.
+std::string FirstCharacters(const std::string& text, std::size_t most);
 
 }  // namespace rift::terminal

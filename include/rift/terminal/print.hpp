@@ -11,7 +11,8 @@ namespace rift::terminal {
 /// One line on stderr: a note, a warning or an error. Lost when stderr cannot be written.
 void Say(std::string_view line);
 
-/// The same without a line's end, in place of what stands on the terminal's line.
+/// The same without a line's end, in place of what stands on the terminal's line, and no longer
+/// than that line.
 void SayInPlace(std::string_view line);
 
 /// A line of stderr that is replaced by the next one, where stderr is a terminal; nothing
