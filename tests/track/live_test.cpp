@@ -20,6 +20,7 @@
 namespace rift {
 namespace {
 
+namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 using nlohmann::json;
 using test::Environment;
@@ -117,6 +118,29 @@ TEST_CASE("A camera without a readable format is named with those it has") {
   const ProcessResult result = RunRift(Tracking("/dev/video0", folder / "log.csv", "5"));
   CHECK(result.exit_code == 3);
   CHECK_THAT(result.err, Contains("camera wrong format") && Contains("H264, NV12"));
+}
+
+TEST_CASE("A log whose folder is removed, moved or replaced during the tracking is exit 3") {
+  const std::string picture = test::ReadFile(kData + "/frames/000.jpg");
+  MjpegServer server(std::vector<std::uint8_t>{picture.begin(), picture.end()}, {.fps = 20.0});
+  const test::TemporaryFolder folder;
+  const fs::path out = folder / "out", elsewhere = folder / "elsewhere", log = out / "log.csv";
+  fs::create_directory(out);
+  const int trouble = GENERATE(range(0, 3));
+  test::RunningRift rift({"track", "--camera", server.Url(), "--calibration", kCamera, "--out", log,
+                          "--set", "track.capture.same_s=60", "--set", kPatient});
+  rift.WaitUntil("the first rows", [&] {
+    std::error_code not_there;
+    return fs::exists(log) && fs::file_size(log, not_there) > 1000;
+  });
+  if (trouble == 0) fs::remove_all(out);
+  if (trouble > 0) fs::rename(out, elsewhere);
+  if (trouble > 1) fs::copy(elsewhere, out);
+  const ProcessResult result = rift.Wait();
+  INFO(trouble << ": " << result.out << result.err);
+  CHECK(result.exit_code == 3);
+  CHECK_THAT(result.err, Contains("log.csv was removed or moved while it was being written"));
+  CHECK_FALSE(fs::exists(out / "log.run.json"));
 }
 
 TEST_CASE("Ctrl-C ends the tracking cleanly with its summary") {

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "rift/report/json/json.hpp"
 #include "rift/terminal/print.hpp"
@@ -16,14 +16,18 @@ constexpr double kFlushEvery_s = 0.5;
 
 }  // namespace
 
+TrackLog::~TrackLog() {
+  try {
+    Close();
+  } catch (const std::runtime_error&) {
+    // Only while another error, which is the one to be told, unwinds.
+  }
+}
+
 void TrackLog::Open() {
   if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path());
-  errno = 0;
-  file_.open(path_);
-  if (!file_) {
-    throw std::runtime_error(fmt::format("cannot write {}: {}", path_.string(), strerror(errno)));
-  }
-  file_ << report::SightingsHeader();
+  file_.emplace(path_);
+  waiting_ = report::SightingsHeader();
 }
 
 /// Each row at once: whoever reads the pipe follows the robot.
@@ -44,19 +48,24 @@ bool TrackLog::Add(double t_s, const vision::Sighting& sighting) {
     Print(t_s, sighting);
     return true;
   }
-  if (!file_.is_open()) Open();
-  file_ << report::SightingRow(t_s, sighting);
+  if (!file_) Open();
+  waiting_ += report::SightingRow(t_s, sighting);
   if (t_s - flushed_t_s_ < kFlushEvery_s) return true;
   flushed_t_s_ = t_s;
-  file_.flush();
-  if (!file_) throw std::runtime_error(fmt::format("cannot write {}: disk full?", path_.string()));
+  Flush();
   return true;
 }
 
+void TrackLog::Flush() {
+  file_->RequireInPlace();
+  file_->Append(std::exchange(waiting_, {}));
+}
+
 void TrackLog::Close() {
-  if (!file_.is_open()) return;
-  file_.close();
-  if (!file_) throw std::runtime_error(fmt::format("cannot write {}: disk full?", path_.string()));
+  if (!file_) return;
+  Flush();
+  file_->Sync();
+  file_.reset();
 }
 
 }  // namespace rift::commands

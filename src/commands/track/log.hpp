@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <map>
+#include <optional>
+#include <string>
 
+#include "rift/files/append_file.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
 
 namespace rift::commands {
@@ -14,21 +16,28 @@ class TrackLog {
  public:
   /// "-" is stdout.
   explicit TrackLog(std::filesystem::path path) : path_(std::move(path)), is_piped_(path_ == "-") {}
+  /// Writes what waits; what cannot be written is lost silently: call Close before.
+  ~TrackLog();
+  TrackLog(const TrackLog&) = delete;
+  TrackLog& operator=(const TrackLog&) = delete;
 
   /// `t_s` must be later than that of the row before of the same tag; a sighting at or before it is
   /// left out.
-  /// Throws std::runtime_error when the file cannot be written.
+  /// Throws std::runtime_error when the file cannot be written, or is no longer where it was made.
   bool Add(double t_s, const vision::Sighting& sighting);
+  /// Throws as Add does.
   void Close();
 
  private:
   void Open();
   void Print(double t_s, const vision::Sighting& sighting);
+  void Flush();
 
   std::filesystem::path path_;
   bool is_piped_;
   bool has_header_ = false;  // on stdout
-  std::ofstream file_;
+  std::optional<files::AppendFile> file_;
+  std::string waiting_;             // rows to be written
   std::map<int, double> last_t_s_;  // by tag
   double flushed_t_s_ = 0.0;
 };
