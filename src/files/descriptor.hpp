@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 namespace rift::files {
 
@@ -21,6 +22,10 @@ class Descriptor {
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
+
+  /// Closes it. False, with errno, when the system could not keep what was written: over a network
+  /// a quota or a full disk is told as late as this.
+  bool Close() { return ::close(std::exchange(number_, -1)) == 0; }
 
   bool IsOpen() const { return number_ >= 0; }
   int Number() const { return number_; }

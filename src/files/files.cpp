@@ -50,8 +50,8 @@ bool WriteWhole(int file, std::string_view text) {
 
 /// A pipe or a device cannot be renamed over; what goes there goes straight through.
 void WriteThrough(const std::filesystem::path& path, std::string_view text) {
-  const Descriptor file(path, O_WRONLY);
-  if (!file.IsOpen() || !WriteWhole(file.Number(), text)) CannotWrite(path);
+  Descriptor file(path, O_WRONLY);
+  if (!file.IsOpen() || !WriteWhole(file.Number(), text) || !file.Close()) CannotWrite(path);
 }
 
 /// The stream of this process that writes to that file, as /dev/stdout does, if any.
@@ -130,9 +130,9 @@ void WriteFile(const std::filesystem::path& target, std::string_view text) {
   }
   const std::filesystem::path beside = path.string() + fmt::format(".{}.part", ::getpid());
   {
-    const Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC);
+    Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC);
     if (!file.IsOpen()) CannotWrite(path);
-    if (!WriteWhole(file.Number(), text)) {
+    if (!WriteWhole(file.Number(), text) || !file.Close()) {
       const int reason = errno;
       std::filesystem::remove(beside, error);
       errno = reason;
