@@ -82,13 +82,17 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
                               twin::OverheadCamera(experiment::TaskOf(experiment), experiment.twin),
                               look};
   const fs::path calibration = folder / "camera.yaml";
-  files::WriteFile(calibration, vision::WriteCamera(setup.camera));
-  files::WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(as_twin));
+  const auto save_setup = [&] {
+    files::WriteFile(calibration, vision::WriteCamera(setup.camera));
+    files::WriteFile(folder / "experiment.yaml", experiment::WriteExperiment(as_twin));
+  };
+  save_setup();
 
   const terminal::StopSignal stop;
   const twin::TwinRun run = twin::RunTwin(
       setup, [&](const twin::TwinAddress& address) { Announce(address, calibration); },
       [&] { return stop.IsAsked(); });
+  if (!fs::exists(folder / "experiment.yaml")) save_setup();  // removed meanwhile
   Save(folder, as_twin, run);
   terminal::Say(fmt::format("{}; {} pictures at {:.1f} ms of one core each; true path: {}",
                             Ending(run), run.pictures, 1e3 * run.picture_cpu_s,

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <functional>
 #include <optional>
 
@@ -183,6 +184,18 @@ TEST_CASE("A killed host stops the twin and its port can be opened again") {
   twin.Signal(SIGTERM);
   CHECK(twin.ExitCode() == 0);
   CHECK(ReadRun(twin, "truth.csv").ArcLength_m() > 0.01);
+}
+
+TEST_CASE("A twin whose folder is removed leaves a whole run all the same") {
+  test::TwinProcess twin;
+  const std::string camera = test::ReadFile(twin.Get("calibration"));
+  std::filesystem::remove_all(twin.Folder());
+  twin.Signal(SIGTERM);
+  CHECK(twin.ExitCode() == 0);
+  CHECK(test::ReadFile(twin.Get("calibration")) == camera);
+  for (const char* name : {"experiment.yaml", "truth.csv", "trajectory.csv", "summary.json"}) {
+    CHECK(std::filesystem::exists(twin.Folder() + "/" + name));
+  }
 }
 
 TEST_CASE("What the twin cannot do is refused in one line") {
