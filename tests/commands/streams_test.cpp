@@ -5,6 +5,7 @@
 #include "support/process.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
+#include "support/works.hpp"
 
 namespace rift {
 namespace {
@@ -17,56 +18,14 @@ using test::RunRift;
 using Words = std::vector<std::string>;
 
 const std::string kExample = test::SourceDir() + "/data/example/";
-const std::string kCamera = test::SourceDir() + "/data/camera/";
 
 // What a terminal would take as its new title, and how it is shown.
 const std::string kTitle = "\x1b]0;pwned\x07";
 const std::string kShownTitle = R"(\x1b]0;pwned\x07)";
 
-/// A command that writes `file` below `out`.
-struct Work {
-  std::string name;
-  Words (*words)(const std::string& out);
-  std::string file;
-};
-
-const std::vector<Work> kWorks{
-    {"gap",
-     [](const std::string& out) {
-       return Words{"gap", kExample + "simulator.csv", kExample + "robot1.csv", "--profile",
-                    out + "/profile.csv"};
-     },
-     "profile.csv"},
-    {"simulate",
-     [](const std::string& out) {
-       return Words{"simulate", test::SourceDir() + "/configs/waypoints/paper.yaml", "--out", out};
-     },
-     "trajectory.csv"},
-    {"sweep",
-     [](const std::string& out) {
-       return Words{"sweep",  test::SourceDir() + "/configs/waypoints/paper.yaml",
-                    "--set",  "space={surface: [ground, parchment], v_min: [0.14, 0.16]}",
-                    "--jobs", "2",
-                    "--out",  out};
-     },
-     "table.csv"},
-    {"track",
-     [](const std::string& out) {
-       return Words{"track",
-                    "--camera",
-                    kCamera + "frames/*.jpg",
-                    "--fps",
-                    "15",
-                    "--calibration",
-                    kCamera + "camera.yaml",
-                    "--out",
-                    out + "/log.csv"};
-     },
-     "log.csv"}};
-
 TEST_CASE(
     "With streams that are closed or full every file is written and lost results are exit 3") {
-  const Work& work = kWorks[GENERATE(range(0, 4))];
+  const test::Work work = test::Works()[GENERATE(range(0, 4))];
   const test::TemporaryFolder folder;
   for (const char* name : {"usual", "out"}) std::filesystem::create_directories(folder / name);
   const ProcessResult usual = RunRift(work.words(folder / "usual"));

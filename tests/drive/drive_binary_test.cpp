@@ -1,16 +1,16 @@
-#include <sys/resource.h>
-
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
-#include "floor.hpp"
+#include "drive_scene.hpp"
 #include "rift/control/waypoint.hpp"
 #include "rift/files/files.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/broken_streams.hpp"
 #include "support/environment.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/running_rift.hpp"
 #include "support/tree.hpp"
@@ -19,64 +19,12 @@
 namespace rift {
 namespace {
 
-// Limits that a loaded machine keeps as well; those of a real drive are tested on a fake clock.
-constexpr const char* kPatient = R"(
-track: {tag: {acquire_decimate: 1, lost_after_s: 5}, capture: {silent_s: 20, same_s: 20, open_timeout_s: 60}}
-trial: {pose_stale_s: 5, lost_after_s: 20, timeout_s: 300}
-hardware:
-  line: {baud: 115200, hello_s: 20}
-  guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
-  ping: {duration_s: 0.5, max_p99_s: 10, max_loss: 1, max_burst: 1000}
-  start: {countdown_s: 0}
-)";
+using test::kAll;
+using test::Scene;
+using test::Uninterrupted;
+using test::WaitForMotion;
+using test::WasInterrupted;
 
-/// A floor with the robot on the first waypoint, and what rift drive needs to be told.
-struct Scene {
-  explicit Scene(int moving_pictures = 1'000'000)
-      : floor(control::StartPose(test::PaperWaypoints()), moving_pictures) {
-    test::WriteText(folder / "cam.yaml", vision::WriteCamera(test::SmallCamera()));
-    test::WriteText(folder / "task.yaml", "include: " + test::SourceDir() +
-                                              "/configs/waypoints/paper.yaml\n" +
-                                              std::string(kPatient));
-  }
-  std::vector<std::string> Arguments() const {
-    return {"drive",    folder / "task.yaml", "--port",        floor.Port(),
-            "--camera", floor.Camera(),       "--calibration", folder / "cam.yaml",
-            "--out",    folder / "run",       "--yes"};
-  }
-  nlohmann::json Summary() const {
-    return nlohmann::json::parse(files::ReadFile(folder / "run/summary.json"));
-  }
-
-  test::TemporaryFolder folder;
-  test::Floor floor;
-};
-
-/// True when the guard stopped the drive since somebody looked away for longer than the most
-/// patient limits, as it must on a machine that is that busy.
-bool WasInterrupted(Scene& scene) {
-  if (!std::filesystem::exists(scene.folder / "run/summary.json")) return false;
-  const auto summary = scene.Summary();
-  if (!summary.contains("stop")) return false;  // killed
-  const std::string reason = summary["stop"]["reason"];
-  INFO(scene.floor.Told());
-  CHECK(scene.floor.WasObedient());
-  return reason == "link_lagging" || reason == "host_stalled" || reason == "pose_stale" ||
-         reason == "control_stale";
-}
-
-/// Runs `drive` on a new scene, which returns false for a drive that was interrupted, until one
-/// was not.
-template <class Drive>
-void Uninterrupted(int moving_pictures, const Drive& drive) {
-  for (int i = 0; i < 5; ++i) {
-    Scene scene(moving_pictures);
-    if (drive(scene)) return;
-  }
-  FAIL("five drives were interrupted: the machine is too busy");
-}
-
-constexpr int kAll = 1'000'000;
 constexpr rlim_t kRoom = 12'000;  // more than the experiment, less than a drive
 
 void CheckWholeDrive(Scene& scene, const test::ProcessResult& result) {
@@ -168,12 +116,6 @@ TEST_CASE("Ctrl-C in the countdown ends the drive before anything moves") {
   CHECK_THAT(result.out, Catch::Contains("stopped before the start: SIGINT came"));
   CHECK(scene.floor.Pose() == start);
   CHECK_FALSE(std::filesystem::exists(scene.folder.Path() / "run/trajectory.csv"));
-}
-
-/// Or for the end of a drive that was interrupted.
-void WaitForMotion(test::RunningRift& rift, Scene& scene) {
-  test::WaitUntil("the robot moves or the drive is over",
-                  [&] { return scene.floor.Moves() || !rift.IsRunning(); });
 }
 
 TEST_CASE("A camera that repeats its last picture stops the robot whatever else changes in it") {
@@ -306,12 +248,9 @@ TEST_CASE("A log that finds no room stops the robot first and keeps its rows") {
   Uninterrupted(kAll, [](Scene& scene) {
     std::vector<std::string> arguments = scene.Arguments();
     arguments.push_back("--json");
-    rlimit before{};
-    REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
-    const rlimit limit{kRoom, before.rlim_max};
-    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+    std::optional<test::FileSizeLimit> limit(kRoom);
     test::RunningRift rift(arguments);
-    REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
+    limit.reset();
     const bool is_stopped = IsStoppedForItsLog(rift, scene, "File too large");
     CHECK_THAT(LogOf(scene), Catch::EndsWith("\n"));
     CHECK(LogOf(scene).size() > kRoom / 2);

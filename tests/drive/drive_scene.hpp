@@ -1,0 +1,85 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "floor.hpp"
+#include "rift/control/waypoint.hpp"
+#include "rift/files/files.hpp"
+#include "support/paper_waypoints.hpp"
+#include "support/process.hpp"
+#include "support/running_rift.hpp"
+#include "support/tree.hpp"
+#include "support/until.hpp"
+
+namespace rift::test {
+
+// Limits that a loaded machine keeps as well; those of a real drive are tested on a fake clock.
+inline constexpr const char* kPatient = R"(
+track: {tag: {acquire_decimate: 1, lost_after_s: 5}, capture: {silent_s: 20, same_s: 20, open_timeout_s: 60}}
+trial: {pose_stale_s: 5, lost_after_s: 20, timeout_s: 300}
+hardware:
+  line: {baud: 115200, hello_s: 20}
+  guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
+  ping: {duration_s: 0.5, max_p99_s: 10, max_loss: 1, max_burst: 1000}
+  start: {countdown_s: 0}
+)";
+
+/// A floor with the robot on the first waypoint, and what rift drive needs to be told.
+struct Scene {
+  explicit Scene(int moving_pictures = 1'000'000)
+      : floor(control::StartPose(PaperWaypoints()), moving_pictures) {
+    WriteText(folder / "cam.yaml", vision::WriteCamera(SmallCamera()));
+    WriteText(folder / "task.yaml", "include: " + SourceDir() +
+                                              "/configs/waypoints/paper.yaml\n" +
+                                              std::string(kPatient));
+  }
+  std::vector<std::string> Arguments() const {
+    return {"drive",    folder / "task.yaml", "--port",        floor.Port(),
+            "--camera", floor.Camera(),       "--calibration", folder / "cam.yaml",
+            "--out",    folder / "run",       "--yes"};
+  }
+  nlohmann::json Summary() const {
+    return nlohmann::json::parse(files::ReadFile(folder / "run/summary.json"));
+  }
+
+  TemporaryFolder folder;
+  Floor floor;
+};
+
+/// True when the guard stopped the drive since somebody looked away for longer than the most
+/// patient limits, as it must on a machine that is that busy.
+inline bool WasInterrupted(Scene& scene) {
+  if (!std::filesystem::exists(scene.folder / "run/summary.json")) return false;
+  const auto summary = scene.Summary();
+  if (!summary.contains("stop")) return false;  // killed
+  const std::string reason = summary["stop"]["reason"];
+  INFO(scene.floor.Told());
+  CHECK(scene.floor.WasObedient());
+  return reason == "link_lagging" || reason == "host_stalled" || reason == "pose_stale" ||
+         reason == "control_stale";
+}
+
+/// Runs `drive` on a new scene, which returns false for a drive that was interrupted, until one
+/// was not.
+template <class Drive>
+void Uninterrupted(int moving_pictures, const Drive& drive) {
+  for (int i = 0; i < 5; ++i) {
+    Scene scene(moving_pictures);
+    if (drive(scene)) return;
+  }
+  FAIL("five drives were interrupted: the machine is too busy");
+}
+
+inline constexpr int kAll = 1'000'000;
+
+/// Or for the end of a drive that was interrupted.
+inline void WaitForMotion(RunningRift& rift, Scene& scene) {
+  WaitUntil("the robot moves or the drive is over",
+                  [&] { return scene.floor.Moves() || !rift.IsRunning(); });
+}
+
+}  // namespace rift::test
