@@ -65,11 +65,12 @@ RunTrials RunHere(Evaluate evaluate, Watch watch) {
 }
 
 TrialRunner::TrialRunner(Evaluate evaluate, KeyOf key_of, Journal* journal, int workers,
-                         const RunOptions& options, Watch watch)
+                         const RunOptions& options, Watch watch, size_t most_paths)
     : key_of_(std::move(key_of)),
       journal_(journal),
       watch_(std::move(watch)),
-      pool_(WorkOf(std::move(evaluate)), workers, options) {}
+      pool_(WorkOf(std::move(evaluate)), workers, options),
+      most_paths_(most_paths) {}
 
 bool TrialRunner::HasAll(const std::vector<TrialRequest>& requests) {
   if (journal_ == nullptr) return false;
@@ -77,6 +78,14 @@ bool TrialRunner::HasAll(const std::vector<TrialRequest>& requests) {
     if (!journal_->Find(key_of_(request))) return false;
   }
   return true;
+}
+
+std::vector<size_t> TrialRunner::Missing(const std::vector<TrialRequest>& requests) {
+  std::vector<size_t> missing;
+  for (size_t i = 0; i < requests.size(); ++i) {
+    if (journal_ == nullptr || !journal_->Has(key_of_(requests[i]))) missing.push_back(i);
+  }
+  return missing;
 }
 
 TrialRow TrialRunner::Finish(TrialRequest request, const JobResult& result, bool keeps_path) {
@@ -96,7 +105,7 @@ TrialRow TrialRunner::Finish(TrialRequest request, const JobResult& result, bool
 
 std::optional<std::vector<TrialRow>> TrialRunner::Run(std::vector<TrialRequest> requests) {
   std::vector<TrialRow> rows(requests.size());
-  const auto keeps_path = [&](size_t i) { return run_ + i < kMostPaths; };
+  const auto keeps_path = [&](size_t i) { return run_ + i < most_paths_; };
   std::vector<int> missing;
   for (size_t i = 0; i < requests.size(); ++i) {
     std::optional<std::string> bytes;

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <cctype>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
+#include "rift/files/network_file_system.hpp"
 #include "rift/statistics/hash.hpp"
 
 namespace rift::sweep {
@@ -119,12 +122,6 @@ void SumOf(sqlite3_context* context, int count, sqlite3_value** values) {
   sqlite3_result_text(context, sum.data(), static_cast<int>(sum.size()), SQLITE_TRANSIENT);
 }
 
-std::string HashOf(const Facts& made_from) {
-  std::string facts;
-  for (const auto& [key, value] : made_from) facts += fmt::format("{}\n{}\n", key, value);
-  return statistics::Hash128Text(facts);
-}
-
 /// `facts` must outlive the database.
 void DefineSoundRows(SQLite::Database& database, std::string& facts) {
   database.createFunction("sum_of", -1, true, &facts, SumOf);
@@ -163,17 +160,59 @@ void RequireOurTables(SQLite::Database& database, const fs::path& file) {
       file.string()));
 }
 
+bool HasSharedMemory(const fs::path& file, JournalLog log) {
+  if (log != JournalLog::kAsTheFolderAllows) return log == JournalLog::kWriteAhead;
+  return files::NetworkFileSystemOf(file.parent_path()).empty();
+}
+
+/// As a URI that tells SQLite that nobody writes the file: without locks, which a network file
+/// system may not have, and without a log beside it.
+std::string Immutable(const fs::path& file) {
+  std::string uri = "file:";
+  for (const char c : fs::absolute(file).string()) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                          std::string_view("/._-").find(c) != std::string_view::npos;
+    uri += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return uri + "?immutable=1";
+}
+
+/// The journal of a shard, which was published whole.
+SQLite::Database OpenPublished(const fs::path& file) {
+  return {Immutable(file), SQLite::OPEN_READONLY | SQLite::OPEN_URI};
+}
+
+JournalEntry EntryOf(SQLite::Statement& row) {
+  JournalEntry entry{.status = row.getColumn(1).getString(),
+                     .gap_m = std::numeric_limits<double>::quiet_NaN(),
+                     .falsified = row.getColumn(3).getInt() != 0,
+                     .bytes = row.getColumn(4).getString()};
+  if (!row.getColumn(2).isNull()) entry.gap_m = row.getColumn(2).getDouble();
+  return entry;
+}
+
 }  // namespace
 
+std::string HashOf(const Facts& made_from) {
+  std::string facts;
+  for (const auto& [key, value] : made_from) facts += fmt::format("{}\n{}\n", key, value);
+  return statistics::Hash128Text(facts);
+}
+
 struct Journal::Store {
-  explicit Store(const fs::path& path)
+  Store(const fs::path& path, JournalLog log)
       : file(path), database(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
     database.setBusyTimeout(2000);
     Check();
     // NORMAL: a commit survives the process, and after a loss of power the journal is whole but
     // may lack the last commits.
     // Rows of 1.4 kB: each would fill a page of 4 kB by itself.
-    database.exec("PRAGMA page_size=8192; PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL;");
+    database.exec("PRAGMA page_size=8192");
+    if (HasSharedMemory(path, log)) {
+      database.exec("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL;");
+    } else {
+      database.exec("PRAGMA journal_mode=DELETE; PRAGMA synchronous=FULL;");
+    }
     database.exec(kSchema);
     RequireOurTables(database, file);
   }
@@ -227,9 +266,9 @@ struct Journal::Store {
   int damaged = 0;
 };
 
-Journal::Journal(const fs::path& file, const Facts& made_from) {
+Journal::Journal(const fs::path& file, const Facts& made_from, JournalLog log) {
   Told(file, [&] {
-    store_ = std::make_unique<Store>(file);
+    store_ = std::make_unique<Store>(file, log);
     const Facts then = ReadFacts(store_->database);
     if (then.empty()) {
       SQLite::Transaction transaction(store_->database);
@@ -328,6 +367,40 @@ std::optional<std::string> Journal::Note(const std::string& name) {
   });
 }
 
+Journal::Merged Journal::Merge(const fs::path& other) {
+  Merged merged;
+  try {
+    SQLite::Database database = OpenPublished(other);
+    std::string facts = HashOf(ReadFacts(database));
+    if (facts != store_->facts) {
+      throw UselessJournal(other.string() + " is the journal of another experiment");
+    }
+    DefineSoundRows(database, facts);
+    const int all = Count(database, "SELECT COUNT(*) FROM trial");
+    SQLite::Statement rows(database, "SELECT key, status, gap_m, falsified, row FROM sound_trial");
+    while (rows.executeStep()) {
+      Add(rows.getColumn(0).getString(), EntryOf(rows));
+      ++merged.trials;
+    }
+    merged.damaged = all - merged.trials;
+    SQLite::Statement elapsed(database, "SELECT value FROM sound_note WHERE name = 'elapsed_s'");
+    if (elapsed.executeStep()) SetNote("elapsed_s", elapsed.getColumn(0).getString());
+  } catch (const SQLite::Exception& error) {  // of the other: what ours reports is no such
+    throw UselessJournal(fmt::format("{}: {}", other.string(), error.what()));
+  }
+  Commit();
+  return merged;
+}
+
+void Journal::CopyTo(const fs::path& file) {
+  Commit();
+  Told(file, [&] {
+    SQLite::Statement copy(store_->database, "VACUUM INTO ?");
+    copy.bind(1, file.string());
+    copy.exec();
+  });
+}
+
 void Journal::Close() {
   Commit();
   store_->RequireInPlace();
@@ -348,6 +421,19 @@ void Journal::Remove(const fs::path& file) {
       throw std::runtime_error(
           fmt::format("cannot remove {}{}: {}", file.string(), suffix, error.message()));
     }
+  }
+}
+
+bool IsJournalOf(const fs::path& file, const Facts& made_from) {
+  std::error_code not_there;
+  if (!fs::exists(file, not_there)) return false;
+  try {
+    SQLite::Database database = OpenPublished(file);
+    SQLite::Statement check(database, "PRAGMA quick_check(1)");
+    const bool is_whole = check.executeStep() && check.getColumn(0).getString() == "ok";
+    return is_whole && ReadFacts(database) == made_from;
+  } catch (const SQLite::Exception&) {
+    return false;
   }
 }
 

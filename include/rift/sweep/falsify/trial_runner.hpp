@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -55,11 +56,15 @@ class TrialRunner {
 
   /// `journal` may be nullptr.
   TrialRunner(Evaluate evaluate, KeyOf key_of, Journal* journal, int workers,
-              const RunOptions& options, Watch watch);
+              const RunOptions& options, Watch watch, size_t most_paths = kMostPaths);
 
   std::optional<std::vector<TrialRow>> Run(std::vector<TrialRequest> requests);
   /// True when the journal holds every one of them.
   bool HasAll(const std::vector<TrialRequest>& requests);
+  /// Those that the journal does not hold, by their index, ascending.
+  std::vector<size_t> Missing(const std::vector<TrialRequest>& requests);
+  /// How many of the next trials keep their path.
+  size_t PathsLeft() const { return most_paths_ - std::min(run_, most_paths_); }
 
  private:
   TrialRow Finish(TrialRequest request, const JobResult& result, bool keeps_path);
@@ -68,6 +73,7 @@ class TrialRunner {
   Journal* journal_;
   Watch watch_;
   WorkerPool pool_;
+  size_t most_paths_;
   size_t run_ = 0;  ///< trials of earlier calls
 };
 

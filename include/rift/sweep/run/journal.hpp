@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 namespace rift::sweep {
@@ -12,6 +13,9 @@ namespace rift::sweep {
 /// value as text.
 using Facts = std::map<std::string, std::string>;
 
+/// Facts as one hash.
+std::string HashOf(const Facts& made_from);
+
 /// A finished trial as the journal keeps it: the bytes bring the row back, the rest is for people.
 struct JournalEntry {
   std::string status;
@@ -19,6 +23,17 @@ struct JournalEntry {
   bool falsified = false;
   std::string bytes;
 };
+
+/// A journal of a shard that cannot be taken over.
+class UselessJournal : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// How a journal keeps what is not committed whole yet. A write-ahead log is shared memory of the
+/// processes that have it open, which two machines do not have: on a network file system (see
+/// files::NetworkFileSystemOf) readers would see it damaged, so there the older way is taken.
+enum class JournalLog { kAsTheFolderAllows, kWriteAhead, kRollback };
 
 /// Finished trials in an SQLite file, which survive a `kill -9` of the process at any moment: what
 /// is lost is what was added in the last kCommitEvery_s. One process writes; others may read.
@@ -36,11 +51,13 @@ class Journal {
   /// Opens the journal or makes an empty one, in a folder that exists.
   /// Throws std::invalid_argument for a journal made from other facts, naming those that differ,
   /// and for one whose tables are not those of this version.
-  Journal(const std::filesystem::path& file, const Facts& made_from);
+  Journal(const std::filesystem::path& file, const Facts& made_from,
+          JournalLog log = JournalLog::kAsTheFolderAllows);
   /// Commits; what cannot be committed any more is lost silently: call Close before.
   ~Journal();
 
   std::optional<std::string> Find(const std::string& key);
+  bool Has(const std::string& key) { return Find(key).has_value(); }
   /// Rows and notes that did not fit their hash when the journal was opened.
   int Damaged() const;
   /// Adding a key again replaces it.
@@ -51,6 +68,16 @@ class Journal {
   /// A word about the sweep as a whole, for readers and for later runs: "state", "total".
   void SetNote(const std::string& name, const std::string& value);
   std::optional<std::string> Note(const std::string& name);
+  /// What was taken over from another journal.
+  struct Merged {
+    int trials = 0;   ///< sound ones, those that were there already included
+    int damaged = 0;  ///< rows that did not fit their hash and were left out
+  };
+  /// Takes over the trials of the journal of a shard, and its note of the time it took. Throws
+  /// UselessJournal when it is none, is damaged as a whole, or was made from other facts.
+  Merged Merge(const std::filesystem::path& other);
+  /// Commits, and writes a journal with the same trials to a file that is not there yet.
+  void CopyTo(const std::filesystem::path& file);
   /// Commits and leaves one plain file without a log beside it.
   void Close();
 
@@ -61,6 +88,9 @@ class Journal {
   struct Store;
   std::unique_ptr<Store> store_;
 };
+
+/// True for a journal that can be read and was made from these facts.
+bool IsJournalOf(const std::filesystem::path& file, const Facts& made_from);
 
 /// What a journal tells about a sweep while it runs or afterwards.
 struct JournalSummary {

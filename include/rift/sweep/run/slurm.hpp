@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "rift/sweep/run/slurm_options.hpp"
+
+namespace rift::sweep {
+
+/// Slurm does not answer or takes no jobs for the moment: ask again later.
+class SlurmBusy : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A job array to be submitted.
+struct SlurmArray {
+  std::string name;              ///< of the job; by it its tasks are found again
+  std::vector<int> tasks;        ///< indices, ascending
+  std::filesystem::path script;  ///< absolute
+  std::filesystem::path logs;    ///< folder for TASK.log, absolute
+  std::filesystem::path folder;  ///< where the tasks start
+};
+
+/// A task that is in the queue.
+struct SlurmTask {
+  std::string job;     ///< id of its array
+  std::string state;   ///< as squeue has it: PENDING, RUNNING, COMPLETING, ...
+  std::string reason;  ///< why it is pending; empty when Slurm does not know yet
+};
+
+/// "0-4,7" of {0, 1, 2, 3, 4, 7}.
+std::string IndexRanges(const std::vector<int>& indices);
+
+/// Text as one word of a POSIX shell.
+std::string ShellQuoted(const std::string& text);
+
+/// The commands of Slurm, started by argument lists, never through a shell. All throw SlurmBusy
+/// when Slurm cannot answer now, and std::runtime_error, with its last line, when it refuses or is
+/// not installed.
+///
+/// The id of the new job.
+std::string SubmitArray(const SlurmArray& array, const SlurmOptions& options);
+/// The tasks of this user's jobs of that name which have not ended, by their index.
+std::map<int, SlurmTask> QueuedTasks(const std::string& name);
+/// Cancels this user's jobs of that name; none is no error.
+void CancelArrays(const std::string& name);
+/// MaxArraySize of the cluster, below which indices are; the default of Slurm where it is busy.
+int MaxArraySize();
+
+}  // namespace rift::sweep

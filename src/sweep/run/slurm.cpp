@@ -1,0 +1,138 @@
+#include "rift/sweep/run/slurm.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+#include "rift/sweep/run/external_program.hpp"
+
+namespace rift::sweep {
+namespace {
+
+/// What Slurm says when the same question may be answered later.
+bool IsTemporary(const std::string& words) {
+  constexpr std::array<std::string_view, 9> kTemporary{
+      "temporarily",  "try again", "timed out",    "Unable to contact", "Connection refused",
+      "submit limit", "job limit", "QOSMaxSubmit", "AssocMaxSubmit"};
+  return std::any_of(kTemporary.begin(), kTemporary.end(),
+                     [&](std::string_view part) { return words.find(part) != words.npos; });
+}
+
+/// What a command of Slurm prints. Throws as the header says.
+std::string Answer(const std::vector<std::string>& arguments) {
+  ExternalProgram program({.arguments = arguments, .talks = true}, ExternalProgram::MakeFolder());
+  std::string out;
+  while (const std::optional<std::string> line = program.ReceiveLine()) out += *line + '\n';
+  const ExternalProgram::Exit exit = program.Wait();
+  if (exit.code == 0 && exit.signal == 0) return out;
+  const std::string words = program.LastWords();
+  if (exit.code == 127 && words.starts_with("cannot run")) {
+    throw std::runtime_error(fmt::format(
+        "{}: --engine slurm needs Slurm's commands in PATH; without them use --engine local",
+        words));
+  }
+  const std::string text =
+      fmt::format("{}: {}", arguments[0], words.empty() ? "failed without a word" : words);
+  if (IsTemporary(words)) throw SlurmBusy(text);
+  throw std::runtime_error(text);
+}
+
+/// A '%' begins a pattern in a name of --output.
+std::string WithoutPatterns(const std::string& path) {
+  std::string text;
+  for (const char c : path) text += c == '%' ? std::string("%%") : std::string(1, c);
+  return text;
+}
+
+}  // namespace
+
+std::string IndexRanges(const std::vector<int>& indices) {
+  std::string text;
+  for (size_t i = 0; i < indices.size();) {
+    size_t last = i;
+    while (last + 1 < indices.size() && indices[last + 1] == indices[last] + 1) ++last;
+    text += fmt::format("{}{}", text.empty() ? "" : ",", indices[i]);
+    if (last > i) text += fmt::format("-{}", indices[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+std::string ShellQuoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string SubmitArray(const SlurmArray& array, const SlurmOptions& options) {
+  // A job would inherit the limits under which ExternalProgram runs sbatch.
+  std::vector<std::string> arguments{"sbatch",
+                                     "--parsable",
+                                     "--propagate=NONE",
+                                     "--job-name=" + array.name,
+                                     "--chdir=" + array.folder.string(),
+                                     "--output=" + WithoutPatterns(array.logs.string()) + "/%a.log",
+                                     "--open-mode=append",
+                                     "--requeue",
+                                     fmt::format("--cpus-per-task={}", options.cpus_per_task)};
+  std::string tasks = "--array=" + IndexRanges(array.tasks);
+  if (options.shards_at_once > 0) tasks += fmt::format("%{}", options.shards_at_once);
+  arguments.push_back(tasks);
+  if (!options.account.empty()) arguments.push_back("--account=" + options.account);
+  if (!options.partition.empty()) arguments.push_back("--partition=" + options.partition);
+  if (!options.time_limit.empty()) arguments.push_back("--time=" + options.time_limit);
+  arguments.insert(arguments.end(), options.arguments.begin(), options.arguments.end());
+  arguments.push_back(array.script.string());
+  const std::string answer = Answer(arguments);  // "123\n" or "123;cluster\n"
+  const std::string id = answer.substr(0, answer.find_first_not_of("0123456789"));
+  if (id.empty()) throw std::runtime_error("sbatch told no job id, but: " + answer);
+  return id;
+}
+
+std::map<int, SlurmTask> QueuedTasks(const std::string& name) {
+  std::istringstream lines(
+      Answer({"squeue", "--me", "--noheader", "--array", "--name=" + name, "--format=%i|%T|%r"}));
+  std::map<int, SlurmTask> tasks;
+  for (std::string line; std::getline(lines, line);) {
+    const size_t task = line.find('_'), state = line.find('|'), reason = line.rfind('|');
+    if (task == line.npos || state == line.npos || reason == state || task > state) continue;
+    SlurmTask& found = tasks[std::atoi(line.c_str() + task + 1)];
+    found = {line.substr(0, task), line.substr(state + 1, reason - state - 1),
+             line.substr(reason + 1)};
+    if (found.reason == "None") found.reason.clear();
+  }
+  return tasks;
+}
+
+void CancelArrays(const std::string& name) {
+  std::map<int, SlurmTask> tasks = QueuedTasks(name);
+  std::vector<std::string> arguments{"scancel"};
+  for (const auto& [index, task] : tasks) arguments.push_back(task.job);
+  std::sort(arguments.begin() + 1, arguments.end());
+  arguments.erase(std::unique(arguments.begin() + 1, arguments.end()), arguments.end());
+  if (arguments.size() > 1) Answer(arguments);
+}
+
+int MaxArraySize() {
+  constexpr int kDefault = 1001;  // slurm.conf(5)
+  std::istringstream lines;
+  try {
+    lines.str(Answer({"scontrol", "show", "config"}));
+  } catch (const SlurmBusy&) {
+    return kDefault;
+  }
+  for (std::string line; std::getline(lines, line);) {
+    const size_t equals = line.find('=');
+    if (line.starts_with("MaxArraySize") && equals != line.npos) {
+      return std::max(1, std::atoi(line.c_str() + equals + 1));
+    }
+  }
+  return kDefault;
+}
+
+}  // namespace rift::sweep

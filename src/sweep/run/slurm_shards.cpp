@@ -1,0 +1,367 @@
+#include "rift/sweep/run/slurm_shards.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "rift/files/files.hpp"
+#include "rift/statistics/hash.hpp"
+#include "rift/sweep/run/slurm.hpp"
+
+namespace rift::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kIndex = "shards";  // a name a line; there while the array is not over
+// A file that another machine has renamed may be seen some time after its job has left the queue.
+constexpr int kMostAbsent = 3;
+
+fs::path ShardFile(const fs::path& folder, size_t task) {
+  return folder / fmt::format("{}.shard", task);
+}
+
+fs::path LogFile(const fs::path& folder, size_t task) {
+  return folder / fmt::format("{}.log", task);
+}
+
+/// No other sweep of this user has jobs of that name.
+std::string JobName(const fs::path& folder) {
+  return "rift-" + statistics::Hash128Text(fs::weakly_canonical(folder).string()).substr(0, 16);
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// The folders of arrays, by number.
+std::vector<std::pair<int, fs::path>> Arrays(const fs::path& out) {
+  std::vector<std::pair<int, fs::path>> arrays;
+  std::error_code not_there;
+  for (const auto& entry : fs::directory_iterator(out / "slurm", not_there)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_number = name.find_first_not_of("0123456789") == name.npos && name.size() < 9;
+    if (is_number && entry.is_directory()) arrays.emplace_back(std::stoi(name), entry.path());
+  }
+  std::sort(arrays.begin(), arrays.end());
+  return arrays;
+}
+
+/// The shards of an array that is not over.
+std::vector<std::string> OpenShards(const fs::path& folder) {
+  return Lines(files::ReadIfThere(folder / kIndex).value_or(""));
+}
+
+std::string LastLine(const fs::path& log) {
+  const std::vector<std::string> lines = Lines(files::ReadIfThere(log).value_or(""));
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+    if (!line->empty()) return *line;
+  }
+  return "nothing";
+}
+
+/// What only its jobs need; script, ids and what they had to say stay.
+void CleanUp(const fs::path& out, const fs::path& folder, const std::vector<std::string>& names) {
+  std::error_code ignored;
+  fs::remove(folder / kIndex, ignored);
+  for (size_t i = 0; i < names.size(); ++i) {
+    fs::remove(ShardFile(folder, i), ignored);
+    if (fs::is_empty(LogFile(folder, i), ignored)) fs::remove(LogFile(folder, i), ignored);
+    fs::remove(ShardJournal(out, names[i]), ignored);
+    fs::remove(UnfinishedShardJournal(out, names[i]), ignored);
+  }
+  fs::remove(folder / "experiment.yaml", ignored);
+}
+
+fs::path OwnProgram() { return fs::read_symlink("/proc/self/exe"); }
+
+}  // namespace
+
+SlurmShards::SlurmShards(fs::path out, const SlurmOptions& options, std::string experiment,
+                         Journal& journal, Watch watch)
+    : out_(fs::absolute(out)),
+      options_(options),
+      experiment_(std::move(experiment)),
+      journal_(journal),
+      watch_(std::move(watch)) {}
+
+bool SlurmShards::Resume() {
+  std::vector<Group> groups;
+  for (const auto& [number, folder] : Arrays(out_)) {
+    const std::vector<std::string> names = OpenShards(folder);
+    if (names.empty()) continue;
+    Group group{.folder = folder, .job_name = JobName(folder)};
+    files::WriteFile(folder / "array.sh",
+                     Script(folder));  // the cluster's habits may be others now
+    for (const std::string& name : names) {
+      // Whoever submitted it is gone: not in the queue at the first look means not there.
+      group.tasks.push_back({.name = name, .absent = kMostAbsent - 1});
+      TakeIn(UnfinishedShardJournal(out_, name));
+    }
+    groups.push_back(std::move(group));
+  }
+  return groups.empty() || Drive(std::move(groups));
+}
+
+bool SlurmShards::Run(const std::vector<Shard>& shards) {
+  if (shards.empty()) return true;
+  const auto size =
+      static_cast<size_t>(options_.max_array_size > 0 ? options_.max_array_size : MaxArraySize());
+  const std::vector<std::pair<int, fs::path>> before = Arrays(out_);
+  int number = before.empty() ? 0 : before.back().first;
+  std::vector<Group> groups;
+  for (size_t begin = 0; begin < shards.size(); begin += size) {
+    const auto first = shards.begin() + static_cast<std::ptrdiff_t>(begin);
+    const size_t count = std::min(size, shards.size() - begin);
+    groups.push_back(Write(++number, {first, first + static_cast<std::ptrdiff_t>(count)}));
+  }
+  return Drive(std::move(groups));
+}
+
+/// The index comes last: what was not written whole is no array.
+SlurmShards::Group SlurmShards::Write(int number, const std::vector<Shard>& shards) const {
+  const fs::path folder = out_ / "slurm" / std::to_string(number);
+  Group group{.folder = folder, .job_name = JobName(folder)};
+  files::WriteFile(folder / "experiment.yaml", experiment_);
+  files::WriteFile(folder / "array.sh", Script(folder));
+  std::string index;
+  for (size_t i = 0; i < shards.size(); ++i) {
+    const std::string encoded = EncodeShard(shards[i]);
+    files::WriteFile(ShardFile(folder, i), encoded);
+    group.tasks.push_back({.name = ShardName(encoded)});
+    index += group.tasks.back().name + '\n';
+  }
+  files::WriteFile(folder / kIndex, index);
+  group.is_known = true;
+  for (Task& task : group.tasks) task.absent = kMostAbsent;  // nobody has submitted it
+  return group;
+}
+
+std::string SlurmShards::Script(const fs::path& folder) const {
+  std::string script = "#!/bin/bash\n# A task of the job array of a sweep: one shard.\n";
+  for (const std::string& line : options_.prologue) script += line + '\n';
+  const std::string program = options_.program.empty() ? OwnProgram().string() : options_.program;
+  script += fmt::format("exec {} sweep {} --out {} --shard {}/\"$SLURM_ARRAY_TASK_ID\".shard",
+                        ShellQuoted(program), ShellQuoted((folder / "experiment.yaml").string()),
+                        ShellQuoted(out_.string()), ShellQuoted(folder.string()));
+  // What is too large has been refused by whoever submits.
+  return script + fmt::format(" --jobs {} --copy-every {:g} --large-inputs\n",
+                              options_.cpus_per_task, options_.copy_every_s);
+}
+
+bool SlurmShards::Drive(std::vector<Group> groups) {
+  fs::create_directories(out_ /
+                         "shards");  // jobs make none: without it nobody wants their journals
+  try {
+    while (true) {
+      watch_.seen(Look(groups));
+      std::erase_if(groups, [this](const Group& group) {
+        const auto is_done = [](const Task& task) { return task.is_done; };
+        if (!std::all_of(group.tasks.begin(), group.tasks.end(), is_done)) return false;
+        std::vector<std::string> names;
+        for (const Task& task : group.tasks) names.push_back(task.name);
+        Cancel({group});  // a shard that is run twice may still be
+        CleanUp(out_, group.folder, names);
+        return true;
+      });
+      if (groups.empty()) {
+        std::error_code ignored;
+        fs::remove_all(out_ / "shards", ignored);
+        return true;
+      }
+      for (Group& group : groups) Submit(group);
+      if (!Wait(options_.poll_s)) {
+        Cancel(groups);
+        return false;
+      }
+    }
+  } catch (...) {
+    Cancel(groups);
+    throw;
+  }
+}
+
+ShardCounts SlurmShards::Look(std::vector<Group>& groups) {
+  ShardCounts counts;
+  for (Group& group : groups) LookAt(group, counts);
+  journal_.SetNote("state", "running");
+  journal_.Commit();  // which throws when the folder is gone
+  return counts;
+}
+
+/// First the queue, then the files: what has left the queue has left its file.
+void SlurmShards::LookAt(Group& group, ShardCounts& counts) {
+  std::optional<std::map<int, SlurmTask>> queue;
+  try {
+    queue = QueuedTasks(group.job_name);
+    group.is_known = true;
+  } catch (const SlurmBusy& busy) {
+    Complain(busy.what());
+  }
+  TakeIn(group);
+  for (size_t i = 0; i < group.tasks.size(); ++i) {
+    Task& task = group.tasks[i];
+    ++counts.total;
+    counts.done += task.is_done;
+    if (!queue || task.is_done) continue;
+    const auto queued = queue->find(static_cast<int>(i));
+    if (queued == queue->end()) {
+      ++task.absent;
+      continue;
+    }
+    task.absent = 0;
+    const bool is_pending = queued->second.state == "PENDING";
+    ++(is_pending ? counts.pending : counts.running);
+    if (is_pending && counts.reason.empty()) counts.reason = queued->second.reason;
+  }
+}
+
+void SlurmShards::TakeIn(Group& group) {
+  for (Task& task : group.tasks) {
+    if (!task.is_done) task.is_done = TakeIn(ShardJournal(out_, task.name));
+  }
+}
+
+/// What is damaged or missing in the journal of a shard is run here by whoever asked for the rows.
+bool SlurmShards::TakeIn(const fs::path& journal) {
+  std::error_code not_there;
+  if (!fs::exists(journal, not_there)) return false;
+  try {
+    const Journal::Merged merged = journal_.Merge(journal);
+    if (merged.damaged > 0) {
+      watch_.say(fmt::format(
+          "note: {}: {} of its rows were damaged and are left out; what is missing is run again",
+          journal.string(), merged.damaged));
+    }
+    return true;
+  } catch (const UselessJournal& error) {
+    watch_.say(fmt::format("note: {}; its shard is run again", error.what()));
+    fs::remove(journal, not_there);
+    return false;
+  }
+}
+
+void SlurmShards::Submit(Group& group) {
+  if (!group.is_known || Clock::now() < not_before_) return;
+  SlurmArray array{.name = group.job_name,
+                   .tasks = {},
+                   .script = group.folder / "array.sh",
+                   .logs = group.folder,
+                   .folder = fs::current_path()};
+  for (size_t i = 0; i < group.tasks.size(); ++i) {
+    const Task& task = group.tasks[i];
+    if (task.is_done || task.absent < kMostAbsent) continue;
+    if (task.tries >= kMostTries) {
+      throw std::runtime_error(fmt::format(
+          "shard {} of {} was run {} times and left no journal; the last line of {}: {}", i,
+          group.folder.string(), task.tries, LogFile(group.folder, i).string(),
+          LastLine(LogFile(group.folder, i))));
+    }
+    if (static_cast<int>(array.tasks.size()) < most_at_once_) {
+      array.tasks.push_back(static_cast<int>(i));
+    }
+  }
+  if (array.tasks.empty()) return;
+  try {
+    const std::string job = SubmitArray(array, options_);
+    const std::string before = files::ReadIfThere(group.folder / "jobs").value_or("");
+    files::WriteFile(group.folder / "jobs",
+                     before + fmt::format("{} {}\n", job, IndexRanges(array.tasks)));
+    for (const int i : array.tasks) {
+      Task& task = group.tasks[static_cast<size_t>(i)];
+      ++task.tries;
+      task.absent = 0;
+    }
+    back_off_s_ = 0.0;
+    complaint_.clear();
+  } catch (const SlurmBusy& busy) {
+    // It may have taken the array all the same: the queue will tell.
+    constexpr double kLongest_s = 300.0;
+    back_off_s_ = std::min(kLongest_s, std::max(options_.poll_s, 2.0 * back_off_s_));
+    not_before_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                     std::chrono::duration<double>(back_off_s_));
+    most_at_once_ = std::max(1, static_cast<int>(array.tasks.size()) / 2);
+    group.is_known = false;
+    Complain(busy.what());
+  }
+}
+
+bool SlurmShards::Wait(double duration_s) const {
+  const auto end = Clock::now() + std::chrono::duration<double>(duration_s);
+  while (Clock::now() < end) {
+    if (!watch_.go_on()) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return watch_.go_on();
+}
+
+/// What Slurm says to it helps nobody: the jobs end by themselves, and the next run takes them in.
+void SlurmShards::Cancel(const std::vector<Group>& groups) const {
+  for (const Group& group : groups) {
+    try {
+      CancelArrays(group.job_name);
+    } catch (const std::runtime_error& error) {
+      watch_.say(fmt::format("note: jobs named {} may still be in the queue: {}", group.job_name,
+                             error.what()));
+    }
+  }
+}
+
+void SlurmShards::Complain(const std::string& reason) {
+  if (reason == complaint_) return;
+  complaint_ = reason;
+  watch_.say(fmt::format("note: {}; trying again", reason));
+}
+
+bool SlurmShards::AreOpen(const fs::path& out) {
+  const auto arrays = Arrays(out);
+  return std::any_of(arrays.begin(), arrays.end(),
+                     [](const auto& array) { return !OpenShards(array.second).empty(); });
+}
+
+void SlurmShards::Forget(const fs::path& out) {
+  for (const auto& [number, folder] : Arrays(out)) {
+    if (!OpenShards(folder).empty()) CancelArrays(JobName(folder));
+  }
+  std::error_code error;
+  for (const char* name : {"slurm", "shards"}) {
+    fs::remove_all(out / name, error);
+    if (!error) continue;
+    throw std::runtime_error(
+        fmt::format("cannot remove {}: {}", (out / name).string(), error.message()));
+  }
+}
+
+std::optional<ShardCounts> ReadShardCounts(const fs::path& out) {
+  ShardCounts counts;
+  for (const auto& [number, folder] : Arrays(out)) {
+    const std::vector<std::string> names = OpenShards(folder);
+    if (names.empty()) continue;
+    std::map<int, SlurmTask> queue;
+    try {
+      queue = QueuedTasks(JobName(folder));
+    } catch (const std::runtime_error&) {
+      queue = {};  // unknown
+    }
+    for (size_t i = 0; i < names.size(); ++i) {
+      ++counts.total;
+      const bool is_done = fs::exists(ShardJournal(out, names[i]));
+      counts.done += is_done;
+      const auto queued = queue.find(static_cast<int>(i));
+      if (is_done || queued == queue.end()) continue;
+      const bool is_pending = queued->second.state == "PENDING";
+      ++(is_pending ? counts.pending : counts.running);
+      if (is_pending && counts.reason.empty()) counts.reason = queued->second.reason;
+    }
+  }
+  if (counts.total == 0) return std::nullopt;
+  return counts;
+}
+
+}  // namespace rift::sweep
