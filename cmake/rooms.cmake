@@ -74,7 +74,8 @@ rift_room(view ROOMS control geometry trajectory trial vision/camera vision/trac
 rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal trajectory
   LIBRARIES CLI11::CLI11 fmt::fmt)
 rift_room(commands/sweep ROOMS commands/arguments experiment files report/figures report/json
-    report/page report/text sweep/calibrate sweep/explain sweep/falsify sweep/run terminal yaml
+    report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run terminal
+    yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers nlohmann_json::nlohmann_json)
 rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment files geometry hardware
     odometry report/json sweep/falsify terminal trajectory view vision/camera vision/tracking

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine.hpp"
 #include "explain.hpp"
 #include "run.hpp"
 
@@ -28,6 +29,7 @@ struct SweepRequest {
   std::vector<std::string> compare;  ///< two folders
   std::string page;                  ///< of --compare
   ExplainRequest explain;
+  EngineRequest engine;
   std::string write_robot;
 };
 

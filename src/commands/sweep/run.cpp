@@ -1,5 +1,7 @@
 #include "run.hpp"
 
+#include "engine.hpp"
+
 #include <fmt/format.h>
 #include <sched.h>
 
@@ -8,6 +10,7 @@
 
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
+#include "rift/files/network_file_system.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
@@ -28,15 +31,6 @@ bool IsFree(const std::string& key) {
     if (key == free) return true;
   }
   return false;
-}
-
-sweep::Facts FactsOf(const experiment::Experiment& experiment) {
-  sweep::Facts facts;
-  for (const auto& [key, value] : experiment::FlatValues(experiment)) {
-    if (!IsFree(key)) facts[key] = value;
-  }
-  facts["the version of rift"] = fmt::format("{} ({})", RIFT_VERSION, sweep::PhysicsVersion());
-  return facts;
 }
 
 SweepSize SizeOf(const experiment::Experiment& experiment) {
@@ -76,14 +70,28 @@ class Stopwatch {
   Clock::time_point noted_ = begun_;
 };
 
+void NoteFileSystem(const std::filesystem::path& out) {
+  const std::string_view name = files::NetworkFileSystemOf(out);
+  if (name.empty()) return;
+  terminal::Say(fmt::format(
+      "note: {} is on {}, a network file system: its journal is kept without a write-ahead log, "
+      "which is slower",
+      out.string(), name));
+}
+
 std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
                                                const SweepRunRequest& request,
                                                SweepProgress& progress,
                                                const terminal::StopSignal& stop) {
   const experiment::Experiment& experiment = evaluator.experiment();
   const std::filesystem::path file = request.out / kJournalName;
-  if (request.fresh) Journal::Remove(file);
-  Journal journal(file, FactsOf(experiment));
+  if (request.fresh) {
+    sweep::SlurmShards::Forget(request.out);
+    Journal::Remove(file);
+  }
+  NoteFileSystem(request.out);
+  const sweep::Facts facts = FactsOf(experiment);
+  Journal journal(file, facts);
   if (journal.Damaged() > 0) {
     terminal::Say(fmt::format(
         "note: {}: {} of its entries were damaged and are left out; what is missing is run again",
@@ -96,6 +104,22 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
   journal.SetNote(size.is_settings ? "most_settings" : "most_trials", std::to_string(size.most));
   journal.SetNote("state", "running");
   journal.Commit();
+  const auto stopped = [&journal]() -> std::optional<sweep::SweepResult> {
+    journal.SetNote("state", "stopped");
+    journal.Close();
+    return std::nullopt;
+  };
+  std::optional<Cluster> cluster;
+  if (request.cluster != nullptr) {
+    cluster.emplace(evaluator, facts, *request.cluster, request.progress,
+                    [&stop] { return !stop.IsAsked(); });
+    if (!cluster->Resume(request.out, journal)) return stopped();
+  } else if (sweep::SlurmShards::AreOpen(request.out)) {
+    terminal::Say(fmt::format(
+        "note: shards of this sweep were given to a cluster ({}); what they have done is taken in "
+        "with --engine alone, and everything that is missing is run here",
+        (request.out / "slurm").string()));
+  }
   Stopwatch watch(journal);
   sweep::TrialRunner runner(
       [&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
@@ -109,6 +133,7 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
          progress.Tick();
          if (request.live != nullptr) request.live->Tick();
          watch.Note();
+         request.tick(journal);
          return !stop.IsAsked();
        }});
   const sweep::MayStart may_start = [&](const std::vector<sweep::TrialRequest>& trials) {
@@ -117,7 +142,10 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
   };
   std::optional<sweep::SweepResult> result = sweep::Sweep(
       evaluator,
-      [&](std::vector<sweep::TrialRequest> trials) { return runner.Run(std::move(trials)); },
+      [&](std::vector<sweep::TrialRequest> trials) -> std::optional<std::vector<sweep::TrialRow>> {
+        if (cluster && !cluster->Run(trials, runner)) return std::nullopt;
+        return runner.Run(std::move(trials));
+      },
       may_start);
   watch.Note(true);
   journal.SetNote("state", result ? "done" : "stopped");
@@ -126,6 +154,15 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
 }
 
 }  // namespace
+
+sweep::Facts FactsOf(const experiment::Experiment& experiment) {
+  sweep::Facts facts;
+  for (const auto& [key, value] : experiment::FlatValues(experiment)) {
+    if (!IsFree(key)) facts[key] = value;
+  }
+  facts["the version of rift"] = fmt::format("{} ({})", RIFT_VERSION, sweep::PhysicsVersion());
+  return facts;
+}
 
 int CoresToUse() {
   cpu_set_t cores;
@@ -176,7 +213,9 @@ std::string StateOf(const std::filesystem::path& folder, const sweep::JournalSum
 std::string SweepStatus(const std::filesystem::path& folder, bool json) {
   const sweep::JournalSummary summary = sweep::ReadJournal(folder / kJournalName);
   const std::string state = StateOf(folder, summary);
-  return json ? report::StatusJson(summary, state) : report::StatusText(summary, state);
+  const std::optional<sweep::ShardCounts> shards = sweep::ReadShardCounts(folder);
+  return json ? report::StatusJson(summary, state, shards)
+              : report::StatusText(summary, state, shards);
 }
 
 }  // namespace rift::commands

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "live_page.hpp"
 #include "progress.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
+#include "rift/sweep/run/journal.hpp"
+#include "rift/sweep/run/slurm_options.hpp"
 
 namespace rift::commands {
 
@@ -16,10 +19,15 @@ struct SweepRunRequest {
   int jobs = 1;
   bool fresh = false;  ///< forget an earlier journal
   ProgressStyle progress = ProgressStyle::kQuiet;
-  LivePage* live = nullptr;  ///< told of each trial, where there is one
+  LivePage* live = nullptr;                      ///< told of each trial, where there is one
+  const sweep::SlurmOptions* cluster = nullptr;  ///< where trials are run, if not here
+  std::function<void(sweep::Journal&)> tick = [](sweep::Journal&) {};  ///< at least every 0.1 s
 };
 
 inline constexpr const char* kJournalName = "journal.sqlite";
+
+/// What the rows of an experiment's journal are made from.
+sweep::Facts FactsOf(const experiment::Experiment& experiment);
 
 /// Cores that this process may use.
 int CoresToUse();

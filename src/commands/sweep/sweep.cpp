@@ -27,6 +27,7 @@
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "robot_logs.hpp"
+#include "shard.hpp"
 
 namespace rift::commands {
 
@@ -190,8 +191,25 @@ void Print(const SweepRequest& request, const sweep::SweepResult& result,
   terminal::PrintText(report::ExplanationText(result, explanation, request.explain.suggest > 0));
 }
 
+/// The cluster that was asked for, if what is asked of it can be done there.
+std::optional<sweep::SlurmOptions> ClusterFor(const SweepRequest& request,
+                                              const experiment::Experiment& experiment) {
+  const std::optional<sweep::SlurmOptions> cluster = ClusterOf(request.engine);
+  if (!cluster) return cluster;
+  CheckEngine(experiment, request.experiment);
+  if (!request.explain.shrink.empty() || request.explain.rare_event) {
+    throw std::invalid_argument(fmt::format(
+        "--{} asks for trials one after the other, which is no work for an array: run the sweep "
+        "with --engine first, then the same command without it, which goes on with its journal",
+        request.explain.rare_event ? "rare-event" : "shrink"));
+  }
+  return cluster;
+}
+
 int Sweep(const SweepRequest& request) {
   const experiment::Experiment loaded = LoadFor(request);
+  if (!request.engine.shard.empty()) return RunShard(request, loaded);
+  const std::optional<sweep::SlurmOptions> cluster = ClusterFor(request, loaded);
   if (loaded.goal == experiment::Goal::kCalibrate) {
     if (request.serve) {
       throw std::invalid_argument(
@@ -215,7 +233,12 @@ int Sweep(const SweepRequest& request) {
   std::optional<LivePage> live;
   if (request.serve) live.emplace(out, evaluator);
   const std::optional<sweep::SweepResult> judged =
-      RunSweep(evaluator, {out, request.jobs, request.fresh, progress, live ? &*live : nullptr});
+      RunSweep(evaluator, {.out = out,
+                           .jobs = request.jobs,
+                           .fresh = request.fresh,
+                           .progress = progress,
+                           .live = live ? &*live : nullptr,
+                           .cluster = cluster ? &*cluster : nullptr});
   if (!judged) return SayStopped(experiment, out);
   lock.RequireInPlace();
   Save(out, experiment, evaluator, *judged);
@@ -276,6 +299,7 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
       ->type_name("DIR");
   app.add_option("--page", request.page, "with --compare: write it as a page as well")
       ->type_name("FILE.html");
+  AddEngineFlags(app, request.engine);
   AddExplainFlags(app, request.explain);
   AddKeysFlag(app);
   app.add_flag("--brief", request.brief,
@@ -300,6 +324,8 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
       "         rift sweep configs/programs/diff_drive.yaml --out out/own (somebody else's "
       "simulator)\n"
       "         rift sweep configs/waypoints/paper.yaml --out out/paper --serve\n"
+      "         rift sweep configs/waypoints/paper.yaml --out out/paper --engine slurm --shards "
+      "40\n"
       "         rift sweep --compare out/before out/after --page out/change.html");
 }
 

@@ -25,7 +25,8 @@ int Done(const sweep::JournalSummary& summary) {
 
 }  // namespace
 
-std::string StatusJson(const sweep::JournalSummary& summary, const std::string& state) {
+std::string StatusJson(const sweep::JournalSummary& summary, const std::string& state,
+                       const std::optional<sweep::ShardCounts>& shards) {
   nlohmann::ordered_json status{{"state", state},
                                 {"name", NoteOf(summary, "name")},
                                 {"done", Done(summary)},
@@ -36,15 +37,29 @@ std::string StatusJson(const sweep::JournalSummary& summary, const std::string& 
                                 {"damaged", summary.damaged},
                                 {"largest_gap_m", nullptr},
                                 {"largest_gap_at", summary.largest_key},
-                                {"trials_by_status", summary.trials_by_status}};
+                                {"trials_by_status", summary.trials_by_status},
+                                {"shards", nullptr}};
   if (summary.largest_gap_m) status["largest_gap_m"] = *summary.largest_gap_m;
+  if (shards) {
+    status["shards"] = {{"total", shards->total},
+                        {"done", shards->done},
+                        {"running", shards->running},
+                        {"pending", shards->pending},
+                        {"reason", shards->reason}};
+  }
   return Dump(status);
 }
 
-std::string StatusText(const sweep::JournalSummary& summary, const std::string& state) {
+std::string StatusText(const sweep::JournalSummary& summary, const std::string& state,
+                       const std::optional<sweep::ShardCounts>& shards) {
   std::string text = fmt::format("{}: {}, {} trials done (planned: {}) in {} s, {} falsified\n",
                                  NoteOf(summary, "name"), state, Done(summary), PlanText(summary),
                                  NoteOf(summary, "elapsed_s"), summary.falsified);
+  if (shards) {
+    text += fmt::format("shards on the cluster: {} of {} done, {} running, {} pending{}\n",
+                        shards->done, shards->total, shards->running, shards->pending,
+                        shards->reason.empty() ? "" : fmt::format(" ({})", shards->reason));
+  }
   for (const auto& [status, count] : summary.trials_by_status) {
     if (status != "ok") text += fmt::format("{}: {}\n", status, count);
   }

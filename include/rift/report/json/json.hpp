@@ -25,6 +25,7 @@
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"
+#include "rift/sweep/run/slurm_shards.hpp"
 #include "rift/trial/trial.hpp"
 #include "rift/vision/calibration/calibration.hpp"
 #include "rift/vision/tracking/session_options.hpp"
@@ -86,9 +87,12 @@ std::string ProgramsJson(const std::vector<experiment::Parameter>& parameters,
 /// settings, ...}
 std::string SummaryJson(const sweep::SweepResult& result);
 
-/// How far a sweep is, of its journal and whether it is running, stopped or done.
-std::string StatusJson(const sweep::JournalSummary& summary, const std::string& state);
-std::string StatusText(const sweep::JournalSummary& summary, const std::string& state);
+/// How far a sweep is, of its journal, whether it is running, stopped or done, and its shards where
+/// it is on a cluster.
+std::string StatusJson(const sweep::JournalSummary& summary, const std::string& state,
+                       const std::optional<sweep::ShardCounts>& shards = std::nullopt);
+std::string StatusText(const sweep::JournalSummary& summary, const std::string& state,
+                       const std::optional<sweep::ShardCounts>& shards = std::nullopt);
 
 /// explanation.json, rows by their id in table.csv: {effects, sobol, parameters (inert and why),
 /// anatomy, failures, failing_region, failure_probability, undecided, suggestions}.
