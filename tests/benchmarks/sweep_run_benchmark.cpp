@@ -1,7 +1,9 @@
 // The coordinator of a sweep: what it costs beside its trials, and what a second worker brings.
 // Counters: coordinator_share is the coordinator's CPU time over that of trials of 10 ms (target:
 // below 0.03), which a busy machine does not change; speed_up is trials/s with two workers over
-// trials/s with one (target: 1.9), which wants an idle one.
+// trials/s with one (target: 1.9), which wants an idle one. Of a shard of a cluster, in
+// microseconds a trial: shard_us is all that a task does beside its trials (target: below 100), the
+// others are what the coordinator does with its rows.
 #include <benchmark/benchmark.h>
 #include <time.h>
 
@@ -13,6 +15,7 @@
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"
+#include "rift/sweep/run/shard.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/paths.hpp"
 
@@ -100,6 +103,75 @@ void SecondWorker(benchmark::State& state) {
   state.counters["speed_up"] = one_s / two_s;
 }
 BENCHMARK(SecondWorker)->Unit(benchmark::kMillisecond)->Iterations(4);
+
+/// A row of a usual size that costs nothing.
+sweep::TrialRow KnownRow(const sweep::TrialRequest& request) {
+  static const experiment::Experiment plan;
+  static const sweep::Recording path{.source = "path", .trajectory = test::StraightPath(0.7, 40)};
+  static const sweep::TrialRow row = sweep::CompareTrial(plan, request, path, path);
+  sweep::TrialRow own = row;
+  own.theta = request.theta;
+  own.trial = request.trial;
+  own.seed = request.seed;
+  return own;
+}
+
+/// Wall-clock time of a step, in microseconds a trial.
+class StepTimes {
+ public:
+  explicit StepTimes(benchmark::State& state, int trials) : state_(state), trials_(trials) {}
+  void Took(const char* name) {
+    const double now_s = WallSeconds();
+    state_.counters[name] = 1e6 * (now_s - since_s_) / trials_;
+    since_s_ = WallSeconds();
+  }
+
+ private:
+  benchmark::State& state_;
+  int trials_;
+  double since_s_ = WallSeconds();
+};
+
+void Shard(benchmark::State& state) {
+  const int trials = static_cast<int>(state.range(0));
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "rift_shard_benchmark";
+  for ([[maybe_unused]] auto _ : state) {
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    const std::vector<sweep::TrialRequest> requests = Requests(trials);
+    StepTimes times(state, trials);
+    {
+      sweep::Shard shard;
+      for (const auto& request : requests) shard.requests.push_back(sweep::EncodeRequest(request));
+      sweep::Shard read = sweep::DecodeShard(sweep::EncodeShard(shard), "shard");
+      std::vector<sweep::TrialRequest> mine;
+      sweep::KeysHash keys;
+      for (const std::string& bytes : read.requests) {
+        mine.push_back(sweep::DecodeRequest(bytes));
+        keys.Add(KeyOf(mine.back()));
+      }
+      sweep::Journal journal(folder / "local", {});
+      sweep::TrialRunner runner(KnownRow, KeyOf, &journal, 1, {}, {}, 0);
+      runner.Run(std::move(mine));
+      journal.CopyTo(folder / "copy");
+      sweep::PublishFile(folder / "copy", folder / "shard.sqlite");
+      times.Took("shard_us");
+    }
+    sweep::Journal journal(folder / "journal", {});
+    journal.Merge(folder / "shard.sqlite");
+    times.Took("merge_us");
+    sweep::TrialRunner runner(KnownRow, KeyOf, &journal, 1, {}, {});
+    benchmark::DoNotOptimize(runner.Missing(requests));
+    times.Took("missing_us");
+    runner.Run(requests);
+    times.Took("replay_us");
+    state.counters["journal_bytes"] =
+        static_cast<double>(std::filesystem::file_size(folder / "shard.sqlite")) / trials;
+  }
+  std::filesystem::remove_all(folder);
+}
+BENCHMARK(Shard)->Unit(benchmark::kMillisecond)->Iterations(1)->Arg(10'000)->Arg(100'000);
 
 }  // namespace
 }  // namespace rift
