@@ -119,7 +119,7 @@ TEST_CASE("A grid in shards gives the files of a local run, byte for byte") {
 
 TEST_CASE("A grid with repeats takes an array for each round and gives the files of a local run") {
   const FakeSlurm slurm;
-  const Sweep sweep(kGrid + "falsify: {repeat: every, most_repeats: 40}\n");
+  const Sweep sweep(kGrid + "falsify: {repeat: every, most_repeats: 12}\n");
   CheckSameAsLocal(sweep, {"--shards", "2"});
   CHECK(slurm.Submitted().size() > 1);
 }
@@ -155,6 +155,18 @@ TEST_CASE("What a cluster wants of its jobs stands in the arguments and the scri
   CHECK(script.find("\nexport FROM_PROLOGUE=1\n") != std::string::npos);
   CHECK(script.find("--jobs 2") != std::string::npos);
   CHECK(sweep.Read("cluster/slurm/1/jobs") == "1 0-1\n");
+}
+
+TEST_CASE("On a cluster a sweep may write into a folder of any name") {
+  const FakeSlurm slurm;
+  const Sweep sweep(kGrid);
+  const std::string out = "it's 100% $HOME; \"x\"";
+  const ProcessResult result =
+      RunRift(sweep.Command(out, {"--engine", sweep.engine, "--shards", "2"}));
+  INFO(result.err);
+  CHECK(result.exit_code == 0);
+  CHECK(sweep.Has(out + "/slurm/1/jobs"));
+  CHECK_FALSE(sweep.Has(out + "/slurm/1/0.log"));  // empty, so it was found and removed
 }
 
 TEST_CASE("An array that Slurm refuses for the moment is submitted again, in smaller parts") {

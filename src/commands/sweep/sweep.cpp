@@ -194,7 +194,7 @@ void Print(const SweepRequest& request, const sweep::SweepResult& result,
 /// The cluster that was asked for, if what is asked of it can be done there.
 std::optional<sweep::SlurmOptions> ClusterFor(const SweepRequest& request,
                                               const experiment::Experiment& experiment) {
-  const std::optional<sweep::SlurmOptions> cluster = ClusterOf(request.engine);
+  std::optional<sweep::SlurmOptions> cluster = ClusterOf(request.engine);
   if (!cluster) return cluster;
   CheckEngine(experiment, request.experiment);
   if (!request.explain.shrink.empty() || request.explain.rare_event) {

@@ -89,7 +89,7 @@ std::string SubmitArray(const SlurmArray& array, const SlurmOptions& options) {
   arguments.insert(arguments.end(), options.arguments.begin(), options.arguments.end());
   arguments.push_back(array.script.string());
   const std::string answer = Answer(arguments);  // "123\n" or "123;cluster\n"
-  const std::string id = answer.substr(0, answer.find_first_not_of("0123456789"));
+  std::string id = answer.substr(0, answer.find_first_not_of("0123456789"));
   if (id.empty()) throw std::runtime_error("sbatch told no job id, but: " + answer);
   return id;
 }

@@ -60,10 +60,9 @@ std::vector<std::string> OpenShards(const fs::path& folder) {
 
 std::string LastLine(const fs::path& log) {
   const std::vector<std::string> lines = Lines(files::ReadIfThere(log).value_or(""));
-  for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
-    if (!line->empty()) return *line;
-  }
-  return "nothing";
+  const auto last = std::find_if(lines.rbegin(), lines.rend(),
+                                 [](const std::string& line) { return !line.empty(); });
+  return last == lines.rend() ? "nothing" : *last;
 }
 
 /// What only its jobs need; script, ids and what they had to say stay.
@@ -83,7 +82,7 @@ fs::path OwnProgram() { return fs::read_symlink("/proc/self/exe"); }
 
 }  // namespace
 
-SlurmShards::SlurmShards(fs::path out, const SlurmOptions& options, std::string experiment,
+SlurmShards::SlurmShards(const fs::path& out, const SlurmOptions& options, std::string experiment,
                          Journal& journal, Watch watch)
     : out_(fs::absolute(out)),
       options_(options),

@@ -44,7 +44,7 @@ class SlurmShards {
 
   /// `out` is the folder of the sweep, which nobody else works in; `experiment` its resolved text.
   /// All must outlive this.
-  SlurmShards(std::filesystem::path out, const SlurmOptions& options, std::string experiment,
+  SlurmShards(const std::filesystem::path& out, const SlurmOptions& options, std::string experiment,
               Journal& journal, Watch watch);
 
   /// Takes in what jobs of an earlier coordinator left and waits for those that are still under
