@@ -131,6 +131,7 @@ TEST_CASE("A damaged journal never gives a wrong row: they are run again or it i
       repaired += swept.computed > 0 ? 1 : 0;
       CHECK(SweepOver(file).computed == 0);
     } catch (const std::exception& error) {
+      CHECK(std::string(error.what()).find('\n') == std::string::npos);
       CHECK(std::string(error.what()).starts_with(file.string() + ": ") !=
             (std::string(error.what()).find("another experiment") != std::string::npos));
       ++refused;

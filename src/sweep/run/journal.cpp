@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <cctype>
 #include <chrono>
 #include <cmath>
@@ -57,14 +58,20 @@ std::string Advice(int code) {
   }
 }
 
+/// SQLite tells of a damaged file in several.
+std::string OnOneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
 /// Calls, and throws what SQLite reports as one line.
 template <class Call>
 auto Told(const fs::path& file, const Call& call) {
   try {
     return call();
   } catch (const SQLite::Exception& error) {
-    throw std::runtime_error(
-        fmt::format("{}: {} ({})", file.string(), Advice(error.getErrorCode()), error.what()));
+    throw std::runtime_error(fmt::format("{}: {} ({})", file.string(), Advice(error.getErrorCode()),
+                                         OnOneLine(error.what())));
   }
 }
 
