@@ -113,9 +113,11 @@ class ColumnMap {
 /// A log of several robots has their rows among each other.
 void RequireOneRobot(const Trajectory& trajectory, const std::string& name) {
   for (const Channel& channel : trajectory.channels) {
-    if (channel.name != "tag_id" || channel.values.empty()) continue;
-    const auto [least, greatest] =
-        std::minmax_element(channel.values.begin(), channel.values.end());
+    if (channel.name != "tag_id") continue;
+    std::vector<double> tags = channel.values;
+    std::erase_if(tags, [](double tag) { return std::isnan(tag); });  // not logged
+    if (tags.empty()) continue;
+    const auto [least, greatest] = std::minmax_element(tags.begin(), tags.end());
     if (*least == *greatest) continue;
     throw std::invalid_argument(
         fmt::format("{}: it holds several robots, tags {:g} to {:g}: keep the rows of one tag_id",

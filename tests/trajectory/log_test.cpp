@@ -229,6 +229,25 @@ TEST_CASE("A bad log is refused with its row and its rule") {
   CHECK(Refusal("0 1 2 3 0 0 0 0\n") == "log.csv:1: the quaternion has zero length");
 }
 
+TEST_CASE("Rows without a tag id hide no second robot and are none themselves") {
+  const auto log = [](const std::vector<std::string>& ids) {
+    std::string text = "t_s,x_m,y_m,yaw_rad,tag_id\n";
+    for (size_t i = 0; i < ids.size(); ++i) {
+      text += std::to_string(i) + "," + std::to_string(i) + ",0,0," + ids[i] + "\n";
+    }
+    return text;
+  };
+  for (const auto& ids : std::vector<std::vector<std::string>>{
+           {"", "3", "3"}, {"3", "", "3"}, {"3", "3", ""}, {"", "", ""}}) {
+    CHECK(Refusal(log(ids)) == "accepted");
+  }
+  for (const auto& ids : std::vector<std::vector<std::string>>{
+           {"", "3", "4"}, {"4", "", "3"}, {"3", "4", ""}, {"3", "", "", "4", ""}}) {
+    CHECK(Refusal(log(ids)) ==
+          "log.csv: it holds several robots, tags 3 to 4: keep the rows of one tag_id");
+  }
+}
+
 TEST_CASE("A last row that was cut short is left out with a note and no other is") {
   const std::string whole = "t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,1,-1,0.5\n";
   const auto poses_of = [](const std::string& text, size_t notes) {
