@@ -48,7 +48,10 @@ falsify: {until: budget, most_repeats: 4}
 struct Sweep {
   explicit Sweep(const std::string& text) {
     WriteText(file, text);
-    WriteText(engine, "poll_s: 0.1\ncopy_every_s: 1\n");
+    // What a task that is killed leaves on its node goes with the folder.
+    fs::create_directories(folder / "tmp");
+    WriteText(engine, "poll_s: 0.1\ncopy_every_s: 1\nprologue: [\"export TMPDIR=" +
+                          (folder / "tmp") + "\"]\n");
   }
   std::vector<std::string> Local(const std::vector<std::string>& more = {}) const {
     return Command("local", more);

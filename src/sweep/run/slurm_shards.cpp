@@ -143,7 +143,9 @@ SlurmShards::Group SlurmShards::Write(int number, const std::vector<Shard>& shar
 }
 
 std::string SlurmShards::Script(const fs::path& folder) const {
-  std::string script = "#!/bin/bash\n# A task of the job array of a sweep: one shard.\n";
+  std::string script =
+      "#!/bin/bash\n# A task of the job array of a sweep: one shard.\n"
+      "[ -z \"${SLURM_TMPDIR:-}\" ] || export TMPDIR=\"$SLURM_TMPDIR\"\n";
   for (const std::string& line : options_.prologue) script += line + '\n';
   const std::string program = options_.program.empty() ? OwnProgram().string() : options_.program;
   script += fmt::format("exec {} sweep {} --out {} --shard {}/\"$SLURM_ARRAY_TASK_ID\".shard",
