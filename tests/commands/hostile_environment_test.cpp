@@ -1,5 +1,6 @@
-// Disks that are full or cannot be written, quotas, clocks that jump, locales, terminals: nothing is
-// lost, or the command ends with exit 3 and says why. Drives: tests/drive/hostile_drive_test.cpp.
+// Disks that are full or cannot be written, quotas, clocks that jump, locales, terminals: nothing
+// is lost, or the command ends with exit 3 and says why. Drives:
+// tests/drive/hostile_drive_test.cpp.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -85,9 +86,9 @@ struct Scene {
   /// The same command again, when the trouble is over; a log that ended early is replaced when that
   /// is asked for.
   void CheckRecovers() const {
-    const ProcessResult result = RunRift(With(
-        work.words(out), work.name == "sweep" || work.name == "simulate" ? "--any-waypoints"
-                                                                        : "--force"));
+    const ProcessResult result = RunRift(
+        With(work.words(out),
+             work.name == "sweep" || work.name == "simulate" ? "--any-waypoints" : "--force"));
     INFO(work.name << ": " << result.err);
     CHECK(result.exit_code == 0);
     CHECK(FilesIn(out) == usual);

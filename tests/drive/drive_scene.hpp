@@ -33,9 +33,8 @@ struct Scene {
   explicit Scene(int moving_pictures = 1'000'000)
       : floor(control::StartPose(PaperWaypoints()), moving_pictures) {
     WriteText(folder / "cam.yaml", vision::WriteCamera(SmallCamera()));
-    WriteText(folder / "task.yaml", "include: " + SourceDir() +
-                                              "/configs/waypoints/paper.yaml\n" +
-                                              std::string(kPatient));
+    WriteText(folder / "task.yaml", "include: " + SourceDir() + "/configs/waypoints/paper.yaml\n" +
+                                        std::string(kPatient));
   }
   std::vector<std::string> Arguments() const {
     return {"drive",    folder / "task.yaml", "--port",        floor.Port(),
@@ -79,7 +78,7 @@ inline constexpr int kAll = 1'000'000;
 /// Or for the end of a drive that was interrupted.
 inline void WaitForMotion(RunningRift& rift, Scene& scene) {
   WaitUntil("the robot moves or the drive is over",
-                  [&] { return scene.floor.Moves() || !rift.IsRunning(); });
+            [&] { return scene.floor.Moves() || !rift.IsRunning(); });
 }
 
 }  // namespace rift::test

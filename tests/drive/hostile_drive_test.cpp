@@ -1,5 +1,5 @@
-// Drives in an environment that is against them; commands/hostile_environment_test.cpp has the other
-// commands, drive_binary_test.cpp streams and a folder that is removed.
+// Drives in an environment that is against them; commands/hostile_environment_test.cpp has the
+// other commands, drive_binary_test.cpp streams and a folder that is removed.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <list>
@@ -111,13 +111,12 @@ TEST_CASE("A drive in a terminal of 20 columns is started by Enter and its lines
     std::vector<std::string> arguments = scene.Arguments();
     arguments.pop_back();  // --yes
     bool is_started = false;
-    const test::TerminalRun run =
-        test::RunInTerminal(arguments, 20, [&](const std::string& shown) {
-          const bool is_asked = shown.find("put the robot at t") != std::string::npos;
-          if (is_started || !is_asked) return "";
-          is_started = true;
-          return "\n";
-        });
+    const test::TerminalRun run = test::RunInTerminal(arguments, 20, [&](const std::string& shown) {
+      const bool is_asked = shown.find("put the robot at t") != std::string::npos;
+      if (is_started || !is_asked) return "";
+      is_started = true;
+      return "\n";
+    });
     if (WasInterrupted(scene)) return false;
     INFO(run.shown);
     CHECK(run.exit_code == 0);

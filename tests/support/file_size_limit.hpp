@@ -4,8 +4,8 @@
 
 namespace rift::test {
 
-/// What a full disk does to files: none of this process, or of those that it starts, may grow beyond
-/// `bytes` for the length of a scope. A write beyond it raises SIGXFSZ.
+/// What a full disk does to files: none of this process, or of those that it starts, may grow
+/// beyond `bytes` for the length of a scope. A write beyond it raises SIGXFSZ.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
