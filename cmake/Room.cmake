@@ -4,7 +4,7 @@
 function(rift_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
     -Wcast-qual -Wconversion -Wno-sign-conversion
-    -Wno-missing-field-initializers -Wno-restrict)
+    -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   if(RIFT_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
