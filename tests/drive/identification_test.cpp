@@ -79,13 +79,13 @@ hardware:
                                          "--yes",
                                          "--identify",
                                          "--repeat",
-                                         "1",
+                                         "2",
                                          "--out",
                                          folder / "run",
                                          "--before-each",
                                          test::BuildDir() + "/rift simulate " +
                                              (folder / "task.yaml") + " --twin --out " +
-                                             (folder / "twin")};
+                                             (folder / "twin{trial}")};
   test::ProcessResult result;
   // A busy machine may make the guard stop a drive.
   for (int i = 0; i < 5 && (i == 0 || result.exit_code != 0); ++i) result = test::RunRift(command);
@@ -96,7 +96,7 @@ hardware:
   const test::ProcessResult fit = test::RunRift(
       {"sweep", folder / "run/sweep.yaml", "--out", folder / "fit", "--write-robot",
        folder / "robot.yaml", "--set", "calibrate.judge_runs=2", "--set",
-       "calibrate.method.iterations=2", "--set", "calibrate.method.horizon.phases=2"});
+       "calibrate.method.iterations=1", "--set", "calibrate.method.horizon.phases=1"});
   INFO(fit.out << fit.err);
   // A fit that is not better than its start, the robot's own values, is refused in words.
   const bool is_refused = fit.err.find("worse than") != std::string::npos;

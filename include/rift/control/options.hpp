@@ -77,9 +77,8 @@ struct NavigatorOptions {
           "the first decision of a drive only sets the clock, at zero power, as in the authors' "
           "loop: the first that drives knows a true interval");
     field("clock_starts_anew", self.clock_starts_anew,
-          "the same at the start and after each stop; off for the authors' robot: it is seen to "
-          "halt at 63 % of its stops, as with one frame of zero power and a listener that looks "
-          "every 0.1 s");
+          "the same at the start and after each stop, as in the authors' loop, whose robot is seen "
+          "to halt at 63 % of its stops");
     field("reach_radius_m", self.reach_radius_m, 1e-4, 10.0, "a waypoint is reached within this");
     field("v_min", self.v_min, 0.0, 1.0, "least forward power between waypoints");
     field("v_max", self.v_max, 0.0, 1.0, "largest forward power");

@@ -139,6 +139,9 @@ void DriveRequest::Check() const {
   if (experiment.empty() && suggested.empty() && !overrides.empty()) {
     throw std::invalid_argument("--set changes an experiment: name EXPERIMENT, its YAML file");
   }
+  if (identify && repeat == 1) {
+    throw std::invalid_argument("--identify with --repeat 1: a fit needs at least 2 drives");
+  }
   if (ping) return;
   if (!before_each.empty() && !IsSeries()) {
     throw std::invalid_argument(
