@@ -22,6 +22,7 @@ constexpr double kRolls_m = 0.0005;     // of the wheels from picture to picture
 constexpr double kBackward = 0.5;       // of what the wheels rolled: the pose ran back
 constexpr double kDisorder_s = 0.7;     // in which kBackwardSteps of them are no accident
 constexpr size_t kBackwardSteps = 3;
+constexpr double kOldPicture_m = 0.015;  // back at once; 2,760 steps of 59 logs: 0.0046 at most
 constexpr double kLagWindow_s = 2.0;
 constexpr double kLagSpan_s = 0.15;
 constexpr double kLagStep_s = 0.02;
@@ -204,6 +205,12 @@ std::optional<Disagreement> MotionCheck::CheckOrder(const Sample& before, const 
     backward_s_.push_back(now.t_s);
   }
   while (backward_s_.front() < now.t_s - kDisorder_s) backward_s_.pop_front();
+  if (against_m > kOldPicture_m + std::abs(rolled.forward_m)) {
+    return Disagreement{StopReason::kPoseDisorder,
+                        fmt::format("the pose ran {:.3f} m against the wheels from one picture to "
+                                    "the next: the camera's pictures come out of order",
+                                    against_m)};
+  }
   if (backward_s_.size() < kBackwardSteps) return std::nullopt;
   return Disagreement{
       StopReason::kPoseDisorder,

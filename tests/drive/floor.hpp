@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -66,12 +67,13 @@ class Floor {
     const std::lock_guard lock(mutex_);
     return BytesThatAreNoCommands(heard_);
   }
-  /// From now on the camera shows its last picture again and again, `with_noise` with other bytes
-  /// in a comment of each, while the robot goes on.
-  void RepeatPicture(bool with_noise) {
+  /// What changes in the pictures of a camera that shows its last one again and again.
+  enum class Repeat { kNothing, kComment, kPixels };
+  /// From now on, while the robot goes on. `kComment`: other bytes in a comment of each; `kPixels`:
+  /// the same scene is drawn anew, with noise in every pixel.
+  void RepeatPicture(Repeat repeat) {
     const std::lock_guard lock(mutex_);
-    repeats_ = true;
-    with_noise_ = with_noise;
+    repeat_ = repeat;
   }
   bool Moves() {
     const std::lock_guard lock(mutex_);
@@ -96,7 +98,7 @@ class Floor {
   }
 
   std::vector<std::uint8_t> NextPicture() {
-    geometry::Pose2 pose;
+    std::optional<Repeat> repeat;
     {
       const std::lock_guard lock(mutex_);
       const hardware::MilliPower motors = listener_.Motors();
@@ -105,11 +107,13 @@ class Floor {
       rolled_left_m_ += kFull_mps * 1e-3 * motors.left * kStep_s;
       rolled_right_m_ += kFull_mps * 1e-3 * motors.right * kStep_s;
       pose_ = drive_.Drive(pose_, {1e-3 * motors.left, 1e-3 * motors.right}, kStep_s);
-      pose = pose_;
-      if (repeats_) return with_noise_ ? WithComment(last_) : last_;
+      repeat = repeat_;
+      if (!repeat) shown_ = pose_;
     }
+    if (repeat == Repeat::kNothing) return last_;
+    if (repeat == Repeat::kComment) return WithComment(last_);
     last_ = camera_
-                .Render(RobotAt(pose.x_m, pose.y_m, pose.yaw_rad), vision::PixelFormat::kJpeg,
+                .Render(RobotAt(shown_.x_m, shown_.y_m, shown_.yaw_rad), vision::PixelFormat::kJpeg,
                         generator_)
                 .bytes;
     return last_;
@@ -126,9 +130,10 @@ class Floor {
   std::mutex mutex_;
   geometry::Pose2 pose_;
   int moving_pictures_;
-  bool repeats_ = false;
-  bool with_noise_ = false;
-  std::vector<std::uint8_t> last_;  ///< used by the camera's thread alone
+  std::optional<Repeat> repeat_;
+  // Used by the camera's thread alone.
+  geometry::Pose2 shown_;
+  std::vector<std::uint8_t> last_;
   double rolled_left_m_ = 0.0, rolled_right_m_ = 0.0;
   std::vector<std::uint8_t> heard_;
   control::DiffDrive drive_;

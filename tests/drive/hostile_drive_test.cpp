@@ -1,11 +1,14 @@
 // Drives in an environment that is against them; commands/hostile_environment_test.cpp has the
 // other commands, drive_binary_test.cpp streams and a folder that is removed.
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <filesystem>
 #include <list>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "drive_scene.hpp"
+#include "support/broken_streams.hpp"
 #include "support/environment.hpp"
 #include "support/small_disk.hpp"
 #include "support/terminal_run.hpp"
@@ -124,6 +127,56 @@ TEST_CASE("A drive in a terminal of 20 columns is started by Enter and its lines
     CHECK(run.LongestInPlace("put the robot") == 19);
     CHECK(run.LongestInPlace("the robot drives") == 19);
     CHECK(scene.Summary()["outcome"] == "reached");
+    return true;
+  });
+}
+
+TEST_CASE("A drive whose words nobody reads waits before anything moves, and then arrives") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    const test::UnreadPipe pipe(scene.folder / "pipe");
+    pipe.Fill();
+    const geometry::Pose2 start = scene.floor.Pose();
+    test::RunningRift rift(scene.Arguments(), "2>" + pipe.Path());
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    CHECK(rift.IsRunning());
+    CHECK(scene.floor.Pose() == start);
+    CHECK_FALSE(scene.floor.Moves());
+    std::string told = pipe.Drain();
+    const test::ProcessResult result = rift.Wait();
+    told += pipe.Drain();
+    if (WasInterrupted(scene)) return false;
+    INFO(result.out << told);
+    CHECK(result.exit_code == 0);
+    CHECK_THAT(told, Catch::Contains("worst stopping distance"));
+    CHECK(scene.Summary()["outcome"] == "reached");
+    return true;
+  });
+}
+
+TEST_CASE("A robot under way is driven on and stopped when nobody reads the words any more") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    const test::UnreadPipe pipe(scene.folder / "pipe");
+    test::RunningRift rift(scene.Arguments(), "2>" + pipe.Path());
+    std::string told;
+    test::WaitUntil("the first leg began or the drive is over", [&] {
+      told += pipe.Drain();
+      return told.find("loop delay") != told.npos || !rift.IsRunning();
+    });
+    WaitForMotion(rift, scene);
+    pipe.Fill();
+    test::WaitUntil("the drive is saved", [&] {
+      if (!rift.IsRunning()) return true;
+      const std::string file = scene.folder / "run/summary.json";
+      return fs::exists(file) && scene.Summary().value("state", "") != "interrupted";
+    });
+    CHECK_FALSE(scene.floor.Moves());
+    told += pipe.Drain();
+    const test::ProcessResult result = rift.Wait();
+    if (WasInterrupted(scene)) return false;
+    INFO(result.out << told);
+    CHECK(result.exit_code == 0);
+    CHECK(scene.Summary()["outcome"] == "reached");
+    CHECK(scene.Summary()["stop"]["acknowledged"] == true);
     return true;
   });
 }

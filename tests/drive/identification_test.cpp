@@ -69,10 +69,11 @@ track: {tag: {acquire_decimate: 2, lost_after_s: 5}, capture: {silent_s: 20, sam
 trial: {pose_stale_s: 5, lost_after_s: 20}
 hardware:
   line: {hello_s: 20}
-  guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
+  guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2, jump_m: 10, jump_deg: 180}
   ping: {duration_s: 0.5, max_p99_s: 10, max_loss: 1, max_burst: 1000}
   start: {countdown_s: 0}
   turn: {enabled: false}
+  evidence: {max_latency_s: 2, agree_m: 10, blind_m: 10, pushed_m: 10, pushed_deg: 180}
 )");
   const std::vector<std::string> command{"drive",
                                          folder / "task.yaml",
@@ -84,7 +85,7 @@ hardware:
                                          folder / "run",
                                          "--before-each",
                                          test::BuildDir() + "/rift simulate " +
-                                             (folder / "task.yaml") + " --twin --out " +
+                                             (folder / "task.yaml") + " --twin --force --out " +
                                              (folder / "twin{trial}")};
   test::ProcessResult result;
   // A busy machine may make the guard stop a drive.

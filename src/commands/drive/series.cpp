@@ -205,7 +205,8 @@ int DriveSeries(const DriveRequest& request, const Experiment& experiment) {
 
   const auto is_done = [](const PlannedTrial& trial) { return fs::exists(trial.folder); };
   const auto count = plan.trials.size();
-  terminal::Say(fmt::format("{} drives into {}, {} of them done", count, out.string(),
+  terminal::Say(fmt::format("{} drive{} into {}, {} of them done", count, count == 1 ? "" : "s",
+                            out.string(),
                             std::count_if(plan.trials.begin(), plan.trials.end(), is_done)));
   Series series(request, plan);
   std::size_t left = 0;
