@@ -138,14 +138,19 @@ class RayRenderer {
     const Eigen::Isometry3d tag_from_camera =
         WorldFromTag(tag).inverse() * camera_.world->world_from_camera;
     cv::Mat1f patch = picture(box).clone();
+    const Eigen::Vector3d eye = tag_from_camera.translation();
     for (int y = 0; y < box.height; ++y) {
       for (int x = 0; x < box.width; ++x) {
+        // Within a pixel the lens is linear to 1e-4 px.
+        const Eigen::Vector2d middle = Straight(box.x + x, box.y + y);
+        const Eigen::Vector2d along_u = Straight(box.x + x + 0.5, box.y + y) - middle;
+        const Eigen::Vector2d along_v = Straight(box.x + x, box.y + y + 0.5) - middle;
         double sum = 0.0;
         for (int k = 0; k < kFine * kFine; ++k) {
-          const double u = box.x + x + (k % kFine + 0.5) / kFine - 0.5;
-          const double v = box.y + y + (static_cast<int>(k / kFine) + 0.5) / kFine - 0.5;
-          const Eigen::Vector3d eye = tag_from_camera.translation();
-          const Eigen::Vector3d ray = tag_from_camera.linear() * Straight(u, v).homogeneous();
+          const double u = 2.0 * (k % kFine + 0.5) / kFine - 1.0;
+          const double v = 2.0 * (static_cast<int>(k / kFine) + 0.5) / kFine - 1.0;
+          const Eigen::Vector2d bent = middle + u * along_u + v * along_v;
+          const Eigen::Vector3d ray = tag_from_camera.linear() * bent.homogeneous();
           const double grey = GreyAt(tag, eye - ray * (eye.z() / ray.z()));
           sum += grey < 0.0 ? picture(box.y + y, box.x + x) : grey;
         }
