@@ -3,7 +3,7 @@
 // when libpagmo-dev, libdlib-dev and libnlopt-dev are there; the bootstrap does not ask for them.
 //
 //   search_peers_study [--seeds N] [--first-seed N] [--budgets 100,500,2000] [--only TASK,...]
-//                      [--with PEER,...]
+//                      [--with PEER,...] [--each]
 //
 // Paired seeds and output are those of search_study. Optuna: search_peers.py. A category is a whole
 // number to all of them but dlib, which is told so.
@@ -165,6 +165,7 @@ std::vector<std::string> Split(const std::string& list) {
 
 struct Request {
   int seeds = 50, first_seed = 1;
+  bool each = false;
   std::vector<std::string> budgets{"100", "500", "2000"};
   std::vector<std::string> only = test::StudyNames();
   std::vector<std::string> with{"mlsl", "crs2", "de1220", "sade", "cmaes", "dlib"};
@@ -172,8 +173,14 @@ struct Request {
 
 Request ParseArguments(int count, char** arguments) {
   Request request;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string argument = arguments[i], value = arguments[i + 1];
+  for (int i = 1; i < count; ++i) {
+    const std::string argument = arguments[i];
+    if (argument == "--each") {
+      request.each = true;
+      continue;
+    }
+    if (++i == count) throw std::invalid_argument(argument + " needs a value");
+    const std::string value = arguments[i];
     if (argument == "--seeds")
       request.seeds = std::stoi(value);
     else if (argument == "--first-seed")
@@ -196,6 +203,7 @@ void Study(const Request& request, const std::string& name, const std::string& p
     const auto seed = static_cast<std::uint64_t>(request.first_seed + i);
     runs.push_back(RunPeer(peer, test::StudyTaskOf(name, seed), budget, 1000 + seed));
   }
+  if (request.each) test::PrintEach(name, peer, budget, request.first_seed, runs);
   const test::Summary summary = test::Summarise(runs);
   const statistics::Interval share =
       statistics::ClopperPearson(summary.successes, summary.runs, 0.95);

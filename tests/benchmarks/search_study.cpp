@@ -3,10 +3,11 @@
 // space of six parameters.
 //
 //   search_study [--seeds N] [--first-seed N] [--budgets 100,500,2000] [--only TASK[,TASK...]]
-//                [--with STRATEGY[,STRATEGY...]] [--measure]
+//                [--with STRATEGY[,STRATEGY...]] [--each] [--measure]
 //   search_study --serve TASK SEED     (losses of points on stdin, one a line: search_peers.py)
 //
 // TASK: rastrigin, rosenbrock, ellipsoid, peaks, deceiving, flat, robot.
+// --each prints each run as well: its seed, its evaluations until the target, its least loss.
 // --measure counts what random search finds instead, for the targets.
 //
 // Seeds are paired: every strategy meets the same tasks. Reported: successes with their 95 %
@@ -37,6 +38,7 @@ using search::Method;
 struct Request {
   int seeds = 50;
   int first_seed = 1;
+  bool each = false;
   bool measure = false;
   std::vector<std::string> budgets{"100", "500", "2000"};
   std::vector<std::string> only = test::StudyNames();
@@ -60,6 +62,7 @@ void Study(const Request& request, const std::string& name, int budget) {
       runs.push_back(
           test::RunUntil(study.task, MethodOf(strategy), budget, study.target, 1000 + seed));
     }
+    if (request.each) test::PrintEach(name, strategy, budget, request.first_seed, runs);
     const test::Summary summary = test::Summarise(runs);
     const statistics::Interval share =
         statistics::ClopperPearson(summary.successes, summary.runs, 0.95);
@@ -144,6 +147,8 @@ Request ParseArguments(int count, char** arguments) {
       request.only = Split(value());
     } else if (argument == "--with") {
       request.with = Split(value());
+    } else if (argument == "--each") {
+      request.each = true;
     } else if (argument == "--measure") {
       request.measure = true;
     } else if (argument == "--serve") {

@@ -64,6 +64,21 @@ TEST_CASE("A limit that never binds is named with the most it was asked for") {
         "most; 0.3 bound in 8 of 480 decisions of 8 runs");
 }
 
+TEST_CASE("A difference beyond all gaps is said to be out of reach of the trials") {
+  SweepResult result = Table();
+  // Two trials a setting that differ by more than the settings do: a large residual.
+  for (std::size_t i = 0; i < result.rows.size(); ++i) {
+    result.rows[i].comparison.gap_m = i % 2 == 0 ? 0.04 : 0.05;
+  }
+  result.rows.resize(6);
+  Summarise(result);
+  const Inertness inert = FindInert(result, MeasureEffects(result))[1];
+  REQUIRE_FALSE(inert.sentences.empty());
+  CHECK_THAT(inert.sentences.back(),
+             Contains("too few to show a difference between two values of v_max: all gaps lie "
+                      "within 0.0100 m, and only one of "));
+}
+
 TEST_CASE("A parameter that never changed a path is inert to the last bit") {
   SweepResult result = Table();
   for (TrialRow& row : result.rows) row.evidence.fingerprint = row.theta[0].text == "ice" ? 1 : 2;

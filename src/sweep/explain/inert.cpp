@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -128,8 +129,26 @@ void SayLimit(Inertness& inert, const std::vector<LimitUse>& uses, std::string_v
                   Joined(never), side, Joined(most), rarely));
 }
 
-void SayEffect(Inertness& inert) {
+/// From the smallest gap of the sweep to its largest.
+double GapRange_m(const SweepResult& result) {
+  double least_m = std::numeric_limits<double>::infinity(), most_m = -least_m;
+  for (const TrialRow& row : result.rows) {
+    if (!row.IsOk()) continue;
+    least_m = std::min(least_m, row.comparison.gap_m);
+    most_m = std::max(most_m, row.comparison.gap_m);
+  }
+  return std::max(0.0, most_m - least_m);
+}
+
+void SayEffect(Inertness& inert, double range_m) {
   if (std::isnan(inert.p) || inert.is_detected || std::isnan(inert.smallest_detectable_m)) return;
+  if (inert.smallest_detectable_m > range_m) {
+    inert.sentences.push_back(fmt::format(
+        "the trials are too few to show a difference between two values of {}: all gaps lie within "
+        "{:.4f} m, and only one of {:.4f} m would be seen with {:.0f} % probability",
+        inert.parameter, range_m, inert.smallest_detectable_m, 100.0 * kPower));
+    return;
+  }
   inert.sentences.push_back(fmt::format(
       "a difference of {:.4f} m between two values of {} would have been seen with {:.0f} % "
       "probability",
@@ -160,7 +179,7 @@ Inertness Look(const SweepResult& result, int parameter, const Effects& effects)
     SayLimit(inert, inert.candidate_limit, "candidate");
     SayLimit(inert, inert.reference_limit, "reference");
   }
-  SayEffect(inert);
+  SayEffect(inert, GapRange_m(result));
   return inert;
 }
 

@@ -1,5 +1,7 @@
 #include "search/run_until.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <ctime>
 
@@ -57,6 +59,15 @@ Summary Summarise(const std::vector<RunResult>& runs) {
   summary.mean = of_successes / summary.successes;
   summary.ert = all / summary.successes;
   return summary;
+}
+
+void PrintEach(const std::string& task, const std::string& strategy, int budget, int first_seed,
+               const std::vector<RunResult>& runs) {
+  for (size_t i = 0; i < runs.size(); ++i) {
+    const std::string reached = runs[i].reached_at ? std::to_string(*runs[i].reached_at) : "-";
+    fmt::print("{} {} {} seed {} reached {} of {} best {:.6g}\n", task, strategy, budget,
+               first_seed + static_cast<int>(i), reached, runs[i].evaluations, runs[i].best);
+  }
 }
 
 }  // namespace rift::test

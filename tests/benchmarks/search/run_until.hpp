@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "rift/search/options.hpp"
@@ -33,5 +34,10 @@ struct Summary {
   double overhead_ms = 0.0;  ///< an evaluation
 };
 Summary Summarise(const std::vector<RunResult>& runs);
+
+/// One line for each run, of seeds from `first_seed` on, so that runs of several processes can be
+/// counted together.
+void PrintEach(const std::string& task, const std::string& strategy, int budget, int first_seed,
+               const std::vector<RunResult>& runs);
 
 }  // namespace rift::test
