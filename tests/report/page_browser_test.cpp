@@ -1,8 +1,11 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
 #include "report/synthetic_sweep.hpp"
+#include "report/uneven_sweep.hpp"
 #include "rift/report/page/page.hpp"
 #include "rift/sweep/explain/explanation.hpp"
 #include "rift/sweep/falsify/evidence.hpp"
@@ -125,6 +128,32 @@ TEST_CASE("Sentence, tables, paths and charts follow the filter") {
   CHECK_THAT(seen, Contains("surface rock: ") && Contains("It fails: 8 of 8 measured trials"));
   // 4 settings, 8 trials, of which one is the worst and no other line; 2 cells of rock are left.
   CHECK_THAT(seen, Contains("|4|8|7|2"));
+  CHECK(visit.console == "");
+}
+
+TEST_CASE("Links of the page show the rows that they count, fallen robots included") {
+  const std::string look = R"(
+    const seen = [], links = ['result=failed', 'surface=parchment&result=failed', 'row=3%2C5%2C8',
+      'surface=ground', 'result=fell', 'v_min=0.25&surface=parchment&delay_s=0.02'];
+    const next = () => {
+      if (seen.length === links.length) { probe(seen.join('|')); return; }
+      location.hash = '#trials?' + links[seen.length];
+      setTimeout(() => {
+        seen.push([...document.querySelectorAll('#trials tbody tr')].length);
+        next();
+      }, 50);
+    };
+    next();)";
+  const sweep::SweepResult result = synthetic::Uneven();
+  const BrowserVisit visit = Visit(WithScript(RenderPage(result), WhenDrawn(look)));
+  SKIP_WITHOUT_BROWSER(visit);
+  long failed = 0, on_parchment = 0, on_ground = 0;
+  for (const sweep::TrialRow& row : result.rows) {
+    failed += row.falsified ? 1 : 0;
+    on_parchment += row.falsified && row.theta[1].text == "parchment" ? 1 : 0;
+    on_ground += row.theta[1].text == "ground" ? 1 : 0;
+  }
+  CHECK(Probe(visit) == fmt::format("PROBE {}|{}|3|{}|1|3", failed, on_parchment, on_ground));
   CHECK(visit.console == "");
 }
 

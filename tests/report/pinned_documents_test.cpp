@@ -181,6 +181,18 @@ TEST_CASE("A calibration is told and drawn as it was approved") {
   const std::optional<Figure> figure = CalibrationFigure("calibrated", report);
   REQUIRE(figure);
   text += figure->title + "\n" + figure->plot;
+  const char* keys[] = {"simulation.link.delay_s", "simulation.motor.mismatch",
+                        "simulation.motor.lag_s", "simulation.motor.dead_band"};
+  for (size_t i = 0; i < 4; ++i) {
+    experiment.calibrate.fit.list.push_back({.key = keys[i]});
+    report.calibration.parameters[i].parameter.key = keys[i];
+  }
+  report.calibration.parameters[2].has_effect = false;
+  report.calibration.parameters[2].is_from_prior = false;
+  experiment.trial.timeout_s += 1.5;
+  report.values = {0.03, 0.04, 0.17, 0.055};
+  text += RobotYaml(experiment, report, "abc1  logs/a/real1.csv\nno two words\nabc2  real2.csv\n",
+                    "/somewhere/fit.yaml");
   CHECK(DifferenceFromPinned("report/calibration.txt", text) == "");
 }
 
@@ -231,6 +243,29 @@ TEST_CASE("A gap between two crooked logs is told and drawn as it was approved")
   result.reals.resize(1);
   gap::Judge(result);
   CHECK(DifferenceFromPinned("report/gap.txt", text + GapText(result)) == "");
+}
+
+TEST_CASE("A simulated trial is drawn with the data, axes and units approved") {
+  SimulatedTrial trial;
+  trial.name = "crooked & bent";
+  trial.truth = Crooked(0.2, 0.0);
+  for (size_t i = 0; i < trial.truth.poses.size(); ++i) {
+    trial.truth.poses[i].z_m = 0.1 + 0.003 * static_cast<double>(i % 7);
+  }
+  trial.logged = Crooked(0.21, 0.03);
+  std::vector<double> left, right;
+  for (size_t i = 0; i < trial.logged.poses.size(); ++i) {
+    left.push_back(0.2 + 0.001 * static_cast<double>(i));
+    right.push_back(0.4 - 0.002 * static_cast<double>(i));
+  }
+  trial.logged.channels = {{"power_left", left}, {"power_right", right}};
+  trial.waypoints = {{"start", {0.0, 0.1}}, {"goal", {1.7, 0.4}}};
+  trial.areas = {{"slope", 0.1, 0.9, -0.3, 0.5}, {"elsewhere", 5.0, 6.0, 5.0, 6.5}};
+  trial.ground_xz_m = {{-0.05, 0.2}, {0.4, 0.184}, {1.9, 0.059}};
+  const Figure figure = SimulationFigure(trial);
+  CHECK(DifferenceFromPinned("report/simulation_figure.txt",
+                             fmt::format("{} {} {} x {}\n{}", figure.name, figure.title,
+                                         figure.width_px, figure.height_px, figure.plot)) == "");
 }
 
 odometry::RunMeasures Run(Numbers& next) {

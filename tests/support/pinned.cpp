@@ -44,6 +44,7 @@ bool IsSameLine(const std::string& a, const std::string& b) {
 
 std::string DifferenceFromPinned(const std::string& name, std::string text) {
   text = std::regex_replace(text, std::regex("(rift_version\"?: ?)\"[0-9.]+\""), "$1\"VERSION\"");
+  text = std::regex_replace(text, std::regex("\\(rift [0-9.]+\\)"), "(rift VERSION)");
   if (text.empty() || text.back() != '\n') text += '\n';
   const std::filesystem::path path = std::filesystem::path(SourceDir()) / "tests/pinned" / name;
   if (std::getenv("RIFT_PIN") != nullptr) {

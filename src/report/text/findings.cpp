@@ -35,7 +35,7 @@ double FailureShare(const sweep::LevelSummary& level) {
 void SayLevel(const std::string& parameter, const sweep::LevelSummary& level, Sentence* sentence) {
   const std::string query = TrialsWhere(parameter, level.level);
   sentence->Say(level.level + " (")
-      .Link(std::to_string(level.failures), Both(query, AboveThreshold()))
+      .Link(std::to_string(level.failures), Both(query, FailingTrials()))
       .Say(" of ")
       .Link(fmt::format("{} trials", level.told), query)
       .Say(")");
@@ -293,7 +293,7 @@ Headline Summary(const sweep::SweepResult& result) {
   const std::string mean =
       std::isnan(all.mean_gap_m) ? "" : fmt::format("; mean gap {}", Metres(all.mean_gap_m));
   sentence.Say("It fails: ")
-      .Link(std::to_string(all.failures), AboveThreshold())
+      .Link(std::to_string(all.failures), FailingTrials())
       .Say(fmt::format(" of {} {} ({}){}.", Count(all.told, "measured trial"), HowTheyFail(result),
                        Percent(FailureShare(all)), mean))
       .Say(DistinctText(result));

@@ -191,15 +191,17 @@ std::string FirstSentence(const std::vector<Finding>& findings, const std::strin
 
 std::string BriefText(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
   const std::vector<Finding> findings = Findings(result, explanation);
-  const std::string fails = fmt::format(
-      "{} of {} settings; {} of {} runs leave the path by more than {:g} m, and {} do "
-      "not arrive",
-      result.Count(gap::Verdict::kFalsified), result.settings.size(),
-      std::count_if(result.rows.begin(), result.rows.end(),
-                    [&](const sweep::TrialRow& row) {
-                      return row.IsOk() && row.comparison.gap_m > result.gap.threshold_m;
-                    }),
-      result.rows.size(), result.gap.threshold_m, result.all.not_ok);
+  const auto failing = [&](bool is_ok) {
+    return std::count_if(result.rows.begin(), result.rows.end(), [&](const sweep::TrialRow& row) {
+      return row.falsified && row.IsOk() == is_ok;
+    });
+  };
+  std::string fails = fmt::format(
+      "{} of {} settings; {} of {} runs leave the path by more than {:g} m, and {} do not arrive",
+      result.Count(gap::Verdict::kFalsified), result.settings.size(), failing(true),
+      result.all.told, result.gap.threshold_m, failing(false));
+  const long lost = static_cast<long>(result.rows.size()) - result.all.told;
+  if (lost > 0) fails += fmt::format("; {} more tell nothing", lost);
   std::string text;
   for (const auto& [label, answer] :
        {std::pair<const char*, std::string>{"what fails:", fails},

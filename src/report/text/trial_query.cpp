@@ -27,7 +27,7 @@ std::string QueryText(const std::string& text) {
 
 }  // namespace
 
-std::string AboveThreshold() { return "result=" + QueryText("above threshold"); }
+std::string FailingTrials() { return "result=failed"; }
 
 std::string TrialsWhere(const std::string& parameter, const std::string& value) {
   return QueryText(parameter) + "=" + QueryText(value);

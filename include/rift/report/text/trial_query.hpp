@@ -8,7 +8,8 @@
 namespace rift::report {
 
 /// Queries for the trials table.
-std::string AboveThreshold();
+/// Those above the threshold and those that did not arrive, where that counts as a failure.
+std::string FailingTrials();
 std::string TrialsWhere(const std::string& parameter, const std::string& value);
 std::string TrialsOf(const sweep::SweepResult& result, const experiment::Theta& theta);
 /// By their numbers in table.csv; of many, the first hundred.

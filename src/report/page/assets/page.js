@@ -158,9 +158,10 @@ function matcher(data, query) {
     const i = data.columns.findIndex(column => (column.name ?? column.title) === name);
     if (i < 0) return null;
     const values = new Set(name === 'row' ? text.split(',') : [text]);
-    wanted.push(row => values.has(String(row[i])));
+    const isFailed = name === 'result' && text === 'failed';  // whatever it failed by
+    wanted.push(index => isFailed ? data.marks[index] === 'fail' : values.has(String(data.rows[index][i])));
   }
-  return index => wanted.every(holds => holds(data.rows[index]));
+  return index => wanted.every(holds => holds(index));
 }
 
 function followHash() {

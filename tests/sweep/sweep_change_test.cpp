@@ -1,0 +1,115 @@
+#include "rift/sweep/explain/sweep_change.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+namespace rift::sweep {
+namespace {
+
+TabledTrial Trial(const std::string& key, const std::string& trial, double gap_m, bool falsified) {
+  return {.key = key,
+          .setting = "setting " + key,
+          .trial = trial,
+          .is_told = true,
+          .falsified = falsified,
+          .gap_m = gap_m};
+}
+
+TabledTrial Lost(const std::string& key, const std::string& trial) {
+  return {.key = key, .setting = "setting " + key, .trial = trial};
+}
+
+/// No two numbers alike: "a" becomes better, "b" worse, "c" and "d" are of one sweep alone.
+struct Two {
+  TabledSweep before{
+      .folder = "first",
+      .trials = {Trial("a", "1", 0.081, true), Trial("a", "2", 0.072, true),
+                 Trial("a", "3", 0.065, true), Trial("b", "1", 0.021, false),
+                 Trial("b", "2", 0.034, false), Lost("b", "3"), Trial("c", "1", 0.5, true)},
+      .verdicts = {{"a", "falsified"}, {"b", "passed"}}};
+  TabledSweep after{.folder = "second",
+                    .trials = {Trial("a", "1", 0.041, false), Trial("a", "2", 0.052, false),
+                               Trial("a", "3", 0.069, true), Trial("b", "1", 0.066, true),
+                               Trial("b", "2", 0.036, false), Trial("b", "3", 0.031, false),
+                               Trial("d", "1", 0.4, true), Trial("e", "1", 0.3, true)},
+                    .verdicts = {{"a", "undecided"}, {"b", "not seen to fail"}}};
+};
+
+TEST_CASE("Two sweeps are paired by setting and trial, and what one alone has is left out") {
+  const Two two;
+  const SweepChange change = CompareSweeps(two.before, two.after, {{"seed", "1", "2"}});
+  CHECK(change.before == "first");
+  CHECK(change.after == "second");
+  REQUIRE(change.keys.size() == 1);
+  CHECK(change.keys[0].after == "2");
+  CHECK(change.only_before == 1);
+  CHECK(change.only_after == 2);
+  CHECK(change.now_hold == 2);
+  CHECK(change.now_fail == 1);
+  // Clopper-Pearson of 2 in 3, from a table.
+  CHECK(change.better_share_95.low == Approx(0.0943).margin(1e-4));
+  CHECK(change.better_share_95.high == Approx(0.9916).margin(1e-4));
+
+  REQUIRE(change.settings.size() == 2);
+  const SettingChange &a = change.settings[0], &b = change.settings[1];
+  CHECK(a.setting == "setting a");  // by 2 of 3 against 1 of 3
+  CHECK(b.setting == "setting b");
+  CHECK(a.before.failures == 3);
+  CHECK(a.before.told == 3);
+  CHECK(a.before.mean_gap_m == Approx((0.081 + 0.072 + 0.065) / 3.0));
+  CHECK(a.before.verdict == "falsified");
+  CHECK(a.after.failures == 1);
+  CHECK(a.after.told == 3);
+  CHECK(a.after.mean_gap_m == Approx((0.041 + 0.052 + 0.069) / 3.0));
+  CHECK(a.after.verdict == "undecided");
+  CHECK(a.pairs == 3);
+  CHECK(a.gap_change_m == Approx((-0.040 - 0.020 + 0.004) / 3.0));
+  const double mean = a.gap_change_m;
+  const double sd = std::sqrt(
+      (std::pow(-0.040 - mean, 2) + std::pow(-0.020 - mean, 2) + std::pow(0.004 - mean, 2)) / 2.0);
+  const double half = 4.302652729749462 * sd / std::sqrt(3.0);
+  CHECK(a.gap_change_95_m.low == Approx(mean - half));
+  CHECK(a.gap_change_95_m.high == Approx(mean + half));
+  CHECK(b.before.failures == 0);
+  CHECK(b.before.told == 2);
+  CHECK(b.before.mean_gap_m == Approx(0.0275));
+  CHECK(b.after.failures == 1);
+  CHECK(b.after.told == 3);
+  CHECK(b.pairs == 2);
+  CHECK(b.gap_change_m == Approx(0.0235));
+
+  // Over all: the settings of both alone, and the interval over settings.
+  CHECK(change.all.before.failures == 3);
+  CHECK(change.all.before.told == 5);
+  CHECK(change.all.before.mean_gap_m == Approx((0.081 + 0.072 + 0.065 + 0.021 + 0.034) / 5.0));
+  CHECK(change.all.after.failures == 2);
+  CHECK(change.all.after.told == 6);
+  CHECK(change.all.after.verdict.empty());
+  CHECK(change.all.pairs == 5);
+  const double over_settings = 0.5 * (a.gap_change_m + b.gap_change_m);
+  CHECK(change.all.gap_change_m == Approx(over_settings));
+  const double apart = 12.706204736174698 * std::abs(b.gap_change_m - a.gap_change_m) / 2.0;
+  CHECK(change.all.gap_change_95_m.low == Approx(over_settings - apart));
+  CHECK(change.all.gap_change_95_m.high == Approx(over_settings + apart));
+}
+
+TEST_CASE("Back again everything is the other way round, and one setting counts by its trials") {
+  Two two;
+  const SweepChange there = CompareSweeps(two.before, two.after, {});
+  const SweepChange back = CompareSweeps(two.after, two.before, {});
+  CHECK(back.now_hold == there.now_fail);
+  CHECK(back.now_fail == there.now_hold);
+  CHECK(back.only_before == there.only_after);
+  CHECK(back.all.gap_change_m == Approx(-there.all.gap_change_m));
+  CHECK(back.better_share_95.low == Approx(1.0 - there.better_share_95.high));
+  std::erase_if(two.before.trials, [](const TabledTrial& trial) { return trial.key != "a"; });
+  const SweepChange one = CompareSweeps(two.before, two.after, {});
+  REQUIRE(one.settings.size() == 1);
+  CHECK(one.all.gap_change_95_m.low == Approx(there.settings[0].gap_change_95_m.low));
+  std::erase_if(two.after.trials, [](const TabledTrial& trial) { return trial.key == "a"; });
+  CHECK_THROWS_WITH(CompareSweeps(two.before, two.after, {}),
+                    Catch::Contains("first and second have no setting in common"));
+}
+
+}  // namespace
+}  // namespace rift::sweep
