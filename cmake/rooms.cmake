@@ -49,13 +49,13 @@ rift_room(experiment ROOMS control limits trajectory yaml
   OPTIONS gap hardware simulation trial twin sweep/run sweep/falsify sweep/calibrate
           vision/camera vision/calibration vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen)
-rift_room(sweep/falsify ROOMS control experiment gap odometry search simulation statistics sweep/run trajectory trial yaml
+rift_room(sweep/falsify ROOMS control experiment files gap odometry search simulation statistics sweep/run trajectory trial yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(sweep/explain ROOMS experiment odometry search statistics sweep/falsify yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
 rift_room(sweep/calibrate ROOMS control experiment gap geometry statistics sweep/falsify trajectory trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
-rift_room(report/figures ROOMS experiment gap geometry statistics sweep/calibrate sweep/falsify trajectory
+rift_room(report/figures ROOMS experiment files gap geometry statistics sweep/calibrate sweep/falsify trajectory
   LIBRARIES fmt::fmt)
 rift_room(report/text ROOMS experiment gap geometry odometry report/figures statistics sweep/calibrate sweep/explain
     sweep/falsify yaml

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
+#include "rift/sweep/falsify/candidate_runs.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/yaml/enum_name.hpp"
@@ -28,12 +30,12 @@ report::TableRow RowOf(const std::filesystem::path& folder, const std::string& i
   return report::TableRowOf(files::ReadFile(table), id, table.string());
 }
 
-/// Makes a row again and holds it against the table's.
-std::string Verify(sweep::Evaluator& evaluator, const sweep::TrialRequest& request,
+/// One line that a row came out as it is in the table; throws where it did not.
+std::string Verify(const experiment::Experiment& experiment, sweep::TrialRow again,
                    const report::TableRow& row, const std::string& id) {
-  sweep::SweepResult again = sweep::EmptyResult(evaluator.experiment());
-  again.rows = {evaluator.Evaluate(request)};
-  const report::TableRow made = report::FirstTableRow(report::TableCsv(again));
+  sweep::SweepResult result = sweep::EmptyResult(experiment);
+  result.rows = {std::move(again)};
+  const report::TableRow made = report::FirstTableRow(report::TableCsv(result));
   if (Evidence(made) != Evidence(row)) {
     throw std::runtime_error(fmt::format(
         "row {} comes out different (gap {} m, not {} m): another version of rift, of the program "
@@ -55,9 +57,10 @@ std::optional<ProgramReplay> ReplayProgramRow(const std::filesystem::path& folde
   sweep::Evaluator evaluator(experiment, file, FileInputs());
   evaluator.LoadLogs();
   const sweep::TrialRequest request = report::RequestOf(experiment, row);
+  sweep::ProgramTrial again = sweep::RunProgramTrial(evaluator, request);
   ProgramReplay replay{.experiment = experiment};
-  replay.verdict = Verify(evaluator, request, row, id);
-  sweep::Recording run = evaluator.Candidate(request, evaluator.Reference(request));
+  replay.verdict = Verify(experiment, std::move(again.row), row, id);
+  sweep::Recording& run = again.candidate;
   replay.has_arrived = run.status == sweep::TrialStatus::kOk;
   replay.trajectory = std::move(run.trajectory);
   return replay;
@@ -78,7 +81,7 @@ Replay ReplayRow(const std::filesystem::path& folder, const std::string& id) {
   replay.experiment.seed = *request.seed;
   replay.trial = evaluator.TrialFor(request, evaluator.Reference(request));
   replay.run = sweep::Simulate(replay.trial);
-  replay.verdict = Verify(evaluator, request, row, id);
+  replay.verdict = Verify(experiment, evaluator.Evaluate(request), row, id);
   return replay;
 }
 

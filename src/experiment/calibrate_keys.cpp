@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <string_view>
 
 #include "rift/yaml/describe.hpp"
 #include "rift/yaml/node.hpp"
@@ -56,22 +58,23 @@ void RequireSimulatorAndLogs(const Experiment& experiment, const std::string& pa
   const auto refuse = [&path](const std::string& why) {
     throw yaml::Error(fmt::format("{}: goal is calibrate, {}", path, why));
   };
-  if (experiment.candidate.kind != CandidateKind::kSimulation) {
-    refuse("and candidate.kind is logs: only the simulator can be fitted");
+  if (experiment.candidate.kind == CandidateKind::kLogs) {
+    refuse("and candidate.kind is logs: only a simulator can be fitted");
   }
+  const bool is_program = experiment.candidate.kind == CandidateKind::kProgram;
   if (experiment.reference.kind != ReferenceKind::kLogs) {
     refuse("and reference.kind is not logs: name the robot's logs in reference.path");
   }
-  if (experiment.reference.tag_offset_m != 0.0) {
+  if (experiment.reference.tag_offset_m != 0.0 && !is_program) {
     refuse(
         fmt::format("and reference.tag_offset_m is {}, but the fit needs the logs as the tag "
                     "moved: leave it out and set simulation.mocap.tag_ahead_m",
                     experiment.reference.tag_offset_m));
   }
   if (experiment.calibrate.fit.list.empty()) {
-    refuse(
-        "and calibrate.fit is empty: name parameters, such as {motor.mismatch: {min: -0.1, "
-        "max: 0.1}}");
+    refuse(fmt::format(
+        "and calibrate.fit is empty: name parameters, such as {{{}}}",
+        is_program ? "mu: {min: 0.1, max: 1}" : "motor.mismatch: {min: -0.1, max: 0.1}"));
   }
 }
 
@@ -100,11 +103,69 @@ void CheckIsNotInSpace(const FreeParameter& free, const Space& space) {
   }
 }
 
+/// Names that the arguments of a program have for something else.
+constexpr std::array<std::string_view, 5> kNamesOfTrial{"seed", "trial", "out", "theta", "folder"};
+
+void CheckNameOfProgram(const FreeParameter& free, const std::vector<std::string>& others) {
+  const auto refuse = [&free](const std::string& why) {
+    throw yaml::Error(fmt::format("{}: calibrate.fit: {} {}", free.origin, free.key, why));
+  };
+  const std::string name = Parameter{.key = free.key}.Name();
+  if (std::find(kNamesOfTrial.begin(), kNamesOfTrial.end(), name) != kNamesOfTrial.end()) {
+    refuse(fmt::format("is what a program's trial calls something else ({}): take another name",
+                       fmt::join(kNamesOfTrial, ", ")));
+  }
+  if (std::find(others.begin(), others.end(), name) != others.end()) {
+    refuse(fmt::format("shares its name '{}' with another parameter of the program", name));
+  }
+}
+
+/// Of a program nobody can ask what it would have done next in a log: only its whole runs tell.
+void CheckMethodOfProgram(const Experiment& experiment, const std::string& path) {
+  const sweep::CalibrationOptions& method = experiment.calibrate.method;
+  const sweep::ShortHorizonOptions standard;
+  const bool has_horizon = method.horizon.most_frames != standard.most_frames ||
+                           method.horizon.phases != standard.phases ||
+                           method.horizon.moved_m != standard.moved_m;
+  if (has_horizon) {
+    throw yaml::Error(fmt::format(
+        "{}: calibrate.method.horizon predicts the next frames of a log, which rift cannot ask of "
+        "a program: leave it out, its whole runs are fitted",
+        path));
+  }
+  if (method.runs > 0) return;
+  throw yaml::Error(
+      fmt::format("{}: calibrate.method.runs is 0, and a program is fitted by its whole runs: set "
+                  "1 or more",
+                  path));
+}
+
+/// A program's parameters are names of its own; a fit starts at what is known of them.
+void ResolveProgram(Experiment& experiment, const std::string& path) {
+  CheckMethodOfProgram(experiment, path);
+  std::vector<std::string> names;
+  for (const Parameter& parameter : experiment.space.parameters) names.push_back(parameter.Name());
+  std::vector<FreeParameter> resolved;
+  for (const FreeParameter& written : experiment.calibrate.fit.list) {
+    for (FreeParameter& free : Expand(written, experiment.space)) {
+      CheckNameOfProgram(free, names);
+      names.push_back(Parameter{.key = free.key}.Name());
+      free.start = free.prior_sd > 0.0 ? free.prior_mean : 0.5 * (free.min + free.max);
+      resolved.push_back(free);
+    }
+  }
+  experiment.calibrate.fit.list = resolved;
+}
+
 }  // namespace
 
 void ResolveCalibrate(Experiment& experiment, const std::string& path) {
   RequireSimulatorAndLogs(experiment, path);
   CheckHoldout(experiment, path);
+  if (experiment.candidate.kind == CandidateKind::kProgram) {
+    ResolveProgram(experiment, path);
+    return;
+  }
   const std::vector<std::string> keys = yaml::ListKeys(experiment);
   std::vector<FreeParameter> resolved;
   for (const FreeParameter& written : experiment.calibrate.fit.list) {

@@ -8,6 +8,7 @@
 
 #include "calibrate_keys.hpp"
 #include "rift/experiment/parameter.hpp"
+#include "rift/experiment/program_parameters.hpp"
 #include "rift/experiment/settable.hpp"
 #include "rift/experiment/space_yaml.hpp"
 #include "rift/limits/limits.hpp"
@@ -225,13 +226,35 @@ void RefuseNominal(const Experiment& experiment) {
 
 }  // namespace
 
+std::vector<Parameter> ProgramParameters(const Experiment& experiment) {
+  std::vector<Parameter> parameters = experiment.space.parameters;
+  const bool is_fitted =
+      experiment.goal == Goal::kCalibrate && experiment.candidate.kind == CandidateKind::kProgram;
+  if (!is_fitted) return parameters;
+  for (const FreeParameter& free : experiment.calibrate.fit.list) {
+    parameters.push_back({.key = free.key,
+                          .min = free.min,
+                          .max = free.max,
+                          .nominal = free.start,
+                          .origin = free.origin});
+  }
+  return parameters;
+}
+
+Theta WithFitted(Theta theta, const std::vector<double>& values) {
+  for (const double value : values) theta.push_back(NumberValue(value));
+  return theta;
+}
+
 Theta NominalTheta(const Experiment& experiment) {
   Theta theta;
-  for (const Parameter& parameter : experiment.space.parameters) {
-    if (experiment.candidate.kind == CandidateKind::kProgram) {
+  if (experiment.candidate.kind == CandidateKind::kProgram) {
+    for (const Parameter& parameter : ProgramParameters(experiment)) {
       theta.push_back(OwnNominal(parameter));
-      continue;
     }
+    return theta;
+  }
+  for (const Parameter& parameter : experiment.space.parameters) {
     theta.push_back(ValueFromNode(yaml::GetValue(experiment, parameter.key), parameter.key));
   }
   return theta;

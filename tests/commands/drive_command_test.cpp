@@ -66,7 +66,7 @@ TEST_CASE("Ping of a robot that never answers says that it cannot be measured") 
   const RobotBehindTerminal robot(false);
   const test::ProcessResult result = test::RunRift({"drive", "--ping", "--port", robot.path()});
   CHECK(result.exit_code == 1);
-  CHECK_THAT(result.out, Catch::Contains("copy src/firmware to it"));
+  CHECK_THAT(result.out, Catch::Contains("a 3pi+ answers with src/firmware on it"));
 }
 
 TEST_CASE("A robot hears nothing but commands when the streams of a ping are closed or full") {

@@ -139,6 +139,35 @@ TEST_CASE("A row whose program has changed since is said to come out different")
   CHECK(replay.err.find("row 1 comes out different") != std::string::npos);
 }
 
+TEST_CASE("Replaying a program's row runs the program once") {
+  const TemporaryFolder folder;
+  WriteText(folder / "counting.py",
+            "import sys\n"
+            "open(sys.argv[2], 'a').write('x')\n"
+            "open(sys.argv[1], 'w').write('t_s,x_m,y_m\\n0,0,0\\n1,0.5,0.1\\n')\n");
+  WriteText(folder / "sweep.yaml",
+            "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
+            "candidate: {kind: program, run: [python3, counting.py, '{out}', '" +
+                (folder / "runs") + "']}\nreference: {kind: path}\n");
+  REQUIRE(RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out"}).exit_code == 0);
+  const std::string before = ReadFile(fs::path(folder / "runs"));
+  CHECK(RunRift({"simulate", "--replay", folder / "out", "1"}).exit_code == 0);
+  CHECK(ReadFile(fs::path(folder / "runs")) == before + "x");
+}
+
+TEST_CASE("A row whose program hung is replayed as such and ends") {
+  const TemporaryFolder folder;
+  WriteText(folder / "hanging.py", "import time; time.sleep(7357)\n");
+  WriteText(folder / "sweep.yaml",
+            "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
+            "candidate: {kind: program, run: [python3, hanging.py, '{mu}']}\n"
+            "reference: {kind: path}\nspace: {mu: [1]}\nrun: {timeout_s: 0.5, retries: 0}\n");
+  CHECK(RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out"}).exit_code == 1);
+  const ProcessResult replay = RunRift({"simulate", "--replay", folder / "out", "1"});
+  CHECK(replay.exit_code == 1);
+  CHECK(replay.out.find("status hung") != std::string::npos);
+}
+
 /// A simulator with every fault that the issue of foreign programs has; its rows are by mode.
 const std::string kFaulty = R"py(
 import json, os, signal, subprocess, sys, time

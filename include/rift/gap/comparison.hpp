@@ -1,16 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <vector>
 
 #include "rift/gap/options.hpp"
 #include "rift/geometry/pose2.hpp"
+#include "rift/statistics/not_computed.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
 namespace rift::gap {
 
-inline constexpr double kNotComputed = std::numeric_limits<double>::quiet_NaN();
+using statistics::kNotComputed;
 
 /// The gap and everything that helps to read it. Errors are distances between the two paths at
 /// equal normalised arc length u unless a name says otherwise; NaN where it could not be computed.

@@ -97,6 +97,11 @@ std::string SweepProgress::Text() const {
   return text + fmt::format(", {} falsified, {} failed", falsified_, failed_);
 }
 
+void SweepProgress::Warn(const std::string& line) const {
+  if (style_ == ProgressStyle::kBar && !is_over_) terminal::SayInPlace("");
+  terminal::Say(line);
+}
+
 void SweepProgress::Print(const std::string& state) {
   switch (style_) {
     case ProgressStyle::kQuiet:

@@ -32,6 +32,8 @@ class SweepProgress {
   SweepProgress& operator=(const SweepProgress&) = delete;
 
   void Seen(const sweep::TrialRow& row, bool from_journal);
+  /// A line of its own, whatever the style.
+  void Warn(const std::string& line) const;
   /// Prints when it is time to; cheap otherwise.
   void Tick();
   /// The last word, with how it ended: "done", "stopped".

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "doubt_notes.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
 #include "rift/files/network_file_system.hpp"
@@ -81,7 +82,7 @@ void NoteFileSystem(const std::filesystem::path& out) {
 
 std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
                                                const SweepRunRequest& request,
-                                               SweepProgress& progress,
+                                               SweepProgress& progress, DoubtNotes& doubts,
                                                const terminal::StopSignal& stop) {
   const experiment::Experiment& experiment = evaluator.experiment();
   const std::filesystem::path file = request.out / kJournalName;
@@ -127,6 +128,7 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
       request.jobs, experiment.run,
       {[&](const sweep::TrialRow& row, bool from_journal) {
          progress.Seen(row, from_journal);
+         doubts.Seen(row);
          if (request.live != nullptr) request.live->Seen(row);
        },
        [&] {
@@ -175,16 +177,19 @@ std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
   const terminal::StopSignal stop;
   const experiment::Experiment& experiment = evaluator.experiment();
   SweepProgress progress(request.progress, SizeOf(experiment));
+  const sweep::SweepResult kinds = sweep::EmptyResult(experiment);
+  DoubtNotes doubts(kinds, [&progress](const std::string& line) { progress.Warn(line); });
   std::optional<sweep::SweepResult> result;
   const bool is_computed = experiment.candidate.kind != experiment::CandidateKind::kLogs ||
                            experiment.reference.kind == experiment::ReferenceKind::kProgram;
   if (is_computed) {
-    result = RunSimulated(evaluator, request, progress, stop);
+    result = RunSimulated(evaluator, request, progress, doubts, stop);
   } else {
     const sweep::RunTrials run =
         sweep::RunHere([&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
                        {[&](const sweep::TrialRow& row, bool) {
                           progress.Seen(row, false);
+                          doubts.Seen(row);
                           if (request.live != nullptr) request.live->Seen(row);
                         },
                         [&] {
@@ -195,6 +200,7 @@ std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
     result = sweep::Sweep(evaluator, run, [](const auto&) { return true; });
   }
   progress.End(result ? "done" : "stopped");
+  if (result) doubts.End(*result);
   return result;
 }
 

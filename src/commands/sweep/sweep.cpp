@@ -53,6 +53,13 @@ void CheckFlags(const SweepRequest& request, const experiment::Experiment& exper
     throw std::invalid_argument(request.experiment +
                                 ": --write-robot needs goal: calibrate (configs/calibrate.yaml)");
   }
+  if (experiment.candidate.kind == experiment::CandidateKind::kProgram &&
+      !request.write_robot.empty()) {
+    throw std::invalid_argument(
+        request.experiment +
+        ": --write-robot writes the robot of rift's own simulator, and candidate.kind is program: "
+        "the fitted values are in calibration.json");
+  }
 }
 
 /// Budgets become part of the experiment, so that what is saved is what was run.
@@ -317,12 +324,15 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
                "end with 1 when a setting is falsified, or undecided with a failure");
   app.footer(
       "Ctrl-C stops a sweep, and the same command goes on with it, also after a crash.\n"
-      "goal: calibrate fits the simulator to logs (configs/calibrate.yaml).\n"
+      "goal: calibrate fits the simulator, or somebody else's, to logs (configs/calibrate.yaml).\n"
       "Example: rift sweep configs/waypoints/paper.yaml --out out/paper\n"
       "         rift sweep configs/waypoints/paper.yaml --out out/paper --suggest 3 --shrink "
       "worst\n"
       "         rift sweep configs/programs/diff_drive.yaml --out out/own (somebody else's "
       "simulator)\n"
+      "         rift sweep configs/programs/calibrate.yaml --out out/fit (its parameters, fitted "
+      "to "
+      "logs)\n"
       "         rift sweep configs/waypoints/paper.yaml --out out/paper --serve\n"
       "         rift sweep configs/waypoints/paper.yaml --out out/paper --engine slurm --shards "
       "40\n"

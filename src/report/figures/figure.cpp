@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "rift/files/process_end.hpp"
+
 namespace rift::report {
 namespace {
 
@@ -104,14 +106,6 @@ std::string OnOneLine(const std::string& text) {
   return line;
 }
 
-std::string ReasonOf(int status, const std::string& complaints) {
-  const std::string how =
-      WIFSIGNALED(status)
-          ? fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
-          : fmt::format("ended with exit code {}", WEXITSTATUS(status));
-  return complaints.empty() ? how : fmt::format("{}: {}", how, complaints);
-}
-
 /// What gnuplot writes to its standard output for a script on its standard input.
 /// Throws std::runtime_error when it is not installed or complains.
 std::string RunGnuplot(const std::string& script) {
@@ -124,7 +118,7 @@ std::string RunGnuplot(const std::string& script) {
   const int status = SpawnAndWait(actions);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     throw std::runtime_error(
-        fmt::format("gnuplot {}", ReasonOf(status, OnOneLine(complaints.ReadAll()))));
+        fmt::format("gnuplot {}", files::ProcessEndText(status, OnOneLine(complaints.ReadAll()))));
   }
   return output.ReadAll();
 }

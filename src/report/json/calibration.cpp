@@ -78,6 +78,7 @@ std::string CalibrationJson(const experiment::Experiment& experiment,
     entry["before"] = LikenessJson(group.before);
     entry["after"] = LikenessJson(group.after);
   }
+  json["errors"] = ordered_json::object();  // stays so for a program
   for (const sweep::CalibrationReport::Errors& errors : report.errors) {
     json["errors"][errors.side] = {{"before", ErrorJson(errors.before)},
                                    {"after", ErrorJson(errors.after)}};

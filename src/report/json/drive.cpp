@@ -122,8 +122,8 @@ std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareO
 
 std::string PingText(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
   if (ping.protocol == hardware::Protocol::kPlain) {
-    return "the robot speaks plain and does not answer, so its link cannot be measured: copy "
-           "src/firmware to it\n";
+    return "the robot speaks plain and does not answer, so its link cannot be measured (a 3pi+ "
+           "answers with src/firmware on it)\n";
   }
   std::string text = fmt::format("{} of {} commands answered, {:.1f} % lost, {} in a row at most\n",
                                  ping.answered, ping.sent, 100.0 * ping.loss, ping.longest_burst);

@@ -127,6 +127,13 @@ std::string SummaryJson(const sweep::SweepResult& result) {
     json["replaced_references"].push_back(
         {{"seed", replaced.seed}, {"used", replaced.used}, {"reason", replaced.reason}});
   }
+  json["doubts"] = ordered_json::array();
+  for (const sweep::SweepDoubt& doubt : result.doubts) {
+    json["doubts"].push_back({{"about", yaml::NameOf(doubt.first.about)},
+                              {"trials", doubt.trials},
+                              {"row", doubt.row + 1},
+                              {"text", doubt.first.text}});
+  }
   if (result.all.n > 0) json["attribution"] = AttributionJson(result);
   if (result.falsification) {
     json["falsification"] = FalsificationJson(result, *result.falsification);

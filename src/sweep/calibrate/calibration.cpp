@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
+#include "fitted_simulator.hpp"
 #include "intervals.hpp"
 #include "model.hpp"
 
@@ -18,17 +20,19 @@ constexpr double kFirstDamping = 1e-2;
 constexpr double kLargestDamping = 1e6;
 
 /// First down to the least errors, then on to where the errors are those of logs that the simulator
-/// makes itself.
+/// makes itself. Whole runs alone descend by their motions before their traits have a say: a path
+/// and its mirror image weave alike.
 class Fit {
  public:
   Fit(const std::vector<experiment::FreeParameter>& parameters,
-      const std::vector<CalibrationLog>& logs, const TwinAt& twin,
-      const CalibrationOptions& options, int threads)
+      const std::vector<CalibrationLog>& logs, FittedSimulator& simulator,
+      const CalibrationOptions& options)
       : parameters_(parameters),
         options_(options),
+        has_whole_runs_only_(simulator.HasWholeRunsOnly()),
         shares_(StartOf(parameters)),
         prior_(PriorOf(parameters)),
-        model_(parameters, logs, twin, options, threads, shares_),
+        model_(parameters, logs, simulator, options_, shares_),
         step_(std::max(options.step, options.first_step)) {}
 
   Calibration Run(std::mt19937_64& generator, const CalibrationStep& on_step);
@@ -36,6 +40,7 @@ class Fit {
  private:
   static Eigen::VectorXd StartOf(const std::vector<experiment::FreeParameter>& parameters);
   void Descend(Calibration& result, const CalibrationStep& on_step);
+  void DescendByMotions(Calibration& result, const CalibrationStep& on_step);
   bool Improve();
   void Correct();
   Eigen::VectorXd StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
@@ -45,7 +50,8 @@ class Fit {
   }
 
   const std::vector<experiment::FreeParameter>& parameters_;
-  const CalibrationOptions& options_;
+  CalibrationOptions options_;  ///< the model's as well
+  bool has_whole_runs_only_;
   Eigen::VectorXd shares_;
   Prior prior_;
   ErrorModel model_;
@@ -110,7 +116,8 @@ bool Fit::Improve() {
 /// The loss has leaps, as a command that just misses one look of the listener waits for the next:
 /// slopes over long steps see past them, shorter ones tell the place.
 void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
-  while (result.steps < options_.iterations) {
+  const int most_steps = result.steps + options_.iterations;
+  while (result.steps < most_steps) {
     const std::vector<LogErrors> raw = model_.RawErrorsAt(shares_);
     scale_ = ScaleOf(raw, options_);
     at_ = model_.LinearisedAt(shares_, raw, scale_, step_);
@@ -125,6 +132,14 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
     step_ = std::max(options_.step, 0.5 * step_);
     damping_ = kFirstDamping;
   }
+}
+
+void Fit::DescendByMotions(Calibration& result, const CalibrationStep& on_step) {
+  const double likeness_weight = std::exchange(options_.likeness_weight, 0.0);
+  Descend(result, on_step);
+  options_.likeness_weight = likeness_weight;
+  step_ = options_.step;
+  damping_ = kFirstDamping;
 }
 
 /// Least errors are not at the truth: what the robot did went into the log, so its luck went into
@@ -154,6 +169,7 @@ void Fit::Correct() {
 Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step) {
   Calibration result;
   const Eigen::VectorXd start = shares_;
+  if (has_whole_runs_only_) DescendByMotions(result, on_step);
   Descend(result, on_step);
   step_ = options_.step;
   for (int i = 0; i < options_.corrections; ++i) Correct();
@@ -188,11 +204,19 @@ void Check(const std::vector<experiment::FreeParameter>& parameters,
 }  // namespace
 
 Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
+                      const std::vector<CalibrationLog>& logs, FittedSimulator& simulator,
+                      const CalibrationOptions& options, std::mt19937_64& generator,
+                      const CalibrationStep& on_step) {
+  Check(parameters, logs);
+  return Fit(parameters, logs, simulator, options).Run(generator, on_step);
+}
+
+Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                       const CalibrationOptions& options, std::mt19937_64& generator, int threads,
                       const CalibrationStep& on_step) {
-  Check(parameters, logs);
-  return Fit(parameters, logs, twin, options, threads).Run(generator, on_step);
+  SimulatedTwins simulator(twin, threads);
+  return Calibrate(parameters, logs, simulator, options, generator, on_step);
 }
 
 std::vector<StartAgreement> AgreementOf(const std::vector<Calibration>& fits) {

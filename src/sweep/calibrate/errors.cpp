@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
-#include <stdexcept>
 
-#include "rift/gap/likeness.hpp"
+#include "fitted_simulator.hpp"
+#include "rift/gap/comparison.hpp"
 #include "rift/statistics/descriptive.hpp"
-#include "rift/trial/loop_delay.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -21,21 +19,6 @@ gap::GapOptions SpreadGap() {
   return options;
 }
 
-/// None for a path too short to tell them.
-Traits TraitsOf(const Trajectory& path, const SimulatedTrial& twin) {
-  try {
-    const gap::PathTraits shape = gap::TraitsOf(path, {});
-    const trial::LoopDelay delay =
-        trial::EstimateLoopDelay(path, twin.task.waypoints, twin.control);
-    const Eigen::Vector4d traits(std::log(shape.weave_m), std::log(shape.speed_mps), delay.lag_s,
-                                 delay.gain_rad_s);
-    if (delay.lag_s >= 0.0 && traits.allFinite()) return traits;
-  } catch (const std::invalid_argument&) {
-    // It did not drive, or hardly: it has no traits, and the motions still count.
-  }
-  return {};
-}
-
 double LogSpread(const Trajectory& a, const Trajectory& b) {
   return std::log(std::max(1e-4, gap::Gap(a, b, SpreadGap())));
 }
@@ -46,68 +29,7 @@ double Scatter(std::vector<double> values) {
   return deviation > 0.0 ? deviation : 1.0;
 }
 
-/// Whole runs of one log that reached the end.
-std::vector<Trajectory> RunsOf(SimulatedTrial twin, int runs) {
-  std::vector<Trajectory> paths;
-  for (int i = 0; i < runs; ++i, ++twin.seed) {
-    SimulatedRun run = Simulate(twin);
-    if (run.result.outcome == trial::Outcome::kReached) {
-      paths.push_back(std::move(run.result.trajectory));
-    }
-  }
-  return paths;
-}
-
-struct Raw {
-  LogErrors errors;
-  std::vector<Trajectory> runs;
-};
-
-Raw Evaluate(const CalibrationLog& log, const Traits& logged, const LoggedTraits& all,
-             const SimulatedTrial& twin, const CalibrationOptions& options) {
-  Raw raw;
-  const std::vector<HorizonError> motions = ShortHorizonErrors(twin, log.log, options.horizon);
-  raw.errors.motions.resize(3 * static_cast<Eigen::Index>(motions.size()));
-  for (size_t i = 0; i < motions.size(); ++i) {
-    raw.errors.motions.segment<3>(3 * static_cast<Eigen::Index>(i)) =
-        Eigen::Vector3d(motions[i].ahead_m, motions[i].left_m, motions[i].turned_rad);
-    raw.errors.frames.push_back(motions[i].frames);
-  }
-  raw.errors.traits = Eigen::VectorXd::Zero(kTraits + 1);
-  raw.runs = RunsOf(twin, options.runs);
-  if (!logged) return raw;
-  Eigen::Vector4d mean = Eigen::Vector4d::Zero();
-  int told = 0;
-  for (const Trajectory& run : raw.runs) {
-    const Traits traits = TraitsOf(run, twin);
-    if (traits) mean += *traits, ++told;
-  }
-  if (told > 0) {
-    raw.errors.traits.head<4>() = (mean / told - *logged).cwiseQuotient(all.scatter);
-  }
-  return raw;
-}
-
-/// Evaluates every log; which thread does it changes nothing.
-std::vector<Raw> EvaluateAll(const std::vector<CalibrationLog>& logs, const LoggedTraits& traits,
-                             const TwinAt& twin, const std::vector<double>& values,
-                             const CalibrationOptions& options, int threads) {
-  std::vector<Raw> raws(logs.size());
-  const auto work = [&](size_t first) {
-    for (size_t i = first; i < logs.size(); i += static_cast<size_t>(threads)) {
-      raws[i] = Evaluate(logs[i], traits.of_log[i], traits, twin(i, values), options);
-    }
-  };
-  std::vector<std::future<void>> workers;
-  for (int i = 1; i < threads; ++i) {
-    workers.push_back(std::async(std::launch::async, work, static_cast<size_t>(i)));
-  }
-  work(0);
-  for (std::future<void>& worker : workers) worker.get();
-  return raws;
-}
-
-double SpreadError(const Raw& a, const Raw& b, double logged, double scatter) {
+double SpreadError(const LogPrediction& a, const LogPrediction& b, double logged, double scatter) {
   double sum = 0.0;
   const size_t runs = std::min(a.runs.size(), b.runs.size());
   for (size_t i = 0; i < runs; ++i) sum += LogSpread(a.runs[i], b.runs[i]) - logged;
@@ -123,12 +45,21 @@ double Huber(double error, double outlier) {
 
 }  // namespace
 
-LoggedTraits TraitsOfLogs(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
+Traits MeanTraits(const std::vector<Traits>& of_runs) {
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  int told = 0;
+  for (const Traits& traits : of_runs) {
+    if (traits) sum += *traits, ++told;
+  }
+  return told > 0 ? Traits(sum / told) : Traits();
+}
+
+LoggedTraits TraitsOfLogs(const std::vector<CalibrationLog>& logs, const FittedSimulator& simulator,
                           const std::vector<double>& values) {
   LoggedTraits traits;
   std::vector<std::vector<double>> columns(kTraits);
   for (size_t i = 0; i < logs.size(); ++i) {
-    traits.of_log.push_back(TraitsOf(logs[i].log, twin(i, values)));
+    traits.of_log.push_back(simulator.TraitsOf(logs[i].log, i, values));
     for (int k = 0; k < kTraits && traits.of_log.back(); ++k) {
       columns[k].push_back((*traits.of_log.back())[k]);
     }
@@ -146,17 +77,26 @@ LoggedTraits TraitsOfLogs(const std::vector<CalibrationLog>& logs, const TwinAt&
 }
 
 std::vector<LogErrors> ErrorsAt(const std::vector<CalibrationLog>& logs, const LoggedTraits& traits,
-                                const TwinAt& twin, const std::vector<double>& values,
-                                const CalibrationOptions& options, int threads) {
-  std::vector<Raw> raws = EvaluateAll(logs, traits, twin, values, options, threads);
+                                FittedSimulator& simulator, const std::vector<double>& values,
+                                const CalibrationOptions& options) {
+  std::vector<LogPrediction> predictions = simulator.Predict(logs, values, options);
   std::vector<LogErrors> errors;
-  for (size_t i = 0; i < raws.size(); ++i) {
+  for (size_t i = 0; i < predictions.size(); ++i) {
+    LogErrors& one = errors.emplace_back();
+    one.traits = Eigen::VectorXd::Zero(kTraits + 1);
+    const Traits &logged = traits.of_log[i], &mean = predictions[i].mean_traits;
+    if (logged && mean) {
+      one.traits.head<kTraits>() = (*mean - *logged).cwiseQuotient(traits.scatter);
+    }
     if (traits.partner[i] >= 0) {
-      raws[i].errors.traits[kTraits] = SpreadError(raws[i], raws[traits.partner[i]],
-                                                   traits.log_spread[i], traits.spread_scatter);
+      one.traits[kTraits] = SpreadError(predictions[i], predictions[traits.partner[i]],
+                                        traits.log_spread[i], traits.spread_scatter);
     }
   }
-  for (Raw& raw : raws) errors.push_back(std::move(raw.errors));
+  for (size_t i = 0; i < predictions.size(); ++i) {
+    errors[i].motions = std::move(predictions[i].motions);
+    errors[i].frames = std::move(predictions[i].frames);
+  }
   return errors;
 }
 

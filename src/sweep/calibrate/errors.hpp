@@ -12,6 +12,11 @@ namespace rift::sweep {
 enum Trait { kLogWeave, kLogSpeed, kLoopDelay_s, kSteeringGain, kTraits };
 using Traits = std::optional<Eigen::Vector4d>;
 
+/// Over those that tell them; none when none does.
+Traits MeanTraits(const std::vector<Traits>& of_runs);
+
+class FittedSimulator;
+
 /// What is known of the logs before anything is simulated.
 struct LoggedTraits {
   std::vector<Traits> of_log;
@@ -21,12 +26,11 @@ struct LoggedTraits {
   double spread_scatter = 1.0;
 };
 
-LoggedTraits TraitsOfLogs(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
+LoggedTraits TraitsOfLogs(const std::vector<CalibrationLog>& logs, const FittedSimulator& simulator,
                           const std::vector<double>& values);
 
-/// Errors of every log at one set of values, in their units: first the motions (ahead, left,
-/// turned; in order of rows and frames), then one for each trait and the spread, over their
-/// scatter.
+/// Errors of a log at one set of values: first the motions (three channels each, in their units;
+/// see FittedSimulator), then one for each trait and the spread, over their scatter.
 struct LogErrors {
   Eigen::VectorXd motions;
   Eigen::VectorXd traits;
@@ -34,8 +38,8 @@ struct LogErrors {
 };
 
 std::vector<LogErrors> ErrorsAt(const std::vector<CalibrationLog>& logs, const LoggedTraits& traits,
-                                const TwinAt& twin, const std::vector<double>& values,
-                                const CalibrationOptions& options, int threads);
+                                FittedSimulator& simulator, const std::vector<double>& values,
+                                const CalibrationOptions& options);
 
 /// Root mean square of each kind of motion error over all logs, (frames - 1) x 3; outliers cut.
 Eigen::MatrixXd ScaleOf(const std::vector<LogErrors>& errors, const CalibrationOptions& options);

@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <set>
 
+#include "program_twins.hpp"
 #include "rift/experiment/parameter.hpp"
+#include "rift/experiment/program_parameters.hpp"
 #include "rift/statistics/random.hpp"
+#include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/trajectory/frame_grid.hpp"
@@ -40,18 +45,26 @@ class Identifier {
         say_(say),
         values_(StartValues()) {
     Load();
+    if (IsProgram()) runs_ = std::make_unique<CandidateRuns>(evaluator, jobs);
   }
 
   CalibrationReport Run();
 
  private:
+  bool IsProgram() const {
+    return experiment_.candidate.kind == experiment::CandidateKind::kProgram;
+  }
   std::vector<double> StartValues() const;
   void Load();
+  void NoteDoubts(const Recording& real);
   bool IsHeldOut(const std::string& trial) const;
   std::vector<const Entry*> Side(bool held_out) const;
   SimulatedTrial TwinOf(const Entry& entry, const std::vector<double>& values,
                         std::uint64_t seed) const;
   TwinAt TwinsOf(const std::vector<const Entry*>& entries, std::uint64_t seed = 0) const;
+  std::uint64_t SeedOf(const Entry& entry) const;
+  TrialRequest RequestOf(const Entry& entry, std::uint64_t seed) const;
+  std::vector<RepeatedTrial> DriveProgram(const std::vector<double>& values) const;
   Calibration Fit(const std::vector<const Entry*>& fitted, int start) const;
   std::vector<RepeatedTrial> Drive(const std::vector<double>& values) const;
   void JudgePaths(CalibrationReport& report) const;
@@ -68,6 +81,8 @@ class Identifier {
   std::vector<Entry> entries_;
   std::vector<std::string> missing_;
   std::vector<double> values_;
+  std::set<std::string> doubted_;        ///< kinds of doubts about the logs
+  std::unique_ptr<CandidateRuns> runs_;  ///< of a program
 };
 
 std::vector<double> Identifier::StartValues() const {
@@ -88,7 +103,7 @@ void Identifier::Load() {
   for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
     for (const TrialRequest& request : TrialsAt(experiment_, theta)) {
       Recording real = evaluator_.Reference(request);
-      if (real.status == TrialStatus::kOk && !real.trajectory.HasYaw()) {
+      if (real.status == TrialStatus::kOk && !real.trajectory.HasYaw() && !IsProgram()) {
         real.status = TrialStatus::kUnreadable;
         real.reason = "its yaw is needed: set reference.format";
       }
@@ -96,6 +111,7 @@ void Identifier::Load() {
         missing_.push_back(fmt::format("{}: {}", real.source, real.reason));
         continue;
       }
+      NoteDoubts(real);
       entries_.push_back({theta,
                           {.level = MainLevel(parameters, theta),
                            .trial = request.trial,
@@ -112,6 +128,16 @@ void Identifier::Load() {
                                           missing_.empty() ? "" : "; " + missing_.front()));
 }
 
+/// Each kind once: a mistake in units is in every log.
+void Identifier::NoteDoubts(const Recording& real) {
+  for (const std::string& doubt : real.doubts) {
+    const TrialDoubt one{DoubtAbout::kReference, doubt};
+    if (doubted_.insert(KindOf(one)).second) {
+      say_(fmt::format("warning: {}: {}", real.source, doubt));
+    }
+  }
+}
+
 std::vector<const Entry*> Identifier::Side(bool held_out) const {
   std::vector<const Entry*> side;
   for (const Entry& entry : entries_) {
@@ -125,8 +151,16 @@ SimulatedTrial Identifier::TwinOf(const Entry& entry, const std::vector<double>&
   const experiment::Experiment at =
       experiment::ExperimentAt(experiment::CalibratedAt(experiment_, values), entry.theta);
   const geometry::Pose2 start = StartFromLog(entry.log.log, 0.0, at.simulation.mocap);
-  const auto number = static_cast<std::uint64_t>(&entry - entries_.data());
-  return evaluator_.TrialOf(at, start, experiment_.seed + number * kSeedsOfLog + seed);
+  return evaluator_.TrialOf(at, start, SeedOf(entry) + seed);
+}
+
+std::uint64_t Identifier::SeedOf(const Entry& entry) const {
+  return experiment_.seed + static_cast<std::uint64_t>(&entry - entries_.data()) * kSeedsOfLog;
+}
+
+/// A run of the program in the place of a log, its fitted values to be added.
+TrialRequest Identifier::RequestOf(const Entry& entry, std::uint64_t seed) const {
+  return {.theta = entry.theta, .trial = entry.trial.trial, .seed = SeedOf(entry) + seed};
 }
 
 TwinAt Identifier::TwinsOf(const std::vector<const Entry*>& entries, std::uint64_t seed) const {
@@ -151,6 +185,7 @@ std::vector<CalibrationLog> LogsToFit(const std::vector<const Entry*>& entries,
 }
 
 std::vector<RepeatedTrial> Identifier::Drive(const std::vector<double>& values) const {
+  if (IsProgram()) return DriveProgram(values);
   std::vector<RepeatedTrial> trials;
   for (const Entry& entry : entries_) {
     SimulatedTrial twin = TwinOf(entry, values, kJudgeSeeds);
@@ -168,6 +203,32 @@ std::vector<RepeatedTrial> Identifier::Drive(const std::vector<double>& values) 
       }
     }
     trials.push_back(std::move(trial));
+  }
+  return WithoutDetours(std::move(trials), experiment_.likeness.longest_run);
+}
+
+/// What tells a loop delay, the controller, is the program's own.
+std::vector<RepeatedTrial> Identifier::DriveProgram(const std::vector<double>& values) const {
+  const int judge_runs = experiment_.calibrate.judge_runs;
+  std::vector<TrialRequest> requests;
+  for (const Entry& entry : entries_) {
+    for (int run = 0; run < judge_runs; ++run) {
+      requests.push_back(RequestOf(entry, kJudgeSeeds + static_cast<std::uint64_t>(run)));
+      requests.back().theta = experiment::WithFitted(entry.theta, values);
+    }
+  }
+  std::vector<Recording> driven = runs_->Run(requests);
+  std::vector<RepeatedTrial> trials;
+  for (size_t i = 0; i < driven.size(); ++i) {
+    const Entry& entry = entries_[i / static_cast<size_t>(judge_runs)];
+    if (i % static_cast<size_t>(judge_runs) == 0) {
+      trials.push_back({.setting = entry.log.setting, .real = entry.log.log});
+    }
+    if (driven[i].status == TrialStatus::kOk && HasPath(driven[i])) {
+      trials.back().runs.push_back(std::move(driven[i].trajectory));
+    } else {
+      ++trials.back().failed_runs;
+    }
   }
   return WithoutDetours(std::move(trials), experiment_.likeness.longest_run);
 }
@@ -249,6 +310,7 @@ void Identifier::Show(CalibrationReport& report, const std::vector<RepeatedTrial
 }
 
 void Identifier::JudgeErrors(CalibrationReport& report) const {
+  if (IsProgram()) return;  // nobody can ask it for the next frames of a log
   for (const bool held_out : {false, true}) {
     const std::vector<const Entry*> side = Side(held_out);
     if (side.empty()) continue;
@@ -270,11 +332,20 @@ Calibration Identifier::Fit(const std::vector<const Entry*>& fitted, int start) 
     if (start > 0) p.start = p.min + share * (p.max - p.min);
   }
   std::mt19937_64 generator(experiment_.seed + static_cast<std::uint64_t>(start));
-  return Calibrate(parameters, LogsToFit(fitted, experiment_.likeness.longest_run),
-                   TwinsOf(fitted, static_cast<std::uint64_t>(start) * kSeedsOfStart),
-                   experiment_.calibrate.method, generator, jobs_, [&](int steps, double loss) {
-                     say_(fmt::format("step {}: loss {:.4f}", steps, loss));
-                   });
+  const std::vector<CalibrationLog> logs = LogsToFit(fitted, experiment_.likeness.longest_run);
+  const std::uint64_t seed = static_cast<std::uint64_t>(start) * kSeedsOfStart;
+  const CalibrationOptions& method = experiment_.calibrate.method;
+  const auto on_step = [&](int steps, double loss) {
+    say_(fmt::format("step {}: loss {:.4f}", steps, loss));
+  };
+  if (!IsProgram()) {
+    return Calibrate(parameters, logs, TwinsOf(fitted, seed), method, generator, jobs_, on_step);
+  }
+  std::vector<TrialRequest> requests;
+  for (const Entry* entry : fitted) requests.push_back(RequestOf(*entry, seed));
+  ProgramTwins program(*runs_, std::move(requests), experiment_, evaluator_.experiment_file(),
+                       say_);
+  return Calibrate(parameters, logs, program, OfWholeRuns(method), generator, on_step);
 }
 
 CalibrationReport Identifier::Run() {
@@ -282,6 +353,11 @@ CalibrationReport Identifier::Run() {
   for (const std::string& why : missing_) say_("note: left out: " + why);
   say_(fmt::format("fitting {} parameters to {} logs; {} held out", values_.size(), fitted.size(),
                    entries_.size() - fitted.size()));
+  if (IsProgram()) {
+    say_(
+        "note: a program is fitted and judged by whole runs: closeness, weave, spread and speed; "
+        "next frames, loop delay and the structure of errors are of rift's own simulator");
+  }
   CalibrationReport report;
   std::vector<Calibration> fits;
   for (int start = 0; start < experiment_.calibrate.starts; ++start) {

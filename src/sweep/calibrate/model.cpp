@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fitted_simulator.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
 
 namespace rift::sweep {
@@ -10,8 +11,6 @@ namespace {
 // Whole runs of a delayed bang-bang loop are chaotic: over a small step the scatter of their traits
 // is many times their slope.
 constexpr double kStepOfRuns = 0.2;
-// Runs that stand for real logs are none of those that predict.
-constexpr std::uint64_t kSeedsOfRepeat = 20'000;
 constexpr std::uint64_t kSeedsOfTry = 1'000'000;
 
 }  // namespace
@@ -67,23 +66,22 @@ double RidgeOf(const Eigen::MatrixXd& hessian) {
 }
 
 ErrorModel::ErrorModel(const std::vector<experiment::FreeParameter>& parameters,
-                       std::vector<CalibrationLog> logs, const TwinAt& twin,
-                       const CalibrationOptions& options, int threads, const Eigen::VectorXd& start)
+                       std::vector<CalibrationLog> logs, FittedSimulator& simulator,
+                       const CalibrationOptions& options, const Eigen::VectorXd& start)
     : parameters_(parameters),
       logs_(std::move(logs)),
-      twin_(twin),
+      simulator_(simulator),
       options_(options),
-      threads_(threads),
-      traits_(TraitsOfLogs(logs_, twin, ValuesAt(parameters, start))) {}
+      traits_(TraitsOfLogs(logs_, simulator, ValuesAt(parameters, start))) {}
 
 ErrorModel ErrorModel::OfSimulatedLogs(const Eigen::VectorXd& shares, int repeat) const {
   std::vector<CalibrationLog> logs;
+  std::vector<trajectory::Trajectory> runs =
+      simulator_.LogsAt(logs_, ValuesAt(parameters_, shares), repeat);
   for (size_t i = 0; i < logs_.size(); ++i) {
-    SimulatedTrial twin = twin_(i, ValuesAt(parameters_, shares));
-    twin.seed += static_cast<std::uint64_t>(repeat + 1) * kSeedsOfRepeat;
-    logs.push_back({logs_[i].name, logs_[i].setting, RunWithin(logs_[i].longest_m, twin)});
+    logs.push_back({logs_[i].name, logs_[i].setting, std::move(runs[i])});
   }
-  ErrorModel model(parameters_, std::move(logs), twin_, options_, threads_, shares);
+  ErrorModel model(parameters_, std::move(logs), simulator_, options_, shares);
   model.traits_.scatter = traits_.scatter;
   model.traits_.spread_scatter = traits_.spread_scatter;
   return model;
@@ -92,7 +90,7 @@ ErrorModel ErrorModel::OfSimulatedLogs(const Eigen::VectorXd& shares, int repeat
 std::vector<LogErrors> ErrorModel::Errors(const Eigen::VectorXd& shares,
                                           const CalibrationOptions& options) {
   trials_simulated_ += logs_.size() * static_cast<size_t>(options.horizon.phases + options.runs);
-  return sweep::ErrorsAt(logs_, traits_, twin_, ValuesAt(parameters_, shares), options, threads_);
+  return sweep::ErrorsAt(logs_, traits_, simulator_, ValuesAt(parameters_, shares), options);
 }
 
 std::vector<LogErrors> ErrorModel::RawErrorsAt(const Eigen::VectorXd& shares) {
@@ -133,7 +131,8 @@ Linearised ErrorModel::LinearisedAt(const Eigen::VectorXd& shares,
                                     const std::vector<LogErrors>& raw, const Eigen::MatrixXd& scale,
                                     double step) {
   CalibrationOptions motions_only = options_, runs_mostly = options_;
-  motions_only.runs = 0;
+  const bool has_wide_slopes = options_.runs > 0 && !simulator_.HasWholeRunsOnly();
+  if (has_wide_slopes) motions_only.runs = 0;
   runs_mostly.horizon.phases = 1;
   Linearised at{.errors = WeightedBlocks(raw, scale)};
   std::vector<Eigen::MatrixXd> slopes;
@@ -143,7 +142,7 @@ Linearised ErrorModel::LinearisedAt(const Eigen::VectorXd& shares,
   for (Eigen::Index k = 0; k < shares.size(); ++k) {
     const Blocks near = Slope(shares, scale, k, step, motions_only);
     for (size_t i = 0; i < slopes.size(); ++i) slopes[i].col(k) = near[i];
-    if (options_.runs == 0) continue;
+    if (!has_wide_slopes) continue;
     const Blocks wide = Slope(shares, scale, k, std::max(step, kStepOfRuns), runs_mostly);
     for (size_t i = 0; i < slopes.size(); ++i) {
       slopes[i].col(k).tail(kTraits + 1) = wide[i].tail(kTraits + 1);

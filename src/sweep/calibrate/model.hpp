@@ -58,10 +58,10 @@ double RidgeOf(const Eigen::MatrixXd& hessian);
 /// Errors of a set of logs as a function of the shares.
 class ErrorModel {
  public:
-  /// `parameters`, `twin` and `options` must outlive the model.
+  /// `parameters`, `simulator` and `options` must outlive the model.
   ErrorModel(const std::vector<experiment::FreeParameter>& parameters,
-             std::vector<CalibrationLog> logs, const TwinAt& twin,
-             const CalibrationOptions& options, int threads, const Eigen::VectorXd& start);
+             std::vector<CalibrationLog> logs, FittedSimulator& simulator,
+             const CalibrationOptions& options, const Eigen::VectorXd& start);
 
   /// Logs that the simulator made, held against what it predicts for them as the real ones are:
   /// traits are told in the scatter of the real logs.
@@ -87,9 +87,8 @@ class ErrorModel {
 
   const std::vector<experiment::FreeParameter>& parameters_;
   std::vector<CalibrationLog> logs_;
-  const TwinAt& twin_;
+  FittedSimulator& simulator_;
   const CalibrationOptions& options_;
-  int threads_;
   LoggedTraits traits_;
   size_t trials_simulated_ = 0;
 };

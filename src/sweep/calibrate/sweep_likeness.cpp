@@ -5,9 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "program_twins.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
+#include "rift/sweep/falsify/candidate_runs.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/trajectory/frame_grid.hpp"
@@ -56,11 +58,13 @@ class Gathering {
   }
   void Plan(const TrialRequest& request, const Recording& real, size_t trial);
   void AddLog(const TrialRequest& request, const Recording& real, std::set<std::string>& seen);
+  void RunPrograms(int workers);
 
   Evaluator& evaluator_;
   const experiment::Experiment& experiment_;
   std::vector<Labelled> trials_;
   std::vector<Planned> planned_;
+  std::vector<TrialRequest> program_runs_;  ///< of a program, one for each of trials_
 };
 
 void Gathering::Add(const experiment::Theta& theta) {
@@ -77,6 +81,8 @@ void Gathering::Add(const experiment::Theta& theta) {
                         .control = at.control}});
     if (IsSimulated()) {
       Plan(request, real, trials_.size() - 1);
+    } else if (experiment_.candidate.kind == experiment::CandidateKind::kProgram) {
+      program_runs_.push_back(request);
     } else {
       AddLog(request, real, logs);
     }
@@ -107,7 +113,20 @@ void Gathering::Plan(const TrialRequest& request, const Recording& real, size_t 
   }
 }
 
+/// In processes that are given up when they hang, as the trials of the sweep were.
+void Gathering::RunPrograms(int workers) {
+  if (program_runs_.empty()) return;
+  std::vector<Recording> runs = CandidateRuns(evaluator_, workers).Run(program_runs_);
+  for (size_t i = 0; i < runs.size(); ++i) {
+    RepeatedTrial& trial = trials_[i].trial;
+    const bool is_run = runs[i].status == TrialStatus::kOk && HasPath(runs[i]);
+    if (is_run) trial.runs.push_back(std::move(runs[i].trajectory));
+    trial.failed_runs += !is_run;
+  }
+}
+
 std::vector<Labelled> Gathering::Drive(int threads) {
+  RunPrograms(threads);
   std::vector<SimulatedRun> runs(planned_.size());
   const auto work = [&](size_t first) {
     for (size_t i = first; i < planned_.size(); i += static_cast<size_t>(threads)) {

@@ -11,8 +11,8 @@
 #include "program_side.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
-#include "rift/gap/doubts.hpp"
 #include "rift/statistics/hash.hpp"
+#include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/trajectory/frame_grid.hpp"
@@ -319,18 +319,6 @@ TrialRow Evaluator::EvaluateOdometry(const TrialRequest& request) {
   return CompareTrial(experiment_, request, wheels, run.camera);
 }
 
-/// Only of two logs: what a worker process would say nobody hears.
-void Evaluator::NoteDoubts(const Recording& candidate, const Recording& reference) const {
-  const bool are_logs = experiment_.candidate.kind == CandidateKind::kLogs &&
-                        experiment_.reference.kind == ReferenceKind::kLogs;
-  const bool are_there =
-      candidate.status == TrialStatus::kOk && reference.status == TrialStatus::kOk;
-  if (!are_logs || !are_there) return;
-  for (const std::string& doubt : gap::Doubts(candidate.trajectory, reference.trajectory)) {
-    inputs_.note(fmt::format("SIM {} and REAL {}: {}", candidate.source, reference.source, doubt));
-  }
-}
-
 TrialRow Evaluator::Evaluate(const TrialRequest& asked) {
   if (experiment_.objective == experiment::Objective::kOdometry) return EvaluateOdometry(asked);
   TrialRequest request = asked;
@@ -338,8 +326,9 @@ TrialRow Evaluator::Evaluate(const TrialRequest& asked) {
   const Recording reference = Reference(request);
   try {
     const Recording candidate = Candidate(request, reference);
-    NoteDoubts(candidate, reference);
-    return CompareTrial(experiment_, request, candidate, reference);
+    TrialRow row = CompareTrial(experiment_, request, candidate, reference);
+    if (row.IsOk()) row.doubts = DoubtsOf(experiment_, candidate, reference);
+    return row;
   } catch (const yaml::Error& broken_rule) {
     const Recording none{
         .status = TrialStatus::kInvalid, .reason = broken_rule.what(), .source = "experiment"};

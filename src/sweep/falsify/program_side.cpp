@@ -4,11 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "rift/experiment/path_template.hpp"
+#include "rift/experiment/program_parameters.hpp"
+#include "rift/files/process_end.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/trajectory/csv.hpp"
 
@@ -26,12 +27,13 @@ std::string Joined(const std::string& text, const std::string& words) {
 }
 
 /// What a program is told of its trial.
-ordered_json TrialJson(const experiment::Experiment& experiment, const TrialRequest& request,
-                       const std::string& folder) {
+ordered_json TrialJson(const experiment::Experiment& experiment,
+                       const std::vector<experiment::Parameter>& parameters,
+                       const TrialRequest& request, const std::string& folder) {
   ordered_json theta = ordered_json::object();
   for (size_t i = 0; i < request.theta.size(); ++i) {
     const experiment::ParameterValue& value = request.theta[i];
-    const std::string name = experiment.space.parameters[i].key;
+    const std::string name = parameters[i].key;
     if (value.number)
       theta[name] = *value.number;
     else
@@ -45,8 +47,8 @@ ordered_json TrialJson(const experiment::Experiment& experiment, const TrialRequ
 
 /// An argument with the values of the trial in the place of their names in braces.
 std::string FilledIn(const std::string& word, const experiment::Experiment& experiment,
-                     const TrialRequest& request, const std::string& folder) {
-  std::vector<experiment::Parameter> parameters = experiment.space.parameters;
+                     std::vector<experiment::Parameter> parameters, const TrialRequest& request,
+                     const std::string& folder) {
   experiment::Theta theta = request.theta;
   const auto add = [&](const char* name, experiment::ParameterValue value) {
     parameters.push_back({.key = name});
@@ -74,7 +76,10 @@ bool IsCrash(TrialStatus status) {
 
 ProgramSide::ProgramSide(const experiment::Experiment& experiment, ProgramOptions options,
                          const Inputs& inputs)
-    : experiment_(experiment), options_(std::move(options)), inputs_(inputs) {
+    : experiment_(experiment),
+      parameters_(experiment::ProgramParameters(experiment)),
+      options_(std::move(options)),
+      inputs_(inputs) {
   if (options_.run.words.empty()) {
     throw std::invalid_argument(
         fmt::format("{}.run is missing: name the program, such as {}.run: [python3, sim.py, --out, "
@@ -85,7 +90,7 @@ ProgramSide::ProgramSide(const experiment::Experiment& experiment, ProgramOption
                              .trial = experiment.reference.trials.names.front()};
   for (const std::string& word : options_.run.words) {
     try {
-      FilledIn(word, experiment, nominal, "/");
+      FilledIn(word, experiment, parameters_, nominal, "/");
       const std::vector<std::string> names = experiment::TemplateNames(word);
       const bool names_folder_only = std::all_of(names.begin(), names.end(),
                                                  [](const auto& name) { return name == "folder"; });
@@ -111,10 +116,10 @@ ProgramSide::~ProgramSide() {
 ProgramStart ProgramSide::StartOf(const TrialRequest& request, const std::string& folder) const {
   ProgramStart start{.memory_mb = experiment_.run.memory_mb, .talks = options_.persistent};
   for (const std::string& word : options_.run.words) {
-    start.arguments.push_back(FilledIn(word, experiment_, request, folder));
+    start.arguments.push_back(FilledIn(word, experiment_, parameters_, request, folder));
   }
   if (!options_.persistent) {
-    const ordered_json trial = TrialJson(experiment_, request, folder);
+    const ordered_json trial = TrialJson(experiment_, parameters_, request, folder);
     start.environment["RIFT_TRIAL"] = trial.dump();
     start.files[kThetaName] = trial.dump(1) + "\n";
   }
@@ -163,7 +168,7 @@ Recording ProgramSide::RunPersistent(const TrialRequest& request) {
   std::error_code none;
   fs::remove(fs::path(program_->Folder()) / kLogName, none);
   std::optional<std::string> line;
-  if (program_->SendLine(TrialJson(experiment_, request, program_->Folder()).dump())) {
+  if (program_->SendLine(TrialJson(experiment_, parameters_, request, program_->Folder()).dump())) {
     line = program_->ReceiveLine();
   }
   if (!line) {
@@ -207,26 +212,21 @@ Recording ProgramSide::RunPersistent(const TrialRequest& request) {
 
 void ProgramSide::TakeExit(const ExternalProgram::Exit& exit, const std::string& words,
                            Recording& recording) const {
-  if (exit.signal != 0) {
-    recording.status = TrialStatus::kCrashed;
-    recording.reason = Joined(
-        fmt::format("ended by signal {} ({})", exit.signal, ::strsignal(exit.signal)), words);
-  } else if (exit.code != 0) {
-    const experiment::ExitCodes& codes = options_.exit_codes;
-    recording.status = exit.code == codes.timed_out    ? TrialStatus::kTimedOut
-                       : exit.code == codes.fell       ? TrialStatus::kFell
-                       : exit.code == codes.left_arena ? TrialStatus::kLeftArena
-                       : exit.code == codes.lost       ? TrialStatus::kLost
-                                                       : TrialStatus::kFault;
-    recording.reason = Joined(fmt::format("ended with exit code {}", exit.code), words);
-  }
+  if (exit.signal == 0 && exit.code == 0) return;
+  const experiment::ExitCodes& codes = options_.exit_codes;
+  recording.status = exit.signal != 0                ? TrialStatus::kCrashed
+                     : exit.code == codes.timed_out  ? TrialStatus::kTimedOut
+                     : exit.code == codes.fell       ? TrialStatus::kFell
+                     : exit.code == codes.left_arena ? TrialStatus::kLeftArena
+                     : exit.code == codes.lost       ? TrialStatus::kLost
+                                                     : TrialStatus::kFault;
+  recording.reason = files::ProcessEndText(exit.code, exit.signal, words);
   const bool is_full =
       words.find("bad_alloc") != words.npos || words.find("MemoryError") != words.npos;
-  if (recording.status != TrialStatus::kOk && is_full) {
-    recording.status = TrialStatus::kOutOfMemory;
-    recording.reason =
-        Joined(fmt::format("wanted more than {} MB of memory", experiment_.run.memory_mb), words);
-  }
+  if (!is_full) return;
+  recording.status = TrialStatus::kOutOfMemory;
+  recording.reason =
+      Joined(fmt::format("wanted more than {} MB of memory", experiment_.run.memory_mb), words);
 }
 
 void ProgramSide::ReadLogFile(const std::string& folder, Recording& recording) const {
@@ -245,6 +245,7 @@ void ProgramSide::ReadLog(const std::string& text, Recording& recording) const {
     trajectory::Log log = ReadMovedLog(text, "{out}", options_.log);
     if (IsCutShort(log)) throw std::invalid_argument("{out}: its last row is cut short");
     recording.trajectory = std::move(log.trajectory);
+    recording.doubts = std::move(log.doubts);
     if (recording.status != TrialStatus::kOk) {
       recording.left_m = DistanceLeft_m(recording.trajectory);
     }

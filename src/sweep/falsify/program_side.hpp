@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "rift/experiment/experiment.hpp"
 #include "rift/sweep/falsify/recorded_logs.hpp"
@@ -46,6 +47,7 @@ class ProgramSide {
   double DistanceLeft_m(const trajectory::Trajectory& path) const;
 
   const experiment::Experiment& experiment_;
+  std::vector<experiment::Parameter> parameters_;
   ProgramOptions options_;
   Inputs inputs_;
   std::string hashes_;

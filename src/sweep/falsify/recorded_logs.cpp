@@ -58,9 +58,8 @@ Recording RecordedLogs::Load(const std::string& path) {
     }
     hash_of_[path] = statistics::Hash128Text(*bytes);
     trajectory::Log log = ReadMovedLog(*bytes, path, options_);
-    for (const auto* lines : {&log.notes, &log.doubts}) {
-      for (const std::string& line : *lines) inputs_.note(fmt::format("{}: {}", path, line));
-    }
+    for (const std::string& note : log.notes) inputs_.note(fmt::format("{}: {}", path, note));
+    recording.doubts = std::move(log.doubts);
     recording.trajectory = std::move(log.trajectory);
   } catch (const std::invalid_argument& bad_log) {  // a row of its own, not the sweep's end
     recording.status = TrialStatus::kUnreadable;

@@ -11,6 +11,7 @@
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/inference.hpp"
+#include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/verdict.hpp"
 
 namespace rift::sweep {
@@ -235,6 +236,7 @@ void Summarise(SweepResult& result) {
     const experiment::Parameter& parameter = result.parameters[i];
     if (parameter.levels.size() > 1) result.anova.push_back(AnovaOf(result, static_cast<int>(i)));
   }
+  result.doubts = DoubtsOf(result);
 }
 
 std::vector<int> RowsThatCount(const SweepResult& result) {

@@ -3,18 +3,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "job_status.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
 
 namespace rift::sweep {
-
-namespace {
-
-TrialRow RowFor(TrialRequest request) {
-  return {.theta = std::move(request.theta),
-          .trial = std::move(request.trial),
-          .seed = request.seed,
-          .is_random_draw = request.is_random_draw};
-}
 
 TrialStatus StatusOf(JobEnd end) {
   switch (end) {
@@ -32,9 +24,13 @@ TrialStatus StatusOf(JobEnd end) {
   return TrialStatus::kFault;
 }
 
-void SetStatus(TrialRow& row, TrialStatus status, const std::string& reason) {
-  row.status = status;
-  row.reason = reason.substr(0, reason.find('\n'));
+namespace {
+
+TrialRow RowFor(TrialRequest request) {
+  return {.theta = std::move(request.theta),
+          .trial = std::move(request.trial),
+          .seed = request.seed,
+          .is_random_draw = request.is_random_draw};
 }
 
 JournalEntry EntryOf(const TrialRow& row) {
@@ -49,6 +45,15 @@ WorkerPool::Work WorkOf(Evaluate evaluate) {
 }
 
 }  // namespace
+
+TrialRow EndedRow(TrialRequest request, const JobResult& result) {
+  TrialRow row = RowFor(std::move(request));
+  if (result.end == JobEnd::kDone) return row;
+  row.status = StatusOf(result.end);
+  row.reason = result.bytes.substr(0, result.bytes.find('\n'));
+  row.candidate = "simulation";
+  return row;
+}
 
 RunTrials RunHere(Evaluate evaluate, Watch watch) {
   return [evaluate = std::move(evaluate), watch = std::move(watch)](
@@ -90,13 +95,8 @@ std::vector<size_t> TrialRunner::Missing(const std::vector<TrialRequest>& reques
 
 TrialRow TrialRunner::Finish(TrialRequest request, const JobResult& result, bool keeps_path) {
   const std::string key = journal_ == nullptr ? "" : key_of_(request);
-  TrialRow row = RowFor(std::move(request));
-  if (result.end == JobEnd::kDone) {
-    DecodeFindings(result.bytes, row);
-  } else {
-    SetStatus(row, StatusOf(result.end), result.bytes);
-    row.candidate = "simulation";
-  }
+  TrialRow row = EndedRow(std::move(request), result);
+  if (result.end == JobEnd::kDone) DecodeFindings(result.bytes, row);
   if (!keeps_path) row.evidence.path_m = {};
   if (journal_ != nullptr) journal_->Add(key, EntryOf(row));
   watch_.seen(row, false);
@@ -198,6 +198,11 @@ std::string EncodeFindings(const TrialRow& row) {
     write(point_m.x());
     write(point_m.y());
   }
+  write(row.doubts.size());
+  for (const TrialDoubt& doubt : row.doubts) {
+    write(doubt.about);
+    write(doubt.text);
+  }
   return write.Take();
 }
 
@@ -216,6 +221,11 @@ void DecodeFindings(std::string_view bytes, TrialRow& row) {
   for (Eigen::Vector2f& point_m : row.evidence.path_m) {
     read(point_m.x());
     read(point_m.y());
+  }
+  row.doubts.resize(read.Count(sizeof(DoubtAbout) + sizeof(size_t)));
+  for (TrialDoubt& doubt : row.doubts) {
+    read(doubt.about);
+    read(doubt.text);
   }
   if (!read.IsAtEnd()) throw std::runtime_error("a row of the sweep is of another layout");
 }

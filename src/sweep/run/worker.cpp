@@ -18,6 +18,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "rift/files/process_end.hpp"
+
 namespace rift::sweep {
 namespace {
 
@@ -207,12 +209,8 @@ Worker::ExitStatus Worker::Reap() {
     return {JobEnd::kOutOfMemory,
             fmt::format("wanted more than {} MB of memory", options_.memory_mb)};
   }
-  const bool is_signal = WIFSIGNALED(status);
-  const std::string how = is_signal ? fmt::format("ended by signal {} ({})", WTERMSIG(status),
-                                                  ::strsignal(WTERMSIG(status)))
-                                    : fmt::format("ended with exit code {}", WEXITSTATUS(status));
-  return {JobEnd::kCrashed, words.empty() ? how : fmt::format("{}: {}", how, words),
-          is_signal && WTERMSIG(status) == SIGKILL};
+  return {JobEnd::kCrashed, files::ProcessEndText(status, words),
+          WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL};
 }
 
 }  // namespace rift::sweep

@@ -76,7 +76,6 @@ class Evaluator {
   std::string Filled(const experiment::PathTemplate& path, const experiment::Theta& theta,
                      const std::string& trial) const;
   void CheckKinds() const;
-  void NoteDoubts(const Recording& candidate, const Recording& reference) const;
   std::string ReferencePath(const experiment::Theta& theta, const std::string& trial) const;
   TrialRow EvaluateOdometry(const TrialRequest& request);
   const Recording& Nominal(std::uint64_t seed);

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/trajectory/read_options.hpp"
@@ -16,6 +17,7 @@ struct Recording {
   std::string reason;
   std::string source;  ///< a file, or what made it
   trajectory::Trajectory trajectory;
+  std::vector<std::string> doubts{};           ///< trajectory::Log::doubts
   std::optional<trial::LimitCounts> limits{};  ///< what its controller asked for, where known
   double left_m = gap::kNotComputed;           ///< see TrialRow
 };

@@ -39,6 +39,17 @@ constexpr std::array<std::string_view, 13> EnumNames(TrialStatus) {
           "fault", "invalid", "nan",        "hung",      "crashed", "out_of_memory"};
 }
 
+enum class DoubtAbout { kCandidate, kReference, kPair };
+constexpr std::array<std::string_view, 3> EnumNames(DoubtAbout) {
+  return {"candidate", "reference", "pair"};
+}
+
+/// Why a trial may tell nothing though it has a gap: a trajectory was probably read in a wrong way.
+struct TrialDoubt {
+  DoubtAbout about = DoubtAbout::kPair;
+  std::string text;  ///< one line; of a pair the two are called SIM and REAL
+};
+
 /// One candidate trajectory against one reference trajectory.
 struct TrialRow {
   experiment::Theta theta;            ///< one value for each parameter, in their order
@@ -55,6 +66,7 @@ struct TrialRow {
   /// Along the path from where a run that did not arrive ended to the last waypoint.
   double left_m = gap::kNotComputed;
   TrialEvidence evidence;
+  std::vector<TrialDoubt> doubts;  ///< none unless ok
   /// Theta was drawn independently of all other rows, evenly over the space. Only such rows tell
   /// how often it fails; a grid and a search go where they like.
   bool is_random_draw = false;
@@ -131,6 +143,13 @@ struct ReplacedReference {
   std::string reason;
 };
 
+/// A doubt that trials share, whatever its numbers.
+struct SweepDoubt {
+  TrialDoubt first;  ///< as the first of them has it
+  int trials = 0;
+  int row = 0;  ///< of the first
+};
+
 /// Everything a sweep found out.
 struct SweepResult {
   std::string name;            ///< of the experiment
@@ -147,6 +166,7 @@ struct SweepResult {
   LevelSummary all;
   std::optional<Falsification> falsification;  ///< of a search
   std::vector<ReplacedReference> replaced;     ///< of nominal references
+  std::vector<SweepDoubt> doubts;              ///< see DoubtsOf
 
   int Count(gap::Verdict verdict) const;  ///< settings
 };

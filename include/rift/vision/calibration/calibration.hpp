@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rift/statistics/not_computed.hpp"
 #include "rift/vision/calibration/chessboard.hpp"
 #include "rift/vision/calibration/options.hpp"
 #include "rift/vision/camera/camera_model.hpp"
@@ -18,7 +19,7 @@ constexpr std::array<std::string_view, 3> EnumNames(CalibrationVerdict) {
   return {"good", "usable", "refuse"};
 }
 
-inline constexpr double kNotComputed = std::numeric_limits<double>::quiet_NaN();
+using statistics::kNotComputed;
 
 /// One picture's part in a calibration.
 struct ViewResult {
