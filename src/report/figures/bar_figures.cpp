@@ -9,7 +9,7 @@
 namespace rift::report {
 namespace {
 
-constexpr std::size_t kLongestLabel = 28;
+constexpr std::size_t kLongestLabel = 34;
 constexpr std::size_t kMostSlanted = 20;  // more labels stand upright, and say the level alone
 constexpr double kGroupWidth = 0.84;      // of the distance between two groups
 

@@ -10,7 +10,7 @@
 namespace rift::report {
 namespace {
 
-constexpr std::size_t kLongestLabel = 28;
+constexpr std::size_t kLongestLabel = 34;
 constexpr int kCellHeight_px = 30;
 constexpr int kCellWidth_px = 56;
 

@@ -19,6 +19,18 @@ std::map<std::string, std::size_t> PlaceOf(const std::vector<sweep::LevelSummary
   return place;
 }
 
+/// Two values or more, each with its name: "v_min 0.15, v_max 0.30".
+std::string NamedValues(const sweep::SweepResult& result, const experiment::Theta& theta,
+                        const std::vector<int>& parameters) {
+  std::string text;
+  for (const int i : parameters) {
+    text += (text.empty() ? "" : ", ") +
+            experiment::NamedValue(result.parameters[i],
+                                   sweep::ShortText(result.parameters[i], theta[i]));
+  }
+  return text;
+}
+
 }  // namespace
 
 SettingGrid LayOut(const sweep::SweepResult& result) {
@@ -28,7 +40,9 @@ SettingGrid LayOut(const sweep::SweepResult& result) {
   grid.mains = sweep::SummariseBy(result, {split.main_factor});
   grid.others = {result.all};
   if (!split.others.empty()) {
-    grid.others_name = split.others_name;
+    for (const int i : split.others) {
+      grid.others_name += (grid.others_name.empty() ? "" : ", ") + result.parameters[i].Name();
+    }
     grid.others = sweep::SummariseBy(result, split.others);
   }
   const auto continuous = [](const experiment::Parameter& p) { return p.IsContinuous(); };
@@ -43,6 +57,9 @@ SettingGrid LayOut(const sweep::SweepResult& result) {
         split.others.empty() ? 0
                              : other_place.at(sweep::CombinationLabel(setting.theta, split.others));
     grid.cells[main][other] = &setting;
+    if (split.others.size() > 1) {
+      grid.others[other].level = NamedValues(result, setting.theta, split.others);
+    }
   }
   return grid;
 }
@@ -50,15 +67,11 @@ SettingGrid LayOut(const sweep::SweepResult& result) {
 std::string SettingLabel(const sweep::SweepResult& result, const experiment::Theta& theta) {
   if (result.parameters.empty()) return "the only setting";
   const int main = sweep::SplitFactors(result.parameters).main_factor;
-  const auto named = [&](int i) {
-    return experiment::NamedValue(result.parameters[i],
-                                  sweep::ShortText(result.parameters[i], theta[i]));
-  };
-  std::string label = named(main);
+  std::vector<int> order = {main};
   for (int i = 0; i < static_cast<int>(theta.size()); ++i) {
-    if (i != main) label += ", " + named(i);
+    if (i != main) order.push_back(i);
   }
-  return label;
+  return NamedValues(result, theta, order);
 }
 
 std::vector<double> GapsOf(const sweep::SweepResult& result, const sweep::SettingResult& setting) {

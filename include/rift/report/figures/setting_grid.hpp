@@ -10,9 +10,11 @@ namespace rift::report {
 /// The settings of a sweep laid out as main factor x combination of all other parameters.
 struct SettingGrid {
   std::string main_name;    ///< "surface"
-  std::string others_name;  ///< "[v_min, v_max]"; empty for a single axis
+  std::string others_name;  ///< "v_min, v_max"; empty for a single axis
   std::vector<sweep::LevelSummary> mains;
-  std::vector<sweep::LevelSummary> others;  ///< one unnamed entry for a single axis
+  /// Those of two parameters or more are named: "v_min 0.15, v_max 0.30". One unnamed entry for a
+  /// single axis.
+  std::vector<sweep::LevelSummary> others;
   /// [main][other]; null where the sweep holds no such setting; empty with a continuous axis,
   /// where no two settings share a value.
   std::vector<std::vector<const sweep::SettingResult*>> cells;
