@@ -39,8 +39,10 @@ class Fit {
 
  private:
   static Eigen::VectorXd StartOf(const std::vector<experiment::FreeParameter>& parameters);
-  void Descend(Calibration& result, const CalibrationStep& on_step);
+  using Part = CalibrationProgress::Part;
+  void Descend(Calibration& result, const CalibrationStep& on_step, Part part);
   void DescendByMotions(Calibration& result, const CalibrationStep& on_step);
+  void Tell(const CalibrationStep& on_step, Part part, int step, int most) const;
   bool Improve();
   void Correct();
   Eigen::VectorXd StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
@@ -96,6 +98,17 @@ Eigen::VectorXd Fit::StepFor(const Eigen::MatrixXd& hessian, const Eigen::Vector
   return -matrix.ldlt().solve(slope);
 }
 
+void Fit::Tell(const CalibrationStep& on_step, Part part, int step, int most) const {
+  if (!on_step) return;
+  CalibrationProgress progress{.part = part, .step = step, .most = most};
+  progress.loss = SquaredSum(at_.errors) / static_cast<double>(Count(at_.errors));
+  for (size_t i = 0; i < parameters_.size(); ++i) {
+    const experiment::FreeParameter& p = parameters_[i];
+    progress.values.push_back(p.min + shares_[static_cast<Eigen::Index>(i)] * (p.max - p.min));
+  }
+  on_step(progress);
+}
+
 /// One step of Levenberg and Marquardt, damped until it helps; false when none does.
 bool Fit::Improve() {
   const Eigen::MatrixXd hessian = Sum(at_.hessians) + prior_.Hessian();
@@ -115,7 +128,8 @@ bool Fit::Improve() {
 
 /// The loss has leaps, as a command that just misses one look of the listener waits for the next:
 /// slopes over long steps see past them, shorter ones tell the place.
-void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
+void Fit::Descend(Calibration& result, const CalibrationStep& on_step, Part part) {
+  const int first_step = result.steps;
   const int most_steps = result.steps + options_.iterations;
   while (result.steps < most_steps) {
     const std::vector<LogErrors> raw = model_.RawErrorsAt(shares_);
@@ -123,10 +137,10 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
     at_ = model_.LinearisedAt(shares_, raw, scale_, step_);
     const bool helped = Improve();
     result.steps += helped;
-    if (on_step) {
-      on_step(result.steps, SquaredSum(at_.errors) / static_cast<double>(Count(at_.errors)));
+    if (helped) {
+      Tell(on_step, part, result.steps - first_step, options_.iterations);
+      continue;
     }
-    if (helped) continue;
     result.has_converged = step_ <= options_.step;
     if (result.has_converged) return;
     step_ = std::max(options_.step, 0.5 * step_);
@@ -136,7 +150,7 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step) {
 
 void Fit::DescendByMotions(Calibration& result, const CalibrationStep& on_step) {
   const double likeness_weight = std::exchange(options_.likeness_weight, 0.0);
-  Descend(result, on_step);
+  Descend(result, on_step, Part::kMotions);
   options_.likeness_weight = likeness_weight;
   step_ = options_.step;
   damping_ = kFirstDamping;
@@ -170,9 +184,12 @@ Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step)
   Calibration result;
   const Eigen::VectorXd start = shares_;
   if (has_whole_runs_only_) DescendByMotions(result, on_step);
-  Descend(result, on_step);
+  Descend(result, on_step, Part::kDescent);
   step_ = options_.step;
-  for (int i = 0; i < options_.corrections; ++i) Correct();
+  for (int i = 0; i < options_.corrections; ++i) {
+    Correct();
+    Tell(on_step, Part::kCorrection, i + 1, options_.corrections);
+  }
   if (options_.corrections == 0) {
     at_ = model_.LinearisedAt(shares_, model_.RawErrorsAt(shares_), scale_, step_);
   }

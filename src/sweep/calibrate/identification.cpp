@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <set>
@@ -28,6 +29,7 @@ constexpr std::uint64_t kJudgeSeeds = 50'000;
 constexpr std::uint64_t kSeedsOfStart = 100;  // the phases of a replay count up from there
 constexpr std::uint64_t kStartStream = 80;
 constexpr double kOffEnds = 0.1;  // of a range
+constexpr size_t kMostShown = 4;  // parameters in a line of progress
 
 /// A log with its setting; its place in the list gives its seeds.
 struct Entry {
@@ -65,6 +67,8 @@ class Identifier {
   std::uint64_t SeedOf(const Entry& entry) const;
   TrialRequest RequestOf(const Entry& entry, std::uint64_t seed) const;
   std::vector<RepeatedTrial> DriveProgram(const std::vector<double>& values) const;
+  std::string ProgressText(const CalibrationProgress& progress,
+                           const std::vector<experiment::FreeParameter>& fitted) const;
   Calibration Fit(const std::vector<const Entry*>& fitted, int start) const;
   std::vector<RepeatedTrial> Drive(const std::vector<double>& values) const;
   void JudgePaths(CalibrationReport& report) const;
@@ -81,6 +85,7 @@ class Identifier {
   std::vector<Entry> entries_;
   std::vector<std::string> missing_;
   std::vector<double> values_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
   std::set<std::string> doubted_;        ///< kinds of doubts about the logs
   std::unique_ptr<CandidateRuns> runs_;  ///< of a program
 };
@@ -323,6 +328,32 @@ void Identifier::JudgeErrors(CalibrationReport& report) const {
   }
 }
 
+/// "0:12 descent, step 2 of at most 40: delay_s 0.0812, mu 0.271".
+std::string Identifier::ProgressText(const CalibrationProgress& progress,
+                                     const std::vector<experiment::FreeParameter>& fitted) const {
+  const auto elapsed = std::chrono::steady_clock::now() - began_;
+  const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(elapsed).count();
+  std::string text = fmt::format("{}:{:02} ", whole_s / 60, whole_s % 60);
+  switch (progress.part) {
+    case CalibrationProgress::Part::kMotions:
+      text += fmt::format("descent by motions, step {} of at most", progress.step);
+      break;
+    case CalibrationProgress::Part::kDescent:
+      text += fmt::format("descent, step {} of at most", progress.step);
+      break;
+    case CalibrationProgress::Part::kCorrection:
+      text += fmt::format("correction by simulated logs {} of", progress.step);
+      break;
+  }
+  text += fmt::format(" {}:", progress.most);
+  for (size_t i = 0; i < std::min(fitted.size(), kMostShown); ++i) {
+    const std::string& key = fitted[i].key;
+    text += fmt::format("{} {} {:.4g}", i == 0 ? "" : ",", key.substr(key.rfind('.') + 1),
+                        progress.values[i]);
+  }
+  return text + (fitted.size() > kMostShown ? ", ..." : "");
+}
+
 /// Start 0 is the experiment's; the others are drawn, off the ends of the ranges.
 Calibration Identifier::Fit(const std::vector<const Entry*>& fitted, int start) const {
   std::vector<experiment::FreeParameter> parameters = experiment_.calibrate.fit.list;
@@ -335,8 +366,8 @@ Calibration Identifier::Fit(const std::vector<const Entry*>& fitted, int start) 
   const std::vector<CalibrationLog> logs = LogsToFit(fitted, experiment_.likeness.longest_run);
   const std::uint64_t seed = static_cast<std::uint64_t>(start) * kSeedsOfStart;
   const CalibrationOptions& method = experiment_.calibrate.method;
-  const auto on_step = [&](int steps, double loss) {
-    say_(fmt::format("step {}: loss {:.4f}", steps, loss));
+  const auto on_step = [&](const CalibrationProgress& progress) {
+    say_(ProgressText(progress, parameters));
   };
   if (!IsProgram()) {
     return Calibrate(parameters, logs, TwinsOf(fitted, seed), method, generator, jobs_, on_step);

@@ -26,8 +26,18 @@ struct CalibrationLog {
 /// stood, and its seed is that log's own.
 using TwinAt = std::function<SimulatedTrial(size_t log, const std::vector<double>& values)>;
 
-/// Told after each step of the fit: how many there were, and the loss (of that step's own scale).
-using CalibrationStep = std::function<void(int steps, double loss)>;
+/// How far a fit is.
+struct CalibrationProgress {
+  enum class Part { kMotions, kDescent, kCorrection };
+  Part part = Part::kDescent;
+  int step = 0;  ///< of this part
+  int most = 0;  ///< that part may end before
+  /// Mean squared error over its standard deviation; each step judges that deviation anew, so that
+  /// losses of two steps are not to be compared.
+  double loss = 0.0;
+  std::vector<double> values;  ///< of the free parameters
+};
+using CalibrationStep = std::function<void(const CalibrationProgress&)>;
 
 struct CalibratedParameter {
   experiment::FreeParameter parameter;
