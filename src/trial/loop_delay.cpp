@@ -124,22 +124,13 @@ double RefinedPeak_s(const LoopDelay& delay, size_t best, double lag_step_s) {
   return delay.lags_s[best] + 0.5 * lag_step_s * (before - after) / bend;
 }
 
-}  // namespace
-
-LoopDelay EstimateLoopDelay(const trajectory::Trajectory& log,
-                            const std::vector<control::Waypoint>& waypoints,
-                            const control::NavigatorOptions& navigator,
-                            const LoopDelayOptions& options) {
-  CheckLog(log, options);
-  double finished_s = 0.0;
-  const HeldSteering steering = RebuildSteering(log, waypoints, navigator, &finished_s);
-  const std::vector<Answer> answers = MovingAnswers(log, options.moved_m, finished_s);
+LoopDelay DelayBetween(const HeldSteering& steering, const std::vector<Answer>& answers,
+                       const LoopDelayOptions& options) {
   if (answers.size() < kFewestIntervals) {
     throw std::invalid_argument(
         fmt::format("the loop delay needs {} intervals in motion, and the log has {}",
                     kFewestIntervals, answers.size()));
   }
-
   LoopDelay delay;
   delay.intervals = answers.size();
   const int lags = static_cast<int>(std::floor(options.max_lag_s / options.lag_step_s + 1e-9));
@@ -156,6 +147,29 @@ LoopDelay EstimateLoopDelay(const trajectory::Trajectory& log,
   delay.gain_rad_s = line.gain;
   delay.bias_rad_s = line.bias;
   return delay;
+}
+
+}  // namespace
+
+LoopDelay EstimateLoopDelay(const trajectory::Trajectory& log,
+                            const std::vector<control::Waypoint>& waypoints,
+                            const control::NavigatorOptions& navigator,
+                            const LoopDelayOptions& options) {
+  CheckLog(log, options);
+  double finished_s = 0.0;
+  const HeldSteering steering = RebuildSteering(log, waypoints, navigator, &finished_s);
+  return DelayBetween(steering, MovingAnswers(log, options.moved_m, finished_s), options);
+}
+
+LoopDelay EstimateCommandDelay(const trajectory::Trajectory& log, std::span<const SentCommand> sent,
+                               const LoopDelayOptions& options) {
+  CheckLog(log, options);
+  HeldSteering steering;
+  for (const SentCommand& command : sent) {
+    steering.Append(command.t_s, command.power.right - command.power.left);
+  }
+  if (sent.empty()) throw std::invalid_argument("the loop delay needs commands, and none was sent");
+  return DelayBetween(steering, MovingAnswers(log, options.moved_m, log.poses.back().t_s), options);
 }
 
 }  // namespace rift::trial

@@ -65,6 +65,12 @@ void Recorder::Sent(double now_s, const control::WheelPower& power) {
   if (observer_ != nullptr) observer_->Sent(result_.commands.back());
 }
 
+void Recorder::DecidedOn(double pose_age_s) {
+  double& mean_s = result_.pose_age_s;
+  ++ages_;
+  mean_s = ages_ == 1 ? pose_age_s : mean_s + (pose_age_s - mean_s) / static_cast<double>(ages_);
+}
+
 void Recorder::Decided(double now_s, const control::Decision& decision, size_t active_after) {
   for (; active_ < decision.waypoint; ++active_) {  // passed through, without a stop
     result_.visits[active_ - 1].reached_s = now_s;
@@ -98,11 +104,14 @@ class StopGuard {
 
 class Loop {
  public:
-  Loop(Robot& robot, std::unique_ptr<control::Controller> controller, const TrialOptions& options,
-       Observer* observer)
+  Loop(Robot& robot, const control::Task& task, const control::NavigatorOptions& navigator,
+       const TrialOptions& options, Observer* observer)
       : robot_(robot),
         options_(options),
-        controller_(std::move(controller)),
+        speeds_(task.program ? ""
+                             : fmt::format("; control.v_min is {}, control.v_max {}",
+                                           navigator.v_min, navigator.v_max)),
+        controller_(control::MakeController(task, navigator)),
         recorder_(controller_->waypoints(), options.log_period_s, observer) {}
 
   TrialResult Run();
@@ -120,6 +129,7 @@ class Loop {
 
   Robot& robot_;
   const TrialOptions& options_;
+  const std::string speeds_;  ///< the limits of the speed, for who looks for a longer time
   std::unique_ptr<control::Controller> controller_;
   Recorder recorder_;
   std::optional<double> looked_at_s_;  ///< capture time of the newest pose seen, believed or not
@@ -206,8 +216,9 @@ bool Loop::IsOver(const Sensed& sensed) {
   }
   if (sensed.now_s - start_s_ >= options_.timeout_s) {
     const control::Waypoint& target = controller_->waypoints()[controller_->active()];
-    return End(Outcome::kTimedOut, fmt::format("waypoint '{}' was not reached within {} s",
-                                               target.name, options_.timeout_s));
+    return End(Outcome::kTimedOut,
+               fmt::format("waypoint '{}' was not reached within trial.timeout_s, {} s{}",
+                           target.name, options_.timeout_s, speeds_));
   }
   return false;
 }
@@ -237,6 +248,7 @@ control::Decision Loop::Decide(double now_s, bool is_new_pose) {
   const control::TimedPose& pose = *controller_->pose();
   const control::Decision decision =
       controller_->Step({now_s, dt_s, pose.captured_s, pose.world_from_robot});
+  recorder_.DecidedOn(now_s - pose.captured_s);
   recorder_.Decided(now_s, decision, controller_->active());
   return decision;
 }
@@ -260,7 +272,7 @@ TrialResult RunTrial(Robot& robot, const control::Task& task,
                      const TrialOptions& options, Observer* observer) {
   const StopGuard stop_at_the_end(robot);
   options.Check();
-  return Loop(robot, control::MakeController(task, navigator_options), options, observer).Run();
+  return Loop(robot, task, navigator_options, options, observer).Run();
 }
 
 }  // namespace rift::trial

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "rift/control/options.hpp"
 #include "rift/control/waypoint.hpp"
 #include "rift/trajectory/trajectory.hpp"
+#include "rift/trial/trial.hpp"
 
 namespace rift::trial {
 
@@ -45,5 +47,10 @@ LoopDelay EstimateLoopDelay(const trajectory::Trajectory& log,
                             const std::vector<control::Waypoint>& waypoints,
                             const control::NavigatorOptions& navigator,
                             const LoopDelayOptions& options = {});
+
+/// The same of a run whose commands are known: from a command as it was sent to the motion it
+/// caused. `sent` and the log are on one clock. Throws like EstimateLoopDelay.
+LoopDelay EstimateCommandDelay(const trajectory::Trajectory& log, std::span<const SentCommand> sent,
+                               const LoopDelayOptions& options = {});
 
 }  // namespace rift::trial

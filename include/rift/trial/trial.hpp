@@ -57,6 +57,8 @@ struct TrialResult {
   LimitCounts limits;
   size_t poses_refused = 0;    ///< not finite, or a jump
   size_t stale_decisions = 0;  ///< zero power was sent since the pose was too old
+  /// Mean age of the pose, since its capture, over the decisions; -1: none was made.
+  double pose_age_s = -1.0;
 
   double Duration_s() const { return end_s - start_s; }
 };
@@ -103,6 +105,8 @@ class Recorder {
   void Decided(double now_s, const control::Decision& decision, size_t active_after);
   void Refused() { ++result_.poses_refused; }
   void Stale() { ++result_.stale_decisions; }
+  /// Once for each decision: how old its pose was.
+  void DecidedOn(double pose_age_s);
 
   TrialResult& result() { return result_; }
 
@@ -110,6 +114,7 @@ class Recorder {
   double log_period_s_;
   Observer* observer_;
   size_t active_ = 1;
+  size_t ages_ = 0;
   TrialResult result_;
 };
 

@@ -1,0 +1,249 @@
+// Why a robot circles: its steering identified from the run, margins in closed form, and gains by
+// which the same robot arrives.
+#include "rift/trial/steering_check.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <deque>
+#include <numbers>
+#include <string>
+
+#include "rift/geometry/pose2.hpp"
+#include "support/fake_robot.hpp"
+
+namespace rift::trial {
+namespace {
+
+using control::NavigatorOptions;
+using std::numbers::pi;
+
+// The fake robot's: 75.4 rad/s on wheels of 16 mm, 83 mm apart.
+constexpr double kSpeed_mps = 75.4 * 0.016;
+constexpr double kYawRate_rad_s = 2.0 * kSpeed_mps / 0.083;
+const SteeringPrior kPrior{{kSpeed_mps, kYawRate_rad_s, 0.0, 0.0}, 0.1};
+
+const std::vector<control::Waypoint> kTask{
+    {.name = "start", .x_m = 0.0, .y_m = 0.0, .heading_deg = 20.0},
+    {.name = "a", .x_m = 0.4, .y_m = 0.05, .stop = true},
+    {.name = "b", .x_m = 0.5, .y_m = 0.3, .stop = true}};
+
+struct Bench {
+  test::FakeRobotOptions robot;
+  NavigatorOptions navigator;
+  TrialOptions options;
+
+  TrialResult Run() const {
+    test::FakeRobotOptions at_start = robot;
+    at_start.world_from_start = control::StartPose(kTask);
+    test::FakeRobot fake(at_start);
+    return RunTrial(fake, kTask, navigator, options);
+  }
+  SteeringCheck Check(const TrialResult& result) const {
+    return CheckSteering(result, kTask, navigator, options, kPrior);
+  }
+  void Set(const std::vector<KeyProposal>& proposals) {
+    for (const KeyProposal& proposal : proposals) {
+      const std::string& key = proposal.key;
+      double* value = key == "control.heading.p"        ? &navigator.heading.p
+                      : key == "control.heading.i"      ? &navigator.heading.i
+                      : key == "control.heading.d"      ? &navigator.heading.d
+                      : key == "control.distance.p"     ? &navigator.distance.p
+                      : key == "control.w_min"          ? &navigator.w_min
+                      : key == "control.w_max"          ? &navigator.w_max
+                      : key == "control.v_min"          ? &navigator.v_min
+                      : key == "control.v_max"          ? &navigator.v_max
+                      : key == "control.reach_radius_m" ? &navigator.reach_radius_m
+                      : key == "trial.timeout_s"        ? &options.timeout_s
+                                                        : nullptr;
+      INFO(key);
+      REQUIRE(value != nullptr);
+      CHECK(*value == proposal.was);
+      *value = proposal.value;
+    }
+  }
+};
+
+std::string Joined(const SteeringCheck& check) {
+  std::string text;
+  for (const std::string& cause : check.causes) text += cause + "\n";
+  for (const KeyProposal& proposal : check.proposals) {
+    text += proposal.key + " " + std::to_string(proposal.value) + "\n";
+  }
+  return text;
+}
+
+/// The largest error over the last second of twenty of a PID on an integrator with a delay, by
+/// steps of a millisecond; it began at 1.
+double ErrorAfter20s(const control::PidGains& gains, double yaw_rate_rad_s, double delay_s) {
+  constexpr double kStep_s = 1e-3;
+  std::deque<double> outputs(static_cast<size_t>(std::llround(delay_s / kStep_s)), 0.0);
+  double error = 1.0, before = 1.0, integral = 0.0, largest = 0.0;
+  for (int i = 0; i < 20'000; ++i) {
+    integral += error * kStep_s;
+    outputs.push_back(gains.p * error + gains.i * integral + gains.d * (error - before) / kStep_s);
+    before = error;
+    error -= yaw_rate_rad_s * outputs.front() * kStep_s;
+    outputs.pop_front();
+    if (i >= 19'000) largest = std::max(largest, std::abs(error));
+  }
+  return largest;
+}
+
+TEST_CASE("A proportional loop has the margin of an integrator with a delay") {
+  // G p = 2 rad/s crosses over at 2 rad/s; the delay at which 90 degrees are gone is pi / 4.
+  const SteeringMargins margins = MarginsOf({0.1, 0.0, 0.0}, 20.0, 0.25);
+  CHECK(margins.crossover_rad_s == Approx(2.0));
+  CHECK(margins.phase_margin_deg == Approx(90.0 - 0.5 * 180.0 / pi));
+  CHECK(margins.longest_delay_s == Approx(pi / 4.0));
+}
+
+TEST_CASE("A loop settles just below the longest delay and grows just above it") {
+  const control::PidGains gains =
+      GENERATE(control::PidGains{0.1, 0.0, 0.0}, control::PidGains{0.1, 0.0, 0.02},
+               control::PidGains{0.1, 0.05, 0.0}, control::PidGains{0.08, 0.04, 0.015});
+  const double longest_s = MarginsOf(gains, 20.0, 0.1).longest_delay_s;
+  REQUIRE(longest_s > 0.05);
+  CHECK(ErrorAfter20s(gains, 20.0, 0.9 * longest_s) < 0.5);
+  CHECK(ErrorAfter20s(gains, 20.0, 1.1 * longest_s) > 1.0);
+}
+
+TEST_CASE("A derivative gain that answers itself is unstable with any delay") {
+  const SteeringMargins margins = MarginsOf({0.1, 0.0, 0.06}, 20.0, 0.02);
+  CHECK(margins.longest_delay_s == 0.0);
+  CHECK(ErrorAfter20s({0.1, 0.0, 0.06}, 20.0, 0.02) > 1.0);
+}
+
+TEST_CASE("The steering of a run is identified from its commands and poses") {
+  Bench bench;
+  bench.robot = {.command_delay_s = 0.12, .sensing_delay_s = 0.10, .frame_period_s = 0.05};
+  const TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kReached);
+  const SteeringCheck check = bench.Check(result);
+  CHECK(check.is_identified);
+  CHECK(check.r2 > 0.9);
+  CHECK(check.model.yaw_rate_rad_s == Approx(kYawRate_rad_s).epsilon(0.05));
+  CHECK(check.model.speed_mps == Approx(kSpeed_mps).epsilon(0.05));
+  CHECK(check.model.command_delay_s == Approx(0.12).margin(0.02));
+  CHECK(check.model.pose_age_s == Approx(0.10 + 0.5 * 0.05).margin(0.012));
+  CHECK(check.causes.empty());
+  CHECK(check.proposals.empty());
+}
+
+TEST_CASE("A robot drives on the circle that is predicted when its steering is too weak") {
+  Bench bench;
+  bench.navigator.w_max = 0.03;
+  bench.navigator.heading = {0.3, 0.0, 0.0};
+  // The distance loop keeps v at v_min on the circle, or drives it up to v_max and so the circle
+  // out.
+  const bool is_slow = GENERATE(true, false);
+  bench.navigator.distance.p = is_slow ? 0.5 : 0.9;
+  const TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kTimedOut);
+  const SteeringCheck check = bench.Check(result);
+  INFO(Joined(check));
+  CHECK(check.circle_m == Approx(0.0415 * (is_slow ? 0.15 : 0.3) / 0.03).epsilon(0.02));
+  const trajectory::StampedPose& last = result.trajectory.poses.back();
+  const Eigen::Vector2d target(last.target_x_m, last.target_y_m);
+  CHECK((last.Position() - target).norm() == Approx(check.circle_m).epsilon(0.1));
+  CHECK(check.turns > 2.0);
+}
+
+void CheckMended(Bench bench, const std::string& cause, const std::string& key) {
+  const TrialResult result = bench.Run();
+  INFO(result.reason);
+  REQUIRE(result.outcome == Outcome::kTimedOut);
+  const SteeringCheck check = bench.Check(result);
+  INFO(Joined(check));
+  CHECK(check.HasCircled());
+  REQUIRE_FALSE(check.causes.empty());
+  CHECK_THAT(Joined(check), Catch::Contains(cause));
+  CHECK_THAT(Joined(check), Catch::Contains("\n" + key + " "));
+  bench.Set(check.proposals);
+  const TrialResult mended = bench.Run();
+  INFO(mended.reason);
+  CHECK(mended.outcome == Outcome::kReached);
+  CHECK_FALSE(bench.Check(mended).HasCircled());
+}
+
+TEST_CASE("A robot that circles since w_max is too low arrives with the limit proposed") {
+  Bench bench;
+  bench.navigator.w_max = 0.03;
+  bench.navigator.heading = {0.15, 0.0, 0.0};
+  CheckMended(bench, "control.w_max allows 0.03", "control.w_max");
+}
+
+TEST_CASE("A robot that circles since its gain is too low arrives with the gain proposed") {
+  Bench bench;
+  bench.navigator.heading = {0.02, 0.0, 0.004};
+  CheckMended(bench, "control.heading.p 0.02 asks for", "control.heading.p");
+}
+
+TEST_CASE(
+    "A robot that circles since gain and delay are unstable arrives with the gains proposed") {
+  Bench bench;
+  bench.robot = {.command_delay_s = 0.25, .sensing_delay_s = 0.15, .frame_period_s = 0.05};
+  bench.navigator.heading = {0.6, 0.0, 0.03};
+  CheckMended(bench, "the steering is unstable", "control.heading.p");
+}
+
+TEST_CASE("A robot that circles since it drives too fast arrives with the speed proposed") {
+  Bench bench;
+  bench.robot.command_delay_s = 0.2;
+  bench.navigator.v_min = bench.navigator.v_max = 0.6;
+  CheckMended(bench, "control.v_min keeps v at 0.6", "control.v_min");
+}
+
+TEST_CASE("A robot that was on its way is given the time it needs") {
+  Bench bench;
+  bench.options.timeout_s = 1.5;
+  const TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kTimedOut);
+  CHECK_THAT(result.reason, Catch::Contains("trial.timeout_s, 1.5 s") &&
+                                Catch::Contains("control.v_min is 0.15, control.v_max 0.3"));
+  const SteeringCheck check = bench.Check(result);
+  INFO(Joined(check));
+  REQUIRE(check.proposals.size() == 1);
+  CHECK(check.proposals[0].key == "trial.timeout_s");
+  bench.Set(check.proposals);
+  CHECK(bench.Run().outcome == Outcome::kReached);
+}
+
+TEST_CASE("Motors that are swapped are told from weak steering") {
+  class Swapped : public test::FakeRobot {
+   public:
+    using FakeRobot::FakeRobot;
+    void Command(const control::WheelPower& power) override {
+      FakeRobot::Command({power.right, power.left});
+    }
+  };
+  Bench bench;
+  bench.options.timeout_s = 8.0;
+  bench.robot.world_from_start = control::StartPose(kTask);
+  Swapped robot(bench.robot);
+  const TrialResult result = RunTrial(robot, kTask, bench.navigator, bench.options);
+  REQUIRE(result.outcome == Outcome::kTimedOut);
+  const SteeringCheck check = bench.Check(result);
+  REQUIRE(check.causes.size() == 1);
+  CHECK_THAT(check.causes[0], Catch::Contains("motors are swapped"));
+  CHECK(check.proposals.empty());
+}
+
+TEST_CASE("A robot that does not move is told of powers, not of gains") {
+  class Standing : public test::FakeRobot {
+   public:
+    using FakeRobot::FakeRobot;
+    void Command(const control::WheelPower&) override {}
+  };
+  Bench bench;
+  bench.options.timeout_s = 3.0;
+  bench.navigator.v_min = 0.05;
+  Standing robot(bench.robot);
+  const SteeringCheck check = bench.Check(RunTrial(robot, kTask, bench.navigator, bench.options));
+  REQUIRE(check.causes.size() == 1);
+  CHECK_THAT(check.causes[0], Catch::Contains("it hardly moved"));
+  REQUIRE(check.proposals.size() == 1);
+  CHECK(check.proposals[0].key == "control.v_min");
+}
+
+}  // namespace
+}  // namespace rift::trial
