@@ -26,7 +26,7 @@ constexpr double kWantedMargin_rad = pi / 3.0;
 constexpr double kCircleShare = 0.8;  // of the reach radius, wanted
 constexpr double kLargestSwing_deg = 45.0, kWantedSwing_deg = 15.0;
 constexpr double kManyDecisions = 0.2;
-constexpr double kLeastR2 = 0.3, kClearR2 = 0.6;
+constexpr double kLeastR2 = 0.3;
 constexpr double kStanding_m = 0.02;
 
 /// Steering and speed of v and w at full error, after every limit.
@@ -95,7 +95,6 @@ std::optional<LoopDelay> TryDelay(const TrialResult& result, double sign) {
 
 /// Steering to the left turned it to the right.
 bool IsReversed(const LoopDelay& delay, const TrialResult& result) {
-  if (delay.r2 > kClearR2) return false;
   const std::optional<LoopDelay> reversed = TryDelay(result, -1.0);
   if (!reversed || reversed->r2 < kLeastR2) return false;
   // Steering that swings fits half a period late too, with the wrong sign.
@@ -109,7 +108,7 @@ bool Identify(const TrialResult& result, const SteeringPrior& prior, SteeringChe
   const double way_m = Way_m(result.trajectory);
   const std::optional<LoopDelay> delay = TryDelay(result, 1.0);
   if (way_m < kStanding_m || !delay) return false;
-  if (IsReversed(*delay, result)) return true;
+  if (result.outcome != Outcome::kReached && IsReversed(*delay, result)) return true;
   check.r2 = delay->r2;
   check.is_identified = delay->r2 >= kLeastR2 && delay->gain_rad_s > 0.0;
   if (check.is_identified) {
@@ -174,18 +173,16 @@ control::PidGains StableGains(const NavigatorOptions& navigator, double yaw_rate
 }
 
 /// Steering strong enough for a circle within the reach radius, as far as it stays stable; then a
-/// lower speed, as far as the wheels turn; then a larger radius. `wanted` is changed and proposed.
-void TightenCircle(SteeringCheck& check, const SteeringPrior& prior, double largest_p,
-                   NavigatorOptions& wanted) {
-  const SteeringModel& model = check.model;
+/// lower speed, as far as the wheels turn; then a larger radius.
+void TightenCircle(const SteeringModel& model, const SteeringPrior& prior,
+                   const control::PidGains& largest, NavigatorOptions& wanted) {
   const double inside_m = kCircleShare * wanted.reach_radius_m;
   const auto needed_w = [&] {
     return model.speed_mps * wanted.v_min / (model.yaw_rate_rad_s * inside_m);
   };
   const double strongest_w = 1.0 - wanted.v_min;  // beyond, both powers are scaled down
-  const double p = std::min(std::max(wanted.heading.p, needed_w() / kQuarter_rad), largest_p);
-  if (p > wanted.heading.p && wanted.heading.p > 0.0) wanted.heading.d *= p / wanted.heading.p;
-  wanted.heading.p = p;
+  const double p = std::min(needed_w() / kQuarter_rad, largest.p);
+  if (p > wanted.heading.p) wanted.heading = {p, wanted.heading.i, p * largest.d / largest.p};
   wanted.w_max =
       std::max(wanted.w_max, std::min({needed_w(), SteeringAt(wanted, kQuarter_rad), strongest_w}));
   const double w = std::clamp(SteeringAt(wanted, kQuarter_rad), wanted.w_min, wanted.w_max);
@@ -213,18 +210,13 @@ void ProposeChanges(SteeringCheck& check, const NavigatorOptions& now,
 }
 
 void ExplainSteering(SteeringCheck& check, const NavigatorOptions& navigator,
-                     const SteeringPrior& prior) {
+                     const SteeringPrior& prior, const TrialOptions& options) {
   NavigatorOptions wanted = navigator;
-  double largest_p = std::numeric_limits<double>::infinity();
-  if (check.delay_s > 0.0) {
-    const control::PidGains stable =
-        StableGains(navigator, check.model.yaw_rate_rad_s, check.delay_s);
-    largest_p = std::max(stable.p, navigator.heading.p);
-    if (check.margins.phase_margin_deg < kLeastMargin_deg) {
-      check.causes.push_back(MarginCause(check, navigator));
-      wanted.heading = stable;
-      largest_p = stable.p;
-    }
+  const control::PidGains largest = StableGains(navigator, check.model.yaw_rate_rad_s,
+                                                std::max(check.delay_s, options.control_period_s));
+  if (check.margins.phase_margin_deg < kLeastMargin_deg) {
+    check.causes.push_back(MarginCause(check, navigator));
+    wanted.heading = largest;
   }
   const double swing_deg = DegFromRad(check.swing.heading_rad);
   const double swing_share = 2.0 * check.swing.path_m / navigator.reach_radius_m;
@@ -240,7 +232,7 @@ void ExplainSteering(SteeringCheck& check, const NavigatorOptions& navigator,
   }
   const bool is_changed = !check.causes.empty();
   if (is_changed && CircleRadius_m(wanted, check.model) > wanted.reach_radius_m) {
-    TightenCircle(check, prior, largest_p, wanted);
+    TightenCircle(check.model, prior, largest, wanted);
   }
   ProposeChanges(check, navigator, wanted);
 }
@@ -309,7 +301,7 @@ void Explain(SteeringCheck& check, const TrialResult& result, const control::Tas
     }
     return;
   }
-  ExplainSteering(check, navigator, prior);
+  ExplainSteering(check, navigator, prior, options);
   ExplainTime(check, result, task, options);
   if (check.causes.empty() && check.HasCircled()) {
     check.causes.push_back(fmt::format(
