@@ -71,14 +71,37 @@ double Way_m(const trajectory::Trajectory& log) {
   return way_m + (log.poses.back().Position() - last->Position()).norm();
 }
 
-/// Integral over time of v as it was sent before `until_s`.
-double ForwardSent_s(const std::vector<SentCommand>& commands, double until_s) {
-  double sum_s = 0.0;
-  for (size_t i = 0; i + 1 < commands.size(); ++i) {
-    const double dt_s = std::min(commands[i + 1].t_s, until_s) - commands[i].t_s;
-    sum_s += std::max(0.0, dt_s) * 0.5 * (commands[i].power.left + commands[i].power.right);
+double Length_m(const control::Task& task) {
+  double length_m = 0.0;
+  for (size_t i = 1; i < task.waypoints.size(); ++i) {
+    length_m += (task.waypoints[i].Position() - task.waypoints[i - 1].Position()).norm();
   }
-  return sum_s;
+  return length_m;
+}
+
+/// It circled, or began to, on a circle too wide for its time.
+bool IsAstray(const SteeringCheck& check, const TrialResult& result, const control::Task& task) {
+  return check.HasCircled() || Way_m(result.trajectory) > 2.0 * Length_m(task);
+}
+
+double Turned_rad(const trajectory::Trajectory& log) {
+  double turned_rad = 0.0;
+  for (size_t i = 1; i < log.poses.size(); ++i) {
+    turned_rad += geometry::WrapToPi(log.poses[i].yaw_rad - log.poses[i - 1].yaw_rad);
+  }
+  return turned_rad;
+}
+
+/// Integrals over time of v and w as they were sent before `until_s`.
+Asked SentBefore(const std::vector<SentCommand>& commands, double until_s) {
+  Asked sum{0.0, 0.0};
+  for (size_t i = 0; i + 1 < commands.size(); ++i) {
+    const double dt_s = std::max(0.0, std::min(commands[i + 1].t_s, until_s) - commands[i].t_s);
+    const control::WheelPower& power = commands[i].power;
+    sum.v += dt_s * 0.5 * (power.left + power.right);
+    sum.w += dt_s * 0.5 * (power.right - power.left);
+  }
+  return sum;
 }
 
 std::optional<LoopDelay> TryDelay(const TrialResult& result, double sign) {
@@ -115,9 +138,15 @@ bool Identify(const TrialResult& result, const SteeringPrior& prior, SteeringChe
     check.model.yaw_rate_rad_s = 2.0 * delay->gain_rad_s;
     check.model.command_delay_s = delay->lag_s;
   }
-  const double forward_s = ForwardSent_s(
-      result.commands, result.trajectory.poses.back().t_s - check.model.command_delay_s);
-  if (forward_s > 0.1 * way_m / prior.model.speed_mps) check.model.speed_mps = way_m / forward_s;
+  const Asked sent =
+      SentBefore(result.commands, result.trajectory.poses.back().t_s - check.model.command_delay_s);
+  if (sent.v > 0.1 * way_m / prior.model.speed_mps) check.model.speed_mps = way_m / sent.v;
+  // On a steady circle nothing tells the delay, and the turn itself tells the gain.
+  const double turned_rad = Turned_rad(result.trajectory);
+  if (!check.is_identified && std::abs(turned_rad) > pi && turned_rad * sent.w > 0.0) {
+    check.model.yaw_rate_rad_s = turned_rad / sent.w;
+    check.is_identified = true;
+  }
   return false;
 }
 
@@ -210,7 +239,7 @@ void ProposeChanges(SteeringCheck& check, const NavigatorOptions& now,
 }
 
 void ExplainSteering(SteeringCheck& check, const NavigatorOptions& navigator,
-                     const SteeringPrior& prior, const TrialOptions& options) {
+                     const SteeringPrior& prior, const TrialOptions& options, bool is_astray) {
   NavigatorOptions wanted = navigator;
   const control::PidGains largest = StableGains(navigator, check.model.yaw_rate_rad_s,
                                                 std::max(check.delay_s, options.control_period_s));
@@ -227,7 +256,7 @@ void ExplainSteering(SteeringCheck& check, const NavigatorOptions& navigator,
         navigator.w_min, 1e3 * check.delay_s, swing_deg, check.swing.path_m));
     wanted.w_min *= std::min(kWantedSwing_deg / swing_deg, 0.5 / swing_share);
   }
-  if (check.HasCircled() && check.circle_m > navigator.reach_radius_m) {
+  if (is_astray && check.circle_m > navigator.reach_radius_m) {
     check.causes.push_back(CircleCause(check, navigator));
   }
   const bool is_changed = !check.causes.empty();
@@ -257,7 +286,6 @@ void ExplainPoses(SteeringCheck& check, const TrialResult& result, const TrialOp
 /// Of a run that was on its way when its time was up.
 void ExplainTime(SteeringCheck& check, const TrialResult& result, const control::Task& task,
                  const TrialOptions& options) {
-  if (result.outcome != Outcome::kTimedOut || check.HasCircled() || !check.causes.empty()) return;
   const trajectory::StampedPose& last = result.trajectory.poses.back();
   const double way_m = Way_m(result.trajectory), took_s = last.t_s - result.trajectory.poses[0].t_s;
   double left_m = 0.0;
@@ -301,9 +329,12 @@ void Explain(SteeringCheck& check, const TrialResult& result, const control::Tas
     }
     return;
   }
-  ExplainSteering(check, navigator, prior, options);
-  ExplainTime(check, result, task, options);
-  if (check.causes.empty() && check.HasCircled()) {
+  const bool is_astray = IsAstray(check, result, task);
+  ExplainSteering(check, navigator, prior, options, is_astray);
+  if (result.outcome == Outcome::kTimedOut && !is_astray && check.causes.empty()) {
+    ExplainTime(check, result, task, options);
+  }
+  if (check.causes.empty() && is_astray) {
     check.causes.push_back(fmt::format(
         "no limit of the steering explains it: the phase margin is {:.0f} deg, and the circle at a "
         "heading error of 90 deg, {:.3f} m, lies within control.reach_radius_m",

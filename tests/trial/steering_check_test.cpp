@@ -252,6 +252,18 @@ TEST_CASE("A robot that was on its way is given the time it needs") {
   CHECK(bench.Run().outcome == Outcome::kReached);
 }
 
+TEST_CASE("A circle too wide for the time of a run is none that was on its way") {
+  Bench bench;
+  bench.navigator.w_max = bench.navigator.w_min = 0.003;
+  const TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kTimedOut);
+  const SteeringCheck check = bench.Check(result);
+  CHECK_FALSE(check.HasCircled());
+  CHECK_THAT(Joined(check), Catch::Contains("control.w_max allows 0.003"));
+  bench.Set(check.proposals);
+  CHECK(bench.Run().outcome == Outcome::kReached);
+}
+
 TEST_CASE("Motors that are swapped are told from weak steering") {
   class Swapped : public test::FakeRobot {
    public:
