@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "rift/geometry/pose2.hpp"
+
 namespace rift::simulation {
 
 void BodyOptions::Check() const {
@@ -63,6 +65,21 @@ Stance StanceOn(const BodyOptions& body, const Eigen::Vector3d& gravity_in_plane
     pitch_rad = std::asin(std::clamp(drop_m / body.caster_ahead_m, -0.5, 0.5));
   }
   return {height_m, pitch_rad};
+}
+
+std::optional<std::string> TiltWarning(const BodyOptions& body) {
+  constexpr double kLevel_deg = 0.5;  // a caster ball 0.3 mm off on the 3pi+
+  const double pitch_deg =
+      geometry::DegFromRad(StanceOn(body, Eigen::Vector3d(0.0, 0.0, -body.gravity_mps2)).pitch_rad);
+  if (std::abs(pitch_deg) <= kLevel_deg) return std::nullopt;
+  return fmt::format(
+      "the simulated robot stands tilted by {:.1f} deg, nose {}: its caster's ball is {:.4f} m {} "
+      "the floor when the robot is level; simulation.body.caster_below_m is {:g}, and {:.4g} "
+      "(wheel_radius_m - caster_radius_m) would make it level",
+      std::abs(pitch_deg), pitch_deg > 0.0 ? "down" : "up",
+      std::abs(body.wheel_radius_m - body.caster_radius_m - body.caster_below_m),
+      body.wheel_radius_m - body.caster_radius_m > body.caster_below_m ? "above" : "below",
+      body.caster_below_m, body.wheel_radius_m - body.caster_radius_m);
 }
 
 }  // namespace rift::simulation

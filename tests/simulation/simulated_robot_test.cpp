@@ -199,6 +199,46 @@ TEST_CASE("Full power in both directions at the longest step never leaves the fi
   }
 }
 
+TEST_CASE("A servo with a torque limit accelerates as its torque and the robot's mass allow") {
+  SimulationOptions options = Ideal();
+  options.terrain.surfaces["ground"].slip = 0.0;
+  options.motor.servo_torque_nm = 0.002;
+  SimulatedRobot robot(options, {}, 1);
+  robot.Command({0.4, 0.4});
+  robot.Advance(0.2);
+  // A wheel is a cylinder: rolling, it weighs 1.5 of its mass.
+  const BodyOptions& body = options.body;
+  const double acceleration_mps2 =
+      2.0 * 0.002 / body.wheel_radius_m / (body.chassis_mass_kg + 2.0 * 1.5 * body.wheel_mass_kg);
+  CHECK(robot.State().velocity_mps.x() == Approx(0.2 * acceleration_mps2).epsilon(0.03));
+  robot.Advance(1.0);
+  CHECK(robot.State().velocity_mps.x() == Approx(0.4 * 75.4 * 0.016).epsilon(0.01));
+  options.motor.servo_torque_nm.reset();
+  SimulatedRobot strong(options, {}, 1);
+  strong.Command({0.4, 0.4});
+  strong.Advance(0.2);
+  CHECK(strong.State().velocity_mps.x() == Approx(0.4 * 75.4 * 0.016).epsilon(0.01));
+}
+
+TEST_CASE("A robot whose caster ball is too high is told the height that makes it level") {
+  BodyOptions body;
+  CHECK_FALSE(TiltWarning(body));
+  // 2.25 mm over 40.4 mm to the caster.
+  body.caster_below_m = 0.0074;
+  const auto warning = TiltWarning(body);
+  REQUIRE(warning);
+  INFO(*warning);
+  CHECK_THAT(*warning, Catch::Contains("tilted by 3.2 deg, nose up") &&
+                           Catch::Contains("0.0023 m above the floor") &&
+                           Catch::Contains("simulation.body.caster_below_m is 0.0074") &&
+                           Catch::Contains("and 0.00965 "));
+  body.caster_below_m = 0.00965;
+  CHECK_FALSE(TiltWarning(body));
+  body.caster_below_m = 0.0119;
+  CHECK_THAT(*TiltWarning(body),
+             Catch::Contains("nose down") && Catch::Contains("below the floor"));
+}
+
 TEST_CASE("Stopping brings the robot to rest and may be repeated") {
   SimulatedRobot robot(SimulationOptions{}, {}, 1);
   for (int i = 0; i < 50; ++i) {

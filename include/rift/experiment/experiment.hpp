@@ -60,7 +60,9 @@ struct Experiment {
         "objective", self.objective,
         "what a trial is judged by: the gap to the reference, or that of the robot's own odometry "
         "to the camera");
-    field("space", self.space, "the parameters to vary: a list of values, or a range to search");
+    field("space", self.space,
+          "the parameters to vary: a list of values, or a range to search; {} with rift's own "
+          "simulator: the paper's grid, 5 surfaces x 2 v_min x 3 v_max");
     field("search", self.search, "how a sweep that is no grid looks for its goal");
     field("falsify", self.falsify, "what counts as a failure, and how sure it must be");
     field("calibrate", self.calibrate, "what is fitted to which logs");

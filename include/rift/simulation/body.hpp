@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <string>
 
 namespace rift::simulation {
 
@@ -83,5 +85,9 @@ struct Stance {
 /// down there stays at rest. `gravity_in_plane`: x along the robot, z off the plane, in m/s^2. The
 /// caster carries nothing where it would have to pull.
 Stance StanceOn(const BodyOptions& body, const Eigen::Vector3d& gravity_in_plane);
+
+/// Of a robot that does not stand level on a floor: its angle, and the caster's height that would
+/// make it level. None for one that does, within 0.5 degrees.
+std::optional<std::string> TiltWarning(const BodyOptions& body);
 
 }  // namespace rift::simulation

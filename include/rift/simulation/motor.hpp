@@ -46,15 +46,16 @@ struct MotorOptions {
         "authors' Webots world");
     field("gearing", self.gearing,
           "edition of the 3pi+; sets no-load speed, stall torque and encoder counts");
+    field("no_load_rad_s", self.no_load_rad_s, 0.1, 1000.0,
+          "wheel speed at power 1 without load at the rated voltage, which is that of the data "
+          "sheet; "
+          "none: that of the gearing (30:1 at 6 V: 75.4 rad/s, Pololu 0J83/5.3)");
     field(
-        "no_load_rad_s", self.no_load_rad_s, 0.1, 1000.0,
-        "wheel speed at power 1 without load at 6 V; none: that of the gearing (30:1: 75.4 rad/s, "
-        "Pololu 0J83/5.3)");
-    field("stall_torque_nm", self.stall_torque_nm, 1e-4, 10.0,
-          "wheel torque at power 1 and standstill at 6 V; none: that of the gearing (30:1: 0.0324 "
-          "N m, Pololu 0J83/5.3)");
+        "stall_torque_nm", self.stall_torque_nm, 1e-4, 10.0,
+        "wheel torque at power 1 and standstill at the rated voltage (dc only); none: that of the "
+        "gearing (30:1 at 6 V: 0.0324 N m, Pololu 0J83/5.3)");
     field("supply_ratio", self.supply_ratio, 0.05, 3.0,
-          "battery voltage as a share of the 6 V of the data sheet");
+          "battery voltage as a share of the rated voltage (3pi+: 6 V)");
     field("dead_band", self.dead_band, 0.0, 0.9,
           "powers smaller than this do not turn the wheel (others' code: about 0.10; dc only)");
     field("lag_s", self.lag_s, 0.0, 1.0,
@@ -64,15 +65,16 @@ struct MotorOptions {
     field("mismatch_spread", self.mismatch_spread, 0.0, 0.2,
           "standard deviation of the mismatch from run to run: each run draws its own about "
           "mismatch");
-    field("friction_torque_nm", self.friction_torque_nm, 0.0, 0.1,
+    field("friction_torque_nm", self.friction_torque_nm, 0.0, 10.0,
           "friction of gear and bearing at a turning wheel in N m (dc only; 40 mA without load of "
           "0.67 A at stall, Pololu 0J83/5.3, make 0.0019)");
     field(
-        "breakaway_torque_nm", self.breakaway_torque_nm, 0.0, 0.1,
+        "breakaway_torque_nm", self.breakaway_torque_nm, 0.0, 10.0,
         "friction at a wheel at rest in N m, at least friction_torque_nm; none: the same (dc only; "
         "the robot stands on a ramp of 0.255 rad: more than 0.0031)");
     field("servo_torque_nm", self.servo_torque_nm, 1e-3, 100.0,
-          "largest torque of the servo in N m; none: any (Webots' 10 is never reached here)");
+          "largest torque with which the servo holds its speed in N m (servo only; Dynamixel: its "
+          "stall torque); none: any (Webots' 10 is never reached here)");
   }
   /// Rules between fields; throws std::invalid_argument naming field, value and rule.
   void Check() const;

@@ -134,7 +134,9 @@ struct TerrainOptions {
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("surface", self.surface, "name of the surface the robot drives on");
+    field("surface", self.surface,
+          "name of the surface the robot drives on: ground, cardboard, parchment, wet_parchment, "
+          "uphill, downhill, bump, or one of your own under surfaces");
     field("surfaces", self.surfaces, "the surfaces there are, by name");
     field("patches", self.patches, "rectangles with a grip of their own; the last one counts");
     field("table_half_size_m", self.table_half_size_m, 0.1, 100.0,
