@@ -68,5 +68,28 @@ TEST_CASE("Every robot file says the same to the simulator and to rift drive") {
   }
 }
 
+TEST_CASE("The gains of every robot file follow the template's formulas") {
+  for (const std::string& robot : RobotFiles()) {
+    if (robot == "3pi_2040.yaml")
+      continue;  // the authors' gains, whose robot is faster than its data
+    INFO(robot);
+    const Experiment experiment = PaperTaskOf(robot);
+    const auto& control = experiment.control;
+    const double full_mps = experiment.hardware.stopping.full_power_speed_mps;
+    const double turn_rad_s =
+        control.heading.p * 2.0 * full_mps / experiment.hardware.odometry.drive.track_m;
+    CHECK(turn_rad_s == Approx(robot == "template.yaml" ? 1.3 : 1.7).epsilon(0.04));
+    CHECK(control.heading.d == Approx(0.19 * control.heading.p).epsilon(0.03));
+  }
+  const Experiment task = PaperTaskOf("template.yaml");
+  const auto& shown = task.control;
+  CHECK(shown.v_max / shown.distance.p == Approx(0.33).margin(0.005));
+  CHECK(shown.v_min / shown.distance.p == Approx(0.17).margin(0.005));
+  CHECK(shown.latency.drive.full_power_speed_rad_s ==
+        task.hardware.odometry.drive.full_power_speed_rad_s);
+  const auto& body = task.simulation.body;
+  CHECK(body.com_ahead_m / body.caster_ahead_m == Approx(0.2).margin(0.01));
+}
+
 }  // namespace
 }  // namespace rift::experiment
