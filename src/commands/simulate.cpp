@@ -116,6 +116,7 @@ experiment::Experiment LoadFor(const SimulateRequest& request, std::vector<fs::p
   };
   experiment::Experiment experiment =
       experiment::LoadExperiment(request.experiment, overrides, read);
+  RequireTask(experiment, request.experiment);
   if (!request.start.empty()) PutStart(request.start, experiment);
   if (!request.any_waypoints) RequireReachableWaypoints(experiment, request.experiment);
   return experiment;
@@ -201,6 +202,7 @@ Simulated SimulateFile(const SimulateRequest& request) {
   made.trial =
       sweep::SimulatedTrialOf(experiment, {}, experiment.seed, request.experiment, FileInputs());
   made.trial.start = made.trial.task.Start();
+  WarnOfTilt(experiment);
   made.run = sweep::Simulate(made.trial);
   return made;
 }
@@ -295,6 +297,10 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
     request.json ? terminal::PrintData(report::SimulationJson(made.experiment, made.run))
                  : terminal::PrintText(report::SimulationText(made.experiment, made.run));
   }
+  for (const std::string& line : report::SteeringLines(
+           report::SteeringOf(made.experiment, made.run), made.run.result.limits)) {
+    terminal::Say(line);
+  }
   return made.run.result.outcome == trial::Outcome::kReached ? terminal::kDone
                                                              : terminal::kNotReached;
 }
@@ -302,6 +308,7 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
 TwinJob LoadTwinJob(const SimulateRequest& request) {
   std::vector<fs::path> inputs;
   TwinJob job{.experiment = LoadFor(request, inputs)};
+  WarnOfTilt(job.experiment);
   job.folder = OutputOf(request.out, job.experiment.name);
   RefuseSweepFolder(job.folder);
   RequireFolderName(request.out, "a twin's run");

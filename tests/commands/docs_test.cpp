@@ -51,6 +51,7 @@ TEST_CASE("The files of a simulated run are as documented") {
     CHECK(Columns(ReadFile(out + "/" + name)) == Documented("files.md", "Columns of " + name));
   }
   CHECK(KeysOf(JsonOf(out + "/summary.json")) == DocumentedKeys("summary.json of rift simulate"));
+  CHECK(KeysOf(JsonOf(out + "/summary.json")["steering"]) == DocumentedKeys("steering"));
   for (const auto& entry : std::filesystem::directory_iterator(out)) {
     const Names names = Documented("files.md", "Files of a run");
     INFO(entry.path());

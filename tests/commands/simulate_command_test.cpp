@@ -36,6 +36,64 @@ TEST_CASE("rift simulate reaches the paper's waypoints and leaves a whole run be
   }
 }
 
+TEST_CASE("A run that circles says why, and with the keys it proposes the robot arrives") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "task.yaml",
+                  "include: [" + test::SourceDir() + "/configs/robots/turtlebot3_burger.yaml]\n" +
+                      "control: {heading: {p: 0.1, d: 0.02}, w_max: 0.15}\n"
+                      "waypoints: [{x: 0, y: 0, heading: 60}, {name: a, x: 0.3, y: 0, stop: true},"
+                      " {name: b, x: 0.3, y: 0.3, stop: true}]\ntrial: {timeout_s: 40}\n");
+  const ProcessResult circles =
+      RunRift({"simulate", folder / "task.yaml", "--out", folder / "circles"});
+  INFO(circles.err);
+  REQUIRE(circles.exit_code == 1);
+  CHECK(circles.out.find("was not reached within trial.timeout_s, 40 s") != std::string::npos);
+  CHECK(circles.err.find("it circled: ") != std::string::npos);
+  CHECK(circles.err.find("control.heading.p 0.1 asks for") != std::string::npos);
+  CHECK(circles.err.find("limits that bound, of ") != std::string::npos);
+  const json steering = json::parse(test::ReadFile(folder / "circles/summary.json")).at("steering");
+  CHECK(steering["turns"].get<double>() > 1.0);
+  CHECK(steering["causes"].size() >= 1);
+  std::vector<std::string> again{"simulate", folder / "task.yaml", "--out", folder / "arrives"};
+  const size_t at = circles.err.find("try: ");
+  REQUIRE(at != std::string::npos);
+  const std::string line = circles.err.substr(at, circles.err.find('\n', at) - at);
+  for (const json& proposal : steering["proposals"]) {
+    const std::string key = proposal["key"];
+    CHECK(line.find("--set " + key + "=") != std::string::npos);
+    again.insert(again.end(), {"--set", key + "=" + proposal["value"].dump()});
+  }
+  const ProcessResult arrives = RunRift(again);
+  INFO(arrives.out << arrives.err);
+  CHECK(arrives.exit_code == 0);
+  CHECK(arrives.err.find("why: ") == std::string::npos);
+}
+
+TEST_CASE("A robot's file alone is answered with how to give it waypoints") {
+  const std::string robot = test::SourceDir() + "/configs/robots/template.yaml";
+  const test::TemporaryFolder folder;
+  for (const std::string command : {"simulate", "sweep"}) {
+    const ProcessResult result = RunRift({command, robot, "--out", folder / command});
+    INFO(result.err);
+    CHECK(result.exit_code == 2);
+    CHECK(result.err.find(robot + ": it has no waypoints") != std::string::npos);
+    CHECK(result.err.find("include: [" + robot + ", configs/waypoints/paper.yaml]") !=
+          std::string::npos);
+  }
+}
+
+TEST_CASE("A simulated robot that stands tilted is named once") {
+  const test::TemporaryFolder folder;
+  const std::vector<std::string> tilted{"--set", "simulation.body.caster_below_m=0.0074"};
+  std::vector<std::string> simulate{"simulate", kTask, "--out", folder / "run"};
+  simulate.insert(simulate.end(), tilted.begin(), tilted.end());
+  const std::string err = RunRift(simulate).err;
+  INFO(err);
+  const size_t at = err.find("warning: the simulated robot stands tilted by 3.2 deg");
+  REQUIRE(at != std::string::npos);
+  CHECK(err.find("stands tilted", at + 60) == std::string::npos);
+}
+
 TEST_CASE("The same seed gives the same bytes and another seed another log") {
   const test::TemporaryFolder folder;
   for (const std::string name : {"a", "b"}) {

@@ -369,6 +369,10 @@ TEST_CASE("Drives and pings are told field by field as they were approved") {
   hardware::DriveRun run = Driven(next);
   experiment::Experiment experiment;
   experiment.name = "driven";
+  experiment.waypoints = {{.name = "start", .heading_deg = 0.0},
+                          {.name = "a", .x_m = 0.2},
+                          {.name = "b", .x_m = 0.4},
+                          {.name = "c", .x_m = 0.6, .stop = true}};
   experiment.hardware.ping.max_loss = 0.05;
   experiment.control.v_max = 0.7;
   std::string text = DriveJson(experiment, run) + StagesCsv(run.evidence) + CommandsCsv(run.trial);

@@ -31,6 +31,29 @@ std::string FindInput(const std::string& name) {
   return name;
 }
 
+void RequireWaypoints(const experiment::Experiment& experiment, const std::string& file) {
+  if (!experiment.waypoints.empty() || !experiment.program.segments.empty()) return;
+  throw std::invalid_argument(fmt::format(
+      "{}: it has no waypoints, as a robot's file alone has none. Name both in a file and give "
+      "that: printf 'include: [{}, configs/waypoints/paper.yaml]\\n' > task.yaml",
+      file, file));
+}
+
+void RequireTask(const experiment::Experiment& experiment, const std::string& file) {
+  RequireWaypoints(experiment, file);
+  try {
+    experiment::TaskOf(experiment);
+  } catch (const std::invalid_argument& no_task) {
+    throw std::invalid_argument(fmt::format("{}: {}", file, no_task.what()));
+  }
+}
+
+void WarnOfTilt(const experiment::Experiment& experiment) {
+  if (const auto warning = simulation::TiltWarning(experiment.simulation.body)) {
+    terminal::Say("warning: " + *warning);
+  }
+}
+
 namespace {
 
 std::string NameOf(const control::Waypoint& waypoint, size_t index) {

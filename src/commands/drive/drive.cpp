@@ -44,11 +44,7 @@ experiment::Experiment LoadTask(const DriveRequest& request) {
   if (request.identify) experiment = IdentificationDrive(std::move(experiment));
   if (request.countdown_s) experiment.hardware.start.countdown_s = *request.countdown_s;
   if (request.seconds) experiment.trial.timeout_s = *request.seconds;
-  try {
-    experiment::TaskOf(experiment);
-  } catch (const std::invalid_argument& no_task) {
-    throw std::invalid_argument(fmt::format("{}: {}", file.string(), no_task.what()));
-  }
+  RequireTask(experiment, file.string());
   if (!request.any_waypoints) RequireReachableWaypoints(experiment, file.string());
   return experiment;
 }
@@ -75,6 +71,7 @@ int DriveOnce(const DriveRequest& request, const experiment::Experiment& experim
   const auto state = is_whole ? report::RunState::kFinished : report::RunState::kInterrupted;
   request.json ? terminal::PrintData(report::DriveJson(experiment, run, state))
                : terminal::PrintText(report::DriveText(run));
+  SaySteering(experiment, run);
   session.RequireLog();
   return ExitCodeOf(run);
 }

@@ -99,6 +99,7 @@ Series::End Series::Drive(const PlannedTrial& trial) {
     const hardware::DriveRun run = session_.DriveInto(trial.Unfinished(), trial.experiment);
     if (scene_) Close();
     terminal::Say(fmt::format("{}: {}", trial.label, run.trial.reason));
+    SaySteering(trial.experiment, run);
     session_.RequireLog();
     if (!run.has_begun) {
       fs::remove_all(trial.Unfinished());

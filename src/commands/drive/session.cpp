@@ -12,6 +12,7 @@
 #include "rift/files/files.hpp"
 #include "rift/hardware/camera_poses.hpp"
 #include "rift/hardware/serial_port.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/view/drive_view.hpp"
 #include "rift/view/window.hpp"
@@ -70,6 +71,13 @@ bool HasArrived(const hardware::DriveRun& run) {
 hardware::DriveTask DriveTaskOf(const experiment::Experiment& experiment) {
   return {experiment::TaskOf(experiment), experiment.control, experiment.trial,
           experiment.hardware};
+}
+
+void SaySteering(const experiment::Experiment& experiment, const hardware::DriveRun& run) {
+  for (const std::string& line :
+       report::SteeringLines(report::SteeringOf(experiment, run), run.trial.limits)) {
+    terminal::Say(line);
+  }
 }
 
 /// All that a drive is made of, opened in the order in which it is cheap to fail.

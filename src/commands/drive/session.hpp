@@ -13,6 +13,9 @@ namespace rift::commands {
 /// What the robot has to know of an experiment.
 hardware::DriveTask DriveTaskOf(const experiment::Experiment& experiment);
 
+/// Says why a drive circled or did not arrive, and what to set.
+void SaySteering(const experiment::Experiment& experiment, const hardware::DriveRun& run);
+
 /// Port and camera of a robot, open from its first drive to its last.
 class DriveSession {
  public:

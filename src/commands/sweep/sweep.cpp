@@ -70,6 +70,9 @@ experiment::Experiment LoadFor(const SweepRequest& request) {
   const experiment::Experiment experiment = ReadExperiment(request.experiment, overrides);
   CheckFlags(request, experiment);
   RequireFolderName(request.out, "a sweep");
+  if (experiment.candidate.kind == experiment::CandidateKind::kSimulation) {
+    RequireWaypoints(experiment, request.experiment);
+  }
   if (!request.any_waypoints &&
       experiment.candidate.kind == experiment::CandidateKind::kSimulation) {
     RequireReachableWaypoints(experiment, request.experiment);
@@ -127,6 +130,7 @@ void NotePlan(const SweepRequest& request, const experiment::Experiment& loaded)
         fmt::format("note: {} names no space: the paper's grid of surface, v_min and v_max",
                     request.experiment));
   }
+  if (loaded.candidate.kind == experiment::CandidateKind::kSimulation) WarnOfTilt(loaded);
 }
 
 void NoteTooFewRepeats(const experiment::Experiment& experiment) {

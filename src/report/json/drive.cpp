@@ -178,6 +178,7 @@ std::string DriveJson(const experiment::Experiment& experiment, const hardware::
   json["ping"] = PingBlock(run.ping, experiment.hardware);
   json["waypoints"] = WaypointsJson(result);
   json["limits"] = LimitsJson(result.limits);
+  json["steering"] = SteeringJson(SteeringOf(experiment, run));
   return Dump(json);
 }
 

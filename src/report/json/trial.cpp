@@ -49,6 +49,7 @@ std::string SimulationJson(const experiment::Experiment& experiment,
                     {"stale_decisions", result.stale_decisions}};
   json["waypoints"] = WaypointsJson(result);
   json["limits"] = LimitsJson(result.limits);
+  json["steering"] = SteeringJson(SteeringOf(experiment, run));
   return Dump(json);
 }
 

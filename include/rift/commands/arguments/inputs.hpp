@@ -18,6 +18,15 @@ experiment::Experiment ReadExperiment(const std::filesystem::path& file,
 /// that came with it (PREFIX/share/rift): configs/waypoints/paper.yaml works in any folder.
 std::string FindInput(const std::string& name);
 
+/// Throws std::invalid_argument, naming the file, when the experiment has neither waypoints nor a
+/// program, as a robot's file has not, and shows how to give it some.
+void RequireWaypoints(const experiment::Experiment& experiment, const std::string& file);
+/// The same when the experiment is nothing to drive for another reason.
+void RequireTask(const experiment::Experiment& experiment, const std::string& file);
+
+/// Says once that the simulated robot does not stand level, and what would make it.
+void WarnOfTilt(const experiment::Experiment& experiment);
+
 /// Waypoints that no run can reach: throws std::invalid_argument, naming file and waypoint, for one
 /// outside trial.arena, and for a path so long and so far out that its metres must be millimetres
 /// or centimetres.

@@ -26,6 +26,7 @@
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"
 #include "rift/sweep/run/slurm_shards.hpp"
+#include "rift/trial/steering_check.hpp"
 #include "rift/trial/trial.hpp"
 #include "rift/vision/calibration/calibration.hpp"
 #include "rift/vision/tracking/session_options.hpp"
@@ -170,6 +171,17 @@ std::string WaypointsYaml(const std::vector<control::Waypoint>& waypoints);
 /// What the summaries of a simulated and of a real trial have in common.
 nlohmann::ordered_json WaypointsJson(const trial::TrialResult& result);
 nlohmann::ordered_json LimitsJson(const trial::LimitCounts& limits);
+nlohmann::ordered_json SteeringJson(const trial::SteeringCheck& check);
+
+/// Its steering as the run showed it, and where it did not, as the experiment's keys say.
+trial::SteeringCheck SteeringOf(const experiment::Experiment& experiment,
+                                const sweep::SimulatedRun& run);
+trial::SteeringCheck SteeringOf(const experiment::Experiment& experiment,
+                                const hardware::DriveRun& run);
+/// Why a run circled or did not arrive, which limits bound, and what to set, one line each; empty
+/// for a run without causes.
+std::vector<std::string> SteeringLines(const trial::SteeringCheck& check,
+                                       const trial::LimitCounts& limits);
 
 /// summary.json of a simulated trial: outcome, times, waypoints, which limits of the controller
 /// were binding, seed and version.
