@@ -27,6 +27,7 @@ constexpr double kCircleShare = 0.8;  // of the reach radius, wanted
 constexpr double kLargestSwing_deg = 45.0, kWantedSwing_deg = 15.0;
 constexpr double kManyDecisions = 0.2;
 constexpr double kLeastR2 = 0.3;
+constexpr double kTurnedAway = 0.25;
 constexpr double kStanding_m = 0.02;
 
 /// Steering and speed of v and w at full error, after every limit.
@@ -131,7 +132,9 @@ bool Identify(const TrialResult& result, const SteeringPrior& prior, SteeringChe
   const double way_m = Way_m(result.trajectory);
   const std::optional<LoopDelay> delay = TryDelay(result, 1.0);
   if (way_m < kStanding_m || !delay) return false;
-  if (result.outcome != Outcome::kReached && IsReversed(*delay, result)) return true;
+  // It turns its back on the waypoint; less of a turn may be noise.
+  const bool may_be_reversed = result.outcome != Outcome::kReached && check.turns > kTurnedAway;
+  if (may_be_reversed && IsReversed(*delay, result)) return true;
   check.r2 = delay->r2;
   check.is_identified = delay->r2 >= kLeastR2 && delay->gain_rad_s > 0.0;
   if (check.is_identified) {
