@@ -111,7 +111,7 @@ TEST_CASE("Wrong input: rift simulate") {
       {"simulate @gone.yaml", "cannot read"},
       {"simulate @dir", "Is a directory"},
       {"simulate @broken.yaml", "broken.yaml:2:1"},
-      {"simulate @none.yaml", "0 waypoint(s) given"},
+      {"simulate @none.yaml", "it has no waypoints"},
       {"simulate @mm.yaml", "divide millimetres by 1000, or give --any-waypoints"},
       {"simulate @arena.yaml", "waypoints[1] at x 1 m, y 0 m lies outside trial.arena"},
       {"simulate" + kTask + "@mm.yaml", "one argument too many"},
