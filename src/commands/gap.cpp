@@ -62,7 +62,8 @@ struct GapRequest {
     const auto either = [&](const std::string& own, const std::string& both) {
       return own.empty() && !is_dialect ? both : own;
     };
-    return {format, either(own_columns, columns), either(own_units, units), flag};
+    return {format, either(own_columns, columns), either(own_units, units), flag,
+            options.IsInSpace()};
   }
 };
 
@@ -113,7 +114,8 @@ void SayIfSwapped(const GapRequest& request, const gap::GapResult& result) {
 
 void SayDoubts(const gap::GapResult& result) {
   for (size_t i = 0; i < result.reals.size(); ++i) {
-    for (const std::string& doubt : gap::Doubts(result.sim, result.reals[i])) {
+    for (const std::string& doubt :
+         gap::Doubts(result.sim, result.reals[i], result.options.dimension)) {
       const bool falsifies = result.trials[i].comparison.gap_m > result.options.threshold_m;
       terminal::Say(fmt::format("warning: SIM {} and REAL {}{}: {}", result.sim_path,
                                 result.trials[i].path, falsifies ? ", whose gap falsifies" : "",
@@ -183,7 +185,25 @@ void RefuseTwins(const std::vector<std::string>& logs) {
   }
 }
 
+/// What is measured in the plane alone.
+void CheckDimension(const GapRequest& request) {
+  request.options.Check();
+  if (!request.options.IsInSpace()) return;
+  if (request.tag_offset_m != 0.0) {
+    throw std::invalid_argument(fmt::format(
+        "--tag-offset is {:g}, which moves a path along its yaw in the plane, and --dimension is "
+        "xyz: log the point that is to be compared, and leave --tag-offset out",
+        request.tag_offset_m));
+  }
+  if (!request.sim_repeats.empty()) {
+    throw std::invalid_argument(
+        "--sim-repeats measures likeness, which is of paths in the plane, and --dimension is xyz: "
+        "leave one of them out");
+  }
+}
+
 void CheckInputs(const GapRequest& request) {
+  CheckDimension(request);
   RefuseTwins(request.reals);
   trajectory::CheckColumns(request.SimLogs());
   trajectory::CheckColumns(request.RealLogs());

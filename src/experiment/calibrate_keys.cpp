@@ -71,6 +71,9 @@ void RequireSimulatorAndLogs(const Experiment& experiment, const std::string& pa
                     "moved: leave it out and set simulation.mocap.tag_ahead_m",
                     experiment.reference.tag_offset_m));
   }
+  if (experiment.gap.IsInSpace()) {
+    refuse("and gap.dimension is xyz: a fit looks at speeds, turns and sideways slip in the plane");
+  }
   if (experiment.calibrate.fit.list.empty()) {
     refuse(fmt::format(
         "and calibrate.fit is empty: name parameters, such as {{{}}}",

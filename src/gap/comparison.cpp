@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -24,22 +25,25 @@ constexpr int kMeasurePoints = 160;
 /// Hausdorff costs the product of the rows; up to this many pairs every vertex is looked at.
 constexpr size_t kMostHausdorffPairs = 65536;
 
+template <int N>
 struct Paths {
-  ArcPath sim;
-  ArcPath real;
+  ArcPathIn<N> sim;
+  ArcPathIn<N> real;
 };
 
 /// Both paths as they are to be compared, after trimming and aligning.
-Paths Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
-              const GapOptions& options) {
-  Paths paths{MakeArcPath(sim, options), MakeArcPath(real, options)};
+template <int N>
+Paths<N> Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+                 const GapOptions& options) {
+  Paths<N> paths{MakeArcPathIn<N>(sim, options), MakeArcPathIn<N>(real, options)};
   if (options.align != Align::kNone) {
     Transform(paths.sim, AligningMotion(paths.sim, paths.real, options.align, options.samples));
   }
   return paths;
 }
 
-double YawAt(const ArcPath& path, double u, size_t& i) {
+template <int N>
+double YawAt(const ArcPathIn<N>& path, double u, size_t& i) {
   while (i + 2 < path.Size() && path.u[i + 1] <= u) ++i;
   const double span = path.u[i + 1] - path.u[i];
   const double share = span > 0.0 ? (u - path.u[i]) / span : 0.0;
@@ -49,16 +53,18 @@ double YawAt(const ArcPath& path, double u, size_t& i) {
 }
 
 /// The points of both paths at the samples, those left out at the start included.
+template <int N>
 struct SampledPaths {
-  SampledPaths(const Paths& paths, const GapOptions& options)
+  SampledPaths(const Paths<N>& paths, const GapOptions& options)
       : sim_m(Resample(paths.sim, options.samples)),
         real_m(Resample(paths.real, options.samples)) {}
 
-  Points sim_m;
-  Points real_m;
+  PointsIn<N> sim_m;
+  PointsIn<N> real_m;
 };
 
-std::vector<double> Errors_m(const SampledPaths& samples, const GapOptions& options) {
+template <int N>
+std::vector<double> Errors_m(const SampledPaths<N>& samples, const GapOptions& options) {
   std::vector<double> errors_m;
   errors_m.reserve(samples.sim_m.size());
   for (size_t k = FirstSample(options); k < samples.sim_m.size(); ++k) {
@@ -68,7 +74,8 @@ std::vector<double> Errors_m(const SampledPaths& samples, const GapOptions& opti
 }
 
 /// NaN where one of the yaws is not known.
-std::vector<double> YawErrors_rad(const Paths& paths, const GapOptions& options) {
+template <int N>
+std::vector<double> YawErrors_rad(const Paths<N>& paths, const GapOptions& options) {
   std::vector<double> errors_rad;
   errors_rad.reserve(options.samples);
   size_t i = 0, j = 0;
@@ -98,33 +105,41 @@ void SummariseYawErrors(std::vector<double> errors_rad, Comparison& result) {
   result.max_yaw_error_rad = *std::max_element(errors_rad.begin(), errors_rad.end());
 }
 
-void MeasureErrors(const Paths& paths, const GapOptions& options, Comparison& result) {
-  const SampledPaths samples(paths, options);
+template <int N>
+void MeasureErrors(const Paths<N>& paths, const GapOptions& options, Comparison& result) {
+  const SampledPaths<N> samples(paths, options);
   SummariseErrors(Errors_m(samples, options), result);
   SummariseYawErrors(YawErrors_rad(paths, options), result);
 }
 
 /// The gap as it is, its supremum, and what is left of it after two motions of the sim path.
-void MeasureGaps(const Paths& paths, const GapOptions& options, Comparison& result) {
+template <int N>
+void MeasureGaps(const Paths<N>& paths, const GapOptions& options, Comparison& result) {
   const auto& [sim, real] = paths;
-  const Peak gap = SampledPeak(sim, real, options), exact = ExactPeak(sim, real, options);
+  const Peak gap = SampledPeak<N>(sim, real, options), exact = ExactPeak(sim, real, options);
   result.gap_m = gap.error_m;
   result.gap_u = gap.u;
   result.exact_gap_m = exact.error_m;
   result.exact_gap_u = exact.u;
-  result.start_aligned_gap_m = SampledPeak(sim, real, options, StartMotion(sim, real)).error_m;
-  result.real_from_sim = BestRigidMotion(sim, real, options.samples);
-  result.shape_gap_m = SampledPeak(sim, real, options, result.real_from_sim).error_m;
+  result.start_aligned_gap_m = SampledPeak<N>(sim, real, options, StartMotion(sim, real)).error_m;
+  const PoseIn<N> real_from_sim = BestRigidMotion(sim, real, options.samples);
+  result.shape_gap_m = SampledPeak<N>(sim, real, options, real_from_sim).error_m;
+  if constexpr (N == 2)
+    result.real_from_sim = real_from_sim;
+  else
+    result.real_from_sim = {kNotComputed, kNotComputed, kNotComputed};
 }
 
 /// Of the whole log, whether the path was trimmed or not.
-double StandstillShare(const trajectory::Trajectory& log, const ArcPath& path,
+template <int N>
+double StandstillShare(const trajectory::Trajectory& log, const ArcPathIn<N>& path,
                        const GapOptions& options) {
-  const double standing_m = StandingLength_m(log.poses, options.standstill_radius_m);
+  const double standing_m = StandingLength_m<N>(log.poses, options.standstill_radius_m);
   return standing_m / (path.length_m + (options.trim_standstill ? standing_m : 0.0));
 }
 
-void MeasureEnds(const Paths& paths, Comparison& result) {
+template <int N>
+void MeasureEnds(const Paths<N>& paths, Comparison& result) {
   result.sim_length_m = paths.sim.length_m;
   result.real_length_m = paths.real.length_m;
   result.length_ratio = paths.sim.length_m / paths.real.length_m;
@@ -133,48 +148,60 @@ void MeasureEnds(const Paths& paths, Comparison& result) {
       (paths.sim.Vertex(paths.sim.Size() - 1) - paths.real.Vertex(paths.real.Size() - 1)).norm();
 }
 
-Points Vertices(const ArcPath& path) {
-  Points points;
+template <int N>
+PointsIn<N> Vertices(const ArcPathIn<N>& path) {
+  PointsIn<N> points;
   points.reserve(path.Size());
   for (size_t i = 0; i < path.Size(); ++i) points.push_back(path.Vertex(i));
   return points;
 }
 
-void MeasureShape(const Paths& paths, Comparison& result) {
-  const Points sim_m = Resample(paths.sim, kMeasurePoints);
-  const Points real_m = Resample(paths.real, kMeasurePoints);
+template <int N>
+void MeasureShape(const Paths<N>& paths, Comparison& result) {
+  const PointsIn<N> sim_m = Resample(paths.sim, kMeasurePoints);
+  const PointsIn<N> real_m = Resample(paths.real, kMeasurePoints);
   const bool all_vertices = paths.sim.Size() * paths.real.Size() <= kMostHausdorffPairs;
-  result.hausdorff_m = all_vertices ? Hausdorff_m(Vertices(paths.sim), Vertices(paths.real))
-                                    : Hausdorff_m(sim_m, real_m);
-  result.frechet_m = DiscreteFrechet_m(sim_m, real_m);
-  result.dtw_m = DynamicTimeWarping_m(sim_m, real_m);
+  result.hausdorff_m = all_vertices ? HausdorffIn_m<N>(Vertices(paths.sim), Vertices(paths.real))
+                                    : HausdorffIn_m<N>(sim_m, real_m);
+  result.frechet_m = DiscreteFrechetIn_m<N>(sim_m, real_m);
+  result.dtw_m = DynamicTimeWarpingIn_m<N>(sim_m, real_m);
 }
 
-}  // namespace
-
-double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
-           const GapOptions& options) {
-  const Paths paths = Prepare(sim, real, options);
-  return SampledPeak(paths.sim, paths.real, options).error_m;
+template <int N>
+double GapIn(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+             const GapOptions& options) {
+  const Paths<N> paths = Prepare<N>(sim, real, options);
+  return SampledPeak<N>(paths.sim, paths.real, options).error_m;
 }
 
-ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
-                          const GapOptions& options) {
-  const Paths paths = Prepare(sim, real, options);
-  const SampledPaths samples(paths, options);
+template <int N>
+void AddPoints(const PointsIn<N>& points_m, size_t first, std::vector<Eigen::Vector2d>& plane_m,
+               std::vector<double>& z_m) {
+  for (size_t k = first; k < points_m.size(); ++k) {
+    plane_m.emplace_back(points_m[k].template head<2>());
+    if constexpr (N == 3) z_m.push_back(points_m[k].z());
+  }
+}
+
+template <int N>
+ErrorProfile ProfileIn(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+                       const GapOptions& options) {
+  const Paths<N> paths = Prepare<N>(sim, real, options);
+  const SampledPaths<N> samples(paths, options);
   const int first = FirstSample(options);
   ErrorProfile profile;
   for (int k = first; k < options.samples; ++k) profile.u.push_back(SampleU(k, options));
   profile.error_m = Errors_m(samples, options);
   profile.yaw_error_rad = YawErrors_rad(paths, options);
-  profile.sim_m.assign(samples.sim_m.begin() + first, samples.sim_m.end());
-  profile.real_m.assign(samples.real_m.begin() + first, samples.real_m.end());
+  AddPoints<N>(samples.sim_m, first, profile.sim_m, profile.sim_z_m);
+  AddPoints<N>(samples.real_m, first, profile.real_m, profile.real_z_m);
   return profile;
 }
 
-Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
-                   const GapOptions& options) {
-  const Paths paths = Prepare(sim, real, options);
+template <int N>
+Comparison CompareIn(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+                     const GapOptions& options) {
+  const Paths<N> paths = Prepare<N>(sim, real, options);
   Comparison result;
   MeasureGaps(paths, options, result);
   MeasureErrors(paths, options, result);
@@ -186,14 +213,52 @@ Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajecto
   return result;
 }
 
+}  // namespace
+
+void GapOptions::Check() const {
+  if (align == Align::kSe2 && IsInSpace()) {
+    throw std::invalid_argument(
+        "align is se2, a motion in the plane, and dimension is xyz: use se3");
+  }
+  if (align == Align::kSe3 && !IsInSpace()) {
+    throw std::invalid_argument(
+        "align is se3, a motion in space, and dimension is xy: use se2, or dimension xyz");
+  }
+}
+
+double Gap(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+           const GapOptions& options) {
+  options.Check();
+  return options.IsInSpace() ? GapIn<3>(sim, real, options) : GapIn<2>(sim, real, options);
+}
+
+ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+                          const GapOptions& options) {
+  options.Check();
+  return options.IsInSpace() ? ProfileIn<3>(sim, real, options) : ProfileIn<2>(sim, real, options);
+}
+
+Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
+                   const GapOptions& options) {
+  options.Check();
+  return options.IsInSpace() ? CompareIn<3>(sim, real, options) : CompareIn<2>(sim, real, options);
+}
+
+geometry::Pose3 BestMotionInSpace(const trajectory::Trajectory& sim,
+                                  const trajectory::Trajectory& real, const GapOptions& options) {
+  const Paths<3> paths = Prepare<3>(sim, real, options);
+  return BestRigidMotion<3>(paths.sim, paths.real, options.samples);
+}
+
 std::string DefinitionText(const GapOptions& options, double tag_offset_m) {
-  std::string text = fmt::format(
-      "largest distance at equal normalised arc length u over {} samples", options.samples);
+  std::string text =
+      fmt::format("largest distance{} at equal normalised arc length u over {} samples",
+                  options.IsInSpace() ? " in x, y and z" : "", options.samples);
   if (options.skip_start > 0.0) {
     text += fmt::format(", the first {:g} % left out", 100.0 * options.skip_start);
   }
   if (options.align == Align::kStart) text += ", first points laid together";
-  if (options.align == Align::kSe2) text += ", best rigid motion removed";
+  if (options.align >= Align::kSe2) text += ", best rigid motion removed";
   if (options.trim_standstill) text += ", standstill trimmed";
   if (tag_offset_m != 0.0) text += fmt::format(", real path {:g} m ahead of the tag", tag_offset_m);
   return text;

@@ -19,26 +19,33 @@ constexpr int kPoints = 160;
 constexpr size_t kFewestRows = 10;
 
 /// A path as points at equal arc length, the first of them at the origin.
-Points FromStart(const ArcPath& path) {
-  Points points = Resample(path, kPoints);
-  const Eigen::Vector2d start_m = points.front();
-  for (Eigen::Vector2d& point : points) point -= start_m;
+template <int N>
+PointsIn<N> FromStart(const ArcPathIn<N>& path) {
+  PointsIn<N> points = Resample(path, kPoints);
+  const Point<N> start_m = points.front();
+  for (Point<N>& point : points) point -= start_m;
   return points;
 }
 
-double Extent_m(const Points& points) {
+template <int N>
+double Extent_m(const std::vector<Point<N>>& points) {
   double extent_m = 0.0;
-  for (const Eigen::Vector2d& point : points) extent_m = std::max(extent_m, point.norm());
+  for (const Point<N>& point : points) extent_m = std::max(extent_m, point.norm());
   return extent_m;
 }
 
-double MeanDistance_m(const Points& a, const Points& b, const Eigen::Matrix2d& b_changed) {
+template <int N>
+using Matrix = Eigen::Matrix<double, N, N>;
+
+template <int N>
+double MeanDistance_m(const PointsIn<N>& a, const PointsIn<N>& b, const Matrix<N>& b_changed) {
   double sum_m = 0.0;
   for (size_t i = 0; i < a.size(); ++i) sum_m += (a[i] - b_changed * b[i]).norm();
   return sum_m / static_cast<double>(a.size());
 }
 
-void DoubtScale(const Points& sim, const Points& real, std::vector<std::string>& doubts) {
+template <int N>
+void DoubtScale(const PointsIn<N>& sim, const PointsIn<N>& real, std::vector<std::string>& doubts) {
   struct Factor {
     double factor;
     const char* units;
@@ -49,13 +56,13 @@ void DoubtScale(const Points& sim, const Points& real, std::vector<std::string>&
                                             {10.0, "mm for cm"},
                                             {3.281, "feet for m"}}};
   constexpr double kSameFactor = 0.15, kSameShape = 0.1;
-  const double sim_m = Extent_m(sim), real_m = Extent_m(real);
+  const double sim_m = Extent_m<N>(sim), real_m = Extent_m<N>(real);
   if (!(sim_m > 0.0) || !(real_m > 0.0)) return;
   const double ratio = std::max(sim_m, real_m) / std::min(sim_m, real_m);
   for (const Factor& factor : kFactors) {
     if (std::abs(ratio / factor.factor - 1.0) > kSameFactor) continue;
     const double to_sim = sim_m > real_m ? factor.factor : 1.0 / factor.factor;
-    const double rest_m = MeanDistance_m(sim, real, Eigen::Matrix2d::Identity() * to_sim);
+    const double rest_m = MeanDistance_m<N>(sim, real, Matrix<N>::Identity() * to_sim);
     if (rest_m > kSameShape * sim_m) continue;
     doubts.push_back(fmt::format(
         "the path of {} is {:.4g} times as large as that of {}: {}? name the unit, as in --units "
@@ -65,27 +72,35 @@ void DoubtScale(const Points& sim, const Points& real, std::vector<std::string>&
   }
 }
 
-void DoubtAxes(const Points& sim, const Points& real, std::vector<std::string>& doubts) {
+template <int N>
+void DoubtAxes(const PointsIn<N>& sim, const PointsIn<N>& real, std::vector<std::string>& doubts) {
   struct Mistake {
-    Eigen::Matrix2d mended;
+    Matrix<N> mended;
     const char* what;
   };
   const auto matrix = [](double a, double b, double c, double d) {
-    return (Eigen::Matrix2d() << a, b, c, d).finished();
+    Matrix<N> planar = Matrix<N>::Identity();
+    planar.template topLeftCorner<2, 2>() << a, b, c, d;
+    return planar;
   };
-  const std::array<Mistake, 4> mistakes{
-      {{matrix(1, 0, 0, -1), "mirrored y: turn its sign, as in y=-COLUMN"},
-       {matrix(-1, 0, 0, 1), "mirrored x: turn its sign, as in x=-COLUMN"},
-       {matrix(0, 1, 1, 0), "swapped axes: exchange the columns of x and y"},
-       {matrix(-1, 0, 0, -1), "a frame turned by half a turn: x=-COLUMN,y=-COLUMN"}}};
+  std::vector<Mistake> mistakes{
+      {matrix(1, 0, 0, -1), "mirrored y: turn its sign, as in y=-COLUMN"},
+      {matrix(-1, 0, 0, 1), "mirrored x: turn its sign, as in x=-COLUMN"},
+      {matrix(0, 1, 1, 0), "swapped axes: exchange the columns of x and y"},
+      {matrix(-1, 0, 0, -1), "a frame turned by half a turn: x=-COLUMN,y=-COLUMN"}};
+  if constexpr (N == 3) {
+    const Eigen::Vector3d mirrored_z(1, 1, -1);
+    mistakes.push_back(
+        {mirrored_z.asDiagonal(), "mirrored z: turn its sign, as in z=-COLUMN (rift's z is up)"});
+  }
   constexpr double kFar = 0.1, kMends = 0.3;
-  const double extent_m = std::max(Extent_m(sim), Extent_m(real));
-  const double distance_m = MeanDistance_m(sim, real, Eigen::Matrix2d::Identity());
+  const double extent_m = std::max(Extent_m<N>(sim), Extent_m<N>(real));
+  const double distance_m = MeanDistance_m<N>(sim, real, Matrix<N>::Identity());
   if (distance_m < kFar * extent_m) return;
   const Mistake* best = nullptr;
   double best_m = kMends * distance_m;
   for (const Mistake& mistake : mistakes) {
-    const double mended_m = MeanDistance_m(sim, real, mistake.mended);
+    const double mended_m = MeanDistance_m<N>(sim, real, mistake.mended);
     if (mended_m > best_m) continue;
     best = &mistake;
     best_m = mended_m;
@@ -97,10 +112,11 @@ void DoubtAxes(const Points& sim, const Points& real, std::vector<std::string>& 
 }
 
 /// Speed over the rows [begin, end).
+template <int N>
 double Speed_m_s(const Trajectory& log, size_t begin, size_t end) {
   const StampedPose &first = log.poses[begin], &last = log.poses[end - 1];
   const double time_s = last.t_s - first.t_s;
-  return time_s > 0.0 ? (last.Position() - first.Position()).norm() / time_s : 0.0;
+  return time_s > 0.0 ? (PositionOf<N>(last) - PositionOf<N>(first)).norm() / time_s : 0.0;
 }
 
 /// Where a point stands on a path: the nearest of its points between two of them.
@@ -108,7 +124,8 @@ struct Place {
   double u;
   double distance_m;
 };
-Place PlaceOn(const Points& path, const Eigen::Vector2d& point, double from_u, double to_u) {
+template <int N>
+Place PlaceOn(const PointsIn<N>& path, const Point<N>& point, double from_u, double to_u) {
   Place best{0.0, HUGE_VAL};
   for (size_t i = 0; i < path.size(); ++i) {
     const double u = static_cast<double>(i) / static_cast<double>(path.size() - 1);
@@ -119,16 +136,17 @@ Place PlaceOn(const Points& path, const Eigen::Vector2d& point, double from_u, d
 }
 
 /// One of the logs covers a part of the other's path, and moves where it is cut.
-void DoubtPart(const Trajectory& log, const ArcPath& part, const ArcPath& whole, const char* name,
-               const char* other, std::vector<std::string>& doubts) {
+template <int N>
+void DoubtPart(const Trajectory& log, const ArcPathIn<N>& part, const ArcPathIn<N>& whole,
+               const char* name, const char* other, std::vector<std::string>& doubts) {
   constexpr double kWhole = 0.85, kNear = 0.1, kBeside = 0.06, kMoves = 0.5;
   const double share = part.length_m / whole.length_m;
   if (share > kWhole || log.poses.size() < kFewestRows) return;
-  const Points path = Resample(whole, kPoints), piece = Resample(part, kPoints);
+  const PointsIn<N> path = Resample(whole, kPoints), piece = Resample(part, kPoints);
   const double near_m = kNear * whole.length_m;
-  const Place begin = PlaceOn(path, piece.front(), 0.0, 1.0 - 0.7 * share);
+  const Place begin = PlaceOn<N>(path, piece.front(), 0.0, 1.0 - 0.7 * share);
   const Place end =
-      PlaceOn(path, piece.back(), begin.u + 0.85 * share, begin.u + 1.15 * share + 0.01);
+      PlaceOn<N>(path, piece.back(), begin.u + 0.85 * share, begin.u + 1.15 * share + 0.01);
   if (begin.distance_m > near_m || end.distance_m > near_m || end.u - begin.u > kWhole) return;
   double beside_m = 0.0;  // a path of another shape comes by as well
   for (size_t i = 0; i < piece.size(); ++i) {
@@ -139,8 +157,10 @@ void DoubtPart(const Trajectory& log, const ArcPath& part, const ArcPath& whole,
   constexpr size_t kRows = 5;
   const double mean_m_s = part.length_m / log.Duration_s();
   const size_t rows = log.poses.size();
-  const bool lacks_begin = begin.u > 1.0 - kWhole && Speed_m_s(log, 0, kRows) > kMoves * mean_m_s;
-  const bool lacks_end = end.u < kWhole && Speed_m_s(log, rows - kRows, rows) > kMoves * mean_m_s;
+  const bool lacks_begin =
+      begin.u > 1.0 - kWhole && Speed_m_s<N>(log, 0, kRows) > kMoves * mean_m_s;
+  const bool lacks_end =
+      end.u < kWhole && Speed_m_s<N>(log, rows - kRows, rows) > kMoves * mean_m_s;
   if (!lacks_begin && !lacks_end) return;
   doubts.push_back(
       fmt::format("{} covers only u = {:.2f} to {:.2f} of the path of {} and {} in motion: a log "
@@ -167,10 +187,11 @@ void DoubtClocks(const Trajectory& sim, const Trajectory& real, std::vector<std:
       sim_s, real_s));
 }
 
+template <int N>
 bool AreSame(const Trajectory& sim, const Trajectory& real) {
   return std::equal(sim.poses.begin(), sim.poses.end(), real.poses.begin(), real.poses.end(),
                     [](const StampedPose& a, const StampedPose& b) {
-                      return a.Position() == b.Position() && a.t_s == b.t_s;
+                      return PositionOf<N>(a) == PositionOf<N>(b) && a.t_s == b.t_s;
                     });
 }
 
@@ -205,22 +226,32 @@ bool LookSwapped(const Trajectory& sim, const Trajectory& real) {
   return real_is_computed && of_sim.step_scatter > kUneven && of_sim.noise_m > kNoisy_m;
 }
 
-std::vector<std::string> Doubts(const Trajectory& sim, const Trajectory& real) {
+namespace {
+
+template <int N>
+std::vector<std::string> DoubtsIn(const Trajectory& sim, const Trajectory& real) {
   std::vector<std::string> doubts;
-  if (AreSame(sim, real)) {
+  if (AreSame<N>(sim, real)) {
     doubts.emplace_back("SIM and REAL are the same log: name the robot's own");
     return doubts;
   }
-  const ArcPath sim_path = MakeArcPath(sim, {}), real_path = MakeArcPath(real, {});
-  const Points sim_m = FromStart(sim_path), real_m = FromStart(real_path);
-  DoubtScale(sim_m, real_m, doubts);
+  const ArcPathIn<N> sim_path = MakeArcPathIn<N>(sim, {}), real_path = MakeArcPathIn<N>(real, {});
+  const PointsIn<N> sim_m = FromStart(sim_path), real_m = FromStart(real_path);
+  DoubtScale<N>(sim_m, real_m, doubts);
   if (doubts.empty()) {
-    DoubtAxes(sim_m, real_m, doubts);
+    DoubtAxes<N>(sim_m, real_m, doubts);
     DoubtPart(real, real_path, sim_path, "REAL", "SIM", doubts);
     DoubtPart(sim, sim_path, real_path, "SIM", "REAL", doubts);
   }
   DoubtClocks(sim, real, doubts);
   return doubts;
+}
+
+}  // namespace
+
+std::vector<std::string> Doubts(const Trajectory& sim, const Trajectory& real,
+                                Dimension dimension) {
+  return dimension == Dimension::kXyz ? DoubtsIn<3>(sim, real) : DoubtsIn<2>(sim, real);
 }
 
 }  // namespace rift::gap

@@ -39,6 +39,7 @@ trajectory::Trajectory ToTheGoal(const trajectory::Trajectory& path, const Goal&
 
 double WayGap_m(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                 const Goal& goal, const GapOptions& options) {
+  if (options.IsInSpace()) return Gap(sim, real, options);
   return Gap(ToTheGoal(sim, goal), ToTheGoal(real, goal), options);
 }
 

@@ -9,8 +9,8 @@ namespace {
 
 /// Calls visit(u_begin, u_end, i, j) for each interval between neighbouring breakpoints of either
 /// path: in it `sim` stands on its edge i and `real` on its edge j.
-template <class Visit>
-void ForEachInterval(const ArcPath& sim, const ArcPath& real, Visit&& visit) {
+template <int N, class Visit>
+void ForEachInterval(const ArcPathIn<N>& sim, const ArcPathIn<N>& real, Visit&& visit) {
   const size_t sim_last = sim.Size() - 2, real_last = real.Size() - 2;
   size_t i = 0, j = 0;
   double begin = 0.0;
@@ -29,9 +29,10 @@ void ForEachInterval(const ArcPath& sim, const ArcPath& real, Visit&& visit) {
 /// The error vector real - sim as a function of u, the sim path moved first by `real_from_sim`.
 /// In each interval it is affine in u, so its length is convex there: the largest value over any
 /// set of u within the interval stands at the first or the last of them.
+template <int N>
 class PathError {
  public:
-  PathError(const ArcPath& sim, const ArcPath& real, const geometry::Pose2& real_from_sim = {})
+  PathError(const ArcPathIn<N>& sim, const ArcPathIn<N>& real, const PoseIn<N>& real_from_sim = {})
       : sim_(sim), real_(real), motion_(real_from_sim) {}
 
   /// Its length for u on edge i of the sim and edge j of the real path.
@@ -42,26 +43,29 @@ class PathError {
   }
 
  private:
+  using PointMotion = typename MotionIn<N>::OfPoints;
+
   /// One edge of a path as a function of u; an edge too short to move u stands at its start.
   struct Segment {
-    Segment(const ArcPath& path, size_t i) : Segment(path, i, path.Vertex(i), path.Vertex(i + 1)) {}
-    Segment(const ArcPath& path, size_t i, const geometry::PointMotion& motion)
+    Segment(const ArcPathIn<N>& path, size_t i)
+        : Segment(path, i, path.Vertex(i), path.Vertex(i + 1)) {}
+    Segment(const ArcPathIn<N>& path, size_t i, const PointMotion& motion)
         : Segment(path, i, motion * path.Vertex(i), motion * path.Vertex(i + 1)) {}
-    Segment(const ArcPath& path, size_t i, const Eigen::Vector2d& from, const Eigen::Vector2d& to)
+    Segment(const ArcPathIn<N>& path, size_t i, const Point<N>& from, const Point<N>& to)
         : u0(path.u[i]), p0(from) {
       const double span = path.u[i + 1] - path.u[i];
       if (span > 0.0) slope = (to - from) / span;
     }
-    Eigen::Vector2d At(double u) const { return p0 + slope * (u - u0); }
+    Point<N> At(double u) const { return p0 + slope * (u - u0); }
 
     double u0;
-    Eigen::Vector2d p0;
-    Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+    Point<N> p0;
+    Point<N> slope = Point<N>::Zero();
   };
 
-  const ArcPath& sim_;
-  const ArcPath& real_;
-  geometry::PointMotion motion_;
+  const ArcPathIn<N>& sim_;
+  const ArcPathIn<N>& real_;
+  PointMotion motion_;
 };
 
 }  // namespace
@@ -78,9 +82,10 @@ double SampleU(int k, const GapOptions& options) {
 }
 
 // The error is convex in u within an interval, so the first and the last sample in it are enough.
-Peak SampledPeak(const ArcPath& sim, const ArcPath& real, const GapOptions& options,
-                 const geometry::Pose2& real_from_sim) {
-  const PathError error(sim, real, real_from_sim);
+template <int N>
+Peak SampledPeak(const ArcPathIn<N>& sim, const ArcPathIn<N>& real, const GapOptions& options,
+                 const PoseIn<N>& real_from_sim) {
+  const PathError<N> error(sim, real, real_from_sim);
   Peak peak;
   int next = FirstSample(options);
   ForEachInterval(sim, real, [&](double, double end, size_t i, size_t j) {
@@ -98,8 +103,9 @@ Peak SampledPeak(const ArcPath& sim, const ArcPath& real, const GapOptions& opti
   return peak;
 }
 
-Peak ExactPeak(const ArcPath& sim, const ArcPath& real, const GapOptions& options) {
-  const PathError error(sim, real);
+template <int N>
+Peak ExactPeak(const ArcPathIn<N>& sim, const ArcPathIn<N>& real, const GapOptions& options) {
+  const PathError<N> error(sim, real);
   Peak peak;
   const double first_u = SampleU(FirstSample(options), options);
   const auto look_at = [&peak](double u, double error_m) {
@@ -115,5 +121,12 @@ Peak ExactPeak(const ArcPath& sim, const ArcPath& real, const GapOptions& option
   assert(peak.error_m >= 0.0);
   return peak;
 }
+
+template Peak SampledPeak<2>(const ArcPathIn<2>&, const ArcPathIn<2>&, const GapOptions&,
+                             const PoseIn<2>&);
+template Peak ExactPeak<2>(const ArcPathIn<2>&, const ArcPathIn<2>&, const GapOptions&);
+template Peak SampledPeak<3>(const ArcPathIn<3>&, const ArcPathIn<3>&, const GapOptions&,
+                             const PoseIn<3>&);
+template Peak ExactPeak<3>(const ArcPathIn<3>&, const ArcPathIn<3>&, const GapOptions&);
 
 }  // namespace rift::gap

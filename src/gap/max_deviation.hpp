@@ -18,10 +18,12 @@ double SampleU(int k, const GapOptions& options);
 
 /// Equation (3.1) of the paper: the largest distance over the samples, the sim path moved first by
 /// `real_from_sim`.
-Peak SampledPeak(const ArcPath& sim, const ArcPath& real, const GapOptions& options,
-                 const geometry::Pose2& real_from_sim = {});
+template <int N>
+Peak SampledPeak(const ArcPathIn<N>& sim, const ArcPathIn<N>& real, const GapOptions& options,
+                 const PoseIn<N>& real_from_sim = {});
 
 /// The supremum over the polylines from the first sample on.
-Peak ExactPeak(const ArcPath& sim, const ArcPath& real, const GapOptions& options);
+template <int N>
+Peak ExactPeak(const ArcPathIn<N>& sim, const ArcPathIn<N>& real, const GapOptions& options);
 
 }  // namespace rift::gap

@@ -103,22 +103,27 @@ void DoubtYaw(const Trajectory& trajectory, std::vector<std::string>& doubts) {
                                best ? best->what : "is it another column?"));
 }
 
+double Distance_m(const StampedPose& a, const StampedPose& b, bool in_space) {
+  return in_space ? (b.PositionInSpace() - a.PositionInSpace()).norm()
+                  : (b.Position() - a.Position()).norm();
+}
+
 /// Speeds from row to row while it moves.
-std::vector<double> SpeedsOf(const Trajectory& trajectory) {
+std::vector<double> SpeedsOf(const Trajectory& trajectory, bool in_space) {
   const auto& poses = trajectory.poses;
   std::vector<double> speeds;
   for (size_t i = 1; i < poses.size(); ++i) {
-    const double step_m = (poses[i].Position() - poses[i - 1].Position()).norm();
+    const double step_m = Distance_m(poses[i - 1], poses[i], in_space);
     const double time_s = poses[i].t_s - poses[i - 1].t_s;
     if (step_m > 0.0 && time_s > 0.0) speeds.push_back(step_m / time_s);
   }
   return speeds;
 }
 
-void DoubtUnits(const Trajectory& trajectory, std::vector<std::string>& doubts) {
+void DoubtUnits(const Trajectory& trajectory, bool in_space, std::vector<std::string>& doubts) {
   const auto& poses = trajectory.poses;
   constexpr double kShortest_m = 0.003, kSlowest_step_s = 2.0, kFastest_step_s = 1e-4;
-  const std::vector<double> speeds_m_s = SpeedsOf(trajectory);
+  const std::vector<double> speeds_m_s = SpeedsOf(trajectory, in_space);
   std::vector<double> steps_s;
   for (size_t i = 1; i < poses.size(); ++i) steps_s.push_back(poses[i].t_s - poses[i - 1].t_s);
   const double step_s = steps_s.empty() ? 0.1 : statistics::Median(steps_s);
@@ -141,7 +146,7 @@ void DoubtUnits(const Trajectory& trajectory, std::vector<std::string>& doubts) 
   }
   double extent_m = 0.0;
   for (const StampedPose& pose : poses) {
-    extent_m = std::max(extent_m, (pose.Position() - poses.front().Position()).norm());
+    extent_m = std::max(extent_m, Distance_m(poses.front(), pose, in_space));
   }
   if (extent_m < kShortest_m && poses.size() >= kFewestPieces) {
     doubts.push_back(fmt::format(
@@ -151,13 +156,13 @@ void DoubtUnits(const Trajectory& trajectory, std::vector<std::string>& doubts) 
 }
 
 /// Rows in motion, and how many of them only repeat the position of the row before.
-void DoubtRepeats(const Trajectory& trajectory, std::vector<std::string>& doubts) {
+void DoubtRepeats(const Trajectory& trajectory, bool in_space, std::vector<std::string>& doubts) {
   constexpr double kMost = 0.8;
   const auto& poses = trajectory.poses;
   int pairs = 0, others = 0;  // runs of two rows with one position; of any other number
   for (size_t i = 0; i < poses.size();) {
     size_t end = i + 1;
-    while (end < poses.size() && poses[end].Position() == poses[i].Position()) ++end;
+    while (end < poses.size() && Distance_m(poses[i], poses[end], in_space) == 0.0) ++end;
     ++(end - i == 2 ? pairs : others);
     i = end;
   }
@@ -188,12 +193,12 @@ double TravelAgreement(const Trajectory& trajectory) {
   return Agreement(pieces, [](const Piece& piece) { return piece; });
 }
 
-std::vector<std::string> Doubts(const Trajectory& trajectory) {
+std::vector<std::string> Doubts(const Trajectory& trajectory, bool in_space) {
   std::vector<std::string> doubts;
-  DoubtUnits(trajectory, doubts);
-  DoubtYaw(trajectory, doubts);
-  DoubtRepeats(trajectory, doubts);
-  DoubtTilt(trajectory, doubts);
+  DoubtUnits(trajectory, in_space, doubts);
+  if (!in_space) DoubtYaw(trajectory, doubts);
+  DoubtRepeats(trajectory, in_space, doubts);
+  if (!in_space) DoubtTilt(trajectory, doubts);
   return doubts;
 }
 

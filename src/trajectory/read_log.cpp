@@ -68,13 +68,30 @@ bool LacksSomeYaw(const Trajectory& trajectory) {
          std::any_of(trajectory.poses.begin(), trajectory.poses.end(), has_one);
 }
 
-void CheckMoves(const Trajectory& trajectory, const std::string& name) {
+/// A log whose header does not tell whether z is up may hold one that was not taken.
+void RequireHeights(const Log& log, const std::string& name, const ReadOptions& options) {
+  for (const StampedPose& pose : log.trajectory.poses) {
+    if (!std::isnan(pose.z_m)) continue;
+    const bool is_unknown = log.format == Format::kAuto;
+    throw std::invalid_argument(fmt::format(
+        "{}: the pose at {:.10g} s has no height z, and a gap in space (dimension xyz) needs it: "
+        "{}, "
+        "or leave dimension at xy",
+        name, pose.t_s,
+        is_unknown ? "name its format, tracker or webots, since its header does not tell which way "
+                     "z points"
+                   : fmt::format("log z_m, or name its column: {}t=...,x=...,y=...,z=...",
+                                 options.columns_flag)));
+  }
+}
+
+void CheckMoves(const Trajectory& trajectory, const std::string& name, bool in_space) {
   if (trajectory.poses.size() < 2) {
     throw std::invalid_argument(fmt::format("{}: {} poses, and a trajectory needs at least 2", name,
                                             trajectory.poses.size()));
   }
-  const auto moves = [](const StampedPose& a, const StampedPose& b) {
-    return (b.Position() - a.Position()).norm() > 0.0;
+  const auto moves = [in_space](const StampedPose& a, const StampedPose& b) {
+    return (b.Position() - a.Position()).norm() > 0.0 || (in_space && a.z_m != b.z_m);
   };
   const auto& poses = trajectory.poses;
   if (std::adjacent_find(poses.begin(), poses.end(), moves) == poses.end()) {
@@ -150,8 +167,9 @@ Log ReadLog(std::string_view text, const std::string& name, const ReadOptions& o
   if (rows.first_line_without_yaw && LacksSomeYaw(log.trajectory)) {
     log.line_without_yaw = rows.first_line_without_yaw;
   }
-  CheckMoves(log.trajectory, name);
-  log.doubts = Doubts(log.trajectory);
+  if (options.in_space) RequireHeights(log, name, options);
+  CheckMoves(log.trajectory, name, options.in_space);
+  log.doubts = Doubts(log.trajectory, options.in_space);
   return log;
 }
 

@@ -5,6 +5,7 @@
 
 #include "rift/gap/options.hpp"
 #include "rift/geometry/pose2.hpp"
+#include "rift/geometry/pose3.hpp"
 #include "rift/statistics/not_computed.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
@@ -12,9 +13,11 @@ namespace rift::gap {
 
 using statistics::kNotComputed;
 
-/// The gap and everything that helps to read it. Errors are distances between the two paths at
-/// equal normalised arc length u unless a name says otherwise; NaN where it could not be computed.
-/// What the options change:
+/// The gap and everything that helps to read it, over x and y, or with `dimension` xyz over x, y
+/// and z. Yaw errors are of the logged yaws in both; in space they are NaN once the path is turned
+/// (align se3), since a yaw alone cannot be turned in space. Errors are distances between the two
+/// paths at equal normalised arc length u unless a name says otherwise; NaN where it could not be
+/// computed. What the options change:
 ///   skip_start       the gaps (all four) and the errors (mean to p95, yaw); nothing else
 ///   align            everything but the lengths and the standstill shares; real_from_sim and the
 ///                    two gaps computed with a motion of their own start from the aligned path
@@ -42,7 +45,7 @@ struct Comparison {
 
   double start_aligned_gap_m = kNotComputed;  ///< gap with the first points laid together
   double shape_gap_m = kNotComputed;          ///< gap left after the best rigid motion
-  geometry::Pose2 real_from_sim;              ///< that motion
+  geometry::Pose2 real_from_sim;              ///< that motion; NaN in space: BestMotionInSpace()
 
   double sim_standstill_share = kNotComputed;  ///< of the arc length, logged while standing
   double real_standstill_share = kNotComputed;
@@ -55,8 +58,8 @@ struct Comparison {
   double equal_time_m = kNotComputed;  ///< largest distance at equal time since the first row
 };
 
-/// Compares two paths of at least two poses and non-zero length.
-/// Throws std::invalid_argument when a path does not move or its length is not finite.
+/// Compares two paths of at least two poses and non-zero length. Throws std::invalid_argument when
+/// a path does not move, its length is not finite, or in space a pose has no height.
 Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                    const GapOptions& options);
 
@@ -71,9 +74,16 @@ struct ErrorProfile {
   std::vector<double> yaw_error_rad;
   std::vector<Eigen::Vector2d> sim_m;  ///< the points compared, after trimming and aligning
   std::vector<Eigen::Vector2d> real_m;
+  std::vector<double> sim_z_m;  ///< their heights; empty in the plane
+  std::vector<double> real_z_m;
 };
 
 ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                           const GapOptions& options);
+
+/// The rigid motion in space that brings `sim` closest to `real`, after which the shape gap is left
+/// (dimension xyz).
+geometry::Pose3 BestMotionInSpace(const trajectory::Trajectory& sim,
+                                  const trajectory::Trajectory& real, const GapOptions& options);
 
 }  // namespace rift::gap

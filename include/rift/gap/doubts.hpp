@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "rift/gap/options.hpp"
 #include "rift/trajectory/trajectory.hpp"
 
 namespace rift::gap {
@@ -10,9 +11,10 @@ namespace rift::gap {
 /// What makes a comparison of two logs doubtful though each log looks sound, one line each, in
 /// which the logs are called SIM and REAL: one is in another unit of length, mirrored, or has its
 /// axes swapped; one covers only a part of the other's path and begins or ends in motion; their
-/// clocks differ; they are the same log.
+/// clocks differ; they are the same log. In space z counts as well.
 std::vector<std::string> Doubts(const trajectory::Trajectory& sim,
-                                const trajectory::Trajectory& real);
+                                const trajectory::Trajectory& real,
+                                Dimension dimension = Dimension::kXy);
 
 /// REAL has even time steps and no noise, SIM uneven ones and noise.
 bool LookSwapped(const trajectory::Trajectory& sim, const trajectory::Trajectory& real);

@@ -16,7 +16,8 @@ struct Goal {
 /// The gap on the way: the gap after each path that stopped short of the goal, within its radius,
 /// went straight on until it was level with it. How short a run stops is then no part of it; how
 /// far it passes beside the goal is. Equal to the gap for paths that end elsewhere or beyond the
-/// goal. Throws std::invalid_argument as Compare does.
+/// goal. Goals stand in the plane, so in space it is the gap itself. Throws std::invalid_argument
+/// as Compare does.
 double WayGap_m(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                 const Goal& goal, const GapOptions& options);
 

@@ -14,14 +14,26 @@ enum class Align {
   kNone,   ///< nothing: the paper's definition
   kStart,  ///< the offset of its first point
   kSe2,    ///< the planar rigid motion that fits it best to the real one (least squares)
+  kSe3,    ///< the same in space
 };
 
-constexpr std::array<std::string_view, 3> EnumNames(Align) { return {"none", "start", "se2"}; }
+constexpr std::array<std::string_view, 4> EnumNames(Align) {
+  return {"none", "start", "se2", "se3"};
+}
+
+/// The coordinates that arc length and distances are taken over.
+enum class Dimension {
+  kXy,   ///< the plane in which a robot drives: the paper's definition
+  kXyz,  ///< space, for arms and drones: every pose needs its height
+};
+
+constexpr std::array<std::string_view, 2> EnumNames(Dimension) { return {"xy", "xyz"}; }
 
 /// How the Sim-to-Real gap is measured; the defaults are section 3.1 of the paper.
 struct GapOptions {
   int samples = 2000;
   double skip_start = 0.0;
+  Dimension dimension = Dimension::kXy;
   Align align = Align::kNone;
   double threshold_m = 0.06;
   bool trim_standstill = false;
@@ -33,8 +45,11 @@ struct GapOptions {
           "evenly spaced values of u in [0, 1] (paper, section 3.1)");
     field("skip_start", self.skip_start, 0.0, 0.95,
           "share of the samples left out at the start; the published numbers leave out 0.1");
+    field("dimension", self.dimension,
+          "coordinates of arc length and distances: xy, or xyz for arms and drones (logs with z)");
     field("align", self.align,
-          "what is removed before comparing: nothing, the start offset, the best rigid motion");
+          "what is removed before comparing: nothing, the start offset, the best rigid motion in "
+          "the plane (se2, of xy) or in space (se3, of xyz)");
     field("threshold_m", self.threshold_m, 0.0, 1000.0,
           "a gap above this falsifies (paper, section 6.1)");
     field("trim_standstill", self.trim_standstill,
@@ -42,6 +57,10 @@ struct GapOptions {
     field("standstill_radius_m", self.standstill_radius_m, 0.0, 1.0,
           "within this distance of its first or last point the robot counts as standing");
   }
+  /// Throws std::invalid_argument for a motion that is not of the dimension.
+  void Check() const;
+
+  bool IsInSpace() const { return dimension == Dimension::kXyz; }
 };
 
 /// When repeats of a setting decide: a setting is falsified when more than this share of all its

@@ -55,7 +55,8 @@ Log ReadLog(std::string_view text, const std::string& name, Format format = Form
 /// m/s, a path of a few millimetres, poses seconds apart, rows that are each there twice, a robot
 /// that lies on its side, a yaw that has nothing to do with the direction of travel (degrees for
 /// radians, a mirrored axis, swapped axes, a wrong column).
-std::vector<std::string> Doubts(const Trajectory& trajectory);
+/// In space (ReadOptions::in_space) neither tilt nor yaw is doubted, and distances hold z.
+std::vector<std::string> Doubts(const Trajectory& trajectory, bool in_space = false);
 
 /// The rift dialect; doubles in the shortest form that reads back to the same bits, values that
 /// are not logged as empty cells.

@@ -20,6 +20,9 @@ struct ReadOptions {
   std::string units;
   /// What messages write before the columns that they offer.
   std::string columns_flag = "--columns ";
+  /// The path is one in space: every pose needs its height, motion along z counts, and what only a
+  /// robot on a floor does (drive along its yaw, stand upright) is not looked for.
+  bool in_space = false;
 };
 
 /// Throws std::invalid_argument with one line for columns or units that break a rule.

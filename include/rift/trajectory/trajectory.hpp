@@ -26,6 +26,7 @@ struct StampedPose {
   double target_y_m = kNotLogged;
 
   Eigen::Vector2d Position() const { return {x_m, y_m}; }
+  Eigen::Vector3d PositionInSpace() const { return {x_m, y_m, z_m}; }
   geometry::Pose2 Planar() const { return {x_m, y_m, yaw_rad}; }
 };
 

@@ -13,7 +13,19 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json ComparisonJson(const gap::Comparison& c) {
+/// The motion after which the shape gap is left.
+ordered_json MotionJson(const gap::GapResult& result, size_t trial) {
+  if (!result.options.IsInSpace()) {
+    const geometry::Pose2& motion = result.trials[trial].comparison.real_from_sim;
+    return {{"x_m", motion.x_m}, {"y_m", motion.y_m}, {"yaw_rad", motion.yaw_rad}};
+  }
+  const geometry::Pose3 motion =
+      gap::BestMotionInSpace(result.sim, result.reals[trial], result.options);
+  return {{"x_m", motion.x_m}, {"y_m", motion.y_m}, {"z_m", motion.z_m}, {"qx", motion.qx},
+          {"qy", motion.qy},   {"qz", motion.qz},   {"qw", motion.qw}};
+}
+
+ordered_json ComparisonJson(const gap::Comparison& c, ordered_json motion) {
   return {{"gap_m", NumberOrNull(c.gap_m)},
           {"u", NumberOrNull(c.gap_u)},
           {"exact_gap_m", NumberOrNull(c.exact_gap_m)},
@@ -27,10 +39,7 @@ ordered_json ComparisonJson(const gap::Comparison& c) {
           {"start_offset_m", NumberOrNull(c.start_offset_m)},
           {"start_aligned_gap_m", NumberOrNull(c.start_aligned_gap_m)},
           {"shape_gap_m", NumberOrNull(c.shape_gap_m)},
-          {"real_from_sim",
-           {{"x_m", c.real_from_sim.x_m},
-            {"y_m", c.real_from_sim.y_m},
-            {"yaw_rad", c.real_from_sim.yaw_rad}}},
+          {"real_from_sim", std::move(motion)},
           {"sim_length_m", NumberOrNull(c.sim_length_m)},
           {"real_length_m", NumberOrNull(c.real_length_m)},
           {"length_ratio", NumberOrNull(c.length_ratio)},
@@ -52,9 +61,10 @@ std::string GapJson(const gap::GapResult& result) {
   json["definition"]["tag_offset_m"] = result.tag_offset_m;
   json["definition"]["text"] = gap::DefinitionText(result.options, result.tag_offset_m);
   json["trials"] = ordered_json::array();
-  for (const auto& trial : result.trials) {
+  for (size_t i = 0; i < result.trials.size(); ++i) {
+    const gap::GapResult::Trial& trial = result.trials[i];
     ordered_json row{{"sim", result.sim_path}, {"real", trial.path}};
-    row.update(ComparisonJson(trial.comparison));
+    row.update(ComparisonJson(trial.comparison, MotionJson(result, i)));
     row["falsified"] = trial.comparison.gap_m > result.options.threshold_m;
     json["trials"].push_back(std::move(row));
   }
@@ -73,16 +83,20 @@ std::string GapJson(const gap::GapResult& result) {
 }
 
 std::string ProfileCsv(const gap::GapResult& result) {
-  std::string text = "real,u,error_m,yaw_error_rad,sim_x_m,sim_y_m,real_x_m,real_y_m\n";
+  const bool in_space = result.options.IsInSpace();
+  std::string text = "real,u,error_m,yaw_error_rad,sim_x_m,sim_y_m,real_x_m,real_y_m";
+  text += in_space ? ",sim_z_m,real_z_m\n" : "\n";
   for (size_t i = 0; i < result.reals.size(); ++i) {
     const gap::ErrorProfile profile =
         gap::ProfileAlong(result.sim, result.reals[i], result.options);
     for (size_t k = 0; k < profile.u.size(); ++k) {
       const double yaw_rad = profile.yaw_error_rad[k];
       text +=
-          fmt::format("{},{},{},{},{},{},{},{}\n", i + 1, profile.u[k], profile.error_m[k],
+          fmt::format("{},{},{},{},{},{},{},{}", i + 1, profile.u[k], profile.error_m[k],
                       std::isnan(yaw_rad) ? "" : fmt::format("{}", yaw_rad), profile.sim_m[k].x(),
                       profile.sim_m[k].y(), profile.real_m[k].x(), profile.real_m[k].y());
+      if (in_space) text += fmt::format(",{},{}", profile.sim_z_m[k], profile.real_z_m[k]);
+      text += '\n';
     }
   }
   return text;

@@ -158,7 +158,8 @@ std::vector<Labelled> Gathering::Drive(int threads) {
 
 std::vector<GroupLikeness> MeasureSweepLikeness(Evaluator& evaluator, int threads) {
   const experiment::Experiment& experiment = evaluator.experiment();
-  if (!HasRepeatedLogs(experiment)) return {};
+  const bool is_planar = !experiment.gap.IsInSpace();  // weave and steering are
+  if (!is_planar || !HasRepeatedLogs(experiment)) return {};
   Gathering gathering(evaluator);
   for (const experiment::Theta& theta : experiment::GridPoints(experiment.space.parameters)) {
     gathering.Add(theta);

@@ -47,7 +47,8 @@ std::vector<TrialDoubt> DoubtsOf(const experiment::Experiment& experiment,
   const bool is_of_others = experiment.reference.kind == ReferenceKind::kLogs ||
                             experiment.reference.kind == ReferenceKind::kProgram;
   if (!is_of_others) return doubts;
-  for (const std::string& doubt : gap::Doubts(candidate.trajectory, reference.trajectory)) {
+  for (const std::string& doubt :
+       gap::Doubts(candidate.trajectory, reference.trajectory, experiment.gap.dimension)) {
     doubts.push_back({DoubtAbout::kPair, InKeys(doubt, "candidate.units or reference.units")});
   }
   return doubts;

@@ -64,8 +64,10 @@ Recording WithLimits(Recording log, const experiment::Experiment& experiment,
 
 /// How the logs of one side are read; `key` is its block in the experiment.
 template <class Side>
-trajectory::ReadOptions ReadOptionsOf(const Side& side, const std::string& key) {
-  return {side.format, side.columns, side.units, fmt::format("--set {}.columns=", key)};
+trajectory::ReadOptions ReadOptionsOf(const Side& side, const std::string& key,
+                                      const gap::GapOptions& gap) {
+  return {side.format, side.columns, side.units, fmt::format("--set {}.columns=", key),
+          gap.IsInSpace()};
 }
 
 bool Has(const std::vector<std::string>& names, const std::string& name) {
@@ -101,6 +103,30 @@ void RefuseSharedLogs(const experiment::Experiment& experiment) {
   }
 }
 
+/// A gap in space needs heights on both sides, and has nothing to do with headings in the plane.
+void CheckDimension(const experiment::Experiment& experiment) {
+  if (!experiment.gap.IsInSpace()) return;
+  const auto refuse = [](const std::string& why) {
+    throw std::invalid_argument("gap.dimension is xyz, " + why);
+  };
+  if (experiment.candidate.kind == CandidateKind::kSimulation) {
+    refuse(
+        "and candidate.kind is simulation, a robot that drives on a floor: use logs or a program");
+  }
+  if (experiment.reference.kind == ReferenceKind::kPath) {
+    refuse("and reference.kind is path, whose waypoints have no height: use logs or a program");
+  }
+  if (experiment.objective == experiment::Objective::kOdometry) {
+    refuse("and objective is odometry, which is of wheels on a floor: leave one of them out");
+  }
+  if (experiment.reference.tag_offset_m != 0.0) {
+    refuse(
+        fmt::format("and reference.tag_offset_m is {:g}, which moves a path along its yaw in the "
+                    "plane: log the point that is to be compared, and leave it out",
+                    experiment.reference.tag_offset_m));
+  }
+}
+
 }  // namespace
 
 void CheckPaths(const experiment::Experiment& experiment) {
@@ -126,14 +152,14 @@ Evaluator::Evaluator(const experiment::Experiment& experiment, std::string exper
     : experiment_(experiment),
       experiment_file_(std::move(experiment_file)),
       inputs_(std::move(inputs)),
-      candidate_logs_(inputs_, {ReadOptionsOf(experiment.candidate, "candidate"), 0.0,
-                                "candidate.format", experiment.candidate.grid_fps}),
-      reference_logs_(inputs_, {ReadOptionsOf(experiment.reference, "reference"),
+      candidate_logs_(inputs_, {ReadOptionsOf(experiment.candidate, "candidate", experiment.gap),
+                                0.0, "candidate.format", experiment.candidate.grid_fps}),
+      reference_logs_(inputs_, {ReadOptionsOf(experiment.reference, "reference", experiment.gap),
                                 experiment.reference.tag_offset_m, "reference.format",
                                 experiment.reference.grid_fps}) {
   InFile(experiment_file_, [&] {
-    trajectory::CheckColumns(ReadOptionsOf(experiment.candidate, "candidate"));
-    trajectory::CheckColumns(ReadOptionsOf(experiment.reference, "reference"));
+    trajectory::CheckColumns(ReadOptionsOf(experiment.candidate, "candidate", experiment.gap));
+    trajectory::CheckColumns(ReadOptionsOf(experiment.reference, "reference", experiment.gap));
   });
   const bool candidate_is_logs = experiment.candidate.kind == CandidateKind::kLogs;
   const bool reference_is_logs = experiment.reference.kind == ReferenceKind::kLogs;
@@ -143,14 +169,15 @@ Evaluator::Evaluator(const experiment::Experiment& experiment, std::string exper
     InFile(experiment_file_, [&] { CheckPaths(experiment); });
   }
   InFile(experiment_file_, [&] {
-    candidate_program_ = CandidateProgram(experiment,
-                                          {ReadOptionsOf(experiment.candidate, "candidate"), 0.0,
-                                           "candidate.format", experiment.candidate.grid_fps},
-                                          inputs_);
+    candidate_program_ =
+        CandidateProgram(experiment,
+                         {ReadOptionsOf(experiment.candidate, "candidate", experiment.gap), 0.0,
+                          "candidate.format", experiment.candidate.grid_fps},
+                         inputs_);
     reference_program_ = ReferenceProgram(
         experiment,
-        {ReadOptionsOf(experiment.reference, "reference"), experiment.reference.tag_offset_m,
-         "reference.format", experiment.reference.grid_fps},
+        {ReadOptionsOf(experiment.reference, "reference", experiment.gap),
+         experiment.reference.tag_offset_m, "reference.format", experiment.reference.grid_fps},
         inputs_);
   });
   // What is wrong with the task is said now, not in trial 1.
@@ -168,6 +195,7 @@ Evaluator::Evaluator(const experiment::Experiment& experiment, std::string exper
 /// Which of objective, start, candidate and reference go together.
 void Evaluator::CheckKinds() const {
   const experiment::Experiment& experiment = experiment_;
+  InFile(experiment_file_, [&] { CheckDimension(experiment); });
   const bool reference_is_logs = experiment.reference.kind == ReferenceKind::kLogs;
   if (candidate_program_ && experiment.objective == experiment::Objective::kOdometry) {
     throw std::invalid_argument(fmt::format(
