@@ -73,6 +73,7 @@ int RunTwin(const std::string& experiment_file, const experiment::Experiment& ex
   const sweep::SimulatedTrial trial =
       sweep::SimulatedTrialOf(as_twin, {}, experiment.seed, experiment_file, FileInputs());
   vision::SyntheticCameraOptions look = experiment.twin.camera;
+  look.tag_family = experiment.track.tag.family;
   look.shutter_s = as_twin.simulation.mocap.exposure_s;
   const twin::TwinSetup setup{as_twin.simulation,
                               experiment.twin,

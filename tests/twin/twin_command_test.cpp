@@ -16,6 +16,7 @@
 #include "rift/vision/camera/capture_thread.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
 #include "support/documented.hpp"
+#include "support/process.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
 #include "support/until.hpp"
@@ -25,6 +26,17 @@ namespace rift::twin {
 namespace {
 
 constexpr double kPower = 0.2;
+
+// Limits that a loaded machine keeps as well.
+constexpr const char* kPatient = R"(
+track: {tag: {acquire_decimate: 1, lost_after_s: 5}, capture: {silent_s: 20, same_s: 20, open_timeout_s: 60}}
+trial: {pose_stale_s: 5, lost_after_s: 20, timeout_s: 300}
+hardware:
+  line: {hello_s: 20}
+  guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
+  ping: {duration_s: 0.5, max_p99_s: 10, max_loss: 1, max_burst: 1000}
+  start: {countdown_s: 0}
+)";
 
 /// The host's end of the serial line, obeying nobody.
 struct Host {
@@ -152,6 +164,31 @@ pid_t ForkHost(const std::string& port, int moved) {
   } catch (const std::exception&) {
   }
   ::_exit(1);
+}
+
+TEST_CASE("A twin with a tag of another family is driven by rift drive to its last waypoint") {
+  const std::vector<std::string> family{"--set", "track.tag.family=tag25h9", "--set",
+                                        "track.tag.id=9"};
+  test::ProcessResult result;
+  for (int attempt = 0; attempt < 5; ++attempt) {  // a busy machine stops a drive
+    std::vector<std::string> of_twin = family;
+    of_twin.insert(of_twin.end(), {"--set", "twin.camera.tag_id=9", "--set", "twin.still_s=60"});
+    test::TwinProcess twin(of_twin);
+    const test::TemporaryFolder folder;
+    test::WriteText(folder / "task.yaml",
+                    "include: " + test::SourceDir() + "/configs/twin.yaml\n" + kPatient);
+    std::vector<std::string> words{
+        "drive",    folder / "task.yaml", "--port",        twin.Get("port"),
+        "--camera", twin.Get("camera"),   "--calibration", twin.Get("calibration"),
+        "--out",    folder / "run",       "--yes"};
+    words.insert(words.end(), family.begin(), family.end());
+    result = test::RunRift(words);
+    twin.Signal(SIGTERM);
+    CHECK(twin.ExitCode() == 0);
+    if (result.exit_code == 0) break;
+  }
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 0);
 }
 
 TEST_CASE("A killed host stops the twin and its port can be opened again") {

@@ -5,11 +5,16 @@
 // here, and the tag is libapriltag's own picture of it.
 
 #include <apriltag/apriltag.h>
+#include <apriltag/tag16h5.h>
+#include <apriltag/tag25h9.h>
 #include <apriltag/tag36h11.h>
+#include <apriltag/tagStandard41h12.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
@@ -17,16 +22,38 @@
 
 #include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/camera/frame.hpp"
+#include "rift/vision/tracking/tag_family.hpp"
 
 namespace rift::test {
 
-/// A tag36h11 on a dark disc, at a height above the floor.
+/// A tag on a dark disc, at a height above the floor.
 struct RayTag {
   double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
   double height_m = 0.03, size_m = 0.0475, disc_radius_m = 0.0484;
   double lean_rad = 0.0;  ///< about the tag's own x axis
   int id = 0;
+  vision::TagFamily family = vision::TagFamily::k36h11;
 };
+
+/// libapriltag's own picture of a tag, a pixel a cell, and how it lays the family out.
+struct LibraryTag {
+  const apriltag_family_t* family;
+  const image_u8_t* picture;
+
+  bool IsWhite(int column, int row) const {
+    return picture->buf[row * picture->stride + column] > 127;
+  }
+};
+
+inline LibraryTag LibraryTagOf(vision::TagFamily family, int id) {
+  static const std::array<apriltag_family_t*, 4> families{
+      tag36h11_create(), tag25h9_create(), tag16h5_create(), tagStandard41h12_create()};
+  static std::map<std::pair<vision::TagFamily, int>, image_u8_t*> pictures;  // kept to the end
+  apriltag_family_t* of = families.at(static_cast<std::size_t>(family));
+  image_u8_t*& picture = pictures[{family, id}];
+  if (picture == nullptr) picture = apriltag_to_image(of, static_cast<std::uint32_t>(id));
+  return {of, picture};
+}
 
 class RayRenderer {
  public:
@@ -69,14 +96,6 @@ class RayRenderer {
  private:
   static constexpr int kFine = 7;
 
-  static double CellGrey(int id, int column, int row) {
-    static apriltag_family_t* family = tag36h11_create();
-    static std::vector<image_u8_t*> pictures(587, nullptr);  // kept to the end of the process
-    image_u8_t*& picture = pictures.at(static_cast<std::size_t>(id));
-    if (picture == nullptr) picture = apriltag_to_image(family, id);
-    return picture->buf[row * picture->stride + column] > 127 ? 215.0 : 28.0;
-  }
-
   Eigen::Isometry3d WorldFromTag(const RayTag& tag) const {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.translation() = Eigen::Vector3d(tag.x_m, tag.y_m, tag.height_m);
@@ -105,7 +124,9 @@ class RayRenderer {
   cv::Rect BoxOf(const RayTag& tag) const {
     const Eigen::Isometry3d camera_from_world = camera_.world->world_from_camera.inverse();
     double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
-    const double reach_m = std::max(tag.disc_radius_m, tag.size_m * 0.9);
+    const auto* family = LibraryTagOf(tag.family, tag.id).family;
+    const double reach_m = std::max(
+        tag.disc_radius_m, tag.size_m * 0.72 * family->total_width / family->width_at_border);
     for (int i = 0; i < 16; ++i) {
       const double angle = i * M_PI / 8;
       const Eigen::Vector3d p =
@@ -124,11 +145,15 @@ class RayRenderer {
   }
 
   /// Grey of the tag's plane at a place, negative where nothing is.
-  static double GreyAt(const RayTag& tag, const Eigen::Vector3d& p_in_tag) {
-    const double cell_m = tag.size_m / 8.0;
-    const int column = static_cast<int>(std::floor(p_in_tag.x() / cell_m + 5.0));
-    const int row = static_cast<int>(std::floor(5.0 - p_in_tag.y() / cell_m));
-    if (column >= 0 && column < 10 && row >= 0 && row < 10) return CellGrey(tag.id, column, row);
+  static double GreyAt(const RayTag& tag, const LibraryTag& printed,
+                       const Eigen::Vector3d& p_in_tag) {
+    const double cell_m = tag.size_m / printed.family->width_at_border;
+    const int cells = printed.family->total_width;
+    const int column = static_cast<int>(std::floor(p_in_tag.x() / cell_m + 0.5 * cells));
+    const int row = static_cast<int>(std::floor(0.5 * cells - p_in_tag.y() / cell_m));
+    if (column >= 0 && column < cells && row >= 0 && row < cells) {
+      return printed.IsWhite(column, row) ? 215.0 : 28.0;
+    }
     return p_in_tag.head<2>().norm() < tag.disc_radius_m ? 45.0 : -1.0;
   }
 
@@ -139,6 +164,7 @@ class RayRenderer {
         WorldFromTag(tag).inverse() * camera_.world->world_from_camera;
     cv::Mat1f patch = picture(box).clone();
     const Eigen::Vector3d eye = tag_from_camera.translation();
+    const LibraryTag printed = LibraryTagOf(tag.family, tag.id);
     for (int y = 0; y < box.height; ++y) {
       for (int x = 0; x < box.width; ++x) {
         // Within a pixel the lens is linear to 1e-4 px.
@@ -151,7 +177,7 @@ class RayRenderer {
           const double v = 2.0 * (static_cast<int>(k / kFine) + 0.5) / kFine - 1.0;
           const Eigen::Vector2d bent = middle + u * along_u + v * along_v;
           const Eigen::Vector3d ray = tag_from_camera.linear() * bent.homogeneous();
-          const double grey = GreyAt(tag, eye - ray * (eye.z() / ray.z()));
+          const double grey = GreyAt(tag, printed, eye - ray * (eye.z() / ray.z()));
           sum += grey < 0.0 ? picture(box.y + y, box.x + x) : grey;
         }
         patch(y, x) = static_cast<float>(sum / (kFine * kFine));

@@ -110,7 +110,8 @@ std::array<double, 2> EdgeColumns(const CameraModel& camera, const SyntheticCame
   std::mt19937_64 generator(1);
   SyntheticCamera renderer(camera, options);
   const auto picture = PictureReader().Read(renderer.Render(robot, PixelFormat::kGrey, generator));
-  const auto square = FitSquare(camera, *picture, test::TrueCorners(camera, robot), 30.0, {});
+  const auto square = FitSquare(camera, *picture, test::TrueCorners(camera, robot),
+                                ShapeOf(TagFamily::k36h11), 30.0, {});
   REQUIRE(square);
   return {0.5 * (square->pixels[2].x() + square->pixels[3].x()),
           0.5 * (square->pixels[0].x() + square->pixels[1].x())};

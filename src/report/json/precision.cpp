@@ -131,6 +131,7 @@ std::string PrecisionJson(const PrecisionMap& map, const vision::TagOptions& tag
                           const vision::SyntheticCameraOptions& look) {
   const Overall all = OverallOf(map);
   ordered_json json{{"rift_version", RIFT_VERSION},
+                    {"tag_family", vision::NameOf(tag.family)},
                     {"tag_size_m", tag.size_m},
                     {"tag_height_m", tag.height_m},
                     {"columns", map.columns},

@@ -13,10 +13,6 @@ namespace {
 constexpr double kTransparent = std::numeric_limits<double>::quiet_NaN();
 constexpr int kLatticeHalf = 1 << 14;
 
-/// A tag is ten cells wide, its black square eight.
-constexpr int kTagCells = 10;
-constexpr int kBlackCells = 8;
-
 /// Points around the box, many on each side: the lens bends its outline.
 std::vector<Eigen::Vector3d> Outline(const FlatPattern& pattern,
                                      const Eigen::Isometry3d& camera_from_pattern) {
@@ -77,16 +73,17 @@ double LatticePattern::Grey(int cell) const {
   return GreyInside(column, row);
 }
 
-TagPattern::TagPattern(int id, double size_m, double black_grey, double white_grey)
-    : LatticePattern(size_m / kBlackCells,
-                     Eigen::Vector2d::Constant(-0.5 * kTagCells * size_m / kBlackCells), kTagCells,
-                     kTagCells),
-      cells_(CellsOfTag(id)),
+TagPattern::TagPattern(const TagCells& cells, double size_m, double black_grey, double white_grey)
+    : LatticePattern(
+          size_m / cells.shape.square,
+          Eigen::Vector2d::Constant(-0.5 * cells.shape.cells * size_m / cells.shape.square),
+          cells.shape.cells, cells.shape.cells),
+      cells_(cells),
       black_grey_(black_grey),
       white_grey_(white_grey) {}
 
 double TagPattern::GreyInside(int column, int row) const {
-  return cells_[kTagCells - 1 - row][column] ? white_grey_ : black_grey_;
+  return cells_.is_white[cells_.shape.cells - 1 - row][column] ? white_grey_ : black_grey_;
 }
 
 BoardPattern::BoardPattern(const PlacedBoard& board, double black_grey, double white_grey)

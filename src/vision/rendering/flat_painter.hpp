@@ -64,7 +64,7 @@ class LatticePattern : public FlatPattern {
 
 class TagPattern : public LatticePattern {
  public:
-  TagPattern(int id, double size_m, double black_grey, double white_grey);
+  TagPattern(const TagCells& cells, double size_m, double black_grey, double white_grey);
 
  private:
   double GreyInside(int column, int row) const override;

@@ -42,6 +42,7 @@ class Trial {
 
  private:
   static SyntheticCameraOptions With(SyntheticCameraOptions look, const TagOptions& options) {
+    look.tag_family = options.family;
     look.tag_id = options.id;
     look.tag_size_m = options.size_m;
     // A small tag lies on a small robot, so that the disc's rim keeps its distance.

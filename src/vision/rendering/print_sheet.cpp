@@ -63,17 +63,19 @@ std::string Sheet(const Paper& paper, const std::string& content, const std::str
 
 }  // namespace
 
-std::string TagSheet(int id, double size_m) {
-  const TagCells cells = CellsOfTag(id);
-  const double cell_mm = 1e3 * size_m / 8.0;  // the black square is cells 1 to 8
-  const double side_mm = 10.0 * cell_mm;
+std::string TagSheet(int id, double size_m, TagFamily family) {
+  const TagCells tag = CellsOfTag(id, family);
+  const TagCells::Grid& cells = tag.is_white;
+  const int count = tag.shape.cells;
+  const double cell_mm = 1e3 * size_m / tag.shape.square;
+  const double side_mm = count * cell_mm;
   const Paper paper = PaperFor(side_mm, side_mm, "a tag with its border");
   const double left_mm = 0.5 * (paper.width_mm - side_mm), top_mm = 30.0;
   std::string svg;
-  for (int row = 0; row < 10; ++row) {
-    for (int column = 0; column < 10;) {
+  for (int row = 0; row < count; ++row) {
+    for (int column = 0; column < count;) {
       int end = column;
-      while (end < 10 && cells[row][end] == cells[row][column]) ++end;
+      while (end < count && cells[row][end] == cells[row][column]) ++end;
       if (!cells[row][column]) {  // runs in one piece: no hairlines between cells
         svg += Rectangle(left_mm + column * cell_mm, top_mm + row * cell_mm,
                          (end - column) * cell_mm, cell_mm);
@@ -86,9 +88,9 @@ std::string TagSheet(int id, double size_m) {
       left_mm, top_mm, side_mm);
   return Sheet(
       paper, svg,
-      fmt::format("tag36h11 id {}, black square {:g} mm; cut along the grey line; the robot's "
-                  "front is to the right",
-                  id, 1e3 * size_m));
+      fmt::format("{} id {}, {} square {:g} mm; cut along the grey line; the robot's front is to "
+                  "the right",
+                  NameOf(family), id, tag.shape.is_white_square ? "white" : "black", 1e3 * size_m));
 }
 
 std::string ChessboardSheet(const Board& board) {

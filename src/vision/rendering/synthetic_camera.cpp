@@ -155,7 +155,8 @@ SyntheticCamera::State::State(const CameraModel& model, const SyntheticCameraOpt
     PaintStill(BoardPattern(board, options.black_grey, options.white_grey), board.world_from_board);
   }
   for (const PlacedTag& tag : scene.tags) {
-    PaintStill(TagPattern(tag.id, tag.size_m, options.black_grey, options.white_grey),
+    PaintStill(TagPattern(CellsOfTag(tag.id, tag.family), tag.size_m, options.black_grey,
+                          options.white_grey),
                tag.world_from_tag);
   }
   DimTowardsCorners(floor, options.falloff);
@@ -164,9 +165,10 @@ SyntheticCamera::State::State(const CameraModel& model, const SyntheticCameraOpt
   robot_layers.push_back(
       {std::make_unique<DiscPattern>(radius_m, options.body_grey * 0.5), options.body_height_m});
   robot_layers.push_back({std::make_unique<DiscPattern>(radius_m, options.body_grey), 0.0});
-  robot_layers.push_back({std::make_unique<TagPattern>(options.tag_id, options.tag_size_m,
-                                                       options.black_grey, options.white_grey),
-                          0.0});
+  robot_layers.push_back(
+      {std::make_unique<TagPattern>(CellsOfTag(options.tag_id, options.tag_family),
+                                    options.tag_size_m, options.black_grey, options.white_grey),
+       0.0});
 }
 
 void SyntheticCamera::State::PaintStill(const FlatPattern& pattern,

@@ -16,28 +16,35 @@ namespace {
 /// Below this a cell is too small for a plateau on both sides of the edge.
 constexpr double kLeastCell_px = 2.0;
 
-/// One side of the square in the picture, its normal pointing out of the black.
+/// One side of the square in the picture, its normal pointing from the black to the white.
 struct Side {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
   Eigen::Vector2d along;
   Eigen::Vector2d normal;
   double length_px;
+  int cells;
 
-  Side(const Eigen::Vector2d& a, const Eigen::Vector2d& b)
-      : from(a), to(b), along((b - a).normalized()), length_px((b - a).norm()) {
+  Side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const TagShape& shape)
+      : from(a),
+        to(b),
+        along((b - a).normalized()),
+        length_px((b - a).norm()),
+        cells(shape.square) {
     // The corners run counter-clockwise as one sees the tag, in a picture whose y runs down.
     normal = {-along.y(), along.x()};
+    if (shape.is_white_square) normal = -normal;
   }
-  double Cell_px() const { return length_px / kCells; }
+  double Cell_px() const { return length_px / cells; }
 };
 
 /// Calls visit(point) at about `step_px` along the side, a cell away from its ends.
 template <class Visit>
 void WalkAlong(const Side& side, double step_px, Visit&& visit) {
-  const int count = PointCount(side.length_px, step_px);
+  const int count = PointCount(side.length_px, side.cells, step_px);
   for (int i = 0; i < count; ++i) {
-    const double s = side.Cell_px() + MeasuredLength_px(side.length_px) * (i + 0.5) / count;
+    const double s =
+        side.Cell_px() + MeasuredLength_px(side.length_px, side.cells) * (i + 0.5) / count;
     visit(Eigen::Vector2d(side.from + s * side.along));
   }
 }
@@ -64,10 +71,10 @@ std::optional<Eigen::Vector2d> SteepestRise(const GreyPatch& patch, const Eigen:
 
 /// The guess moved onto the edges, good to about 0.3 px.
 std::optional<TagCorners> Approach(const GreyPatch& patch, const TagCorners& guess,
-                                   double least_contrast) {
+                                   const TagShape& shape, double least_contrast) {
   std::vector<EdgeLine> lines;
   for (int i = 0; i < 4; ++i) {
-    const Side side(guess[i], guess[(i + 1) % 4]);
+    const Side side(guess[i], guess[(i + 1) % 4], shape);
     if (side.Cell_px() < kLeastCell_px) return std::nullopt;
     std::vector<Eigen::Vector2d> points;
     WalkAlong(side, 3.0, [&](const Eigen::Vector2d& point) {
@@ -165,10 +172,9 @@ bool JoinCorners(const CameraModel& camera, const std::array<EdgeLine, 4>& lines
   return true;
 }
 
-/// Homography that takes the square [0, 8] x [0, 8] (x right, y up) to the four rays.
-Eigen::Matrix3d RaysFromCells(const std::array<Eigen::Vector2d, 4>& rays) {
-  const std::array<Eigen::Vector2d, 4> corners{
-      {{0, 0}, {kCells, 0}, {kCells, kCells}, {0, kCells}}};
+/// Homography that takes the square [0, n] x [0, n] (x right, y up) to the four rays.
+Eigen::Matrix3d RaysFromCells(const std::array<Eigen::Vector2d, 4>& rays, double n) {
+  const std::array<Eigen::Vector2d, 4> corners{{{0, 0}, {n, 0}, {n, n}, {0, n}}};
   Eigen::Matrix<double, 8, 8> a = Eigen::Matrix<double, 8, 8>::Zero();
   Eigen::Matrix<double, 8, 1> b;
   for (int i = 0; i < 4; ++i) {
@@ -185,13 +191,14 @@ Eigen::Matrix3d RaysFromCells(const std::array<Eigen::Vector2d, 4>& rays) {
   return homography;
 }
 
-/// Middles of the cells, rows from the top of the tag.
-std::vector<Eigen::Vector2d> CellPixels(const CameraModel& camera, const FittedSquare& square) {
-  const Eigen::Matrix3d rays_from_cells = RaysFromCells(square.corners.rays);
+/// Middles of the cells, rows from the top of the tag: those of the square and of `more` around it.
+std::vector<Eigen::Vector2d> CellPixels(const CameraModel& camera, const FittedSquare& square,
+                                        int cells, int more) {
+  const Eigen::Matrix3d rays_from_cells = RaysFromCells(square.corners.rays, cells);
   std::vector<Eigen::Vector3d> points;
-  for (int row = 0; row < kCells; ++row) {
-    for (int column = 0; column < kCells; ++column) {
-      points.push_back(rays_from_cells * Eigen::Vector3d(column + 0.5, kCells - row - 0.5, 1.0));
+  for (int row = -more; row < cells + more; ++row) {
+    for (int column = -more; column < cells + more; ++column) {
+      points.push_back(rays_from_cells * Eigen::Vector3d(column + 0.5, cells - row - 0.5, 1.0));
     }
   }
   return PixelsFromPoints(camera, points);
@@ -199,12 +206,12 @@ std::vector<Eigen::Vector2d> CellPixels(const CameraModel& camera, const FittedS
 
 /// Sub-pixel corners from corners that are good to about 0.3 px.
 std::optional<FittedSquare> FitOnce(const CameraModel& camera, const GreyPatch& patch,
-                                    const TagCorners& near, double least_contrast,
-                                    const EdgeErrors& errors) {
+                                    const TagCorners& near, const TagShape& shape,
+                                    double least_contrast, const EdgeErrors& errors) {
   FittedSquare square;
   std::array<EdgeLine, 4> lines;
   for (int i = 0; i < 4; ++i) {
-    const Side side(near[i], near[(i + 1) % 4]);
+    const Side side(near[i], near[(i + 1) % 4], shape);
     if (side.Cell_px() < kLeastCell_px) return std::nullopt;
     const Profiles profiles = Sample(patch, side);
     // NaN, from outside the patch, fails here too.
@@ -220,36 +227,36 @@ std::optional<FittedSquare> FitOnce(const CameraModel& camera, const GreyPatch& 
   return square;
 }
 
-bool IsBit(int row, int column) {
-  return row > 0 && column > 0 && row < kCells - 1 && column < kCells - 1;
-}
-
 }  // namespace
 
 std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch& patch,
-                                      const TagCorners& guess, double least_contrast,
-                                      const EdgeErrors& errors) {
-  const std::optional<TagCorners> near = Approach(patch, guess, least_contrast);
+                                      const TagCorners& guess, const TagShape& shape,
+                                      double least_contrast, const EdgeErrors& errors) {
+  const std::optional<TagCorners> near = Approach(patch, guess, shape, least_contrast);
   if (!near) return std::nullopt;
-  std::optional<FittedSquare> square = FitOnce(camera, patch, *near, least_contrast, errors);
+  std::optional<FittedSquare> square = FitOnce(camera, patch, *near, shape, least_contrast, errors);
   if (!square) return std::nullopt;
   // The ends of a short profile are not quite black and white, and the less so the further the
   // profile's middle is from the edge: 0.015 px on all of a 27 px tag.
-  return FitOnce(camera, patch, square->pixels, least_contrast, errors);
+  return FitOnce(camera, patch, square->pixels, shape, least_contrast, errors);
 }
 
 ReadBits CompareBits(const CameraModel& camera, const GreyPatch& patch, const FittedSquare& square,
                      const TagCells& expected) {
-  const std::vector<Eigen::Vector2d> pixels = CellPixels(camera, square);
+  const TagShape& shape = expected.shape;
+  // Around a black square is nothing but paper; around a white one are its bits.
+  const int more = shape.is_white_square ? shape.Around() : 0;
+  const int first = shape.Around() - more, end = shape.cells - first;
+  const std::vector<Eigen::Vector2d> pixels = CellPixels(camera, square, shape.square, more);
   const double threshold = 0.5 * (square.black_grey + square.white_grey);
   ReadBits read;
-  for (int row = 0; row < kCells; ++row) {
-    for (int column = 0; column < kCells; ++column) {
-      const Eigen::Vector2d& pixel = pixels[row * kCells + column];
-      const double excess = patch.At(pixel.x(), pixel.y()) - threshold;
-      const bool right = expected[row + 1][column + 1] ? excess > 0.0 : excess < 0.0;
+  auto pixel = pixels.begin();
+  for (int row = first; row < end; ++row) {
+    for (int column = first; column < end; ++column, ++pixel) {
+      const double excess = patch.At(pixel->x(), pixel->y()) - threshold;
+      const bool right = expected.is_white[row][column] ? excess > 0.0 : excess < 0.0;
       if (!right) ++read.wrong;
-      if (IsBit(row, column)) read.margin += std::abs(excess) / 36.0;
+      if (expected.is_bit[row][column]) read.margin += std::abs(excess) / shape.bits;
     }
   }
   return read;

@@ -12,7 +12,7 @@
 
 namespace rift::vision {
 
-/// The black square of a tag, measured along its four edges.
+/// The square that a tag is detected by, measured along its four edges.
 struct FittedSquare {
   TagCorners pixels;  ///< where the corners are in the picture
   MeasuredCorners
@@ -22,19 +22,20 @@ struct FittedSquare {
   double rms_px = 0.0;  ///< of the edge points about their lines
 };
 
-/// Sub-pixel corners from a guess that is off by up to half a cell of the tag: on each side the
-/// steps from black to white are located along its normal, freed of the lens, and joined by a line;
-/// the corners are where the lines meet. A straight edge is straight only without the lens, which
-/// is worth a third of the error. `errors` are added to the corners' scatter. None where an edge is
-/// missing, too short, leaves the patch or has less than `least_contrast` grey values.
+/// Sub-pixel corners from a guess that is off by up to half a cell of a tag of that shape: on each
+/// side the steps between black and white are located along its normal, freed of the lens, and
+/// joined by a line; the corners are where the lines meet. A straight edge is straight only without
+/// the lens, which is worth a third of the error. `errors` are added to the corners' scatter. None
+/// where an edge is missing, too short, leaves the patch or has less than `least_contrast` grey
+/// values.
 std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch& patch,
-                                      const TagCorners& guess, double least_contrast,
-                                      const EdgeErrors& errors);
+                                      const TagCorners& guess, const TagShape& shape,
+                                      double least_contrast, const EdgeErrors& errors);
 
 /// What the picture says inside a fitted square.
 struct ReadBits {
-  int wrong = 0;        ///< of the 64 cells of the black square
-  double margin = 0.0;  ///< mean distance of the 36 bits from the threshold, in grey values
+  int wrong = 0;        ///< of the cells of the black square; of all where the square is white
+  double margin = 0.0;  ///< mean distance of the bits from the threshold, in grey values
 };
 
 /// Compares the cells at the square with those that the tag should have. Far cheaper than decoding,

@@ -58,16 +58,17 @@ double PointVariance_px2(const std::array<EdgeLine, 4>& sides) {
 }
 
 /// Short profiles end before the blur of the lens does, so that all edges of a small tag shift
-/// together with its place among the pixels. Measured on rendered tags of 20 to 60 px: the shift
-/// falls with the cube of the shortest side.
+/// together with its place among the pixels. Measured on rendered tags of 20 to 60 px and 8 cells:
+/// the shift falls with the cube of the shortest side, so with that of a cell, which is as long as
+/// the profiles.
 CornerCovariance SharedCovariance(const std::array<Eigen::Vector2d, 4>& corners_px,
-                                  double shared_px) {
-  constexpr double kSide_px = 20.0;
+                                  const EdgeErrors& errors) {
+  const double side_px = 2.5 * errors.cells;
   double shortest_px = HUGE_VAL;
   for (int i = 0; i < 4; ++i) {
     shortest_px = std::min(shortest_px, (corners_px[(i + 1) % 4] - corners_px[i]).norm());
   }
-  const double sigma_px = shared_px * std::pow(kSide_px / shortest_px, 3);
+  const double sigma_px = errors.shared_px * std::pow(side_px / shortest_px, 3);
   CornerCovariance covariance;
   for (int i = 0; i < 8; ++i) {
     for (int k = 0; k < 8; ++k) covariance(i, k) = i % 2 == k % 2 ? sigma_px * sigma_px : 0.0;
@@ -100,7 +101,7 @@ CornerCovariance CovarianceOf(const std::array<EdgeLine, 4>& sides,
   }
   return corners_by_sides * variances.asDiagonal() * corners_by_sides.transpose() +
          errors.corner_px * errors.corner_px * CornerCovariance::Identity() +
-         SharedCovariance(corners_px, errors.shared_px);
+         SharedCovariance(corners_px, errors);
 }
 
 }  // namespace

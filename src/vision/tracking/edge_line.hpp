@@ -10,13 +10,12 @@
 
 namespace rift::vision {
 
-inline constexpr int kCells = 8;  ///< along a side of the black square
-
-/// How much of a side is measured: all but a cell at each end, where other edges blur into it.
-inline double MeasuredLength_px(double side_px) { return side_px * (kCells - 2) / kCells; }
+/// How much of a side of so many cells is measured: all but a cell at each end, where other edges
+/// blur into it.
+inline double MeasuredLength_px(double side_px, int cells) { return side_px * (cells - 2) / cells; }
 /// How many points that makes at about `step_px` from each other.
-inline int PointCount(double side_px, double step_px) {
-  return std::max(6, static_cast<int>(MeasuredLength_px(side_px) / step_px));
+inline int PointCount(double side_px, int cells, double step_px) {
+  return std::max(6, static_cast<int>(MeasuredLength_px(side_px, cells) / step_px));
 }
 
 /// A line through edge points, pixels without the lens: normal . p = offset, with a unit normal.
@@ -41,7 +40,8 @@ std::optional<Eigen::Vector2d> Meet(const EdgeLine& a, const EdgeLine& b);
 /// What edges are off by without scattering; see TagOptions.
 struct EdgeErrors {
   double corner_px = 0.0;  ///< of each corner by itself
-  double shared_px = 0.0;  ///< of all four together, of a tag whose shortest side has 20 px
+  double shared_px = 0.0;  ///< of all four together, of a tag whose cell has 2.5 px
+  int cells = 8;           ///< along a side
 };
 
 /// Of the corners of a square, pixels squared; corner i is where the sides i - 1 and i meet. A line

@@ -21,8 +21,8 @@ const std::vector<TagDetection>& PictureSearch::Find(int decimate) {
   if (found) return *found;
   auto& detector = detectors_.at(index);
   if (!detector) {
-    detector =
-        std::make_unique<TagDetector>(decimate, options_.max_hamming, options_.least_contrast);
+    detector = std::make_unique<TagDetector>(decimate, options_.MaxHamming(),
+                                             options_.least_contrast, options_.family);
   }
   const GreyPatch* patch = Patch();
   return found.emplace(patch ? detector->Detect(*patch) : std::vector<TagDetection>());

@@ -52,7 +52,7 @@ Frame CameraSession::FirstPicture() {
 }
 
 Look CameraSession::LookAt(const Frame& frame, int decimate) const {
-  const std::vector<TagDetection> seen = FindTags(frame, decimate, tag_.max_hamming);
+  const std::vector<TagDetection> seen = FindTags(frame, decimate, tag_);
   const auto robots = std::count_if(seen.begin(), seen.end(),
                                     [&](const auto& found) { return found.id == tag_.id; });
   return {.robot_tags = static_cast<int>(robots), .moved_m = MovedBy_m(camera_, seen)};

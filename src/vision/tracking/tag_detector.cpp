@@ -1,18 +1,37 @@
 #include "rift/vision/tracking/tag_detector.hpp"
 
 #include <apriltag/apriltag.h>
+#include <apriltag/tag16h5.h>
+#include <apriltag/tag25h9.h>
 #include <apriltag/tag36h11.h>
+#include <apriltag/tagStandard41h12.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <stdexcept>
+#include <utility>
 
 #include "rift/vision/camera/picture_reader.hpp"
 
 namespace rift::vision {
 namespace {
 
+struct FamilyCalls {
+  apriltag_family_t* (*create)();
+  void (*destroy)(apriltag_family_t*);
+};
+
+/// In the order of TagFamily.
+constexpr std::array<FamilyCalls, 4> kCalls{{{tag36h11_create, tag36h11_destroy},
+                                             {tag25h9_create, tag25h9_destroy},
+                                             {tag16h5_create, tag16h5_destroy},
+                                             {tagStandard41h12_create, tagStandard41h12_destroy}}};
+
 struct FamilyDeleter {
-  void operator()(apriltag_family_t* family) const { tag36h11_destroy(family); }
+  TagFamily family;
+  void operator()(apriltag_family_t* made) const {
+    kCalls[static_cast<std::size_t>(family)].destroy(made);
+  }
 };
 struct DetectorDeleter {
   void operator()(apriltag_detector_t* detector) const { apriltag_detector_destroy(detector); }
@@ -21,6 +40,10 @@ struct DetectionsDeleter {
   void operator()(zarray_t* detections) const { apriltag_detections_destroy(detections); }
 };
 using Family = std::unique_ptr<apriltag_family_t, FamilyDeleter>;
+
+Family MakeFamily(TagFamily family) {
+  return {kCalls[static_cast<std::size_t>(family)].create(), FamilyDeleter{family}};
+}
 
 /// AprilTag counts from the picture's corner, so that the first pixel's middle is (0.5, 0.5), and
 /// from the patch's corner.
@@ -35,13 +58,15 @@ TagDetection FromAprilTag(const apriltag_detection_t& found, const Region& regio
 }  // namespace
 
 struct TagDetector::State {
-  Family family{tag36h11_create()};
+  explicit State(TagFamily of) : family(MakeFamily(of)) {}
+
+  Family family;
   /// Destroyed before the family it points to.
   std::unique_ptr<apriltag_detector_t, DetectorDeleter> detector{apriltag_detector_create()};
 };
 
-TagDetector::TagDetector(int decimate, int max_hamming, int least_contrast)
-    : state_(std::make_unique<State>()) {
+TagDetector::TagDetector(int decimate, int max_hamming, int least_contrast, TagFamily family)
+    : state_(std::make_unique<State>(family)) {
   apriltag_detector_add_family_bits(state_->detector.get(), state_->family.get(), max_hamming);
   state_->detector->quad_decimate = static_cast<float>(decimate);
   state_->detector->nthreads = 1;
@@ -70,25 +95,53 @@ std::vector<TagDetection> TagDetector::Detect(const GreyPatch& patch) {
   return detections;
 }
 
-TagCells CellsOfTag(int id) {
-  const Family family(tag36h11_create());
-  const int count = static_cast<int>(family->ncodes);
-  if (id < 0 || id >= count) {
-    throw std::invalid_argument(
-        fmt::format("tag id {}: the family tag36h11 has the ids 0 to {}", id, count - 1));
-  }
-  TagCells cells{};
-  for (int i = 0; i < 10; ++i) cells[0][i] = cells[9][i] = cells[i][0] = cells[i][9] = true;
-  for (std::uint32_t bit = 0; bit < family->nbits; ++bit) {
-    const std::uint64_t mask = std::uint64_t{1} << (family->nbits - 1 - bit);
-    cells[family->bit_y[bit] + 1][family->bit_x[bit] + 1] = (family->codes[id] & mask) != 0;
+void RequireTagId(int id, TagFamily family) {
+  const int count = ShapeOf(family).ids;
+  if (id >= 0 && id < count) return;
+  throw std::invalid_argument(
+      fmt::format("tag id {}: the family {} has the ids 0 to {}", id, NameOf(family), count - 1));
+}
+
+TagCells CellsOfTag(int id, TagFamily family) {
+  RequireTagId(id, family);
+  const Family made = MakeFamily(family);
+  TagCells cells{.shape = ShapeOf(family)};
+  const int last = cells.shape.cells - 1, around = cells.shape.Around();
+  const auto ring = [&cells](int first, int end) {
+    for (int i = first; i <= end; ++i) {
+      for (const auto& [row, column] :
+           {std::pair(first, i), std::pair(end, i), std::pair(i, first), std::pair(i, end)}) {
+        cells.is_white[row][column] = true;
+      }
+    }
+  };
+  // Around a black square the paper's border is white; a white square has a black one around it.
+  if (cells.shape.is_white_square)
+    ring(around, last - around);
+  else
+    ring(0, last);
+  for (std::uint32_t bit = 0; bit < made->nbits; ++bit) {
+    const std::uint64_t mask = std::uint64_t{1} << (made->nbits - 1 - bit);
+    const int row = static_cast<int>(made->bit_y[bit]) + around;
+    const int column = static_cast<int>(made->bit_x[bit]) + around;
+    cells.is_white[row][column] = (made->codes[id] & mask) != 0;
+    cells.is_bit[row][column] = true;
   }
   return cells;
 }
 
-std::vector<TagDetection> FindTags(const Frame& frame, int decimate, int max_hamming) {
+std::vector<TagDetection> FindTags(const Frame& frame, int decimate, const TagOptions& options) {
+  constexpr int kLeastContrast = 5;
   const auto grey = PictureReader().Read(frame);
-  return grey ? TagDetector(decimate, max_hamming).Detect(*grey) : std::vector<TagDetection>();
+  if (!grey) return {};
+  std::vector<TagDetection> found =
+      TagDetector(decimate, options.MaxHamming(), kLeastContrast, options.family).Detect(*grey);
+  constexpr int kManyBits = 36;
+  if (ShapeOf(options.family).bits < kManyBits) {
+    std::erase_if(
+        found, [&](const TagDetection& tag) { return tag.decision_margin < options.min_margin; });
+  }
+  return found;
 }
 
 }  // namespace rift::vision

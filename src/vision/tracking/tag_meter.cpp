@@ -24,11 +24,11 @@ TrackResult TagMeter::Measure(const GreyPatch& patch, const TagCorners& guess,
                               const TagCells& cells, TrackMode mode,
                               const std::optional<Eigen::Vector3d>& normal_in_camera) const {
   const std::optional<FittedSquare> square =
-      FitSquare(camera_, patch, guess, options_.least_contrast,
-                {options_.edge_sigma_px, options_.shared_sigma_px});
+      FitSquare(camera_, patch, guess, cells.shape, options_.least_contrast,
+                {options_.edge_sigma_px, options_.shared_sigma_px, cells.shape.square});
   if (!square || square->rms_px > options_.max_fit_px) return {.miss = Miss::kNoEdges};
   const ReadBits bits = CompareBits(camera_, patch, *square, cells);
-  if (bits.wrong > options_.max_hamming || bits.margin < options_.min_margin) {
+  if (bits.wrong > options_.MaxHamming() || bits.margin < options_.min_margin) {
     return {.miss = Miss::kDoubtfulBits};
   }
   return Believe(*square, bits, mode, normal_in_camera);

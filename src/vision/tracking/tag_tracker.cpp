@@ -49,10 +49,11 @@ class TagTracker::FollowedTag {
   FollowedTag(const CameraModel& camera, const TagOptions& options)
       : options_(options),
         coarsest_(DecimateFor(camera, options)),
-        cells_(CellsOfTag(options.id)),
+        cells_(CellsOfTag(options.id, options.family)),
         meter_(camera, options),
-        in_region_(options.region_decimate, options.max_hamming, options.least_contrast),
-        in_tile_(1, options.max_hamming, options.least_contrast),
+        in_region_(options.region_decimate, options.MaxHamming(), options.least_contrast,
+                   options.family),
+        in_tile_(1, options.MaxHamming(), options.least_contrast, options.family),
         choice_(options) {}
 
   TrackResult Track(const Frame& frame, PictureSearch& picture);
@@ -141,8 +142,10 @@ TagTracker::FollowedTag::Seen TagTracker::FollowedTag::Look(const Frame& frame,
 
 TrackResult TagTracker::FollowedTag::TrackInRegion(const Frame& frame, const TagCorners& expected) {
   ++since_picture_;
-  const Region region = Clipped(Around(expected, options_.region_margin * Side_px(expected)),
-                                frame.width_px, frame.height_px);
+  // What is printed around the square is read too; region_margin is meant for one cell of eight.
+  const double printed = static_cast<double>(cells_.shape.Around()) / cells_.shape.square - 0.125;
+  const double margin_px = (options_.region_margin + printed) * Side_px(expected);
+  const Region region = Clipped(Around(expected, margin_px), frame.width_px, frame.height_px);
   if (region.empty()) return {.miss = Miss::kNoTag};  // it should have left the picture
   const auto patch = reader_.Read(frame, region);
   if (!patch) return {.miss = Miss::kDamagedFrame};

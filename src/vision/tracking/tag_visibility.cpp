@@ -46,18 +46,21 @@ std::optional<double> ShortSideInMiddle_px(const CameraModel& camera, const TagO
 int DecimateFor(const CameraModel& camera, const TagOptions& options) {
   const std::optional<double> side_px = ShortSideInMiddle_px(camera, options);
   if (!side_px) return options.acquire_decimate;
-  return std::clamp(static_cast<int>(*side_px / options.search_px), 1, options.acquire_decimate);
+  // Cells are looked for: search_px is of a square of eight.
+  const double of_eight_px = *side_px * 8.0 / ShapeOf(options.family).square;
+  return std::clamp(static_cast<int>(of_eight_px / options.search_px), 1, options.acquire_decimate);
 }
 
 std::optional<std::string> SmallTagWarning(const CameraModel& camera, const TagOptions& options) {
   const std::optional<double> side_px = ShortSideInMiddle_px(camera, options);
   if (!side_px || *side_px >= kGoodSide_px) return std::nullopt;
+  const double least_px = LeastSide_px(options.family);
   return fmt::format(
       "the tag of {:g} m has {:.0f} px in the middle of the picture, {} {:g}: {}; lower the "
       "camera, take more pixels, or print the tag {:.1f} times as large",
-      options.size_m, *side_px, *side_px < kLeastSide_px ? "it takes" : "good are",
-      *side_px < kLeastSide_px ? kLeastSide_px : kGoodSide_px,
-      *side_px < kLeastSide_px ? "it will not be found" : "poses will be coarse",
+      options.size_m, *side_px, *side_px < least_px ? "it takes" : "good are",
+      *side_px < least_px ? least_px : kGoodSide_px,
+      *side_px < least_px ? "it will not be found" : "poses will be coarse",
       kGoodSide_px / *side_px * 1.1);
 }
 

@@ -104,6 +104,7 @@ WorldFrame WorldFromRobot(const WorldSetting& setting) {
 WorldFrame WorldFromFloorTags(const WorldSetting& setting, const std::vector<FloorMark>& tags) {
   std::vector<ReferenceMark> marks;
   for (const FloorMark& tag : tags) {
+    RequireTagId(tag.id, setting.session.tag().family);
     marks.push_back({tag.id, {tag.x_m, tag.y_m, tag.z_m}, Eigen::Vector2d::Zero()});
   }
   TimeLimit search(setting.options.world_patience_s);
@@ -111,7 +112,7 @@ WorldFrame WorldFromFloorTags(const WorldSetting& setting, const std::vector<Flo
     setting.ThrowIfOver();
     const Frame frame = NextFrame(setting);
     const std::vector<TagDetection> seen =
-        FindTags(frame, setting.options.world_decimate, setting.session.tag().max_hamming);
+        FindTags(frame, setting.options.world_decimate, setting.session.tag());
     std::size_t found = 0;
     for (const ReferenceMark& mark : marks) {
       for (const TagDetection& tag : seen) found += tag.id == mark.tag_id;

@@ -9,15 +9,17 @@
 
 #include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/camera/frame.hpp"
+#include "rift/vision/tracking/tag_family.hpp"
 
 namespace rift::vision {
 
-/// A printed tag36h11 with its white border. Tag frame: the middle, x right and y up as one reads
+/// A printed tag with its border. Tag frame: the middle, x right and y up as one reads
 /// it, z out of the paper.
 struct PlacedTag {
   int id = 0;
-  double size_m = 0.0475;  ///< side of the black square
+  double size_m = 0.0475;  ///< side of the square that is detected
   Eigen::Isometry3d world_from_tag = Eigen::Isometry3d::Identity();
+  TagFamily family = TagFamily::k36h11;
 };
 
 /// A printed chessboard with a white margin one square wide. Board frame: the first inner corner,
@@ -44,6 +46,7 @@ struct RobotMotion {
 
 /// What the camera makes of the light, and what robot and floor look like.
 struct SyntheticCameraOptions {
+  TagFamily tag_family = TagFamily::k36h11;  ///< no key of its own: that of TagOptions
   int tag_id = 0;
   double tag_size_m = 0.0475;
   double body_radius_m = 0.0484;
@@ -65,8 +68,9 @@ struct SyntheticCameraOptions {
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("tag_id", self.tag_id, 0, 586, "the robot's tag of the family tag36h11");
-    field("tag_size_m", self.tag_size_m, 0.005, 1.0, "side of its black square in m");
+    field("tag_id", self.tag_id, 0, kLastTagId, "the robot's tag, of the family track.tag.family");
+    field("tag_size_m", self.tag_size_m, 0.005, 1.0,
+          "side of its black square in m (tagStandard41h12: of the white one)");
     field("body_radius_m", self.body_radius_m, 0.0, 0.5,
           "the dark disc under the tag in m (authors' world: 0.0484); 0: none");
     field("body_height_m", self.body_height_m, 0.0, 0.2,

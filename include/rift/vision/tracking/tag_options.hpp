@@ -3,6 +3,8 @@
 #include <array>
 #include <string_view>
 
+#include "rift/vision/tracking/tag_family.hpp"
+
 namespace rift::vision {
 
 /// What the robot drives on, as far as its tag's height and tilt are concerned.
@@ -15,6 +17,7 @@ constexpr std::array<std::string_view, 3> EnumNames(Ground) { return {"flat", "b
 
 /// Which tag is followed, and when a sighting of it is believed.
 struct TagOptions {
+  TagFamily family = TagFamily::k36h11;
   int id = 0;
   double size_m = 0.0475;
   double height_m = 0.03;
@@ -25,7 +28,7 @@ struct TagOptions {
   double bump_tilt_sigma_rad = 0.05;
   double tilt_sigma_rad = 0.25;
   double off_floor_share = 0.008;
-  int max_hamming = 1;
+  int max_hamming = -1;
   double min_margin = 20.0;
   int least_contrast = 30;
   int acquire_decimate = 3;
@@ -46,9 +49,15 @@ struct TagOptions {
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("id", self.id, 0, 586, "the robot's tag of the family tag36h11 (authors: 0)");
+    field("family", self.family,
+          "of the robot's tag, of reference tags and of the twin's (authors: tag36h11); noise may "
+          "look like a tag16h5");
+    field("id", self.id, 0, kLastTagId,
+          "the robot's tag of the family (authors: 0): tag36h11 has 0 to 586, tag25h9 0 to 34, "
+          "tag16h5 0 to 29, tagStandard41h12 0 to 2114");
     field("size_m", self.size_m, 0.005, 1.0,
-          "side of the black square in m, the white border left out (authors: 0.0475)");
+          "side of the black square in m, the white border left out (authors: 0.0475); of "
+          "tagStandard41h12 the side of the white square within the black ring, as in libapriltag");
     field("height_m", self.height_m, 0.0, 2.0,
           "of the tag above the floor; an error of 1 mm moves the pose by 1 mm times the tangent "
           "of the angle at which the tag is seen");
@@ -68,7 +77,8 @@ struct TagOptions {
           "the tag is not on the floor, and its height and tilt are left free, where holding it "
           "there moves the corners by more than this share of its side, RMS, and by more than two "
           "lens_sigma_px");
-    field("max_hamming", self.max_hamming, 0, 2, "wrong bits of 36 that are put up with");
+    field("max_hamming", self.max_hamming, -1, 2,
+          "wrong bits that are put up with; -1: 1, and of tag16h5 none");
     field("min_margin", self.min_margin, 0.0, 127.0,
           "least mean distance of a bit's grey value from the threshold");
     field("least_contrast", self.least_contrast, 5, 200,
@@ -104,6 +114,14 @@ struct TagOptions {
           "floor");
     field("max_fit_px", self.max_fit_px, 0.05, 10.0,
           "largest RMS distance of edge points or corners from the fitted square");
+  }
+  /// Throws std::invalid_argument for an id that the family does not have.
+  void Check() const { RequireTagId(id, family); }
+
+  /// Of 16 bits hardly any combination is far from all codes of the family.
+  int MaxHamming() const {
+    if (max_hamming >= 0) return max_hamming;
+    return family == TagFamily::k16h5 ? 0 : 1;
   }
 };
 

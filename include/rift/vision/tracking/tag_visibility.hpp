@@ -9,7 +9,7 @@
 namespace rift::vision {
 
 /// Sides shorter than this are not measured: a cell has two pixels (see FitSquare).
-inline constexpr double kLeastSide_px = 16.0;
+constexpr double LeastSide_px(TagFamily family) { return 2.0 * ShapeOf(family).square; }
 /// From here on a pose is good to the errors that docs/concepts.md states.
 inline constexpr double kGoodSide_px = 20.0;
 

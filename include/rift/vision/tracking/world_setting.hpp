@@ -7,6 +7,7 @@
 
 #include "rift/vision/tracking/session.hpp"
 #include "rift/vision/tracking/session_options.hpp"
+#include "rift/vision/tracking/tag_family.hpp"
 
 namespace rift::vision {
 
@@ -18,7 +19,7 @@ struct FloorMark {
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("id", self.id, 0, 586, "of a tag of the family tag36h11");
+    field("id", self.id, 0, kLastTagId, "of a tag of the robot's family (track.tag.family)");
     field("name", self.name, "of a point, for the one who clicks");
     field("x_m", self.x_m, -1e3, 1e3, "where its middle lies in the world, x right");
     field("y_m", self.y_m, -1e3, 1e3, "y up, as on a map");
