@@ -1,11 +1,13 @@
 // Gaps in space (dimension xyz) through the binary: an arm's or a drone's logs.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "support/process.hpp"
 #include "support/tree.hpp"
@@ -158,7 +160,7 @@ struct Bench {
 
 TEST_CASE("A sweep of a program and one of recorded logs fail by height in space alone") {
   Bench bench;
-  for (const std::string candidate :
+  for (const std::string& candidate :
        {bench.Program(), std::string("{kind: logs, path: 'sim_{lift}.csv'}")}) {
     const ProcessResult space = bench.Sweep(candidate, "xyz", "2");
     INFO(space.err);
@@ -184,8 +186,16 @@ TEST_CASE("A sweep in space says which trials lack heights, and refuses a robot 
   const std::string table = ReadFile(fs::path(bench.folder / "out") / "table.csv");
   CHECK(table.find("has no height z") != std::string::npos);
   CHECK(table.find("--set candidate.columns=") != std::string::npos);
-  const ProcessResult driven = bench.Sweep("{kind: simulation}", "xyz", "1");
+  WriteText(bench.folder / "driven.yaml",
+            "include: " + test::SourceDir() +
+                "/configs/waypoints/paper.yaml\ngap: {dimension: xyz}\n"
+                "reference: {kind: logs, path: 'robot_{trial}.csv', trials: 3}\n"
+                "space: {control.v_max: [0.2]}\n");
+  const ProcessResult driven =
+      RunRift({"sweep", bench.folder / "driven.yaml", "--out", bench.folder / "driven"});
   CHECK(driven.exit_code == 2);
+  CHECK(driven.err.find("gap.dimension is xyz, and candidate.kind is simulation") !=
+        std::string::npos);
   WriteText(bench.folder / "path.yaml",
             "candidate: {kind: logs, path: 'sim_{lift}.csv'}\ngap: {dimension: xyz}\n"
             "waypoints: [{name: a, x: 0, y: 0}, {name: b, x: 1, y: 0}]\nspace: {lift: [low]}\n");
