@@ -1,14 +1,19 @@
 // A picture of a camera, as every reader of rift takes it.
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "fuzz.hpp"
 #include "rift/vision/camera/jpeg.hpp"
+#include "vision/camera/exif_time.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace rift;
   using vision::Region;
   const std::vector<std::uint8_t> bytes(data, data + size);
+  if (const auto taken_s = vision::ExifTime_s(bytes)) {
+    fuzz::Require(std::abs(*taken_s) < 1e12, "a date lies within ten thousand years");
+  }
   fuzz::Require(vision::JpegLength(bytes) <= size, "a picture is no longer than its bytes");
   const std::optional<vision::JpegSize> stated = vision::SizeOfJpeg(bytes);
   if (!stated) return 0;  // cameras' pictures are asked for their size first

@@ -15,6 +15,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "exif_time.hpp"
 #include "image_times.hpp"
 #include "rift/vision/camera/jpeg.hpp"
 #include "sources.hpp"
@@ -70,12 +71,17 @@ double PngPixels(const std::vector<std::uint8_t>& bytes) {
   return number(16) * number(20);
 }
 
+std::vector<double> TimesOf(const std::vector<std::string>& files, const CaptureOptions& options) {
+  if (options.times.empty()) return TimesByNames(files, options.fps);
+  if (options.times == kTimesFromExif) return TimesFromExif(files);
+  return TimesFromText(TextOf(options.times), options.times, files);
+}
+
 class ImageSource : public CameraSource {
  public:
   ImageSource(std::vector<std::string> files, const CaptureOptions& options)
       : files_(std::move(files)), options_(options), opened_s_(SteadyNow_s()) {
-    times_s_ = options.times.empty() ? TimesByNames(files_, options.fps)
-                                     : TimesFromText(TextOf(options.times), options.times, files_);
+    times_s_ = TimesOf(files_, options);
   }
 
   bool IsRecording() const override { return true; }

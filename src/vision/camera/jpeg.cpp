@@ -8,6 +8,7 @@
 #include <jpeglib.h>
 #include <turbojpeg.h>
 
+#include <algorithm>
 #include <array>
 #include <csetjmp>
 #include <cstring>
@@ -74,6 +75,21 @@ std::optional<JpegSize> SizeOfJpeg(std::span<const std::uint8_t> bytes) {
     size = JpegSize{Number(bytes, at + 7), Number(bytes, at + 5)};
   });
   return size;
+}
+
+std::span<const std::uint8_t> ExifOfJpeg(std::span<const std::uint8_t> bytes) {
+  constexpr std::uint8_t kApplication1 = 0xE1;
+  constexpr std::array<std::uint8_t, 6> kName{'E', 'x', 'i', 'f', 0, 0};
+  std::span<const std::uint8_t> found;
+  if (!IsJpeg(bytes)) return found;
+  WalkSegments(bytes, [&](std::uint8_t marker, std::size_t at) {
+    const std::size_t end = std::min(bytes.size(), at + 2 + Number(bytes, at + 2));
+    const std::size_t begin = at + 4 + kName.size();
+    if (!found.empty() || marker != kApplication1 || begin > end) return;
+    if (!std::equal(kName.begin(), kName.end(), bytes.begin() + at + 4)) return;
+    found = bytes.subspan(begin, end - begin);
+  });
+  return found;
 }
 
 std::size_t JpegLength(std::span<const std::uint8_t> bytes) {

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "rift/vision/camera/frame.hpp"
@@ -21,6 +22,12 @@ struct JpegSize {
 /// The size that a JPEG's frame header states (ITU T.81 B.2.2), without decoding; nothing when
 /// these bytes are no JPEG.
 std::optional<JpegSize> SizeOfJpeg(std::span<const std::uint8_t> bytes);
+
+/// As CaptureOptions::times: when the pictures' EXIF data say that they were taken.
+inline constexpr std::string_view kTimesFromExif = "exif";
+
+/// The TIFF structure in its Exif segment (Exif 2.32, 4.7.2); none where there is no such segment.
+std::span<const std::uint8_t> ExifOfJpeg(std::span<const std::uint8_t> bytes);
 
 /// How many of the bytes belong to the picture: drivers hand out their whole buffer, and what
 /// follows the end marker is left over from older pictures.
