@@ -194,6 +194,28 @@ TEST_CASE("The robot's first pose can be the origin of the world") {
   CHECK(std::abs(log.poses[0].yaw_rad) < 0.01);
 }
 
+TEST_CASE("A robot that drives while its first pose is averaged makes no world frame") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "cam.yaml", test::ReadFile(kCamera));
+  const auto set = [&](const std::string& frames, const std::string& average_s) {
+    return RunRift({"track", "--camera", frames, "--fps", "10", "--calibration",
+                    folder / "cam.yaml", "--world", "first", "--force", "--world-average",
+                    average_s});
+  };
+  const ProcessResult moving = set(kFrames, "1");
+  INFO(moving.err);
+  CHECK(moving.exit_code == 2);
+  CHECK_THAT(moving.err, Contains("tag 0 moved by") && Contains("let the robot stand still"));
+  CHECK(test::ReadFile(folder / "cam.yaml") == test::ReadFile(kCamera));
+  // Standing, and for a single picture of a moving one.
+  fs::create_directory(fs::path(folder / "standing"));
+  for (int i = 0; i < 15; ++i) {
+    fs::copy_file(kData + "/frames/000.jpg", folder / ("standing/" + std::to_string(i) + ".jpg"));
+  }
+  CHECK(set(folder / "standing/*.jpg", "1").exit_code == 0);
+  CHECK(set(kFrames, "0").exit_code == 0);
+}
+
 TEST_CASE("A calibration of another size than the stream is refused") {
   const test::TemporaryFolder folder;
   vision::CameraModel camera = vision::ReadCamera(test::ReadFile(kCamera), kCamera);
@@ -289,9 +311,8 @@ TEST_CASE("A tag that lies elsewhere than told, and a worse frame, are refused b
   const std::string calibration = folder / "cam.yaml";
   test::WriteText(calibration, test::ReadFile(kCamera));
   const auto set = [&](const std::string& world) {
-    // Ten pictures a second, so that they last as long as the mean of a first pose is taken over.
     return RunRift({"track", "--camera", kFrames, "--fps", "10", "--calibration", calibration,
-                    "--world", world});
+                    "--world", world, "--world-average", "0"});
   };
   const ProcessResult kept = set("first");
   CHECK(kept.exit_code == 2);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +15,7 @@ namespace rift::vision {
 namespace {
 
 constexpr double kTick_s = 0.02;
+constexpr double kStill_px = 0.5;  // some times the noise of a corner's mean
 
 /// The next picture; throws when there will be none.
 Frame NextFrame(const WorldSetting& setting) {
@@ -39,6 +41,37 @@ class TimeLimit {
   bool has_begun_ = false;
   double begin_s_ = 0.0;
 };
+
+/// The mean over some sightings, from `first` on.
+TagCorners MeanCorners(const std::vector<TagCorners>& seen, std::size_t first, std::size_t count) {
+  TagCorners mean;
+  mean.fill(Eigen::Vector2d::Zero());
+  for (std::size_t i = first; i < first + count; ++i) {
+    for (std::size_t k = 0; k < mean.size(); ++k) {
+      mean[k] += seen[i][k] / static_cast<double>(count);
+    }
+  }
+  return mean;
+}
+
+/// The mean of a moving robot's poses is none of them. Held in the picture, where a corner is known
+/// to a tenth of a pixel whatever the height and the tilt: its first third against its last.
+void RequireStandstill(const std::vector<TagCorners>& seen, int tag_id,
+                       const SessionOptions& options) {
+  if (seen.size() < 2) return;
+  const std::size_t third = std::max<std::size_t>(1, seen.size() / 3);
+  const TagCorners first = MeanCorners(seen, 0, third);
+  const TagCorners last = MeanCorners(seen, seen.size() - third, third);
+  double farthest_px = 0.0;
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    farthest_px = std::max(farthest_px, (last[k] - first[k]).norm());
+  }
+  if (farthest_px <= kStill_px) return;
+  throw std::invalid_argument(fmt::format(
+      "tag {} moved by {:.1f} px while its first pose was averaged over {:g} s (at most {:g}): let "
+      "the robot stand still, or give --world-average 0 to take a single picture",
+      tag_id, farthest_px, options.world_average_s, kStill_px));
+}
 
 /// Four tags laid out in centimetres fit each other perfectly; only a tag of known size tells.
 void CheckScaleOf(const WorldSetting& setting, const WorldFrame& world,
@@ -84,11 +117,13 @@ WorldFrame WorldFromRobot(const WorldSetting& setting) {
   TimeLimit search(setting.options.world_patience_s);
   std::optional<TimeLimit> averaging;
   std::vector<Eigen::Isometry3d> poses;
+  std::vector<TagCorners> corners;
   for (;;) {
     setting.ThrowIfOver();
     const Frame frame = NextFrame(setting);
     if (const auto sighting = tracker.Track(frame).sighting) {
       poses.push_back(sighting->camera_from_tag);
+      corners.push_back(sighting->corners);
       if (!averaging) averaging.emplace(setting.options.world_average_s);
     }
     if (averaging && averaging->IsOver(frame)) break;
@@ -98,6 +133,7 @@ WorldFrame WorldFromRobot(const WorldSetting& setting) {
                       setting.session.tag().id, setting.options.world_patience_s));
     }
   }
+  RequireStandstill(corners, setting.session.tag().id, setting.options);
   return WorldFromFirstPose(poses, setting.session.tag().height_m);
 }
 

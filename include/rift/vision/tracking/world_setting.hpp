@@ -56,7 +56,7 @@ struct WorldSetting {
 };
 
 /// Origin on the floor below the robot's tag, x where it looks. Throws std::invalid_argument when
-/// the tag is not seen in time.
+/// the tag is not seen in time, or moves while its pose is averaged.
 WorldFrame WorldFromRobot(const WorldSetting& setting);
 
 /// Looks for the tags. Throws std::invalid_argument when too few are seen in time or they make no
