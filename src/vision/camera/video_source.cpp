@@ -82,9 +82,14 @@ class NetworkSource : public CameraSource {
   bool Read(Frame& frame) override {
     if (!capture_.isOpened() && !Reconnect()) return false;
     cv::Mat picture;
+    const double asked_s = SteadyNow_s();
     if (!capture_.read(picture) || picture.empty()) {
+      // FFmpeg does not tell which: it waits for so long for a stream that stalls.
+      const double waited_s = SteadyNow_s() - asked_s;
       capture_.release();
-      Break("the stream ended");
+      Break(waited_s < 0.9 * options_.open_timeout_s
+                ? "the stream ended"
+                : fmt::format("nothing came for {:.0f} s", waited_s));
       return false;
     }
     frame.arrived_s = frame.captured_s = SteadyNow_s();
@@ -114,7 +119,7 @@ class NetworkSource : public CameraSource {
     Break("FFmpeg cannot open it");
     return false;
   }
-  void Break(const char* reason) {
+  void Break(const std::string& reason) {
     again_.Broke(fmt::format("{}: {}", url_, reason), SteadyNow_s());
   }
 
