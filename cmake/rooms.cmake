@@ -67,7 +67,7 @@ rift_room(report/json ROOMS control experiment gap geometry hardware odometry re
 rift_room(report/page ROOMS experiment odometry report/figures report/text statistics sweep/explain
     sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
-rift_room(view ROOMS control geometry trajectory trial vision/camera vision/tracking
+rift_room(view ROOMS control geometry trajectory trial vision/calibration vision/camera vision/tracking
   OPTIONS simulation
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)

@@ -7,9 +7,8 @@ constexpr double kTrailStep_m = 0.002;
 
 void Follow(const vision::Sighting& sighting, TrackScene& scene) {
   const Eigen::Vector2d place = sighting.map_from_tag.translation().head<2>();
-  if (scene.trail_m.empty() || (place - scene.trail_m.back()).norm() > kTrailStep_m) {
-    scene.trail_m.push_back(place);
-  }
+  std::vector<Eigen::Vector2d>& trail_m = scene.robots.front().trail_m;
+  if (trail_m.empty() || (place - trail_m.back()).norm() > kTrailStep_m) trail_m.push_back(place);
   scene.plane_z_m = sighting.map_from_tag.translation().z();
   scene.latency_s = sighting.latency_s;
 }
@@ -17,7 +16,9 @@ void Follow(const vision::Sighting& sighting, TrackScene& scene) {
 }  // namespace
 
 DriveView::DriveView(const vision::CameraModel& camera, const control::Task& task)
-    : start_(task.Start()), scene_{.camera = &camera}, window_("rift drive") {
+    : start_(task.Start()),
+      scene_{.camera = &camera, .robots = {SceneRobot{}}},
+      window_("rift drive") {
   for (const control::TimedPose& at : task.IdealPath()) {
     scene_.path_m.push_back(at.world_from_robot.Position());
   }
@@ -29,7 +30,7 @@ DriveView::DriveView(const vision::CameraModel& camera, const control::Task& tas
 bool DriveView::Show(const vision::Frame* frame, const std::optional<vision::Sighting>& sighting,
                      const vision::CaptureStatus& status, const std::string& placement) {
   scene_.frame = frame;
-  scene_.sighting = sighting;
+  scene_.robots.front().sighting = sighting;
   scene_.status = status;
   scene_.prompts.clear();
   scene_.stand_at.reset();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "backdrop.hpp"
+#include "path_offset.hpp"
 #include "pen.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/view/film.hpp"
@@ -162,6 +163,8 @@ void DrawPanel(cv::Mat& picture, const StaticScene& fixed, const Layout& layout,
   column.Row("pitch", Value("{:+.1f} deg", DegFromRad(scene.pitch_rad)));
   column.Row("roll", Value("{:+.1f} deg", DegFromRad(scene.roll_rad)));
   column.Row("speed", Value("{:.3f} m/s", scene.speed_mps));
+  column.Row("off the path",
+             OffsetText(PathOffset_m(scene.world_from_robot.Position(), fixed.reference_m)));
   column.Skip(8);
   column.Row("power left", Value("{:+.3f}", scene.power.left));
   column.Bar(scene.power.left);

@@ -7,20 +7,21 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "camera_picture.hpp"
+#include "path_offset.hpp"
 #include "rift/vision/camera/camera_model.hpp"
-#include "rift/vision/camera/picture_reader.hpp"
 
 namespace rift::view {
 namespace {
 
-constexpr int kWidest_px = 1280, kShift = 4;
+constexpr int kShift = 4;
 constexpr double kArrow_m = 0.06;
 constexpr double kLegStep_m = 0.02;  // a lens bends straight legs
 constexpr double kNearest_m = 0.05;
 constexpr double kChassisRadius_m = 0.0485;  // of a 3pi+
 
 const cv::Scalar kGreen{40, 220, 40}, kRed{40, 40, 235}, kBlack{0, 0, 0}, kYellow{0, 225, 255};
-const cv::Scalar kBlue{235, 110, 30}, kWhite{255, 255, 255}, kPanel{32, 28, 26};
+const cv::Scalar kBlue{235, 110, 30}, kWhite{255, 255, 255};
 
 /// Draws points of the map into a picture that may be smaller than the camera's.
 class MapPen {
@@ -96,10 +97,12 @@ std::vector<Eigen::Vector2d> InSmallSteps(const std::vector<Eigen::Vector2d>& pa
 
 void DrawMap(const MapPen& pen, const TrackScene& scene) {
   pen.Line(pen.FromMap(InSmallSteps(scene.path_m)), kBlack, 2);
-  for (const LateralLine& line : LateralLines(scene.trail_m, scene.path_m)) {
-    pen.Line(pen.FromMap({line.from_m, line.to_m}), kBlue, 2);
+  if (!scene.robots.empty()) {
+    for (const LateralLine& line : LateralLines(scene.robots.front().trail_m, scene.path_m)) {
+      pen.Line(pen.FromMap({line.from_m, line.to_m}), kBlue, 2);
+    }
   }
-  pen.Line(pen.FromMap(scene.trail_m), kRed, 2);
+  for (const SceneRobot& robot : scene.robots) pen.Line(pen.FromMap(robot.trail_m), kRed, 2);
   for (const geometry::NamedPoint& place : scene.waypoints) {
     const std::vector<cv::Point> at = pen.FromMap({place.p_in_world_m});
     if (at.empty()) continue;
@@ -136,20 +139,61 @@ void DrawTag(const MapPen& pen, const vision::Sighting& sighting) {
   if (arrow.size() == 2) pen.Arrow(arrow[0], arrow[1], kRed);
 }
 
-std::vector<std::string> PoseText(const TrackScene& scene) {
+/// Which robot it is, where there are several.
+void DrawId(const MapPen& pen, const vision::Sighting& sighting) {
+  Eigen::Vector2d right = sighting.corners.front();
+  for (const Eigen::Vector2d& corner : sighting.corners) {
+    if (corner.x() > right.x()) right = corner;
+  }
+  pen.Label(pen.FromPixel(right) + cv::Point(6 << kShift, 0), std::to_string(sighting.tag_id),
+            kGreen);
+}
+
+/// Where the first robot is beside the path, and was at most.
+std::string OffsetLine(const TrackScene& scene) {
+  const SceneRobot& robot = scene.robots.front();
+  if (scene.path_m.size() < 2) return {};
+  double largest_m = 0.0;
+  for (const LateralLine& line : LateralLines(robot.trail_m, scene.path_m)) {
+    largest_m = std::max(largest_m, line.Length_m());
+  }
+  const double offset_m = robot.sighting
+                              ? PathOffset_m(robot.sighting->Planar().Position(), scene.path_m)
+                              : std::nan("");
+  return fmt::format("off the path {}   largest {:.1f} mm", OffsetText(offset_m),
+                     1e3 * std::max(largest_m, std::isnan(offset_m) ? 0.0 : std::abs(offset_m)));
+}
+
+std::vector<std::string> PoseLines(const SceneRobot& robot, const std::string& name) {
+  if (!robot.sighting) return {name.empty() ? "no tag" : name + "not seen"};
   std::vector<std::string> lines;
-  if (scene.sighting) {
-    const Eigen::Vector3d p = scene.sighting->map_from_tag.translation();
-    const geometry::Pose2 pose = scene.sighting->Planar();
-    lines.push_back(fmt::format("x {:+.4f} m   y {:+.4f} m   yaw {:+6.1f} deg", pose.x_m, pose.y_m,
-                                pose.yaw_rad * 180.0 / std::numbers::pi));
-    lines.push_back(fmt::format("z {:+.4f} m   {}", p.z(),
-                                scene.sighting->in_world ? "world frame" : "camera frame, y up"));
-    if (scene.sighting->tags_of_this_id > 1) {
-      lines.push_back(fmt::format("{} tags of this id!", scene.sighting->tags_of_this_id));
-    }
-  } else {
-    lines.emplace_back("no tag");
+  const vision::Sighting& sighting = *robot.sighting;
+  const geometry::Pose2 pose = sighting.Planar();
+  lines.push_back(fmt::format("{}x {:+.4f} m   y {:+.4f} m   yaw {:+6.1f} deg", name, pose.x_m,
+                              pose.y_m, pose.yaw_rad * 180.0 / std::numbers::pi));
+  // One robot's, in full.
+  if (name.empty()) {
+    lines.push_back(fmt::format("z {:+.4f} m   {}", sighting.map_from_tag.translation().z(),
+                                sighting.in_world ? "world frame" : "camera frame, y up"));
+  }
+  if (sighting.tags_of_this_id > 1) {
+    lines.push_back(fmt::format("{}{} tags of this id!", name, sighting.tags_of_this_id));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> WordsOf(const TrackScene& scene) {
+  std::vector<std::string> lines;
+  if (scene.robots.empty()) lines.emplace_back("no tag");
+  for (const SceneRobot& robot : scene.robots) {
+    const std::string name = scene.robots.size() < 2 ? "" : fmt::format("tag {}: ", robot.tag_id);
+    for (std::string& line : PoseLines(robot, name)) lines.push_back(std::move(line));
+  }
+  if (!scene.robots.empty()) {
+    const std::string offset = OffsetLine(scene);
+    if (!offset.empty()) lines.push_back(offset);
   }
   const auto state = static_cast<std::size_t>(scene.status.state);
   const std::string latency = std::isnan(scene.latency_s)
@@ -162,51 +206,20 @@ std::vector<std::string> PoseText(const TrackScene& scene) {
   return lines;
 }
 
-// Light letters on a darkened strip, from the top or the bottom of the picture.
-void DrawLines(cv::Mat& picture, const std::vector<std::string>& lines, bool at_top) {
-  constexpr int kLine_px = 20, kPad_px = 8;
-  const int height = std::min(picture.rows, static_cast<int>(lines.size()) * kLine_px + kPad_px);
-  int width = 0;
-  for (const std::string& line : lines) {
-    int base = 0;
-    width =
-        std::max(width, cv::getTextSize(line, cv::FONT_HERSHEY_SIMPLEX, 0.5, 1, &base).width + 16);
-  }
-  width = std::min(width, picture.cols);
-  const int y = at_top ? 0 : picture.rows - height;
-  cv::Mat strip = picture(cv::Rect(0, y, width, height));
-  cv::addWeighted(strip, 0.3, cv::Mat(strip.size(), strip.type(), kPanel), 0.7, 0.0, strip);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    cv::putText(picture, lines[i], {8, y + static_cast<int>(i + 1) * kLine_px},
-                cv::FONT_HERSHEY_SIMPLEX, 0.5, kWhite, 1, cv::LINE_AA);
-  }
-}
-
-cv::Mat Shown(const TrackScene& scene) {
-  cv::Mat picture = scene.frame == nullptr ? cv::Mat() : vision::BgrOf(*scene.frame);
-  if (picture.empty()) {
-    picture = cv::Mat(std::max(scene.camera->height_px, 240), std::max(scene.camera->width_px, 320),
-                      CV_8UC3, kPanel);
-  }
-  const double scale = std::min(1.0, 1.0 * kWidest_px / picture.cols);
-  if (scale == 1.0) return picture;
-  cv::Mat small;
-  cv::resize(picture, small, {}, scale, scale, cv::INTER_AREA);
-  return small;
-}
-
-}  // namespace
-
 TrackPicture DrawTrack(const TrackScene& scene) {
   TrackPicture shown;
-  shown.bgr = Shown(scene);
+  shown.bgr = ShownPicture(scene.frame, scene.camera->width_px, scene.camera->height_px);
   const int width_px = scene.frame == nullptr ? scene.camera->width_px : scene.frame->width_px;
   shown.px_per_shown = std::max(1.0, 1.0 * width_px / shown.bgr.cols);
   const MapPen pen(shown.bgr, scene, 1.0 / shown.px_per_shown);
   DrawMap(pen, scene);
   if (scene.stand_at) DrawPlace(pen, *scene.stand_at);
-  if (scene.sighting) DrawTag(pen, *scene.sighting);
-  DrawLines(shown.bgr, PoseText(scene), true);
+  for (const SceneRobot& robot : scene.robots) {
+    if (!robot.sighting) continue;
+    DrawTag(pen, *robot.sighting);
+    if (scene.robots.size() > 1) DrawId(pen, *robot.sighting);
+  }
+  DrawLines(shown.bgr, WordsOf(scene), true);
   std::vector<std::string> foot = scene.prompts;
   foot.emplace_back(
       "click: waypoint   w: waypoint here   s: stop or pass   u: undo   c: clear trail   q: quit");

@@ -16,8 +16,10 @@ constexpr double kLifted_m = 0.15;  // no robot drives that far between pictures
 
 }  // namespace
 
-TrackView::TrackView(const vision::CameraModel& camera, Content content)
+TrackView::TrackView(const vision::CameraModel& camera, const std::vector<int>& tag_ids,
+                     Content content)
     : camera_(camera), content_(std::move(content)), window_("rift track") {
+  for (const int tag_id : tag_ids) robots_.push_back({.tag_id = tag_id});
   if (camera.world) plane_z_m_ = 0.0;
 }
 
@@ -40,25 +42,29 @@ std::vector<std::string> TrackView::Prompts(const std::optional<double>& moved_m
   return lines;
 }
 
-void TrackView::Follow(const vision::Sighting& sighting) {
-  const Eigen::Vector3d middle = sighting.map_from_tag.translation();
+void TrackView::Follow(SceneRobot& robot) {
+  const Eigen::Vector3d middle = robot.sighting->map_from_tag.translation();
+  std::vector<Eigen::Vector2d>& trail_m = robot.trail_m;
   if (!plane_z_m_) plane_z_m_ = middle.z();
   const auto is_away_by = [&](double distance_m) {
-    return !trail_m_.empty() && (middle.head<2>() - trail_m_.back()).norm() > distance_m;
+    return !trail_m.empty() && (middle.head<2>() - trail_m.back()).norm() > distance_m;
   };
-  if (is_away_by(kLifted_m)) trail_m_.clear();
-  if (trail_m_.empty() || is_away_by(kTrailStep_m)) trail_m_.push_back(middle.head<2>());
-  if (trail_m_.size() > kTrailLength) trail_m_.erase(trail_m_.begin());
+  if (is_away_by(kLifted_m)) trail_m.clear();
+  if (trail_m.empty() || is_away_by(kTrailStep_m)) trail_m.push_back(middle.head<2>());
+  if (trail_m.size() > kTrailLength) trail_m.erase(trail_m.begin());
 }
 
 bool TrackView::Show(const std::optional<vision::Frame>& frame,
-                     const std::optional<vision::Sighting>& sighting,
+                     const std::vector<std::optional<vision::Sighting>>& seen,
                      const vision::CaptureStatus& status, const std::optional<double>& moved_m) {
-  if (sighting) Follow(*sighting);
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    robots_[i].sighting = i < seen.size() ? seen[i] : std::nullopt;
+    if (robots_[i].sighting) Follow(robots_[i]);
+  }
+  const std::optional<vision::Sighting>& sighting = robots_.front().sighting;
   TrackScene scene{.camera = &camera_,
                    .frame = frame ? &*frame : nullptr,
-                   .sighting = sighting,
-                   .trail_m = trail_m_,
+                   .robots = robots_,
                    .path_m = content_.path_m,
                    .waypoints = Places(),
                    .plane_z_m = plane_z_m_.value_or(0.0),
@@ -86,7 +92,9 @@ void TrackView::Apply(const TrackInput& input, const std::optional<vision::Sight
   }
   if (input.undo && !recorded_.empty()) recorded_.pop_back();
   if (input.toggle_stop && !recorded_.empty()) recorded_.back().stop = !recorded_.back().stop;
-  if (input.clear_trail) trail_m_.clear();
+  if (input.clear_trail) {
+    for (SceneRobot& robot : robots_) robot.trail_m.clear();
+  }
   const bool changed = recorded_.size() != before || input.toggle_stop || !input.clicks_px.empty();
   if (changed && content_.save && !recorded_.empty()) content_.save(recorded_);
 }

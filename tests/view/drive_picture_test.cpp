@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <opencv2/core.hpp>
 
@@ -33,6 +35,86 @@ TEST_CASE("Where a robot has to stand is drawn as its outline around the place a
   CHECK(farthest_m < 0.075);
   CHECK(farthest_m == Approx(ahead_m).margin(0.006));  // the nose
   CHECK(ahead_m > 0.055);
+}
+
+/// A tag that lies on the floor at x, y, as the camera sees it.
+vision::Sighting TagAt(const vision::CameraModel& camera, int id, double x_m, double y_m) {
+  constexpr double kHalf_m = 0.025;
+  vision::Sighting sighting;
+  sighting.tag_id = id;
+  sighting.map_from_tag.translation() = Eigen::Vector3d(x_m, y_m, 0.0);
+  const std::array<Eigen::Vector2d, 4> corners{Eigen::Vector2d{-kHalf_m, kHalf_m},
+                                               {kHalf_m, kHalf_m},
+                                               {kHalf_m, -kHalf_m},
+                                               {-kHalf_m, -kHalf_m}};
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector3d p_in_map(x_m + corners[i].x(), y_m + corners[i].y(), 0.0);
+    sighting.corners[i] =
+        vision::PixelsFromPoints(camera, {vision::MapFromCamera(camera).inverse() * p_in_map})
+            .front();
+  }
+  return sighting;
+}
+
+/// Pixels of the green of an outline within some px of a point of the camera's picture.
+int GreenNear(const TrackPicture& drawn, const Eigen::Vector2d& pixel) {
+  constexpr int kNear_px = 3;
+  const Eigen::Vector2d shown = pixel / drawn.px_per_shown;
+  const cv::Rect around(cvRound(shown.x()) - kNear_px, cvRound(shown.y()) - kNear_px,
+                        2 * kNear_px + 1, 2 * kNear_px + 1);
+  cv::Mat found;
+  cv::inRange(drawn.bgr(around), cv::Scalar(30, 200, 30), cv::Scalar(60, 225, 60), found);
+  return cv::countNonZero(found);
+}
+
+TEST_CASE("Every robot's tag is outlined with its trail, and one that is not seen is not") {
+  const vision::CameraModel camera = test::PaperCamera();
+  const vision::Sighting first = TagAt(camera, 0, -0.2, 0.1), second = TagAt(camera, 3, 0.2, -0.1);
+  TrackScene scene{.camera = &camera,
+                   .robots = {{.tag_id = 0, .sighting = first}, {.tag_id = 3, .sighting = second}}};
+  const TrackPicture both = DrawTrack(scene);
+  scene.robots[1].sighting.reset();
+  const TrackPicture one = DrawTrack(scene);
+  for (const Eigen::Vector2d& corner : first.corners) {
+    CHECK(GreenNear(both, corner) > 3);
+    CHECK(GreenNear(one, corner) > 3);
+  }
+  for (const Eigen::Vector2d& corner : second.corners) {
+    CHECK(GreenNear(both, corner) > 3);
+    CHECK(GreenNear(one, corner) == 0);
+  }
+  // Both trails, in red.
+  const auto red = [](const TrackPicture& drawn) {
+    cv::Mat found;
+    cv::inRange(drawn.bgr, cv::Scalar(40, 40, 235), cv::Scalar(40, 40, 235), found);
+    return cv::countNonZero(found);
+  };
+  TrackScene trails{.camera = &camera, .robots = {SceneRobot{}, SceneRobot{}}};
+  trails.robots[0].trail_m = {{-0.2, 0.1}, {-0.1, 0.1}};
+  const int first_trail = red(DrawTrack(trails));
+  trails.robots[1].trail_m = {{0.1, -0.1}, {0.2, -0.1}};
+  CHECK(first_trail > 50);
+  CHECK(red(DrawTrack(trails)) == Approx(2.0 * first_trail).epsilon(0.2));
+}
+
+TEST_CASE("How far the first robot is off its path is told in millimetres") {
+  const vision::CameraModel camera = test::PaperCamera();
+  TrackScene scene{.camera = &camera,
+                   .robots = {{.tag_id = 0, .sighting = TagAt(camera, 0, 0.0, 0.0123)}}};
+  const auto has_line = [&](const std::string& line) {
+    const std::vector<std::string> lines = WordsOf(scene);
+    return std::find(lines.begin(), lines.end(), line) != lines.end();
+  };
+  for (const std::string& line : WordsOf(scene)) CHECK(line.find("path") == line.npos);
+  scene.path_m = {{-0.2, 0.0}, {0.2, 0.0}};
+  scene.robots[0].trail_m = {{-0.1, -0.0311}, {0.0, 0.0123}};
+  CHECK(has_line("off the path 12.3 mm left   largest 31.1 mm"));
+  scene.robots[0].sighting.reset();
+  CHECK(has_line("off the path -   largest 31.1 mm"));
+  // With several robots each pose has its tag.
+  scene.robots.push_back({.tag_id = 7, .sighting = TagAt(camera, 7, 0.1, -0.05)});
+  CHECK(has_line("tag 0: not seen"));
+  CHECK(has_line("tag 7: x +0.1000 m   y -0.0500 m   yaw   +0.0 deg"));
 }
 
 }  // namespace

@@ -14,13 +14,19 @@
 
 namespace rift::view {
 
+/// A robot that is looked for.
+struct SceneRobot {
+  int tag_id = 0;
+  std::optional<vision::Sighting> sighting;  ///< in this picture
+  std::vector<Eigen::Vector2d> trail_m;      ///< where its tag was, in the map
+};
+
 /// One moment of a tracking session, to be drawn over the camera's picture.
 struct TrackScene {
   const vision::CameraModel* camera = nullptr;
   const vision::Frame* frame = nullptr;  ///< the picture; none: nothing came yet
-  std::optional<vision::Sighting> sighting;
-  std::vector<Eigen::Vector2d> trail_m;         ///< where the tag was, in the map
-  std::vector<Eigen::Vector2d> path_m;          ///< to hold the trail against; may be empty
+  std::vector<SceneRobot> robots;
+  std::vector<Eigen::Vector2d> path_m;          ///< of the first robot; may be empty
   std::vector<geometry::NamedPoint> waypoints;  ///< in the map
   std::optional<geometry::Pose2> stand_at;      ///< where the robot has to be put; none: anywhere
   double plane_z_m = 0.0;                       ///< of the map: path, waypoints and trail lie in it

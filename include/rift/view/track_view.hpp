@@ -22,17 +22,18 @@ class TrackView {
     std::function<void(const std::vector<control::Waypoint>&)> save;
   };
 
-  /// `camera` must outlive it. Throws std::runtime_error with MissingDisplay() where that is not
-  /// empty.
-  TrackView(const vision::CameraModel& camera, Content content);
+  /// `camera` must outlive it; path and waypoints are those of the first of the robots' tags.
+  /// Throws std::runtime_error with MissingDisplay() where that is not empty.
+  TrackView(const vision::CameraModel& camera, const std::vector<int>& tag_ids, Content content);
 
-  /// False when the user has asked to end.
+  /// False when the user has asked to end. `seen`: of each robot in the order of `tag_ids`, which
+  /// the picture shows or not.
   bool Show(const std::optional<vision::Frame>& frame,
-            const std::optional<vision::Sighting>& sighting, const vision::CaptureStatus& status,
-            const std::optional<double>& moved_m);
+            const std::vector<std::optional<vision::Sighting>>& seen,
+            const vision::CaptureStatus& status, const std::optional<double>& moved_m);
 
  private:
-  void Follow(const vision::Sighting& sighting);
+  void Follow(SceneRobot& robot);
   void Apply(const TrackInput& input, const std::optional<vision::Sighting>& sighting);
   void Record(const Eigen::Vector2d& p_m, std::optional<double> heading_deg);
   std::vector<geometry::NamedPoint> Places() const;
@@ -42,7 +43,7 @@ class TrackView {
   Content content_;
   TrackWindow window_;
   std::vector<control::Waypoint> recorded_;
-  std::vector<Eigen::Vector2d> trail_m_;
+  std::vector<SceneRobot> robots_;
   std::optional<double> plane_z_m_;
   std::string said_;
 };

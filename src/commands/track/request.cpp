@@ -13,6 +13,7 @@
 #include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/track/track.hpp"
 #include "rift/files/files.hpp"
+#include "rift/vision/camera/jpeg.hpp"
 
 namespace rift::commands {
 namespace {
@@ -40,6 +41,8 @@ void CheckLogName(const TrackRequest& request) {
   for (const std::string& input : {request.world, request.path, request.experiment}) {
     if (!input.empty()) inputs.emplace_back(input);
   }
+  const bool has_times = !request.times.empty() && request.times != vision::kTimesFromExif;
+  if (has_times) inputs.emplace_back(request.times);
   if (fs::exists(request.camera, not_there)) inputs.emplace_back(request.camera);
   RefuseAmongPictures(request.camera, request.out);
   std::vector<fs::path> outputs;
@@ -101,6 +104,9 @@ void CheckCalibrating(const TrackRequest& request) {
   if (request.images.empty() == request.camera.empty()) {
     throw std::invalid_argument(
         "--calibrate wants either --images DIR or --camera: photographs, or a camera to take them");
+  }
+  if (request.view && request.camera.empty()) {
+    throw std::invalid_argument("--view shows a camera: --images are not taken in a window");
   }
   if (request.out.empty())
     throw std::invalid_argument("--out CAM.yaml is missing: where shall the calibration go?");
@@ -171,8 +177,9 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
       ->type_name("m");
   app.add_option("--times", request.times,
                  "when the pictures of a pattern were taken: a line each, seconds, or name and "
-                 "seconds [the numbers in their names, at --fps a second]")
-      ->type_name("FILE");
+                 "seconds; exif: as their EXIF data say [the numbers in their names, at --fps a "
+                 "second]")
+      ->type_name("FILE|exif");
   app.add_option("--fps", request.fps, "asked of a device; rate of a pattern of pictures")
       ->check(InRange(0.1, 1000.0))
       ->type_name("hz");
@@ -187,7 +194,8 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_flag("--check", request.check,
                "say how precise poses will be over the floor and which tag is too small, tried on "
                "rendered pictures (twin.camera: blur, noise); --out keeps the map as JSON");
-  app.add_flag("--view", request.view, "show it in a window");
+  app.add_flag("--view", request.view,
+               "show it in a window; with --calibrate and a camera, where to hold the board next");
   app.add_option("--path", request.path, "what the view holds the robot's trail against")
       ->type_name("WAYPOINTS.yaml|LOG.csv");
   app.add_option("--record-waypoints", request.record_waypoints,

@@ -17,12 +17,14 @@
 #include "rift/terminal/print.hpp"
 #include "rift/terminal/stop_signal.hpp"
 #include "rift/trajectory/log.hpp"
+#include "rift/view/calibration_view.hpp"
 #include "rift/view/track_view.hpp"
 #include "rift/view/track_window.hpp"
 #include "rift/view/window.hpp"
 #include "rift/view/world_clicks.hpp"
 #include "rift/vision/calibration/calibration.hpp"
 #include "rift/vision/calibration/chessboard.hpp"
+#include "rift/vision/calibration/live_views.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/rendering/precision_map.hpp"
@@ -76,6 +78,7 @@ view::TrackView::Content ContentOf(const TrackRequest& request) {
 
 std::unique_ptr<view::TrackView> ViewFor(const TrackRequest& request,
                                          const vision::CameraModel& camera,
+                                         const std::vector<int>& tag_ids,
                                          view::TrackView::Content content) {
   if (!request.view && request.record_waypoints.empty()) return nullptr;
   if (const std::string missing = view::MissingDisplay(); !missing.empty()) {
@@ -84,7 +87,7 @@ std::unique_ptr<view::TrackView> ViewFor(const TrackRequest& request,
                     request.record_waypoints.empty() ? "" : ", no waypoints can be recorded"));
     return nullptr;
   }
-  return std::make_unique<view::TrackView>(camera, std::move(content));
+  return std::make_unique<view::TrackView>(camera, tag_ids, std::move(content));
 }
 
 /// Files of other programs may lack the picture's size; then the first picture has to be trusted.
@@ -196,7 +199,9 @@ int TrackRobot(const TrackRequest& request) {
   if (request.force && !request.IsPiped()) RemoveOld(request.out);
   session.Restart();  // what was read so far of a recording belongs to its log as well
   TrackLog log(request.out);
-  const auto view = ViewFor(request, session.camera(), std::move(content));
+  std::vector<int> tag_ids = FurtherIds(request);
+  tag_ids.insert(tag_ids.begin(), session.tag().id);
+  const auto view = ViewFor(request, session.camera(), tag_ids, std::move(content));
   vision::TrackParts parts{.session = session,
                            .options = request.session,
                            .further_ids = FurtherIds(request),
@@ -210,17 +215,31 @@ int TrackRobot(const TrackRequest& request) {
   return Report(request, session.camera(), options, run);
 }
 
+std::unique_ptr<view::CalibrationView> CalibrationWindowFor(const TrackRequest& request) {
+  if (!request.view) return nullptr;
+  if (const std::string missing = view::MissingDisplay(); !missing.empty()) {
+    terminal::Say(missing + "; what picture to take next is said here");
+    return nullptr;
+  }
+  return std::make_unique<view::CalibrationView>();
+}
+
 vision::Calibration CalibrateFor(const TrackRequest& request) {
   request.board.Check();
   const experiment::TrackOptions options = OptionsOf(request, ExperimentOf(request));
   const terminal::StopSignal stop;
-  const vision::ViewListener listener{[&stop] { return stop.IsAsked(); }, terminal::Say};
+  const auto is_stopped = [&stop] { return stop.IsAsked(); };
   std::vector<vision::BoardView> views;
   if (request.images.empty()) {
+    const auto window = CalibrationWindowFor(request);
+    vision::LiveListener listener{
+        .is_stopped = is_stopped, .say = terminal::Say, .give_up_s = request.session.give_up_s};
+    if (window) listener.show = [&window](const auto& scene) { return window->Show(scene); };
     const auto capture = vision::OpenCapture(request.camera, options.capture);
     views = ViewsFromCamera(*capture, request.board, options.calibration, listener);
   } else {
-    views = ViewsFromFiles(vision::ImageFiles(request.images), request.board, listener);
+    views = ViewsFromFiles(vision::ImageFiles(request.images), request.board,
+                           {is_stopped, terminal::Say});
   }
   return Calibrate(views, request.board, options.calibration);
 }

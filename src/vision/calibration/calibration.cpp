@@ -113,7 +113,8 @@ void JudgeCoverage(Judgement& judgement, const Coverage& coverage,
       {"x", {coverage.x, "hold the board at the left and right edges too"}},
       {"y", {coverage.y, "hold the board at the upper and lower edges too"}},
       {"size", {coverage.size, "bring the board nearer, until it fills the picture"}},
-      {"skew", {coverage.skew, "tilt the board by up to 45 degrees"}}};
+      {"skew",
+       {coverage.skew, "tilt the board by 40 degrees, one corner nearer than the opposite one"}}};
   for (const auto& [name, side] : sides) {
     if (side.share >= options.good_coverage) continue;
     judgement.AtMostUsable(fmt::format("coverage in {} is {:.0f} %, good is {:.0f} %: {}", name,

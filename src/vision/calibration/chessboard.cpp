@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "rift/vision/calibration/calibration.hpp"
 #include "rift/vision/camera/picture_reader.hpp"
 
 namespace rift::vision {
@@ -24,10 +23,11 @@ constexpr int kColour = 90;  // saturation of 255 that no grey cast of a lamp re
 // these is too far away to calibrate with, and a whole 1080p picture takes ten times as long.
 constexpr std::array<double, 3> kSearchWidths_px{960.0, 1280.0, 720.0};
 
-std::vector<cv::Point2f> FindSector(const cv::Mat& grey, cv::Size size) {
+std::vector<cv::Point2f> FindSector(const cv::Mat& grey, cv::Size size, BoardSearch search) {
   std::vector<cv::Point2f> corners;
-  const bool found = cv::findChessboardCornersSB(
-      grey, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
+  const int effort = search == BoardSearch::kThorough ? cv::CALIB_CB_EXHAUSTIVE : 0;
+  const bool found =
+      cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE | effort);
   return found ? corners : std::vector<cv::Point2f>{};
 }
 
@@ -84,7 +84,8 @@ bool IsBlack(const cv::Mat& grey) {
   return mean[0] + 3.0 * deviation[0] < 40.0;
 }
 
-BoardView FindIn(const cv::Mat& picture, const Board& board, const std::string& name) {
+BoardView FindIn(const cv::Mat& picture, const Board& board, const std::string& name,
+                 BoardSearch search) {
   board.Check();
   BoardView view{.name = name, .width_px = picture.cols, .height_px = picture.rows};
   cv::Mat grey, small;
@@ -98,10 +99,12 @@ BoardView FindIn(const cv::Mat& picture, const Board& board, const std::string& 
   double scale = 1.0;
   for (const BoardMethod method : {BoardMethod::kSector, BoardMethod::kClassic}) {
     for (const double width_px : kSearchWidths_px) {
-      if (!corners.empty()) break;
+      const bool is_further = search == BoardSearch::kQuick && width_px != kSearchWidths_px.front();
+      if (!corners.empty() || is_further) break;
       scale = std::min(1.0, width_px / grey.cols);
       cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
-      corners = method == BoardMethod::kSector ? FindSector(small, size) : FindClassic(small, size);
+      corners = method == BoardMethod::kSector ? FindSector(small, size, search)
+                                               : FindClassic(small, size);
       view.method = method;
     }
   }
@@ -139,65 +142,17 @@ void Board::Check() const {
   }
 }
 
-BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name) {
+BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name,
+                    BoardSearch search) {
   const cv::Mat picture = BgrOf(frame);
-  return picture.empty() ? Undecodable(name) : FindIn(picture, board, name);
+  return picture.empty() ? Undecodable(name) : FindIn(picture, board, name, search);
 }
 
 BoardView FindBoard(const std::string& path, const Board& board) {
   const std::string name = std::filesystem::path(path).filename().string();
   const cv::Mat picture = cv::imread(path, cv::IMREAD_COLOR);
-  return picture.empty() ? Undecodable(name) : FindIn(picture, board, name);
+  return picture.empty() ? Undecodable(name) : FindIn(picture, board, name, BoardSearch::kThorough);
 }
-
-namespace {
-
-constexpr double kTick_s = 0.02;
-// ROS's camera_calibration takes a view that differs by this much from all others.
-constexpr double kUnlike = 0.2;
-constexpr std::size_t kMostViews = 60;
-
-double Distance(const ViewPlace& a, const ViewPlace& b) {
-  return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.size - b.size) +
-         std::abs(a.skew - b.skew);
-}
-
-/// Views from a camera, each unlike those before.
-class ViewCollector {
- public:
-  explicit ViewCollector(const Board& board) : board_(board) {}
-
-  bool Add(const BoardView& view) {
-    if (view.corners.empty()) return false;
-    const ViewPlace place = PlaceOf(view, board_);
-    const bool is_new = std::all_of(places_.begin(), places_.end(), [&](const auto& other) {
-      return Distance(place, other) > kUnlike;
-    });
-    if (!is_new) return false;
-    places_.push_back(place);
-    views_.push_back(view);
-    return true;
-  }
-  bool IsCovered(double good_coverage) const {
-    const Coverage c = CoverageOf(Used(), board_);
-    return std::min({c.x, c.y, c.size, c.skew}) >= good_coverage;
-  }
-  NextView Next(double good_coverage) const { return NextViewFor(Used(), board_, good_coverage); }
-  const std::vector<BoardView>& Views() const { return views_; }
-
- private:
-  std::vector<ViewResult> Used() const {
-    std::vector<ViewResult> used;
-    for (const BoardView& view : views_) used.push_back({.view = view, .used = true});
-    return used;
-  }
-
-  Board board_;
-  std::vector<BoardView> views_;
-  std::vector<ViewPlace> places_;
-};
-
-}  // namespace
 
 std::vector<BoardView> ViewsFromFiles(const std::vector<std::string>& files, const Board& board,
                                       const ViewListener& listener) {
@@ -211,37 +166,6 @@ std::vector<BoardView> ViewsFromFiles(const std::vector<std::string>& files, con
         view.problem.empty() ? fmt::format("{} corners", view.corners.size()) : view.problem));
   }
   return views;
-}
-
-std::vector<BoardView> ViewsFromCamera(Capture& capture, const Board& board,
-                                       const CalibrationOptions& options,
-                                       const ViewListener& listener) {
-  ViewCollector collector(board);
-  listener.say(
-      "move the board about: near and far, to every edge, tilted; Ctrl-C ends and calibrates");
-  const auto needed = static_cast<std::size_t>(options.good_views);
-  while (!listener.is_stopped() && collector.Views().size() < kMostViews) {
-    const std::optional<Frame> frame = capture.Next(kTick_s);
-    if (frame) {
-      const BoardView view = FindBoard(*frame, board, fmt::format("frame{:06}", frame->index));
-      if (!collector.Add(view)) continue;
-      const NextView next = collector.Next(options.good_coverage);
-      listener.say(fmt::format("view {}: {}; {}", collector.Views().size(), view.name,
-                               next.text.empty() ? "everything is covered" : "next, " + next.text));
-    }
-    const bool is_plenty =
-        collector.Views().size() >= needed && collector.IsCovered(options.good_coverage);
-    if (!capture.IsRecording() && is_plenty) break;
-    const CaptureStatus status = capture.Status();
-    if (frame || !IsFinal(status.state)) continue;
-    if (status.state == CameraState::kEnded) break;
-    listener.say(fmt::format("camera {}: {}",
-                             EnumNames(status.state)[static_cast<std::size_t>(status.state)],
-                             status.reason));
-    if (collector.Views().empty()) throw std::runtime_error("no view of the board was taken");
-    break;
-  }
-  return collector.Views();
 }
 
 }  // namespace rift::vision

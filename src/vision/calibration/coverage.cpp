@@ -8,13 +8,16 @@
 #include <numbers>
 #include <set>
 
-#include "rift/vision/calibration/calibration.hpp"
+#include "rift/vision/calibration/live_views.hpp"
 
 namespace rift::vision {
 namespace {
 
 // What good views span, from ROS's camera_calibration (calibrator.py, _param_ranges).
 constexpr double kSpanX = 0.7, kSpanY = 0.7, kSpanSize = 0.4, kSpanSkew = 0.5;
+// About its diagonal: a skew of 0.5. About a side the same tilt gives less than half of that.
+constexpr double kTilt_rad = 40.0 * std::numbers::pi / 180.0;
+constexpr const char* kTilt = "tilted by 40 degrees, one corner nearer than the opposite one";
 
 struct Outline {
   Eigen::Vector2d upper_left, upper_right, lower_right, lower_left;
@@ -156,7 +159,7 @@ std::string TextOf(const ViewPlace& place) {
   return fmt::format("hold the board {}, {}, {}", where,
                      place.size > 0.4 ? "near, so that it fills half of the picture"
                                       : "farther away, a quarter of the picture wide",
-                     place.skew > 0.3 ? "tilted by 30 to 45 degrees" : "facing the camera");
+                     place.skew > 0.3 ? kTilt : "facing the camera");
 }
 
 }  // namespace
@@ -183,6 +186,54 @@ NextView NextViewFor(const std::vector<ViewResult>& views, const Board& board, d
   }
   next.text = TextOf(next.place);
   return next;
+}
+
+std::string WayTo(const ViewPlace& now, const ViewPlace& next) {
+  constexpr double kAside = 0.2, kNearer = 0.07, kTilted = 0.3;
+  std::vector<std::string> steps;
+  std::string aside;
+  if (std::abs(next.x - now.x) > kAside) aside = next.x < now.x ? "left" : "right";
+  if (std::abs(next.y - now.y) > kAside) {
+    aside += fmt::format("{}{}", aside.empty() ? "" : " and ", next.y < now.y ? "up" : "down");
+  }
+  if (!aside.empty()) steps.push_back("move it " + aside + " in the picture");
+  if (std::abs(next.size - now.size) > kNearer) {
+    steps.emplace_back(next.size > now.size ? "bring it nearer" : "take it farther away");
+  }
+  if (next.skew > kTilted && now.skew < kTilted) {
+    steps.emplace_back("tilt it by 40 degrees, one corner nearer than the opposite one");
+  } else if (next.skew < kTilted && now.skew > kTilted) {
+    steps.emplace_back("turn it to face the camera");
+  }
+  return fmt::format("{}", fmt::join(steps, ", "));
+}
+
+std::array<Eigen::Vector2d, 4> OutlineAt(const ViewPlace& place, const Board& board, int width_px,
+                                         int height_px) {
+  constexpr double kTilted = 0.3;
+  const double side_px = place.size * std::sqrt(1.0 * width_px * height_px);
+  const double aspect = std::sqrt((board.columns - 1.0) / (board.rows - 1.0));
+  const Eigen::Vector2d flat = 0.5 * side_px * Eigen::Vector2d(aspect, 1.0 / aspect);
+  // Seen from afar a tilt shortens what lies across its axis; the area stays.
+  const double shortened = place.skew > kTilted ? std::cos(kTilt_rad) : 1.0;
+  const Eigen::Vector2d axis = Eigen::Vector2d(1.0, 1.0).normalized();
+  const auto tilted = [&](double x, double y) -> Eigen::Vector2d {
+    const Eigen::Vector2d corner(x * flat.x(), y * flat.y());
+    const Eigen::Vector2d along = corner.dot(axis) * axis;
+    return (along + shortened * (corner - along)) / std::sqrt(shortened);
+  };
+  const Eigen::Vector2d half = tilted(1.0, 1.0).cwiseAbs().cwiseMax(tilted(1.0, -1.0).cwiseAbs());
+  // The outer squares and some white around them have to be in the picture too.
+  const double around_px = 1.2 * 2.0 * flat.x() / (board.columns - 1);
+  const auto at = [&](double share, double room_px, double half_px) {
+    const double wanted_px = side_px / 2.0 + share * (room_px - side_px);
+    const double least_px = half_px + around_px;
+    return std::clamp(wanted_px, std::min(least_px, room_px / 2.0),
+                      std::max(room_px - least_px, room_px / 2.0));
+  };
+  const Eigen::Vector2d middle(at(place.x, width_px, half.x()), at(place.y, height_px, half.y()));
+  return {middle + tilted(-1.0, -1.0), middle + tilted(1.0, -1.0), middle + tilted(1.0, 1.0),
+          middle + tilted(-1.0, 1.0)};
 }
 
 }  // namespace rift::vision

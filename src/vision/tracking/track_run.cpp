@@ -45,7 +45,7 @@ class Tracking {
   TrackRun run_;
   std::optional<double> first_captured_s_;
   std::optional<Frame> frame_;
-  std::optional<Sighting> sighting_;
+  std::vector<std::optional<Sighting>> seen_;  // of each robot, in frame_
   std::set<int> seen_ids_;
   std::optional<double> failing_since_s_;
   double checked_s_ = -1e9;
@@ -105,8 +105,11 @@ void Tracking::Take(Frame frame) {
   for (std::size_t i = 1; i < results.size(); ++i) {
     Keep(results[i], parts_.further_ids[i - 1], frame);
   }
-  sighting_ = results.front().sighting;
-  if (sighting_ && run_.is_recording) sighting_->latency_s = std::nan("");
+  seen_.clear();
+  for (const TrackResult& result : results) {
+    seen_.push_back(result.sighting);
+    if (result.sighting && run_.is_recording) seen_.back()->latency_s = std::nan("");
+  }
   WatchReferences(frame);
   frame_ = std::move(frame);
 }
@@ -156,10 +159,10 @@ void Tracking::Show() {
   if (frame_) shown_index_ = frame_->index;
   // A recording is shown at the speed at which it was made.
   while (run_.is_recording && frame_ && SteadyNow_s() - started_s_ < frame_->captured_s && !quit_) {
-    quit_ = !parts_.show(frame_, sighting_, run_.status, run_.moved_m) || IsOver();
+    quit_ = !parts_.show(frame_, seen_, run_.status, run_.moved_m) || IsOver();
     std::this_thread::sleep_for(std::chrono::duration<double>(kTick_s / 4));
   }
-  quit_ = quit_ || !parts_.show(frame_, sighting_, run_.status, run_.moved_m);
+  quit_ = quit_ || !parts_.show(frame_, seen_, run_.status, run_.moved_m);
   shown_s_ = SteadyNow_s();
 }
 
@@ -167,7 +170,7 @@ void Tracking::Show() {
 void Tracking::HoldLastPicture() {
   if (!parts_.show || run_.status.state != CameraState::kEnded) return;
   while (!quit_ && !parts_.is_stopped()) {
-    quit_ = !parts_.show(frame_, sighting_, run_.status, run_.moved_m);
+    quit_ = !parts_.show(frame_, seen_, run_.status, run_.moved_m);
     std::this_thread::sleep_for(std::chrono::duration<double>(kTick_s));
   }
 }

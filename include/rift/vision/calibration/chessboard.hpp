@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "rift/vision/calibration/options.hpp"
-#include "rift/vision/camera/capture_thread.hpp"
 #include "rift/vision/camera/frame.hpp"
 
 namespace rift::vision {
@@ -42,9 +40,16 @@ struct BoardView {
   std::string problem;    ///< why there are no corners; empty otherwise
 };
 
+/// How long a picture without a board is looked at.
+enum class BoardSearch {
+  kThorough,  ///< at several widths by both methods: photographs are few
+  kQuick,     ///< one look by each, a fifth of the time: a live camera has the next picture ready
+};
+
 /// Looks for the whole board in a picture; a large one is searched at 960 px width. A picture that
 /// cannot be decoded or does not show it gives a view that says so.
-BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name);
+BoardView FindBoard(const Frame& frame, const Board& board, const std::string& name,
+                    BoardSearch search = BoardSearch::kThorough);
 BoardView FindBoard(const std::string& path, const Board& board);
 
 /// Where one view has the board, to compare views with (ROS's camera_calibration): shares of the
@@ -70,12 +75,5 @@ struct ViewListener {
 /// when it is stopped.
 std::vector<BoardView> ViewsFromFiles(const std::vector<std::string>& files, const Board& board,
                                       const ViewListener& listener);
-
-/// Views from a camera before which the board is moved about: those unlike all before are taken
-/// until they cover everything, the user ends it, or the recording does. Throws std::runtime_error
-/// when the camera fails before there was any.
-std::vector<BoardView> ViewsFromCamera(Capture& capture, const Board& board,
-                                       const CalibrationOptions& options,
-                                       const ViewListener& listener);
 
 }  // namespace rift::vision

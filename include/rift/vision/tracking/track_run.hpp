@@ -20,10 +20,12 @@ struct TrackParts {
   /// Takes a row of the log, from the first sighting of a tag on one for each picture and tag:
   /// seen, predicted or lost (no pose). False when `t_s` is not later than that of the row before.
   std::function<bool(double t_s, const Sighting& sighting)> log;
-  /// Shows a moment of the run, `moved_m` being the largest so far; false when the user has asked
-  /// to end. A recording's last picture stays until then. None: no window.
-  std::function<bool(const std::optional<Frame>& frame, const std::optional<Sighting>& sighting,
-                     const CaptureStatus& status, const std::optional<double>& moved_m)>
+  /// Shows a moment of the run, with what was seen of the session's tag and of each of further_ids
+  /// in that picture, `moved_m` being the largest so far; false when the user has asked to end. A
+  /// recording's last picture stays until then. None: no window.
+  std::function<bool(const std::optional<Frame>& frame,
+                     const std::vector<std::optional<Sighting>>& seen, const CaptureStatus& status,
+                     const std::optional<double>& moved_m)>
       show;
   std::optional<double> duration_s;
   std::function<bool()> is_stopped;

@@ -1,0 +1,29 @@
+#include "view/path_offset.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+namespace rift::view {
+namespace {
+
+TEST_CASE("How far a point lies off a path is left of its direction positive") {
+  const std::vector<Eigen::Vector2d> path{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}};
+  CHECK(PathOffset_m({0.5, 0.02}, path) == Approx(0.02));
+  CHECK(PathOffset_m({0.5, -0.03}, path) == Approx(-0.03));
+  CHECK(PathOffset_m({1.04, 0.5}, path) == Approx(-0.04));
+  CHECK(std::abs(PathOffset_m({1.0, 1.05}, path)) == Approx(0.05));  // beyond its end
+  CHECK(std::isnan(PathOffset_m({0.0, 0.0}, {{0.0, 0.0}})));
+}
+
+TEST_CASE("The way back and forth over one line changes the side") {
+  CHECK(PathOffset_m({0.5, 0.01}, {{1.0, 0.0}, {0.0, 0.0}}) == Approx(-0.01));
+}
+
+TEST_CASE("An offset is told in millimetres with its side") {
+  CHECK(OffsetText(0.0032) == "3.2 mm left");
+  CHECK(OffsetText(-0.0118) == "11.8 mm right");
+  CHECK(OffsetText(NAN) == "-");
+}
+
+}  // namespace
+}  // namespace rift::view
