@@ -60,6 +60,8 @@ void MakeFit(Experiment& experiment) {
                                     .min = std::max(start - 0.1, -0.5),
                                     .max = std::min(start + 0.1, 0.5),
                                     .start = start}};
+  experiment.gap.dimension = gap::Dimension::kXy;
+  experiment.gap.align = gap::Align::kNone;
   experiment.calibrate.holdout.names = {"02"};
 }
 

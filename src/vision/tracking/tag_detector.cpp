@@ -5,10 +5,8 @@
 #include <apriltag/tag25h9.h>
 #include <apriltag/tag36h11.h>
 #include <apriltag/tagStandard41h12.h>
-#include <fmt/format.h>
 
 #include <array>
-#include <stdexcept>
 #include <utility>
 
 #include "rift/vision/camera/picture_reader.hpp"
@@ -93,13 +91,6 @@ std::vector<TagDetection> TagDetector::Detect(const GreyPatch& patch) {
     detections.push_back(FromAprilTag(*detection, patch.region));
   }
   return detections;
-}
-
-void RequireTagId(int id, TagFamily family) {
-  const int count = ShapeOf(family).ids;
-  if (id >= 0 && id < count) return;
-  throw std::invalid_argument(
-      fmt::format("tag id {}: the family {} has the ids 0 to {}", id, NameOf(family), count - 1));
 }
 
 TagCells CellsOfTag(int id, TagFamily family) {
