@@ -73,7 +73,10 @@ TEST_CASE("The output of rift gap is as documented") {
                         "prediction",   "ranks",       "classifier"};
   CHECK(KeysOf(JsonOf(evidence)["likeness"]) ==
         Without(DocumentedKeys("likeness.json"), of_sweeps));
-  CHECK(Columns(ReadFile(profile)) == Documented("files.md", "Columns of the profile of rift gap"));
+  std::vector<std::string> columns = Documented("files.md", "Columns of the profile of rift gap");
+  REQUIRE(columns.back() == "real_z_m");
+  columns.resize(columns.size() - 2);  // of --dimension xyz
+  CHECK(Columns(ReadFile(profile)) == columns);
 }
 
 TEST_CASE("The files of a sweep are as documented") {
