@@ -53,15 +53,17 @@ void DrawFound(const PixelPen& pen, const vision::BoardView& view, const vision:
   for (const Eigen::Vector2d& corner : view.corners) pen.Dot(corner, 3, kGreen);
 }
 
+constexpr int kBars_px = 190;  // wide
+
 /// What is covered, and from where on it is enough.
 void DrawBars(cv::Mat& picture, const vision::LiveScene& scene) {
-  constexpr int kRow_px = 20, kName_px = 52, kBar_px = 120, kWidth_px = 190, kPad_px = 8;
+  constexpr int kRow_px = 20, kName_px = 52, kBar_px = 120, kPad_px = 8;
   const std::array<std::pair<const char*, double>, 4> bars{{{"x", scene.coverage.x},
                                                             {"y", scene.coverage.y},
                                                             {"size", scene.coverage.size},
                                                             {"tilt", scene.coverage.skew}}};
   const int height = kRow_px * static_cast<int>(bars.size()) + kPad_px;
-  const int left = std::max(0, picture.cols - kWidth_px);
+  const int left = std::max(0, picture.cols - kBars_px);
   cv::Mat panel = picture(cv::Rect(left, 0, picture.cols - left, std::min(height, picture.rows)));
   cv::addWeighted(panel, 0.3, cv::Mat(panel.size(), panel.type(), kPanel), 0.7, 0.0, panel);
   int y = kPad_px / 2;
@@ -84,7 +86,7 @@ void DrawBars(cv::Mat& picture, const vision::LiveScene& scene) {
 std::vector<std::string> Words(const vision::LiveScene& scene) {
   std::vector<std::string> lines;
   const auto taken = static_cast<int>(scene.taken->size());
-  lines.push_back(fmt::format("{} views of {} at least", taken, scene.good_views));
+  lines.push_back(fmt::format("views: {} of at least {}", taken, scene.good_views));
   if (!scene.next.text.empty()) {
     lines.push_back("next: " + scene.next.text);
   } else {
@@ -115,7 +117,7 @@ cv::Mat DrawCalibrating(const vision::LiveScene& scene) {
   if (scene.searched != nullptr && !scene.searched->corners.empty()) {
     DrawFound(pen, *scene.searched, scene.board);
   }
-  DrawLines(picture, Words(scene), true);
+  DrawLines(picture, Words(scene), true, kBars_px);
   DrawBars(picture, scene);
   DrawLines(picture,
             {fmt::format("space: take this   a: by itself {}   u: undo   q: calibrate",

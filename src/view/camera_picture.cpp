@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 
 #include "rift/vision/camera/picture_reader.hpp"
 
@@ -10,7 +11,31 @@ namespace {
 
 constexpr int kWidest_px = 1280;
 
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+constexpr double kFontScale = 0.5;
+
 const cv::Scalar kWhite{255, 255, 255}, kPanel{32, 28, 26};
+
+int WidthOf_px(const std::string& text) {
+  int below_px = 0;
+  return cv::getTextSize(text, kFont, kFontScale, 1, &below_px).width;
+}
+
+/// Adds the rows of a line that is wrapped between words.
+void AddWrapped(const std::string& line, int room_px, std::vector<std::string>& rows) {
+  std::istringstream words(line);
+  std::string row;
+  for (std::string word; std::getline(words, word, ' ');) {
+    const std::string longer = row.empty() ? word : row + ' ' + word;
+    if (!row.empty() && WidthOf_px(longer) > room_px) {
+      rows.push_back(row);
+      row = word;
+    } else {
+      row = longer;
+    }
+  }
+  rows.push_back(row);
+}
 
 }  // namespace
 
@@ -26,22 +51,21 @@ cv::Mat ShownPicture(const vision::Frame* frame, int width_px, int height_px) {
   return small;
 }
 
-void DrawLines(cv::Mat& picture, const std::vector<std::string>& lines, bool at_top) {
+void DrawLines(cv::Mat& picture, const std::vector<std::string>& lines, bool at_top, int right_px) {
   constexpr int kLine_px = 20, kPad_px = 8;
-  const int height = std::min(picture.rows, static_cast<int>(lines.size()) * kLine_px + kPad_px);
+  const int room = std::max(picture.cols - right_px, 0) - 2 * kPad_px;
+  std::vector<std::string> rows;
+  for (const std::string& line : lines) AddWrapped(line, room, rows);
+  const int height = std::min(picture.rows, static_cast<int>(rows.size()) * kLine_px + kPad_px);
   int width = 0;
-  for (const std::string& line : lines) {
-    int base = 0;
-    width =
-        std::max(width, cv::getTextSize(line, cv::FONT_HERSHEY_SIMPLEX, 0.5, 1, &base).width + 16);
-  }
+  for (const std::string& row : rows) width = std::max(width, WidthOf_px(row) + 2 * kPad_px);
   width = std::min(width, picture.cols);
   const int y = at_top ? 0 : picture.rows - height;
   cv::Mat strip = picture(cv::Rect(0, y, width, height));
   cv::addWeighted(strip, 0.3, cv::Mat(strip.size(), strip.type(), kPanel), 0.7, 0.0, strip);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    cv::putText(picture, lines[i], {8, y + static_cast<int>(i + 1) * kLine_px},
-                cv::FONT_HERSHEY_SIMPLEX, 0.5, kWhite, 1, cv::LINE_AA);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    cv::putText(picture, rows[i], {kPad_px, y + static_cast<int>(i + 1) * kLine_px}, kFont,
+                kFontScale, kWhite, 1, cv::LINE_AA);
   }
 }
 

@@ -12,7 +12,9 @@ namespace rift::view {
 /// there is no frame.
 cv::Mat ShownPicture(const vision::Frame* frame, int width_px, int height_px);
 
-/// Light letters on a darkened strip, from the top or the bottom of the picture.
-void DrawLines(cv::Mat& picture, const std::vector<std::string>& lines, bool at_top);
+/// Light letters on a darkened strip, from the top or the bottom of the picture, wrapped so that
+/// `right_px` are left free at the right.
+void DrawLines(cv::Mat& picture, const std::vector<std::string>& lines, bool at_top,
+               int right_px = 0);
 
 }  // namespace rift::view

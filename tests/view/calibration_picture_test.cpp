@@ -75,6 +75,19 @@ TEST_CASE("A bar is as long as its coverage, yellow until it is enough") {
   CHECK(Around(enough, kYellow, bars).empty());
 }
 
+TEST_CASE("Long advice is wrapped beside the bars and does not run under them") {
+  Shot shot;
+  const cv::Rect bars(1090, 0, 190, 720);
+  const cv::Mat without = DrawCalibrating(shot.scene)(bars).clone();
+  for (int i = 0; i < 60; ++i) shot.scene.advice += "hold it still ";
+  const cv::Mat with = DrawCalibrating(shot.scene);
+  CHECK(cv::norm(with(bars), without, cv::NORM_INF) == 0.0);
+  cv::Mat letters;
+  cv::inRange(with(cv::Rect(900, 60, 190, 60)), cv::Scalar::all(150), cv::Scalar::all(255),
+              letters);
+  CHECK(cv::countNonZero(letters) > 500);
+}
+
 TEST_CASE("Before the first picture there is a window with the advice all the same") {
   Shot shot;
   shot.scene.frame = nullptr;

@@ -125,7 +125,9 @@ void DrawErrors(cv::Mat& picture, const Calibration& calibration, int first_row)
     const bool known = !std::isnan(result.rms_px);
     DrawBar(picture, row++, result.view.name, known ? 0.8 * result.rms_px / largest_px : 0.0,
             result.used ? ColourOf(i, calibration.views.size()) : kBad,
-            known ? fmt::format("{:.2f}", result.rms_px) : "left out");
+            known         ? fmt::format("{:.2f}", result.rms_px)
+            : result.used ? "no fit"
+                          : "left out");
   }
 }
 
@@ -138,9 +140,11 @@ void DrawCalibration(const Calibration& calibration, const std::filesystem::path
   Text(picture, {kMargin_px, 30}, fmt::format("Calibration: {}", verdict),
        calibration.verdict == CalibrationVerdict::kGood ? kGood : kBad, 0.8);
   Text(picture, {kMargin_px, 55},
-       fmt::format("{} lens, {:.2f} px RMS, {:.2f} mm on the floor",
-                   EnumNames(Lens{})[static_cast<std::size_t>(calibration.camera.lens)],
-                   calibration.rms_px, 1e3 * calibration.floor_error_m),
+       std::isnan(calibration.rms_px)
+           ? "no lens was fitted"
+           : fmt::format("{} lens, {:.2f} px RMS, {:.2f} mm on the floor",
+                         EnumNames(Lens{})[static_cast<std::size_t>(calibration.camera.lens)],
+                         calibration.rms_px, 1e3 * calibration.floor_error_m),
        kInk);
   CornerMap(picture, calibration).Draw();
   DrawErrors(picture, calibration, DrawCoverage(picture, calibration.coverage));
