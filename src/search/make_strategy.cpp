@@ -5,6 +5,7 @@
 
 #include "archive.hpp"
 #include "cma_es.hpp"
+#include "controlled_random_search.hpp"
 #include "differential_evolution.hpp"
 #include "local_model.hpp"
 #include "portfolio.hpp"
@@ -40,6 +41,8 @@ std::unique_ptr<Strategy> Proposer(const SearchOptions& options, const Known& kn
       return std::make_unique<LocalModel>(known, seed);
     case Method::kEvolution:
       return std::make_unique<DifferentialEvolution>(known, seed);
+    case Method::kCrs:
+      return std::make_unique<ControlledRandomSearch>(known, seed);
   }
   throw std::invalid_argument("search: no such strategy");
 }

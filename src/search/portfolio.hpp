@@ -6,6 +6,7 @@
 
 #include "archive.hpp"
 #include "cma_es.hpp"
+#include "controlled_random_search.hpp"
 #include "differential_evolution.hpp"
 #include "local_model.hpp"
 #include "rift/search/options.hpp"
@@ -14,25 +15,27 @@
 
 namespace rift::search {
 
-/// The default: a small design of corners and Sobol points, then the method that found most for its
-/// evaluations, with an allowance for what was tried little (UCB1, Auer 2002, over forgetting
-/// averages). A share of all points stays a Sobol sequence over the whole space to the end, since
-/// what the others learn may lead away from a failure that nothing points to: a small share while
-/// the others gain, more than half when they do not.
+/// The default: a small design of Sobol points and a few corners, then the method that found most
+/// for its evaluations, with an allowance for what was tried little (UCB1, Auer 2002, over
+/// forgetting averages). A share of all points stays a Sobol sequence over the whole space to the
+/// end, since what the others learn may lead away from a failure that nothing points to: a small
+/// share while the others gain, more than half when they do not.
 class Portfolio : public Strategy {
  public:
+  /// What a member found for what it spent.
+  struct Record {
+    double gain = 0.0;   ///< forgetting sum of rewards
+    double spent = 0.0;  ///< forgetting count of evaluations, in batches of eight
+  };
+
   Portfolio(const Known& known, const SearchOptions& options, int budget, std::uint64_t seed);
 
   std::vector<Point> Ask(int most) override;
   void Tell(std::span<const Evaluation> batch) override;
 
  private:
-  enum Member { kSobol, kCorners, kSurrogate, kCmaEs, kLocalModel, kEvolution, kMembers };
-  static constexpr std::array kLearners{kSurrogate, kCmaEs, kLocalModel, kEvolution};
-  struct Record {
-    double gain = 0.0;   ///< forgetting sum of rewards
-    double spent = 0.0;  ///< forgetting count of evaluations, in batches of eight
-  };
+  enum Member { kSobol, kCorners, kSurrogate, kCmaEs, kLocalModel, kEvolution, kCrs, kMembers };
+  static constexpr std::array kLearners{kSurrogate, kCmaEs, kLocalModel, kEvolution, kCrs};
 
   Member Choose() const;
   bool IsDesign() const;

@@ -176,7 +176,37 @@ TEST_CASE("Every strategy that learns comes nearer to the minimum than random po
   CHECK(best(Method::kCmaEs) < 0.3 * random);
   CHECK(best(Method::kBobyqa) < 0.01 * random);
   CHECK(best(Method::kEvolution) < random);
+  CHECK(best(Method::kCrs) < 0.3 * random);
   CHECK(best(Method::kPortfolio) < 0.1 * random);
+}
+
+TEST_CASE("Controlled random search keeps to the category and the corner where losses are least") {
+  const std::vector<Axis> axes{{"a", AxisKind::kContinuous, 0.0, 1.0},
+                               {"b", AxisKind::kContinuous, 0.0, 1.0},
+                               {"w", AxisKind::kCategorical, 0, 4}};
+  const auto all = Run(Method::kCrs, 300, 6, axes, [](const Point& p) {
+    return 2.0 - p[0] - p[1] + (p[2] == 2.0 ? 0.0 : 1.0);
+  });
+  int of_category = 0, at_bounds = 0;
+  for (std::size_t i = 200; i < all.size(); ++i) {
+    of_category += all[i].point[2] == 2.0;
+    at_bounds += all[i].point[0] == 1.0 || all[i].point[1] == 1.0;
+  }
+  CHECK(of_category > 80);  // 20 of random ones
+  CHECK(at_bounds > 40);    // none of random ones
+}
+
+TEST_CASE("The portfolio never gives up interior points, whatever the others gain") {
+  const std::vector<Axis> axes{{"a", AxisKind::kContinuous, 0.0, 1.0},
+                               {"b", AxisKind::kContinuous, 0.0, 1.0}};
+  const auto all = Run(Method::kPortfolio, 600, 8, axes,
+                       [](const Point& p) { return p[0] * p[0] + p[1] * p[1]; });
+  int far = 0;  // a quarter of the space, where nothing is gained
+  for (std::size_t i = 300; i < all.size(); ++i) {
+    far += all[i].point[0] > 0.5 && all[i].point[0] < 1.0 && all[i].point[1] > 0.5 &&
+           all[i].point[1] < 1.0;
+  }
+  CHECK(far >= 6);  // 300 points, at least a tenth of them anywhere
 }
 
 }  // namespace

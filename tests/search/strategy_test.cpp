@@ -153,7 +153,7 @@ TEST_CASE("Another seed leads to other points") {
 TEST_CASE("What is told decides what is asked next in all methods that learn") {
   const std::vector<Axis> axes = Spaces().front().axes;
   for (const Method method : {Method::kPortfolio, Method::kCmaEs, Method::kSurrogate,
-                              Method::kBobyqa, Method::kEvolution}) {
+                              Method::kBobyqa, Method::kEvolution, Method::kCrs}) {
     INFO(NameOf(method));
     const auto a = MakeStrategy(With(method), axes, 100, 1);
     const auto b = MakeStrategy(With(method), axes, 100, 1);

@@ -20,10 +20,11 @@ enum class Method {
   kSurrogate,       ///< Kriging of the losses so far
   kBobyqa,          ///< quadratic models around the best points so far, one point at a time
   kEvolution,       ///< differential evolution
+  kCrs,             ///< controlled random search: reflections through simplices of good points
 };
-constexpr std::array<std::string_view, 9> EnumNames(Method) {
-  return {"portfolio", "random",    "sobol",  "lhs",      "corners",
-          "cmaes",     "surrogate", "bobyqa", "evolution"};
+constexpr std::array<std::string_view, 10> EnumNames(Method) {
+  return {"portfolio", "random",    "sobol",  "lhs",       "corners",
+          "cmaes",     "surrogate", "bobyqa", "evolution", "crs"};
 }
 
 struct SearchOptions {
