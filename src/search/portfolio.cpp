@@ -13,8 +13,9 @@ constexpr int kDesignLeast = 8;
 constexpr int kDesignPerAxis = 4;
 constexpr double kDesignShare = 0.25;
 constexpr double kCornerShare = 0.125;
-/// Share of the points that lie anywhere, while the learners gain and while they do not.
-constexpr double kAnywhereGaining = 0.1;
+/// Share of all points that lie anywhere while the learners gain, those of the design counted, and
+/// of the points after the design while they do not.
+constexpr double kAnywhereGaining = 0.15;
 constexpr double kAnywhereStuck = 0.6;
 /// Evaluations after which the surrogate proposes no more: its model keeps its size while the
 /// others sharpen.
@@ -24,20 +25,20 @@ constexpr int kSurrogateMost = 600;
 constexpr double kCuriosity = 0.3;
 /// Evaluations that count as one batch in the records.
 constexpr double kBatch = 8.0;
-/// A new best point of a member that asks for one at a time pays as so much of a batch. One that
-/// is only among the best does not: a local run's points always are, wherever it creeps.
+/// A better point of a member that asks for one at a time pays as so much of a batch: among
+/// categories only a new best, since a local run's points are among the best wherever it creeps.
 constexpr double kLeastPaid = 1.0;
 /// Share of the records that a batch leaves: a memory of about 30 batches.
 constexpr double kMemory = 0.97;
 /// A batch pays when one of its points is among so many best.
 constexpr double kElite = 10.0;
-/// What the members have earned before they began, and in how many batches. Where every axis is
+/// What two members have earned before they began, and in how many batches. Where every axis is
 /// continuous the local model goes first, since where the loss is smooth it needs a third of the
-/// evaluations of the others, and where it is not, these few are soon spent; with categories it
-/// sees one setting of them at a time. Kriging and controlled random search find the region of the
-/// failures first, the two evolutions take over where those are stuck.
-constexpr Portfolio::Record kOfLocalModel{1.5, 0.5}, kOfLocalModelMixed{0.1, 0.5};
-constexpr Portfolio::Record kOfRegional{1.0, 1.0}, kOfEvolutions{0.2, 1.0};
+/// evaluations of the others, and where it is not, these few are soon spent; controlled random
+/// search goes last. Among categories and integers the local model goes last: it sees one setting
+/// of them at a time.
+constexpr Portfolio::Record kOfLocalModel{1.5, 0.5}, kOfCrs{0.0, 1.0};
+constexpr Portfolio::Record kOfLocalModelMixed{0.1, 0.5};
 /// Share of the progress that an evaluation leaves, and the least gain that is any, as a share of
 /// how far the best point is from the median one: a loss sharpened in its sixth digit is no nearer
 /// to a failure.
@@ -58,20 +59,18 @@ Portfolio::Portfolio(const Known& known, const SearchOptions& options, int budge
   members_[kLocalModel] = std::make_unique<LocalModel>(known, seed);
   members_[kEvolution] = std::make_unique<DifferentialEvolution>(known, seed);
   members_[kCrs] = std::make_unique<ControlledRandomSearch>(known, seed);
-  bool is_continuous = true;
   for (int axis = 0; axis < known.space.Size(); ++axis) {
-    is_continuous = is_continuous && known.space.IsContinuous(axis);
+    is_continuous_ = is_continuous_ && known.space.IsContinuous(axis);
   }
-  records_[kLocalModel] = is_continuous ? kOfLocalModel : kOfLocalModelMixed;
-  records_[kSurrogate] = records_[kCrs] = kOfRegional;
-  records_[kCmaEs] = records_[kEvolution] = kOfEvolutions;
+  records_[kLocalModel] = is_continuous_ ? kOfLocalModel : kOfLocalModelMixed;
+  if (is_continuous_) records_[kCrs] = kOfCrs;
 }
 
 bool Portfolio::IsDesign() const { return static_cast<int>(known_.archive.Size()) < design_; }
 
 double Portfolio::DueAnywhere(double total) const {
-  const double share = progress_ > kLeastGain ? kAnywhereGaining : kAnywhereStuck;
-  return (1.0 - kCornerShare) * design_ + share * (total - design_);
+  if (progress_ > kLeastGain) return kAnywhereGaining * total;
+  return (1.0 - kCornerShare) * design_ + kAnywhereStuck * (total - design_);
 }
 
 bool Portfolio::MayPropose(Member member) const {
@@ -158,7 +157,8 @@ void Portfolio::Tell(std::span<const Evaluation> batch) {
     record.spent *= std::pow(kMemory, spent);
   }
   const double reward = RewardOf(own);
-  records_[active_].gain += reward * (reward == 1.0 ? std::max(spent, kLeastPaid) : spent);
+  const bool pays_whole = is_continuous_ || reward == 1.0;
+  records_[active_].gain += reward * (pays_whole ? std::max(spent, kLeastPaid) : spent);
   records_[active_].spent += spent;
 }
 

@@ -52,7 +52,8 @@ class Portfolio : public Strategy {
   std::array<std::unique_ptr<Strategy>, kMembers> members_;
   std::array<Record, kMembers> records_;
   Member active_ = kSobol;
-  std::size_t proposed_ = 0;  ///< points of the active member at the front of the batch
+  std::size_t proposed_ = 0;   ///< points of the active member at the front of the batch
+  bool is_continuous_ = true;  ///< every axis
   double best_before_ = std::numeric_limits<double>::infinity();
   double progress_ = 1.0;  ///< forgetting mean of what the learners gain
 };
