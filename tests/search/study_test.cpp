@@ -9,15 +9,15 @@
 namespace rift::test {
 namespace {
 
-int Successes(const std::string& name, search::Method method, int seeds, double target) {
-  constexpr int kBudget = 500;
+int Successes(const std::string& name, search::Method method, int seeds, double target,
+              int budget = 500) {
   int successes = 0;
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
     std::vector<Task> tasks = Functions(seed);
     for (Task& task : DeceivingSpaces(seed)) tasks.push_back(std::move(task));
     for (const Task& task : tasks) {
       if (task.name != name) continue;
-      successes += RunUntil(task, method, kBudget, target, 1000 + seed).reached_at.has_value();
+      successes += RunUntil(task, method, budget, target, 1000 + seed).reached_at.has_value();
     }
   }
   return successes;
@@ -27,6 +27,12 @@ TEST_CASE("In 500 evaluations the portfolio reaches what random search does in 1
   CHECK(Successes("ellipsoid", search::Method::kPortfolio, 12, 802.0) >= 8);
   CHECK(Successes("rosenbrock", search::Method::kPortfolio, 12, 28.0) >= 10);
   CHECK(Successes("rastrigin", search::Method::kPortfolio, 12, 11.5) >= 6);
+}
+
+TEST_CASE(
+    "Where every axis is continuous a local model soon reaches what a long random search does") {
+  CHECK(Successes("rosenbrock", search::Method::kPortfolio, 24, 28.0, 100) >= 12);
+  CHECK(Successes("rastrigin", search::Method::kPortfolio, 24, 11.5, 100) >= 12);
 }
 
 TEST_CASE("Where nothing points to a failure the portfolio finds half as many as random search") {
