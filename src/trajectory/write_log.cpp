@@ -1,6 +1,9 @@
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,6 +30,17 @@ std::string HeaderCell(const std::string& name) {
   return cell + '"';
 }
 
+constexpr std::array kPoseColumns{"t_s",       "x_m",     "y_m",        "z_m",       "roll_rad",
+                                  "pitch_rad", "yaw_rad", "target_x_m", "target_y_m"};
+
+/// Another log's column may have the name of a column of poses; it gets one of its own.
+std::string ChannelColumn(std::string name, std::set<std::string>& taken) {
+  if (std::find(kPoseColumns.begin(), kPoseColumns.end(), name) == kPoseColumns.end()) return name;
+  do name += "_2";
+  while (!taken.insert(name).second);
+  return name;
+}
+
 void AppendRow(std::string& text, const StampedPose& pose, std::span<const double> channels) {
   AppendNumber(text, pose.t_s);
   const auto append = [&text](double value) {
@@ -50,8 +64,16 @@ Eigen::Quaterniond WorldFromBody(const StampedPose& pose) {
 }
 
 std::string WriteRift(const Trajectory& trajectory) {
-  std::string text = "t_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad,target_x_m,target_y_m";
-  for (const Channel& channel : trajectory.channels) text += "," + HeaderCell(channel.name);
+  std::set<std::string> names;
+  std::string text;
+  for (const char* const column : kPoseColumns) {
+    names.insert(column);
+    text += (text.empty() ? "" : ",") + std::string(column);
+  }
+  for (const Channel& channel : trajectory.channels) names.insert(channel.name);
+  for (const Channel& channel : trajectory.channels) {
+    text += "," + HeaderCell(ChannelColumn(channel.name, names));
+  }
   text += '\n';
   std::vector<double> values(trajectory.channels.size());
   for (size_t row = 0; row < trajectory.poses.size(); ++row) {

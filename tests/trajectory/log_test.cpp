@@ -62,6 +62,20 @@ TEST_CASE("A trajectory written in the rift dialect reads back to the same bits"
   }
 }
 
+TEST_CASE("A column of another log that is named as one of poses is written under its own name") {
+  const Log log = ReadLog(
+      "t,x,y,z,roll,pitch,x_m,x_m_2,desired_x,desired_y\n0,1,2,3,0,0,4,5,0,0\n1,2,2,3,0,0,6,7,0,0\n",
+      "log.csv", Format::kWebots);
+  const std::string written = WriteRift(log.trajectory);
+  const Log again = ReadLog(written, "log.csv", Format::kRift);
+  REQUIRE(again.trajectory.channels.size() == 2);
+  CHECK(again.trajectory.channels[0].name == "x_m_2_2");
+  CHECK(again.trajectory.channels[0].values == std::vector<double>{4.0, 6.0});
+  CHECK(again.trajectory.channels[1].values == std::vector<double>{5.0, 7.0});
+  CHECK(again.trajectory.poses[1].x_m == log.trajectory.poses[1].x_m);
+  CHECK(WriteRift(again.trajectory) == written);
+}
+
 TEST_CASE("A trajectory written for evo reads back to the same pose") {
   std::mt19937_64 generator(8);
   const Trajectory written = RandomTrajectory(generator, true);
