@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/rendering/print_sheet.hpp"
 #include "support/documented.hpp"
 #include "support/environment.hpp"
 #include "support/process.hpp"
@@ -324,6 +325,61 @@ TEST_CASE("A tag that lies elsewhere than told, and a worse frame, are refused b
   CHECK(wrong.exit_code == 2);
   CHECK_THAT(wrong.err, Contains("do not fit what the camera sees"));
   CHECK(test::ReadFile(calibration) == test::ReadFile(kCamera));
+}
+
+TEST_CASE("A tag of another side, height or camera place is told while it is tracked") {
+  const test::TemporaryFolder folder;
+  const auto said = [&](const std::vector<std::string>& more) {
+    const ProcessResult result =
+        RunRift(With(Tracking(folder / "log.csv"), With({"--force"}, more)));
+    CHECK(result.exit_code == 0);
+    return result.err;
+  };
+  CHECK_THAT(said({}), !Contains("not on the floor"));
+  const std::string small = said({"--set", "track.tag.size_m=0.04"});
+  CHECK_THAT(small, Contains("the tag is not on the floor in 10 of 10 pictures"));
+  const size_t at = small.find("track.tag.size_m=") + 17;
+  CHECK(std::stod(small.substr(at, 6)) == Approx(0.0475).margin(0.0002));
+  CHECK_THAT(small, Contains(", its height 0.1"));
+  const std::string large = said({"--set", "track.tag.size_m=0.06"});
+  CHECK_THAT(large, Contains("size_m=0.047") && !Contains("its height"));
+  CHECK_THAT(said({"--set", "track.tag.size_m=0.04", "--set", "track.tag.ground=free"}),
+             !Contains("not on the floor"));
+}
+
+TEST_CASE("A tag that is never seen is answered with those that are") {
+  const test::TemporaryFolder folder;
+  const auto said = [&](const std::vector<std::string>& more) {
+    const ProcessResult result = RunRift(With(Tracking(folder / "log.csv"), more));
+    CHECK(result.exit_code == 1);
+    return result.err;
+  };
+  CHECK_THAT(said({"--id", "5"}), Contains("tag36h11 id 0 (--id 0)"));
+  CHECK_THAT(said({"--set", "track.tag.family=tag25h9"}),
+             Contains("tag36h11 id 0 (--set track.tag.family=tag36h11 --id 0)"));
+  CHECK_THAT(RunRift(With(Tracking(folder / "log.csv"), {"--id", "600"})).err,
+             Contains("tag id 600: the family tag36h11 has the ids 0 to 586"));
+}
+
+TEST_CASE("Tags of any family and chessboards are written to be printed") {
+  const test::TemporaryFolder folder;
+  const std::string sheet = folder / "tag.svg";
+  const auto print = [&](const std::vector<std::string>& more) {
+    return RunRift(With({"track", "--print-tag", sheet}, more));
+  };
+  REQUIRE(print({}).exit_code == 0);
+  CHECK(test::ReadFile(sheet) == test::ReadFile(kData + "/print/tag36h11_0.svg"));
+  CHECK(print({}).exit_code == 2);
+  const ProcessResult other = print({"--force", "--set", "track.tag.family=tag16h5", "--id", "7",
+                                     "--set", "track.tag.size_m=0.06"});
+  CHECK_THAT(other.err, Contains("tag16h5 id 7, side 0.06 m"));
+  CHECK(test::ReadFile(sheet) == vision::TagSheet(7, 0.06, vision::TagFamily::k16h5));
+  CHECK(print({"--force", "--id", "600"}).exit_code == 2);
+  CHECK(print({"--force", "--camera", kFrames}).exit_code == 2);
+  CHECK(RunRift({"track", "--print-tag", folder / "tag.png"}).exit_code == 2);
+  const std::string board = folder / "board.svg";
+  REQUIRE(RunRift({"track", "--print-board", board}).exit_code == 0);
+  CHECK(test::ReadFile(board) == test::ReadFile(kData + "/print/chessboard_13x9_25mm.svg"));
 }
 
 TEST_CASE("Help and the gap load no camera library") {

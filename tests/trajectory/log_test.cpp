@@ -64,7 +64,8 @@ TEST_CASE("A trajectory written in the rift dialect reads back to the same bits"
 
 TEST_CASE("A column of another log that is named as one of poses is written under its own name") {
   const Log log = ReadLog(
-      "t,x,y,z,roll,pitch,x_m,x_m_2,desired_x,desired_y\n0,1,2,3,0,0,4,5,0,0\n1,2,2,3,0,0,6,7,0,0\n",
+      "t,x,y,z,roll,pitch,x_m,x_m_2,desired_x,desired_y\n0,1,2,3,0,0,4,5,0,0\n1,2,2,3,0,0,6,7,0,"
+      "0\n",
       "log.csv", Format::kWebots);
   const std::string written = WriteRift(log.trajectory);
   const Log again = ReadLog(written, "log.csv", Format::kRift);

@@ -11,10 +11,10 @@
 
 #include "rift/trajectory/log.hpp"
 #include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/rendering/print_sheet.hpp"
 #include "rift/vision/rendering/synthetic_camera.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/load.hpp"
-#include "vision/rendering/print_sheet.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "vision/rendering/print_sheet.hpp"
+#include "rift/vision/rendering/print_sheet.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>

@@ -100,6 +100,27 @@ void CheckPrecisionCheck(const TrackRequest& request) {
   CheckOutputs(inputs, {.files = {request.out}, .force = request.force});
 }
 
+void CheckPrinting(const TrackRequest& request) {
+  if (!request.print_tag.empty() && !request.print_board.empty()) {
+    throw std::invalid_argument("--print-tag and --print-board exclude each other");
+  }
+  if (request.check || request.calibrate || !request.camera.empty() || !request.out.empty()) {
+    throw std::invalid_argument(
+        "--print-tag and --print-board write a sheet and nothing else: --camera, --out, --check "
+        "and "
+        "--calibrate do not belong to them");
+  }
+  if (request.ids.size() > 1) {
+    throw std::invalid_argument("--print-tag makes one tag: give --id a single one");
+  }
+  const std::string& sheet = request.print_tag.empty() ? request.print_board : request.print_tag;
+  if (fs::path(sheet).extension() != ".svg") {
+    throw std::invalid_argument(
+        fmt::format("{}: a sheet to print is an SVG: give it a name that ends in .svg", sheet));
+  }
+  CheckOutputs({}, {.files = {sheet}, .force = request.force});
+}
+
 void CheckCalibrating(const TrackRequest& request) {
   if (request.images.empty() == request.camera.empty()) {
     throw std::invalid_argument(
@@ -168,7 +189,7 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_option("--id", request.ids,
                  "the robot's tag [track.tag.id]; several robots go into one log, a row each")
       ->delimiter(',')
-      ->check(CLI::Range(0, 586))
+      ->check(CLI::Range(0, vision::kLastTagId))
       ->type_name("N,N,...");
   app.add_option("--tag-height", request.tag_height_m,
                  "of the tag above the floor "
@@ -194,6 +215,12 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_flag("--check", request.check,
                "say how precise poses will be over the floor and which tag is too small, tried on "
                "rendered pictures (twin.camera: blur, noise); --out keeps the map as JSON");
+  app.add_option("--print-tag", request.print_tag,
+                 "write the sheet of the robot's tag (track.tag: family, id, size_m) to print")
+      ->type_name("FILE.svg");
+  app.add_option("--print-board", request.print_board,
+                 "the same of a chessboard (--board, --square)")
+      ->type_name("FILE.svg");
   app.add_flag("--view", request.view,
                "show it in a window; with --calibrate and a camera, where to hold the board next");
   app.add_option("--path", request.path, "what the view holds the robot's trail against")
@@ -216,7 +243,9 @@ fs::path PictureOf(const TrackRequest& request) {
 
 void TrackRequest::Check() const {
   CheckCopies(*this);
-  if (check) {
+  if (IsPrinting()) {
+    CheckPrinting(*this);
+  } else if (check) {
     CheckPrecisionCheck(*this);
   } else {
     calibrate ? CheckCalibrating(*this) : CheckTracking(*this);
@@ -237,7 +266,8 @@ void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const Track
       "Example: rift track --calibrate --board 13x9 --square 0.025 --images photos --out cam.yaml\n"
       "         rift track --camera /dev/video0 --calibration cam.yaml --world first --out "
       "log.csv\n"
-      "         rift track --check --calibration cam.yaml");
+      "         rift track --check --calibration cam.yaml\n"
+      "         rift track --print-tag tag.svg --set track.tag.size_m=0.05");
   app.callback([request, track, &exit_code] {
     request->calibration = FindInput(request->calibration);
     request->Check();

@@ -39,6 +39,10 @@ struct TrackRequest {
   std::string images;
   std::string picture;
 
+  std::string print_tag;    ///< a sheet to be printed
+  std::string print_board;  ///< the same
+
+  bool IsPrinting() const { return !print_tag.empty() || !print_board.empty(); }
   /// The log goes to stdout, and nothing beside it.
   bool IsPiped() const { return out == "-"; }
 

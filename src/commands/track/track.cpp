@@ -28,6 +28,8 @@
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/rendering/precision_map.hpp"
+#include "rift/vision/rendering/print_sheet.hpp"
+#include "rift/vision/tracking/tag_family.hpp"
 #include "rift/vision/tracking/tag_visibility.hpp"
 #include "rift/vision/tracking/track_run.hpp"
 #include "rift/vision/tracking/world_check.hpp"
@@ -151,6 +153,9 @@ int Report(const TrackRequest& request, const vision::CameraModel& camera,
   terminal::PrintText(report::TrackText(run, run.rows));
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
   terminal::Say(fmt::format("{}; run: {}", log, run_file.string()));
+  if (!run.found_instead.empty()) {
+    terminal::Say(report::FoundInsteadText(run.found_instead, options.tag.family));
+  }
   if (run.rows > 0 && !request.copies.Files().empty()) {
     WriteLogCopies(request.copies,
                    trajectory::ReadLog(files::ReadFile(request.out), request.out).trajectory);
@@ -190,6 +195,7 @@ int TrackRobot(const TrackRequest& request) {
   const auto is_stopped = [&stop] { return stop.IsAsked(); };
   vision::CameraSession session(request.camera, camera, options.capture, options.tag);
   options.capture = session.options();
+  for (const int id : request.ids) vision::RequireTagId(id, options.tag.family);
   TakeSize(request, session);
   if (!request.world.empty()) {
     SetAndSaveWorld(request, is_stopped, session);
@@ -282,9 +288,23 @@ int CheckPrecision(const TrackRequest& request) {
   return terminal::kDone;
 }
 
+int PrintSheet(const TrackRequest& request) {
+  if (!request.print_board.empty()) {
+    files::WriteFile(request.print_board, vision::ChessboardSheet(request.board));
+    terminal::Say(fmt::format("to print at 100 %: {}", request.print_board));
+    return terminal::kDone;
+  }
+  const vision::TagOptions tag = OptionsOf(request, ExperimentOf(request)).tag;
+  files::WriteFile(request.print_tag, vision::TagSheet(tag.id, tag.size_m, tag.family));
+  terminal::Say(fmt::format("to print at 100 %: {}, {} id {}, side {:g} m", request.print_tag,
+                            vision::NameOf(tag.family), tag.id, tag.size_m));
+  return terminal::kDone;
+}
+
 }  // namespace
 
 int Track(const TrackRequest& request) {
+  if (request.IsPrinting()) return PrintSheet(request);
   if (request.check) return CheckPrecision(request);
   return request.calibrate ? CalibrateAndSave(request) : TrackRobot(request);
 }

@@ -154,6 +154,20 @@ std::string TrackText(const vision::TrackRun& run, int rows) {
   return text;
 }
 
+std::string FoundInsteadText(const std::vector<vision::TagInPicture>& found,
+                             vision::TagFamily asked_for) {
+  constexpr std::size_t kMost = 4;
+  std::string text = "the picture shows";
+  for (std::size_t i = 0; i < std::min(found.size(), kMost); ++i) {
+    const auto& [family, id] = found[i];
+    const std::string flags = family == asked_for ? fmt::format("--id {}", id)
+                                                  : fmt::format("--set track.tag.family={} --id {}",
+                                                                vision::NameOf(family), id);
+    text += fmt::format("{} {} id {} ({})", i == 0 ? "" : ",", vision::NameOf(family), id, flags);
+  }
+  return text + (found.size() > kMost ? fmt::format(" and {} more", found.size() - kMost) : "");
+}
+
 std::string CalibrationText(const vision::Calibration& c) {
   std::string text = fmt::format("verdict: {}\n", yaml::NameOf(c.verdict));
   for (const std::string& reason : c.reasons) text += fmt::format("  {}\n", reason);

@@ -1,4 +1,4 @@
-#include "print_sheet.hpp"
+#include "rift/vision/rendering/print_sheet.hpp"
 
 #include <fmt/format.h>
 

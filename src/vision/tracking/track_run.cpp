@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "off_floor.hpp"
 #include "rift/vision/camera/camera_source.hpp"
 
 namespace rift::vision {
@@ -16,12 +17,26 @@ namespace {
 constexpr double kTick_s = 0.02;
 constexpr double kRedraw_s = 0.1;
 
+/// Every tag of every family. Bits are not corrected, since each further one makes chance hits.
+std::vector<TagInPicture> TagsOfAnyFamily(const Frame& frame, TagOptions options) {
+  std::vector<TagInPicture> found;
+  options.max_hamming = 0;
+  for (std::size_t i = 0; i < EnumNames(TagFamily{}).size(); ++i) {
+    options.family = static_cast<TagFamily>(i);
+    for (const TagDetection& tag : FindTags(frame, 1, options)) {
+      found.push_back({options.family, tag.id});
+    }
+  }
+  return found;
+}
+
 class Tracking {
  public:
   explicit Tracking(const TrackParts& parts)
       : parts_(parts),
         tracker_(parts.session.MakeTracker(parts.further_ids)),
-        started_s_(SteadyNow_s()) {}
+        started_s_(SteadyNow_s()),
+        off_floor_(parts.session.camera(), parts.session.tag()) {}
 
   TrackRun Run();
 
@@ -47,6 +62,8 @@ class Tracking {
   std::optional<Frame> frame_;
   std::vector<std::optional<Sighting>> seen_;  // of each robot, in frame_
   std::set<int> seen_ids_;
+  std::optional<Frame> with_other_tags_;  // while none was seen that was asked for
+  OffFloorCheck off_floor_;
   std::optional<double> failing_since_s_;
   double checked_s_ = -1e9;
   std::optional<std::uint64_t> shown_index_;
@@ -93,6 +110,7 @@ void Tracking::Keep(const TrackResult& result, int tag_id, const Frame& frame) {
   run_.last_t_s = t_s;
   if (!run_.is_recording) run_.latencies_s.push_back(row.latency_s);
   run_.most_tags_of_this_id = std::max(run_.most_tags_of_this_id, row.tags_of_this_id);
+  if (const auto warning = off_floor_.Add(row)) parts_.say("warning: " + *warning);
 }
 
 void Tracking::Take(Frame frame) {
@@ -111,6 +129,9 @@ void Tracking::Take(Frame frame) {
     if (result.sighting && run_.is_recording) seen_.back()->latency_s = std::nan("");
   }
   WatchReferences(frame);
+  const bool shows_others = results.front().miss == Miss::kOtherTag;
+  if (run_.rows > 0) with_other_tags_.reset();
+  if (run_.rows == 0 && shows_others) with_other_tags_ = frame;
   frame_ = std::move(frame);
 }
 
@@ -183,6 +204,9 @@ TrackRun Tracking::Run() {
     Show();
   }
   HoldLastPicture();
+  if (run_.rows == 0 && frame_) {
+    run_.found_instead = TagsOfAnyFamily(with_other_tags_.value_or(*frame_), parts_.session.tag());
+  }
   run_.state = run_.status.state;
   run_.reason = run_.status.reason;
   run_.has_failed = failing_since_s_.has_value() && !quit_ && !parts_.is_stopped();

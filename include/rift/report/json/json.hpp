@@ -153,6 +153,9 @@ std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& came
                       const experiment::TrackOptions& options, const vision::TrackRun& run,
                       int rows);
 std::string TrackText(const vision::TrackRun& run, int rows);
+/// One line: which tags a picture shows without the one that was asked for, and the flags for them.
+std::string FoundInsteadText(const std::vector<vision::TagInPicture>& found,
+                             vision::TagFamily asked_for);
 
 /// A log of sightings in the rift dialect: its nine columns (the target empty), then latency,
 /// quality, state and the 6 x 6 covariance's upper triangle in the map's axes. A lost tag's row has

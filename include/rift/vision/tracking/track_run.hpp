@@ -33,6 +33,12 @@ struct TrackParts {
   std::function<void(const std::string&)> say;
 };
 
+/// A tag in a picture, whoever's.
+struct TagInPicture {
+  TagFamily family = TagFamily::k36h11;
+  int id = 0;
+};
+
 /// What became of it.
 struct TrackRun {
   CameraState state = CameraState::kOpening;  ///< at the end
@@ -46,6 +52,9 @@ struct TrackRun {
   std::array<int, EnumNames(TrackState{}).size()> states{};  ///< pictures by TrackState
   int repeated = 0;  ///< sightings that were not later than the one before
   int most_tags_of_this_id = 1;
+  /// Where no tag that was asked for was ever seen: what of any family the newest picture shows, or
+  /// the newest one in which other tags of the family were seen.
+  std::vector<TagInPicture> found_instead;
   double zero_s = 0.0;  ///< of the rows' times, on the steady clock of this machine
   double first_t_s = 0.0, last_t_s = 0.0;  ///< of the rows
   std::vector<double> latencies_s;         ///< of the rows; none of a recording
