@@ -21,6 +21,7 @@
 #include "rift/terminal/print.hpp"
 #include "rift/terminal/process_start.hpp"
 #include "rift/yaml/suggest.hpp"
+#include "usage.hpp"
 #include "version.hpp"
 
 namespace rift::commands {
@@ -60,35 +61,6 @@ std::string Examples(const std::vector<Command>& commands) {
   std::string text = "Examples:\n";
   for (const Command& command : commands) text += "  " + command.example + "\n";
   return text;
-}
-
-Words FlagsOf(const CLI::App& app) {
-  Words flags;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
-  }
-  return flags;
-}
-
-/// What is wrong with the command line, and what to do: the nearest flag, or where help is.
-std::string UsageError(const CLI::App& app, const CLI::ParseError& error) {
-  const std::vector<CLI::App*> chosen = app.get_subcommands();
-  const CLI::App& command = chosen.empty() ? app : *chosen.front();
-  const std::string name = chosen.empty() ? "rift" : "rift " + command.get_name();
-  const std::string help = fmt::format("; {} --help lists what it takes", name);
-  const Words extras = app.remaining(true);
-  const bool has_said_how = dynamic_cast<const CLI::ValidationError*>(&error) != nullptr;
-  if (has_said_how) return error.what();
-  if (extras.empty()) return error.what() + help;
-  const auto is_flag = [](const std::string& word) { return word.starts_with("-"); };
-  const auto flag = std::find_if(extras.begin(), extras.end(), is_flag);
-  if (flag == extras.end()) {
-    return fmt::format("'{}' is one argument too many for {}{}", extras.front(), name, help);
-  }
-  const std::string word = flag->substr(0, flag->find('='));
-  const std::string nearest = yaml::Nearest(word, FlagsOf(command));
-  return nearest.empty() ? fmt::format("{} has no flag {}{}", name, word, help)
-                         : fmt::format("{} has no flag {}; did you mean {}?", name, word, nearest);
 }
 
 int ShowHelp(const CLI::App& app, const CLI::ParseError& error) {
@@ -134,6 +106,7 @@ int Run(int argc, char** argv, const CameraUses& camera) {
         .add_flag_callback("--large-inputs", limits::Lift,
                            "take inputs above the limits of docs/limits.md, whatever they cost")
         ->trigger_on_parse();
+    RefuseEmptyValues(subcommand);
   }
   if (is_manual) {
     const std::string manual = Manual(given, app);

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 
-/// Words are split at spaces; @ is the test's folder and % the source tree.
+/// Words are split at spaces; @ is the test's folder, % the source tree and '' an empty word.
 struct WrongInput {
   std::string words;
   std::string message;
@@ -52,6 +52,7 @@ std::vector<std::string> Split(const std::string& words, const test::TemporaryFo
   std::istringstream text(words);
   std::vector<std::string> split;
   for (std::string word; text >> word;) {
+    if (word == "''") word.clear();
     for (const auto& [sign, meant] :
          {std::pair{'@', folder / ""}, std::pair{'%', test::SourceDir() + "/"}}) {
       if (const size_t at = word.find(sign); at != word.npos) word.replace(at, 1, meant);
@@ -117,7 +118,7 @@ TEST_CASE("Wrong input: rift simulate") {
       {"simulate" + kTask + "@mm.yaml", "one argument too many"},
       {"simulate" + kTask + "--sed 3", "has no flag --sed; did you mean --se"},
       {"simulate" + kTask + "--ouut @x", "did you mean --out?"},
-      {"simulate" + kTask + "--seed", "--seed: 1 required N missing; rift simulate --help"},
+      {"simulate" + kTask + "--seed", "--seed needs its value, N; rift simulate --help"},
       {"simulate" + kTask + "--seed abc", "must be a whole number"},
       {"simulate" + kTask + "--seed -1", "must be in [0"},
       {"simulate" + kTask + "--set v_min", "must be key=value"},
@@ -139,7 +140,17 @@ TEST_CASE("Wrong input: rift simulate") {
       {"simulate" + kTask + "--out - --json", "both stdout"},
       {"simulate" + kTask + "--out - --tum -", "- is stdout"},
       {"simulate" + kTask + "--twin --json", "--twin excludes --json"},
-      {"simulate --replay @swept", "--replay"},
+      {"simulate" + kTask + "--seed ''", "--seed: its value is empty: give one, or leave it out"},
+      {"simulate" + kTask + "--out ''", "--out: its value is empty"},
+      {"simulate" + kTask + "--start ''", "--start: its value is empty"},
+      {"simulate ''", "EXPERIMENT: its value is empty"},
+      {"simulate" + kTask + "--out=~/run",
+       "the shell replaces ~ neither within quotes nor after ="},
+      {"simulate" + kTask + "--seed 1 --seed 2", "--seed is given 2 times: give it once"},
+      {"simulate" + kTask + "--view=yes", "--view takes no value: leave out what follows ="},
+      {"simulate" + kTask + "--out @run.json", "is the name of a file"},
+      {"simulate @a.yaml @b.yaml @c.yaml", "and 1 more are too many arguments"},
+      {"simulate --replay @swept", "--replay takes 2 values, DIR ID|worst, and 1 is given"},
       {"simulate --replay @dir 1", "table.csv"},
       {"simulate --replay @swept 7", "no row with id 7"},
       {"simulate --replay @swept worst", "has no row with a gap"},
@@ -168,7 +179,12 @@ TEST_CASE("Wrong input: rift gap") {
       {"gap" + kLogs + "--profile %data/example/robot1.csv", "is an input or another output"},
       {"gap" + kLogs + "--threshold abc", "'abc' must be a number"},
       {"gap" + kLogs + "--threshold -1", "must be a number in [0"},
-      {"gap" + kLogs + "--samples 1.5", "--samples"},
+      {"gap" + kLogs + "--samples 1.5", "--samples: '1.5' must be a whole number"},
+      {"gap" + kLogs + "--threshold ''", "--threshold: its value is empty"},
+      {"gap" + kLogs + "--threshold", "--threshold needs its value, m; rift gap --help"},
+      {"gap" + kLogs + "''", "REAL: its value is empty"},
+      {"gap" + kLogs + "~/real.csv", "write $HOME/real.csv"},
+      {"gap" + kLogs + "--exit-code=no", "--exit-code takes no value"},
       {"gap" + kLogs + "--tag-offset nan", "must be a number in [-1, 1]"},
       {"gap" + kLogs + "--real-format foo", "auto,rift,tum,tracker,webots"},
       {"gap" + kLogs + "--real-format webots", "rift"},
@@ -208,10 +224,15 @@ TEST_CASE("Wrong input: rift sweep") {
       {"sweep" + kTask + out + "--set reference.kind=logs", "reference.path is missing"},
       {"sweep" + kTask + out + "--set candidate.kind=logs", "candidate.path is missing"},
       {"sweep" + kTask + "--out -", "name a folder"},
+      {"sweep" + kTask + "--out @new.json", "is the name of a file, and a sweep is a folder"},
+      {"sweep" + kTask + "--out ''", "--out: its value is empty"},
+      {"sweep" + kTask + out + "--jobs ''", "--jobs: its value is empty"},
+      {"sweep" + kTask + out + "--serve=8080", "--serve takes no value"},
+      {"sweep --compare @dir", "--compare takes 2 values, DIR, and 1 is given"},
       {"sweep" + kTask + "--out @there.svg", "is a file"},
       {"sweep" + kTask + "--out @run", "holds a run: name another folder"},
       {"sweep" + kTask + "--out @other", "holds another experiment"},
-      {"sweep" + kTask + "--status", "--status: 1 required DIR missing"},
+      {"sweep" + kTask + "--status", "--status needs its value, DIR"},
       {"sweep --status @dir", "no such file; a sweep of simulated trials"},
   });
 }
@@ -230,6 +251,7 @@ TEST_CASE("Wrong input: rift track") {
       {kFilm + "--id 3,3", "3 is named twice"},
       {kFilm + "--id 999", "--id: Value 999 not in range 0 to 586"},
       {kFilm + "--id a", "--id: Value a"},
+      {kFilm + "--id ''", "--id: its value is empty"},
       {kFilm + "--tag-height 9", "must be a number in [0, 2]"},
       {kFilm + "--duration -3", "--duration: '-3'"},
       {kFilm + "--images @dir", "belong to --calibrate"},
@@ -254,6 +276,7 @@ TEST_CASE("Wrong input: rift track") {
       {board + "--out @c.yaml --picture @there.svg", "give --force to replace it"},
       {board + "--out @c.yaml --board 13", "--board '13'"},
       {board + "--out @c.yaml --board 1x1", "there must be 3 to 100 both ways"},
+      {board + "--out @c.yaml --square 25mm", "--square: '25mm' must be a number, in m"},
       {board + "--out @c.yaml --square 0", "the side of one square in metres"},
   });
 }
@@ -274,6 +297,8 @@ TEST_CASE("Wrong input: rift drive") {
       {"drive" + kTask + rest + "--out @run", "holds a run already"},
       {"drive" + kTask + rest + "--out @swept", "holds a sweep"},
       {"drive" + kTask + rest + "--out -", "name a folder"},
+      {"drive" + kTask + rest + "--out @log.csv", "is the name of a file, and a drive is a folder"},
+      {"drive" + kTask + rest + "--port @x", "--port is given 2 times: give it once"},
       {"drive" + kTask + rest + "--out @new", "stdin is no terminal"},
       {"drive" + kTask + rest + "--countdown 99", "must be a number in [0, 60]"},
       {"drive" + kTask + rest + "--seconds 3", "--seconds requires --dry-run"},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "rift/files/files.hpp"
@@ -78,15 +79,31 @@ void AddForceFlag(CLI::App& app, bool& force) {
   app.add_flag("--force", force, "replace files that are there already");
 }
 
+namespace {
+
+/// An ending that no folder has, but a table, a report or a film.
+bool NamesFile(const fs::path& name) {
+  static const std::set<std::string> endings{".csv", ".html", ".json", ".log", ".mcap",
+                                             ".mp4", ".pdf",  ".png",  ".svg", ".tum",
+                                             ".txt", ".xlsx", ".yaml", ".yml", ".zip"};
+  return endings.contains(name.extension().string());
+}
+
+}  // namespace
+
 void RequireFolderName(const std::string& out, std::string_view what) {
   std::error_code not_there;
   if (fs::exists(out, not_there) && !fs::is_directory(out, not_there)) {
     throw std::invalid_argument(
         fmt::format("--out {} is a file, and {} is a folder of files: name a folder", out, what));
   }
-  if (out != "-") return;
-  throw std::invalid_argument(
-      fmt::format("--out -: {} is a folder of files and cannot go to stdout: name a folder", what));
+  if (out == "-") {
+    throw std::invalid_argument(fmt::format(
+        "--out -: {} is a folder of files and cannot go to stdout: name a folder", what));
+  }
+  if (fs::is_directory(out, not_there) || !NamesFile(out)) return;
+  throw std::invalid_argument(fmt::format(
+      "--out {} is the name of a file, and {} is a folder of files: name a folder", out, what));
 }
 
 void RefuseSweepFolder(const fs::path& folder) {
