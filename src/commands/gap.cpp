@@ -62,8 +62,10 @@ struct GapRequest {
     const auto either = [&](const std::string& own, const std::string& both) {
       return own.empty() && !is_dialect ? both : own;
     };
-    return {format, either(own_columns, columns), either(own_units, units), flag,
-            options.IsInSpace()};
+    const bool is_of_both = own_columns.empty() && own_units.empty() && !is_dialect &&
+                            !(columns.empty() && units.empty());
+    return {format, either(own_columns, columns), either(own_units, units),
+            is_of_both ? "--columns " : flag, options.IsInSpace()};
   }
 };
 
@@ -261,6 +263,16 @@ void AddOdometryFlags(CLI::App& app, GapRequest& request) {
         "observation");
 }
 
+void RefuseOdometryFlags(const CLI::App& app) {
+  for (const char* flag : {"--slip-bins", "--moved-share", "--tag-ahead", "--window"}) {
+    if (app.count(flag) == 0) continue;
+    throw std::invalid_argument(fmt::format(
+        "{} is for runs held together with their encoders: give --odometry, --program or "
+        "--calibrate-odometry as well, or leave it out",
+        flag));
+  }
+}
+
 OdometryRequest OdometryOf(const GapRequest& request) {
   OdometryRequest runs = request.runs;
   runs.runs = request.reals;
@@ -312,11 +324,12 @@ void AddGap(CLI::App& app, int& exit_code) {
       "         rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03\n"
       "         rift gap sim.csv real.csv --real-columns t=time,x=pose_x,y=pose_y,yaw=theta:deg "
       "--real-units mm,ms");
-  app.callback([request, &exit_code] {
+  app.callback([request, &app, &exit_code] {
     if (request->IsOdometry()) {
       exit_code = MeasureOdometry(OdometryOf(*request));
       return;
     }
+    RefuseOdometryFlags(app);
     if (request->reals.empty()) {
       throw std::invalid_argument(
           "REAL is required: name logs of the robot (or --odometry for the encoders of run "

@@ -273,12 +273,24 @@ Units ParseUnits(const std::string& text) {
 }
 
 void CheckColumns(const ReadOptions& options) {
-  if (!options.columns.empty()) ParseColumns(options.columns);
-  ParseUnits(options.units);
+  // A flag or a key: `--sim-columns `, `--set candidate.columns=`.
+  std::string where = options.columns_flag;
+  if (where.starts_with("--set ")) where.erase(0, std::string_view("--set ").size());
+  while (where.ends_with('=') || where.ends_with(' ')) where.pop_back();
+  try {
+    if (!options.columns.empty()) ParseColumns(options.columns);
+    const size_t at = where.rfind("columns");
+    if (at != where.npos) where.replace(at, where.npos, "units");
+    ParseUnits(options.units);
+  } catch (const std::invalid_argument& error) {
+    const std::string message = error.what();
+    throw std::invalid_argument(where +
+                                message.substr(std::min(message.find(':'), message.size())));
+  }
   const bool has_own = !options.columns.empty() || !options.units.empty();
   if (!has_own || options.format == Format::kAuto) return;
   throw std::invalid_argument(
-      "columns and units are of a log in no dialect: leave the format at auto");
+      "columns and units are of a log in no dialect, and a format is one: leave out either");
 }
 
 void SetAngles(StampedPose& pose, double qx, double qy, double qz, double qw,

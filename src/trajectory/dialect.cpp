@@ -176,6 +176,19 @@ void FromTrackerFrame(StampedPose& pose) {
 /// The authors' robot model points along its own y axis, hence the quarter turn.
 void FromWebotsFrame(StampedPose& pose) { pose.yaw_rad = WrapToPi(pose.yaw_rad - kPi / 2.0); }
 
+std::string_view NameOf(Format format) {
+  return EnumNames(format)[static_cast<std::size_t>(format)];
+}
+
+/// Nothing where the text has no columns, as that of another kind of file.
+std::string GuessOf(std::string_view text, const std::string& name) {
+  try {
+    return GuessColumns(text, name, "");
+  } catch (const std::invalid_argument&) {
+    return "";
+  }
+}
+
 /// Angles of which the unit is not known are taken out rather than guessed.
 void ForgetAngles(Log& log) {
   double largest = 0.0;
@@ -213,12 +226,28 @@ Format FormatFromHeader(std::string_view text, const std::string& name,
   if (Has(header, "t_s") && Has(header, "x_m") && Has(header, "y_m")) return Format::kRift;
   if (Has(header, "t") && Has(header, "x") && Has(header, "y")) return Format::kAuto;
   if (LooksLikeTum(line, rest)) return Format::kTum;
-  const std::string guess = GuessColumns(text, name, "");
+  const std::string guess = GuessOf(text, name);
   throw std::invalid_argument(fmt::format(
       "{}:{}: the header '{}' belongs to no dialect: it needs t_s,x_m,y_m (rift), t,x,y (tracker, "
       "webots) or eight columns without header (tum); {} {}'{}'",
       name, number, csv::Shown(line), guess.empty() ? "name its columns:" : "is it this?",
       columns_flag, guess.empty() ? "t=...,x=...,y=...,yaw=...:deg" : guess));
+}
+
+void RequireFormat(std::string_view text, const std::string& name, Format format) {
+  const bool is_authors = format == Format::kTracker || format == Format::kWebots;
+  Format told = Format::kAuto;
+  try {
+    told = FormatFromHeader(text, name, "");
+  } catch (const std::invalid_argument&) {  // what is missing is said by who reads it
+    return;
+  }
+  if (told == (is_authors ? Format::kAuto : format)) return;
+  throw std::invalid_argument(fmt::format(
+      "{}: its header is of dialect {}, and the format asked for is {}: leave it at "
+      "auto, or name another log",
+      name, told == Format::kAuto ? std::string_view("tracker or webots") : NameOf(told),
+      NameOf(format)));
 }
 
 LogRows ReadRows(std::string_view text, const std::string& name, Format format) {

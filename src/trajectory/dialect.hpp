@@ -14,6 +14,9 @@ namespace rift::trajectory {
 Format FormatFromHeader(std::string_view text, const std::string& name,
                         const std::string& columns_flag);
 
+/// Throws std::invalid_argument when the header tells another dialect than `format`.
+void RequireFormat(std::string_view text, const std::string& name, Format format);
+
 /// The poses of a log as they stand in the file, in the units and the frame of its dialect.
 struct LogRows {
   Trajectory trajectory;

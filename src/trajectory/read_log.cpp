@@ -108,6 +108,10 @@ void RefuseNoText(std::string_view text, const std::string& name) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
     throw std::invalid_argument(name + ": is UTF-16: save it as UTF-8 text");
   }
+  if (text.substr(0, text.find('\n')).find('\0') != text.npos) {
+    throw std::invalid_argument(
+        fmt::format("{}:1: byte 0x00; this is no text file: name a log of poses", name));
+  }
   if (text.find('\n') == text.npos && text.find('\r') < text.size() - 1) {
     throw std::invalid_argument(name + ": its lines end with CR alone: save it with LF or CRLF");
   }
@@ -146,6 +150,7 @@ Log ReadLog(std::string_view text, const std::string& name, const ReadOptions& o
     log.format = Format::kRift;
     rows = ReadColumns(text, name, options);
   } else {
+    if (options.format != Format::kAuto) RequireFormat(text, name, options.format);
     log.format = options.format == Format::kAuto
                      ? FormatFromHeader(text, name, options.columns_flag)
                      : options.format;

@@ -238,7 +238,9 @@ TEST_CASE("A bad log is refused with its row and its rule") {
   CHECK(Refusal("t_s,x_m,y_m,x_m\n") ==
         "log.csv:1: the header has two columns 'x_m': rename or remove one of them");
   CHECK(Refusal("t_s,x_m,y_m,,\n0,0,0,,\n1,1,0,,\n") == "accepted");
-  CHECK(Refusal(good, Format::kTracker) == "log.csv:1: column t is missing");
+  CHECK(Refusal(good, Format::kTracker) ==
+        "log.csv: its header is of dialect rift, and the format asked for is tracker: leave it at "
+        "auto, or name another log");
   CHECK(Refusal("0 1 2 3\n1 2 3 4\n") ==
         "log.csv:1: 4 columns, and tum has 8: t tx ty tz qx qy qz qw");
   CHECK(Refusal("0 1 2 3 0 0 0 0\n") == "log.csv:1: the quaternion has zero length");
