@@ -53,7 +53,9 @@ void ReadRangeKind(const Node& node, const std::string& key, experiment::Paramet
     parameter.is_logarithmic = ReadName(entry->value, {Join(key, "scale"), {}, ""}, kScales) == 1;
   }
   if (parameter.is_logarithmic && (parameter.is_integer || parameter.min <= 0.0)) {
-    Fail(node, key, "scale: log needs min above 0, and no integers");
+    Fail(
+        node, key,
+        fmt::format("scale: log needs min above 0, which is {:g}, and no integers", parameter.min));
   }
   if (parameter.is_integer && !(is_whole(parameter.min) && is_whole(parameter.max))) {
     Fail(node, key, "min and max of integers must be whole");
@@ -69,7 +71,11 @@ void ReadRange(const Node& node, const std::string& key, experiment::Parameter& 
     if (!number) Fail(entry->value, Join(key, bound), "must be a number");
     (bound[1] == 'i' ? parameter.min : parameter.max) = *number;
   }
-  if (!(parameter.min < parameter.max)) Fail(node, key, "min must be below max");
+  if (!(parameter.min < parameter.max)) {
+    Fail(node, key,
+         fmt::format("min is {:g}, and it must be below max, which is {:g}", parameter.min,
+                     parameter.max));
+  }
   ReadRangeKind(node, key, parameter);
 }
 

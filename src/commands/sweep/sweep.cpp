@@ -8,6 +8,7 @@
 
 #include "calibrate.hpp"
 #include "compare.hpp"
+#include "programs.hpp"
 #include "report.hpp"
 #include "request.hpp"
 #include "rift/commands/arguments/flags.hpp"
@@ -103,7 +104,12 @@ int EndWithoutGap(const SweepRequest& request, const fs::path& out,
   const std::string message =
       fmt::format("{}: not one of {} trials could be compared; the first: {}", request.experiment,
                   result.rows.size(), result.rows.front().reason);
-  if (result.candidate_kind == "logs") throw std::invalid_argument(message);
+  const auto lacks_log = [](const sweep::TrialRow& row) {
+    return row.status == sweep::TrialStatus::kMissing ||
+           row.status == sweep::TrialStatus::kUnreadable;
+  };
+  const bool is_input = std::all_of(result.rows.begin(), result.rows.end(), lacks_log);
+  if (is_input || result.candidate_kind == "logs") throw std::invalid_argument(message);
   terminal::Say("rift: " + message);
   return terminal::kNotReached;
 }
@@ -162,14 +168,23 @@ void RefuseOtherSweep(const SweepRequest& request, const experiment::Experiment&
                   out.string(), saved.string()));
 }
 
+/// As it can be typed again.
+std::string ForShell(const std::string& word) {
+  if (word.find_first_of(" \t'\"\\$&;()<>|*?[]#`!{}") == word.npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 /// Logs are compared in seconds and keep no journal.
 int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
   if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
     terminal::Say("stopped; nothing was written, and the same command starts over");
     return terminal::kStopped;
   }
-  terminal::Say(fmt::format(
-      "stopped; the same command goes on where it was (rift sweep --status {})", out.string()));
+  terminal::Say(
+      fmt::format("stopped; the same command goes on where it was (rift sweep --status {})",
+                  ForShell(out.string())));
   return terminal::kStopped;
 }
 
@@ -221,6 +236,7 @@ int Sweep(const SweepRequest& request) {
   const experiment::Experiment loaded = LoadFor(request);
   if (!request.engine.shard.empty()) return RunShard(request, loaded);
   const std::optional<sweep::SlurmOptions> cluster = ClusterFor(request, loaded);
+  if (!cluster) RequirePrograms(loaded, request.experiment);  // a cluster's nodes have their own
   if (loaded.goal == experiment::Goal::kCalibrate) {
     if (request.serve) {
       throw std::invalid_argument(
@@ -276,7 +292,8 @@ int Sweep(const SweepRequest& request) {
   lock.RequireInPlace();
   if (!request.quiet) {
     if (experiment.candidate.kind != experiment::CandidateKind::kLogs) {
-      terminal::Say(fmt::format("worst row again: rift simulate --replay {} worst", out.string()));
+      terminal::Say(
+          fmt::format("worst row again: rift simulate --replay {} worst", ForShell(out.string())));
     }
     terminal::Say("report: " + (out / "report.html").string());
   }
@@ -315,9 +332,11 @@ void AddOptions(CLI::App& app, SweepRequest& request) {
   AddKeysFlag(app);
   app.add_flag("--brief", request.brief,
                "print five lines: what fails, where, why, how sure, what next");
-  app.add_flag("--quiet", request.quiet, "no progress");
-  app.add_flag("--json-progress", request.json_progress, "progress as lines of JSON on stderr");
-  app.add_flag("--json", request.json, "print the summary (or status) as JSON instead of text");
+  CLI::Option* quiet = app.add_flag("--quiet", request.quiet, "no progress");
+  app.add_flag("--json-progress", request.json_progress, "progress as lines of JSON on stderr")
+      ->excludes(quiet);
+  app.add_flag("--json", request.json, "print the summary (or status) as JSON instead of text")
+      ->excludes(app.get_option("--brief"));
   app.add_option("--write-robot", request.write_robot,
                  "goal: calibrate: write the fitted robot, to be used as include:")
       ->type_name("FILE.yaml");

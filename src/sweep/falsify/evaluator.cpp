@@ -127,6 +127,22 @@ void CheckDimension(const experiment::Experiment& experiment) {
   }
 }
 
+/// What a template names is said now, before a folder is made.
+void CheckTemplate(const experiment::Experiment& experiment, const experiment::PathTemplate& path,
+                   const std::string& key) {
+  experiment::Theta first;
+  for (const experiment::Parameter& parameter : experiment.space.parameters) {
+    first.push_back(parameter.levels.empty() ? experiment::NumberValue(parameter.min)
+                                             : parameter.levels.front());
+  }
+  try {
+    experiment::FillTemplate(path.text, experiment.space.parameters, first,
+                             experiment.reference.trials.names.front());
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", key, error.what()));
+  }
+}
+
 }  // namespace
 
 void CheckPaths(const experiment::Experiment& experiment) {
@@ -165,6 +181,10 @@ Evaluator::Evaluator(const experiment::Experiment& experiment, std::string exper
   const bool reference_is_logs = experiment.reference.kind == ReferenceKind::kLogs;
   if (candidate_is_logs) RequirePath(experiment.candidate.path, "candidate.path");
   if (reference_is_logs) RequirePath(experiment.reference.path, "reference.path");
+  InFile(experiment_file_, [&] {
+    if (candidate_is_logs) CheckTemplate(experiment, experiment.candidate.path, "candidate.path");
+    if (reference_is_logs) CheckTemplate(experiment, experiment.reference.path, "reference.path");
+  });
   if (candidate_is_logs && reference_is_logs) {
     InFile(experiment_file_, [&] { CheckPaths(experiment); });
   }

@@ -36,8 +36,14 @@ std::string Answer(const std::vector<std::string>& arguments) {
         "{}: --engine slurm needs Slurm's commands in PATH; without them use --engine local",
         words));
   }
+  const bool is_named = words.starts_with(arguments[0] + ":");
   const std::string text =
-      fmt::format("{}: {}", arguments[0], words.empty() ? "failed without a word" : words);
+      fmt::format("{}{}{}", is_named ? "" : arguments[0] + ": ",
+                  words.empty() ? "failed without a word" : words,
+                  words.find("configuration source") == words.npos
+                      ? ""
+                      : "; --engine slurm works where Slurm answers, as on its login node: use "
+                        "--engine local here");
   if (IsTemporary(words)) throw SlurmBusy(text);
   throw std::runtime_error(text);
 }
