@@ -91,7 +91,13 @@ void RefuseEmptyValues(CLI::App& subcommand) {
                           option->check_name("--board");
     if (is_flag) option->disable_flag_override();
     if (is_flag || has_rule) continue;
-    option->transform(CLI::Validator([](std::string& value) { return ValueProblem(value); }, ""));
+    // A pattern has to be quoted, and its reader replaces the ~.
+    const bool may_be_pattern = option->check_name("--camera") || option->check_name("--images");
+    option->transform(CLI::Validator(
+        [may_be_pattern](std::string& value) {
+          return may_be_pattern && !value.empty() ? "" : ValueProblem(value);
+        },
+        ""));
   }
 }
 

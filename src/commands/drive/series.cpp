@@ -146,7 +146,11 @@ void Series::SetScene(const PlannedTrial& trial) {
   if (request_.before_each.empty()) return;
   std::vector<std::string> words = WordsOf(request_.before_each);
   for (std::string& word : words) {
-    word = experiment::FillTemplate(word, plan_.parameters, trial.theta, trial.trial);
+    try {
+      word = experiment::FillTemplate(word, plan_.parameters, trial.theta, trial.trial);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("--before-each: {}", error.what()));
+    }
   }
   scene_.emplace(words);
   const DriveAddress to = scene_->address().value_or(DriveAddress{});

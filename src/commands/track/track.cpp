@@ -105,8 +105,12 @@ vision::WorldFrame WorldFor(const TrackRequest& request, const vision::WorldSett
   if (request.world == "first") return WorldFromRobot(setting);
   const vision::FloorMarks marks =
       vision::ReadFloorMarks(files::ReadFile(request.world), request.world);
-  return marks.tags.empty() ? view::WorldFromClicks(setting, marks.points)
-                            : WorldFromFloorTags(setting, marks.tags);
+  try {
+    return marks.tags.empty() ? view::WorldFromClicks(setting, marks.points)
+                              : WorldFromFloorTags(setting, marks.tags);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("--world {}: {}", request.world, error.what()));
+  }
 }
 
 /// Throws std::invalid_argument when the file holds a better frame than the new one.

@@ -9,8 +9,12 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
+#include "rift/vision/camera/capture_options.hpp"
+#include "rift/vision/camera/jpeg.hpp"
 #include "rift/vision/camera/picture_reader.hpp"
 
 namespace rift::vision {
@@ -18,6 +22,8 @@ namespace rift::vision {
 namespace {
 
 constexpr int kColour = 90;  // saturation of 255 that no grey cast of a lamp reaches
+
+constexpr double kMost_mpixel = CaptureOptions{}.most_mpixel;
 
 // Tried in turn: what one width misses the next may find. A board whose squares are too small at
 // these is too far away to calibrate with, and a whole 1080p picture takes ten times as long.
@@ -121,10 +127,32 @@ BoardView FindIn(const cv::Mat& picture, const Board& board, const std::string& 
   return view;
 }
 
-BoardView Undecodable(const std::string& name) {
+BoardView Unusable(const std::string& name, const std::string& problem) {
   BoardView view{.name = name};
-  view.problem = "the picture cannot be decoded";
+  view.problem = problem;
   return view;
+}
+
+BoardView Undecodable(const std::string& name) {
+  return Unusable(name, "the picture cannot be decoded");
+}
+
+/// What is wrong with a JPEG before OpenCV reads it: that would decode any size, and have libjpeg
+/// complain on stderr. Empty: nothing, or it is no JPEG.
+std::string JpegProblem(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+  const auto size = SizeOfJpeg(bytes);
+  if (!size) return "";
+  if (double(size->width_px) * size->height_px > 1e6 * kMost_mpixel) {
+    return fmt::format("{} x {} pixels, and at most {:g} million are read: make it smaller",
+                       size->width_px, size->height_px, kMost_mpixel);
+  }
+  const bool is_whole =
+      JpegReader()
+          .Read(bytes, size->width_px, size->height_px, {0, 0, size->width_px, size->height_px})
+          .has_value();
+  return is_whole ? "" : "its JPEG is damaged: copy it again, or leave it out";
 }
 
 }  // namespace
@@ -137,8 +165,10 @@ void Board::Check() const {
                     columns, rows));
   }
   if (!(square_m > 0.0) || square_m > 10.0) {
-    throw std::invalid_argument(
-        fmt::format("squares of {} m: the side of one square in metres is needed", square_m));
+    throw std::invalid_argument(fmt::format(
+        "squares of {:g} m: the side of one square in metres is needed, above 0 and up to 10 "
+        "(25 mm are 0.025)",
+        square_m));
   }
 }
 
@@ -150,6 +180,8 @@ BoardView FindBoard(const Frame& frame, const Board& board, const std::string& n
 
 BoardView FindBoard(const std::string& path, const Board& board) {
   const std::string name = std::filesystem::path(path).filename().string();
+  const std::string problem = JpegProblem(path);
+  if (!problem.empty()) return Unusable(name, problem);
   const cv::Mat picture = cv::imread(path, cv::IMREAD_COLOR);
   return picture.empty() ? Undecodable(name) : FindIn(picture, board, name, BoardSearch::kThorough);
 }

@@ -188,7 +188,8 @@ WorldFrame WorldOf(const yaml::Node::Entry& entry) {
   }
   const Eigen::Matrix3d turn = world.world_from_camera.linear();
   if (!(turn * turn.transpose()).isIdentity(1e-6) || turn.determinant() < 0.0) {
-    yaml::Fail(entry.value, entry.key + ".world_from_camera", "a rotation and a translation");
+    yaml::Fail(entry.value, entry.key + ".world_from_camera",
+               "must be a rotation and a translation: 16 numbers, row by row");
   }
   for (const MarkBlock& tag : block.tags) {
     world.marks.push_back({tag.id, {tag.x_m, tag.y_m, tag.z_m}, {tag.u_px, tag.v_px}});
@@ -257,7 +258,9 @@ std::string_view ModelName(const CameraModel& camera) {
 
 CameraModel ReadCamera(std::string_view text, const std::string& source) {
   const yaml::Node root = yaml::Parse(WithoutOpenCvTags(text), source);
-  if (!root.IsMap()) throw yaml::Error(fmt::format("{}: this is no camera file", source));
+  if (!root.IsMap())
+    throw yaml::Error(
+        fmt::format("{}: this is no camera file (rift track --calibrate makes one)", source));
   CameraModel camera;
   if (const yaml::Node::Entry* name = root.Find("camera_name")) camera.name = name->value.text;
   ReadSize(root, camera);

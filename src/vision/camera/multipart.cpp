@@ -52,7 +52,12 @@ MultipartReader::MultipartReader(std::string_view content_type, std::size_t most
   constexpr std::string_view kBoundary = "boundary=";
   const std::string lower = Lower(content_type);
   const std::size_t at = lower.find(kBoundary);
-  if (!lower.starts_with("multipart/") || at == std::string::npos) {
+  if (lower.starts_with("multipart/") && at == std::string::npos) {
+    throw std::invalid_argument(fmt::format(
+        "the server names no boundary between its pictures: it sends '{}', without boundary=",
+        content_type));
+  }
+  if (!lower.starts_with("multipart/")) {
     throw std::invalid_argument(
         fmt::format("the server sends '{}', but rift reads MJPEG (multipart/x-mixed-replace)",
                     content_type.empty() ? "no content type" : content_type));

@@ -92,7 +92,10 @@ class Connection {
     int left = 0;
     const CURLMsg* message = curl_multi_info_read(multi_.get(), &left);
     const CURLcode code = message != nullptr ? message->data.result : CURLE_OK;
-    return code == CURLE_OK ? "the server ended the stream" : curl_easy_strerror(code);
+    if (code == CURLE_OK) return "the server ended the stream";
+    // A first line that is not http's is taken for that of http 0.9.
+    if (code == CURLE_UNSUPPORTED_PROTOCOL) return "what answers there does not speak http";
+    return curl_easy_strerror(code);
   }
 
  private:
@@ -106,12 +109,23 @@ class Connection {
   std::unique_ptr<CURL, EasyCleanup> easy_;
 };
 
+/// Throws std::invalid_argument for what no server can be asked at.
+void RequireAddress(const std::string& url) {
+  CURLU* parts = curl_url();
+  const CURLUcode code = curl_url_set(parts, CURLUPART_URL, url.c_str(), 0);
+  curl_url_cleanup(parts);
+  if (code == CURLUE_OK) return;
+  throw std::invalid_argument(fmt::format(
+      "{}: it is no address of a camera, http://HOST:PORT/PATH with a port up to 65535", url));
+}
+
 /// An MJPEG stream over http with its JPEGs as they were sent. OpenCV's readers decode each and
 /// pile up 1.75 s of latency behind a slow reader.
 class StreamSource : public CameraSource {
  public:
   StreamSource(std::string url, const CaptureOptions& options)
       : url_(std::move(url)), options_(options), again_(options.reconnect_s) {
+    RequireAddress(url_);
     Connect();
   }
 
@@ -124,7 +138,12 @@ class StreamSource : public CameraSource {
     if (!goes_on) {
       Break(connection_->Reason());
     } else if (now_s - heard_s_ > kSilent_s) {
-      Break(fmt::format("nothing came for {:.0f} s", kSilent_s));
+      const std::uint64_t bad = parts_ ? skipped_ + parts_->Skipped() : skipped_;
+      Break(fmt::format("nothing came for {:.0f} s{}", kSilent_s,
+                        bad == 0 ? ""
+                                 : fmt::format(", after {} parts that are no picture or larger "
+                                               "than track.capture.most_mbyte, {:g}",
+                                               bad, options_.most_mbyte)));
     } else {
       connection_->Wait();
     }

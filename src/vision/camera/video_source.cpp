@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kUnknownRate_hz = 30.0;
 constexpr int kWait_ms = 100;
+constexpr const char* kNotOpened =
+    "FFmpeg cannot open it: is the camera on, and are address, user and password right? "
+    "(OPENCV_FFMPEG_LOGLEVEL=16 shows what FFmpeg says)";
 
 void Take(const cv::Mat& picture, Frame& frame) {
   frame.width_px = picture.cols;
@@ -23,13 +26,21 @@ void Take(const cv::Mat& picture, Frame& frame) {
   frame.bytes.assign(picture.datastart, picture.dataend);
 }
 
+/// FFmpeg's own lines on stderr are left out, unless a person asks for them; read by OpenCV at the
+/// first open.
+void QuietFfmpeg() { setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); }
+
 /// A file that FFmpeg decodes.
 class VideoSource : public CameraSource {
  public:
   explicit VideoSource(const std::string& name) : name_(name), opened_s_(SteadyNow_s()) {
     if (!std::filesystem::exists(name)) {
-      throw std::invalid_argument(fmt::format("{}: there is no such file", name));
+      const bool may_be_address = name.find(':') != std::string::npos;
+      throw std::invalid_argument(fmt::format(
+          "{}: there is no such file{}", name,
+          may_be_address ? "; the address of a camera begins with http:// or rtsp://" : ""));
     }
+    QuietFfmpeg();
     if (!capture_.open(name, cv::CAP_FFMPEG)) {
       throw std::invalid_argument(fmt::format("{}: FFmpeg cannot open it: is it a video?", name));
     }
@@ -76,7 +87,8 @@ class NetworkSource : public CameraSource {
     // Read by OpenCV at each open; what a person has set stays. Over UDP single lost packets smear
     // the picture for seconds.
     setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", "rtsp_transport;tcp|fflags;nobuffer", 0);
-    if (!Open()) Break("FFmpeg cannot open it");
+    QuietFfmpeg();
+    if (!Open()) Break(kNotOpened);
   }
 
   bool Read(Frame& frame) override {
@@ -116,7 +128,7 @@ class NetworkSource : public CameraSource {
     }
     again_.Tries();
     if (Open()) return true;
-    Break("FFmpeg cannot open it");
+    Break(kNotOpened);
     return false;
   }
   void Break(const std::string& reason) {

@@ -116,9 +116,15 @@ void CheckPoints(const CameraModel& camera, const std::vector<WorldPoint>& point
   const double worst_m = *std::max_element(off_m.begin(), off_m.end());
   const double residual_m = Residual_m(camera, points);
   if (residual_m <= limit_m && worst_m <= 2.0 * limit_m) return;
+  std::string how_far = "from no place above the floor";
+  if (std::isfinite(residual_m)) how_far = fmt::format("{:.1f} mm RMS", 1e3 * residual_m);
+  if (residual_m <= limit_m) {
+    how_far += fmt::format(", and one {:.1f} mm off where the others put it", 1e3 * worst_m);
+  }
   throw std::invalid_argument(fmt::format(
-      "the places of the points do not fit what the camera sees, {:.1f} mm RMS (limit {:g} mm): {}",
-      1e3 * residual_m, 1e3 * limit_m, Culprit(camera, points, limit_m)));
+      "the places of the points do not fit what the camera sees, {} (limit {:g} mm{}): {}", how_far,
+      1e3 * limit_m, residual_m <= limit_m ? ", for one twice that" : "",
+      Culprit(camera, points, limit_m)));
 }
 
 std::optional<double> ScaleByTag(const CameraModel& camera, const std::vector<TagDetection>& seen,

@@ -151,8 +151,13 @@ WorldFrame WorldFromTags(const CameraModel& camera, const std::vector<ReferenceM
   }
   if (points.size() < kLeastPoints) {
     throw std::invalid_argument(
-        fmt::format("a world frame needs {} reference tags, {} of {} are seen (not {})",
-                    kLeastPoints, points.size(), tags.size(), missing.empty() ? "any" : missing));
+        tags.size() < kLeastPoints
+            ? fmt::format(
+                  "a world frame needs {} reference tags or more, and the file names {}: lay "
+                  "and name more",
+                  kLeastPoints, tags.size())
+            : fmt::format("a world frame needs {} reference tags, {} of {} are seen (not {})",
+                          kLeastPoints, points.size(), tags.size(), missing));
   }
   CheckPoints(camera, points, limit_m);
   WorldFrame world =

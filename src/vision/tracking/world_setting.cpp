@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "rift/vision/tracking/world_check.hpp"
@@ -89,11 +92,52 @@ void CheckScaleOf(const WorldSetting& setting, const WorldFrame& world,
   }
 }
 
+/// Places in centimetres fit each other and break the limit by the factor alone: what is said is
+/// the factor then.
+void RefuseOtherUnit(const WorldSetting& setting, const std::vector<ReferenceMark>& marks,
+                     const std::vector<TagDetection>& seen) {
+  constexpr double kGross = 10.0;
+  CameraModel camera = setting.session.camera();
+  try {
+    camera.world = WorldFromTags(camera, marks, seen, HUGE_VAL);
+  } catch (const std::invalid_argument&) {
+    return;
+  }
+  const TagOptions& tag = setting.session.tag();
+  const auto scale = ScaleByTag(camera, seen, tag.id, tag.size_m, tag.height_m);
+  if (scale && *scale > kGross) CheckScale(*scale, tag.size_m, setting.options.world_scale);
+}
+
+WorldFrame FrameOf(const WorldSetting& setting, const std::vector<ReferenceMark>& marks,
+                   const std::vector<TagDetection>& seen) {
+  try {
+    return WorldFromTags(setting.session.camera(), marks, seen, setting.options.world_limit_m);
+  } catch (const std::invalid_argument&) {
+    RefuseOtherUnit(setting, marks, seen);
+    throw;
+  }
+}
+
+/// One tag has one place.
+void RefuseTwice(const yaml::Node& root) {
+  const yaml::Node::Entry* tags = root.Find("tags");
+  if (tags == nullptr) return;
+  std::set<std::string> ids;
+  for (const yaml::Node& tag : tags->value.items) {
+    const yaml::Node::Entry* id = tag.Find("id");
+    if (id != nullptr && !ids.insert(id->value.text).second) {
+      yaml::Fail(id->value, "tags[].id", "this tag has a place already: name each tag once");
+    }
+  }
+}
+
 }  // namespace
 
 FloorMarks ReadFloorMarks(std::string_view text, const std::string& source) {
   FloorMarks marks;
-  yaml::Bind(yaml::Parse(text, source), marks);
+  const yaml::Node root = yaml::Parse(text, source);
+  yaml::Bind(root, marks);
+  RefuseTwice(root);
   if (marks.tags.empty() == marks.points.empty()) {
     throw std::invalid_argument(fmt::format(
         "{}: a world frame wants either `tags:` or `points:`, each with x_m and y_m", source));
@@ -156,8 +200,7 @@ WorldFrame WorldFromFloorTags(const WorldSetting& setting, const std::vector<Flo
     // With some missing, the last try says which.
     const bool is_last = search.IsOver(frame) || setting.session.capture().IsRecording();
     if (found >= marks.size() || is_last) {
-      WorldFrame world =
-          WorldFromTags(setting.session.camera(), marks, seen, setting.options.world_limit_m);
+      WorldFrame world = FrameOf(setting, marks, seen);
       CheckScaleOf(setting, world, seen);
       return world;
     }
