@@ -24,6 +24,16 @@ struct WrongInput {
   int exit_code = 2;
 };
 
+/// The tags of data/camera/tags.yaml, `times` as far out, and the first two where they are said.
+std::string Tags(double times, double x10_m, double x11_m) {
+  std::ostringstream text;
+  text << "tags:\n- {id: 10, x_m: " << times * x10_m << ", y_m: " << times * -0.17 << "}\n"
+       << "- {id: 11, x_m: " << times * x11_m << ", y_m: " << times * -0.17 << "}\n"
+       << "- {id: 12, x_m: " << times * 0.24 << ", y_m: " << times * 0.17 << "}\n"
+       << "- {id: 13, x_m: " << times * -0.24 << ", y_m: " << times * 0.17 << "}\n";
+  return text.str();
+}
+
 void Prepare(const test::TemporaryFolder& folder) {
   const std::map<std::string, std::string> texts{
       {"mm.yaml", "waypoints: [{x: -282, y: -65}, {x: 383, y: -60, stop: true}]\n"},
@@ -31,12 +41,22 @@ void Prepare(const test::TemporaryFolder& folder) {
        "waypoints: [{x: 0, y: 0}, {x: 1, y: 0, stop: true}]\ntrial: {arena: {x_max_m: 0.5}}\n"},
       {"broken.yaml", "waypoints: [\n"},
       {"none.yaml", "name: x\n"},
+      {"program.yaml",
+       "candidate: {kind: program, run: [nosuchprogram, '{out}']}\nspace: {mu: [1]}\n"},
+      {"beside.yaml", "candidate: {kind: program, run: [./gone.sh, '{out}']}\nspace: {mu: [1]}\n"},
+      {"plain.yaml", "candidate: {kind: program, run: [plain.yaml, '{out}']}\nspace: {mu: [1]}\n"},
+      {"swapped.yaml", Tags(1, 0.24, -0.24)},
+      {"cm.yaml", Tags(100, -0.24, 0.24)},
+      {"twice.yaml", "tags:\n- {id: 10, x_m: 0, y_m: 0}\n- {id: 10, x_m: 1, y_m: 0}\n"},
+      {"alone.yaml", "tags:\n- {id: 10, x_m: 0, y_m: 0}\n"},
+      {"video.mp4", "no video"},
       {"other/experiment.yaml", "name: other\n"},
       {"run/trajectory.csv", "t_s,x_m,y_m\n"},
       {"run/experiment.yaml", "name: run\n"},
       {"swept/table.csv", "id,gap_m,status\n1,,fell\n"},
       {"empty.csv", ""},
       {"odd.csv", "a,b\n"},
+      {"picture.csv", std::string("\x89PNG\r\0\0\n1,2\n", 12)},
       {"cell.csv", "t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,x,0,0\n"},
       {"there.svg", "x"},
       {"there.json", "x"},
@@ -166,6 +186,17 @@ TEST_CASE("Wrong input: rift gap") {
       {"gap %data/example/simulator.csv @dir", "Is a directory"},
       {"gap @empty.csv %data/example/robot1.csv", "the file is empty"},
       {"gap @odd.csv %data/example/robot1.csv", "odd.csv:1"},
+      {"gap @picture.csv %data/example/robot1.csv",
+       "picture.csv:1: byte 0x00; this is no text file"},
+      {"gap %configs/waypoints/paper.yaml %data/example/robot1.csv", "belongs to no dialect"},
+      {"gap" + kLogs + "--real-format tracker",
+       "robot1.csv: its header is of dialect rift, and the format asked for is tracker"},
+      {"gap" + kLogs + "--real-format tum", "leave it at auto"},
+      {"gap" + kLogs + "--sim-columns t=a,x=b", "--sim-columns: y is missing in 't=a,x=b'"},
+      {"gap" + kLogs + "--units furlong", "--units: 'furlong' is none of m, cm, mm"},
+      {"gap" + kLogs + "--real-units furlong", "--real-units: 'furlong' is none of m, cm, mm"},
+      {"gap" + kLogs + "--real-units mm --real-format rift", "leave out either"},
+      {"gap" + kLogs + "--window 1", "--window is for runs held together with their encoders"},
       {"gap @cell.csv %data/example/robot1.csv", "cell.csv:3: column x_m is 'x'"},
       {"gap" + kLogs + "%data/example/robot1.csv", "name it once"},
       {"gap" + kLogs + "--figur @x.svg", "did you mean --figure?"},
@@ -179,7 +210,8 @@ TEST_CASE("Wrong input: rift gap") {
       {"gap" + kLogs + "--profile %data/example/robot1.csv", "is an input or another output"},
       {"gap" + kLogs + "--threshold abc", "'abc' must be a number"},
       {"gap" + kLogs + "--threshold -1", "must be a number in [0"},
-      {"gap" + kLogs + "--samples 1.5", "--samples: '1.5' must be a whole number"},
+      {"gap" + kLogs + "--samples 1.5", "--samples: '1.5' must be a number in [2"},
+      {"gap" + kLogs + "--samples 1e3", "--samples: '1e3' must be a whole number"},
       {"gap" + kLogs + "--threshold ''", "--threshold: its value is empty"},
       {"gap" + kLogs + "--threshold", "--threshold needs its value, m; rift gap --help"},
       {"gap" + kLogs + "''", "REAL: its value is empty"},
@@ -223,6 +255,18 @@ TEST_CASE("Wrong input: rift sweep") {
       {"sweep" + kTask + out + "--set goal=find", "must be one of grid, falsify, calibrate"},
       {"sweep" + kTask + out + "--set reference.kind=logs", "reference.path is missing"},
       {"sweep" + kTask + out + "--set candidate.kind=logs", "candidate.path is missing"},
+      {"sweep" + kTask + out + "--json --brief", "--brief excludes --json"},
+      {"sweep" + kTask + out + "--quiet --json-progress", "--quiet excludes --json-progress"},
+      {"sweep" + kTask + out +
+           "--set goal=falsify --set space={\"v_min\":{\"min\":0.3,\"max\":0.1}}",
+       "min is 0.3, and it must be below max, which is 0.1"},
+      {"sweep" + kTask + out + "--set reference.kind=logs --set reference.path='{sruface}.csv'",
+       "reference.path: path '"},
+      {"sweep" + kTask + out + "--set reference.kind=logs --set reference.path='{surface.csv'",
+       "has a brace without its partner"},
+      {"sweep @program.yaml" + out, "candidate.run: there is no program 'nosuchprogram' in PATH"},
+      {"sweep @beside.yaml" + out, "candidate.run: there is no program ./gone.sh"},
+      {"sweep @plain.yaml" + out, "plain.yaml is not executable: chmod +x it"},
       {"sweep" + kTask + "--out -", "name a folder"},
       {"sweep" + kTask + "--out @new.json", "is the name of a file, and a sweep is a folder"},
       {"sweep" + kTask + "--out ''", "--out: its value is empty"},
@@ -239,6 +283,7 @@ TEST_CASE("Wrong input: rift sweep") {
 
 TEST_CASE("Wrong input: rift track") {
   const std::string board = "track --calibrate --images @dir ";
+  const std::string camera = "track --calibration %data/camera/camera.yaml --out @l.csv --camera ";
   Check({
       {"track", "--camera is missing: name a device"},
       {"track --camera @x", "--calibration is missing"},
@@ -247,6 +292,10 @@ TEST_CASE("Wrong input: rift track") {
       {"track --camera @x --calibration @broken.yaml --out @l.csv", "broken.yaml:2:1"},
       {"track --camera @no*.jpg --calibration %data/camera/camera.yaml --out @l.csv",
        "matches no picture"},
+      {camera + "@video.mp4", "FFmpeg cannot open it: is it a video?"},
+      {camera + "127.0.0.1:8080/video", "the address of a camera begins with http://"},
+      {camera + "http://", "it is no address of a camera"},
+      {camera + "http://camera:99999/video", "a port up to 65535"},
       {kFilm + "--fsp 3", "did you mean --fps?"},
       {kFilm + "--id 3,3", "3 is named twice"},
       {kFilm + "--id 999", "--id: Value 999 not in range 0 to 586"},
@@ -256,6 +305,12 @@ TEST_CASE("Wrong input: rift track") {
       {kFilm + "--duration -3", "--duration: '-3'"},
       {kFilm + "--images @dir", "belong to --calibrate"},
       {kFilm + "--world @gone.yaml", "cannot read"},
+      {kFilm + "--world @swapped.yaml", "swapped.yaml: the places of the points do not fit"},
+      {kFilm + "--world @swapped.yaml", "sees, from no place above the floor (limit 5 mm)"},
+      {kFilm + "--world @cm.yaml", "the places are centimetres: x_m and y_m are metres"},
+      {kFilm + "--world @twice.yaml",
+       "twice.yaml:3:8: key 'tags[].id' is 10: this tag has a place already"},
+      {kFilm + "--world @alone.yaml", "needs 4 reference tags or more, and the file names 1"},
       {kFilm + "--path @gone.csv", "cannot read"},
       {kFilm + "--times @gone.txt", "cannot read"},
       {kFilm + "--set track.tag.id=a", "must be a whole number"},
