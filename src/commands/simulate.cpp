@@ -180,8 +180,31 @@ void CheckNames(const SimulateRequest& request, const fs::path& out,
   CheckOutputs(all, named);
 }
 
-void Save(const fs::path& out, const experiment::Experiment& experiment,
-          const sweep::SimulatedRun& run) {
+/// Its check, with those proposals alone with which the same trial arrives.
+trial::SteeringCheck CheckOf(const Simulated& made) {
+  trial::SteeringCheck check = report::SteeringOf(made.experiment, made.run);
+  trial::TryProposals(check, [&made](const std::vector<trial::KeyProposal>& proposals) {
+    experiment::Experiment experiment = made.experiment;
+    std::vector<yaml::KeyValue> values;
+    for (const trial::KeyProposal& proposal : proposals) {
+      yaml::Node value = yaml::Node::Scalar(fmt::format("{:g}", proposal.value));
+      value.origin.source = "proposal";
+      values.push_back({proposal.key, value});
+    }
+    yaml::SetValues(experiment, values);
+    sweep::SimulatedTrial trial = made.trial;
+    trial.control = experiment.control;
+    trial.trial = experiment.trial;
+    sweep::SimulatedRun run = sweep::Simulate(trial);
+    trial::SteeringCheck of_run = report::SteeringOf(experiment, run);
+    return trial::TriedRun{std::move(run.result), std::move(of_run)};
+  });
+  return check;
+}
+
+void Save(const fs::path& out, const Simulated& made, const trial::SteeringCheck& check) {
+  const experiment::Experiment& experiment = made.experiment;
+  const sweep::SimulatedRun& run = made.run;
   const RunFiles files(out);
   files::WriteFile(files.experiment, experiment::WriteExperiment(experiment));
   files::WriteFile(files.truth, trajectory::WriteRift(run.truth));
@@ -189,7 +212,7 @@ void Save(const fs::path& out, const experiment::Experiment& experiment,
   if (!run.encoders.empty()) {
     files::WriteFile(files.encoders, odometry::EncodersCsv(run.encoders));
   }
-  files::WriteFile(files.summary, report::SimulationJson(experiment, run));
+  files::WriteFile(files.summary, report::SimulationJson(experiment, run, check));
   files::WriteFile(files.trajectory, trajectory::WriteRift(run.result.trajectory));
 }
 
@@ -284,7 +307,8 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
   RequireNothingBesideReplay(request);
   if (const std::optional<int> exit_code = ReplayProgram(request)) return *exit_code;
   const Simulated made = request.replay.empty() ? SimulateFile(request) : ReplayFor(request);
-  if (!IsStdout(request)) Save(made.out, made.experiment, made.run);
+  const trial::SteeringCheck check = CheckOf(made);
+  if (!IsStdout(request)) Save(made.out, made, check);
   WriteLogCopies(request.copies, made.run.result.trajectory);
   if (!request.pictures.figure.empty()) {
     DrawFigure(request.pictures.figure, made.experiment, made.trial, made.run);
@@ -294,11 +318,10 @@ int Simulate(const SimulateRequest& request, const std::function<void(const Simu
     terminal::PrintData(trajectory::WriteRift(made.run.result.trajectory));
   } else {
     terminal::Say("log: " + RunFiles(made.out).trajectory.string());
-    request.json ? terminal::PrintData(report::SimulationJson(made.experiment, made.run))
+    request.json ? terminal::PrintData(report::SimulationJson(made.experiment, made.run, check))
                  : terminal::PrintText(report::SimulationText(made.experiment, made.run));
   }
-  for (const std::string& line : report::SteeringLines(
-           report::SteeringOf(made.experiment, made.run), made.run.result.limits)) {
+  for (const std::string& line : report::SteeringLines(check, made.run.result.limits)) {
     terminal::Say(line);
   }
   return made.run.result.outcome == trial::Outcome::kReached ? terminal::kDone

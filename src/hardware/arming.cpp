@@ -178,7 +178,7 @@ std::optional<double> LatencyOver(const DriveRun& run, const odometry::OdometryO
   }
   const std::vector<Angle> wheels =
       WheelTurns(run.evidence.encoders, odometry::YawPerCount_rad(odometry));
-  if (seen.empty() || wheels.empty()) return std::nullopt;
+  if (seen.empty() || !AreTimed(wheels)) return std::nullopt;
   const std::optional<Lag> lag = EstimateLag(seen, wheels, -kMost_s, kMost_s);
   if (!lag || lag->scale < kLeastScale) return std::nullopt;
   const bool was_measured = run.latency && run.latency->delay.camera_s;

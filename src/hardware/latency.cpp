@@ -29,6 +29,12 @@ double Range(std::span<const Angle> angles) {
   return high->rad - low->rad;
 }
 
+/// Mean time between two.
+double Spacing_s(std::span<const Angle> angles) {
+  if (angles.size() < 2) return 0.0;
+  return (angles.back().t_s - angles.front().t_s) / static_cast<double>(angles.size() - 1);
+}
+
 /// It stands before its first time and after its last: all of the follower counts at every lag.
 double At(std::span<const Angle> angles, double t_s) {
   const auto after = std::lower_bound(angles.begin(), angles.end(), t_s,
@@ -101,6 +107,11 @@ std::vector<Angle> WheelTurns(std::span<const EncoderReading> readings, double r
     }
   }
   return angles;
+}
+
+bool AreTimed(std::span<const Angle> wheels) {
+  constexpr double kMostSpacing_s = 0.1;
+  return wheels.size() >= kLeastSamples && Spacing_s(wheels) < kMostSpacing_s;
 }
 
 namespace {
@@ -194,10 +205,33 @@ LoopDelay DelayOf(const std::vector<Angle>& wheels, const std::vector<double>& p
   return delay;
 }
 
-void RequireSeen(const std::optional<Lag>& lag, double turned_rad, double seen_rad) {
-  constexpr double kLeastScale = 0.4, kMostScale = 2.5, kMostNoise = 0.25;
-  const bool is_seen = lag && lag->scale > kLeastScale && lag->scale < kMostScale &&
-                       lag->residual_rad < kMostNoise * seen_rad;
+/// Steering to the left must turn wheels and picture to the left. The scale of a fit over all lags
+/// has the sign of the answer, since the pulses begin and end at different times.
+void RequireSides(std::span<const Angle> seen, std::span<const Angle> wheels,
+                  std::span<const Angle> commanded) {
+  constexpr double kMostNoise = 0.25;
+  const auto side = [&](std::span<const Angle> angles) {
+    const std::optional<Lag> lag = EstimateLag(angles, commanded, 0.0, kMostLag_s);
+    const bool is_clear = lag && lag->residual_rad < kMostNoise * Range(angles);
+    return is_clear ? lag->scale : 0.0;
+  };
+  const double seen_side = side(seen), wheel_side = side(wheels);
+  if (!(seen_side < 0.0)) return;
+  if (wheel_side > 0.0) {
+    throw std::runtime_error(
+        "steered to the left, the wheels turned the robot to the left by their encoders and the "
+        "picture shows it turning to the right: the picture is mirrored, or left and right are "
+        "swapped at both the motors and the encoders");
+  }
+  throw std::runtime_error(
+      "steered to the left, the robot turned to the right: swap {left} and {right} in "
+      "hardware.plain.format, or the plugs of its motors (motors that both run backwards and a "
+      "mirrored picture show the same)");
+}
+
+constexpr double kLeastScale = 0.4, kMostScale = 2.5;  // of the picture's turn over the wheels'
+
+void RequireSeen(bool is_seen, double turned_rad, double seen_rad) {
   if (is_seen) return;
   throw std::runtime_error(
       fmt::format("the wheels turned the robot by {:.1f} deg and the picture shows {:.1f} deg "
@@ -205,6 +239,32 @@ void RequireSeen(const std::optional<Lag>& lag, double turned_rad, double seen_r
                   "the wheels touch the floor, is it this robot's tag, and are the pictures of now "
                   "(hardware.turn.enabled=false leaves this check out)",
                   geometry::DegFromRad(turned_rad), geometry::DegFromRad(seen_rad), kMostLag_s));
+}
+
+/// The lag of the picture behind the wheels; no picture shows a turn before the wheels made it.
+Lag RequireBehindWheels(const std::optional<Lag>& lag, const std::vector<Angle>& wheels,
+                        double seen_rad) {
+  constexpr double kMostNoise = 0.25, kLeast_s = 0.02;
+  RequireSeen(lag && lag->scale > kLeastScale && lag->scale < kMostScale &&
+                  lag->residual_rad < kMostNoise * seen_rad,
+              Range(wheels), seen_rad);
+  const double error_s = std::max(kLeast_s, Spacing_s(wheels));
+  if (lag->lag_s >= -error_s) return *lag;
+  throw std::runtime_error(fmt::format(
+      "the picture shows the turn {:.0f} ms before the encoders do, which cannot be (they are read "
+      "every {:.0f} ms): the stamps of pictures and encoders are not of one clock, or the encoders "
+      "answer late",
+      -1e3 * lag->lag_s, 1e3 * Spacing_s(wheels)));
+}
+
+/// Without timed encoders: the lag of the picture behind the commands.
+Lag RequireBehindCommands(const std::optional<Lag>& lag, const std::vector<Angle>& wheels,
+                          double seen_rad) {
+  const double turned_rad = Range(wheels);
+  const bool is_as_far =
+      wheels.empty() || (seen_rad > kLeastScale * turned_rad && seen_rad < kMostScale * turned_rad);
+  RequireSeen(lag && lag->scale > 0.0 && is_as_far, turned_rad, seen_rad);
+  return *lag;
 }
 
 }  // namespace
@@ -230,18 +290,19 @@ std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
   }
   if (!turn.Run({}, kMostLag_s - kRest_s)) return std::nullopt;  // for the latest of pictures
   wheels = turn.Wheels();
-  // Without encoders the commands lead, and only the sum of all parts is seen.
-  const std::vector<Angle>& leader = wheels.empty() ? turn.Commanded() : wheels;
-  const std::optional<Lag> lag = EstimateLag(turn.Seen(), leader, kLeastLag_s, kMostLag_s);
+  RequireSides(turn.Seen(), wheels, turn.Commanded());
+  const double seen_rad = Range(turn.Seen());
   LatencyResult result{.turned_deg = geometry::DegFromRad(Range(wheels)),
-                       .seen_deg = geometry::DegFromRad(Range(turn.Seen()))};
-  if (wheels.empty()) {
-    if (!lag) RequireSeen(lag, Range(leader), Range(turn.Seen()));
-    result.delay.total_s = lag->lag_s;
+                       .seen_deg = geometry::DegFromRad(seen_rad)};
+  // Without timed encoders the commands lead, and only the sum of all parts is seen.
+  if (!AreTimed(wheels)) {
+    const std::optional<Lag> lag = EstimateLag(turn.Seen(), turn.Commanded(), 0.0, kMostLag_s);
+    result.delay.total_s = RequireBehindCommands(lag, wheels, seen_rad).lag_s;
     return result;
   }
-  RequireSeen(lag, Range(wheels), Range(turn.Seen()));
-  result.delay = DelayOf(wheels, pulses_s, options.pulse_s, *lag, one_way_s, robot.Record().poses);
+  const Lag lag = RequireBehindWheels(EstimateLag(turn.Seen(), wheels, kLeastLag_s, kMostLag_s),
+                                      wheels, seen_rad);
+  result.delay = DelayOf(wheels, pulses_s, options.pulse_s, lag, one_way_s, robot.Record().poses);
   return result;
 }
 

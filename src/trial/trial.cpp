@@ -71,6 +71,19 @@ void Recorder::DecidedOn(double pose_age_s) {
   mean_s = ages_ == 1 ? pose_age_s : mean_s + (pose_age_s - mean_s) / static_cast<double>(ages_);
 }
 
+void Recorder::Refused(bool is_move, bool is_turn) {
+  ++result_.poses_refused;
+  if (is_move) ++result_.refused_moves;
+  if (is_turn) ++result_.refused_turns;
+}
+
+void Recorder::CameIn(double pose_age_s) {
+  double& mean_s = result_.arrival_age_s;
+  ++came_in_;
+  mean_s =
+      came_in_ == 1 ? pose_age_s : mean_s + (pose_age_s - mean_s) / static_cast<double>(came_in_);
+}
+
 void Recorder::Decided(double now_s, const control::Decision& decision, size_t active_after) {
   for (; active_ < decision.waypoint; ++active_) {  // passed through, without a stop
     result_.visits[active_ - 1].reached_s = now_s;
@@ -111,6 +124,7 @@ class Loop {
         speeds_(task.program ? ""
                              : fmt::format("; control.v_min is {}, control.v_max {}",
                                            navigator.v_min, navigator.v_max)),
+        gate_(navigator.pose_gate),
         controller_(control::MakeController(task, navigator)),
         recorder_(controller_->waypoints(), options.log_period_s, observer) {}
 
@@ -120,6 +134,7 @@ class Loop {
   void Begin(const Sensed& sensed);
   bool ClockRuns(double now_s);
   bool TakePose(const Sensed& sensed);
+  void NoteRefused(const PoseMeasurement& pose);
   bool IsOver(const Sensed& sensed);
   void Act(double now_s, bool is_new_pose);
   control::Decision Decide(double now_s, bool is_new_pose);
@@ -130,6 +145,7 @@ class Loop {
   Robot& robot_;
   const TrialOptions& options_;
   const std::string speeds_;  ///< the limits of the speed, for who looks for a longer time
+  const control::PoseGateOptions gate_;
   std::unique_ptr<control::Controller> controller_;
   Recorder recorder_;
   std::optional<double> looked_at_s_;  ///< capture time of the newest pose seen, believed or not
@@ -182,10 +198,11 @@ bool Loop::TakePose(const Sensed& sensed) {
                         controller_->Observe({sensed.now_s, 0.0, sensed.pose->captured_s,
                                               sensed.pose->world_from_robot});
   if (!believed) {
-    recorder_.Refused();
+    NoteRefused(*sensed.pose);
     return false;
   }
   measured_ = *sensed.pose;
+  recorder_.CameIn(sensed.now_s - measured_.captured_s);
   const double tilt_rad = std::max(std::abs(measured_.roll_rad), std::abs(measured_.pitch_rad));
   if (!(tilt_rad > geometry::RadFromDeg(options_.fall_angle_deg))) {
     tilted_since_s_.reset();
@@ -193,6 +210,20 @@ bool Loop::TakePose(const Sensed& sensed) {
     tilted_since_s_ = measured_.captured_s;
   }
   return true;
+}
+
+/// By which limit of the gate; neither when the pose is not finite, or late.
+void Loop::NoteRefused(const PoseMeasurement& pose) {
+  const std::optional<control::TimedPose>& last = controller_->pose();
+  if (!last || !pose.world_from_robot.IsFinite() || !(pose.captured_s >= last->captured_s)) {
+    recorder_.Refused(false, false);
+    return;
+  }
+  const double interval_s = std::max(pose.captured_s - last->captured_s, gate_.min_interval_s);
+  const geometry::Pose2 &from = last->world_from_robot, &to = pose.world_from_robot;
+  recorder_.Refused((to.Position() - from.Position()).norm() > gate_.max_speed_mps * interval_s,
+                    std::abs(geometry::WrapToPi(to.yaw_rad - from.yaw_rad)) >
+                        gate_.max_yaw_rate_rad_s * interval_s);
 }
 
 bool Loop::IsOver(const Sensed& sensed) {

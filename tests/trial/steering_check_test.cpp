@@ -2,6 +2,7 @@
 // which the same robot arrives.
 #include "rift/trial/steering_check.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
@@ -45,17 +46,21 @@ struct Bench {
   void Set(const std::vector<KeyProposal>& proposals) {
     for (const KeyProposal& proposal : proposals) {
       const std::string& key = proposal.key;
-      double* value = key == "control.heading.p"        ? &navigator.heading.p
-                      : key == "control.heading.i"      ? &navigator.heading.i
-                      : key == "control.heading.d"      ? &navigator.heading.d
-                      : key == "control.distance.p"     ? &navigator.distance.p
-                      : key == "control.w_min"          ? &navigator.w_min
-                      : key == "control.w_max"          ? &navigator.w_max
-                      : key == "control.v_min"          ? &navigator.v_min
-                      : key == "control.v_max"          ? &navigator.v_max
-                      : key == "control.reach_radius_m" ? &navigator.reach_radius_m
-                      : key == "trial.timeout_s"        ? &options.timeout_s
-                                                        : nullptr;
+      double* value =
+          key == "control.heading.p"                      ? &navigator.heading.p
+          : key == "control.heading.i"                    ? &navigator.heading.i
+          : key == "control.heading.d"                    ? &navigator.heading.d
+          : key == "control.distance.p"                   ? &navigator.distance.p
+          : key == "control.w_min"                        ? &navigator.w_min
+          : key == "control.w_max"                        ? &navigator.w_max
+          : key == "control.v_min"                        ? &navigator.v_min
+          : key == "control.v_max"                        ? &navigator.v_max
+          : key == "control.reach_radius_m"               ? &navigator.reach_radius_m
+          : key == "trial.timeout_s"                      ? &options.timeout_s
+          : key == "trial.pose_stale_s"                   ? &options.pose_stale_s
+          : key == "control.pose_gate.max_speed_mps"      ? &navigator.pose_gate.max_speed_mps
+          : key == "control.pose_gate.max_yaw_rate_rad_s" ? &navigator.pose_gate.max_yaw_rate_rad_s
+                                                          : nullptr;
       INFO(key);
       REQUIRE(value != nullptr);
       CHECK(*value == proposal.was);
@@ -284,21 +289,237 @@ TEST_CASE("Motors that are swapped are told from weak steering") {
   CHECK(check.proposals.empty());
 }
 
-TEST_CASE("A robot that does not move is told of powers, not of gains") {
-  class Standing : public test::FakeRobot {
-   public:
-    using FakeRobot::FakeRobot;
-    void Command(const control::WheelPower&) override {}
-  };
-  Bench bench;
-  bench.options.timeout_s = 3.0;
-  bench.navigator.v_min = 0.05;
-  Standing robot(bench.robot);
-  const SteeringCheck check = bench.Check(RunTrial(robot, kTask, bench.navigator, bench.options));
+/// Wheels that do not turn below a power, one that turns slower than the other, and a camera whose
+/// poses are noisy.
+class Worn : public test::FakeRobot {
+ public:
+  Worn(const test::FakeRobotOptions& options, double dead_band, double right_share)
+      : FakeRobot(options), dead_band_(dead_band), right_share_(right_share) {
+    std::mt19937 random(3);
+    std::normal_distribution<> noise(0.0, 0.001);
+    spoil = [random, noise](Sensed& sensed) mutable {
+      if (!sensed.pose) return;
+      random.seed(static_cast<std::uint32_t>(1e4 * sensed.pose->captured_s) + 1);
+      sensed.pose->world_from_robot.x_m += noise(random);
+      sensed.pose->world_from_robot.y_m += noise(random);
+    };
+  }
+  void Command(const control::WheelPower& power) override {
+    const auto driven = [this](double p) { return std::abs(p) < dead_band_ ? 0.0 : p; };
+    FakeRobot::Command({driven(power.left), right_share_ * driven(power.right)});
+  }
+
+ private:
+  double dead_band_, right_share_;
+};
+
+struct WornBench : Bench {
+  double dead_band = 0.0, right_share = 1.0;
+  SteeringPrior prior = kPrior;
+
+  TrialResult Run() const {
+    test::FakeRobotOptions at_start = robot;
+    at_start.world_from_start = control::StartPose(kTask);
+    Worn worn(at_start, dead_band, right_share);
+    return RunTrial(worn, kTask, navigator, options);
+  }
+  SteeringCheck Check(const TrialResult& result) const {
+    return CheckSteering(result, kTask, navigator, options, prior);
+  }
+};
+
+TEST_CASE("A robot whose powers are too small to move it is given powers that do") {
+  WornBench bench;
+  // Dead band or friction; from the start, or as soon as it brakes before the waypoint.
+  bench.dead_band = GENERATE(0.1, 0.15);
+  const bool is_at_once = GENERATE(true, false);
+  const bool is_friction = GENERATE(true, false);
+  bench.prior.dead_band = is_friction ? 0.02 : bench.dead_band;
+  bench.prior.breakaway_power = is_friction ? bench.dead_band : 0.0;
+  bench.navigator.v_min = 0.02;
+  bench.navigator.v_max = is_at_once ? 0.05 : 0.3;
+  bench.navigator.w_max = 0.03;
+  const TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kTimedOut);
+  const SteeringCheck check = bench.Check(result);
+  INFO(Joined(check));
   REQUIRE(check.causes.size() == 1);
-  CHECK_THAT(check.causes[0], Catch::Contains("it hardly moved"));
-  REQUIRE(check.proposals.size() == 1);
+  CHECK_THAT(check.causes[0], Catch::Contains("it does not move: 0.00") &&
+                                  Catch::Contains(is_friction ? "breakaway torque over stall torque"
+                                                              : "simulation.motor.dead_band"));
+  REQUIRE_FALSE(check.proposals.empty());
   CHECK(check.proposals[0].key == "control.v_min");
+  CHECK(check.proposals[0].value >= 1.2 * bench.dead_band - 0.005);
+  bench.Set(check.proposals);
+  CHECK(bench.Run().outcome == Outcome::kReached);
+}
+
+TEST_CASE("A robot that stands at powers that should move it is told of motors and link") {
+  WornBench bench;
+  bench.dead_band = 1.0;
+  const SteeringCheck check = bench.Check(bench.Run());
+  INFO(Joined(check));
+  REQUIRE(check.causes.size() == 1);
+  CHECK_THAT(check.causes[0], Catch::Contains("it does not move") &&
+                                  Catch::Contains("a link that loses the commands"));
+  CHECK(check.proposals.empty());
+}
+
+TEST_CASE("No speed is proposed at which the wheels do not turn") {
+  WornBench bench;
+  bench.prior.dead_band = 0.05;
+  bench.prior.breakaway_power = 0.1;
+  bench.robot.command_delay_s = 0.2;
+  bench.navigator.v_min = bench.navigator.v_max = 0.6;
+  bench.navigator.reach_radius_m = 0.005;
+  const SteeringCheck check = bench.Check(bench.Run());
+  INFO(Joined(check));
+  const auto slow = std::find_if(check.proposals.begin(), check.proposals.end(),
+                                 [](const auto& one) { return one.key == "control.v_min"; });
+  REQUIRE(slow != check.proposals.end());
+  CHECK(slow->value == Approx(0.12));
+}
+
+TEST_CASE("The proposal of a slower run contains the time it needs") {
+  Bench bench;
+  bench.options.timeout_s = 4.0;
+  bench.robot.command_delay_s = 0.3;
+  bench.navigator.v_min = bench.navigator.v_max = 0.6;
+  const TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kTimedOut);
+  const SteeringCheck check = bench.Check(result);
+  INFO(Joined(check));
+  CHECK(check.proposals.back().key == "trial.timeout_s");
+  bench.Set(check.proposals);
+  CHECK(bench.Run().outcome == Outcome::kReached);
+}
+
+TEST_CASE(
+    "Poses that are all stale are told with their age, and the limit that is proposed drives") {
+  Bench bench;
+  bench.robot.sensing_delay_s = 0.6;
+  const TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kTimedOut);
+  const SteeringCheck check = bench.Check(result);
+  INFO(Joined(check));
+  REQUIRE_FALSE(check.causes.empty());
+  CHECK_THAT(check.causes[0], Catch::Contains("decisions were zero power: poses are 0.6") &&
+                                  Catch::Contains("trial.pose_stale_s is 0.4 s"));
+  CHECK(check.proposals.at(0).key == "trial.pose_stale_s");
+  bench.Set(check.proposals);
+  CHECK(bench.Run().stale_decisions == 0);
+}
+
+TEST_CASE("Of a gate that is too narrow its key is proposed and no gain") {
+  Bench bench;
+  const bool is_speed = GENERATE(true, false);
+  if (is_speed) bench.navigator.pose_gate.max_speed_mps = 0.1;
+  if (!is_speed) bench.navigator.pose_gate.max_yaw_rate_rad_s = 0.02;
+  bench.options.timeout_s = 6.0;
+  const TrialResult result = bench.Run();
+  REQUIRE(result.outcome != Outcome::kReached);
+  const SteeringCheck check = bench.Check(result);
+  INFO(Joined(check));
+  REQUIRE(check.causes.size() == 1);
+  CHECK_THAT(check.causes[0], Catch::Contains("refused as jumps beyond"));
+  REQUIRE(check.proposals.size() == 1);
+  CHECK(check.proposals[0].key ==
+        (is_speed ? "control.pose_gate.max_speed_mps" : "control.pose_gate.max_yaw_rate_rad_s"));
+  bench.Set(check.proposals);
+  CHECK(bench.Run().outcome == Outcome::kReached);
+}
+
+TEST_CASE("Poses that jump farther than the robot drives are told from a gate that is too narrow") {
+  Bench bench;
+  test::FakeRobotOptions at_start = bench.robot;
+  at_start.world_from_start = control::StartPose(kTask);
+  test::FakeRobot robot(at_start);
+  robot.spoil = [](Sensed& sensed) {
+    if (std::llround(50.0 * sensed.now_s) % 3 != 0) sensed.pose->world_from_robot.x_m += 5.0;
+  };
+  const TrialResult result = RunTrial(robot, kTask, bench.navigator, bench.options);
+  REQUIRE(result.poses_refused > 0);
+  if (result.outcome == Outcome::kReached) bench.options.timeout_s = 1.0;
+  TrialResult late = result;
+  late.outcome = Outcome::kTimedOut;
+  const SteeringCheck check = bench.Check(late);
+  REQUIRE(check.causes.size() == 1);
+  CHECK_THAT(check.causes[0], Catch::Contains("the camera's poses jump"));
+  CHECK(check.proposals.empty());
+}
+
+TEST_CASE("A pull to one side is named, with its side, and the proposal arrives in spite of it") {
+  WornBench bench;
+  bench.robot = {.command_delay_s = 0.1, .sensing_delay_s = 0.07, .frame_period_s = 0.05};
+  bench.right_share = 0.6;
+  const TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kTimedOut);
+  const SteeringCheck check = bench.Check(result);
+  INFO(Joined(check));
+  REQUIRE_FALSE(check.causes.empty());
+  CHECK_THAT(check.causes[0], Catch::Contains("it pulls to the right"));
+  // Half of what the wheels differ by, over the track.
+  CHECK(check.model.pull_rad_s == Approx(-0.4 * kSpeed_mps / 0.083).epsilon(0.15));
+  bench.Set(check.proposals);
+  CHECK(bench.Run().outcome == Outcome::kReached);
+}
+
+TEST_CASE("A steering that w_min raises is told so") {
+  Bench bench;
+  bench.navigator.heading = {0.005, 0.0, 0.0};
+  bench.options.timeout_s = 60.0;
+  const SteeringCheck check = bench.Check(bench.Run());
+  CHECK_THAT(Joined(check), Catch::Contains("control.w_min raises that to 0.02"));
+}
+
+TEST_CASE("A run that circled and arrived with no limit to blame has no cause") {
+  Bench bench;
+  bench.navigator.heading = {0.1, 0.0, 0.0};
+  TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kReached);
+  // Somebody turned it round by hand before it drove.
+  std::vector<trajectory::StampedPose>& poses = result.trajectory.poses;
+  std::vector<trajectory::StampedPose> before;
+  for (int i = 80; i > 0; --i) {
+    before.push_back(poses.front());
+    before.back().t_s -= 0.1 * i;
+    before.back().yaw_rad = geometry::WrapToPi(before.back().yaw_rad - 0.1 * i);
+  }
+  poses.insert(poses.begin(), before.begin(), before.end());
+  const SteeringCheck check = bench.Check(result);
+  INFO(Joined(check));
+  CHECK(check.HasCircled());
+  CHECK(check.causes.empty());
+  CHECK(check.proposals.empty());
+}
+
+TEST_CASE("Proposals are tried, joined with what the next run proposes, and kept if one arrives") {
+  SteeringCheck check;
+  check.proposals = {{"a", 1.0, 2.0}};
+  std::vector<std::vector<KeyProposal>> tried;
+  const bool ends_well = GENERATE(true, false);
+  TryProposals(check, [&](const std::vector<KeyProposal>& proposals) {
+    tried.push_back(proposals);
+    TriedRun run;
+    run.result.end_s = 7.0;
+    run.result.outcome = ends_well && tried.size() == 3 ? Outcome::kReached : Outcome::kTimedOut;
+    if (tried.size() == 1) run.check.proposals = {{"b", 5.0, 6.0}};
+    if (tried.size() == 2) run.check.proposals = {{"a", 2.0, 3.0}};
+    return run;
+  });
+  REQUIRE(tried.size() == 3);
+  CHECK(tried[1].size() == 2);
+  CHECK(check.failed_tries == (ends_well ? 2 : 3));
+  if (!ends_well) {
+    CHECK(check.proposals.empty());
+    CHECK_FALSE(check.tried_s);
+    return;
+  }
+  REQUIRE(check.proposals.size() == 2);
+  CHECK(check.proposals[0].was == 1.0);
+  CHECK(check.proposals[0].value == 3.0);
+  CHECK(check.proposals[1].key == "b");
+  CHECK(check.tried_s == Approx(7.0));
 }
 
 }  // namespace

@@ -53,9 +53,13 @@ struct LatencyResult {
 /// The turn of the robot as its encoders count it: right minus left.
 std::vector<Angle> WheelTurns(std::span<const EncoderReading> readings, double rad_per_count);
 
+/// Whether they are read often enough to time anything: a plain line is answered five times a
+/// second, and nothing says how late.
+bool AreTimed(std::span<const Angle> wheels);
+
 /// Turns an armed robot on the spot, a few degrees to and fro, and finds how late the camera is.
 /// None when somebody stopped it. Throws std::runtime_error, with what was measured, when the
-/// picture does not show the turn.
+/// picture does not show the turn, shows it to the other side or before the wheels made it.
 std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
                                             const odometry::OdometryOptions& odometry,
                                             const TurnOptions& options, double one_way_s);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,12 +19,18 @@ struct SteeringModel {
   double yaw_rate_rad_s = 0.0;   ///< for each unit of w, which is half of power_right - power_left
   double pose_age_s = 0.0;       ///< mean age of the pose that a decision is made on
   double command_delay_s = 0.0;  ///< from a command to the motion it causes
+  double pull_rad_s = 0.0;  ///< yaw rate without steering, for each unit of v; above 0 to the left
 };
 
 /// What a robot's file says of it, for a run that does not tell.
 struct SteeringPrior {
   SteeringModel model;
-  double least_power = 0.0;  ///< below it the wheels do not turn evenly
+  double dead_band = 0.0;        ///< smaller powers do not reach the motors
+  double breakaway_power = 0.0;  ///< smaller ones do not turn a wheel at rest, by its friction
+
+  double MovingPower() const { return std::max(dead_band, breakaway_power); }
+  /// A wheel turns evenly a little above what turns it at all.
+  double LeastPower() const { return 1.2 * MovingPower(); }
 };
 
 /// Stability of the heading loop far from its waypoint: gain (p + i / s + d s) / s with a delay.
@@ -35,7 +44,8 @@ struct SteeringMargins {
 SteeringMargins MarginsOf(const control::PidGains& heading, double yaw_rate_rad_s, double delay_s);
 
 /// Radius of the circle on which the robot drives round a waypoint for ever: the heading error
-/// stays at 90 degrees there, and a delay changes nothing.
+/// stays at 90 degrees there, and a delay changes nothing. To the side against which the robot
+/// pulls; infinite when it cannot turn to it.
 double CircleRadius_m(const control::NavigatorOptions& navigator, const SteeringModel& model);
 
 /// How far w_min alone swings the robot: its sign changes a delay after the heading error's.
@@ -57,6 +67,7 @@ struct KeyProposal {
 struct SteeringCheck {
   double turns = 0.0;          ///< most whole turns on the way to one waypoint, of either sense
   bool is_identified = false;  ///< the model is of the run itself; else of the prior
+  bool is_pull_told = false;   ///< apart from the gain; else it may be that gain is less
   double r2 = 0.0;             ///< share of the yaw rate's variance that the steering explains
   SteeringModel model;
   double delay_s = 0.0;  ///< of the loop, less what control.latency makes up for
@@ -65,6 +76,10 @@ struct SteeringCheck {
   SteeringSwing swing;
   std::vector<std::string> causes;     ///< for people; empty for a run that arrived directly
   std::vector<KeyProposal> proposals;  ///< gains and limits that mend the causes
+  bool has_arrived = false;
+  /// How long a simulated run with the proposals took to arrive; none: not tried.
+  std::optional<double> tried_s;
+  size_t failed_tries = 0;  ///< simulated runs with proposals that did not arrive
 
   bool HasCircled() const { return turns >= 1.0; }
 };
@@ -74,5 +89,17 @@ struct SteeringCheck {
 SteeringCheck CheckSteering(const TrialResult& result, const control::Task& task,
                             const control::NavigatorOptions& navigator, const TrialOptions& options,
                             const SteeringPrior& prior);
+
+/// A run once more with some keys set anew, and what its check says.
+struct TriedRun {
+  TrialResult result;
+  SteeringCheck check;
+};
+
+/// Keeps only proposals with which the robot arrives: runs with them, and as long as that does not
+/// arrive, with what the next check proposes beside them, a few times. Without an arrival there is
+/// no proposal.
+void TryProposals(SteeringCheck& check,
+                  const std::function<TriedRun(const std::vector<KeyProposal>&)>& run_with);
 
 }  // namespace rift::trial

@@ -56,9 +56,13 @@ struct TrialResult {
   std::vector<SentCommand> commands;  ///< every power sent, in order
   LimitCounts limits;
   size_t poses_refused = 0;    ///< not finite, or a jump
+  size_t refused_moves = 0;    ///< of them beyond control.pose_gate.max_speed_mps
+  size_t refused_turns = 0;    ///< of them beyond control.pose_gate.max_yaw_rate_rad_s
   size_t stale_decisions = 0;  ///< zero power was sent since the pose was too old
   /// Mean age of the pose, since its capture, over the decisions; -1: none was made.
   double pose_age_s = -1.0;
+  /// Mean age of the believed poses as they came in, since their capture; -1: none did.
+  double arrival_age_s = -1.0;
 
   double Duration_s() const { return end_s - start_s; }
 };
@@ -103,7 +107,10 @@ class Recorder {
   void Sent(double now_s, const control::WheelPower& power);
   /// Once for each decision; `active_after` is the waypoint the navigator drives to from now on.
   void Decided(double now_s, const control::Decision& decision, size_t active_after);
-  void Refused() { ++result_.poses_refused; }
+  /// By which limit of the pose gate, where it was one.
+  void Refused(bool is_move, bool is_turn);
+  /// Once for each believable pose.
+  void CameIn(double pose_age_s);
   void Stale() { ++result_.stale_decisions; }
   /// Once for each decision: how old its pose was.
   void DecidedOn(double pose_age_s);
@@ -114,7 +121,7 @@ class Recorder {
   double log_period_s_;
   Observer* observer_;
   size_t active_ = 1;
-  size_t ages_ = 0;
+  size_t ages_ = 0, came_in_ = 0;
   TrialResult result_;
 };
 

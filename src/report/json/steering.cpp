@@ -12,11 +12,17 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kBitsPerLine = 100.0;  // ten bytes, each with start and stop bit
-constexpr double kAboveDeadBand = 1.25;
 
-/// A motor turns evenly a little above its dead band.
-double LeastPower(const simulation::MotorOptions& motor) {
-  return motor.model == simulation::MotorModel::kServo ? 0.0 : kAboveDeadBand * motor.dead_band;
+/// The prior with the powers that turn its wheels at all; a servo turns them by any.
+trial::SteeringPrior WithMotor(const trial::SteeringModel& model,
+                               const simulation::SimulationOptions& simulation) {
+  const simulation::MotorOptions& motor = simulation.motor;
+  if (motor.model == simulation::MotorModel::kServo) return {model};
+  const simulation::BodyOptions& body = simulation.body;
+  const double rolling_nm =
+      simulation.terrain.surface.rolling_resistance * body.WeightOnWheel_n() * body.wheel_radius_m;
+  return {model, motor.dead_band,
+          (motor.Breakaway_nm() + rolling_nm) / (motor.StallTorque_nm() * motor.supply_ratio)};
 }
 
 trial::SteeringModel RigidModel(double full_rad_s, double radius_m, double track_m,
@@ -28,10 +34,10 @@ trial::SteeringModel RigidModel(double full_rad_s, double radius_m, double track
 trial::SteeringPrior PriorOf(const simulation::SimulationOptions& simulation) {
   const simulation::LinkOptions& link = simulation.link;
   const double line_s = link.baud > 0.0 ? kBitsPerLine / link.baud : 0.0;
-  return {RigidModel(simulation.motor.supply_ratio * simulation.motor.NoLoad_rad_s(),
-                     simulation.body.wheel_radius_m, simulation.body.track_m,
-                     link.delay_s + line_s + 0.5 * link.poll_s + simulation.motor.lag_s),
-          LeastPower(simulation.motor)};
+  return WithMotor(RigidModel(simulation.motor.supply_ratio * simulation.motor.NoLoad_rad_s(),
+                              simulation.body.wheel_radius_m, simulation.body.track_m,
+                              link.delay_s + line_s + 0.5 * link.poll_s + simulation.motor.lag_s),
+                   simulation);
 }
 
 trial::SteeringPrior PriorOf(const experiment::Experiment& experiment,
@@ -39,8 +45,9 @@ trial::SteeringPrior PriorOf(const experiment::Experiment& experiment,
   const control::DiffDriveOptions& drive = experiment.hardware.odometry.drive;
   const double delay_s =
       run.ping.IsMeasured() ? run.ping.OneWay_s() : experiment.hardware.stopping.delay_s;
-  return {RigidModel(drive.full_power_speed_rad_s, drive.wheel_radius_m, drive.track_m, delay_s),
-          LeastPower(experiment.simulation.motor)};
+  return WithMotor(
+      RigidModel(drive.full_power_speed_rad_s, drive.wheel_radius_m, drive.track_m, delay_s),
+      experiment.simulation);
 }
 
 ordered_json ProposalsJson(const std::vector<trial::KeyProposal>& proposals) {
@@ -49,6 +56,20 @@ ordered_json ProposalsJson(const std::vector<trial::KeyProposal>& proposals) {
     json.push_back({{"key", proposal.key}, {"was", proposal.was}, {"value", proposal.value}});
   }
   return json;
+}
+
+ordered_json TriedJson(const trial::SteeringCheck& check) {
+  return check.tried_s ? ordered_json(*check.tried_s) : ordered_json(nullptr);
+}
+
+/// What the proposals are made of, and whether they were tried.
+std::string SourceText(const trial::SteeringCheck& check) {
+  const std::string source = check.is_identified
+                                 ? "by the steering of this run"
+                                 : "by the robot's file, since this run does not show its steering";
+  return source + (check.tried_s ? fmt::format("; simulated so, the robot arrives after {:.1f} s",
+                                               *check.tried_s)
+                                 : "; not tried");
 }
 
 /// Shares of the decisions that each limit changed, the most frequent first.
@@ -98,29 +119,38 @@ ordered_json SteeringJson(const trial::SteeringCheck& check) {
           {"circle_m", check.circle_m},
           {"swing_deg", geometry::DegFromRad(check.swing.heading_rad)},
           {"swing_m", check.swing.path_m},
+          {"pull_rad_s", check.model.pull_rad_s},
           {"causes", check.causes},
-          {"proposals", ProposalsJson(check.proposals)}};
+          {"proposals", ProposalsJson(check.proposals)},
+          {"tried_s", TriedJson(check)}};
 }
 
 std::vector<std::string> SteeringLines(const trial::SteeringCheck& check,
                                        const trial::LimitCounts& limits) {
   std::vector<std::string> lines;
-  if (check.causes.empty()) return lines;
   if (check.HasCircled()) {
     lines.push_back(
         fmt::format("it circled: {:.1f} turns on the way to one waypoint", check.turns));
   }
+  if (check.causes.empty()) return lines;
   for (const std::string& cause : check.causes) lines.push_back("why: " + cause);
-  lines.push_back(
-      fmt::format("limits that bound, of {} decisions: {}", limits.decisions, LimitShares(limits)));
-  if (check.proposals.empty()) return lines;
+  if (limits.decisions > 0) {
+    lines.push_back(fmt::format("limits that bound, of {} decisions: {}", limits.decisions,
+                                LimitShares(limits)));
+  }
+  if (check.proposals.empty()) {
+    if (check.failed_tries > 0) {
+      lines.push_back(fmt::format(
+          "nothing to try: {} simulated runs with other gains and limits did not mend it",
+          check.failed_tries));
+    }
+    return lines;
+  }
   std::string keys;
   for (const trial::KeyProposal& proposal : check.proposals) {
     keys += fmt::format(" --set {}={:g}", proposal.key, proposal.value);
   }
-  lines.push_back(
-      "try:" + keys +
-      (check.is_identified ? " (by the steering of this run)" : " (by the keys of the robot)"));
+  lines.push_back(fmt::format("try:{} ({})", keys, SourceText(check)));
   return lines;
 }
 

@@ -35,6 +35,11 @@ ordered_json LimitsJson(const trial::LimitCounts& limits) {
 
 std::string SimulationJson(const experiment::Experiment& experiment,
                            const sweep::SimulatedRun& run) {
+  return SimulationJson(experiment, run, SteeringOf(experiment, run));
+}
+
+std::string SimulationJson(const experiment::Experiment& experiment, const sweep::SimulatedRun& run,
+                           const trial::SteeringCheck& check) {
   const trial::TrialResult& result = run.result;
   ordered_json json{{"name", experiment.name},
                     {"rift_version", RIFT_VERSION},
@@ -49,7 +54,7 @@ std::string SimulationJson(const experiment::Experiment& experiment,
                     {"stale_decisions", result.stale_decisions}};
   json["waypoints"] = WaypointsJson(result);
   json["limits"] = LimitsJson(result.limits);
-  json["steering"] = SteeringJson(SteeringOf(experiment, run));
+  json["steering"] = SteeringJson(check);
   return Dump(json);
 }
 

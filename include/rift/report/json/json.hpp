@@ -190,6 +190,9 @@ std::vector<std::string> SteeringLines(const trial::SteeringCheck& check,
 /// were binding, seed and version.
 std::string SimulationJson(const experiment::Experiment& experiment,
                            const sweep::SimulatedRun& run);
+/// The same with a check whose proposals were tried.
+std::string SimulationJson(const experiment::Experiment& experiment, const sweep::SimulatedRun& run,
+                           const trial::SteeringCheck& check);
 
 /// Columns t_s,power_left,power_right: every command as it was sent.
 std::string CommandsCsv(const trial::TrialResult& result);
