@@ -27,6 +27,56 @@ TEST_CASE("A camera's latency is measured by a turn to and fro") {
   }
 }
 
+std::optional<LatencyResult> TurnOn(Bench& bench, const HardwareOptions& hardware,
+                                    Protocol protocol) {
+  RealRobot robot(bench, bench, bench, {hardware, protocol, false});
+  for (int i = 0; i < 100; ++i) robot.Advance(0.02);
+  robot.Arm();
+  return MeasureLatency(robot, hardware.odometry, hardware.turn, 0.04);
+}
+
+TEST_CASE("A turn to the other side than commanded is refused with what to swap") {
+  for (const double late_s : {0.0, 0.1, 0.5}) {
+    Bench bench;
+    bench.camera_late_s = late_s;
+    HardwareOptions hardware;
+    hardware.plain.format = "{right:.2f} {left:.2f}\n";
+    CHECK_THROWS_WITH(TurnOn(bench, hardware, Protocol::kPlain),
+                      Catch::Contains("steered to the left, the robot turned to the right: swap "
+                                      "{left} and {right} in hardware.plain.format"));
+  }
+}
+
+TEST_CASE("A picture that turns against wheels that obey is called mirrored") {
+  Bench bench;
+  bench.bend = [](trial::PoseMeasurement& pose) {
+    pose.world_from_robot.yaw_rad = -pose.world_from_robot.yaw_rad;
+  };
+  CHECK_THROWS_WITH(TurnOn(bench, {}, Protocol::kFramed),
+                    Catch::Contains("the picture is mirrored"));
+}
+
+TEST_CASE("Encoders that answer rarely and late time nothing but the sum of the delays") {
+  for (const double late_s : {0.0, 0.12}) {
+    Bench bench;
+    bench.camera_late_s = late_s;
+    const std::optional<LatencyResult> found = TurnOn(bench, {}, Protocol::kPlain);
+    REQUIRE(found);
+    CHECK_FALSE(found->delay.camera_s);
+    INFO("late by " << late_s << " s, measured " << *found->delay.total_s);
+    // Line 0.02 s and 9 bytes or so, motors 0.05 s, a turn of the loop.
+    CHECK(*found->delay.total_s == Approx(0.09 + late_s).margin(0.05));
+  }
+}
+
+TEST_CASE("A picture that is ahead of its wheels is refused") {
+  Bench bench;
+  // The stamps of the pictures are 0.08 s too early.
+  bench.bend = [](trial::PoseMeasurement& pose) { pose.captured_s -= 0.08; };
+  CHECK_THROWS_WITH(TurnOn(bench, {}, Protocol::kFramed),
+                    Catch::Contains("before the encoders do, which cannot be"));
+}
+
 /// A turn to and fro that never repeats itself, scaled and late.
 std::vector<Angle> Swing(double late_s, double scale, double offset_rad, double every_s) {
   std::vector<Angle> angles;

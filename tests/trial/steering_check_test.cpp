@@ -2,7 +2,6 @@
 // which the same robot arrives.
 #include "rift/trial/steering_check.hpp"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
@@ -76,6 +75,14 @@ std::string Joined(const SteeringCheck& check) {
     text += proposal.key + " " + std::to_string(proposal.value) + "\n";
   }
   return text;
+}
+
+/// NaN when there is no proposal for the key.
+double ProposedFor(const SteeringCheck& check, const std::string& key) {
+  for (const KeyProposal& proposal : check.proposals) {
+    if (proposal.key == key) return proposal.value;
+  }
+  return std::nan("");
 }
 
 /// The largest error over the last second of twenty of a PID on an integrator with a delay, by
@@ -347,9 +354,7 @@ TEST_CASE("A robot whose powers are too small to move it is given powers that do
   CHECK_THAT(check.causes[0], Catch::Contains("it does not move: 0.00") &&
                                   Catch::Contains(is_friction ? "breakaway torque over stall torque"
                                                               : "simulation.motor.dead_band"));
-  REQUIRE_FALSE(check.proposals.empty());
-  CHECK(check.proposals[0].key == "control.v_min");
-  CHECK(check.proposals[0].value >= 1.2 * bench.dead_band - 0.005);
+  CHECK(ProposedFor(check, "control.v_min") == Approx(1.2 * bench.dead_band));
   bench.Set(check.proposals);
   CHECK(bench.Run().outcome == Outcome::kReached);
 }
@@ -374,10 +379,7 @@ TEST_CASE("No speed is proposed at which the wheels do not turn") {
   bench.navigator.reach_radius_m = 0.005;
   const SteeringCheck check = bench.Check(bench.Run());
   INFO(Joined(check));
-  const auto slow = std::find_if(check.proposals.begin(), check.proposals.end(),
-                                 [](const auto& one) { return one.key == "control.v_min"; });
-  REQUIRE(slow != check.proposals.end());
-  CHECK(slow->value == Approx(0.12));
+  CHECK(ProposedFor(check, "control.v_min") == Approx(0.12));
 }
 
 TEST_CASE("The proposal of a slower run contains the time it needs") {
@@ -459,7 +461,7 @@ TEST_CASE("A pull to one side is named, with its side, and the proposal arrives 
   REQUIRE_FALSE(check.causes.empty());
   CHECK_THAT(check.causes[0], Catch::Contains("it pulls to the right"));
   // Half of what the wheels differ by, over the track.
-  CHECK(check.model.pull_rad_s == Approx(-0.4 * kSpeed_mps / 0.083).epsilon(0.15));
+  CHECK(check.model.pull_rad_s == Approx(-0.4 * kSpeed_mps / 0.083).epsilon(0.25));
   bench.Set(check.proposals);
   CHECK(bench.Run().outcome == Outcome::kReached);
 }
