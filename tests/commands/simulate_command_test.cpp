@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "support/process.hpp"
 #include "support/tree.hpp"
@@ -67,6 +69,51 @@ TEST_CASE("A run that circles says why, and with the keys it proposes the robot 
   INFO(arrives.out << arrives.err);
   CHECK(arrives.exit_code == 0);
   CHECK(arrives.err.find("why: ") == std::string::npos);
+}
+
+/// What follows `try:`, as a shell would split it.
+std::vector<std::string> TriedWords(const std::string& err) {
+  const size_t at = err.find("try: ");
+  if (at == std::string::npos) return {};
+  const size_t from = at + 5;
+  std::istringstream line(err.substr(from, err.find(" (", from) - from));
+  return {std::istream_iterator<std::string>(line), {}};
+}
+
+TEST_CASE("What is tried after a run that did not arrive arrives at the first paste") {
+  struct Mistake {
+    std::string robot, keys, why;
+  };
+  const Mistake mistake = GENERATE(
+      Mistake{"3pi_plus", "control.v_min=0.05 control.v_max=0.11", "it does not move: "},
+      Mistake{"3pi_plus", "control.v_min=0.02 control.v_max=0.05", "it does not move: "},
+      Mistake{"3pi_plus", "simulation.mocap.processing_s=0.6", "zero power: poses are 0.6"},
+      Mistake{"3pi_plus", "simulation.motor.mismatch=0.5", "it pulls to the right"},
+      Mistake{"3pi_plus", "control.pose_gate.max_speed_mps=0.1", "control.pose_gate.max_speed_mps"},
+      Mistake{"romi_32u4", "control.reach_radius_m=0.002", "control.reach_radius_m"},
+      Mistake{"romi_32u4", "simulation.link.delay_s=1.2", "the steering is unstable"},
+      Mistake{"romi_32u4", "control.heading.p=0.005", "control.w_min raises that to 0.02"});
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "task.yaml",
+                  "include: [" +
+                      (mistake.robot == "3pi_plus"  // it is the default
+                           ? ""
+                           : test::SourceDir() + "/configs/robots/" + mistake.robot + ".yaml, ") +
+                      kTask + "]\n");
+  std::vector<std::string> words{"simulate", folder / "task.yaml", "--out", folder / "fails"};
+  std::istringstream keys(mistake.keys);
+  for (std::string key; keys >> key;) words.insert(words.end(), {"--set", key});
+  const ProcessResult fails = RunRift(words);
+  INFO(mistake.robot << " " << mistake.keys << "\n" << fails.err);
+  REQUIRE(fails.exit_code == 1);
+  CHECK(fails.err.find(mistake.why) != std::string::npos);
+  const std::vector<std::string> tried = TriedWords(fails.err);
+  REQUIRE_FALSE(tried.empty());
+  words[3] = folder / "arrives";
+  words.insert(words.end(), tried.begin(), tried.end());
+  const ProcessResult arrives = RunRift(words);
+  INFO(arrives.err);
+  CHECK(arrives.exit_code == 0);
 }
 
 TEST_CASE("A robot's file alone is answered with how to give it waypoints") {
