@@ -267,6 +267,15 @@ Lag RequireBehindCommands(const std::optional<Lag>& lag, const std::vector<Angle
   return *lag;
 }
 
+/// What stopped the turn by itself, such as a picture that does not follow the wheels, may be a
+/// turn to the other side.
+void RequireNoOtherSide(RealRobot& robot, const Turn& turn) {
+  const std::optional<DriveStop> stop = robot.Record().stop;
+  const bool is_asked =
+      stop && (stop->reason == StopReason::kOperator || stop->reason == StopReason::kSignal);
+  if (!is_asked) RequireSides(turn.Seen(), turn.Wheels(), turn.Commanded());
+}
+
 }  // namespace
 
 std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
@@ -281,14 +290,20 @@ std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
   for (int pulse = 0; pulse < kMostPulses; ++pulse) {
     const double side = pulse % 2 == 0 ? power : -power;
     pulses_s.push_back(turn.Commanded().back().t_s);
-    if (!turn.Run({-side, side}, options.pulse_s) || !turn.Run({}, kRest_s)) return std::nullopt;
+    if (!turn.Run({-side, side}, options.pulse_s) || !turn.Run({}, kRest_s)) {
+      RequireNoOtherSide(robot, turn);
+      return std::nullopt;
+    }
     if (pulse % 2 == 0) continue;  // it must stand as it stood
     wheels = turn.Wheels();
     const double moved_rad = wheels.empty() ? Range(turn.Seen()) : Range(wheels);
     if (moved_rad >= enough_rad) break;
     power = std::min(options.most_power, power * kHarder);
   }
-  if (!turn.Run({}, kMostLag_s - kRest_s)) return std::nullopt;  // for the latest of pictures
+  if (!turn.Run({}, kMostLag_s - kRest_s)) {  // for the latest of pictures
+    RequireNoOtherSide(robot, turn);
+    return std::nullopt;
+  }
   wheels = turn.Wheels();
   RequireSides(turn.Seen(), wheels, turn.Commanded());
   const double seen_rad = Range(turn.Seen());
