@@ -19,8 +19,10 @@ trial::SteeringPrior WithMotor(const trial::SteeringModel& model,
   const simulation::MotorOptions& motor = simulation.motor;
   if (motor.model == simulation::MotorModel::kServo) return {model};
   const simulation::BodyOptions& body = simulation.body;
-  const double rolling_nm =
-      simulation.terrain.surface.rolling_resistance * body.WeightOnWheel_n() * body.wheel_radius_m;
+  const auto surface = simulation.terrain.surfaces.find(simulation.terrain.surface);
+  const double rolling =
+      surface == simulation.terrain.surfaces.end() ? 0.0 : surface->second.rolling_resistance;
+  const double rolling_nm = rolling * body.WeightOnWheel_n() * body.wheel_radius_m;
   return {model, motor.dead_band,
           (motor.Breakaway_nm() + rolling_nm) / (motor.StallTorque_nm() * motor.supply_ratio)};
 }
