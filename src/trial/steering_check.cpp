@@ -469,6 +469,7 @@ bool ExplainRefused(SteeringCheck& check, const Case& run) {
              seen = refused + static_cast<double>(result.trajectory.poses.size());
   if (refused <= kMany * seen) return false;
   const control::PoseGateOptions& gate = run.navigator.pose_gate;
+  check.is_identified = false;  // of so few poses
   const double moves = static_cast<double>(result.refused_moves) / seen,
                turns = static_cast<double>(result.refused_turns) / seen;
   if (moves > kMany) {
@@ -512,7 +513,7 @@ bool ExplainStale(SteeringCheck& check, const Case& run) {
   }
   check.causes.push_back(
       fmt::format("{}{} decisions were zero power: poses are {:.2f} s old when they come in, and "
-                  "trial.pose_stale_s is {:g} s: a faster camera, or",
+                  "trial.pose_stale_s is {:g} s: make the camera faster, or this longer",
                   share, stale == all ? "" : " of the", age_s, limit_s));
   Propose(check, "trial.pose_stale_s", limit_s, 1.2 * oldest_s);
   return true;
@@ -686,8 +687,11 @@ void TryProposals(SteeringCheck& check,
     const TriedRun run = run_with(all);
     const bool is_direct = !check.has_arrived || !run.check.HasCircled();
     if (run.result.outcome == Outcome::kReached && is_direct) {
-      check.proposals = all;
       check.tried_s = run.result.Duration_s();
+      std::erase_if(all, [&](const KeyProposal& proposal) {  // it was in time
+        return proposal.key == "trial.timeout_s" && proposal.was > *check.tried_s;
+      });
+      check.proposals = all;
       return;
     }
     if (!Merge(all, run.check.proposals)) {

@@ -94,12 +94,12 @@ TEST_CASE("What is tried after a run that did not arrive arrives at the first pa
       Mistake{"romi_32u4", "simulation.link.delay_s=1.2", "the steering is unstable"},
       Mistake{"romi_32u4", "control.heading.p=0.005", "control.w_min raises that to 0.02"});
   const test::TemporaryFolder folder;
-  test::WriteText(folder / "task.yaml",
-                  "include: [" +
-                      (mistake.robot == "3pi_plus"  // it is the default
-                           ? ""
-                           : test::SourceDir() + "/configs/robots/" + mistake.robot + ".yaml, ") +
-                      kTask + "]\n");
+  const std::string robot = test::SourceDir() + "/configs/robots/" + mistake.robot + ".yaml";
+  test::WriteText(
+      folder / "task.yaml",
+      (mistake.robot == "3pi_plus" ? "" : "include: [" + robot + "]\n") +
+          "waypoints: [{x: -0.28, y: -0.07, heading: -1}, {x: -0.07, y: -0.09, stop: true},"
+          " {x: -0.1, y: 0.3, stop: true}, {x: 0.38, y: -0.06, stop: true}]\n");
   std::vector<std::string> words{"simulate", folder / "task.yaml", "--out", folder / "fails"};
   std::istringstream keys(mistake.keys);
   for (std::string key; keys >> key;) words.insert(words.end(), {"--set", key});
