@@ -116,12 +116,12 @@ void SayIfSwapped(const GapRequest& request, const gap::GapResult& result) {
 
 void SayDoubts(const gap::GapResult& result) {
   for (size_t i = 0; i < result.reals.size(); ++i) {
-    for (const std::string& doubt :
-         gap::Doubts(result.sim, result.reals[i], result.options.dimension)) {
-      const bool falsifies = result.trials[i].comparison.gap_m > result.options.threshold_m;
-      terminal::Say(fmt::format("warning: SIM {} and REAL {}{}: {}", result.sim_path,
-                                result.trials[i].path, falsifies ? ", whose gap falsifies" : "",
-                                doubt));
+    for (const std::string& doubt : gap::Doubts(result.sim, result.reals[i], result.options)) {
+      const double threshold_m = result.options.threshold_m;
+      const bool is_above = result.trials[i].comparison.gap_m > threshold_m;
+      terminal::Say(fmt::format(
+          "warning: SIM {} and REAL {}{}: {}", result.sim_path, result.trials[i].path,
+          is_above ? fmt::format(", whose gap is above {:g} m", threshold_m) : "", doubt));
     }
   }
 }

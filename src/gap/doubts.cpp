@@ -169,15 +169,26 @@ void DoubtPart(const Trajectory& log, const ArcPathIn<N>& part, const ArcPathIn<
                   lacks_begin ? (lacks_end ? "begins and ends" : "begins") : "ends"));
 }
 
-void DoubtClocks(const Trajectory& sim, const Trajectory& real, std::vector<std::string>& doubts) {
+/// Of what is compared: a robot may stand long before it drives.
+template <int N>
+double ComparedDuration_s(const Trajectory& log, const GapOptions& options) {
+  const ArcPathIn<N> path = MakeArcPathIn<N>(log, options);
+  return path.poses.back().t_s - path.poses.front().t_s;
+}
+
+template <int N>
+void DoubtClocks(const Trajectory& sim, const Trajectory& real, const GapOptions& options,
+                 std::vector<std::string>& doubts) {
   constexpr double kRatio = 10.0, kOffset_s = 1e6;
-  const double ratio = sim.Duration_s() / real.Duration_s();
+  const double sim_lasts_s = ComparedDuration_s<N>(sim, options);
+  const double real_lasts_s = ComparedDuration_s<N>(real, options);
+  const double ratio = sim_lasts_s / real_lasts_s;
   if (ratio > kRatio || ratio < 1.0 / kRatio) {
     doubts.push_back(
         fmt::format("their clocks differ: SIM lasts {:.3g} s and REAL {:.3g} s: are the times of "
                     "one in another "
                     "unit?",
-                    sim.Duration_s(), real.Duration_s()));
+                    sim_lasts_s, real_lasts_s));
   }
   const double sim_s = sim.poses.front().t_s, real_s = real.poses.front().t_s;
   if (std::abs(sim_s - real_s) < kOffset_s) return;
@@ -229,7 +240,8 @@ bool LookSwapped(const Trajectory& sim, const Trajectory& real) {
 namespace {
 
 template <int N>
-std::vector<std::string> DoubtsIn(const Trajectory& sim, const Trajectory& real) {
+std::vector<std::string> DoubtsIn(const Trajectory& sim, const Trajectory& real,
+                                  const GapOptions& options) {
   std::vector<std::string> doubts;
   if (AreSame<N>(sim, real)) {
     doubts.emplace_back("SIM and REAL are the same log: name the robot's own");
@@ -243,15 +255,15 @@ std::vector<std::string> DoubtsIn(const Trajectory& sim, const Trajectory& real)
     DoubtPart(real, real_path, sim_path, "REAL", "SIM", doubts);
     DoubtPart(sim, sim_path, real_path, "SIM", "REAL", doubts);
   }
-  DoubtClocks(sim, real, doubts);
+  DoubtClocks<N>(sim, real, options, doubts);
   return doubts;
 }
 
 }  // namespace
 
 std::vector<std::string> Doubts(const Trajectory& sim, const Trajectory& real,
-                                Dimension dimension) {
-  return dimension == Dimension::kXyz ? DoubtsIn<3>(sim, real) : DoubtsIn<2>(sim, real);
+                                const GapOptions& options) {
+  return options.IsInSpace() ? DoubtsIn<3>(sim, real, options) : DoubtsIn<2>(sim, real, options);
 }
 
 }  // namespace rift::gap

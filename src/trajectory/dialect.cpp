@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "columns.hpp"
@@ -32,7 +33,19 @@ bool IsComment(std::string_view line) {
   return !IsBlankLine(line) && line[line.find_first_not_of(" \t")] == '#';
 }
 
-/// True when the first line that is no comment holds numbers between blanks, and for comments only.
+/// Cells between blanks.
+int CellsOf(std::string_view line) {
+  int cells = 0;
+  bool is_blank = true;
+  for (const char c : line) {
+    const bool was_blank = std::exchange(is_blank, c == ' ' || c == '\t');
+    cells += was_blank && !is_blank;
+  }
+  return cells;
+}
+
+/// True when the first line that is no comment holds eight numbers between blanks, and for comments
+/// only.
 bool LooksLikeTum(std::string_view line, std::string_view rest) {
   bool commented = false;
   while (IsComment(line) || (IsBlankLine(line) && !rest.empty())) {
@@ -40,7 +53,7 @@ bool LooksLikeTum(std::string_view line, std::string_view rest) {
     line = csv::TakeLine(rest);
   }
   if (IsBlankLine(line)) return commented;
-  return line.find_first_not_of("0123456789+-.eE \t") == line.npos;
+  return line.find_first_not_of("0123456789+-.eE \t") == line.npos && CellsOf(line) == 8;
 }
 
 /// Names of the pose columns of a dialect, in the order of StampedPose.

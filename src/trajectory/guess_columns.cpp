@@ -45,11 +45,12 @@ std::string QuantityOf(const std::vector<std::string>& words) {
   };
   const std::string& last = words.back();
   if (has({"vel", "velocity", "speed", "twist", "linear", "angular", "acc", "accel", "cmd", "rate",
-           "covariance", "target", "desired", "goal", "ref", "setpoint", "error", "waypoint"})) {
+           "v", "covariance", "target", "desired", "goal", "ref", "setpoint", "error",
+           "waypoint"})) {
     return "";
   }
   const bool is_rotation =
-      has({"orientation", "rotation", "quaternion", "quat", "rot"}) || last.starts_with('q');
+      has({"orientation", "rotation", "quaternion", "quat", "rot", "q"}) || last.starts_with('q');
   const std::string axis = last.size() == 2 && last[0] == 'q' ? last.substr(1) : last;
   if (is_rotation && IsOneOf(axis, {"x", "y", "z", "w"})) return "q" + axis;
   if (IsOneOf(last,
@@ -68,6 +69,14 @@ std::string QuantityOf(const std::vector<std::string>& words) {
   return "";
 }
 
+/// No length is without a unit ("q_x []"), nor in radians.
+bool FitsUnit(const NamedColumn& column) {
+  const std::string& quantity = column.quantity;
+  if (IsOneOf(quantity, {"x", "y", "z", "t"}) && column.name.ends_with("[]")) return false;
+  if (column.unit.empty() || quantity.empty() || quantity.starts_with('q')) return true;
+  return quantity == "nanosec" || UnitFor(quantity, column.unit).has_value();
+}
+
 NamedColumn Named(const std::string& name) {
   NamedColumn column{.name = name};
   std::vector<std::string> words = WordsOf(name);
@@ -84,11 +93,12 @@ NamedColumn Named(const std::string& name) {
     if (is_unit_alone) words.pop_back();
   }
   column.quantity = QuantityOf(words);
+  if (!FitsUnit(column)) column.quantity.clear();
   if (words.back() == "millis") column.unit = "ms";
   if (words.back() == "micros") column.unit = "us";
   if (words.back() == "nanos") column.unit = "ns";
   const bool is_pose = std::any_of(words.begin(), words.end(), [](const std::string& word) {
-    return IsOneOf(word, {"pose", "position", "pos", "translation", "orientation"});
+    return IsOneOf(word, {"pose", "position", "pos", "translation", "orientation", "p", "q"});
   });
   column.rank = static_cast<int>(words.size()) + (is_pose ? -10 : 0);
   if (!column.unit.empty() && column.quantity == "nanosec") column.unit.clear();

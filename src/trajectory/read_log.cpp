@@ -102,15 +102,21 @@ void CheckMoves(const Trajectory& trajectory, const std::string& name, bool in_s
 
 /// Files whose lines no reader finds, each with what to do.
 void RefuseNoText(std::string_view text, const std::string& name) {
+  constexpr size_t kLooked = 1000;  // a writer that was killed may leave anything at the end
   if (csv::WithoutMark(text).find_first_not_of(" \t\r\n") == text.npos) {
     throw std::invalid_argument(name + ": the file is empty");
   }
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
     throw std::invalid_argument(name + ": is UTF-16: save it as UTF-8 text");
   }
-  if (text.substr(0, text.find('\n')).find('\0') != text.npos) {
-    throw std::invalid_argument(
-        fmt::format("{}:1: byte 0x00; this is no text file: name a log of poses", name));
+  const std::string_view start = text.substr(0, kLooked);
+  const auto is_control = [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 &&
+           std::string_view("\t\r\n\v\f").find(c) == std::string_view::npos;
+  };
+  if (std::any_of(start.begin(), start.end(), is_control)) {
+    throw std::invalid_argument(name +
+                                ": is not text: a log is a table of numbers in text, such as CSV");
   }
   if (text.find('\n') == text.npos && text.find('\r') < text.size() - 1) {
     throw std::invalid_argument(name + ": its lines end with CR alone: save it with LF or CRLF");

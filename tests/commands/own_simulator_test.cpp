@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -187,6 +188,9 @@ def run(mode, out, marker, write):
     if mode == "raise": raise ValueError("no such friction in " + out)
     if mode == "memory": bytearray(3 << 30)
     if mode == "orphan": leave_child(marker); write(GOOD)
+    if mode == "backwards": write("t_s,x_m,y_m\n0,0,0\n0.2,0.1,0\n0.1,0.2,0\n")
+    if mode == "large": open(out, "w").truncate(1 << 30)
+    if mode == "big": open(out, "w").truncate(300 << 20)
 
 def file(out):
     return lambda text: open(out, "w").write(text)
@@ -197,6 +201,7 @@ if sys.argv[1] == "--serve":
         mode = trial["theta"]["mode"]
         if mode == "babble": print("hello", flush=True); continue
         if mode == "late": print('{"status": "timed_out", "reason": "too slow"}', flush=True); continue
+        if mode == "unknown": print('{"status": "great"}', flush=True); continue
         if mode == "nothing": print('{"status": "ok"}', flush=True); continue
         run(mode, trial["out"], sys.argv[2], file(trial["out"]))
         print('{"status": "ok"}', flush=True)
@@ -236,15 +241,28 @@ void CheckNothingIsLeft(const TemporaryFolder& folder) {
 
 TEST_CASE("Each fault of a program is a row with its reason, and no process is left") {
   const TemporaryFolder folder;
-  auto rows = FaultyRows(
-      folder, "good, hang, crash, garbage, half, raise, memory, orphan, late, fell, nothing",
-      "python3, faulty.py, '{mode}', '{out}', '" + (folder / "marker") + "'");
+  auto rows = FaultyRows(folder,
+                         "good, hang, crash, garbage, half, raise, memory, orphan, late, fell, "
+                         "nothing, large, big, backwards",
+                         "python3, faulty.py, '{mode}', '{out}', '" + (folder / "marker") + "'");
   CHECK(rows["good"]["status"] == "ok");
   CHECK(rows["orphan"]["status"] == "ok");
   CHECK(rows["hang"]["status"] == "hung");
+  CHECK(rows["hang"]["reason"] == "had not ended after 8 s (run.timeout_s)");
+  CHECK(rows["hang"]["candidate"] == "program with seed 1");
+  CHECK(rows["hang"]["reference"] == "waypoint path");
+  CHECK(rows["large"]["status"] == "out_of_memory");
+  CHECK(rows["large"]["reason"].find("wanted a file of more than 512 MB (run.memory_mb)") !=
+        std::string::npos);
+  CHECK(rows["backwards"]["status"] == "unreadable");
+  CHECK(rows["backwards"]["reason"].find("time runs backwards") != std::string::npos);
+  CHECK(rows["big"]["status"] == "unreadable");
+  CHECK(rows["big"]["reason"].find("its trajectory: 314572800 bytes: at most") !=
+        std::string::npos);
   CHECK(rows["crash"]["status"] == "crashed");
   CHECK(rows["crash"]["reason"].find("signal 11") != std::string::npos);
   CHECK(rows["garbage"]["status"] == "unreadable");
+  CHECK(rows["garbage"]["reason"].find("its trajectory: is not text") != std::string::npos);
   CHECK(rows["half"]["status"] == "unreadable");
   CHECK(rows["half"]["reason"].find("cut short") != std::string::npos);
   CHECK(rows["raise"]["status"] == "fault");
@@ -262,7 +280,7 @@ TEST_CASE("Each fault of a program is a row with its reason, and no process is l
 
 TEST_CASE("A persistent program that fails is started again for the next trial") {
   const TemporaryFolder folder;
-  auto rows = FaultyRows(folder, "crash, good, babble, hang, raise, late, nothing, orphan",
+  auto rows = FaultyRows(folder, "crash, good, babble, hang, raise, late, nothing, orphan, unknown",
                          "python3, faulty.py, --serve, '" + (folder / "marker") + "'");
   CHECK(rows["good"]["status"] == "ok");
   CHECK(rows["orphan"]["status"] == "ok");
@@ -270,6 +288,10 @@ TEST_CASE("A persistent program that fails is started again for the next trial")
   CHECK(rows["babble"]["status"] == "fault");
   CHECK(rows["babble"]["reason"].find("answered 'hello'") != std::string::npos);
   CHECK(rows["hang"]["status"] == "hung");
+  CHECK(rows["unknown"]["status"] == "fault");
+  CHECK(rows["unknown"]["reason"].find(
+            "the status 'great', and it must be one of ok, timed_out, fell, left_arena, lost, "
+            "fault") != std::string::npos);
   CHECK(rows["raise"]["status"] == "crashed");
   CHECK(rows["raise"]["reason"].find("ValueError") != std::string::npos);
   CHECK(rows["late"]["status"] == "timed_out");
@@ -348,6 +370,90 @@ TEST_CASE("What a program's experiment lacks is said before the first trial") {
   CHECK(refusal("candidate: {kind: simulation}\nspace: {control.v_min: {min: 0.1, max: 0.2, "
                 "nominal: 0.15}}\ngoal: falsify\n")
             .find("nominal is of a program's parameters") != std::string::npos);
+  CHECK(refusal("candidate: {kind: program, run: [python3, perz.py, '{mu}']}\n" + nominal)
+            .find("bad.yaml: candidate.run: there is no file 'perz.py' beside the experiment") !=
+        std::string::npos);
+  CHECK(refusal("reference: {kind: program, run: [node, ../perz.mjs]}\nspace: {mu: [1, 2]}\n"
+                "candidate: {kind: program, run: [a, '{mu}']}\n")
+            .find("reference.run: there is no file '../perz.mjs'") != std::string::npos);
+}
+
+/// A simulator that writes a line of 1 m, after `before` (Python, with k, seed and out).
+std::string LineSimulator(const std::string& before) {
+  return "import os, sys, time\nk, seed, out = float(sys.argv[1]), int(sys.argv[2]), "
+         "sys.argv[3]\n" +
+         before +
+         "\nrows = [f'{i / 10},{i / 10},{k * seed * 1e-6 * i}' for i in range(11)]\n"
+         "open(out, 'w').write('t_s,x_m,y_m\\n' + '\\n'.join(rows) + '\\n')\n";
+}
+
+std::string AgainstNominal(const std::string& run) {
+  return "candidate: {kind: program, run: [python3, line.py, '{k}', '{seed}', '{out}', marker]}\n"
+         "reference: {kind: nominal}\nspace: {k: {min: 0.6, max: 1}}\ngoal: falsify\n"
+         "search: {budget: 2}\n" +
+         run;
+}
+
+TEST_CASE("A program that always fails is named with its reason after one nominal run") {
+  const auto refusal = [](const std::string& fault, const std::string& run) {
+    const TemporaryFolder folder;
+    WriteText(folder / "line.py",
+              LineSimulator("open('" + (folder / "runs") + "', 'a').write('x')\n" + fault));
+    WriteText(folder / "line.yaml", AgainstNominal(run));
+    const ProcessResult result = RunRift({"sweep", folder / "line.yaml", "--out", folder / "out"});
+    CHECK(result.exit_code == 2);
+    // A worker has the job under way and the next; two workers may have begun.
+    CHECK(ReadFile(fs::path(folder / "runs")).size() <= 2);
+    return result.err;
+  };
+  const std::string fault = refusal("raise ValueError('division by wheel')", "");
+  CHECK_THAT(fault, Catch::Contains("the run with the experiment's own values and seed 1 gives no "
+                                    "trajectory to compare with (fault): ended with exit code 1: "
+                                    "ValueError: division by wheel"));
+  CHECK_THAT(refusal("open(out, 'wb').write(bytes(range(256)) * 9); sys.exit(0)", ""),
+             Catch::Contains("(unreadable): its trajectory: is not text"));
+  CHECK_THAT(refusal("time.sleep(7357)", "run: {timeout_s: 1, retries: 0}\n"),
+             Catch::Contains("(hung): had not ended after 1 s (run.timeout_s)"));
+}
+
+TEST_CASE(
+    "Only a nominal run that did not arrive is tried with other seeds, each on its own time") {
+  const TemporaryFolder folder;
+  // Ten runs of 0.3 s: together they take longer than one may.
+  WriteText(folder / "line.py",
+            LineSimulator("time.sleep(0.3)\n"
+                          "if seed in (1, 3): print('too slow', file=sys.stderr); sys.exit(10)"));
+  WriteText(folder / "line.yaml",
+            AgainstNominal("falsify: {most_repeats: 8}\nrun: {timeout_s: 2, retries: 0}\n"));
+  const ProcessResult result =
+      RunRift({"sweep", folder / "line.yaml", "--out", folder / "out", "--jobs", "1"});
+  INFO(result.err);
+  CHECK(result.exit_code == 0);
+  const json summary = json::parse(ReadFile(fs::path(folder / "out") / "summary.json"));
+  REQUIRE(summary["replaced_references"].size() == 2);
+  CHECK(summary["replaced_references"][0]["seed"] == 1);
+  CHECK(summary["replaced_references"][1]["seed"] == 3);
+  CHECK_THAT(summary["replaced_references"][1]["reason"].get<std::string>(),
+             Catch::Contains("too slow"));
+}
+
+TEST_CASE("The search for nominal runs says how far it is and ends at a signal") {
+  const TemporaryFolder folder;
+  WriteText(folder / "line.py",
+            LineSimulator("time.sleep(0.2); print('slow', file=sys.stderr); sys.exit(10)"));
+  WriteText(folder / "line.yaml", AgainstNominal(""));
+  test::RunningRift running(
+      {"sweep", folder / "line.yaml", "--out", folder / "out", "--json-progress"});
+  running.WaitUntil("progress of the references", [&] {
+    return running.Err().find("\"references\":100,\"references_done\":0") != std::string::npos;
+  });
+  const auto asked = std::chrono::steady_clock::now();
+  running.Signal(SIGTERM);
+  const ProcessResult result = running.Wait();
+  CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(10));
+  INFO(result.err);
+  CHECK(result.exit_code == 130);
+  test::WaitUntil("no process is left", [&] { return ProcessesWith(folder / "line.py") == 0; });
 }
 
 TEST_CASE("A program's reference may be another program") {

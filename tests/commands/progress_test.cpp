@@ -84,7 +84,7 @@ TEST_CASE("The last word of a sweep's progress counts its trials") {
   CHECK(settings == expected);
   const std::string bar = sweep(ProgressStyle::kBar, {.most = 8});
   CHECK_THAT(bar, Contains("[###############.........] 5/8 trials, ") &&
-                      Contains(", largest gap 0.0700 m, 3 falsified, 2 failed"));
+                      Contains(", largest gap 0.0700 m, 3 failing, 2 without gap"));
   CHECK(bar.back() == '\n');
   CHECK_THAT(sweep(ProgressStyle::kBar, {8, true}),
              Contains("[######..................] 2/8 settings, 5 trials, "));

@@ -187,7 +187,7 @@ TEST_CASE("Wrong input: rift gap") {
       {"gap @empty.csv %data/example/robot1.csv", "the file is empty"},
       {"gap @odd.csv %data/example/robot1.csv", "odd.csv:1"},
       {"gap @picture.csv %data/example/robot1.csv",
-       "picture.csv:1: byte 0x00; this is no text file"},
+       "picture.csv: is not text: a log is a table of numbers in text"},
       {"gap %configs/waypoints/paper.yaml %data/example/robot1.csv", "belongs to no dialect"},
       {"gap" + kLogs + "--real-format tracker",
        "robot1.csv: its header is of dialect rift, and the format asked for is tracker"},

@@ -236,11 +236,11 @@ TEST_CASE("The way to a goal is the gap in space") {
 TEST_CASE("An axis that points down is doubted in space") {
   const Trajectory down = Changed(
       Helix(), [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.x(), p.y(), -p.z()); });
-  const auto doubts = Doubts(Helix(), down, Dimension::kXyz);
+  const auto doubts = Doubts(Helix(), down, InSpace());
   REQUIRE(doubts.size() == 1);
   CHECK(doubts[0].find("mirrored z") != std::string::npos);
-  CHECK(Doubts(Helix(), Helix(0.01), Dimension::kXyz).empty());
-  CHECK(Doubts(Helix(), Helix(0.01), Dimension::kXy).size() == 1);  // the same x and y
+  CHECK(Doubts(Helix(), Helix(0.01), InSpace()).empty());
+  CHECK(Doubts(Helix(), Helix(0.01)).size() == 1);  // the same x and y
 }
 
 }  // namespace

@@ -150,5 +150,16 @@ TEST_CASE("Each kind of sweep is told as what it is") {
              Catch::Matchers::StartsWith("As near to the robot"));
 }
 
+TEST_CASE("Trials without a gap beyond the first three are counted by what became of them") {
+  SweepResult result = synthetic::Grid();
+  for (size_t i = 0; i < 9; ++i) synthetic::LoseGap(&result.rows[i], "no gap");
+  for (size_t i = 0; i < 5; ++i) result.rows[i].status = sweep::TrialStatus::kHung;
+  sweep::Summarise(result);
+  const std::string text = SweepText(result);
+  INFO(text);
+  CHECK(text.find("without gap: row 3: no gap\nwithout gap: 6 more: 4 missing, 2 hung\n") !=
+        std::string::npos);
+}
+
 }  // namespace
 }  // namespace rift::report

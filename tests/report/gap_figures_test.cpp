@@ -39,6 +39,31 @@ TEST_CASE("The overlay keeps one scale on both axes and joins the two points of 
   CHECK(std::hypot(dx_m, dy_m) == Approx(pair.comparison.gap_m).epsilon(1e-5));
 }
 
+TEST_CASE("The overlay of paths in space says that it is seen from above") {
+  ComparedPair pair = synthetic::Pair(0.1);
+  CHECK_THAT(OverlayFigure({pair}).plot, !Contains("seen from above"));
+  pair.is_in_space = true;
+  CHECK_THAT(OverlayFigure({pair}).plot, Contains("x (m), seen from above"));
+}
+
+TEST_CASE("The labels of a fit's paths do not lie on each other, whatever the paths' size") {
+  for (const double size_m : {0.02, 0.3, 2.5, 40.0, 3000.0}) {
+    for (const double height : {0.1, 1.0, 8.0}) {
+      CalibratedPaths paths{.name = "trial 1"};
+      paths.real.poses = {{.t_s = 0.0, .x_m = 0.0, .y_m = 0.0},
+                          {.t_s = 1.0, .x_m = size_m, .y_m = height * size_m}};
+      paths.before = {paths.real};
+      const Figure figure = CalibrationPathFigure(paths);
+      std::smatch match;
+      REQUIRE(std::regex_search(figure.plot, match, std::regex(R"(set ytics (\S+))")));
+      const double labels = height * size_m / std::stod(match[1]);
+      INFO(size_m << " m, " << height << ": " << match[1] << " m in " << figure.height_px << " px");
+      CHECK(labels * 14.0 < figure.height_px);  // as high as a label
+      CHECK(labels >= 0.4);
+    }
+  }
+}
+
 TEST_CASE("The error figure marks the maximum and the threshold") {
   const ComparedPair pair = synthetic::Pair(0.1);
   const std::string svg = Render(ErrorFigure({pair}, {}), FigureFormat::kSvg);

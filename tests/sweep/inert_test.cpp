@@ -64,6 +64,37 @@ TEST_CASE("A limit that never binds is named with the most it was asked for") {
         "most; 0.3 bound in 8 of 480 decisions of 8 runs");
 }
 
+TEST_CASE("Values with the same paths are told in one sentence, and none of a single pair") {
+  SweepResult result = Table();
+  experiment::Theta& levels = result.parameters[1].levels;
+  for (const char* text : {"0.6", "0.7", "0.8", "0.9"}) levels.push_back({text, std::stod(text)});
+  const std::vector<TrialRow> rows = result.rows;
+  for (const TrialRow& row : rows) {
+    if (row.theta[1].text != "0.5") continue;
+    for (size_t i = 3; i < levels.size(); ++i) {
+      const bool is_single = i == 6 && (row.trial != "1" || row.theta[0].text != "ice");
+      if (is_single) continue;
+      TrialRow more = row;
+      more.theta[1] = levels[i];
+      if (i > 4) more.evidence.fingerprint += 100;  // 0.8 and 0.9 drive another path
+      result.rows.push_back(more);
+    }
+  }
+  Summarise(result);
+  const Inertness v_max = FindInert(result, MeasureEffects(result))[1];
+  REQUIRE(v_max.pairs.size() == 6);
+  CHECK(v_max.pairs[5].compared == 1);
+  CHECK(v_max.pairs[5].identical == 1);
+  int sentences = 0;
+  for (const std::string& sentence : v_max.sentences) {
+    sentences += sentence.find("to the last bit") != sentence.npos;
+  }
+  CHECK(sentences == 1);
+  CHECK(v_max.sentences[0] ==
+        "with v_max 0.4, 0.5, 0.6 and 0.7 the candidate drove the same path to the last bit in all "
+        "24 pairs of trials");
+}
+
 TEST_CASE("A difference beyond all gaps is said to be out of reach of the trials") {
   SweepResult result = Table();
   // Two trials a setting that differ by more than the settings do: a large residual.

@@ -92,7 +92,7 @@ TEST_CASE("A sweep with planted trouble ends and each trouble is a row with its 
   CHECK(row(0).comparison.gap_m == Approx(0.007));
   CHECK(result.rows[1].comparison.gap_m == Approx(0.008));
   CHECK(row(1).status == TrialStatus::kHung);
-  CHECK(row(1).reason == "had not ended after 3 s, twice");
+  CHECK(row(1).reason == "had not ended after 3 s (run.timeout_s), twice");
   CHECK(row(2).status == TrialStatus::kCrashed);
   CHECK(row(2).reason == "ended by signal 11 (Segmentation fault), twice");
   CHECK(row(3).status == TrialStatus::kNan);

@@ -74,7 +74,7 @@ TEST_CASE("A job that hangs or crashes or eats memory is a result with its reaso
     REQUIRE(results.size() == 8);
     CHECK(results.at(0).bytes == "answer to 0");
     CHECK(results.at(1).end == JobEnd::kHung);
-    CHECK(results.at(1).bytes == "had not ended after 3 s, twice");
+    CHECK(results.at(1).bytes == "had not ended after 3 s (run.timeout_s), twice");
     CHECK(results.at(2).end == JobEnd::kCrashed);
     CHECK(results.at(2).bytes == "ended by signal 11 (Segmentation fault), twice");
     CHECK(results.at(3).end == JobEnd::kOutOfMemory);

@@ -11,10 +11,10 @@ namespace rift::gap {
 /// What makes a comparison of two logs doubtful though each log looks sound, one line each, in
 /// which the logs are called SIM and REAL: one is in another unit of length, mirrored, or has its
 /// axes swapped; one covers only a part of the other's path and begins or ends in motion; their
-/// clocks differ; they are the same log. In space z counts as well.
+/// clocks differ (of what options.trim_standstill leaves); they are the same log. In space z counts
+/// as well.
 std::vector<std::string> Doubts(const trajectory::Trajectory& sim,
-                                const trajectory::Trajectory& real,
-                                Dimension dimension = Dimension::kXy);
+                                const trajectory::Trajectory& real, const GapOptions& options = {});
 
 /// REAL has even time steps and no noise, SIM uneven ones and noise.
 bool LookSwapped(const trajectory::Trajectory& sim, const trajectory::Trajectory& real);

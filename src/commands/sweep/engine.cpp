@@ -127,7 +127,9 @@ std::optional<size_t> Cluster::ShardsFor(const std::vector<sweep::TrialRequest>&
   sweep::TrialRunner here(
       [this](const sweep::TrialRequest& trial) { return evaluator_.Evaluate(trial); },
       [this](const sweep::TrialRequest& trial) { return evaluator_.KeyOf(trial); }, journal_, 1,
-      evaluator_.experiment().run, {[](const sweep::TrialRow&, bool) {}, go_on_});
+      evaluator_.experiment().run,
+      {[](const sweep::TrialRow&, bool) {}, go_on_,
+       [this](sweep::TrialRow& row) { evaluator_.NameSides(row); }});
   if (!here.Run(probed)) return std::nullopt;
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   missing = runner.Missing(requests);

@@ -27,7 +27,8 @@ FurtherTrials::FurtherTrials(sweep::Evaluator& evaluator, const Style& style,
                [this, &stop] {
                  if (progress_) progress_->Tick();
                  return !stop.IsAsked();
-               }}) {
+               },
+               [&evaluator](sweep::TrialRow& row) { evaluator.NameSides(row); }}) {
   evaluator.LoadLogs();  // workers are copies of what is there when they start
 }
 

@@ -37,6 +37,17 @@ std::string BarText(int done, int most) {
                      std::string(static_cast<size_t>(kBarWidth - full), '.'));
 }
 
+std::string ReferenceText(const sweep::ReferenceProgress& references) {
+  std::string text =
+      fmt::format("references: {} of {} nominal runs", references.arrived, references.seeds);
+  if (references.others_tried > 0) {
+    text += fmt::format(", {} other seeds tried for those that did not arrive",
+                        references.others_tried);
+  }
+  if (references.last_failure.empty()) return text;
+  return text + fmt::format(" (last: {})", references.last_failure);
+}
+
 }  // namespace
 
 ProgressStyle StyleFor(bool quiet, bool json) {
@@ -49,7 +60,7 @@ SweepProgress::SweepProgress(ProgressStyle style, const SweepSize& size)
     : style_(style), size_(size) {}
 
 SweepProgress::~SweepProgress() {
-  const bool is_open = style_ == ProgressStyle::kBar && printed_ != begun_ && !is_over_;
+  const bool is_open = style_ == ProgressStyle::kBar && has_spoken_ && !is_over_;
   if (is_open) terminal::Say("");
 }
 
@@ -94,7 +105,7 @@ std::string SweepProgress::Text() const {
     text += fmt::format(", {}{} left", size_.is_settings ? "at most " : "", DurationText(*left_s));
   }
   if (largest_gap_m_) text += fmt::format(", largest gap {:.4f} m", *largest_gap_m_);
-  return text + fmt::format(", {} falsified, {} failed", falsified_, failed_);
+  return text + fmt::format(", {} failing, {} without gap", falsified_, failed_);
 }
 
 void SweepProgress::Warn(const std::string& line) const {
@@ -127,17 +138,37 @@ void SweepProgress::Print(const std::string& state) {
   }
 }
 
-void SweepProgress::Tick() {
+bool SweepProgress::IsTime() {
   const Clock::time_point now = Clock::now();
-  if (now - printed_ < PeriodOf(style_)) return;
+  if (now - printed_ < PeriodOf(style_)) return false;
   printed_ = now;
-  Print("running");
+  has_spoken_ = true;
+  return true;
+}
+
+void SweepProgress::Tick() {
+  if (IsTime()) Print("running");
+}
+
+void SweepProgress::Tick(const sweep::ReferenceProgress& references) {
+  if (references.arrived == references.seeds) return;
+  begun_ = Clock::now();  // of the trials
+  if (!IsTime()) return;
+  if (style_ == ProgressStyle::kJson) {
+    return terminal::Say(nlohmann::ordered_json{
+        {"state", "references"},
+        {"references", references.seeds},
+        {"references_done",
+         references.arrived}}.dump());
+  }
+  const std::string text = ReferenceText(references);
+  if (style_ == ProgressStyle::kBar) terminal::SayInPlace(text);
+  if (style_ == ProgressStyle::kLines) terminal::Say(text);
 }
 
 void SweepProgress::End(const std::string& state) {
-  const bool has_spoken = printed_ != begun_;
   is_over_ = true;
-  if (style_ == ProgressStyle::kLines && !has_spoken) return;  // too short to be worth a line
+  if (style_ == ProgressStyle::kLines && !has_spoken_) return;  // too short to be worth a line
   Print(state);
   if (style_ == ProgressStyle::kBar) terminal::Say("");
 }

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::commands {
@@ -36,6 +37,8 @@ class SweepProgress {
   void Warn(const std::string& line) const;
   /// Prints when it is time to; cheap otherwise.
   void Tick();
+  /// The same before the first trial: how far the runs are that settings are held against.
+  void Tick(const sweep::ReferenceProgress& references);
   /// The last word, with how it ended: "done", "stopped".
   void End(const std::string& state);
 
@@ -48,12 +51,14 @@ class SweepProgress {
   std::optional<double> Left_s() const;
   std::string Text() const;
   void Print(const std::string& state);
+  bool IsTime();
 
   ProgressStyle style_;
   SweepSize size_;
   std::set<experiment::Theta> settings_;  ///< of a search, those seen
   int steps_from_journal_ = 0;
   bool is_over_ = false;
+  bool has_spoken_ = false;
   int done_ = 0;
   int from_journal_ = 0;
   int falsified_ = 0;

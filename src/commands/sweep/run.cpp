@@ -137,7 +137,8 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
          watch.Note();
          request.tick(journal);
          return !stop.IsAsked();
-       }});
+       },
+       [&](sweep::TrialRow& row) { evaluator.NameSides(row); }});
   const sweep::MayStart may_start = [&](const std::vector<sweep::TrialRequest>& trials) {
     const double limit_s = experiment.search.max_s;
     return limit_s == 0.0 || watch.Elapsed_s() < limit_s || runner.HasAll(trials);
@@ -148,7 +149,12 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
         if (cluster && !cluster->Run(trials, runner)) return std::nullopt;
         return runner.Run(std::move(trials));
       },
-      may_start);
+      may_start, {request.jobs, [&](const sweep::ReferenceProgress& references) {
+                    progress.Tick(references);
+                    if (request.live != nullptr) request.live->Tick();
+                    request.tick(journal);
+                    return !stop.IsAsked();
+                  }});
   watch.Note(true);
   journal.SetNote("state", result ? "done" : "stopped");
   journal.Close();

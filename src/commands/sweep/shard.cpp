@@ -103,7 +103,9 @@ bool RunTrialsOf(const sweep::Shard& shard, std::vector<sweep::TrialRequest> req
                  sweep::Evaluator& evaluator, sweep::Journal& journal, int jobs,
                  Publisher& publisher) {
   const terminal::StopSignal stop;
-  evaluator.CheckReferences();
+  const sweep::ReferenceWatch watch{
+      jobs, [&stop](const sweep::ReferenceProgress&) { return !stop.IsAsked(); }};
+  if (!evaluator.CheckReferences(watch)) return false;
   sweep::TrialRunner runner(
       [&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
       [&](const sweep::TrialRequest& trial) { return evaluator.KeyOf(trial); }, &journal, jobs,
@@ -112,7 +114,8 @@ bool RunTrialsOf(const sweep::Shard& shard, std::vector<sweep::TrialRequest> req
        [&] {
          publisher.Tick(journal);
          return !stop.IsAsked();
-       }},
+       },
+       [&](sweep::TrialRow& row) { evaluator.NameSides(row); }},
       static_cast<size_t>(shard.paths));
   return runner.Run(std::move(requests)).has_value();
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -36,6 +37,30 @@ void AddPaths(const std::string& name, const std::vector<Trajectory>& paths,
   *data += PathBlock(name, paths);
   plot->Add(fmt::format("${} using 1:2 with lines lw {} lc rgb '{}' title {}", name, width, colour,
                         Quoted(title)));
+}
+
+/// Extent of several paths.
+struct Extent {
+  Eigen::Array2d low = Eigen::Array2d::Constant(HUGE_VAL), high = -low;
+
+  void Cover(const std::vector<Trajectory>& paths) {
+    for (const Trajectory& path : paths) {
+      for (const trajectory::StampedPose& pose : path.poses) {
+        low = low.min(pose.Position().array());
+        high = high.max(pose.Position().array());
+      }
+    }
+  }
+  Eigen::Array2d Size_m() const { return (high - low).max(1e-3); }
+};
+
+/// 1, 2 or 5 times a power of ten, at least `least`.
+double RoundStep(double least) {
+  const double decade = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double round : {1.0, 2.0, 5.0}) {
+    if (least <= round * decade * (1.0 + 1e-12)) return round * decade;
+  }
+  return 10.0 * decade;
 }
 
 }  // namespace
@@ -77,16 +102,28 @@ Figure CalibrationGapFigure(const std::vector<CalibratedTrial>& trials,
 }
 
 Figure CalibrationPathFigure(const CalibratedPaths& paths, const ReportOptions& options) {
-  Figure figure{"calibration_paths", "Paths of " + paths.name, options.width_px,
-                options.width_px * 9 / 20};
+  Extent extent;
+  extent.Cover(paths.before);
+  extent.Cover(paths.after);
+  extent.Cover({paths.real});
+  const Eigen::Array2d size_m = extent.Size_m();
+  // About so many pixels beside and below the axes are labels and the legend.
+  constexpr int kBeside_px = 80, kBelow_px = 120;
+  constexpr double kLabel_px = 16.0;
+  Figure figure{"calibration_paths", "Paths of " + paths.name, options.width_px};
+  const int across_px = figure.width_px - kBeside_px;
+  figure.height_px = std::clamp(static_cast<int>(across_px * size_m.y() / size_m.x()) + kBelow_px,
+                                options.width_px * 9 / 20, 640);
+  const double px_per_m =
+      std::min(across_px / size_m.x(), (figure.height_px - kBelow_px) / size_m.y());
   PlotCommand plot;
   std::string data;
   AddPaths("before", paths.before, kBeforeColour, 1.0, "simulated before", &data, &plot);
   AddPaths("after", paths.after, kAfterColour, 1.3, "after the fit", &data, &plot);
   AddPaths("real", {paths.real}, kRealColour, 1.8, "robot, " + paths.name, &data, &plot);
-  figure.plot =
-      fmt::format("set size ratio -1\nset xlabel 'x (m)'\nset ylabel 'y (m)'\nset ytics 0.05\n{}{}",
-                  data, plot.Text());
+  figure.plot = fmt::format(
+      "set size ratio -1\nset xlabel 'x (m)'\nset ylabel 'y (m)'\nset ytics {:.9g}\n{}{}",
+      RoundStep(kLabel_px / px_per_m), data, plot.Text());
   return figure;
 }
 

@@ -150,6 +150,7 @@ ComparedPair ComparePair(std::string sim_name, const trajectory::Trajectory& sim
   whole.skip_start = 0.0;
   ComparedPair pair{std::move(sim_name), std::move(real_name), gap::Compare(sim, real, gap),
                     gap::ProfileAlong(sim, real, whole), LoggedWaypoints(real)};
+  pair.is_in_space = gap.IsInSpace();
   if (pair.waypoints_m.empty()) pair.waypoints_m = LoggedWaypoints(sim);
   return pair;
 }
@@ -177,9 +178,11 @@ Figure OverlayFigure(const std::vector<ComparedPair>& pairs, const ReportOptions
   figure.height_px = std::clamp(
       static_cast<int>((figure.width_px - 80) * extent.y() / extent.x()) + 110, 220, 640);
   figure.plot = fmt::format(
-      "{}set size ratio -1\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
+      "{}set size ratio -1\nset xlabel '{}'\nset ylabel 'y (m)'\n"
       "set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n{}",
-      data, box.low.x(), box.high.x(), box.low.y(), box.high.y(), plot.Text());
+      data,
+      pairs.front().is_in_space ? "x (m), seen from above; the gap counts heights too" : "x (m)",
+      box.low.x(), box.high.x(), box.low.y(), box.high.y(), plot.Text());
   return figure;
 }
 

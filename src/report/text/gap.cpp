@@ -69,12 +69,12 @@ double MeanOf(const gap::GapResult& result, Member member) {
   return statistics::Mean(values);
 }
 
-/// What the gap consists of: what goes with the start offset, what with a rigid motion, and what
-/// a simulator would have to explain by its dynamics.
+/// What becomes of the gap without the start offset, which may have made it smaller, and without
+/// any rigid motion: what a simulator would have to explain by its dynamics.
 std::string AttributionText(const gap::GapResult& result) {
   return fmt::format(
-      "left over: {:.4f} m of it with the starts laid together, {:.4f} m of shape after the best "
-      "rigid motion\n",
+      "with the starts laid together the gap is {:.4f} m; after the best rigid motion {:.4f} m of "
+      "shape are left\n",
       MeanOf(result, &Comparison::start_aligned_gap_m), MeanOf(result, &Comparison::shape_gap_m));
 }
 

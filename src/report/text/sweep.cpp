@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "rift/report/figures/figures.hpp"
@@ -51,13 +52,22 @@ std::string NotOkText(const sweep::SweepResult& result) {
   constexpr int kMostShown = 3;
   std::string text;
   int shown = 0;
+  std::map<sweep::TrialStatus, int> more;
   for (size_t i = 0; i < result.rows.size(); ++i) {
     const sweep::TrialRow& row = result.rows[i];
-    if (row.IsOk() || ++shown > kMostShown) continue;
+    if (row.IsOk()) continue;
+    if (++shown > kMostShown) {
+      ++more[row.status];
+      continue;
+    }
     text += fmt::format("without gap: row {}: {}\n", i + 1, row.reason);
   }
-  if (shown > kMostShown) text += fmt::format("without gap: {} more\n", shown - kMostShown);
-  return text;
+  if (shown <= kMostShown) return text;
+  std::string kinds;
+  for (const auto& [status, count] : more) {
+    kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", count, yaml::NameOf(status));
+  }
+  return text + fmt::format("without gap: {} more: {}\n", shown - kMostShown, kinds);
 }
 
 std::string FalsificationText(const sweep::SweepResult& result, const sweep::Falsification& found) {

@@ -92,21 +92,61 @@ std::string Joined(const std::vector<std::string>& names) {
   return text;
 }
 
+/// "0.4, 0.5 and 0.6"; of many the first.
+std::string SomeJoined(std::vector<std::string> names) {
+  constexpr size_t kMost = 6;
+  if (names.size() <= kMost) return Joined(names);
+  const size_t more = names.size() - (kMost - 1);
+  names.resize(kMost - 1);
+  names.push_back(fmt::format("{} more", more));
+  return Joined(names);
+}
+
+/// Values that follow each other in the list, between which no path changed.
+struct SameValues {
+  std::vector<std::string> names;
+  int pairs = 0;
+};
+
+std::vector<SameValues> FindSame(const std::vector<ValuePair>& pairs) {
+  constexpr int kFewestPairs = 3;  // two equal paths may be chance, or two that hardly moved
+  std::vector<SameValues> found;
+  bool follows = false;
+  for (const ValuePair& pair : pairs) {
+    const bool is_same = pair.compared >= kFewestPairs && pair.identical == pair.compared;
+    if (is_same && !follows) found.push_back({{pair.a}, 0});
+    if (is_same) {
+      found.back().names.push_back(pair.b);
+      found.back().pairs += pair.compared;
+    }
+    follows = is_same;
+  }
+  return found;
+}
+
 void SayPaths(Inertness& inert) {
   if (inert.NeverChangedAPath()) {
     inert.sentences.push_back(
-        fmt::format("{} never changed the candidate's path: in all {} pairs of trials that differ "
-                    "in it alone the paths are the same to the last bit",
-                    inert.parameter, inert.compared));
+        inert.compared == 1
+            ? fmt::format("{} did not change the candidate's path in the one pair of trials that "
+                          "differ in it alone: the two are the same to the last bit",
+                          inert.parameter)
+            : fmt::format("{} never changed the candidate's path: in all {} pairs of trials that "
+                          "differ in it alone the paths are the same to the last bit",
+                          inert.parameter, inert.compared));
     return;
   }
-  for (const ValuePair& pair : inert.pairs) {
-    if (pair.compared == 0 || pair.identical < pair.compared) continue;
-    inert.sentences.push_back(
-        fmt::format("with {} {} and {} the candidate drove the same path to the last bit in all {} "
-                    "pairs of trials",
-                    inert.parameter, pair.a, pair.b, pair.compared));
+  std::string groups;
+  int pairs = 0;
+  for (const SameValues& same : FindSame(inert.pairs)) {
+    groups += fmt::format("{}{}", groups.empty() ? "" : ", and with ", SomeJoined(same.names));
+    pairs += same.pairs;
   }
+  if (groups.empty()) return;
+  inert.sentences.push_back(
+      fmt::format("with {} {} the candidate drove the same path to the last bit in all {} pairs of "
+                  "trials",
+                  inert.parameter, groups, pairs));
 }
 
 /// What the controller of one side tells about the limit.

@@ -51,6 +51,7 @@ ProgramTrial RunProgramTrial(Evaluator& evaluator, const TrialRequest& request) 
   batch.done = [&](int, const JobResult& result) {
     trial.row = EndedRow(request, result);
     if (result.end != JobEnd::kDone) {
+      evaluator.NameSides(trial.row);
       trial.candidate = {.status = trial.row.status, .reason = trial.row.reason};
       return;
     }

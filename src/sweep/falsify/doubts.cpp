@@ -48,7 +48,7 @@ std::vector<TrialDoubt> DoubtsOf(const experiment::Experiment& experiment,
                             experiment.reference.kind == ReferenceKind::kProgram;
   if (!is_of_others) return doubts;
   for (const std::string& doubt :
-       gap::Doubts(candidate.trajectory, reference.trajectory, experiment.gap.dimension)) {
+       gap::Doubts(candidate.trajectory, reference.trajectory, experiment.gap)) {
     doubts.push_back({DoubtAbout::kPair, InKeys(doubt, "candidate.units or reference.units")});
   }
   return doubts;

@@ -318,6 +318,35 @@ std::vector<odometry::EncoderReading> Evaluator::EncodersBeside(const std::strin
   return odometry::ReadEncoders(*text, path);
 }
 
+void Evaluator::NameSides(TrialRow& row) const {
+  const std::uint64_t asked = row.seed.value_or(experiment_.seed);
+  const auto known = used_.find(asked);
+  const std::uint64_t seed = known == used_.end() ? asked : known->second;
+  const std::string run =
+      fmt::format("{} with seed {}", candidate_program_ ? "program" : "simulation", seed);
+  row.candidate = experiment_.candidate.kind == CandidateKind::kLogs
+                      ? Filled(experiment_.candidate.path, row.theta, row.trial)
+                      : run;
+  switch (experiment_.reference.kind) {
+    case ReferenceKind::kLogs:
+      row.reference = ReferencePath(row.theta, row.trial);
+      return;
+    case ReferenceKind::kNominal:
+      row.reference = run;
+      return;
+    case ReferenceKind::kProgram:
+      row.reference = fmt::format("program with seed {}", seed);
+      return;
+    case ReferenceKind::kPath:
+      row.reference = PathName();
+      return;
+  }
+}
+
+std::string Evaluator::PathName() const {
+  return experiment_.program.segments.empty() ? "waypoint path" : "program path";
+}
+
 Recording Evaluator::Reference(const TrialRequest& request) {
   switch (experiment_.reference.kind) {
     case ReferenceKind::kLogs:
@@ -330,8 +359,7 @@ Recording Evaluator::Reference(const TrialRequest& request) {
     case ReferenceKind::kPath:
       break;
   }
-  return {.source = experiment_.program.segments.empty() ? "waypoint path" : "program path",
-          .trajectory = IdealPathAt(request.theta)};
+  return {.source = PathName(), .trajectory = IdealPathAt(request.theta)};
 }
 
 // The parameters of logs are parts of their names.
@@ -406,7 +434,7 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
   return CompareTrial(experiment_, request, Candidate(request, driven), driven);
 }
 
-double Evaluator::NoiseFloor_m(const experiment::Theta& theta) {
+double Evaluator::NoiseFloor_m(const experiment::Theta& theta, const std::function<bool()>& go_on) {
   const std::vector<std::string>& trials = experiment_.reference.trials.names;
   const bool has_repeats = trials.size() > 1 && !reference_program_ &&
                            experiment_.reference.kind != ReferenceKind::kPath;
@@ -419,7 +447,7 @@ double Evaluator::NoiseFloor_m(const experiment::Theta& theta) {
       noise_floors_m_.try_emplace(fmt::format("{}", fmt::join(sources, "\n")));
   if (!is_new) return found->second;
   if (experiment_.reference.kind == ReferenceKind::kNominal) {
-    return found->second = NominalNoiseFloor_m();
+    return found->second = NominalNoiseFloor_m(go_on);
   }
   std::vector<trajectory::Trajectory> references;
   for (const std::string& source : sources) {

@@ -4,8 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
 
 #include "rift/experiment/path_template.hpp"
 #include "rift/experiment/program_parameters.hpp"
@@ -21,6 +25,9 @@ using nlohmann::ordered_json;
 
 constexpr const char* kLogName = "trajectory.csv";
 constexpr const char* kThetaName = "theta.json";
+/// What a persistent program may say of a trial.
+constexpr std::array<std::string_view, 6> kAnswers{"ok",         "timed_out", "fell",
+                                                   "left_arena", "lost",      "fault"};
 
 std::string Joined(const std::string& text, const std::string& words) {
   return words.empty() ? text : text + ": " + words;
@@ -62,10 +69,46 @@ std::string FilledIn(const std::string& word, const experiment::Experiment& expe
   return experiment::FillTemplate(word, parameters, theta, request.trial);
 }
 
-/// rift mends a log that a killed writer left; of a program that says it is done it is a fault.
-bool IsCutShort(const trajectory::Log& log) {
-  return std::any_of(log.notes.begin(), log.notes.end(),
-                     [](const std::string& note) { return note.find("cut short") != note.npos; });
+/// rift mends a log that a killed writer left, and sorts rows by time; of a program that says it is
+/// done either is a fault.
+void RefuseMended(const trajectory::Log& log) {
+  for (const std::string& note : log.notes) {
+    if (note.find("cut short") != note.npos) {
+      throw std::invalid_argument("its trajectory: its last row is cut short");
+    }
+    if (note.starts_with("time runs backwards")) {
+      throw std::invalid_argument(
+          "its trajectory: time runs backwards in it: write rows in the order of their time");
+    }
+  }
+}
+
+/// True where it is certain that the first argument is a script, by interpreter and ending.
+bool RunsScript(const std::vector<std::string>& words) {
+  static const std::array<std::string_view, 10> kInterpreters{
+      "python", "node", "ruby", "perl", "bash", "sh", "julia", "lua", "octave", "Rscript"};
+  static const std::array<std::string_view, 10> kEndings{".py", ".js", ".mjs", ".cjs", ".rb",
+                                                         ".pl", ".sh", ".jl",  ".lua", ".R"};
+  std::string interpreter = fs::path(words.front()).filename().string();
+  interpreter.resize(interpreter.find_last_not_of("0123456789.") + 1);  // python3.11
+  const auto is_one_of = [](const auto& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  return is_one_of(kInterpreters, interpreter) && words.size() > 1 &&
+         words[1].find('{') == std::string::npos &&
+         is_one_of(kEndings, fs::path(words[1]).extension().string());
+}
+
+/// A script that is nowhere fails every trial in the same way. One beside the experiment was made
+/// absolute when that was read, and programs run in a folder of their own.
+void RequireScript(const std::vector<std::string>& words) {
+  std::error_code none;
+  if (!RunsScript(words)) return;
+  if (fs::path(words[1]).is_absolute() && fs::exists(words[1], none)) return;
+  throw std::invalid_argument(
+      fmt::format("there is no file '{}' beside the experiment, and {} would end at once in every "
+                  "trial: name it from the experiment's folder, or with its whole path",
+                  words[1], words.front()));
 }
 
 bool IsCrash(TrialStatus status) {
@@ -105,6 +148,11 @@ ProgramSide::ProgramSide(const experiment::Experiment& experiment, ProgramOption
     if (!fs::path(word).is_absolute() || !fs::is_regular_file(word, none)) continue;
     const std::optional<std::string> bytes = inputs.read(word);
     if (bytes) hashes_ += fmt::format("{}  {}\n", statistics::Hash128Text(*bytes), word);
+  }
+  try {
+    RequireScript(options_.run.words);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}.run: {}", options_.key, error.what()));
   }
 }
 
@@ -182,19 +230,22 @@ Recording ProgramSide::RunPersistent(const TrialRequest& request) {
   const ordered_json answer = ordered_json::parse(*line, nullptr, false);
   const bool is_answer =
       answer.is_object() && answer.contains("status") && answer["status"].is_string();
-  const auto names = EnumNames(TrialStatus{});
-  const auto found =
-      is_answer ? std::find(names.begin(), names.end(), answer["status"].get<std::string>())
-                : names.end();
-  if (found == names.end()) {
+  const std::string word = is_answer ? answer["status"].get<std::string>() : "";
+  const auto said = std::find(kAnswers.begin(), kAnswers.end(), word);
+  if (said == kAnswers.end()) {
     recording.status = TrialStatus::kFault;
-    recording.reason = fmt::format(
-        "answered '{}', and a line of JSON with a status is expected, such as {{\"status\": "
-        "\"ok\"}}",
-        trajectory::csv::Shown(*line));
+    recording.reason =
+        is_answer ? fmt::format("answered with the status '{}', and it must be one of {}",
+                                trajectory::csv::Shown(word), fmt::join(kAnswers, ", "))
+                  : fmt::format(
+                        "answered '{}', and a line of JSON with a status is expected, such as "
+                        "{{\"status\": \"ok\"}}",
+                        trajectory::csv::Shown(*line));
     program_.reset();
     return recording;
   }
+  const auto names = EnumNames(TrialStatus{});
+  const auto found = std::find(names.begin(), names.end(), word);
   recording.status = static_cast<TrialStatus>(found - names.begin());
   if (answer.contains("reason") && answer["reason"].is_string()) {
     recording.reason = answer["reason"].get<std::string>();
@@ -221,16 +272,32 @@ void ProgramSide::TakeExit(const ExternalProgram::Exit& exit, const std::string&
                      : exit.code == codes.lost       ? TrialStatus::kLost
                                                      : TrialStatus::kFault;
   recording.reason = files::ProcessEndText(exit.code, exit.signal, words);
-  const bool is_full =
-      words.find("bad_alloc") != words.npos || words.find("MemoryError") != words.npos;
-  if (!is_full) return;
+  const auto has = [&](const char* text) { return words.find(text) != words.npos; };
+  const bool wants_memory = has("bad_alloc") || has("MemoryError");
+  const bool wants_disk = exit.signal == SIGXFSZ || has("File too large");
+  if (!wants_memory && !wants_disk) return;
   recording.status = TrialStatus::kOutOfMemory;
   recording.reason =
-      Joined(fmt::format("wanted more than {} MB of memory", experiment_.run.memory_mb), words);
+      Joined(fmt::format("wanted {} more than {} MB (run.memory_mb)",
+                         wants_memory ? "memory of" : "a file of", experiment_.run.memory_mb),
+             words);
 }
 
 void ProgramSide::ReadLogFile(const std::string& folder, Recording& recording) const {
-  const std::optional<std::string> text = inputs_.read((fs::path(folder) / kLogName).string());
+  const std::string path = (fs::path(folder) / kLogName).string();
+  std::optional<std::string> text;
+  try {
+    text = inputs_.read(path);
+  } catch (const std::invalid_argument& cannot_read) {
+    if (recording.status != TrialStatus::kOk) return;
+    recording.status = TrialStatus::kUnreadable;
+    recording.reason = cannot_read.what();
+    // The name of the folder is drawn at random, and the same trial gives the same row.
+    if (const size_t at = recording.reason.find(path); at != std::string::npos) {
+      recording.reason.replace(at, path.size(), "its trajectory");
+    }
+    return;
+  }
   if (text) {
     ReadLog(*text, recording);
   } else if (recording.status == TrialStatus::kOk) {
@@ -242,8 +309,8 @@ void ProgramSide::ReadLogFile(const std::string& folder, Recording& recording) c
 /// Of a run that did not arrive the log tells how far it came, if it can be read.
 void ProgramSide::ReadLog(const std::string& text, Recording& recording) const {
   try {
-    trajectory::Log log = ReadMovedLog(text, "{out}", options_.log);
-    if (IsCutShort(log)) throw std::invalid_argument("{out}: its last row is cut short");
+    trajectory::Log log = ReadMovedLog(text, "its trajectory", options_.log);
+    RefuseMended(log);
     recording.trajectory = std::move(log.trajectory);
     recording.doubts = std::move(log.doubts);
     if (recording.status != TrialStatus::kOk) {

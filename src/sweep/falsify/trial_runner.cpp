@@ -51,7 +51,6 @@ TrialRow EndedRow(TrialRequest request, const JobResult& result) {
   if (result.end == JobEnd::kDone) return row;
   row.status = StatusOf(result.end);
   row.reason = result.bytes.substr(0, result.bytes.find('\n'));
-  row.candidate = "simulation";
   return row;
 }
 
@@ -96,7 +95,11 @@ std::vector<size_t> TrialRunner::Missing(const std::vector<TrialRequest>& reques
 TrialRow TrialRunner::Finish(TrialRequest request, const JobResult& result, bool keeps_path) {
   const std::string key = journal_ == nullptr ? "" : key_of_(request);
   TrialRow row = EndedRow(std::move(request), result);
-  if (result.end == JobEnd::kDone) DecodeFindings(result.bytes, row);
+  if (result.end == JobEnd::kDone) {
+    DecodeFindings(result.bytes, row);
+  } else {
+    watch_.name_sides(row);
+  }
   if (!keeps_path) row.evidence.path_m = {};
   if (journal_ != nullptr) journal_->Add(key, EntryOf(row));
   watch_.seen(row, false);

@@ -111,8 +111,8 @@ void WorkerPool::Collect(Slot& slot, const Batch& batch) {
   }
   const std::chrono::duration<double> busy = Clock::now() - slot.busy_since;
   if (!slot.jobs.empty() && busy.count() > options_.timeout_s) {
-    EndWorker(slot, JobEnd::kHung, fmt::format("had not ended after {:g} s", options_.timeout_s),
-              batch);
+    EndWorker(slot, JobEnd::kHung,
+              fmt::format("had not ended after {:g} s (run.timeout_s)", options_.timeout_s), batch);
   }
 }
 

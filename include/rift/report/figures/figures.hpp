@@ -49,6 +49,7 @@ struct ComparedPair {
   gap::Comparison comparison;
   gap::ErrorProfile profile;  ///< of the whole path, the share left out at the start included
   std::vector<Eigen::Vector2d> waypoints_m;  ///< see LoggedWaypoints; may be empty
+  bool is_in_space = false;                  ///< the comparison counts heights
 };
 
 /// Compares and keeps what is drawn. Throws as gap::Compare.
@@ -59,8 +60,9 @@ ComparedPair ComparePair(std::string sim_name, const trajectory::Trajectory& sim
 /// The targets a log names, each once, in the order they were driven to.
 std::vector<Eigen::Vector2d> LoggedWaypoints(const trajectory::Trajectory& trajectory);
 
-/// The paths in the plane at equal scale, with start, end, waypoints and the line that joins the
-/// two points of the largest error. All functions below throw std::invalid_argument for no pair.
+/// The paths in the plane (those in space as seen from above) at equal scale, with start, end,
+/// waypoints and the line that joins the two points of the largest error. All functions below throw
+/// std::invalid_argument for no pair.
 Figure OverlayFigure(const std::vector<ComparedPair>& pairs, const ReportOptions& options = {});
 
 /// Figure 9 of the paper: error over u, with the maximum and the threshold.

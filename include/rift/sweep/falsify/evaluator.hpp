@@ -1,8 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "rift/experiment/experiment.hpp"
 #include "rift/sweep/falsify/recorded_logs.hpp"
@@ -17,6 +20,23 @@ class ProgramSide;
 struct CandidateRun {
   Recording camera;
   std::vector<odometry::EncoderReading> encoders;  ///< none where there are none
+};
+
+/// How far the runs that settings are held against are known before the first trial.
+struct ReferenceProgress {
+  int arrived = 0;
+  int seeds = 0;         ///< that trials of one setting count up from the experiment's
+  int others_tried = 0;  ///< in the place of seeds whose run did not arrive
+  std::string last_failure{};
+};
+
+/// Who waits for them.
+struct ReferenceWatch {
+  int workers = 1;
+  /// Asked at least every 0.1 s; false stops.
+  std::function<bool(const ReferenceProgress&)> go_on = [](const ReferenceProgress&) {
+    return true;
+  };
 };
 
 /// The evaluator of an experiment: one trial at one setting, theta -> gap. Grid, search, shrinking,
@@ -40,10 +60,14 @@ class Evaluator {
                           trial::Outcome outcome);
   Recording Reference(const TrialRequest& request);
   /// Runs the nominal trial of the seeds that trials of one setting count up from the experiment's,
-  /// in a process of their own, before the first trial: which of them failed, and what took their
-  /// place. Empty for references that are no runs. Throws std::invalid_argument when the nominal
-  /// run never arrives: nothing can be compared with it.
-  std::vector<ReplacedReference> CheckReferences();
+  /// in worker processes, before the first trial: which of them did not arrive, and what took their
+  /// place. Empty for references that are no runs; nothing when it was told to stop. Throws
+  /// std::invalid_argument when the nominal run never arrives, and at the first that ends in a way
+  /// that no seed mends (fault, crash, hang, no log): nothing can be compared with it.
+  std::optional<std::vector<ReplacedReference>> CheckReferences(const ReferenceWatch& watch = {});
+  /// Candidate and reference of a row as Evaluate would name them: of one that ended before it
+  /// could.
+  void NameSides(TrialRow& row) const;
   /// May start where the reference did.
   Recording Candidate(const TrialRequest& request, const Recording& reference);
   /// The same with its encoders: those of a log lie beside it in encoders.csv.
@@ -56,8 +80,9 @@ class Evaluator {
   SimulatedTrial TrialOf(const experiment::Experiment& experiment, const geometry::Pose2& start,
                          std::uint64_t seed) const;
   /// How far the references of a setting are apart: gap::NoiseFloor_m. NaN without repeats. Nominal
-  /// runs are simulated in a process of their own.
-  double NoiseFloor_m(const experiment::Theta& theta);
+  /// runs are simulated in a process of their own, until `go_on` (asked every 0.1 s) says no.
+  double NoiseFloor_m(
+      const experiment::Theta& theta, const std::function<bool()>& go_on = [] { return true; });
 
   /// Reads every log that some setting names, so that worker processes find them loaded.
   void LoadLogs();
@@ -80,8 +105,9 @@ class Evaluator {
   TrialRow EvaluateOdometry(const TrialRequest& request);
   const Recording& Nominal(std::uint64_t seed);
   std::uint64_t SeedWithReference(std::uint64_t seed);
-  std::string ReplacedText(int seeds);
-  double NominalNoiseFloor_m();
+  std::string PathName() const;
+  int NominalSeeds() const;
+  double NominalNoiseFloor_m(const std::function<bool()>& go_on);
 
   const experiment::Experiment& experiment_;
   std::string experiment_file_;

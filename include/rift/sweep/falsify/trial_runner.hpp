@@ -38,6 +38,8 @@ struct Watch {
   std::function<void(const TrialRow&, bool from_journal)> seen = [](const TrialRow&, bool) {};
   /// Asked at least every 0.1 s; false stops the sweep.
   std::function<bool()> go_on = [] { return true; };
+  /// Asked for the names of both sides of a row whose process ended before it could name them.
+  std::function<void(TrialRow&)> name_sides = [](TrialRow& row) { row.candidate = "simulation"; };
 };
 
 /// In this process, one after the other: for trials that cannot do harm.
