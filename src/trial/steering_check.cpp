@@ -96,6 +96,8 @@ class SentIntegrals {
   }
 
   Asked Until(double t_s) const {
+    if (commands_.empty()) return {0.0, 0.0};
+    t_s = std::min(t_s, commands_.back().t_s);  // how long that one held is not known
     const auto after =
         std::upper_bound(commands_.begin(), commands_.end(), t_s,
                          [](double t, const SentCommand& sent) { return t < sent.t_s; });
