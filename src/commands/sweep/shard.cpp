@@ -54,7 +54,7 @@ sweep::Shard ReadShard(const std::string& file, const std::string& bytes,
 }
 
 std::vector<sweep::TrialRequest> RequestsOf(const sweep::Shard& shard, const std::string& file,
-                                            const sweep::Evaluator& evaluator) {
+                                            sweep::Evaluator& evaluator) {
   std::vector<sweep::TrialRequest> requests;
   sweep::KeysHash keys;
   for (const std::string& bytes : shard.requests) {

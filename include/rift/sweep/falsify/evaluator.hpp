@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -88,8 +89,9 @@ class Evaluator {
   void LoadLogs();
   /// Everything that a trial depends on beside the experiment itself, as one line: the journal's
   /// key.
-  std::string KeyOf(const TrialRequest& request) const;
-  /// Fingerprints of every log that was read.
+  std::string KeyOf(const TrialRequest& request);
+  /// Fingerprints of every log that was read, of programs' files, and of pictures of heightfields
+  /// that a key was made of.
   std::string InputsText() const;
 
   const experiment::Experiment& experiment() const { return experiment_; }
@@ -101,6 +103,10 @@ class Evaluator {
   std::string Filled(const experiment::PathTemplate& path, const experiment::Theta& theta,
                      const std::string& trial) const;
   void CheckKinds() const;
+  void LoadLogsOf(const experiment::PathTemplate& path, const char* key, RecordedLogs& logs) const;
+  /// Of the heightfields that a trial at this setting is driven on.
+  std::set<std::string> PicturesOf(const experiment::Theta& theta) const;
+  const std::string& PictureHash(const std::string& path);
   std::string ReferencePath(const experiment::Theta& theta, const std::string& trial) const;
   TrialRow EvaluateOdometry(const TrialRequest& request);
   const Recording& Nominal(std::uint64_t seed);
@@ -116,9 +122,11 @@ class Evaluator {
   RecordedLogs reference_logs_;
   std::shared_ptr<ProgramSide> candidate_program_;  ///< where that side is a program
   std::shared_ptr<ProgramSide> reference_program_;
-  std::map<std::uint64_t, Recording> nominal_runs_;  ///< by seed
-  std::map<std::uint64_t, std::uint64_t> used_;      ///< seeds with a reference, by those asked for
-  std::map<std::string, double> noise_floors_m_;     ///< by the references' sources
+  std::map<std::string, std::string> picture_hashes_;  ///< by path; empty: not there
+  bool may_have_pictures_ = false;                     ///< at some setting
+  std::map<std::uint64_t, Recording> nominal_runs_;    ///< by seed
+  std::map<std::uint64_t, std::uint64_t> used_;   ///< seeds with a reference, by those asked for
+  std::map<std::string, double> noise_floors_m_;  ///< by the references' sources
 };
 
 /// One candidate against one reference. Without one of them it is a row with its status.
