@@ -163,6 +163,11 @@ std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
 
 }  // namespace
 
+bool IsComputed(const experiment::Experiment& experiment) {
+  return experiment.candidate.kind != experiment::CandidateKind::kLogs ||
+         experiment.reference.kind == experiment::ReferenceKind::kProgram;
+}
+
 sweep::Facts FactsOf(const experiment::Experiment& experiment) {
   sweep::Facts facts;
   for (const auto& [key, value] : experiment::FlatValues(experiment)) {
@@ -186,9 +191,7 @@ std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
   const sweep::SweepResult kinds = sweep::EmptyResult(experiment);
   DoubtNotes doubts(kinds, [&progress](const std::string& line) { progress.Warn(line); });
   std::optional<sweep::SweepResult> result;
-  const bool is_computed = experiment.candidate.kind != experiment::CandidateKind::kLogs ||
-                           experiment.reference.kind == experiment::ReferenceKind::kProgram;
-  if (is_computed) {
+  if (IsComputed(experiment)) {
     result = RunSimulated(evaluator, request, progress, doubts, stop);
   } else {
     const sweep::RunTrials run =

@@ -26,6 +26,10 @@ struct SweepRunRequest {
 
 inline constexpr const char* kJournalName = "journal.sqlite";
 
+/// Whether trials are computed, and kept in a journal. Logs held against logs or a path are read
+/// anew each time.
+bool IsComputed(const experiment::Experiment& experiment);
+
 /// What the rows of an experiment's journal are made from.
 sweep::Facts FactsOf(const experiment::Experiment& experiment);
 

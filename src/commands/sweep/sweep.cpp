@@ -96,6 +96,13 @@ void RemoveReport(const fs::path& out) {
   }
 }
 
+/// Of a sweep that starts over. Drives of the robot, and the suggestions that they were made from,
+/// are left alone.
+void RemoveFindings(const fs::path& out) {
+  RemoveReport(out);
+  for (const char* name : {"shrunk", "shrunk.json", "rare_event.json"}) fs::remove_all(out / name);
+}
+
 /// What the process ends with when there is nothing to report on: logs that are not there are bad
 /// input, a robot that never arrives is a result.
 int EndWithoutGap(const SweepRequest& request, const fs::path& out,
@@ -155,8 +162,7 @@ void NoteTooFewRepeats(const experiment::Experiment& experiment) {
 void RefuseOtherSweep(const SweepRequest& request, const experiment::Experiment& experiment,
                       const fs::path& out) {
   RefuseRunFolder(out);
-  const bool goes_on = experiment.candidate.kind == experiment::CandidateKind::kSimulation &&
-                       experiment.goal != experiment::Goal::kCalibrate &&
+  const bool goes_on = IsComputed(experiment) && experiment.goal != experiment::Goal::kCalibrate &&
                        fs::exists(out / "journal.sqlite");
   const fs::path saved = out / "experiment.yaml";
   if (request.fresh || goes_on || !fs::exists(saved)) return;
@@ -256,6 +262,7 @@ int Sweep(const SweepRequest& request) {
   const fs::path out = OutputOf(request.out, experiment.name);
   RefuseOtherSweep(request, experiment, out);
   const files::FolderLock lock(out);
+  if (request.fresh) RemoveFindings(out);
   const ProgressStyle progress = StyleFor(request.quiet, request.json_progress);
   std::optional<LivePage> live;
   if (request.serve) live.emplace(out, evaluator);
