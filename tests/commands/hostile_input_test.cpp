@@ -1,11 +1,11 @@
 #include <sys/stat.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <filesystem>
 
+#include "support/png_bytes.hpp"
 #include "support/process.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
@@ -19,33 +19,6 @@ using test::RunRift;
 using test::WriteText;
 
 const std::string kExample = test::SourceDir() + "/data/example/";
-
-std::string BigEndian(std::uint32_t number) {
-  std::string bytes;
-  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift);
-  return bytes;
-}
-
-std::string PngChunk(const std::string& type, const std::string& data) {
-  const std::string body = type + data;
-  const auto sum =
-      crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
-  return BigEndian(static_cast<std::uint32_t>(data.size())) + body +
-         BigEndian(static_cast<std::uint32_t>(sum));
-}
-
-/// All black, of one bit a pixel: few bytes for many pixels.
-std::string BlackPng(std::uint32_t side) {
-  const std::string rows(static_cast<size_t>(side) * (1 + (side + 7) / 8), '\0');
-  uLongf size = compressBound(rows.size());
-  std::string packed(size, '\0');
-  compress(reinterpret_cast<Bytef*>(packed.data()), &size,
-           reinterpret_cast<const Bytef*>(rows.data()), rows.size());
-  packed.resize(size);
-  return "\x89PNG\r\n\x1a\n" +
-         PngChunk("IHDR", BigEndian(side) + BigEndian(side) + std::string("\x01\0\0\0\0", 5)) +
-         PngChunk("IDAT", packed) + PngChunk("IEND", "");
-}
 
 std::string HeightfieldTask(const std::string& image) {
   return "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]\n"
@@ -65,13 +38,13 @@ void CheckRefused(const ProcessResult& result, const std::string& says) {
 TEST_CASE("A small PNG of very many pixels is refused by its header") {
   const test::TemporaryFolder folder;
   const std::string image = folder / "huge.png", task = folder / "task.yaml";
-  WriteText(image, BlackPng(16'000));
+  WriteText(image, test::BlackPng(16'000));
   WriteText(task, HeightfieldTask(image));
   REQUIRE(std::filesystem::file_size(image) < 300'000);
   const std::string says = "huge.png: PNG height image: 256000000 pixels: at most 16777216";
   CheckRefused(RunRift({"simulate", task, "--out", folder / "run"}), says);
   CheckRefused(RunRift({"sweep", task, "--out", folder / "sweep"}), says);
-  WriteText(image, BlackPng(64));
+  WriteText(image, test::BlackPng(64));
   CHECK(RunRift({"simulate", task, "--out", folder / "run"}).exit_code <= 1);
 }
 
