@@ -6,6 +6,7 @@
 #include <regex>
 #include <set>
 
+#include "support/help_flags.hpp"
 #include "support/process.hpp"
 #include "support/running_rift.hpp"
 #include "support/tree.hpp"
@@ -18,17 +19,6 @@ using Catch::Matchers::Contains;
 using test::RunRift;
 
 const std::vector<std::string> kCommands{"simulate", "track", "drive", "gap", "sweep"};
-
-/// The flags that `rift COMMAND --help` begins its lines with.
-std::set<std::string> FlagsOf(const std::string& command) {
-  const std::string help = RunRift({command, "--help"}).out;
-  const std::regex line(R"(\n  (?:-\w,)?(--[a-z-]+))");
-  std::set<std::string> flags;
-  for (std::sregex_iterator match(help.begin(), help.end(), line), end; match != end; ++match) {
-    flags.insert((*match)[1]);
-  }
-  return flags;
-}
 
 /// What `command` prints in a shell.
 std::string Shell(const std::string& command, const test::TemporaryFolder& folder) {
@@ -43,7 +33,7 @@ std::string Shell(const std::string& command, const test::TemporaryFolder& folde
 TEST_CASE("Manual and completions name every flag of every command") {
   const std::string bash = RunRift({"help", "--bash"}).out, zsh = RunRift({"help", "--zsh"}).out;
   for (const std::string& command : kCommands) {
-    const std::set<std::string> flags = FlagsOf(command);
+    const std::set<std::string> flags = test::FlagsOf(command);
     CHECK(flags.size() > 10);
     const std::string page = RunRift({"help", "--man", command}).out;
     for (const std::string& flag : flags) {
