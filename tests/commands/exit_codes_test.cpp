@@ -84,7 +84,7 @@ TEST_CASE("Each command ends with the exit codes of the table in docs") {
            {kFilm + "--out @none.csv --id 7", 1, "never seen"},
            {"track --calibrate --images @frames --out @board.yaml", 1, "verdict: refuse"},
            {kFilm, 2, "--out LOG.csv is missing"},
-           {kFilm + "--out @log.csv --tum @full.tum", 3, "No space left on device"},
+           {kFilm + "--out @log4.csv --tum @full.tum", 3, "No space left on device"},
            {"drive --ping", 2, "--port is missing"},
            {"drive @task.yaml" + absent, 3, "there is no serial port"},
            {"drive --ping --port @gone", 3, "there is no serial port"}}) {
