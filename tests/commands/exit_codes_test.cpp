@@ -122,29 +122,30 @@ TEST_CASE("A file that finds no room is exit 3 and named, whichever flag names i
 TEST_CASE(
     "A document on a stdout that is full or closed is exit 3, and on a closed stderr is whole") {
   const Folder folder;
-  const auto words = GENERATE(
-      as<std::string>{}, "gap " + kLogs + " --json -", "gap " + kLogs + " --profile -",
-      "simulate @task.yaml --out -", "simulate @task.yaml --json --any-waypoints --out @run",
-      "simulate --keys", "simulate --replay @before worst --out @run", kFilm + "--out -",
-      "sweep --status @before", "sweep --status @before --json", "sweep --compare @before @after",
-      "sweep --compare @before @after --json", "sweep @task.yaml --out @before --json",
-      "sweep @task.yaml --out @before --brief", "track --keys", "drive --keys", "help sweep",
-      "help --man", "help --bash");
-  const ProcessResult usual = folder.Run(words);
-  INFO("rift " << words << "\n" << usual.err);
-  REQUIRE(usual.exit_code == 0);
-  REQUIRE_FALSE(usual.out.empty());
-  for (const char* broken : {">/dev/full", ">&-"}) {
-    const ProcessResult result = folder.Run(words, broken);
-    INFO(broken << ": " << result.err);
-    CHECK(result.exit_code == 3);
-    CHECK_THAT(result.err, Contains("cannot write to stdout: "));
-  }
-  for (const char* silent : {"2>/dev/full", "2>&-"}) {
-    const ProcessResult result = folder.Run(words, silent);
-    INFO(silent);
-    CHECK(result.exit_code == 0);
-    CHECK(result.out == usual.out);
+  for (const std::string& words : std::vector<std::string>{
+           "gap " + kLogs + " --json -", "gap " + kLogs + " --profile -",
+           "simulate @task.yaml --out -", "simulate @task.yaml --json --any-waypoints --out @run",
+           "simulate --keys", "simulate --replay @before worst --out @again", kFilm + "--out -",
+           "sweep --status @before", "sweep --status @before --json",
+           "sweep --compare @before @after", "sweep --compare @before @after --json",
+           "sweep @task.yaml --out @before --json", "sweep @task.yaml --out @before --brief",
+           "track --keys", "drive --keys", "help sweep", "help --man", "help --bash"}) {
+    const ProcessResult usual = folder.Run(words);
+    INFO("rift " << words << "\n" << usual.err);
+    REQUIRE(usual.exit_code == 0);
+    REQUIRE_FALSE(usual.out.empty());
+    for (const char* broken : {">/dev/full", ">&-"}) {
+      const ProcessResult result = folder.Run(words, broken);
+      INFO(broken << ": " << result.err);
+      CHECK(result.exit_code == 3);
+      CHECK_THAT(result.err, Contains("cannot write to stdout: "));
+    }
+    for (const char* silent : {"2>/dev/full", "2>&-"}) {
+      const ProcessResult result = folder.Run(words, silent);
+      INFO(silent);
+      CHECK(result.exit_code == 0);
+      CHECK(result.out == usual.out);
+    }
   }
 }
 
