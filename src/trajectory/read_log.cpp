@@ -102,14 +102,14 @@ void CheckMoves(const Trajectory& trajectory, const std::string& name, bool in_s
 
 /// Files whose lines no reader finds, each with what to do.
 void RefuseNoText(std::string_view text, const std::string& name) {
-  constexpr size_t kLooked = 1000;  // a writer that was killed may leave anything at the end
   if (csv::WithoutMark(text).find_first_not_of(" \t\r\n") == text.npos) {
     throw std::invalid_argument(name + ": the file is empty");
   }
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
     throw std::invalid_argument(name + ": is UTF-16: save it as UTF-8 text");
   }
-  const std::string_view start = text.substr(0, kLooked);
+  // Further down anything may be left by a writer that was killed.
+  const std::string_view start = text.substr(0, text.find('\n'));
   const auto is_control = [](char c) {
     return static_cast<unsigned char>(c) < 0x20 &&
            std::string_view("\t\r\n\v\f").find(c) == std::string_view::npos;

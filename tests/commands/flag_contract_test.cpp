@@ -300,6 +300,8 @@ TEST_CASE("Each flag of rift track does what its row says") {
        {"--world", "@tags.yaml", track, 0, "differs camera.yaml"},
        {"--check", "", "", 0,
         "test What precision to expect is said before anything is driven, as a map and as JSON"},
+       {"--print-tag", "@tag.svg", "", 0, "file tag.svg <svg"},
+       {"--print-board", "@board.svg", "", 0, "file board.svg <svg"},
        {"--view", "", "", 0, "test Without a display the view says so and the tracking goes on"},
        {"--path", "@none.yaml", track, 2, "err none.yaml"},
        {"--record-waypoints", "", "", 0,
