@@ -108,11 +108,11 @@ void RefuseNoText(std::string_view text, const std::string& name) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
     throw std::invalid_argument(name + ": is UTF-16: save it as UTF-8 text");
   }
-  // Further down anything may be left by a writer that was killed.
+  // Further down anything may be left by a writer that was killed; a terminal's colours are text.
   const std::string_view start = text.substr(0, text.find('\n'));
   const auto is_control = [](char c) {
     return static_cast<unsigned char>(c) < 0x20 &&
-           std::string_view("\t\r\n\v\f").find(c) == std::string_view::npos;
+           std::string_view("\t\r\v\f\a\x1b").find(c) == std::string_view::npos;
   };
   if (std::any_of(start.begin(), start.end(), is_control)) {
     throw std::invalid_argument(name +

@@ -362,10 +362,10 @@ TEST_CASE("What a program's experiment lacks is said before the first trial") {
   const std::string nominal = "reference: {kind: nominal}\nspace: {mu: [1, 2]}\n";
   CHECK(refusal("candidate: {kind: program}\n" + nominal).find("candidate.run is missing") !=
         std::string::npos);
-  CHECK(refusal("candidate: {kind: program, run: [a, '{nu}']}\n" + nominal)
+  CHECK(refusal("candidate: {kind: program, run: [cat, '{nu}']}\n" + nominal)
             .find("names {nu}, and the space has only mu, seed, folder, out, theta") !=
         std::string::npos);
-  CHECK(refusal("candidate: {kind: program, persistent: true, run: [a, '{mu}']}\n" + nominal)
+  CHECK(refusal("candidate: {kind: program, persistent: true, run: [cat, '{mu}']}\n" + nominal)
             .find("told of its trials in lines of JSON") != std::string::npos);
   CHECK(refusal("candidate: {kind: simulation}\nspace: {control.v_min: {min: 0.1, max: 0.2, "
                 "nominal: 0.15}}\ngoal: falsify\n")
@@ -374,7 +374,7 @@ TEST_CASE("What a program's experiment lacks is said before the first trial") {
             .find("bad.yaml: candidate.run: there is no file 'perz.py' beside the experiment") !=
         std::string::npos);
   CHECK(refusal("reference: {kind: program, run: [node, ../perz.mjs]}\nspace: {mu: [1, 2]}\n"
-                "candidate: {kind: program, run: [a, '{mu}']}\n")
+                "candidate: {kind: program, run: [cat, '{mu}']}\n")
             .find("reference.run: there is no file '../perz.mjs'") != std::string::npos);
 }
 

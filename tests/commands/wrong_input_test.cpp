@@ -298,7 +298,7 @@ TEST_CASE("Wrong input: rift track") {
       {camera + "http://camera:99999/video", "a port up to 65535"},
       {kFilm + "--fsp 3", "did you mean --fps?"},
       {kFilm + "--id 3,3", "3 is named twice"},
-      {kFilm + "--id 999", "--id: Value 999 not in range 0 to 586"},
+      {kFilm + "--id 999", "tag id 999: the family tag36h11 has the ids 0 to 586"},
       {kFilm + "--id a", "--id: Value a"},
       {kFilm + "--id ''", "--id: its value is empty"},
       {kFilm + "--tag-height 9", "must be a number in [0, 2]"},
