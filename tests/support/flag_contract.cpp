@@ -118,7 +118,7 @@ bool IsTestOf(const std::string& name, const std::string& flag) {
 
 class Runs {
  public:
-  Runs(std::string command, std::function<void(const TemporaryFolder&)> prepare)
+  Runs(std::string command, const std::function<void(const TemporaryFolder&)>& prepare)
       : command_(std::move(command)) {
     prepare(prepared_);
   }
