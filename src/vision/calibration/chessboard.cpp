@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kColour = 90;  // saturation of 255 that no grey cast of a lamp reaches
 
-constexpr double kMost_mpixel = CaptureOptions{}.most_mpixel;
+const double kMost_mpixel = CaptureOptions{}.most_mpixel;
 
 // Tried in turn: what one width misses the next may find. A board whose squares are too small at
 // these is too far away to calibrate with, and a whole 1080p picture takes ten times as long.
