@@ -8,8 +8,9 @@
 namespace rift::test {
 
 /// How long something that must happen may take. It is the last resort against a test that hangs,
-/// so it holds on a machine many times slower or busier than any that runs the tests.
-constexpr std::chrono::seconds kGiveUp{900};
+/// so it holds on a machine many times slower or busier than any that runs the tests; shorter than
+/// what ctest gives a test (cmake/Room.cmake), else nobody would learn what was waited for.
+constexpr std::chrono::seconds kGiveUp{420};
 
 /// Waits until `is_so()`, which is asked again and again. Throws std::runtime_error that says
 /// `what` was waited for when it never was so.

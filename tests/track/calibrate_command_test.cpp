@@ -8,30 +8,18 @@
 #include "support/process.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
+#include "track/camera_to_calibrate.hpp"
 
 namespace rift {
 namespace {
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
+using test::CameraToCalibrate;
 using test::ProcessResult;
 using test::RunRift;
 
-/// A camera that looks at a board of 7 x 5 corners held before it in many ways.
-vision::CameraModel SmallCamera() {
-  vision::CameraModel camera;
-  camera.width_px = 640;
-  camera.height_px = 480;
-  camera.k << 610.0, 0.0, 322.0, 0.0, 612.0, 236.0, 0.0, 0.0, 1.0;
-  camera.distortion = {-0.15, 0.05, 0.001, -0.0005, 0.0};
-  vision::WorldFrame world;
-  world.world_from_camera.linear() = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
-  world.world_from_camera.translation() = Eigen::Vector3d(0.0, 0.0, 1.0);
-  camera.world = world;
-  return camera;
-}
-
-/// Renders one picture a pose into the folder.
+/// Pictures of a board of 7 x 5 corners held before the camera in many ways. Renders one picture a pose into the folder.
 void RenderViews(const vision::CameraModel& camera, int count,
                  const test::TemporaryFolder& folder) {
   std::mt19937_64 generator(3);
@@ -62,7 +50,7 @@ void RenderViews(const vision::CameraModel& camera, int count,
 }
 
 TEST_CASE("A camera is calibrated from a folder of pictures and from a recording of them") {
-  const vision::CameraModel truth = SmallCamera();
+  const vision::CameraModel truth = CameraToCalibrate();
   const test::TemporaryFolder photos, out;
   RenderViews(truth, 16, photos);
   for (const bool from_camera : {false, true}) {

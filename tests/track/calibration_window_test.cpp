@@ -1,6 +1,5 @@
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <random>
 
@@ -10,31 +9,23 @@
 #include "support/running_rift.hpp"
 #include "support/trials.hpp"
 #include "support/virtual_display.hpp"
+#include "track/camera_to_calibrate.hpp"
+#include "track/window_keys.hpp"
 #include "vision/mjpeg_server.hpp"
 
 namespace rift {
 namespace {
 
 using Catch::Matchers::Contains;
+using test::CountOf;
 using test::Environment;
 using test::ProcessResult;
-
-vision::CameraModel SmallCamera() {
-  vision::CameraModel camera;
-  camera.width_px = 640;
-  camera.height_px = 480;
-  camera.k << 610.0, 0.0, 322.0, 0.0, 612.0, 236.0, 0.0, 0.0, 1.0;
-  camera.distortion = {-0.15, 0.05, 0.001, -0.0005, 0.0};
-  vision::WorldFrame world;
-  world.world_from_camera.linear() = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
-  world.world_from_camera.translation() = Eigen::Vector3d(0.0, 0.0, 1.0);
-  camera.world = world;
-  return camera;
-}
+using test::CameraToCalibrate;
+using test::Succeeds;
 
 /// Pictures of a board of 7 x 5 corners, here and there, near and far, tilted this way and that.
 std::vector<std::vector<std::uint8_t>> Views() {
-  const vision::CameraModel camera = SmallCamera();
+  const vision::CameraModel camera = CameraToCalibrate();
   struct Held {
     double x, y, distance_m, tilt_rad, about_rad;
   };
@@ -59,10 +50,6 @@ std::vector<std::vector<std::uint8_t>> Views() {
                         .bytes);
   }
   return jpegs;
-}
-
-bool Succeeds(const std::string& command) {
-  return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
 }
 
 /// An http camera before which somebody holds the board in one place until told to move on.
@@ -111,13 +98,16 @@ TEST_CASE("A board moved about before a live camera calibrates it, and the windo
   test::RunningRift rift(Calibrating(board, folder / "cam.yaml"));
   const std::string window =
       "xdotool search --onlyvisible --name '^rift track: calibration$' windowfocus --sync %1 key ";
-  const auto says = [&](const std::string& line) {
-    rift.WaitUntil(line, [&] { return rift.Err().find(line) != std::string::npos; });
+  const auto says = [&](const std::string& line, int times = 1) {
+    rift.WaitUntil(line, [&] { return CountOf(line, rift.Err()) >= times; });
   };
   says("first, hold the board");
   says("view 1: ");
+  rift.WaitUntil("the window takes a key", [&] { return Succeeds(window + "Shift"); });
   REQUIRE(Succeeds(window + "u"));
   says("view 1 is taken back");
+  // It is taken again, where the board still is: moved on before, it would be two views later.
+  says("view 1: ", 2);
   // Ten are enough, and then it ends by itself; on a key before.
   for (std::size_t view = 1; view <= (is_early ? 6U : 10U); ++view) {
     says("view " + std::to_string(view) + ": ");

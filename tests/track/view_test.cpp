@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -8,29 +7,22 @@
 #include "support/tree.hpp"
 #include "support/trials.hpp"
 #include "support/virtual_display.hpp"
+#include "track/window_keys.hpp"
 
 namespace rift {
 namespace {
 
 using Catch::Matchers::Contains;
+using test::CountOf;
 using test::Environment;
 using test::ProcessResult;
+using test::Succeeds;
 
 const std::string kData = test::SourceDir() + "/data/camera";
 
-bool Succeeds(const std::string& command) {
-  return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
-}
-
-int Count(const std::string& text, const std::string& word) {
-  int count = 0;
-  for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) ++count;
-  return count;
-}
-
 TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
   const test::VirtualDisplay server;
-  if (!server.Runs() || std::system("command -v xdotool >/dev/null") != 0) {
+  if (!server.Runs() || !Succeeds("command -v xdotool")) {
     WARN("SKIPPED: Xvfb or xdotool is not installed");
     return;
   }
@@ -64,10 +56,10 @@ TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
       const std::vector<std::string> places{"120 300", "320 260", "500 100", "520 220"};
       for (std::size_t i = 0; i < places.size(); ++i) {
         act("mousemove --window %1 " + places[i] + " click 1",
-            [&] { return Count(saved(), "name:") == static_cast<int>(i) + 1; });
+            [&] { return CountOf("name:", saved()) == static_cast<int>(i) + 1; });
       }
-      act("windowfocus --sync %1 key u", [&] { return Count(saved(), "name:") == 3; });
-      act("windowfocus --sync %1 key s", [&] { return Count(saved(), "stop: false") == 1; });
+      act("windowfocus --sync %1 key u", [&] { return CountOf("name:", saved()) == 3; });
+      act("windowfocus --sync %1 key s", [&] { return CountOf("stop: false", saved()) == 1; });
       REQUIRE(Succeeds(window + "windowfocus --sync %1 key q"));
     }
     result = rift.Wait();
