@@ -19,7 +19,8 @@ using test::CameraToCalibrate;
 using test::ProcessResult;
 using test::RunRift;
 
-/// Pictures of a board of 7 x 5 corners held before the camera in many ways. Renders one picture a pose into the folder.
+/// Pictures of a board of 7 x 5 corners held before the camera in many ways. Renders one picture a
+/// pose into the folder.
 void RenderViews(const vision::CameraModel& camera, int count,
                  const test::TemporaryFolder& folder) {
   std::mt19937_64 generator(3);

@@ -17,10 +17,10 @@ namespace rift {
 namespace {
 
 using Catch::Matchers::Contains;
+using test::CameraToCalibrate;
 using test::CountOf;
 using test::Environment;
 using test::ProcessResult;
-using test::CameraToCalibrate;
 using test::Succeeds;
 
 /// Pictures of a board of 7 x 5 corners, here and there, near and far, tilted this way and that.
