@@ -15,6 +15,7 @@
 #include "rift/geometry/pose2.hpp"
 #include "rift/limits/limits.hpp"
 #include "rift/trajectory/csv.hpp"
+#include "rift_columns.hpp"
 
 namespace rift::trajectory {
 namespace {
@@ -56,9 +57,7 @@ bool LooksLikeTum(std::string_view line, std::string_view rest) {
   return line.find_first_not_of("0123456789+-.eE \t") == line.npos && CellsOf(line) == 8;
 }
 
-/// Names of the pose columns of a dialect, in the order of StampedPose.
-constexpr std::array<std::string_view, 9> kRiftColumns{
-    "t_s", "x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad", "target_x_m", "target_y_m"};
+/// In the order of StampedPose.
 constexpr std::array<std::string_view, 9> kAuthorsColumns{
     "t", "x", "y", "z", "roll", "pitch", "yaw", "desired_x", "desired_y"};
 

@@ -1,15 +1,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "not_logged.hpp"
 #include "rift/trajectory/log.hpp"
+#include "rift_columns.hpp"
 
 namespace rift::trajectory {
 namespace {
@@ -30,12 +31,9 @@ std::string HeaderCell(const std::string& name) {
   return cell + '"';
 }
 
-constexpr std::array kPoseColumns{"t_s",       "x_m",     "y_m",        "z_m",       "roll_rad",
-                                  "pitch_rad", "yaw_rad", "target_x_m", "target_y_m"};
-
 /// Another log's column may have the name of a column of poses; it gets one of its own.
 std::string ChannelColumn(std::string name, std::set<std::string>& taken) {
-  if (std::find(kPoseColumns.begin(), kPoseColumns.end(), name) == kPoseColumns.end()) return name;
+  if (std::find(kRiftColumns.begin(), kRiftColumns.end(), name) == kRiftColumns.end()) return name;
   do name += "_2";
   while (!taken.insert(name).second);
   return name;
@@ -66,8 +64,8 @@ Eigen::Quaterniond WorldFromBody(const StampedPose& pose) {
 std::string WriteRift(const Trajectory& trajectory) {
   std::set<std::string> names;
   std::string text;
-  for (const char* const column : kPoseColumns) {
-    names.insert(column);
+  for (const std::string_view column : kRiftColumns) {
+    names.emplace(column);
     text += (text.empty() ? "" : ",") + std::string(column);
   }
   for (const Channel& channel : trajectory.channels) names.insert(channel.name);
