@@ -25,7 +25,7 @@ std::optional<std::string> OffFloorCheck::Add(const Sighting& sighting) {
 /// A side that is told too long puts the tag too far down the ray on which it is seen.
 std::string OffFloorCheck::Warning() const {
   const double camera_m = camera_.world->world_from_camera.translation().z();
-  const double z_m = statistics::Quantile(z_m_, 0.5);
+  const double z_m = statistics::Median(z_m_);
   const double size_m = tag_.size_m * (camera_m - tag_.height_m) / (camera_m - z_m);
   std::string text = fmt::format(
       "the tag is not on the floor in {} of {} pictures (z {:.3f} m, track.tag.height_m {:g}): is "
