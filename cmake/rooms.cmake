@@ -20,7 +20,7 @@ rift_room(trajectory ROOMS geometry limits statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES FastFloat::fast_float)
 rift_room(control ROOMS geometry
   LIBRARIES fmt::fmt)
-rift_room(trial ROOMS control geometry trajectory
+rift_room(trial ROOMS control geometry statistics trajectory
   LIBRARIES fmt::fmt)
 rift_room(gap ROOMS geometry statistics trajectory
   LIBRARIES fmt::fmt)

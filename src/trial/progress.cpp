@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rift/geometry/pose2.hpp"
+#include "rift/statistics/descriptive.hpp"
 
 namespace rift::trial {
 namespace {
@@ -12,10 +13,8 @@ constexpr double kStanding_m = 0.02, kStanding_rad = 0.2;
 constexpr double kLeastNearing_mps = 0.005;
 
 /// Between the 5 % and the 95 % quantile.
-double Extent(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t tail = values.size() / 20;
-  return values[values.size() - 1 - tail] - values[tail];
+double Extent(const std::vector<double>& values) {
+  return statistics::Quantile(values, 0.95) - statistics::Quantile(values, 0.05);
 }
 
 /// What is left of the task at each pose: to the target, and from there to the last waypoint.
