@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <optional>
-#include <stdexcept>
 
+#include "identified_steering.hpp"
 #include "progress.hpp"
 #include "rift/geometry/pose2.hpp"
-#include "rift/trial/loop_delay.hpp"
+#include "wanted_steering.hpp"
 
 namespace rift::trial {
 namespace {
@@ -21,40 +19,11 @@ using control::NavigatorOptions;
 using geometry::DegFromRad;
 using std::numbers::pi;
 
-constexpr double kQuarter_rad = 0.5 * pi;  // heading error of a robot that circles its waypoint
 constexpr double kLeastMargin_deg = 30.0;  // below, a loop overshoots by half and more
-constexpr double kWantedMargin_rad = pi / 3.0;
-constexpr double kCircleShare = 0.8;  // of the reach radius, wanted
 constexpr double kLargestSwing_deg = 45.0, kWantedSwing_deg = 15.0;
 constexpr double kMany = 0.2;  // of the decisions, or of the poses
-constexpr double kLeastR2 = 0.3;
-constexpr double kTurnedAway = 0.25;
-constexpr double kLeastWay_m = 0.02;
-constexpr double kLargestHold_rad = pi / 4.0, kWantedHold_rad = 0.5;
+constexpr double kLargestHold_rad = pi / 4.0;
 constexpr double kLongest_s = 3600.0;  // of trial.timeout_s
-
-/// Steering and speed of v and w at full error, after every limit.
-struct Asked {
-  double v, w;
-};
-
-double SteeringAt(const NavigatorOptions& navigator, double error_rad) {
-  return navigator.heading.p * error_rad + navigator.heading.i * navigator.integral_limit;
-}
-
-/// Yaw rate to the side against which the robot pulls.
-double TurnAgainstPull_rad_s(const SteeringModel& model, double v, double w) {
-  return model.yaw_rate_rad_s * w - std::abs(model.pull_rad_s) * v;
-}
-
-Asked OnCircle(const NavigatorOptions& navigator, const SteeringModel& model) {
-  const double w =
-      std::clamp(SteeringAt(navigator, kQuarter_rad), navigator.w_min, navigator.w_max);
-  // v follows the distance once that asks for more than the circle of v_min leaves.
-  const bool grows =
-      model.speed_mps * navigator.distance.p > TurnAgainstPull_rad_s(model, navigator.v_min, w);
-  return {grows ? navigator.v_max : navigator.v_min, w};
-}
 
 /// The yaw that turned on one leg, in turns.
 double MostTurns(const trajectory::Trajectory& log) {
@@ -71,153 +40,6 @@ double MostTurns(const trajectory::Trajectory& log) {
 /// It circled, or began to, on a circle too wide for its time.
 bool IsAstray(const SteeringCheck& check, const TrialResult& result, const control::Task& task) {
   return check.HasCircled() || Way_m(result.trajectory) > 2.0 * Length_m(task.waypoints);
-}
-
-double Turned_rad(const trajectory::Trajectory& log) {
-  double turned_rad = 0.0;
-  for (size_t i = 1; i < log.poses.size(); ++i) {
-    turned_rad += geometry::WrapToPi(log.poses[i].yaw_rad - log.poses[i - 1].yaw_rad);
-  }
-  return turned_rad;
-}
-
-/// Integrals over time of v and w as they were sent.
-class SentIntegrals {
- public:
-  explicit SentIntegrals(const std::vector<SentCommand>& commands) : commands_(commands) {
-    Asked sum{0.0, 0.0};
-    for (size_t i = 0; i < commands.size(); ++i) {
-      sums_.push_back(sum);
-      if (i + 1 == commands.size()) break;
-      const Asked held = Of(i);
-      const double dt_s = commands[i + 1].t_s - commands[i].t_s;
-      sum = {sum.v + dt_s * held.v, sum.w + dt_s * held.w};
-    }
-  }
-
-  Asked Until(double t_s) const {
-    if (commands_.empty()) return {0.0, 0.0};
-    t_s = std::min(t_s, commands_.back().t_s);  // how long that one held is not known
-    const auto after =
-        std::upper_bound(commands_.begin(), commands_.end(), t_s,
-                         [](double t, const SentCommand& sent) { return t < sent.t_s; });
-    if (after == commands_.begin()) return {0.0, 0.0};
-    const auto i = static_cast<size_t>(after - commands_.begin()) - 1;
-    const Asked held = Of(i);
-    const double dt_s = t_s - commands_[i].t_s;
-    return {sums_[i].v + dt_s * held.v, sums_[i].w + dt_s * held.w};
-  }
-
- private:
-  Asked Of(size_t i) const {
-    const control::WheelPower& power = commands_[i].power;
-    return {0.5 * (power.left + power.right), 0.5 * (power.right - power.left)};
-  }
-
-  const std::vector<SentCommand>& commands_;
-  std::vector<Asked> sums_;
-};
-
-/// Sums of squares and products of the turn of a stride and of what was sent for it.
-struct TurnSums {
-  double ww = 0.0, wv = 0.0, vv = 0.0, wy = 0.0, vy = 0.0, yy = 0.0;
-
-  /// Share of w that v does not tell: without it gain and pull cannot be told apart.
-  double Excitation() const { return ww * vv > 0.0 ? 1.0 - wv * wv / (ww * vv) : 0.0; }
-};
-
-TurnSums TurnsOf(const TrialResult& result, const SentIntegrals& sent, double delay_s) {
-  constexpr double kStride_s = 0.3;
-  TurnSums sums;
-  const std::vector<trajectory::StampedPose>& poses = result.trajectory.poses;
-  double turned_rad = 0.0;
-  for (size_t i = 1, from = 0; i < poses.size(); ++i) {
-    turned_rad += geometry::WrapToPi(poses[i].yaw_rad - poses[i - 1].yaw_rad);
-    if (poses[i].t_s - poses[from].t_s < kStride_s) continue;
-    const Asked to = sent.Until(poses[i].t_s - delay_s), at = sent.Until(poses[from].t_s - delay_s);
-    const double v = to.v - at.v, w = to.w - at.w;
-    sums.ww += w * w, sums.wv += w * v, sums.vv += v * v;
-    sums.wy += w * turned_rad, sums.vy += v * turned_rad, sums.yy += turned_rad * turned_rad;
-    from = i;
-    turned_rad = 0.0;
-  }
-  return sums;
-}
-
-/// Yaw rate for each unit of w and of v that explain the turns best, where the run tells both.
-void FitPull(const TurnSums& sums, SteeringCheck& check) {
-  constexpr double kLeastExcitation = 0.02, kLeastShare = 0.5, kMostRest = 0.5;
-  if (sums.Excitation() < kLeastExcitation) return;
-  const double det = sums.ww * sums.vv - sums.wv * sums.wv;
-  const double gain = (sums.wy * sums.vv - sums.vy * sums.wv) / det;
-  const double pull = (sums.vy * sums.ww - sums.wy * sums.wv) / det;
-  const double explained = (gain * sums.wy + pull * sums.vy) / sums.yy;
-  const double without = sums.wy * sums.wy / (sums.ww * sums.yy);
-  // A pull has to explain what the steering alone does not.
-  if (!(gain > 0.0) || explained < kLeastShare || 1.0 - explained > kMostRest * (1.0 - without))
-    return;
-  check.model.yaw_rate_rad_s = gain;
-  check.model.pull_rad_s = pull;
-  check.r2 = explained;
-  check.is_identified = check.is_pull_told = true;
-}
-
-std::optional<LoopDelay> TryDelay(const TrialResult& result, double sign) {
-  std::vector<SentCommand> sent = result.commands;
-  for (SentCommand& command : sent) {
-    if (sign < 0.0) std::swap(command.power.left, command.power.right);
-  }
-  try {
-    return EstimateCommandDelay(result.trajectory, sent, {.max_lag_s = 1.0, .lag_step_s = 0.02});
-  } catch (const std::invalid_argument&) {  // too short, or it never moved
-    return std::nullopt;
-  }
-}
-
-/// Steering to the left turned it to the right.
-bool IsReversed(const LoopDelay& delay, const TrialResult& result) {
-  const std::optional<LoopDelay> reversed = TryDelay(result, -1.0);
-  if (!reversed || reversed->r2 < kLeastR2) return false;
-  // Steering that swings fits half a period late too, with the wrong sign.
-  return delay.lag_s < 0.0 || (reversed->r2 > delay.r2 && reversed->lag_s < delay.lag_s);
-}
-
-/// Model, r2 and whether they are the run's own; true when the robot steers the wrong way.
-bool Identify(const TrialResult& result, const SteeringPrior& prior, SteeringCheck& check) {
-  check.model = prior.model;
-  check.model.pose_age_s =
-      std::max(0.0, result.pose_age_s >= 0.0 ? result.pose_age_s : result.arrival_age_s);
-  const double way_m = Way_m(result.trajectory);
-  const std::optional<LoopDelay> delay = TryDelay(result, 1.0);
-  if (way_m < kLeastWay_m || !delay) return false;
-  // It turns its back on the waypoint; less of a turn may be noise.
-  const bool may_be_reversed = result.outcome != Outcome::kReached && check.turns > kTurnedAway;
-  if (may_be_reversed && IsReversed(*delay, result)) return true;
-  check.r2 = delay->r2;
-  check.is_identified = delay->r2 >= kLeastR2 && delay->gain_rad_s > 0.0;
-  if (check.is_identified) {
-    check.model.yaw_rate_rad_s = 2.0 * delay->gain_rad_s;
-    check.model.command_delay_s = delay->lag_s;
-  }
-  const SentIntegrals integrals(result.commands);
-  const Asked sent =
-      integrals.Until(result.trajectory.poses.back().t_s - check.model.command_delay_s);
-  FitPull(TurnsOf(result, integrals, check.model.command_delay_s), check);
-  if (sent.v > 0.1 * way_m / prior.model.speed_mps) check.model.speed_mps = way_m / sent.v;
-  // On a steady circle nothing tells the delay, and the turn itself tells the gain.
-  const double turned_rad = Turned_rad(result.trajectory);
-  if (!check.is_identified && std::abs(turned_rad) > pi && turned_rad * sent.w > 0.0) {
-    // A gain far from the robot's own is a pull.
-    constexpr double kLeastShare = 0.6;
-    const double gain = turned_rad / sent.w, own = prior.model.yaw_rate_rad_s;
-    if (gain > kLeastShare * own && gain < own / kLeastShare) {
-      check.model.yaw_rate_rad_s = gain;
-    } else {
-      check.model.pull_rad_s = (turned_rad - own * sent.w) / sent.v;
-    }
-    check.is_identified = true;
-  }
-  return false;
 }
 
 void Propose(SteeringCheck& check, const std::string& key, double was, double value) {
@@ -239,12 +61,11 @@ std::string MovingText(const SteeringPrior& prior) {
 }
 
 std::string CircleCause(const SteeringCheck& check, const NavigatorOptions& navigator) {
-  const Asked asked = OnCircle(navigator, check.model);
-  const double wanted_w = SteeringAt(navigator, kQuarter_rad);
+  const SteeringCommand asked = OnCircle(navigator, check.model);
+  const double wanted_w = SteeringAt(navigator, kQuarterTurn_rad);
   std::string text = fmt::format(
       "a waypoint counts as reached within {:g} m (control.reach_radius_m), and it {}: at a "
-      "heading "
-      "error of 90 deg control.heading.p {:g} asks for w {:.3g}",
+      "heading error of 90 deg control.heading.p {:g} asks for w {:.3g}",
       navigator.reach_radius_m,
       std::isfinite(check.circle_m) ? fmt::format("can circle at {:.3f} m for ever", check.circle_m)
                                     : std::string("cannot turn against its pull"),
@@ -276,28 +97,6 @@ std::string MarginCause(const SteeringCheck& check, const NavigatorOptions& navi
       1e3 * margins.longest_delay_s);
 }
 
-/// Gains with the wanted margin: the loop's gain is 1 where the delay alone costs the rest, so that
-/// d adds to the margin (w T = pi / 2 - margin).
-control::PidGains StableGains(const NavigatorOptions& navigator, double yaw_rate_rad_s,
-                              double delay_s) {
-  const control::PidGains& now = navigator.heading;
-  const double crossover_rad_s = (kQuarter_rad - kWantedMargin_rad) / delay_s;
-  const double ratio_s = now.p > 0.0 ? std::min(now.d / now.p, 0.5 * delay_s) : 0.0;
-  const double p = crossover_rad_s / (yaw_rate_rad_s * std::hypot(1.0, crossover_rad_s * ratio_s));
-  return {p, 0.0, ratio_s * p};
-}
-
-/// Steering that drives straight against the robot's pull.
-double HoldSteering(const SteeringModel& model, double v) {
-  return std::abs(model.pull_rad_s) * v / model.yaw_rate_rad_s;
-}
-
-/// The heading error that makes the controller steer so; infinite when it never does.
-double HoldError_rad(const NavigatorOptions& navigator, double hold_w) {
-  if (hold_w > navigator.w_max) return std::numeric_limits<double>::infinity();
-  return hold_w > navigator.w_min ? hold_w / navigator.heading.p : 0.0;
-}
-
 std::string PullCause(const SteeringCheck& check, const NavigatorOptions& navigator) {
   const SteeringModel& model = check.model;
   const double hold_w = HoldSteering(model, navigator.v_max);
@@ -313,64 +112,6 @@ std::string PullCause(const SteeringCheck& check, const NavigatorOptions& naviga
                 "control.heading.p {:g} asks for that only at a heading error of {:.0f} deg",
                 navigator.heading.p, DegFromRad(error_rad))
           : fmt::format("control.w_max allows {:g}", navigator.w_max));
-}
-
-/// More gain as far as it stays stable, then less speed, which pulls less, as far as the wheels
-/// turn.
-void HoldAgainstPull(const SteeringModel& model, const SteeringPrior& prior,
-                     const control::PidGains& largest, NavigatorOptions& wanted) {
-  const double p = std::min(HoldSteering(model, wanted.v_max) / kWantedHold_rad, largest.p);
-  if (p > wanted.heading.p) wanted.heading = {p, wanted.heading.i, p * largest.d / largest.p};
-  const double fast =
-      wanted.heading.p * kWantedHold_rad * model.yaw_rate_rad_s / std::abs(model.pull_rad_s);
-  wanted.v_max = std::min(wanted.v_max, std::max(fast, prior.LeastPower()));
-  wanted.v_min = std::min(wanted.v_min, wanted.v_max);
-  wanted.w_max = std::max(wanted.w_max, 2.0 * HoldSteering(model, wanted.v_max));
-}
-
-/// Steering strong enough for a circle within the reach radius, as far as it stays stable; then a
-/// lower speed, as far as the wheels turn; then a larger radius.
-void TightenCircle(const SteeringModel& model, const SteeringPrior& prior,
-                   const control::PidGains& largest, NavigatorOptions& wanted) {
-  const double inside_m = kCircleShare * wanted.reach_radius_m;
-  const auto needed_w = [&] {
-    return wanted.v_min * (model.speed_mps / inside_m + std::abs(model.pull_rad_s)) /
-           model.yaw_rate_rad_s;
-  };
-  const double strongest_w = 1.0 - wanted.v_min;  // beyond, both powers are scaled down
-  const double p = std::min(needed_w() / kQuarter_rad, largest.p);
-  if (p > wanted.heading.p) wanted.heading = {p, wanted.heading.i, p * largest.d / largest.p};
-  wanted.w_max =
-      std::max(wanted.w_max, std::min({needed_w(), SteeringAt(wanted, kQuarter_rad), strongest_w}));
-  const double w = std::clamp(SteeringAt(wanted, kQuarter_rad), wanted.w_min, wanted.w_max);
-  if (needed_w() > w * (1.0 + 1e-9)) {
-    const double slow = wanted.v_min * w / needed_w();
-    wanted.v_min = std::min(wanted.v_min, std::max(slow, prior.LeastPower()));
-  }
-  const double turn_rad_s = TurnAgainstPull_rad_s(model, wanted.v_min, w);
-  if (!(turn_rad_s > 0.0)) return;  // nothing turns it against its pull
-  wanted.distance.p = std::min(wanted.distance.p, kCircleShare * turn_rad_s / model.speed_mps);
-  wanted.reach_radius_m =
-      std::max(wanted.reach_radius_m, CircleRadius_m(wanted, model) / kCircleShare);
-}
-
-/// Twice the time the task takes when it is driven straight, with a turn to each waypoint.
-double NeededTime_s(const control::Task& task, const NavigatorOptions& navigator,
-                    const SteeringModel& model, double delay_s, const TrialOptions& options) {
-  constexpr int kParts = 100;
-  const double turn_s =
-      pi / std::max(1e-6, model.yaw_rate_rad_s * OnCircle(navigator, model).w) + 2.0 * delay_s;
-  double time_s = 0.0;
-  for (size_t i = 1; i < task.waypoints.size(); ++i) {
-    const double leg_m = (task.waypoints[i].Position() - task.waypoints[i - 1].Position()).norm();
-    for (int part = 0; part < kParts; ++part) {
-      const double v = std::clamp(navigator.distance.p * leg_m * (part + 0.5) / kParts,
-                                  navigator.v_min, navigator.v_max);
-      time_s += leg_m / kParts / std::max(1e-6, model.speed_mps * v);
-    }
-    time_s += turn_s;
-  }
-  return 2.0 * time_s + options.settle_s;
 }
 
 void ProposeTimeout(SteeringCheck& check, const TrialOptions& options, double needed_s) {
@@ -601,65 +342,6 @@ void Explain(SteeringCheck& check, const Case& run) {
   }
 }
 
-}  // namespace
-
-SteeringMargins MarginsOf(const control::PidGains& heading, double yaw_rate_rad_s, double delay_s) {
-  // |L(i w)| = 1 is a quadratic equation in w^2: (1 - G^2 d^2) w^4 - G^2 (p^2 - 2 i d) w^2 = G^2
-  // i^2.
-  const double g2 = yaw_rate_rad_s * yaw_rate_rad_s;
-  const double a = 1.0 - g2 * heading.d * heading.d,
-               b = g2 * (heading.p * heading.p - 2.0 * heading.i * heading.d),
-               c = g2 * heading.i * heading.i;
-  if (!(a > 0.0)) return {std::numeric_limits<double>::infinity(), -180.0, 0.0};
-  const double crossover_rad_s = std::sqrt((b + std::sqrt(b * b + 4.0 * a * c)) / (2.0 * a));
-  if (!(crossover_rad_s > 0.0)) return {0.0, 90.0, std::numeric_limits<double>::infinity()};
-  const double lead_rad =
-      kQuarter_rad +
-      std::atan2(crossover_rad_s * heading.d - heading.i / crossover_rad_s, heading.p);
-  return {crossover_rad_s, DegFromRad(lead_rad - crossover_rad_s * delay_s),
-          lead_rad / crossover_rad_s};
-}
-
-double CircleRadius_m(const NavigatorOptions& navigator, const SteeringModel& model) {
-  const Asked asked = OnCircle(navigator, model);
-  const double turn_rad_s = TurnAgainstPull_rad_s(model, asked.v, asked.w);
-  return turn_rad_s > 0.0 ? model.speed_mps * asked.v / turn_rad_s
-                          : std::numeric_limits<double>::infinity();
-}
-
-SteeringSwing SwingOf(const NavigatorOptions& navigator, const SteeringModel& model,
-                      double delay_s) {
-  // A triangle of the heading: up for two delays, down for two.
-  const double heading_rad = model.yaw_rate_rad_s * navigator.w_min * delay_s;
-  return {heading_rad, 0.5 * model.speed_mps * navigator.v_min * heading_rad * delay_s};
-}
-
-SteeringCheck CheckSteering(const TrialResult& result, const control::Task& task,
-                            const NavigatorOptions& navigator, const TrialOptions& options,
-                            const SteeringPrior& prior) {
-  SteeringCheck check;
-  const bool has_decided = result.limits.decisions + result.stale_decisions > 0;
-  if (task.program || result.trajectory.poses.size() < 2 || !has_decided) return check;
-  check.has_arrived = result.outcome == Outcome::kReached;
-  check.turns = MostTurns(result.trajectory);
-  const bool is_reversed = Identify(result, prior, check);
-  check.delay_s = DelayOf(check.model, navigator);
-  check.margins = MarginsOf(navigator.heading, check.model.yaw_rate_rad_s, check.delay_s);
-  check.circle_m = CircleRadius_m(navigator, check.model);
-  check.swing = SwingOf(navigator, check.model, check.delay_s);
-  if (is_reversed) {
-    check.causes.push_back(
-        "it turned to the right when it was steered to the left: its motors are swapped, one of "
-        "them runs backwards, or the camera's picture is mirrored");
-    return check;
-  }
-  if (!IsToExplain(result.outcome) && !check.HasCircled()) return check;
-  Explain(check, {result, task, navigator, options, prior});
-  return check;
-}
-
-namespace {
-
 /// The newer value of a key counts; false when nothing changed.
 bool Merge(std::vector<KeyProposal>& all, const std::vector<KeyProposal>& more) {
   bool has_changed = false;
@@ -678,6 +360,34 @@ bool Merge(std::vector<KeyProposal>& all, const std::vector<KeyProposal>& more) 
 }
 
 }  // namespace
+
+SteeringCheck CheckSteering(const TrialResult& result, const control::Task& task,
+                            const NavigatorOptions& navigator, const TrialOptions& options,
+                            const SteeringPrior& prior) {
+  SteeringCheck check;
+  const bool has_decided = result.limits.decisions + result.stale_decisions > 0;
+  if (task.program || result.trajectory.poses.size() < 2 || !has_decided) return check;
+  check.has_arrived = result.outcome == Outcome::kReached;
+  check.turns = MostTurns(result.trajectory);
+  const IdentifiedSteering identified = IdentifySteering(result, prior, check.turns);
+  check.model = identified.model;
+  check.is_identified = identified.is_identified;
+  check.is_pull_told = identified.is_pull_told;
+  check.r2 = identified.r2;
+  check.delay_s = DelayOf(check.model, navigator);
+  check.margins = MarginsOf(navigator.heading, check.model.yaw_rate_rad_s, check.delay_s);
+  check.circle_m = CircleRadius_m(navigator, check.model);
+  check.swing = SwingOf(navigator, check.model, check.delay_s);
+  if (identified.is_reversed) {
+    check.causes.push_back(
+        "it turned to the right when it was steered to the left: its motors are swapped, one of "
+        "them runs backwards, or the camera's picture is mirrored");
+    return check;
+  }
+  if (!IsToExplain(result.outcome) && !check.HasCircled()) return check;
+  Explain(check, {result, task, navigator, options, prior});
+  return check;
+}
 
 void TryProposals(SteeringCheck& check,
                   const std::function<TriedRun(const std::vector<KeyProposal>&)>& run_with) {
