@@ -8,7 +8,6 @@
 
 #include "calibrate.hpp"
 #include "compare.hpp"
-#include "programs.hpp"
 #include "report.hpp"
 #include "request.hpp"
 #include "rift/commands/arguments/flags.hpp"
@@ -24,6 +23,7 @@
 #include "rift/sweep/explain/program_cells.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
+#include "rift/sweep/falsify/program_files.hpp"
 #include "rift/sweep/falsify/verdict.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
@@ -242,7 +242,8 @@ int Sweep(const SweepRequest& request) {
   const experiment::Experiment loaded = LoadFor(request);
   if (!request.engine.shard.empty()) return RunShard(request, loaded);
   const std::optional<sweep::SlurmOptions> cluster = ClusterFor(request, loaded);
-  if (!cluster) RequirePrograms(loaded, request.experiment);  // a cluster's nodes have their own
+  if (!cluster)
+    sweep::RequirePrograms(loaded, request.experiment);  // a cluster's nodes have their own
   if (loaded.goal == experiment::Goal::kCalibrate) {
     if (request.serve) {
       throw std::invalid_argument(

@@ -15,6 +15,7 @@
 #include "rift/experiment/program_parameters.hpp"
 #include "rift/files/process_end.hpp"
 #include "rift/statistics/hash.hpp"
+#include "rift/sweep/falsify/program_files.hpp"
 #include "rift/trajectory/csv.hpp"
 
 namespace rift::sweep {
@@ -81,34 +82,6 @@ void RefuseMended(const trajectory::Log& log) {
           "its trajectory: time runs backwards in it: write rows in the order of their time");
     }
   }
-}
-
-/// True where it is certain that the first argument is a script, by interpreter and ending.
-bool RunsScript(const std::vector<std::string>& words) {
-  static const std::array<std::string_view, 10> kInterpreters{
-      "python", "node", "ruby", "perl", "bash", "sh", "julia", "lua", "octave", "Rscript"};
-  static const std::array<std::string_view, 10> kEndings{".py", ".js", ".mjs", ".cjs", ".rb",
-                                                         ".pl", ".sh", ".jl",  ".lua", ".R"};
-  std::string interpreter = fs::path(words.front()).filename().string();
-  interpreter.resize(interpreter.find_last_not_of("0123456789.") + 1);  // python3.11
-  const auto is_one_of = [](const auto& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  return is_one_of(kInterpreters, interpreter) && words.size() > 1 &&
-         words[1].find('{') == std::string::npos &&
-         is_one_of(kEndings, fs::path(words[1]).extension().string());
-}
-
-/// A script that is nowhere fails every trial in the same way. One beside the experiment was made
-/// absolute when that was read, and programs run in a folder of their own.
-void RequireScript(const std::vector<std::string>& words) {
-  std::error_code none;
-  if (!RunsScript(words)) return;
-  if (fs::path(words[1]).is_absolute() && fs::exists(words[1], none)) return;
-  throw std::invalid_argument(
-      fmt::format("there is no file '{}' beside the experiment, and {} would end at once in every "
-                  "trial: name it from the experiment's folder, or with its whole path",
-                  words[1], words.front()));
 }
 
 bool IsCrash(TrialStatus status) {
