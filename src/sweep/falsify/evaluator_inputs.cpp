@@ -1,0 +1,114 @@
+// Files that trials depend on: logs, programs and pictures of heightfields, and the journal's key
+// of a trial that they are part of.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "program_side.hpp"
+#include "rift/experiment/parameter.hpp"
+#include "rift/experiment/path_template.hpp"
+#include "rift/statistics/hash.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
+#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/result.hpp"
+#include "rift/yaml/node.hpp"
+
+namespace rift::sweep {
+
+using experiment::CandidateKind;
+using experiment::ReferenceKind;
+
+void Evaluator::LoadLogs() {
+  if (experiment_.reference.kind == ReferenceKind::kLogs) {
+    LoadLogsOf(experiment_.reference.path, "reference.path", reference_logs_);
+  }
+  if (experiment_.candidate.kind == CandidateKind::kLogs) {
+    LoadLogsOf(experiment_.candidate.path, "candidate.path", candidate_logs_);
+  }
+}
+
+void Evaluator::LoadLogsOf(const experiment::PathTemplate& path, const char* key,
+                           RecordedLogs& logs) const {
+  const std::vector<std::string> names = experiment::TemplateNames(path.text);
+  // Of the other parameters one value will do: the path is the same for all.
+  std::vector<experiment::Parameter> parameters = experiment_.space.parameters;
+  for (experiment::Parameter& parameter : parameters) {
+    const bool is_named = std::find(names.begin(), names.end(), parameter.Name()) != names.end();
+    if (is_named && parameter.IsContinuous()) {
+      throw std::invalid_argument(
+          fmt::format("{}: space.{} is a range, and {} names a log for each value of it: write a "
+                      "list of those there are",
+                      parameter.origin, parameter.key, key));
+    }
+    if (!is_named) parameter.levels = {{"0", 0.0}};
+  }
+  for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
+    for (const std::string& trial : experiment_.reference.trials.names) {
+      logs.At(Filled(path, theta, trial));
+    }
+  }
+}
+
+std::string Evaluator::KeyOf(const TrialRequest& request) {
+  std::string key = SettingKey(experiment_.space.parameters, request.theta) +
+                    fmt::format("trial={} seed={}", request.trial, request.seed.value_or(0));
+  if (experiment_.reference.kind == ReferenceKind::kLogs) {
+    const std::string path = ReferencePath(request.theta, request.trial);
+    key += fmt::format(" log={}", reference_logs_.HashOf(path));
+  }
+  if (experiment_.candidate.kind == CandidateKind::kLogs) {
+    const std::string path = Filled(experiment_.candidate.path, request.theta, request.trial);
+    key += fmt::format(" candidate={}", candidate_logs_.HashOf(path));
+  }
+  for (const auto& program : {candidate_program_, reference_program_}) {
+    if (!program || program->HashesText().empty()) continue;
+    key += fmt::format(" program={}", statistics::Hash128Text(program->HashesText()));
+  }
+  for (const std::string& picture : PicturesOf(request.theta)) {
+    key += fmt::format(" picture={}", PictureHash(picture));
+  }
+  return key;
+}
+
+std::set<std::string> Evaluator::PicturesOf(const experiment::Theta& theta) const {
+  std::set<std::string> pictures;
+  const auto add = [&pictures](const experiment::Experiment& at) {
+    const simulation::TerrainOptions& terrain = at.simulation.terrain;
+    const auto surface = terrain.surfaces.find(terrain.surface);
+    const bool is_picture = surface != terrain.surfaces.end() &&
+                            surface->second.shape == simulation::Shape::kHeightfield;
+    if (is_picture) pictures.insert(surface->second.image);
+  };
+  const bool is_simulated = experiment_.candidate.kind == CandidateKind::kSimulation;
+  if (!is_simulated || !may_have_pictures_) return pictures;  // spares a copy of the experiment
+  if (experiment_.reference.kind == ReferenceKind::kNominal) add(experiment_);
+  try {
+    add(experiment::ExperimentAt(experiment_, theta));
+  } catch (const yaml::Error&) {
+    // Its row says which rule the setting breaks.
+  }
+  return pictures;
+}
+
+const std::string& Evaluator::PictureHash(const std::string& path) {
+  const auto [found, is_new] = picture_hashes_.try_emplace(path);
+  if (!is_new) return found->second;
+  const std::optional<std::string> bytes = inputs_.read(path);
+  if (bytes) found->second = statistics::Hash128Text(*bytes);
+  return found->second;
+}
+
+std::string Evaluator::InputsText() const {
+  std::string text = candidate_logs_.HashesText() + reference_logs_.HashesText();
+  for (const auto& program : {candidate_program_, reference_program_}) {
+    if (program) text += program->HashesText();
+  }
+  for (const auto& [path, hash] : picture_hashes_) {
+    if (!hash.empty()) text += fmt::format("{}  {}\n", hash, path);
+  }
+  return text;
+}
+
+}  // namespace rift::sweep
