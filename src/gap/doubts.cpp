@@ -72,18 +72,21 @@ void DoubtScale(const PointsIn<N>& sim, const PointsIn<N>& real, std::vector<std
   }
 }
 
+/// What was done to the axes of a log, and undoes it.
 template <int N>
-void DoubtAxes(const PointsIn<N>& sim, const PointsIn<N>& real, std::vector<std::string>& doubts) {
-  struct Mistake {
-    Matrix<N> mended;
-    const char* what;
-  };
+struct AxesMistake {
+  Matrix<N> mended;
+  const char* what;
+};
+
+template <int N>
+std::vector<AxesMistake<N>> AxesMistakes() {
   const auto matrix = [](double a, double b, double c, double d) {
     Matrix<N> planar = Matrix<N>::Identity();
     planar.template topLeftCorner<2, 2>() << a, b, c, d;
     return planar;
   };
-  std::vector<Mistake> mistakes{
+  std::vector<AxesMistake<N>> mistakes{
       {matrix(1, 0, 0, -1), "mirrored y: turn its sign, as in y=-COLUMN"},
       {matrix(-1, 0, 0, 1), "mirrored x: turn its sign, as in x=-COLUMN"},
       {matrix(0, 1, 1, 0), "swapped axes: exchange the columns of x and y"},
@@ -93,13 +96,21 @@ void DoubtAxes(const PointsIn<N>& sim, const PointsIn<N>& real, std::vector<std:
     mistakes.push_back(
         {mirrored_z.asDiagonal(), "mirrored z: turn its sign, as in z=-COLUMN (rift's z is up)"});
   }
-  constexpr double kFar = 0.1, kMends = 0.3;
-  const double extent_m = std::max(Extent_m<N>(sim), Extent_m<N>(real));
+  return mistakes;
+}
+
+constexpr double kMends = 0.3;  // of the distance is left once it is mended
+
+/// The mistake that tells best why the paths lie more than `far_m` apart.
+template <int N>
+void DoubtAxes(const PointsIn<N>& sim, const PointsIn<N>& real, double far_m,
+               std::vector<std::string>& doubts) {
+  const std::vector<AxesMistake<N>> mistakes = AxesMistakes<N>();
   const double distance_m = MeanDistance_m<N>(sim, real, Matrix<N>::Identity());
-  if (distance_m < kFar * extent_m) return;
-  const Mistake* best = nullptr;
+  if (distance_m < far_m) return;
+  const AxesMistake<N>* best = nullptr;
   double best_m = kMends * distance_m;
-  for (const Mistake& mistake : mistakes) {
+  for (const AxesMistake<N>& mistake : mistakes) {
     const double mended_m = MeanDistance_m<N>(sim, real, mistake.mended);
     if (mended_m > best_m) continue;
     best = &mistake;
@@ -109,6 +120,29 @@ void DoubtAxes(const PointsIn<N>& sim, const PointsIn<N>& real, std::vector<std:
   doubts.push_back(
       fmt::format("REAL lies {:.3g} m from SIM on average and {:.2g} m once it is mended: {}",
                   distance_m, best_m, best->what));
+}
+
+/// A straight path has the same shape with another sign; where it begins tells. The robot of sound
+/// logs is put down at one place.
+template <int N>
+void DoubtPlace(const PointsIn<N>& sim, const PointsIn<N>& real, double far_m,
+                std::vector<std::string>& doubts) {
+  if ((sim.front() - real.front()).norm() < far_m) return;
+  DoubtAxes<N>(sim, real, far_m, doubts);
+}
+
+/// Heights are small beside the way, and so is what a wrong sign of them does to the distance.
+void DoubtHeights(const PointsIn<3>& sim, const PointsIn<3>& real, double far_m,
+                  std::vector<std::string>& doubts) {
+  double apart_m = 0.0, mended_m = 0.0;
+  for (size_t i = 0; i < sim.size(); ++i) {
+    apart_m += std::abs(sim[i].z() - real[i].z()) / kPoints;
+    mended_m += std::abs(sim[i].z() + real[i].z()) / kPoints;
+  }
+  if (apart_m < far_m || mended_m > kMends * apart_m) return;
+  doubts.push_back(fmt::format(
+      "REAL lies {:.3g} m above or below SIM on average and {:.2g} m once it is mended: {}",
+      apart_m, mended_m, "mirrored z: turn its sign, as in z=-COLUMN (rift's z is up)"));
 }
 
 /// Speed over the rows [begin, end).
@@ -251,7 +285,16 @@ std::vector<std::string> DoubtsIn(const Trajectory& sim, const Trajectory& real,
   const PointsIn<N> sim_m = FromStart(sim_path), real_m = FromStart(real_path);
   DoubtScale<N>(sim_m, real_m, doubts);
   if (doubts.empty()) {
-    DoubtAxes<N>(sim_m, real_m, doubts);
+    constexpr double kFar = 0.1, kFarHeights = 0.03;  // of the path's extent
+    const double extent_m = std::max(Extent_m<N>(sim_m), Extent_m<N>(real_m));
+    DoubtAxes<N>(sim_m, real_m, kFar * extent_m, doubts);
+    if constexpr (N == 3) {
+      if (doubts.empty()) DoubtHeights(sim_m, real_m, kFarHeights * extent_m, doubts);
+    }
+    if (doubts.empty() && options.align == Align::kNone) {
+      DoubtPlace<N>(Resample(sim_path, kPoints), Resample(real_path, kPoints), kFar * extent_m,
+                    doubts);
+    }
     DoubtPart(real, real_path, sim_path, "REAL", "SIM", doubts);
     DoubtPart(sim, sim_path, real_path, "SIM", "REAL", doubts);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "plausibility.hpp"
 #include "rift/geometry/pose2.hpp"
@@ -78,7 +79,7 @@ void DoubtYaw(const Trajectory& trajectory, std::vector<std::string>& doubts) {
        [](const Piece& piece) {
          return Piece{piece.along_m, piece.yaw_rad * 180.0 / kPi};
        }},
-      {"x and y swapped?",
+      {"x and y swapped, or a yaw from north, clockwise?",
        [](const Piece& piece) {
          return Piece{{piece.along_m.y(), piece.along_m.x()}, piece.yaw_rad};
        }},
@@ -171,6 +172,38 @@ void DoubtRepeats(const Trajectory& trajectory, bool in_space, std::vector<std::
                                pairs, pairs + others));
 }
 
+/// A coordinate that stands still and jumps while the other one moves is no robot's.
+void DoubtTarget(const Trajectory& trajectory, std::vector<std::string>& doubts) {
+  constexpr size_t kMost = 12, kRowsForEach = 5;
+  constexpr double kJump_m = 0.02;
+  struct Axis {
+    const char* name;
+    std::set<double> values;
+    double largest_step_m = 0.0;
+  };
+  std::array<Axis, 2> axes{{{"x", {}}, {"y", {}}}};
+  const auto& poses = trajectory.poses;
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::Vector2d p_m = poses[i].Position();
+    const Eigen::Vector2d step_m =
+        i > 0 ? (p_m - poses[i - 1].Position()).eval() : Eigen::Vector2d::Zero();
+    for (int k = 0; k < 2; ++k) {
+      axes[k].values.insert(p_m[k]);
+      axes[k].largest_step_m = std::max(axes[k].largest_step_m, std::abs(step_m[k]));
+    }
+  }
+  for (int k = 0; k < 2; ++k) {
+    const Axis &axis = axes[k], &other = axes[1 - k];
+    const size_t values = axis.values.size();
+    if (values < 2 || values > kMost || other.values.size() < kRowsForEach * values) continue;
+    if (axis.largest_step_m < kJump_m || axis.largest_step_m < other.largest_step_m) continue;
+    doubts.push_back(fmt::format(
+        "its {} has {} values only and jumps between them, by up to {:.3g} m: is it the column of "
+        "a target or waypoint?",
+        axis.name, values, axis.largest_step_m));
+  }
+}
+
 void DoubtTilt(const Trajectory& trajectory, std::vector<std::string>& doubts) {
   constexpr double kLying_rad = 0.8;
   std::vector<double> tilts_rad;
@@ -198,6 +231,7 @@ std::vector<std::string> Doubts(const Trajectory& trajectory, bool in_space) {
   DoubtUnits(trajectory, in_space, doubts);
   if (!in_space) DoubtYaw(trajectory, doubts);
   DoubtRepeats(trajectory, in_space, doubts);
+  DoubtTarget(trajectory, doubts);
   if (!in_space) DoubtTilt(trajectory, doubts);
   return doubts;
 }

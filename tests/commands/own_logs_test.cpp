@@ -41,6 +41,16 @@ Rows Path(double error_m) {
   return rows;
 }
 
+/// 0.6 m along x beside the axis, which the robot strays towards by `error_m`.
+Rows StraightPath(double y_m, double error_m) {
+  Rows rows;
+  for (int i = 0; i < 100; ++i) {
+    rows.push_back({0.05 * i, -0.3 + 0.006 * i, y_m + error_m * std::sin(0.03 * i),
+                    std::atan(5.0 * error_m * std::cos(0.03 * i))});
+  }
+  return rows;
+}
+
 std::string Csv(const Rows& rows, const std::string& header = "t_s,x_m,y_m,yaw_rad") {
   std::string text = header + "\n";
   for (const Row& row : rows) {
@@ -115,7 +125,17 @@ std::vector<Mistake> Mistakes() {
       {"a log cut at its beginning",
        [](Logs& l) { l.real.erase(l.real.begin(), l.real.begin() + 50); }, "begins in motion"},
       {"positions with swapped axes", OfReal([](Row& r) { std::swap(r.x, r.y); }),
-       "x and y swapped?"},
+       "x and y swapped"},
+      {"a yaw from north, clockwise", OfReal([](Row& r) { r.yaw = kPi / 2 - r.yaw; }),
+       "a yaw from north, clockwise?"},
+      {"y mirrored of a path that is nearly straight",
+       [](Logs& l) {
+         l.sim = StraightPath(-0.08, 0.0), l.real = StraightPath(-0.08, 0.01);
+         for (Row& row : l.real) row.y = -row.y, row.yaw = -row.yaw;
+       },
+       "mirrored y"},
+      {"the target's column as y", OfReal([](Row& r) { r.y = r.x < 0.4 ? -0.2 : 0.1; }),
+       "the column of a target"},
       {"a frame with swapped axes",
        OfReal([](Row& r) { std::swap(r.x, r.y), r.yaw = kPi / 2 - r.yaw; }), "swapped axes"},
       {"positions with y mirrored", OfReal([](Row& r) { r.y = -r.y; }), "y mirrored"},
@@ -184,9 +204,9 @@ ProcessResult GapOf(const Logs& logs) {
   return RunRift(arguments);
 }
 
-TEST_CASE("Each of thirty mistakes in a log is named by rift gap") {
+TEST_CASE("Each of 33 mistakes in a log is named by rift gap") {
   const std::vector<Mistake> mistakes = Mistakes();
-  CHECK(mistakes.size() == 30);
+  CHECK(mistakes.size() == 33);
   for (const Mistake& mistake : mistakes) {
     DYNAMIC_SECTION(mistake.name) {
       Logs logs;
@@ -219,9 +239,17 @@ TEST_CASE("A gap that grows with the starts laid together is not called a part o
 }
 
 TEST_CASE("Sound logs are read without a word") {
-  const ProcessResult result = GapOf({});
-  CHECK(result.exit_code == 0);
-  CHECK(result.err.empty());
+  Logs beside_the_axis;  // on two sides of it
+  beside_the_axis.sim = StraightPath(0.02, 0.0);
+  beside_the_axis.real = StraightPath(-0.02, 0.0);
+  Logs along_the_axis;
+  along_the_axis.sim = StraightPath(0.0, 0.0);
+  along_the_axis.real = StraightPath(0.0, 0.02);
+  for (const Logs& logs : {Logs{}, beside_the_axis, along_the_axis}) {
+    const ProcessResult result = GapOf(logs);
+    CHECK(result.exit_code == 0);
+    CHECK(result.err.empty());
+  }
 }
 
 TEST_CASE("rift gap doubts neither its own logs nor the example's") {

@@ -280,8 +280,9 @@ TEST_CASE("Each fault of a program is a row with its reason, and no process is l
 
 TEST_CASE("A persistent program that fails is started again for the next trial") {
   const TemporaryFolder folder;
-  auto rows = FaultyRows(folder, "crash, good, babble, hang, raise, late, nothing, orphan, unknown",
-                         "python3, faulty.py, --serve, '" + (folder / "marker") + "'");
+  auto rows =
+      FaultyRows(folder, "crash, good, babble, hang, raise, late, nothing, memory, orphan, unknown",
+                 "python3, faulty.py, --serve, '" + (folder / "marker") + "'");
   CHECK(rows["good"]["status"] == "ok");
   CHECK(rows["orphan"]["status"] == "ok");
   CHECK(rows["crash"]["status"] == "crashed");
@@ -296,6 +297,7 @@ TEST_CASE("A persistent program that fails is started again for the next trial")
   CHECK(rows["raise"]["reason"].find("ValueError") != std::string::npos);
   CHECK(rows["late"]["status"] == "timed_out");
   CHECK(rows["nothing"]["status"] == "fault");
+  CHECK(rows["memory"]["status"] == "out_of_memory");
   CheckNothingIsLeft(folder);
 }
 

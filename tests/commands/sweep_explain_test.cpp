@@ -119,6 +119,21 @@ space:
   CHECK_THAT(Replay(shrunk["shrunk"]["replay"]).err, Contains("to the last bit"));
 }
 
+TEST_CASE("Where no gap fails the worst is a trial that did not arrive") {
+  const Sweep sweep(R"(waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]
+gap: {threshold_m: 10}
+reference: {kind: nominal}
+space: {trial.timeout_s: [20, 0.5], mismatch: [0.0, 0.1]}
+)");
+  const ProcessResult result = sweep.Run({"--shrink", "worst"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  const json shrunk = sweep.File("shrunk.json");
+  CHECK(shrunk["failing"]["theta"]["timeout_s"] == 0.5);
+  REQUIRE(shrunk["changes"].size() == 1);
+  CHECK(shrunk["changes"][0]["parameter"] == "timeout_s");
+}
+
 TEST_CASE("A row that does not fail cannot be shrunk and neither can one that is not there") {
   const Sweep sweep;
   REQUIRE(sweep.Run().exit_code == 0);

@@ -243,5 +243,22 @@ TEST_CASE("An axis that points down is doubted in space") {
   CHECK(Doubts(Helix(), Helix(0.01)).size() == 1);  // the same x and y
 }
 
+TEST_CASE("Small heights of the wrong sign are doubted beside a larger error in the plane") {
+  const auto lifted = [](double share) {
+    return Changed(Helix(), [share](const Eigen::Vector3d& p) {
+      return Eigen::Vector3d(p.x(), p.y(), share * p.z());
+    });
+  };
+  const Trajectory wider = Changed(lifted(0.3), [](const Eigen::Vector3d& p) {
+    return Eigen::Vector3d(1.2 * p.x(), p.y(), p.z());
+  });
+  const Trajectory down = Changed(
+      wider, [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.x(), p.y(), -p.z()); });
+  CHECK(Doubts(lifted(0.3), wider, InSpace()).empty());
+  const auto doubts = Doubts(lifted(0.3), down, InSpace());
+  REQUIRE(doubts.size() == 1);
+  CHECK(doubts[0].find("mirrored z") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace rift::gap

@@ -194,13 +194,20 @@ ShrunkFailure Shrink(const std::vector<experiment::Parameter>& parameters,
 
 namespace {
 
-/// Index of the row with that id, or of the largest gap.
-int IndexOf(const SweepResult& result, const std::string& id) {
-  if (id == "worst") {
-    const std::optional<int> worst = WorstRow(result);
-    if (!worst) throw std::invalid_argument("--shrink worst: no trial has a gap");
-    return *worst;
+/// Of the largest gap; where that does not fail, of the first trial that failed without one.
+int WorstIndex(const SweepResult& result) {
+  const std::optional<int> worst = WorstRow(result);
+  if (worst && result.rows[*worst].falsified) return *worst;
+  for (size_t i = 0; i < result.rows.size(); ++i) {
+    if (result.rows[i].falsified) return static_cast<int>(i);
   }
+  if (!worst) throw std::invalid_argument("--shrink worst: no trial has a gap");
+  return *worst;
+}
+
+/// Index of the row with that id, or of the worst.
+int IndexOf(const SweepResult& result, const std::string& id) {
+  if (id == "worst") return WorstIndex(result);
   size_t number = 0;
   const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), number);
   const bool is_there = error == std::errc{} && end == id.data() + id.size() && number >= 1 &&

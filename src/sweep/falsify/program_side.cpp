@@ -196,7 +196,7 @@ Recording ProgramSide::RunPersistent(const TrialRequest& request) {
     const ExternalProgram::Exit exit = program_->Wait();
     TakeExit(exit, program_->LastWords(), recording);
     recording.reason = Joined("ended in the middle of a trial", recording.reason);
-    recording.status = TrialStatus::kCrashed;
+    if (recording.status != TrialStatus::kOutOfMemory) recording.status = TrialStatus::kCrashed;
     program_.reset();
     return recording;
   }
