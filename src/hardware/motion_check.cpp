@@ -19,6 +19,7 @@ constexpr double kWindow_s = 0.4;       // over which displacements are compared
 constexpr double kStep_m = 0.003;       // less is jitter
 constexpr double kBackStep_m = 0.0025;  // against the wheels; less is jitter
 constexpr double kRolls_m = 0.0005;     // of the wheels from picture to picture
+constexpr double kTogether_s = 0.01;    // pictures that come in one piece of the stream
 constexpr double kBackward = 0.5;       // of what the wheels rolled: the pose ran back
 constexpr double kDisorder_s = 0.7;     // in which kBackwardSteps of them are no accident
 constexpr size_t kBackwardSteps = 3;
@@ -190,22 +191,35 @@ std::optional<Disagreement> MotionCheck::CheckWheelsStand(const Sample& now) {
                   moved_m, turned_deg)};
 }
 
+/// Forward, from picture to picture. Pictures that come together are stamped as if no time were
+/// between them: of those, which way it rolls at all, and no way where it hardly does.
+double MotionCheck::Forward_m(const Sample& before, const Sample& now) const {
+  constexpr double kOver_s = 0.1, kLeast_mps = 0.05;
+  const double rolled_m = Rolled(before.wheels, now.wheels).forward_m;
+  const bool come_together = now.t_s - before.t_s < kTogether_s;
+  if (std::abs(rolled_m) > kRolls_m || !come_together) return rolled_m;
+  const std::optional<WheelTravel> earlier = WheelsAt(now.t_s - kOver_s);
+  const double over_m = earlier ? Rolled(*earlier, now.wheels).forward_m : 0.0;
+  if (std::abs(over_m) < kLeast_mps * kOver_s) return 0.0;
+  return std::copysign(2.0 * kRolls_m, over_m);
+}
+
 std::optional<Disagreement> MotionCheck::CheckOrder(const Sample& before, const Sample& now) {
-  const Step rolled = Rolled(before.wheels, now.wheels);
+  const double rolled_m = Forward_m(before, now);
   const Step seen = Seen(before.pose, now.pose, track_m_);
   // Against the wheels, by more than a standing tag jitters.
-  const double against_m = rolled.forward_m > 0.0 ? -seen.forward_m : seen.forward_m;
-  const bool rolls = std::abs(rolled.forward_m) > kRolls_m;
-  if (!rolls || against_m < std::max(kBackStep_m, kBackward * std::abs(rolled.forward_m))) {
+  const double against_m = rolled_m > 0.0 ? -seen.forward_m : seen.forward_m;
+  const bool rolls = std::abs(rolled_m) > kRolls_m;
+  if (!rolls || against_m < std::max(kBackStep_m, kBackward * std::abs(rolled_m))) {
     return std::nullopt;
   }
   backward_s_.push_back(now.t_s);
   // As far back as the wheels went forward is no jitter: it counts twice.
-  if (against_m > std::max(1.5 * kBackStep_m, std::abs(rolled.forward_m))) {
+  if (against_m > std::max(1.5 * kBackStep_m, std::abs(rolled_m))) {
     backward_s_.push_back(now.t_s);
   }
   while (backward_s_.front() < now.t_s - kDisorder_s) backward_s_.pop_front();
-  if (against_m > kOldPicture_m + std::abs(rolled.forward_m)) {
+  if (against_m > kOldPicture_m + std::abs(rolled_m)) {
     return Disagreement{StopReason::kPoseDisorder,
                         fmt::format("the pose ran {:.3f} m against the wheels from one picture to "
                                     "the next: the camera's pictures come out of order",

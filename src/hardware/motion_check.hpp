@@ -62,6 +62,7 @@ class MotionCheck {
   std::optional<Disagreement> CheckRepeats(const Sample& now) const;
   std::optional<Disagreement> CheckPoseStands(const Sample& now);
   std::optional<Disagreement> CheckWheelsStand(const Sample& now);
+  double Forward_m(const Sample& before, const Sample& now) const;
   std::optional<Disagreement> CheckOrder(const Sample& before, const Sample& now);
   std::optional<Disagreement> CheckWindow(const Sample& now);
   std::optional<Disagreement> CheckLag(const Sample& now);

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 #include "support/mirror.hpp"
 
@@ -17,7 +18,8 @@ struct Weave {
   double late_s = 0.0;        ///< of the poses
   double pose_stands_s = 99;  ///< from here on
   double wheels_stand_s = 99;
-  bool is_first = true;  ///< weaves to this side first
+  std::vector<int> together{};  ///< pictures that come in one piece, by age in periods; one a piece
+  bool is_first = true;         ///< weaves to this side first
 };
 
 /// Why it is stopped within eight seconds; none.
@@ -45,7 +47,13 @@ std::optional<StopReason> Stopped(const Weave& weave, double known_latency_s = 0
       const int from = std::min(i, static_cast<int>(weave.wheels_stand_s / kStep_s));
       check.SeeWheels({t_s, wheels[from].left_m, wheels[from].right_m}, true);
     }
-    if (i % 33 == 0 && t_s > 1.0) {
+    const int pieces = static_cast<int>(weave.together.size());
+    if (pieces > 0 && i % (33 * pieces) == 0 && t_s > 1.0) {
+      for (int k = 0; k < pieces; ++k) {
+        const int seen = i - 33 * weave.together[k];
+        check.SeePose({t_s + 5e-4 * k, poses[seen], 0.0, 0.0, 0.0});
+      }
+    } else if (pieces == 0 && i % 33 == 0 && t_s > 1.0) {
       const double seen_s = std::min(t_s - weave.late_s, weave.pose_stands_s);
       check.SeePose({t_s, poses[static_cast<size_t>(seen_s / kStep_s)], 0.0, 0.0, 0.0});
     }
@@ -66,6 +74,17 @@ TEST_CASE("Poses that lag the wheels, stand or go on alone are told apart") {
     CHECK(Stopped({.late_s = 0.4, .is_first = side.IsFirst()}) == StopReason::kPoseLags);
     CHECK(Stopped({.pose_stands_s = 3.0, .is_first = side.IsFirst()}) == StopReason::kPoseStands);
     CHECK(Stopped({.wheels_stand_s = 3.0, .is_first = side.IsFirst()}) == StopReason::kWheelsStand);
+  });
+}
+
+TEST_CASE("Pictures that come together stop a drive when they are out of order, and only then") {
+  test::OnBothSides("left first", "right first", [](const test::Side& side) {
+    for (const std::vector<int>& in_order : {std::vector<int>{1, 0}, {3, 2, 1, 0}}) {
+      CHECK_FALSE(Stopped({.together = in_order, .is_first = side.IsFirst()}));
+    }
+    for (const std::vector<int>& mixed : {std::vector<int>{0, 1}, {1, 3, 0, 2}, {0, 2, 1}}) {
+      CHECK(Stopped({.together = mixed, .is_first = side.IsFirst()}) == StopReason::kPoseDisorder);
+    }
   });
 }
 
