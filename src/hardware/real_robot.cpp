@@ -232,6 +232,7 @@ trial::Sensed RealRobot::Core::Sense() {
   trial::Sensed sensed;
   sensed.now_s = clock_.Now_s() - start_s_;
   sensed.encoders = counts_;
+  guard_.NoteTime(clock_.Now_s());  // the trial may wake before the thread that tends the line
   if (guard_.stop()) sensed.fault = guard_.stop()->text;
   if (!news_.newest) return sensed;
   sensed.pose = news_.newest->measured;

@@ -168,6 +168,14 @@ TEST_CASE("Whatever goes wrong the motors are off in time and stay off") {
   }
 }
 
+TEST_CASE("A trial that wakes first after a standstill hears of it, not only of old poses") {
+  Scene scene;
+  RunAlone(scene.bench, 3.0);
+  const trial::Sensed sensed = scene.robot.Sense();
+  REQUIRE(sensed.fault);
+  CHECK(sensed.fault->find("rift itself stood still for 3.0") != std::string::npos);
+}
+
 TEST_CASE("A control loop that hangs is cut off while the link goes on") {
   Scene scene;
   const double to_zero_s = TimeToZero(

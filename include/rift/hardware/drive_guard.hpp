@@ -73,6 +73,8 @@ class DriveGuard {
   void SeePose(const PoseNews& news, double now_s);
   /// A control step and what it wants.
   void Command(const control::WheelPower& power, double now_s);
+  /// Whether this process stood still since the last call of any of these.
+  void NoteTime(double now_s);
   void HearRobot(std::uint8_t stops, double battery_v, double now_s);
   /// To be called often: what has grown too old, or whether this process stood still.
   void Tick(double now_s, double link_lag_s);
@@ -85,7 +87,6 @@ class DriveGuard {
  private:
   void CheckJump(const trial::PoseMeasurement& before, const trial::PoseMeasurement& pose,
                  double now_s);
-  void NoteTime(double now_s);
   bool RequireFreshPose(double now_s);
 
   GuardOptions options_;
