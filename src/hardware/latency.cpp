@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "rift/geometry/pose2.hpp"
 #include "rift/statistics/descriptive.hpp"
@@ -33,6 +35,16 @@ double Range(std::span<const Angle> angles) {
 double Spacing_s(std::span<const Angle> angles) {
   if (angles.size() < 2) return 0.0;
   return (angles.back().t_s - angles.front().t_s) / static_cast<double>(angles.size() - 1);
+}
+
+/// Nine in ten are read no further apart: a busy machine reads them unevenly.
+double WidestSpacing_s(std::span<const Angle> angles) {
+  if (angles.size() < 2) return 0.0;
+  std::vector<double> spacings_s;
+  for (size_t i = 1; i < angles.size(); ++i) {
+    spacings_s.push_back(angles[i].t_s - angles[i - 1].t_s);
+  }
+  return statistics::Quantile(std::move(spacings_s), 0.9);
 }
 
 /// It stands before its first time and after its last: all of the follower counts at every lag.
@@ -248,13 +260,14 @@ Lag RequireBehindWheels(const std::optional<Lag>& lag, const std::vector<Angle>&
   RequireSeen(lag && lag->scale > kLeastScale && lag->scale < kMostScale &&
                   lag->residual_rad < kMostNoise * seen_rad,
               Range(wheels), seen_rad);
-  const double error_s = std::max(kLeast_s, Spacing_s(wheels));
+  const double error_s = std::max(kLeast_s, WidestSpacing_s(wheels));
   if (lag->lag_s >= -error_s) return *lag;
   throw std::runtime_error(fmt::format(
-      "the picture shows the turn {:.0f} ms before the encoders do, which cannot be (they are read "
-      "every {:.0f} ms): the stamps of pictures and encoders are not of one clock, or the encoders "
+      "the picture shows the turn {:.0f} ms before the encoders do, which cannot be (nine in ten "
+      "are read within {:.0f} ms): the stamps of pictures and encoders are not of one clock, or "
+      "the encoders "
       "answer late",
-      -1e3 * lag->lag_s, 1e3 * Spacing_s(wheels)));
+      -1e3 * lag->lag_s, 1e3 * WidestSpacing_s(wheels)));
 }
 
 /// Without timed encoders: the lag of the picture behind the commands.
