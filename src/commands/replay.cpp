@@ -30,6 +30,11 @@ report::TableRow RowOf(const std::filesystem::path& folder, const std::string& i
   return report::TableRowOf(files::ReadFile(table), id, table.string());
 }
 
+std::string GapText(const report::TableRow& row) {
+  const std::string& gap_m = row.at("gap_m");
+  return gap_m.empty() ? "no gap" : fmt::format("gap {} m", gap_m);
+}
+
 /// One line that a row came out as it is in the table; throws where it did not.
 std::string Verify(const experiment::Experiment& experiment, sweep::TrialRow again,
                    const report::TableRow& row, const std::string& id) {
@@ -38,12 +43,12 @@ std::string Verify(const experiment::Experiment& experiment, sweep::TrialRow aga
   const report::TableRow made = report::FirstTableRow(report::TableCsv(result));
   if (Evidence(made) != Evidence(row)) {
     throw std::runtime_error(fmt::format(
-        "row {} comes out different (gap {} m, not {} m): another version of rift, of the program "
+        "row {} comes out different ({}, not {}): another version of rift, of the program "
         "or of its logs made the table",
-        id, made.at("gap_m"), row.at("gap_m")));
+        id, GapText(made), GapText(row)));
   }
-  return fmt::format("row {}: status {}, gap {} m, to the last bit as in the table", id,
-                     row.at("status"), row.at("gap_m"));
+  return fmt::format("row {}: status {}, {}, to the last bit as in the table", id, row.at("status"),
+                     GapText(row));
 }
 
 }  // namespace

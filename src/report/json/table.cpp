@@ -115,16 +115,22 @@ TableRow TableRowOf(const std::string& table_csv, const std::string& id, const s
 std::string WorstIdOf(const std::string& table_csv, const std::string& name) {
   std::string_view text = table_csv;
   const std::vector<std::string> columns = NextRecord(text);
-  std::string worst;
+  std::string worst, failed;
+  bool worst_fails = false;
   double worst_gap_m = 0.0;
   while (!text.empty()) {
     const TableRow row = RowOf(columns, NextRecord(text));
-    if (!row.contains("id") || !row.contains("gap_m") || row.at("status") != "ok") continue;
+    if (!row.contains("id") || !row.contains("gap_m")) continue;
+    const bool fails = row.contains("falsified") && row.at("falsified") == "true";
+    if (fails && failed.empty()) failed = row.at("id");
+    if (row.at("status") != "ok") continue;
     const double gap_m = std::strtod(row.at("gap_m").c_str(), nullptr);
     if (!worst.empty() && gap_m <= worst_gap_m) continue;
     worst = row.at("id");
     worst_gap_m = gap_m;
+    worst_fails = fails;
   }
+  if (!worst_fails && !failed.empty()) return failed;
   if (worst.empty()) throw std::invalid_argument(name + " has no row with a gap: name a row's id");
   return worst;
 }
