@@ -2,16 +2,22 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <regex>
+#include <thread>
 
+#include "commands/sweep/page_server.hpp"
 #include "support/process.hpp"
 #include "support/running_rift.hpp"
 #include "support/trials.hpp"
+#include "support/until.hpp"
 
 namespace rift {
 namespace {
@@ -33,9 +39,11 @@ Address LiveAddress(const std::string& err) {
   return {std::stoi(found[1]), found[2]};
 }
 
-/// The whole answer of a server on this machine; empty when there is none.
+/// The whole answer of a server on this machine; empty when there is none. Fails when it hangs.
 std::string Get(int port, const std::string& path) {
   const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  const timeval longest{.tv_sec = test::kGiveUp.count(), .tv_usec = 0};
+  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &longest, sizeof longest);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
@@ -46,9 +54,12 @@ std::string Get(int port, const std::string& path) {
     REQUIRE(::write(socket, request.data(), request.size()) ==
             static_cast<ssize_t>(request.size()));
     char bytes[4096];
-    for (ssize_t n = 0; (n = ::read(socket, bytes, sizeof bytes)) > 0;) {
+    ssize_t n = 0;
+    while ((n = ::read(socket, bytes, sizeof bytes)) > 0) {
       answer.append(bytes, static_cast<size_t>(n));
     }
+    INFO("the answer to " << path << " so far: " << answer);
+    CHECK_FALSE((n < 0 && errno == EAGAIN));  // waited in vain for its end
   }
   ::close(socket);
   return answer;
@@ -118,6 +129,32 @@ TEST_CASE("A sweep that was watched serves its finished report before it ends") 
   CHECK(sweep.Wait().exit_code == 0);
   CHECK_THAT(page, Contains(ReadFile(out + "/report.html")));
   CHECK_FALSE(std::filesystem::exists(out + "/live.html"));
+}
+
+TEST_CASE("A page server waits for the last page, whatever of the others was just asked for") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "live", "it runs");
+  test::WriteText(folder / "report", "it is over");
+  commands::PageServer server({folder / "live", folder / "report"});
+  const Address at = LiveAddress("live: " + server.Url());
+  std::atomic<bool> has_asked_again = false;
+  std::string first, last;
+  std::thread watcher([&] {
+    first = Get(at.port, at.path);
+    // Long enough for a server that takes this answer for the last one.
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    std::filesystem::remove(folder / "live");
+    has_asked_again = true;
+    last = Get(at.port, at.path);
+  });
+  const bool has_served = server.WaitForLast(1000 * static_cast<int>(test::kGiveUp.count()));
+  const bool was_in_time = has_asked_again;
+  watcher.join();
+  CHECK(has_served);
+  CHECK(was_in_time);
+  CHECK_THAT(first, Contains("it runs"));
+  CHECK_THAT(last, Contains("it is over"));
+  CHECK(server.WaitForLast(0));
 }
 
 TEST_CASE("A calibration has no page that grows") {

@@ -51,7 +51,7 @@ void LivePage::Tick() {
 void LivePage::End() {
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);
-  if (server_.IsWatched()) server_.WaitForRequest(kLastLook_ms);
+  if (server_.IsWatched()) server_.WaitForLast(kLastLook_ms);
 }
 
 }  // namespace rift::commands

@@ -12,11 +12,13 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <optional>
 #include <random>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 // After <utility>, which Boost.Asio 1.74 does not include where it needs it.
@@ -36,6 +38,7 @@ namespace http = boost::beast::http;
 using asio::ip::tcp;
 
 constexpr double kWatching_s = 10.0;
+constexpr char kLast = 'l', kOther = 'o';  // which of the files was served
 
 std::string Token() {
   std::random_device random;
@@ -55,9 +58,16 @@ void LimitWaiting(tcp::socket& socket) {
   ::setsockopt(socket.native_handle(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
 }
 
-std::optional<std::string> PageOf(const std::vector<std::filesystem::path>& files) {
+struct Page {
+  std::string text;
+  char mark;
+};
+
+std::optional<Page> PageOf(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) {
-    if (auto text = files::ReadIfThere(file)) return text;
+    if (auto text = files::ReadIfThere(file)) {
+      return Page{std::move(*text), file == files.back() ? kLast : kOther};
+    }
   }
   return std::nullopt;
 }
@@ -71,17 +81,17 @@ void Answer(tcp::socket socket, const std::string& path,
   http::read(socket, buffer, request, failed);
   if (failed) return;
   const bool is_asked = request.method() == http::verb::get && request.target() == path;
-  const std::optional<std::string> page = is_asked ? PageOf(files) : std::nullopt;
+  const std::optional<Page> page = is_asked ? PageOf(files) : std::nullopt;
   http::response<http::string_body> response{page ? http::status::ok : http::status::not_found,
                                              request.version()};
   response.set(http::field::content_type, "text/html; charset=utf-8");
   response.set(http::field::cache_control, "no-store");
-  response.body() = page.value_or("");
+  if (page) response.body() = page->text;
   response.keep_alive(false);
   response.prepare_payload();
   http::write(socket, response, failed);
   socket.shutdown(tcp::socket::shutdown_both, failed);
-  if (page && ::write(requests, "r", 1) != 1) ::_exit(0);  // nobody is there any more
+  if (page && ::write(requests, &page->mark, 1) != 1) ::_exit(0);  // nobody is there any more
 }
 
 [[noreturn]] void Serve(tcp::acceptor& acceptor, const std::string& path,
@@ -142,7 +152,11 @@ PageServer::~PageServer() {
 
 void PageServer::NoteRequests() {
   std::array<char, 64> bytes{};
-  while (::read(requests_, bytes.data(), bytes.size()) > 0) last_request_s_ = Now_s();
+  for (ssize_t n = 0; (n = ::read(requests_, bytes.data(), bytes.size())) > 0;) {
+    last_request_s_ = Now_s();
+    const std::string_view served(bytes.data(), static_cast<size_t>(n));
+    has_served_last_ = has_served_last_ || served.find(kLast) != served.npos;
+  }
 }
 
 bool PageServer::IsWatched() {
@@ -150,10 +164,15 @@ bool PageServer::IsWatched() {
   return Now_s() - last_request_s_ < kWatching_s;
 }
 
-bool PageServer::WaitForRequest(int timeout_ms) {
-  NoteRequests();
-  pollfd entry{requests_, POLLIN, 0};
-  return ::poll(&entry, 1, timeout_ms) > 0;
+bool PageServer::WaitForLast(int timeout_ms) {
+  const double end_s = Now_s() + 1e-3 * timeout_ms;
+  for (NoteRequests(); !has_served_last_; NoteRequests()) {
+    const int left_ms = static_cast<int>(std::ceil(1e3 * (end_s - Now_s())));
+    pollfd entry{requests_, POLLIN, 0};
+    const bool has_news = left_ms > 0 && ::poll(&entry, 1, left_ms) > 0;  // else late or a signal
+    if (!has_news || (entry.revents & POLLIN) == 0) return false;
+  }
+  return true;
 }
 
 }  // namespace rift::commands

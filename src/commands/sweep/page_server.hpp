@@ -21,8 +21,9 @@ class PageServer {
   PageServer& operator=(const PageServer&) = delete;
 
   const std::string& Url() const { return url_; }
-  /// Waits for a request for the page that comes from now on, at most that long.
-  bool WaitForRequest(int timeout_ms);
+  /// Waits until the last of the files has been served, at most that long. An answer with another
+  /// one that is still under way does not count.
+  bool WaitForLast(int timeout_ms);
   /// True when the page was asked for within the last seconds: somebody watches it.
   bool IsWatched();
 
@@ -31,8 +32,9 @@ class PageServer {
 
   std::string url_;
   pid_t process_ = -1;
-  int requests_ = -1;  ///< the end of a pipe: a byte for each
+  int requests_ = -1;  ///< the end of a pipe: a byte for each, kLast or kOther
   double last_request_s_ = -1e9;
+  bool has_served_last_ = false;
 };
 
 }  // namespace rift::commands
