@@ -80,25 +80,28 @@ TEST_CASE("A drive whose streams are closed or full arrives and its robot hears 
 }
 
 TEST_CASE("A dry run of the binary decides and the robot stands where it stood") {
-  Scene scene;
-  const geometry::Pose2 start = scene.floor.Pose();
-  std::vector<std::string> arguments = scene.Arguments();
-  arguments.insert(arguments.end(), {"--dry-run", "--seconds", "2"});
-  const test::ProcessResult result = test::RunRift(arguments);
-  INFO(result.out << result.err);
-  CHECK(result.exit_code == 0);
-  CHECK_THAT(result.err, Catch::Contains("nothing moves"));
-  CHECK_THAT(result.out, Catch::Contains("zeros alone"));
-  CHECK(scene.floor.Pose() == start);
-  CHECK(scene.Summary()["dry_run"] == true);
-  CHECK(scene.Summary()["outcome"] == "timed_out");
-  const std::string decided = files::ReadFile(scene.folder / "run/commands.csv");
-  const auto count = [&decided](const std::string& text) {
-    int found = 0;
-    for (std::size_t at = 0; (at = decided.find(text, at)) != decided.npos; ++at) ++found;
-    return found;
-  };
-  CHECK(count(",0,0\n") < count("\n") - 1);  // and not only while it settled
+  Uninterrupted(kAll, [](Scene& scene) {
+    const geometry::Pose2 start = scene.floor.Pose();
+    std::vector<std::string> arguments = scene.Arguments();
+    arguments.insert(arguments.end(), {"--dry-run", "--seconds", "2"});
+    const test::ProcessResult result = test::RunRift(arguments);
+    INFO(result.out << result.err);
+    CHECK(scene.floor.Pose() == start);
+    if (WasInterrupted(scene)) return false;
+    CHECK(result.exit_code == 0);
+    CHECK_THAT(result.err, Catch::Contains("nothing moves"));
+    CHECK_THAT(result.out, Catch::Contains("zeros alone"));
+    CHECK(scene.Summary()["dry_run"] == true);
+    CHECK(scene.Summary()["outcome"] == "timed_out");
+    const std::string decided = files::ReadFile(scene.folder / "run/commands.csv");
+    const auto count = [&decided](const std::string& text) {
+      int found = 0;
+      for (std::size_t at = 0; (at = decided.find(text, at)) != decided.npos; ++at) ++found;
+      return found;
+    };
+    CHECK(count(",0,0\n") < count("\n") - 1);  // and not only while it settled
+    return true;
+  });
 }
 
 TEST_CASE("Ctrl-C in the countdown ends the drive before anything moves") {
@@ -240,9 +243,9 @@ TEST_CASE("A run folder that is removed during the drive stops the robot first")
     WaitForRows(rift, scene);
     if (!rift.IsRunning()) return false;
     std::filesystem::remove_all(scene.folder / "run");
-    const bool is_stopped = IsStoppedForItsLog(rift, scene, "was removed or moved");
+    if (!IsStoppedForItsLog(rift, scene, "was removed or moved")) return false;
     CHECK_FALSE(std::filesystem::exists(scene.folder / "run"));
-    return is_stopped;
+    return true;
   });
 }
 
@@ -253,11 +256,11 @@ TEST_CASE("A log that finds no room stops the robot first and keeps its rows") {
     std::optional<test::FileSizeLimit> limit(kRoom);
     test::RunningRift rift(arguments);
     limit.reset();
-    const bool is_stopped = IsStoppedForItsLog(rift, scene, "File too large");
+    if (!IsStoppedForItsLog(rift, scene, "File too large")) return false;
     CHECK_THAT(LogOf(scene), Catch::EndsWith("\n"));
     CHECK(LogOf(scene).size() > kRoom / 2);
     CHECK(scene.Summary()["state"] == "interrupted");
-    return is_stopped;
+    return true;
   });
 }
 
@@ -317,30 +320,34 @@ struct Device {
 };
 
 TEST_CASE("A device is asked for the size of its calibration as in tracking") {
-  Scene scene;
   const std::string calibration = test::SourceDir() + "/data/camera/camera.yaml";
-  std::vector<std::string> arguments = scene.Arguments();
-  const auto set = [&arguments](const std::string& flag, const std::string& value) {
-    *(std::find(arguments.begin(), arguments.end(), flag) + 1) = value;
-  };
-  set("--camera", "/dev/video0");
-  set("--calibration", calibration);
-  arguments.insert(arguments.end(),
-                   {"--set", "trial.timeout_s=1", "--set", "track.capture.same_s=60", "--set",
-                    "hardware.turn.enabled=false", "--any-start"});
   const Device device;
-  const test::ProcessResult result = test::RunRift(arguments);
-  INFO(result.out << result.err);
-  CHECK(result.exit_code == 1);
-  CHECK_THAT(result.err, Catch::Contains("the robot stands at x"));
-  CHECK(scene.Summary()["outcome"] == "timed_out");
-  CHECK(scene.Summary()["poses"] > 5);
-  const std::string kept = files::ReadFile(scene.folder / "run/camera.yaml");
-  CHECK(vision::ReadCamera(kept, "camera.yaml").width_px == 960);
+  Uninterrupted(kAll, [&calibration](Scene& scene) {
+    std::vector<std::string> arguments = scene.Arguments();
+    const auto set = [&arguments](const std::string& flag, const std::string& value) {
+      *(std::find(arguments.begin(), arguments.end(), flag) + 1) = value;
+    };
+    set("--camera", "/dev/video0");
+    set("--calibration", calibration);
+    arguments.insert(arguments.end(),
+                     {"--set", "trial.timeout_s=3", "--set", "track.capture.same_s=60", "--set",
+                      "hardware.turn.enabled=false", "--any-start"});
+    const test::ProcessResult result = test::RunRift(arguments);
+    if (WasInterrupted(scene)) return false;
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 1);
+    CHECK_THAT(result.err, Catch::Contains("the robot stands at x"));
+    CHECK(scene.Summary()["outcome"] == "timed_out");
+    CHECK(scene.Summary()["poses"] > 5);
+    const std::string kept = files::ReadFile(scene.folder / "run/camera.yaml");
+    CHECK(vision::ReadCamera(kept, "camera.yaml").width_px == 960);
+    return true;
+  });
 
-  const test::ProcessResult tracked = test::RunRift(
-      {"track", "--camera", "/dev/video0", "--calibration", calibration, "--out",
-       scene.folder / "log.csv", "--duration", "2", "--set", "track.capture.same_s=60"});
+  const test::TemporaryFolder folder;
+  const test::ProcessResult tracked =
+      test::RunRift({"track", "--camera", "/dev/video0", "--calibration", calibration, "--out",
+                     folder / "log.csv", "--duration", "2", "--set", "track.capture.same_s=60"});
   INFO(tracked.out << tracked.err);
   CHECK(tracked.exit_code == 0);
 }

@@ -55,7 +55,7 @@ TEST_CASE("A program is driven on the twin and its odometry is the twin's true m
                                          folder / "run",
                                          "--before-each",
                                          test::BuildDir() + "/rift simulate " +
-                                             (folder / "task.yaml") + " --twin --out " +
+                                             (folder / "task.yaml") + " --twin --force --out " +
                                              (folder / "twin")};
   test::ProcessResult result;
   // A busy machine may make the guard stop a drive.

@@ -50,7 +50,8 @@ struct Scene {
 };
 
 /// True when the guard stopped the drive since somebody looked away for longer than the most
-/// patient limits, as it must on a machine that is that busy.
+/// patient limits, as it must on a machine that is that busy, or when the robot's answer to the
+/// stop came too late to be waited for.
 inline bool WasInterrupted(Scene& scene) {
   if (!std::filesystem::exists(scene.folder / "run/summary.json")) return false;
   const auto summary = scene.Summary();
@@ -59,7 +60,7 @@ inline bool WasInterrupted(Scene& scene) {
   INFO(scene.floor.Told());
   CHECK(scene.floor.WasObedient());
   return reason == "link_lagging" || reason == "host_stalled" || reason == "pose_stale" ||
-         reason == "control_stale";
+         reason == "control_stale" || summary["stop"]["acknowledged"] != true;
 }
 
 /// Runs `drive` on a new scene, which returns false for a drive that was interrupted, until one

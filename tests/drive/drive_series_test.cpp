@@ -4,7 +4,6 @@
 #include <csignal>
 #include <filesystem>
 #include <set>
-#include <thread>
 
 #include "commands/drive/before_each.hpp"
 #include "rift/files/files.hpp"
@@ -101,13 +100,13 @@ TEST_CASE("A command is parted into words at its blanks and no shell reads them"
 TEST_CASE("A scene that says where it is goes on until it is no longer needed") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "scene",
-                  "echo ready\necho '{\"port\": \"/dev/p\", \"camera\": \"c\"}'\n"
-                  "echo $$ > " +
-                      folder /
-                          "pid\n"
-                          "trap 'echo over > " +
+                  "trap 'echo over > " +
                       folder /
                           "over; exit' TERM\n"
+                          "echo ready\necho '{\"port\": \"/dev/p\", \"camera\": \"c\"}'\n"
+                          "echo $$ > " +
+                      folder /
+                          "pid\n"
                           "while :; do sleep 0.01; done\n");
   {
     const SceneCommand scene({"sh", folder / "scene"});
@@ -117,7 +116,6 @@ TEST_CASE("A scene that says where it is goes on until it is no longer needed") 
     CHECK(scene.address()->calibration.empty());
     test::WaitUntil("it went on", [&] { return std::filesystem::exists(folder / "pid"); });
     test::WaitUntil("it can be told", [&] { return !files::ReadFile(folder / "pid").empty(); });
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // for the trap
   }
   CHECK(std::filesystem::exists(folder / "over"));
   CHECK(::kill(std::stoi(files::ReadFile(folder / "pid")), 0) != 0);
