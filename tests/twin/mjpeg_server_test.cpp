@@ -97,9 +97,9 @@ TEST_CASE("A client that does not read holds up no other and then sees the newes
   for (int i = 1; i <= kPictures; ++i) {
     const std::string name = "[" + std::to_string(i) + "]";
     server.Publish(Picture(name, kMegabyte));
-    CHECK(quick.Until(name).ends_with(name + "\r\n"));
+    CHECK(quick.Until(name + "\r\n").ends_with(name + "\r\n"));
   }
-  const std::string late = slow.Until("[" + std::to_string(kPictures) + "]");
+  const std::string late = slow.Until("[" + std::to_string(kPictures) + "]\r\n");
   CHECK(late.find("[1]") != std::string::npos);
   CHECK(late.ends_with("[40]\r\n"));
   // The one it was being sent, what the system holds, and the newest.
@@ -156,7 +156,7 @@ TEST_CASE("A server out of descriptors waits for one instead of spinning, and th
   }
   WaitForClients(server, 1);
   server.Publish(Picture("[late]"));
-  CHECK(client->Until("[late]").ends_with("[late]\r\n"));
+  CHECK(client->Until("[late]\r\n").ends_with("[late]\r\n"));
 }
 
 TEST_CASE("A port that is taken is refused in one line") {
