@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -404,8 +403,10 @@ TEST_CASE("A program that always fails is named with its reason after one nomina
     WriteText(folder / "line.yaml", AgainstNominal(run));
     const ProcessResult result = RunRift({"sweep", folder / "line.yaml", "--out", folder / "out"});
     CHECK(result.exit_code == 2);
-    // A worker has the job under way and the next; two workers may have begun.
-    CHECK(ReadFile(fs::path(folder / "runs")).size() <= 2);
+    // A worker has the job under way and the next; two workers may have begun. One that is killed
+    // after 1 s may not have come so far.
+    const std::string runs = folder / "runs";
+    CHECK((fs::exists(runs) ? fs::file_size(runs) : 0) <= 2);
     return result.err;
   };
   const std::string fault = refusal("raise ValueError('division by wheel')", "");
@@ -421,12 +422,12 @@ TEST_CASE("A program that always fails is named with its reason after one nomina
 TEST_CASE(
     "Only a nominal run that did not arrive is tried with other seeds, each on its own time") {
   const TemporaryFolder folder;
-  // Ten runs of 0.3 s: together they take longer than one may.
+  // Ten runs of 0.8 s: together they take longer than one may.
   WriteText(folder / "line.py",
-            LineSimulator("time.sleep(0.3)\n"
+            LineSimulator("time.sleep(0.8)\n"
                           "if seed in (1, 3): print('too slow', file=sys.stderr); sys.exit(10)"));
   WriteText(folder / "line.yaml",
-            AgainstNominal("falsify: {most_repeats: 8}\nrun: {timeout_s: 2, retries: 0}\n"));
+            AgainstNominal("falsify: {most_repeats: 8}\nrun: {timeout_s: 7, retries: 0}\n"));
   const ProcessResult result =
       RunRift({"sweep", folder / "line.yaml", "--out", folder / "out", "--jobs", "1"});
   INFO(result.err);
@@ -442,20 +443,22 @@ TEST_CASE(
 TEST_CASE("The search for nominal runs says how far it is and ends at a signal") {
   const TemporaryFolder folder;
   WriteText(folder / "line.py",
-            LineSimulator("time.sleep(0.2); print('slow', file=sys.stderr); sys.exit(10)"));
+            LineSimulator("open('" + (folder / "runs") +
+                          "', 'a').write('x')\n"
+                          "time.sleep(0.2); print('slow', file=sys.stderr); sys.exit(10)"));
   WriteText(folder / "line.yaml", AgainstNominal(""));
   test::RunningRift running(
       {"sweep", folder / "line.yaml", "--out", folder / "out", "--json-progress"});
   running.WaitUntil("progress of the references", [&] {
     return running.Err().find("\"references\":100,\"references_done\":0") != std::string::npos;
   });
-  const auto asked = std::chrono::steady_clock::now();
   running.Signal(SIGTERM);
   const ProcessResult result = running.Wait();
-  CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(10));
   INFO(result.err);
   CHECK(result.exit_code == 130);
   test::WaitUntil("no process is left", [&] { return ProcessesWith(folder / "line.py") == 0; });
+  const std::string runs = folder / "runs";
+  CHECK((fs::exists(runs) ? fs::file_size(runs) : 0) < 50);  // and not after all that it wanted
 }
 
 TEST_CASE("A program's reference may be another program") {
