@@ -8,6 +8,7 @@
 
 #include "support/process.hpp"
 #include "support/tree.hpp"
+#include "support/until.hpp"
 
 namespace rift {
 namespace {
@@ -35,7 +36,8 @@ struct Installed {
   /// stdout and stderr together.
   test::ProcessResult Run(const std::string& arguments) const {
     test::ProcessResult result;
-    const std::string command = "cd " + folder.Path().string() + " && " + rift.string() + " " +
+    const std::string command = "cd " + folder.Path().string() + " && timeout " +
+                                std::to_string(test::kGiveUp.count()) + " " + rift.string() + " " +
                                 arguments + " 2>&1 </dev/null";
     FILE* pipe = popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);

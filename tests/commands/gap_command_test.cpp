@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 
 #include "support/paths.hpp"
 #include "support/process.hpp"
+#include "support/shell.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
 
@@ -197,7 +197,7 @@ TEST_CASE("An output goes through a link and is put behind what its stream holds
   WriteText(log, "precious\n");
   const std::string command =
       std::string(test::RiftBinary()) + " gap " + logs.sim + " " + logs.real;
-  REQUIRE(std::system((command + " --json /dev/stdout >> " + log).c_str()) == 0);
+  REQUIRE(test::RunShell(command + " --json /dev/stdout >> " + log) == 0);
   const std::string text = test::ReadFile(log);
   CHECK(text.starts_with("precious\n{"));
   CHECK(text.find("}\ngap: largest") != std::string::npos);

@@ -13,6 +13,7 @@
 #include "support/environment.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/process.hpp"
+#include "support/shell.hpp"
 #include "support/small_disk.hpp"
 #include "support/terminal_run.hpp"
 #include "support/trials.hpp"
@@ -193,7 +194,7 @@ TEST_CASE("A wall clock that jumps changes nothing") {
 bool MakeGermanLocale(const std::string& folder) {
   const std::string command =
       "localedef -i de_DE -f UTF-8 '" + folder + "/de_DE.UTF-8' >/dev/null 2>&1";
-  return std::system(command.c_str()) == 0;
+  return test::RunShell(command) == 0;
 }
 
 TEST_CASE("Locale, display, home and width of the environment change no byte") {

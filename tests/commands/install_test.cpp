@@ -1,7 +1,6 @@
 // What a package brings: manual and completions made from the options, the programs with their data
 // in a folder of their own, and the library for another CMake project.
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -9,6 +8,7 @@
 #include "support/help_flags.hpp"
 #include "support/process.hpp"
 #include "support/running_rift.hpp"
+#include "support/shell.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
 
@@ -24,7 +24,7 @@ const std::vector<std::string> kCommands{"simulate", "track", "drive", "gap", "s
 std::string Shell(const std::string& command, const test::TemporaryFolder& folder) {
   const std::string file = folder / "shell.txt";
   INFO(command);
-  const int status = std::system(("(" + command + ") > " + file + " 2>&1").c_str());
+  const int status = test::RunShell("(" + command + ") > " + file + " 2>&1");
   INFO(test::ReadFile(file));
   REQUIRE(status == 0);
   return test::ReadFile(file);

@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +10,7 @@
 #include "rift/trajectory/log.hpp"
 #include "support/npm.hpp"
 #include "support/process.hpp"
+#include "support/shell.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
 
@@ -43,7 +43,7 @@ void CheckMcap(const std::string& path, const trajectory::Trajectory& log) {
   const std::string seen = path + ".json";
   const std::string command = fmt::format("node '{}/tests/npm/read_mcap.mjs' '{}' '{}' > '{}'",
                                           test::SourceDir(), test::NpmDir(), path, seen);
-  REQUIRE(std::system(command.c_str()) == 0);
+  REQUIRE(test::RunShell(command) == 0);
   const json file = json::parse(ReadFile(seen));
   CHECK(file["done"] == true);
   CHECK(file["schemas"].contains("foxglove.PoseInFrame"));

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "support/documented.hpp"
 #include "support/process.hpp"
+#include "support/shell.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
 
@@ -44,7 +44,7 @@ struct Bench {
       const std::string command =
           fmt::format("python3 '{}' --mu {} --mismatch {} --seed {} --out '{}'", folder / "sim.py",
                       kMu, kMismatch, 300 + i, folder / fmt::format("robot_{}.csv", i));
-      REQUIRE(std::system(command.c_str()) == 0);
+      REQUIRE(test::RunShell(command) == 0);
     }
   }
   ProcessResult Run(const std::string& experiment, const std::vector<std::string>& more = {}) {

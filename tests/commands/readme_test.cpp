@@ -1,12 +1,12 @@
 // The recipes of README and docs, as they are printed, in the order they are printed.
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <utility>
 
 #include "support/process.hpp"
 #include "support/running_rift.hpp"
+#include "support/shell.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
 
@@ -32,8 +32,8 @@ void LinkTree(const test::TemporaryFolder& folder) {
 
 void RunAsPrinted(const test::TemporaryFolder& folder, const std::string& recipe) {
   const std::string log = folder / "log.txt";
-  const int status = std::system(
-      ("cd " + folder.Path().string() + " && " + recipe + " > " + log + " 2>&1").c_str());
+  const int status =
+      test::RunShell("cd " + folder.Path().string() + " && " + recipe + " > " + log + " 2>&1");
   INFO(recipe << "\n" << test::ReadFile(log));
   CHECK(status == 0);
 }
@@ -129,7 +129,7 @@ TEST_CASE("The README's picture is what its command draws today") {
   const std::string drawn = folder / "demo.png";
   const std::string command =
       test::SourceDir() + "/data/readme/make " + test::BuildDir() + "/rift " + drawn;
-  REQUIRE(std::system((command + " 2>/dev/null").c_str()) == 0);
+  REQUIRE(test::RunShell(command + " 2>/dev/null") == 0);
   INFO("data/readme/make draws it anew");
   CHECK((test::ReadFile(drawn) == test::ReadFile(test::SourceDir() + "/data/readme/demo.png")));
 }

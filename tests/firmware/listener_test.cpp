@@ -12,6 +12,7 @@
 #include "rift/hardware/wire.hpp"
 #include "support/npm.hpp"
 #include "support/process.hpp"
+#include "support/shell.hpp"
 #include "support/tree.hpp"
 
 namespace rift::hardware {
@@ -51,7 +52,7 @@ Run RunFirmware(const std::string& script) {
       "node '{0}/tests/firmware/run_firmware.mjs' '{1}' '{0}/src/firmware' "
       "'{0}/tests/firmware/stand_in' '{2}' > '{3}' 2>&1",
       source, test::NpmDir(), folder / "script", folder / "out");
-  const int status = std::system(command.c_str());
+  const int status = test::RunShell(command);
   std::ifstream out(folder / "out");
   Run run;
   for (std::string line; std::getline(out, line);) {

@@ -1,9 +1,7 @@
 #include "support/running_rift.hpp"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <spawn.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "support/child_end.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
 #include "support/until.hpp"
@@ -23,16 +22,6 @@ namespace {
 bool IsRift(pid_t pid) {
   std::string name;
   return std::ifstream("/proc/" + std::to_string(pid) + "/comm") >> name && name == "rift";
-}
-
-/// False when it has not ended by then.
-bool EndsInTime(pid_t pid) {
-  const int process = static_cast<int>(::syscall(SYS_pidfd_open, pid, 0));
-  if (process < 0) throw std::runtime_error("cannot wait for a process");
-  pollfd wanted{process, POLLIN, 0};
-  const int ready = ::poll(&wanted, 1, static_cast<int>(1000 * kGiveUp.count()));
-  ::close(process);
-  return ready > 0;
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "support/child_end.hpp"
 #include "support/tree.hpp"
 #include "support/trials.hpp"
 #include "support/until.hpp"
@@ -48,6 +49,7 @@ pid_t Spawn(std::vector<std::string> words, const std::string& log) {
 void End(pid_t& pid, int signal) {
   if (pid <= 0) return;
   ::kill(pid, signal);
+  if (!EndsInTime(pid)) ::kill(-pid, SIGKILL);
   ::waitpid(pid, nullptr, 0);
   pid = -1;
 }
@@ -59,9 +61,10 @@ std::vector<std::string> LinesOf(const std::string& file) {
   return lines;
 }
 
-/// What a command prints.
+/// What a command prints, within kGiveUp.
 std::string OutputOf(const std::string& command) {
-  FILE* const pipe = ::popen((command + " 2>/dev/null").c_str(), "r");
+  const std::string limit = "timeout " + std::to_string(kGiveUp.count()) + " ";
+  FILE* const pipe = ::popen((limit + command + " 2>/dev/null").c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot run " + command);
   std::string text;
   std::array<char, 4096> bytes;
@@ -73,7 +76,7 @@ std::string OutputOf(const std::string& command) {
 }
 
 bool Has(const std::string& program) {
-  return !OutputOf("PATH=$PATH:/usr/sbin:/sbin command -v " + program).empty();
+  return !OutputOf("sh -c 'PATH=$PATH:/usr/sbin:/sbin command -v " + program + "'").empty();
 }
 
 /// Processes in whose environment both of these are set; slurmd's steps and tasks leave its group.
@@ -91,6 +94,16 @@ std::vector<pid_t> ProcessesWith(const std::string& one, const std::string& othe
     if (has(one) && (has(other) || other.empty())) found.push_back(pid);
   }
   return found;
+}
+
+bool IsFree(int port) {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in here{};
+  here.sin_family = AF_INET;
+  here.sin_port = htons(static_cast<std::uint16_t>(port));
+  const bool is_free = ::bind(socket, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0;
+  ::close(socket);
+  return is_free;
 }
 
 }  // namespace
@@ -111,6 +124,7 @@ FakeSlurm::FakeSlurm()
 
 FakeSlurm::~FakeSlurm() {
   WriteText(folder_ / "state/stop", "");
+  if (!EndsInTime(daemon_)) ::kill(-daemon_, SIGKILL);
   ::waitpid(daemon_, nullptr, 0);
 }
 
@@ -158,8 +172,10 @@ RealSlurm::RealSlurm() : config_("SLURM_CONF", folder_ / "slurm.conf") {
   }
   fs::permissions(folder_ / "munge", fs::perms::owner_all);
   std::random_device random;
-  // Below the ports that the system gives out by itself.
-  port_ = 20000 + static_cast<int>(random() % 4000) * 3;
+  // Below the ports that the system gives out by itself; another clone's tests may have some.
+  do {
+    port_ = 20000 + static_cast<int>(random() % 4000) * 3;
+  } while (!IsFree(port_) || !IsFree(port_ + 1) || !IsFree(port_ + 2));
   std::string key(128, '\0');
   for (char& byte : key) byte = static_cast<char>(random());
   WriteText(folder_ / "munge/key", key);

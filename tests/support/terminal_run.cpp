@@ -11,6 +11,7 @@
 #include <csignal>
 #include <stdexcept>
 
+#include "support/child_end.hpp"
 #include "support/tree.hpp"
 #include "support/until.hpp"
 
@@ -19,8 +20,7 @@ namespace {
 
 /// Its exit code, or 128 + signal.
 int Ended(pid_t process) {
-  int status = 0;
-  ::waitpid(process, &status, 0);
+  const int status = EndOf(process, "rift, which has left its terminal");
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 

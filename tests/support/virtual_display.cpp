@@ -7,6 +7,7 @@
 
 #include <csignal>
 
+#include "support/child_end.hpp"
 #include "support/until.hpp"
 
 namespace rift::test {
@@ -37,6 +38,7 @@ VirtualDisplay::VirtualDisplay() {
 VirtualDisplay::~VirtualDisplay() {
   if (pid_ <= 0) return;
   kill(pid_, SIGTERM);
+  if (!EndsInTime(pid_)) kill(pid_, SIGKILL);
   waitpid(pid_, nullptr, 0);
 }
 

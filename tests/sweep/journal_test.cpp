@@ -9,6 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "support/child_end.hpp"
 #include "support/process.hpp"
 #include "support/trials.hpp"
 
@@ -61,8 +62,7 @@ TEST_CASE("What was committed survives a kill of the process") {
     journal.Add("in flight", Entry(0.1));
     ::raise(SIGKILL);
   }
-  int status = 0;
-  REQUIRE(::waitpid(child, &status, 0) == child);
+  const int status = test::EndOf(child, "the process that writes the journal");
   REQUIRE(WIFSIGNALED(status));
   CHECK(ReadJournal(file).trials_by_status.at("ok") == 100);
   Journal journal(file, kFacts);
@@ -131,8 +131,7 @@ TEST_CASE("A full disk ends with a message and keeps what was committed") {
     }
     ::_exit(told.find("what was committed is kept") != told.npos ? 0 : 1);
   }
-  int status = 0;
-  REQUIRE(::waitpid(child, &status, 0) == child);
+  const int status = test::EndOf(child, "the process that writes the journal");
   CHECK(status == 0);
   Journal journal(file, kFacts);
   CHECK(journal.Find("first"));

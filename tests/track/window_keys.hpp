@@ -1,13 +1,14 @@
 #pragma once
 
-#include <cstdlib>
 #include <string>
+
+#include "support/shell.hpp"
 
 namespace rift::test {
 
 /// Whether a shell ends with 0; what it prints is dropped.
 inline bool Succeeds(const std::string& command) {
-  return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
+  return RunShell(command + " >/dev/null 2>&1") == 0;
 }
 
 inline int CountOf(const std::string& word, const std::string& text) {
