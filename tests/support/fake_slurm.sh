@@ -6,6 +6,8 @@
 #   pids/ID_INDEX                         its process group
 #   refuse                                how many submissions are refused from now on
 #   requeue                               there: a task that is killed (signal 9) is run again
+#   hold                                  there: such a task is held instead, as one is that was
+#                                         requeued max_batch_requeue times
 #   stop                                  there: the end
 set -u
 shopt -s nullglob
@@ -29,7 +31,9 @@ run_task() {
   wait $!
   code=$?
   rm -f "pids/$task"
-  if ((code == 137)) && [[ -e requeue ]]; then
+  if ((code == 137)) && [[ -e hold ]]; then
+    set_state "$task" REQUEUE_HOLD
+  elif ((code == 137)) && [[ -e requeue ]]; then
     set_state "$task" PENDING
   else
     rm -f "queue/$task"
@@ -103,16 +107,20 @@ list() {
     state=$(cat "$task" 2>/dev/null) || continue
     task=${task#queue/}
     [[ $(cat "jobs/${task%_*}/name") == "$name" ]] || continue
-    echo "$task|$state|$([[ $state == PENDING ]] && echo Resources || echo None)"
+    case $state in
+      PENDING) echo "$task|$state|Resources" ;;
+      REQUEUE_HOLD) echo "$task|$state|JobHoldMaxRequeue" ;;
+      *) echo "$task|$state|None" ;;
+    esac
   done
 }
 
 cancel() {
   local job task
   for job in "$@"; do
-    for task in queue/"${job}"_*; do
+    for task in queue/"${job}" queue/"${job}"_*; do
       task=${task#queue/}
-      [[ $(cat "queue/$task" 2>/dev/null) == PENDING ]] && rm -f "queue/$task"
+      [[ $(cat "queue/$task" 2>/dev/null) == @(PENDING|REQUEUE_HOLD) ]] && rm -f "queue/$task"
       [[ -e pids/$task ]] && kill -TERM -- "-$(cat "pids/$task")" 2>/dev/null
     done
   done

@@ -146,6 +146,11 @@ int FakeSlurm::KillTasks() {
   return tasks;
 }
 
+void FakeSlurm::Hold(bool is_on) const {
+  if (is_on) WriteText(folder_ / "state/hold", "");
+  if (!is_on) fs::remove(folder_ / "state/hold");
+}
+
 void FakeSlurm::Refuse(int submissions) const {
   WriteText(folder_ / "state/refuse", std::to_string(submissions) + "\n");
 }

@@ -35,6 +35,8 @@ class FakeSlurm : public Cluster {
 
   int Queued() const override;
   int KillTasks() override;
+  /// Tasks that are killed from now on are held, as after too many requeues.
+  void Hold(bool is_on) const;
   /// The next submissions are refused for the moment.
   void Refuse(int submissions) const;
   /// The lines of arguments that sbatch, or scancel, was called with.

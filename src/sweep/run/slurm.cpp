@@ -124,6 +124,10 @@ void CancelArrays(const std::string& name) {
   if (arguments.size() > 1) Answer(arguments);
 }
 
+void CancelTask(const SlurmTask& task, int index) {
+  Answer({"scancel", fmt::format("{}_{}", task.job, index)});
+}
+
 int MaxArraySize() {
   constexpr int kDefault = 1001;  // slurm.conf(5)
   std::istringstream lines;

@@ -216,10 +216,27 @@ void SlurmShards::LookAt(Group& group, ShardCounts& counts) {
       ++task.absent;
       continue;
     }
+    if (queued->second.IsGivenUp()) {
+      GiveUp(group, i, queued->second);
+      continue;
+    }
     task.absent = 0;
-    const bool is_pending = queued->second.state == "PENDING";
+    const bool is_pending = queued->second.IsWaiting();
     ++(is_pending ? counts.pending : counts.running);
     if (is_pending && counts.reason.empty()) counts.reason = queued->second.reason;
+  }
+}
+
+/// It is submitted anew.
+void SlurmShards::GiveUp(Group& group, size_t index, const SlurmTask& queued) {
+  watch_.say(fmt::format(
+      "note: shard {} of {} lost its node so often that Slurm holds it ({}); it is submitted anew",
+      index, group.folder.string(), queued.reason));
+  try {
+    CancelTask(queued, static_cast<int>(index));
+    group.tasks[index].absent = kMostAbsent;
+  } catch (const SlurmBusy& busy) {
+    Complain(busy.what());
   }
 }
 
@@ -356,7 +373,7 @@ std::optional<ShardCounts> ReadShardCounts(const fs::path& out) {
       counts.done += is_done;
       const auto queued = queue.find(static_cast<int>(i));
       if (is_done || queued == queue.end()) continue;
-      const bool is_pending = queued->second.state == "PENDING";
+      const bool is_pending = queued->second.IsWaiting();
       ++(is_pending ? counts.pending : counts.running);
       if (is_pending && counts.reason.empty()) counts.reason = queued->second.reason;
     }

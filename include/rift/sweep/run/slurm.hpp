@@ -30,6 +30,11 @@ struct SlurmTask {
   std::string job;     ///< id of its array
   std::string state;   ///< as squeue has it: PENDING, RUNNING, COMPLETING, ...
   std::string reason;  ///< why it is pending; empty when Slurm does not know yet
+
+  /// After max_batch_requeue failures of its nodes (5 by default) Slurm keeps a task without ever
+  /// starting it again.
+  bool IsGivenUp() const { return reason == "JobHoldMaxRequeue"; }
+  bool IsWaiting() const { return state == "PENDING" || state == "REQUEUE_HOLD"; }
 };
 
 /// "0-4,7" of {0, 1, 2, 3, 4, 7}.
@@ -48,6 +53,8 @@ std::string SubmitArray(const SlurmArray& array, const SlurmOptions& options);
 std::map<int, SlurmTask> QueuedTasks(const std::string& name);
 /// Cancels this user's jobs of that name; none is no error.
 void CancelArrays(const std::string& name);
+/// Cancels one task of an array.
+void CancelTask(const SlurmTask& task, int index);
 /// MaxArraySize of the cluster, below which indices are; the default of Slurm where it is busy.
 int MaxArraySize();
 

@@ -9,6 +9,7 @@
 
 #include "rift/sweep/run/journal.hpp"
 #include "rift/sweep/run/shard.hpp"
+#include "rift/sweep/run/slurm.hpp"
 #include "rift/sweep/run/slurm_options.hpp"
 
 namespace rift::sweep {
@@ -25,8 +26,7 @@ struct ShardCounts {
 /// Shards of a sweep as job arrays of Slurm, and their rows in the journal of the sweep.
 ///
 ///   OUT/slurm/N/        an array of at most MaxArraySize shards: what its jobs read, `array.sh`
-///   that
-///                       they run, `jobs` with the ids of what was submitted, their logs
+///                       that they run, `jobs` with the ids of what was submitted, their logs
 ///   OUT/shards/         journals of shards, whole files that jobs put there
 ///
 /// These files are all that is known of what was submitted, so that a coordinator that was killed
@@ -84,6 +84,7 @@ class SlurmShards {
   bool Drive(std::vector<Group> groups);
   ShardCounts Look(std::vector<Group>& groups);
   void LookAt(Group& group, ShardCounts& counts);
+  void GiveUp(Group& group, size_t index, const SlurmTask& queued);
   void TakeIn(Group& group);
   bool TakeIn(const std::filesystem::path& journal);
   void Submit(Group& group);
