@@ -44,6 +44,27 @@ space:
 search: {budget: 10}
 falsify: {until: budget, most_repeats: 4}
 )";
+// Only the mismatch of the wheels drives the robot off the path of the nominal run.
+const std::string kFailing = kTask + R"(goal: falsify
+space:
+  surface: [ground, parchment]
+  mismatch: {min: -0.25, max: 0.25}
+search: {budget: 20, strategy: random}
+falsify: {until: budget, most_repeats: 1}
+)";
+const std::string kDrive =
+    "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.4, y: 0.05, stop: true}]\n"
+    "simulation: {motor: {dead_band: 0.05}}\ntrial: {pace: new_pose}\n";
+const std::string kFit = kDrive + R"(goal: calibrate
+reference: {kind: logs, path: "log{trial}.csv", trials: [1, 2, 3, 4]}
+calibrate:
+  holdout: [4]
+  fit: {motor.mismatch: {min: -0.1, max: 0.1, mean: 0, sd: 0.05}, surfaces.bump.mu: {min: 0.5, max: 1.2}}
+  starts: 2
+  judge_runs: 2
+  method: {runs: 1, iterations: 2, horizon: {phases: 2}, simulated_logs: 6, resamples: 100}
+likeness: {shuffles: 19}
+)";
 
 struct Sweep {
   explicit Sweep(const std::string& text) {
@@ -74,6 +95,13 @@ struct Sweep {
   std::string engine = folder / "engine.yaml";
 };
 
+std::string Replaced(std::string text, const std::string& from, const std::string& to) {
+  for (size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
 /// Every file that a local run writes, with its bytes, but for the journal, which keeps the order
 /// and the times of the trials.
 void CheckSameFiles(const Sweep& sweep) {
@@ -84,10 +112,12 @@ void CheckSameFiles(const Sweep& sweep) {
     if (entry.path().extension() == ".png") continue;  // gnuplot's, of the same SVG
     INFO(name);
     REQUIRE(sweep.Has("cluster/" + name));
-    CHECK(sweep.Read("cluster/" + name) == sweep.Read("local/" + name));
+    // Commands that replay a trial name the folder.
+    CHECK(Replaced(sweep.Read("cluster/" + name), sweep.folder / "cluster",
+                   sweep.folder / "local") == sweep.Read("local/" + name));
     ++files;
   }
-  CHECK(files > 5);
+  CHECK(files > 3);
 }
 
 /// Nothing of the shards is left but their script and the ids of their jobs.
@@ -100,11 +130,16 @@ void CheckTidy(const Sweep& sweep) {
   }
 }
 
-void CheckSameAsLocal(const Sweep& sweep, const std::vector<std::string>& more) {
-  const ProcessResult there = RunRift(sweep.OnCluster(more));
+void CheckSameAsLocal(const Sweep& sweep, const std::vector<std::string>& more,
+                      const std::vector<std::string>& more_in_both = {}) {
+  std::vector<std::string> all = more;
+  all.insert(all.end(), more_in_both.begin(), more_in_both.end());
+  const ProcessResult there = RunRift(sweep.OnCluster(all));
   INFO(there.err);
   REQUIRE(there.exit_code == 0);
-  REQUIRE(RunRift(sweep.Local()).exit_code == 0);
+  const ProcessResult here = RunRift(sweep.Local(more_in_both));
+  REQUIRE(here.exit_code == 0);
+  CHECK(Replaced(there.out, sweep.folder / "cluster", sweep.folder / "local") == here.out);
   CheckSameFiles(sweep);
   CheckTidy(sweep);
 }
@@ -135,6 +170,91 @@ TEST_CASE("A search runs as one job and gives the files of a local run, byte for
   const size_t jobs = slurm.Submitted().size();
   REQUIRE(RunRift(sweep.OnCluster()).exit_code == 0);
   CHECK(slurm.Submitted().size() == jobs);  // nothing is left to be run
+}
+
+/// Logs of a robot whose left wheel is faster, beside the experiment that fits it.
+struct FitSweep : Sweep {
+  FitSweep() : Sweep(kFit) {
+    WriteText(folder / "task.yaml", kDrive);
+    for (const char* n : {"1", "2", "3", "4"}) {
+      REQUIRE(RunRift({"simulate", folder / "task.yaml", "--set", "simulation.motor.mismatch=0.05",
+                       "--seed", n, "--out", folder / ("log" + std::string(n) + ".csv")})
+                  .exit_code == 0);
+    }
+  }
+};
+
+void CheckBesideTheTable() {
+  CheckSameAsLocal(Sweep(kFailing), {}, {"--shrink", "worst", "--rare-event"});
+  CheckSameAsLocal(FitSweep(), {});
+}
+
+TEST_CASE("Shrinking and rare events are a job each and give the files of a local run") {
+  const FakeSlurm slurm;
+  const Sweep sweep(kFailing);
+  const std::vector<std::string> asked{"--shrink", "worst", "--rare-event"};
+  CheckSameAsLocal(sweep, {}, asked);
+  CHECK(slurm.Submitted().size() == 3);  // the search as well
+  // What the jobs brought back is in the journal, and is no trial of the sweep.
+  REQUIRE(RunRift(sweep.OnCluster(asked)).exit_code == 0);
+  CHECK(slurm.Submitted().size() == 3);
+  const auto trials = [&](const std::string& out) {
+    return sweep::ReadJournal(sweep.folder / (out + "/journal.sqlite")).trials_by_status;
+  };
+  CHECK(trials("cluster") == trials("local"));
+  CHECK(trials("cluster").at("ok") == 40);  // of 20 settings
+}
+
+TEST_CASE("A calibration is a job and gives the files of a local run, byte for byte") {
+  const FakeSlurm slurm;
+  const FitSweep sweep;
+  const auto robot = [&](const std::string& name) {
+    return std::vector<std::string>{"--write-robot", sweep.folder / name};
+  };
+  CheckSameAsLocal(sweep, robot("cluster.yaml"), {"--set", "calibrate.method.iterations=1"});
+  CHECK(slurm.Submitted().size() == 1);
+  const ProcessResult local =
+      RunRift(sweep.Local({"--fresh", "--set", "calibrate.method.iterations=1", "--write-robot",
+                           sweep.folder / "local.yaml"}));
+  REQUIRE(local.exit_code == 0);
+  CHECK(sweep.Read("cluster.yaml") == sweep.Read("local.yaml"));
+  // What is there is not fitted again, unless a log has become another.
+  const std::vector<std::string> again =
+      sweep.OnCluster({"--set", "calibrate.method.iterations=1"});
+  REQUIRE(RunRift(again).exit_code == 0);
+  CHECK(slurm.Submitted().size() == 1);
+  fs::copy_file(sweep.folder / "log2.csv", sweep.folder / "log1.csv",
+                fs::copy_options::overwrite_existing);
+  REQUIRE(RunRift(again).exit_code == 0);
+  CHECK(slurm.Submitted().size() == 2);
+}
+
+TEST_CASE("A calibration whose submitter is killed is waited for by the same command") {
+  const FakeSlurm slurm;
+  const FitSweep sweep;
+  {
+    RunningRift running(sweep.OnCluster());
+    running.WaitUntil("jobs", [&] { return sweep.Has("cluster/slurm/1/jobs"); });
+    running.Signal(SIGKILL);
+    running.Wait();
+  }
+  CheckSameAsLocal(sweep, {});
+  CHECK(slurm.Submitted().size() == 1);
+}
+
+TEST_CASE("A calibration that is stopped cancels its job, and the same command fits again") {
+  const FakeSlurm slurm;
+  const FitSweep sweep;
+  {
+    RunningRift running(sweep.OnCluster({"--set", "calibrate.method.iterations=40"}));
+    running.WaitUntil("jobs", [&] { return sweep.Has("cluster/slurm/1/jobs"); });
+    running.Signal(SIGINT);
+    CHECK(running.Wait().exit_code == 130);
+  }
+  test::WaitUntil("the queue is empty", [&] { return slurm.Queued() == 0; });
+  CHECK_FALSE(slurm.Cancelled().empty());
+  CHECK_FALSE(sweep.Has("cluster/calibration.json"));
+  CheckSameAsLocal(sweep, {"--fresh"});
 }
 
 TEST_CASE("What a cluster wants of its jobs stands in the arguments and the script of an array") {
@@ -209,7 +329,6 @@ TEST_CASE("What no cluster can do is refused before anything is submitted") {
   };
   CHECK(error({"--shards", "4"}).find("--shards is for --engine slurm") != std::string::npos);
   CHECK(error({"--engine", "pbs"}).find("local, slurm or a file") != std::string::npos);
-  CHECK(error({"--engine", "slurm", "--rare-event"}).find("--rare-event") != std::string::npos);
   WriteText(sweep.engine, "partitions: night\n");
   CHECK(error({"--engine", sweep.engine}).find("partition") != std::string::npos);
   WriteText(sweep.engine, "arguments: [\"rm -rf\"]\n");
@@ -339,6 +458,21 @@ TEST_CASE("Whatever fails while a sweep is on a cluster, it ends with the bytes 
   CheckFinishedHere(local);
 }
 
+TEST_CASE("A task that Slurm holds after too many requeues is cancelled and submitted anew") {
+  FakeSlurm slurm;
+  const LocalRun local(60);
+  const HitSweep sweep(local);
+  slurm.Hold(true);
+  RunningRift running(sweep.Words());
+  running.WaitUntil("tasks that can be killed", [&] { return slurm.KillTasks() > 0; });
+  running.WaitUntil("an end of them", [&] { return !slurm.Cancelled().empty(); });
+  slurm.Hold(false);
+  const ProcessResult result = running.Wait();
+  CHECK(result.err.find("JobHoldMaxRequeue") != std::string::npos);
+  CHECK(slurm.Submitted().size() > 1);
+  sweep.CheckEnd(result);
+}
+
 TEST_CASE("A shard that is there already is not computed again") {
   const FakeSlurm slurm;
   const Sweep sweep(kGrid);
@@ -376,6 +510,7 @@ TEST_CASE("With real daemons of Slurm: the bytes of a local run, whatever fails 
   RealSlurm slurm;
   CheckSameAsLocal(Sweep(kGrid), {"--shards", "3"});
   CheckSameAsLocal(Sweep(kSearch), {});
+  CheckBesideTheTable();
   const LocalRun local(60);
   CheckSubmitterKilled(local);
   CheckInterrupted(slurm, local);

@@ -52,13 +52,13 @@ TEST_CASE("Items are dealt out to shards evenly, each once, and no shard is empt
 }
 
 TEST_CASE("A shard comes back from its bytes, and its name is that of its content") {
-  Shard shard{.facts = "f", .experiment = "e", .keys = "k", .paths = 2};
+  Shard shard{.facts = "f", .experiment = "e", .kind = ShardKind::kShrink, .keys = "k", .paths = 2};
   shard.requests = {"one", std::string("t\0wo", 4), ""};
   const std::string bytes = EncodeShard(shard);
   const Shard back = DecodeShard(bytes, "file");
   CHECK(back.facts == "f");
   CHECK(back.paths == 2);
-  CHECK_FALSE(back.is_whole);
+  CHECK(back.kind == ShardKind::kShrink);
   CHECK(back.requests == shard.requests);
   CHECK(ShardName(EncodeShard(back)) == ShardName(bytes));
   shard.requests[0] = "other";

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "rift/commands/arguments/flags.hpp"
 #include "rift/commands/arguments/inputs.hpp"
@@ -20,7 +21,8 @@ namespace rift::commands {
 void AddEngineFlags(CLI::App& app, EngineRequest& request) {
   app.add_option("--engine", request.engine,
                  "where trials are run: local, slurm, or a file with a cluster's habits "
-                 "(configs/engines/slurm.yaml)")
+                 "(configs/engines/slurm.yaml); a grid as job arrays, a search, a calibration, "
+                 "--shrink and --rare-event as one job each")
       ->type_name("local|slurm|FILE.yaml")
       ->capture_default_str();
   app.add_option("--partition", request.partition, "with --engine slurm: where its jobs go");
@@ -64,13 +66,6 @@ std::optional<sweep::SlurmOptions> ClusterOf(const EngineRequest& request) {
 }
 
 void CheckEngine(const experiment::Experiment& experiment, const std::string& experiment_file) {
-  if (experiment.goal == experiment::Goal::kCalibrate) {
-    throw std::invalid_argument(
-        fmt::format("{}: goal: calibrate runs in one process group: give it a node, such as srun "
-                    "--cpus-per-task "
-                    "32 rift sweep {} --jobs 32, and leave --engine out",
-                    experiment_file, experiment_file));
-  }
   if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
     throw std::invalid_argument(fmt::format(
         "{}: candidate.kind is logs, which are compared here in seconds: leave --engine out",
@@ -102,16 +97,15 @@ sweep::Shard Cluster::EmptyShard() const {
   return {.facts = sweep::HashOf(facts_), .experiment = statistics::Hash128Text(experiment_)};
 }
 
-/// The job goes on with what the journal holds.
-bool Cluster::RunWhole() {
-  sweep::Shard shard = EmptyShard();
-  shard.is_whole = true;
+bool Cluster::RunAsOne(sweep::Shard shard) {
+  const sweep::Shard empty = EmptyShard();
+  shard.facts = empty.facts;
+  shard.experiment = empty.experiment;
   const std::filesystem::path start =
       sweep::UnfinishedShardJournal(out_, sweep::ShardName(sweep::EncodeShard(shard)));
   std::filesystem::create_directories(start.parent_path());
   std::filesystem::remove(start);
   journal_->CopyTo(start);
-  has_run_whole_ = true;
   return shards_->Run({shard});
 }
 
@@ -143,7 +137,8 @@ bool Cluster::Run(const std::vector<sweep::TrialRequest>& requests, sweep::Trial
   std::vector<size_t> missing = runner.Missing(requests);
   if (missing.empty()) return true;
   if (evaluator_.experiment().goal == experiment::Goal::kFalsify) {
-    return has_run_whole_ || RunWhole();  // what was damaged on the way is run here
+    // What was damaged on the way is run here.
+    return std::exchange(has_run_sweep_, true) || RunAsOne({.kind = sweep::ShardKind::kSweep});
   }
   const std::optional<size_t> count = ShardsFor(requests, missing, runner);
   if (!count) return false;

@@ -50,9 +50,11 @@ class Cluster {
   /// here first, to tell how long the others take. A search asks for a few trials at a time, which
   /// are not worth a job: the whole of it is run in one, and then all that it asks for is there.
   bool Run(const std::vector<sweep::TrialRequest>& requests, sweep::TrialRunner& runner);
+  /// The same of what asks for its trials one after the other: one job with its workers, which goes
+  /// on with what the journal holds. `shard` says what, besides where it belongs.
+  bool RunAsOne(sweep::Shard shard);
 
  private:
-  bool RunWhole();
   sweep::Shard EmptyShard() const;
   void Tell(const sweep::ShardCounts& counts);
   /// Shards for that many trials; nothing when it was told to stop.
@@ -67,7 +69,7 @@ class Cluster {
   std::string experiment_;  ///< resolved
   std::filesystem::path out_;
   sweep::Journal* journal_ = nullptr;
-  bool has_run_whole_ = false;
+  bool has_run_sweep_ = false;
   std::optional<sweep::SlurmShards> shards_;
   std::string told_;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
@@ -10,29 +11,73 @@
 #include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/run/beside_table.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/terminal/stop_signal.hpp"
+#include "run.hpp"
 
 namespace rift::commands {
 
+namespace {
+
+constexpr size_t kPaths = 0;  // that are kept of further trials: no page shows them
+
+/// Trials of a cluster, where there is one.
+class Elsewhere {
+ public:
+  /// All must outlive this.
+  Elsewhere(sweep::Evaluator& evaluator, const sweep::Facts& facts,
+            const FurtherTrials::Style& style, const terminal::StopSignal& stop) {
+    if (style.cluster == nullptr) return;
+    cluster_.emplace(evaluator, facts, *style.cluster, style.progress,
+                     [&stop] { return !stop.IsAsked(); });
+  }
+
+  /// False when it was told to stop.
+  bool Resume(const std::filesystem::path& folder, sweep::Journal& journal) {
+    return !cluster_ || cluster_->Resume(folder, journal);
+  }
+  FurtherTrials::Bring Bringing(sweep::Shard shard) {
+    if (!cluster_) return nullptr;
+    return [this, shard = std::move(shard)] { return cluster_->RunAsOne(shard); };
+  }
+
+ private:
+  std::optional<Cluster> cluster_;
+};
+
+sweep::TrialRequest RequestOf(const sweep::TrialRow& row) {
+  return {.theta = row.theta, .trial = row.trial, .seed = row.seed};
+}
+
+}  // namespace
+
 FurtherTrials::FurtherTrials(sweep::Evaluator& evaluator, const Style& style,
-                             const terminal::StopSignal& stop)
+                             const terminal::StopSignal& stop, sweep::Journal& journal,
+                             std::function<void(sweep::Journal&)> tick)
     : style_(style),
       runner_([&evaluator](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
-              [&evaluator](const sweep::TrialRequest& trial) { return evaluator.KeyOf(trial); },
-              nullptr, style.jobs, evaluator.experiment().run,
+              [&evaluator](const sweep::TrialRequest& trial) {
+                return sweep::kBesideTable + evaluator.KeyOf(trial);
+              },
+              &journal, style.jobs, evaluator.experiment().run,
               {[this](const sweep::TrialRow& row, bool from_journal) {
                  if (progress_) progress_->Seen(row, from_journal);
                },
-               [this, &stop] {
+               [this, &stop, &journal, tick = std::move(tick)] {
                  if (progress_) progress_->Tick();
+                 tick(journal);
                  return !stop.IsAsked();
                },
-               [&evaluator](sweep::TrialRow& row) { evaluator.NameSides(row); }}) {
+               [&evaluator](sweep::TrialRow& row) { evaluator.NameSides(row); }},
+              kPaths) {
   evaluator.LoadLogs();  // workers are copies of what is there when they start
 }
 
 std::vector<sweep::TrialRow> FurtherTrials::Run(std::vector<sweep::TrialRequest> requests) {
+  if (bring_ && !runner_.HasAll(requests)) {
+    if (!std::exchange(bring_, nullptr)()) throw Stopped{};
+  }
   std::optional<std::vector<sweep::TrialRow>> rows = runner_.Run(std::move(requests));
   if (!rows) throw Stopped{};
   return *std::move(rows);
@@ -43,6 +88,13 @@ void FurtherTrials::Begin(int most) { progress_.emplace(style_.progress, SweepSi
 void FurtherTrials::End() {
   progress_->End("done");
   progress_.reset();
+}
+
+void RunTrialsOfShrinking(const experiment::Experiment& experiment, const sweep::TrialRequest& row,
+                          const sweep::ShrinkOptions& options, FurtherTrials& trials) {
+  sweep::SweepResult result = sweep::EmptyResult(experiment);
+  result.rows.push_back({.theta = row.theta, .trial = row.trial, .seed = row.seed});
+  sweep::ShrinkRow(experiment, result, 0, options, trials.AsRun());
 }
 
 std::string ShrinkInto(const std::filesystem::path& folder,
@@ -123,18 +175,31 @@ bool SpendTrials(const std::filesystem::path& folder, const sweep::SweepResult& 
   if (!is_asked) return true;
   const experiment::Experiment& experiment = evaluator.experiment();
   const terminal::StopSignal stop;
-  FurtherTrials trials(evaluator, style, stop);
+  const sweep::Facts facts = FactsOf(experiment);
+  sweep::Journal journal(folder / kJournalName, facts);
+  Elsewhere elsewhere(evaluator, facts, style, stop);
+  if (!elsewhere.Resume(folder, journal)) return false;
+  FurtherTrials trials(evaluator, style, stop, journal);
   std::string text;
   try {
     if (!request.shrink.empty()) {
+      const int index = sweep::FailingRow(result, request.shrink);
+      const sweep::TrialRequest row = RequestOf(result.rows[static_cast<size_t>(index)]);
+      trials.AskFor(elsewhere.Bringing(
+          {.kind = sweep::ShardKind::kShrink, .requests = {sweep::EncodeRequest(row)}}));
       text +=
           ShrinkInto(folder, experiment, result, request.shrink, request.shrink_options, trials);
     }
-    if (request.rare_event)
+    if (request.rare_event) {
+      trials.AskFor(elsewhere.Bringing({.kind = sweep::ShardKind::kRareEvent}));
       text += RareEventInto(folder, experiment, request.rare_event_options, trials);
+    }
   } catch (const FurtherTrials::Stopped&) {
+    journal.Close();
     return false;
   }
+  journal.SetNote("state", "done");
+  journal.Close();
   if (!is_silent) terminal::PrintText(text);
   return true;
 }

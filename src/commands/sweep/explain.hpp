@@ -3,9 +3,12 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "engine.hpp"
 #include "progress.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/sweep/explain/explanation.hpp"
@@ -17,23 +20,32 @@
 
 namespace rift::commands {
 
-/// Trials of a sweep beyond its own, in worker processes; they enter neither its journal nor its
-/// table.
+/// Trials of a sweep beyond its own, in worker processes. They do not enter its table; its journal
+/// keeps them apart (sweep::kBesideTable), so that the same command goes on with them.
 class FurtherTrials {
  public:
   struct Stopped {};  ///< thrown by Run when the user asked for an end
   struct Style {
     int jobs = 1;
     ProgressStyle progress = ProgressStyle::kQuiet;
+    const sweep::SlurmOptions* cluster = nullptr;  ///< where trials are run, if not here
   };
 
-  FurtherTrials(sweep::Evaluator& evaluator, const Style& style, const terminal::StopSignal& stop);
+  /// `tick` is called at least every 0.1 s while trials are run. All but the style must outlive it.
+  FurtherTrials(
+      sweep::Evaluator& evaluator, const Style& style, const terminal::StopSignal& stop,
+      sweep::Journal& journal, std::function<void(sweep::Journal&)> tick = [](sweep::Journal&) {});
 
   std::vector<sweep::TrialRow> Run(std::vector<sweep::TrialRequest> requests);
   /// The same for what computes with them; must not outlive this.
   sweep::RunAllTrials AsRun() {
     return [this](std::vector<sweep::TrialRequest> requests) { return Run(std::move(requests)); };
   }
+
+  /// Brings further trials into the journal, from elsewhere; false when it was told to stop.
+  using Bring = std::function<bool()>;
+  /// The next trials that the journal lacks are asked for there, once, before they are run here.
+  void AskFor(Bring bring) { bring_ = std::move(bring); }
 
   /// Between these, what was run is shown as progress towards `most` trials.
   void Begin(int most);
@@ -42,8 +54,14 @@ class FurtherTrials {
  private:
   Style style_;
   std::optional<SweepProgress> progress_;
+  Bring bring_;
   sweep::TrialRunner runner_;
 };
+
+/// Runs the trials that shrinking a row, known by its request, asks for: what the jobs of a cluster
+/// do. Throws FurtherTrials::Stopped.
+void RunTrialsOfShrinking(const experiment::Experiment& experiment, const sweep::TrialRequest& row,
+                          const sweep::ShrinkOptions& options, FurtherTrials& trials);
 
 /// Shrinks a row of the sweep (its id, or "worst") with the random numbers that the row had. Writes
 /// DIR/shrunk.json, and DIR/shrunk with the trials that its claims rest on as a table: the row,

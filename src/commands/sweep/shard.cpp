@@ -4,15 +4,20 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 
+#include "calibrate.hpp"
+#include "explain.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
 #include "rift/files/files.hpp"
 #include "rift/statistics/hash.hpp"
+#include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/run/external_program.hpp"
 #include "rift/sweep/run/shard.hpp"
 #include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
 #include "rift/terminal/stop_signal.hpp"
 
 namespace rift::commands {
@@ -53,6 +58,13 @@ sweep::Shard ReadShard(const std::string& file, const std::string& bytes,
       file, RIFT_VERSION));
 }
 
+[[noreturn]] void ThrowOtherInputs(const std::string& file) {
+  throw std::invalid_argument(fmt::format(
+      "{}: its trials read logs or programs that are others on this machine than where it was "
+      "submitted",
+      file));
+}
+
 std::vector<sweep::TrialRequest> RequestsOf(const sweep::Shard& shard, const std::string& file,
                                             sweep::Evaluator& evaluator) {
   std::vector<sweep::TrialRequest> requests;
@@ -61,11 +73,8 @@ std::vector<sweep::TrialRequest> RequestsOf(const sweep::Shard& shard, const std
     requests.push_back(sweep::DecodeRequest(bytes));
     keys.Add(evaluator.KeyOf(requests.back()));
   }
-  if (keys.Text() == shard.keys) return requests;
-  throw std::invalid_argument(fmt::format(
-      "{}: its trials read logs or programs that are others on this machine than where it was "
-      "submitted",
-      file));
+  if (keys.Text() != shard.keys) ThrowOtherInputs(file);
+  return requests;
 }
 
 /// Brings the journal back, now and then.
@@ -120,6 +129,45 @@ bool RunTrialsOf(const sweep::Shard& shard, std::vector<sweep::TrialRequest> req
   return runner.Run(std::move(requests)).has_value();
 }
 
+/// The trials that a search beyond the sweep asks for. True when it was done.
+bool RunFurtherTrialsOf(const sweep::Shard& shard, sweep::Evaluator& evaluator,
+                        const SweepRequest& request, sweep::Journal& journal,
+                        Publisher& publisher) {
+  const terminal::StopSignal stop;
+  FurtherTrials trials(evaluator, {.jobs = request.jobs}, stop, journal,
+                       [&publisher](sweep::Journal& now) { publisher.Tick(now); });
+  try {
+    if (shard.kind == sweep::ShardKind::kShrink) {
+      RunTrialsOfShrinking(evaluator.experiment(), sweep::DecodeRequest(shard.requests.at(0)),
+                           request.explain.shrink_options, trials);
+    } else {
+      sweep::EstimateRareEvent(evaluator.experiment(), trials.AsRun(),
+                               request.explain.rare_event_options);
+    }
+    return true;
+  } catch (const FurtherTrials::Stopped&) {
+    return false;
+  }
+}
+
+/// A row of the journal.
+struct Fit {
+  std::string key;
+  sweep::JournalEntry entry;
+};
+
+/// Of a shard that is a calibration. Nothing of a fit is kept before its end, and there is no
+/// folder for it before: SIGTERM ends it.
+std::optional<Fit> FitOf(const sweep::Shard& shard, const std::string& file,
+                         sweep::Evaluator& evaluator, int jobs) {
+  if (shard.kind != sweep::ShardKind::kCalibration) return std::nullopt;
+  KeptCalibration kept(evaluator);
+  sweep::KeysHash keys;
+  keys.Add(kept.key());
+  if (keys.Text() != shard.keys) ThrowOtherInputs(file);
+  return Fit{kept.key(), kept.Fit(jobs, [](const std::string& line) { terminal::Say(line); })};
+}
+
 }  // namespace
 
 int RunShard(const SweepRequest& request, const experiment::Experiment& experiment) {
@@ -135,20 +183,28 @@ int RunShard(const SweepRequest& request, const experiment::Experiment& experime
 
   sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
   evaluator.LoadLogs();
+  const std::optional<Fit> fit = FitOf(shard, file, evaluator, request.jobs);
   const LocalFolder folder;
   const fs::path local = folder / kJournalName;
   if (sweep::IsJournalOf(unfinished, facts)) fs::copy_file(unfinished, local);
   Publisher publisher(folder, unfinished, request.engine.copy_every_s);
   bool is_done = false;
-  if (shard.is_whole) {
+  if (shard.kind == sweep::ShardKind::kSweep) {
     const SweepRunRequest run{.out = folder.Path(),
                               .jobs = request.jobs,
                               .tick = [&](sweep::Journal& journal) { publisher.Tick(journal); }};
     is_done = RunSweep(evaluator, run).has_value();
   } else {
     sweep::Journal journal(local, facts);
-    is_done = RunTrialsOf(shard, RequestsOf(shard, file, evaluator), evaluator, journal,
-                          request.jobs, publisher);
+    if (fit) {
+      journal.Add(fit->key, fit->entry);
+      is_done = true;
+    } else if (shard.kind == sweep::ShardKind::kTrials) {
+      is_done = RunTrialsOf(shard, RequestsOf(shard, file, evaluator), evaluator, journal,
+                            request.jobs, publisher);
+    } else {
+      is_done = RunFurtherTrialsOf(shard, evaluator, request, journal, publisher);
+    }
   }
   sweep::Journal journal(local, facts);
   publisher.Publish(journal, is_done ? done : unfinished);

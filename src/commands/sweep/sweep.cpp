@@ -229,12 +229,6 @@ std::optional<sweep::SlurmOptions> ClusterFor(const SweepRequest& request,
   std::optional<sweep::SlurmOptions> cluster = ClusterOf(request.engine);
   if (!cluster) return cluster;
   CheckEngine(experiment, request.experiment);
-  if (!request.explain.shrink.empty() || request.explain.rare_event) {
-    throw std::invalid_argument(fmt::format(
-        "--{} asks for trials one after the other, which is no work for an array: run the sweep "
-        "with --engine first, then the same command without it, which goes on with its journal",
-        request.explain.rare_event ? "rare-event" : "shrink"));
-  }
   return cluster;
 }
 
@@ -252,7 +246,7 @@ int Sweep(const SweepRequest& request) {
           "calibrate has no such page");
     }
     RefuseOtherSweep(request, loaded, OutputOf(request.out, loaded.name));
-    return Calibrate(request, loaded);
+    return Calibrate(request, loaded, cluster ? &*cluster : nullptr);
   }
 
   const experiment::Experiment experiment = PlanFor(request, loaded);
@@ -295,7 +289,8 @@ int Sweep(const SweepRequest& request) {
     terminal::PrintText(report::ProgramText(judged->parameters, programs));
 
   const bool is_done =
-      SpendTrials(out, *judged, request.explain, evaluator, {request.jobs, progress}, request.json);
+      SpendTrials(out, *judged, request.explain, evaluator,
+                  {request.jobs, progress, cluster ? &*cluster : nullptr}, request.json);
   if (!is_done) return terminal::kStopped;
   lock.RequireInPlace();
   if (!request.quiet) {

@@ -14,6 +14,7 @@
 
 #include "rift/files/network_file_system.hpp"
 #include "rift/statistics/hash.hpp"
+#include "rift/sweep/run/beside_table.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -459,16 +460,17 @@ JournalSummary ReadJournal(const fs::path& file) {
     JournalSummary summary;
     summary.damaged = CountDamagedTrials(database);
     summary.notes = ReadTable(database, "SELECT name, value FROM sound_note");
+    const std::string of_table =
+        fmt::format("FROM sound_trial WHERE key NOT LIKE '{}%'", kBesideTable);
     SQLite::Statement count(
-        database, "SELECT status, COUNT(*), SUM(falsified) FROM sound_trial GROUP BY status");
+        database, "SELECT status, COUNT(*), SUM(falsified) " + of_table + " GROUP BY status");
     while (count.executeStep()) {
       summary.trials_by_status[count.getColumn(0).getString()] = count.getColumn(1).getInt();
       summary.falsified += count.getColumn(2).getInt();
     }
-    SQLite::Statement worst(
-        database,
-        "SELECT key, gap_m FROM sound_trial WHERE gap_m IS NOT NULL ORDER BY gap_m DESC, key "
-        "LIMIT 1");
+    SQLite::Statement worst(database,
+                            "SELECT key, gap_m " + of_table +
+                                " AND gap_m IS NOT NULL ORDER BY gap_m DESC, key LIMIT 1");
     if (worst.executeStep()) {
       summary.largest_key = worst.getColumn(0).getString();
       summary.largest_gap_m = worst.getColumn(1).getDouble();

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kLayout = "rift shard 1";
+const std::string kLayout = "rift shard 2";
 
 [[noreturn]] void CannotPublish(const fs::path& target, const std::string& reason) {
   throw std::runtime_error(fmt::format("cannot write {}: {}", target.string(), reason));
@@ -46,7 +46,7 @@ std::string EncodeShard(const Shard& shard) {
   write(kLayout);
   write(shard.facts);
   write(shard.experiment);
-  write(shard.is_whole);
+  write(shard.kind);
   write(shard.keys);
   write(shard.paths);
   write(shard.requests.size());
@@ -63,7 +63,7 @@ Shard DecodeShard(std::string_view bytes, const std::string& file) {
     Shard shard;
     read(shard.facts);
     read(shard.experiment);
-    read(shard.is_whole);
+    read(shard.kind);
     read(shard.keys);
     read(shard.paths);
     shard.requests.resize(read.Count(sizeof(size_t)));

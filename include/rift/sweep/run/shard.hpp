@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,15 +12,26 @@
 
 namespace rift::sweep {
 
+/// What a shard computes: a list of trials, or something that asks for its trials by itself, one
+/// after the other, and is run in one process with its workers.
+enum class ShardKind { kTrials, kSweep, kShrink, kRareEvent, kCalibration };
+
+inline std::span<const std::string_view> EnumNames(ShardKind) {
+  static constexpr std::array<std::string_view, 5> kNames{"trials", "sweep", "shrink", "rare event",
+                                                          "calibration"};
+  return kNames;
+}
+
 /// A part of a sweep that another process computes, on another machine, into a journal of its own.
 /// It may be computed twice: the rows are the same.
 struct Shard {
   std::string facts;       ///< HashOf the facts of the sweep's journal
   std::string experiment;  ///< hash of the resolved experiment, run options included
-  bool is_whole = false;   ///< the whole sweep in one process, without a list of requests
-  std::string keys;        ///< HashOfKeys of its trials
-  int paths = 0;           ///< how many of its first trials keep their path
-  std::vector<std::string> requests;  ///< as the runner of trials encodes them
+  ShardKind kind = ShardKind::kTrials;
+  std::string keys;  ///< KeysHash of its trials, or of what a calibration reads
+  int paths = 0;     ///< how many of its first trials keep their path
+  /// As the runner of trials encodes them; of kShrink the row that fails.
+  std::vector<std::string> requests;
 };
 
 /// As bytes for another process of the same build on the same kind of machine.
