@@ -6,6 +6,7 @@
 // Rows are those of a straight drive; the gap is drawn about a mean that the setting decides.
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -49,6 +50,7 @@ int Write(const std::string& file, const std::filesystem::path& out) {
     for (const sweep::TrialRequest& request : sweep::TrialsAt(experiment, theta)) {
       sweep::TrialRow row = MadeUpRow(experiment, request, mean, random.Uniform());
       if (rows >= kPaths) row.evidence.path_m = {};
+      row.evidence.fingerprint = static_cast<std::uint64_t>(rows) + 1;  // no two paths are one
       journal.Add(evaluator.KeyOf(request), {.status = "ok",
                                              .gap_m = row.comparison.gap_m,
                                              .falsified = row.falsified,
