@@ -219,7 +219,10 @@ std::optional<Disagreement> MotionCheck::CheckOrder(const Sample& before, const 
     backward_s_.push_back(now.t_s);
   }
   while (backward_s_.front() < now.t_s - kDisorder_s) backward_s_.pop_front();
-  if (against_m > kOldPicture_m + std::abs(rolled_m)) {
+  // No robot runs back so far between pictures that come together.
+  const bool come_together = now.t_s - before.t_s < kTogether_s;
+  const double old_m = come_together ? 2.0 * kBackStep_m : kOldPicture_m + std::abs(rolled_m);
+  if (against_m > old_m) {
     return Disagreement{StopReason::kPoseDisorder,
                         fmt::format("the pose ran {:.3f} m against the wheels from one picture to "
                                     "the next: the camera's pictures come out of order",
