@@ -178,7 +178,7 @@ void DoubtTarget(const Trajectory& trajectory, std::vector<std::string>& doubts)
   constexpr double kJump_m = 0.02;
   struct Axis {
     const char* name;
-    std::set<double> values;
+    std::set<double> values;  // no more of them than decide
     double largest_step_m = 0.0;
   };
   std::array<Axis, 2> axes{{{"x", {}}, {"y", {}}}};
@@ -188,7 +188,7 @@ void DoubtTarget(const Trajectory& trajectory, std::vector<std::string>& doubts)
     const Eigen::Vector2d step_m =
         i > 0 ? (p_m - poses[i - 1].Position()).eval() : Eigen::Vector2d::Zero();
     for (int k = 0; k < 2; ++k) {
-      axes[k].values.insert(p_m[k]);
+      if (axes[k].values.size() <= kRowsForEach * kMost) axes[k].values.insert(p_m[k]);
       axes[k].largest_step_m = std::max(axes[k].largest_step_m, std::abs(step_m[k]));
     }
   }
