@@ -260,14 +260,14 @@ Lag RequireBehindWheels(const std::optional<Lag>& lag, const std::vector<Angle>&
   RequireSeen(lag && lag->scale > kLeastScale && lag->scale < kMostScale &&
                   lag->residual_rad < kMostNoise * seen_rad,
               Range(wheels), seen_rad);
-  const double error_s = std::max(kLeast_s, WidestSpacing_s(wheels));
-  if (lag->lag_s >= -error_s) return *lag;
+  const double spacing_s = WidestSpacing_s(wheels);
+  if (lag->lag_s >= -std::max(kLeast_s, spacing_s)) return *lag;
   throw std::runtime_error(fmt::format(
       "the picture shows the turn {:.0f} ms before the encoders do, which cannot be (nine in ten "
       "are read within {:.0f} ms): the stamps of pictures and encoders are not of one clock, or "
       "the encoders "
       "answer late",
-      -1e3 * lag->lag_s, 1e3 * WidestSpacing_s(wheels)));
+      -1e3 * lag->lag_s, 1e3 * spacing_s));
 }
 
 /// Without timed encoders: the lag of the picture behind the commands.

@@ -47,6 +47,8 @@ double Turned_deg(const Pose2& a, const Pose2& b) {
   return geometry::DegFromRad(std::abs(b.yaw_rad - a.yaw_rad));
 }
 
+bool ComeTogether(double before_s, double now_s) { return now_s - before_s < kTogether_s; }
+
 /// Forward and turning part of a motion of the wheels, both in metres at a wheel.
 struct Step {
   double forward_m = 0.0;
@@ -196,8 +198,7 @@ std::optional<Disagreement> MotionCheck::CheckWheelsStand(const Sample& now) {
 double MotionCheck::Forward_m(const Sample& before, const Sample& now) const {
   constexpr double kOver_s = 0.1, kLeast_mps = 0.05;
   const double rolled_m = Rolled(before.wheels, now.wheels).forward_m;
-  const bool come_together = now.t_s - before.t_s < kTogether_s;
-  if (std::abs(rolled_m) > kRolls_m || !come_together) return rolled_m;
+  if (std::abs(rolled_m) > kRolls_m || !ComeTogether(before.t_s, now.t_s)) return rolled_m;
   const std::optional<WheelTravel> earlier = WheelsAt(now.t_s - kOver_s);
   const double over_m = earlier ? Rolled(*earlier, now.wheels).forward_m : 0.0;
   if (std::abs(over_m) < kLeast_mps * kOver_s) return 0.0;
@@ -220,8 +221,8 @@ std::optional<Disagreement> MotionCheck::CheckOrder(const Sample& before, const 
   }
   while (backward_s_.front() < now.t_s - kDisorder_s) backward_s_.pop_front();
   // No robot runs back so far between pictures that come together.
-  const bool come_together = now.t_s - before.t_s < kTogether_s;
-  const double old_m = come_together ? 2.0 * kBackStep_m : kOldPicture_m + std::abs(rolled_m);
+  const double old_m =
+      ComeTogether(before.t_s, now.t_s) ? 2.0 * kBackStep_m : kOldPicture_m + std::abs(rolled_m);
   if (against_m > old_m) {
     return Disagreement{StopReason::kPoseDisorder,
                         fmt::format("the pose ran {:.3f} m against the wheels from one picture to "

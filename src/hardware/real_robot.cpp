@@ -230,9 +230,10 @@ void RealRobot::Core::Arm() {
 trial::Sensed RealRobot::Core::Sense() {
   const std::lock_guard lock(mutex_);
   trial::Sensed sensed;
-  sensed.now_s = clock_.Now_s() - start_s_;
+  const double now_s = clock_.Now_s();
+  sensed.now_s = now_s - start_s_;
   sensed.encoders = counts_;
-  guard_.NoteTime(clock_.Now_s());  // the trial may wake before the thread that tends the line
+  guard_.NoteTime(now_s);  // the trial may wake before the thread that tends the line
   if (guard_.stop()) sensed.fault = guard_.stop()->text;
   if (!news_.newest) return sensed;
   sensed.pose = news_.newest->measured;
