@@ -72,6 +72,8 @@ void DoubtScale(const PointsIn<N>& sim, const PointsIn<N>& real, std::vector<std
   }
 }
 
+constexpr const char* kMirroredZ = "mirrored z: turn its sign, as in z=-COLUMN (rift's z is up)";
+
 /// What was done to the axes of a log, and undoes it.
 template <int N>
 struct AxesMistake {
@@ -93,8 +95,7 @@ std::vector<AxesMistake<N>> AxesMistakes() {
       {matrix(-1, 0, 0, -1), "a frame turned by half a turn: x=-COLUMN,y=-COLUMN"}};
   if constexpr (N == 3) {
     const Eigen::Vector3d mirrored_z(1, 1, -1);
-    mistakes.push_back(
-        {mirrored_z.asDiagonal(), "mirrored z: turn its sign, as in z=-COLUMN (rift's z is up)"});
+    mistakes.push_back({mirrored_z.asDiagonal(), kMirroredZ});
   }
   return mistakes;
 }
@@ -142,7 +143,7 @@ void DoubtHeights(const PointsIn<3>& sim, const PointsIn<3>& real, double far_m,
   if (apart_m < far_m || mended_m > kMends * apart_m) return;
   doubts.push_back(fmt::format(
       "REAL lies {:.3g} m above or below SIM on average and {:.2g} m once it is mended: {}",
-      apart_m, mended_m, "mirrored z: turn its sign, as in z=-COLUMN (rift's z is up)"));
+      apart_m, mended_m, kMirroredZ));
 }
 
 /// Speed over the rows [begin, end).
