@@ -227,8 +227,7 @@ void Print(const SweepRequest& request, const sweep::SweepResult& result,
 std::optional<sweep::SlurmOptions> ClusterFor(const SweepRequest& request,
                                               const experiment::Experiment& experiment) {
   std::optional<sweep::SlurmOptions> cluster = ClusterOf(request.engine);
-  if (!cluster) return cluster;
-  CheckEngine(experiment, request.experiment);
+  if (cluster) CheckEngine(experiment, request.experiment);
   return cluster;
 }
 
@@ -236,8 +235,9 @@ int Sweep(const SweepRequest& request) {
   const experiment::Experiment loaded = LoadFor(request);
   if (!request.engine.shard.empty()) return RunShard(request, loaded);
   const std::optional<sweep::SlurmOptions> cluster = ClusterFor(request, loaded);
-  if (!cluster)
-    sweep::RequirePrograms(loaded, request.experiment);  // a cluster's nodes have their own
+  const sweep::SlurmOptions* const engine = cluster ? &*cluster : nullptr;
+  // A cluster's nodes have programs of their own.
+  if (!cluster) sweep::RequirePrograms(loaded, request.experiment);
   if (loaded.goal == experiment::Goal::kCalibrate) {
     if (request.serve) {
       throw std::invalid_argument(
@@ -246,7 +246,7 @@ int Sweep(const SweepRequest& request) {
           "calibrate has no such page");
     }
     RefuseOtherSweep(request, loaded, OutputOf(request.out, loaded.name));
-    return Calibrate(request, loaded, cluster ? &*cluster : nullptr);
+    return Calibrate(request, loaded, engine);
   }
 
   const experiment::Experiment experiment = PlanFor(request, loaded);
@@ -267,7 +267,7 @@ int Sweep(const SweepRequest& request) {
                            .fresh = request.fresh,
                            .progress = progress,
                            .live = live ? &*live : nullptr,
-                           .cluster = cluster ? &*cluster : nullptr});
+                           .cluster = engine});
   if (!judged) return SayStopped(experiment, out);
   lock.RequireInPlace();
   Save(out, experiment, evaluator, *judged);
@@ -288,9 +288,8 @@ int Sweep(const SweepRequest& request) {
   if (!request.json && !request.brief)
     terminal::PrintText(report::ProgramText(judged->parameters, programs));
 
-  const bool is_done =
-      SpendTrials(out, *judged, request.explain, evaluator,
-                  {request.jobs, progress, cluster ? &*cluster : nullptr}, request.json);
+  const bool is_done = SpendTrials(out, *judged, request.explain, evaluator,
+                                   {request.jobs, progress, engine}, request.json);
   if (!is_done) return terminal::kStopped;
   lock.RequireInPlace();
   if (!request.quiet) {
