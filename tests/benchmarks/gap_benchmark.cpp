@@ -17,8 +17,8 @@
 
 #include "rift/gap/comparison.hpp"
 #include "rift/trajectory/log.hpp"
-#include "support/paths.hpp"
-#include "support/process.hpp"
+#include "support/inputs/paths.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
 
 namespace rift {

@@ -18,7 +18,7 @@
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift {
 namespace {

@@ -19,7 +19,7 @@
 
 #include "rift/files/files.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 #include "support/tree.hpp"
 
 namespace rift {

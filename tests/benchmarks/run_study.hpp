@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
 
 namespace rift::test {
 

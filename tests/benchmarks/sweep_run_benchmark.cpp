@@ -16,8 +16,8 @@
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"
 #include "rift/sweep/run/shard.hpp"
-#include "support/paper_waypoints.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paper_waypoints.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift {
 namespace {

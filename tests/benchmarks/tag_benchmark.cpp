@@ -20,7 +20,7 @@
 #include "rift/vision/rendering/synthetic_camera.hpp"
 #include "rift/vision/tracking/tag_detector.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
-#include "support/paper_camera.hpp"
+#include "support/inputs/paper_camera.hpp"
 
 namespace rift::vision {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "rift/simulation/ode_world.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
-#include "support/paper_waypoints.hpp"
+#include "support/inputs/paper_waypoints.hpp"
 
 namespace rift {
 namespace {

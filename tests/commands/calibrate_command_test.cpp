@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "support/documented.hpp"
-#include "support/process.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
 #include "support/until.hpp"
 

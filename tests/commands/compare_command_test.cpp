@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "support/browser.hpp"
 #include "support/documented.hpp"
-#include "support/paths.hpp"
-#include "support/process.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/paths.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/browser.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "support/documented.hpp"
-#include "support/process.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

@@ -6,9 +6,9 @@
 #include "hardware/pseudo_terminal.hpp"
 #include "rift/hardware/listener.hpp"
 #include "rift/hardware/serial_port.hpp"
-#include "support/broken_streams.hpp"
-#include "support/process.hpp"
-#include "support/wire_bytes.hpp"
+#include "support/inputs/wire_bytes.hpp"
+#include "support/processes/broken_streams.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift {
 namespace {

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "support/flag_contract.hpp"
-#include "support/process.hpp"
-#include "support/quick_gnuplot.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 
 namespace rift {

@@ -4,12 +4,12 @@
 #include <chrono>
 #include <filesystem>
 
-#include "support/environment.hpp"
 #include "support/flag_contract.hpp"
-#include "support/process.hpp"
-#include "support/quick_gnuplot.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/environment.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

@@ -10,13 +10,13 @@
 #include <map>
 #include <memory>
 
-#include "support/environment.hpp"
-#include "support/file_size_limit.hpp"
-#include "support/process.hpp"
-#include "support/shell.hpp"
-#include "support/small_disk.hpp"
-#include "support/terminal_run.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/environment.hpp"
+#include "support/processes/file_size_limit.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/shell.hpp"
+#include "support/processes/small_disk.hpp"
+#include "support/processes/terminal_run.hpp"
 #include "support/works.hpp"
 
 namespace rift {

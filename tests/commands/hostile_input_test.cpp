@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "support/png_bytes.hpp"
-#include "support/process.hpp"
+#include "support/inputs/png_bytes.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

@@ -6,11 +6,11 @@
 #include <set>
 
 #include "support/help_flags.hpp"
-#include "support/process.hpp"
-#include "support/running_rift.hpp"
-#include "support/shell.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/running_rift.hpp"
+#include "support/processes/shell.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

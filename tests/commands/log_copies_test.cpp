@@ -8,11 +8,11 @@
 #include <string>
 
 #include "rift/trajectory/log.hpp"
-#include "support/npm.hpp"
-#include "support/process.hpp"
-#include "support/shell.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/npm.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/shell.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

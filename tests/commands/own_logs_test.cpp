@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "support/process.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "support/documented.hpp"
-#include "support/npm.hpp"
-#include "support/process.hpp"
-#include "support/running_rift.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/npm.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/running_rift.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 #include "support/until.hpp"
 
 namespace rift {

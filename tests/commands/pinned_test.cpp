@@ -13,9 +13,9 @@
 #include <sstream>
 
 #include "rift/trajectory/log.hpp"
+#include "support/inputs/trials.hpp"
 #include "support/pinned.hpp"
-#include "support/process.hpp"
-#include "support/trials.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift {
 namespace {

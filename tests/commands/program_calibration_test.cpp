@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "support/documented.hpp"
-#include "support/process.hpp"
-#include "support/shell.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/shell.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "commands/sweep/page_server.hpp"
-#include "support/process.hpp"
-#include "support/running_rift.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/running_rift.hpp"
 #include "support/until.hpp"
 
 namespace rift {

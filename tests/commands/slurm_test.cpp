@@ -9,11 +9,11 @@
 #include <thread>
 
 #include "rift/sweep/run/journal.hpp"
-#include "support/process.hpp"
-#include "support/running_rift.hpp"
-#include "support/slurm.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/running_rift.hpp"
+#include "support/processes/slurm.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 #include "support/until.hpp"
 
 namespace rift {

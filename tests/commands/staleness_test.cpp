@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "support/png_bytes.hpp"
-#include "support/process.hpp"
-#include "support/quick_gnuplot.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/png_bytes.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 
 namespace rift {
 namespace {

@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "support/broken_streams.hpp"
-#include "support/process.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/broken_streams.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 #include "support/works.hpp"
 
 namespace rift {

@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "support/paths.hpp"
-#include "support/process.hpp"
+#include "support/inputs/paths.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

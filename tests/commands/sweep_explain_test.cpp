@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "support/documented.hpp"
-#include "support/process.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

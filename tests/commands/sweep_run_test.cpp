@@ -9,9 +9,9 @@
 #include <random>
 
 #include "rift/sweep/run/journal.hpp"
-#include "support/process.hpp"
-#include "support/running_rift.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/running_rift.hpp"
 
 namespace rift {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "rift/control/navigator.hpp"
 #include "rift/control/pose_filter.hpp"
-#include "support/paper_waypoints.hpp"
+#include "support/inputs/paper_waypoints.hpp"
 
 namespace rift::control {
 namespace {

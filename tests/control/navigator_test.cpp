@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "rift/geometry/pose2.hpp"
-#include "support/paper_waypoints.hpp"
+#include "support/inputs/paper_waypoints.hpp"
 
 namespace rift::control {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "rift/control/navigator.hpp"
 #include "rift/geometry/pose2.hpp"
-#include "support/paper_waypoints.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/paper_waypoints.hpp"
+#include "support/inputs/trials.hpp"
 
 namespace rift::control {
 namespace {

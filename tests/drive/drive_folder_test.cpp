@@ -9,9 +9,9 @@
 #include "rift/trajectory/log.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "support/documented.hpp"
-#include "support/paper_camera.hpp"
-#include "support/paper_waypoints.hpp"
-#include "support/process.hpp"
+#include "support/inputs/paper_camera.hpp"
+#include "support/inputs/paper_waypoints.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift::commands {
 namespace {

@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "rift/files/files.hpp"
-#include "support/process.hpp"
-#include "support/running_rift.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/running_rift.hpp"
 #include "support/tree.hpp"
 #include "support/until.hpp"
 

@@ -11,9 +11,9 @@
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/trajectory/log.hpp"
-#include "support/file_size_limit.hpp"
-#include "support/paper_waypoints.hpp"
-#include "support/process.hpp"
+#include "support/inputs/paper_waypoints.hpp"
+#include "support/processes/file_size_limit.hpp"
+#include "support/processes/process.hpp"
 #include "support/until.hpp"
 
 namespace rift::commands {

@@ -5,7 +5,7 @@
 #include "rift/files/files.hpp"
 #include "rift/odometry/program_runs.hpp"
 #include "rift/trajectory/log.hpp"
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
 
 namespace rift {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "drive_scene.hpp"
-#include "support/terminal_run.hpp"
+#include "support/processes/terminal_run.hpp"
 
 namespace rift {
 namespace {

@@ -9,9 +9,9 @@
 #include "floor.hpp"
 #include "rift/control/waypoint.hpp"
 #include "rift/files/files.hpp"
-#include "support/paper_waypoints.hpp"
-#include "support/process.hpp"
-#include "support/running_rift.hpp"
+#include "support/inputs/paper_waypoints.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/running_rift.hpp"
 #include "support/tree.hpp"
 #include "support/until.hpp"
 

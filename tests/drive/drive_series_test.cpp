@@ -7,8 +7,8 @@
 
 #include "commands/drive/before_each.hpp"
 #include "rift/files/files.hpp"
-#include "support/paper_waypoints.hpp"
-#include "support/process.hpp"
+#include "support/inputs/paper_waypoints.hpp"
+#include "support/processes/process.hpp"
 #include "support/until.hpp"
 
 namespace rift::commands {

@@ -13,8 +13,8 @@
 #include "rift/hardware/listener.hpp"
 #include "rift/hardware/serial_port.hpp"
 #include "rift/vision/camera/camera_file.hpp"
-#include "support/paper_camera.hpp"
-#include "support/wire_bytes.hpp"
+#include "support/inputs/paper_camera.hpp"
+#include "support/inputs/wire_bytes.hpp"
 #include "vision/mjpeg_server.hpp"
 #include "vision/rendered_tags.hpp"
 

@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "drive_scene.hpp"
-#include "support/broken_streams.hpp"
-#include "support/environment.hpp"
-#include "support/small_disk.hpp"
-#include "support/terminal_run.hpp"
+#include "support/processes/broken_streams.hpp"
+#include "support/processes/environment.hpp"
+#include "support/processes/small_disk.hpp"
+#include "support/processes/terminal_run.hpp"
 
 namespace rift {
 namespace {

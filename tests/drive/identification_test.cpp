@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "rift/files/files.hpp"
-#include "support/paper_waypoints.hpp"
-#include "support/process.hpp"
+#include "support/inputs/paper_waypoints.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
 
 namespace rift::commands {

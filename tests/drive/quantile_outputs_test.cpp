@@ -5,7 +5,7 @@
 #include "rift/gap/comparison.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/statistics/descriptive.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::commands {
 namespace {

@@ -4,8 +4,8 @@
 #include "rift/sweep/run/slurm_options.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/load.hpp"
+#include "support/inputs/trials.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "rift/yaml/describe.hpp"
 #include "rift/yaml/node.hpp"
-#include "support/random_fill.hpp"
+#include "support/inputs/random_fill.hpp"
 
 #include "rift/experiment/space_yaml.hpp"
 

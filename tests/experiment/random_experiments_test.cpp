@@ -6,7 +6,7 @@
 #include "rift/experiment/experiment.hpp"
 #include "rift/experiment/space_yaml.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
-#include "support/random_fill.hpp"
+#include "support/inputs/random_fill.hpp"
 
 namespace rift::experiment {
 namespace {

@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "rift/hardware/wire.hpp"
-#include "support/npm.hpp"
-#include "support/process.hpp"
-#include "support/shell.hpp"
+#include "support/processes/npm.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/shell.hpp"
 #include "support/tree.hpp"
 
 namespace rift::hardware {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "rift/geometry/pose2.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::gap {
 namespace {

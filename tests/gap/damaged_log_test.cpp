@@ -7,7 +7,7 @@
 
 #include "rift/gap/comparison.hpp"
 #include "rift/trajectory/log.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::gap {
 namespace {

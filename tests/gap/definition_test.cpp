@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::gap {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "rift/gap/comparison.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::gap {
 namespace {

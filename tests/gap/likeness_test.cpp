@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::gap {
 namespace {

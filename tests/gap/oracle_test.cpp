@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "rift/gap/comparison.hpp"
+#include "support/inputs/trials.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift::gap {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "rift/gap/comparison.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
 
 namespace rift::gap {
 namespace {

@@ -10,7 +10,7 @@
 #include "rift/gap/doubts.hpp"
 #include "rift/gap/goal.hpp"
 #include "rift/geometry/pose2.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::gap {
 namespace {

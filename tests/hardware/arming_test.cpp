@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "bench.hpp"
-#include "support/paper_waypoints.hpp"
+#include "support/inputs/paper_waypoints.hpp"
 
 namespace rift::hardware {
 namespace {

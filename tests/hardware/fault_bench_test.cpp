@@ -3,7 +3,7 @@
 
 #include "bench.hpp"
 #include "rift/trial/trial.hpp"
-#include "support/paper_waypoints.hpp"
+#include "support/inputs/paper_waypoints.hpp"
 
 namespace rift::hardware {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "bench.hpp"
 #include "rift/hardware/arming.hpp"
-#include "support/paper_waypoints.hpp"
+#include "support/inputs/paper_waypoints.hpp"
 
 namespace rift::hardware {
 namespace {

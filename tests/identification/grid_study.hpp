@@ -9,8 +9,8 @@
 #include "rift/simulation/options.hpp"
 #include "rift/trial/loop_delay.hpp"
 #include "rift/trial/trial.hpp"
+#include "support/inputs/trials.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift::test {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "identification/trial_grid.hpp"
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
 
 namespace rift {

@@ -9,7 +9,7 @@
 #include "rift/report/page/page.hpp"
 #include "rift/sweep/explain/explanation.hpp"
 #include "rift/sweep/falsify/evidence.hpp"
-#include "support/browser.hpp"
+#include "support/processes/browser.hpp"
 
 namespace rift::report {
 namespace {

@@ -10,7 +10,7 @@
 #include "rift/simulation/simulated_robot.hpp"
 #include "rift/statistics/descriptive.hpp"
 #include "rift/trial/trial.hpp"
-#include "support/paper_waypoints.hpp"
+#include "support/inputs/paper_waypoints.hpp"
 
 namespace rift::simulation {
 namespace {

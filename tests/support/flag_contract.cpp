@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "support/help_flags.hpp"
+#include "support/inputs/trials.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift::test {
 namespace {

@@ -10,9 +10,9 @@
 #include <regex>
 #include <sstream>
 
-#include "support/process.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift::test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"
-#include "support/process.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift::sweep {
 namespace {

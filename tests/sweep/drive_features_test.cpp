@@ -10,8 +10,8 @@
 
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/distinction.hpp"
-#include "support/paths.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/paths.hpp"
+#include "support/inputs/trials.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::sweep {
 namespace {

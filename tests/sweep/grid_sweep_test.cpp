@@ -7,7 +7,7 @@
 
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "rift/sweep/explain/anatomy.hpp"
 #include "rift/sweep/falsify/result.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::sweep {
 namespace {

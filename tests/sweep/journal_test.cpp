@@ -9,9 +9,9 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "support/child_end.hpp"
-#include "support/process.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/child_end.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift::sweep {
 namespace {

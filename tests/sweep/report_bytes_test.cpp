@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -8,8 +8,8 @@
 #include "rift/files/network_file_system.hpp"
 #include "rift/sweep/run/journal.hpp"
 #include "rift/sweep/run/slurm.hpp"
-#include "support/process.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -12,8 +12,8 @@
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "rift/sweep/falsify/grid.hpp"
-#include "support/paths.hpp"
-#include "support/process.hpp"
+#include "support/inputs/paths.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift::sweep {
 namespace {

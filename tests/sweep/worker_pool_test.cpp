@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/rendering/synthetic_camera.hpp"
-#include "support/process.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 #include "track/camera_to_calibrate.hpp"
 
 namespace rift {

@@ -10,11 +10,11 @@
 
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/rendering/synthetic_camera.hpp"
-#include "support/environment.hpp"
-#include "support/paper_camera.hpp"
-#include "support/running_rift.hpp"
+#include "support/inputs/paper_camera.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/environment.hpp"
+#include "support/processes/running_rift.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 #include "vision/mjpeg_server.hpp"
 
 namespace rift {

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "support/child_end.hpp"
-#include "support/running_rift.hpp"
-#include "support/shell.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/child_end.hpp"
+#include "support/processes/running_rift.hpp"
+#include "support/processes/shell.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 #include "support/until.hpp"
 #include "track/window_keys.hpp"
 

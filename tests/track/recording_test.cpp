@@ -6,10 +6,10 @@
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/rendering/print_sheet.hpp"
 #include "support/documented.hpp"
-#include "support/environment.hpp"
-#include "support/process.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/environment.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 
 namespace rift {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/rendering/synthetic_camera.hpp"
-#include "support/paper_camera.hpp"
-#include "support/process.hpp"
+#include "support/inputs/paper_camera.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 #include "vision/rendered_tags.hpp"
 
 namespace rift {

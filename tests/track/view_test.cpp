@@ -2,11 +2,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "support/environment.hpp"
-#include "support/running_rift.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/environment.hpp"
+#include "support/processes/running_rift.hpp"
+#include "support/processes/virtual_display.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
-#include "support/virtual_display.hpp"
 #include "track/window_keys.hpp"
 
 namespace rift {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "support/shell.hpp"
+#include "support/processes/shell.hpp"
 
 namespace rift::test {
 

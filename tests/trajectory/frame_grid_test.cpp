@@ -7,7 +7,7 @@
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/random.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
 
 namespace rift::trajectory {
 namespace {

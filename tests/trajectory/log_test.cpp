@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "rift/geometry/pose2.hpp"
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::trajectory {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "rift/geometry/pose2.hpp"
 #include "rift/trajectory/log.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
 
 namespace rift::trajectory {
 namespace {

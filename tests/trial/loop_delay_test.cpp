@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "rift/trial/trial.hpp"
-#include "support/fake_robot.hpp"
-#include "support/paper_waypoints.hpp"
-#include "support/trials.hpp"
+#include "support/inputs/fake_robot.hpp"
+#include "support/inputs/paper_waypoints.hpp"
+#include "support/inputs/trials.hpp"
 
 namespace rift::trial {
 namespace {

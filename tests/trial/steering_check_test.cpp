@@ -10,7 +10,7 @@
 #include <string>
 
 #include "rift/geometry/pose2.hpp"
-#include "support/fake_robot.hpp"
+#include "support/inputs/fake_robot.hpp"
 
 namespace rift::trial {
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "rift/trial/trial.hpp"
-#include "support/fake_robot.hpp"
-#include "support/paper_waypoints.hpp"
+#include "support/inputs/fake_robot.hpp"
+#include "support/inputs/paper_waypoints.hpp"
 
 namespace rift::trial {
 namespace {

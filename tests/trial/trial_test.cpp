@@ -8,9 +8,9 @@
 
 #include "rift/geometry/pose2.hpp"
 #include "rift/trajectory/log.hpp"
-#include "support/fake_robot.hpp"
+#include "support/inputs/fake_robot.hpp"
+#include "support/inputs/paper_waypoints.hpp"
 #include "support/mirror.hpp"
-#include "support/paper_waypoints.hpp"
 
 namespace rift::trial {
 namespace {

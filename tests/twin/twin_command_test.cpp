@@ -16,9 +16,9 @@
 #include "rift/vision/camera/capture_thread.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
 #include "support/documented.hpp"
-#include "support/process.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 #include "support/until.hpp"
 #include "twin_process.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "support/process.hpp"
-#include "support/running_rift.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/running_rift.hpp"
 #include "support/tree.hpp"
 
 namespace rift::test {

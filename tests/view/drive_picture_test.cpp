@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <opencv2/core.hpp>
 
-#include "support/paper_camera.hpp"
+#include "support/inputs/paper_camera.hpp"
 #include "view/track_picture.hpp"
 
 namespace rift::view {

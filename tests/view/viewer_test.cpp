@@ -14,10 +14,10 @@
 #include <sstream>
 
 #include "rift/view/film.hpp"
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/virtual_display.hpp"
 #include "support/tree.hpp"
 #include "support/until.hpp"
-#include "support/virtual_display.hpp"
 #include "view/synthetic_run.hpp"
 
 namespace rift::view {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "rift/vision/camera/camera_source.hpp"
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
 #include "vision/synthetic_views.hpp"
 

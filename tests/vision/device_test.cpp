@@ -10,7 +10,7 @@
 #include <regex>
 
 #include "rift/vision/camera/camera_source.hpp"
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
 #include "support/until.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/camera/jpeg.hpp"
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift::vision {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "support/paper_camera.hpp"
+#include "support/inputs/paper_camera.hpp"
 
 namespace rift::vision {
 namespace {

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "rift/vision/tracking/tag_detector.hpp"
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
 #include "support/tree.hpp"
 
 namespace rift::vision {

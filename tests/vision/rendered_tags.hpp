@@ -8,7 +8,7 @@
 #include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/rendering/synthetic_camera.hpp"
 #include "rift/vision/tracking/tag_detector.hpp"
-#include "support/paper_camera.hpp"
+#include "support/inputs/paper_camera.hpp"
 
 namespace rift::test {
 

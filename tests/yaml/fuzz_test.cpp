@@ -7,7 +7,7 @@
 #include "rift/yaml/node.hpp"
 #include "rift/yaml/write.hpp"
 #include "robot_schema.hpp"
-#include "support/random_fill.hpp"
+#include "support/inputs/random_fill.hpp"
 
 namespace rift::yaml::test {
 namespace {

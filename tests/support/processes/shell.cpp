@@ -1,4 +1,4 @@
-#include "support/shell.hpp"
+#include "support/processes/shell.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -7,7 +7,7 @@
 #include <csignal>
 #include <stdexcept>
 
-#include "support/child_end.hpp"
+#include "support/processes/child_end.hpp"
 
 extern char** environ;
 

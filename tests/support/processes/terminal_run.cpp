@@ -1,4 +1,4 @@
-#include "support/terminal_run.hpp"
+#include "support/processes/terminal_run.hpp"
 
 #include <poll.h>
 #include <pty.h>
@@ -11,7 +11,7 @@
 #include <csignal>
 #include <stdexcept>
 
-#include "support/child_end.hpp"
+#include "support/processes/child_end.hpp"
 #include "support/tree.hpp"
 #include "support/until.hpp"
 

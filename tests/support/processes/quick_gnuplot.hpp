@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "support/environment.hpp"
-#include "support/process.hpp"
+#include "support/processes/environment.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift::test {
 

@@ -1,4 +1,4 @@
-#include "support/browser.hpp"
+#include "support/processes/browser.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
 #include "support/until.hpp"
 
 namespace rift::test {

@@ -1,4 +1,4 @@
-#include "support/running_rift.hpp"
+#include "support/processes/running_rift.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -9,9 +9,9 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "support/child_end.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/child_end.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 #include "support/until.hpp"
 
 extern char** environ;

@@ -1,4 +1,4 @@
-#include "support/slurm.hpp"
+#include "support/processes/slurm.hpp"
 
 #include <netinet/in.h>
 #include <spawn.h>
@@ -17,9 +17,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "support/child_end.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/child_end.hpp"
 #include "support/tree.hpp"
-#include "support/trials.hpp"
 #include "support/until.hpp"
 
 extern char** environ;
@@ -115,7 +115,7 @@ FakeSlurm::FakeSlurm()
   for (const char* part : {"state/jobs", "state/queue", "state/pids"}) {
     fs::create_directories(folder_ / part);
   }
-  const std::string script = SourceDir() + "/tests/support/fake_slurm.sh";
+  const std::string script = SourceDir() + "/tests/support/processes/fake_slurm.sh";
   for (const char* name : {"sbatch", "squeue", "scancel", "scontrol"}) {
     fs::create_symlink(script, folder_ / (std::string("bin/") + name));
   }

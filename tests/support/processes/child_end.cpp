@@ -1,4 +1,4 @@
-#include "support/child_end.hpp"
+#include "support/processes/child_end.hpp"
 
 #include <poll.h>
 #include <sys/syscall.h>

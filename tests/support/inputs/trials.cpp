@@ -1,4 +1,4 @@
-#include "support/trials.hpp"
+#include "support/inputs/trials.hpp"
 #include "support/tree.hpp"
 
 #include <algorithm>

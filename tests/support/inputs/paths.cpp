@@ -1,4 +1,4 @@
-#include "support/paths.hpp"
+#include "support/inputs/paths.hpp"
 
 #include <cmath>
 #include <string_view>

@@ -1,10 +1,10 @@
-#include "support/process.hpp"
+#include "support/processes/process.hpp"
 
 #include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 
-#include "support/running_rift.hpp"
+#include "support/processes/running_rift.hpp"
 
 namespace rift::test {
 

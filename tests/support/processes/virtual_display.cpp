@@ -1,4 +1,4 @@
-#include "support/virtual_display.hpp"
+#include "support/processes/virtual_display.hpp"
 
 #include <poll.h>
 #include <sys/prctl.h>
@@ -7,7 +7,7 @@
 
 #include <csignal>
 
-#include "support/child_end.hpp"
+#include "support/processes/child_end.hpp"
 #include "support/until.hpp"
 
 namespace rift::test {

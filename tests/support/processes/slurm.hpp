@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "support/environment.hpp"
-#include "support/process.hpp"
+#include "support/processes/environment.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift::test {
 
