@@ -8,8 +8,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "painter.hpp"
@@ -30,6 +32,19 @@ std::string MissingDisplay() {
   return failed ? fmt::format("no window: the display {} does not answer", name) : std::string();
 }
 
+namespace {
+
+/// Where libdbus looks for the bus of a session.
+bool HasMessageBus() {
+  if (std::getenv("DBUS_SESSION_BUS_ADDRESS") != nullptr) return true;
+  const char* folder = std::getenv("XDG_RUNTIME_DIR");
+  std::error_code ignored;
+  return folder != nullptr &&
+         std::filesystem::exists(std::filesystem::path(folder) / "bus", ignored);
+}
+
+}  // namespace
+
 void RequireDisplay() {
   if (const std::string missing = MissingDisplay(); !missing.empty()) {
     throw std::runtime_error(missing);
@@ -37,6 +52,9 @@ void RequireDisplay() {
   // The display that was looked at is the one to open: with another plugin Qt aborts when that one
   // is missing.
   setenv("QT_QPA_PLATFORM", "xcb", 1);
+  // Qt looks for a message bus, and libdbus starts one where there is none: a fork of a process of
+  // many threads, after which one start in a hundred hangs for ever.
+  if (!HasMessageBus()) setenv("DBUS_SESSION_BUS_ADDRESS", "disabled:", 1);
 }
 
 namespace {

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "rift/view/film.hpp"
+#include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/virtual_display.hpp"
 #include "support/tree.hpp"
@@ -25,22 +26,8 @@ namespace {
 
 using Catch::Matchers::Contains;
 using synthetic::StraightRun;
+using test::Environment;
 using test::TemporaryFolder;
-
-class Environment {
- public:
-  Environment(const char* name, const char* value) : name_(name) {
-    if (const char* old = std::getenv(name)) old_ = old;
-    value == nullptr ? unsetenv(name) : setenv(name, value, 1);
-  }
-  ~Environment() { old_ ? setenv(name_, old_->c_str(), 1) : unsetenv(name_); }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-
- private:
-  const char* name_;
-  std::optional<std::string> old_;
-};
 
 size_t FilesIn(const std::filesystem::path& folder) {
   size_t count = 0;
@@ -106,9 +93,10 @@ TEST_CASE("A disk that fills up is an error and leaves nothing behind") {
 }
 
 TEST_CASE("Without a display there is a reason in one line and no window and no crash") {
-  const Environment wayland("WAYLAND_DISPLAY", nullptr);
+  const Environment wayland("WAYLAND_DISPLAY", std::nullopt);
   const bool unreachable = GENERATE(false, true);
-  const Environment display("DISPLAY", unreachable ? ":9753" : nullptr);
+  const Environment display("DISPLAY",
+                            unreachable ? std::optional<std::string>(":9753") : std::nullopt);
   const std::string missing = MissingDisplay();
   CHECK_THAT(missing, Contains("no window") && !Contains("\n"));
   CHECK_THROWS_WITH(PlayInWindow(MakeFilm(StraightRun()), {}), missing);
@@ -134,7 +122,7 @@ TEST_CASE(kWindowCase) {
     WARN("SKIPPED: Xvfb is not installed");
     return;
   }
-  const Environment display("DISPLAY", server.Name().c_str());
+  const Environment display("DISPLAY", server.Name());
   const Environment shows(kShows, "1");
   const pid_t child = fork();
   if (child == 0) {
@@ -146,6 +134,39 @@ TEST_CASE(kWindowCase) {
   REQUIRE(waitpid(child, &status, 0) == child);
   REQUIRE(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == 0);
+}
+
+TEST_CASE("A window starts no message bus where there is none, and takes the one there is") {
+  const test::VirtualDisplay server;
+  if (!server.Runs()) {
+    WARN("SKIPPED: Xvfb is not installed");
+    return;
+  }
+  const TemporaryFolder folder;
+  const Environment display("DISPLAY", server.Name());
+  const Environment platform("QT_QPA_PLATFORM", std::nullopt);
+  const char* const kBus = "DBUS_SESSION_BUS_ADDRESS";
+  const Environment runtime("XDG_RUNTIME_DIR", folder.Path().string());
+  {
+    const Environment bus(kBus, std::nullopt);
+    RequireDisplay();
+    CHECK(std::getenv(kBus) == std::string("disabled:"));
+  }
+  {
+    const Environment bus(kBus, "unix:path=/run/a_bus");
+    RequireDisplay();
+    CHECK(std::getenv(kBus) == std::string("unix:path=/run/a_bus"));
+  }
+  {
+    const Environment bus(kBus, std::nullopt);
+    const Environment elsewhere("XDG_RUNTIME_DIR", std::nullopt);
+    RequireDisplay();
+    CHECK(std::getenv(kBus) == std::string("disabled:"));
+  }
+  test::WriteText(folder / "bus", "");
+  const Environment bus(kBus, std::nullopt);
+  RequireDisplay();
+  CHECK(std::getenv(kBus) == nullptr);
 }
 
 TEST_CASE("The command line program does not load OpenCV by itself") {

@@ -11,8 +11,9 @@ namespace rift::view {
 /// Why no window can be opened here, in one line for people; empty when one can.
 std::string MissingDisplay();
 
-/// To be called before a window is opened. Throws std::runtime_error with MissingDisplay() where
-/// that is not empty.
+/// To be called before a window is opened; sets the environment so that none is opened on another
+/// display, and none waits for a message bus that is not there. Throws std::runtime_error with
+/// MissingDisplay() where that is not empty.
 void RequireDisplay();
 
 /// Plays the film in a window until it is over or the user leaves. Throws std::runtime_error with
