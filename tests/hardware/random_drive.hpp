@@ -32,8 +32,9 @@ struct NoisyDrive {
     bench.slip_right = 1.0 + 0.04 * normal(random);
   }
 
+  /// As arming does, zeros first: the robot's listener takes no power before it has heard one.
   void Begin() {
-    for (int i = 0; i < 30; ++i) robot.Advance(0.02);
+    Drive({}, 0.6);
     robot.Arm();
     robot.SetCameraLatency(0.0);
   }
