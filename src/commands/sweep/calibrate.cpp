@@ -97,8 +97,7 @@ sweep::JournalEntry KeptCalibration::Fit(int jobs, const sweep::Say& say) {
         say(line);
       });
   sweep::ByteWriter write;
-  write(notes.size());
-  for (const std::string& note : notes) write(note);
+  write(notes);
   write(sweep::EncodeReport(found));
   return {.status = "ok", .gap_m = std::numeric_limits<double>::quiet_NaN(), .bytes = write.Take()};
 }
@@ -108,8 +107,8 @@ std::optional<sweep::CalibrationReport> KeptCalibration::Find(sweep::Journal& jo
   const std::optional<std::string> bytes = journal.Find(key_);
   if (!bytes) return std::nullopt;
   sweep::ByteReader read(*bytes);
-  std::vector<std::string> notes(read.Count(sizeof(size_t)));
-  for (std::string& note : notes) read(note);
+  std::vector<std::string> notes;
+  read(notes);
   for (const std::string& note : notes) say(note);
   std::string report;
   read(report);

@@ -1,61 +1,21 @@
 #include "rift/sweep/calibrate/report_bytes.hpp"
 
-#include <concepts>
 #include <stdexcept>
 #include <type_traits>
 
+#include "rift/sweep/falsify/trajectory_bytes.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
 
 namespace rift::sweep {
-namespace {
 
-template <class T>
-inline constexpr bool kIsVector = false;
-template <class T>
-inline constexpr bool kIsVector<std::vector<T>> = true;
-
-/// T is U or const U: one list of members for both directions.
-template <class T, class U>
-concept Is = std::same_as<std::remove_const_t<T>, U>;
-
-/// ByteWriter or ByteReader, for structs with lists in them.
-template <class Bytes>
-class Codec {
- public:
-  explicit Codec(Bytes bytes) : bytes_(std::move(bytes)) {}
-
-  template <class T>
-  void operator()(T& value) {
-    using Value = std::remove_const_t<T>;
-    if constexpr (kIsVector<Value>) {
-      const size_t count = Count(value.size());
-      if constexpr (kReads) value.resize(count);
-      for (auto& item : value) (*this)(item);
-    } else if constexpr (std::same_as<Value, Eigen::MatrixXd>) {
-      const size_t rows = Count(static_cast<size_t>(value.rows()));
-      if constexpr (kReads) {
-        value.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(rows));
-      }
-      for (auto& number : value.reshaped()) bytes_(number);
-    } else if constexpr (Plain<Value> || std::same_as<Value, std::string>) {
-      bytes_(value);
-    } else {
-      Members(*this, value);
-    }
+template <class C, Is<Eigen::MatrixXd> T>
+void Members(C& codec, T& square) {
+  const size_t rows = codec.Count(static_cast<size_t>(square.rows()), 1);
+  if constexpr (!std::is_const_v<T>) {
+    square.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(rows));
   }
-  Bytes& bytes() { return bytes_; }
-
- private:
-  static constexpr bool kReads = std::same_as<Bytes, ByteReader>;
-
-  size_t Count(size_t written) {
-    if constexpr (kReads) return bytes_.Count(1);
-    bytes_(written);
-    return written;
-  }
-
-  Bytes bytes_;
-};
+  for (auto& number : square.reshaped()) codec(number);
+}
 
 template <class C, Is<CalibratedParameter> T>
 void Members(C& codec, T& p) {
@@ -144,18 +104,6 @@ void Members(C& codec, T& errors) {
   codec(errors.after);
 }
 
-template <class C, Is<trajectory::Channel> T>
-void Members(C& codec, T& channel) {
-  codec(channel.name);
-  codec(channel.values);
-}
-
-template <class C, Is<trajectory::Trajectory> T>
-void Members(C& codec, T& path) {
-  codec(path.poses);
-  codec(path.channels);
-}
-
 template <class C, Is<CalibrationReport> T>
 void Members(C& codec, T& report) {
   codec(report.calibration);
@@ -171,19 +119,17 @@ void Members(C& codec, T& report) {
   codec(report.shown_after);
 }
 
-}  // namespace
-
 std::string EncodeReport(const CalibrationReport& report) {
-  Codec<ByteWriter> codec{ByteWriter()};
-  codec(report);
-  return codec.bytes().Take();
+  ByteWriter write;
+  write(report);
+  return write.Take();
 }
 
 CalibrationReport DecodeReport(std::string_view bytes) {
-  Codec<ByteReader> codec{ByteReader(bytes)};
+  ByteReader read(bytes);
   CalibrationReport report;
-  codec(report);
-  if (!codec.bytes().IsAtEnd()) throw std::runtime_error("a calibration has more behind its end");
+  read(report);
+  if (!read.IsAtEnd()) throw std::runtime_error("a calibration has more behind its end");
   return report;
 }
 

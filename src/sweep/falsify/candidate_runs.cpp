@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "job_status.hpp"
+#include "rift/sweep/falsify/trajectory_bytes.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
 
 namespace rift::sweep {
@@ -67,44 +68,27 @@ ProgramTrial RunProgramTrial(Evaluator& evaluator, const TrialRequest& request) 
   return trial;
 }
 
+template <class Bytes, Is<Recording> T>
+void Members(Bytes& bytes, T& recording) {
+  bytes(recording.status);
+  bytes(recording.reason);
+  bytes(recording.source);
+  bytes(recording.limits);
+  bytes(recording.left_m);
+  bytes(recording.trajectory);
+  bytes(recording.doubts);
+}
+
 std::string EncodeRecording(const Recording& recording) {
   ByteWriter write;
-  write(recording.status);
-  write(recording.reason);
-  write(recording.source);
-  write(recording.limits);
-  write(recording.left_m);
-  write(recording.trajectory.poses.size());
-  for (const trajectory::StampedPose& pose : recording.trajectory.poses) write(pose);
-  write(recording.trajectory.channels.size());
-  for (const trajectory::Channel& channel : recording.trajectory.channels) {
-    write(channel.name);
-    write(channel.values.size());
-    for (const double value : channel.values) write(value);
-  }
-  write(recording.doubts.size());
-  for (const std::string& doubt : recording.doubts) write(doubt);
+  write(recording);
   return write.Take();
 }
 
 Recording DecodeRecording(std::string_view bytes) {
   ByteReader read(bytes);
   Recording recording;
-  read(recording.status);
-  read(recording.reason);
-  read(recording.source);
-  read(recording.limits);
-  read(recording.left_m);
-  recording.trajectory.poses.resize(read.Count(sizeof(trajectory::StampedPose)));
-  for (trajectory::StampedPose& pose : recording.trajectory.poses) read(pose);
-  recording.trajectory.channels.resize(read.Count(2 * sizeof(size_t)));
-  for (trajectory::Channel& channel : recording.trajectory.channels) {
-    read(channel.name);
-    channel.values.resize(read.Count(sizeof(double)));
-    for (double& value : channel.values) read(value);
-  }
-  recording.doubts.resize(read.Count(sizeof(size_t)));
-  for (std::string& doubt : recording.doubts) read(doubt);
+  read(recording);
   if (!read.IsAtEnd()) throw std::runtime_error("a run of a program is of another layout");
   return recording;
 }

@@ -140,96 +140,80 @@ std::optional<std::vector<TrialRow>> TrialRunner::Run(std::vector<TrialRequest> 
   return rows;
 }
 
-namespace {
-
-// One list of members for both directions; Row is const for a writer.
-template <class Codec, class Row>
-void Members(Codec& codec, Row& row) {
-  codec(row.seed);
-  codec(row.status);
-  codec(row.reason);
-  codec(row.candidate);
-  codec(row.reference);
-  codec(row.comparison);
-  codec(row.falsified);
-  codec(row.left_m);
-  codec(row.way_gap_m);
-  codec(row.evidence.fingerprint);
-  codec(row.evidence.candidate_limits);
-  codec(row.evidence.reference_limits);
+template <class Bytes, Is<experiment::ParameterValue> T>
+void Members(Bytes& bytes, T& value) {
+  bytes(value.text);
+  bytes(value.number);
 }
 
-}  // namespace
+template <class Bytes, Is<TrialRequest> T>
+void Members(Bytes& bytes, T& request) {
+  bytes(request.theta);
+  bytes(request.trial);
+  bytes(request.seed);
+  bytes(request.is_random_draw);
+}
+
+template <class Bytes, Is<Eigen::Vector2d> T>
+void Members(Bytes& bytes, T& v) {
+  bytes(v.x());
+  bytes(v.y());
+}
+
+template <class Bytes, Is<Eigen::Vector2f> T>
+void Members(Bytes& bytes, T& v) {
+  bytes(v.x());
+  bytes(v.y());
+}
+
+template <class Bytes, Is<TrialDoubt> T>
+void Members(Bytes& bytes, T& doubt) {
+  bytes(doubt.about);
+  bytes(doubt.text);
+}
+
+/// What a trial found; what was asked for is another's.
+template <class Bytes, Is<TrialRow> T>
+void Members(Bytes& bytes, T& row) {
+  bytes(row.seed);
+  bytes(row.status);
+  bytes(row.reason);
+  bytes(row.candidate);
+  bytes(row.reference);
+  bytes(row.comparison);
+  bytes(row.falsified);
+  bytes(row.left_m);
+  bytes(row.way_gap_m);
+  bytes(row.evidence.fingerprint);
+  bytes(row.evidence.candidate_limits);
+  bytes(row.evidence.reference_limits);
+  bytes(row.evidence.errors_m);
+  bytes(row.evidence.path_m);
+  bytes(row.doubts);
+}
 
 std::string EncodeRequest(const TrialRequest& request) {
   ByteWriter write;
-  write(request.theta.size());
-  for (const experiment::ParameterValue& value : request.theta) {
-    write(value.text);
-    write(value.number);
-  }
-  write(request.trial);
-  write(request.seed);
-  write(request.is_random_draw);
+  write(request);
   return write.Take();
 }
 
 TrialRequest DecodeRequest(std::string_view bytes) {
   ByteReader read(bytes);
   TrialRequest request;
-  request.theta.resize(read.Count(sizeof(size_t) + sizeof(double)));
-  for (experiment::ParameterValue& value : request.theta) {
-    read(value.text);
-    read(value.number);
-  }
-  read(request.trial);
-  read(request.seed);
-  read(request.is_random_draw);
+  read(request);
   return request;
 }
 
 std::string EncodeFindings(const TrialRow& row) {
   ByteWriter write;
-  Members(write, row);
-  write(row.evidence.errors_m.size());
-  for (const Eigen::Vector2d& error_m : row.evidence.errors_m) {
-    write(error_m.x());
-    write(error_m.y());
-  }
-  write(row.evidence.path_m.size());
-  for (const Eigen::Vector2f& point_m : row.evidence.path_m) {
-    write(point_m.x());
-    write(point_m.y());
-  }
-  write(row.doubts.size());
-  for (const TrialDoubt& doubt : row.doubts) {
-    write(doubt.about);
-    write(doubt.text);
-  }
+  write(row);
   return write.Take();
 }
 
 void DecodeFindings(std::string_view bytes, TrialRow& row) {
   ByteReader read(bytes);
-  Members(read, row);
-  const size_t errors = read.Count(2 * sizeof(double));
-  row.evidence.errors_m.clear();
-  for (size_t i = 0; i < errors; ++i) {
-    double x_m = 0.0, y_m = 0.0;
-    read(x_m);
-    read(y_m);
-    row.evidence.errors_m.emplace_back(x_m, y_m);
-  }
-  row.evidence.path_m.assign(read.Count(2 * sizeof(float)), Eigen::Vector2f::Zero());
-  for (Eigen::Vector2f& point_m : row.evidence.path_m) {
-    read(point_m.x());
-    read(point_m.y());
-  }
-  row.doubts.resize(read.Count(sizeof(DoubtAbout) + sizeof(size_t)));
-  for (TrialDoubt& doubt : row.doubts) {
-    read(doubt.about);
-    read(doubt.text);
-  }
+  read(row);
   if (!read.IsAtEnd()) throw std::runtime_error("a row of the sweep is of another layout");
 }
 

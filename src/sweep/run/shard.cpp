@@ -49,8 +49,7 @@ std::string EncodeShard(const Shard& shard) {
   write(shard.kind);
   write(shard.keys);
   write(shard.paths);
-  write(shard.requests.size());
-  for (const std::string& request : shard.requests) write(request);
+  write(shard.requests);
   return write.Take();
 }
 
@@ -66,8 +65,7 @@ Shard DecodeShard(std::string_view bytes, const std::string& file) {
     read(shard.kind);
     read(shard.keys);
     read(shard.paths);
-    shard.requests.resize(read.Count(sizeof(size_t)));
-    for (std::string& request : shard.requests) read(request);
+    read(shard.requests);
     if (!read.IsAtEnd()) throw std::runtime_error("there is more behind its end");
     return shard;
   } catch (const std::runtime_error& error) {

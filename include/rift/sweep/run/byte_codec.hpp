@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstring>
 #include <optional>
@@ -20,8 +21,15 @@ inline constexpr bool kIsOptional<std::optional<T>> = true;
 template <class T>
 concept Plain = std::is_trivially_copyable_v<T> && !kIsOptional<T>;
 
+/// T is U or const U, for the two directions of Members().
+template <class T, class U>
+concept Is = std::same_as<std::remove_const_t<T>, U>;
+
 /// Appends values to bytes as this machine holds them: for another process of it, and for a journal
-/// that it wrote itself. Numbers keep every bit, the payload of a NaN included.
+/// that it wrote itself. Numbers keep every bit, the payload of a NaN included. A struct with texts
+/// or lists in it has a function of this namespace that hands its members to either direction:
+///   template <class Bytes, Is<Thing> T> void Members(Bytes& bytes, T& thing) { bytes(thing.name);
+///   }
 class ByteWriter {
  public:
   template <Plain T>
@@ -36,6 +44,19 @@ class ByteWriter {
   void operator()(const std::optional<T>& value) {
     (*this)(value.has_value());
     if (value) (*this)(*value);
+  }
+  template <class T>
+  void operator()(const std::vector<T>& items) {
+    (*this)(items.size());
+    for (const T& item : items) (*this)(item);
+  }
+  template <class T>
+  requires(!Plain<T>) void operator()(const T& value) { Members(*this, value); }
+
+  /// Writes how many items follow, and gives it back; see ByteReader.
+  size_t Count(size_t items, size_t /*bytes_each*/) {
+    (*this)(items);
+    return items;
   }
 
   std::string Take() { return std::move(bytes_); }
@@ -62,7 +83,7 @@ class ByteReader {
     }
     std::memcpy(&value, bytes.data(), sizeof value);
   }
-  void operator()(std::string& text) { text = Next(Count(1)); }
+  void operator()(std::string& text) { text = Next(Count(0, 1)); }
   template <class T>
   void operator()(std::optional<T>& value) {
     bool has_value = false;
@@ -71,8 +92,17 @@ class ByteReader {
     if (has_value) (*this)(value.emplace());
   }
 
-  /// How many items follow, each of at least that many bytes.
-  size_t Count(size_t bytes_each) {
+  template <class T>
+  void operator()(std::vector<T>& items) {
+    constexpr size_t kLeastBytes = Plain<T> ? sizeof(T) : 1;
+    items.resize(Count(0, kLeastBytes));
+    for (T& item : items) (*this)(item);
+  }
+  template <class T>
+  requires(!Plain<T>) void operator()(T& value) { Members(*this, value); }
+
+  /// How many items follow, each of at least that many bytes; more than there can be are an error.
+  size_t Count(size_t /*items*/, size_t bytes_each) {
     size_t count = 0;
     (*this)(count);
     if (count > bytes_.size() / bytes_each) CutShort();
