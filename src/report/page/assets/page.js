@@ -86,14 +86,21 @@ function drawChart(chart, index) {
 
 // ---- tables ----
 
-function cellText(value, column) {
-  if (value === null) return '–';
-  return column.digits === undefined ? String(value) : value.toFixed(column.digits);
-}
-
 // Parameters stand in cells as text, in the experiment's own spelling.
 function asNumber(cell) {
   return String(cell).trim() === '' ? NaN : Number(cell);
+}
+
+// What a search drew has sixteen digits, of which four are read; table.csv has all.
+function shortText(text) {
+  const isLong = text.replace(/e.*$/, '').replace(/\D/g, '').replace(/^0+/, '').length > 5;
+  return isLong && Number.isFinite(asNumber(text)) ? String(Number(Number(text).toPrecision(4))) : text;
+}
+
+function cellText(value, column) {
+  if (value === null) return '–';
+  if (column.digits !== undefined) return value.toFixed(column.digits);
+  return column.name === undefined ? String(value) : shortText(String(value));
 }
 
 // Values that are missing come last, whichever way is up; numbers come before words.
@@ -132,6 +139,7 @@ function fillBody(table, data, order) {
         return;
       }
       cell.textContent = cellText(data.rows[index][i], column);
+      if (column.name && cell.textContent !== String(data.rows[index][i])) cell.title = data.rows[index][i];
       cell.className = (column.digits === undefined ? '' : 'number') + (column.mark ? ' mark' : '');
     });
   }
