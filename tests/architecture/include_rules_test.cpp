@@ -59,7 +59,7 @@ const std::vector<Reserved> kReserved{
     {"xcb/.*", {"view"}},
     {"sqlite3.*|SQLiteCpp/.*", {"sweep/run"}},
     {"termios.h|asm/termbits.h", {"hardware", "twin"}},
-    {"boost/asio.*", {"hardware", "twin", "commands/sweep"}},
+    {"boost/asio.*", {"hardware", "twin", "sessions/sweep"}},
     {"fstream|iostream|cstdio",
      {"commands", "files", "hardware", "report", "terminal", "twin", "vision"}},
     {"thread|mutex|condition_variable|future",

@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "rift/terminal/print.hpp"
+#include "rift/terminal/stop_signal.hpp"
 
 namespace rift::commands {
 namespace {
@@ -56,7 +58,7 @@ ProgressStyle StyleFor(bool quiet, bool json) {
   return ::isatty(2) == 1 ? ProgressStyle::kBar : ProgressStyle::kLines;
 }
 
-SweepProgress::SweepProgress(ProgressStyle style, const SweepSize& size)
+SweepProgress::SweepProgress(ProgressStyle style, const sessions::SweepSize& size)
     : style_(style), size_(size) {}
 
 SweepProgress::~SweepProgress() {
@@ -108,7 +110,7 @@ std::string SweepProgress::Text() const {
   return text + fmt::format(", {} failing, {} without gap", falsified_, failed_);
 }
 
-void SweepProgress::Warn(const std::string& line) const {
+void SweepProgress::Warn(const std::string& line) {
   if (style_ == ProgressStyle::kBar && !is_over_) terminal::SayInPlace("");
   terminal::Say(line);
 }
@@ -171,6 +173,48 @@ void SweepProgress::End(const std::string& state) {
   if (style_ == ProgressStyle::kLines && !has_spoken_) return;  // too short to be worth a line
   Print(state);
   if (style_ == ProgressStyle::kBar) terminal::Say("");
+}
+
+namespace {
+
+void SayShards(ProgressStyle style, const sweep::ShardCounts& counts) {
+  std::string text = fmt::format("slurm: {}/{} shards done, {} running, {} pending", counts.done,
+                                 counts.total, counts.running, counts.pending);
+  if (!counts.reason.empty()) text += fmt::format(" ({})", counts.reason);
+  switch (style) {
+    case ProgressStyle::kQuiet:
+      return;
+    case ProgressStyle::kBar:
+      return terminal::SayInPlace(text);
+    case ProgressStyle::kLines:
+      return terminal::Say(text);
+    case ProgressStyle::kJson:
+      return terminal::Say(nlohmann::ordered_json{
+          {"state", "running"},
+          {"shards", counts.total},
+          {"shards_done", counts.done},
+          {"shards_running", counts.running},
+          {"shards_pending",
+           counts.pending}}.dump());
+  }
+}
+
+}  // namespace
+
+sessions::SweepObserver ObserverFor(ProgressStyle style) {
+  return {
+      .say = [](const std::string& line) { terminal::Say(line); },
+      .begin =
+          [style](const sessions::SweepSize& size) {
+            return std::make_unique<SweepProgress>(style, size);
+          },
+      .shards = [style](const sweep::ShardCounts& counts) { SayShards(style, counts); },
+      .watch_for_stop =
+          [] {
+            const auto stop = std::make_shared<terminal::StopSignal>();
+            return [stop] { return !stop->IsAsked(); };
+          },
+  };
 }
 
 }  // namespace rift::commands

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "rift/sessions/sweep/observer.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
@@ -15,32 +16,21 @@ enum class ProgressStyle { kQuiet, kBar, kLines, kJson };
 /// A bar for a terminal, lines for anything else.
 ProgressStyle StyleFor(bool quiet, bool json);
 
-/// What a sweep will have done when it ends.
-struct SweepSize {
-  int most = 0;
-  /// A search: `most` settings at most, each of them with as many trials as it turns out to need.
-  bool is_settings = false;
-};
-
 /// How far a sweep is, on stderr: what is done and to be done, trials a second, the time left, the
 /// largest gap so far, failures.
-class SweepProgress {
+class SweepProgress final : public sessions::TrialProgress {
  public:
-  SweepProgress(ProgressStyle style, const SweepSize& size);
+  SweepProgress(ProgressStyle style, const sessions::SweepSize& size);
   /// Ends the line of a bar that an error cut short.
-  ~SweepProgress();
-  SweepProgress(const SweepProgress&) = delete;
-  SweepProgress& operator=(const SweepProgress&) = delete;
+  ~SweepProgress() override;
 
-  void Seen(const sweep::TrialRow& row, bool from_journal);
+  void Seen(const sweep::TrialRow& row, bool from_journal) override;
   /// A line of its own, whatever the style.
-  void Warn(const std::string& line) const;
+  void Warn(const std::string& line) override;
   /// Prints when it is time to; cheap otherwise.
-  void Tick();
-  /// The same before the first trial: how far the runs are that settings are held against.
-  void Tick(const sweep::ReferenceProgress& references);
-  /// The last word, with how it ended: "done", "stopped".
-  void End(const std::string& state);
+  void Tick() override;
+  void Tick(const sweep::ReferenceProgress& references) override;
+  void End(const std::string& state) override;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -54,7 +44,7 @@ class SweepProgress {
   bool IsTime();
 
   ProgressStyle style_;
-  SweepSize size_;
+  sessions::SweepSize size_;
   std::set<experiment::Theta> settings_;  ///< of a search, those seen
   int steps_from_journal_ = 0;
   bool is_over_ = false;
@@ -67,5 +57,8 @@ class SweepProgress {
   Clock::time_point begun_ = Clock::now();
   Clock::time_point printed_ = begun_;
 };
+
+/// Who is told of a sweep at a terminal: notes and progress on stderr, Ctrl-C asks for an end.
+sessions::SweepObserver ObserverFor(ProgressStyle style);
 
 }  // namespace rift::commands
