@@ -5,9 +5,8 @@
 #include <set>
 #include <string>
 
+#include "rift/report/json/progress.hpp"
 #include "rift/sessions/sweep/observer.hpp"
-#include "rift/sweep/falsify/evaluator.hpp"
-#include "rift/sweep/falsify/result.hpp"
 
 namespace rift::commands {
 
@@ -15,6 +14,9 @@ enum class ProgressStyle { kQuiet, kBar, kLines, kJson };
 
 /// A bar for a terminal, lines for anything else.
 ProgressStyle StyleFor(bool quiet, bool json);
+
+/// Who is told of a sweep at a terminal: notes and progress on stderr, Ctrl-C asks for an end.
+sessions::SweepObserver ObserverFor(ProgressStyle style);
 
 /// How far a sweep is, on stderr: what is done and to be done, trials a second, the time left, the
 /// largest gap so far, failures.
@@ -35,30 +37,19 @@ class SweepProgress final : public sessions::TrialProgress {
  private:
   using Clock = std::chrono::steady_clock;
 
-  int Steps() const;
-  double Elapsed_s() const;
-  double Rate() const;
-  std::optional<double> Left_s() const;
-  std::string Text() const;
+  /// With the rate and the time left as they are now.
+  report::ProgressCounts Counts() const;
   void Print(const std::string& state);
   bool IsTime();
 
   ProgressStyle style_;
-  sessions::SweepSize size_;
+  report::ProgressCounts counts_;
   std::set<experiment::Theta> settings_;  ///< of a search, those seen
   int steps_from_journal_ = 0;
   bool is_over_ = false;
   bool has_spoken_ = false;
-  int done_ = 0;
-  int from_journal_ = 0;
-  int falsified_ = 0;
-  int failed_ = 0;
-  std::optional<double> largest_gap_m_;
   Clock::time_point begun_ = Clock::now();
   Clock::time_point printed_ = begun_;
 };
-
-/// Who is told of a sweep at a terminal: notes and progress on stderr, Ctrl-C asks for an end.
-sessions::SweepObserver ObserverFor(ProgressStyle style);
 
 }  // namespace rift::commands
