@@ -9,7 +9,6 @@
 #include "calibrate.hpp"
 #include "engine.hpp"
 #include "flags.hpp"
-#include "gap_flags.hpp"
 #include "load.hpp"
 #include "progress.hpp"
 #include "results.hpp"
@@ -41,8 +40,7 @@ namespace fs = std::filesystem;
 std::unique_ptr<sessions::LivePage> Serve(const SweepRequest& request, const fs::path& out,
                                           sweep::Evaluator& evaluator) {
   if (!request.serve) return nullptr;
-  auto page =
-      std::make_unique<sessions::LivePage>(out, evaluator, GapFlags(evaluator.experiment()));
+  auto page = std::make_unique<sessions::LivePage>(out, evaluator);
   terminal::Say("live: " + page->Url());
   return page;
 }
@@ -76,7 +74,7 @@ int Sweep(const SweepRequest& request) {
 
   const sessions::SweepFindings findings =
       sessions::ExplainSweep(out, evaluator, *judged, request.suggest, request.jobs);
-  sessions::SaveReport(out, evaluator, *judged, findings, GapFlags(experiment), observer);
+  sessions::SaveReport(out, evaluator, *judged, findings, observer);
   if (live) live->End();
   PrintFindings(request, *judged, findings);
   const std::optional<sessions::FurtherAnswers> answers =

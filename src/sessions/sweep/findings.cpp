@@ -43,11 +43,10 @@ std::vector<Eigen::Vector2f> PathOf(const report::ComparedPair& worst) {
 
 /// The figures, then the page with them.
 void SavePage(const fs::path& folder, sweep::Evaluator& evaluator, const sweep::SweepResult& result,
-              const SweepFindings& findings, const std::string& gap_flags,
-              const SweepObserver& observer) {
+              const SweepFindings& findings, const SweepObserver& observer) {
   const std::optional<report::ComparedPair> worst = WorstPair(result, evaluator);
   const report::SweepFigureSet set = report::SweepFigures(result, worst);
-  report::PageEvidence evidence = EvidenceFor(result, evaluator, gap_flags, true);
+  report::PageEvidence evidence = EvidenceFor(result, evaluator, true);
   evidence.programs = findings.programs;
   if (worst) evidence.worst_path_m = PathOf(*worst);
   RemoveFigures(folder / "figures");
@@ -81,10 +80,10 @@ SweepFindings ExplainSweep(const fs::path& folder, sweep::Evaluator& evaluator,
 
 void SaveReport(const fs::path& folder, sweep::Evaluator& evaluator,
                 const sweep::SweepResult& result, const SweepFindings& findings,
-                const std::string& gap_flags, const SweepObserver& observer) {
+                const SweepObserver& observer) {
   files::WriteFile(folder / "explanation.json",
                    report::ExplanationJson(result, findings.explanation));
-  SavePage(folder, evaluator, result, findings, gap_flags, observer);
+  SavePage(folder, evaluator, result, findings, observer);
   if (!findings.programs.empty()) {
     files::WriteFile(folder / "programs.json",
                      report::ProgramsJson(result.parameters, findings.programs));

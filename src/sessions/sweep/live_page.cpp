@@ -23,9 +23,8 @@ constexpr size_t kMostRows = 20'000;
 constexpr int kLastLook_ms = 6000;  ///< the page asks for itself every 3 s
 
 /// The page of the trials so far, without figures.
-std::string RunningReport(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
-                          const std::string& gap_flags) {
-  report::PageEvidence evidence = EvidenceFor(result, evaluator, gap_flags, false);
+std::string RunningReport(const sweep::SweepResult& result, sweep::Evaluator& evaluator) {
+  report::PageEvidence evidence = EvidenceFor(result, evaluator, false);
   evidence.running =
       fmt::format("{} trials so far, {} of them failed", result.rows.size(), result.all.failures);
   return report::RenderPage(result, sweep::Explain(result), evidence);
@@ -33,11 +32,9 @@ std::string RunningReport(const sweep::SweepResult& result, sweep::Evaluator& ev
 
 }  // namespace
 
-LivePage::LivePage(const std::filesystem::path& folder, sweep::Evaluator& evaluator,
-                   std::string gap_flags)
+LivePage::LivePage(const std::filesystem::path& folder, sweep::Evaluator& evaluator)
     : file_(folder / kName),
       evaluator_(evaluator),
-      gap_flags_(std::move(gap_flags)),
       server_(std::make_unique<PageServer>(
           std::vector<std::filesystem::path>{file_, folder / "report.html"})) {
   // An earlier report is not that of the running sweep.
@@ -60,7 +57,7 @@ void LivePage::Tick() {
   result.rows = rows_;
   sweep::Summarise(result);
   drawn_ = rows_.size();
-  files::WriteFile(file_, RunningReport(result, evaluator_, gap_flags_));
+  files::WriteFile(file_, RunningReport(result, evaluator_));
   const auto took = Clock::now() - begun;
   next_ = Clock::now() + std::max<Clock::duration>(kLeastPause, kDrawingShare * took);
 }

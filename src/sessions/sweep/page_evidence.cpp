@@ -6,6 +6,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "rift/report/text/gap_flags.hpp"
 #include "rift/sweep/falsify/evidence.hpp"
 
 namespace rift::sessions {
@@ -110,10 +111,10 @@ std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
 }
 
 report::PageEvidence EvidenceFor(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
-                                 const std::string& gap_flags, bool may_compute) {
+                                 bool may_compute) {
   report::PageEvidence evidence;
   TakeReferences(result, evaluator, may_compute, evidence);
-  evidence.gap_flags = gap_flags;
+  evidence.gap_flags = report::GapFlags(evaluator.experiment());
   for (const control::Waypoint& waypoint : evaluator.experiment().waypoints) {
     evidence.waypoints.push_back({waypoint.name, waypoint.Position()});
   }

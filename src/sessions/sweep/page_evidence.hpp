@@ -17,6 +17,6 @@ std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
 /// What a page is made of beside the result, the figures left out: references of the paths and
 /// waypoints. With `may_compute` also the reference of the worst trial where it has to be run.
 report::PageEvidence EvidenceFor(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
-                                 const std::string& gap_flags, bool may_compute);
+                                 bool may_compute);
 
 }  // namespace rift::sessions

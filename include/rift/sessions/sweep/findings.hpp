@@ -26,11 +26,10 @@ SweepFindings ExplainSweep(const std::filesystem::path& folder, sweep::Evaluator
                            const sweep::SweepResult& result, int suggest, int jobs);
 
 /// Writes DIR/explanation.json, programs.json and likeness.json, the figures (SVG and PNG, in
-/// DIR/figures) and DIR/report.html. `evaluator` brings the paths of the worst trial again;
-/// `gap_flags`: see report::PageEvidence. Figures that make no sense for this space are named to
-/// the observer.
+/// DIR/figures) and DIR/report.html. `evaluator` brings the paths of the worst trial again. Figures
+/// that make no sense for this space are named to the observer.
 void SaveReport(const std::filesystem::path& folder, sweep::Evaluator& evaluator,
                 const sweep::SweepResult& result, const SweepFindings& findings,
-                const std::string& gap_flags, const SweepObserver& observer);
+                const SweepObserver& observer);
 
 }  // namespace rift::sessions

@@ -16,8 +16,7 @@ class PageServer;
 /// anew every few seconds and less often where drawing takes long.
 class LivePage {
  public:
-  /// `gap_flags`: see report::PageEvidence.
-  LivePage(const std::filesystem::path& folder, sweep::Evaluator& evaluator, std::string gap_flags);
+  LivePage(const std::filesystem::path& folder, sweep::Evaluator& evaluator);
   /// Removes what only the running sweep needs.
   ~LivePage();
   LivePage(const LivePage&) = delete;
@@ -37,7 +36,6 @@ class LivePage {
 
   std::filesystem::path file_;
   sweep::Evaluator& evaluator_;
-  std::string gap_flags_;
   std::vector<sweep::TrialRow> rows_;
   size_t drawn_ = 0;
   Clock::time_point next_ = Clock::now() + std::chrono::seconds(1);

@@ -1,13 +1,13 @@
-#include "gap_flags.hpp"
+#include "rift/report/text/gap_flags.hpp"
 
 #include <fmt/format.h>
 
 #include <vector>
 
-#include "rift/commands/arguments/flags.hpp"
 #include "rift/yaml/enum_name.hpp"
+#include "rift/yaml/flag_name.hpp"
 
-namespace rift::commands {
+namespace rift::report {
 namespace {
 
 /// A value as the table of flags writes it; nothing for one that is the default.
@@ -28,7 +28,7 @@ class ChangedFlags {
   void Add(const char* key, const T& value) {
     const std::string text = TextOf(value);
     if (text == defaults_.at(at_++)) return;
-    flags_ += " " + FlagName(key).flag;
+    flags_ += " " + yaml::FlagName(key).flag;
     if constexpr (!std::is_same_v<T, bool>) flags_ += " " + text;
   }
 
@@ -77,4 +77,4 @@ std::string GapFlags(const experiment::Experiment& experiment) {
   return flags + ChangedGapFlags(experiment.gap);
 }
 
-}  // namespace rift::commands
+}  // namespace rift::report
