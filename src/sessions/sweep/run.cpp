@@ -65,85 +65,128 @@ void NoteFileSystem(const std::filesystem::path& out, const SweepObserver& obser
       out.string(), name));
 }
 
-std::optional<sweep::SweepResult> RunSimulated(sweep::Evaluator& evaluator,
-                                               const SweepRunRequest& request,
-                                               const SweepObserver& observer,
-                                               TrialProgress& progress, DoubtNotes& doubts,
-                                               const GoOn& go_on) {
+void NoteDamage(const Journal& journal, const std::filesystem::path& file,
+                const SweepObserver& observer) {
+  if (journal.Damaged() == 0) return;
+  observer.say(fmt::format(
+      "note: {}: {} of its entries were damaged and are left out; what is missing is run again",
+      file.string(), journal.Damaged()));
+}
+
+void NoteOpenShards(const std::filesystem::path& out, const SweepObserver& observer) {
+  if (!sweep::SlurmShards::AreOpen(out)) return;
+  observer.say(fmt::format(
+      "note: shards of this sweep were given to a cluster ({}); what they have done is taken in "
+      "with --engine alone, and everything that is missing is run here",
+      (out / "slurm").string()));
+}
+
+/// What readers of the folder find from now on.
+void Begin(Journal& journal, sweep::Evaluator& evaluator, const std::filesystem::path& out) {
   const experiment::Experiment& experiment = evaluator.experiment();
-  const std::filesystem::path file = request.out / kJournalName;
-  if (request.fresh) {
-    sweep::SlurmShards::Forget(request.out);
-    Journal::Remove(file);
-  }
-  NoteFileSystem(request.out, observer);
-  const sweep::Facts facts = FactsOf(experiment);
-  Journal journal(file, facts);
-  if (journal.Damaged() > 0) {
-    observer.say(fmt::format(
-        "note: {}: {} of its entries were damaged and are left out; what is missing is run again",
-        file.string(), journal.Damaged()));
-  }
-  files::WriteFile(request.out / "experiment.yaml", experiment::WriteExperiment(experiment));
+  files::WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
   evaluator.LoadLogs();  // now, since workers are copies of what is there when they start
   journal.SetNote("name", experiment.name);
   const SweepSize size = SizeOf(experiment);
   journal.SetNote(size.is_settings ? "most_settings" : "most_trials", std::to_string(size.most));
   journal.SetNote("state", "running");
   journal.Commit();
-  const auto stopped = [&journal]() -> std::optional<sweep::SweepResult> {
-    journal.SetNote("state", "stopped");
+}
+
+/// Everybody who is told of the trials while they run.
+struct Watchers {
+  TrialProgress& progress;
+  DoubtNotes& doubts;
+  LivePage* live;  ///< may be nullptr
+
+  void Seen(const sweep::TrialRow& row, bool from_journal) const {
+    progress.Seen(row, from_journal);
+    doubts.Seen(row);
+    if (live != nullptr) live->Seen(row);
+  }
+  void Tick() const {
+    progress.Tick();
+    if (live != nullptr) live->Tick();
+  }
+  void Tick(const sweep::ReferenceProgress& references) const {
+    progress.Tick(references);
+    if (live != nullptr) live->Tick();
+  }
+};
+
+/// Trials through the journal, in worker processes here or on a cluster.
+std::optional<sweep::SweepResult> RunComputed(sweep::Evaluator& evaluator,
+                                              const SweepRunRequest& request,
+                                              const SweepObserver& observer,
+                                              const Watchers& watchers, const GoOn& go_on) {
+  const std::filesystem::path file = request.out / kJournalName;
+  if (request.fresh) {
+    sweep::SlurmShards::Forget(request.out);
+    Journal::Remove(file);
+  }
+  NoteFileSystem(request.out, observer);
+  const sweep::Facts facts = FactsOf(evaluator.experiment());
+  Journal journal(file, facts);
+  NoteDamage(journal, file, observer);
+  Begin(journal, evaluator, request.out);
+  const auto end = [&journal](const char* state) {
+    journal.SetNote("state", state);
     journal.Close();
-    return std::nullopt;
   };
   std::optional<Cluster> cluster;
   if (request.cluster != nullptr) {
     cluster.emplace(evaluator, facts, *request.cluster, observer, go_on);
-    if (!cluster->Resume(request.out, journal)) return stopped();
-  } else if (sweep::SlurmShards::AreOpen(request.out)) {
-    observer.say(fmt::format(
-        "note: shards of this sweep were given to a cluster ({}); what they have done is taken in "
-        "with --engine alone, and everything that is missing is run here",
-        (request.out / "slurm").string()));
+    if (!cluster->Resume(request.out, journal)) {
+      end("stopped");
+      return std::nullopt;
+    }
+  } else {
+    NoteOpenShards(request.out, observer);
   }
   Stopwatch watch(journal);
   sweep::TrialRunner runner(
       [&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
       [&](const sweep::TrialRequest& trial) { return evaluator.KeyOf(trial); }, &journal,
-      request.jobs, experiment.run,
-      {[&](const sweep::TrialRow& row, bool from_journal) {
-         progress.Seen(row, from_journal);
-         doubts.Seen(row);
-         if (request.live != nullptr) request.live->Seen(row);
-       },
+      request.jobs, evaluator.experiment().run,
+      {[&](const sweep::TrialRow& row, bool from_journal) { watchers.Seen(row, from_journal); },
        [&] {
-         progress.Tick();
-         if (request.live != nullptr) request.live->Tick();
+         watchers.Tick();
          watch.Note();
          request.tick(journal);
          return go_on();
        },
        [&](sweep::TrialRow& row) { evaluator.NameSides(row); }});
+  const sweep::RunTrials run =
+      [&](std::vector<sweep::TrialRequest> trials) -> std::optional<std::vector<sweep::TrialRow>> {
+    if (cluster && !cluster->Run(trials, runner)) return std::nullopt;
+    return runner.Run(std::move(trials));
+  };
   const sweep::MayStart may_start = [&](const std::vector<sweep::TrialRequest>& trials) {
-    const double limit_s = experiment.search.max_s;
+    const double limit_s = evaluator.experiment().search.max_s;
     return limit_s == 0.0 || watch.Elapsed_s() < limit_s || runner.HasAll(trials);
   };
   std::optional<sweep::SweepResult> result = sweep::Sweep(
-      evaluator,
-      [&](std::vector<sweep::TrialRequest> trials) -> std::optional<std::vector<sweep::TrialRow>> {
-        if (cluster && !cluster->Run(trials, runner)) return std::nullopt;
-        return runner.Run(std::move(trials));
-      },
-      may_start, {request.jobs, [&](const sweep::ReferenceProgress& references) {
-                    progress.Tick(references);
-                    if (request.live != nullptr) request.live->Tick();
-                    request.tick(journal);
-                    return go_on();
-                  }});
+      evaluator, run, may_start, {request.jobs, [&](const sweep::ReferenceProgress& references) {
+                                    watchers.Tick(references);
+                                    request.tick(journal);
+                                    return go_on();
+                                  }});
   watch.Note(true);
-  journal.SetNote("state", result ? "done" : "stopped");
-  journal.Close();
+  end(result ? "done" : "stopped");
   return result;
+}
+
+/// Logs held against logs or a path, in this process.
+std::optional<sweep::SweepResult> RunLogs(sweep::Evaluator& evaluator, const Watchers& watchers,
+                                          const GoOn& go_on) {
+  const sweep::RunTrials run =
+      sweep::RunHere([&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
+                     {[&](const sweep::TrialRow& row, bool) { watchers.Seen(row, false); },
+                      [&] {
+                        watchers.Tick();
+                        return go_on();
+                      }});
+  return sweep::Sweep(evaluator, run, [](const auto&) { return true; });
 }
 
 }  // namespace
@@ -156,24 +199,10 @@ std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
   const std::unique_ptr<TrialProgress> progress = observer.begin(SizeOf(experiment));
   const sweep::SweepResult kinds = sweep::EmptyResult(experiment);
   DoubtNotes doubts(kinds, [&progress](const std::string& line) { progress->Warn(line); });
-  std::optional<sweep::SweepResult> result;
-  if (IsComputed(experiment)) {
-    result = RunSimulated(evaluator, request, observer, *progress, doubts, go_on);
-  } else {
-    const sweep::RunTrials run =
-        sweep::RunHere([&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },
-                       {[&](const sweep::TrialRow& row, bool) {
-                          progress->Seen(row, false);
-                          doubts.Seen(row);
-                          if (request.live != nullptr) request.live->Seen(row);
-                        },
-                        [&] {
-                          progress->Tick();
-                          if (request.live != nullptr) request.live->Tick();
-                          return go_on();
-                        }});
-    result = sweep::Sweep(evaluator, run, [](const auto&) { return true; });
-  }
+  const Watchers watchers{*progress, doubts, request.live};
+  std::optional<sweep::SweepResult> result =
+      IsComputed(experiment) ? RunComputed(evaluator, request, observer, watchers, go_on)
+                             : RunLogs(evaluator, watchers, go_on);
   progress->End(result ? "done" : "stopped");
   if (result) doubts.End(*result);
   return result;
