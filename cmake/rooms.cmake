@@ -67,23 +67,26 @@ rift_room(report/json ROOMS control experiment gap geometry hardware odometry re
 rift_room(report/page ROOMS experiment odometry report/figures report/text statistics sweep/explain
     sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
+rift_room(sessions/sweep ROOMS experiment files report/figures report/json report/page report/text
+    statistics sweep/calibrate sweep/explain sweep/falsify sweep/run yaml
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers nlohmann_json::nlohmann_json)
 rift_room(view ROOMS control geometry trajectory trial vision/calibration vision/camera vision/tracking
   OPTIONS simulation
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
-rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal trajectory
+rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal trajectory yaml
   LIBRARIES CLI11::CLI11 fmt::fmt)
-rift_room(commands/sweep ROOMS commands/arguments experiment files report/figures report/json
-    report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run terminal
-    yaml
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers nlohmann_json::nlohmann_json)
+rift_room(commands/sweep ROOMS commands/arguments experiment files report/json report/page report/text
+    sessions/sweep sweep/falsify sweep/run terminal yaml
+  LIBRARIES fmt::fmt)
 rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment files geometry hardware
-    odometry report/json sweep/falsify terminal trajectory view vision/camera vision/tracking
+    odometry report/json sessions/sweep sweep/falsify terminal trajectory view vision/camera vision/tracking
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(commands/track ROOMS commands/arguments experiment files report/json statistics terminal
     trajectory view vision/calibration vision/camera vision/rendering vision/tracking
   LIBRARIES fmt::fmt)
 rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
-    files gap limits odometry report/figures report/json report/text sweep/falsify terminal trajectory twin view
+    files gap limits odometry report/figures report/json report/text sessions/sweep sweep/falsify terminal
+    trajectory twin view
     vision/camera yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)

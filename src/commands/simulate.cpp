@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "replay.hpp"
 #include "rift/commands/arguments/flags.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
@@ -18,6 +17,7 @@
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
+#include "rift/sessions/sweep/replay.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
@@ -257,7 +257,8 @@ std::optional<int> ReplayProgram(const SimulateRequest& request) {
   if (request.replay.empty()) return std::nullopt;
   const fs::path folder = request.replay[0];
   const std::string id = ReplayedId(request);
-  const std::optional<ProgramReplay> replay = ReplayProgramRow(folder, id);
+  const std::optional<sessions::ProgramReplay> replay =
+      sessions::ReplayProgramRow(folder, id, FileInputs());
   if (!replay) return std::nullopt;
   const bool has_more = request.json || !request.pictures.figure.empty() ||
                         !request.pictures.video.empty() || request.pictures.window;
@@ -285,7 +286,7 @@ std::optional<int> ReplayProgram(const SimulateRequest& request) {
 Simulated ReplayFor(const SimulateRequest& request) {
   const fs::path folder = request.replay[0];
   const std::string id = ReplayedId(request);
-  Replay replay = ReplayRow(folder, id);
+  sessions::Replay replay = sessions::ReplayRow(folder, id, FileInputs());
   terminal::Say(replay.verdict);
   const fs::path out = request.out.empty() ? folder / "replay" / id : fs::path(request.out);
   CheckNames(request, out, replay.experiment, SweepFiles(folder));

@@ -11,8 +11,8 @@
 #include <exception>
 #include <filesystem>
 
-#include "commands/sweep/run.hpp"
 #include "rift/commands/arguments/inputs.hpp"
+#include "rift/sessions/sweep/journal.hpp"
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/grid.hpp"
@@ -42,7 +42,7 @@ int Write(const std::string& file, const std::filesystem::path& out) {
   const experiment::Experiment experiment = commands::ReadExperiment(file, {});
   sweep::Evaluator evaluator(experiment, file, commands::FileInputs());
   std::filesystem::create_directories(out);
-  sweep::Journal journal(out / commands::kJournalName, commands::FactsOf(experiment));
+  sweep::Journal journal(out / sessions::kJournalName, sessions::FactsOf(experiment));
   statistics::Random random(experiment.seed, 1);
   int rows = 0;
   for (const experiment::Theta& theta : experiment::GridPoints(experiment.space.parameters)) {

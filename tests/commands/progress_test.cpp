@@ -60,7 +60,7 @@ sweep::TrialRow Lost(bool falsified) {
 }
 
 TEST_CASE("The last word of a sweep's progress counts its trials") {
-  const auto sweep = [](ProgressStyle style, const SweepSize& size) {
+  const auto sweep = [](ProgressStyle style, const sessions::SweepSize& size) {
     return Said([&] {
       SweepProgress progress(style, size);
       progress.Seen(Row("a", 0.03, false), true);

@@ -13,7 +13,7 @@
 #include <regex>
 #include <thread>
 
-#include "commands/sweep/page_server.hpp"
+#include "sessions/sweep/page_server.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/running_rift.hpp"
@@ -135,7 +135,7 @@ TEST_CASE("A page server waits for the last page, whatever of the others was jus
   const test::TemporaryFolder folder;
   test::WriteText(folder / "live", "it runs");
   test::WriteText(folder / "report", "it is over");
-  commands::PageServer server({folder / "live", folder / "report"});
+  sessions::PageServer server({folder / "live", folder / "report"});
   const Address at = LiveAddress("live: " + server.Url());
   std::atomic<bool> has_asked_again = false;
   std::string first, last;

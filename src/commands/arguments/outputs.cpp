@@ -134,10 +134,4 @@ void WriteFigure(const std::filesystem::path& path, const report::Figure& figure
   files::WriteFile(path, report::Render(figure, FormatOf(path)));
 }
 
-void WriteFigureFiles(const std::filesystem::path& folder, const report::Figure& figure) {
-  for (const char* extension : {".svg", ".png"}) {
-    WriteFigure(folder / (figure.name + extension), figure);
-  }
-}
-
 }  // namespace rift::commands

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "rift/commands/sweep/suggested.hpp"
 #include "rift/experiment/path_template.hpp"
+#include "rift/sessions/sweep/suggested.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::commands {
@@ -117,20 +117,22 @@ SeriesPlan PlanGrid(const Experiment& loaded, const fs::path& out) {
 }
 
 SeriesPlan PlanSuggested(const Experiment& experiment, const fs::path& folder) {
-  const std::vector<SuggestedExperiment> suggested = ReadSuggested(folder, experiment);
+  const std::vector<sessions::SuggestedExperiment> suggested =
+      sessions::ReadSuggested(folder, experiment);
   if (suggested.empty()) {
     throw std::invalid_argument(fmt::format(
         "{} has no experiments to drive: rift sweep {} --out {} --suggest 3 writes them",
-        SuggestedFile(folder).string(), (folder / "experiment.yaml").string(), folder.string()));
+        sessions::SuggestedFile(folder).string(), (folder / "experiment.yaml").string(),
+        folder.string()));
   }
   SeriesPlan plan{.parameters = suggested.front().parameters, .sweep = experiment};
-  for (const SuggestedExperiment& one : suggested) {
+  for (const sessions::SuggestedExperiment& one : suggested) {
     Experiment settings = experiment;
     settings.space.parameters = one.parameters;
     const Experiment at = experiment::ExperimentAt(settings, one.values);
     for (int trial = 1; trial <= one.repeats; ++trial) {
       plan.trials.push_back({one.values, std::to_string(trial), at,
-                             SuggestedDrive(folder, one.number, trial),
+                             sessions::SuggestedDrive(folder, one.number, trial),
                              fmt::format("experiment {} ({}), trial {}", one.number,
                                          sweep::SettingText(one.parameters, one.values), trial)});
     }

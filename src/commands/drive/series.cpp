@@ -15,11 +15,11 @@
 #include "prompt.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
-#include "rift/commands/sweep/suggested.hpp"
 #include "rift/commands/sweep/sweep.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
+#include "rift/sessions/sweep/suggested.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "session.hpp"
@@ -177,7 +177,7 @@ SeriesPlan PlanOf(const DriveRequest& request, const Experiment& experiment, con
 }
 
 fs::path FolderOf(const DriveRequest& request, const Experiment& experiment) {
-  if (!request.suggested.empty()) return SuggestedFolder(request.suggested);
+  if (!request.suggested.empty()) return sessions::SuggestedFolder(request.suggested);
   fs::path out = NewFolder(request, experiment);
   RefuseSweepFolder(out);
   return out;

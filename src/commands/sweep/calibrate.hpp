@@ -1,13 +1,7 @@
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "request.hpp"
 #include "rift/experiment/experiment.hpp"
-#include "rift/sweep/calibrate/identification.hpp"
-#include "rift/sweep/falsify/evaluator.hpp"
-#include "rift/sweep/run/journal.hpp"
 #include "rift/sweep/run/slurm_options.hpp"
 
 namespace rift::commands {
@@ -16,23 +10,5 @@ namespace rift::commands {
 /// file, and prints the table; returns the exit code. With a cluster the fit is made there.
 int Calibrate(const SweepRequest& request, const experiment::Experiment& experiment,
               const sweep::SlurmOptions* cluster);
-
-/// What a fit found, as the journal keeps it.
-class KeptCalibration {
- public:
-  /// Reads the logs. The evaluator must outlive this.
-  explicit KeptCalibration(sweep::Evaluator& evaluator);
-
-  /// Of everything that the fit depends on beside the facts of the journal.
-  const std::string& key() const { return key_; }
-  /// Fits. What is said of progress alone is not kept.
-  sweep::JournalEntry Fit(int jobs, const sweep::Say& say);
-  /// What was kept, its notes told again; nothing where there is none.
-  std::optional<sweep::CalibrationReport> Find(sweep::Journal& journal, const sweep::Say& say);
-
- private:
-  sweep::Evaluator& evaluator_;
-  std::string key_;
-};
 
 }  // namespace rift::commands

@@ -3,11 +3,19 @@
 #include <string>
 #include <vector>
 
-#include "engine.hpp"
-#include "explain.hpp"
-#include "run.hpp"
+#include "rift/sessions/sweep/further_questions.hpp"
+#include "rift/sweep/run/worker_pool.hpp"
 
 namespace rift::commands {
+
+/// Where the trials of a sweep are run, as it was asked for.
+struct EngineRequest {
+  std::string engine = "local";  ///< local, slurm, or a file of configs/engines
+  std::string partition;
+  int shards = 0;               ///< 0: not asked for
+  std::string shard;            ///< a file: this process is a job and computes that shard
+  double copy_every_s = 600.0;  ///< of a shard
+};
 
 /// What `rift sweep` was asked for.
 struct SweepRequest {
@@ -16,7 +24,7 @@ struct SweepRequest {
   std::string out;
   std::string budget;
   std::string seconds;
-  int jobs = CoresToUse();
+  int jobs = sweep::CoresToUse();
   bool fresh = false;  ///< --force as well: replace what is in the folder
   bool any_waypoints = false;
   bool quiet = false;
@@ -28,7 +36,8 @@ struct SweepRequest {
   std::string status;
   std::vector<std::string> compare;  ///< two folders
   std::string page;                  ///< of --compare
-  ExplainRequest explain;
+  int suggest = 0;                   ///< experiments to print; 0: none
+  sessions::FurtherQuestions further;
   EngineRequest engine;
   std::string write_robot;
 };

@@ -6,10 +6,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "rift/sweep/explain/worst_trial.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {
@@ -115,24 +117,19 @@ TableRow TableRowOf(const std::string& table_csv, const std::string& id, const s
 std::string WorstIdOf(const std::string& table_csv, const std::string& name) {
   std::string_view text = table_csv;
   const std::vector<std::string> columns = NextRecord(text);
-  std::string worst, failed;
-  bool worst_fails = false;
-  double worst_gap_m = 0.0;
+  std::vector<std::string> ids;
+  std::vector<sweep::TrialFailure> trials;
   while (!text.empty()) {
     const TableRow row = RowOf(columns, NextRecord(text));
     if (!row.contains("id") || !row.contains("gap_m")) continue;
-    const bool fails = row.contains("falsified") && row.at("falsified") == "true";
-    if (fails && failed.empty()) failed = row.at("id");
+    ids.push_back(row.at("id"));
+    trials.push_back({.falsified = row.contains("falsified") && row.at("falsified") == "true"});
     if (row.at("status") != "ok") continue;
-    const double gap_m = std::strtod(row.at("gap_m").c_str(), nullptr);
-    if (!worst.empty() && gap_m <= worst_gap_m) continue;
-    worst = row.at("id");
-    worst_gap_m = gap_m;
-    worst_fails = fails;
+    trials.back().gap_m = std::strtod(row.at("gap_m").c_str(), nullptr);
   }
-  if (!worst_fails && !failed.empty()) return failed;
-  if (worst.empty()) throw std::invalid_argument(name + " has no row with a gap: name a row's id");
-  return worst;
+  const std::optional<size_t> worst = sweep::WorstTrial(trials);
+  if (!worst) throw std::invalid_argument(name + " has no row with a gap: name a row's id");
+  return ids[*worst];
 }
 
 sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row) {

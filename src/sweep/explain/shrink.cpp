@@ -2,17 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include "rift/sweep/falsify/evaluator.hpp"
-#include "rift/sweep/falsify/verdict.hpp"
-#include "rift/yaml/enum_name.hpp"
-
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <stdexcept>
+
+#include "rift/sweep/explain/worst_trial.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
+#include "rift/sweep/falsify/verdict.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -194,15 +193,15 @@ ShrunkFailure Shrink(const std::vector<experiment::Parameter>& parameters,
 
 namespace {
 
-/// Of the largest gap; where that does not fail, of the first trial that failed without one.
 int WorstIndex(const SweepResult& result) {
-  const std::optional<int> worst = WorstRow(result);
-  if (worst && result.rows[*worst].falsified) return *worst;
-  for (size_t i = 0; i < result.rows.size(); ++i) {
-    if (result.rows[i].falsified) return static_cast<int>(i);
+  std::vector<TrialFailure> trials;
+  for (const TrialRow& row : result.rows) {
+    trials.push_back({.falsified = row.falsified});
+    if (row.IsOk()) trials.back().gap_m = row.comparison.gap_m;
   }
+  const std::optional<size_t> worst = WorstTrial(trials);
   if (!worst) throw std::invalid_argument("--shrink worst: no trial has a gap");
-  return *worst;
+  return static_cast<int>(*worst);
 }
 
 /// Index of the row with that id, or of the worst.

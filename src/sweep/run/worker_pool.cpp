@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -27,6 +28,12 @@ std::string Times(int count) {
 }
 
 }  // namespace
+
+int CoresToUse() {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  return ::sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
+}
 
 /// A worker's place: the worker, when there is one, and the jobs it was given, oldest first.
 struct WorkerPool::Slot {

@@ -8,24 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "rift/yaml/flag_name.hpp"
+
 namespace rift::commands {
-
-/// "threshold_m" -> "--threshold", its unit "m" for the help.
-struct FlagName {
-  explicit FlagName(std::string_view key) {
-    for (const std::string_view known : {"_m", "_s", "_rad", "_deg", "_hz"}) {
-      if (!key.ends_with(known)) continue;
-      unit = known.substr(1);
-      key.remove_suffix(known.size());
-      break;
-    }
-    flag = "--" + std::string(key);
-    std::replace(flag.begin(), flag.end(), '_', '-');
-  }
-
-  std::string flag;
-  std::string unit;  ///< empty for a pure number
-};
 
 /// CLI::Range lets a NaN through.
 inline CLI::Validator InRange(double min, double max) {
@@ -47,7 +32,7 @@ class FlagMaker {
 
   template <class Number>
   void operator()(std::string_view key, Number& value, auto min, auto max, const char* help) {
-    const FlagName name(key);
+    const yaml::FlagName name(key);
     CLI::Option* option = app_.add_option(name.flag, value, help)
                               ->capture_default_str()
                               ->check(InRange(static_cast<double>(min), static_cast<double>(max)));
@@ -55,7 +40,7 @@ class FlagMaker {
   }
 
   void operator()(std::string_view key, bool& value, const char* help) {
-    app_.add_flag(FlagName(key).flag, value, help);
+    app_.add_flag(yaml::FlagName(key).flag, value, help);
   }
 
   template <class Enum>
@@ -66,7 +51,7 @@ class FlagMaker {
     for (const std::string_view name : names)
       choices += (choices.empty() ? "" : "|") + std::string(name);
     app_.add_option_function<std::string>(
-            FlagName(key).flag,
+            yaml::FlagName(key).flag,
             [&value, names](const std::string& text) {
               value =
                   static_cast<Enum>(std::find(names.begin(), names.end(), text) - names.begin());

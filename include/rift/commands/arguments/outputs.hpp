@@ -50,7 +50,5 @@ void RequireFigureName(const std::filesystem::path& path);
 /// Writes an SVG or PNG, as the name of the file ends. Throws std::invalid_argument for another
 /// ending.
 void WriteFigure(const std::filesystem::path& path, const report::Figure& figure);
-/// FOLDER/NAME.svg and FOLDER/NAME.png.
-void WriteFigureFiles(const std::filesystem::path& folder, const report::Figure& figure);
 
 }  // namespace rift::commands

@@ -124,9 +124,8 @@ std::vector<TableRow> TableRows(const std::string& table_csv);
 /// when there is none.
 TableRow TableRowOf(const std::string& table_csv, const std::string& id, const std::string& name);
 
-/// The id of the row with the largest gap, sweep::WorstRow() of a table; where that does not fail,
-/// of the first that failed without a gap. Throws std::invalid_argument, naming the table, when
-/// there is neither.
+/// The id of the row that sweep::WorstTrial() of a table takes. Throws std::invalid_argument,
+/// naming the table, when it takes none.
 std::string WorstIdOf(const std::string& table_csv, const std::string& name);
 
 /// The trial of a row of an experiment's table, to be run again.

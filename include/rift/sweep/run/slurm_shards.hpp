@@ -21,6 +21,8 @@ struct ShardCounts {
   int running = 0;
   int pending = 0;     ///< in the queue, not started
   std::string reason;  ///< why the first of the pending waits, as squeue has it
+
+  bool operator==(const ShardCounts&) const = default;
 };
 
 /// Shards of a sweep as job arrays of Slurm, and their rows in the journal of the sweep.

@@ -26,6 +26,9 @@ struct JobResult {
 
 class Worker;
 
+/// Cores that this process may use.
+int CoresToUse();
+
 /// Work done in processes forked from this one, so that a crash costs one job. ODE cannot run twice
 /// in one process, and worker processes share everything that was loaded before they started.
 ///

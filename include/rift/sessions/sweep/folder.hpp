@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+
+#include "rift/experiment/experiment.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
+
+namespace rift::report {
+struct Figure;
+}
+
+namespace rift::sessions {
+
+/// The experiment that a sweep saved in its folder. Throws as experiment::LoadExperiment does.
+experiment::Experiment SavedExperiment(const std::filesystem::path& folder);
+
+/// True where the folder holds what another experiment made. A sweep that has a journal goes on
+/// with it, which says by itself what differs; without one, only the same experiment may be written
+/// once more.
+bool HoldsOtherExperiment(const std::filesystem::path& folder,
+                          const experiment::Experiment& experiment);
+
+/// An earlier run's report beside a table without a gap would tell of other trials.
+void RemoveReport(const std::filesystem::path& folder);
+
+/// Of a sweep that starts over. Drives of the robot, and the suggestions that they were made from,
+/// are left alone.
+void RemoveFindings(const std::filesystem::path& folder);
+
+/// What was run, what it read, table and summary.
+void SaveResult(const std::filesystem::path& folder, const sweep::Evaluator& evaluator,
+                const sweep::SweepResult& result);
+
+/// DIR/figures/NAME.svg and NAME.png.
+void SaveFigure(const std::filesystem::path& folder, const report::Figure& figure);
+
+}  // namespace rift::sessions

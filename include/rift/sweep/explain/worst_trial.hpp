@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace rift::sweep {
+
+/// What decides which trial of a sweep is the worst.
+struct TrialFailure {
+  std::optional<double> gap_m;  ///< nothing where it has none
+  bool falsified = false;
+};
+
+/// Index of the trial with the largest gap; where that does not fail, of the first that fails.
+/// Nothing when no trial has a gap or fails. The one meaning of "worst" on the command line.
+std::optional<std::size_t> WorstTrial(const std::vector<TrialFailure>& trials);
+
+}  // namespace rift::sweep

@@ -1,0 +1,97 @@
+#include "rift/sessions/sweep/findings.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "page_evidence.hpp"
+#include "rift/files/files.hpp"
+#include "rift/report/figures/figures.hpp"
+#include "rift/report/json/fields.hpp"
+#include "rift/report/json/json.hpp"
+#include "rift/report/page/page.hpp"
+#include "rift/sessions/sweep/folder.hpp"
+#include "rift/sweep/falsify/evidence.hpp"
+#include "robot_logs.hpp"
+
+namespace rift::sessions {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Figures of an earlier sweep into the same folder, which this one may not draw again.
+void RemoveFigures(const fs::path& folder) {
+  std::error_code no_folder;
+  for (const auto& entry : fs::directory_iterator(folder, no_folder)) {
+    const std::string extension = entry.path().extension().string();
+    const bool is_ours = entry.path().filename().string().starts_with("fig") &&
+                         (extension == ".svg" || extension == ".png");
+    if (is_ours) fs::remove(entry.path());
+  }
+}
+
+/// The path of the worst trial for its picture, whose row may have none.
+std::vector<Eigen::Vector2f> PathOf(const report::ComparedPair& worst) {
+  const std::vector<Eigen::Vector2d>& samples_m = worst.profile.sim_m;
+  std::vector<Eigen::Vector2f> path_m;
+  for (size_t i = 0; i <= sweep::kPathSteps; ++i) {
+    const Eigen::Vector2d& sample_m = samples_m[i * (samples_m.size() - 1) / sweep::kPathSteps];
+    path_m.emplace_back(sample_m.cast<float>());
+  }
+  return path_m;
+}
+
+/// The figures, then the page with them.
+void SavePage(const fs::path& folder, sweep::Evaluator& evaluator, const sweep::SweepResult& result,
+              const SweepFindings& findings, const SweepObserver& observer) {
+  const std::optional<report::ComparedPair> worst = WorstPair(result, evaluator);
+  const report::SweepFigureSet set = report::SweepFigures(result, worst);
+  report::PageEvidence evidence = EvidenceFor(result, evaluator, true);
+  evidence.programs = findings.programs;
+  if (worst) evidence.worst_path_m = PathOf(*worst);
+  RemoveFigures(folder / "figures");
+  for (const report::Figure& figure : set.figures) {
+    SaveFigure(folder, figure);
+    evidence.figures.push_back(
+        {figure.title, files::ReadFile(folder / "figures" / (figure.name + ".svg"))});
+  }
+  for (const report::OmittedFigure& omitted : set.omitted) {
+    observer.say(fmt::format("note: {} is not drawn: {}", omitted.name, omitted.reason));
+  }
+  files::WriteFile(folder / "report.html",
+                   report::RenderPage(result, findings.explanation, evidence));
+}
+
+}  // namespace
+
+SweepFindings ExplainSweep(const fs::path& folder, sweep::Evaluator& evaluator,
+                           const sweep::SweepResult& result, int suggest, int jobs) {
+  sweep::ExplainOptions options;
+  if (suggest > 0) options.suggest.experiments = suggest;
+  options.robot = TakeRobotLogs(folder, evaluator);
+  SweepFindings findings{.explanation = sweep::Explain(result, options)};
+  if (suggest > 0) {
+    SaveSuggested(folder, evaluator.experiment(), result, findings.explanation.suggestions);
+  }
+  findings.likeness = sweep::MeasureSweepLikeness(evaluator, jobs);
+  findings.programs = sweep::MeasurePrograms(evaluator);
+  return findings;
+}
+
+void SaveReport(const fs::path& folder, sweep::Evaluator& evaluator,
+                const sweep::SweepResult& result, const SweepFindings& findings,
+                const SweepObserver& observer) {
+  files::WriteFile(folder / "explanation.json",
+                   report::ExplanationJson(result, findings.explanation));
+  SavePage(folder, evaluator, result, findings, observer);
+  if (!findings.programs.empty()) {
+    files::WriteFile(folder / "programs.json",
+                     report::ProgramsJson(result.parameters, findings.programs));
+  }
+  if (!findings.likeness.empty()) {
+    files::WriteFile(folder / "likeness.json",
+                     report::Dump(report::LikenessJson(findings.likeness)));
+  }
+}
+
+}  // namespace rift::sessions

@@ -1,0 +1,28 @@
+#include "rift/sweep/explain/worst_trial.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace rift::sweep {
+namespace {
+
+constexpr std::optional<double> kNoGap;
+
+TEST_CASE("The worst trial has the largest gap, the first of equal ones") {
+  CHECK(WorstTrial({{0.01, false}, {0.07, true}, {0.05, true}, {0.07, true}}) == 1u);
+  CHECK(WorstTrial({{kNoGap, false}, {0.01, false}, {0.02, false}}) == 2u);
+  CHECK(WorstTrial({{kNoGap, true}, {0.07, true}}) == 1u);
+}
+
+TEST_CASE("Where the largest gap does not fail, the worst trial is the first that does") {
+  CHECK(WorstTrial({{0.02, false}, {kNoGap, false}, {kNoGap, true}, {kNoGap, true}}) == 2u);
+  CHECK(WorstTrial({{0.05, false}, {0.02, true}}) == 1u);
+  CHECK(WorstTrial({{kNoGap, true}}) == 0u);
+}
+
+TEST_CASE("Without a gap and without a failure no trial is the worst") {
+  CHECK_FALSE(WorstTrial({}).has_value());
+  CHECK_FALSE(WorstTrial({{kNoGap, false}}).has_value());
+}
+
+}  // namespace
+}  // namespace rift::sweep
