@@ -57,14 +57,14 @@ rift_room(sweep/calibrate ROOMS control experiment gap geometry statistics sweep
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
 rift_room(report/figures ROOMS experiment files gap geometry statistics sweep/calibrate sweep/falsify trajectory
   LIBRARIES fmt::fmt)
-rift_room(report/text ROOMS experiment gap geometry odometry report/figures statistics sweep/calibrate sweep/explain
+rift_room(report/text ROOMS experiment files gap geometry odometry report/figures statistics sweep/calibrate sweep/explain
     sweep/falsify yaml
   LIBRARIES fmt::fmt)
 rift_room(report/json ROOMS control experiment gap geometry hardware odometry report/text statistics sweep/calibrate
     sweep/explain sweep/falsify sweep/run trial vision/calibration vision/rendering vision/tracking
     yaml
   LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
-rift_room(report/page ROOMS experiment odometry report/figures report/text statistics sweep/explain
+rift_room(report/page ROOMS experiment files odometry report/figures report/text statistics sweep/explain
     sweep/falsify
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(sessions/sweep ROOMS experiment files report/figures report/json report/page report/text

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <vector>
 
+#include "rift/files/shell_word.hpp"
+
 namespace rift::commands {
 namespace {
 
@@ -74,13 +76,6 @@ std::string NotesRoff(const std::string& footer) {
   return fmt::format(".SH NOTES\n.nf\n{}\n.fi\n", ToRoff(footer));
 }
 
-/// Single quotes of a shell, around text that may hold some.
-std::string Quoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 /// _arguments takes brackets and colons for its own.
 std::string ZshText(const std::string& text) {
   std::string escaped;
@@ -93,11 +88,11 @@ std::string ZshText(const std::string& text) {
 
 std::string ZshArgument(const CLI::Option& option, const std::string& flag) {
   std::string text = flag + "[" + ZshText(option.get_description()) + "]";
-  if (!TakesValue(option)) return Quoted(text);
+  if (!TakesValue(option)) return files::ShellQuoted(text);
   const Words choices = ChoicesOf(option);
   const std::string values =
       choices.empty() ? "_files" : fmt::format("({})", fmt::join(choices, " "));
-  return Quoted(text + ":" + ZshText(TypeOf(option)) + ":" + values);
+  return files::ShellQuoted(text + ":" + ZshText(TypeOf(option)) + ":" + values);
 }
 
 }  // namespace
@@ -168,8 +163,8 @@ complete -o default -F _rift rift
 std::string ZshCompletion(const CLI::App& app) {
   std::string described, cases;
   for (const CLI::App* command : app.get_subcommands({})) {
-    described += fmt::format(
-        "    {}\n", Quoted(command->get_name() + ":" + ZshText(command->get_description())));
+    described += fmt::format("    {}\n", files::ShellQuoted(command->get_name() + ":" +
+                                                            ZshText(command->get_description())));
     cases += fmt::format("    {})\n      _arguments \\\n", command->get_name());
     for (const CLI::Option* option : command->get_options()) {
       for (const std::string& flag : FlagsOf(*option)) {

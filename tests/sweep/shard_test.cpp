@@ -6,10 +6,12 @@
 #include <set>
 
 #include "rift/files/network_file_system.hpp"
+#include "rift/files/shell_word.hpp"
 #include "rift/sweep/run/journal.hpp"
 #include "rift/sweep/run/slurm.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/shell.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -193,9 +195,18 @@ TEST_CASE("Indices of an array are written as ranges") {
 }
 
 TEST_CASE("Any text becomes one word of a shell") {
-  CHECK(ShellQuoted("a b") == "'a b'");
-  CHECK(ShellQuoted("") == "''");
-  CHECK(ShellQuoted("it's $(rm) `x` \\ \"") == "'it'\\''s $(rm) `x` \\ \"'");
+  const test::TemporaryFolder folder;
+  const std::string printed = folder / "printed";
+  for (const std::string text : {"a b", "", "it's $(rm) `x` \\ \"", "~root", "*", "a\nb", "#1",
+                                 "out/sweep", "x=1,y:2@3%4"}) {
+    for (const std::string& word : {files::ShellQuoted(text), files::ShellWord(text)}) {
+      INFO(word);
+      REQUIRE(test::RunShell("printf %s " + word + " > " + printed) == 0);
+      CHECK(test::ReadFile(printed) == text);
+    }
+  }
+  CHECK(files::ShellQuoted("a b") == "'a b'");
+  CHECK(files::ShellWord("out/sweep_1.5") == "out/sweep_1.5");
 }
 
 }  // namespace

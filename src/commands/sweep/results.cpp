@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "rift/files/shell_word.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
 #include "rift/terminal/exit_code.hpp"
@@ -25,14 +26,6 @@ bool MayFail(const sweep::SweepResult& result) {
          });
 }
 
-/// As it can be typed again.
-std::string ForShell(const std::string& word) {
-  if (word.find_first_of(" \t'\"\\$&;()<>|*?[]#`!{}") == word.npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 }  // namespace
 
 int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
@@ -43,7 +36,7 @@ int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
   }
   terminal::Say(
       fmt::format("stopped; the same command goes on where it was (rift sweep --status {})",
-                  ForShell(out.string())));
+                  files::ShellWord(out.string())));
   return terminal::kStopped;
 }
 
@@ -92,8 +85,8 @@ void SayWhere(const SweepRequest& request, const experiment::Experiment& experim
               const fs::path& out) {
   if (request.quiet) return;
   if (experiment.candidate.kind != experiment::CandidateKind::kLogs) {
-    terminal::Say(
-        fmt::format("worst row again: rift simulate --replay {} worst", ForShell(out.string())));
+    terminal::Say(fmt::format("worst row again: rift simulate --replay {} worst",
+                              files::ShellWord(out.string())));
   }
   terminal::Say("report: " + (out / "report.html").string());
 }

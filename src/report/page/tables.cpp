@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "rift/experiment/words.hpp"
+#include "rift/files/shell_word.hpp"
 #include "rift/report/figures/setting_grid.hpp"
 
 namespace rift::report {
@@ -43,16 +44,6 @@ std::string Note(std::size_t shown, std::size_t all, std::string_view what) {
                      all, what);
 }
 
-/// A file name as a shell takes it for one word.
-std::string ShellWord(const std::string& text) {
-  static constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=+,:@";
-  if (!text.empty() && text.find_first_not_of(kPlain) == text.npos) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 const char* MarkOf(gap::Verdict verdict) {
   if (verdict == gap::Verdict::kFalsified) return "fail";
   return verdict == gap::Verdict::kUndecided ? "unknown" : "";
@@ -62,7 +53,7 @@ const char* MarkOf(gap::Verdict verdict) {
 json AgainCell(const sweep::TrialRow& row, std::ptrdiff_t number, const std::string& gap_flags) {
   if (gap_flags.empty()) return number;
   if (!row.IsOk()) return nullptr;
-  return ShellWord(row.candidate) + " " + ShellWord(row.reference) + gap_flags;
+  return files::ShellWord(row.candidate) + " " + files::ShellWord(row.reference) + gap_flags;
 }
 
 json TrialCells(const sweep::TrialRow& row, std::ptrdiff_t number, const std::string& gap_flags) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "rift/files/shell_word.hpp"
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/text/findings.hpp"
 #include "rift/sweep/falsify/result.hpp"
@@ -225,7 +226,7 @@ std::string BriefText(const sweep::SweepResult& result, const sweep::Explanation
 }
 
 std::string ReplayCommand(const std::string& folder, size_t row) {
-  return fmt::format("rift simulate --replay {} {}", folder, row + 1);
+  return fmt::format("rift simulate --replay {} {}", files::ShellWord(folder), row + 1);
 }
 
 std::string ShrunkText(const sweep::SweepResult& result, const sweep::ShrunkRow& found,

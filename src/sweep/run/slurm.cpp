@@ -69,12 +69,6 @@ std::string IndexRanges(const std::vector<int>& indices) {
   return text;
 }
 
-std::string ShellQuoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string SubmitArray(const SlurmArray& array, const SlurmOptions& options) {
   // A job would inherit the limits under which ExternalProgram runs sbatch.
   std::vector<std::string> arguments{"sbatch",

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "rift/files/files.hpp"
+#include "rift/files/shell_word.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/sweep/run/slurm.hpp"
 
@@ -149,8 +150,9 @@ std::string SlurmShards::Script(const fs::path& folder) const {
   for (const std::string& line : options_.prologue) script += line + '\n';
   const std::string program = options_.program.empty() ? OwnProgram().string() : options_.program;
   script += fmt::format("exec {} sweep {} --out {} --shard {}/\"$SLURM_ARRAY_TASK_ID\".shard",
-                        ShellQuoted(program), ShellQuoted((folder / "experiment.yaml").string()),
-                        ShellQuoted(out_.string()), ShellQuoted(folder.string()));
+                        files::ShellQuoted(program),
+                        files::ShellQuoted((folder / "experiment.yaml").string()),
+                        files::ShellQuoted(out_.string()), files::ShellQuoted(folder.string()));
   // What is too large has been refused by whoever submits.
   return script + fmt::format(" --jobs {} --copy-every {:g} --large-inputs\n",
                               options_.cpus_per_task, options_.copy_every_s);

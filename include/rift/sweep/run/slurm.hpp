@@ -40,9 +40,6 @@ struct SlurmTask {
 /// "0-4,7" of {0, 1, 2, 3, 4, 7}.
 std::string IndexRanges(const std::vector<int>& indices);
 
-/// Text as one word of a POSIX shell.
-std::string ShellQuoted(const std::string& text);
-
 /// The commands of Slurm, started by argument lists, never through a shell. All throw SlurmBusy
 /// when Slurm cannot answer now, and std::runtime_error, with its last line, when it refuses or is
 /// not installed.
