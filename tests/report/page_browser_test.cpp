@@ -120,7 +120,7 @@ TEST_CASE("Sentence, tables, paths and charts follow the filter") {
     setTimeout(() => probe([document.getElementById('headline').textContent,
       document.querySelectorAll('#settings tbody tr').length,
       document.querySelectorAll('#trials tbody tr').length,
-      document.querySelectorAll('#paths .other').length,
+      document.querySelectorAll('#paths svg:not(.errors) .other').length,
       document.querySelectorAll('#chart-0 [fill^="rgb"]').length].join('|')), 300);)";
   const BrowserVisit visit = Visit(WithScript(PageWithPaths(), WhenDrawn(look)));
   SKIP_WITHOUT_BROWSER(visit);
@@ -161,7 +161,7 @@ TEST_CASE("The pointer and the focus on a row light its path and say what it is"
   const std::string look = R"(
     const row = document.querySelector('#trials tbody tr[data-row="5"]');
     const seen = [];
-    const note = () => seen.push(document.querySelectorAll('#paths .lit polyline').length,
+    const note = () => seen.push(document.querySelectorAll('#paths svg:not(.errors) .lit polyline').length,
       document.getElementById('paths-lit').textContent);
     row.cells[0].dispatchEvent(new MouseEvent('mouseover', {bubbles: true})); note();
     row.closest('table').dispatchEvent(new MouseEvent('mouseleave')); note();
@@ -171,6 +171,39 @@ TEST_CASE("The pointer and the focus on a row light its path and say what it is"
   SKIP_WITHOUT_BROWSER(visit);
   const std::string row = "Row 5: ice, v_min 0.20, v_max 0.30, trial 1: gap 0.0260 m.";
   CHECK_THAT(Probe(visit), Contains("PROBE 2|" + row + "|0|Worst: row") && Contains("|2|" + row));
+}
+
+TEST_CASE("One cursor shows a row's error at a place, on the paths and on the strip below them") {
+  const std::string look = R"(
+    const row = document.querySelector('#trials tbody tr[data-row="5"]');
+    row.cells[0].dispatchEvent(new MouseEvent('mouseover', {bubbles: true}));
+    const [paths, strip] = document.querySelectorAll('#paths svg'), seen = [];
+    const note = () => seen.push(strip.getAttribute('aria-valuenow'),
+      strip.getAttribute('aria-valuetext'), paths.querySelectorAll('.cursor circle').length,
+      strip.querySelector('.cursor').getAttribute('visibility'));
+    const press = key => strip.dispatchEvent(new KeyboardEvent('keydown', {key}));
+    for (let i = 0; i < 5; ++i) press('PageUp');
+    note();
+    press('ArrowLeft'); press('Home'); note();
+    // The pointer on the lit path, a quarter of the way along it; then off it.
+    const box = paths.getBoundingClientRect();
+    const places = paths.querySelector('.lit polyline').getAttribute('points').split(' ');
+    const [x, y] = places[(places.length - 1) / 4].split(',').map(Number);
+    const point = (x, y) => paths.dispatchEvent(new PointerEvent('pointermove',
+      {clientX: box.x + x, clientY: box.y + y}));
+    point(x, y); note();
+    point(x, y + 90); note();
+    seen.push(document.getElementById('paths-lit').textContent);
+    probe(seen.join('|'));)";
+  const BrowserVisit visit = Visit(WithScript(PageWithPaths(), WhenDrawn(look)));
+  SKIP_WITHOUT_BROWSER(visit);
+  // Row 5 bulges by 8 mm in its middle, 5.7 mm a quarter of the way.
+  CHECK(Probe(visit) ==
+        "PROBE 0.50|At 50 % of the way: 0.008 m.|2|visible|"
+        "0.00|At 0 % of the way: 0.000 m.|2|visible|"
+        "0.25|At 25 % of the way: 0.006 m.|2|visible|"
+        "0.25|no place|0|hidden|"
+        "Row 5: ice, v_min 0.20, v_max 0.30, trial 1: gap 0.0260 m.");
 }
 
 TEST_CASE("Words of the page are explained on hover") {

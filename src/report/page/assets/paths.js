@@ -61,7 +61,7 @@ function drawPaths(k) {
     pathPlace.textContent = 'No path is kept of these trials.';
     return;
   }
-  const wide = pathPlace.clientWidth, { scale, high, to } = frame(framed, wide, 300);
+  const wide = pathPlace.clientWidth, { scale, high, to } = frame(framed, wide, 236);
   const line = (list, name) => element('polyline', { class: name, points: list.map(p => to(p).map(v => v.toFixed(1)).join(',')).join(' ') });
   const svg = element('svg', { width: wide, height: high, viewBox: `0 0 ${wide} ${high}`, role: 'img', 'aria-labelledby': 'paths-legend' });
   if (band) svg.append(element('polygon', { class: 'band', points: band.map(p => to(p).map(v => v.toFixed(1)).join(',')).join(' ') }));
@@ -90,25 +90,61 @@ function drawPaths(k) {
   legend(view, references, worst, others.length);
   const say = document.getElementById('paths-lit');
   const worstText = worst ? `Worst: row ${view.worst}, ${worst.text}.` : '';
+  let shown = worst ? [view.worst] : [];
   say.textContent = worstText;
+  const cursor = element('g', { class: 'cursor' });
+  svg.append(cursor);
+  // Where the shown rows and their references are at u.
+  const place = u => {
+    const pairs = u === null ? [] : shown.filter(row => errorsOf(row)).map(row => {
+      const path = paths.rows[row];
+      return [at(points(path.d), u), at(points(paths.references[path.reference].d), u)];
+    });
+    cursor.replaceChildren(...pairs.flatMap(pair => [line(pair, 'gap'), ...pair.map(p => {
+      const [cx, cy] = to(p);
+      return element('circle', { cx, cy, r: 3.5 });
+    })]));
+    if (pairs.length !== 1) return '';
+    const [a, b] = pairs[0];
+    return `At ${Math.round(100 * u)} % of the way: ${Math.hypot(a[0] - b[0], a[1] - b[1]).toFixed(3)} m.`;
+  };
+  const strip = errorStrip(view, wide, place);
+  if (strip) pathPlace.append(strip.svg);
   lightRows = rows => {
     const known = rows.filter(row => paths.rows[row]);
     svg.classList.toggle('dimmed', known.length > 0);
     lit.replaceChildren(...known.map(row => line(points(paths.rows[row].d), paths.rows[row].fails ? 'fail' : 'pass')),
       ...(known.length === 1 ? gapLine(known[0]) : []));
+    shown = known.length > 0 ? known : worst ? [view.worst] : [];
     say.textContent = rows.length === 0 ? worstText
       : known.length === 0 ? 'No path is kept of it.'
         : known.length === 1 ? `Row ${known[0]}: ${paths.rows[known[0]].text}.` : `${known.length} paths.`;
+    strip?.light(known);
+    strip?.cursor(null);
   };
-  svg.addEventListener('mouseover', event => {
-    const row = event.target.dataset?.row;
-    lightRows(row ? [Number(row)] : []);
+  let pointed;
+  for (const drawing of [svg, strip?.svg]) {
+    drawing?.addEventListener('mouseover', event => {
+      const row = event.target.dataset?.row;
+      if (row !== pointed) lightRows(row ? [Number(row)] : []);
+      pointed = row;
+    });
+    drawing?.addEventListener('mouseleave', () => lightRows([]));
+    drawing?.addEventListener('click', event => {
+      const row = event.target.dataset?.row;
+      if (row) location.hash = '#trials?row=' + row;
+    });
+  }
+  // On a path the cursor is at its nearest point.
+  svg.addEventListener('pointermove', event => {
+    if (!strip || shown.length !== 1 || !errorsOf(shown[0])) return;
+    const box = svg.getBoundingClientRect(), zoom = wide / box.width;
+    const here = [(event.clientX - box.left) * zoom, (event.clientY - box.top) * zoom];
+    const far = points(paths.rows[shown[0]].d).map(p => Math.hypot(...to(p).map((v, i) => v - here[i])));
+    const nearest = far.indexOf(Math.min(...far));
+    strip.cursor(far[nearest] < 20 ? nearest / (far.length - 1) : null);
   });
-  svg.addEventListener('mouseleave', () => lightRows([]));
-  svg.addEventListener('click', event => {
-    const row = event.target.dataset?.row;
-    if (row) location.hash = '#trials?row=' + row;
-  });
+  svg.addEventListener('pointerleave', () => strip?.cursor(null));
 }
 
 function legend(view, references, worst, others) {
