@@ -71,15 +71,18 @@ rift_room(view ROOMS control geometry trajectory trial vision/calibration vision
   OPTIONS simulation
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
+rift_room(sessions/drive ROOMS experiment files geometry hardware odometry report/json sweep/falsify
+    trajectory view vision/camera vision/tracking
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal trajectory
   LIBRARIES CLI11::CLI11 fmt::fmt)
 rift_room(commands/sweep ROOMS commands/arguments experiment files report/figures report/json
     report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run terminal
     yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Boost::headers nlohmann_json::nlohmann_json)
-rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment files geometry hardware
-    odometry report/json sweep/falsify terminal trajectory view vision/camera vision/tracking
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
+rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment hardware report/json
+    sessions/drive terminal view
+  LIBRARIES fmt::fmt)
 rift_room(commands/track ROOMS commands/arguments experiment files report/json statistics terminal
     trajectory view vision/calibration vision/camera vision/rendering vision/tracking
   LIBRARIES fmt::fmt)

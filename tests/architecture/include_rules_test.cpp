@@ -63,7 +63,7 @@ const std::vector<Reserved> kReserved{
     {"fstream|iostream|cstdio",
      {"commands", "files", "hardware", "report", "terminal", "twin", "vision"}},
     {"thread|mutex|condition_variable|future",
-     {"commands", "files", "hardware", "vision", "twin", "sweep"}},
+     {"commands", "files", "hardware", "sessions", "vision", "twin", "sweep"}},
 };
 
 struct Include {

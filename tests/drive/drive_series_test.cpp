@@ -1,17 +1,18 @@
-#include "commands/drive/plan.hpp"
+#include "rift/sessions/drive/plan.hpp"
 
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <set>
 
-#include "commands/drive/before_each.hpp"
+#include "commands/drive/request.hpp"
 #include "rift/files/files.hpp"
+#include "sessions/drive/before_each.hpp"
 #include "support/paper_waypoints.hpp"
 #include "support/process.hpp"
 #include "support/until.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 experiment::ParameterValue Word(const std::string& text) { return {text, std::nullopt}; }
@@ -93,7 +94,7 @@ TEST_CASE("Repeats go into numbered folders that a sweep of one setting reads") 
 }
 
 TEST_CASE("A command is parted into words at its blanks and no shell reads them") {
-  CHECK(WordsOf("twin --set 'a b' $HOME") ==
+  CHECK(commands::WordsOf("twin --set 'a b' $HOME") ==
         std::vector<std::string>{"twin", "--set", "a b", "$HOME"});
 }
 
@@ -129,4 +130,4 @@ TEST_CASE("A scene that was reset needs no address and one that fails ends the s
 }
 
 }  // namespace
-}  // namespace rift::commands
+}  // namespace rift::sessions

@@ -14,7 +14,7 @@
 #include "rift/files/append_file.hpp"
 #include "rift/hardware/real_robot.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 
 /// What a drive has recorded since it was last written.
 struct DriveRows {
@@ -82,4 +82,4 @@ class DriveLog : public hardware::DriveObserver {
   std::optional<std::chrono::steady_clock::time_point> asked_;
 };
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

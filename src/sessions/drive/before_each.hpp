@@ -6,17 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace rift::commands {
+#include "rift/sessions/drive/setup.hpp"
 
-/// Where a robot and its camera are to be found; what is empty stays as it was.
-struct DriveAddress {
-  std::string port;
-  std::string camera;
-  std::string calibration;
-};
-
-/// The words of a command: blanks part them unless they stand between quotes.
-std::vector<std::string> WordsOf(const std::string& command);
+namespace rift::sessions {
 
 /// The address in a line of JSON, as `rift simulate --twin` prints it. Throws std::invalid_argument
 /// for text that is no object of texts.
@@ -47,4 +39,4 @@ class SceneCommand {
   std::optional<DriveAddress> address_;
 };
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

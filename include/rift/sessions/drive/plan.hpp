@@ -6,7 +6,7 @@
 
 #include "rift/experiment/experiment.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 
 /// One drive of a table of them.
 struct PlannedTrial {
@@ -35,14 +35,21 @@ struct SeriesPlan {
 /// varies what no drive can.
 SeriesPlan PlanGrid(const experiment::Experiment& experiment, const std::filesystem::path& out);
 
-/// The experiments of a sweep's suggested.yaml, each as often as it says, below DIR/suggested. The
-/// plan's sweep is the experiment itself. Throws std::invalid_argument when there is nothing to
-/// drive.
-SeriesPlan PlanSuggested(const experiment::Experiment& experiment,
-                         const std::filesystem::path& folder);
+/// A setting that somebody chose.
+struct ChosenSetting {
+  std::string name;  ///< "experiment 3"
+  std::vector<experiment::Parameter> parameters;
+  experiment::Theta values;                      ///< of these
+  std::vector<std::filesystem::path> folders{};  ///< one for each drive
+};
+
+/// Settings of an experiment, at least one, each as often as it says. The plan's sweep is the
+/// experiment itself.
+SeriesPlan PlanChosen(const experiment::Experiment& experiment,
+                      const std::vector<ChosenSetting>& settings);
 
 /// The experiment `count` times, into out/1, out/2, ...
 SeriesPlan PlanRepeats(const experiment::Experiment& experiment, int count,
                        const std::filesystem::path& out);
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

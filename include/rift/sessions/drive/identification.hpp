@@ -2,7 +2,7 @@
 
 #include "rift/experiment/experiment.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 
 /// How often the program of an identification is driven unless --repeat says it.
 constexpr int kIdentificationRuns = 5;
@@ -16,4 +16,4 @@ experiment::Experiment IdentificationDrive(experiment::Experiment experiment);
 /// experiment fits already stays; without, it is what these drives identify.
 experiment::Experiment IdentificationFit(experiment::Experiment logs);
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

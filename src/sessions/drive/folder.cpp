@@ -1,30 +1,12 @@
 #include "folder.hpp"
 
-#include <fmt/format.h>
-
 #include <memory>
-#include <stdexcept>
 
-#include "rift/commands/arguments/outputs.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 
-namespace rift::commands {
-
-namespace fs = std::filesystem;
-
-// A robot's run cannot be repeated to the byte as a simulated one can.
-std::filesystem::path NewFolder(const DriveRequest& request,
-                                const experiment::Experiment& experiment) {
-  fs::path folder =
-      request.out.empty() ? OutputOf("", experiment.name + "_drive") : fs::path(request.out);
-  RefuseSweepFolder(folder);
-  if (!fs::exists(folder / "trajectory.csv")) return folder;
-  throw std::invalid_argument(fmt::format(
-      "{} holds a run already, and a robot does not repeat itself: choose another --out",
-      folder.string()));
-}
+namespace rift::sessions {
 
 void BeginDriveFolder(const std::filesystem::path& folder, const experiment::Experiment& experiment,
                       const vision::CameraModel& camera) {
@@ -51,4 +33,4 @@ std::string CloseDrive(const std::filesystem::path& folder,
   return failure;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

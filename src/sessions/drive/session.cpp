@@ -1,4 +1,4 @@
-#include "session.hpp"
+#include "rift/sessions/drive/session.hpp"
 
 #include <fmt/format.h>
 
@@ -6,21 +6,21 @@
 #include <chrono>
 #include <future>
 #include <stdexcept>
+#include <utility>
 
 #include "folder.hpp"
-#include "rift/commands/arguments/inputs.hpp"
+#include "rift/experiment/task.hpp"
 #include "rift/files/files.hpp"
 #include "rift/hardware/camera_poses.hpp"
 #include "rift/hardware/serial_port.hpp"
 #include "rift/report/json/json.hpp"
-#include "rift/terminal/print.hpp"
 #include "rift/view/drive_view.hpp"
 #include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/tracking/session.hpp"
 #include "start_gate.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 // A window costs a decoded and drawn picture each time; the tracker needs the processor more.
@@ -40,13 +40,14 @@ vision::CameraModel ReadCameraWithWorld(const std::string& calibration) {
 }
 
 /// Holds the first picture against what a drive needs, and tells the operator what is amiss.
-void CheckFirstPicture(const DriveRequest& request, vision::CameraSession& session) {
+void CheckFirstPicture(const DriveSetup& setup, const Console& console,
+                       vision::CameraSession& session) {
   const vision::Frame first = session.FirstPicture();
   if (session.capture().IsRecording()) {
     throw std::invalid_argument(fmt::format(
         "{} is a recording, and a robot is driven by what is seen now: name a device such as "
         "/dev/video0, or a stream such as http://camera/video",
-        request.camera));
+        setup.address.camera));
   }
   const vision::TagOptions& tag = session.tag();
   const vision::Look look = session.LookAt(first, 1);
@@ -55,16 +56,28 @@ void CheckFirstPicture(const DriveRequest& request, vision::CameraSession& sessi
         "{} tags with the robot's id {} are in the picture: take away all but the robot's",
         look.robot_tags, tag.id));
   }
-  const auto moved = vision::MovedWarning(look.moved_m, request.session.moved_m);
-  if (moved) terminal::Say("warning: " + *moved);
+  const auto moved = vision::MovedWarning(look.moved_m, setup.session.moved_m);
+  if (moved) console.say("warning: " + *moved);
   if (look.robot_tags == 0) {
-    terminal::Say("the robot's tag is not in the picture yet: put the robot on its place");
+    console.say("the robot's tag is not in the picture yet: put the robot on its place");
   }
 }
 
 bool HasArrived(const hardware::DriveRun& run) {
   return run.trial.outcome == trial::Outcome::kReached;
 }
+
+/// What was shown in place goes with it.
+class ShownLine {
+ public:
+  explicit ShownLine(const Console& console) : console_(console) {}
+  ~ShownLine() { console_.hide(); }
+  ShownLine(const ShownLine&) = delete;
+  ShownLine& operator=(const ShownLine&) = delete;
+
+ private:
+  const Console& console_;
+};
 
 }  // namespace
 
@@ -73,23 +86,24 @@ hardware::DriveTask DriveTaskOf(const experiment::Experiment& experiment) {
           experiment.hardware};
 }
 
-void SaySteering(const experiment::Experiment& experiment, const hardware::DriveRun& run) {
-  for (const std::string& line :
-       report::SteeringLines(report::SteeringOf(experiment, run), run.trial.limits)) {
-    terminal::Say(line);
-  }
+std::vector<std::string> SteeringLines(const experiment::Experiment& experiment,
+                                       const hardware::DriveRun& run) {
+  return report::SteeringLines(report::SteeringOf(experiment, run), run.trial.limits);
 }
 
 /// All that a drive is made of, opened in the order in which it is cheap to fail.
 class DriveSession::Drivers {
  public:
-  Drivers(const DriveRequest& request, const experiment::Experiment& experiment,
+  /// `setup` and `console` must outlive it.
+  Drivers(const DriveSetup& setup, const Console& console, const experiment::Experiment& experiment,
           const vision::CameraModel& camera)
-      : request_(request),
-        port_(request.port, experiment.hardware.line.baud,
+      : setup_(setup),
+        console_(console),
+        port_(setup.address.port, experiment.hardware.line.baud,
               experiment.hardware.line.write_timeout_s),
-        session_(request.camera, camera, experiment.track.capture, TagOn(experiment)) {
-    CheckFirstPicture(request, session_);
+        session_(setup.address.camera, camera, experiment.track.capture,
+                 experiment::TagOn(experiment)) {
+    CheckFirstPicture(setup, console, session_);
     const auto tracker = std::make_shared<vision::TagTracker>(session_.MakeTracker());
     poses_ = std::make_unique<hardware::CameraPoses>(
         session_.TakeCapture(),
@@ -100,12 +114,12 @@ class DriveSession::Drivers {
                            DriveLog& log) {
     has_started_ = false;
     StartGate gate(experiment.hardware.start, experiment::TaskOf(experiment).Start(),
-                   request_.any_start || request_.dry_run, PersonAtGate(person));
+                   setup_.any_start || setup_.dry_run, PersonAtGate(person));
     return hardware::Drive({.line = port_,
                             .poses = *poses_,
                             .clock = clock_,
                             .stoppers = {person.Stopper(), log.Stopper()},
-                            .say = terminal::Say,
+                            .say = console_.say,
                             .may_arm =
                                 [&] {
                                   RefuseTwoTags();
@@ -113,7 +127,7 @@ class DriveSession::Drivers {
                                   return has_started_.load();
                                 },
                             .observer = &log,
-                            .dry_run = request_.dry_run},
+                            .dry_run = setup_.dry_run},
                            DriveTaskOf(experiment));
   }
 
@@ -122,7 +136,7 @@ class DriveSession::Drivers {
                                  hardware::Operator& person, DriveLog& log) {
     const std::string missing = view::MissingDisplay();
     if (!missing.empty()) {
-      terminal::Say(missing + "; driving without --view");
+      console_.say(missing + "; driving without --view");
       return Drive(experiment, person, log);
     }
     view::DriveView view(session_.camera(), experiment::TaskOf(experiment));
@@ -141,10 +155,10 @@ class DriveSession::Drivers {
 
  private:
   StartGate::Person PersonAtGate(hardware::Operator& person) const {
-    StartGate::Person at_gate{.has_agreed = [&person] { return person.MayArm(terminal::Say); },
-                              .say = terminal::Say};
-    if (!request_.yes) at_gate.ask_again = [&person] { person.AskAgain(); };
-    if (!request_.yes) at_gate.show = terminal::LiveLine::Show;
+    StartGate::Person at_gate{.has_agreed = [this, &person] { return person.MayArm(console_.say); },
+                              .say = console_.say};
+    if (!setup_.yes) at_gate.ask_again = [&person] { person.AskAgain(); };
+    if (!setup_.yes) at_gate.show = console_.show;
     return at_gate;
   }
 
@@ -171,7 +185,8 @@ class DriveSession::Drivers {
     return PlacementText(PlacementOf(*seen, experiment::TaskOf(experiment).Start()));
   }
 
-  const DriveRequest& request_;
+  const DriveSetup& setup_;
+  const Console& console_;
   std::atomic<bool> has_started_ = false;  // asked for by the window's thread
   hardware::SteadyClock clock_;
   hardware::SerialPort port_;
@@ -179,7 +194,8 @@ class DriveSession::Drivers {
   std::unique_ptr<hardware::CameraPoses> poses_;
 };
 
-DriveSession::DriveSession(const DriveRequest& request) : request_(request) {}
+DriveSession::DriveSession(DriveSetup setup, Console console)
+    : setup_(std::move(setup)), console_(std::move(console)) {}
 DriveSession::~DriveSession() = default;
 void DriveSession::Close() { drivers_.reset(); }
 
@@ -187,31 +203,30 @@ void DriveSession::RequireLog() const {
   if (!log_failure_.empty()) throw std::runtime_error("the log is not whole: " + log_failure_);
 }
 
-void DriveSession::MoveTo(const std::string& port, const std::string& camera,
-                          const std::string& calibration) {
+void DriveSession::MoveTo(const DriveAddress& address) {
   Close();
-  if (!port.empty()) request_.port = port;
-  if (!camera.empty()) request_.camera = camera;
-  if (!calibration.empty()) request_.calibration = calibration;
+  if (!address.port.empty()) setup_.address.port = address.port;
+  if (!address.camera.empty()) setup_.address.camera = address.camera;
+  if (!address.calibration.empty()) setup_.address.calibration = address.calibration;
 }
 
 hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
                                            const experiment::Experiment& experiment) {
-  const terminal::LiveLine line;
-  hardware::Operator person(request_.yes);  // first, and last to go: a signal must not end a save
+  const ShownLine line(console_);
+  hardware::Operator person(setup_.yes);  // first, and last to go: a signal must not end a save
   log_failure_.clear();
   DriveLog log(WriterInto(folder, experiment));
   // The next setting may be on a ramp, where the tag is not held to the floor.
-  if (drivers_ && drivers_->ground() != TagOn(experiment).ground) Close();
+  if (drivers_ && drivers_->ground() != experiment::TagOn(experiment).ground) Close();
   if (!drivers_) {
-    drivers_ =
-        std::make_unique<Drivers>(request_, experiment, ReadCameraWithWorld(request_.calibration));
+    drivers_ = std::make_unique<Drivers>(setup_, console_, experiment,
+                                         ReadCameraWithWorld(setup_.address.calibration));
   }
   BeginDriveFolder(folder, experiment, drivers_->camera());
-  if (request_.dry_run) terminal::Say("dry run: nothing moves, the robot is sent zeros alone");
-  const hardware::DriveRun run = request_.view ? drivers_->DriveInView(experiment, person, log)
-                                               : drivers_->Drive(experiment, person, log);
-  if (run.has_begun && !HasArrived(run)) terminal::RingBell();
+  if (setup_.dry_run) console_.say("dry run: nothing moves, the robot is sent zeros alone");
+  const hardware::DriveRun run = setup_.view ? drivers_->DriveInView(experiment, person, log)
+                                             : drivers_->Drive(experiment, person, log);
+  if (run.has_begun && !HasArrived(run)) console_.ring();
   if (run.has_begun) log_failure_ = CloseDrive(folder, experiment, run, log);
   const bool was_slow =
       run.evidence.stop && run.evidence.stop->reason == hardware::StopReason::kLogFailed;
@@ -221,4 +236,4 @@ hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
   return run;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

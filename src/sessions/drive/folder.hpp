@@ -4,16 +4,11 @@
 #include <string>
 
 #include "log.hpp"
-#include "request.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/hardware/arming.hpp"
 #include "rift/vision/camera/camera_model.hpp"
 
-namespace rift::commands {
-
-/// Where its runs go. Throws std::invalid_argument when that holds a single run already.
-std::filesystem::path NewFolder(const DriveRequest& request,
-                                const experiment::Experiment& experiment);
+namespace rift::sessions {
 
 /// Before the robot moves: the experiment and the camera (experiment.yaml, camera.yaml), so that a
 /// folder that cannot be written is known in time.
@@ -32,4 +27,4 @@ std::string CloseDrive(const std::filesystem::path& folder,
                        const experiment::Experiment& experiment, const hardware::DriveRun& run,
                        DriveLog& log);
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

@@ -3,30 +3,31 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "request.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/hardware/arming.hpp"
+#include "rift/sessions/drive/setup.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 
 /// What the robot has to know of an experiment.
 hardware::DriveTask DriveTaskOf(const experiment::Experiment& experiment);
 
-/// Says why a drive circled or did not arrive, and what to set.
-void SaySteering(const experiment::Experiment& experiment, const hardware::DriveRun& run);
+/// Why a drive circled or did not arrive, and what to set: a line each.
+std::vector<std::string> SteeringLines(const experiment::Experiment& experiment,
+                                       const hardware::DriveRun& run);
 
 /// Port and camera of a robot, open from its first drive to its last.
 class DriveSession {
  public:
-  /// `request` must outlive it.
-  explicit DriveSession(const DriveRequest& request);
+  DriveSession(DriveSetup setup, Console console);
   ~DriveSession();
   DriveSession(const DriveSession&) = delete;
   DriveSession& operator=(const DriveSession&) = delete;
 
   /// Where the next drive finds port, camera and calibration; they are opened then.
-  void MoveTo(const std::string& port, const std::string& camera, const std::string& calibration);
+  void MoveTo(const DriveAddress& address);
   void Close();
   /// Waits for the person's start, drives, and saves the run. Throws std::runtime_error when the
   /// drive cannot begin. After anything but a full trial port and camera are opened anew.
@@ -40,9 +41,10 @@ class DriveSession {
  private:
   class Drivers;
 
-  DriveRequest request_;
+  DriveSetup setup_;
+  Console console_;
   std::string log_failure_;
   std::unique_ptr<Drivers> drivers_;
 };
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -16,7 +15,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 constexpr int kNotFound = 127;  // as shells have it
@@ -69,10 +68,6 @@ std::string HowItEnded(int status) {
 }
 
 }  // namespace
-
-std::vector<std::string> WordsOf(const std::string& command) {
-  return CLI::detail::split_up(command);
-}
 
 DriveAddress AddressOf(const std::string& json) {
   DriveAddress address;
@@ -141,4 +136,4 @@ void SceneCommand::End() {
 
 SceneCommand::~SceneCommand() { End(); }
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 constexpr double kShowPeriod_s = 0.1;
@@ -88,4 +88,4 @@ void StartGate::CountDown(double now_s) {
   person_.show(fmt::format("{} ...", left_s));
 }
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

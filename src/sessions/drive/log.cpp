@@ -12,7 +12,7 @@
 #include "rift/report/json/json.hpp"
 #include "rift/trajectory/log.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 using std::chrono::duration;
@@ -178,4 +178,4 @@ std::string DriveLog::Close(const hardware::DriveRecord& evidence) {
   return shared_->failure;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

@@ -1,8 +1,8 @@
-#include "identification.hpp"
+#include "rift/sessions/drive/identification.hpp"
 
 #include <algorithm>
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 control::Segment Straight(double way_m, double power) {
@@ -69,4 +69,4 @@ experiment::Experiment IdentificationFit(experiment::Experiment logs) {
   return logs;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

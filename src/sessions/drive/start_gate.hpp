@@ -7,7 +7,7 @@
 #include "rift/geometry/pose2.hpp"
 #include "rift/hardware/options.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 
 /// How far a robot is from where it has to start.
 struct Placement {
@@ -59,4 +59,4 @@ class StartGate {
   int seconds_shown_ = 0;
 };
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

@@ -1,15 +1,14 @@
-#include "plan.hpp"
+#include "rift/sessions/drive/plan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "rift/commands/sweep/suggested.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 namespace fs = std::filesystem;
@@ -116,23 +115,17 @@ SeriesPlan PlanGrid(const Experiment& loaded, const fs::path& out) {
   return plan;
 }
 
-SeriesPlan PlanSuggested(const Experiment& experiment, const fs::path& folder) {
-  const std::vector<SuggestedExperiment> suggested = ReadSuggested(folder, experiment);
-  if (suggested.empty()) {
-    throw std::invalid_argument(fmt::format(
-        "{} has no experiments to drive: rift sweep {} --out {} --suggest 3 writes them",
-        SuggestedFile(folder).string(), (folder / "experiment.yaml").string(), folder.string()));
-  }
-  SeriesPlan plan{.parameters = suggested.front().parameters, .sweep = experiment};
-  for (const SuggestedExperiment& one : suggested) {
-    Experiment settings = experiment;
-    settings.space.parameters = one.parameters;
-    const Experiment at = experiment::ExperimentAt(settings, one.values);
-    for (int trial = 1; trial <= one.repeats; ++trial) {
-      plan.trials.push_back({one.values, std::to_string(trial), at,
-                             SuggestedDrive(folder, one.number, trial),
-                             fmt::format("experiment {} ({}), trial {}", one.number,
-                                         sweep::SettingText(one.parameters, one.values), trial)});
+SeriesPlan PlanChosen(const Experiment& experiment, const std::vector<ChosenSetting>& settings) {
+  SeriesPlan plan{.parameters = settings.front().parameters, .sweep = experiment};
+  for (const ChosenSetting& one : settings) {
+    Experiment varied = experiment;
+    varied.space.parameters = one.parameters;
+    const Experiment at = experiment::ExperimentAt(varied, one.values);
+    const std::string setting = sweep::SettingText(one.parameters, one.values);
+    for (std::size_t i = 0; i < one.folders.size(); ++i) {
+      const std::string trial = std::to_string(i + 1);
+      plan.trials.push_back({one.values, trial, at, one.folders[i],
+                             fmt::format("{} ({}), trial {}", one.name, setting, trial)});
     }
   }
   PutFloorsFirst(plan, plan.parameters);
@@ -153,4 +146,4 @@ SeriesPlan PlanRepeats(const Experiment& loaded, int count, const fs::path& out)
   return plan;
 }
 
-}  // namespace rift::commands
+}  // namespace rift::sessions

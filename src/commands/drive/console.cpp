@@ -1,4 +1,4 @@
-#include "prompt.hpp"
+#include "console.hpp"
 
 #include <chrono>
 #include <stdexcept>
@@ -11,7 +11,6 @@ namespace rift::commands {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll{20};
-}  // namespace
 
 char Ask(const std::string& question, std::string_view keys, bool says_yes) {
   terminal::Say(question);
@@ -33,6 +32,18 @@ char Ask(const std::string& question, std::string_view keys, bool says_yes) {
     }
   }
   return 'q';
+}
+
+}  // namespace
+
+sessions::Console TerminalConsole(bool says_yes) {
+  return {.say = terminal::Say,
+          .show = terminal::LiveLine::Show,
+          .hide = terminal::LiveLine::Hide,
+          .ring = terminal::RingBell,
+          .ask = [says_yes](const std::string& question, std::string_view keys) {
+            return Ask(question, keys, says_yes);
+          }};
 }
 
 }  // namespace rift::commands
