@@ -74,6 +74,9 @@ rift_room(view ROOMS control geometry trajectory trial vision/calibration vision
 rift_room(sessions/drive ROOMS experiment files geometry hardware odometry report/json sweep/falsify
     trajectory view vision/camera vision/tracking
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
+rift_room(sessions/track ROOMS experiment files report/json statistics trajectory view
+    vision/calibration vision/camera vision/tracking
+  LIBRARIES fmt::fmt)
 rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal trajectory
   LIBRARIES CLI11::CLI11 fmt::fmt)
 rift_room(commands/sweep ROOMS commands/arguments experiment files report/figures report/json
@@ -83,8 +86,8 @@ rift_room(commands/sweep ROOMS commands/arguments experiment files report/figure
 rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment hardware report/json
     sessions/drive terminal view
   LIBRARIES fmt::fmt)
-rift_room(commands/track ROOMS commands/arguments experiment files report/json statistics terminal
-    trajectory view vision/calibration vision/camera vision/rendering vision/tracking
+rift_room(commands/track ROOMS commands/arguments experiment files report/json sessions/track terminal
+    trajectory vision/calibration vision/camera vision/rendering vision/tracking
   LIBRARIES fmt::fmt)
 rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
     files gap limits odometry report/figures report/json report/text sweep/falsify terminal trajectory twin view

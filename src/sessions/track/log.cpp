@@ -1,15 +1,10 @@
 #include "log.hpp"
 
-#include <fmt/format.h>
-
-#include <cstring>
 #include <stdexcept>
-#include <utility>
 
 #include "rift/report/json/json.hpp"
-#include "rift/terminal/print.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 constexpr double kFlushEvery_s = 0.5;
@@ -30,22 +25,14 @@ void TrackLog::Open() {
   waiting_ = report::SightingsHeader();
 }
 
-/// Each row at once: whoever reads the pipe follows the robot.
-void TrackLog::Print(double t_s, const vision::Sighting& sighting) {
-  if (!has_header_) terminal::PrintData(report::SightingsHeader());
-  has_header_ = true;
-  terminal::PrintData(report::SightingRow(t_s, sighting));
-  if (const int error = terminal::FlushResults(); error != 0) {
-    throw std::runtime_error(fmt::format("cannot write to stdout: {}", strerror(error)));
-  }
-}
-
 bool TrackLog::Add(double t_s, const vision::Sighting& sighting) {
   const auto [last, is_first] = last_t_s_.try_emplace(sighting.tag_id, t_s);
   if (!is_first && t_s <= last->second) return false;
   last->second = t_s;
   if (is_piped_) {
-    Print(t_s, sighting);
+    const std::string header = has_header_ ? "" : report::SightingsHeader();
+    has_header_ = true;
+    print_(header + report::SightingRow(t_s, sighting));
     return true;
   }
   if (!file_) Open();
@@ -68,4 +55,4 @@ void TrackLog::Close() {
   file_.reset();
 }
 
-}  // namespace rift::commands
+}  // namespace rift::sessions
