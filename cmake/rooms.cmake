@@ -77,6 +77,9 @@ rift_room(sessions/drive ROOMS experiment files geometry hardware odometry repor
 rift_room(sessions/track ROOMS experiment files report/json statistics trajectory view
     vision/calibration vision/camera vision/tracking
   LIBRARIES fmt::fmt)
+rift_room(sessions/simulate ROOMS experiment files odometry report/figures report/json sweep/falsify
+    trajectory trial twin view vision/camera yaml
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal trajectory
   LIBRARIES CLI11::CLI11 fmt::fmt)
 rift_room(commands/sweep ROOMS commands/arguments experiment files report/figures report/json
@@ -90,6 +93,6 @@ rift_room(commands/track ROOMS commands/arguments experiment files report/json s
     trajectory vision/calibration vision/camera vision/rendering vision/tracking
   LIBRARIES fmt::fmt)
 rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
-    files gap limits odometry report/figures report/json report/text sweep/falsify terminal trajectory twin view
-    vision/camera yaml
+    files gap limits odometry report/figures report/json report/text sessions/simulate sweep/falsify terminal
+    trajectory view yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
