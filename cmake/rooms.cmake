@@ -71,6 +71,8 @@ rift_room(view ROOMS control geometry trajectory trial vision/calibration vision
   OPTIONS simulation
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
+rift_room(sessions/gap ROOMS experiment files gap odometry sweep/falsify trajectory
+  LIBRARIES fmt::fmt)
 rift_room(sessions/drive ROOMS experiment files geometry hardware odometry report/json sweep/falsify
     trajectory view vision/camera vision/tracking
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
@@ -93,6 +95,6 @@ rift_room(commands/track ROOMS commands/arguments experiment files report/json s
     trajectory vision/calibration vision/camera vision/rendering vision/tracking
   LIBRARIES fmt::fmt)
 rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
-    files gap limits odometry report/figures report/json report/text sessions/simulate sweep/falsify terminal
-    trajectory view yaml
+    files gap limits report/figures report/json report/text sessions/gap sessions/simulate
+    sweep/falsify terminal trajectory view yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
