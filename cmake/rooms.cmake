@@ -82,7 +82,7 @@ rift_room(sessions/track ROOMS experiment files report/json statistics trajector
 rift_room(sessions/simulate ROOMS experiment files odometry report/figures report/json sweep/falsify
     trajectory trial twin view vision/camera yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
-rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal trajectory
+rift_room(commands/arguments ROOMS experiment files sweep/falsify terminal trajectory
   LIBRARIES CLI11::CLI11 fmt::fmt)
 rift_room(commands/sweep ROOMS commands/arguments experiment files report/figures report/json
     report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run terminal

@@ -72,7 +72,7 @@ void Save(const GapRequest& request, const gap::GapResult& result) {
   if (!request.profile.empty() && !is_piped) {
     files::WriteFile(request.profile, report::ProfileCsv(result));
   }
-  if (!request.figure.empty()) WriteFigure(request.figure, report::GapFigure(result));
+  if (!request.figure.empty()) report::WriteFigure(request.figure, report::GapFigure(result));
   if (request.json == "-") {
     terminal::PrintData(report::GapJson(result));
     return;
@@ -109,7 +109,7 @@ void CheckInputs(const GapRequest& request) {
 }
 
 void CheckNames(const GapRequest& request) {
-  if (!request.figure.empty()) RequireFigureName(request.figure);
+  if (!request.figure.empty()) report::RequireFigureName(request.figure);
   std::vector<fs::path> inputs{request.job.sim}, outputs;
   for (const auto* logs : {&request.job.reals, &request.job.sim_repeats}) {
     inputs.insert(inputs.end(), logs->begin(), logs->end());

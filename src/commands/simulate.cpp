@@ -53,7 +53,7 @@ int Simulate(const SimulateRequest& request,
   const trial::TrialResult& result = made.run.result;
   WriteLogCopies(request.copies, result.trajectory);
   if (!request.pictures.figure.empty()) {
-    WriteFigure(request.pictures.figure, sessions::FigureOf(made));
+    report::WriteFigure(request.pictures.figure, sessions::FigureOf(made));
   }
   if (show) show(made);
   if (request.IsStdout()) {

@@ -11,6 +11,7 @@
 #include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
+#include "rift/report/figures/figure.hpp"
 #include "rift/yaml/bind.hpp"
 #include "simulate.hpp"
 
@@ -77,7 +78,7 @@ experiment::Experiment LoadFor(const SimulateRequest& request, std::vector<fs::p
 void CheckNames(const SimulateRequest& request, const fs::path& out,
                 const experiment::Experiment& experiment, const std::vector<fs::path>& inputs) {
   const PictureRequest& pictures = request.pictures;
-  if (!pictures.figure.empty()) RequireFigureName(pictures.figure);
+  if (!pictures.figure.empty()) report::RequireFigureName(pictures.figure);
   if (!pictures.video.empty() && !pictures.video.ends_with(".mp4")) {
     throw std::invalid_argument(
         fmt::format("--video {}: the name must end in .mp4", pictures.video));
