@@ -14,6 +14,8 @@ rift_room(geometry
   LIBRARIES Eigen3::Eigen)
 rift_room(yaml ROOMS limits
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES yaml-cpp)
+rift_room(flags ROOMS yaml
+  LIBRARIES CLI11::CLI11 fmt::fmt)
 rift_room(terminal ROOMS yaml
   PRIVATE_LIBRARIES fmt::fmt)
 rift_room(trajectory ROOMS geometry limits statistics
@@ -82,7 +84,7 @@ rift_room(sessions/track ROOMS experiment files report/json statistics trajector
 rift_room(sessions/simulate ROOMS experiment files odometry report/figures report/json sweep/falsify
     trajectory trial twin view vision/camera yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
-rift_room(commands/arguments ROOMS experiment files sweep/falsify terminal trajectory
+rift_room(commands/arguments ROOMS experiment files flags sweep/falsify terminal trajectory
   LIBRARIES CLI11::CLI11 fmt::fmt)
 rift_room(commands/sweep ROOMS commands/arguments experiment files report/figures report/json
     report/page report/text statistics sweep/calibrate sweep/explain sweep/falsify sweep/run terminal
@@ -95,6 +97,6 @@ rift_room(commands/track ROOMS commands/arguments experiment files report/json s
     trajectory vision/calibration vision/camera vision/rendering vision/tracking
   LIBRARIES fmt::fmt)
 rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
-    files gap limits report/figures report/json report/text sessions/gap sessions/simulate
+    files flags gap limits report/figures report/json report/text sessions/gap sessions/simulate
     sweep/falsify terminal trajectory view yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)

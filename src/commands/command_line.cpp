@@ -15,13 +15,13 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "manual.hpp"
+#include "rift/flags/manual.hpp"
+#include "rift/flags/usage.hpp"
 #include "rift/limits/limits.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/terminal/process_start.hpp"
 #include "rift/yaml/suggest.hpp"
-#include "usage.hpp"
 #include "version.hpp"
 
 namespace rift::commands {
@@ -75,9 +75,15 @@ int ShowHelp(const CLI::App& app, const CLI::ParseError& error) {
 std::string Manual(const Words& words, const CLI::App& app) {
   if (words.size() < 2 || words.size() > 3 || words[0] != "help") return "";
   const std::string name = words.size() == 3 ? words[2] : "";
-  if (words[1] == "--man") return ManPage(app, name);
-  if (words[1] == "--bash") return BashCompletion(app);
-  return words[1] == "--zsh" ? ZshCompletion(app) : "";
+  if (words[1] == "--man") return flags::ManPage(app, name);
+  if (words[1] == "--bash") return flags::BashCompletion(app);
+  return words[1] == "--zsh" ? flags::ZshCompletion(app) : "";
+}
+
+/// A key is said to be empty by itself, and a command is for another shell.
+flags::ValueRules ValuesOf() {
+  return {.with_own_rule = {"--set", "--before-each", "--board"},
+          .patterns = {"--camera", "--images"}};
 }
 
 int Run(int argc, char** argv, const CameraUses& camera) {
@@ -106,7 +112,7 @@ int Run(int argc, char** argv, const CameraUses& camera) {
         .add_flag_callback("--large-inputs", limits::Lift,
                            "take inputs above the limits of docs/limits.md, whatever they cost")
         ->trigger_on_parse();
-    RefuseEmptyValues(subcommand);
+    flags::RefuseEmptyValues(subcommand, ValuesOf());
   }
   if (is_manual) {
     const std::string manual = Manual(given, app);
@@ -122,7 +128,7 @@ int Run(int argc, char** argv, const CameraUses& camera) {
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
     if (asked_for_help) return ShowHelp(app, error);
-    throw std::invalid_argument(UsageError(app, error));
+    throw std::invalid_argument(flags::UsageError(app, error));
   }
   return exit_code;
 }

@@ -52,7 +52,7 @@ const std::vector<Reserved> kReserved{
     {"ode/.*", {"simulation"}},
     {"apriltag.*", {"vision/tracking"}},
     {"opencv2/(videoio|imgcodecs|highgui).*", {"vision", "view"}},
-    {"CLI/.*", {"commands"}},
+    {"CLI/.*", {"commands", "flags"}},
     {"pagmo/.*|nlopt.*", {"search"}},
     {"boost/math/.*|xxhash.h", {"statistics"}},
     {"turbojpeg.h", {"vision"}},

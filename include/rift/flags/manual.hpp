@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-namespace rift::commands {
+namespace rift::flags {
 
 /// What a packaged program brings along, made from the very options that it parses: `app` is rift
 /// with every subcommand and all its options.
@@ -15,4 +15,4 @@ std::string ManPage(const CLI::App& app, const std::string& name = "");
 std::string BashCompletion(const CLI::App& app);
 std::string ZshCompletion(const CLI::App& app);
 
-}  // namespace rift::commands
+}  // namespace rift::flags

@@ -1,4 +1,4 @@
-#include "manual.hpp"
+#include "rift/flags/manual.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-namespace rift::commands {
+namespace rift::flags {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -199,4 +199,4 @@ _rift "$@"
                      described, cases);
 }
 
-}  // namespace rift::commands
+}  // namespace rift::flags

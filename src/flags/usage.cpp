@@ -1,4 +1,4 @@
-#include "usage.hpp"
+#include "rift/flags/usage.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "rift/yaml/suggest.hpp"
 
-namespace rift::commands {
+namespace rift::flags {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -83,16 +83,17 @@ std::string ConversionError(const CLI::App& command, const std::string& message,
 
 }  // namespace
 
-void RefuseEmptyValues(CLI::App& subcommand) {
+void RefuseEmptyValues(CLI::App& subcommand, const ValueRules& rules) {
+  const auto is_among = [](const CLI::Option& option, const Words& names) {
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& name) { return option.check_name(name); });
+  };
   for (CLI::Option* option : subcommand.get_options()) {
     const bool is_flag = option->get_items_expected_max() == 0;
-    // A key is said to be empty by itself, and a command is for another shell.
-    const bool has_rule = option->check_name("--set") || option->check_name("--before-each") ||
-                          option->check_name("--board");
     if (is_flag) option->disable_flag_override();
-    if (is_flag || has_rule) continue;
+    if (is_flag || is_among(*option, rules.with_own_rule)) continue;
     // A pattern has to be quoted, and its reader replaces the ~.
-    const bool may_be_pattern = option->check_name("--camera") || option->check_name("--images");
+    const bool may_be_pattern = is_among(*option, rules.patterns);
     option->transform(CLI::Validator(
         [may_be_pattern](std::string& value) {
           return may_be_pattern && !value.empty() ? "" : ValueProblem(value);
@@ -133,4 +134,4 @@ std::string UsageError(const CLI::App& app, const CLI::ParseError& error) {
                          : fmt::format("{} has no flag {}; did you mean {}?", name, word, nearest);
 }
 
-}  // namespace rift::commands
+}  // namespace rift::flags
