@@ -90,24 +90,11 @@ void CheckNames(const SimulateRequest& request, const fs::path& out,
   if (!request.IsStdout() && out.extension() != ".csv") {
     RequireFolderName(out.string(), "what has no name ending in .csv");
   }
-  Outputs named{.folder = out.extension() == ".csv" ? fs::path() : out, .force = request.force};
-  named.files = request.copies.Files();
+  std::vector<fs::path> others = request.copies.Files();
   for (const std::string& name : {pictures.figure, pictures.video}) {
-    if (!name.empty()) named.files.emplace_back(name);
+    if (!name.empty()) others.emplace_back(name);
   }
-  const sessions::RunFiles files(out);
-  const bool is_repeat = sessions::IsSaved(experiment, files);
-  Outputs run{
-      .files = {files.trajectory, files.truth, files.commands, files.encoders, files.summary},
-      .folder = named.folder,
-      .force = request.force || is_repeat};
-  if (!is_repeat) run.files.push_back(files.experiment);
-  std::vector<fs::path> all = inputs;
-  if (!request.IsStdout()) {
-    CheckOutputs(inputs, run);
-    all.insert(all.end(), run.files.begin(), run.files.end());
-  }
-  CheckOutputs(all, named);
+  sessions::CheckRunNames(out, experiment, inputs, others, request.force);
 }
 
 void AddSimulate(CLI::App& app, int& exit_code, const CameraUses& camera) {

@@ -100,8 +100,7 @@ std::string ZshArgument(const CLI::Option& option, const std::string& flag) {
   return Quoted(text + ":" + ZshText(TypeOf(option)) + ":" + values);
 }
 
-}  // namespace
-
+/// Of the subcommand `name`; of rift itself without one.
 std::string ManPage(const CLI::App& app, const std::string& name) {
   const std::string page = name.empty() ? "rift" : "rift-" + name;
   const CLI::App& shown = name.empty() ? app : *app.get_subcommand(name);
@@ -197,6 +196,16 @@ _rift() {{
 _rift "$@"
 )",
                      described, cases);
+}
+
+}  // namespace
+
+std::string Manual(const Words& words, const CLI::App& app) {
+  if (words.size() < 2 || words.size() > 3 || words[0] != "help") return "";
+  const std::string name = words.size() == 3 ? words[2] : "";
+  if (words[1] == "--man") return ManPage(app, name);
+  if (words[1] == "--bash") return BashCompletion(app);
+  return words[1] == "--zsh" ? ZshCompletion(app) : "";
 }
 
 }  // namespace rift::flags

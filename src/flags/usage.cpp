@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <vector>
 
 #include "rift/yaml/suggest.hpp"
@@ -100,6 +101,16 @@ void RefuseEmptyValues(CLI::App& subcommand, const ValueRules& rules) {
         },
         ""));
   }
+}
+
+void RequireSubcommand(const std::string& word, Words names) {
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  names.emplace_back("help");
+  const std::string nearest = yaml::Nearest(word, names);
+  throw std::invalid_argument(
+      nearest.empty()
+          ? fmt::format("'{}' is no subcommand; there are {}", word, fmt::join(names, ", "))
+          : fmt::format("'{}' is no subcommand; did you mean '{}'?", word, nearest));
 }
 
 std::string UsageError(const CLI::App& app, const CLI::ParseError& error) {

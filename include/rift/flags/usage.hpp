@@ -16,6 +16,10 @@ struct ValueRules {
 /// not set), a ~ that the shell left as it is, and a value for a flag that takes none.
 void RefuseEmptyValues(CLI::App& subcommand, const ValueRules& rules);
 
+/// Throws std::invalid_argument, with the nearest of `names` and help, when `word` is none of
+/// `names`: CLI11 calls a mistyped subcommand "an argument that was not expected".
+void RequireSubcommand(const std::string& word, std::vector<std::string> names);
+
 /// One line: what is wrong with the command line, and what to do.
 std::string UsageError(const CLI::App& app, const CLI::ParseError& error);
 

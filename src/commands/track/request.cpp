@@ -7,12 +7,12 @@
 #include <memory>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "rift/commands/arguments/flags.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/track/track.hpp"
-#include "rift/files/files.hpp"
 #include "rift/vision/camera/jpeg.hpp"
 
 namespace rift::commands {
@@ -20,40 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `frames/*.jpg` is a camera too, and frames/000.jpg one of its pictures.
-void RefuseAmongPictures(const fs::path& camera, const fs::path& log) {
-  const bool is_pattern = camera.filename().string().find('*') != std::string::npos;
-  const bool is_among =
-      is_pattern && log.extension() == camera.extension() &&
-      files::IsSameFile(fs::absolute(log).parent_path(), fs::absolute(camera).parent_path());
-  if (!is_among) return;
-  throw std::invalid_argument(
-      fmt::format("--out {} is one of the camera's pictures: name a log", log.string()));
-}
-
 void CheckLogName(const TrackRequest& request) {
-  std::error_code not_there;
-  if (fs::exists(request.out, not_there) && !fs::is_regular_file(request.out, not_there)) {
-    throw std::invalid_argument(fmt::format(
-        "--out {}: the log needs a file, since its run file stands beside it", request.out));
-  }
-  std::vector<fs::path> inputs{request.job.calibration};
-  for (const std::string& input : {request.job.world, request.job.path, request.experiment}) {
-    if (!input.empty()) inputs.emplace_back(input);
-  }
+  std::vector<fs::path> inputs;
+  if (!request.experiment.empty()) inputs.emplace_back(request.experiment);
   const bool has_times = !request.times.empty() && request.times != vision::kTimesFromExif;
   if (has_times) inputs.emplace_back(request.times);
-  if (fs::exists(request.job.camera, not_there)) inputs.emplace_back(request.job.camera);
-  RefuseAmongPictures(request.job.camera, request.out);
-  std::vector<fs::path> outputs;
-  if (!request.IsPiped()) outputs.emplace_back(request.out);
-  if (!request.job.record_waypoints.empty()) outputs.emplace_back(request.job.record_waypoints);
-  for (const fs::path& copy : request.copies.Files()) outputs.push_back(copy);
-  CheckOutputs(inputs, {.files = outputs, .force = request.job.force});
-  // Without its log it is of a camera that showed no tag, and tells nothing.
-  inputs.insert(inputs.end(), outputs.begin(), outputs.end());
-  if (!request.IsPiped())
-    CheckOutputs(inputs, {.files = {sessions::RunFileOf(request.out)}, .force = true});
+  sessions::CheckNames(request.job, std::move(inputs), request.copies.Files());
 }
 
 /// They are of one robot, and made of the log when it is whole.
@@ -267,6 +239,7 @@ void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const Track
       "         rift track --print-tag tag.svg --set track.tag.size_m=0.05");
   app.callback([request, track, &exit_code] {
     request->job.calibration = FindInput(request->job.calibration);
+    request->job.log = request->out;
     request->Check();
     exit_code = track(*request);
   });

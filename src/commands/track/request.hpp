@@ -15,7 +15,7 @@ namespace rift::commands {
 struct TrackRequest {
   std::string experiment;
   std::vector<std::string> overrides;
-  sessions::TrackingJob job;  ///< but for its options and its log
+  sessions::TrackingJob job;  ///< but for its options
   std::string out;
   LogCopies copies;
   std::optional<double> tag_height_m;

@@ -75,7 +75,6 @@ void PrintRows(std::string_view rows) {
 
 int TrackRobot(const TrackRequest& request) {
   sessions::TrackingJob job = request.job;
-  job.log = request.out;
   job.options = OptionsOf(request, ExperimentOf(request));
   sessions::TrackingInputs inputs = sessions::ReadInputs(job);
   const terminal::StopSignal stop;

@@ -3,17 +3,25 @@
 #include <fmt/format.h>
 
 #include <utility>
-#include <vector>
 
 #include "rift/files/files.hpp"
+#include "rift/files/outputs.hpp"
 #include "rift/odometry/odometry.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/yaml/bind.hpp"
 
 namespace rift::sessions {
+namespace {
 
 namespace fs = std::filesystem;
+
+bool IsSaved(const experiment::Experiment& experiment, const fs::path& path) {
+  return fs::is_regular_file(path) &&
+         files::ReadFile(path) == experiment::WriteExperiment(experiment);
+}
+
+}  // namespace
 
 trial::SteeringCheck CheckOf(const Simulated& made) {
   trial::SteeringCheck check = report::SteeringOf(made.experiment, made.run);
@@ -49,9 +57,21 @@ RunFiles::RunFiles(const fs::path& out) {
   }
 }
 
-bool IsSaved(const experiment::Experiment& experiment, const RunFiles& files) {
-  return fs::is_regular_file(files.experiment) &&
-         files::ReadFile(files.experiment) == experiment::WriteExperiment(experiment);
+void CheckRunNames(const fs::path& out, const experiment::Experiment& experiment,
+                   const std::vector<fs::path>& inputs, const std::vector<fs::path>& others,
+                   bool force) {
+  const fs::path folder = out.extension() == ".csv" ? fs::path() : out;
+  std::vector<fs::path> taken = inputs;
+  if (out != "-") {
+    const RunFiles run(out);
+    const bool is_repeat = IsSaved(experiment, run.experiment);
+    std::vector<fs::path> written{run.trajectory, run.truth, run.commands, run.encoders,
+                                  run.summary};
+    if (!is_repeat) written.push_back(run.experiment);
+    files::CheckOutputs(inputs, {.files = written, .folder = folder, .force = force || is_repeat});
+    taken.insert(taken.end(), written.begin(), written.end());
+  }
+  files::CheckOutputs(taken, {.files = others, .folder = folder, .force = force});
 }
 
 void SaveRun(const RunFiles& files, const Simulated& made, const trial::SteeringCheck& check) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
+#include <vector>
 
 #include "rift/experiment/experiment.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
@@ -28,9 +28,12 @@ struct RunFiles {
   std::filesystem::path trajectory, truth, commands, encoders, experiment, summary;
 };
 
-/// Whether the files hold a run of this very experiment: made again it comes out the same, and
-/// replacing it does no harm.
-bool IsSaved(const experiment::Experiment& experiment, const RunFiles& files);
+/// Throws std::invalid_argument when a file of the run in `out` ("-": none), or one of `others`, is
+/// an input or another output, or is there and not to be replaced. The run of this very experiment
+/// may be: made again it comes out the same.
+void CheckRunNames(const std::filesystem::path& out, const experiment::Experiment& experiment,
+                   const std::vector<std::filesystem::path>& inputs,
+                   const std::vector<std::filesystem::path>& others, bool force);
 
 void SaveRun(const RunFiles& files, const Simulated& made, const trial::SteeringCheck& check);
 

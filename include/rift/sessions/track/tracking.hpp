@@ -49,6 +49,11 @@ inline std::filesystem::path RunFileOf(const std::filesystem::path& log) {
   return std::filesystem::path(log).replace_extension().string() + ".run.json";
 }
 
+/// Throws std::invalid_argument for a log that is no file, an input, a picture of the camera or
+/// another output. `inputs`, `copies`: files that are read and written beside those of the job.
+void CheckNames(const TrackingJob& job, std::vector<std::filesystem::path> inputs,
+                const std::vector<std::filesystem::path>& copies);
+
 /// What a job reads before its camera is opened.
 struct TrackingInputs {
   vision::CameraModel camera;  ///< as the calibration has it
