@@ -53,7 +53,7 @@ TESTS = {
     "report": ["report", "commands", "drive", "track"],
     "view": ["view", "track", "commands"],
     "flags": ["commands"],
-    "sessions": ["drive", "track", "twin", "commands"],
+    "sessions": ["sessions", "drive", "track", "twin"],
     "commands": ["commands", "drive", "track", "twin"],
 }
 
