@@ -97,6 +97,6 @@ rift_room(commands/track ROOMS commands/arguments experiment files report/json s
     trajectory vision/calibration vision/camera vision/rendering vision/tracking
   LIBRARIES fmt::fmt)
 rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
-    files flags gap limits report/figures report/json report/text sessions/gap sessions/simulate
+    files flags limits report/figures report/json report/text sessions/gap sessions/simulate
     sweep/falsify terminal trajectory view yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
