@@ -14,6 +14,8 @@ rift_room(geometry
   LIBRARIES Eigen3::Eigen)
 rift_room(yaml ROOMS limits
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES yaml-cpp)
+rift_room(flags ROOMS files yaml
+  LIBRARIES CLI11::CLI11 fmt::fmt)
 rift_room(terminal ROOMS yaml
   PRIVATE_LIBRARIES fmt::fmt)
 rift_room(trajectory ROOMS geometry limits statistics
@@ -74,19 +76,29 @@ rift_room(view ROOMS control geometry trajectory trial vision/calibration vision
   OPTIONS simulation
   LIBRARIES fmt::fmt Eigen3::Eigen opencv_core
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
-rift_room(commands/arguments ROOMS experiment files report/figures sweep/falsify terminal trajectory yaml
-  LIBRARIES CLI11::CLI11 fmt::fmt)
-rift_room(commands/sweep ROOMS commands/arguments experiment files report/json report/page report/text
-    sessions/sweep sweep/falsify sweep/run terminal yaml
+rift_room(sessions/gap ROOMS experiment files gap odometry sweep/falsify trajectory
   LIBRARIES fmt::fmt)
-rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment files geometry hardware
-    odometry report/json sessions/sweep sweep/falsify terminal trajectory view vision/camera vision/tracking
+rift_room(sessions/drive ROOMS experiment files geometry hardware odometry report/json sweep/falsify
+    trajectory view vision/camera vision/tracking
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
-rift_room(commands/track ROOMS commands/arguments experiment files report/json statistics terminal
-    trajectory view vision/calibration vision/camera vision/rendering vision/tracking
+rift_room(sessions/track ROOMS experiment files report/json statistics trajectory view
+    vision/calibration vision/camera vision/tracking
   LIBRARIES fmt::fmt)
-rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track experiment
-    files gap limits odometry report/figures report/json report/text sessions/sweep sweep/falsify terminal
-    trajectory twin view
-    vision/camera yaml
+rift_room(sessions/simulate ROOMS experiment files odometry report/figures report/json sweep/falsify
+    trajectory trial twin view vision/camera yaml
+  LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
+rift_room(commands/arguments ROOMS experiment files flags sweep/falsify terminal trajectory
+  LIBRARIES CLI11::CLI11 fmt::fmt)
+rift_room(commands/sweep ROOMS commands/arguments experiment files report/json report/page
+    report/text sessions/sweep sweep/falsify sweep/run terminal yaml
+  LIBRARIES fmt::fmt)
+rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment hardware report/json
+    sessions/drive sessions/sweep terminal view
+  LIBRARIES fmt::fmt)
+rift_room(commands/track ROOMS commands/arguments experiment files report/json sessions/track terminal
+    trajectory vision/calibration vision/camera vision/rendering vision/tracking
+  LIBRARIES fmt::fmt)
+rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track
+    files flags limits report/figures report/json report/text sessions/gap sessions/simulate
+    sessions/sweep sweep/falsify terminal trajectory view yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)

@@ -15,13 +15,12 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "manual.hpp"
+#include "rift/flags/manual.hpp"
+#include "rift/flags/usage.hpp"
 #include "rift/limits/limits.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/terminal/process_start.hpp"
-#include "rift/yaml/suggest.hpp"
-#include "usage.hpp"
 #include "version.hpp"
 
 namespace rift::commands {
@@ -29,19 +28,6 @@ namespace rift::commands {
 namespace {
 
 using Words = std::vector<std::string>;
-
-/// CLI11 calls a mistyped subcommand "an argument that was not expected".
-void CheckSubcommand(const std::string& word, const std::vector<Command>& commands) {
-  Words names;
-  for (const Command& command : commands) names.push_back(command.name);
-  if (std::find(names.begin(), names.end(), word) != names.end()) return;
-  names.emplace_back("help");
-  const std::string nearest = yaml::Nearest(word, names);
-  throw std::invalid_argument(
-      nearest.empty()
-          ? fmt::format("'{}' is no subcommand; there are {}", word, fmt::join(names, ", "))
-          : fmt::format("'{}' is no subcommand; did you mean '{}'?", word, nearest));
-}
 
 /// `rift`, `rift help` and `rift help COMMAND` in the words of flags.
 Words WordsOf(int argc, char** argv) {
@@ -57,6 +43,12 @@ Words WordsOf(int argc, char** argv) {
   return words;
 }
 
+Words NamesOf(const std::vector<Command>& commands) {
+  Words names;
+  for (const Command& command : commands) names.push_back(command.name);
+  return names;
+}
+
 std::string Examples(const std::vector<Command>& commands) {
   std::string text = "Examples:\n";
   for (const Command& command : commands) text += "  " + command.example + "\n";
@@ -70,14 +62,10 @@ int ShowHelp(const CLI::App& app, const CLI::ParseError& error) {
   return exit_code;
 }
 
-/// What a package needs of the options: `rift help --man [COMMAND]`, `--bash`, `--zsh`. Empty when
-/// the words ask for something else.
-std::string Manual(const Words& words, const CLI::App& app) {
-  if (words.size() < 2 || words.size() > 3 || words[0] != "help") return "";
-  const std::string name = words.size() == 3 ? words[2] : "";
-  if (words[1] == "--man") return ManPage(app, name);
-  if (words[1] == "--bash") return BashCompletion(app);
-  return words[1] == "--zsh" ? ZshCompletion(app) : "";
+/// A key is said to be empty by itself, and a command is for another shell.
+flags::ValueRules ValuesOf() {
+  return {.with_own_rule = {"--set", "--before-each", "--board"},
+          .patterns = {"--camera", "--images"}};
 }
 
 int Run(int argc, char** argv, const CameraUses& camera) {
@@ -85,8 +73,8 @@ int Run(int argc, char** argv, const CameraUses& camera) {
   const Words given(argv + std::min(argc, 1), argv + argc);
   const bool is_manual = given.size() > 1 && given[0] == "help" && given[1].starts_with("--");
   const Words words = is_manual ? Words{"--help"} : WordsOf(argc, argv);
-  if (is_manual && given.size() == 3) CheckSubcommand(given[2], commands);
-  if (!words.front().starts_with("-")) CheckSubcommand(words.front(), commands);
+  if (is_manual && given.size() == 3) flags::RequireSubcommand(given[2], NamesOf(commands));
+  if (!words.front().starts_with("-")) flags::RequireSubcommand(words.front(), NamesOf(commands));
   int exit_code = terminal::kDone;
   CLI::App app("rift: where a simulator and its robot part ways, and why", "rift");
   app.set_version_flag("-v,--version", VersionText(), "commit and libraries too");
@@ -106,10 +94,10 @@ int Run(int argc, char** argv, const CameraUses& camera) {
         .add_flag_callback("--large-inputs", limits::Lift,
                            "take inputs above the limits of docs/limits.md, whatever they cost")
         ->trigger_on_parse();
-    RefuseEmptyValues(subcommand);
+    flags::RefuseEmptyValues(subcommand, ValuesOf());
   }
   if (is_manual) {
-    const std::string manual = Manual(given, app);
+    const std::string manual = flags::Manual(given, app);
     if (manual.empty()) {
       throw std::invalid_argument(given[1] +
                                   ": rift help takes a subcommand, --man, --bash or --zsh");
@@ -122,7 +110,7 @@ int Run(int argc, char** argv, const CameraUses& camera) {
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
     if (asked_for_help) return ShowHelp(app, error);
-    throw std::invalid_argument(UsageError(app, error));
+    throw std::invalid_argument(flags::UsageError(app, error));
   }
   return exit_code;
 }

@@ -3,13 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rift/commands/arguments/log_copies.hpp"
-#include "rift/experiment/experiment.hpp"
-#include "rift/report/figures/figures.hpp"
-#include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/sessions/simulate/run.hpp"
 
 namespace rift::commands {
 
@@ -19,19 +18,6 @@ struct PictureRequest {
   std::string video;   ///< FILE.mp4; empty: none
   bool window = false;
 };
-
-/// Adds --figure, --video and --view.
-void AddPictureFlags(CLI::App& app, PictureRequest& request);
-
-/// Throws std::invalid_argument for names that say no format.
-void CheckPictureNames(const PictureRequest& request);
-
-/// Rectangles of the floor with their own friction.
-std::vector<geometry::FloorArea> AreasOf(const simulation::TerrainOptions& terrain);
-
-/// Draws path, heights, speed and powers into `path`.
-void DrawFigure(const std::string& path, const experiment::Experiment& experiment,
-                const sweep::SimulatedTrial& trial, const sweep::SimulatedRun& run);
 
 /// What `rift simulate` was asked for.
 struct SimulateRequest {
@@ -47,26 +33,37 @@ struct SimulateRequest {
   bool force = false;
   bool any_waypoints = false;
   PictureRequest pictures;
+
+  /// The log alone, for a pipe.
+  bool IsStdout() const { return out == "-"; }
 };
 
-/// A simulated run and what it was made from.
-struct Simulated {
+/// The experiment of a request; its files become `inputs`. The start and the seed become part of
+/// it, so that what is saved is what was run.
+experiment::Experiment LoadFor(const SimulateRequest& request,
+                               std::vector<std::filesystem::path>& inputs);
+
+/// Throws std::invalid_argument for names of outputs that say no format, that are an input or
+/// another output, or that are there already. `out`: where the run goes.
+void CheckNames(const SimulateRequest& request, const std::filesystem::path& out,
+                const experiment::Experiment& experiment,
+                const std::vector<std::filesystem::path>& inputs);
+
+/// A run and where it is saved.
+struct RunToSave {
   std::filesystem::path out;
-  experiment::Experiment experiment;
-  sweep::SimulatedTrial trial;
-  sweep::SimulatedRun run;
+  sessions::Simulated made;
 };
+
+/// The row of a sweep that a request replays, made again.
+RunToSave ReplayFor(const SimulateRequest& request);
+/// The same of a sweep over somebody else's simulator: its trajectory is all there is of it.
+/// Nothing for another sweep, and without a replay; else the exit code.
+std::optional<int> ReplayProgram(const SimulateRequest& request);
 
 /// Simulates, or replays, and saves the run; then calls `show`, if there is one, and prints the
 /// summary. Returns the exit code.
-int Simulate(const SimulateRequest& request, const std::function<void(const Simulated&)>& show);
-
-/// The experiment of `simulate --twin` and the folder for it. Throws std::invalid_argument when
-/// there is none, or when the folder's files would replace an input.
-struct TwinJob {
-  experiment::Experiment experiment;
-  std::filesystem::path folder;
-};
-TwinJob LoadTwinJob(const SimulateRequest& request);
+int Simulate(const SimulateRequest& request,
+             const std::function<void(const sessions::Simulated&)>& show);
 
 }  // namespace rift::commands

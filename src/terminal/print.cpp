@@ -51,7 +51,7 @@ void SayInPlace(std::string_view line) {
   WriteToStderr(kClear + text);
 }
 
-LiveLine::~LiveLine() {
+void LiveLine::Hide() {
   if (is_live.exchange(false)) WriteToStderr(kClear);
 }
 

@@ -52,7 +52,7 @@ const std::vector<Reserved> kReserved{
     {"ode/.*", {"simulation"}},
     {"apriltag.*", {"vision/tracking"}},
     {"opencv2/(videoio|imgcodecs|highgui).*", {"vision", "view"}},
-    {"CLI/.*", {"commands"}},
+    {"CLI/.*", {"commands", "flags"}},
     {"pagmo/.*|nlopt.*", {"search"}},
     {"boost/math/.*|xxhash.h", {"statistics"}},
     {"turbojpeg.h", {"vision"}},
@@ -63,7 +63,7 @@ const std::vector<Reserved> kReserved{
     {"fstream|iostream|cstdio",
      {"commands", "files", "hardware", "report", "terminal", "twin", "vision"}},
     {"thread|mutex|condition_variable|future",
-     {"commands", "files", "hardware", "vision", "twin", "sweep"}},
+     {"commands", "files", "hardware", "sessions", "vision", "twin", "sweep"}},
 };
 
 struct Include {

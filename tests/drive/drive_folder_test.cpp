@@ -1,19 +1,19 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "commands/drive/folder.hpp"
-#include "commands/drive/session.hpp"
 #include "hardware/bench.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
+#include "rift/sessions/drive/session.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/vision/camera/camera_file.hpp"
+#include "sessions/drive/folder.hpp"
 #include "support/documented.hpp"
 #include "support/inputs/paper_camera.hpp"
 #include "support/inputs/paper_waypoints.hpp"
 #include "support/processes/process.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 experiment::Experiment PaperExperiment() {
@@ -72,4 +72,4 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
 }
 
 }  // namespace
-}  // namespace rift::commands
+}  // namespace rift::sessions

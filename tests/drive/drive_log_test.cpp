@@ -1,22 +1,22 @@
-#include "commands/drive/log.hpp"
+#include "sessions/drive/log.hpp"
 
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <future>
 #include <nlohmann/json.hpp>
 
-#include "commands/drive/folder.hpp"
-#include "commands/drive/session.hpp"
 #include "hardware/bench.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
+#include "rift/sessions/drive/session.hpp"
 #include "rift/trajectory/log.hpp"
+#include "sessions/drive/folder.hpp"
 #include "support/inputs/paper_waypoints.hpp"
 #include "support/processes/file_size_limit.hpp"
 #include "support/processes/process.hpp"
 #include "support/until.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 using std::chrono::steady_clock;
@@ -201,4 +201,4 @@ TEST_CASE("A process that stood still itself does not blame the disk") {
 }
 
 }  // namespace
-}  // namespace rift::commands
+}  // namespace rift::sessions

@@ -1,18 +1,23 @@
-#include "commands/drive/plan.hpp"
+#include "rift/sessions/drive/plan.hpp"
 
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <set>
 
-#include "commands/drive/before_each.hpp"
+#include "commands/drive/request.hpp"
 #include "rift/files/files.hpp"
+#include "rift/files/folder_lock.hpp"
+#include "rift/sessions/drive/series.hpp"
+#include "sessions/drive/before_each.hpp"
 #include "support/inputs/paper_waypoints.hpp"
 #include "support/processes/process.hpp"
 #include "support/until.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
+
+namespace fs = std::filesystem;
 
 experiment::ParameterValue Word(const std::string& text) { return {text, std::nullopt}; }
 
@@ -92,8 +97,107 @@ TEST_CASE("Repeats go into numbered folders that a sweep of one setting reads") 
         std::vector{Word(TwoFloors().simulation.terrain.surface)});
 }
 
+/// A person who presses one key, and what this person was told and asked.
+struct Answering {
+  char key;
+  std::vector<std::string> told{}, asked{}, keys{};
+
+  Console AtConsole() {
+    return {.say = [this](const std::string& line) { told.push_back(line); },
+            .ask =
+                [this](const std::string& question, std::string_view offered) {
+                  asked.push_back(question);
+                  keys.emplace_back(offered);
+                  return key;
+                }};
+  }
+};
+
+TEST_CASE("What comes after a series is done in its locked folder once every drive is there") {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder.Path() / "1");
+  fs::create_directories(folder.Path() / "2");
+  Answering person{'q'};
+  bool was_locked = false;
+  const SeriesEnd end =
+      DriveAll({folder.Path(), PlanRepeats(TwoFloors(), 2, folder.Path())}, person.AtConsole(),
+               [&] { was_locked = files::FolderLock::IsHeld(folder.Path()); });
+  CHECK(end == SeriesEnd::kDone);
+  CHECK(was_locked);
+  CHECK_FALSE(files::FolderLock::IsHeld(folder.Path()));
+  CHECK(person.told == std::vector{"2 drives into " + folder.Path().string() + ", 2 of them done"});
+  CHECK(person.asked.empty());
+  CHECK(fs::exists(folder / "sweep.yaml"));
+}
+
+TEST_CASE("A person says what becomes of a drive that did not reach the end") {
+  const auto [key, expected] = GENERATE(table<char, SeriesEnd>(
+      {{'k', SeriesEnd::kDone}, {'s', SeriesEnd::kLeft}, {'q', SeriesEnd::kQuit}}));
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder.Path() / "1.unfinished");
+  test::WriteText(folder / "1.unfinished/trajectory.csv", "t_s\n");
+  Answering person{key};
+  bool went_on = false;
+  CHECK(DriveAll({folder.Path(), PlanRepeats(TwoFloors(), 1, folder.Path())}, person.AtConsole(),
+                 [&] { went_on = true; }) == expected);
+  CHECK(went_on == (expected != SeriesEnd::kQuit));
+  CHECK(fs::exists(folder / "1") == (expected == SeriesEnd::kDone));
+  CHECK(person.keys == std::vector<std::string>{"aks"});
+  const bool is_left =
+      person.told.back() ==
+      "1 of 1 drives did not reach the end; the same command asks about them again";
+  CHECK(is_left == (expected == SeriesEnd::kLeft));
+  const bool is_quit = person.told.back() == "stopped; the same command goes on where it was";
+  CHECK(is_quit == (expected == SeriesEnd::kQuit));
+}
+
+TEST_CASE("A drive without a log cannot be kept, and is left as it is") {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder.Path() / "1.unfinished");
+  Answering person{'s'};
+  CHECK(DriveAll({folder.Path(), PlanRepeats(TwoFloors(), 1, folder.Path())}, person.AtConsole(),
+                 [] {}) == SeriesEnd::kLeft);
+  CHECK(person.keys == std::vector<std::string>{"as"});
+}
+
+TEST_CASE("A floor is laid before its first drive and a person who will not ends the series") {
+  const test::TemporaryFolder folder;
+  Answering person{'q'};
+  CHECK(DriveAll({folder.Path(), PlanGrid(TwoFloors(), folder.Path())}, person.AtConsole(),
+                 [] {}) == SeriesEnd::kQuit);
+  CHECK(person.asked == std::vector<std::string>{"lay the parchment; Enter (q: quit)"});
+}
+
+TEST_CASE("The drives of one experiment are not mixed with those of another") {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder.Path() / "1");
+  Answering person{'q'};
+  experiment::Experiment experiment = TwoFloors();
+  const auto drive = [&] {
+    return DriveAll({folder.Path(), PlanRepeats(experiment, 1, folder.Path())}, person.AtConsole(),
+                    [] {});
+  };
+  CHECK(drive() == SeriesEnd::kDone);
+  CHECK(drive() == SeriesEnd::kDone);
+  experiment.control.v_max = 0.45;
+  CHECK_THROWS_WITH(drive(), Catch::Contains("is the table of other drives: control.v_max was"));
+}
+
+TEST_CASE("A chosen setting is driven as often as it has folders, named by who chose it") {
+  const experiment::Experiment experiment = TwoFloors();
+  const SeriesPlan plan = PlanChosen(experiment, {{"experiment 3",
+                                                   {experiment.space.parameters[0]},
+                                                   {experiment::NumberValue(0.4)},
+                                                   {"/out/3_1", "/out/3_2"}}});
+  REQUIRE(plan.trials.size() == 2);
+  CHECK(plan.trials[1].folder == "/out/3_2");
+  CHECK(plan.trials[1].label == "experiment 3 (v_max 0.4), trial 2");
+  CHECK(plan.trials[1].experiment.control.v_max == 0.4);
+  CHECK_FALSE(plan.has_floors);
+}
+
 TEST_CASE("A command is parted into words at its blanks and no shell reads them") {
-  CHECK(WordsOf("twin --set 'a b' $HOME") ==
+  CHECK(commands::WordsOf("twin --set 'a b' $HOME") ==
         std::vector<std::string>{"twin", "--set", "a b", "$HOME"});
 }
 
@@ -129,4 +233,4 @@ TEST_CASE("A scene that was reset needs no address and one that fails ends the s
 }
 
 }  // namespace
-}  // namespace rift::commands
+}  // namespace rift::sessions

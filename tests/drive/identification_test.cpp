@@ -1,4 +1,4 @@
-#include "commands/drive/identification.hpp"
+#include "rift/sessions/drive/identification.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -8,7 +8,7 @@
 #include "support/processes/process.hpp"
 #include "support/tree.hpp"
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 experiment::Experiment PaperTask() {
@@ -107,4 +107,4 @@ hardware:
 }
 
 }  // namespace
-}  // namespace rift::commands
+}  // namespace rift::sessions

@@ -1,9 +1,9 @@
-#include "commands/drive/start_gate.hpp"
+#include "sessions/drive/start_gate.hpp"
 
 #include <catch2/catch.hpp>
 #include <vector>
 
-namespace rift::commands {
+namespace rift::sessions {
 namespace {
 
 const geometry::Pose2 kStart{1.0, 2.0, geometry::kPi};
@@ -113,4 +113,4 @@ TEST_CASE("With any start a robot that is far off is warned of once") {
 }
 
 }  // namespace
-}  // namespace rift::commands
+}  // namespace rift::sessions

@@ -52,6 +52,8 @@ TESTS = {
     "sweep": ["sweep", "report", "commands", "identification"],
     "report": ["report", "commands", "drive", "track"],
     "view": ["view", "track", "commands"],
+    "flags": ["commands"],
+    "sessions": ["sessions", "drive", "track", "twin"],
     "commands": ["commands", "drive", "track", "twin"],
 }
 

@@ -20,11 +20,12 @@ void SayInPlace(std::string_view line);
 class LiveLine {
  public:
   LiveLine() = default;
-  ~LiveLine();
+  ~LiveLine() { Hide(); }
   LiveLine(const LiveLine&) = delete;
   LiveLine& operator=(const LiveLine&) = delete;
 
   static void Show(const std::string& line);
+  static void Hide();
 };
 
 /// Sounds the terminal's bell, where stderr is one.

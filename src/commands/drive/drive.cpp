@@ -5,17 +5,21 @@
 #include <stdexcept>
 #include <utility>
 
-#include "folder.hpp"
-#include "identification.hpp"
-#include "replay.hpp"
+#include "console.hpp"
 #include "rift/commands/arguments/inputs.hpp"
+#include "rift/commands/arguments/outputs.hpp"
 #include "rift/hardware/ping.hpp"
 #include "rift/hardware/serial_port.hpp"
 #include "rift/report/json/json.hpp"
+#include "rift/sessions/drive/identification.hpp"
+#include "rift/sessions/drive/replay.hpp"
+#include "rift/sessions/drive/session.hpp"
+#include "rift/sessions/sweep/suggested.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
+#include "rift/view/film.hpp"
+#include "rift/view/window.hpp"
 #include "series.hpp"
-#include "session.hpp"
 
 namespace rift::commands {
 namespace {
@@ -26,7 +30,8 @@ int PingRobot(const DriveRequest& request) {
   hardware::HardwareOptions options;
   if (!request.experiment.empty())
     options = ReadExperiment(request.experiment, request.overrides).hardware;
-  hardware::SerialPort port(request.port, options.line.baud, options.line.write_timeout_s);
+  hardware::SerialPort port(request.setup.address.port, options.line.baud,
+                            options.line.write_timeout_s);
   hardware::SteadyClock clock;
   const hardware::PingResult ping = hardware::MeasureLink(port, clock, options);
   request.json ? terminal::PrintData(report::PingJson(ping, options))
@@ -41,7 +46,7 @@ experiment::Experiment LoadTask(const DriveRequest& request) {
   const fs::path file = request.suggested.empty() ? fs::path(request.experiment)
                                                   : fs::path(request.suggested) / "experiment.yaml";
   experiment::Experiment experiment = ReadExperiment(file, request.overrides);
-  if (request.identify) experiment = IdentificationDrive(std::move(experiment));
+  if (request.identify) experiment = sessions::IdentificationDrive(std::move(experiment));
   if (request.countdown_s) experiment.hardware.start.countdown_s = *request.countdown_s;
   if (request.seconds) experiment.trial.timeout_s = *request.seconds;
   RequireTask(experiment, file.string());
@@ -59,9 +64,21 @@ int ExitCodeOf(const hardware::DriveRun& run) {
   return is_whole ? terminal::kDone : terminal::kNotReached;
 }
 
-int DriveOnce(const DriveRequest& request, const experiment::Experiment& experiment) {
-  const fs::path folder = NewFolder(request, experiment);
-  DriveSession session(request);
+/// Where its runs go: a robot's run cannot be repeated to the byte as a simulated one can.
+fs::path FolderOf(const DriveRequest& request, const experiment::Experiment& experiment) {
+  if (!request.suggested.empty()) return sessions::SuggestedFolder(request.suggested);
+  fs::path folder =
+      request.out.empty() ? OutputOf("", experiment.name + "_drive") : fs::path(request.out);
+  RefuseSweepFolder(folder);
+  if (!fs::exists(folder / "trajectory.csv")) return folder;
+  throw std::invalid_argument(fmt::format(
+      "{} holds a run already, and a robot does not repeat itself: choose another --out",
+      folder.string()));
+}
+
+int DriveOnce(const DriveRequest& request, const experiment::Experiment& experiment,
+              const fs::path& folder) {
+  sessions::DriveSession session(request.setup, TerminalConsole(request.setup.yes));
   const hardware::DriveRun run = session.DriveInto(folder, experiment);
   const bool is_whole = session.LogFailure().empty();
   if (run.has_begun && is_whole) {
@@ -71,18 +88,37 @@ int DriveOnce(const DriveRequest& request, const experiment::Experiment& experim
   const auto state = is_whole ? report::RunState::kFinished : report::RunState::kInterrupted;
   request.json ? terminal::PrintData(report::DriveJson(experiment, run, state))
                : terminal::PrintText(report::DriveText(run));
-  SaySteering(experiment, run);
+  for (const std::string& line : sessions::SteeringLines(experiment, run)) terminal::Say(line);
   session.RequireLog();
   return ExitCodeOf(run);
+}
+
+/// In a window, or as a video. Returns the exit code.
+int ShowDrive(const DriveRequest& request) {
+  sessions::RequireDrive(request.replay);
+  const bool has_files = !request.video.empty() || !request.copies.Files().empty();
+  const bool window = !has_files || request.setup.view;
+  if (window) view::RequireDisplay();
+  const view::Run shown = sessions::LoadDrive(request.replay, terminal::Say);
+  const trajectory::Trajectory& seen = shown.logged;
+  terminal::PrintText(fmt::format("{}\n{} poses over {:.2f} s\n", shown.outcome, seen.poses.size(),
+                                  seen.Duration_s()));
+  terminal::FlushResults();
+  WriteLogCopies(request.copies, seen);
+  if (!window && request.video.empty()) return terminal::kDone;
+  view::ShowFilm(view::MakeFilm(shown), request.video, window, terminal::Say);
+  return terminal::kDone;
 }
 
 }  // namespace
 
 int Drive(const DriveRequest& request) {
-  if (!request.replay.empty()) return ReplayDrive(request);
+  if (!request.replay.empty()) return ShowDrive(request);
   if (request.ping) return PingRobot(request);
   const experiment::Experiment experiment = LoadTask(request);
-  return request.IsSeries() ? DriveSeries(request, experiment) : DriveOnce(request, experiment);
+  const fs::path out = FolderOf(request, experiment);
+  return request.IsSeries() ? DriveSeries(request, experiment, out)
+                            : DriveOnce(request, experiment, out);
 }
 
 }  // namespace rift::commands

@@ -34,7 +34,7 @@ void AddReplayFlags(CLI::App& app, DriveRequest& request) {
 
 void AddSeriesFlags(CLI::App& app, DriveRequest& request) {
   CLI::Option* dry_run =
-      app.add_flag("--dry-run", request.dry_run,
+      app.add_flag("--dry-run", request.setup.dry_run,
                    "all of a drive but motor power: the robot is sent zeros alone, and may be "
                    "carried along the waypoints");
   app.add_option("--seconds", request.seconds, "ends a dry run after so long (trial.timeout_s)")
@@ -81,30 +81,33 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
                  "YAML file with the waypoints; its key hardware: holds "
                  "the link's settings and limits");
   AddSetFlag(app, request.overrides, "hardware.line.baud=115200");
-  app.add_option("--port", request.port, "the robot's serial port, such as /dev/rfcomm0")
+  app.add_option("--port", request.setup.address.port,
+                 "the robot's serial port, such as /dev/rfcomm0")
       ->type_name("TTY");
-  app.add_option("--camera", request.camera,
+  app.add_option("--camera", request.setup.address.camera,
                  "the camera above the floor: /dev/video0, or an http:// or rtsp:// stream")
       ->type_name("DEVICE|URL");
-  app.add_option("--calibration", request.calibration,
+  app.add_option("--calibration", request.setup.address.calibration,
                  "the camera's lens and where it hangs, as rift track writes them")
       ->type_name("FILE.yaml");
   // Of how the reference tags are watched, what matters before a start.
   FlagMaker make_flag(app);
-  vision::SessionOptions::Fields(request.session, [&](std::string_view key, auto&&... field) {
+  vision::SessionOptions::Fields(request.setup.session, [&](std::string_view key, auto&&... field) {
     if (key == "moved_m") make_flag(key, std::forward<decltype(field)>(field)...);
   });
   app.add_option("--out", request.out, "folder of the run; must not hold one [out/NAME_drive]")
       ->type_name("DIR");
   AddLogCopyFlags(app, request.copies);
-  app.add_flag("--view", request.view, "show the camera's picture; closing it stops the robot");
-  app.add_flag("--yes", request.yes, "answers Enter to every question: starts without a person");
+  app.add_flag("--view", request.setup.view,
+               "show the camera's picture; closing it stops the robot");
+  app.add_flag("--yes", request.setup.yes,
+               "answers Enter to every question: starts without a person");
   app.add_option("--countdown", request.countdown_s,
                  "time between Enter and the start, in which any key cancels; 0: none "
                  "(hardware.start.countdown_s)")
       ->type_name("S")
       ->check(InRange(0.0, 60.0));
-  app.add_flag("--any-start", request.any_start,
+  app.add_flag("--any-start", request.setup.any_start,
                "start even when the robot stands far off its start (hardware.start)");
   AddAnyWaypointsFlag(app, request.any_waypoints);
   app.add_flag("--ping", request.ping, "only measure the link, with the motors at zero");
@@ -132,7 +135,7 @@ void DriveRequest::Check() const {
   if (!replay.empty()) return;
   RequireFolderName(out, "a drive");
   const bool is_told_later = IsSeries() && !before_each.empty();
-  if (port.empty() && !is_told_later) {
+  if (setup.address.port.empty() && !is_told_later) {
     throw std::invalid_argument(
         "--port is missing: name the robot's serial port, such as /dev/rfcomm0");
   }
@@ -151,15 +154,19 @@ void DriveRequest::Check() const {
     throw std::invalid_argument("EXPERIMENT is missing: name a YAML file with waypoints");
   }
   if (is_told_later) return;
-  if (camera.empty()) {
+  if (setup.address.camera.empty()) {
     throw std::invalid_argument(
         "--camera is missing: name a device such as /dev/video0, or an http:// stream");
   }
-  if (calibration.empty()) {
+  if (setup.address.calibration.empty()) {
     throw std::invalid_argument(
         "--calibration is missing: name the camera's YAML file, which rift track --calibrate "
         "writes");
   }
+}
+
+std::vector<std::string> WordsOf(const std::string& command) {
+  return CLI::detail::split_up(command);
 }
 
 void AddDrive(CLI::App& app, int& exit_code, const std::function<int(const DriveRequest&)>& drive) {

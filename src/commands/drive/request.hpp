@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "rift/commands/arguments/log_copies.hpp"
-#include "rift/vision/tracking/session_options.hpp"
+#include "rift/sessions/drive/setup.hpp"
 
 namespace rift::commands {
 
@@ -13,22 +13,15 @@ namespace rift::commands {
 struct DriveRequest {
   std::string experiment;
   std::vector<std::string> overrides;
-  std::string port;
-  std::string camera;
-  std::string calibration;
+  sessions::DriveSetup setup;
   std::string out;
   LogCopies copies;
-  std::string replay;              ///< folder of a drive to be shown, without a robot
-  std::string video;               ///< of it, FILE.mp4
-  vision::SessionOptions session;  ///< of it moved_m
-  bool view = false;
-  bool yes = false;
+  std::string replay;  ///< folder of a drive to be shown, without a robot
+  std::string video;   ///< of it, FILE.mp4
   bool ping = false;
   bool json = false;
-  bool dry_run = false;
   std::optional<double> seconds;  ///< trial.timeout_s of a dry run
   std::optional<double> countdown_s;
-  bool any_start = false;
   bool any_waypoints = false;
   bool force = false;  ///< replace the film of --video and the copies of a log
   int repeat = 0;      ///< 0: one drive
@@ -42,5 +35,8 @@ struct DriveRequest {
   /// Throws std::invalid_argument, saying what to give, when something is missing.
   void Check() const;
 };
+
+/// The words of a command: blanks part them unless they stand between quotes.
+std::vector<std::string> WordsOf(const std::string& command);
 
 }  // namespace rift::commands

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <filesystem>
+
 #include "request.hpp"
 #include "rift/experiment/experiment.hpp"
 
 namespace rift::commands {
 
-/// `rift drive --grid` and `--repeat`: drives what is not done yet, asks about what was begun and
-/// not finished, writes sweep.yaml and, of a grid, runs it. Returns the exit code.
-int DriveSeries(const DriveRequest& request, const experiment::Experiment& experiment);
+/// `rift drive --grid`, `--repeat`, `--identify` and `--suggested` into `out`; of a grid, `rift
+/// sweep` of the drives as well. Returns the exit code.
+int DriveSeries(const DriveRequest& request, const experiment::Experiment& experiment,
+                const std::filesystem::path& out);
 
 }  // namespace rift::commands

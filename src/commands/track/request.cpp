@@ -7,12 +7,12 @@
 #include <memory>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "rift/commands/arguments/flags.hpp"
 #include "rift/commands/arguments/inputs.hpp"
 #include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/track/track.hpp"
-#include "rift/files/files.hpp"
 #include "rift/vision/camera/jpeg.hpp"
 
 namespace rift::commands {
@@ -20,39 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `frames/*.jpg` is a camera too, and frames/000.jpg one of its pictures.
-void RefuseAmongPictures(const fs::path& camera, const fs::path& log) {
-  const bool is_pattern = camera.filename().string().find('*') != std::string::npos;
-  const bool is_among =
-      is_pattern && log.extension() == camera.extension() &&
-      files::IsSameFile(fs::absolute(log).parent_path(), fs::absolute(camera).parent_path());
-  if (!is_among) return;
-  throw std::invalid_argument(
-      fmt::format("--out {} is one of the camera's pictures: name a log", log.string()));
-}
-
 void CheckLogName(const TrackRequest& request) {
-  std::error_code not_there;
-  if (fs::exists(request.out, not_there) && !fs::is_regular_file(request.out, not_there)) {
-    throw std::invalid_argument(fmt::format(
-        "--out {}: the log needs a file, since its run file stands beside it", request.out));
-  }
-  std::vector<fs::path> inputs{request.calibration};
-  for (const std::string& input : {request.world, request.path, request.experiment}) {
-    if (!input.empty()) inputs.emplace_back(input);
-  }
+  std::vector<fs::path> inputs;
+  if (!request.experiment.empty()) inputs.emplace_back(request.experiment);
   const bool has_times = !request.times.empty() && request.times != vision::kTimesFromExif;
   if (has_times) inputs.emplace_back(request.times);
-  if (fs::exists(request.camera, not_there)) inputs.emplace_back(request.camera);
-  RefuseAmongPictures(request.camera, request.out);
-  std::vector<fs::path> outputs;
-  if (!request.IsPiped()) outputs.emplace_back(request.out);
-  if (!request.record_waypoints.empty()) outputs.emplace_back(request.record_waypoints);
-  for (const fs::path& copy : request.copies.Files()) outputs.push_back(copy);
-  CheckOutputs(inputs, {.files = outputs, .force = request.force});
-  // Without its log it is of a camera that showed no tag, and tells nothing.
-  inputs.insert(inputs.end(), outputs.begin(), outputs.end());
-  if (!request.IsPiped()) CheckOutputs(inputs, {.files = {RunFileOf(request.out)}, .force = true});
+  sessions::CheckNames(request.job, std::move(inputs), request.copies.Files());
 }
 
 /// They are of one robot, and made of the log when it is whole.
@@ -61,22 +34,22 @@ void CheckCopies(const TrackRequest& request) {
   if (request.check || request.calibrate || request.out.empty() || request.IsPiped()) {
     throw std::invalid_argument("--tum and --mcap are copies of a log: give --out LOG.csv as well");
   }
-  if (request.ids.size() > 1) {
+  if (request.job.ids.size() > 1) {
     throw std::invalid_argument("--tum and --mcap hold one robot: give --id a single tag");
   }
 }
 
 void CheckTracking(const TrackRequest& request) {
-  if (request.camera.empty()) {
+  if (request.job.camera.empty()) {
     throw std::invalid_argument(
         "--camera is missing: name a device such as /dev/video0, a stream, a video, or a quoted "
         "pattern of pictures");
   }
-  if (request.calibration.empty()) {
+  if (request.job.calibration.empty()) {
     throw std::invalid_argument(
         "--calibration is missing: rift track --calibrate makes one from pictures of a chessboard");
   }
-  if (request.out.empty() && request.world.empty()) {
+  if (request.out.empty() && request.job.world.empty()) {
     throw std::invalid_argument("--out LOG.csv is missing: where shall the poses go?");
   }
   if (!request.out.empty()) CheckLogName(request);
@@ -87,30 +60,30 @@ void CheckTracking(const TrackRequest& request) {
 
 void CheckPrecisionCheck(const TrackRequest& request) {
   if (request.calibrate) throw std::invalid_argument("--check and --calibrate exclude each other");
-  if (request.calibration.empty()) {
+  if (request.job.calibration.empty()) {
     throw std::invalid_argument("--calibration is missing: --check is about one camera");
   }
-  if (!request.camera.empty() || !request.world.empty() || request.view) {
+  if (!request.job.camera.empty() || !request.job.world.empty() || request.job.view) {
     throw std::invalid_argument(
         "--check opens no camera: --camera, --world and --view do not belong to it");
   }
   if (request.out.empty()) return;
-  std::vector<fs::path> inputs{request.calibration};
+  std::vector<fs::path> inputs{request.job.calibration};
   if (!request.experiment.empty()) inputs.emplace_back(request.experiment);
-  CheckOutputs(inputs, {.files = {request.out}, .force = request.force});
+  CheckOutputs(inputs, {.files = {request.out}, .force = request.job.force});
 }
 
 void CheckPrinting(const TrackRequest& request) {
   if (!request.print_tag.empty() && !request.print_board.empty()) {
     throw std::invalid_argument("--print-tag and --print-board exclude each other");
   }
-  if (request.check || request.calibrate || !request.camera.empty() || !request.out.empty()) {
+  if (request.check || request.calibrate || !request.job.camera.empty() || !request.out.empty()) {
     throw std::invalid_argument(
         "--print-tag and --print-board write a sheet and nothing else: --camera, --out, --check "
         "and "
         "--calibrate do not belong to them");
   }
-  if (request.ids.size() > 1) {
+  if (request.job.ids.size() > 1) {
     throw std::invalid_argument("--print-tag makes one tag: give --id a single one");
   }
   const std::string& sheet = request.print_tag.empty() ? request.print_board : request.print_tag;
@@ -118,20 +91,20 @@ void CheckPrinting(const TrackRequest& request) {
     throw std::invalid_argument(
         fmt::format("{}: a sheet to print is an SVG: give it a name that ends in .svg", sheet));
   }
-  CheckOutputs({}, {.files = {sheet}, .force = request.force});
+  CheckOutputs({}, {.files = {sheet}, .force = request.job.force});
 }
 
 void CheckCalibrating(const TrackRequest& request) {
-  if (request.images.empty() == request.camera.empty()) {
+  if (request.images.empty() == request.job.camera.empty()) {
     throw std::invalid_argument(
         "--calibrate wants either --images DIR or --camera: photographs, or a camera to take them");
   }
-  if (request.view && request.camera.empty()) {
+  if (request.job.view && request.job.camera.empty()) {
     throw std::invalid_argument("--view shows a camera: --images are not taken in a window");
   }
   if (request.out.empty())
     throw std::invalid_argument("--out CAM.yaml is missing: where shall the calibration go?");
-  CheckOutputs({}, {.files = {request.out, PictureOf(request)}, .force = request.force});
+  CheckOutputs({}, {.files = {request.out, PictureOf(request)}, .force = request.job.force});
 }
 
 void CheckIds(const std::vector<int>& ids) {
@@ -173,20 +146,20 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_option("EXPERIMENT", request.experiment, "YAML file; its key track: holds the settings");
   AddSetFlag(app, request.overrides, "track.tag.id=3");
   app.add_option(
-         "--camera", request.camera,
+         "--camera", request.job.camera,
          "device, stream, video, or quoted pattern of pictures in the order of the numbers in "
          "their names")
       ->type_name("/dev/video0|URL|FILE|'GLOB'");
-  app.add_option("--calibration", request.calibration,
+  app.add_option("--calibration", request.job.calibration,
                  "of the camera: ROS camera_info, OpenCV's, the authors', or from --calibrate")
       ->type_name("CAM.yaml");
   app.add_option("--out", request.out,
                  "the log, - for stdout, the log alone; with --calibrate, the calibration")
       ->type_name("FILE|-");
   AddLogCopyFlags(app, request.copies);
-  app.add_flag("--force", request.force,
+  app.add_flag("--force", request.job.force,
                "replace files that are there already, and a better world frame of the calibration");
-  app.add_option("--id", request.ids,
+  app.add_option("--id", request.job.ids,
                  "the robot's tag [track.tag.id]; several robots go into one log, a row each")
       ->delimiter(',')
       ->check(CLI::Range(0, vision::kLastTagId))
@@ -204,10 +177,10 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_option("--fps", request.fps, "asked of a device; rate of a pattern of pictures")
       ->check(InRange(0.1, 1000.0))
       ->type_name("hz");
-  app.add_option("--duration", request.duration_s, "ends after this long")
+  app.add_option("--duration", request.job.duration_s, "ends after this long")
       ->check(InRange(0.0, 1e9))
       ->type_name("s");
-  app.add_option("--world", request.world,
+  app.add_option("--world", request.job.world,
                  "sets the world frame first and keeps it in the calibration: from the robot's "
                  "first pose, or from a file with tags: (id, x_m, y_m) to be seen or points: "
                  "(name, x_m, y_m) to be clicked")
@@ -221,20 +194,16 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_option("--print-board", request.print_board,
                  "the same of a chessboard (--board, --square)")
       ->type_name("FILE.svg");
-  app.add_flag("--view", request.view,
+  app.add_flag("--view", request.job.view,
                "show it in a window; with --calibrate and a camera, where to hold the board next");
-  app.add_option("--path", request.path, "what the view holds the robot's trail against")
+  app.add_option("--path", request.job.path, "what the view holds the robot's trail against")
       ->type_name("WAYPOINTS.yaml|LOG.csv");
-  app.add_option("--record-waypoints", request.record_waypoints,
+  app.add_option("--record-waypoints", request.job.record_waypoints,
                  "write the waypoints made in the window, for simulate and drive")
       ->type_name("FILE.yaml");
 }
 
 }  // namespace
-
-fs::path RunFileOf(const fs::path& log) {
-  return fs::path(log).replace_extension().string() + ".run.json";
-}
 
 fs::path PictureOf(const TrackRequest& request) {
   return request.picture.empty() ? fs::path(request.out).replace_extension(".png")
@@ -250,13 +219,13 @@ void TrackRequest::Check() const {
   } else {
     calibrate ? CheckCalibrating(*this) : CheckTracking(*this);
   }
-  CheckIds(ids);
+  CheckIds(job.ids);
 }
 
 void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const TrackRequest&)>& track) {
   const auto request = std::make_shared<TrackRequest>();
   AddTrackingFlags(app, *request);
-  AddFlags(app, request->session);
+  AddFlags(app, request->job.session);
   AddCalibrationFlags(app, *request);
   AddKeysFlag(app);
   app.footer(
@@ -269,7 +238,8 @@ void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const Track
       "         rift track --check --calibration cam.yaml\n"
       "         rift track --print-tag tag.svg --set track.tag.size_m=0.05");
   app.callback([request, track, &exit_code] {
-    request->calibration = FindInput(request->calibration);
+    request->job.calibration = FindInput(request->job.calibration);
+    request->job.log = request->out;
     request->Check();
     exit_code = track(*request);
   });

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "rift/commands/arguments/log_copies.hpp"
+#include "rift/sessions/track/tracking.hpp"
 #include "rift/vision/calibration/chessboard.hpp"
-#include "rift/vision/tracking/session_options.hpp"
 
 namespace rift::commands {
 
@@ -15,22 +15,12 @@ namespace rift::commands {
 struct TrackRequest {
   std::string experiment;
   std::vector<std::string> overrides;
-  std::string camera;
-  std::string calibration;
+  sessions::TrackingJob job;  ///< but for its options
   std::string out;
   LogCopies copies;
-  std::string world;  ///< "first", or a file with tags or points
-  std::string path;
-  std::string record_waypoints;
-  std::vector<int> ids;  ///< of the robots' tags; none: track.tag.id
   std::optional<double> tag_height_m;
-  bool force = false;
   std::string times;  ///< file with the times of a pattern of pictures
   std::optional<double> fps;
-  std::optional<double> duration_s;
-  bool view = false;
-
-  vision::SessionOptions session;
 
   bool check = false;  ///< what precision is to be expected
 
@@ -50,9 +40,6 @@ struct TrackRequest {
   /// is no file, an input, a picture of the camera or another output.
   void Check() const;
 };
-
-/// Beside the log: what it was made from.
-std::filesystem::path RunFileOf(const std::filesystem::path& log);
 
 /// Where the picture of a calibration goes.
 std::filesystem::path PictureOf(const TrackRequest& request);

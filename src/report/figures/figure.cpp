@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "rift/files/files.hpp"
 #include "rift/files/process_end.hpp"
 
 namespace rift::report {
@@ -190,6 +191,28 @@ Figure Stack(std::string name, std::string title, const std::vector<Figure>& fig
   }
   stack.plot += "unset multiplot\n";
   return stack;
+}
+
+namespace {
+
+FigureFormat FormatOf(const std::filesystem::path& path) {
+  if (path.extension() == ".svg") return FigureFormat::kSvg;
+  if (path.extension() == ".png") return FigureFormat::kPng;
+  throw std::invalid_argument("--figure " + path.string() + ": the name must end in .svg or .png");
+}
+
+}  // namespace
+
+void RequireFigureName(const std::filesystem::path& path) { FormatOf(path); }
+
+void WriteFigure(const std::filesystem::path& path, const Figure& figure) {
+  files::WriteFile(path, Render(figure, FormatOf(path)));
+}
+
+void WriteFigureFiles(const std::filesystem::path& folder, const Figure& figure) {
+  for (const char* extension : {".svg", ".png"}) {
+    WriteFigure(folder / (figure.name + extension), figure);
+  }
 }
 
 }  // namespace rift::report

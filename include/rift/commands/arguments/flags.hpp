@@ -1,75 +1,15 @@
 #pragma once
 
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "rift/yaml/flag_name.hpp"
+#include "rift/flags/flags.hpp"
 
 namespace rift::commands {
 
-/// CLI::Range lets a NaN through.
-inline CLI::Validator InRange(double min, double max) {
-  return CLI::Validator(
-      [min, max](const std::string& text) -> std::string {
-        double value = 0.0;
-        const bool is_number = CLI::detail::lexical_cast(text, value);
-        if (is_number && value >= min && value <= max) return "";
-        return fmt::format("'{}' must be a number in [{:g}, {:g}]", text, min, max);
-      },
-      fmt::format("in [{:g}, {:g}]", min, max));
-}
-
-/// Makes one flag for each field of an Options struct: the same keys, defaults, ranges and help
-/// as in the YAML file.
-class FlagMaker {
- public:
-  explicit FlagMaker(CLI::App& app) : app_(app) {}
-
-  template <class Number>
-  void operator()(std::string_view key, Number& value, auto min, auto max, const char* help) {
-    const yaml::FlagName name(key);
-    CLI::Option* option = app_.add_option(name.flag, value, help)
-                              ->capture_default_str()
-                              ->check(InRange(static_cast<double>(min), static_cast<double>(max)));
-    if (!name.unit.empty()) option->type_name(name.unit);
-  }
-
-  void operator()(std::string_view key, bool& value, const char* help) {
-    app_.add_flag(yaml::FlagName(key).flag, value, help);
-  }
-
-  template <class Enum>
-  requires std::is_enum_v<Enum>
-  void operator()(std::string_view key, Enum& value, const char* help) {
-    const auto names = EnumNames(Enum{});
-    std::string choices;
-    for (const std::string_view name : names)
-      choices += (choices.empty() ? "" : "|") + std::string(name);
-    app_.add_option_function<std::string>(
-            yaml::FlagName(key).flag,
-            [&value, names](const std::string& text) {
-              value =
-                  static_cast<Enum>(std::find(names.begin(), names.end(), text) - names.begin());
-            },
-            help)
-        ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
-        ->type_name(choices)
-        ->default_str(std::string(names[static_cast<size_t>(value)]));
-  }
-
- private:
-  CLI::App& app_;
-};
-
-template <class Options>
-void AddFlags(CLI::App& app, Options& options) {
-  Options::Fields(options, FlagMaker(app));
-}
+using flags::AddFlags;
+using flags::FlagMaker;
+using flags::InRange;
 
 /// `--set KEY=VALUE`, as often as one likes; `example` is one, such as control.v_min=0.2.
 CLI::Option* AddSetFlag(CLI::App& app, std::vector<std::string>& overrides, const char* example);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,5 +38,14 @@ std::string Render(const Figure& figure, FigureFormat format, const ReportOption
 
 /// Several figures of one width below each other, for one file.
 Figure Stack(std::string name, std::string title, const std::vector<Figure>& figures);
+
+/// Throws std::invalid_argument unless the name ends in .svg or .png.
+void RequireFigureName(const std::filesystem::path& path);
+
+/// Writes an SVG or PNG, as the name of the file ends. Throws std::invalid_argument for another
+/// ending.
+void WriteFigure(const std::filesystem::path& path, const Figure& figure);
+/// FOLDER/NAME.svg and FOLDER/NAME.png.
+void WriteFigureFiles(const std::filesystem::path& folder, const Figure& figure);
 
 }  // namespace rift::report

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "rift/sessions/drive/plan.hpp"
+#include "rift/sessions/drive/setup.hpp"
+
+namespace rift::sessions {
+
+/// Drives that belong together.
+struct DriveSeries {
+  std::filesystem::path out;  ///< its sweep.yaml says what they are for
+  SeriesPlan plan;
+  /// Words of the command to run before each drive, with names to be filled in; none: no command.
+  std::vector<std::string> before_each;
+  DriveSetup setup;
+};
+
+enum class SeriesEnd {
+  kDone,
+  kLeft,  ///< some did not reach the end and were left so
+  kQuit,  ///< a person ended it before the last one
+};
+
+/// Drives what is not done yet, asks about what was begun and not finished, writes sweep.yaml.
+/// After the last drive, with port and camera closed and the folder still locked, `then` is called.
+/// Throws std::invalid_argument when the folder holds the drives of another experiment.
+SeriesEnd DriveAll(const DriveSeries& series, const Console& console,
+                   const std::function<void()>& then);
+
+}  // namespace rift::sessions

@@ -1,0 +1,139 @@
+#include "before_each.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <thread>
+
+namespace rift::sessions {
+namespace {
+
+constexpr int kNotFound = 127;  // as shells have it
+constexpr std::chrono::seconds kPatience{10};
+
+/// In the child: nothing but system calls, since other threads may hold any lock.
+[[noreturn]] void Become(const std::vector<char*>& words, int output, pid_t parent) {
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (::getppid() != parent) ::_exit(kNotFound);  // it ended before the line above
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  ::dup2(nothing, STDIN_FILENO);
+  ::dup2(output, STDOUT_FILENO);
+  ::execvp(words.front(), words.data());
+  ::_exit(kNotFound);
+}
+
+/// The next line; none at the end of the output.
+std::optional<std::string> ReadLine(int descriptor) {
+  std::string line;
+  char c = 0;
+  while (true) {
+    const ssize_t got = ::read(descriptor, &c, 1);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return line.empty() ? std::nullopt : std::optional(line);
+    if (c == '\n') return line;
+    line += c;
+  }
+}
+
+int WaitFor(pid_t pid) {
+  int status = 0;
+  while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
+  return status;
+}
+
+bool EndsWithin(pid_t pid, std::chrono::seconds patience) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (::waitpid(pid, nullptr, WNOHANG) == 0) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+std::string HowItEnded(int status) {
+  if (WIFSIGNALED(status)) return fmt::format("was ended by signal {}", WTERMSIG(status));
+  const int code = WEXITSTATUS(status);
+  return code == kNotFound ? "could not be run" : fmt::format("ended with {}", code);
+}
+
+}  // namespace
+
+DriveAddress AddressOf(const std::string& json) {
+  DriveAddress address;
+  try {
+    const nlohmann::json said = nlohmann::json::parse(json);
+    for (auto [key, value] : {std::pair{"port", &address.port},
+                              {"camera", &address.camera},
+                              {"calibration", &address.calibration}}) {
+      if (said.contains(key)) *value = said.at(key).get<std::string>();
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw std::invalid_argument(
+        fmt::format("--before-each said '{}', which is no object of port, camera and calibration: "
+                    "{}",
+                    json, error.what()));
+  }
+  return address;
+}
+
+SceneCommand::SceneCommand(const std::vector<std::string>& words) : name_(words.front()) {
+  std::vector<std::string> copies = words;
+  std::vector<char*> arguments;
+  for (std::string& word : copies) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
+    throw std::runtime_error(fmt::format("no pipe to be had: {}", strerror(errno)));
+  }
+  const pid_t parent = ::getpid();
+  pid_ = ::fork();
+  if (pid_ == 0) Become(arguments, ends[1], parent);
+  if (pid_ > 0) ::setpgid(pid_, pid_);  // whichever of the two comes first
+  ::close(ends[1]);
+  output_ = ends[0];
+  if (pid_ < 0) {
+    ::close(output_);
+    throw std::runtime_error(fmt::format("cannot run {}: {}", name_, strerror(errno)));
+  }
+  try {
+    while (const auto line = ReadLine(output_)) {
+      if (!line->starts_with('{')) continue;
+      address_ = AddressOf(*line);
+      return;
+    }
+  } catch (...) {
+    End();
+    throw;
+  }
+  ::close(output_);
+  const int status = WaitFor(std::exchange(pid_, -1));
+  if (status != 0) {
+    throw std::runtime_error(fmt::format("--before-each: {} {}", name_, HowItEnded(status)));
+  }
+}
+
+void SceneCommand::End() {
+  if (pid_ < 0) return;
+  ::kill(-pid_, SIGTERM);
+  if (!EndsWithin(pid_, kPatience)) {
+    ::kill(-pid_, SIGKILL);
+    WaitFor(pid_);
+  }
+  ::close(output_);
+  pid_ = -1;
+}
+
+SceneCommand::~SceneCommand() { End(); }
+
+}  // namespace rift::sessions

@@ -1,0 +1,72 @@
+#include "rift/sessions/drive/identification.hpp"
+
+#include <algorithm>
+
+namespace rift::sessions {
+namespace {
+
+control::Segment Straight(double way_m, double power) {
+  return {.straight_m = way_m, .power = power};
+}
+
+control::Segment Spin(double turn_deg, double power) {
+  return {.turn_deg = turn_deg, .power = power};
+}
+
+control::Segment Arc(double turn_deg, double power) {
+  constexpr double kRadius_m = 0.12;
+  return {.turn_deg = turn_deg, .radius_m = kRadius_m, .power = power};
+}
+
+/// Long enough to coast to rest and for the command after it to be told from the one before.
+control::Segment Hold() { return {.hold_s = 1.0}; }
+
+std::vector<control::Segment> Excitation() {
+  return {// Supply, friction and delay: powers apart, up and down; the holds show how it coasts.
+          Straight(0.20, 0.15), Hold(), Straight(-0.20, 0.20), Hold(),  //
+          Straight(0.30, 0.30), Hold(), Straight(-0.30, 0.45),
+          Hold(),  //
+                   // Track, and the friction of what is dragged sideways.
+          Spin(180, 0.15), Hold(), Spin(-180, 0.15), Hold(),  //
+          Spin(360, 0.30), Hold(), Spin(-360, 0.30), Hold(),  //
+                                                              // Left against right, under way.
+          Arc(90, 0.20), Hold(), Arc(-90, 0.30), Hold(), Straight(-0.30, 0.25), Hold(),  //
+          Arc(-90, 0.20), Hold(), Arc(90, 0.30), Hold(), Straight(-0.20, 0.20)};
+}
+
+/// Ranges and what is known beside the logs: configs/calibrate.yaml gives the reasons.
+std::vector<experiment::FreeParameter> WhatIsFitted() {
+  const auto free = [](const char* key, double min, double max, double mean, double sd) {
+    return experiment::FreeParameter{
+        .key = key, .min = min, .max = max, .prior_mean = mean, .prior_sd = sd};
+  };
+  return {free("simulation.link.delay_s", 0.0, 0.20, 0.05, 0.05),
+          free("simulation.motor.supply_ratio", 0.6, 1.7, 1.2, 0.25),
+          free("simulation.motor.friction_torque_nm", 0.0, 0.003, 0.0019, 0.0008),
+          free("simulation.motor.mismatch", -0.10, 0.10, 0.0, 0.04),
+          free("simulation.body.caster_mu", 0.0, 0.5, 0.15, 0.1)};
+}
+
+}  // namespace
+
+experiment::Experiment IdentificationDrive(experiment::Experiment experiment) {
+  constexpr double kSettle_s = 1.0, kTimeout_s = 120.0;
+  if (experiment.waypoints.size() > 1) experiment.waypoints.resize(1);
+  experiment.program = {.rest_s = 1.5, .segments = Excitation()};
+  experiment.trial.settle_s = std::max(experiment.trial.settle_s, kSettle_s);
+  experiment.trial.timeout_s = std::max(experiment.trial.timeout_s, kTimeout_s);
+  experiment.name += "_identify";
+  return experiment;
+}
+
+experiment::Experiment IdentificationFit(experiment::Experiment logs) {
+  logs.goal = experiment::Goal::kCalibrate;
+  logs.calibrate.holdout.names.clear();
+  // The motions are compared, step by step; a program has no task whose traits could be.
+  logs.calibrate.method.runs = 0;
+  std::vector<experiment::FreeParameter>& fit = logs.calibrate.fit.list;
+  if (fit.empty()) fit = WhatIsFitted();
+  return logs;
+}
+
+}  // namespace rift::sessions

@@ -1,0 +1,125 @@
+#include "rift/sessions/gap/measure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include "rift/files/files.hpp"
+#include "rift/gap/doubts.hpp"
+#include "rift/sweep/falsify/recorded_logs.hpp"
+#include "rift/trajectory/log.hpp"
+
+namespace rift::sessions {
+namespace {
+
+using trajectory::Format;
+using Say = std::function<void(const std::string&)>;
+
+/// What was mended, and why there may be no yaw errors.
+void SayNotes(const trajectory::Log& log, const std::string& path, const std::string& flag,
+              const Say& say) {
+  for (const std::string& note : log.notes) say(fmt::format("note: {}: {}", path, note));
+  for (const std::string& doubt : log.doubts) {
+    say(fmt::format("warning: {}: {}", path, doubt));
+  }
+  if (log.line_without_yaw) {
+    say(fmt::format("note: {}:{}: has no yaw: yaw errors are told where it is logged", path,
+                    *log.line_without_yaw));
+  }
+  if (log.unknown_angles.empty()) return;
+  say(fmt::format("note: {}: yaw errors are left out: {}: set {}", path, log.unknown_angles, flag));
+}
+
+bool IsNamed(const std::string& path, std::initializer_list<std::string_view> words) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return name.find(word) != name.npos; });
+}
+bool IsNamedSimulated(const std::string& path) {
+  return IsNamed(path, {"sim", "webots", "gazebo", "mujoco"});
+}
+bool IsNamedReal(const std::string& path) {
+  return IsNamed(path, {"real", "robot", "tracker", "mocap"});
+}
+
+/// The true path of a simulated run is held against its log on purpose.
+void SayIfSwapped(const GapJob& job, const gap::GapResult& result, const Say& say) {
+  const std::string& real = job.reals.front();
+  const bool by_name = IsNamedReal(job.sim) && !IsNamedSimulated(job.sim) &&
+                       IsNamedSimulated(real) && !IsNamedReal(real);
+  const bool by_format =
+      job.sim_logs.format == Format::kTracker || job.real_logs.format == Format::kWebots;
+  const bool by_noise =
+      !IsNamed(real, {"truth"}) && gap::LookSwapped(result.sim, result.reals.front());
+  if (!by_name && !by_format && !by_noise) return;
+  say(fmt::format(
+      "warning: {} and {}: by their {} the two are swapped: the simulator's log comes first",
+      job.sim, real,
+      by_name     ? "names"
+      : by_format ? "formats"
+                  : "noise"));
+}
+
+void SayDoubts(const gap::GapResult& result, const Say& say) {
+  for (size_t i = 0; i < result.reals.size(); ++i) {
+    for (const std::string& doubt : gap::Doubts(result.sim, result.reals[i], result.options)) {
+      const double threshold_m = result.options.threshold_m;
+      const bool is_above = result.trials[i].comparison.gap_m > threshold_m;
+      say(fmt::format("warning: SIM {} and REAL {}{}: {}", result.sim_path, result.trials[i].path,
+                      is_above ? fmt::format(", whose gap is above {:g} m", threshold_m) : "",
+                      doubt));
+    }
+  }
+}
+
+/// Every simulated run is held against every real one: nothing says that they belong together.
+gap::Likeness MeasureRepeats(const GapJob& job, const gap::GapResult& result, const Say& say) {
+  gap::RepeatedSetting setting{.reals = result.reals, .sims = {{result.sim}}};
+  for (const std::string& path : job.sim_repeats) {
+    trajectory::Log sim = trajectory::ReadLog(files::ReadFile(path), path, job.sim_logs);
+    SayNotes(sim, path, "--sim-format", say);
+    setting.sims.front().push_back(std::move(sim.trajectory));
+  }
+  std::mt19937_64 generator(job.seed);
+  return gap::MeasureLikeness({&setting, 1}, job.options, job.likeness, generator);
+}
+
+}  // namespace
+
+void RefuseTwins(const std::vector<std::string>& logs) {
+  for (auto log = logs.begin(); log != logs.end(); ++log) {
+    const auto twin = std::find_if(
+        logs.begin(), log, [&](const auto& other) { return files::IsSameFile(*log, other); });
+    if (twin == log) continue;
+    throw std::invalid_argument(fmt::format(
+        "{} and {} are one log, and each repeat is a run of its own: name it once", *twin, *log));
+  }
+}
+
+gap::GapResult MeasureGap(const GapJob& job, const Say& say) {
+  gap::GapResult result{.options = job.options,
+                        .tag_offset_m = job.tag_offset_m,
+                        .sim_path = job.sim,
+                        .judged_by = job.verdict};
+  trajectory::Log sim = trajectory::ReadLog(files::ReadFile(job.sim), job.sim, job.sim_logs);
+  SayNotes(sim, job.sim, "--sim-format", say);
+  result.sim = std::move(sim.trajectory);
+  const sweep::LogOptions real_logs{job.real_logs, job.tag_offset_m, "--real-format"};
+  for (const std::string& path : job.reals) {
+    trajectory::Log real = sweep::ReadMovedLog(files::ReadFile(path), path, real_logs);
+    SayNotes(real, path, "--real-format", say);
+    result.trials.push_back({path, gap::Compare(result.sim, real.trajectory, job.options)});
+    result.reals.push_back(std::move(real.trajectory));
+  }
+  Judge(result);
+  SayIfSwapped(job, result, say);
+  SayDoubts(result, say);
+  if (!job.sim_repeats.empty()) result.likeness = MeasureRepeats(job, result, say);
+  return result;
+}
+
+}  // namespace rift::sessions

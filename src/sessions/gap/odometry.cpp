@@ -1,0 +1,101 @@
+#include "rift/sessions/gap/odometry.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "rift/files/files.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/trajectory/log.hpp"
+
+namespace rift::sessions {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The files of a run: those of its folder, or those beside a log.
+struct RunFiles {
+  explicit RunFiles(const fs::path& run) {
+    const bool is_folder = fs::is_directory(run);
+    const fs::path folder = is_folder ? run : run.parent_path();
+    trajectory = is_folder ? run / "trajectory.csv" : run;
+    // `rift simulate --out sim.csv` writes sim.encoders.csv beside it.
+    const fs::path beside = fs::path(trajectory).replace_extension("encoders.csv");
+    encoders = !is_folder && fs::exists(beside) ? beside : folder / "encoders.csv";
+    const fs::path task = fs::path(trajectory).replace_extension("experiment.yaml");
+    experiment = !is_folder && fs::exists(task) ? task : folder / "experiment.yaml";
+  }
+
+  fs::path trajectory, encoders, experiment;
+};
+
+/// Repeats of one program under one setting are a cell; other runs only stand side by side.
+bool AreRepeats(const std::vector<LoadedRun>& runs) {
+  for (const LoadedRun& run : runs) {
+    if (!run.run.program || !runs.front().run.program) return false;
+    const auto& a = run.run.program->poses;
+    const auto& b = runs.front().run.program->poses;
+    if (a.size() != b.size()) return false;
+    for (size_t i = 0; i < a.size(); ++i) {
+      if (a[i].t_s != b[i].t_s || a[i].Position() != b[i].Position()) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+LoadedRun LoadRun(const std::string& name, const std::string& program) {
+  const RunFiles files(name);
+  trajectory::Log log =
+      trajectory::ReadLog(files::ReadFile(files.trajectory), files.trajectory.string());
+  LoadedRun loaded{.run = {.log = {.name = name, .camera = std::move(log.trajectory)}},
+                   .files = {files.trajectory, files.encoders, files.experiment}};
+  if (const auto encoders = files::ReadIfThere(files.encoders)) {
+    loaded.run.log.encoders = odometry::ReadEncoders(*encoders, files.encoders.string());
+  }
+  const bool is_told = !program.empty();
+  if (is_told || fs::exists(files.experiment)) {
+    loaded.experiment = experiment::LoadExperiment(is_told ? program : files.experiment.string(),
+                                                   {}, files::ReadFile);
+    if (!loaded.experiment->program.segments.empty()) {
+      loaded.run.program = sweep::IdealPath(experiment::TaskOf(*loaded.experiment));
+    } else if (is_told) {
+      throw std::invalid_argument(
+          fmt::format("{}: has no program: name an experiment with program.segments", program));
+    }
+  }
+  if (!loaded.run.program && loaded.run.log.encoders.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: has neither encoders ({}) nor a program to be held against: name a run "
+                    "folder, or an experiment with --program",
+                    name, files.encoders.string()));
+  }
+  return loaded;
+}
+
+odometry::OdometryResult MeasureOdometry(
+    const std::vector<LoadedRun>& runs, odometry::RunOptions options,
+    const std::optional<odometry::CalibrationOptions>& calibration) {
+  odometry::OdometryOptions wheels;
+  if (const auto& experiment = runs.front().experiment) {
+    wheels = experiment->hardware.odometry;
+    if (options.tag_ahead_m == 0.0) options.tag_ahead_m = experiment->simulation.mocap.tag_ahead_m;
+  }
+  std::vector<odometry::ProgramRun> driven;
+  std::vector<odometry::RunLog> logs;
+  for (const LoadedRun& run : runs) {
+    logs.push_back(run.run.log);
+    driven.push_back(run.run);
+  }
+  odometry::OdometryResult result =
+      odometry::MeasureRuns(driven, AreRepeats(runs), wheels, options);
+  if (!calibration) return result;
+  std::erase_if(logs, [](const odometry::RunLog& log) { return log.encoders.empty(); });
+  result.calibration = odometry::CalibrateOdometry(logs, wheels, *calibration);
+  result.confidence = calibration->confidence;
+  return result;
+}
+
+}  // namespace rift::sessions

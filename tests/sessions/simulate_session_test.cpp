@@ -1,0 +1,57 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "rift/sessions/simulate/run.hpp"
+#include "support/inputs/paper_waypoints.hpp"
+#include "support/processes/process.hpp"
+
+namespace rift::sessions {
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+
+experiment::Experiment PaperTask() {
+  experiment::Experiment experiment;
+  experiment.name = "paper";
+  experiment.waypoints = test::PaperWaypoints();
+  return experiment;
+}
+
+TEST_CASE("A run goes into a folder, or beside the log that was named") {
+  CHECK(RunFiles("out/run").summary == "out/run/summary.json");
+  CHECK(RunFiles("out/run").trajectory == "out/run/trajectory.csv");
+  CHECK(RunFiles("out/sim.csv").trajectory == "out/sim.csv");
+  CHECK(RunFiles("out/sim.csv").encoders == "out/sim.encoders.csv");
+}
+
+TEST_CASE("A run is replaced by the run of the same experiment and by no other") {
+  const test::TemporaryFolder folder;
+  const fs::path out = folder / "run";
+  const experiment::Experiment experiment = PaperTask();
+  const auto check = [&](const experiment::Experiment& next, bool force) {
+    CheckRunNames(out, next, {}, {}, force);
+  };
+  CHECK_NOTHROW(check(experiment, false));
+  fs::create_directories(out);
+  test::WriteText(RunFiles(out).experiment.string(), experiment::WriteExperiment(experiment));
+  test::WriteText(RunFiles(out).trajectory.string(), "t_s\n");
+  CHECK_NOTHROW(check(experiment, false));
+  experiment::Experiment other = experiment;
+  other.seed = 2;
+  CHECK_THROWS_WITH(check(other, false), Contains("is there already"));
+  CHECK_NOTHROW(check(other, true));
+}
+
+TEST_CASE("What is written beside a run is no file of it, and a run for a pipe has none") {
+  const test::TemporaryFolder folder;
+  const fs::path truth = folder / "sim.truth.csv";
+  CHECK_THROWS_WITH(CheckRunNames(folder / "sim.csv", PaperTask(), {}, {truth}, false),
+                    Contains("another output"));
+  CHECK_NOTHROW(CheckRunNames("-", PaperTask(), {}, {truth, "-/truth.csv"}, false));
+  CHECK_THROWS_WITH(CheckRunNames("-", PaperTask(), {truth}, {truth}, false),
+                    Contains("is an input"));
+}
+
+}  // namespace
+}  // namespace rift::sessions
