@@ -2,7 +2,7 @@
 # left over when all else is done.
 set_tests_properties([==[drive:An identification on the twin leaves a fit that the next command makes]==] PROPERTIES COST 72)
 set_tests_properties([==[commands:With real daemons of Slurm: the bytes of a local run, whatever fails on the way]==] PROPERTIES COST 71)
-set_tests_properties([==[commands:The recipes in docs work as they are printed, in their order]==] PROPERTIES COST 58)
+set_tests_properties([==[commands:The recipes of the README, and of docs after it, work as they are printed]==] PROPERTIES COST 75)
 set_tests_properties([==[drive:A drive whose streams are closed or full arrives and its robot hears commands alone]==] PROPERTIES COST 41)
 set_tests_properties([==[twin:The twin is seen to drive as it is told and to stop after the last command]==] PROPERTIES COST 33)
 set_tests_properties([==[drive:A grid driven on twins and killed in the middle goes on and ends with its report]==] PROPERTIES COST 32)
@@ -10,7 +10,6 @@ set_tests_properties([==[commands:Only a nominal run that did not arrive is trie
 set_tests_properties([==[commands:A robot hears nothing but commands when the streams of a ping are closed or full]==] PROPERTIES COST 29)
 set_tests_properties([==[sweep:A sweep that is stopped goes on with the trials that are missing]==] PROPERTIES COST 24)
 set_tests_properties([==[sweep:The rows of a sweep are the same for one worker and for two and for none]==] PROPERTIES COST 21)
-set_tests_properties([==[commands:The README is short, and its recipes work as they are printed]==] PROPERTIES COST 20)
 set_tests_properties([==[vision:Tags of every family are measured as well as tag36h11 from 20 to 60 px]==] PROPERTIES COST 19)
 set_tests_properties([==[drive:A drive whose words nobody reads waits before anything moves, and then arrives]==] PROPERTIES COST 17)
 set_tests_properties([==[commands:Shrinking and rare events are a job each and give the files of a local run]==] PROPERTIES COST 17)
