@@ -1,16 +1,21 @@
 
 // ---- the error along the paths, with one cursor through it and the paths ----
 
-// [u, metres] of a row against its reference at equal shares u of their lengths; null where that
-// says nothing: no reference, or a robot that did not arrive.
-function errorsOf(row) {
+// The path of a row and that of its reference; null where holding them together says nothing: no
+// reference, or a robot that did not arrive.
+function pairOf(row) {
   const path = page.paths.rows[row], reference = page.paths.references[path?.reference];
-  if (!reference || path.u === null) return null;
-  const p = points(path.d), r = points(reference.d), last = Math.max(p.length, r.length) - 1;
-  return Array.from({ length: last + 1 }, (_, i) => {
-    const a = at(p, i / last), b = at(r, i / last);
-    return [i / last, Math.hypot(a[0] - b[0], a[1] - b[1])];
-  });
+  return reference && path.u !== null ? [points(path.d), points(reference.d)] : null;
+}
+
+const distance = ([a, b]) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+
+// [u, metres] of a row against its reference at equal shares u of their lengths.
+function errorsOf(row) {
+  const pair = pairOf(row);
+  if (!pair) return null;
+  const last = Math.max(...pair.map(path => path.length)) - 1;
+  return Array.from({ length: last + 1 }, (_, i) => [i / last, distance(pair.map(path => at(path, i / last)))]);
 }
 
 // A strip below the paths. Its `cursor` moves over u, by pointer or arrow keys, and shows what

@@ -96,17 +96,13 @@ function drawPaths(k) {
   svg.append(cursor);
   // Where the shown rows and their references are at u.
   const place = u => {
-    const pairs = u === null ? [] : shown.filter(row => errorsOf(row)).map(row => {
-      const path = paths.rows[row];
-      return [at(points(path.d), u), at(points(paths.references[path.reference].d), u)];
-    });
+    const pairs = u === null ? [] : shown.map(pairOf).filter(pair => pair)
+      .map(pair => pair.map(path => at(path, u)));
     cursor.replaceChildren(...pairs.flatMap(pair => [line(pair, 'gap'), ...pair.map(p => {
       const [cx, cy] = to(p);
       return element('circle', { cx, cy, r: 3.5 });
     })]));
-    if (pairs.length !== 1) return '';
-    const [a, b] = pairs[0];
-    return `At ${Math.round(100 * u)} % of the way: ${Math.hypot(a[0] - b[0], a[1] - b[1]).toFixed(3)} m.`;
+    return pairs.length === 1 ? `At ${Math.round(100 * u)} % of the way: ${distance(pairs[0]).toFixed(3)} m.` : '';
   };
   const strip = errorStrip(view, wide, place);
   if (strip) pathPlace.append(strip.svg);
@@ -137,10 +133,11 @@ function drawPaths(k) {
   }
   // On a path the cursor is at its nearest point.
   svg.addEventListener('pointermove', event => {
-    if (!strip || shown.length !== 1 || !errorsOf(shown[0])) return;
+    const pair = strip && shown.length === 1 ? pairOf(shown[0]) : null;
+    if (!pair) return;
     const box = svg.getBoundingClientRect(), zoom = wide / box.width;
     const here = [(event.clientX - box.left) * zoom, (event.clientY - box.top) * zoom];
-    const far = points(paths.rows[shown[0]].d).map(p => Math.hypot(...to(p).map((v, i) => v - here[i])));
+    const far = pair[0].map(p => Math.hypot(...to(p).map((v, i) => v - here[i])));
     const nearest = far.indexOf(Math.min(...far));
     strip.cursor(far[nearest] < 20 ? nearest / (far.length - 1) : null);
   });
