@@ -154,14 +154,8 @@ void Members(Bytes& bytes, T& request) {
   bytes(request.is_random_draw);
 }
 
-template <class Bytes, Is<Eigen::Vector2d> T>
-void Members(Bytes& bytes, T& v) {
-  bytes(v.x());
-  bytes(v.y());
-}
-
-template <class Bytes, Is<Eigen::Vector2f> T>
-void Members(Bytes& bytes, T& v) {
+template <class Bytes, class T>
+requires(Is<T, Eigen::Vector2d> || Is<T, Eigen::Vector2f>) void Members(Bytes& bytes, T& v) {
   bytes(v.x());
   bytes(v.y());
 }
