@@ -42,10 +42,7 @@ int MeasureLogs(const GapRequest& request) {
   limits::Require(limits::Amount::kSamples, request.job.options.samples, "--samples");
   const gap::GapResult result = sessions::MeasureGap(request.job, terminal::Say);
   Save(request, result);
-  const bool may_fail =
-      result.verdict.verdict == gap::Verdict::kFalsified ||
-      (result.verdict.verdict == gap::Verdict::kUndecided && result.verdict.above > 0);
-  return request.exit_code && may_fail ? terminal::kFalsified : terminal::kDone;
+  return request.exit_code && result.verdict.MayFail() ? terminal::kFalsified : terminal::kDone;
 }
 
 int MeasureOdometry(const GapRequest& request) {

@@ -37,6 +37,11 @@ struct RepeatVerdict {
   double confidence = 0.95;
   statistics::ShareEvidence evidence;  ///< about VerdictOptions::share
   int settings = 1;                    ///< judged together
+
+  /// Falsified, or undecided with a failure, which may be one of many.
+  bool MayFail() const {
+    return verdict == Verdict::kFalsified || (verdict == Verdict::kUndecided && above > 0);
+  }
 };
 
 /// By the counts alone: the setting is the only one that is judged.

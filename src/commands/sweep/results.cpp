@@ -16,18 +16,6 @@ namespace rift::commands {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-/// A failure that leaves its setting undecided may be one of many.
-bool MayFail(const sweep::SweepResult& result) {
-  return result.Count(gap::Verdict::kFalsified) > 0 ||
-         std::any_of(result.settings.begin(), result.settings.end(), [](const auto& setting) {
-           return setting.verdict.verdict == gap::Verdict::kUndecided && setting.verdict.above > 0;
-         });
-}
-
-}  // namespace
-
 int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
   // Logs are compared in seconds and keep no journal.
   if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
@@ -93,7 +81,10 @@ void SayWhere(const SweepRequest& request, const experiment::Experiment& experim
 
 int ExitCodeOf(const SweepRequest& request, const sweep::SweepResult& result) {
   if (result.all.n == 0) return terminal::kNotReached;
-  return request.exit_code && MayFail(result) ? terminal::kFalsified : terminal::kDone;
+  const bool may_fail =
+      std::any_of(result.settings.begin(), result.settings.end(),
+                  [](const sweep::SettingResult& setting) { return setting.verdict.MayFail(); });
+  return request.exit_code && may_fail ? terminal::kFalsified : terminal::kDone;
 }
 
 }  // namespace rift::commands
