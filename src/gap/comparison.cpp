@@ -42,11 +42,17 @@ Paths<N> Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory
   return paths;
 }
 
+/// Of the way from pose i, the last one at or before u, to the next; `i` goes on from call to call.
 template <int N>
-double YawAt(const ArcPathIn<N>& path, double u, size_t& i) {
+double ShareAt(const ArcPathIn<N>& path, double u, size_t& i) {
   while (i + 2 < path.Size() && path.u[i + 1] <= u) ++i;
   const double span = path.u[i + 1] - path.u[i];
-  const double share = span > 0.0 ? (u - path.u[i]) / span : 0.0;
+  return span > 0.0 ? (u - path.u[i]) / span : 0.0;
+}
+
+template <int N>
+double YawAt(const ArcPathIn<N>& path, double u, size_t& i) {
+  const double share = ShareAt(path, u, i);
   const double yaw_rad = path.poses[i].yaw_rad;
   const double step_rad = geometry::WrapToPi(path.poses[i + 1].yaw_rad - yaw_rad);
   return yaw_rad + share * step_rad;
@@ -199,6 +205,18 @@ ErrorProfile ProfileIn(const trajectory::Trajectory& sim, const trajectory::Traj
 }
 
 template <int N>
+std::vector<double> TimesIn_s(const trajectory::Trajectory& trajectory, const GapOptions& options) {
+  const ArcPathIn<N> path = MakeArcPathIn<N>(trajectory, options);
+  std::vector<double> times_s;
+  size_t i = 0;
+  for (int k = FirstSample(options); k < options.samples; ++k) {
+    const double share = ShareAt(path, SampleU(k, options), i), from_s = path.poses[i].t_s;
+    times_s.push_back(from_s + share * (path.poses[i + 1].t_s - from_s) - path.poses[0].t_s);
+  }
+  return times_s;
+}
+
+template <int N>
 Comparison CompareIn(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                      const GapOptions& options) {
   const Paths<N> paths = Prepare<N>(sim, real, options);
@@ -236,6 +254,11 @@ ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::T
                           const GapOptions& options) {
   options.Check();
   return options.IsInSpace() ? ProfileIn<3>(sim, real, options) : ProfileIn<2>(sim, real, options);
+}
+
+std::vector<double> TimesAlong_s(const trajectory::Trajectory& path, const GapOptions& options) {
+  options.Check();
+  return options.IsInSpace() ? TimesIn_s<3>(path, options) : TimesIn_s<2>(path, options);
 }
 
 Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,

@@ -182,6 +182,28 @@ TEST_CASE("Yaw errors are told where both yaws are known") {
   CHECK(std::isnan(Compare(sim, real, {}).max_yaw_error_rad));
 }
 
+TEST_CASE("Times along a path are those of equal shares of its length, behind a stop its end") {
+  // 1 m at 0.5 m/s from 3 s on, a stop of 4 s, and 1 m at 0.25 m/s.
+  Trajectory path = StraightPath(2.0, 201);
+  for (trajectory::StampedPose& pose : path.poses) {
+    pose.t_s = pose.x_m < 0.995 ? 3.0 + 2.0 * pose.x_m : 9.0 + 4.0 * (pose.x_m - 1.0);
+  }
+  trajectory::StampedPose stopped = path.poses[100];
+  stopped.t_s = 5.0;
+  path.poses.insert(path.poses.begin() + 100, stopped);
+  GapOptions options;
+  options.samples = 9;
+  const std::vector<double> expected_s{0.0, 0.5, 1.0, 1.5, 6.0, 7.0, 8.0, 9.0, 10.0};
+  const std::vector<double> times_s = TimesAlong_s(path, options);
+  REQUIRE(times_s.size() == expected_s.size());
+  for (size_t i = 0; i < times_s.size(); ++i) CHECK(times_s[i] == Approx(expected_s[i]));
+  for (trajectory::StampedPose& pose : path.poses) pose.z_m = 0.5 * pose.x_m;
+  options.dimension = Dimension::kXyz;
+  CHECK(TimesAlong_s(path, options)[6] == Approx(8.0));
+  for (trajectory::StampedPose& pose : path.poses) pose.x_m = pose.y_m = pose.z_m = 0.0;
+  CHECK_THROWS_AS(TimesAlong_s(path, options), std::invalid_argument);
+}
+
 TEST_CASE("The best rigid motion is the best one over as many points as were asked for") {
   std::mt19937_64 generator(14);
   const Trajectory sim = RandomPath(generator, 80), real = RandomPath(generator, 80);

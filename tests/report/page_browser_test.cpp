@@ -120,7 +120,7 @@ TEST_CASE("Sentence, tables, paths and charts follow the filter") {
     setTimeout(() => probe([document.getElementById('headline').textContent,
       document.querySelectorAll('#settings tbody tr').length,
       document.querySelectorAll('#trials tbody tr').length,
-      document.querySelectorAll('#paths svg:not(.errors) .other').length,
+      document.querySelectorAll('#paths svg:not(.strip) .other').length,
       document.querySelectorAll('#chart-0 [fill^="rgb"]').length].join('|')), 300);)";
   const BrowserVisit visit = Visit(WithScript(PageWithPaths(), WhenDrawn(look)));
   SKIP_WITHOUT_BROWSER(visit);
@@ -161,7 +161,7 @@ TEST_CASE("The pointer and the focus on a row light its path and say what it is"
   const std::string look = R"(
     const row = document.querySelector('#trials tbody tr[data-row="5"]');
     const seen = [];
-    const note = () => seen.push(document.querySelectorAll('#paths svg:not(.errors) .lit polyline').length,
+    const note = () => seen.push(document.querySelectorAll('#paths svg:not(.strip) .lit polyline').length,
       document.getElementById('paths-lit').textContent);
     row.cells[0].dispatchEvent(new MouseEvent('mouseover', {bubbles: true})); note();
     row.closest('table').dispatchEvent(new MouseEvent('mouseleave')); note();
@@ -171,6 +171,50 @@ TEST_CASE("The pointer and the focus on a row light its path and say what it is"
   SKIP_WITHOUT_BROWSER(visit);
   const std::string row = "Row 5: ice, v_min 0.20, v_max 0.30, trial 1: gap 0.0260 m.";
   CHECK_THAT(Probe(visit), Contains("PROBE 2|" + row + "|0|Worst: row") && Contains("|2|" + row));
+}
+
+/// Of paths of about 1 m in 64 steps. The sixth row has no times.
+std::string PageWithSpeeds() {
+  sweep::SweepResult result = GridWithPaths();
+  const auto times = [](float step_s) {
+    std::vector<float> times_s;
+    for (int k = 0; k <= sweep::kPathSteps; ++k) times_s.push_back(step_s * static_cast<float>(k));
+    return times_s;
+  };
+  for (std::size_t i = 0; i < result.rows.size(); ++i) {
+    result.rows[i].evidence.path_times_s = times(0.02F + 0.02F * static_cast<float>(i));
+  }
+  result.rows[5].evidence.path_times_s = {};
+  PageEvidence evidence{
+      .references = {{"robot, trial 1", sweep::EvenPath(synthetic::Path(0.0), {}), times(0.05F)}},
+      .reference_of_row = std::vector<int>(result.rows.size(), 0)};
+  return RenderPage(result, sweep::Explain(result), evidence);
+}
+
+TEST_CASE("The cursor goes through error and speed, and a row without times has no speed") {
+  const std::string look = R"(
+    const light = row => document.querySelector(`#trials tbody tr[data-row="${row}"]`).cells[0]
+      .dispatchEvent(new MouseEvent('mouseover', {bubbles: true}));
+    const strips = [...document.querySelectorAll('#paths svg.strip')], seen = [strips.length];
+    light(5);
+    strips[1].dispatchEvent(new KeyboardEvent('keydown', {key: 'PageUp'}));
+    for (const strip of strips) {
+      seen.push(strip.getAttribute('aria-valuenow'), strip.getAttribute('aria-valuetext'),
+        strip.querySelector('.cursor').getAttribute('visibility'),
+        strip.querySelectorAll('.lit polyline').length);
+    }
+    light(6);
+    strips[0].dispatchEvent(new KeyboardEvent('keydown', {key: 'PageUp'}));
+    seen.push(strips[1].getAttribute('aria-valuetext'), strips[1].querySelectorAll('.lit polyline').length);
+    probe(seen.join('|'));)";
+  const BrowserVisit visit = Visit(WithScript(PageWithSpeeds(), WhenDrawn(look)));
+  SKIP_WITHOUT_BROWSER(visit);
+  // Steps of 1/64 m in 0.1 s (the fifth row) and in 0.05 s (the reference).
+  CHECK(Probe(visit) ==
+        "PROBE 2|0.10|At 10 % of the way: 0.002 m.|visible|1|"
+        "0.10|There at 0.16 m/s, the reference at 0.31 m/s.|visible|2|"
+        "no place|0");
+  CHECK(visit.console == "");
 }
 
 TEST_CASE("One cursor shows a row's error at a place, on the paths and on the strip below them") {

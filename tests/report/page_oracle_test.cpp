@@ -288,6 +288,7 @@ TEST_CASE("The paths of the page are those of their rows, references and views")
     for (int k = 0; k <= sweep::kPathSteps; ++k) {
       evidence.references[i].path_m.emplace_back(0.01F * static_cast<float>(k),
                                                  0.1F * static_cast<float>(i + 1));
+      if (i == 1) evidence.references[i].times_s.push_back(0.25F * static_cast<float>(k));
     }
   }
   for (size_t i = 0; i < result.rows.size(); ++i) {
@@ -295,8 +296,10 @@ TEST_CASE("The paths of the page are those of their rows, references and views")
     for (int k = 0; k <= sweep::kPathSteps; ++k) {
       result.rows[i].evidence.path_m.emplace_back(0.01F * static_cast<float>(k),
                                                   0.001F * static_cast<float>(i + 1));
+      result.rows[i].evidence.path_times_s.push_back(0.1F * static_cast<float>((i + 1) * k));
     }
   }
+  result.rows[1].evidence.path_times_s.back() = NAN;
   evidence.waypoints = {{"a", {0.25, -0.5}}};
   const json data = Data(RenderPage(result, sweep::Explain(result), evidence));
   const json& paths = data["paths"];
@@ -318,6 +321,15 @@ TEST_CASE("The paths of the page are those of their rows, references and views")
     for (const auto& [x, y] : line) CHECK(y == Approx(0.1 * Real(i + 1)).margin(2e-4));
     CHECK(line.back().first == Approx(0.64).margin(2e-4));
   }
+  const auto seconds = [&](const json& steps) {
+    double sum_s = 0.0;
+    for (const json& step : steps) sum_s += paths["unit_s"].get<double>() * step.get<double>();
+    return sum_s;
+  };
+  CHECK(paths["references"][0]["t"] == json::array());
+  CHECK(paths["references"][1]["t"].size() == 64);
+  CHECK(seconds(paths["references"][1]["t"]) == Approx(16.0).margin(0.0006));
+  CHECK(paths["rows"]["2"]["t"] == json::array());
   REQUIRE(paths["rows"].size() == result.rows.size());
   for (size_t i = 0; i < result.rows.size(); ++i) {
     const sweep::TrialRow& row = result.rows[i];
@@ -326,6 +338,7 @@ TEST_CASE("The paths of the page are those of their rows, references and views")
     REQUIRE(line.size() == 65);
     CHECK(line.back().first == Approx(0.64).margin(2e-4));
     CHECK(line[7].second == Approx(0.001 * Real(i + 1)).margin(2e-4));
+    if (i != 1) CHECK(seconds(drawn["t"]) == Approx(6.4 * Real(i + 1)).margin(0.0006));
     CHECK(drawn["fails"] == row.falsified);
     CHECK(drawn["reference"] == (row.theta[1].text == "ground" ? 0 : 1));
     if (IsOk(row)) {

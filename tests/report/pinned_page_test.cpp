@@ -71,13 +71,15 @@ PageEvidence Evidence(sweep::SweepResult& result) {
   for (int i = 0; i < 3; ++i) {
     evidence.references.push_back(
         {fmt::format("robot, trial {}", i + 1),
-         sweep::EvenPath(synthetic::Path(0.011 + 0.0173 * i), result.gap)});
+         sweep::EvenPath(synthetic::Path(0.011 + 0.0173 * i), result.gap),
+         sweep::EvenTimes_s(synthetic::Path(0.011 + 0.0173 * i), result.gap)});
   }
   for (size_t i = 0; i < result.rows.size(); ++i) {
     evidence.reference_of_row.push_back(static_cast<int>(i % 4) - 1);
     if (i % 5 == 4) continue;
     result.rows[i].evidence.path_m = sweep::EvenPath(
         synthetic::Path(0.0031 * static_cast<double>(i) - 0.02), synthetic::Path(0.0), result.gap);
+    result.rows[i].evidence.path_times_s = sweep::EvenTimes_s(synthetic::Path(0.0), result.gap);
   }
   evidence.worst_path_m = sweep::EvenPath(synthetic::Path(0.123), result.gap);
   evidence.waypoints = {{"start", {0.1, -0.2}}, {"<goal>", {1.3, 0.4}}};

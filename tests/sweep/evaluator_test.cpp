@@ -58,6 +58,16 @@ TEST_CASE("A sweep of logs tells each trial's gap and how far the repeats are ap
   CHECK_FALSE(result->rows[0].falsified);
   CHECK(result->rows[1].falsified);
   CHECK(result->settings[0].noise_floor_m == Approx(0.03));
+  const trajectory::Trajectory log = test::StraightPath(0.7, 40);
+  const double took_s = log.poses.back().t_s - log.poses.front().t_s;
+  for (const int row : {0, 1}) {
+    const TrialEvidence& evidence = result->rows[row].evidence;
+    CHECK(evidence.path_m.size() == kPathSteps + 1);
+    REQUIRE(evidence.path_times_s.size() == kPathSteps + 1);
+    CHECK(evidence.path_times_s.front() == 0.0F);
+    CHECK(evidence.path_times_s[16] == Approx(took_s / 4.0));
+    CHECK(evidence.path_times_s.back() == Approx(took_s));
+  }
   CHECK(result->rows[2].status == TrialStatus::kMissing);
   CHECK(result->rows[2].reason == "ice_1.csv: no such file");
 }

@@ -73,12 +73,13 @@ bool SameRows(const SweepResult& a, const SweepResult& b) {
     const TrialRow &x = a.rows[i], &y = b.rows[i];
     const bool same_gap = x.comparison.gap_m == y.comparison.gap_m ||
                           (std::isnan(x.comparison.gap_m) && std::isnan(y.comparison.gap_m));
-    const bool same = x.theta == y.theta && x.trial == y.trial && x.seed == y.seed &&
-                      x.status == y.status && x.reason == y.reason && same_gap &&
-                      x.falsified == y.falsified && x.candidate == y.candidate &&
-                      x.reference == y.reference &&
-                      x.evidence.fingerprint == y.evidence.fingerprint &&
-                      x.evidence.errors_m == y.evidence.errors_m;
+    const bool same =
+        x.theta == y.theta && x.trial == y.trial && x.seed == y.seed && x.status == y.status &&
+        x.reason == y.reason && same_gap && x.falsified == y.falsified &&
+        x.candidate == y.candidate && x.reference == y.reference &&
+        x.evidence.fingerprint == y.evidence.fingerprint &&
+        x.evidence.errors_m == y.evidence.errors_m && x.evidence.path_m == y.evidence.path_m &&
+        x.evidence.path_times_s == y.evidence.path_times_s;
     if (!same) return false;
   }
   return true;

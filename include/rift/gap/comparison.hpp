@@ -81,6 +81,10 @@ struct ErrorProfile {
 ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,
                           const GapOptions& options);
 
+/// When a path passes the samples, in s since its first pose, after trimming; where it stands, the
+/// end of the stop. Throws as Compare does.
+std::vector<double> TimesAlong_s(const trajectory::Trajectory& path, const GapOptions& options);
+
 /// The rigid motion in space that brings `sim` closest to `real`, after which the shape gap is left
 /// (dimension xyz).
 geometry::Pose3 BestMotionInSpace(const trajectory::Trajectory& sim,

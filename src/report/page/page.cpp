@@ -213,7 +213,7 @@ void AddScripts(const sweep::SweepResult& result, const std::vector<PageView>& v
   page->set("data", JsonForScript(content));
   page->set("css", File("page.css"));
   page->set("vega", File("vega_modules.js") + File("vega.js"));
-  page->set("script", File("page.js") + File("errors.js") + File("paths.js"));
+  page->set("script", File("page.js") + File("strips.js") + File("paths.js"));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ using nlohmann::json;
 using Path = std::vector<Eigen::Vector2f>;
 
 constexpr float kUnit_m = 0.0002F;      ///< of the whole numbers that paths are written in
+constexpr float kUnit_s = 0.001F;       ///< and their times
 constexpr std::size_t kMostLines = 30;  ///< drawn behind the band of a view
 constexpr std::size_t kLeastBand = 8;   ///< paths that a band takes
 constexpr std::size_t kMostReferences = 9;
@@ -31,6 +32,19 @@ json Steps(const Path& path_m) {
     steps.push_back(y - last_y);
     last_x = x;
     last_y = y;
+  }
+  return steps;
+}
+
+/// The steps alone, from a first time of 0. Empty where a time is not known.
+json TimeSteps(const std::vector<float>& times_s) {
+  json steps = json::array();
+  if (times_s.empty() || !std::isfinite(times_s.back())) return steps;
+  long last = 0;
+  for (std::size_t i = 1; i < times_s.size(); ++i) {
+    const long now = std::lround(times_s[i] / kUnit_s);
+    steps.push_back(now - last);
+    last = now;
   }
   return steps;
 }
@@ -119,6 +133,7 @@ class PathMaker {
                                    EnumNames(row.status)[static_cast<int>(row.status)]);
       rows[std::to_string(index + 1)] = {
           {"d", Steps(PathOf(index))},
+          {"t", TimeSteps(row.evidence.path_times_s)},
           {"fails", row.falsified},
           {"reference", ReferenceOf(index)},
           {"u", Value(row.IsOk() ? std::round(1e4 * row.comparison.gap_u) / 1e4 : NAN)},
@@ -164,7 +179,7 @@ class PathMaker {
 nlohmann::json PagePaths(const sweep::SweepResult& result, const PageEvidence& evidence,
                          const std::vector<PageView>& views, const ReportOptions& options) {
   PathMaker maker(result, evidence);
-  json paths = {{"unit_m", Value(0.0002)}, {"views", json::array()}};
+  json paths = {{"unit_m", Value(0.0002)}, {"unit_s", Value(0.001)}, {"views", json::array()}};
   for (const PageView& view : views) paths["views"].push_back(maker.ViewPaths(view));
   for (const sweep::TrialRow* row : RowsToShow(result, options.table_rows)) {
     maker.Show(static_cast<int>(row - result.rows.data()));
@@ -172,7 +187,9 @@ nlohmann::json PagePaths(const sweep::SweepResult& result, const PageEvidence& e
   paths["rows"] = maker.Rows();
   paths["references"] = json::array();
   for (const ReferencePath& reference : evidence.references) {
-    paths["references"].push_back({{"name", reference.name}, {"d", Steps(reference.path_m)}});
+    paths["references"].push_back({{"name", reference.name},
+                                   {"d", Steps(reference.path_m)},
+                                   {"t", TimeSteps(reference.times_s)}});
   }
   paths["waypoints"] = json::array();
   for (const PagePoint& point : evidence.waypoints) {

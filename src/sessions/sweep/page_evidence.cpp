@@ -63,6 +63,10 @@ class References {
     if (is_new) {
       evidence_.references.push_back({ReferenceName(result_, row, evaluator_.experiment()),
                                       sweep::EvenPath(reference.trajectory, result_.gap)});
+      // Nobody drove the path of a task.
+      if (result_.reference_kind != "path") {
+        evidence_.references.back().times_s = sweep::EvenTimes_s(reference.trajectory, result_.gap);
+      }
     }
     evidence_.reference_of_row[index] = found->second;
     return true;

@@ -27,7 +27,19 @@ std::vector<control::Waypoint> LoggedTask(const trajectory::Trajectory& log) {
   return task;
 }
 
+/// With the samples of an EvenPath.
+gap::GapOptions ForPictures(gap::GapOptions options) {
+  options.samples = kPathSteps + 1;
+  options.skip_start = 0.0;
+  return options;
+}
+
 }  // namespace
+
+void TrialEvidence::ForgetPath() {
+  path_m = {};
+  path_times_s = {};
+}
 
 std::uint64_t Fingerprint(const trajectory::Trajectory& path) {
   std::vector<double> values;
@@ -58,11 +70,9 @@ std::vector<Eigen::Vector2d> ErrorsAlong(const trajectory::Trajectory& candidate
 std::vector<Eigen::Vector2f> EvenPath(const trajectory::Trajectory& candidate,
                                       const trajectory::Trajectory& reference,
                                       const gap::GapOptions& options) {
-  gap::GapOptions coarse = options;
-  coarse.samples = kPathSteps + 1;
-  coarse.skip_start = 0.0;
+  const gap::ErrorProfile profile = gap::ProfileAlong(candidate, reference, ForPictures(options));
   std::vector<Eigen::Vector2f> points_m;
-  for (const Eigen::Vector2d& point_m : gap::ProfileAlong(candidate, reference, coarse).sim_m) {
+  for (const Eigen::Vector2d& point_m : profile.sim_m) {
     points_m.emplace_back(point_m.cast<float>());
   }
   return points_m;
@@ -74,6 +84,15 @@ std::vector<Eigen::Vector2f> EvenPath(const trajectory::Trajectory& path,
   as_it_is.align = gap::GapOptions{}.align;
   try {
     return EvenPath(path, path, as_it_is);
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
+std::vector<float> EvenTimes_s(const trajectory::Trajectory& path, const gap::GapOptions& options) {
+  try {
+    const std::vector<double> times_s = gap::TimesAlong_s(path, ForPictures(options));
+    return {times_s.begin(), times_s.end()};
   } catch (const std::invalid_argument&) {
     return {};
   }

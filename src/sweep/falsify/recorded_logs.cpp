@@ -139,6 +139,7 @@ void Measure(const experiment::Experiment& experiment, const Recording& candidat
     row.evidence.fingerprint = Fingerprint(candidate.trajectory);
     row.evidence.errors_m = ErrorsAlong(candidate.trajectory, reference.trajectory, options);
     row.evidence.path_m = EvenPath(candidate.trajectory, reference.trajectory, options);
+    row.evidence.path_times_s = EvenTimes_s(candidate.trajectory, options);
   } catch (const std::invalid_argument& no_path) {
     row.status = TrialStatus::kUnreadable;
     row.reason =
@@ -166,6 +167,7 @@ TrialRow CompareTrial(const experiment::Experiment& experiment, const TrialReque
     row.left_m = simulated.left_m;
     if (row.falsified) row.evidence.fingerprint = Fingerprint(simulated.trajectory);
     row.evidence.path_m = EvenPath(simulated.trajectory, experiment.gap);
+    row.evidence.path_times_s = EvenTimes_s(simulated.trajectory, experiment.gap);
   } else {
     Measure(experiment, simulated, real, row);
     row.falsified = row.CountedGap_m() > experiment.gap.threshold_m;

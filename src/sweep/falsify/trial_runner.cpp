@@ -100,7 +100,7 @@ TrialRow TrialRunner::Finish(TrialRequest request, const JobResult& result, bool
   } else {
     watch_.name_sides(row);
   }
-  if (!keeps_path) row.evidence.path_m = {};
+  if (!keeps_path) row.evidence.ForgetPath();
   if (journal_ != nullptr) journal_->Add(key, EntryOf(row));
   watch_.seen(row, false);
   return row;
@@ -119,7 +119,7 @@ std::optional<std::vector<TrialRow>> TrialRunner::Run(std::vector<TrialRequest> 
     }
     rows[i] = RowFor(std::move(requests[i]));
     DecodeFindings(*bytes, rows[i]);
-    if (!keeps_path(i)) rows[i].evidence.path_m = {};
+    if (!keeps_path(i)) rows[i].evidence.ForgetPath();
     watch_.seen(rows[i], true);
   }
   WorkerPool::Batch batch;
@@ -183,6 +183,7 @@ void Members(Bytes& bytes, T& row) {
   bytes(row.evidence.reference_limits);
   bytes(row.evidence.errors_m);
   bytes(row.evidence.path_m);
+  bytes(row.evidence.path_times_s);
   bytes(row.doubts);
 }
 

@@ -22,6 +22,7 @@ std::string RenderPage(const sweep::SweepResult& result, const ReportOptions& op
 struct ReferencePath {
   std::string name;  ///< "robot, trial 2"
   std::vector<Eigen::Vector2f> path_m;
+  std::vector<float> times_s = {};  ///< sweep::EvenTimes_s; empty: not at hand
 };
 
 struct PagePoint {

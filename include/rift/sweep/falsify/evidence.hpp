@@ -19,6 +19,10 @@ struct TrialEvidence {
   std::optional<trial::LimitCounts> reference_limits;
   std::vector<Eigen::Vector2d> errors_m;  ///< ErrorsAlong; empty without a gap
   std::vector<Eigen::Vector2f> path_m;    ///< EvenPath of the candidate, for pictures
+  std::vector<float> path_times_s;        ///< EvenTimes_s of it
+
+  /// Of trials that no picture shows.
+  void ForgetPath();
 };
 
 /// Steps of an EvenPath.
@@ -33,6 +37,10 @@ std::vector<Eigen::Vector2f> EvenPath(const trajectory::Trajectory& path,
 std::vector<Eigen::Vector2f> EvenPath(const trajectory::Trajectory& candidate,
                                       const trajectory::Trajectory& reference,
                                       const gap::GapOptions& options);
+
+/// When the points of an EvenPath were passed, in s since the first of them. Empty when the path
+/// does not move.
+std::vector<float> EvenTimes_s(const trajectory::Trajectory& path, const gap::GapOptions& options);
 
 /// Equal for paths whose poses are the same to the last bit, and never 0. Times are left out, since
 /// some simulators stamp their rows with a wall clock; so are channels and targets.

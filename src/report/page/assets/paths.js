@@ -96,16 +96,15 @@ function drawPaths(k) {
   svg.append(cursor);
   // Where the shown rows and their references are at u.
   const place = u => {
-    const pairs = u === null ? [] : shown.map(pairOf).filter(pair => pair)
-      .map(pair => pair.map(path => at(path, u)));
+    const rows = u === null ? [] : shown.filter(pairOf), pairs = rows.map(row => placesOf(pairOf(row), u));
     cursor.replaceChildren(...pairs.flatMap(pair => [line(pair, 'gap'), ...pair.map(p => {
       const [cx, cy] = to(p);
       return element('circle', { cx, cy, r: 3.5 });
     })]));
-    return pairs.length === 1 ? `At ${Math.round(100 * u)} % of the way: ${distance(pairs[0]).toFixed(3)} m.` : '';
+    return rows.length === 1 ? rows[0] : null;
   };
-  const strip = errorStrip(view, wide, place);
-  if (strip) pathPlace.append(strip.svg);
+  const strips = stripsBelow(view, wide, place);
+  pathPlace.append(...strips.drawings);
   lightRows = rows => {
     const known = rows.filter(row => paths.rows[row]);
     svg.classList.toggle('dimmed', known.length > 0);
@@ -115,33 +114,33 @@ function drawPaths(k) {
     say.textContent = rows.length === 0 ? worstText
       : known.length === 0 ? 'No path is kept of it.'
         : known.length === 1 ? `Row ${known[0]}: ${paths.rows[known[0]].text}.` : `${known.length} paths.`;
-    strip?.light(known);
-    strip?.cursor(null);
+    strips.light(known);
+    strips.cursor(null);
   };
   let pointed;
-  for (const drawing of [svg, strip?.svg]) {
-    drawing?.addEventListener('mouseover', event => {
+  for (const drawing of [svg, ...strips.drawings]) {
+    drawing.addEventListener('mouseover', event => {
       const row = event.target.dataset?.row;
       if (row !== pointed) lightRows(row ? [Number(row)] : []);
       pointed = row;
     });
-    drawing?.addEventListener('mouseleave', () => lightRows([]));
-    drawing?.addEventListener('click', event => {
+    drawing.addEventListener('mouseleave', () => lightRows([]));
+    drawing.addEventListener('click', event => {
       const row = event.target.dataset?.row;
       if (row) location.hash = '#trials?row=' + row;
     });
   }
   // On a path the cursor is at its nearest point.
   svg.addEventListener('pointermove', event => {
-    const pair = strip && shown.length === 1 ? pairOf(shown[0]) : null;
+    const pair = shown.length === 1 ? pairOf(shown[0]) : null;
     if (!pair) return;
     const box = svg.getBoundingClientRect(), zoom = wide / box.width;
     const here = [(event.clientX - box.left) * zoom, (event.clientY - box.top) * zoom];
-    const far = pair[0].map(p => Math.hypot(...to(p).map((v, i) => v - here[i])));
+    const far = points(pair[0].d).map(p => Math.hypot(...to(p).map((v, i) => v - here[i])));
     const nearest = far.indexOf(Math.min(...far));
-    strip.cursor(far[nearest] < 20 ? nearest / (far.length - 1) : null);
+    strips.cursor(far[nearest] < 20 ? nearest / (far.length - 1) : null);
   });
-  svg.addEventListener('pointerleave', () => strip?.cursor(null));
+  svg.addEventListener('pointerleave', () => strips.cursor(null));
 }
 
 function legend(view, references, worst, others) {
