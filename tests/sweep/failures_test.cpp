@@ -1,6 +1,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <random>
+#include <span>
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/sweep/explain/clusters.hpp"
@@ -160,11 +163,21 @@ TEST_CASE("Only rows drawn at random tell how often it fails") {
   CHECK_THAT(EstimateFailureProbability(result).sentence, Contains("chosen, not drawn"));
 }
 
+using PointRobustness = std::function<double(std::span<const double>)>;
+
+UnitRobustness OfEach(const PointRobustness& robustness) {
+  return [robustness](const std::vector<std::vector<double>>& points) {
+    std::vector<double> values;
+    for (const std::vector<double>& point : points) values.push_back(robustness(point));
+    return values;
+  };
+}
+
 struct PlantedRegion {
   std::string name;
   double probability;
   int dimensions;
-  UnitRobustness robustness;
+  PointRobustness robustness;
 };
 
 double FromBox(std::span<const double> x, double centre, double side) {
@@ -212,7 +225,7 @@ void CheckIntervals(int runs, int least, std::uint64_t first_seed) {
     double evaluations = 0.0;
     std::vector<double> widths;
     for (int run = 0; run < runs; ++run) {
-      const RareEvent event = EstimateRareEvent(region.dimensions, region.robustness,
+      const RareEvent event = EstimateRareEvent(region.dimensions, OfEach(region.robustness),
                                                 first_seed + static_cast<std::uint64_t>(run));
       held += event.low <= region.probability && region.probability <= event.high;
       widths.push_back(event.high - event.low);
@@ -282,19 +295,37 @@ TEST_CASE("The exact interval holds with runs that do not arrive and runs that t
 
 TEST_CASE("Of 1000 exact intervals at least 930 hold", "[.study]") { CheckDrawn(1000, 930); }
 
+TEST_CASE("A rare event asks for the runs of all replicas and chains at once") {
+  std::vector<size_t> asked;
+  const RareEvent event = EstimateRareEvent(2,
+                                            [&](const std::vector<std::vector<double>>& points) {
+                                              asked.push_back(points.size());
+                                              return OfEach([](std::span<const double> x) {
+                                                return std::max(x[0], x[1]) - 0.03;
+                                              })(points);
+                                            },
+                                            3, {.replicas = 4, .samples_per_level = 100});
+  CHECK(event.is_reached);
+  CHECK(asked.front() == 400);
+  // A tenth of a level's samples are seeds of chains of ten: nine steps in each level behind it,
+  // or fewer where samples are equal.
+  CHECK(asked.size() <= 1 + 9 * static_cast<size_t>(event.levels - 1));
+  CHECK(asked[1] == 40);
+  CHECK(static_cast<size_t>(event.evaluations) == std::accumulate(asked.begin(), asked.end(), 0UL));
+}
+
 TEST_CASE("What never fails is bounded and what fails often needs one level") {
-  const RareEvent never = EstimateRareEvent(1, [](std::span<const double> x) { return 1.0 + x[0]; },
-                                            1, {.most_levels = 4});
+  const RareEvent never = EstimateRareEvent(
+      1, OfEach([](std::span<const double> x) { return 1.0 + x[0]; }), 1, {.most_levels = 4});
   CHECK_FALSE(never.is_reached);
   CHECK(never.low == 0.0);
   CHECK(never.high < 1e-2);
-  const RareEvent often = EstimateRareEvent(
-      1, [](std::span<const double> x) { return x[0] - 0.5; }, 1);
+  const RareEvent often =
+      EstimateRareEvent(1, OfEach([](std::span<const double> x) { return x[0] - 0.5; }), 1);
   CHECK(often.levels == 1);
   CHECK(often.probability == Approx(0.5).margin(0.07));
-  CHECK(EstimateRareEvent(
-            1, [](std::span<const double>) { return NAN; }, 1)
-            .is_reached == false);
+  CHECK(EstimateRareEvent(1, OfEach([](std::span<const double>) { return NAN; }), 1).is_reached ==
+        false);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 #include <stdexcept>
 
 #include "rift/statistics/descriptive.hpp"
@@ -74,48 +75,72 @@ struct Sample {
 
 using Chain = std::vector<Sample>;
 
-struct Replica {
-  double bound = 1.0;
-  int levels = 0;
-  int evaluations = 0;
-  bool is_reached = false;
-};
-
-class SubsetSimulation {
+/// One estimate, which asks for the robustness of points until it is done.
+class Replica {
  public:
-  SubsetSimulation(int dimensions, const UnitRobustness& robustness, std::uint64_t seed,
-                   const RareEventOptions& options)
-      : dimensions_(dimensions), robustness_(robustness), random_(seed), options_(options) {}
-
-  /// `bound` is what the levels that were passed leave; the estimate when failures were reached.
-  Replica Run() {
-    std::vector<Chain> chains;
-    for (int i = 0; i < options_.samples_per_level; ++i) chains.push_back({Draw()});
-    Replica replica{.bound = 1.0};
-    for (replica.levels = 1;; ++replica.levels) {
-      const double level = std::max(0.0, LevelOf(chains));
-      const double share = ShareBelow(chains, level);
-      replica.bound *= share;
-      replica.is_reached = level <= 0.0 && share > 0.0;
-      if (level <= 0.0 || replica.levels == options_.most_levels) break;
-      chains = Climb(chains, level);
+  Replica(int dimensions, std::uint64_t seed, const RareEventOptions& options)
+      : random_(seed), options_(options) {
+    for (int i = 0; i < options_.samples_per_level; ++i) {
+      std::vector<double> point(static_cast<size_t>(dimensions));
+      for (double& x : point) x = Uniform(random_);
+      asked_.push_back(std::move(point));
     }
-    replica.evaluations = evaluations_;
-    return replica;
   }
+
+  /// Empty when it is done.
+  const std::vector<std::vector<double>>& Asked() const { return asked_; }
+
+  /// Of the points asked for.
+  void Take(std::span<const double> robustness) {
+    std::vector<Sample> samples;
+    for (size_t i = 0; i < asked_.size(); ++i) {
+      samples.push_back({std::move(asked_[i]), std::isnan(robustness[i])
+                                                   ? std::numeric_limits<double>::infinity()
+                                                   : robustness[i]});
+    }
+    evaluations_ += static_cast<int>(samples.size());
+    asked_.clear();
+    levels_ == 0 ? Begin(std::move(samples)) : Continue(std::move(samples));
+    while (asked_.empty() && !is_done_) NextLevel();
+  }
+
+  /// What the levels that were passed leave; the estimate when failures were reached.
+  double Bound() const { return bound_; }
+  int Levels() const { return levels_; }
+  int Evaluations() const { return evaluations_; }
+  bool IsReached() const { return is_reached_; }
 
  private:
-  Sample Evaluated(std::vector<double> point) {
-    double robustness = robustness_(point);
-    if (std::isnan(robustness)) robustness = std::numeric_limits<double>::infinity();
-    ++evaluations_;
-    return {std::move(point), robustness};
+  void Begin(std::vector<Sample> draws) {
+    for (Sample& draw : draws) chains_.push_back({std::move(draw)});
   }
 
-  Sample Draw() {
-    std::vector<double> point(static_cast<size_t>(dimensions_));
-    for (double& x : point) x = Uniform(random_);
-    return Evaluated(std::move(point));
+  /// A step of each chain that is not at its length, and what is asked for the next one.
+  void Continue(std::vector<Sample> proposed) {
+    auto next = proposed.begin();
+    for (size_t i = 0; i < chains_.size(); ++i) {
+      if (chains_[i].size() >= lengths_[i]) continue;
+      const bool is_within = next->robustness <= level_;
+      chains_[i].push_back(is_within ? std::move(*next) : chains_[i].back());
+      ++next;
+    }
+    Ask();
+  }
+
+  void Ask() {
+    for (size_t i = 0; i < chains_.size(); ++i) {
+      if (chains_[i].size() < lengths_[i]) asked_.push_back(Moved(chains_[i].back().point));
+    }
+  }
+
+  void NextLevel() {
+    ++levels_;
+    level_ = std::max(0.0, LevelOf(chains_));
+    const double share = ShareBelow(chains_, level_);
+    bound_ *= share;
+    is_reached_ = level_ <= 0.0 && share > 0.0;
+    is_done_ = level_ <= 0.0 || levels_ == options_.most_levels;
+    if (!is_done_) Climb();
   }
 
   double LevelOf(const std::vector<Chain>& chains) const {
@@ -138,30 +163,30 @@ class SubsetSimulation {
   }
 
   /// From every sample below the level a Markov chain within it, as many samples as before.
-  std::vector<Chain> Climb(const std::vector<Chain>& chains, double level) {
+  void Climb() {
     std::vector<Sample> seeds;
-    for (const Chain& chain : chains) {
-      for (const Sample& sample : chain) {
-        if (sample.robustness <= level) seeds.push_back(sample);
+    for (Chain& chain : chains_) {
+      for (Sample& sample : chain) {
+        if (sample.robustness <= level_) seeds.push_back(std::move(sample));
       }
     }
     SetReach(seeds);
-    std::vector<Chain> next;
     const size_t wanted = static_cast<size_t>(options_.samples_per_level);
+    chains_.clear();
+    lengths_.clear();
     for (size_t i = 0; i < seeds.size() && i < wanted; ++i) {
       const size_t length = wanted / seeds.size() + (i < wanted % seeds.size() ? 1 : 0);
-      Chain chain{seeds[i]};
-      while (chain.size() < std::max<size_t>(length, 1)) chain.push_back(Step(chain.back(), level));
-      next.push_back(std::move(chain));
+      chains_.push_back({std::move(seeds[i])});
+      lengths_.push_back(length);
     }
-    return next;
+    Ask();
   }
 
   /// Moves as wide as the samples of the level lie apart, coordinate by coordinate: the deeper the
   /// level, the smaller it is.
   void SetReach(const std::vector<Sample>& seeds) {
     const double n = static_cast<double>(seeds.size());
-    reach_.assign(static_cast<size_t>(dimensions_), 0.0);
+    reach_.assign(seeds.front().point.size(), 0.0);
     for (size_t i = 0; i < reach_.size(); ++i) {
       double sum = 0.0, squares = 0.0;
       for (const Sample& seed : seeds) {
@@ -174,30 +199,34 @@ class SubsetSimulation {
 
   /// Some moves are finer: regions that lie apart make the reach wide, and each of them may be
   /// narrow.
-  Sample Step(const Sample& from, double level) {
+  std::vector<double> Moved(std::vector<double> point) {
     constexpr double kWide = 0.6, kMiddle = 0.28;
     const double kind = Uniform(random_);
     const double scale = kind < kWide ? 1.0 : kind < kWide + kMiddle ? 0.1 : 0.01;
-    std::vector<double> point = from.point;
     for (size_t i = 0; i < point.size(); ++i) {
       point[i] = Reflected(point[i] + scale * reach_[i] * (2.0 * Uniform(random_) - 1.0));
     }
-    Sample to = Evaluated(std::move(point));
-    return to.robustness <= level ? to : from;
+    return point;
   }
 
-  int dimensions_;
-  const UnitRobustness& robustness_;
   std::mt19937_64 random_;
   RareEventOptions options_;
+  std::vector<std::vector<double>> asked_;
+  std::vector<Chain> chains_;
+  std::vector<size_t> lengths_;  ///< that the chains will have
   std::vector<double> reach_;
+  double level_ = 0.0;
+  double bound_ = 1.0;
+  int levels_ = 0;
   int evaluations_ = 0;
+  bool is_reached_ = false;
+  bool is_done_ = false;
 };
 
 /// Of draws that all failed or not at once.
 void CountDraws(const std::vector<Replica>& replicas, RareEvent& event) {
   double failures = 0.0;
-  for (const Replica& replica : replicas) failures += replica.bound * replica.evaluations;
+  for (const Replica& replica : replicas) failures += replica.Bound() * replica.Evaluations();
   const statistics::Interval share = statistics::ClopperPearson(
       static_cast<int>(std::lround(failures)), event.evaluations, kConfidence);
   event.low = share.low;
@@ -219,11 +248,11 @@ RareEvent Conclude(const std::vector<Replica>& replicas) {
   RareEvent event;
   std::vector<double> estimates, bounds;
   for (const Replica& replica : replicas) {
-    estimates.push_back(replica.is_reached ? replica.bound : 0.0);
-    bounds.push_back(replica.bound);
-    event.levels = std::max(event.levels, replica.levels);
-    event.evaluations += replica.evaluations;
-    event.is_reached = event.is_reached || replica.is_reached;
+    estimates.push_back(replica.IsReached() ? replica.Bound() : 0.0);
+    bounds.push_back(replica.Bound());
+    event.levels = std::max(event.levels, replica.Levels());
+    event.evaluations += replica.Evaluations();
+    event.is_reached = event.is_reached || replica.IsReached();
   }
   if (!event.is_reached) {
     event.probability = event.high = statistics::Mean(bounds);
@@ -245,7 +274,21 @@ RareEvent EstimateRareEvent(int dimensions, const UnitRobustness& robustness, st
   for (int i = 0; i < options.replicas; ++i) {
     const std::uint64_t own_seed =
         statistics::SeedOfStream(seed, static_cast<std::uint64_t>(i) + 1);
-    replicas.push_back(SubsetSimulation(dimensions, robustness, own_seed, options).Run());
+    replicas.emplace_back(dimensions, own_seed, options);
+  }
+  for (;;) {
+    std::vector<std::vector<double>> points;
+    for (const Replica& replica : replicas) {
+      points.insert(points.end(), replica.Asked().begin(), replica.Asked().end());
+    }
+    if (points.empty()) break;
+    const std::vector<double> values = robustness(points);
+    size_t taken = 0;
+    for (Replica& replica : replicas) {
+      const size_t count = replica.Asked().size();
+      if (count > 0) replica.Take(std::span(values).subspan(taken, count));
+      taken += count;
+    }
   }
   return Conclude(replicas);
 }
@@ -272,12 +315,18 @@ RareEvent EstimateRareEvent(const experiment::Experiment& experiment, const RunA
   const std::vector<experiment::Parameter>& parameters = experiment.space.parameters;
   const std::vector<search::Axis> axes = AxesOf(parameters);
   int runs = 0;
-  const UnitRobustness robustness_m = [&](std::span<const double> unit) {
-    const experiment::Theta theta = ThetaAtUnit(parameters, axes, unit);
-    std::vector<TrialRequest> trial =
-        FurtherTrials(experiment, theta, TrialKind::kComparison, runs, 1);
-    trial.front().seed = FreshSeed(experiment.seed, static_cast<std::uint64_t>(++runs));
-    return Robustness_m(run(std::move(trial)), experiment.gap.threshold_m);
+  const UnitRobustness robustness_m = [&](const std::vector<std::vector<double>>& points) {
+    std::vector<TrialRequest> trials;
+    for (const std::vector<double>& unit : points) {
+      const experiment::Theta theta = ThetaAtUnit(parameters, axes, unit);
+      trials.push_back(FurtherTrials(experiment, theta, TrialKind::kComparison, runs, 1).front());
+      trials.back().seed = FreshSeed(experiment.seed, static_cast<std::uint64_t>(++runs));
+    }
+    std::vector<double> values_m;
+    for (const TrialRow& row : run(std::move(trials))) {
+      values_m.push_back(Robustness_m({&row, 1}, experiment.gap.threshold_m));
+    }
+    return values_m;
   };
   return EstimateRareEvent(static_cast<int>(parameters.size()), robustness_m, experiment.seed,
                            options);

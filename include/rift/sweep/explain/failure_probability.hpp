@@ -2,8 +2,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <string>
+#include <vector>
 
 #include "rift/experiment/experiment.hpp"
 #include "rift/sweep/falsify/result.hpp"
@@ -58,15 +58,17 @@ struct RareEvent {
   bool is_reached = false;  ///< failures were found; else the probability is below `high`
 };
 
-/// Robustness at a point of the unit cube: below or at zero it fails; NaN: it does not. It may
-/// depend on chance, drawn anew for each call.
-using UnitRobustness = std::function<double(std::span<const double>)>;
+/// Robustness at each of some points of the unit cube: below or at zero it fails; NaN: it does not.
+/// It may depend on chance, drawn anew for each point.
+using UnitRobustness = std::function<std::vector<double>(const std::vector<std::vector<double>>&)>;
 
 /// Subset simulation (Au and Beck 2001) over the unit cube: a chain of levels of falling
 /// robustness, each reached with probability `level_share` from the one before. Needs some hundred
 /// trials for each factor of ten, where plain sampling needs ten times as many. Replicas start from
 /// draws of their own, and what one of them misses (a second region, a category) shows in their
 /// scatter; where all of them find failures at once, their draws are counted (Clopper-Pearson).
+/// Replicas, and within a level the chains, go on side by side: each call of `robustness` has the
+/// next point of all of them, some hundred as a rule.
 RareEvent EstimateRareEvent(int dimensions, const UnitRobustness& robustness, std::uint64_t seed,
                             const RareEventOptions& options = {});
 
