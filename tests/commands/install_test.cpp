@@ -10,6 +10,7 @@
 #include "support/processes/process.hpp"
 #include "support/processes/running_rift.hpp"
 #include "support/processes/shell.hpp"
+#include "support/sanitizer.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -62,6 +63,7 @@ TEST_CASE("bash completes commands, flags and the words that a flag takes") {
 }
 
 TEST_CASE("An installed rift finds its experiments, and another project its library") {
+  SKIP_UNDER_SANITIZER();
   const test::TemporaryFolder folder;
   const std::string install = "cmake --install " + test::BuildDir() + " --prefix " + (folder / "p");
   Shell(install + " --component rift", folder);

@@ -14,6 +14,7 @@
 #include "rift/sweep/falsify/grid.hpp"
 #include "support/inputs/paths.hpp"
 #include "support/processes/process.hpp"
+#include "support/sanitizer.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -86,6 +87,7 @@ bool SameRows(const SweepResult& a, const SweepResult& b) {
 }
 
 TEST_CASE("A sweep with planted trouble ends and each trouble is a row with its reason") {
+  SKIP_UNDER_SANITIZER();
   const SweepResult result = SweepWith(2, nullptr);
   REQUIRE(result.rows.size() == 14);
   const auto row = [&](int setting) -> const TrialRow& { return result.rows[2 * setting]; };
@@ -108,6 +110,7 @@ TEST_CASE("A sweep with planted trouble ends and each trouble is a row with its 
 }
 
 TEST_CASE("A search with planted trouble ends and trouble is neither a failure nor a pass") {
+  SKIP_UNDER_SANITIZER();
   TrialRunner runner(Evaluated, KeyOf, nullptr, 2, {.timeout_s = 3.0, .memory_mb = 32}, {});
   experiment::Experiment plan = Plan();
   plan.search.budget = 20;  // the space has 7 settings

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "support/processes/process.hpp"
+#include "support/sanitizer.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -68,6 +69,7 @@ TEST_CASE("Every job of a batch is answered once by processes of their own") {
 }
 
 TEST_CASE("A job that hangs or crashes or eats memory is a result with its reason") {
+  SKIP_UNDER_SANITIZER();
   for (const int workers : {1, 2}) {
     WorkerPool pool(Trouble, workers, {.timeout_s = 3.0, .memory_mb = 32});
     const std::map<int, JobResult> results = RunAll(pool, 8);

@@ -189,7 +189,8 @@ TEST_CASE("A file that is no text of lines is refused with what to do") {
 }
 
 TEST_CASE("A message shows bytes that no terminal does and the line of a late header") {
-  CHECK(Refusal(std::string("t_s,x_m,y_m\n0,0,0\n1,1,0\0 5\n", 29)) ==
+  using namespace std::string_literals;
+  CHECK(Refusal("t_s,x_m,y_m\n0,0,0\n1,1,0\0 5\n"s) ==
         "log.csv:3: column y_m is '0\\x00 5': a finite number is expected");
   CHECK(Refusal("t_s,x_m,y_m\n0,0,\x1b[31m\n") ==
         "log.csv:2: column y_m is '\\x1b[31m': a finite number is expected");

@@ -14,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "support/sanitizer.hpp"
 #include "support/until.hpp"
 
 namespace rift::twin {
@@ -139,6 +140,7 @@ class FewDescriptors {
 };
 
 TEST_CASE("A server out of descriptors waits for one instead of spinning, and then serves") {
+  SKIP_UNDER_SANITIZER();
   using Clock = std::chrono::steady_clock;
   MjpegServer server(0);
   std::optional<Client> client;

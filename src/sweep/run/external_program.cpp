@@ -111,12 +111,12 @@ void WriteInto(const std::string& folder, const std::string& name, const std::st
   ::dup2(errors, 2);
   CloseAllBut({});
   for (const auto& [name, value] : start.environment) ::setenv(name.c_str(), value.c_str(), 1);
-  SetLimits(start.memory_mb);
   std::vector<char*> arguments;
   for (const std::string& argument : start.arguments) {
     arguments.push_back(const_cast<char*>(argument.c_str()));
   }
   arguments.push_back(nullptr);
+  SetLimits(start.memory_mb);
   if (is_there) ::execvp(arguments[0], arguments.data());
   const std::string reason = fmt::format("cannot run {}: {}\n", arguments[0], strerror(errno));
   Write(2, reason);
