@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 
 #include "support/inputs/paths.hpp"
@@ -54,6 +55,12 @@ TEST_CASE("The dominant wavelength is that of the strongest weave") {
                                       Weaving(0.003, 0.1, 0.3, 0.0, 0.9)};
   CHECK(DominantWavelength_m(paths, {}) == Approx(0.25).epsilon(0.06));
   CHECK(std::isnan(DominantWavelength_m({}, {})));
+  // The same weave over half the length, and a weave of another wavelength over twice the length.
+  Trajectory half = Weaving(0.01, 0.25, 0.3, 0.0), twice = Weaving(0.01, 0.1, 0.3, 0.0);
+  half.poses.resize(half.poses.size() / 2);
+  for (auto& pose : twice.poses) pose.x_m *= 2.0;
+  CHECK(DominantWavelength_m(std::span(&half, 1), {}) == Approx(0.25).epsilon(0.08));
+  CHECK(DominantWavelength_m(std::span(&twice, 1), {}) == Approx(0.2).epsilon(0.06));
 }
 
 TEST_CASE("A simulator drawn as the robot is like it and the test does not object") {

@@ -150,6 +150,17 @@ TEST_CASE("A log without yaw or targets or motion has the other features") {
   CHECK(std::isnan(Feature(still, "first_motion_s")));
 }
 
+TEST_CASE("Five rows from the first motion on are a drive") {
+  const Trajectory whole = Drive(Straight);
+  const auto first = static_cast<size_t>(std::lround(Feature(whole, "first_motion_s") / 0.05));
+  Trajectory log = whole;
+  log.poses.resize(first + 5);
+  CHECK(Feature(log, "first_motion_s") == Approx(0.05 * static_cast<double>(first)));
+  CHECK(Feature(log, "drive_s") == Approx(0.2));
+  log.poses.resize(first + 4);
+  CHECK(std::isnan(Feature(log, "first_motion_s")));
+}
+
 /// Drives of one setting whose weave is drawn, `speedup` times as fast.
 std::vector<Trajectory> Drives(int count, double speedup, statistics::Random& random) {
   std::vector<Trajectory> logs;
