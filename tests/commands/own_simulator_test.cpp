@@ -27,6 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using Catch::Matchers::Contains;
 using test::ProcessResult;
 using test::ReadFile;
 using test::RunRift;
@@ -298,6 +299,27 @@ TEST_CASE("A persistent program that fails is started again for the next trial")
   CHECK(rows["nothing"]["status"] == "fault");
   CHECK(rows["memory"]["status"] == "out_of_memory");
   CheckNothingIsLeft(folder);
+}
+
+TEST_CASE("A program is given no file or socket of the sweep") {
+  const TemporaryFolder folder;
+  WriteText(folder / "sim.sh", "ls -l /proc/$$/fd > " + (folder / "open.txt") +
+                                   "\nprintf 't_s,x_m,y_m\\n0,0,0\\n1,1,0\\n2,1,1\\n' > \"$1\"\n");
+  WriteText(folder / "task.yaml", R"(
+candidate: {kind: program, run: [sh, sim.sh, "{out}"]}
+reference: {kind: nominal}
+space: {wind: [1, 2]}
+)");
+  const ProcessResult result =
+      RunRift({"sweep", folder / "task.yaml", "--jobs", "2", "--out", folder / "out"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  const std::string open = ReadFile(folder / "open.txt");
+  CAPTURE(open);
+  CHECK_THAT(open, Contains("0 -> ") && Contains("2 -> "));
+  for (const char* other : {"socket:", "pipe:", "anon_inode:", "journal"}) {
+    CHECK_THAT(open, !Contains(other));
+  }
 }
 
 TEST_CASE("The end of a persistent program is seen though its child holds its output open") {

@@ -140,6 +140,11 @@ TEST_CASE("The steering of a run is identified from its commands and poses") {
   CHECK(check.model.pose_age_s == Approx(0.10 + 0.5 * 0.05).margin(0.012));
   CHECK(check.causes.empty());
   CHECK(check.proposals.empty());
+  const SteeringPrior wrong{{0.7 * kSpeed_mps, 1.3 * kYawRate_rad_s, 0.0, 0.0}, 0.1};
+  const SteeringModel model =
+      CheckSteering(result, kTask, bench.navigator, bench.options, wrong).model;
+  CHECK(model.yaw_rate_rad_s == Approx(check.model.yaw_rate_rad_s).epsilon(0.01));
+  CHECK(model.speed_mps == Approx(check.model.speed_mps).epsilon(0.01));
 }
 
 TEST_CASE("A robot drives on the circle that is predicted when its steering is too weak") {
