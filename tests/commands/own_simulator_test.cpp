@@ -26,8 +26,8 @@ namespace rift {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 using Catch::Matchers::Contains;
+using nlohmann::json;
 using test::ProcessResult;
 using test::ReadFile;
 using test::RunRift;

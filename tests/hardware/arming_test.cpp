@@ -1,5 +1,6 @@
 #include "rift/hardware/arming.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "bench.hpp"
@@ -119,6 +120,27 @@ TEST_CASE("A robot that no camera sees is not driven") {
   Operator person;
   CHECK_THROWS_WITH(Drive(person.PartsOf(bench), PaperTask()),
                     Catch::Contains("was not seen within 10 s"));
+}
+
+TEST_CASE("The delay of the camera that the turn finds is taken from the stamps of the drive") {
+  for (const double late_s : {0.0, 0.1}) {
+    Bench bench;
+    bench.camera_late_s = late_s;
+    Operator person;
+    const DriveRun run = Drive(person.PartsOf(bench), PaperTask());
+    REQUIRE(run.latency);
+    REQUIRE(run.latency->delay.camera_s);
+    const double found_s = std::max(0.0, *run.latency->delay.camera_s);
+    CHECK(found_s == Approx(late_s).margin(0.025));
+    // The bench's pictures arrive 10 ms after their stamps. Those of the turn come first.
+    const std::vector<PoseStages>& poses = run.evidence.poses;
+    const auto is_corrected = [&](const PoseStages& pose) {
+      return std::abs(pose.arrived_s - pose.captured_s - 0.01 - found_s) < 1e-6;
+    };
+    const auto drive = std::find_if(poses.begin(), poses.end(), is_corrected);
+    REQUIRE(poses.end() - drive > 100);
+    CHECK(std::all_of(drive, poses.end(), is_corrected));
+  }
 }
 
 TEST_CASE("A stop during the hello or the ping is obeyed at once") {
