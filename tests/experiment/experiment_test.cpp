@@ -232,6 +232,20 @@ TEST_CASE("The own value of a waypoint's coordinate is a number") {
   CHECK(NominalTheta(experiment) == Theta{{"0.25", 0.25}});
 }
 
+TEST_CASE("A program that takes longer than a trial with settling and rest is refused") {
+  Experiment experiment;
+  experiment.program.segments = {{.straight_m = 0.5}};
+  experiment.program.rest_s = 0.7;
+  experiment.trial.settle_s = 1.5;
+  const control::Program program(experiment.program, experiment.hardware.odometry.drive, {});
+  const double needed_s = 1.5 + program.Duration_s() + 0.7;
+  experiment.trial.timeout_s = needed_s + 0.01;
+  CHECK_NOTHROW(TaskOf(experiment));
+  experiment.trial.timeout_s = needed_s - 0.01;
+  CHECK_THROWS_WITH(TaskOf(experiment),
+                    Catch::Contains("the program takes") && Catch::Contains("trial.timeout_s is"));
+}
+
 TEST_CASE("Trials are a list or a count") {
   const auto trials = [](const std::string& text) {
     return LoadTexts({{"a.yaml", "reference: {trials: " + text + "}"}}).reference.trials.names;

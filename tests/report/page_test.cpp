@@ -28,6 +28,15 @@ json Data(const std::string& page) {
   return json::parse(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
+TEST_CASE("A level with one trial is compared with others and one without any is not") {
+  sweep::SweepResult result = synthetic::Grid();
+  for (std::size_t i = 1; i < 16; ++i) synthetic::LoseGap(&result.rows[i], "no file");
+  sweep::Summarise(result);
+  CHECK_THAT(Words(RenderPage(result)),
+             Contains("Most often at surface rock (8 of 8 trials), least often at ice (0 of 1 "
+                      "trials)."));
+}
+
 TEST_CASE("The first screen answers from the data") {
   const sweep::SweepResult result = synthetic::Grid();
   const std::string words = Words(RenderPage(result));

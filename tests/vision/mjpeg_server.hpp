@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/socket.h>
+
 #include <atomic>
 #include <boost/asio.hpp>
 #include <chrono>
@@ -41,7 +43,10 @@ class MjpegServer {
     boost::asio::ip::tcp::socket waker(context_);  // accept() waits for somebody
     waker.connect(acceptor_.local_endpoint(), ignored);
     waker.close(ignored);  // it will never ask for anything
-    if (client_) client_->shutdown(boost::asio::ip::tcp::socket::shutdown_both, ignored);
+    {
+      const std::lock_guard lock(mutex_);
+      if (client_) ::shutdown(client_->native_handle(), SHUT_RDWR);
+    }
     thread_.join();
   }
   MjpegServer(const MjpegServer&) = delete;
@@ -95,7 +100,12 @@ class MjpegServer {
 
   void Serve() {
     try {
-      client_.emplace(acceptor_.accept());
+      boost::asio::ip::tcp::socket client = acceptor_.accept();
+      {
+        const std::lock_guard lock(mutex_);
+        client_.emplace(std::move(client));
+      }
+      if (stop_) return;
       std::string request;
       boost::asio::read_until(*client_, boost::asio::dynamic_buffer(request), "\r\n\r\n");
       Send("HTTP/1.0 200 OK\r\nContent-Type: " + options_.content_type + "\r\n\r\n", {});
@@ -118,7 +128,8 @@ class MjpegServer {
       while (options_.then_silent && !stop_) {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
       }
-      client_->close();
+      const std::lock_guard lock(mutex_);
+      client_.reset();
     } catch (
         const boost::system::system_error&) {  // the client went away: what else is there to do
     }
@@ -128,8 +139,8 @@ class MjpegServer {
   boost::asio::ip::tcp::acceptor acceptor_{context_, {boost::asio::ip::address_v4::loopback(), 0}};
   Camera camera_;
   ServerOptions options_;
-  std::optional<boost::asio::ip::tcp::socket> client_;
   std::mutex mutex_;
+  std::optional<boost::asio::ip::tcp::socket> client_;  ///< comes and goes under the mutex
   std::vector<double> sent_s_;
   std::atomic<bool> stop_ = false;
   std::atomic<int> released_ = 0;
