@@ -97,6 +97,26 @@ TEST_CASE("The caster brakes by its load times its friction times what the groun
   CHECK(lost_mps(3.0) == Approx(3.0 * lost_mps(1.0)).epsilon(0.05));
 }
 
+TEST_CASE("The caster brakes by what is under it and nowhere else") {
+  BodyOptions body;
+  body.caster_mu = 0.02;
+  TerrainOptions options;
+  options.surfaces["ground"] = SurfaceOptions{};
+  options.surfaces["ground"].caster_factor = 3.0;
+  const auto lost_mps = [&](std::vector<PatchOptions> patches) {
+    options.patches = std::move(patches);
+    OdeWorld world(body, Terrain(options), {0.0, 0.3, 0.0}, 0.001);
+    world.Launch(0.3);
+    Run(world, 0.5, 0.001, {Drag(kFree), Drag(kFree)});
+    return 0.3 - world.State().velocity_mps.norm();
+  };
+  const double outside_mps = lost_mps({});
+  const PatchOptions under{-0.2, 0.29, 0.2, 0.4, 0.8, 0.0, 0.0};  // what it rolls on has factor 1
+  const PatchOptions beside{-0.2, 0.29, -0.4, -0.2, 0.8, 0.0, 0.0};
+  CHECK(lost_mps({under}) == Approx(outside_mps / 3.0).epsilon(0.05));
+  CHECK(lost_mps({beside}) == outside_mps);
+}
+
 TEST_CASE("A robot with locked wheels stops after v squared over twice mu times the wheel load") {
   BodyOptions body;
   body.com_ahead_m = 0.0;  // all weight on the wheels but what braking itself moves to the rim

@@ -151,6 +151,13 @@ TEST_CASE("A value is rounded to the next step within its range") {
   CHECK(NearestSettable(v_min, Numeric(0.17341)).text == "0.17");
   CHECK(NearestSettable(v_min, Numeric(0.1041)).text == "0.11");
   CHECK(NearestSettable(v_min, Numeric(0.2549)).text == "0.25");
+  const auto step_of = [](double max) {
+    return experiment::StepOf({.key = "own", .min = 0.0, .max = max});
+  };
+  CHECK(step_of(3.0) == Approx(0.2));  // 1, 2 or 5 times a power of ten, at most 20 steps
+  CHECK(step_of(0.1) == Approx(0.005));
+  CHECK(step_of(18.0) == Approx(1.0));
+  CHECK(step_of(120.0) == Approx(10.0));
   const experiment::Parameter column{.key = "v_min", .min = 0.1, .max = 0.3};
   CHECK(experiment::IsSettable(column));
   CHECK_FALSE(experiment::IsSettable({.key = "simulation.motor.mismatch"}));
