@@ -91,10 +91,15 @@ Finding Where(const sweep::SweepResult& result, const sweep::Explanation& explan
   finding.sentences.push_back(largest);
   for (const sweep::SettingResult* setting : WorstSettings(result)) {
     if (!std::isfinite(setting->mean_gap_m)) continue;
+    const auto with_gap = std::count_if(setting->rows.begin(), setting->rows.end(),
+                                        [&](int i) { return result.rows[i].IsOk(); });
+    const std::string trials = Count(setting->verdict.repeats, "trial");
     Sentence sentence("The worst setting on average is ");
     sentence.Link(SettingLabel(result, setting->theta), TrialsOf(result, setting->theta))
-        .Say(fmt::format(", {} over {}.", Metres(setting->mean_gap_m),
-                         Count(setting->verdict.repeats, "trial")));
+        .Say(with_gap < setting->verdict.repeats
+                 ? fmt::format(", {} over the {} of {} that have a gap.",
+                               Metres(setting->mean_gap_m), with_gap, trials)
+                 : fmt::format(", {} over {}.", Metres(setting->mean_gap_m), trials));
     finding.sentences.push_back(sentence);
     break;
   }
