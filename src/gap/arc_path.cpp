@@ -98,10 +98,7 @@ PointsIn<N> Resample(const ArcPathIn<N>& path, int count) {
   points.reserve(count);
   size_t i = 0;
   for (int k = 0; k < count; ++k) {
-    const double u = static_cast<double>(k) / (count - 1);
-    while (i + 2 < path.Size() && path.u[i + 1] <= u) ++i;
-    const double span = path.u[i + 1] - path.u[i];
-    const double share = span > 0.0 ? (u - path.u[i]) / span : 0.0;
+    const double share = ShareAt(path, static_cast<double>(k) / (count - 1), i);
     points.push_back(path.Vertex(i) + share * (path.Vertex(i + 1) - path.Vertex(i)));
   }
   return points;

@@ -78,6 +78,15 @@ inline ArcPath MakeArcPath(const trajectory::Trajectory& trajectory, const GapOp
   return MakeArcPathIn<2>(trajectory, options);
 }
 
+/// Of the way from vertex i, the last one at or before u, to the next; `i` goes on from call to
+/// call.
+template <int N>
+double ShareAt(const ArcPathIn<N>& path, double u, size_t& i) {
+  while (i + 2 < path.Size() && path.u[i + 1] <= u) ++i;
+  const double span = path.u[i + 1] - path.u[i];
+  return span > 0.0 ? (u - path.u[i]) / span : 0.0;
+}
+
 /// The points at `count` evenly spaced u from 0 to 1.
 template <int N>
 PointsIn<N> Resample(const ArcPathIn<N>& path, int count);

@@ -42,14 +42,6 @@ Paths<N> Prepare(const trajectory::Trajectory& sim, const trajectory::Trajectory
   return paths;
 }
 
-/// Of the way from pose i, the last one at or before u, to the next; `i` goes on from call to call.
-template <int N>
-double ShareAt(const ArcPathIn<N>& path, double u, size_t& i) {
-  while (i + 2 < path.Size() && path.u[i + 1] <= u) ++i;
-  const double span = path.u[i + 1] - path.u[i];
-  return span > 0.0 ? (u - path.u[i]) / span : 0.0;
-}
-
 template <int N>
 double YawAt(const ArcPathIn<N>& path, double u, size_t& i) {
   const double share = ShareAt(path, u, i);
