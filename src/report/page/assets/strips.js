@@ -42,7 +42,7 @@ function valueAt(list, u) {
 }
 
 // What the strips show: [u, value] of a row, of its reference where it has a line of its own, a
-// constant that is drawn dashed, and what the caption says at the cursor.
+// constant that is drawn dashed, and what the caption says at the cursor of a row that has a pair.
 const measures = [
   {
     meaning: 'error (m) from start to end; dashed: threshold', threshold: () => page.paths.threshold_m,
@@ -55,6 +55,7 @@ const measures = [
     ofReference: row => pairOf(row) && speedsOf(pairOf(row)[1]),
     says: (u, row) => {
       const [own, other] = pairOf(row).map(speedsOf);
+      if (!own) return '';
       return `There at ${valueAt(own, u).toFixed(2)} m/s${other ? `, the reference at ${valueAt(other, u).toFixed(2)} m/s` : ''}.`;
     },
   },
@@ -105,7 +106,7 @@ function strip(measure, view, wide) {
       mark.setAttribute('transform', `translate(${x(u).toFixed(1)})`);
       svg.setAttribute('aria-valuenow', u.toFixed(2));
     }
-    const here = u !== null && row && measure.of(row) ? measure.says(u, row) : '';
+    const here = u !== null && row ? measure.says(u, row) : '';
     caption.textContent = here || meaning;
     svg.setAttribute('aria-valuetext', here || 'no place');
   };
