@@ -18,7 +18,7 @@
 #include <cstring>
 #include <thread>
 
-#include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/camera/steady_now.hpp"
 
 namespace rift::hardware {
 

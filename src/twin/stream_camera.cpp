@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "rift/statistics/descriptive.hpp"
-#include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/camera/steady_now.hpp"
 
 namespace rift::twin {
 namespace {

@@ -16,7 +16,7 @@
 #include "pseudo_terminal.hpp"
 #include "rift/hardware/listener.hpp"
 #include "rift/twin/options.hpp"
-#include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/camera/steady_now.hpp"
 #include "stream_camera.hpp"
 #include "true_path.hpp"
 #include "twin_robot.hpp"

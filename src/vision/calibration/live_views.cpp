@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/camera/steady_now.hpp"
 
 namespace rift::vision {
 namespace {

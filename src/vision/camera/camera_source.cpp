@@ -1,7 +1,6 @@
 #include "rift/vision/camera/camera_source.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 
 #include "sources.hpp"
@@ -33,10 +32,6 @@ SourceKind KindOf(std::string_view name) {
     return SourceKind::kImages;
   }
   return SourceKind::kVideo;
-}
-
-double SteadyNow_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 std::unique_ptr<CameraSource> OpenCamera(const std::string& name, const CaptureOptions& options) {

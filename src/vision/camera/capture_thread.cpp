@@ -17,6 +17,7 @@
 #include "rift/vision/camera/capture_options.hpp"
 #include "rift/vision/camera/frame.hpp"
 #include "rift/vision/camera/picture_reader.hpp"
+#include "rift/vision/camera/steady_now.hpp"
 
 namespace rift::vision {
 namespace {

@@ -15,6 +15,7 @@
 
 #include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/camera/jpeg.hpp"
+#include "rift/vision/camera/steady_now.hpp"
 #include "sources.hpp"
 
 namespace rift::vision {

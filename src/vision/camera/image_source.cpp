@@ -18,6 +18,7 @@
 #include "exif_time.hpp"
 #include "image_times.hpp"
 #include "rift/vision/camera/jpeg.hpp"
+#include "rift/vision/camera/steady_now.hpp"
 #include "sources.hpp"
 
 namespace rift::vision {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "rift/vision/camera/jpeg.hpp"
+#include "rift/vision/camera/steady_now.hpp"
 #include "sources.hpp"
 
 namespace rift::vision {

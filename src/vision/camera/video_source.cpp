@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "rift/vision/camera/steady_now.hpp"
 #include "sources.hpp"
 
 namespace rift::vision {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "rift/vision/camera/steady_now.hpp"
 #include "rift/vision/tracking/world_frame.hpp"
 
 namespace rift::vision {

@@ -10,6 +10,7 @@
 
 #include "off_floor.hpp"
 #include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/camera/steady_now.hpp"
 
 namespace rift::vision {
 namespace {

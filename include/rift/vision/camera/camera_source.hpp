@@ -91,9 +91,6 @@ enum class SourceKind {
 };
 SourceKind KindOf(std::string_view name);
 
-/// Seconds of the clock that frames are stamped with (steady_clock).
-double SteadyNow_s();
-
 /// Opens a camera. Throws CameraError (busy, wrong format, unplugged: with the name, what was tried
 /// and what to do), std::invalid_argument for a file or pattern that matches nothing.
 std::unique_ptr<CameraSource> OpenCamera(const std::string& name, const CaptureOptions& options);
