@@ -120,6 +120,17 @@ class RayRenderer {
     for (int i = 0; i < 12; ++i) ray -= Bend(ray) - bent;
     return ray;
   }
+  /// By how much a ray changes from a pixel's middle to its right edge, and to its lower one.
+  Eigen::Matrix2d HalfPixelAt(const Eigen::Vector2d& ray) const {
+    constexpr double kStep = 1e-5;
+    Eigen::Matrix2d bent_by_ray;
+    for (int i = 0; i < 2; ++i) {
+      const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(i);
+      bent_by_ray.col(i) = (Bend(ray + step) - Bend(ray - step)) / (2.0 * kStep);
+    }
+    const Eigen::Vector2d half(0.5 / camera_.k(0, 0), 0.5 / camera_.k(1, 1));
+    return bent_by_ray.inverse() * half.asDiagonal();
+  }
 
   cv::Rect BoxOf(const RayTag& tag) const {
     const Eigen::Isometry3d camera_from_world = camera_.world->world_from_camera.inverse();
@@ -144,17 +155,25 @@ class RayRenderer {
     return box & cv::Rect(0, 0, camera_.width_px, camera_.height_px);
   }
 
-  /// Grey of the tag's plane at a place, negative where nothing is.
-  static double GreyAt(const RayTag& tag, const LibraryTag& printed,
-                       const Eigen::Vector3d& p_in_tag) {
+  /// What a ray meets in the tag's plane, and how far from the place the same is met at least.
+  struct Met {
+    double grey, same_within_m;  ///< grey is negative where nothing is
+  };
+  static Met MetAt(const RayTag& tag, const LibraryTag& printed, const Eigen::Vector2d& p_in_tag) {
     const double cell_m = tag.size_m / printed.family->width_at_border;
     const int cells = printed.family->total_width;
-    const int column = static_cast<int>(std::floor(p_in_tag.x() / cell_m + 0.5 * cells));
-    const int row = static_cast<int>(std::floor(0.5 * cells - p_in_tag.y() / cell_m));
-    if (column >= 0 && column < cells && row >= 0 && row < cells) {
-      return printed.IsWhite(column, row) ? 215.0 : 28.0;
+    const Eigen::Vector2d at = Eigen::Vector2d(p_in_tag.x(), -p_in_tag.y()) / cell_m +
+                               Eigen::Vector2d::Constant(0.5 * cells);
+    const Eigen::Vector2d cell = at.array().floor();
+    if (cell.minCoeff() >= 0.0 && cell.maxCoeff() < cells) {
+      const Eigen::Array2d in_cell = (at - cell).array();
+      return {
+          printed.IsWhite(static_cast<int>(cell.x()), static_cast<int>(cell.y())) ? 215.0 : 28.0,
+          cell_m * std::min(in_cell.minCoeff(), (1.0 - in_cell).minCoeff())};
     }
-    return p_in_tag.head<2>().norm() < tag.disc_radius_m ? 45.0 : -1.0;
+    const double to_print_m = p_in_tag.cwiseAbs().maxCoeff() - 0.5 * cells * cell_m;
+    const double to_edge_m = p_in_tag.norm() - tag.disc_radius_m;
+    return {to_edge_m < 0.0 ? 45.0 : -1.0, std::min(std::abs(to_edge_m), to_print_m)};
   }
 
   void Paint(const RayTag& tag, cv::Mat1f& picture) const {
@@ -165,19 +184,35 @@ class RayRenderer {
     cv::Mat1f patch = picture(box).clone();
     const Eigen::Vector3d eye = tag_from_camera.translation();
     const LibraryTag printed = LibraryTagOf(tag.family, tag.id);
+    const auto meet = [&](const Eigen::Vector3d& ray) -> Eigen::Vector2d {
+      return eye.head<2>() - ray.head<2>() * (eye.z() / ray.z());
+    };
     for (int y = 0; y < box.height; ++y) {
       for (int x = 0; x < box.width; ++x) {
         // Within a pixel the lens is linear to 1e-4 px.
         const Eigen::Vector2d middle = Straight(box.x + x, box.y + y);
-        const Eigen::Vector2d along_u = Straight(box.x + x + 0.5, box.y + y) - middle;
-        const Eigen::Vector2d along_v = Straight(box.x + x, box.y + y + 0.5) - middle;
+        const Eigen::Matrix2d half_pixel = HalfPixelAt(middle);
+        const Eigen::Vector3d ray = tag_from_camera.linear() * middle.homogeneous();
+        const Eigen::Matrix<double, 3, 2> along =
+            tag_from_camera.linear().leftCols<2>() * half_pixel;
+        const Eigen::Vector2d place = meet(ray);
+        double reach_m = 0.0;  // from the middle to the farthest corner
+        for (const double u : {-1.0, 1.0}) {
+          for (const double v : {-1.0, 1.0}) {
+            const Eigen::Vector2d corner = meet(ray + along * Eigen::Vector2d(u, v));
+            reach_m = std::max(reach_m, (corner - place).norm());
+          }
+        }
+        const Met all = MetAt(tag, printed, place);
+        if (reach_m < all.same_within_m) {
+          if (all.grey >= 0.0) patch(y, x) = static_cast<float>(all.grey);
+          continue;
+        }
         double sum = 0.0;
         for (int k = 0; k < kFine * kFine; ++k) {
           const double u = 2.0 * (k % kFine + 0.5) / kFine - 1.0;
           const double v = 2.0 * (static_cast<int>(k / kFine) + 0.5) / kFine - 1.0;
-          const Eigen::Vector2d bent = middle + u * along_u + v * along_v;
-          const Eigen::Vector3d ray = tag_from_camera.linear() * bent.homogeneous();
-          const double grey = GreyAt(tag, printed, eye - ray * (eye.z() / ray.z()));
+          const double grey = MetAt(tag, printed, meet(ray + along * Eigen::Vector2d(u, v))).grey;
           sum += grey < 0.0 ? picture(box.y + y, box.x + x) : grey;
         }
         patch(y, x) = static_cast<float>(sum / (kFine * kFine));
