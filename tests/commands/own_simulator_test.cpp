@@ -337,8 +337,9 @@ TEST_CASE("A sweep of a program that is killed goes on and leaves no process") {
   const std::string script = folder / "diff_drive.py";
   fs::copy(test::SourceDir() + "/configs/programs/diff_drive.py", script);
   fs::copy(kSpawned, folder / "sweep.yaml");
-  const std::vector<std::string> arguments{"sweep", folder / "sweep.yaml", "--jobs",   "2",
-                                           "--out", folder / "killed",     "--budget", "12"};
+  const std::vector<std::string> arguments{"sweep", folder / "sweep.yaml",   "--jobs",   "2",
+                                           "--out", folder / "killed",       "--budget", "12",
+                                           "--set", "falsify.most_repeats=2"};
   test::RunningRift killed(arguments);
   killed.WaitUntil("programs run", [&] { return ProcessesWith(script) > 0; });
   killed.Signal(SIGKILL);
