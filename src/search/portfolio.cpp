@@ -59,6 +59,9 @@ Portfolio::Portfolio(const Known& known, const SearchOptions& options, int budge
   members_[kLocalModel] = std::make_unique<LocalModel>(known, seed);
   members_[kEvolution] = std::make_unique<DifferentialEvolution>(known, seed);
   members_[kCrs] = std::make_unique<ControlledRandomSearch>(known, seed);
+  auto fit = std::make_unique<QuadraticFit>(known);
+  fit_ = fit.get();
+  members_[kFit] = std::move(fit);
   for (int axis = 0; axis < known.space.Size(); ++axis) {
     is_continuous_ = is_continuous_ && known.space.IsContinuous(axis);
   }
@@ -100,7 +103,7 @@ Portfolio::Member Portfolio::Choose() const {
 }
 
 std::vector<Point> Portfolio::Ask(int most) {
-  active_ = Choose();
+  active_ = !IsDesign() && fit_->IsDue() ? kFit : Choose();
   best_before_ = known_.archive.BestLoss();
   std::vector<Point> points = members_[active_]->Ask(most);
   proposed_ = points.size();

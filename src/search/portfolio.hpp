@@ -9,14 +9,16 @@
 #include "controlled_random_search.hpp"
 #include "differential_evolution.hpp"
 #include "local_model.hpp"
+#include "quadratic_fit.hpp"
 #include "rift/search/options.hpp"
 #include "samplers.hpp"
 #include "surrogate.hpp"
 
 namespace rift::search {
 
-/// The default: a small design of Sobol points and a few corners, then the method that found most
-/// for its evaluations, with an allowance for what was tried little (UCB1, Auer 2002, over
+/// The default: a small design of Sobol points and a few corners, then the least of a quadratic
+/// that is fitted to what is known, as long as it comes true, else the method that found most for
+/// its evaluations, with an allowance for what was tried little (UCB1, Auer 2002, over
 /// forgetting averages). A share of all points stays a Sobol sequence over the whole space to the
 /// end, since what the others learn may lead away from a failure that nothing points to: a small
 /// share while the others gain, more than half when they do not.
@@ -34,7 +36,17 @@ class Portfolio : public Strategy {
   void Tell(std::span<const Evaluation> batch) override;
 
  private:
-  enum Member { kSobol, kCorners, kSurrogate, kCmaEs, kLocalModel, kEvolution, kCrs, kMembers };
+  enum Member {
+    kSobol,
+    kCorners,
+    kSurrogate,
+    kCmaEs,
+    kLocalModel,
+    kEvolution,
+    kCrs,
+    kFit,
+    kMembers
+  };
   static constexpr std::array kLearners{kSurrogate, kCmaEs, kLocalModel, kEvolution, kCrs};
 
   Member Choose() const;
@@ -50,6 +62,7 @@ class Portfolio : public Strategy {
   int design_;  ///< evaluations
   double anywhere_points_ = 0.0, corner_points_ = 0.0;
   std::array<std::unique_ptr<Strategy>, kMembers> members_;
+  QuadraticFit* fit_ = nullptr;  ///< the member of that name
   std::array<Record, kMembers> records_;
   Member active_ = kSobol;
   std::size_t proposed_ = 0;   ///< points of the active member at the front of the batch

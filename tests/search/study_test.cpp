@@ -35,6 +35,10 @@ TEST_CASE(
   CHECK(Successes("rastrigin", search::Method::kPortfolio, 24, 11.5, 100) >= 12);
 }
 
+TEST_CASE("A loss that is a quadratic form is solved as soon as there are points to fit one to") {
+  CHECK(Successes("ellipsoid", search::Method::kPortfolio, 24, 802.0, 40) >= 23);
+}
+
 TEST_CASE("Where nothing points to a failure the portfolio finds half as many as random search") {
   for (const char* name : {"deceiving", "flat"}) {
     INFO(name);
