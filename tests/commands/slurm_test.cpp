@@ -185,7 +185,7 @@ struct FitSweep : Sweep {
 };
 
 void CheckBesideTheTable() {
-  CheckSameAsLocal(Sweep(kFailing), {}, {"--shrink", "worst", "--rare-event"});
+  CheckSameAsLocal(Sweep(kFailing), {}, {"--shrink", "worst"});
   CheckSameAsLocal(FitSweep(), {});
 }
 
