@@ -64,6 +64,14 @@ TEST_CASE("Every strategy proposes the points that were approved, to six digits"
                           all[k].loss);
     }
   }
+  // Which methods go first depends on every axis, the first one too.
+  const std::vector<Axis> category_first{kUnlike[3], kUnlike[0], kUnlike[1]};
+  const auto loss = [](const Point& p) { return Skewed({p[1], p[2], 4.0, p[0]}); };
+  text += "portfolio, category first\n";
+  for (const Evaluation& one : Run(Method::kPortfolio, 80, 5, category_first, loss)) {
+    const Point& p = one.point;
+    text += fmt::format("  {} {:.6g} {:.6g} > {:.6g}\n", p[0], p[1], p[2], one.loss);
+  }
   CHECK(test::DifferenceFromPinned("search/proposals.txt", text) == "");
 }
 

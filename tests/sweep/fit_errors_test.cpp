@@ -1,0 +1,84 @@
+// What a fit makes of repeats of one setting: how far apart they are, in the logs and simulated.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "sweep/calibrate/errors.hpp"
+#include "sweep/calibrate/fitted_simulator.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using trajectory::Trajectory;
+
+/// One metre ahead along x, `aside_m` beside it: the gap of two is how far they are apart.
+Trajectory Lane(double aside_m) {
+  Trajectory path;
+  for (int i = 0; i <= 20; ++i) path.poses.push_back({0.1 * i, 0.05 * i, aside_m, 0.0});
+  return path;
+}
+
+/// Predicts the same runs whatever it is asked.
+class Told : public FittedSimulator {
+ public:
+  explicit Told(std::vector<LogPrediction> predictions) : predictions_(std::move(predictions)) {}
+
+  std::vector<LogPrediction> Predict(const std::vector<CalibrationLog>&, const std::vector<double>&,
+                                     const CalibrationOptions&) override {
+    return predictions_;
+  }
+  std::vector<Trajectory> LogsAt(const std::vector<CalibrationLog>&, const std::vector<double>&,
+                                 int) override {
+    return {};
+  }
+  Traits TraitsOf(const Trajectory&, size_t, const std::vector<double>&) const override {
+    return {};
+  }
+  bool HasWholeRunsOnly() const override { return true; }
+
+ private:
+  std::vector<LogPrediction> predictions_;
+};
+
+CalibrationLog Log(const std::string& setting, double aside_m) {
+  return {.name = setting, .setting = setting, .log = Lane(aside_m)};
+}
+
+LogPrediction Runs(const std::vector<double>& asides_m) {
+  LogPrediction prediction;
+  for (const double aside_m : asides_m) prediction.runs.push_back(Lane(aside_m));
+  return prediction;
+}
+
+TEST_CASE("A repeat is held against the repeat of its own setting before it") {
+  const std::vector<CalibrationLog> logs{Log("a", 0.0),  Log("b", 0.5), Log("a", 0.04),
+                                         Log("b", 0.52), Log("c", 0.9), Log("a", 0.07)};
+  Told simulator(std::vector<LogPrediction>(logs.size()));
+  const LoggedTraits traits = TraitsOfLogs(logs, simulator, {});
+  CHECK(traits.partner == std::vector<int>{-1, -1, 0, 1, -1, 2});
+  CHECK(std::isnan(traits.log_spread[1]));
+  CHECK(traits.log_spread[2] == Approx(std::log(0.04)));
+  CHECK(traits.log_spread[3] == Approx(std::log(0.02)));
+  CHECK(traits.log_spread[5] == Approx(std::log(0.03)));
+}
+
+TEST_CASE("Simulated repeats that are further apart than the logs are an error of the spread") {
+  const std::vector<CalibrationLog> logs{Log("a", 0.0), Log("b", 0.5), Log("a", 0.04),
+                                         Log("b", 0.52)};
+  // Those of "a" are twice and half as far apart as the logs, those of "b" four times.
+  Told simulator({Runs({0.0, 1.0}), Runs({0.3}), Runs({0.08, 1.02}), Runs({0.38})});
+  const LoggedTraits traits = TraitsOfLogs(logs, simulator, {});
+  const double scatter = std::log(2.0) / std::sqrt(2.0);  // of log 0.04 and log 0.02
+  CHECK(traits.spread_scatter == Approx(scatter));
+  const std::vector<LogErrors> errors = ErrorsAt(logs, traits, simulator, {}, {});
+  REQUIRE(errors.size() == 4);
+  const auto spread = [&](int log) { return errors[static_cast<size_t>(log)].traits[kTraits]; };
+  CHECK(spread(0) == 0.0);
+  CHECK(spread(1) == 0.0);
+  CHECK(spread(2) == Approx(0.0).margin(1e-9));
+  CHECK(spread(3) == Approx(std::log(4.0) / scatter));
+}
+
+}  // namespace
+}  // namespace rift::sweep
