@@ -14,9 +14,10 @@ constexpr int kDesignPerAxis = 4;
 constexpr double kDesignShare = 0.25;
 constexpr double kCornerShare = 0.125;
 /// Share of all points that lie anywhere while the learners gain, those of the design counted, and
-/// of the points after the design while they do not.
+/// of the points after the design while they do not: less where every axis is continuous, since
+/// there a run of the local model from another start is worth more than points alone.
 constexpr double kAnywhereGaining = 0.15;
-constexpr double kAnywhereStuck = 0.6;
+constexpr double kAnywhereStuck = 0.45, kAnywhereStuckMixed = 0.6;
 /// Evaluations after which the surrogate proposes no more: its model keeps its size while the
 /// others sharpen.
 constexpr int kSurrogateMost = 600;
@@ -73,7 +74,8 @@ bool Portfolio::IsDesign() const { return static_cast<int>(known_.archive.Size()
 
 double Portfolio::DueAnywhere(double total) const {
   if (progress_ > kLeastGain) return kAnywhereGaining * total;
-  return (1.0 - kCornerShare) * design_ + kAnywhereStuck * (total - design_);
+  const double stuck = is_continuous_ ? kAnywhereStuck : kAnywhereStuckMixed;
+  return (1.0 - kCornerShare) * design_ + stuck * (total - design_);
 }
 
 bool Portfolio::MayPropose(Member member) const {

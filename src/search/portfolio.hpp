@@ -21,7 +21,7 @@ namespace rift::search {
 /// its evaluations, with an allowance for what was tried little (UCB1, Auer 2002, over
 /// forgetting averages). A share of all points stays a Sobol sequence over the whole space to the
 /// end, since what the others learn may lead away from a failure that nothing points to: a small
-/// share while the others gain, more than half when they do not.
+/// share while the others gain, about half when they do not.
 class Portfolio : public Strategy {
  public:
   /// What a member found for what it spent.
