@@ -141,7 +141,7 @@ TEST_CASE("rift gap says in one line what is wrong with its input") {
        "rift: REAL is required: name logs of the robot (or --odometry for the encoders of run "
        "folders)\n"},
       {{logs.sim, logs.real, "--samples", "1"},
-       "rift: --samples: '1' must be a number in [2, 1e+07]\n"},
+       "rift: --samples: '1' must be a whole number in [2, 10000000]\n"},
       {{logs.sim, logs.real, "--threshold", "nan"},
        "rift: --threshold: 'nan' must be a number in [0, 1000]\n"},
       {{logs.sim, logs.real, "--figure", logs.folder / "gap.pdf"},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "rift/yaml/flag_name.hpp"
@@ -24,6 +25,18 @@ inline CLI::Validator InRange(double min, double max) {
       fmt::format("in [{:g}, {:g}]", min, max));
 }
 
+/// Of flags that count: what CLI::Range says of a word, and of 2.5, is not what is wrong.
+inline CLI::Validator WholeInRange(int min, int max) {
+  return CLI::Validator(
+      [min, max](const std::string& text) -> std::string {
+        int value = 0;
+        const bool is_whole = CLI::detail::lexical_cast(text, value);
+        if (is_whole && value >= min && value <= max) return "";
+        return fmt::format("'{}' must be a whole number in [{}, {}]", text, min, max);
+      },
+      fmt::format("in [{}, {}]", min, max));
+}
+
 /// Makes one flag for each field of an Options struct: the same keys, defaults, ranges and help
 /// as in the YAML file.
 class FlagMaker {
@@ -33,9 +46,12 @@ class FlagMaker {
   template <class Number>
   void operator()(std::string_view key, Number& value, auto min, auto max, const char* help) {
     const yaml::FlagName name(key);
-    CLI::Option* option = app_.add_option(name.flag, value, help)
-                              ->capture_default_str()
-                              ->check(InRange(static_cast<double>(min), static_cast<double>(max)));
+    CLI::Option* option = app_.add_option(name.flag, value, help)->capture_default_str();
+    if constexpr (std::is_same_v<Number, int>) {
+      option->check(WholeInRange(static_cast<int>(min), static_cast<int>(max)));
+    } else {
+      option->check(InRange(static_cast<double>(min), static_cast<double>(max)));
+    }
     if (!name.unit.empty()) option->type_name(name.unit);
   }
 
