@@ -23,9 +23,9 @@ void AppendNumber(std::string& text, double value) {
   text.append(buffer, end);
 }
 
-/// In double quotes where a comma, a quote or a blank would not survive reading.
+/// In double quotes where a comma, a quote, a blank or a CR would not survive reading.
 std::string HeaderCell(const std::string& name) {
-  if (name.find_first_of(", \t\"") == name.npos) return name;
+  if (name.find_first_of(", \t\r\"") == name.npos) return name;
   std::string cell = "\"";
   for (const char c : name) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
   return cell + '"';

@@ -131,6 +131,17 @@ TEST_CASE("A log without angles has none to be unsure about") {
 TEST_CASE("A byte order mark and CRLF and blank lines change nothing") {
   const Log log = ReadLog("\xEF\xBB\xBFt_s,x_m,y_m\r\n0,0,0\r\n\r\n1,1,0\r\n", "log.csv");
   CHECK(log.trajectory.poses.size() == 2);
+  const Log twice = ReadLog("t_s,x_m,y_m,a\r\r\n0,0,0,5\r\r\n1,1,0,6\r\r\n", "log.csv");
+  REQUIRE(twice.trajectory.channels.size() == 1);
+  CHECK(twice.trajectory.channels[0].name == "a");
+  CHECK(twice.trajectory.channels[0].values == std::vector<double>{5.0, 6.0});
+}
+
+TEST_CASE("A column whose name ends with a CR keeps it in a copy") {
+  const Log log = ReadLog("t_s,x_m,a\r,y_m\n0,0,1,0\n1,1,2,0\n", "log.csv");
+  REQUIRE(log.trajectory.channels.size() == 1);
+  CHECK(log.trajectory.channels[0].name == "a\r");
+  CHECK(ReadLog(WriteRift(log.trajectory), "log.csv").trajectory.channels[0].name == "a\r");
 }
 
 TEST_CASE("Cells that repeat the ones above them are read right after any kind of row") {
