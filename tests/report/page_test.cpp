@@ -37,6 +37,20 @@ TEST_CASE("A level with one trial is compared with others and one without any is
                       "trials)."));
 }
 
+TEST_CASE("Where it fails is told of the parameter whose levels are furthest apart") {
+  sweep::SweepResult result = synthetic::Grid();
+  for (sweep::TrialRow& row : result.rows) {
+    if (!row.IsOk()) continue;
+    const bool is_fast = row.theta[2].text == "0.50", is_rock = row.theta[0].text == "rock";
+    const double gap_m = is_fast || (is_rock && row.trial == "1") ? 0.08 : 0.01;
+    row = synthetic::Row(row.theta, row.trial, gap_m);
+  }
+  sweep::Summarise(result);
+  CHECK_THAT(Words(RenderPage(result)),
+             Contains("Most often at v_max 0.50 (12 of 12 trials), least often at 0.30 (2 of 11 "
+                      "trials)."));
+}
+
 TEST_CASE("The first screen answers from the data") {
   const sweep::SweepResult result = synthetic::Grid();
   const std::string words = Words(RenderPage(result));

@@ -41,18 +41,42 @@ void SayLevel(const std::string& parameter, const sweep::LevelSummary& level, Se
       .Say(")");
 }
 
-// The levels of the main factor with the largest and the smallest share of failures.
+/// How far the levels' shares of failures are from that of all, each by its trials.
+double Apart(const std::vector<sweep::LevelSummary>& levels) {
+  double failures = 0.0, told = 0.0;
+  for (const sweep::LevelSummary& level : levels) failures += level.failures, told += level.told;
+  double apart = 0.0;
+  for (const sweep::LevelSummary& level : levels) {
+    apart += level.told * std::pow(FailureShare(level) - failures / told, 2);
+  }
+  return apart;
+}
+
+/// The levels with the largest and the smallest share of failures, of the parameter whose levels
+/// are furthest apart; of the main factor where they are as far.
 void SayMostAndLeast(const sweep::SweepResult& result, Finding* finding) {
   const int main = sweep::SplitFactors(result.parameters).main_factor;
-  if (result.parameters[main].IsContinuous()) return;
-  std::vector<sweep::LevelSummary> levels = sweep::SummariseBy(result, {main});
-  std::erase_if(levels, [](const auto& level) { return level.told == 0; });
-  if (levels.size() < 2) return;
+  std::vector<int> factors{main};
+  for (int i = 0; i < static_cast<int>(result.parameters.size()); ++i) {
+    if (i != main) factors.push_back(i);
+  }
+  int furthest = main;
+  std::vector<sweep::LevelSummary> levels;
+  for (const int factor : factors) {
+    if (result.parameters[factor].IsContinuous()) continue;
+    std::vector<sweep::LevelSummary> own = sweep::SummariseBy(result, {factor});
+    std::erase_if(own, [](const auto& level) { return level.told == 0; });
+    constexpr double kMore = 1.0 + 1e-9;  // than rounding
+    if (own.size() < 2 || (!levels.empty() && Apart(own) <= kMore * Apart(levels))) continue;
+    furthest = factor;
+    levels = std::move(own);
+  }
+  if (levels.empty()) return;
   const auto [least, most] =
       std::minmax_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
         return std::pair(FailureShare(a), a.mean_gap_m) < std::pair(FailureShare(b), b.mean_gap_m);
       });
-  const std::string name = result.parameters[main].Name();
+  const std::string name = result.parameters[furthest].Name();
   Sentence sentence(fmt::format("Most often at {} ", name));
   SayLevel(name, *most, &sentence);
   sentence.Say(", least often at ");
