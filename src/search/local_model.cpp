@@ -28,17 +28,15 @@ double Tame(double loss) {
 }  // namespace
 
 LocalModel::LocalModel(const Known& known, std::uint64_t seed)
-    : known_(known), random_(seed, kStream) {
-  for (int axis = 0; axis < known.space.Size(); ++axis) {
-    (known.space.IsContinuous(axis) ? continuous_ : discrete_).push_back(axis);
-  }
-}
+    : known_(known),
+      random_(seed, kStream),
+      continuous_(known.space.ContinuousAxes()),
+      discrete_(known.space.DiscreteAxes()) {}
 
 bool LocalModel::IsNearARun(const Eigen::VectorXd& unit) const {
   return std::any_of(runs_.begin(), runs_.end(), [&](const Eigen::VectorXd& run) {
-    const Eigen::VectorXd apart = (unit - run).cwiseAbs();
-    const bool is_other_level = (apart(discrete_).array() > 1e-9).any();
-    return !is_other_level && (apart(continuous_).array() < kApart).all();
+    return known_.space.HaveSameLevels(unit, run) &&
+           ((unit - run)(continuous_).array().abs() < kApart).all();
   });
 }
 

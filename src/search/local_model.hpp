@@ -38,8 +38,8 @@ class LocalModel : public Strategy {
 
   const Known& known_;
   statistics::Random random_;
-  std::vector<int> continuous_, discrete_;  ///< axes
-  std::vector<Eigen::VectorXd> runs_;       ///< where runs began and where they ended
+  const std::vector<int>&continuous_, &discrete_;  ///< axes
+  std::vector<Eigen::VectorXd> runs_;              ///< where runs began and where they ended
 
   Phase phase_ = Phase::kBetween;
   Eigen::VectorXd start_, best_;

@@ -51,6 +51,7 @@ constexpr double kLeastGain = 2e-3;
 Portfolio::Portfolio(const Known& known, const SearchOptions& options, int budget,
                      std::uint64_t seed)
     : known_(known),
+      is_continuous_(known.space.DiscreteAxes().empty()),
       design_(std::min(kDesignLeast + kDesignPerAxis * known.space.Size(),
                        static_cast<int>(kDesignShare * budget))) {
   members_[kSobol] = std::make_unique<SobolSampler>(known.space, seed);
@@ -63,9 +64,6 @@ Portfolio::Portfolio(const Known& known, const SearchOptions& options, int budge
   auto fit = std::make_unique<QuadraticFit>(known);
   fit_ = fit.get();
   members_[kFit] = std::move(fit);
-  for (int axis = 0; axis < known.space.Size(); ++axis) {
-    is_continuous_ = is_continuous_ && known.space.IsContinuous(axis);
-  }
   records_[kLocalModel] = is_continuous_ ? kOfLocalModel : kOfLocalModelMixed;
   if (is_continuous_) records_[kCrs] = kOfCrs;
 }

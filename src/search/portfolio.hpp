@@ -59,14 +59,14 @@ class Portfolio : public Strategy {
   void NoteProgress(std::span<const Evaluation> batch);
 
   const Known& known_;
-  int design_;  ///< evaluations
+  bool is_continuous_;  ///< every axis
+  int design_;          ///< evaluations
   double anywhere_points_ = 0.0, corner_points_ = 0.0;
   std::array<std::unique_ptr<Strategy>, kMembers> members_;
   QuadraticFit* fit_ = nullptr;  ///< the member of that name
   std::array<Record, kMembers> records_;
   Member active_ = kSobol;
-  std::size_t proposed_ = 0;   ///< points of the active member at the front of the batch
-  bool is_continuous_ = true;  ///< every axis
+  std::size_t proposed_ = 0;  ///< points of the active member at the front of the batch
   double best_before_ = std::numeric_limits<double>::infinity();
   double progress_ = 1.0;  ///< forgetting mean of what the learners gain
 };

@@ -102,17 +102,12 @@ std::optional<QuadraticMinimum> MinimumOfQuadratic(const Eigen::MatrixXd& places
   return QuadraticMinimum{start + found, losses.minCoeff() + spread * (*model)(found)};
 }
 
-QuadraticFit::QuadraticFit(const Known& known) : known_(known) {
-  for (int axis = 0; axis < known.space.Size(); ++axis) {
-    (known.space.IsContinuous(axis) ? continuous_ : discrete_).push_back(axis);
-  }
-}
-
 std::optional<Eigen::VectorXd> QuadraticFit::Propose() {
   const Archive& archive = known_.archive;
-  if (continuous_.empty() || !(std::abs(archive.BestLoss()) < kLargest)) return {};
+  const std::vector<int>& continuous = known_.space.ContinuousAxes();
+  if (continuous.empty() || !(std::abs(archive.BestLoss()) < kLargest)) return {};
   const Eigen::VectorXd best = known_.space.ToUnit(archive[archive.Best(1).front()].point);
-  const Eigen::VectorXd middle = best(continuous_);
+  const Eigen::VectorXd middle = best(continuous);
   struct Near {
     double distance, loss;
     Eigen::VectorXd place;
@@ -120,12 +115,12 @@ std::optional<Eigen::VectorXd> QuadraticFit::Propose() {
   std::vector<Near> all;
   for (std::size_t i = 0; i < archive.Size(); ++i) {
     const Eigen::VectorXd unit = known_.space.ToUnit(archive[i].point);
-    const bool is_other_level = ((unit - best)(discrete_).array().abs() > 1e-9).any();
-    if (is_other_level || !(std::abs(archive[i].loss) < kLargest)) continue;
-    const Eigen::VectorXd place = unit(continuous_);
+    const bool is_told = std::abs(archive[i].loss) < kLargest;
+    if (!is_told || !known_.space.HaveSameLevels(unit, best)) continue;
+    const Eigen::VectorXd place = unit(continuous);
     all.push_back({(place - middle).squaredNorm(), archive[i].loss, place});
   }
-  const int axes = static_cast<int>(continuous_.size());
+  const int axes = static_cast<int>(continuous.size());
   const auto most = static_cast<std::size_t>(kPointsPerCoefficient * CoefficientsOf(axes));
   std::stable_sort(all.begin(), all.end(),
                    [](const Near& a, const Near& b) { return a.distance < b.distance; });
@@ -140,7 +135,7 @@ std::optional<Eigen::VectorXd> QuadraticFit::Propose() {
   if (!least || !(least->loss < archive.BestLoss())) return {};
   promised_ = least->loss;
   Eigen::VectorXd unit = best;
-  unit(continuous_) = least->place.cwiseMax(0.0).cwiseMin(1.0);
+  unit(continuous) = least->place.cwiseMax(0.0).cwiseMin(1.0);
   return unit;
 }
 

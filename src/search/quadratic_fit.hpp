@@ -13,7 +13,7 @@ namespace rift::search {
 /// costs few evaluations.
 class QuadraticFit : public Strategy {
  public:
-  explicit QuadraticFit(const Known& known);
+  explicit QuadraticFit(const Known& known) : known_(known) {}
 
   /// Whether there is something to propose.
   bool IsDue();
@@ -27,7 +27,6 @@ class QuadraticFit : public Strategy {
   void Wait();
 
   const Known& known_;
-  std::vector<int> continuous_, discrete_;  ///< axes
   std::optional<Eigen::VectorXd> proposed_;
   double promised_ = 0.0;     ///< loss of the proposed point by the model
   double best_before_ = 0.0;  ///< loss

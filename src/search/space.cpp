@@ -47,6 +47,9 @@ Space::Space(std::vector<Axis> axes) : axes_(std::move(axes)) {
     Check(axis);
     levels_.push_back(LevelsOf(axis));
   }
+  for (int axis = 0; axis < Size(); ++axis) {
+    (IsContinuous(axis) ? continuous_ : discrete_).push_back(axis);
+  }
   points_ = Count(levels_);
 }
 
@@ -71,6 +74,10 @@ Eigen::VectorXd Space::ToUnit(const Point& point) const {
                               : (point[i] - axes_[i].min + 0.5) / levels_[i];
   }
   return unit;
+}
+
+bool Space::HaveSameLevels(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+  return ((a - b)(discrete_).array().abs() <= 1e-9).all();
 }
 
 Point Space::AtIndex(std::uint64_t index) const {

@@ -19,6 +19,8 @@ class Space {
   int Size() const { return static_cast<int>(axes_.size()); }
   bool IsCategorical(int axis) const { return axes_[axis].kind == AxisKind::kCategorical; }
   bool IsContinuous(int axis) const { return levels_[axis] == 0.0; }
+  const std::vector<int>& ContinuousAxes() const { return continuous_; }
+  const std::vector<int>& DiscreteAxes() const { return discrete_; }
   /// How many values the axis has; 0 for any.
   double Levels(int axis) const { return levels_[axis]; }
 
@@ -26,6 +28,9 @@ class Space {
   Point FromUnit(const Eigen::VectorXd& unit) const;
   /// The middle of its cell where an axis has levels.
   Eigen::VectorXd ToUnit(const Point& point) const;
+
+  /// Of two points in unit coordinates: whether their integers and categories are the same.
+  bool HaveSameLevels(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
 
   /// How many points there are when there is no continuous axis and they can be counted.
   const std::optional<std::uint64_t>& Points() const { return points_; }
@@ -35,6 +40,7 @@ class Space {
  private:
   std::vector<Axis> axes_;
   std::vector<double> levels_;
+  std::vector<int> continuous_, discrete_;
   std::optional<std::uint64_t> points_;
 };
 
