@@ -13,28 +13,25 @@
 
 namespace rift::flags {
 
-/// CLI::Range lets a NaN through.
-inline CLI::Validator InRange(double min, double max) {
+/// CLI::Range lets a NaN through, and what it says of a word, or of 2.5 where whole numbers are
+/// meant, is not what is wrong.
+template <class Number>
+CLI::Validator InRange(Number min, Number max) {
+  constexpr bool kIsWhole = std::is_integral_v<Number>;
+  std::string range;
+  if constexpr (kIsWhole) {
+    range = fmt::format("[{}, {}]", min, max);
+  } else {
+    range = fmt::format("[{:g}, {:g}]", min, max);
+  }
   return CLI::Validator(
-      [min, max](const std::string& text) -> std::string {
-        double value = 0.0;
+      [min, max, range](const std::string& text) -> std::string {
+        Number value = 0;
         const bool is_number = CLI::detail::lexical_cast(text, value);
         if (is_number && value >= min && value <= max) return "";
-        return fmt::format("'{}' must be a number in [{:g}, {:g}]", text, min, max);
+        return fmt::format("'{}' must be a {}number in {}", text, kIsWhole ? "whole " : "", range);
       },
-      fmt::format("in [{:g}, {:g}]", min, max));
-}
-
-/// Of flags that count: what CLI::Range says of a word, and of 2.5, is not what is wrong.
-inline CLI::Validator WholeInRange(int min, int max) {
-  return CLI::Validator(
-      [min, max](const std::string& text) -> std::string {
-        int value = 0;
-        const bool is_whole = CLI::detail::lexical_cast(text, value);
-        if (is_whole && value >= min && value <= max) return "";
-        return fmt::format("'{}' must be a whole number in [{}, {}]", text, min, max);
-      },
-      fmt::format("in [{}, {}]", min, max));
+      "in " + range);
 }
 
 /// Makes one flag for each field of an Options struct: the same keys, defaults, ranges and help
@@ -46,12 +43,9 @@ class FlagMaker {
   template <class Number>
   void operator()(std::string_view key, Number& value, auto min, auto max, const char* help) {
     const yaml::FlagName name(key);
-    CLI::Option* option = app_.add_option(name.flag, value, help)->capture_default_str();
-    if constexpr (std::is_same_v<Number, int>) {
-      option->check(WholeInRange(static_cast<int>(min), static_cast<int>(max)));
-    } else {
-      option->check(InRange(static_cast<double>(min), static_cast<double>(max)));
-    }
+    CLI::Option* option = app_.add_option(name.flag, value, help)
+                              ->capture_default_str()
+                              ->check(InRange(static_cast<Number>(min), static_cast<Number>(max)));
     if (!name.unit.empty()) option->type_name(name.unit);
   }
 

@@ -46,7 +46,7 @@ void AddSeriesFlags(CLI::App& app, DriveRequest& request) {
                      "drive so many times, into DIR/1, DIR/2, ...; the same command goes on after "
                      "a break")
           ->type_name("N")
-          ->check(WholeInRange(1, 1000))
+          ->check(InRange(1, 1000))
           ->excludes(dry_run);
   CLI::Option* grid = app.add_flag(
       "--grid", request.grid,

@@ -20,7 +20,7 @@ void AddEngineFlags(CLI::App& app, EngineRequest& request) {
                  "with --engine slurm: parts that a batch of trials is run in; the results are the "
                  "same for any [as many as last a minute each]")
       ->type_name("N")
-      ->check(WholeInRange(1, 1'000'000));
+      ->check(InRange(1, 1'000'000));
   app.add_option(
          "--shard", request.shard,
          "run the trials of one shard into --out/shards: what the jobs of --engine slurm do")
@@ -38,7 +38,7 @@ void AddExplainFlags(CLI::App& app, SweepRequest& request) {
          "suggest up to N experiments on the robot, print what each would decide and write them "
          "to DIR/suggested.yaml, which rift drive --suggested DIR drives")
       ->type_name("N")
-      ->check(WholeInRange(1, 1000));
+      ->check(InRange(1, 1000));
   app.add_option("--shrink", request.further.shrink,
                  "bring a failing row of table.csv down to the fewest and smallest changes from "
                  "the experiment's own values that still fail, by further trials")
@@ -61,7 +61,7 @@ void AddSweepFlags(CLI::App& app, SweepRequest& request) {
   app.add_option("--seconds", request.seconds, "time that a search may take (search.max_s)")
       ->type_name("S");
   app.add_option("--jobs", request.jobs, "worker processes; the results are the same for any")
-      ->check(WholeInRange(1, 4096))
+      ->check(InRange(1, 4096))
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--fresh,--force", request.fresh,

@@ -162,7 +162,7 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
   app.add_option("--id", request.job.ids,
                  "the robot's tag [track.tag.id]; several robots go into one log, a row each")
       ->delimiter(',')
-      ->check(WholeInRange(0, vision::kLastTagId))
+      ->check(InRange(0, vision::kLastTagId))
       ->type_name("N,N,...");
   app.add_option("--tag-height", request.tag_height_m,
                  "of the tag above the floor "

@@ -10,7 +10,6 @@ namespace rift::commands {
 using flags::AddFlags;
 using flags::FlagMaker;
 using flags::InRange;
-using flags::WholeInRange;
 
 /// `--set KEY=VALUE`, as often as one likes; `example` is one, such as control.v_min=0.2.
 CLI::Option* AddSetFlag(CLI::App& app, std::vector<std::string>& overrides, const char* example);
