@@ -1,10 +1,11 @@
 // The least value of a quadratic that is fitted to losses, against quadratics whose least is known.
 #include "search/quadratic_fit.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <random>
+#include <cstdint>
+
+#include "rift/statistics/random.hpp"
 
 namespace rift::search {
 namespace {
@@ -26,10 +27,8 @@ struct Planted {
 
 class Dice {
  public:
-  explicit Dice(unsigned seed) : engine_(seed) {}
-  double Between(double low, double high) {
-    return low + (high - low) * std::ldexp(static_cast<double>(engine_()), -64);
-  }
+  explicit Dice(std::uint64_t seed) : random_(seed, 0) {}
+  double Between(double low, double high) { return low + (high - low) * random_.Uniform(); }
   MatrixXd Places(Eigen::Index axes, Eigen::Index n) {
     return MatrixXd::NullaryExpr(axes, n, [&] { return Between(0.0, 1.0); });
   }
@@ -42,12 +41,12 @@ class Dice {
   }
 
  private:
-  std::mt19937_64 engine_;
+  statistics::Random random_;
 };
 
 TEST_CASE("The least of a quadratic is found from two points more than it has coefficients") {
   for (int axes = 1; axes <= 7; ++axes) {
-    Dice dice(static_cast<unsigned>(axes));
+    Dice dice(static_cast<std::uint64_t>(axes));
     const Planted bowl = dice.Bowl(axes);
     const MatrixXd places = 4.0 * dice.Places(axes, CoefficientsOf(axes) + 2).array() - 1.5;
     const VectorXd start = VectorXd::Constant(axes, 0.2);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "support/inputs/paths.hpp"
 #include "sweep/calibrate/errors.hpp"
 #include "sweep/calibrate/fitted_simulator.hpp"
 
@@ -14,9 +15,7 @@ using trajectory::Trajectory;
 
 /// One metre ahead along x, `aside_m` beside it: the gap of two is how far they are apart.
 Trajectory Lane(double aside_m) {
-  Trajectory path;
-  for (int i = 0; i <= 20; ++i) path.poses.push_back({0.1 * i, 0.05 * i, aside_m, 0.0});
-  return path;
+  return test::Moved(test::StraightPath(1.0, 21), {0.0, aside_m, 0.0});
 }
 
 /// Predicts the same runs whatever it is asked.
