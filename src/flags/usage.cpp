@@ -103,6 +103,16 @@ void RefuseEmptyValues(CLI::App& subcommand, const ValueRules& rules) {
   }
 }
 
+void Refuse(std::initializer_list<WrongUse> uses) {
+  for (const WrongUse& use : uses) {
+    if (use.is_given) throw std::invalid_argument(use.message);
+  }
+}
+
+void Exclude(CLI::App& app, const char* flag, std::initializer_list<const char*> others) {
+  for (const char* other : others) app.get_option(flag)->excludes(app.get_option(other));
+}
+
 void RequireSubcommand(const std::string& word, Words names) {
   if (std::find(names.begin(), names.end(), word) != names.end()) return;
   names.emplace_back("help");

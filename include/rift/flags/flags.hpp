@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -35,10 +36,34 @@ CLI::Validator InRange(Number min, Number max) {
 }
 
 /// Makes one flag for each field of an Options struct: the same keys, defaults, ranges and help
-/// as in the YAML file.
+/// as in the YAML file. Beyond these a field can be what a file has no need of: a number that is
+/// not there unless it is said, words, and what the help calls their values.
 class FlagMaker {
  public:
   explicit FlagMaker(CLI::App& app) : app_(app) {}
+
+  template <class Words>
+  requires std::is_same_v<Words, std::string> || std::is_same_v<Words, std::vector<std::string>>
+  void operator()(std::string_view key, Words& value, const char* type, const char* help) {
+    CLI::Option* option = app_.add_option(yaml::FlagName(key).flag, value, help)->type_name(type);
+    if constexpr (std::is_same_v<Words, std::string>) option->capture_default_str();
+  }
+
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void operator()(std::string_view key, Number& value, auto min, auto max, const char* type,
+                  const char* help) {
+    (*this)(key, value, min, max, help);
+    app_.get_option(yaml::FlagName(key).flag)->type_name(type);
+  }
+
+  template <class Number>
+  void operator()(std::string_view key, std::optional<Number>& value, auto min, auto max,
+                  const char* type, const char* help) {
+    app_.add_option(yaml::FlagName(key).flag, value, help)
+        ->type_name(type)
+        ->check(InRange(static_cast<Number>(min), static_cast<Number>(max)));
+  }
 
   template <class Number>
   void operator()(std::string_view key, Number& value, auto min, auto max, const char* help) {
