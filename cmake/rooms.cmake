@@ -78,8 +78,8 @@ rift_room(view ROOMS control geometry trajectory trial vision/calibration vision
   PRIVATE_LIBRARIES opencv_imgproc opencv_highgui opencv_videoio PkgConfig::XCB)
 rift_room(sessions/gap ROOMS experiment files gap odometry sweep/falsify trajectory
   LIBRARIES fmt::fmt)
-rift_room(sessions/drive ROOMS experiment files geometry hardware odometry report/json sweep/falsify
-    trajectory view vision/camera vision/tracking
+rift_room(sessions/drive ROOMS experiment files geometry hardware odometry report/json sessions/sweep
+    sweep/falsify trajectory view vision/camera vision/tracking
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(sessions/track ROOMS experiment files report/json statistics trajectory view
     vision/calibration vision/camera vision/tracking
@@ -90,9 +90,9 @@ rift_room(sessions/simulate ROOMS experiment files odometry report/figures repor
 rift_room(commands/arguments ROOMS experiment files flags sweep/falsify terminal trajectory
   LIBRARIES CLI11::CLI11 fmt::fmt)
 rift_room(commands/sweep ROOMS commands/arguments experiment files report/json report/page
-    report/text sessions/sweep sweep/falsify sweep/run terminal yaml
+    report/text sessions/sweep sweep/falsify sweep/run terminal
   LIBRARIES fmt::fmt)
-rift_room(commands/drive ROOMS commands/arguments commands/sweep experiment hardware report/json
+rift_room(commands/drive ROOMS commands/arguments commands/sweep files hardware report/json
     sessions/drive sessions/sweep terminal view
   LIBRARIES fmt::fmt)
 rift_room(commands/track ROOMS commands/arguments experiment files report/json sessions/track terminal
@@ -100,5 +100,5 @@ rift_room(commands/track ROOMS commands/arguments experiment files report/json s
   LIBRARIES fmt::fmt)
 rift_room(commands ROOMS commands/arguments commands/drive commands/sweep commands/track
     files flags limits report/figures report/json report/text sessions/gap sessions/simulate
-    sessions/sweep sweep/falsify terminal trajectory view yaml
-  LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
+    sessions/sweep sweep/falsify terminal trajectory view
+  LIBRARIES fmt::fmt)

@@ -1,17 +1,14 @@
-#include "rift/commands/camera_program.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/commands/drive/drive.hpp"
 #include "rift/commands/sweep/sweep.hpp"
 #include "rift/commands/track/track.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
@@ -150,23 +147,6 @@ std::vector<Command> Commands(const CameraUses& camera) {
       {"sweep", "Find where in a parameter space the gap is too large, and why",
        "rift sweep configs/waypoints/paper.yaml --out out/paper", AddSweep},
   };
-}
-
-namespace fs = std::filesystem;
-
-void RunCameraProgram(char** argv) {
-  const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
-  const fs::path relative = "lib/rift/rift-camera";
-  const fs::path in_build = folder / relative;
-  const fs::path program = fs::exists(in_build) ? in_build : folder.parent_path() / relative;
-  if (!fs::exists(program)) {
-    throw std::runtime_error(fmt::format(
-        "cameras, windows and videos need the program {}, which is not there: build and install "
-        "rift again, with its OpenCV packages (./bootstrap install)",
-        program.string()));
-  }
-  ::execv(program.c_str(), argv);
-  throw std::runtime_error(fmt::format("cannot run {}: {}", program.string(), strerror(errno)));
 }
 
 }  // namespace rift::commands

@@ -1,18 +1,20 @@
-#include "gap.hpp"
-
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
-#include "rift/commands/arguments/outputs.hpp"
+#include "rift/commands/arguments/arguments.hpp"
+#include "rift/commands/command.hpp"
 #include "rift/files/files.hpp"
 #include "rift/limits/limits.hpp"
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
+#include "rift/sessions/gap/measure.hpp"
+#include "rift/sessions/gap/odometry.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 
@@ -21,27 +23,51 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void Save(const GapRequest& request, const gap::GapResult& result) {
+/// What `rift gap` was asked for.
+struct GapRequest {
+  sessions::GapJob job;
+  sessions::OdometryJob odometry;  ///< of runs held together with their encoders
+  std::string json, profile, figure;
+  bool exit_code = false;
+  bool force = false;
+};
+
+void CheckNames(const GapRequest& request) {
+  if (!request.figure.empty()) report::RequireFigureName(request.figure);
+  std::vector<fs::path> inputs{request.job.sim}, outputs;
+  for (const auto* logs : {&request.job.reals, &request.job.sim_repeats}) {
+    inputs.insert(inputs.end(), logs->begin(), logs->end());
+  }
+  Refuse({{request.json == "-" && request.profile == "-",
+           "--json - and --profile - are both stdout: name a file for one"}});
+  for (const std::string& output : {request.json, request.profile}) {
+    if (!output.empty() && output != "-") outputs.emplace_back(output);
+  }
+  if (!request.figure.empty()) outputs.emplace_back(request.figure);
+  CheckOutputs(inputs, {.files = outputs, .force = request.force});
+}
+
+/// To stdout or a file; true where the text for people is to be printed beside it.
+bool SaveJson(const std::string& name, const std::string& json) {
+  if (name == "-") {
+    terminal::PrintData(json);
+    return false;
+  }
+  files::WriteFile(name, json);
+  return true;
+}
+
+int MeasureLogs(const GapRequest& request) {
+  limits::Require(limits::Amount::kSamples, request.job.options.samples, "--samples");
+  const gap::GapResult result = sessions::MeasureGap(request.job, terminal::Say);
   const bool is_piped = request.profile == "-";
   if (is_piped) terminal::PrintData(report::ProfileCsv(result));
   if (!request.profile.empty() && !is_piped) {
     files::WriteFile(request.profile, report::ProfileCsv(result));
   }
   if (!request.figure.empty()) report::WriteFigure(request.figure, report::GapFigure(result));
-  if (request.json == "-") {
-    terminal::PrintData(report::GapJson(result));
-    return;
-  }
-  if (!request.json.empty()) files::WriteFile(request.json, report::GapJson(result));
-  if (!is_piped) terminal::PrintText(report::GapText(result));
-}
-
-}  // namespace
-
-int MeasureLogs(const GapRequest& request) {
-  limits::Require(limits::Amount::kSamples, request.job.options.samples, "--samples");
-  const gap::GapResult result = sessions::MeasureGap(request.job, terminal::Say);
-  Save(request, result);
+  const bool has_text = request.json.empty() || SaveJson(request.json, report::GapJson(result));
+  if (has_text && !is_piped) terminal::PrintText(report::GapText(result));
   return request.exit_code && result.verdict.MayFail() ? terminal::kFalsified : terminal::kDone;
 }
 
@@ -50,32 +76,73 @@ int MeasureOdometry(const GapRequest& request) {
   names.insert(names.begin(), request.job.sim);
   sessions::RefuseTwins(names);
   for (const std::string& other : {request.profile, request.figure}) {
-    if (other.empty()) continue;
-    throw std::invalid_argument(fmt::format(
-        "{}: --profile and --figure are of two logs, leave them out with --odometry", other));
+    Refuse({{!other.empty(),
+             other + ": --profile and --figure are of two logs, leave them out with --odometry"}});
   }
   std::vector<sessions::LoadedRun> runs;
   std::vector<fs::path> inputs, outputs;
   for (const std::string& name : names) {
-    runs.push_back(sessions::LoadRun(name, request.program));
+    runs.push_back(sessions::LoadRun(name, request.odometry.program));
     inputs.insert(inputs.end(), runs.back().files.begin(), runs.back().files.end());
   }
   if (!request.json.empty() && request.json != "-") outputs.emplace_back(request.json);
   CheckOutputs(inputs, {.files = outputs, .force = request.force});
-  std::optional<odometry::CalibrationOptions> calibration;
-  if (request.calibrate) {
-    calibration = request.calibration;
-    calibration->confidence = request.job.verdict.confidence;
-  }
-  const odometry::OdometryResult result =
-      sessions::MeasureOdometry(runs, request.run_options, calibration);
-  if (request.json == "-") {
-    terminal::PrintData(report::OdometryJson(result));
-    return terminal::kDone;
-  }
-  if (!request.json.empty()) files::WriteFile(request.json, report::OdometryJson(result));
-  terminal::PrintText(report::OdometryText(result));
+  sessions::OdometryJob job = request.odometry;
+  job.calibration.confidence = request.job.verdict.confidence;
+  const odometry::OdometryResult result = sessions::MeasureOdometry(runs, job);
+  const bool has_text =
+      request.json.empty() || SaveJson(request.json, report::OdometryJson(result));
+  if (has_text) terminal::PrintText(report::OdometryText(result));
   return terminal::kDone;
+}
+
+void RefuseOdometryFlags(const CLI::App& app) {
+  for (const char* flag : {"--slip-bins", "--moved-share", "--tag-ahead", "--window"}) {
+    Refuse({{app.count(flag) > 0,
+             fmt::format("{} is for runs held together with their encoders: give --odometry, "
+                         "--program or --calibrate-odometry as well, or leave it out",
+                         flag)}});
+  }
+}
+
+}  // namespace
+
+void AddGap(CLI::App& app, int& exit_code) {
+  const auto request = std::make_shared<GapRequest>();
+  app.add_option("SIM", request->job.sim, "log of the simulator (CSV)")->required();
+  app.add_option("REAL", request->job.reals, "logs of the robot, one a repeat");
+  AddFlags(app, request->job);
+  FlagMaker flags(app);
+  flags("json", request->json, "FILE|-",
+        "write everything as JSON; - for stdout, without the text");
+  flags("profile", request->profile, "FILE.csv|-",
+        "write the error along the path; - for stdout, without the text");
+  flags("figure", request->figure, "FILE.svg|FILE.png",
+        "draw paths, error over u and its distribution");
+  flags("exit_code", request->exit_code,
+        "end with 1 when the verdict is falsified, or undecided with a failure");
+  AddForceFlag(app, request->force);
+  AddFlags(app, request->odometry);
+  app.footer(
+      "Example: rift gap out/square1 out/square2 --odometry --calibrate-odometry\n"
+      "         rift gap sim.csv real1.csv real2.csv --real-format tracker --tag-offset 0.03\n"
+      "         rift gap sim.csv real.csv --real-columns t=time,x=pose_x,y=pose_y,yaw=theta:deg "
+      "--real-units mm,ms");
+  app.callback([request, &app, &exit_code] {
+    if (request->odometry.IsAsked()) {
+      exit_code = MeasureOdometry(*request);
+      return;
+    }
+    RefuseOdometryFlags(app);
+    Refuse({{request->job.reals.empty(),
+             "REAL is required: name logs of the robot (or --odometry for the encoders of run "
+             "folders)"}});
+    request->job.sim = files::FindInput(request->job.sim);
+    for (std::string& real : request->job.reals) real = files::FindInput(real);
+    request->job.Check();
+    CheckNames(*request);
+    exit_code = MeasureLogs(*request);
+  });
 }
 
 }  // namespace rift::commands

@@ -1,13 +1,14 @@
 #include "simulate.hpp"
 
 #include <filesystem>
-#include <stdexcept>
+#include <optional>
+#include <utility>
 
-#include "rift/commands/arguments/inputs.hpp"
-#include "rift/commands/arguments/outputs.hpp"
+#include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
 #include "rift/sessions/simulate/pictures.hpp"
+#include "rift/sessions/sweep/replay.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
@@ -17,6 +18,12 @@ namespace rift::commands {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// A run and where it is saved.
+struct RunToSave {
+  fs::path out;
+  sessions::Simulated made;
+};
 
 RunToSave SimulateFile(const SimulateRequest& request) {
   std::vector<fs::path> inputs;
@@ -30,31 +37,56 @@ RunToSave SimulateFile(const SimulateRequest& request) {
   return {out, {experiment, trial, sweep::Simulate(trial)}};
 }
 
-void RequireNothingBesideReplay(const SimulateRequest& request) {
-  if (request.replay.empty()) return;
-  const bool is_changed = !request.experiment.empty() || !request.overrides.empty() ||
-                          !request.start.empty() || !request.seed.empty();
-  if (is_changed) {
-    throw std::invalid_argument(
-        "--replay takes everything from the sweep: leave EXPERIMENT, --set, --start, --seed out");
+/// A row of a sweep that is made again, and where it goes.
+struct ReplayedRow {
+  explicit ReplayedRow(const SimulateRequest& request)
+      : folder(request.replay[0]), id(request.replay[1]) {
+    for (const char* name :
+         {"table.csv", "experiment.yaml", "journal.sqlite", "inputs.txt", "summary.json"}) {
+      files.push_back(folder / name);
+    }
+    const std::string table = files.front().string();
+    if (id == "worst") id = report::WorstIdOf(files::ReadFile(table), table);
+    out = request.out.empty() ? folder / "replay" / id : fs::path(request.out);
   }
+
+  fs::path folder, out;
+  std::string id;
+  std::vector<fs::path> files;  ///< of the sweep
+};
+
+/// Of a sweep over somebody else's simulator: its trajectory is all there is of it. Returns the
+/// exit code.
+int SaveProgram(const SimulateRequest& request, const ReplayedRow& row,
+                const sessions::ProgramReplay& replay) {
+  Refuse(
+      {{request.json || !request.figure.empty() || !request.video.empty() || request.window,
+        "--json, --figure, --video and --view are of rift's own simulator, and candidate.kind is "
+        "program"}});
+  const fs::path log = row.out.extension() == ".csv" ? row.out : row.out / "trajectory.csv";
+  // The same row gives the same bytes, in the place that is its own.
+  CheckOutputs(
+      row.files,
+      {.files = {log}, .folder = log.parent_path(), .force = request.force || request.out.empty()});
+  CheckOutputs({log}, {.files = request.copies.Files(), .force = request.force});
+  if (!replay.trajectory.poses.empty()) {
+    files::WriteFile(log, trajectory::WriteRift(replay.trajectory));
+    request.copies.Write(replay.trajectory);
+    terminal::Say("log: " + log.string());
+  }
+  terminal::PrintText(replay.verdict + "\n");
+  return replay.has_arrived ? terminal::kDone : terminal::kNotReached;
 }
 
-}  // namespace
-
-int Simulate(const SimulateRequest& request,
-             const std::function<void(const sessions::Simulated&)>& show) {
-  RequireNothingBesideReplay(request);
-  if (const std::optional<int> exit_code = ReplayProgram(request)) return *exit_code;
-  const auto [out, made] = request.replay.empty() ? SimulateFile(request) : ReplayFor(request);
+int Save(const SimulateRequest& request, const RunToSave& run,
+         const std::function<void(const sessions::Simulated&)>& show) {
+  const auto& [out, made] = run;
   const sessions::RunFiles files(out);
   const trial::SteeringCheck check = sessions::CheckOf(made);
   if (!request.IsStdout()) sessions::SaveRun(files, made, check);
   const trial::TrialResult& result = made.run.result;
-  WriteLogCopies(request.copies, result.trajectory);
-  if (!request.pictures.figure.empty()) {
-    report::WriteFigure(request.pictures.figure, sessions::FigureOf(made));
-  }
+  request.copies.Write(result.trajectory);
+  if (!request.figure.empty()) report::WriteFigure(request.figure, sessions::FigureOf(made));
   if (show) show(made);
   if (request.IsStdout()) {
     terminal::PrintData(trajectory::WriteRift(result.trajectory));
@@ -65,6 +97,26 @@ int Simulate(const SimulateRequest& request,
   }
   for (const std::string& line : report::SteeringLines(check, result.limits)) terminal::Say(line);
   return result.outcome == trial::Outcome::kReached ? terminal::kDone : terminal::kNotReached;
+}
+
+}  // namespace
+
+int Simulate(const SimulateRequest& request,
+             const std::function<void(const sessions::Simulated&)>& show) {
+  if (request.replay.empty()) return Save(request, SimulateFile(request), show);
+  Refuse({{!request.experiment.empty() || !request.overrides.empty() || !request.start.empty() ||
+               !request.seed.empty(),
+           "--replay takes everything from the sweep: leave EXPERIMENT, --set, --start, --seed "
+           "out"}});
+  const ReplayedRow row(request);
+  const auto program = sessions::ReplayProgramRow(row.folder, row.id, FileInputs());
+  if (program) return SaveProgram(request, row, *program);
+  sessions::Replay again = sessions::ReplayRow(row.folder, row.id, FileInputs());
+  terminal::Say(again.verdict);
+  CheckNames(request, row.out, again.experiment, row.files);
+  return Save(
+      request,
+      {row.out, {std::move(again.experiment), std::move(again.trial), std::move(again.run)}}, show);
 }
 
 }  // namespace rift::commands

@@ -1,23 +1,14 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "rift/commands/arguments/log_copies.hpp"
+#include "rift/commands/arguments/arguments.hpp"
 #include "rift/sessions/simulate/run.hpp"
 
 namespace rift::commands {
-
-/// What a person wants to see of a simulated run.
-struct PictureRequest {
-  std::string figure;  ///< FILE.svg or FILE.png; empty: none
-  std::string video;   ///< FILE.mp4; empty: none
-  bool window = false;
-};
 
 /// What `rift simulate` was asked for.
 struct SimulateRequest {
@@ -32,7 +23,9 @@ struct SimulateRequest {
   bool twin = false;
   bool force = false;
   bool any_waypoints = false;
-  PictureRequest pictures;
+  std::string figure;   ///< FILE.svg or FILE.png; empty: none
+  std::string video;    ///< FILE.mp4; empty: none
+  bool window = false;  ///< of the same film
 
   /// The log alone, for a pipe.
   bool IsStdout() const { return out == "-"; }
@@ -48,18 +41,6 @@ experiment::Experiment LoadFor(const SimulateRequest& request,
 void CheckNames(const SimulateRequest& request, const std::filesystem::path& out,
                 const experiment::Experiment& experiment,
                 const std::vector<std::filesystem::path>& inputs);
-
-/// A run and where it is saved.
-struct RunToSave {
-  std::filesystem::path out;
-  sessions::Simulated made;
-};
-
-/// The row of a sweep that a request replays, made again.
-RunToSave ReplayFor(const SimulateRequest& request);
-/// The same of a sweep over somebody else's simulator: its trajectory is all there is of it.
-/// Nothing for another sweep, and without a replay; else the exit code.
-std::optional<int> ReplayProgram(const SimulateRequest& request);
 
 /// Simulates, or replays, and saves the run; then calls `show`, if there is one, and prints the
 /// summary. Returns the exit code.

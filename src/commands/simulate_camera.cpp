@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "rift/commands/arguments/inputs.hpp"
-#include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/command.hpp"
 #include "rift/sessions/simulate/pictures.hpp"
 #include "rift/sessions/simulate/twin.hpp"
@@ -28,24 +25,8 @@ sessions::PreparedTwin Prepare(const SimulateRequest& request) {
   const fs::path folder = OutputOf(request.out, experiment.name);
   RefuseSweepFolder(folder);
   RequireFolderName(request.out, "a twin's run");
-  Outputs outputs{.folder = folder, .force = request.force};
-  for (const char* name :
-       {"experiment.yaml", "camera.yaml", "truth.csv", "trajectory.csv", "summary.json"}) {
-    outputs.files.push_back(folder / name);
-  }
-  CheckOutputs(inputs, outputs);
+  sessions::CheckTwinNames(folder, inputs, request.force);
   return sessions::PrepareTwin(experiment, request.experiment, folder, FileInputs());
-}
-
-/// One line, at once: whoever started the twin waits for it.
-void Announce(const twin::TwinAddress& address, const fs::path& calibration) {
-  const nlohmann::ordered_json json{{"port", address.port},
-                                    {"camera", address.camera},
-                                    {"calibration", fs::absolute(calibration).string()}};
-  terminal::PrintData(json.dump() + '\n');
-  if (terminal::FlushResults() != 0) {
-    throw std::runtime_error("cannot write to stdout: nobody can learn where the twin is");
-  }
 }
 
 /// Says in one line of JSON on stdout where port, camera and calibration are.
@@ -54,7 +35,12 @@ int RunTwin(const SimulateRequest& request) {
   const terminal::StopSignal stop;
   const twin::TwinRun run = sessions::ServeTwin(
       prepared,
-      [&](const twin::TwinAddress& address) { Announce(address, prepared.Calibration()); },
+      // At once: whoever started the twin waits for it.
+      [&](const twin::TwinAddress& address) {
+        terminal::PrintData(sessions::AddressJson(prepared, address));
+        if (terminal::FlushResults() == 0) return;
+        throw std::runtime_error("cannot write to stdout: nobody can learn where the twin is");
+      },
       [&] { return stop.IsAsked(); });
   terminal::Say(fmt::format("{}; {} pictures at {:.1f} ms of one core each; true path: {}",
                             sessions::EndingOf(run), run.pictures, 1e3 * run.picture_cpu_s,
@@ -67,8 +53,7 @@ int RunTwin(const SimulateRequest& request) {
 int SimulateWithCamera(const SimulateRequest& request) {
   if (request.twin) return RunTwin(request);
   return Simulate(request, [&request](const sessions::Simulated& made) {
-    view::ShowFilm(sessions::FilmOf(made), request.pictures.video, request.pictures.window,
-                   terminal::Say);
+    view::ShowFilm(sessions::FilmOf(made), request.video, request.window, terminal::Say);
   });
 }
 

@@ -147,6 +147,20 @@ void WriteFile(const std::filesystem::path& target, std::string_view text) {
   }
 }
 
+std::string FindInput(const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code not_there;
+  if (name.empty() || fs::path(name).is_absolute() || fs::exists(name, not_there)) return name;
+  const fs::path program = fs::read_symlink("/proc/self/exe", not_there);
+  // PREFIX/bin/rift, or PREFIX/lib/rift/rift-camera.
+  for (const fs::path& prefix :
+       {program.parent_path().parent_path(), program.parent_path().parent_path().parent_path()}) {
+    const fs::path installed = prefix / "share" / "rift" / name;
+    if (fs::exists(installed, not_there)) return installed.string();
+  }
+  return name;
+}
+
 bool IsStandardStream(const std::filesystem::path& path) { return StreamTo(path) != nullptr; }
 
 bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {

@@ -11,7 +11,7 @@
 #include <exception>
 #include <filesystem>
 
-#include "rift/commands/arguments/inputs.hpp"
+#include "rift/commands/arguments/arguments.hpp"
 #include "rift/sessions/sweep/journal.hpp"
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"

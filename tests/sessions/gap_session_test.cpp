@@ -60,7 +60,7 @@ TEST_CASE("A dialect of the other side says that the logs are swapped") {
   test::WriteText(folder / "b.csv", Log(0.02));
   Told told;
   GapJob job{.sim = folder / "a.csv", .reals = {folder / "b.csv"}};
-  job.sim_logs.format = trajectory::Format::kTracker;
+  job.sides.sim_format = trajectory::Format::kTracker;
   Measure(job, told);
   CHECK_THAT(told.Text(), Contains("by their formats the two are swapped"));
 }

@@ -16,7 +16,7 @@ struct TrackRequest;
 
 /// Everything that needs OpenCV's cameras, windows and video files. Their libraries would cost each
 /// start of rift 0.15 s, so only the program rift-camera links them; `rift` runs that one instead
-/// (camera_program.hpp). Each returns the exit code.
+/// (main.cpp). Each returns the exit code.
 struct CameraUses {
   std::function<int(const TrackRequest&)> track;
   std::function<int(const DriveRequest&)> drive;

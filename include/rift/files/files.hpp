@@ -14,6 +14,10 @@ std::string ReadFile(const std::filesystem::path& path);
 /// The whole file; nothing when there is no such file. Throws as ReadFile does.
 std::optional<std::string> ReadIfThere(const std::filesystem::path& path);
 
+/// `name`, or, where there is no such file and rift is installed, the file of that name among those
+/// that came with it (PREFIX/share/rift): configs/waypoints/paper.yaml works in any folder.
+std::string FindInput(const std::string& name);
+
 /// Writes beside the target and renames, so that the target is whole or absent; a pipe or a device
 /// is written to as it is, and a link leads to its file. Missing parent folders are made. Throws
 /// std::runtime_error with the path and the system's reason.

@@ -2,24 +2,23 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
 #include <utility>
 
 #include "console.hpp"
-#include "rift/commands/arguments/inputs.hpp"
-#include "rift/commands/arguments/outputs.hpp"
+#include "request.hpp"
+#include "rift/commands/sweep/sweep.hpp"
 #include "rift/hardware/ping.hpp"
 #include "rift/hardware/serial_port.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/sessions/drive/identification.hpp"
 #include "rift/sessions/drive/replay.hpp"
+#include "rift/sessions/drive/series.hpp"
 #include "rift/sessions/drive/session.hpp"
 #include "rift/sessions/sweep/suggested.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/view/film.hpp"
 #include "rift/view/window.hpp"
-#include "series.hpp"
 
 namespace rift::commands {
 namespace {
@@ -43,10 +42,11 @@ int PingRobot(const DriveRequest& request) {
 /// The experiment as the request changes it; throws std::invalid_argument, naming the file, when it
 /// is no task to drive.
 experiment::Experiment LoadTask(const DriveRequest& request) {
-  const fs::path file = request.suggested.empty() ? fs::path(request.experiment)
-                                                  : fs::path(request.suggested) / "experiment.yaml";
+  const fs::path suggested = request.series.suggested;
+  const fs::path file =
+      suggested.empty() ? fs::path(request.experiment) : suggested / "experiment.yaml";
   experiment::Experiment experiment = ReadExperiment(file, request.overrides);
-  if (request.identify) experiment = sessions::IdentificationDrive(std::move(experiment));
+  if (request.series.identify) experiment = sessions::IdentificationDrive(std::move(experiment));
   if (request.countdown_s) experiment.hardware.start.countdown_s = *request.countdown_s;
   if (request.seconds) experiment.trial.timeout_s = *request.seconds;
   RequireTask(experiment, file.string());
@@ -66,14 +66,16 @@ int ExitCodeOf(const hardware::DriveRun& run) {
 
 /// Where its runs go: a robot's run cannot be repeated to the byte as a simulated one can.
 fs::path FolderOf(const DriveRequest& request, const experiment::Experiment& experiment) {
-  if (!request.suggested.empty()) return sessions::SuggestedFolder(request.suggested);
+  if (!request.series.suggested.empty()) {
+    return sessions::SuggestedFolder(request.series.suggested);
+  }
   fs::path folder =
       request.out.empty() ? OutputOf("", experiment.name + "_drive") : fs::path(request.out);
   RefuseSweepFolder(folder);
-  if (!fs::exists(folder / "trajectory.csv")) return folder;
-  throw std::invalid_argument(fmt::format(
-      "{} holds a run already, and a robot does not repeat itself: choose another --out",
-      folder.string()));
+  Refuse({{fs::exists(folder / "trajectory.csv"),
+           folder.string() +
+               " holds a run already, and a robot does not repeat itself: choose another --out"}});
+  return folder;
 }
 
 int DriveOnce(const DriveRequest& request, const experiment::Experiment& experiment,
@@ -83,7 +85,7 @@ int DriveOnce(const DriveRequest& request, const experiment::Experiment& experim
   const bool is_whole = session.LogFailure().empty();
   if (run.has_begun && is_whole) {
     terminal::Say("log: " + (folder / "trajectory.csv").string());
-    WriteLogCopies(request.copies, run.trial.trajectory);
+    request.copies.Write(run.trial.trajectory);
   }
   const auto state = is_whole ? report::RunState::kFinished : report::RunState::kInterrupted;
   request.json ? terminal::PrintData(report::DriveJson(experiment, run, state))
@@ -91,6 +93,24 @@ int DriveOnce(const DriveRequest& request, const experiment::Experiment& experim
   for (const std::string& line : sessions::SteeringLines(experiment, run)) terminal::Say(line);
   session.RequireLog();
   return ExitCodeOf(run);
+}
+
+/// Into `out`; of a grid, `rift sweep` of the drives as well, which are there whatever becomes of
+/// it.
+int DriveSeries(const DriveRequest& request, const experiment::Experiment& experiment,
+                const fs::path& out) {
+  const sessions::DriveSeries series{.out = out,
+                                     .plan = sessions::PlanSeries(request.series, experiment, out),
+                                     .before_each = WordsOf(request.series.before_each),
+                                     .setup = request.setup};
+  int reported = terminal::kDone;
+  const auto sweep = [&] { return SweepFile(out / "sweep.yaml", out / "sweep", request.json); };
+  const sessions::SeriesEnd end =
+      sessions::DriveAll(series, TerminalConsole(request.setup.yes), [&] {
+        if (request.series.grid) reported = terminal::ReportErrors(sweep);
+        if (!series.plan.next.empty()) terminal::Say(series.plan.next);
+      });
+  return end == sessions::SeriesEnd::kDone ? reported : terminal::kNotReached;
 }
 
 /// In a window, or as a video. Returns the exit code.
@@ -104,7 +124,7 @@ int ShowDrive(const DriveRequest& request) {
   terminal::PrintText(fmt::format("{}\n{} poses over {:.2f} s\n", shown.outcome, seen.poses.size(),
                                   seen.Duration_s()));
   terminal::FlushResults();
-  WriteLogCopies(request.copies, seen);
+  request.copies.Write(seen);
   if (!window && request.video.empty()) return terminal::kDone;
   view::ShowFilm(view::MakeFilm(shown), request.video, window, terminal::Say);
   return terminal::kDone;
@@ -117,8 +137,8 @@ int Drive(const DriveRequest& request) {
   if (request.ping) return PingRobot(request);
   const experiment::Experiment experiment = LoadTask(request);
   const fs::path out = FolderOf(request, experiment);
-  return request.IsSeries() ? DriveSeries(request, experiment, out)
-                            : DriveOnce(request, experiment, out);
+  return request.series.IsSeries() ? DriveSeries(request, experiment, out)
+                                   : DriveOnce(request, experiment, out);
 }
 
 }  // namespace rift::commands

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "rift/commands/arguments/log_copies.hpp"
+#include "rift/commands/arguments/arguments.hpp"
+#include "rift/sessions/drive/plan.hpp"
 #include "rift/sessions/drive/setup.hpp"
 
 namespace rift::commands {
@@ -14,6 +15,7 @@ struct DriveRequest {
   std::string experiment;
   std::vector<std::string> overrides;
   sessions::DriveSetup setup;
+  sessions::SeriesRequest series;
   std::string out;
   LogCopies copies;
   std::string replay;  ///< folder of a drive to be shown, without a robot
@@ -24,13 +26,6 @@ struct DriveRequest {
   std::optional<double> countdown_s;
   bool any_waypoints = false;
   bool force = false;  ///< replace the film of --video and the copies of a log
-  int repeat = 0;      ///< 0: one drive
-  bool grid = false;
-  bool identify = false;  ///< drive the program of an identification instead of the waypoints
-  std::string suggested;  ///< folder of a sweep whose suggested.yaml is driven
-  std::string before_each;
-
-  bool IsSeries() const { return grid || identify || repeat > 0 || !suggested.empty(); }
 
   /// Throws std::invalid_argument, saying what to give, when something is missing.
   void Check() const;

@@ -1,15 +1,10 @@
-#include "calibrate.hpp"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 
-#include "load.hpp"
 #include "progress.hpp"
-#include "rift/commands/arguments/inputs.hpp"
-#include "rift/commands/arguments/outputs.hpp"
+#include "rift/commands/arguments/arguments.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
 #include "rift/report/json/json.hpp"
@@ -18,6 +13,7 @@
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
+#include "steps.hpp"
 
 namespace rift::commands {
 
@@ -25,11 +21,10 @@ namespace fs = std::filesystem;
 
 int Calibrate(const SweepRequest& request, const experiment::Experiment& experiment,
               const sweep::SlurmOptions* cluster) {
-  if (request.serve) {
-    throw std::invalid_argument(request.experiment +
-                                ": --serve shows the trials of a sweep as they come in, and goal: "
-                                "calibrate has no such page");
-  }
+  Refuse({{request.serve,
+           request.experiment +
+               ": --serve shows the trials of a sweep as they come in, and goal: calibrate has no "
+               "such page"}});
   const fs::path out = FolderFor(request, experiment);
   if (!request.write_robot.empty()) {
     CheckOutputs({request.experiment},

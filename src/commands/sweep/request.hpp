@@ -1,21 +1,15 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "rift/sessions/sweep/engine.hpp"
 #include "rift/sessions/sweep/further_questions.hpp"
 #include "rift/sweep/run/worker_pool.hpp"
 
 namespace rift::commands {
-
-/// Where the trials of a sweep are run, as it was asked for.
-struct EngineRequest {
-  std::string engine = "local";  ///< local, slurm, or a file of configs/engines
-  std::string partition;
-  int shards = 0;               ///< 0: not asked for
-  std::string shard;            ///< a file: this process is a job and computes that shard
-  double copy_every_s = 600.0;  ///< of a shard
-};
 
 /// What `rift sweep` was asked for.
 struct SweepRequest {
@@ -36,10 +30,13 @@ struct SweepRequest {
   std::string status;
   std::vector<std::string> compare;  ///< two folders
   std::string page;                  ///< of --compare
-  int suggest = 0;                   ///< experiments to print; 0: none
+  std::optional<int> suggest;        ///< experiments to print
   sessions::FurtherQuestions further;
-  EngineRequest engine;
+  sessions::EngineRequest engine;
   std::string write_robot;
 };
+
+/// The flags of `rift sweep`; `request` must outlive the app.
+void AddSweepFlags(CLI::App& app, SweepRequest& request);
 
 }  // namespace rift::commands

@@ -1,5 +1,3 @@
-#include "results.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "rift/report/text/text.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
+#include "steps.hpp"
 
 namespace rift::commands {
 
@@ -52,7 +51,8 @@ void PrintFindings(const SweepRequest& request, const sweep::SweepResult& result
   if (!findings.likeness.empty()) {
     terminal::PrintText("\n" + report::LikenessText(findings.likeness));
   }
-  terminal::PrintText(report::ExplanationText(result, findings.explanation, request.suggest > 0));
+  terminal::PrintText(
+      report::ExplanationText(result, findings.explanation, request.suggest.has_value()));
   terminal::PrintText(report::ProgramText(result.parameters, findings.programs));
 }
 

@@ -4,16 +4,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 
-#include "calibrate.hpp"
-#include "engine.hpp"
-#include "flags.hpp"
-#include "load.hpp"
 #include "progress.hpp"
-#include "results.hpp"
-#include "rift/commands/arguments/inputs.hpp"
-#include "rift/commands/arguments/outputs.hpp"
+#include "rift/commands/arguments/arguments.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
 #include "rift/report/json/json.hpp"
@@ -25,10 +18,13 @@
 #include "rift/sessions/sweep/folder.hpp"
 #include "rift/sessions/sweep/journal.hpp"
 #include "rift/sessions/sweep/live_page.hpp"
+#include "rift/sessions/sweep/plan.hpp"
 #include "rift/sessions/sweep/run.hpp"
+#include "rift/sessions/sweep/shard.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
+#include "steps.hpp"
 
 namespace rift::commands {
 
@@ -45,16 +41,29 @@ std::unique_ptr<sessions::LivePage> Serve(const SweepRequest& request, const fs:
   return page;
 }
 
+/// What a job of --engine slurm does: computes a shard into OUT/shards (sessions::RunShard).
+int ComputeShard(const SweepRequest& request, const experiment::Experiment& experiment) {
+  const sessions::ShardFile shard = sessions::ReadShard(request.engine.shard, experiment);
+  const bool is_done = sessions::RunShard(shard, experiment, request.experiment, FileInputs(),
+                                          {.out = OutputOf(request.out, experiment.name),
+                                           .jobs = request.jobs,
+                                           .copy_every_s = request.engine.copy_every_s},
+                                          ObserverFor(ProgressStyle::kQuiet));
+  return is_done ? terminal::kDone : terminal::kStopped;
+}
+
 int Sweep(const SweepRequest& request) {
   const experiment::Experiment loaded = LoadFor(request);
   if (!request.engine.shard.empty()) return ComputeShard(request, loaded);
-  const std::optional<sweep::SlurmOptions> cluster = ClusterFor(request, loaded);
+  const std::optional<sweep::SlurmOptions> cluster =
+      sessions::ClusterFor(request.engine, loaded, request.experiment);
   const sweep::SlurmOptions* const engine = cluster ? &*cluster : nullptr;
   if (loaded.goal == experiment::Goal::kCalibrate) return Calibrate(request, loaded, engine);
 
-  const experiment::Experiment experiment = PlanFor(request, loaded);
+  const experiment::Experiment experiment = sessions::PlanSweep(loaded);
+  request.further.Check(experiment);
   sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
-  NotePlan(request, loaded, experiment);
+  sessions::NotePlan(loaded, request.experiment, terminal::Say);
   const fs::path out = FolderFor(request, experiment);
   const files::FolderLock lock(out);
   if (request.fresh) sessions::RemoveFindings(out);
@@ -73,7 +82,7 @@ int Sweep(const SweepRequest& request) {
   }
 
   const sessions::SweepFindings findings =
-      sessions::ExplainSweep(out, evaluator, *judged, request.suggest, request.jobs);
+      sessions::ExplainSweep(out, evaluator, *judged, request.suggest.value_or(0), request.jobs);
   sessions::SaveReport(out, evaluator, *judged, findings, observer);
   if (live) live->End();
   PrintFindings(request, *judged, findings);
@@ -117,14 +126,11 @@ void AddSweep(CLI::App& app, int& exit_code) {
   app.callback([request, &exit_code] {
     if (!request->status.empty()) return PrintStatus(*request);
     if (!request->compare.empty()) return Compare(*request);
-    if (!request->page.empty()) {
-      throw std::invalid_argument("--page " + request->page +
-                                  ": it is the page of --compare DIR DIR");
-    }
-    if (request->experiment.empty()) {
-      throw std::invalid_argument("EXPERIMENT is missing: name the YAML file of the experiment");
-    }
-    request->experiment = FindInput(request->experiment);
+    Refuse({{!request->page.empty(),
+             "--page " + request->page + ": it is the page of --compare DIR DIR"},
+            {request->experiment.empty(),
+             "EXPERIMENT is missing: name the YAML file of the experiment"}});
+    request->experiment = files::FindInput(request->experiment);
     exit_code = Sweep(*request);
   });
 }

@@ -6,13 +6,10 @@
 #include <cstdio>
 #include <memory>
 #include <set>
-#include <stdexcept>
 #include <utility>
 
-#include "rift/commands/arguments/flags.hpp"
-#include "rift/commands/arguments/inputs.hpp"
-#include "rift/commands/arguments/outputs.hpp"
 #include "rift/commands/track/track.hpp"
+#include "rift/files/files.hpp"
 #include "rift/vision/camera/jpeg.hpp"
 
 namespace rift::commands {
@@ -31,89 +28,68 @@ void CheckLogName(const TrackRequest& request) {
 /// They are of one robot, and made of the log when it is whole.
 void CheckCopies(const TrackRequest& request) {
   if (request.copies.Files().empty()) return;
-  if (request.check || request.calibrate || request.out.empty() || request.IsPiped()) {
-    throw std::invalid_argument("--tum and --mcap are copies of a log: give --out LOG.csv as well");
-  }
-  if (request.job.ids.size() > 1) {
-    throw std::invalid_argument("--tum and --mcap hold one robot: give --id a single tag");
-  }
+  Refuse({{request.check || request.calibrate || request.out.empty() || request.IsPiped(),
+           "--tum and --mcap are copies of a log: give --out LOG.csv as well"},
+          {request.job.ids.size() > 1, "--tum and --mcap hold one robot: give --id a single tag"}});
 }
 
 void CheckTracking(const TrackRequest& request) {
-  if (request.job.camera.empty()) {
-    throw std::invalid_argument(
-        "--camera is missing: name a device such as /dev/video0, a stream, a video, or a quoted "
-        "pattern of pictures");
-  }
-  if (request.job.calibration.empty()) {
-    throw std::invalid_argument(
-        "--calibration is missing: rift track --calibrate makes one from pictures of a chessboard");
-  }
-  if (request.out.empty() && request.job.world.empty()) {
-    throw std::invalid_argument("--out LOG.csv is missing: where shall the poses go?");
-  }
+  const sessions::TrackingJob& job = request.job;
+  Refuse({{job.camera.empty(),
+           "--camera is missing: name a device such as /dev/video0, a stream, a video, or a quoted "
+           "pattern of pictures"},
+          {job.calibration.empty(),
+           "--calibration is missing: rift track --calibrate makes one from pictures of a "
+           "chessboard"},
+          {request.out.empty() && job.world.empty(),
+           "--out LOG.csv is missing: where shall the poses go?"}});
   if (!request.out.empty()) CheckLogName(request);
-  if (!request.images.empty() || !request.picture.empty()) {
-    throw std::invalid_argument("--images and --picture belong to --calibrate");
-  }
+  Refuse({{!request.images.empty() || !request.picture.empty(),
+           "--images and --picture belong to --calibrate"}});
 }
 
 void CheckPrecisionCheck(const TrackRequest& request) {
-  if (request.calibrate) throw std::invalid_argument("--check and --calibrate exclude each other");
-  if (request.job.calibration.empty()) {
-    throw std::invalid_argument("--calibration is missing: --check is about one camera");
-  }
-  if (!request.job.camera.empty() || !request.job.world.empty() || request.job.view) {
-    throw std::invalid_argument(
-        "--check opens no camera: --camera, --world and --view do not belong to it");
-  }
+  const sessions::TrackingJob& job = request.job;
+  Refuse({{request.calibrate, "--check and --calibrate exclude each other"},
+          {job.calibration.empty(), "--calibration is missing: --check is about one camera"},
+          {!job.camera.empty() || !job.world.empty() || job.view,
+           "--check opens no camera: --camera, --world and --view do not belong to it"}});
   if (request.out.empty()) return;
-  std::vector<fs::path> inputs{request.job.calibration};
+  std::vector<fs::path> inputs{job.calibration};
   if (!request.experiment.empty()) inputs.emplace_back(request.experiment);
-  CheckOutputs(inputs, {.files = {request.out}, .force = request.job.force});
+  CheckOutputs(inputs, {.files = {request.out}, .force = job.force});
 }
 
 void CheckPrinting(const TrackRequest& request) {
-  if (!request.print_tag.empty() && !request.print_board.empty()) {
-    throw std::invalid_argument("--print-tag and --print-board exclude each other");
-  }
-  if (request.check || request.calibrate || !request.job.camera.empty() || !request.out.empty()) {
-    throw std::invalid_argument(
-        "--print-tag and --print-board write a sheet and nothing else: --camera, --out, --check "
-        "and "
-        "--calibrate do not belong to them");
-  }
-  if (request.job.ids.size() > 1) {
-    throw std::invalid_argument("--print-tag makes one tag: give --id a single one");
-  }
+  const sessions::TrackingJob& job = request.job;
   const std::string& sheet = request.print_tag.empty() ? request.print_board : request.print_tag;
-  if (fs::path(sheet).extension() != ".svg") {
-    throw std::invalid_argument(
-        fmt::format("{}: a sheet to print is an SVG: give it a name that ends in .svg", sheet));
-  }
-  CheckOutputs({}, {.files = {sheet}, .force = request.job.force});
+  Refuse({{!request.print_tag.empty() && !request.print_board.empty(),
+           "--print-tag and --print-board exclude each other"},
+          {request.check || request.calibrate || !job.camera.empty() || !request.out.empty(),
+           "--print-tag and --print-board write a sheet and nothing else: --camera, --out, --check "
+           "and --calibrate do not belong to them"},
+          {job.ids.size() > 1, "--print-tag makes one tag: give --id a single one"},
+          {fs::path(sheet).extension() != ".svg",
+           sheet + ": a sheet to print is an SVG: give it a name that ends in .svg"}});
+  CheckOutputs({}, {.files = {sheet}, .force = job.force});
 }
 
 void CheckCalibrating(const TrackRequest& request) {
-  if (request.images.empty() == request.job.camera.empty()) {
-    throw std::invalid_argument(
-        "--calibrate wants either --images DIR or --camera: photographs, or a camera to take them");
-  }
-  if (request.job.view && request.job.camera.empty()) {
-    throw std::invalid_argument("--view shows a camera: --images are not taken in a window");
-  }
-  if (request.out.empty())
-    throw std::invalid_argument("--out CAM.yaml is missing: where shall the calibration go?");
-  CheckOutputs({}, {.files = {request.out, PictureOf(request)}, .force = request.job.force});
+  const sessions::TrackingJob& job = request.job;
+  Refuse({{request.images.empty() == job.camera.empty(),
+           "--calibrate wants either --images DIR or --camera: photographs, or a camera to take "
+           "them"},
+          {job.view && job.camera.empty(),
+           "--view shows a camera: --images are not taken in a window"},
+          {request.out.empty(), "--out CAM.yaml is missing: where shall the calibration go?"}});
+  CheckOutputs({}, {.files = {request.out, PictureOf(request)}, .force = job.force});
 }
 
 void CheckIds(const std::vector<int>& ids) {
   std::set<int> seen;
   for (const int id : ids) {
-    if (!seen.insert(id).second) {
-      throw std::invalid_argument(
-          fmt::format("--id: {} is named twice: each robot has its own", id));
-    }
+    Refuse({{!seen.insert(id).second,
+             fmt::format("--id: {} is named twice: each robot has its own", id)}});
   }
 }
 
@@ -127,7 +103,8 @@ void ReadBoard(const std::string& text, vision::Board& board) {
 }
 
 void AddCalibrationFlags(CLI::App& app, TrackRequest& request) {
-  app.add_flag("--calibrate", request.calibrate, "make the calibration of a camera instead");
+  FlagMaker flags(app);
+  flags("calibrate", request.calibrate, "make the calibration of a camera instead");
   app.add_option_function<std::string>(
          "--board", [&request](const std::string& text) { ReadBoard(text, request.board); },
          "inner corners of the chessboard (squares less one)")
@@ -136,71 +113,55 @@ void AddCalibrationFlags(CLI::App& app, TrackRequest& request) {
   app.add_option("--square", request.board.square_m, "side of a square of it")
       ->type_name("m")
       ->capture_default_str();
-  app.add_option("--images", request.images, "its photographs")->type_name("DIR|'GLOB'");
-  app.add_option("--picture", request.picture,
-                 "where residuals and coverage are drawn [beside --out, .png]")
-      ->type_name("FILE.png");
+  flags("images", request.images, "DIR|'GLOB'", "its photographs");
+  flags("picture", request.picture, "FILE.png",
+        "where residuals and coverage are drawn [beside --out, .png]");
 }
 
 void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
+  sessions::TrackingJob& job = request.job;
+  FlagMaker flags(app);
   app.add_option("EXPERIMENT", request.experiment, "YAML file; its key track: holds the settings");
   AddSetFlag(app, request.overrides, "track.tag.id=3");
-  app.add_option(
-         "--camera", request.job.camera,
-         "device, stream, video, or quoted pattern of pictures in the order of the numbers in "
-         "their names")
-      ->type_name("/dev/video0|URL|FILE|'GLOB'");
-  app.add_option("--calibration", request.job.calibration,
-                 "of the camera: ROS camera_info, OpenCV's, the authors', or from --calibrate")
-      ->type_name("CAM.yaml");
-  app.add_option("--out", request.out,
-                 "the log, - for stdout, the log alone; with --calibrate, the calibration")
-      ->type_name("FILE|-");
-  AddLogCopyFlags(app, request.copies);
-  app.add_flag("--force", request.job.force,
-               "replace files that are there already, and a better world frame of the calibration");
-  app.add_option("--id", request.job.ids,
+  flags("camera", job.camera, "/dev/video0|URL|FILE|'GLOB'",
+        "device, stream, video, or quoted pattern of pictures in the order of the numbers in their "
+        "names");
+  flags("calibration", job.calibration, "CAM.yaml",
+        "of the camera: ROS camera_info, OpenCV's, the authors', or from --calibrate");
+  flags("out", request.out, "FILE|-",
+        "the log, - for stdout, the log alone; with --calibrate, the calibration");
+  AddFlags(app, request.copies);
+  flags("force", job.force,
+        "replace files that are there already, and a better world frame of the calibration");
+  app.add_option("--id", job.ids,
                  "the robot's tag [track.tag.id]; several robots go into one log, a row each")
       ->delimiter(',')
       ->check(InRange(0, vision::kLastTagId))
       ->type_name("N,N,...");
-  app.add_option("--tag-height", request.tag_height_m,
-                 "of the tag above the floor "
-                 "[track.tag.height_m]")
-      ->check(InRange(0.0, 2.0))
-      ->type_name("m");
-  app.add_option("--times", request.times,
-                 "when the pictures of a pattern were taken: a line each, seconds, or name and "
-                 "seconds; exif: as their EXIF data say [the numbers in their names, at --fps a "
-                 "second]")
-      ->type_name("FILE|exif");
-  app.add_option("--fps", request.fps, "asked of a device; rate of a pattern of pictures")
-      ->check(InRange(0.1, 1000.0))
-      ->type_name("hz");
-  app.add_option("--duration", request.job.duration_s, "ends after this long")
-      ->check(InRange(0.0, 1e9))
-      ->type_name("s");
-  app.add_option("--world", request.job.world,
-                 "sets the world frame first and keeps it in the calibration: from the robot's "
-                 "first pose, or from a file with tags: (id, x_m, y_m) to be seen or points: "
-                 "(name, x_m, y_m) to be clicked")
-      ->type_name("first|FILE.yaml");
-  app.add_flag("--check", request.check,
-               "say how precise poses will be over the floor and which tag is too small, tried on "
-               "rendered pictures (twin.camera: blur, noise); --out keeps the map as JSON");
-  app.add_option("--print-tag", request.print_tag,
-                 "write the sheet of the robot's tag (track.tag: family, id, size_m) to print")
-      ->type_name("FILE.svg");
-  app.add_option("--print-board", request.print_board,
-                 "the same of a chessboard (--board, --square)")
-      ->type_name("FILE.svg");
-  app.add_flag("--view", request.job.view,
-               "show it in a window; with --calibrate and a camera, where to hold the board next");
-  app.add_option("--path", request.job.path, "what the view holds the robot's trail against")
-      ->type_name("WAYPOINTS.yaml|LOG.csv");
-  app.add_option("--record-waypoints", request.job.record_waypoints,
-                 "write the waypoints made in the window, for simulate and drive")
-      ->type_name("FILE.yaml");
+  flags("tag_height_m", request.tag_height_m, 0.0, 2.0, "m",
+        "of the tag above the floor [track.tag.height_m]");
+  flags("times", request.times, "FILE|exif",
+        "when the pictures of a pattern were taken: a line each, seconds, or name and seconds; "
+        "exif: as their EXIF data say [the numbers in their names, at --fps a second]");
+  flags("fps", request.fps, 0.1, 1000.0, "hz", "asked of a device; rate of a pattern of pictures");
+  flags("duration_s", job.duration_s, 0.0, 1e9, "s", "ends after this long");
+  flags("world", job.world, "first|FILE.yaml",
+        "sets the world frame first and keeps it in the calibration: from the robot's first pose, "
+        "or from a file with tags: (id, x_m, y_m) to be seen or points: (name, x_m, y_m) to be "
+        "clicked");
+  flags("check", request.check,
+        "say how precise poses will be over the floor and which tag is too small, tried on "
+        "rendered pictures (twin.camera: blur, noise); --out keeps the map as JSON");
+  flags("print_tag", request.print_tag, "FILE.svg",
+        "write the sheet of the robot's tag (track.tag: family, id, size_m) to print");
+  flags("print_board", request.print_board, "FILE.svg",
+        "the same of a chessboard (--board, --square)");
+  flags("view", job.view,
+        "show it in a window; with --calibrate and a camera, where to hold the board next");
+  flags("path", job.path, "WAYPOINTS.yaml|LOG.csv",
+        "what the view holds the robot's trail against");
+  flags("record_waypoints", job.record_waypoints, "FILE.yaml",
+        "write the waypoints made in the window, for simulate and drive");
 }
 
 }  // namespace
@@ -238,7 +199,7 @@ void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const Track
       "         rift track --check --calibration cam.yaml\n"
       "         rift track --print-tag tag.svg --set track.tag.size_m=0.05");
   app.callback([request, track, &exit_code] {
-    request->job.calibration = FindInput(request->job.calibration);
+    request->job.calibration = files::FindInput(request->job.calibration);
     request->job.log = request->out;
     request->Check();
     exit_code = track(*request);

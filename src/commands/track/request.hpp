@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/commands/arguments/log_copies.hpp"
+#include "rift/commands/arguments/arguments.hpp"
 #include "rift/sessions/track/tracking.hpp"
 #include "rift/vision/calibration/chessboard.hpp"
 

@@ -60,8 +60,7 @@ int Report(const TrackRequest& request, const vision::TrackRun& run,
     terminal::Say(report::FoundInsteadText(run.found_instead, tag.family));
   }
   if (run.rows > 0 && !request.copies.Files().empty()) {
-    WriteLogCopies(request.copies,
-                   trajectory::ReadLog(files::ReadFile(request.out), request.out).trajectory);
+    request.copies.Write(trajectory::ReadLog(files::ReadFile(request.out), request.out).trajectory);
   }
   return EndOf(run);
 }

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "rift/experiment/path_template.hpp"
+#include "rift/sessions/drive/identification.hpp"
+#include "rift/sessions/sweep/suggested.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sessions {
@@ -143,6 +146,46 @@ SeriesPlan PlanRepeats(const Experiment& loaded, int count, const fs::path& out)
   // A sweep of the simulator over no space would be the paper's.
   plan.sweep.space.parameters = {
       {.key = kSurface, .levels = {{experiment.simulation.terrain.surface, std::nullopt}}}};
+  return plan;
+}
+
+namespace {
+
+/// What `rift sweep --suggest` wrote into the folder of its sweep.
+SeriesPlan PlanSuggested(const Experiment& experiment, const fs::path& folder) {
+  std::vector<ChosenSetting> settings;
+  for (const SuggestedExperiment& one : ReadSuggested(folder, experiment)) {
+    settings.push_back({fmt::format("experiment {}", one.number), one.parameters, one.values});
+    for (int trial = 1; trial <= one.repeats; ++trial) {
+      settings.back().folders.push_back(SuggestedDrive(folder, one.number, trial));
+    }
+  }
+  if (!settings.empty()) return PlanChosen(experiment, settings);
+  throw std::invalid_argument(fmt::format(
+      "{} has no experiments to drive: rift sweep {} --out {} --suggest 3 writes them",
+      SuggestedFile(folder).string(), (folder / "experiment.yaml").string(), folder.string()));
+}
+
+}  // namespace
+
+SeriesPlan PlanSeries(const SeriesRequest& request, const Experiment& experiment,
+                      const fs::path& out) {
+  if (request.grid) return PlanGrid(experiment, out);
+  if (!request.suggested.empty()) {
+    const fs::path sweep = request.suggested;
+    SeriesPlan plan = PlanSuggested(experiment, sweep);
+    plan.next = fmt::format("what they confirm: rift sweep {} --out {}",
+                            (sweep / "experiment.yaml").string(), sweep.string());
+    return plan;
+  }
+  SeriesPlan plan = PlanRepeats(experiment, request.repeat.value_or(kIdentificationRuns), out);
+  const std::string sweep = fmt::format("rift sweep {} --out {}", (out / "sweep.yaml").string(),
+                                        (out / "sweep").string());
+  plan.next = "against the simulator: " + sweep;
+  if (!request.identify) return plan;
+  plan.sweep = IdentificationFit(std::move(plan.sweep));
+  plan.next = fmt::format("fit the simulated robot: {} --write-robot {}", sweep,
+                          (out / "robot.yaml").string());
   return plan;
 }
 

@@ -52,7 +52,7 @@ void SayIfSwapped(const GapJob& job, const gap::GapResult& result, const Say& sa
   const bool by_name = IsNamedReal(job.sim) && !IsNamedSimulated(job.sim) &&
                        IsNamedSimulated(real) && !IsNamedReal(real);
   const bool by_format =
-      job.sim_logs.format == Format::kTracker || job.real_logs.format == Format::kWebots;
+      job.sides.sim_format == Format::kTracker || job.sides.real_format == Format::kWebots;
   const bool by_noise =
       !IsNamed(real, {"truth"}) && gap::LookSwapped(result.sim, result.reals.front());
   if (!by_name && !by_format && !by_noise) return;
@@ -80,7 +80,7 @@ void SayDoubts(const gap::GapResult& result, const Say& say) {
 gap::Likeness MeasureRepeats(const GapJob& job, const gap::GapResult& result, const Say& say) {
   gap::RepeatedSetting setting{.reals = result.reals, .sims = {{result.sim}}};
   for (const std::string& path : job.sim_repeats) {
-    trajectory::Log sim = trajectory::ReadLog(files::ReadFile(path), path, job.sim_logs);
+    trajectory::Log sim = trajectory::ReadLog(files::ReadFile(path), path, job.SimLogs());
     SayNotes(sim, path, "--sim-format", say);
     setting.sims.front().push_back(std::move(sim.trajectory));
   }
@@ -88,7 +88,55 @@ gap::Likeness MeasureRepeats(const GapJob& job, const gap::GapResult& result, co
   return gap::MeasureLikeness({&setting, 1}, job.options, job.likeness, generator);
 }
 
+/// What holds for both sides is not meant for the one that has a format.
+trajectory::ReadOptions LogsOf(const LogSides& sides, Format format, const std::string& own_columns,
+                               const std::string& own_units, const char* flag, bool in_space) {
+  const bool is_dialect = format != Format::kAuto;
+  const auto either = [&](const std::string& own, const std::string& both) {
+    return own.empty() && !is_dialect ? both : own;
+  };
+  const bool is_of_both = own_columns.empty() && own_units.empty() && !is_dialect &&
+                          !(sides.columns.empty() && sides.units.empty());
+  return {format, either(own_columns, sides.columns), either(own_units, sides.units),
+          is_of_both ? "--columns " : flag, in_space};
+}
+
+/// What is measured in the plane alone.
+void CheckDimension(const GapJob& job) {
+  job.options.Check();
+  if (!job.options.IsInSpace()) return;
+  if (job.tag_offset_m != 0.0) {
+    throw std::invalid_argument(fmt::format(
+        "--tag-offset is {:g}, which moves a path along its yaw in the plane, and --dimension is "
+        "xyz: log the point that is to be compared, and leave --tag-offset out",
+        job.tag_offset_m));
+  }
+  if (!job.sim_repeats.empty()) {
+    throw std::invalid_argument(
+        "--sim-repeats measures likeness, which is of paths in the plane, and --dimension is xyz: "
+        "leave one of them out");
+  }
+}
+
 }  // namespace
+
+trajectory::ReadOptions LogSides::Sim(bool in_space) const {
+  return LogsOf(*this, sim_format, sim_columns, sim_units, "--sim-columns ", in_space);
+}
+
+trajectory::ReadOptions LogSides::Real(bool in_space) const {
+  return LogsOf(*this, real_format, real_columns, real_units, "--real-columns ", in_space);
+}
+
+void GapJob::Check() const {
+  CheckDimension(*this);
+  RefuseTwins(reals);
+  trajectory::CheckColumns(SimLogs());
+  trajectory::CheckColumns(RealLogs());
+  std::vector<std::string> sims = sim_repeats;
+  sims.insert(sims.begin(), sim);
+  RefuseTwins(sims);
+}
 
 void RefuseTwins(const std::vector<std::string>& logs) {
   for (auto log = logs.begin(); log != logs.end(); ++log) {
@@ -105,10 +153,10 @@ gap::GapResult MeasureGap(const GapJob& job, const Say& say) {
                         .tag_offset_m = job.tag_offset_m,
                         .sim_path = job.sim,
                         .judged_by = job.verdict};
-  trajectory::Log sim = trajectory::ReadLog(files::ReadFile(job.sim), job.sim, job.sim_logs);
+  trajectory::Log sim = trajectory::ReadLog(files::ReadFile(job.sim), job.sim, job.SimLogs());
   SayNotes(sim, job.sim, "--sim-format", say);
   result.sim = std::move(sim.trajectory);
-  const sweep::LogOptions real_logs{job.real_logs, job.tag_offset_m, "--real-format"};
+  const sweep::LogOptions real_logs{job.RealLogs(), job.tag_offset_m, "--real-format"};
   for (const std::string& path : job.reals) {
     trajectory::Log real = sweep::ReadMovedLog(files::ReadFile(path), path, real_logs);
     SayNotes(real, path, "--real-format", say);

@@ -75,9 +75,9 @@ LoadedRun LoadRun(const std::string& name, const std::string& program) {
   return loaded;
 }
 
-odometry::OdometryResult MeasureOdometry(
-    const std::vector<LoadedRun>& runs, odometry::RunOptions options,
-    const std::optional<odometry::CalibrationOptions>& calibration) {
+odometry::OdometryResult MeasureOdometry(const std::vector<LoadedRun>& runs,
+                                         const OdometryJob& job) {
+  odometry::RunOptions options = job.run_options;
   odometry::OdometryOptions wheels;
   if (const auto& experiment = runs.front().experiment) {
     wheels = experiment->hardware.odometry;
@@ -91,10 +91,10 @@ odometry::OdometryResult MeasureOdometry(
   }
   odometry::OdometryResult result =
       odometry::MeasureRuns(driven, AreRepeats(runs), wheels, options);
-  if (!calibration) return result;
+  if (!job.calibrate) return result;
   std::erase_if(logs, [](const odometry::RunLog& log) { return log.encoders.empty(); });
-  result.calibration = odometry::CalibrateOdometry(logs, wheels, *calibration);
-  result.confidence = calibration->confidence;
+  result.calibration = odometry::CalibrateOdometry(logs, wheels, job.calibration);
+  result.confidence = job.calibration.confidence;
   return result;
 }
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "rift/files/files.hpp"
@@ -22,6 +25,24 @@ bool IsSaved(const experiment::Experiment& experiment, const fs::path& path) {
 }
 
 }  // namespace
+
+void PutStart(const std::string& text, experiment::Experiment& experiment) {
+  constexpr std::array<const char*, 3> kKeys{"x", "y", "heading"};
+  std::vector<std::string> words;
+  std::istringstream parts(text);
+  for (std::string word; std::getline(parts, word, ',');) words.push_back(word);
+  if (words.size() != kKeys.size()) {
+    throw std::invalid_argument(
+        fmt::format("--start '{}': give X,Y,YAW_DEG, such as -0.28,-0.06,10", text));
+  }
+  std::vector<yaml::KeyValue> values;
+  for (size_t i = 0; i < words.size(); ++i) {
+    yaml::Node value = yaml::Node::Scalar(words[i]);
+    value.origin.source = "--start";
+    values.push_back({fmt::format("waypoints[0].{}", kKeys[i]), value});
+  }
+  yaml::SetValues(experiment, values);
+}
 
 trial::SteeringCheck CheckOf(const Simulated& made) {
   trial::SteeringCheck check = report::SteeringOf(made.experiment, made.run);

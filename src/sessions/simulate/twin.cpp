@@ -1,6 +1,7 @@
 #include "rift/sessions/simulate/twin.hpp"
 
 #include "rift/files/files.hpp"
+#include "rift/files/outputs.hpp"
 #include "rift/report/json/fields.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/trajectory/log.hpp"
@@ -42,6 +43,15 @@ void SaveRun(const PreparedTwin& prepared, const twin::TwinRun& run) {
 
 }  // namespace
 
+void CheckTwinNames(const fs::path& folder, const std::vector<fs::path>& inputs, bool force) {
+  files::Outputs outputs{.folder = folder, .force = force};
+  for (const char* name :
+       {"experiment.yaml", "camera.yaml", "truth.csv", "trajectory.csv", "summary.json"}) {
+    outputs.files.push_back(folder / name);
+  }
+  files::CheckOutputs(inputs, outputs);
+}
+
 PreparedTwin PrepareTwin(const experiment::Experiment& experiment,
                          const std::string& experiment_file, const fs::path& folder,
                          const sweep::Inputs& inputs) {
@@ -68,6 +78,13 @@ twin::TwinRun ServeTwin(const PreparedTwin& prepared,
   if (!fs::exists(prepared.folder / "experiment.yaml")) SaveSetup(prepared);  // removed meanwhile
   SaveRun(prepared, run);
   return run;
+}
+
+std::string AddressJson(const PreparedTwin& prepared, const twin::TwinAddress& address) {
+  const nlohmann::ordered_json json{{"port", address.port},
+                                    {"camera", address.camera},
+                                    {"calibration", fs::absolute(prepared.Calibration()).string()}};
+  return json.dump() + '\n';
 }
 
 std::string EndingOf(const twin::TwinRun& run) {

@@ -1,5 +1,8 @@
 #include "rift/sessions/sweep/further_questions.hpp"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
 #include <utility>
 
 #include "cluster.hpp"
@@ -63,6 +66,25 @@ sweep::RareEvent RareEventInto(const std::filesystem::path& folder,
 }
 
 }  // namespace
+
+void FurtherQuestions::Check(const experiment::Experiment& experiment) const {
+  if (!Any()) return;
+  const char* flag = rare_event ? "--rare-event" : "--shrink";
+  if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
+    throw std::invalid_argument(
+        fmt::format("{} drives further trials, and candidate.kind is logs: recorded runs cannot be "
+                    "driven at other settings; set candidate.kind=simulation",
+                    flag));
+  }
+  if (experiment.space.parameters.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "{} needs a space: name the parameters to vary, such as space.v_min: [0.15, 0.2]", flag));
+  }
+  const bool is_row = shrink.find_first_not_of("0123456789") == std::string::npos;
+  if (is_row || shrink == "worst") return;
+  throw std::invalid_argument(fmt::format(
+      "--shrink {}: must be the id of a row in table.csv (a whole number), or worst", shrink));
+}
 
 std::optional<FurtherAnswers> Answer(const FurtherQuestions& questions,
                                      const std::filesystem::path& folder,

@@ -1,12 +1,46 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rift/experiment/experiment.hpp"
 
 namespace rift::sessions {
+
+/// Which drives a person asks for. Without any of the first four it is one drive.
+struct SeriesRequest {
+  std::optional<int> repeat;
+  bool grid = false;
+  bool identify = false;    ///< drive the program of an identification instead of the waypoints
+  std::string suggested;    ///< folder of a sweep whose suggested.yaml is driven
+  std::string before_each;  ///< a command line
+
+  bool IsSeries() const { return grid || identify || repeat || !suggested.empty(); }
+
+  /// Calls field(key, member, min, max, what the value is called, help) for a number, else
+  /// field(key, member, [what the value is called,] help).
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("repeat", self.repeat, 1, 1000, "N",
+          "drive so many times, into DIR/1, DIR/2, ...; the same command goes on after a break");
+    field("grid", self.grid,
+          "drive every setting of the experiment's space, reference.trials times each, and "
+          "report on them against the simulator; the same command goes on after a break");
+    field("identify", self.identify,
+          "drive a program that tells what waypoint drives cannot, instead of the waypoints, and "
+          "write DIR/sweep.yaml, which fits the simulated robot to it; half a minute on 1 m by 1 "
+          "m, as often as --repeat says [5]");
+    field("suggested", self.suggested, "DIR",
+          "drive the experiments that rift sweep --suggest wrote into its folder, into "
+          "DIR/suggested; the same sweep takes their logs in");
+    field("before_each", self.before_each, "COMMAND",
+          "program to run before each trial of --repeat, --grid, --identify or --suggested; "
+          "{trial} and the settings' names such as {surface} are filled in. It ends with 0, or "
+          "prints port, camera and calibration as a line of JSON and is ended after the trial");
+  }
+};
 
 /// One drive of a table of them.
 struct PlannedTrial {
@@ -28,6 +62,7 @@ struct SeriesPlan {
   std::vector<experiment::Parameter> parameters;
   /// What holds the simulator against the logs: `rift sweep` runs it.
   experiment::Experiment sweep;
+  std::string next;  ///< what a person does with the drives; empty: they are swept at once
 };
 
 /// Every setting of the experiment's grid (the paper's without a space), reference.trials times
@@ -47,6 +82,11 @@ struct ChosenSetting {
 /// experiment itself.
 SeriesPlan PlanChosen(const experiment::Experiment& experiment,
                       const std::vector<ChosenSetting>& settings);
+
+/// The drives that were asked for, below `out` unless they are suggested ones. Throws
+/// std::invalid_argument where there is nothing to drive.
+SeriesPlan PlanSeries(const SeriesRequest& request, const experiment::Experiment& experiment,
+                      const std::filesystem::path& out);
 
 /// The experiment `count` times, into out/1, out/2, ...
 SeriesPlan PlanRepeats(const experiment::Experiment& experiment, int count,

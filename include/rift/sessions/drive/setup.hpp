@@ -13,6 +13,16 @@ struct DriveAddress {
   std::string port;
   std::string camera;
   std::string calibration;
+
+  /// Calls field(key, member, what the value is called, help) for every member.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("port", self.port, "TTY", "the robot's serial port, such as /dev/rfcomm0");
+    field("camera", self.camera, "DEVICE|URL",
+          "the camera above the floor: /dev/video0, or an http:// or rtsp:// stream");
+    field("calibration", self.calibration, "FILE.yaml",
+          "the camera's lens and where it hangs, as rift track writes them");
+  }
 };
 
 /// What drives have in common, whatever is driven.

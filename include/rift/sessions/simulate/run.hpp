@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "rift/experiment/experiment.hpp"
@@ -15,6 +16,10 @@ struct Simulated {
   sweep::SimulatedTrial trial;
   sweep::SimulatedRun run;
 };
+
+/// Puts the first waypoint to `-0.28,-0.06,10`: metres, metres, degrees. Throws
+/// std::invalid_argument for other words, and yaml::Error for a place that no waypoint may have.
+void PutStart(const std::string& text, experiment::Experiment& experiment);
 
 /// Why the run circled or did not arrive, with those proposals alone with which the same trial
 /// arrives.

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "rift/experiment/experiment.hpp"
 #include "rift/sweep/falsify/recorded_logs.hpp"
@@ -19,6 +20,11 @@ struct PreparedTwin {
   std::filesystem::path Calibration() const { return folder / "camera.yaml"; }
 };
 
+/// Throws std::invalid_argument when a file of a twin's folder is an input, or is there and not to
+/// be replaced.
+void CheckTwinNames(const std::filesystem::path& folder,
+                    const std::vector<std::filesystem::path>& inputs, bool force);
+
 /// Writes the two files. Throws as sweep::SimulatedTrialOf and twin::OverheadCamera do.
 PreparedTwin PrepareTwin(const experiment::Experiment& experiment,
                          const std::string& experiment_file, const std::filesystem::path& folder,
@@ -30,6 +36,9 @@ PreparedTwin PrepareTwin(const experiment::Experiment& experiment,
 twin::TwinRun ServeTwin(const PreparedTwin& prepared,
                         const std::function<void(const twin::TwinAddress&)>& announce,
                         const std::function<bool()>& is_stopped);
+
+/// Where port, camera and calibration are, as one line of JSON.
+std::string AddressJson(const PreparedTwin& prepared, const twin::TwinAddress& address);
 
 /// How a run ended, in words.
 std::string EndingOf(const twin::TwinRun& run);

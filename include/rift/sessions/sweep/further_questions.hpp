@@ -18,6 +18,19 @@ struct FurtherQuestions {
   bool rare_event = false;  ///< how often a setting drawn evenly from the space fails
 
   bool Any() const { return !shrink.empty() || rare_event; }
+  /// Throws std::invalid_argument when the experiment cannot meet them, before a trial is run.
+  void Check(const experiment::Experiment& experiment) const;
+
+  /// Calls field(key, member, [what the value is called,] help) for every member.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("shrink", self.shrink, "ROW|worst",
+          "bring a failing row of table.csv down to the fewest and smallest changes from the "
+          "experiment's own values that still fail, by further trials");
+    field("rare_event", self.rare_event,
+          "estimate a small failure probability over the space by further trials (subset "
+          "simulation)");
+  }
 };
 
 struct FurtherAnswers {
