@@ -15,7 +15,7 @@
 #include "rift/sessions/sweep/journal.hpp"
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"
 #include "support/inputs/paths.hpp"

@@ -11,7 +11,7 @@
 #include <filesystem>
 
 #include "rift/sweep/falsify/evaluator.hpp"
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"

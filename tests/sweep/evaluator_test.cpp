@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
 #include "support/inputs/paths.hpp"
 

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "rift/statistics/random.hpp"
-#include "rift/sweep/falsify/grid.hpp"
-#include "rift/sweep/falsify/search_space.hpp"
+#include "rift/sweep/falsify/settings.hpp"
+#include "rift/sweep/falsify/sweep.hpp"
 #include "rift/sweep/falsify/verdict.hpp"
 
 namespace rift::sweep {

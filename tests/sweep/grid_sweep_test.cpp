@@ -1,4 +1,5 @@
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
+#include "rift/sweep/falsify/sweep.hpp"
 
 #include "rift/sweep/falsify/evaluator.hpp"
 

@@ -11,7 +11,8 @@
 
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
+#include "rift/sweep/falsify/sweep.hpp"
 #include "support/inputs/paths.hpp"
 #include "support/processes/process.hpp"
 #include "support/sanitizer.hpp"

@@ -1,6 +1,7 @@
 #include "rift/report/json/fields.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {
@@ -35,9 +36,9 @@ std::string ShrunkJson(const sweep::SweepResult& result, const sweep::ShrunkRow&
   for (size_t i = 0; i < found.shrunk.changed.size(); ++i) {
     const int parameter = found.shrunk.changed[i];
     json["changes"].push_back({{"parameter", parameters[parameter].Name()},
-                               {"nominal", ValueJson(found.nominal[parameter])},
-                               {"failing", ValueJson(failing.theta[parameter])},
-                               {"shrunk", ValueJson(found.shrunk.theta[parameter])},
+                               {"nominal", sweep::ValueJson(found.nominal[parameter])},
+                               {"failing", sweep::ValueJson(failing.theta[parameter])},
+                               {"shrunk", sweep::ValueJson(found.shrunk.theta[parameter])},
                                {"without", TrialJson(folder, parameters, found, 2 + i)}});
   }
   json["is_minimal"] = found.shrunk.is_minimal;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "rift/sweep/explain/worst_trial.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {
@@ -144,14 +145,10 @@ sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const Ta
   return request;
 }
 
-nlohmann::ordered_json ValueJson(const experiment::ParameterValue& value) {
-  return value.number ? nlohmann::ordered_json(*value.number) : nlohmann::ordered_json(value.text);
-}
-
 nlohmann::ordered_json ThetaJson(const std::vector<experiment::Parameter>& parameters,
                                  const experiment::Theta& theta) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (size_t i = 0; i < theta.size(); ++i) json[parameters[i].Name()] = ValueJson(theta[i]);
+  for (size_t i = 0; i < theta.size(); ++i) json[parameters[i].Name()] = sweep::ValueJson(theta[i]);
   return json;
 }
 

@@ -16,7 +16,7 @@
 #include "rift/report/figures/gnuplot_text.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/sessions/sweep/folder.hpp"
-#include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 
 namespace rift::sessions {
 namespace {

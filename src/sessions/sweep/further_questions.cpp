@@ -10,7 +10,7 @@
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/sessions/sweep/journal.hpp"
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 
 namespace rift::sessions {
 
@@ -37,10 +37,6 @@ class Elsewhere {
  private:
   std::optional<Cluster> cluster_;
 };
-
-sweep::TrialRequest RequestOf(const sweep::TrialRow& row) {
-  return {.theta = row.theta, .trial = row.trial, .seed = row.seed};
-}
 
 sweep::ShrunkRow ShrinkInto(const std::filesystem::path& folder,
                             const experiment::Experiment& experiment,
@@ -103,7 +99,7 @@ std::optional<FurtherAnswers> Answer(const FurtherQuestions& questions,
     if (!questions.shrink.empty()) {
       const int row = sweep::FailingRow(result, questions.shrink);
       const std::string failing =
-          sweep::EncodeRequest(RequestOf(result.rows[static_cast<size_t>(row)]));
+          sweep::EncodeRequest(sweep::RequestOf(result.rows[static_cast<size_t>(row)]));
       trials.AskFor(elsewhere.Bringing({.kind = sweep::ShardKind::kShrink, .requests = {failing}}));
       answers.shrunk = ShrinkInto(folder, experiment, result, row, trials);
     }

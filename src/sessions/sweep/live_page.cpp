@@ -10,7 +10,7 @@
 #include "rift/files/files.hpp"
 #include "rift/report/page/page.hpp"
 #include "rift/sweep/explain/explanation.hpp"
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 
 namespace rift::sessions {
 namespace {

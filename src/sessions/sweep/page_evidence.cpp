@@ -23,7 +23,7 @@ sweep::Recording Finished(sweep::Recording recording) {
 /// The simulated and the reference path of a row, computed again.
 report::ComparedPair PathsOf(const sweep::SweepResult& result, const sweep::TrialRow& row,
                              const std::string& name, sweep::Evaluator& evaluator) {
-  const sweep::TrialRequest request{.theta = row.theta, .trial = row.trial, .seed = row.seed};
+  const sweep::TrialRequest request = sweep::RequestOf(row);
   const sweep::Recording reference = Finished(evaluator.Reference(request));
   const sweep::Recording candidate = Finished(evaluator.Candidate(request, reference));
   return report::ComparePair("simulator", candidate.trajectory, name, reference.trajectory,
@@ -55,8 +55,7 @@ class References {
   bool Take(int index) {
     const sweep::TrialRow& row = result_.rows[index];
     if (row.status == sweep::TrialStatus::kInvalid) return false;
-    const sweep::Recording reference =
-        evaluator_.Reference({.theta = row.theta, .trial = row.trial, .seed = row.seed});
+    const sweep::Recording reference = evaluator_.Reference(sweep::RequestOf(row));
     if (reference.status != sweep::TrialStatus::kOk) return false;
     const auto [found, is_new] = known_.try_emplace(sweep::Fingerprint(reference.trajectory),
                                                     static_cast<int>(evidence_.references.size()));

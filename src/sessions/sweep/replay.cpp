@@ -10,7 +10,7 @@
 #include "rift/sessions/sweep/folder.hpp"
 #include "rift/sweep/falsify/candidate_runs.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::sessions {
@@ -83,7 +83,7 @@ Replay ReplayRow(const std::filesystem::path& folder, const std::string& id,
   sweep::Evaluator evaluator(experiment, file, inputs);
   evaluator.LoadLogs();
   const sweep::TrialRequest request = report::RequestOf(experiment, row);
-  Replay replay{.experiment = experiment::ExperimentAt(experiment, request.theta)};
+  Replay replay{.experiment = sweep::ExperimentFor(experiment, request)};
   replay.experiment.seed = *request.seed;
   replay.trial = evaluator.TrialFor(request, evaluator.Reference(request));
   replay.run = sweep::Simulate(replay.trial);

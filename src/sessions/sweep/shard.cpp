@@ -15,7 +15,7 @@
 #include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/explain/shrink.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/run/external_program.hpp"
 
 namespace rift::sessions {
@@ -123,9 +123,8 @@ bool RunFurtherTrialsOf(const sweep::Shard& shard, sweep::Evaluator& evaluator, 
                        [&publisher](sweep::Journal& now) { publisher.Tick(now); });
   try {
     if (shard.kind == sweep::ShardKind::kShrink) {
-      const sweep::TrialRequest row = sweep::DecodeRequest(shard.requests.at(0));
       sweep::SweepResult result = sweep::EmptyResult(experiment);
-      result.rows.push_back({.theta = row.theta, .trial = row.trial, .seed = row.seed});
+      result.rows.push_back(sweep::RowFor(sweep::DecodeRequest(shard.requests.at(0))));
       sweep::ShrinkRow(experiment, result, 0, {}, trials.AsRun());
     } else {
       sweep::EstimateRareEvent(experiment, trials.AsRun(), {});

@@ -13,8 +13,8 @@
 #include "rift/experiment/program_parameters.hpp"
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
-#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 
 namespace rift::sweep {

@@ -10,8 +10,8 @@
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/sweep/falsify/candidate_runs.hpp"
-#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 
 namespace rift::sweep {
@@ -68,8 +68,7 @@ class Gathering {
 };
 
 void Gathering::Add(const experiment::Theta& theta) {
-  const experiment::Experiment at =
-      IsSimulated() ? experiment::ExperimentAt(experiment_, theta) : experiment_;
+  const experiment::Experiment at = ExperimentFor(experiment_, {.theta = theta});
   std::set<std::string> logs;
   for (const TrialRequest& request : TrialsAt(experiment_, theta)) {
     const Recording real = evaluator_.Reference(request);

@@ -1,8 +1,7 @@
 #include "rift/sweep/explain/failure_probability.hpp"
 
 #include "rift/search/strategy.hpp"
-#include "rift/sweep/falsify/grid.hpp"
-#include "rift/sweep/falsify/search_space.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/verdict.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 
 namespace rift::sweep {
 

@@ -12,8 +12,8 @@
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
-#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/enum_name.hpp"
@@ -35,29 +35,12 @@ auto InFile(const std::string& experiment_file, Call&& call) {
   }
 }
 
-/// Parameters of a sweep over logs name columns and parts of file names; some of them are also keys
-/// of the controller, and these tell how the log was driven.
-control::NavigatorOptions ControllerAt(const experiment::Experiment& experiment,
-                                       const experiment::Theta& theta) {
-  control::NavigatorOptions control = experiment.control;
-  std::vector<yaml::KeyValue> values;
-  for (const std::string& key : yaml::ListKeys(control)) {
-    for (size_t i = 0; i < theta.size(); ++i) {
-      const std::string& name = experiment.space.parameters[i].key;
-      const bool is_meant = theta[i].number && (name == key || name == "control." + key);
-      if (is_meant) values.push_back({key, experiment::ValueToNode(theta[i])});
-    }
-  }
-  yaml::SetValues(control, values);
-  return control;
-}
-
 /// A recorded run with what its controller must have asked for: the experiment's controller, with
 /// those parameters of the setting that name its keys ("v_max"), over the logged poses.
 Recording WithLimits(Recording log, const experiment::Experiment& experiment,
-                     const experiment::Theta& theta, double tag_offset_m) {
+                     const TrialRequest& request, double tag_offset_m) {
   if (log.status != TrialStatus::kOk) return log;
-  log.limits = RebuildLimits(log.trajectory, ControllerAt(experiment, theta), tag_offset_m);
+  log.limits = RebuildLimits(log.trajectory, ControllerFor(experiment, request), tag_offset_m);
   return log;
 }
 
@@ -250,16 +233,16 @@ void Evaluator::RequirePath(const experiment::PathTemplate& path, const std::str
                   experiment_file_, key, key));
 }
 
-std::string Evaluator::Filled(const experiment::PathTemplate& path, const experiment::Theta& theta,
-                              const std::string& trial) const {
+std::string Evaluator::Filled(const experiment::PathTemplate& path,
+                              const TrialRequest& request) const {
   return InFile(experiment_file_, [&] {
-    return experiment::FillTemplate(path.text, experiment_.space.parameters, theta, trial);
+    return experiment::FillTemplate(path.text, experiment_.space.parameters, request.theta,
+                                    request.trial);
   });
 }
 
-std::string Evaluator::ReferencePath(const experiment::Theta& theta,
-                                     const std::string& trial) const {
-  return Filled(experiment_.reference.path, theta, trial);
+std::string Evaluator::ReferencePath(const TrialRequest& request) const {
+  return Filled(experiment_.reference.path, request);
 }
 
 SimulatedTrial Evaluator::TrialOf(const experiment::Experiment& experiment,
@@ -268,7 +251,7 @@ SimulatedTrial Evaluator::TrialOf(const experiment::Experiment& experiment,
 }
 
 SimulatedTrial Evaluator::TrialFor(const TrialRequest& request, const Recording& reference) const {
-  const experiment::Experiment at = experiment::ExperimentAt(experiment_, request.theta);
+  const experiment::Experiment at = ExperimentFor(experiment_, request);
   const bool starts_as_reference = experiment_.start == experiment::Start::kReference;
   const geometry::Pose2 start =
       starts_as_reference ? StartFromLog(reference.trajectory, experiment_.reference.tag_offset_m,
@@ -283,9 +266,8 @@ Recording Evaluator::Candidate(const TrialRequest& request, const Recording& ref
 
 CandidateRun Evaluator::RunOf(const TrialRequest& request, const Recording& reference) {
   if (experiment_.candidate.kind == CandidateKind::kLogs) {
-    const std::string path = Filled(experiment_.candidate.path, request.theta, request.trial);
-    return {WithLimits(candidate_logs_.At(path), experiment_, request.theta, 0.0),
-            EncodersBeside(path)};
+    const std::string path = Filled(experiment_.candidate.path, request);
+    return {WithLimits(candidate_logs_.At(path), experiment_, request, 0.0), EncodersBeside(path)};
   }
   if (reference.status != TrialStatus::kOk) return {reference, {}};  // nothing to compare with
   if (candidate_program_) return {candidate_program_->Run(request), {}};
@@ -327,11 +309,11 @@ void Evaluator::NameSides(TrialRow& row) const {
   const std::string run =
       fmt::format("{} with seed {}", candidate_program_ ? "program" : "simulation", seed);
   row.candidate = experiment_.candidate.kind == CandidateKind::kLogs
-                      ? Filled(experiment_.candidate.path, row.theta, row.trial)
+                      ? Filled(experiment_.candidate.path, RequestOf(row))
                       : run;
   switch (experiment_.reference.kind) {
     case ReferenceKind::kLogs:
-      row.reference = ReferencePath(row.theta, row.trial);
+      row.reference = ReferencePath(RequestOf(row));
       return;
     case ReferenceKind::kNominal:
       row.reference = run;
@@ -352,8 +334,8 @@ std::string Evaluator::PathName() const {
 Recording Evaluator::Reference(const TrialRequest& request) {
   switch (experiment_.reference.kind) {
     case ReferenceKind::kLogs:
-      return WithLimits(reference_logs_.At(ReferencePath(request.theta, request.trial)),
-                        experiment_, request.theta, experiment_.reference.tag_offset_m);
+      return WithLimits(reference_logs_.At(ReferencePath(request)), experiment_, request,
+                        experiment_.reference.tag_offset_m);
     case ReferenceKind::kNominal:
       return Nominal(request.seed.value_or(experiment_.seed));
     case ReferenceKind::kProgram:
@@ -364,11 +346,8 @@ Recording Evaluator::Reference(const TrialRequest& request) {
   return {.source = PathName(), .trajectory = IdealPathAt(request.theta)};
 }
 
-// The parameters of logs are parts of their names.
 trajectory::Trajectory Evaluator::IdealPathAt(const experiment::Theta& theta) const {
-  const bool is_simulated = experiment_.candidate.kind == CandidateKind::kSimulation;
-  return IdealPath(experiment::TaskOf(is_simulated ? experiment::ExperimentAt(experiment_, theta)
-                                                   : experiment_));
+  return IdealPath(experiment::TaskOf(ExperimentFor(experiment_, {.theta = theta})));
 }
 
 /// The camera of a run is the truth that its odometry is held against.
@@ -443,7 +422,7 @@ double Evaluator::NoiseFloor_m(const experiment::Theta& theta, const std::functi
   if (!has_repeats) return gap::kNotComputed;
   std::set<std::string> sources;  // one path twice is no repeat
   if (experiment_.reference.kind == ReferenceKind::kLogs) {
-    for (const std::string& trial : trials) sources.insert(ReferencePath(theta, trial));
+    for (const std::string& trial : trials) sources.insert(ReferencePath({theta, trial}));
   }
   const auto [found, is_new] =
       noise_floors_m_.try_emplace(fmt::format("{}", fmt::join(sources, "\n")));

@@ -11,8 +11,8 @@
 #include "rift/experiment/path_template.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
-#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/yaml/node.hpp"
 
 namespace rift::sweep {
@@ -44,35 +44,31 @@ void Evaluator::LoadLogsOf(const experiment::PathTemplate& path, const char* key
     }
     if (!is_named) parameter.levels = {{"0", 0.0}};
   }
-  for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
-    for (const std::string& trial : experiment_.reference.trials.names) {
-      logs.At(Filled(path, theta, trial));
-    }
+  for (const TrialRequest& request : GridTrials(parameters, experiment_.reference.trials.names)) {
+    logs.At(Filled(path, request));
   }
 }
 
 std::string Evaluator::KeyOf(const TrialRequest& request) {
-  std::string key = SettingKey(experiment_.space.parameters, request.theta) +
-                    fmt::format("trial={} seed={}", request.trial, request.seed.value_or(0));
+  std::string key = TrialKey(experiment_.space.parameters, request);
   if (experiment_.reference.kind == ReferenceKind::kLogs) {
-    const std::string path = ReferencePath(request.theta, request.trial);
-    key += fmt::format(" log={}", reference_logs_.HashOf(path));
+    key += fmt::format(" log={}", reference_logs_.HashOf(ReferencePath(request)));
   }
   if (experiment_.candidate.kind == CandidateKind::kLogs) {
-    const std::string path = Filled(experiment_.candidate.path, request.theta, request.trial);
+    const std::string path = Filled(experiment_.candidate.path, request);
     key += fmt::format(" candidate={}", candidate_logs_.HashOf(path));
   }
   for (const auto& program : {candidate_program_, reference_program_}) {
     if (!program || program->HashesText().empty()) continue;
     key += fmt::format(" program={}", statistics::Hash128Text(program->HashesText()));
   }
-  for (const std::string& picture : PicturesOf(request.theta)) {
+  for (const std::string& picture : PicturesOf(request)) {
     key += fmt::format(" picture={}", PictureHash(picture));
   }
   return key;
 }
 
-std::set<std::string> Evaluator::PicturesOf(const experiment::Theta& theta) const {
+std::set<std::string> Evaluator::PicturesOf(const TrialRequest& request) const {
   std::set<std::string> pictures;
   const auto add = [&pictures](const experiment::Experiment& at) {
     const simulation::TerrainOptions& terrain = at.simulation.terrain;
@@ -85,7 +81,7 @@ std::set<std::string> Evaluator::PicturesOf(const experiment::Theta& theta) cons
   if (!is_simulated || !may_have_pictures_) return pictures;  // spares a copy of the experiment
   if (experiment_.reference.kind == ReferenceKind::kNominal) add(experiment_);
   try {
-    add(experiment::ExperimentAt(experiment_, theta));
+    add(ExperimentFor(experiment_, request));
   } catch (const yaml::Error&) {
     // Its row says which rule the setting breaks.
   }

@@ -7,9 +7,8 @@
 #include <span>
 #include <stdexcept>
 
-#include "rift/sweep/falsify/grid.hpp"
 #include "rift/sweep/falsify/result.hpp"
-#include "rift/sweep/falsify/search_space.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/verdict.hpp"
 
 namespace rift::sweep {

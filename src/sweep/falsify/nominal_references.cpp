@@ -12,7 +12,7 @@
 #include "job_status.hpp"
 #include "program_side.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
 #include "rift/sweep/run/worker_pool.hpp"
 #include "rift/yaml/enum_name.hpp"
@@ -43,10 +43,7 @@ const Recording& Evaluator::Nominal(std::uint64_t seed) {
   if (found != nominal_runs_.end()) return found->second;
   if (nominal_runs_.size() >= kMostKept) nominal_runs_.clear();
   if (candidate_program_) {
-    const TrialRequest nominal{.theta = experiment::NominalTheta(experiment_),
-                               .trial = experiment_.reference.trials.names.front(),
-                               .seed = seed};
-    return nominal_runs_[seed] = candidate_program_->Run(nominal);
+    return nominal_runs_[seed] = candidate_program_->Run(NominalRequest(experiment_, seed));
   }
   const geometry::Pose2 start = experiment::TaskOf(experiment_).Start();
   const SimulatedTrial trial = TrialOf(experiment_, start, seed);

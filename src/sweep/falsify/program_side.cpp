@@ -16,6 +16,7 @@
 #include "rift/files/process_end.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/sweep/falsify/program_files.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/csv.hpp"
 
 namespace rift::sweep {
@@ -40,12 +41,7 @@ ordered_json TrialJson(const experiment::Experiment& experiment,
                        const TrialRequest& request, const std::string& folder) {
   ordered_json theta = ordered_json::object();
   for (size_t i = 0; i < request.theta.size(); ++i) {
-    const experiment::ParameterValue& value = request.theta[i];
-    const std::string name = parameters[i].key;
-    if (value.number)
-      theta[name] = *value.number;
-    else
-      theta[name] = value.text;
+    theta[parameters[i].key] = ValueJson(request.theta[i]);
   }
   return {{"theta", theta},
           {"seed", request.seed.value_or(experiment.seed)},
@@ -102,8 +98,7 @@ ProgramSide::ProgramSide(const experiment::Experiment& experiment, ProgramOption
                     "\"{{out}}\"]",
                     options_.key, options_.key));
   }
-  const TrialRequest nominal{.theta = experiment::NominalTheta(experiment),
-                             .trial = experiment.reference.trials.names.front()};
+  const TrialRequest nominal = NominalRequest(experiment);
   for (const std::string& word : options_.run.words) {
     try {
       FilledIn(word, experiment, parameters_, nominal, "/");

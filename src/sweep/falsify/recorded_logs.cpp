@@ -9,6 +9,7 @@
 #include "rift/gap/goal.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 
 namespace rift::sweep {
@@ -110,18 +111,6 @@ bool IsFinite(const trajectory::Trajectory& path) {
   });
 }
 
-/// Where the runs of a setting may end; nothing where their ends count as all their other points.
-std::optional<gap::Goal> GoalOf(const experiment::Experiment& experiment,
-                                const experiment::Theta& theta) {
-  const bool has_goal = experiment.waypoints.size() > 1 && experiment.program.segments.empty() &&
-                        experiment.objective == experiment::Objective::kGap;
-  if (!has_goal || experiment.falsify.count.stop) return std::nullopt;
-  const bool is_simulated = experiment.candidate.kind == experiment::CandidateKind::kSimulation;
-  const experiment::Experiment at =
-      is_simulated ? experiment::ExperimentAt(experiment, theta) : experiment;
-  return gap::Goal{at.waypoints.back().Position(), at.control.reach_radius_m};
-}
-
 /// A path that never moves is a row of its own, not the sweep's end.
 void Measure(const experiment::Experiment& experiment, const Recording& candidate,
              const Recording& reference, TrialRow& row) {
@@ -133,7 +122,7 @@ void Measure(const experiment::Experiment& experiment, const Recording& candidat
   }
   try {
     row.comparison = gap::Compare(candidate.trajectory, reference.trajectory, options);
-    if (const std::optional<gap::Goal> goal = GoalOf(experiment, row.theta)) {
+    if (const std::optional<gap::Goal> goal = WayGoalOf(experiment, row)) {
       row.way_gap_m = gap::WayGap_m(candidate.trajectory, reference.trajectory, *goal, options);
     }
     row.evidence.fingerprint = Fingerprint(candidate.trajectory);
@@ -151,10 +140,7 @@ void Measure(const experiment::Experiment& experiment, const Recording& candidat
 
 TrialRow CompareTrial(const experiment::Experiment& experiment, const TrialRequest& request,
                       const Recording& simulated, const Recording& real) {
-  TrialRow row{.theta = request.theta,
-               .trial = request.trial,
-               .seed = request.seed,
-               .is_random_draw = request.is_random_draw};
+  TrialRow row = RowFor(request);
   row.candidate = simulated.source;
   row.reference = real.source;
   row.evidence.candidate_limits = simulated.limits;

@@ -62,17 +62,6 @@ std::string MainLevel(const std::vector<experiment::Parameter>& parameters,
   return parameters.empty() ? "" : theta[SplitFactors(parameters).main_factor].text;
 }
 
-std::string SettingKey(const std::vector<experiment::Parameter>& parameters,
-                       const experiment::Theta& theta) {
-  std::string key;
-  for (size_t i = 0; i < theta.size(); ++i) {
-    const experiment::ParameterValue& value = theta[i];
-    key += fmt::format("{}={} ", parameters[i].key,
-                       value.number ? experiment::NumberValue(*value.number).text : value.text);
-  }
-  return key;
-}
-
 double Loss_m(const TrialRow& row, double threshold_m) {
   if (row.IsOk()) return row.CountedGap_m();
   if (!row.falsified) return gap::kNotComputed;

@@ -1,6 +1,8 @@
 #include "rift/sweep/falsify/sweep.hpp"
 
+#include <iterator>
 #include <stdexcept>
+#include <vector>
 
 namespace rift::sweep {
 namespace {
@@ -19,6 +21,44 @@ std::optional<SweepResult> RunGoal(const experiment::Experiment& experiment, con
 }
 
 }  // namespace
+
+std::optional<SweepResult> SweepGrid(const experiment::Experiment& experiment,
+                                     const RunTrials& run) {
+  const std::vector<experiment::Theta> settings =
+      experiment::GridPoints(experiment.space.parameters);
+  const bool is_repeated =
+      experiment.falsify.repeat == Repeat::kEvery && FirstSeed(experiment).has_value();
+  const RepeatPlan plan(experiment.falsify, static_cast<int>(settings.size()),
+                        experiment.gap.threshold_m);
+  const int first = static_cast<int>(experiment.reference.trials.names.size());
+  std::vector<std::vector<TrialRow>> rows(settings.size());
+  std::vector<int> wanted(settings.size(), first);
+  while (true) {
+    std::vector<TrialRequest> requests;
+    for (size_t i = 0; i < settings.size(); ++i) {
+      for (TrialRequest& request : FurtherTrials(experiment, settings[i], TrialKind::kComparison,
+                                                 static_cast<int>(rows[i].size()), wanted[i])) {
+        requests.push_back(std::move(request));
+      }
+    }
+    if (requests.empty()) break;
+    std::optional<std::vector<TrialRow>> done = run(std::move(requests));
+    if (!done) return std::nullopt;
+    auto next = std::make_move_iterator(done->begin());
+    for (size_t i = 0; i < settings.size(); ++i) {
+      rows[i].insert(rows[i].end(), next, next + wanted[i]);
+      next += wanted[i];
+    }
+    if (!is_repeated) break;
+    wanted = plan.More({rows.begin(), rows.end()});
+  }
+  SweepResult result = EmptyResult(experiment);
+  for (std::vector<TrialRow>& of_setting : rows) {
+    std::move(of_setting.begin(), of_setting.end(), std::back_inserter(result.rows));
+  }
+  Summarise(result);
+  return result;
+}
 
 std::optional<SweepResult> Sweep(Evaluator& evaluator, const RunTrials& run,
                                  const MayStart& may_start, const ReferenceWatch& references) {

@@ -26,13 +26,6 @@ TrialStatus StatusOf(JobEnd end) {
 
 namespace {
 
-TrialRow RowFor(TrialRequest request) {
-  return {.theta = std::move(request.theta),
-          .trial = std::move(request.trial),
-          .seed = request.seed,
-          .is_random_draw = request.is_random_draw};
-}
-
 JournalEntry EntryOf(const TrialRow& row) {
   const auto status = EnumNames(row.status)[static_cast<size_t>(row.status)];
   return {std::string(status), row.comparison.gap_m, row.falsified, EncodeFindings(row)};
@@ -45,6 +38,20 @@ WorkerPool::Work WorkOf(Evaluate evaluate) {
 }
 
 }  // namespace
+
+TrialRequest RequestOf(const TrialRow& row) {
+  return {.theta = row.theta,
+          .trial = row.trial,
+          .seed = row.seed,
+          .is_random_draw = row.is_random_draw};
+}
+
+TrialRow RowFor(TrialRequest request) {
+  return {.theta = std::move(request.theta),
+          .trial = std::move(request.trial),
+          .seed = request.seed,
+          .is_random_draw = request.is_random_draw};
+}
 
 TrialRow EndedRow(TrialRequest request, const JobResult& result) {
   TrialRow row = RowFor(std::move(request));

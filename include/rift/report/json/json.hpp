@@ -131,9 +131,6 @@ std::string WorstIdOf(const std::string& table_csv, const std::string& name);
 /// The trial of a row of an experiment's table, to be run again.
 sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row);
 
-/// A value in JSON: a number where it is one, else its text.
-nlohmann::ordered_json ValueJson(const experiment::ParameterValue& value);
-
 /// A setting as an object whose keys are the parameters' columns in table.csv:
 /// {"surface": "ground", "v_min": 0.15}.
 nlohmann::ordered_json ThetaJson(const std::vector<experiment::Parameter>& parameters,

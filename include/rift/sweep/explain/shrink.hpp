@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 
 namespace rift::sweep {
 

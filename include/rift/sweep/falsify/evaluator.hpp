@@ -100,14 +100,13 @@ class Evaluator {
  private:
   std::vector<odometry::EncoderReading> EncodersBeside(const std::string& log) const;
   void RequirePath(const experiment::PathTemplate& path, const std::string& key) const;
-  std::string Filled(const experiment::PathTemplate& path, const experiment::Theta& theta,
-                     const std::string& trial) const;
+  std::string Filled(const experiment::PathTemplate& path, const TrialRequest& request) const;
   void CheckKinds() const;
   void LoadLogsOf(const experiment::PathTemplate& path, const char* key, RecordedLogs& logs) const;
   /// Of the heightfields that a trial at this setting is driven on.
-  std::set<std::string> PicturesOf(const experiment::Theta& theta) const;
+  std::set<std::string> PicturesOf(const TrialRequest& request) const;
   const std::string& PictureHash(const std::string& path);
-  std::string ReferencePath(const experiment::Theta& theta, const std::string& trial) const;
+  std::string ReferencePath(const TrialRequest& request) const;
   TrialRow EvaluateOdometry(const TrialRequest& request);
   const Recording& Nominal(std::uint64_t seed);
   std::uint64_t SeedWithReference(std::uint64_t seed);

@@ -198,11 +198,6 @@ std::string CombinationLabel(const experiment::Theta& theta, const std::vector<i
 std::string MainLevel(const std::vector<experiment::Parameter>& parameters,
                       const experiment::Theta& theta);
 
-/// "control.v_min=0.15 " for each value, numbers in their shortest form: the same for two settings
-/// only when all their values are. What the journal knows a setting by.
-std::string SettingKey(const std::vector<experiment::Parameter>& parameters,
-                       const experiment::Theta& theta);
-
 /// Rows grouped by the combination of the named parameters' values, in the order of first rows.
 std::vector<LevelSummary> SummariseBy(const SweepResult& result,
                                       const std::vector<int>& parameters);

@@ -4,9 +4,14 @@
 
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
-#include "rift/sweep/falsify/grid.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 
 namespace rift::sweep {
+
+/// Runs every trial of every setting; with falsify.repeat: every further simulated ones until all
+/// settings are decided. Nothing when it was told to stop.
+std::optional<SweepResult> SweepGrid(const experiment::Experiment& experiment,
+                                     const RunTrials& run);
 
 /// Visits the grid or searches it, as the experiment's goal says, and judges every setting, its
 /// noise floor included. Nothing when it was told to stop. `run` computes the trials with that

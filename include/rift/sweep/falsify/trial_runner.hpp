@@ -23,6 +23,10 @@ struct TrialRequest {
   bool is_random_draw = false;        ///< see TrialRow
 };
 
+/// The trial of a row, to be run again; and a row without findings, of a trial to be run.
+TrialRequest RequestOf(const TrialRow& row);
+TrialRow RowFor(TrialRequest request);
+
 /// Computes one trial. What it throws as std::exception makes the row a fault.
 using Evaluate = std::function<TrialRow(const TrialRequest&)>;
 
