@@ -25,7 +25,6 @@ class CmaEs {
   /// `mean`: unit coordinates. `sigma`: share of the axes.
   CmaEs(const Space& space, const Eigen::VectorXd& mean, double sigma, int population);
 
-  int Population() const { return population_; }
   /// The next generation, in unit coordinates.
   std::vector<Eigen::VectorXd> Sample(statistics::Random& random);
   /// The losses of that generation, in its order; +infinity where there is none.

@@ -71,7 +71,7 @@ void SaveCalibration(const fs::path& folder, const sweep::Evaluator& evaluator,
 bool SaveCalibrationFigure(const fs::path& folder, const std::string& name,
                            const sweep::CalibrationReport& found) {
   const std::optional<report::Figure> figure = report::CalibrationFigure(name, found);
-  if (figure) SaveFigure(folder, *figure);
+  if (figure) report::WriteFigureFiles(folder / "figures", *figure);
   return figure.has_value();
 }
 

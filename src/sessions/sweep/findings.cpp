@@ -51,7 +51,7 @@ void SavePage(const fs::path& folder, sweep::Evaluator& evaluator, const sweep::
   if (worst) evidence.worst_path_m = PathOf(*worst);
   RemoveFigures(folder / "figures");
   for (const report::Figure& figure : set.figures) {
-    SaveFigure(folder, figure);
+    report::WriteFigureFiles(folder / "figures", figure);
     evidence.figures.push_back(
         {figure.title, files::ReadFile(folder / "figures" / (figure.name + ".svg"))});
   }

@@ -1,7 +1,6 @@
 #include "rift/sessions/sweep/folder.hpp"
 
 #include "rift/files/files.hpp"
-#include "rift/report/figures/figure.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/sessions/sweep/journal.hpp"
 
@@ -42,12 +41,6 @@ void SaveResult(const fs::path& folder, const sweep::Evaluator& evaluator,
   files::WriteFile(folder / "inputs.txt", evaluator.InputsText());
   files::WriteFile(folder / "table.csv", report::TableCsv(result));
   files::WriteFile(folder / "summary.json", report::SummaryJson(result));
-}
-
-void SaveFigure(const fs::path& folder, const report::Figure& figure) {
-  const fs::path name = folder / "figures" / figure.name;
-  files::WriteFile(name.string() + ".svg", report::Render(figure, report::FigureFormat::kSvg));
-  files::WriteFile(name.string() + ".png", report::Render(figure, report::FigureFormat::kPng));
 }
 
 }  // namespace rift::sessions

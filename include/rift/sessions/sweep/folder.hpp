@@ -5,10 +5,6 @@
 #include "rift/experiment/experiment.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 
-namespace rift::report {
-struct Figure;
-}
-
 namespace rift::sessions {
 
 /// The experiment that a sweep saved in its folder. Throws as experiment::LoadExperiment does.
@@ -30,8 +26,5 @@ void RemoveFindings(const std::filesystem::path& folder);
 /// What was run, what it read, table and summary.
 void SaveResult(const std::filesystem::path& folder, const sweep::Evaluator& evaluator,
                 const sweep::SweepResult& result);
-
-/// DIR/figures/NAME.svg and NAME.png.
-void SaveFigure(const std::filesystem::path& folder, const report::Figure& figure);
 
 }  // namespace rift::sessions
