@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 void CheckLogName(const TrackRequest& request) {
   std::vector<fs::path> inputs;
   if (!request.experiment.empty()) inputs.emplace_back(request.experiment);
-  const bool has_times = !request.times.empty() && request.times != vision::kTimesFromExif;
-  if (has_times) inputs.emplace_back(request.times);
+  const std::string& times = request.job.times;
+  if (!times.empty() && times != vision::kTimesFromExif) inputs.emplace_back(times);
   sessions::CheckNames(request.job, std::move(inputs), request.copies.Files());
 }
 
@@ -138,12 +138,7 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
       ->delimiter(',')
       ->check(InRange(0, vision::kLastTagId))
       ->type_name("N,N,...");
-  flags("tag_height_m", request.tag_height_m, 0.0, 2.0, "m",
-        "of the tag above the floor [track.tag.height_m]");
-  flags("times", request.times, "FILE|exif",
-        "when the pictures of a pattern were taken: a line each, seconds, or name and seconds; "
-        "exif: as their EXIF data say [the numbers in their names, at --fps a second]");
-  flags("fps", request.fps, 0.1, 1000.0, "hz", "asked of a device; rate of a pattern of pictures");
+  AddFlags(app, job);
   flags("duration_s", job.duration_s, 0.0, 1e9, "s", "ends after this long");
   flags("world", job.world, "first|FILE.yaml",
         "sets the world frame first and keeps it in the calibration: from the robot's first pose, "

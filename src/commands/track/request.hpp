@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,10 +17,6 @@ struct TrackRequest {
   sessions::TrackingJob job;  ///< but for its options
   std::string out;
   LogCopies copies;
-  std::optional<double> tag_height_m;
-  std::string times;  ///< file with the times of a pattern of pictures
-  std::optional<double> fps;
-
   bool check = false;  ///< what precision is to be expected
 
   bool calibrate = false;

@@ -7,7 +7,7 @@
 
 #include "request.hpp"
 #include "rift/commands/track/track.hpp"
-#include "rift/experiment/task.hpp"
+#include "rift/experiment/experiment.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/json/precision.hpp"
@@ -32,17 +32,6 @@ experiment::Experiment ExperimentOf(const TrackRequest& request) {
   };
   const std::string path = request.experiment.empty() ? "defaults" : request.experiment;
   return experiment::LoadExperiment(path, request.overrides, read);
-}
-
-experiment::TrackOptions OptionsOf(const TrackRequest& request,
-                                   const experiment::Experiment& experiment) {
-  experiment::TrackOptions options = experiment.track;
-  options.tag = experiment::TagOn(experiment);
-  if (request.fps) options.capture.fps = *request.fps;
-  if (!request.times.empty()) options.capture.times = request.times;
-  if (!request.job.ids.empty()) options.tag.id = request.job.ids.front();
-  if (request.tag_height_m) options.tag.height_m = *request.tag_height_m;
-  return options;
 }
 
 int EndOf(const vision::TrackRun& run) {
@@ -74,7 +63,7 @@ void PrintRows(std::string_view rows) {
 
 int TrackRobot(const TrackRequest& request) {
   sessions::TrackingJob job = request.job;
-  job.options = OptionsOf(request, ExperimentOf(request));
+  job.options = request.job.OptionsFor(ExperimentOf(request));
   sessions::TrackingInputs inputs = sessions::ReadInputs(job);
   const terminal::StopSignal stop;
   int exit_code = terminal::kDone;
@@ -92,7 +81,7 @@ vision::Calibration CalibrateFor(const TrackRequest& request) {
   const sessions::CalibrationJob job{.images = request.images,
                                      .camera = request.job.camera,
                                      .board = request.board,
-                                     .options = OptionsOf(request, ExperimentOf(request)),
+                                     .options = request.job.OptionsFor(ExperimentOf(request)),
                                      .give_up_s = request.job.session.give_up_s,
                                      .view = request.job.view};
   const terminal::StopSignal stop;
@@ -120,7 +109,7 @@ int CalibrateAndSave(const TrackRequest& request) {
 /// What tracking will be worth, before anything is driven. No camera is opened.
 int CheckPrecision(const TrackRequest& request) {
   const experiment::Experiment experiment = ExperimentOf(request);
-  const vision::TagOptions tag = OptionsOf(request, experiment).tag;
+  const vision::TagOptions tag = request.job.OptionsFor(experiment).tag;
   const vision::CameraModel camera =
       vision::ReadCamera(files::ReadFile(request.job.calibration), request.job.calibration);
   const vision::SyntheticCameraOptions& look = experiment.twin.camera;
@@ -144,7 +133,7 @@ int PrintSheet(const TrackRequest& request) {
     terminal::Say(fmt::format("to print at 100 %: {}", request.print_board));
     return terminal::kDone;
   }
-  const vision::TagOptions tag = OptionsOf(request, ExperimentOf(request)).tag;
+  const vision::TagOptions tag = request.job.OptionsFor(ExperimentOf(request)).tag;
   files::WriteFile(request.print_tag, vision::TagSheet(tag.id, tag.size_m, tag.family));
   terminal::Say(fmt::format("to print at 100 %: {}, {} id {}, side {:g} m", request.print_tag,
                             vision::NameOf(tag.family), tag.id, tag.size_m));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "log.hpp"
+#include "rift/experiment/task.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/statistics/hash.hpp"
@@ -62,6 +63,16 @@ void WriteRunFile(const TrackingJob& job, const vision::CameraModel& camera,
 }
 
 }  // namespace
+
+experiment::TrackOptions TrackingJob::OptionsFor(const experiment::Experiment& experiment) const {
+  experiment::TrackOptions said = experiment.track;
+  said.tag = experiment::TagOn(experiment);
+  if (fps) said.capture.fps = *fps;
+  if (!times.empty()) said.capture.times = times;
+  if (!ids.empty()) said.tag.id = ids.front();
+  if (tag_height_m) said.tag.height_m = *tag_height_m;
+  return said;
+}
 
 TrackingInputs ReadInputs(const TrackingJob& job) {
   view::TrackView::Content content = ContentOf(job);

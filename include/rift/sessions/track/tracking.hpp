@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rift/experiment/options.hpp"
+#include "rift/experiment/experiment.hpp"
 #include "rift/view/track_view.hpp"
 #include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/tracking/session_options.hpp"
@@ -22,9 +22,12 @@ struct TrackingJob {
   vision::SessionOptions session;
   experiment::TrackOptions options;
   std::vector<int> ids;  ///< of the robots' tags; none: options.tag.id
-  std::string world;     ///< sets the world frame: "first", or a file with tags or points
-  std::string log;       ///< its file, or "-"; empty: nothing but the world frame is set
-  bool force = false;    ///< replace log and run file, and a better world frame
+  std::optional<double> tag_height_m;
+  std::string times;  ///< file with the times of a pattern of pictures
+  std::optional<double> fps;
+  std::string world;   ///< sets the world frame: "first", or a file with tags or points
+  std::string log;     ///< its file, or "-"; empty: nothing but the world frame is set
+  bool force = false;  ///< replace log and run file, and a better world frame
   bool view = false;
   std::string path;              ///< waypoints or a log, which the view shows
   std::string record_waypoints;  ///< file for those made in the view
@@ -32,6 +35,20 @@ struct TrackingJob {
 
   /// The log goes to `print`, and nothing beside it.
   bool IsPiped() const { return log == "-"; }
+  /// What the experiment says of tracking, and in its place what is said here.
+  experiment::TrackOptions OptionsFor(const experiment::Experiment& experiment) const;
+
+  /// Calls field(key, member, [min, max,] what the value is called, help) for what stands in the
+  /// place of the experiment's.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("tag_height_m", self.tag_height_m, 0.0, 2.0, "m",
+          "of the tag above the floor [track.tag.height_m]");
+    field("times", self.times, "FILE|exif",
+          "when the pictures of a pattern were taken: a line each, seconds, or name and seconds; "
+          "exif: as their EXIF data say [the numbers in their names, at --fps a second]");
+    field("fps", self.fps, 0.1, 1000.0, "hz", "asked of a device; rate of a pattern of pictures");
+  }
 };
 
 /// Whom tracking tells and asks.
