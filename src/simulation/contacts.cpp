@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "block_contacts.hpp"
+
 namespace rift::simulation {
 namespace {
 
@@ -113,6 +115,7 @@ Vector3d Lowest(const Vector3d& axis, const Vector3d& normal) {
   return length > 1e-9 ? Vector3d(down / length) : Vector3d(axis.unitOrthogonal());
 }
 
+constexpr double kRimRoundness_m = 0.0005;
 constexpr double kStanding_mps = 1e-9;
 
 constexpr double kTippedOver_rad = 1.05;
@@ -206,6 +209,13 @@ void AddWheelContacts(const ContactScene& scene, int side, const Vector3d& centr
     contacts.push_back({at, grip.mu, Across(at.normal, axle), creep_mps, creep_mps,
                         body.WeightOnWheel_n(), uneven_mps});
   };
+  if (const auto blocks =
+          scene.terrain.BlocksNear(centre.x(), centre.y(), radius_m + scene.margin_m)) {
+    const double roundness_m = 0.5 * std::min(body.wheel_width_m, radius_m);
+    const RoundEdge tyre{centre, axle, radius_m - roundness_m, roundness_m};
+    for (const ContactPoint& at : ContactsWithBlocks(*blocks, tyre, scene.margin_m)) add(at);
+    return;
+  }
   const auto contact = WheelContactPoint(scene.terrain, centre, axle, radius_m, body.wheel_width_m);
   if (contact) add(*contact);
 }
@@ -216,12 +226,20 @@ void AddCasterContacts(const ContactScene& scene, std::vector<GroundContact>& co
   const Vector3d caster =
       state.position_m +
       state.world_from_robot * Vector3d(body.caster_ahead_m, 0.0, -body.caster_below_m);
+  const auto add = [&](const ContactPoint& at) {
+    const Grip grip = scene.terrain.GripAt(at.point.x(), at.point.y());
+    contacts.push_back(
+        Sliding(at, grip.caster_factor * body.caster_mu, state, body.WeightOnCaster_n()));
+  };
+  if (const auto blocks =
+          scene.terrain.BlocksNear(caster.x(), caster.y(), body.caster_radius_m + scene.margin_m)) {
+    const RoundEdge ball{caster, Vector3d::UnitY(), 0.0, body.caster_radius_m};
+    for (const ContactPoint& at : ContactsWithBlocks(*blocks, ball, scene.margin_m)) add(at);
+    return;
+  }
   const auto contact =
       BallContactPoint(scene.terrain, caster, state.world_from_robot.col(0), body.caster_radius_m);
-  if (!contact) return;
-  const Grip grip = scene.terrain.GripAt(contact->point.x(), contact->point.y());
-  contacts.push_back(
-      Sliding(*contact, grip.caster_factor * body.caster_mu, state, body.WeightOnCaster_n()));
+  if (contact) add(*contact);
 }
 
 void AddRimContacts(const ContactScene& scene, std::vector<GroundContact>& contacts) {
@@ -229,8 +247,18 @@ void AddRimContacts(const ContactScene& scene, std::vector<GroundContact>& conta
   const WorldState& state = scene.state;
   const Vector3d up = state.world_from_robot.col(2);
   const Vector3d rim = state.position_m - (body.wheel_radius_m - body.rim_clearance_m) * up;
+  const auto add = [&](const ContactPoint& at) {
+    contacts.push_back(Sliding(at, body.rim_mu, state, body.Weight_n()));
+  };
+  if (const auto blocks =
+          scene.terrain.BlocksNear(rim.x(), rim.y(), body.chassis_radius_m + scene.margin_m)) {
+    const RoundEdge edge{rim + kRimRoundness_m * up, up, body.chassis_radius_m - kRimRoundness_m,
+                         kRimRoundness_m};
+    for (const ContactPoint& at : ContactsWithBlocks(*blocks, edge, scene.margin_m)) add(at);
+    return;
+  }
   const auto contact = RimContactPoint(scene.terrain, rim, up, body.chassis_radius_m);
-  if (contact) contacts.push_back(Sliding(*contact, body.rim_mu, state, body.Weight_n()));
+  if (contact) add(*contact);
 }
 
 std::optional<std::string> FaultOf(const WorldState& state, const Terrain& terrain) {

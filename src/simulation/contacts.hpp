@@ -16,7 +16,7 @@ namespace rift::simulation {
 struct ContactPoint {
   Eigen::Vector3d point;   ///< of the body, deepest below the ground, in the world frame
   Eigen::Vector3d normal;  ///< unit, from the ground into the body
-  double depth_m = 0.0;    ///< positive inside the ground
+  double depth_m = 0.0;    ///< positive inside the ground, negative for one about to be touched
 };
 
 /// An upright wheel as a disc: one point, the deepest. On a plane it is the lowest point of the
@@ -54,6 +54,8 @@ struct ContactScene {
   const WorldState& state;
   /// For each wheel: the way it makes beyond what its rim turns, as a share of it.
   std::array<double, 2> uneven{};
+  /// A part nearer than this to a block may run into it within the step.
+  double margin_m = 0.0;
 };
 
 /// Each appends its contacts. `side` is 0 for the left wheel and 1 for the right one, `centre` the

@@ -28,6 +28,7 @@ constexpr double kSettle_s = 0.4;
 /// robot creep by less than a micrometre a second on a slope.
 constexpr double kLeastSlip_mps_per_n = 1e-6;
 constexpr double kSameNormal = 0.95;  // cosine of the angle between two
+constexpr double kFaster_mps = 0.15;  // than the robot, a part that tips or falls
 
 /// Thrown by ODE's own error reports, which must not return; caught at every call that can raise
 /// it.
@@ -282,7 +283,8 @@ void OdeWorld::Bodies::SetDrive(int side, const WheelDrive& drive) {
 }
 
 void OdeWorld::Bodies::MakeContacts(const std::array<double, 2>& uneven) {
-  const ContactScene scene{body, terrain, state, uneven};
+  const double margin_m = step_s * (state.velocity_mps.norm() + kFaster_mps);
+  const ContactScene scene{body, terrain, state, uneven, margin_m};
   for (int side = 0; side < 2; ++side) {
     AddWheelContacts(scene, side, Vector(dBodyGetPosition(wheels[side])), found);
     Add(wheel_contacts[side], settling);
@@ -315,8 +317,7 @@ void OdeWorld::Bodies::Add(PartContacts& part, bool sticks) {
 
 /// The limit of friction is that of the last step's load: of this step ODE knows it only without
 /// friction, that is with wheels that spin freely, which leans the robot by more the longer the
-/// step is. A new contact has no other. A part above the ground may come down by its height in this
-/// step, and no further.
+/// step is. A new contact has no other.
 dContact OdeWorld::Bodies::ContactOf(const GroundContact& ground,
                                      std::optional<double> load_n) const {
   dContact contact{};
@@ -341,7 +342,13 @@ dContact OdeWorld::Bodies::ContactOf(const GroundContact& ground,
     surface.mode |= dContactMotion2;  // along normal x direction, to the rear
     surface.motion2 = -ground.uneven_mps;
   }
-  contact.geom.depth = ground.at.depth_m;
+  contact.geom.depth = std::max(0.0, ground.at.depth_m);
+  if (ground.at.depth_m < 0.0) {
+    // The same spring and damper, which begins to push when the step would end beyond the surface:
+    // a contact that is noticed only when it is deep has stored energy that nobody spent.
+    surface.mode |= dContactMotionN;
+    surface.motionN = contact_erp / step_s * ground.at.depth_m;
+  }
   Eigen::Map<Vector3d>(contact.geom.pos) = ground.at.point;
   Eigen::Map<Vector3d>(contact.geom.normal) = ground.at.normal;
   Eigen::Map<Vector3d>(contact.fdir1) = ground.direction;

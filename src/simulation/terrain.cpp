@@ -26,6 +26,7 @@ SurfaceOptions Surface(Shape shape, double mu, double rolling_resistance, double
 
 constexpr double kEndless_m = std::numeric_limits<double>::infinity();
 constexpr double kSlopeBase_m = 1e-4;
+constexpr double kMostBlocks = 8.0;  // in a row: more are a texture, which heights alone tell
 
 }  // namespace
 
@@ -141,6 +142,22 @@ std::optional<Plane> Terrain::PlaneNear(double x_m, double y_m, double reach_m) 
       level ? Eigen::Vector3d::UnitZ()
             : Eigen::Vector3d(sign * std::sin(surface_.ramp_rad), 0.0, std::cos(surface_.ramp_rad));
   return Plane{{x_m, y_m, RampHeight(x_m)}, normal};
+}
+
+std::optional<std::vector<Block>> Terrain::BlocksNear(double x_m, double y_m,
+                                                      double reach_m) const {
+  if (surface_.shape != Shape::kBumps || !OnTable(x_m, y_m, reach_m)) return std::nullopt;
+  const double pitch_m = surface_.bump_pitch_m, half_m = 0.5 * surface_.bump_size_m;
+  if (2.0 * (reach_m + half_m) > kMostBlocks * pitch_m) return std::nullopt;
+  const auto first = [&](double p_m) { return std::ceil((p_m - reach_m - half_m) / pitch_m); };
+  const auto last = [&](double p_m) { return std::floor((p_m + reach_m + half_m) / pitch_m); };
+  std::vector<Block> blocks;
+  for (double i = first(x_m); i <= last(x_m); i += 1.0) {
+    for (double j = first(y_m); j <= last(y_m); j += 1.0) {
+      blocks.push_back({i * pitch_m, j * pitch_m, half_m, surface_.bump_height_m});
+    }
+  }
+  return blocks;
 }
 
 bool Terrain::OnTable(double x_m, double y_m, double margin_m) const {

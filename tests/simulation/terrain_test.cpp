@@ -108,21 +108,6 @@ TEST_CASE("A wheel on a plane touches with its lowest point along the normal") {
                                 Eigen::Vector3d::UnitY(), radius_m, 0.0068));
 }
 
-TEST_CASE("A wheel before a block touches its edge at the angle of the step") {
-  const Terrain terrain = Named("bump");
-  const double radius_m = 0.016, height_m = 0.004;
-  // On the floor the edge of the block at x = -0.010 is reached sqrt(r^2 - (r - h)^2) before it.
-  const double reach_m =
-      std::sqrt(radius_m * radius_m - (radius_m - height_m) * (radius_m - height_m));
-  const Eigen::Vector3d centre(-0.010 - reach_m + 1e-4, 0.0, radius_m);
-  const auto contact =
-      WheelContactPoint(terrain, centre, Eigen::Vector3d::UnitY(), radius_m, 0.0068);
-  REQUIRE(contact);
-  CHECK(contact->normal.z() == Approx((radius_m - height_m) / radius_m).margin(0.005));
-  CHECK(contact->normal.x() < -0.6);
-  CHECK(contact->depth_m == Approx(1e-4 * reach_m / radius_m).epsilon(0.05));
-}
-
 TEST_CASE("Away from planes the profile finds the same contact as the plane does") {
   const auto image = std::make_shared<HeightImage>(HeightImage{2, 2, {0.0, 1.0, 0.0, 1.0}});
   const Terrain terrain(Heightfield(), image);  // slope of 0.05 towards +x

@@ -155,6 +155,14 @@ struct HeightImage {
   std::vector<double> samples;
 };
 
+/// A square block that stands on the floor, its sides along x and y.
+struct Block {
+  double x_m = 0.0;  ///< of its middle
+  double y_m = 0.0;
+  double half_size_m = 0.0;
+  double height_m = 0.0;
+};
+
 /// Points p with normal . (p - point) = 0; the ground lies below.
 struct Plane {
   Eigen::Vector3d point;
@@ -175,6 +183,9 @@ class Terrain {
   Grip GripAt(double x_m, double y_m) const;
   /// The ground when it is one plane everywhere within `reach_m` of the point in x and in y.
   std::optional<Plane> PlaneNear(double x_m, double y_m, double reach_m) const;
+  /// The blocks that reach into a square of half this size about the point; none for a ground
+  /// without blocks, where a table ends there, and where more than 8 of them stand in a row.
+  std::optional<std::vector<Block>> BlocksNear(double x_m, double y_m, double reach_m) const;
   /// Whether height changes in steps (bumps, edge of a table), so that it has no useful slope
   /// there.
   bool IsStepped() const { return surface_.shape == Shape::kBumps; }
