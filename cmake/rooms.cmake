@@ -47,7 +47,7 @@ rift_room(twin ROOMS control geometry hardware simulation statistics trajectory 
   LIBRARIES fmt::fmt Threads::Threads PRIVATE_LIBRARIES Boost::headers)
 rift_room(sweep/run ROOMS files statistics
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES SQLiteCpp sqlite3)
-rift_room(experiment ROOMS control limits trajectory yaml
+rift_room(experiment ROOMS control limits statistics trajectory yaml
   OPTIONS gap hardware simulation trial twin sweep/run sweep/falsify sweep/calibrate
           vision/camera vision/calibration vision/tracking
   LIBRARIES fmt::fmt Eigen3::Eigen)

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "calibrate_keys.hpp"
+#include "ensemble_keys.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/program_parameters.hpp"
 #include "rift/experiment/settable.hpp"
@@ -270,6 +271,7 @@ Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>&
   }
   Experiment at = experiment;
   yaml::SetValues(at, pairs);
+  at.ensemble = {};
   return at;
 }
 
@@ -289,6 +291,7 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   if (experiment.candidate.kind == CandidateKind::kProgram) CheckProgramSpace(experiment);
   if (experiment.candidate.kind != CandidateKind::kProgram) RefuseNominal(experiment);
   if (experiment.goal == Goal::kCalibrate) ResolveCalibrate(experiment, path);
+  ResolveEnsemble(experiment, tree);
   return experiment;
 }
 

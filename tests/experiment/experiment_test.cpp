@@ -79,6 +79,8 @@ TEST_CASE("A resolved experiment loads as the same experiment") {
     experiment.reference.path.text = "/logs/{surface}: " + test::RandomText(random);
     experiment.candidate.path.text = "/a/b.csv";
     if (experiment.goal == Goal::kCalibrate) MakeFit(experiment);
+    experiment.ensemble = {};
+    if (i % 2 == 1) experiment.ensemble = {{"simulation.link.delay_s"}, {{0.1}, {0.2}}};
     for (auto& [name, surface] : experiment.simulation.terrain.surfaces) {
       if (!surface.image.empty()) surface.image = "/maps/hill.png";  // absolute, as once loaded
     }

@@ -9,6 +9,7 @@
 #include "rift/control/options.hpp"
 #include "rift/control/program.hpp"
 #include "rift/control/waypoint.hpp"
+#include "rift/experiment/ensemble.hpp"
 #include "rift/experiment/options.hpp"
 #include "rift/experiment/space_yaml.hpp"
 #include "rift/gap/options.hpp"
@@ -43,6 +44,7 @@ struct Experiment {
   control::NavigatorOptions control;
   trial::TrialOptions trial;
   simulation::SimulationOptions simulation;
+  Ensemble ensemble;
   hardware::HardwareOptions hardware;
   TrackOptions track;
   twin::TwinOptions twin;
@@ -77,6 +79,8 @@ struct Experiment {
     field("control", self.control, "the waypoint controller, the same for robot and simulator");
     field("trial", self.trial, "the trial loop: rates, time limits, when a trial has failed");
     field("simulation", self.simulation, "the simulated robot, its radio, its camera, the floor");
+    field("ensemble", self.ensemble,
+          "draws from what a fit left open, one for each simulated run (rift sweep --write-robot)");
     field("hardware", self.hardware, "the real robot: its line, when it is stopped, its link");
     field("track", self.track, "the overhead camera: what it is asked for, the tag, calibration");
     field("twin", self.twin, "the simulated robot in real time, behind a port and a camera");
@@ -100,8 +104,13 @@ control::Task TaskOf(const Experiment& experiment);
 /// The experiment's own values of its space's parameters.
 Theta NominalTheta(const Experiment& experiment);
 
-/// The experiment with its free parameters (calibrate.fit) at these values, in their order. Throws
-/// Error, naming where the parameter was written, when a value breaks a rule.
+/// The experiment as a simulated run of this seed has it: with the values of its draw where the
+/// space does not set them, and without an ensemble.
+Experiment DrawnAt(const Experiment& experiment, std::uint64_t seed);
+
+/// The experiment with its free parameters (calibrate.fit) at these values, in their order, and
+/// without an ensemble. Throws Error, naming where the parameter was written, when a value breaks a
+/// rule.
 Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>& values);
 
 /// Every key of an experiment with type, default and meaning, a paragraph each.

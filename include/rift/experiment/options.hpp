@@ -188,6 +188,7 @@ struct CalibrateOptions {
   HeldOutTrials holdout;
   int starts = 1;
   int judge_runs = 20;
+  int draws = 20;
   sweep::CalibrationOptions method;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
@@ -204,6 +205,9 @@ struct CalibrateOptions {
         "result counts, the others from values drawn within the ranges, which must agree with it");
     field("judge_runs", self.judge_runs, 2, 1000,
           "simulated runs of each trial, before and after the fit, that whole paths are judged by");
+    field("draws", self.draws, 0, 1000,
+          "draws from what the fit leaves open, which the robot's file holds as its ensemble; 0: "
+          "none");
     field("method", self.method, "how it is fitted");
   }
 };

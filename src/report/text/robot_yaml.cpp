@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rift/report/text/text.hpp"
+#include "rift/sweep/calibrate/ensemble.hpp"
 #include "rift/yaml/node.hpp"
 #include "rift/yaml/write.hpp"
 
@@ -95,7 +96,9 @@ std::string RobotYaml(const experiment::Experiment& experiment,
   for (const CalibratedParameter& p : report.calibration.parameters) {
     fitted[p.parameter.key] = CommentOf(p, experiment.calibrate.method.confidence);
   }
-  const experiment::Experiment at = experiment::CalibratedAt(experiment, report.values);
+  experiment::Experiment at = experiment::CalibratedAt(experiment, report.values);
+  at.ensemble = sweep::EnsembleOf(report.calibration, experiment.calibrate.method.confidence,
+                                  experiment.calibrate.draws, experiment.seed);
   const Node tree = yaml::ToNode(at), standard = yaml::ToNode(experiment::Experiment{});
   Node robot = Node::Map();
   for (const char* block : {"trial", "simulation"}) {
@@ -103,6 +106,7 @@ std::string RobotYaml(const experiment::Experiment& experiment,
         Different(tree.Find(block)->value, standard.Find(block)->value, block, fitted);
     if (!kept.entries.empty()) robot.Add(block, kept);
   }
+  if (!at.ensemble.IsEmpty()) robot.Add("ensemble", tree.Find("ensemble")->value);
   return Head(experiment, report, inputs, experiment_file) + yaml::Emit(robot);
 }
 

@@ -96,13 +96,14 @@ SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
   } catch (const std::invalid_argument& no_task) {
     throw std::invalid_argument(fmt::format("{}: {}", experiment_file, no_task.what()));
   }
+  const experiment::Experiment drawn = experiment::DrawnAt(experiment, seed);
   return {.task = std::move(task),
-          .control = experiment.control,
-          .trial = experiment.trial,
-          .simulation = experiment.simulation,
+          .control = drawn.control,
+          .trial = drawn.trial,
+          .simulation = drawn.simulation,
           .start = start,
           .seed = seed,
-          .image = ImageOf(experiment.simulation.terrain, inputs)};
+          .image = ImageOf(drawn.simulation.terrain, inputs)};
 }
 
 geometry::Pose2 StartFromLog(const trajectory::Trajectory& log, double tag_offset_m,

@@ -1,0 +1,84 @@
+#include "rift/sweep/calibrate/ensemble.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "rift/statistics/descriptive.hpp"
+
+namespace rift::sweep {
+namespace {
+
+constexpr double kConfidence = 0.95;
+constexpr double kReach = 1.959964;  // of a normal distribution at that confidence, in deviations
+
+CalibratedParameter Parameter(const std::string& key, double value, double sd) {
+  return {.parameter = {.key = key, .min = value - 1.0, .max = value + 1.0},
+          .value = value,
+          .low = value - kReach * sd,
+          .high = value + kReach * sd};
+}
+
+std::vector<double> Column(const experiment::Ensemble& ensemble, size_t column) {
+  std::vector<double> values;
+  for (const std::vector<double>& draw : ensemble.draws) values.push_back(draw[column]);
+  return values;
+}
+
+/// Three parameters, of which the first and the last go together.
+Calibration Fit() {
+  Calibration fit;
+  fit.parameters = {Parameter("a", 3.0, 0.1), Parameter("b", -2.0, 0.05), Parameter("c", 0.5, 0.2)};
+  fit.correlation = Eigen::MatrixXd::Identity(3, 3);
+  fit.correlation(0, 2) = fit.correlation(2, 0) = -0.8;
+  return fit;
+}
+
+TEST_CASE("The draws of an ensemble have the values, deviations and correlations of the fit") {
+  const experiment::Ensemble ensemble = EnsembleOf(Fit(), kConfidence, 4000, 1);
+  REQUIRE(ensemble.keys == std::vector<std::string>{"a", "b", "c"});
+  REQUIRE(ensemble.draws.size() == 4000);
+  const std::vector<double> a = Column(ensemble, 0), b = Column(ensemble, 1),
+                            c = Column(ensemble, 2);
+  CHECK(statistics::Mean(a) == Approx(3.0).margin(0.006));
+  CHECK(statistics::Mean(c) == Approx(0.5).margin(0.012));
+  CHECK(statistics::StandardDeviation(a) == Approx(0.1).epsilon(0.05));
+  CHECK(statistics::StandardDeviation(b) == Approx(0.05).epsilon(0.05));
+  CHECK(statistics::StandardDeviation(c) == Approx(0.2).epsilon(0.05));
+  double with_c = 0.0, with_b = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    with_c += (a[i] - 3.0) * (c[i] - 0.5) / (0.1 * 0.2);
+    with_b += (a[i] - 3.0) * (b[i] + 2.0) / (0.1 * 0.05);
+  }
+  CHECK(with_c / 4000.0 == Approx(-0.8).margin(0.05));
+  CHECK(with_b / 4000.0 == Approx(0.0).margin(0.05));
+}
+
+TEST_CASE("No draw lies beyond the range of its parameter") {
+  Calibration fit = Fit();
+  fit.parameters[0].parameter.max = 3.02;  // a fifth of a deviation above the value
+  fit.parameters[1].parameter.min = -2.0;  // at its bound
+  const experiment::Ensemble ensemble = EnsembleOf(fit, kConfidence, 500, 1);
+  for (const double a : Column(ensemble, 0)) CHECK((a >= 2.0 && a <= 3.02));
+  for (const double b : Column(ensemble, 1)) CHECK((b >= -2.0 && b <= -1.0));
+}
+
+TEST_CASE("A parameter that logs and prior leave open stays out of the ensemble") {
+  Calibration fit = Fit();
+  fit.parameters[0].has_effect = false;
+  fit.correlation.row(0).setConstant(std::nan(""));
+  fit.correlation.col(0).setConstant(std::nan(""));
+  fit.parameters[1].is_identified = false;
+  CHECK(EnsembleOf(fit, kConfidence, 5, 1).keys == std::vector<std::string>{"c"});
+  fit.parameters[1].is_from_prior = true;
+  const experiment::Ensemble ensemble = EnsembleOf(fit, kConfidence, 5, 1);
+  CHECK(ensemble.keys == std::vector<std::string>{"b", "c"});
+  for (const double b : Column(ensemble, 0)) CHECK(b == Approx(-2.0).margin(0.3));
+}
+
+TEST_CASE("The same seed gives the same ensemble, another seed another one, none gives none") {
+  CHECK(EnsembleOf(Fit(), kConfidence, 5, 1).draws == EnsembleOf(Fit(), kConfidence, 5, 1).draws);
+  CHECK(EnsembleOf(Fit(), kConfidence, 5, 1).draws != EnsembleOf(Fit(), kConfidence, 5, 2).draws);
+  CHECK(EnsembleOf(Fit(), kConfidence, 0, 1).IsEmpty());
+}
+
+}  // namespace
+}  // namespace rift::sweep
