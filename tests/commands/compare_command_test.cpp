@@ -108,6 +108,30 @@ TEST_CASE("Folders of different experiments are refused with the key that differ
   CHECK_THAT(RunRift({"sweep", "--page", "x.html"}).err, Contains("--compare DIR DIR"));
 }
 
+TEST_CASE("A folder whose files are damaged is not compared, and the message says what to do") {
+  const Logs logs;
+  const std::string before = logs.Swept("before", 0.08), after = logs.Swept("after", 0.05);
+  const auto refused = [&](const std::string& says) {
+    const ProcessResult result = RunRift({"sweep", "--compare", before, after});
+    INFO(result.err);
+    CHECK(result.exit_code == 2);
+    CHECK(result.out.empty());
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    CHECK_THAT(result.err, Contains(says) && Contains("give the command of the sweep again"));
+  };
+  const std::string summary = after + "/summary.json", table = after + "/table.csv";
+  const std::string text = ReadFile(summary);
+  for (const std::string& damaged :
+       {text.substr(0, text.size() / 2), std::string("{}"), std::string("{\"settings\": [7]}")}) {
+    WriteText(summary, damaged);
+    refused("after/summary.json: it is damaged");
+  }
+  WriteText(summary, text);
+  const std::string rows = ReadFile(table);
+  WriteText(table, rows.substr(0, rows.size() - 10));
+  refused("after/table.csv: row 12 is cut short");
+}
+
 TEST_CASE("The page of a comparison opens offline and is not overwritten") {
   const Logs logs;
   const std::string a = logs.Swept("a", 0.08), b = logs.Swept("b", 0.05);

@@ -53,7 +53,11 @@ void Prepare(const test::TemporaryFolder& folder) {
       {"other/experiment.yaml", "name: other\n"},
       {"run/trajectory.csv", "t_s,x_m,y_m\n"},
       {"run/experiment.yaml", "name: run\n"},
-      {"swept/table.csv", "id,gap_m,status\n1,,fell\n"},
+      {"swept/table.csv",
+       "trial,gap_m,falsified,status,u,exact_gap_m,mean_error_m,rms_error_m,start_offset_m,"
+       "start_aligned_gap_m,shape_gap_m,length_ratio,end_error_m,way_gap_m,left_m,reason,"
+       "candidate,reference,seed,id\n1,,,fell,,,,,,,,,,,,,,,,1\n"},
+      {"damaged/table.csv", "id,gap_m,status\n1,,fell\n"},
       {"empty.csv", ""},
       {"odd.csv", "a,b\n"},
       {"picture.csv", std::string("\x89PNG\r\0\0\n1,2\n", 12)},
@@ -174,6 +178,7 @@ TEST_CASE("Wrong input: rift simulate") {
       {"simulate --replay @dir 1", "table.csv"},
       {"simulate --replay @swept 7", "no row with id 7"},
       {"simulate --replay @swept worst", "has no row with a gap"},
+      {"simulate --replay @damaged 1", "its header does not name the column trial once"},
       {"simulate --replay @swept 1 --seed 3", "leave EXPERIMENT, --set, --start, --seed out"},
   });
 }

@@ -28,6 +28,51 @@ TEST_CASE("A row that table.csv does not have is refused with the ids that it ha
                     Contains("DIR/table.csv has no row with id 25: its ids are 1 to 24"));
 }
 
+TEST_CASE("A damaged table.csv is refused with what is wrong and what to do") {
+  const std::string name = "DIR/table.csv", table = TableCsv(synthetic::Grid());
+  REQUIRE(TableRows(table).size() == 24);
+  const auto check = [&](const std::string& old, const std::string& other,
+                         const std::string& says) {
+    std::string damaged = table;
+    damaged.replace(damaged.find(old), old.size(), other);
+    INFO(says);
+    const std::string refused = "table.csv: " + says + ": no sweep writes that; give the command";
+    CHECK_THROWS_WITH(TableRows(damaged), Contains(refused));
+    CHECK_THROWS_WITH(TableRowOf(damaged, "24", name), Contains(refused));
+    CHECK_THROWS_WITH(WorstIdOf(damaged, name), Contains(refused));
+  };
+  check("gap_m", "gab_m", "its header does not name the column gap_m once");
+  check(",status", ",trial", "its header does not name the column trial once");
+  check(",ok,", ",ox,", "status of row 1 is 'ox'");
+  check(",missing,", ",,", "status of row 2 is ''");
+  check("false,ok", "fal,ok", "falsified of row 1 is 'fal'");
+  check(",1\n", ",x\n", "id of row 1 is 'x'");
+  check(",1\n", "1\n", "row 1 has 22 cells, and the header 23");
+  for (size_t length = 0; length < table.size(); ++length) {
+    if (length > 0 && table[length - 1] == '\n') continue;  // a row less is none that is damaged
+    CHECK_THROWS_WITH(TableRows(table.substr(0, length)), Contains("is cut short"));
+  }
+}
+
+TEST_CASE("A number of a damaged table.csv is never read in part") {
+  const std::string table = TableCsv(synthetic::Grid());
+  const size_t gap_begin = table.find(TableRows(table)[0].at("gap_m"));
+  for (const char c : {'x', '-', ' ', '\0', '\xff'}) {
+    std::string damaged = table;
+    damaged[gap_begin + 2] = c;
+    CHECK_THROWS_WITH(TableRows(damaged), Contains("gap_m of row 1 is '0."));
+  }
+}
+
+TEST_CASE("A table without the column of a parameter is not that of its experiment") {
+  TableRow row = TableRowOf(TableCsv(synthetic::Grid()), "1", "table.csv");
+  experiment::Experiment experiment;
+  experiment.space.parameters = synthetic::Grid().parameters;
+  CHECK_NOTHROW(RequestOf(experiment, row));
+  row.erase("v_max");
+  CHECK_THROWS_WITH(RequestOf(experiment, row), Contains("table.csv has no column v_max"));
+}
+
 TEST_CASE("A setting has the same keys in every JSON document of a sweep") {
   const sweep::SweepResult result = synthetic::Grid();
   const json expected = {{"surface", "ice"}, {"v_min", 0.15}, {"v_max", 0.3}};

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "rift/sweep/explain/worst_trial.hpp"
@@ -45,36 +46,118 @@ std::string RowCsv(const sweep::TrialRow& row, size_t id) {
          fmt::format(",{}\n", id);
 }
 
-/// RFC 4180. Takes one record off the front of the text.
-std::vector<std::string> NextRecord(std::string_view& text) {
-  std::vector<std::string> cells(1);
-  bool is_quoted = false;
-  size_t at = 0;
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    const bool is_double = is_quoted && c == '"' && text.substr(at + 1).starts_with('"');
-    if (is_double) {
-      cells.back() += '"';
-      ++at;
-    } else if (c == '"') {
-      is_quoted = !is_quoted;
-    } else if (c == ',' && !is_quoted) {
-      cells.emplace_back();
-    } else if (c == '\n' && !is_quoted) {
-      break;
-    } else {
-      cells.back() += c;
-    }
-  }
-  text.remove_prefix(std::min(text.size(), at + 1));
-  return cells;
+constexpr std::array<std::string_view, 12> kNumberColumns{"gap_m",
+                                                          "u",
+                                                          "exact_gap_m",
+                                                          "mean_error_m",
+                                                          "rms_error_m",
+                                                          "start_offset_m",
+                                                          "start_aligned_gap_m",
+                                                          "shape_gap_m",
+                                                          "length_ratio",
+                                                          "end_error_m",
+                                                          "way_gap_m",
+                                                          "left_m"};
+
+/// True when all of the cell is the number, as it is written here.
+template <class Number>
+bool Reads(const std::string& cell) {
+  Number number{};
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
+  return error == std::errc() && end == cell.data() + cell.size();
 }
 
-TableRow RowOf(const std::vector<std::string>& columns, const std::vector<std::string>& cells) {
-  TableRow row;
-  for (size_t i = 0; i < std::min(columns.size(), cells.size()); ++i) row[columns[i]] = cells[i];
-  return row;
-}
+/// The rows of a table.csv, one after the other. A table is read back as it was written or not at
+/// all: a cell that was overwritten must not become a zero.
+class TableReader {
+ public:
+  /// `text` must outlive the reader. Throws std::invalid_argument for columns that no
+  /// sweep writes.
+  TableReader(std::string_view text, std::string name) : rest_(text), name_(std::move(name)) {
+    columns_ = NextRecord();
+    for (const std::string_view column : experiment::kFixedColumns) {
+      if (std::count(columns_.begin(), columns_.end(), column) == 1) continue;
+      Refuse(fmt::format("its header does not name the column {} once", column));
+    }
+  }
+
+  bool IsAtEnd() const { return rest_.empty(); }
+
+  /// Throws std::invalid_argument for a row that no sweep writes.
+  TableRow Next() {
+    ++row_;
+    const std::vector<std::string> cells = NextRecord();
+    if (cells.size() != columns_.size()) {
+      Refuse(fmt::format("row {} has {} cells, and the header {}", row_, cells.size(),
+                         columns_.size()));
+    }
+    TableRow row;
+    for (size_t i = 0; i < columns_.size(); ++i) row[columns_[i]] = cells[i];
+    Check(row);
+    return row;
+  }
+
+  size_t RowsRead() const { return row_; }
+
+ private:
+  /// RFC 4180.
+  std::vector<std::string> NextRecord() {
+    std::vector<std::string> cells(1);
+    bool is_quoted = false;
+    size_t at = 0;
+    for (; at < rest_.size(); ++at) {
+      const char c = rest_[at];
+      const bool is_double = is_quoted && c == '"' && rest_.substr(at + 1).starts_with('"');
+      if (is_double) {
+        cells.back() += '"';
+        ++at;
+      } else if (c == '"') {
+        is_quoted = !is_quoted;
+      } else if (c == ',' && !is_quoted) {
+        cells.emplace_back();
+      } else if (c == '\n' && !is_quoted) {
+        break;
+      } else {
+        cells.back() += c;
+      }
+    }
+    if (at >= rest_.size()) {
+      Refuse(row_ == 0 ? "its header is cut short" : fmt::format("row {} is cut short", row_));
+    }
+    rest_.remove_prefix(at + 1);
+    return cells;
+  }
+
+  void Check(const TableRow& row) const {
+    const auto require = [&](std::string_view column, bool is_right) {
+      if (is_right) return;
+      Refuse(fmt::format("{} of row {} is '{}'", column, row_, row.at(std::string(column))));
+    };
+    require("id", Reads<std::uint64_t>(row.at("id")));
+    const auto statuses = EnumNames(sweep::TrialStatus{});
+    require("status",
+            std::find(statuses.begin(), statuses.end(), row.at("status")) != statuses.end());
+    const std::string& falsified = row.at("falsified");
+    require("falsified", falsified.empty() || falsified == "true" || falsified == "false");
+    for (const std::string_view column : kNumberColumns) {
+      const std::string& cell = row.at(std::string(column));
+      require(column, cell.empty() || Reads<double>(cell));
+    }
+    require("seed", row.at("seed").empty() || Reads<std::uint64_t>(row.at("seed")));
+  }
+
+  [[noreturn]] void Refuse(const std::string& what) const {
+    throw std::invalid_argument(fmt::format(
+        "{}: {}: no sweep writes that; give the command of the sweep again, which writes the table "
+        "anew",
+        name_, what));
+  }
+
+  std::string_view rest_;
+  std::string name_;
+  std::vector<std::string> columns_;
+  size_t row_ = 0;
+};
 
 }  // namespace
 
@@ -89,42 +172,34 @@ std::string TableCsv(const sweep::SweepResult& result) {
 }
 
 TableRow FirstTableRow(const std::string& table_csv) {
-  std::string_view text = table_csv;
-  const std::vector<std::string> columns = NextRecord(text);
-  return RowOf(columns, NextRecord(text));
+  return TableReader(table_csv, "table.csv").Next();
 }
 
 std::vector<TableRow> TableRows(const std::string& table_csv) {
-  std::string_view text = table_csv;
-  const std::vector<std::string> columns = NextRecord(text);
+  TableReader read(table_csv, "table.csv");
   std::vector<TableRow> rows;
-  while (!text.empty()) rows.push_back(RowOf(columns, NextRecord(text)));
+  while (!read.IsAtEnd()) rows.push_back(read.Next());
   return rows;
 }
 
 TableRow TableRowOf(const std::string& table_csv, const std::string& id, const std::string& name) {
-  std::string_view text = table_csv;
-  const std::vector<std::string> columns = NextRecord(text);
-  size_t rows = 0;
-  for (; !text.empty(); ++rows) {
-    const std::vector<std::string> cells = NextRecord(text);
-    TableRow row = RowOf(columns, cells);
-    if (row.contains("id") && row["id"] == id) return row;
+  TableReader read(table_csv, name);
+  while (!read.IsAtEnd()) {
+    TableRow row = read.Next();
+    if (row.at("id") == id) return row;
   }
   throw std::invalid_argument(
-      fmt::format("{} has no row with id {}: its ids are 1 to {}", name, id, rows));
+      fmt::format("{} has no row with id {}: its ids are 1 to {}", name, id, read.RowsRead()));
 }
 
 std::string WorstIdOf(const std::string& table_csv, const std::string& name) {
-  std::string_view text = table_csv;
-  const std::vector<std::string> columns = NextRecord(text);
+  TableReader read(table_csv, name);
   std::vector<std::string> ids;
   std::vector<sweep::TrialFailure> trials;
-  while (!text.empty()) {
-    const TableRow row = RowOf(columns, NextRecord(text));
-    if (!row.contains("id") || !row.contains("gap_m")) continue;
+  while (!read.IsAtEnd()) {
+    const TableRow row = read.Next();
     ids.push_back(row.at("id"));
-    trials.push_back({.falsified = row.contains("falsified") && row.at("falsified") == "true"});
+    trials.push_back({.falsified = row.at("falsified") == "true"});
     if (row.at("status") != "ok") continue;
     trials.back().gap_m = std::strtod(row.at("gap_m").c_str(), nullptr);
   }
@@ -140,7 +215,14 @@ sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const Ta
   std::from_chars(text.data(), text.data() + text.size(), seed);
   request.seed = seed;
   for (const experiment::Parameter& parameter : experiment.space.parameters) {
-    request.theta.push_back(experiment::ParseValue(parameter, row.at(parameter.Name())));
+    const auto cell = row.find(parameter.Name());
+    if (cell == row.end()) {
+      throw std::invalid_argument(fmt::format(
+          "table.csv has no column {}, and experiment.yaml beside it a parameter of that name: "
+          "they are of two sweeps; give the command of the sweep again, which writes both anew",
+          parameter.Name()));
+    }
+    request.theta.push_back(experiment::ParseValue(parameter, cell->second));
   }
   return request;
 }

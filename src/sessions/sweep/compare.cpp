@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include "rift/experiment/experiment.hpp"
 #include "rift/files/files.hpp"
@@ -43,12 +44,29 @@ struct Loaded {
 
 /// Verdicts by the setting as summary.json writes it.
 std::map<std::string, std::string> Verdicts(const fs::path& folder) {
-  const ordered_json summary = ordered_json::parse(files::ReadFile(folder / "summary.json"));
+  const fs::path file = folder / "summary.json";
   std::map<std::string, std::string> verdicts;
-  for (const ordered_json& setting : summary.at("settings")) {
-    verdicts[setting.at("theta").dump()] = setting.at("verdict");
+  try {
+    const ordered_json summary = ordered_json::parse(files::ReadFile(file));
+    for (const ordered_json& setting : summary.at("settings")) {
+      verdicts[setting.at("theta").dump()] = setting.at("verdict");
+    }
+  } catch (const ordered_json::exception&) {
+    throw std::invalid_argument(
+        fmt::format("{}: it is damaged, or of another version of rift: give the command of the "
+                    "sweep again, which writes it anew",
+                    file.string()));
   }
   return verdicts;
+}
+
+std::vector<report::TableRow> Rows(const fs::path& folder) {
+  const std::string table = files::ReadFile(folder / "table.csv");
+  try {
+    return report::TableRows(table);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}/{}", folder.string(), error.what()));
+  }
 }
 
 Loaded Load(const fs::path& folder) {
@@ -61,7 +79,7 @@ Loaded Load(const fs::path& folder) {
   Loaded loaded{SavedExperiment(folder), {.folder = folder.string()}};
   const std::vector<experiment::Parameter>& parameters = loaded.experiment.space.parameters;
   const std::map<std::string, std::string> verdicts = Verdicts(folder);
-  for (const report::TableRow& row : report::TableRows(files::ReadFile(folder / "table.csv"))) {
+  for (const report::TableRow& row : Rows(folder)) {
     const experiment::Theta theta = report::RequestOf(loaded.experiment, row).theta;
     const bool is_ok = row.at("status") == "ok", falsified = row.at("falsified") == "true";
     const std::string key = sweep::SettingKey(parameters, theta);

@@ -117,7 +117,7 @@ using TableRow = std::map<std::string, std::string>;
 
 /// The first row of such a table.
 TableRow FirstTableRow(const std::string& table_csv);
-/// All rows, each by the names of its columns.
+/// All rows. Throws std::invalid_argument, as those below, for a table that no sweep writes.
 std::vector<TableRow> TableRows(const std::string& table_csv);
 
 /// The row with this `id`. Throws std::invalid_argument, naming the table and the ids there are,
@@ -128,7 +128,7 @@ TableRow TableRowOf(const std::string& table_csv, const std::string& id, const s
 /// naming the table, when it takes none.
 std::string WorstIdOf(const std::string& table_csv, const std::string& name);
 
-/// The trial of a row of an experiment's table, to be run again.
+/// The trial of a row of an experiment's table; std::invalid_argument where a parameter is missing.
 sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row);
 
 /// A setting as an object whose keys are the parameters' columns in table.csv:
