@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
@@ -168,6 +169,17 @@ TEST_CASE("The key of a setting names its values however their numbers are writt
   CHECK(SettingKey(axes, {{"ground", {}}, {"0.20", 0.2}}) == key);
   CHECK(SettingKey(axes, {{"ground", {}}, {"+.2", 0.2}}) == key);
   CHECK(SettingKey(axes, {{"ground", {}}, {"0.2", 0.2}}) == key);
+}
+
+TEST_CASE("Settings of different texts have different keys whatever stands in the texts") {
+  const std::vector<experiment::Parameter> axes{{.key = "a"}, {.key = "b"}};
+  std::set<std::string> keys;
+  const std::vector<std::string> texts{"x",         "x b=y", "y b=z", "z",  "x b=\"y", "y\" b=z",
+                                       "\"x b=y\"", "",      " ",     "\"", "\"\""};
+  for (const std::string& a : texts) {
+    for (const std::string& b : texts) keys.insert(SettingKey(axes, {{a, {}}, {b, {}}}));
+  }
+  CHECK(keys.size() == texts.size() * texts.size());
 }
 
 TEST_CASE("The fingerprints of the logs that were read stand in the inputs") {

@@ -54,6 +54,15 @@ experiment::ParameterValue ValueAt(const experiment::Parameter& parameter, doubl
   return experiment::NumberValue(value);
 }
 
+/// Text that would leave open where the value ends is quoted.
+std::string ValueKey(const experiment::ParameterValue& value) {
+  if (value.number) return experiment::NumberValue(*value.number).text;
+  if (value.text.find_first_of(" =\"") == std::string::npos) return value.text;
+  std::string quoted = "\"";
+  for (const char c : value.text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
 }  // namespace
 
 std::vector<search::Axis> AxesOf(const std::vector<experiment::Parameter>& parameters) {
@@ -75,9 +84,7 @@ std::string SettingKey(const std::vector<experiment::Parameter>& parameters,
                        const experiment::Theta& theta) {
   std::string key;
   for (size_t i = 0; i < theta.size(); ++i) {
-    const experiment::ParameterValue& value = theta[i];
-    key += fmt::format("{}={} ", parameters[i].key,
-                       value.number ? experiment::NumberValue(*value.number).text : value.text);
+    key += fmt::format("{}={} ", parameters[i].key, ValueKey(theta[i]));
   }
   return key;
 }

@@ -25,8 +25,8 @@ std::vector<search::Axis> AxesOf(const std::vector<experiment::Parameter>& param
 experiment::Theta ThetaAt(const std::vector<experiment::Parameter>& parameters,
                           const search::Point& point);
 
-/// "control.v_min=0.15 " for each value, numbers in their shortest form: the same for two settings
-/// only when all their values are. What the journal knows a setting by.
+/// "control.v_min=0.15 " for each value, numbers in their shortest form, ambiguous text quoted: the
+/// same for two settings only when all their values are. What the journal knows a setting by.
 std::string SettingKey(const std::vector<experiment::Parameter>& parameters,
                        const experiment::Theta& theta);
 
