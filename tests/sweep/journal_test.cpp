@@ -1,12 +1,15 @@
 #include "rift/sweep/run/journal.hpp"
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <stdexcept>
 
 #include "support/inputs/trials.hpp"
@@ -15,6 +18,8 @@
 
 namespace rift::sweep {
 namespace {
+
+namespace fs = std::filesystem;
 
 const Facts kFacts{{"gap.threshold_m", "0.06"}, {"seed", "1"}};
 
@@ -30,6 +35,31 @@ std::string Refusal(const Call& call) {
     return error.what();
   }
   return "accepted";
+}
+
+TEST_CASE("What is no file under the name of a journal, or of its log, is refused at once") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  using Make = std::function<void(const std::string&)>;
+  const auto pipe = [](const std::string& name) { REQUIRE(::mkfifo(name.c_str(), 0600) == 0); };
+  const auto device = [](const std::string& name) { fs::create_symlink("/dev/zero", name); };
+  const auto directory = [](const std::string& name) { fs::create_directory(name); };
+  for (const std::string suffix : {"", "-wal", "-shm", "-journal"}) {
+    for (const Make& make : {Make(pipe), Make(device), Make(directory)}) {
+      Journal(file, kFacts).Close();
+      fs::remove(file + suffix);
+      make(file + suffix);
+      INFO(suffix);
+      const std::string says = file + suffix + " is not a file";
+      CHECK_THAT(Refusal([&] { Journal(file, kFacts); }), Catch::StartsWith(says));
+      CHECK_THAT(Refusal([&] { ReadJournal(file); }), Catch::StartsWith(says));
+      if (suffix.empty()) CHECK_FALSE(IsJournalOf(file, kFacts));
+      Journal::Remove(file);
+    }
+  }
+  pipe(folder / "shard.sqlite");
+  Journal journal(file, kFacts);
+  CHECK_THROWS_AS(journal.Merge(folder / "shard.sqlite"), UselessJournal);
 }
 
 TEST_CASE("A journal gives back what was added to it when it is opened again") {

@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <chrono>
 #include <cmath>
@@ -173,6 +174,23 @@ bool HasSharedMemory(const fs::path& file, JournalLog log) {
   return files::NetworkFileSystemOf(file.parent_path()).empty();
 }
 
+/// The names that SQLite adds for what it keeps beside a file.
+constexpr std::array<const char*, 4> kSuffixes{"", "-wal", "-shm", "-journal"};
+
+/// SQLite would wait for ever for the writer of a pipe, and read a device without an end.
+void RequireFiles(const fs::path& file) {
+  for (const char* suffix : kSuffixes) {
+    const fs::path part = file.string() + suffix;
+    std::error_code unknown;
+    const fs::file_status status = fs::status(part, unknown);
+    if (!fs::exists(status) || fs::is_regular_file(status)) continue;
+    throw std::runtime_error(fmt::format(
+        "{} is not a file, and a journal is kept under this name: move it away, or choose another "
+        "folder with --out",
+        part.string()));
+  }
+}
+
 /// As a URI that tells SQLite that nobody writes the file: without locks, which a network file
 /// system may not have, and without a log beside it.
 std::string Immutable(const fs::path& file) {
@@ -276,6 +294,7 @@ struct Journal::Store {
 
 Journal::Journal(const fs::path& file, const Facts& made_from, JournalLog log) {
   Told(file, [&] {
+    RequireFiles(file);
     store_ = std::make_unique<Store>(file, log);
     const Facts then = ReadFacts(store_->database);
     if (then.empty()) {
@@ -377,6 +396,8 @@ std::optional<std::string> Journal::Note(const std::string& name) {
 
 Journal::Merged Journal::Merge(const fs::path& other) {
   Merged merged;
+  std::error_code not_there;
+  if (!fs::is_regular_file(other, not_there)) throw UselessJournal(other.string() + " is no file");
   try {
     SQLite::Database database = OpenPublished(other);
     std::string facts = HashOf(ReadFacts(database));
@@ -422,7 +443,7 @@ void Journal::Close() {
 }
 
 void Journal::Remove(const fs::path& file) {
-  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
+  for (const char* suffix : kSuffixes) {
     std::error_code error;
     fs::remove(file.string() + suffix, error);
     if (error) {
@@ -434,7 +455,7 @@ void Journal::Remove(const fs::path& file) {
 
 bool IsJournalOf(const fs::path& file, const Facts& made_from) {
   std::error_code not_there;
-  if (!fs::exists(file, not_there)) return false;
+  if (!fs::is_regular_file(file, not_there)) return false;
   try {
     SQLite::Database database = OpenPublished(file);
     SQLite::Statement check(database, "PRAGMA quick_check(1)");
@@ -450,6 +471,7 @@ JournalSummary ReadJournal(const fs::path& file) {
     throw std::invalid_argument(fmt::format(
         "{}: no such file; a sweep of simulated trials keeps its journal there", file.string()));
   }
+  RequireFiles(file);
   return Told(file, [&] {
     std::string facts;
     SQLite::Database database(file.string(), SQLite::OPEN_READONLY);
