@@ -267,6 +267,10 @@ TEST_CASE("What is wrong with a request for tracking is said in one line") {
       {{"track", "--calibrate", "--board", "13by9", "--images", kData + "/frames", "--out", log},
        "such as 13x9",
        2},
+      {{"track", "--calibrate", "--board", "4294967309x9", "--images", kData + "/frames", "--out",
+        log},
+       "--board '4294967309x9'",
+       2},
   };
   for (const Wrong& wrong : wrongs) {
     const ProcessResult result = RunRift(wrong.words);

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <charconv>
 #include <memory>
 #include <set>
 #include <utility>
@@ -95,8 +95,11 @@ void CheckIds(const std::vector<int>& ids) {
 
 /// `13x9`
 void ReadBoard(const std::string& text, vision::Board& board) {
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &board.columns, &board.rows, &rest) != 2) {
+  const char* const end = text.data() + text.size();
+  const auto across = std::from_chars(text.data(), end, board.columns);
+  const bool has_x = across.ec == std::errc() && across.ptr != end && *across.ptr == 'x';
+  const auto down = has_x ? std::from_chars(across.ptr + 1, end, board.rows) : across;
+  if (!has_x || down.ec != std::errc() || down.ptr != end) {
     throw CLI::ValidationError(
         fmt::format("--board '{}': inner corners across and down, such as 13x9", text));
   }
