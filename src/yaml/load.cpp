@@ -26,7 +26,8 @@ class Loader {
       throw Error(fmt::format("{}: more than {} files are included", asked_at, kMostFiles));
     }
     const std::string text = Read(path, asked_at);
-    limits::Require(limits::Amount::kYamlBytes, static_cast<double>(text.size()), path);
+    bytes_ += static_cast<double>(text.size());
+    limits::Require(limits::Amount::kYamlBytes, bytes_, path);
     Node root = Parse(text, path);
     if (root.IsNull()) root.kind = Node::Kind::kMap;
     if (!root.IsMap()) {
@@ -85,6 +86,7 @@ class Loader {
   const FileReader& read_;
   std::vector<std::string> chain_;
   int files_ = 0;
+  double bytes_ = 0.0;  ///< of all files together: each byte takes its time
 };
 
 void SetOrigin(Node& node, const Origin& origin) {

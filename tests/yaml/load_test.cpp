@@ -75,6 +75,16 @@ TEST_CASE("Includes that multiply are bounded") {
   CHECK(LoadError(files).find("more than 256 files are included") != std::string::npos);
 }
 
+TEST_CASE("The limit of a YAML file holds for it and all that it includes together") {
+  const std::string comment = "#" + std::string(600'000, 'x') + "\n";
+  const Files files{{"lab/main.yaml", "include: [a.yaml, b.yaml]\n"},
+                    {"lab/a.yaml", comment},
+                    {"lab/b.yaml", comment}};
+  CHECK_THROWS_WITH(
+      Load("lab/main.yaml", ReaderOf(files)),
+      Catch::StartsWith("lab/b.yaml: 1200030 bytes of YAML: at most 1048576 are taken"));
+}
+
 TEST_CASE("A file that is missing or no map or badly named is refused") {
   CHECK(ErrorOf([] { Load("x.yaml", ReaderOf({})); }) ==
         "configuration: 'x.yaml' cannot be read: no such file");
