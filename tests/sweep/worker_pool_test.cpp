@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "rift/sweep/run/external_program.hpp"
+#include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
 #include "support/sanitizer.hpp"
 
@@ -50,6 +52,14 @@ std::string Trouble(const std::string& job) {
     std::abort();
   }
   return "answer to " + job;
+}
+
+TEST_CASE("Where no temporary folder can be made the message says what to set") {
+  const test::TemporaryFolder folder;
+  const test::Environment nowhere("TMPDIR", folder / "gone");
+  CHECK_THROWS_WITH(ExternalProgram::MakeFolder(),
+                    "cannot make a temporary folder in " + (folder / "gone") +
+                        ": No such file or directory; set TMPDIR to a folder that can be written");
 }
 
 TEST_CASE("Every job of a batch is answered once by processes of their own") {

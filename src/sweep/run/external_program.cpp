@@ -201,13 +201,14 @@ void KillDescendants() {
 }  // namespace
 
 std::string ExternalProgram::MakeFolder() {
-  std::string path = (std::filesystem::temp_directory_path() / "rift-XXXXXX").string();
-  if (::mkdtemp(path.data()) == nullptr) {
-    throw std::runtime_error(fmt::format("cannot make a folder in {}: {}",
-                                         std::filesystem::temp_directory_path().string(),
-                                         strerror(errno)));
-  }
-  return path;
+  std::error_code error;
+  const std::filesystem::path temporary = std::filesystem::temp_directory_path(error);
+  std::string path = (temporary / "rift-XXXXXX").string();
+  if (!error && ::mkdtemp(path.data()) != nullptr) return path;
+  const char* named = std::getenv("TMPDIR");
+  throw std::runtime_error(fmt::format(
+      "cannot make a temporary folder in {}: {}; set TMPDIR to a folder that can be written",
+      named != nullptr ? named : "/tmp", error ? error.message() : strerror(errno)));
 }
 
 ExternalProgram::ExternalProgram(const ProgramStart& start, std::string folder)
