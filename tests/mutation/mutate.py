@@ -33,10 +33,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # The test programs that are run for a fault in a room, the nearest first; the first to fail ends it.
 TESTS = {
     "statistics": ["statistics", "gap", "sweep", "report"],
-    "files": ["trajectory", "sweep", "commands"],
+    "files": ["files", "trajectory", "sweep", "commands"],
     "geometry": ["geometry", "gap", "simulation"],
     "yaml": ["yaml", "experiment", "commands"],
-    "terminal": ["commands"],
+    "terminal": ["terminal", "commands"],
     "trajectory": ["trajectory", "gap", "commands"],
     "control": ["control", "trial", "identification"],
     "trial": ["trial", "simulation", "hardware"],
@@ -52,7 +52,7 @@ TESTS = {
     "sweep": ["sweep", "report", "commands", "identification"],
     "report": ["report", "commands", "drive", "track"],
     "view": ["view", "track", "commands"],
-    "flags": ["commands"],
+    "flags": ["flags", "commands"],
     "sessions": ["sessions", "drive", "track", "twin"],
     "commands": ["commands", "drive", "track", "twin"],
 }

@@ -1,0 +1,184 @@
+#include "rift/files/files.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "rift/files/append_file.hpp"
+#include "rift/files/folder_lock.hpp"
+#include "rift/files/network_file_system.hpp"
+#include "rift/files/outputs.hpp"
+#include "rift/files/process_end.hpp"
+#include "rift/files/shell_word.hpp"
+#include "support/processes/process.hpp"
+
+namespace rift::files {
+namespace {
+
+using Catch::Matchers::Contains;
+namespace fs = std::filesystem;
+
+std::size_t FilesIn(const fs::path& folder) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) count += entry.is_regular_file();
+  return count;
+}
+
+TEST_CASE("A file of any length is read as it was written and leaves nothing beside it") {
+  const test::TemporaryFolder folder;
+  for (const std::size_t size : {0U, 1U, 4095U, 4096U, 4097U, 100'000U}) {
+    std::string text;
+    for (std::size_t i = 0; i < size; ++i) text += static_cast<char>(i % 251);
+    WriteFile(folder / "sub/a.bin", text);
+    CHECK(ReadFile(folder / "sub/a.bin") == text);
+    CHECK(FilesIn(folder.Path() / "sub") == 1);
+  }
+}
+
+TEST_CASE("What is not there is nothing, and what cannot be read or written is told") {
+  const test::TemporaryFolder folder;
+  CHECK_FALSE(ReadIfThere(folder / "none"));
+  test::WriteText(folder / "a", "text");
+  CHECK(ReadIfThere(folder / "a").value_or("") == "text");
+  CHECK_THROWS_WITH(ReadFile(folder / "none"),
+                    "cannot read " + folder / "none" + ": No such file or directory");
+  CHECK_THROWS_AS(ReadFile(folder / "none"), std::invalid_argument);
+  CHECK_THROWS_WITH(WriteFile(folder / "a/b", "x"), Contains("cannot make folder " + folder / "a"));
+  CHECK_THROWS_AS(WriteFile(folder / "a/b", "x"), std::runtime_error);
+}
+
+TEST_CASE("A link leads to its file, there or not, and one that leads round in circles is told") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "a", "old");
+  fs::create_symlink("a", folder / "link");
+  WriteFile(folder / "link", "new");
+  CHECK(fs::is_symlink(folder / "link"));
+  CHECK(ReadFile(folder / "a") == "new");
+  fs::create_symlink("later", folder / "to_later");
+  WriteFile(folder / "to_later", "made");
+  CHECK(ReadFile(folder / "later") == "made");
+  fs::create_symlink("round", folder / "round");
+  CHECK_THROWS_WITH(WriteFile(folder / "round", "x"), Contains("cannot write"));
+}
+
+TEST_CASE("A file is the same by any name, there or not") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "a", "x");
+  test::WriteText(folder / "b", "x");
+  fs::create_hard_link(folder / "a", folder / "c");
+  CHECK(IsSameFile(folder / "a", folder / "c"));
+  CHECK(IsSameFile(folder / "none", folder / "x/../none"));
+  CHECK_FALSE(IsSameFile(folder / "a", folder / "b"));
+  CHECK_FALSE(IsSameFile(folder / "none", folder / "a"));
+}
+
+TEST_CASE("The streams of the process are known by the file they go to") {
+  CHECK(IsStandardStream("/dev/stdout"));
+  CHECK(IsStandardStream("/dev/stderr"));
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "a", "x");
+  CHECK_FALSE(IsStandardStream(folder / "a"));
+  CHECK_FALSE(IsStandardStream(folder / "none"));
+}
+
+TEST_CASE("A file that grows holds every text in order, and may be no file that is there") {
+  const test::TemporaryFolder folder;
+  {
+    AppendFile file(folder / "log");
+    file.Append("one\n");
+    CHECK(ReadFile(folder / "log") == "one\n");
+    file.Append("two\n");
+    file.Sync();
+    CHECK_NOTHROW(file.RequireInPlace());
+  }
+  CHECK(ReadFile(folder / "log") == "one\ntwo\n");
+  CHECK_THROWS_WITH(AppendFile(folder / "log"),
+                    Contains(folder / "log") && Contains("File exists"));
+}
+
+TEST_CASE("A file that grows is missed where it was removed, moved or replaced") {
+  const test::TemporaryFolder folder;
+  AppendFile file(folder / "log");
+  SECTION("removed") { fs::remove(folder / "log"); }
+  SECTION("moved") { fs::rename(folder / "log", folder / "other"); }
+  SECTION("replaced") {
+    test::WriteText(folder / "new", "x");
+    fs::rename(folder / "new", folder / "log");
+  }
+  CHECK_THROWS_WITH(file.RequireInPlace(), Contains("was removed or moved"));
+}
+
+TEST_CASE("A folder is held by one at a time and free again afterwards") {
+  const test::TemporaryFolder folder;
+  const fs::path held = folder.Path() / "out/sweep";
+  {
+    const FolderLock lock(held);
+    CHECK(fs::is_directory(held));
+    CHECK(FolderLock::IsHeld(held));
+    CHECK_NOTHROW(lock.RequireInPlace());
+  }
+  CHECK_FALSE(FolderLock::IsHeld(held));
+  CHECK_FALSE(FolderLock::IsHeld(folder / "none"));
+  CHECK_NOTHROW(FolderLock(held));
+  test::WriteText(folder / "file", "x");
+  CHECK_THROWS_WITH(FolderLock(folder / "file"), Contains("cannot "));
+}
+
+TEST_CASE("A held folder is missed where it was removed, moved or replaced") {
+  const test::TemporaryFolder folder;
+  const fs::path held = folder.Path() / "out";
+  const FolderLock lock(held);
+  SECTION("removed") { fs::remove_all(held); }
+  SECTION("moved") { fs::rename(held, folder / "other"); }
+  SECTION("replaced") {
+    fs::rename(held, folder / "other");
+    fs::create_directory(held);
+  }
+  CHECK_THROWS_WITH(lock.RequireInPlace(), Contains("was removed, moved or replaced"));
+}
+
+TEST_CASE("File systems of other machines have their names, and local ones none") {
+  CHECK(NetworkFileSystemName(0x6969) == "NFS");
+  CHECK(NetworkFileSystemName(0x0BD00BD0) == "Lustre");
+  CHECK(NetworkFileSystemName(0xFFFFFFFFFF534D42UL) == "CIFS");  // signed
+  CHECK(NetworkFileSystemName(0xEF53).empty());                  // ext4
+  CHECK(NetworkFileSystemOf("/proc").empty());
+  CHECK(NetworkFileSystemOf("/none/of/it").empty());
+}
+
+TEST_CASE("The end of a process is told by its code or its signal, with its last words") {
+  CHECK(ProcessEndText(3, 0, "") == "ended with exit code 3");
+  CHECK(ProcessEndText(3, 0, "no friction") == "ended with exit code 3: no friction");
+  CHECK(ProcessEndText(0, SIGSEGV, "") == "ended by signal 11 (Segmentation fault)");
+  const auto status_of = [](int code, int signal) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      if (signal != 0) ::raise(signal);
+      ::_exit(code);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return status;
+  };
+  CHECK(ProcessEndText(status_of(7, 0), "x") == "ended with exit code 7: x");
+  CHECK(ProcessEndText(status_of(0, SIGKILL), "") == "ended by signal 9 (Killed)");
+}
+
+TEST_CASE("A word for a shell is quoted where the shell needs it and never elsewhere") {
+  CHECK(ShellWord("run/a-b_c.csv") == "run/a-b_c.csv");
+  CHECK(ShellWord("") == "''");
+  for (const char special : std::string(" \t\n'\"\\$&;()<>|*?[]#`!{}~^")) {
+    const std::string word = std::string("a") + special;
+    CHECK(ShellWord(word) != word);
+    CHECK(ShellWord(word) == ShellQuoted(word));
+  }
+  CHECK(ShellQuoted("it's") == "'it'\\''s'");
+}
+
+}  // namespace
+}  // namespace rift::files

@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+
+#include "rift/flags/flags.hpp"
+#include "rift/flags/manual.hpp"
+#include "rift/flags/usage.hpp"
+
+namespace rift::flags {
+namespace {
+
+using Catch::Matchers::Contains;
+
+enum class Kind { kOne, kTwo };
+constexpr std::array<std::string_view, 2> EnumNames(Kind) { return {"one", "two"}; }
+
+struct Options {
+  double length_m = 0.5;
+  int count = 3;
+  bool is_loud = false;
+  Kind kind = Kind::kTwo;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("length_m", self.length_m, -1.5, 2.0, "how far");
+    field("count", self.count, 1, 9, "how many");
+    field("is_loud", self.is_loud, "says more");
+    field("kind", self.kind, "which");
+  }
+};
+
+/// rift with two subcommands, and what they were given.
+struct Program {
+  CLI::App app{"measures gaps", "rift"};
+  Options options;
+  std::vector<std::string> files, pair;
+  std::string out, pattern;
+  int seed = 0;
+  bool view = false;
+
+  Program() {
+    CLI::App* drive = app.add_subcommand("drive", "drives it");
+    AddFlags(*drive, options);
+    drive->add_option("FILE", files, "an experiment");
+    drive->add_option("-o,--out", out, "a folder: [x]");
+    drive->add_option("--images", pattern, "a pattern");
+    drive->add_option("--seed", seed, "of the noise")->capture_default_str();
+    drive->add_option("--compare", pair, "two folders")->expected(2);
+    drive->add_flag("--view", view, "a window");
+    drive->footer("Examples:\n  rift drive a-b.yaml");
+    app.add_subcommand("sweep", "sweeps it");
+    app.require_subcommand(1);
+    RefuseEmptyValues(*drive, {{"--compare"}, {"--images"}});
+  }
+  /// The error line; empty when it was taken.
+  std::string Parse(std::vector<std::string> words) {
+    std::reverse(words.begin(), words.end());
+    try {
+      app.parse(words);
+      return "";
+    } catch (const CLI::ParseError& error) {
+      return UsageError(app, error);
+    }
+  }
+};
+
+std::string Said(const std::vector<std::string>& words) { return Program().Parse(words); }
+
+TEST_CASE("Flags of options have their values, ranges and defaults") {
+  Program program;
+  CHECK(program.Parse({"drive", "--length=-1.5", "--count", "9", "--is-loud", "--kind", "one"})
+            .empty());
+  CHECK(program.options.length_m == -1.5);
+  CHECK(program.options.count == 9);
+  CHECK(program.options.is_loud);
+  CHECK(program.options.kind == Kind::kOne);
+  CHECK(Said({"drive", "--length", "2"}).empty());
+  CHECK_THAT(Said({"drive", "--length", "2.01"}), Contains("'2.01' must be a number in [-1.5, 2]"));
+  CHECK_THAT(Said({"drive", "--length=-1.51"}), Contains("must be a number in [-1.5, 2]"));
+  CHECK_THAT(Said({"drive", "--length", "nan"}), Contains("'nan' must be a number in [-1.5, 2]"));
+  CHECK_THAT(Said({"drive", "--count", "0"}), Contains("'0' must be a whole number in [1, 9]"));
+  CHECK_THAT(Said({"drive", "--count", "10"}), Contains("must be a whole number in [1, 9]"));
+  CHECK_THAT(Said({"drive", "--count", "2.5"}), Contains("must be a whole number in [1, 9]"));
+  CHECK_FALSE(Said({"drive", "--kind", "three"}).empty());
+  const std::string help = program.app.get_subcommand("drive")->help();
+  CHECK_THAT(help, Contains("one|two") && Contains("=two") && Contains("]=0.5"));
+}
+
+TEST_CASE("What is wrong with a value is told with what the flag takes") {
+  const std::string help = "; rift drive --help lists what it takes";
+  CHECK(Said({"drive", "--seed", "few"}) == "--seed: 'few' must be a whole number");
+  CHECK(Said({"drive", "--seed"}) == "--seed needs its value, a whole number" + help);
+  CHECK(Said({"drive", "--out"}) == "--out needs its value, a value" + help);
+  CHECK(Said({"drive", "--length"}) == "--length needs its value, m" + help);
+  CHECK(Said({"drive", "--seed", "1", "--seed", "2"}) ==
+        "--seed is given 2 times: give it once" + help);
+  CHECK(Said({"drive", "--compare", "a"}) ==
+        "--compare takes 2 values, a value, and 1 is given" + help);
+  CHECK(Said({"drive", "--view=yes"}) == "--view takes no value: leave out what follows =" + help);
+}
+
+TEST_CASE("An empty value and a tilde that the shell left are refused, but for those who may") {
+  CHECK_THAT(Said({"drive", "--out", ""}), Contains("its value is empty"));
+  CHECK_THAT(Said({"drive", "--out", "~"}),
+             Contains("'~': the shell replaces ~") && Contains("write $HOME"));
+  CHECK_THAT(Said({"drive", "--out", "~/run"}), Contains("write $HOME/run"));
+  CHECK(Said({"drive", "--out", "a~b"}).empty());
+  CHECK(Said({"drive", "--out", "~other"}).empty());
+  CHECK(Said({"drive", "--images", "~/run/*.jpg"}).empty());
+  CHECK_THAT(Said({"drive", "--images", ""}), Contains("its value is empty"));
+  CHECK(Said({"drive", "--compare", "", "~"}).empty());
+}
+
+TEST_CASE("A flag or an argument that nobody knows is told with the nearest") {
+  CHECK(Said({"drive", "--lengt", "1"}) ==
+        "rift drive has no flag --lengt; did you mean --length?");
+  CHECK(Said({"drive", "--count=1", "--sead=1"}) ==
+        "rift drive has no flag --sead; did you mean --seed?");
+  CHECK(Said({"drive", "--xyzzyplugh"}) ==
+        "rift drive has no flag --xyzzyplugh; rift drive --help lists what it takes");
+  CHECK(Said({"sweep", "a"}) ==
+        "'a' is one argument too many for rift sweep; rift sweep --help lists what it takes");
+  CHECK_THAT(Said({"sweep", "a", "b", "c"}),
+             Contains("'a' and 2 more are too many arguments for rift sweep") &&
+                 Contains("needs its quotes"));
+  CHECK_THAT(Said({}), Contains("; rift --help lists what it takes"));
+}
+
+TEST_CASE("A subcommand that is none is told with the nearest, or with all") {
+  const std::vector<std::string> names{"drive", "sweep"};
+  CHECK_NOTHROW(RequireSubcommand("sweep", names));
+  CHECK_THROWS_WITH(RequireSubcommand("swep", names),
+                    "'swep' is no subcommand; did you mean 'sweep'?");
+  CHECK_THROWS_WITH(RequireSubcommand("hepl", names), Contains("did you mean 'help'?"));
+  CHECK_THROWS_WITH(RequireSubcommand("zzzzzzzz", names),
+                    "'zzzzzzzz' is no subcommand; there are drive, sweep, help");
+}
+
+TEST_CASE("A manual is made of the flags, their types, defaults and notes") {
+  const Program program;
+  const std::string page = Manual({"help", "--man", "drive"}, program.app);
+  CHECK_THAT(page, Contains(".TH rift-drive 1 ") && Contains("rift\\-drive \\- drives it"));
+  CHECK_THAT(page, Contains("\\fBrift drive\\fR [OPTIONS] [FILE]\n"));
+  CHECK_THAT(page, Contains("\\fB\\-\\-length m\\fR\nhow far [0.5]\n"));
+  CHECK_THAT(page, Contains("\\fB\\-\\-view\\fR\na window\n"));
+  CHECK_THAT(page, Contains("\\fB\\-o, \\-\\-out TEXT\\fR\n"));
+  CHECK_THAT(page, Contains(".SH NOTES\n.nf\nExamples:\n  rift drive a\\-b.yaml\n.fi\n"));
+  CHECK(page.find(".SH COMMANDS") == std::string::npos);
+  const std::string whole = Manual({"help", "--man"}, program.app);
+  CHECK_THAT(whole, Contains(".TH rift 1 ") && Contains("COMMAND [OPTIONS]") &&
+                        Contains("\\fBrift\\-sweep\\fR(1)\nsweeps it\n"));
+}
+
+TEST_CASE("Completions hold the commands, their flags and the words of a flag") {
+  const Program program;
+  const std::string bash = Manual({"help", "--bash"}, program.app);
+  CHECK_THAT(bash, Contains("compgen -W 'drive sweep help --help --version'"));
+  CHECK_THAT(bash, Contains("'help help') words='drive sweep' ;;"));
+  CHECK_THAT(bash, Contains("'drive --kind') words='one two' ;;"));
+  CHECK_THAT(bash,
+             Contains("      drive) words='") && Contains(" --length ") && Contains(" -o --out "));
+  CHECK(bash.find("'drive --length'") == std::string::npos);
+  const std::string zsh = Manual({"help", "--zsh"}, program.app);
+  CHECK_THAT(zsh, Contains("'drive:drives it'"));
+  CHECK_THAT(zsh, Contains("'--kind[which]:one|two:(one two)'"));
+  CHECK_THAT(zsh, Contains("'--view[a window]'"));
+  CHECK_THAT(zsh, Contains("'--out[a folder\\: \\[x\\]]:TEXT:_files'"));
+}
+
+TEST_CASE("Words that ask for no manual give none") {
+  const Program program;
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"help"},
+                                                {"help", "drive"},
+                                                {"drive", "--man"},
+                                                {"help", "--man", "drive", "more"}}) {
+    CHECK(Manual(words, program.app).empty());
+  }
+}
+
+}  // namespace
+}  // namespace rift::flags

@@ -1,0 +1,146 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include "rift/terminal/exit_code.hpp"
+#include "rift/terminal/print.hpp"
+#include "rift/terminal/stop_signal.hpp"
+#include "rift/yaml/node.hpp"
+#include "support/processes/process.hpp"
+#include "support/tree.hpp"
+#include "terminal/text.hpp"
+
+namespace rift::terminal {
+namespace {
+
+/// What goes to a stream of this process meanwhile.
+class Caught {
+ public:
+  explicit Caught(std::FILE* stream) : stream_(stream) {
+    std::fflush(stream_);
+    kept_ = ::dup(::fileno(stream_));
+    ::dup2(::fileno(file_), ::fileno(stream_));
+  }
+  ~Caught() { Text(); }
+  std::string Text() {
+    if (kept_ >= 0) {
+      std::fflush(stream_);
+      ::dup2(kept_, ::fileno(stream_));
+      ::close(kept_);
+      kept_ = -1;
+      std::rewind(file_);
+      for (int c = std::fgetc(file_); c != EOF; c = std::fgetc(file_)) {
+        text_ += static_cast<char>(c);
+      }
+      std::fclose(file_);
+    }
+    return text_;
+  }
+  Caught(const Caught&) = delete;
+  Caught& operator=(const Caught&) = delete;
+
+ private:
+  std::FILE* stream_;
+  std::FILE* file_ = std::tmpfile();
+  int kept_ = -1;
+  std::string text_;
+};
+
+TEST_CASE("What work throws is a line on stderr and the exit code of its kind") {
+  const auto ends_with = [](const std::function<int()>& work) {
+    Caught err(stderr), out(stdout);
+    const int code = ReportErrors(work);
+    CHECK(out.Text().empty());
+    return std::pair(code, err.Text());
+  };
+  using Ends = std::pair<int, std::string>;
+  CHECK(ends_with([] { return 7; }) == Ends{7, ""});
+  CHECK(ends_with([]() -> int { throw std::invalid_argument("bad\nword"); }) ==
+        Ends{2, "rift: bad\\x0aword\n"});
+  CHECK(ends_with([]() -> int { throw yaml::Error("a.yaml:1:2: wrong"); }) ==
+        Ends{2, "rift: a.yaml:1:2: wrong\n"});
+  CHECK(ends_with([]() -> int { throw std::runtime_error("the port is gone"); }) ==
+        Ends{3, "rift: the port is gone\n"});
+  const auto full = std::make_error_code(std::errc::no_space_on_device);
+  CHECK(ends_with([&]() -> int { throw std::filesystem::filesystem_error("f", full); }) ==
+        Ends{3, "rift: No space left on device\n"});
+  CHECK(ends_with([&]() -> int { throw std::filesystem::filesystem_error("f", "/x", full); }) ==
+        Ends{3, "rift: cannot use /x: No space left on device\n"});
+  CHECK(ends_with([] { return Fail("no", kRunTimeFailure); }) == Ends{3, "rift: no\n"});
+}
+
+TEST_CASE("Notes go to stderr in one line, results to stdout as they are") {
+  Caught out(stdout), err(stderr);
+  Say("a\tnote\x1b[2J");
+  PrintText("two\nlines\x1b\n");
+  PrintData("raw\x1b\n");
+  LiveLine::Show("progress");  // not a terminal
+  RingBell();
+  CHECK(FlushResults() == 0);
+  CHECK(out.Text() == "two\nlines\\x1b\nraw\x1b\n");
+  CHECK(err.Text() == "a\\x09note\\x1b[2J\n");
+}
+
+TEST_CASE("A line in place clears what stands there and has no end") {
+  Caught err(stderr);
+  SayInPlace("half");
+  CHECK(err.Text() == "\r\x1b[Khalf");
+}
+
+TEST_CASE("A text holds nothing that a terminal obeys or hides") {
+  const auto shown = [](std::string_view text) { return TerminalText(text, LineBreaks::kEscaped); };
+  CHECK(shown("plain ~ text") == "plain ~ text");
+  CHECK(shown("\x1f|\x20|\x7e|\x7f") == "\\x1f| |~|\\x7f");
+  CHECK(shown("a\nb") == "a\\x0ab");
+  CHECK(TerminalText("a\nb\r", LineBreaks::kKept) == "a\nb\\x0d");
+  CHECK(shown("\xff\xc3") == "\\xff\\xc3");  // no UTF-8
+  CHECK(shown("\xc3\xa4\xe2\x82\xac\xf0\x9f\xa4\x96") == "\xc3\xa4\xe2\x82\xac\xf0\x9f\xa4\x96");
+  CHECK(shown("\xc2\x80\xc2\x9f\xc2\xa0") == "\\u{80}\\u{9f}\xc2\xa0");
+  CHECK(shown("\xd8\x9b\xd8\x9c\xd8\x9d") == "\xd8\x9b\\u{61c}\xd8\x9d");
+  // U+200D, 200E, 200F, 2010; U+2027, 2028, 202E, 202F; U+2065, 2066, 2069, 206A.
+  CHECK(shown("\xe2\x80\x8d\xe2\x80\x8e\xe2\x80\x8f\xe2\x80\x90") ==
+        "\xe2\x80\x8d\\u{200e}\\u{200f}\xe2\x80\x90");
+  CHECK(shown("\xe2\x80\xa7\xe2\x80\xa8\xe2\x80\xae\xe2\x80\xaf") ==
+        "\xe2\x80\xa7\\u{2028}\\u{202e}\xe2\x80\xaf");
+  CHECK(shown("\xe2\x81\xa5\xe2\x81\xa6\xe2\x81\xa9\xe2\x81\xaa") ==
+        "\xe2\x81\xa5\\u{2066}\\u{2069}\xe2\x81\xaa");
+}
+
+TEST_CASE("A line is cut between characters, each of which counts as one") {
+  CHECK(FirstCharacters("abc", 2) == "ab");
+  CHECK(FirstCharacters("abc", 3) == "abc");
+  CHECK(FirstCharacters("abc", 9) == "abc");
+  CHECK(FirstCharacters("abc", 0).empty());
+  CHECK(FirstCharacters("\xc3\xa4\xe2\x82\xac"
+                        "b",
+                        2) == "\xc3\xa4\xe2\x82\xac");
+}
+
+TEST_CASE("The first Ctrl-C or SIGTERM asks for an end and the handlers are put back") {
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  static volatile std::sig_atomic_t seen = 0;
+  seen = 0;
+  std::signal(signal, [](int) { seen = 1; });
+  {
+    const StopSignal stop;
+    CHECK_FALSE(stop.IsAsked());
+    std::raise(signal);
+    CHECK(stop.IsAsked());
+    struct sigaction now {};
+    ::sigaction(signal, nullptr, &now);
+    CHECK(now.sa_handler == SIG_DFL);  // a second one ends the process
+  }
+  CHECK(seen == 0);
+  std::raise(signal);
+  CHECK(seen == 1);
+  const StopSignal again;
+  CHECK_FALSE(again.IsAsked());
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+}  // namespace rift::terminal
