@@ -2,6 +2,8 @@
 // which the same robot arrives.
 #include "rift/trial/steering_check.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
@@ -11,6 +13,7 @@
 
 #include "rift/geometry/pose2.hpp"
 #include "support/inputs/fake_robot.hpp"
+#include "support/pinned.hpp"
 
 namespace rift::trial {
 namespace {
@@ -527,6 +530,83 @@ TEST_CASE("Proposals are tried, joined with what the next run proposes, and kept
   CHECK(check.proposals[0].value == 3.0);
   CHECK(check.proposals[1].key == "b");
   CHECK(check.tried_s == Approx(7.0));
+}
+
+/// All that a check found, as text.
+std::string Everything(const std::string& name, const SteeringCheck& check) {
+  const SteeringModel& model = check.model;
+  std::string text = fmt::format(
+      "{}\n{:.3f} turns, identified {}, pull told {}, r2 {:.6f}, arrived {}\nspeed {:.6f}, yaw "
+      "rate "
+      "{:.6f}, age {:.6f}, delay {:.6f}, pull {:.6f}, of the loop {:.6f}\ncrossover {:.6f}, margin "
+      "{:.6f}, longest {:.6f}, circle {:.6f}, swing {:.6f} {:.6f}\n",
+      name, check.turns, check.is_identified, check.is_pull_told, check.r2, check.has_arrived,
+      model.speed_mps, model.yaw_rate_rad_s, model.pose_age_s, model.command_delay_s,
+      model.pull_rad_s, check.delay_s, check.margins.crossover_rad_s,
+      check.margins.phase_margin_deg, check.margins.longest_delay_s, check.circle_m,
+      check.swing.heading_rad, check.swing.path_m);
+  for (const std::string& cause : check.causes) text += cause + "\n";
+  for (const KeyProposal& proposal : check.proposals) {
+    text += fmt::format("{}: {} instead of {}\n", proposal.key, proposal.value, proposal.was);
+  }
+  return text + "\n";
+}
+
+TEST_CASE("What is found and proposed for runs of every kind is the pinned text") {
+  std::string text;
+  const auto add = [&](const std::string& name, const WornBench& bench) {
+    text += Everything(name, bench.Check(bench.Run()));
+  };
+  WornBench late;
+  late.robot = {.command_delay_s = 0.12, .sensing_delay_s = 0.10, .frame_period_s = 0.05};
+  add("a good run", late);
+  WornBench weak = late;
+  weak.navigator.heading = {0.02, 0.0, 0.004};
+  add("weak gains", weak);
+  WornBench limited = late;
+  limited.navigator.w_max = 0.03;
+  add("a low w_max", limited);
+  WornBench unstable = late;
+  unstable.robot.command_delay_s = 0.25;
+  unstable.navigator.heading = {0.3, 0.02, 0.01};
+  add("too much gain", unstable);
+  WornBench fast = late;
+  fast.navigator.v_min = fast.navigator.v_max = 0.6;
+  fast.navigator.reach_radius_m = 0.02;
+  fast.options.timeout_s = 4.0;
+  add("too fast", fast);
+  WornBench coarse = late;
+  coarse.navigator.w_min = 0.2;
+  add("a coarse w_min", coarse);
+  for (const double share : {0.6, 1.5}) {
+    WornBench pulling = late;
+    pulling.right_share = share;
+    add(fmt::format("the right wheel at {} of its speed", share), pulling);
+  }
+  WornBench still;
+  still.dead_band = 0.15;
+  still.prior.dead_band = 0.02;
+  still.prior.breakaway_power = 0.15;
+  still.navigator.v_min = 0.02;
+  still.navigator.v_max = 0.05;
+  still.navigator.cruise_speed = 0.03;
+  add("too weak to move", still);
+  WornBench broken;
+  broken.dead_band = 1.0;
+  add("no motors", broken);
+  WornBench stale;
+  stale.robot.sensing_delay_s = 0.6;
+  add("old poses", stale);
+  WornBench gate = late;
+  gate.navigator.pose_gate.max_speed_mps = 0.1;
+  add("a gate of speed", gate);
+  gate.navigator.pose_gate.max_speed_mps = 5.0;
+  gate.navigator.pose_gate.max_yaw_rate_rad_s = 0.3;
+  add("a gate of turns", gate);
+  WornBench soon = late;
+  soon.options.timeout_s = 1.5;
+  add("too little time", soon);
+  CHECK(test::DifferenceFromPinned("trial/steering.txt", text) == "");
 }
 
 }  // namespace
