@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <memory>
+#include <utility>
 
 #include "cluster.hpp"
 #include "doubt_notes.hpp"
@@ -161,9 +162,12 @@ std::optional<sweep::SweepResult> RunComputed(sweep::Evaluator& evaluator,
     if (cluster && !cluster->Run(trials, runner)) return std::nullopt;
     return runner.Run(std::move(trials));
   };
+  // The first setting is tried whatever the time: a search without any has nothing to tell.
+  bool has_begun = false;
   const sweep::MayStart may_start = [&](const std::vector<sweep::TrialRequest>& trials) {
     const double limit_s = evaluator.experiment().search.max_s;
-    return limit_s == 0.0 || watch.Elapsed_s() < limit_s || runner.HasAll(trials);
+    const bool is_first = !std::exchange(has_begun, true);
+    return is_first || limit_s == 0.0 || watch.Elapsed_s() < limit_s || runner.HasAll(trials);
   };
   std::optional<sweep::SweepResult> result = sweep::Sweep(
       evaluator, run, may_start, {request.jobs, [&](const sweep::ReferenceProgress& references) {
