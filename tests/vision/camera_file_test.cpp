@@ -187,7 +187,80 @@ TEST_CASE("A damaged camera file is refused with place and rule") {
   CHECK_THAT(message(with("plumb_bob", "pinhole")), Contains("one of plumb_bob"));
   CHECK_THAT(message(with("cols: 5", "cols: 4")), Contains("rows and cols say 4"));
   CHECK_THAT(message(with("residual_m", "residual_mm")), Contains("residual_m"));
+  CHECK_THAT(message(with("1095.7", "-1095.7")), Contains("fx and fy above 0"));
+  CHECK_THAT(message(with("u_px: 100.25", "u_px: wide")), Contains("u_px"));
+  CHECK_THAT(message(with("image_height: 1080", "image_height: 0")), Contains("image_height"));
   CHECK_THAT(message(with("image_width: 1920", "image_width: wide")), Contains("image_width"));
+}
+
+CameraModel ReadWith(const std::string& matrix, const std::string& distortion,
+                     const std::string& further = "") {
+  return ReadCamera("camera_matrix: " + matrix + "\ndist: " + distortion + "\n" + further,
+                    "cam.yaml");
+}
+
+TEST_CASE("A camera matrix is one, and a lens has as many numbers as its model") {
+  const std::string k = "[900, 0, 320, 0, 910, 240, 0, 0, 1]";
+  CHECK(ReadWith(k, "[1, 2, 3, 4]").lens == Lens::kPlumbBob);
+  CHECK(ReadWith(k, "[1, 2, 3, 4, 5]").distortion.size() == 5);
+  CHECK(ReadWith(k, "[1, 2, 3, 4, 5, 6, 7, 8]").distortion.back() == 8.0);
+  for (const char* wrong : {"[1, 2, 3]", "[1, 2, 3, 4, 5, 6]", "[1, 2, 3, 4, 5, 6, 7, 8, 9]"}) {
+    CHECK_THROWS_WITH(ReadWith(k, wrong), Contains("4, 5 or 8 numbers"));
+  }
+  for (const char* fisheye : {"distortion_model: equidistant", "distortion_model: fisheye",
+                              "fisheye_model: 1", "fisheye_model: true"}) {
+    CHECK(ReadWith(k, "[1, 2, 3, 4]", fisheye).lens == Lens::kEquidistant);
+    CHECK_THROWS_WITH(ReadWith(k, "[1, 2, 3, 4, 5]", fisheye), Contains("of a fisheye lens"));
+  }
+  for (const char* plain : {"distortion_model: plumb_bob", "distortion_model: rational_polynomial",
+                            "fisheye_model: 0"}) {
+    CHECK(ReadWith(k, "[1, 2, 3, 4]", plain).lens == Lens::kPlumbBob);
+  }
+  for (const char* wrong :
+       {"[0, 0, 320, 0, 910, 240, 0, 0, 1]", "[900, 0, 320, 0, 0, 240, 0, 0, 1]",
+        "[900, 0, 320, 1, 910, 240, 0, 0, 1]", "[900, 0, 320, 0, 910, 240, 1, 0, 1]",
+        "[900, 0, 320, 0, 910, 240, 0, 1, 1]", "[900, 0, 320, 0, 910, 240, 0, 0, 2]"}) {
+    CHECK_THROWS_WITH(ReadWith(wrong, "[1, 2, 3, 4]"), Contains("fx and fy above 0"));
+  }
+}
+
+TEST_CASE("A lens of eight numbers is named as ROS names it and has its projection beside it") {
+  CameraModel camera = SomeCamera();
+  camera.distortion = {1, 2, 3, 4, 5, 6, 7, 8};
+  const std::string text = WriteCamera(camera);
+  CHECK_THAT(text, Contains("distortion_model: rational_polynomial"));
+  CHECK(ReadCamera(text, "cam.yaml").distortion == camera.distortion);
+  const cv::FileStorage file(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+  cv::Mat1d projection, rectification;
+  file["projection_matrix"] >> projection;
+  file["rectification_matrix"] >> rectification;
+  REQUIRE(projection.size() == cv::Size(4, 3));
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      CHECK(projection(row, column) == camera.k(row, column));
+      CHECK(rectification(row, column) == (row == column ? 1.0 : 0.0));
+    }
+    CHECK(projection(row, 3) == 0.0);
+  }
+}
+
+TEST_CASE("A place of the camera that is no rotation is refused") {
+  CameraModel camera = SomeCamera();
+  auto& pose = camera.world->world_from_camera;
+  const Eigen::Matrix3d turn = pose.linear();
+  pose.linear() = 1.001 * turn;
+  CHECK_THROWS_WITH(ReadCamera(WriteCamera(camera), "cam.yaml"), Contains("must be a rotation"));
+  pose.linear() = -turn;  // a mirror
+  CHECK_THROWS_WITH(ReadCamera(WriteCamera(camera), "cam.yaml"), Contains("must be a rotation"));
+}
+
+TEST_CASE("Reference tags of every family's ids are read back") {
+  CameraModel camera = SomeCamera();
+  camera.world->marks = {{2114, {0.5, -0.25, 0.125}, {100.25, 200.5}}};
+  const CameraModel read = ReadCamera(WriteCamera(camera), "cam.yaml");
+  REQUIRE(read.world->marks.size() == 1);
+  CHECK(read.world->marks[0].tag_id == 2114);
+  CHECK(read.world->marks[0].p_in_world.z() == 0.125);
 }
 
 }  // namespace

@@ -144,6 +144,9 @@ void ReadDistortion(const yaml::Node& root, CameraModel& camera) {
   }
 }
 
+/// The most ids that a family has, less one: tagStandard41h12 (see TagFamily, of another room).
+constexpr int kLastTagId = 2114;
+
 /// A reference tag of a world frame as it is written.
 struct MarkBlock {
   int id = 0;
@@ -151,7 +154,7 @@ struct MarkBlock {
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
-    field("id", self.id, 0, 586, "of the tag");
+    field("id", self.id, 0, kLastTagId, "of the tag");
     field("x_m", self.x_m, -1e3, 1e3, "middle of the tag in the world");
     field("y_m", self.y_m, -1e3, 1e3, "middle of the tag in the world");
     field("z_m", self.z_m, -1e3, 1e3, "middle of the tag in the world");
