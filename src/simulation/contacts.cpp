@@ -142,6 +142,17 @@ GroundContact Sliding(const ContactPoint& at, double mu, const WorldState& state
   return {at, mu, direction, 0.0, speed_mps, load_n};
 }
 
+/// Calls `add` with each contact of the edge with the blocks around it. False without blocks: the
+/// ground is then known by its height alone.
+template <typename Add>
+bool AddContactsWithBlocks(const ContactScene& scene, const RoundEdge& edge, const Add& add) {
+  const double reach_m = edge.radius_m + edge.roundness_m + scene.margin_m;
+  const auto blocks = scene.terrain.BlocksNear(edge.centre.x(), edge.centre.y(), reach_m);
+  if (!blocks) return false;
+  for (const ContactPoint& at : ContactsWithBlocks(*blocks, edge, scene.margin_m)) add(at);
+  return true;
+}
+
 bool IsFinite(const WorldState& state) {
   return state.position_m.allFinite() && state.velocity_mps.allFinite() &&
          state.world_from_robot.allFinite() &&
@@ -209,13 +220,9 @@ void AddWheelContacts(const ContactScene& scene, int side, const Vector3d& centr
     contacts.push_back({at, grip.mu, Across(at.normal, axle), creep_mps, creep_mps,
                         body.WeightOnWheel_n(), uneven_mps});
   };
-  if (const auto blocks =
-          scene.terrain.BlocksNear(centre.x(), centre.y(), radius_m + scene.margin_m)) {
-    const double roundness_m = 0.5 * std::min(body.wheel_width_m, radius_m);
-    const RoundEdge tyre{centre, axle, radius_m - roundness_m, roundness_m};
-    for (const ContactPoint& at : ContactsWithBlocks(*blocks, tyre, scene.margin_m)) add(at);
-    return;
-  }
+  const double roundness_m = 0.5 * std::min(body.wheel_width_m, radius_m);
+  const RoundEdge tyre{centre, axle, radius_m - roundness_m, roundness_m};
+  if (AddContactsWithBlocks(scene, tyre, add)) return;
   const auto contact = WheelContactPoint(scene.terrain, centre, axle, radius_m, body.wheel_width_m);
   if (contact) add(*contact);
 }
@@ -231,12 +238,8 @@ void AddCasterContacts(const ContactScene& scene, std::vector<GroundContact>& co
     contacts.push_back(
         Sliding(at, grip.caster_factor * body.caster_mu, state, body.WeightOnCaster_n()));
   };
-  if (const auto blocks =
-          scene.terrain.BlocksNear(caster.x(), caster.y(), body.caster_radius_m + scene.margin_m)) {
-    const RoundEdge ball{caster, Vector3d::UnitY(), 0.0, body.caster_radius_m};
-    for (const ContactPoint& at : ContactsWithBlocks(*blocks, ball, scene.margin_m)) add(at);
-    return;
-  }
+  const RoundEdge ball{caster, Vector3d::UnitY(), 0.0, body.caster_radius_m};
+  if (AddContactsWithBlocks(scene, ball, add)) return;
   const auto contact =
       BallContactPoint(scene.terrain, caster, state.world_from_robot.col(0), body.caster_radius_m);
   if (contact) add(*contact);
@@ -250,13 +253,9 @@ void AddRimContacts(const ContactScene& scene, std::vector<GroundContact>& conta
   const auto add = [&](const ContactPoint& at) {
     contacts.push_back(Sliding(at, body.rim_mu, state, body.Weight_n()));
   };
-  if (const auto blocks =
-          scene.terrain.BlocksNear(rim.x(), rim.y(), body.chassis_radius_m + scene.margin_m)) {
-    const RoundEdge edge{rim + kRimRoundness_m * up, up, body.chassis_radius_m - kRimRoundness_m,
-                         kRimRoundness_m};
-    for (const ContactPoint& at : ContactsWithBlocks(*blocks, edge, scene.margin_m)) add(at);
-    return;
-  }
+  const RoundEdge edge{rim + kRimRoundness_m * up, up, body.chassis_radius_m - kRimRoundness_m,
+                       kRimRoundness_m};
+  if (AddContactsWithBlocks(scene, edge, add)) return;
   const auto contact = RimContactPoint(scene.terrain, rim, up, body.chassis_radius_m);
   if (contact) add(*contact);
 }
