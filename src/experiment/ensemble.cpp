@@ -33,9 +33,7 @@ Experiment At(const Experiment& experiment, const std::vector<double>& draw,
   for (size_t i = 0; i < draw.size(); ++i) {
     const std::string& key = experiment.ensemble.keys[i];
     if (IsInSpace(experiment, key)) continue;
-    yaml::Node value = ValueToNode(NumberValue(draw[i]));
-    value.origin = origin;
-    values.push_back({key, std::move(value)});
+    values.push_back(ValueOfKey(key, NumberValue(draw[i]), origin));
   }
   Experiment at = experiment;
   yaml::SetValues(at, values);

@@ -163,9 +163,7 @@ Experiment ExperimentAt(const Experiment& experiment, const std::vector<Paramete
   std::vector<yaml::KeyValue> values;
   for (size_t i = 0; i < theta.size(); ++i) {
     const Parameter& parameter = experiment.space.parameters[i];
-    yaml::Node value = ValueToNode(theta[i]);
-    value.origin.source = parameter.origin;
-    values.push_back({parameter.key, value});
+    values.push_back(ValueOfKey(parameter.key, theta[i], {parameter.origin}));
   }
   Experiment at = experiment;
   yaml::SetValues(at, values);
@@ -265,9 +263,7 @@ Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>&
   std::vector<yaml::KeyValue> pairs;
   for (size_t i = 0; i < values.size(); ++i) {
     const FreeParameter& free = experiment.calibrate.fit.list[i];
-    yaml::Node value = ValueToNode(NumberValue(values[i]));
-    value.origin.source = free.origin;
-    pairs.push_back({free.key, value});
+    pairs.push_back(ValueOfKey(free.key, NumberValue(values[i]), {free.origin}));
   }
   Experiment at = experiment;
   yaml::SetValues(at, pairs);

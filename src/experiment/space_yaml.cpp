@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "rift/yaml/node.hpp"
 #include "rift/yaml/scalar.hpp"
@@ -27,6 +28,13 @@ yaml::Node ValueToNode(const ParameterValue& value) {
   return was_quoted ? yaml::Node::Text(value.text) : yaml::Node::Scalar(value.text);
 }
 
+yaml::KeyValue ValueOfKey(const std::string& key, const ParameterValue& value,
+                          const yaml::Origin& origin) {
+  yaml::Node node = ValueToNode(value);
+  node.origin = origin;
+  return {key, std::move(node)};
+}
+
 }  // namespace rift::experiment
 
 namespace rift::yaml {
@@ -34,11 +42,13 @@ namespace {
 
 void ReadLevels(const Node& node, const std::string& key, experiment::Parameter& parameter) {
   if (node.items.empty()) Fail(node, key, "an axis needs at least one value");
+  std::set<std::string> texts;  // two levels are one where SameValue says so
+  std::set<double> numbers;
   for (const Node& item : node.items) {
     const experiment::ParameterValue level = experiment::ValueFromNode(item, key);
-    for (const experiment::ParameterValue& earlier : parameter.levels) {
-      if (SameValue(earlier, level)) Fail(item, key, "an axis has each value once");
-    }
+    const bool is_new =
+        texts.insert(level.text).second && (!level.number || numbers.insert(*level.number).second);
+    if (!is_new) Fail(item, key, "an axis has each value once");
     parameter.levels.push_back(level);
   }
 }

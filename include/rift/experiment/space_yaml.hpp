@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "rift/experiment/options.hpp"
+#include "rift/yaml/bind.hpp"
 #include "rift/yaml/fields.hpp"
 
 namespace rift::experiment {
@@ -15,6 +16,10 @@ ParameterValue ValueFromNode(const yaml::Node& node, const std::string& key);
 
 /// The way back, for a space as for a key: what ValueFromNode reads as the same value.
 yaml::Node ValueToNode(const ParameterValue& value);
+
+/// The value for yaml::SetValues; what is wrong with it is said to stand at `origin`.
+yaml::KeyValue ValueOfKey(const std::string& key, const ParameterValue& value,
+                          const yaml::Origin& origin);
 
 }  // namespace rift::experiment
 

@@ -90,20 +90,23 @@ trajectory::Trajectory IdealPath(const control::Task& task) {
 SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
                                 const geometry::Pose2& start, std::uint64_t seed,
                                 const std::string& experiment_file, const Inputs& inputs) {
+  if (!experiment.ensemble.IsEmpty()) {
+    return SimulatedTrialOf(experiment::DrawnAt(experiment, seed), start, seed, experiment_file,
+                            inputs);
+  }
   control::Task task;
   try {
     task = experiment::TaskOf(experiment);
   } catch (const std::invalid_argument& no_task) {
     throw std::invalid_argument(fmt::format("{}: {}", experiment_file, no_task.what()));
   }
-  const experiment::Experiment drawn = experiment::DrawnAt(experiment, seed);
   return {.task = std::move(task),
-          .control = drawn.control,
-          .trial = drawn.trial,
-          .simulation = drawn.simulation,
+          .control = experiment.control,
+          .trial = experiment.trial,
+          .simulation = experiment.simulation,
           .start = start,
           .seed = seed,
-          .image = ImageOf(drawn.simulation.terrain, inputs)};
+          .image = ImageOf(experiment.simulation.terrain, inputs)};
 }
 
 geometry::Pose2 StartFromLog(const trajectory::Trajectory& log, double tag_offset_m,
