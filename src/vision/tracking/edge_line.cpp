@@ -116,7 +116,6 @@ std::optional<EdgeLine> FitLine(const std::vector<Eigen::Vector2d>& points, doub
     kept.clear();
     std::copy_if(points.begin(), points.end(), std::back_inserter(kept),
                  [&](const Eigen::Vector2d& p) { return std::abs(line.Distance(p)) <= limit; });
-    if (2 * kept.size() < points.size()) return std::nullopt;
     line = LeastSquares(kept);
     if (kept.size() == points.size()) break;
   }

@@ -31,7 +31,7 @@ struct EdgeLine {
 };
 
 /// The line with the least squared distances, after points further than 3 sigma (by the median, at
-/// least `least_sigma`) are left out. None when fewer than half of the points are left.
+/// least `least_sigma`) are left out, so never more than half of them. None of fewer than four.
 std::optional<EdgeLine> FitLine(const std::vector<Eigen::Vector2d>& points, double least_sigma);
 
 /// Where they meet; none when they are all but parallel.

@@ -4,9 +4,9 @@
 #include <Eigen/LU>
 #include <cassert>
 #include <cmath>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 #include <vector>
+
+#include "planar_pose.hpp"
 
 namespace rift::vision {
 namespace {
@@ -125,26 +125,9 @@ OffFloor OffFloorOf(const FloorPrior& prior, const Eigen::Isometry3d& pose) {
 
 std::vector<Eigen::Isometry3d> PlanarSolutions(const std::array<Eigen::Vector2d, 4>& rays,
                                                double size_m) {
-  std::vector<cv::Point3d> object;
-  std::vector<cv::Point2d> image;
-  for (const Eigen::Vector3d& c : CornersInTag(size_m)) object.emplace_back(c.x(), c.y(), c.z());
-  for (const Eigen::Vector2d& ray : rays) image.emplace_back(ray.x(), ray.y());
-  std::vector<cv::Mat> turns, places;
-  cv::solvePnPGeneric(object, image, cv::Matx33d::eye(), cv::noArray(), turns, places, false,
-                      cv::SOLVEPNP_IPPE);
-  std::vector<Eigen::Isometry3d> poses;
-  for (std::size_t i = 0; i < turns.size(); ++i) {
-    cv::Matx33d rotation;
-    cv::Rodrigues(turns[i], rotation);
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    Eigen::Matrix3d linear;
-    cv::cv2eigen(rotation, linear);
-    pose.linear() = linear;
-    pose.translation() =
-        Eigen::Vector3d(places[i].at<double>(0), places[i].at<double>(1), places[i].at<double>(2));
-    poses.push_back(pose);
-  }
-  return poses;
+  std::vector<Eigen::Vector2d> corners;
+  for (const Eigen::Vector3d& corner : CornersInTag(size_m)) corners.push_back(corner.head<2>());
+  return PlanarPoses(corners, {rays.begin(), rays.end()});
 }
 
 bool IsSeenFromTheFront(const Eigen::Isometry3d& camera_from_tag) {

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
 #include <stdexcept>
 
+#include "planar_pose.hpp"
 #include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/tracking/world_check.hpp"
 
@@ -18,22 +20,31 @@ constexpr std::size_t kLeastPoints = 4;
 constexpr double kFlat_m = 1e-6;
 constexpr double kThinnest = 0.05;  // width to length of the cloud of points
 
-struct PnpPose {
-  cv::Mat turn, shift;
+Eigen::Isometry3d IsometryOf(const cv::Mat& turn, const cv::Mat& shift) {
+  cv::Matx33d rotation;
+  cv::Rodrigues(turn, rotation);
+  Eigen::Matrix3d linear;
+  cv::cv2eigen(rotation, linear);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = linear;
+  pose.translation() =
+      Eigen::Vector3d(shift.at<double>(0), shift.at<double>(1), shift.at<double>(2));
+  return pose;
+}
 
-  Eigen::Isometry3d WorldFromCamera() const {
-    cv::Matx33d rotation;
-    cv::Rodrigues(turn, rotation);
-    Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) {
-        camera_from_world.linear()(row, column) = rotation(row, column);
-      }
-      camera_from_world.translation()(row) = shift.at<double>(row);
-    }
-    return camera_from_world.inverse();
+std::vector<cv::Point3d> PlacesOf(const std::vector<WorldPoint>& points) {
+  std::vector<cv::Point3d> places;
+  for (const WorldPoint& point : points) {
+    places.emplace_back(point.p_in_world.x(), point.p_in_world.y(), point.p_in_world.z());
   }
-};
+  return places;
+}
+
+std::vector<cv::Point2d> PointsOf(const std::vector<Eigen::Vector2d>& rays) {
+  std::vector<cv::Point2d> points;
+  for (const Eigen::Vector2d& ray : rays) points.emplace_back(ray.x(), ray.y());
+  return points;
+}
 
 bool AreOnLine(const std::vector<WorldPoint>& points) {
   Eigen::Matrix2Xd places(2, points.size());
@@ -58,29 +69,45 @@ void Check(const std::vector<WorldPoint>& points) {
   }
 }
 
-std::vector<PnpPose> Solve(const std::vector<cv::Point3d>& places,
-                           const std::vector<cv::Point2d>& rays) {
-  const double z_m = places.front().z;
-  const bool flat = std::all_of(places.begin(), places.end(), [z_m](const cv::Point3d& p) {
-    return std::abs(p.z - z_m) < kFlat_m;
-  });
-  std::vector<cv::Point3d> lowered = places;  // IPPE takes the plane z = 0 alone
-  for (cv::Point3d& p : lowered) p.z -= flat ? z_m : 0.0;
-  const cv::Mat no_lens = cv::Mat::eye(3, 3, CV_64F);
+/// camera_from_world, by OpenCV's solver for points that lie on no plane.
+std::vector<Eigen::Isometry3d> SpatialPoses(const std::vector<cv::Point3d>& places,
+                                            const std::vector<cv::Point2d>& rays) {
   std::vector<cv::Mat> turns, shifts;
-  cv::solvePnPGeneric(lowered, rays, no_lens, cv::noArray(), turns, shifts, false,
-                      flat ? cv::SOLVEPNP_IPPE : cv::SOLVEPNP_SQPNP);
-  std::vector<PnpPose> poses;
-  for (std::size_t i = 0; i < turns.size(); ++i) {
-    cv::Mat rotation, turn, shift;
-    turns[i].convertTo(turn, CV_64F);
-    shifts[i].convertTo(shift, CV_64F);
-    cv::Rodrigues(turn, rotation);
-    if (flat) shift -= rotation * cv::Mat(cv::Vec3d(0.0, 0.0, z_m));
-    cv::solvePnPRefineLM(places, rays, no_lens, cv::noArray(), turn, shift);
-    poses.push_back({turn, shift});
-  }
+  cv::solvePnPGeneric(places, rays, cv::Matx33d::eye(), cv::noArray(), turns, shifts, false,
+                      cv::SOLVEPNP_SQPNP);
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t i = 0; i < turns.size(); ++i) poses.push_back(IsometryOf(turns[i], shifts[i]));
   return poses;
+}
+
+std::vector<Eigen::Isometry3d> Starts(const std::vector<WorldPoint>& points,
+                                      const std::vector<Eigen::Vector2d>& rays) {
+  const double z_m = points.front().p_in_world.z();
+  const bool flat = std::all_of(points.begin(), points.end(), [z_m](const WorldPoint& point) {
+    return std::abs(point.p_in_world.z() - z_m) < kFlat_m;
+  });
+  if (!flat) return SpatialPoses(PlacesOf(points), PointsOf(rays));
+  std::vector<Eigen::Vector2d> in_plane_m;
+  for (const WorldPoint& point : points) in_plane_m.push_back(point.p_in_world.head<2>());
+  std::vector<Eigen::Isometry3d> poses = PlanarPoses(in_plane_m, rays);
+  for (Eigen::Isometry3d& pose : poses) pose = pose * Eigen::Translation3d(0.0, 0.0, -z_m);
+  return poses;
+}
+
+/// The poses with the least squared distances on the plane before the camera, camera_from_world.
+std::vector<Eigen::Isometry3d> Solve(const std::vector<WorldPoint>& points,
+                                     const std::vector<Eigen::Vector2d>& rays) {
+  std::vector<Eigen::Isometry3d> refined;
+  for (const Eigen::Isometry3d& start : Starts(points, rays)) {
+    cv::Mat rotation, turn, shift;
+    cv::eigen2cv(Eigen::Matrix3d(start.linear()), rotation);
+    cv::eigen2cv(Eigen::Vector3d(start.translation()), shift);
+    cv::Rodrigues(rotation, turn);
+    cv::solvePnPRefineLM(PlacesOf(points), PointsOf(rays), cv::Matx33d::eye(), cv::noArray(), turn,
+                         shift);
+    refined.push_back(IsometryOf(turn, shift));
+  }
+  return refined;
 }
 
 Eigen::Vector2d OnPlane(const Eigen::Isometry3d& world_from_camera, const Eigen::Vector2d& ray,
@@ -112,17 +139,11 @@ WorldFrame WorldFromPoints(const CameraModel& camera, const std::vector<WorldPoi
                            const std::string& origin) {
   Check(points);
   std::vector<Eigen::Vector2d> pixels;
-  std::vector<cv::Point3d> places;
-  for (const WorldPoint& point : points) {
-    pixels.push_back(point.pixel);
-    places.emplace_back(point.p_in_world.x(), point.p_in_world.y(), point.p_in_world.z());
-  }
+  for (const WorldPoint& point : points) pixels.push_back(point.pixel);
   const std::vector<Eigen::Vector2d> rays = RaysFromPixels(camera, pixels);
-  std::vector<cv::Point2d> seen;
-  for (const Eigen::Vector2d& ray : rays) seen.emplace_back(ray.x(), ray.y());
   WorldFrame world{.residual_m = HUGE_VAL, .origin = origin};
-  for (const PnpPose& pose : Solve(places, seen)) {
-    const Eigen::Isometry3d world_from_camera = pose.WorldFromCamera();
+  for (const Eigen::Isometry3d& camera_from_world : Solve(points, rays)) {
+    const Eigen::Isometry3d world_from_camera = camera_from_world.inverse();
     const double residual_m = Residual_m(world_from_camera, points, rays);
     if (world_from_camera.translation().z() <= 0.0 || !(residual_m < world.residual_m)) continue;
     world.world_from_camera = world_from_camera;
