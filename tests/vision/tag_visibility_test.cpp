@@ -1,0 +1,157 @@
+#include "rift/vision/tracking/tag_visibility.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/mirror.hpp"
+#include "vision/tracking/off_floor.hpp"
+
+namespace rift::vision {
+namespace {
+
+using Catch::Matchers::Contains;
+
+/// 600 px a radian, 640 x 480, 2.03 m above the floor, its view `tilt_rad` from straight down
+/// towards +y.
+CameraModel Above(double tilt_rad) {
+  CameraModel camera{.name = "above", .width_px = 640, .height_px = 480};
+  camera.k << 600.0, 0.0, 319.5, 0.0, 600.0, 239.5, 0.0, 0.0, 1.0;
+  camera.world.emplace();
+  camera.world->world_from_camera.linear() =
+      Eigen::AngleAxisd(tilt_rad, Eigen::Vector3d::UnitX()).toRotationMatrix() *
+      Eigen::Matrix3d(Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal());
+  camera.world->world_from_camera.translation() = Eigen::Vector3d(0.0, 0.0, 2.03);
+  camera.world->origin = "4 reference tags";
+  return camera;
+}
+
+TEST_CASE("Seen from straight above, a tag has the same short side wherever it lies") {
+  const CameraModel camera = Above(0.0);
+  test::OnBothSides("x", "y", [&](const test::Side& side) {
+    for (const double at_m : {-0.5, 0.0, 0.5}) {
+      const Eigen::Vector3d p = side.IsFirst() ? Eigen::Vector3d(at_m, 0.0, 0.03)
+                                               : Eigen::Vector3d(0.0, at_m, 0.03);
+      const auto side_px = ShortSide_px(camera, 0.05, p);
+      REQUIRE(side_px);
+      CHECK(*side_px == Approx(600.0 * 0.05 / 2.0));
+    }
+  });
+  CHECK(*ShortSide_px(camera, 0.05, {0.0, 0.0, 1.03}) == Approx(30.0));  // twice as near
+}
+
+TEST_CASE("A tag that is seen at an angle is short along the way to it") {
+  const double tilt_rad = 0.8, size_m = 0.05;
+  const CameraModel camera = Above(tilt_rad);
+  const double far_m = 2.0 * std::tan(tilt_rad);  // where the middle of the picture is
+  const auto side_px = ShortSide_px(camera, size_m, {0.0, far_m, 0.03});
+  REQUIRE(side_px);
+  // Its near and its far edge, a height of 2 m below: the difference of the two slopes.
+  const auto slope = [&](double y_m) { return std::tan(std::atan(y_m / 2.0) - tilt_rad); };
+  const double foreshortened_px =
+      600.0 * (slope(far_m + 0.5 * size_m) - slope(far_m - 0.5 * size_m));
+  // A side runs along the way, half a side beside it.
+  CHECK(*side_px == Approx(foreshortened_px).epsilon(0.002));
+  CHECK(*ShortSideInMiddle_px(camera, {.size_m = size_m, .height_m = 0.03}) ==
+        Approx(*side_px).epsilon(1e-6));
+  CHECK_FALSE(ShortSide_px(camera, size_m, {0.0, -8.0, 0.03}));  // behind the camera
+}
+
+TEST_CASE("AprilTag leaves out no more pixels than the tag can spare") {
+  const CameraModel camera = Above(0.0);
+  TagOptions tag{.height_m = 0.03, .acquire_decimate = 3, .search_px = 14.0};
+  const auto with_side = [&](double side_px) {
+    tag.size_m = side_px * 2.0 / 600.0;
+    return DecimateFor(camera, tag);
+  };
+  CHECK(with_side(10.0) == 1);
+  CHECK(with_side(27.9) == 1);
+  CHECK(with_side(28.1) == 2);
+  CHECK(with_side(41.9) == 2);
+  CHECK(with_side(42.1) == 3);
+  CHECK(with_side(200.0) == 3);
+  tag.family = TagFamily::kStandard41h12;  // five cells a side: as easy as eight of 8 / 5 the side
+  CHECK(with_side(17.4) == 1);
+  CHECK(with_side(17.6) == 2);
+  CameraModel no_world = camera;
+  no_world.world.reset();
+  CHECK(DecimateFor(no_world, tag) == 3);
+  CHECK_FALSE(ShortSideInMiddle_px(no_world, tag));
+}
+
+TEST_CASE("A tag too small to be measured well, or at all, is said with what would do") {
+  const CameraModel camera = Above(0.0);
+  TagOptions tag{.height_m = 0.03};
+  const auto with_side = [&](double side_px) {
+    tag.size_m = side_px * 2.0 / 600.0;
+    return SmallTagWarning(camera, tag).value_or("");
+  };
+  CHECK(with_side(20.1).empty());
+  CHECK_THAT(with_side(18.0), Contains("the tag of 0.06 m has 18 px in the middle") &&
+                                  Contains("good are 20: poses will be coarse") &&
+                                  Contains("1.2 times as large"));
+  CHECK_THAT(with_side(15.0), Contains("it takes 16: it will not be found") &&
+                                  Contains("1.5 times as large"));
+  CHECK(LeastSide_px(TagFamily::kStandard41h12) == 10.0);
+  CameraModel no_world = camera;
+  no_world.world.reset();
+  CHECK_FALSE(SmallTagWarning(no_world, tag));
+}
+
+Sighting SeenAt(double z_m, bool is_on_floor) {
+  Sighting sighting;
+  sighting.in_world = true;
+  sighting.is_on_floor = is_on_floor;
+  sighting.map_from_tag.translation().z() = z_m;
+  return sighting;
+}
+
+TEST_CASE("A tag that is hardly ever on the floor is said once, with its side and its height") {
+  const CameraModel camera = Above(0.0);
+  const TagOptions tag{.size_m = 0.05, .height_m = 0.03};
+  OffFloorCheck check(camera, tag);
+  for (int i = 0; i < 9; ++i) CHECK_FALSE(check.Add(SeenAt(0.10 + 0.01 * (i % 3), false)));
+  const auto warning = check.Add(SeenAt(0.11, false));
+  REQUIRE(warning);
+  // At 0.11 m the tag is 1.92 m below the camera, not 2: its side would be 0.05 * 2 / 1.92.
+  CHECK_THAT(*warning, Contains("in 10 of 10 pictures (z 0.110 m, track.tag.height_m 0.03)") &&
+                           Contains("is its side 0.0521 m (--set track.tag.size_m=0.0521)") &&
+                           Contains("its height 0.110 m (--tag-height 0.110)") &&
+                           Contains("was the camera moved"));
+  CHECK_FALSE(check.Add(SeenAt(0.11, false)));
+}
+
+TEST_CASE("A tag that is on the floor in more than a tenth of the pictures is not said") {
+  const CameraModel camera = Above(0.0);
+  const TagOptions tag;
+  OffFloorCheck rarely(camera, tag), often(camera, tag);
+  CHECK_FALSE(rarely.Add(SeenAt(0.03, true)));
+  CHECK_FALSE(often.Add(SeenAt(0.03, true)));
+  CHECK_FALSE(often.Add(SeenAt(0.03, true)));
+  int said_rarely = 0, said_often = 0;
+  for (int i = 0; i < 10; ++i) {
+    said_rarely += rarely.Add(SeenAt(0.2, false)).has_value();
+    said_often += often.Add(SeenAt(0.2, false)).has_value();
+  }
+  CHECK(said_rarely == 1);  // 10 of 11
+  CHECK(said_often == 0);   // 10 of 12
+}
+
+TEST_CASE("No floor, no word of it: free ground, no world frame, a height that nobody can set") {
+  CameraModel camera = Above(0.0);
+  const TagOptions flat, free{.ground = Ground::kFree};
+  OffFloorCheck on_ramps(camera, free), below(camera, flat);
+  std::optional<std::string> of_ramps, of_below;
+  for (int i = 0; i < 20; ++i) {
+    if (const auto said = on_ramps.Add(SeenAt(0.2, false))) of_ramps = said;
+    if (const auto said = below.Add(SeenAt(-0.1, false))) of_below = said;
+  }
+  CHECK_FALSE(of_ramps);
+  REQUIRE(of_below);
+  CHECK_THAT(*of_below, !Contains("--tag-height"));
+  camera.world.reset();
+  OffFloorCheck no_world(camera, flat);
+  for (int i = 0; i < 20; ++i) CHECK_FALSE(no_world.Add(SeenAt(0.2, false)));
+}
+
+}  // namespace
+}  // namespace rift::vision
