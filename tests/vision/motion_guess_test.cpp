@@ -64,7 +64,8 @@ TEST_CASE("A pose goes on along its way and about its axis, and its covariance g
     const double sign = side.IsFirst() ? 1.0 : -1.0;
     MotionGuess guess;
     guess.Saw(SeenAt(2.0, SquareAt(0.0, 0.0, 40.0, 0.0), PoseAt(0.1, 0.2, 0.0)));
-    guess.Saw(SeenAt(2.1, SquareAt(9.0, 0.0, 40.0, 0.0), PoseAt(0.12, 0.2 + sign * 0.01, sign * 0.3)));
+    guess.Saw(
+        SeenAt(2.1, SquareAt(9.0, 0.0, 40.0, 0.0), PoseAt(0.12, 0.2 + sign * 0.01, sign * 0.3)));
     const auto at = guess.PoseAt(2.15, kLost_s);
     REQUIRE(at);
     CHECK(at->captured_s == 2.15);
@@ -90,7 +91,8 @@ TEST_CASE("A pose goes on along its way and about its axis, and its covariance g
 }
 
 TEST_CASE("Seen once, or twice at a time too far apart, a tag is expected where it was") {
-  const TagCorners first = SquareAt(10.0, 10.0, 30.0, 0.0), second = SquareAt(30.0, 10.0, 30.0, 0.0);
+  const TagCorners first = SquareAt(10.0, 10.0, 30.0, 0.0),
+                   second = SquareAt(30.0, 10.0, 30.0, 0.0);
   MotionGuess guess;
   CHECK_FALSE(guess.CornersAt(0.0, kLost_s));
   CHECK_FALSE(guess.PoseAt(0.0, kLost_s));
@@ -123,10 +125,10 @@ TEST_CASE("Nothing is expected of a tag that was last seen too long before, or w
 TEST_CASE("Around a tag are all pixels that are within the margin of a corner") {
   const TagCorners corners{{{10.2, 40.9}, {30.7, 44.0}, {33.5, 20.1}, {12.0, 18.4}}};
   const Region region = Around(corners, 2.5);
-  CHECK(region.x_px == 7);                            // 10.2 - 2.5 = 7.7
-  CHECK(region.y_px == 15);                           // 18.4 - 2.5 = 15.9
-  CHECK(region.x_px + region.width_px - 1 == 36);     // 33.5 + 2.5
-  CHECK(region.y_px + region.height_px - 1 == 47);    // 44.0 + 2.5 = 46.5
+  CHECK(region.x_px == 7);                          // 10.2 - 2.5 = 7.7
+  CHECK(region.y_px == 15);                         // 18.4 - 2.5 = 15.9
+  CHECK(region.x_px + region.width_px - 1 == 36);   // 33.5 + 2.5
+  CHECK(region.y_px + region.height_px - 1 == 47);  // 44.0 + 2.5 = 46.5
   TagCorners wild = corners;
   wild[2] = {1e300, -1e300};
   CHECK(Around(wild, 0.0).y_px == -1'000'000);

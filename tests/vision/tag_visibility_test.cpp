@@ -29,8 +29,8 @@ TEST_CASE("Seen from straight above, a tag has the same short side wherever it l
   const CameraModel camera = Above(0.0);
   test::OnBothSides("x", "y", [&](const test::Side& side) {
     for (const double at_m : {-0.5, 0.0, 0.5}) {
-      const Eigen::Vector3d p = side.IsFirst() ? Eigen::Vector3d(at_m, 0.0, 0.03)
-                                               : Eigen::Vector3d(0.0, at_m, 0.03);
+      const Eigen::Vector3d p =
+          side.IsFirst() ? Eigen::Vector3d(at_m, 0.0, 0.03) : Eigen::Vector3d(0.0, at_m, 0.03);
       const auto side_px = ShortSide_px(camera, 0.05, p);
       REQUIRE(side_px);
       CHECK(*side_px == Approx(600.0 * 0.05 / 2.0));
@@ -89,8 +89,8 @@ TEST_CASE("A tag too small to be measured well, or at all, is said with what wou
   CHECK_THAT(with_side(18.0), Contains("the tag of 0.06 m has 18 px in the middle") &&
                                   Contains("good are 20: poses will be coarse") &&
                                   Contains("1.2 times as large"));
-  CHECK_THAT(with_side(15.0), Contains("it takes 16: it will not be found") &&
-                                  Contains("1.5 times as large"));
+  CHECK_THAT(with_side(15.0),
+             Contains("it takes 16: it will not be found") && Contains("1.5 times as large"));
   CHECK(LeastSide_px(TagFamily::kStandard41h12) == 10.0);
   CameraModel no_world = camera;
   no_world.world.reset();

@@ -79,9 +79,11 @@ TEST_CASE("Points pose the camera, on one height or on several") {
   const CameraModel camera = test::PaperCamera();
   const bool flat = GENERATE(true, false);
   std::vector<WorldPoint> points;
-  for (const auto& [x, y, z] :
-       {std::tuple{-0.5, -0.3, 0.02}, {0.6, -0.25, 0.1}, {0.5, 0.35, 0.3}, {-0.45, 0.3, 0.15},
-        {0.1, 0.05, 0.2}}) {
+  for (const auto& [x, y, z] : {std::tuple{-0.5, -0.3, 0.02},
+                                {0.6, -0.25, 0.1},
+                                {0.5, 0.35, 0.3},
+                                {-0.45, 0.3, 0.15},
+                                {0.1, 0.05, 0.2}}) {
     const Eigen::Vector3d p(x, y, flat ? 0.05 : z);
     points.push_back({p, PixelOf(camera, p), ""});
   }
@@ -156,7 +158,8 @@ TEST_CASE("Reference tags that are seen set the frame and are kept with where th
                     Contains("needs 4 reference tags or more, and the file names 3"));
 }
 
-TEST_CASE("How far a camera was moved is the root mean square of the reference tags it still sees") {
+TEST_CASE(
+    "How far a camera was moved is the root mean square of the reference tags it still sees") {
   CameraModel camera = Overhead();
   CHECK_FALSE(MovedBy_m(camera, {}));
   const std::array<Eigen::Vector3d, 3> places{{{-0.4, 0.0, 0.0}, {0.4, 0.0, 0.0}, {0.0, 0.3, 0.5}}};
@@ -186,10 +189,9 @@ TEST_CASE("A camera that was moved is said from the limit on, with the distance"
 
 TEST_CASE("The first pose of a robot's tag is the origin below it, its heading the x axis") {
   std::vector<Eigen::Isometry3d> poses;
-  const Eigen::Isometry3d camera_from_tag =
-      Eigen::Translation3d(0.3, -0.2, 2.0) *
-      Eigen::AngleAxisd(0.4, Eigen::Vector3d(0.0, 0.0, 1.0)) *
-      Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX());
+  const Eigen::Isometry3d camera_from_tag = Eigen::Translation3d(0.3, -0.2, 2.0) *
+                                            Eigen::AngleAxisd(0.4, Eigen::Vector3d(0.0, 0.0, 1.0)) *
+                                            Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX());
   for (const double off : {-0.004, 0.004}) {
     poses.push_back(Eigen::Translation3d(0.0, off, 0.0) * camera_from_tag *
                     Eigen::AngleAxisd(10.0 * off, Eigen::Vector3d::UnitZ()));
