@@ -75,10 +75,8 @@ vision::Sighting TagAt(const vision::CameraModel& camera, int id, const geometry
   sighting.map_from_tag.translation() = Eigen::Vector3d(at.x_m, at.y_m, 0.03);
   sighting.map_from_tag.linear() =
       Eigen::AngleAxisd(at.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const std::array<Eigen::Vector3d, 4> corners{{{-0.024, 0.024, 0.0},
-                                                {0.024, 0.024, 0.0},
-                                                {0.024, -0.024, 0.0},
-                                                {-0.024, -0.024, 0.0}}};
+  const std::array<Eigen::Vector3d, 4> corners{
+      {{-0.024, 0.024, 0.0}, {0.024, 0.024, 0.0}, {0.024, -0.024, 0.0}, {-0.024, -0.024, 0.0}}};
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d p_in_camera =
         vision::MapFromCamera(camera).inverse() * (sighting.map_from_tag * corners[i]);
@@ -140,11 +138,10 @@ TEST_CASE("The words over a tracked picture say each robot, its path and the cam
   scene.latency_s = std::nan("");
   scene.status.reason = "it repeats its pictures";
   CHECK(WordsOf(scene) ==
-        std::vector<std::string>{"tag 3: not seen",
-                                 "tag 11: x -0.3000 m   y -0.1500 m   yaw -114.6 deg",
-                                 "tag 11: 2 tags of this id!",
-                                 "running   30.0 Hz   recording   dropped 4",
-                                 "it repeats its pictures"});
+        std::vector<std::string>{
+            "tag 3: not seen", "tag 11: x -0.3000 m   y -0.1500 m   yaw -114.6 deg",
+            "tag 11: 2 tags of this id!", "running   30.0 Hz   recording   dropped 4",
+            "it repeats its pictures"});
   scene.robots.erase(scene.robots.begin());
   scene.robots[0].sighting->in_world = false;
   scene.robots[0].sighting->tags_of_this_id = 1;
