@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -19,7 +20,7 @@ class Layout {
   cv::Point2d SidePixel(double x_m, double z_m) const;
   /// Letters and strokes grow with the picture; 1 at a height of 720 px.
   double Ui() const { return ui_; }
-  int Px(double at_720) const { return static_cast<int>(at_720 * ui_ + 0.5); }
+  int Px(double at_720) const { return static_cast<int>(std::lround(at_720 * ui_)); }
 
   cv::Size size;
   cv::Rect top;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -43,7 +44,7 @@ class Pen {
                 const cv::Scalar& colour) const;
 
  private:
-  int Stroke(double thick) const { return std::max(1, static_cast<int>(thick * ui_ + 0.5)); }
+  int Stroke(double thick) const { return std::max(1, static_cast<int>(std::lround(thick * ui_))); }
 
   cv::Mat& picture_;
   double ui_;

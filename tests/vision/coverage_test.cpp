@@ -134,7 +134,8 @@ TEST_CASE("A tilted board is drawn short across its diagonal and as large as it 
   CHECK(place.skew > 0.3);
   const auto outline = OutlineAt({0.5, 0.5, 0.25, 0.6}, kBoard, kWidth_px, kHeight_px);
   const auto flat = OutlineAt({0.5, 0.5, 0.25, 0.0}, kBoard, kWidth_px, kHeight_px);
-  const Eigen::Vector2d along = Eigen::Vector2d(1.0, 1.0).normalized(), across(along.y(), -along.x());
+  const Eigen::Vector2d along = Eigen::Vector2d(1.0, 1.0).normalized(),
+                        across(along.y(), -along.x());
   const double shortened = std::cos(40.0 * M_PI / 180.0);
   const auto ratio = [&](const Eigen::Vector2d& axis) {
     return (outline[2] - outline[0]).dot(axis) / (flat[2] - flat[0]).dot(axis);
@@ -149,7 +150,7 @@ TEST_CASE("Who does what is said next covers everything, and then nothing is sai
        next = NextViewFor(views, kBoard, 0.7)) {
     REQUIRE(views.size() < 12);
     texts.push_back(next.text);
-    const bool is_left = next.place.x < 0.33, is_right = next.place.x > 0.67;
+    const bool is_left = next.place.x<0.33, is_right = next.place.x> 0.67;
     CHECK((next.text.find("left") != std::string::npos) == is_left);
     CHECK((next.text.find("right") != std::string::npos) == is_right);
     CHECK((next.text.find("upper") != std::string::npos) == (next.place.y < 0.33));

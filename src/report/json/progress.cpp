@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace rift::report {
@@ -11,7 +12,7 @@ namespace {
 using nlohmann::ordered_json;
 
 std::string DurationText(double duration_s) {
-  const int whole_s = static_cast<int>(duration_s + 0.5);
+  const auto whole_s = static_cast<int>(std::lround(duration_s));
   if (whole_s < 3600) return fmt::format("{}:{:02}", whole_s / 60, whole_s % 60);
   return fmt::format("{}:{:02}:{:02}", whole_s / 3600, whole_s / 60 % 60, whole_s % 60);
 }
