@@ -237,9 +237,11 @@ TEST_CASE("A device that is gone is unplugged while its driver still hangs, and 
 }
 
 TEST_CASE("What goes wrong beside the camera reaches who asks for pictures") {
-  CaptureThread capture([]() -> std::unique_ptr<CameraSource> {
-    throw std::invalid_argument("no picture matches *.jpg");
-  }, {});
+  CaptureThread capture(
+      []() -> std::unique_ptr<CameraSource> {
+        throw std::invalid_argument("no picture matches *.jpg");
+      },
+      {});
   CHECK_THROWS_WITH(capture.Next(kLong_s), "no picture matches *.jpg");
 }
 

@@ -1,6 +1,7 @@
 #include "rift/vision/camera/camera_source.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include "sources.hpp"
@@ -13,15 +14,18 @@ bool IsNumber(std::string_view text) {
                                       [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-// Said by its ending, so that a missing file is refused as what it was meant to be.
+}  // namespace
+
 bool NamesPicture(std::string_view name) {
-  for (const std::string_view ending : {".jpg", ".jpeg", ".png", ".bmp", ".pgm", ".tif"}) {
-    if (name.ends_with(ending)) return true;
+  std::string ending = std::filesystem::path(name).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  for (const std::string_view known :
+       {".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff", ".pgm", ".ppm"}) {
+    if (ending == known) return true;
   }
   return false;
 }
-
-}  // namespace
 
 SourceKind KindOf(std::string_view name) {
   if (name.starts_with("/dev/") || IsNumber(name)) return SourceKind::kDevice;

@@ -26,15 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 8> kEndings{".jpg", ".jpeg", ".png", ".bmp",
-                                                   ".tif", ".tiff", ".pgm", ".ppm"};
-
-bool IsPicture(const fs::path& path) {
-  std::string ending = path.extension().string();
-  for (char& letter : ending) letter = static_cast<char>(std::tolower(letter));
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
-}
-
 std::vector<std::string> Matches(const std::string& pattern) {
   std::vector<std::string> files;
   glob_t found{};
@@ -144,7 +135,7 @@ std::vector<std::string> ImageFiles(const std::string& pattern) {
   std::vector<std::string> files;
   if (fs::is_directory(pattern)) {
     for (const fs::directory_entry& entry : fs::directory_iterator(pattern)) {
-      if (entry.is_regular_file() && IsPicture(entry.path()))
+      if (entry.is_regular_file() && NamesPicture(entry.path().string()))
         files.push_back(entry.path().string());
     }
   } else if (fs::exists(pattern)) {

@@ -20,6 +20,10 @@ std::unique_ptr<CameraSource> OpenVideo(const std::string& path);
 /// rtsp:// and whatever else FFmpeg reads from a network.
 std::unique_ptr<CameraSource> OpenNetwork(const std::string& url, const CaptureOptions& options);
 
+/// By its ending, in small or large letters, so that a missing file is refused as what it was meant
+/// to be.
+bool NamesPicture(std::string_view name);
+
 /// A connection that breaks and is made again, until it was broken for too long.
 class Reconnection {
  public:

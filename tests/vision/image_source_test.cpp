@@ -1,0 +1,126 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "rift/vision/camera/camera_source.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
+
+namespace rift::vision {
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+
+void WriteGrey(const fs::path& path, int grey, int width_px = 12, int height_px = 8) {
+  REQUIRE(cv::imwrite(path.string(), cv::Mat(height_px, width_px, CV_8UC1, cv::Scalar(grey))));
+}
+
+/// The grey values of the pictures that a source gives until it ends; -1 for one passed over.
+std::vector<int> GreysOf(CameraSource& source) {
+  std::vector<int> greys;
+  for (;;) {
+    Frame frame;
+    try {
+      if (!source.Read(frame)) {
+        greys.push_back(-1);
+        continue;
+      }
+    } catch (const CameraError& error) {
+      CHECK(error.state == CameraState::kEnded);
+      return greys;
+    }
+    CHECK((frame.width_px == 12 && frame.height_px == 8));
+    greys.push_back(frame.format == PixelFormat::kGrey ? frame.bytes[5] : 1000);
+  }
+}
+
+TEST_CASE("A camera is told by its name: device, stream, network, pictures, video") {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"/dev/video0", "/dev/by-id/cam", "0", "12"}) {
+    CHECK(KindOf(name) == SourceKind::kDevice);
+  }
+  CHECK(KindOf("http://cam/video") == SourceKind::kStream);
+  CHECK(KindOf("https://cam/video") == SourceKind::kStream);
+  CHECK(KindOf("rtsp://cam/1") == SourceKind::kNetwork);
+  for (const char* name : {"a.jpg", "a.JPEG", "run/a.png", "a.Bmp", "a.tif", "a.TIFF", "a.pgm",
+                           "a.ppm", "run/*.raw", "run/a?.x", "run/[ab]"}) {
+    INFO(name);
+    CHECK(KindOf(name) == SourceKind::kImages);
+  }
+  CHECK(KindOf(folder.Path().string()) == SourceKind::kImages);
+  for (const char* name : {"run.mp4", "video0", "1a", "jpg", "a.jpg.avi", ""}) {
+    INFO(name);
+    CHECK(KindOf(name) == SourceKind::kVideo);
+  }
+}
+
+TEST_CASE("A folder's pictures are read in the order of their numbers, whatever else lies in it") {
+  const test::TemporaryFolder folder;
+  WriteGrey(folder / "frame10.png", 110);
+  WriteGrey(folder / "frame9.PGM", 109);
+  WriteGrey(folder / "frame2.bmp", 102);
+  WriteGrey(folder / "frame3.png", 103);
+  std::ofstream(folder / "notes.txt") << "no picture";
+  fs::create_directory(folder / "more.png");
+  const auto source = OpenCamera(folder.Path().string(), {.fps = 10.0});
+  CHECK(source->IsRecording());
+  Frame first, second;
+  REQUIRE(source->Read(first));
+  REQUIRE(source->Read(second));
+  CHECK(first.bytes[0] == 102);
+  CHECK(second.bytes[0] == 103);
+  CHECK(second.captured_s - first.captured_s == Approx(0.1));
+  CHECK(GreysOf(*source) == std::vector<int>{109, 110});
+  CHECK(source->Notes().skipped == 0);
+  const auto some = OpenCamera(folder / "frame?.*", {});
+  CHECK(GreysOf(*some) == std::vector<int>{102, 103, 109});
+  const auto one = OpenCamera(folder / "frame3.png", {});
+  CHECK(GreysOf(*one) == std::vector<int>{103});
+}
+
+TEST_CASE("What is no picture, or more than is put up with, is passed over and counted") {
+  const test::TemporaryFolder folder;
+  WriteGrey(folder / "a1.png", 101);
+  std::ofstream(folder / "a2.png") << "not a PNG";
+  std::ofstream(folder / "a3.jpg") << "";
+  WriteGrey(folder / "a4.png", 104, 200, 100);  // 20,000 pixels
+  std::ofstream(folder / "a5.png") << std::string(12'001, 'x');
+  WriteGrey(folder / "a6.png", 106);
+  const auto source = OpenCamera(folder.Path().string(),
+                                 {.most_mbyte = 0.012, .most_mpixel = 19'999e-6});
+  CHECK(GreysOf(*source) == std::vector<int>{101, -1, -1, -1, -1, 106});
+  CHECK(source->Notes().skipped == 4);
+  Frame frame;
+  CHECK_THROWS_WITH(source->Read(frame), "all 6 pictures were read, 4 of them passed over");
+}
+
+TEST_CASE("A folder of which no picture can be decoded is a wrong format") {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "a.png") << "not a PNG";
+  const auto source = OpenCamera(folder.Path().string(), {});
+  Frame frame;
+  CHECK_FALSE(source->Read(frame));
+  try {
+    source->Read(frame);
+    FAIL("it ended without an error");
+  } catch (const CameraError& error) {
+    CHECK(error.state == CameraState::kWrongFormat);
+    CHECK_THAT(error.what(), Contains("none of 1 pictures can be decoded"));
+  }
+}
+
+TEST_CASE("A name that matches no picture, and a video that is not there, say what to give") {
+  const test::TemporaryFolder folder;
+  CHECK_THROWS_WITH(OpenCamera(folder / "*.jpg", {}), Contains("matches no picture"));
+  CHECK_THROWS_WITH(OpenCamera(folder.Path().string(), {}), Contains("matches no picture"));
+  CHECK_THROWS_WITH(OpenCamera(folder / "run.mp4", {}),
+                    Contains("there is no such file") && !Contains("rtsp"));
+  CHECK_THROWS_WITH(OpenCamera("cam:8080", {}), Contains("begins with http:// or rtsp://"));
+  std::ofstream(folder / "text.mp4") << "no video";
+  CHECK_THROWS_WITH(OpenCamera(folder / "text.mp4", {}), Contains("is it a video?"));
+}
+
+}  // namespace
+}  // namespace rift::vision
