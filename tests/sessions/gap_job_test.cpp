@@ -24,11 +24,10 @@ struct Side {
   std::string flag;
 };
 const std::vector<Side>& BothSides() {
-  static const std::vector<Side> sides{
-      {&LogSides::sim_format, &LogSides::sim_columns, &LogSides::sim_units, &LogSides::Sim,
-       "--sim-columns "},
-      {&LogSides::real_format, &LogSides::real_columns, &LogSides::real_units, &LogSides::Real,
-       "--real-columns "}};
+  static const std::vector<Side> sides{{&LogSides::sim_format, &LogSides::sim_columns,
+                                        &LogSides::sim_units, &LogSides::Sim, "--sim-columns "},
+                                       {&LogSides::real_format, &LogSides::real_columns,
+                                        &LogSides::real_units, &LogSides::Real, "--real-columns "}};
   return sides;
 }
 
@@ -136,9 +135,9 @@ TEST_CASE("A log is named once among the repeats of each side, and may stand on 
   };
   CHECK_NOTHROW(job(a, {b, c}, {}).Check());
   CHECK_NOTHROW(job(a, {a, b}, {c}).Check());
-  CHECK_THROWS_WITH(job(a, {b, c, b}, {}).Check(),
-                    b + " and " + b +
-                        " are one log, and each repeat is a run of its own: name it once");
+  CHECK_THROWS_WITH(
+      job(a, {b, c, b}, {}).Check(),
+      b + " and " + b + " are one log, and each repeat is a run of its own: name it once");
   CHECK_THROWS_WITH(job(a, {b}, {c, a}).Check(), Contains(a + " and " + a));
   CHECK_THROWS_WITH(job(a, {b}, {c, c}).Check(), Contains(c + " and " + c));
 }
@@ -207,8 +206,9 @@ TEST_CASE("A further simulated run is read as the simulator's side says") {
   test::WriteText(folder / "c.csv",
                   "t,x,y,z,roll,pitch,yaw\n0,0,0,0,0,0,0\n1,0.5,0.02,0,0,0,0\n2,1,0.06,0,0,0,0\n");
   std::vector<std::string> lines;
-  MeasureGap({.sim = folder / "a.csv", .reals = {folder / "b.csv"}, .sim_repeats = {folder / "c.csv"}},
-             [&lines](const std::string& line) { lines.push_back(line); });
+  MeasureGap(
+      {.sim = folder / "a.csv", .reals = {folder / "b.csv"}, .sim_repeats = {folder / "c.csv"}},
+      [&lines](const std::string& line) { lines.push_back(line); });
   REQUIRE(lines.size() == 1);
   CHECK_THAT(lines[0], Contains("note: " + (folder / "c.csv")) && Contains("set --sim-format"));
 }

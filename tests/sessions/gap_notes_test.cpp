@@ -90,7 +90,8 @@ TEST_CASE("The warning of swapped logs names both of them, the simulator's first
                         ": by their names the two are swapped: the simulator's log comes first");
 }
 
-TEST_CASE("The tracker's format of SIM and the simulator's of REAL each tell that they are swapped") {
+TEST_CASE(
+    "The tracker's format of SIM and the simulator's of REAL each tell that they are swapped") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "authors.csv", AuthorsLog());
   test::WriteText(folder / "own.csv", Log(0.0, 0.0));
@@ -107,7 +108,8 @@ TEST_CASE("The tracker's format of SIM and the simulator's of REAL each tell tha
   CHECK(swapped_by(Format::kAuto, Format::kTracker).empty());
 }
 
-TEST_CASE("Noise on the simulator's side alone tells that the logs are swapped, but not of a truth") {
+TEST_CASE(
+    "Noise on the simulator's side alone tells that the logs are swapped, but not of a truth") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "rough.csv", Log(0.002, 0.01));
   test::WriteText(folder / "smooth.csv", Log(0.0, 0.0));

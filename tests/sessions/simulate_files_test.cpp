@@ -1,0 +1,208 @@
+// The start, the names and the files of a simulated run.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "rift/files/files.hpp"
+#include "rift/report/json/json.hpp"
+#include "rift/sessions/simulate/pictures.hpp"
+#include "rift/sessions/simulate/run.hpp"
+#include "rift/trajectory/log.hpp"
+#include "support/inputs/paper_waypoints.hpp"
+#include "support/processes/process.hpp"
+
+namespace rift::sessions {
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+
+experiment::Experiment ShortTask() {
+  experiment::Experiment experiment;
+  experiment.name = "short";
+  experiment.waypoints = {{"start", 0.1, 0.2, 0.0, false}, {"end", 0.35, 0.22, {}, true}};
+  return experiment;
+}
+
+Simulated MakeRun(experiment::Experiment experiment) {
+  const sweep::Inputs inputs{[](const std::string& path) { return files::ReadIfThere(path); },
+                             [](const std::string&) {}};
+  const geometry::Pose2 start = experiment::TaskOf(experiment).Start();
+  Simulated made{experiment, sweep::SimulatedTrialOf(experiment, start, 1, "short.yaml", inputs),
+                 {}};
+  made.run = sweep::Simulate(made.trial);
+  return made;
+}
+
+TEST_CASE("A start of three numbers moves the first waypoint alone, and turns it") {
+  experiment::Experiment experiment = ShortTask();
+  PutStart("-0.28,-0.06,90", experiment);
+  CHECK(experiment.waypoints[0].x_m == -0.28);
+  CHECK(experiment.waypoints[0].y_m == -0.06);
+  CHECK(experiment.waypoints[0].name == "start");
+  CHECK(experiment::TaskOf(experiment).Start().yaw_rad == Approx(geometry::kPi / 2.0));
+  experiment.waypoints[0] = ShortTask().waypoints[0];
+  CHECK(experiment::WriteExperiment(experiment) == experiment::WriteExperiment(ShortTask()));
+}
+
+TEST_CASE("A start of other than three numbers is refused with its words") {
+  experiment::Experiment experiment = ShortTask();
+  for (const char* text : {"1,2", "1,2,3,4", "", "1"}) {
+    INFO(text);
+    CHECK_THROWS_WITH(
+        PutStart(text, experiment),
+        std::string("--start '") + text + "': give X,Y,YAW_DEG, such as -0.28,-0.06,10");
+  }
+  CHECK_THROWS_WITH(PutStart("1,b,3", experiment), Contains("--start") && Contains("y"));
+}
+
+TEST_CASE("Each file of a run has its name in the folder, or beside the log that was named") {
+  const RunFiles in("out/run"), beside("out/sim.csv");
+  const std::vector<std::pair<fs::path RunFiles::*, std::string>> names{
+      {&RunFiles::truth, "truth.csv"},
+      {&RunFiles::commands, "commands.csv"},
+      {&RunFiles::encoders, "encoders.csv"},
+      {&RunFiles::experiment, "experiment.yaml"},
+      {&RunFiles::summary, "summary.json"}};
+  for (const auto& [member, name] : names) {
+    CHECK(in.*member == "out/run/" + name);
+    CHECK(beside.*member == "out/sim." + name);
+  }
+  CHECK(in.trajectory == "out/run/trajectory.csv");
+  CHECK(beside.trajectory == "out/sim.csv");
+}
+
+TEST_CASE("No file of a run is one of its inputs, whichever it is") {
+  const test::TemporaryFolder folder;
+  const experiment::Experiment experiment = ShortTask();
+  const RunFiles run(folder / "run");
+  for (const fs::path& path :
+       {run.trajectory, run.truth, run.commands, run.encoders, run.experiment, run.summary}) {
+    INFO(path);
+    CHECK_THROWS_WITH(CheckRunNames(folder / "run", experiment, {path}, {}, true),
+                      Contains(path.string()) && Contains("is an input"));
+    CHECK_THROWS_WITH(CheckRunNames(folder / "run", experiment, {}, {path}, true),
+                      Contains(path.string()));
+  }
+  CHECK_NOTHROW(CheckRunNames(folder / "run", experiment, {folder / "in.csv"},
+                              {folder / "figure.svg"}, false));
+}
+
+TEST_CASE("Whatever file of a run is there keeps another run from being written") {
+  const experiment::Experiment experiment = ShortTask();
+  for (const char* name : {"trajectory.csv", "truth.csv", "commands.csv", "encoders.csv",
+                           "experiment.yaml", "summary.json"}) {
+    const test::TemporaryFolder folder;
+    const fs::path out = folder / "run";
+    fs::create_directories(out);
+    test::WriteText(out / name, "of another run");
+    INFO(name);
+    CHECK_THROWS_WITH(CheckRunNames(out, experiment, {}, {}, false), Contains(name));
+    CHECK_NOTHROW(CheckRunNames(out, experiment, {}, {}, true));
+  }
+}
+
+TEST_CASE("A figure beside a repeated run is not replaced without force") {
+  const test::TemporaryFolder folder;
+  const experiment::Experiment experiment = ShortTask();
+  const fs::path out = folder / "run";
+  fs::create_directories(out);
+  test::WriteText(RunFiles(out).experiment, experiment::WriteExperiment(experiment));
+  test::WriteText(folder / "figure.svg", "<svg/>");
+  CHECK_THROWS_WITH(CheckRunNames(out, experiment, {}, {folder / "figure.svg"}, false),
+                    Contains("figure.svg"));
+  CHECK_NOTHROW(CheckRunNames(out, experiment, {}, {folder / "figure.svg"}, true));
+}
+
+TEST_CASE("A run is saved with each file holding what its name says") {
+  const test::TemporaryFolder folder;
+  const Simulated made = MakeRun(ShortTask());
+  const trial::SteeringCheck check = CheckOf(made);
+  const RunFiles files(folder / "run");
+  SaveRun(files, made, check);
+  CHECK(files::ReadFile(files.experiment) == experiment::WriteExperiment(made.experiment));
+  CHECK(files::ReadFile(files.truth) == trajectory::WriteRift(made.run.truth));
+  CHECK(files::ReadFile(files.trajectory) ==
+        trajectory::WriteRift(made.run.result.trajectory));
+  CHECK(files::ReadFile(files.truth) != files::ReadFile(files.trajectory));
+  CHECK(files::ReadFile(files.commands) == report::CommandsCsv(made.run.result));
+  CHECK(nlohmann::json::parse(files::ReadFile(files.summary))["outcome"] == "reached");
+  REQUIRE_FALSE(made.run.encoders.empty());
+  CHECK(files::ReadFile(files.encoders) == odometry::EncodersCsv(made.run.encoders));
+  Simulated blind = made;
+  blind.run.encoders.clear();
+  const RunFiles second(folder / "blind");
+  SaveRun(second, blind, check);
+  CHECK_FALSE(fs::exists(second.encoders));
+  CHECK(fs::exists(second.trajectory));
+}
+
+TEST_CASE("A run that arrived directly has no cause and nothing to be tried") {
+  const trial::SteeringCheck check = CheckOf(MakeRun(ShortTask()));
+  CHECK(check.has_arrived);
+  CHECK(check.causes.empty());
+  CHECK(check.proposals.empty());
+  CHECK_FALSE(check.tried_s);
+}
+
+/// The paper's waypoints as a file would set them, seed 7.
+Simulated MakeLoaded(const std::vector<std::string>& overrides) {
+  experiment::Experiment experiment =
+      experiment::LoadExperiment("task.yaml", overrides, [](const std::string&) {
+        return std::string(
+            "waypoints: [{x: -0.28, y: -0.07, heading: -1}, {x: -0.07, y: -0.09, stop: true},"
+            " {x: -0.1, y: 0.3, stop: true}, {x: 0.38, y: -0.06, stop: true}]\n");
+      });
+  return MakeRun(experiment);
+}
+
+TEST_CASE("What is proposed for a robot that does not arrive is the same trial with other keys") {
+  const std::string mistake = GENERATE(as<std::string>{}, "control.v_max=0.11",
+                                       "control.pose_gate.max_speed_mps=0.1");
+  std::vector<std::string> settings{mistake};
+  if (mistake == "control.v_max=0.11") settings.emplace_back("control.v_min=0.05");
+  const Simulated made = MakeLoaded(settings);
+  const trial::SteeringCheck check = CheckOf(made);
+  INFO(mistake);
+  CHECK_FALSE(check.has_arrived);
+  REQUIRE_FALSE(check.causes.empty());
+  REQUIRE(check.tried_s);
+  REQUIRE_FALSE(check.proposals.empty());
+  for (const trial::KeyProposal& one : check.proposals) {
+    settings.push_back(fmt::format("{}={:g}", one.key, one.value));
+  }
+  const Simulated again = MakeLoaded(settings);
+  CHECK(again.run.result.outcome == trial::Outcome::kReached);
+  CHECK(again.run.result.Duration_s() == *check.tried_s);
+}
+
+TEST_CASE("The figure of a run shows its name, its waypoints, its patches and the ground below it") {
+  experiment::Experiment experiment = ShortTask();
+  experiment.simulation.terrain.patches = {
+      {.x_min_m = 0.15, .x_max_m = 0.2, .y_min_m = 0.05, .y_max_m = 0.4, .mu = 0.35}};
+  const Simulated made = MakeRun(experiment);
+  const report::Figure figure = FigureOf(made);
+  CHECK_THAT(figure.title + figure.plot, Contains("short"));
+  CHECK_THAT(figure.plot, Contains("start") && Contains("end") && Contains("mu 0.35"));
+  const view::Film film = FilmOf(made);
+  CHECK(film.fixed.title == "short on ground");
+  REQUIRE(film.fixed.waypoints.size() == 2);
+  CHECK(film.fixed.waypoints[0].name == "start");
+  CHECK(film.fixed.waypoints[1].name == "end");
+  REQUIRE(film.fixed.patches.size() == 1);
+  CHECK(film.fixed.patches[0].label == "mu 0.35");
+  CHECK(film.fixed.patches[0].x_min_m == 0.15);
+  CHECK(film.fixed.patches[0].x_max_m == 0.2);
+  CHECK(film.fixed.patches[0].y_min_m == 0.05);
+  CHECK(film.fixed.patches[0].y_max_m == 0.4);
+  CHECK(film.fixed.trail_m.size() == made.run.result.trajectory.poses.size());
+  CHECK(film.scenes.back().outcome == made.run.result.reason);
+  CHECK(film.scenes.back().world_from_robot.x_m ==
+        Approx(made.run.truth.poses.back().x_m).margin(1e-9));
+  CHECK(film.fixed.body.wheel_radius_m == view::ShapeOf(experiment.simulation.body).wheel_radius_m);
+}
+
+}  // namespace
+}  // namespace rift::sessions
