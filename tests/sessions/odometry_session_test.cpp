@@ -81,7 +81,8 @@ TEST_CASE("A program that was named stands in the place of the run's own experim
   CHECK(run.run.program->poses.back().x_m == Approx(0.5).margin(0.05));
 }
 
-TEST_CASE("Encoders are enough for a run of waypoints, and without them it is refused by its files") {
+TEST_CASE(
+    "Encoders are enough for a run of waypoints, and without them it is refused by its files") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "trajectory.csv", Log());
   test::WriteText(folder / "experiment.yaml",

@@ -30,8 +30,8 @@ Simulated MakeRun(experiment::Experiment experiment) {
   const sweep::Inputs inputs{[](const std::string& path) { return files::ReadIfThere(path); },
                              [](const std::string&) {}};
   const geometry::Pose2 start = experiment::TaskOf(experiment).Start();
-  Simulated made{experiment, sweep::SimulatedTrialOf(experiment, start, 1, "short.yaml", inputs),
-                 {}};
+  Simulated made{
+      experiment, sweep::SimulatedTrialOf(experiment, start, 1, "short.yaml", inputs), {}};
   made.run = sweep::Simulate(made.trial);
   return made;
 }
@@ -124,8 +124,7 @@ TEST_CASE("A run is saved with each file holding what its name says") {
   SaveRun(files, made, check);
   CHECK(files::ReadFile(files.experiment) == experiment::WriteExperiment(made.experiment));
   CHECK(files::ReadFile(files.truth) == trajectory::WriteRift(made.run.truth));
-  CHECK(files::ReadFile(files.trajectory) ==
-        trajectory::WriteRift(made.run.result.trajectory));
+  CHECK(files::ReadFile(files.trajectory) == trajectory::WriteRift(made.run.result.trajectory));
   CHECK(files::ReadFile(files.truth) != files::ReadFile(files.trajectory));
   CHECK(files::ReadFile(files.commands) == report::CommandsCsv(made.run.result));
   CHECK(nlohmann::json::parse(files::ReadFile(files.summary))["outcome"] == "reached");
@@ -159,8 +158,8 @@ Simulated MakeLoaded(const std::vector<std::string>& overrides) {
 }
 
 TEST_CASE("What is proposed for a robot that does not arrive is the same trial with other keys") {
-  const std::string mistake = GENERATE(as<std::string>{}, "control.v_max=0.11",
-                                       "control.pose_gate.max_speed_mps=0.1");
+  const std::string mistake =
+      GENERATE(as<std::string>{}, "control.v_max=0.11", "control.pose_gate.max_speed_mps=0.1");
   std::vector<std::string> settings{mistake};
   if (mistake == "control.v_max=0.11") settings.emplace_back("control.v_min=0.05");
   const Simulated made = MakeLoaded(settings);
@@ -178,7 +177,8 @@ TEST_CASE("What is proposed for a robot that does not arrive is the same trial w
   CHECK(again.run.result.Duration_s() == *check.tried_s);
 }
 
-TEST_CASE("The figure of a run shows its name, its waypoints, its patches and the ground below it") {
+TEST_CASE(
+    "The figure of a run shows its name, its waypoints, its patches and the ground below it") {
   experiment::Experiment experiment = ShortTask();
   experiment.simulation.terrain.patches = {
       {.x_min_m = 0.15, .x_max_m = 0.2, .y_min_m = 0.05, .y_max_m = 0.4, .mu = 0.35}};

@@ -62,7 +62,8 @@ TEST_CASE("A twin begins at the first waypoint with the seed, and its two files 
   const std::string saved = files::ReadFile(folder / "experiment.yaml");
   CHECK(saved == experiment::WriteExperiment(prepared.experiment));
   // The simulation as the twin runs it, so that the saved experiment repeats it.
-  const simulation::SimulationOptions as_twin = twin::AsTwin(experiment.simulation, experiment.twin);
+  const simulation::SimulationOptions as_twin =
+      twin::AsTwin(experiment.simulation, experiment.twin);
   CHECK(prepared.setup.simulation.mocap.rate_hz == as_twin.mocap.rate_hz);
   CHECK(prepared.experiment.simulation.mocap.rate_hz == 20.0);
   const vision::CameraModel camera =
@@ -74,8 +75,7 @@ TEST_CASE("A twin begins at the first waypoint with the seed, and its two files 
 TEST_CASE("A twin's address is one line of JSON with an absolute calibration") {
   PreparedTwin prepared;
   prepared.folder = "out/twin";
-  const std::string line =
-      AddressJson(prepared, {"/dev/pts/7", "http://127.0.0.1:8080/video"});
+  const std::string line = AddressJson(prepared, {"/dev/pts/7", "http://127.0.0.1:8080/video"});
   CHECK(line.back() == '\n');
   CHECK(std::count(line.begin(), line.end(), '\n') == 1);
   const auto said = nlohmann::json::parse(line);
