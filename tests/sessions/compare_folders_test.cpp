@@ -90,9 +90,9 @@ TEST_CASE("Keys that may differ are listed with both values, those that say noth
   const test::TemporaryFolder folder;
   const std::vector<double> gaps_m{0.004, 0.006, 0.020, 0.030};
   SaveRows(folder / "a", gaps_m);
-  SaveRows(folder / "b", gaps_m,
-           {"control.w_max=0.9", "name=other", "run.timeout_s=50", "search.budget=9",
-            "twin.fps=20"});
+  SaveRows(
+      folder / "b", gaps_m,
+      {"control.w_max=0.9", "name=other", "run.timeout_s=50", "search.budget=9", "twin.fps=20"});
   const sweep::SweepChange change = CompareFolders(folder / "a", folder / "b");
   REQUIRE(change.keys.size() == 1);
   CHECK(change.keys[0].key == "control.w_max");
@@ -111,16 +111,16 @@ TEST_CASE("A key that makes rows incomparable is refused with its two values in 
   struct Other {
     std::string setting, key;
   };
-  const Other other = GENERATE(values<Other>({{"gap.samples=500", "gap.samples is 2000"},
-                                              {"reference.kind=nominal", "reference.kind is path"},
-                                              {"falsify.count.fell=false",
-                                               "falsify.count.fell is true"}}));
+  const Other other =
+      GENERATE(values<Other>({{"gap.samples=500", "gap.samples is 2000"},
+                              {"reference.kind=nominal", "reference.kind is path"},
+                              {"falsify.count.fell=false", "falsify.count.fell is true"}}));
   SaveRows(folder / "b", gaps_m, {other.setting});
   INFO(other.setting);
-  CHECK_THROWS_WITH(CompareFolders(folder / "a", folder / "b"),
-                    Contains((folder / "a") + " and " + (folder / "b") +
-                             " hold different experiments: ") &&
-                        Contains(other.key));
+  CHECK_THROWS_WITH(
+      CompareFolders(folder / "a", folder / "b"),
+      Contains((folder / "a") + " and " + (folder / "b") + " hold different experiments: ") &&
+          Contains(other.key));
 }
 
 TEST_CASE("Sweeps of another way or another space are not compared") {
@@ -130,8 +130,8 @@ TEST_CASE("Sweeps of another way or another space are not compared") {
   struct Change {
     std::string from, to, key;
   };
-  const Change change = GENERATE(values<Change>(
-      {{"0.25", "0.26", "waypoints"}, {"parchment", "cardboard", "space"}}));
+  const Change change = GENERATE(
+      values<Change>({{"0.25", "0.26", "waypoints"}, {"parchment", "cardboard", "space"}}));
   SaveRows(folder / "b", gaps_m);
   std::string saved = files::ReadFile(folder / "b/experiment.yaml");
   const size_t at = saved.find(change.from);

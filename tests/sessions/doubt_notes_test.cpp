@@ -38,8 +38,9 @@ TEST_CASE("A doubt about logs is told with the third trial that has a gap, once 
   run.notes.Seen(Row({}));
   CHECK(run.told.empty());
   run.notes.Seen(Row({kSlower}));
-  CHECK(run.told == std::vector<std::string>{
-                        "warning: sim.csv (and 1 more trials so far): its clock is 61.5 times slow"});
+  CHECK(run.told ==
+        std::vector<std::string>{
+            "warning: sim.csv (and 1 more trials so far): its clock is 61.5 times slow"});
   run.notes.Seen(Row({kSlow}));
   CHECK(run.told.size() == 1);
 }
@@ -48,8 +49,7 @@ TEST_CASE("A first doubt that comes late stands alone, of a pair with both logs"
   Notes run("logs", "logs");
   for (int i = 0; i < 3; ++i) run.notes.Seen(Row({}));
   run.notes.Seen(Row({kPair}));
-  CHECK(run.told ==
-        std::vector<std::string>{"warning: SIM sim.csv and REAL real.csv: mirrored y"});
+  CHECK(run.told == std::vector<std::string>{"warning: SIM sim.csv and REAL real.csv: mirrored y"});
 }
 
 TEST_CASE("A doubt of computed runs is told once half of the trials with a gap show it") {

@@ -30,8 +30,8 @@ TEST_CASE("Each row of a simulated sweep comes out again with its setting, seed 
     CHECK(replay.run.result.trajectory.poses.size() > 10);
     const report::TableRow row =
         report::TableRowOf(files::ReadFile(folder / "table.csv"), id, "table.csv");
-    CHECK(replay.verdict ==
-          "row " + id + ": status ok, gap " + row.at("gap_m") + " m, to the last bit as in the table");
+    CHECK(replay.verdict == "row " + id + ": status ok, gap " + row.at("gap_m") +
+                                " m, to the last bit as in the table");
     // The run is that of the row: the same gap as the library gives for it.
     const auto again = gap::Compare(replay.run.result.trajectory,
                                     sweep::IdealPath(replay.trial.task), result->gap);

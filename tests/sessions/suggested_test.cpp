@@ -78,24 +78,22 @@ TEST_CASE("Each part of a suggestion is held to its rule with its file and line"
   struct Wrong {
     std::string text, says;
   };
-  const Wrong wrong = GENERATE(
-      values<Wrong>({{"", "must be a list of {set, repeats, predicted}"},
-                     {"experiments: {a: 1}\n", "must be a list of {set, repeats, predicted}"},
-                     {"- 1\n", "must be a list of {set, repeats, predicted}"},
-                     {"experiments: [7]\n", "must be a list of {set, repeats, predicted}"},
-                     {"experiments: [{repeats: 1, predicted: fails}]\n", "set is missing"},
-                     {"experiments: [{set: {control.v_min: 0.16}, predicted: fails}]\n",
-                      "repeats is missing"},
-                     {"experiments: [{set: {control.v_min: 0.16}, repeats: 1}]\n",
-                      "predicted is missing"}}));
+  const Wrong wrong = GENERATE(values<Wrong>(
+      {{"", "must be a list of {set, repeats, predicted}"},
+       {"experiments: {a: 1}\n", "must be a list of {set, repeats, predicted}"},
+       {"- 1\n", "must be a list of {set, repeats, predicted}"},
+       {"experiments: [7]\n", "must be a list of {set, repeats, predicted}"},
+       {"experiments: [{repeats: 1, predicted: fails}]\n", "set is missing"},
+       {"experiments: [{set: {control.v_min: 0.16}, predicted: fails}]\n", "repeats is missing"},
+       {"experiments: [{set: {control.v_min: 0.16}, repeats: 1}]\n", "predicted is missing"}}));
   INFO(wrong.text);
   CHECK_THROWS_WITH(Read(wrong.text), Contains("suggested.yaml") &&
                                           Contains(wrong.says.substr(wrong.says.find(' ') + 1)));
   for (const std::string repeats : {"0", "-1", "1.5", "1001", "many"}) {
     INFO(repeats);
-    CHECK_THROWS_WITH(Read(head + "repeats: " + repeats + ", predicted: fails}\n"),
-                      Contains("suggested.yaml:2") &&
-                          Contains("must be a whole number from 1 to 1000"));
+    CHECK_THROWS_WITH(
+        Read(head + "repeats: " + repeats + ", predicted: fails}\n"),
+        Contains("suggested.yaml:2") && Contains("must be a whole number from 1 to 1000"));
   }
   for (const int repeats : {1, 1000}) {
     CHECK(Read(head + "repeats: " + std::to_string(repeats) + ", predicted: fails}\n")[0].repeats ==
@@ -113,10 +111,8 @@ void SaveDrive(const fs::path& folder, double off_m, const std::string& summary)
   trajectory::Trajectory path;
   for (int i = 0; i <= 100; ++i) {
     const double u = 0.01 * i;
-    path.poses.push_back({.t_s = 0.02 * i,
-                          .x_m = 0.25 * u,
-                          .y_m = 0.02 * u + off_m * u,
-                          .yaw_rad = 0.08});
+    path.poses.push_back(
+        {.t_s = 0.02 * i, .x_m = 0.25 * u, .y_m = 0.02 * u + off_m * u, .yaw_rad = 0.08});
   }
   fs::create_directories(folder);
   test::WriteText(folder / "trajectory.csv", trajectory::WriteRift(path));
@@ -183,9 +179,9 @@ TEST_CASE("A drive that did not arrive is a failure where its end counts, else i
 }
 
 TEST_CASE("A drive without a proper end is named and not judged") {
-  const std::string summary = GENERATE(
-      as<std::string>{}, "{\"outcome\": null}", "{}", "[1]", "{\"outcome\": 3}", "not json",
-      "{\"outcome\": \"arrived\"}");
+  const std::string summary =
+      GENERATE(as<std::string>{}, "{\"outcome\": null}", "{}", "[1]", "{\"outcome\": 3}",
+               "not json", "{\"outcome\": \"arrived\"}");
   const Suggested suggested;
   SaveDrive(suggested.Drive(1, 1), 0.0, summary);
   CHECK_THROWS_WITH(suggested.Take(Search()),

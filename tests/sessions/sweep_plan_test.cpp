@@ -18,7 +18,8 @@ using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
 const std::string kLogs =
-    "candidate: {kind: logs, path: \"a{trial}.csv\"}\nreference: {kind: logs, path: \"b{trial}.csv\", "
+    "candidate: {kind: logs, path: \"a{trial}.csv\"}\nreference: {kind: logs, path: "
+    "\"b{trial}.csv\", "
     "trials: [1, 2]}\n";
 
 std::vector<std::string> NotesOf(const experiment::Experiment& experiment) {
@@ -58,8 +59,8 @@ TEST_CASE("Too few repeats to falsify are noted of a search, with the number tha
   const int needed = sweep::TrialsToFalsify(plan.falsify, 40);
   REQUIRE(needed > 2);
   const auto with = [&](int most) {
-    return NotesOf(LoadText(
-        search, {"search.budget=40", "falsify.most_repeats=" + std::to_string(most)}));
+    return NotesOf(
+        LoadText(search, {"search.budget=40", "falsify.most_repeats=" + std::to_string(most)}));
   };
   CHECK(with(needed).empty());
   const std::vector<std::string> lines = with(needed - 1);
@@ -152,8 +153,8 @@ TEST_CASE("Trials are kept in a journal unless logs are held against logs or a p
   CHECK_FALSE(IsComputed(LoadText(kLogs)));
   const std::string candidates = "candidate: {kind: logs, path: \"a{trial}.csv\"}\n" + kShortWay;
   CHECK_FALSE(IsComputed(LoadText(candidates + "reference: {kind: path, trials: [1, 2]}\n")));
-  CHECK(IsComputed(LoadText(candidates +
-                            "reference: {kind: program, run: [sh], trials: [1, 2]}\n")));
+  CHECK(
+      IsComputed(LoadText(candidates + "reference: {kind: program, run: [sh], trials: [1, 2]}\n")));
 }
 
 TEST_CASE("A journal goes on with other names, processes and limits, and with nothing else") {
@@ -163,15 +164,15 @@ TEST_CASE("A journal goes on with other names, processes and limits, and with no
     INFO(same);
     CHECK(FactsOf(SmallGrid({same})) == facts);
   }
-  for (const char* other :
-       {"seed=8", "gap.threshold_m=0.02", "control.v_min=0.17", "simulation.motor.mismatch=0.01",
-        "search.strategy=random", "falsify.share=0.2", "falsify.most_repeats=7",
-        "reference.trials=3"}) {
+  for (const char* other : {"seed=8", "gap.threshold_m=0.02", "control.v_min=0.17",
+                            "simulation.motor.mismatch=0.01", "search.strategy=random",
+                            "falsify.share=0.2", "falsify.most_repeats=7", "reference.trials=3"}) {
     INFO(other);
     CHECK(FactsOf(SmallGrid({other})) != facts);
   }
   REQUIRE(facts.count("the version of rift") == 1);
-  CHECK_THAT(facts.at("the version of rift"), Contains(" (" + std::string(sweep::PhysicsVersion()) + ")"));
+  CHECK_THAT(facts.at("the version of rift"),
+             Contains(" (" + std::string(sweep::PhysicsVersion()) + ")"));
   CHECK(facts.at("gap.threshold_m") == "0.01");
 }
 
