@@ -64,8 +64,7 @@ struct Nodes {
 };
 
 struct OnCluster {
-  explicit OnCluster(const experiment::Experiment& swept)
-      : experiment(swept), nodes{out, swept} {
+  explicit OnCluster(const experiment::Experiment& swept) : experiment(swept), nodes{out, swept} {
     options.poll_s = 0.05;
     options.max_array_size = 100;
     fs::create_directories(out);
@@ -178,8 +177,8 @@ TEST_CASE("Shrinking on a cluster is one job with the failing row, and its answe
   CHECK(cluster.nodes.kinds == std::vector<sweep::ShardKind>{sweep::ShardKind::kShrink});
   CHECK(cluster.nodes.sizes == std::vector<size_t>{1});
   CHECK(ReadStatus(cluster.out).state == "done");
-  const auto local = Answer({.shrink = "3"}, cluster.out, *result, evaluator, {},
-                            cluster.Observer());
+  const auto local =
+      Answer({.shrink = "3"}, cluster.out, *result, evaluator, {}, cluster.Observer());
   CHECK(local->shrunk->shrunk.theta == answers->shrunk->shrunk.theta);
 }
 

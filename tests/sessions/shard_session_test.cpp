@@ -76,7 +76,8 @@ TEST_CASE("A shard is read with its name, and one of another experiment or build
   CHECK_THROWS_WITH(other.Read(), Contains("every node must run the rift that submitted it"));
 }
 
-TEST_CASE("The journal of a shard holds its trials with the rows of a local run, and the key says so") {
+TEST_CASE(
+    "The journal of a shard holds its trials with the rows of a local run, and the key says so") {
   const Submitted submitted;
   SweepTold told;
   CHECK(submitted.Run(told));
@@ -141,8 +142,8 @@ TEST_CASE("A shard whose logs or trials are others here than where it was submit
   Submitted submitted;
   submitted.shard.keys = "0123";
   SweepTold told;
-  CHECK_THROWS_WITH(submitted.Run(told),
-                    Contains((submitted.folder / "0.shard") + ": its trials read logs or programs"));
+  CHECK_THROWS_WITH(submitted.Run(told), Contains((submitted.folder / "0.shard") +
+                                                  ": its trials read logs or programs"));
   CHECK_FALSE(fs::exists(submitted.Done()));
   Submitted swapped;
   std::swap(swapped.shard.requests[0], swapped.shard.requests[3]);

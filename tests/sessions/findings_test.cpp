@@ -1,0 +1,217 @@
+// What is written of a finished sweep: explanation, figures, page, and the paths on it.
+#include "rift/sessions/sweep/findings.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "rift/sessions/sweep/live_page.hpp"
+#include "rift/sessions/sweep/suggested.hpp"
+#include "rift/trajectory/log.hpp"
+#include "rift/sweep/falsify/evidence.hpp"
+#include "sessions/sweep/page_evidence.hpp"
+#include "sessions/sweep_folder.hpp"
+#include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
+#include "support/until.hpp"
+
+namespace rift::sessions {
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+
+/// A sweep at its end, with what it was made by.
+struct Swept {
+  explicit Swept(const experiment::Experiment& swept)
+      : experiment(swept), evaluator(experiment, "sweep.yaml", FileInputs()) {
+    result = *RunSweep(evaluator, {.out = folder.Path()}, ObserverOf(told));
+  }
+
+  test::TemporaryFolder folder;
+  experiment::Experiment experiment;
+  sweep::Evaluator evaluator;
+  SweepTold told;
+  sweep::SweepResult result;
+};
+
+TEST_CASE("The report of a sweep is its explanation, its figures as SVG and PNG, and its page") {
+  const test::QuickGnuplot quick;
+  Swept swept(SmallGrid());
+  const fs::path out = swept.folder.Path();
+  for (const char* name : {"fig1_old.svg", "fig1_old.png", "fig1_old.txt", "mine.svg"}) {
+    fs::create_directories(out / "figures");
+    test::WriteText(out / "figures" / name, "x");
+  }
+  const SweepFindings findings = ExplainSweep(out, swept.evaluator, swept.result, 0, 1);
+  CHECK(findings.likeness.empty());
+  CHECK(findings.programs.empty());
+  CHECK(findings.explanation.suggestions.list.size() <= 5);
+  CHECK_FALSE(fs::exists(out / "suggested.yaml"));
+  SaveReport(out, swept.evaluator, swept.result, findings, ObserverOf(swept.told));
+  CHECK(nlohmann::json::parse(files::ReadFile(out / "explanation.json")).is_object());
+  CHECK_FALSE(fs::exists(out / "likeness.json"));
+  CHECK_FALSE(fs::exists(out / "programs.json"));
+  CHECK_FALSE(fs::exists(out / "figures/fig1_old.svg"));
+  CHECK_FALSE(fs::exists(out / "figures/fig1_old.png"));
+  CHECK(fs::exists(out / "figures/fig1_old.txt"));
+  CHECK(fs::exists(out / "figures/mine.svg"));
+  int svg = 0, png = 0;
+  for (const auto& entry : fs::directory_iterator(out / "figures")) {
+    svg += entry.path().extension() == ".svg";
+    png += entry.path().extension() == ".png";
+  }
+  CHECK(svg == png + 1);
+  CHECK(png >= 3);
+  const std::string page = files::ReadFile(out / "report.html");
+  CHECK(page.find("waypoint path") != page.npos);
+  // One axis with two words: what cannot be drawn of it is named with its reason.
+  CHECK_THAT(swept.told.Text(), Contains("note: fig") && Contains(" is not drawn: "));
+}
+
+TEST_CASE("Experiments are suggested only where that is asked for, as many as that") {
+  Swept swept(LoadText(kShortWay +
+                       "gap: {threshold_m: 0.004}\nreference: {kind: path, trials: 1}\n"
+                       "goal: falsify\nspace:\n  v_min: {min: 0.12, max: 0.2, step: 0.02}\n"
+                       "  mismatch: {min: -0.25, max: 0.25}\n"
+                       "search: {budget: 24}\nfalsify: {until: budget, most_repeats: 2}\n"));
+  const fs::path out = swept.folder.Path();
+  const SweepFindings none = ExplainSweep(out, swept.evaluator, swept.result, 0, 1);
+  CHECK_FALSE(fs::exists(out / "suggested.yaml"));
+  REQUIRE(none.explanation.suggestions.list.size() >= 2);
+  const SweepFindings one = ExplainSweep(out, swept.evaluator, swept.result, 1, 1);
+  CHECK(one.explanation.suggestions.list.size() == 1);
+  const auto saved = ReadSuggested(out, swept.experiment);
+  REQUIRE(saved.size() == 1);
+  CHECK(saved[0].values == one.explanation.suggestions.list[0].values);
+}
+
+std::string Path(double bend_m, int rows = 60) {
+  trajectory::Trajectory path;
+  for (int i = 0; i <= rows; ++i) {
+    const double u = i / double(rows);
+    path.poses.push_back({.t_s = 4.0 * u, .x_m = u, .y_m = bend_m * u * u, .yaw_rad = 2 * bend_m * u});
+  }
+  return trajectory::WriteRift(path);
+}
+
+/// Two surfaces, two trials of each, a log of the robot for each trial.
+experiment::Experiment LogsIn(const test::TemporaryFolder& folder) {
+  double bend_m = 0.0;
+  for (const std::string surface : {"ice", "sand"}) {
+    for (const std::string trial : {"1", "2"}) {
+      test::WriteText(folder / (surface + trial + "_real.csv"), Path(bend_m));
+      test::WriteText(folder / (surface + trial + "_sim.csv"), Path(2.0 * bend_m + 0.01));
+      bend_m += 0.03;
+    }
+  }
+  return LoadText("space: {surface: [ice, sand]}\ncandidate: {kind: logs, path: \"" +
+                  (folder / "{surface}{trial}_sim.csv") +
+                  "\"}\nreference: {kind: logs, trials: [1, 2], path: \"" +
+                  (folder / "{surface}{trial}_real.csv") + "\"}\nlikeness: {shuffles: 19}\ngap: {skip_start: 0.1}\n");
+}
+
+TEST_CASE("Every log of the robot is a reference of the page with its trial, and likeness is saved") {
+  const test::QuickGnuplot quick;
+  const test::TemporaryFolder logs;
+  Swept swept(LogsIn(logs));
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
+  REQUIRE(evidence.references.size() == 4);
+  CHECK(evidence.reference_of_row == std::vector<int>{0, 1, 2, 3});
+  CHECK_THAT(evidence.gap_flags, Contains("--skip-start 0.1"));
+  CHECK(evidence.references[0].name == "robot, trial 1");
+  CHECK(evidence.references[3].name == "robot, trial 2");
+  CHECK(evidence.references[3].path_m.back().y() == Approx(0.09));
+  REQUIRE(evidence.references[3].times_s.size() == evidence.references[3].path_m.size());
+  CHECK(evidence.references[3].times_s.back() == Approx(4.0));
+  const auto worst = WorstPair(swept.result, swept.evaluator);
+  REQUIRE(worst);
+  CHECK(swept.result.rows[3].comparison.gap_m > swept.result.rows[2].comparison.gap_m);
+  CHECK(worst->real == "robot, trial 2");
+  const fs::path out = swept.folder.Path();
+  const SweepFindings findings = ExplainSweep(out, swept.evaluator, swept.result, 0, 1);
+  REQUIRE_FALSE(findings.likeness.empty());
+  SaveReport(out, swept.evaluator, swept.result, findings, ObserverOf(swept.told));
+  CHECK(fs::exists(out / "likeness.json"));
+  CHECK_THAT(files::ReadFile(out / "report.html"), Contains("robot, trial 2"));
+}
+
+TEST_CASE("Equal references are kept once, and a row without a log has none") {
+  const test::TemporaryFolder logs;
+  const experiment::Experiment experiment = LogsIn(logs);
+  test::WriteText(logs / "sand2_real.csv", files::ReadFile(logs / "ice1_real.csv"));
+  fs::remove(logs / "ice2_real.csv");
+  Swept swept(experiment);
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
+  CHECK(evidence.references.size() == 2);
+  CHECK(evidence.reference_of_row == std::vector<int>{0, -1, 1, 0});
+}
+
+TEST_CASE("The path of a task is the reference of all its repeats, without times, with its waypoints") {
+  Swept swept(SmallGrid());
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
+  REQUIRE(evidence.references.size() == 1);
+  CHECK(evidence.references[0].name == "waypoint path");
+  CHECK(evidence.references[0].times_s.empty());
+  CHECK(evidence.references[0].path_m.back().x() == Approx(0.25));
+  CHECK(evidence.references[0].path_m.back().y() == Approx(0.02));
+  CHECK(evidence.reference_of_row == std::vector<int>{0, 0, 0, 0});
+  REQUIRE(evidence.waypoints.size() == 2);
+  CHECK(evidence.waypoints[1].p_in_world_m.x() == 0.25);
+  CHECK(evidence.waypoints[1].p_in_world_m.y() == 0.02);
+}
+
+TEST_CASE("A reference that has to be run is the worst trial's, and only where it may be run") {
+  Swept swept(LoadText(kShortWay +
+                       "gap: {threshold_m: 0.01}\nreference: {kind: nominal, trials: 2}\n"
+                       "space: {mismatch: [0, 0.1]}\n"));
+  CHECK(EvidenceFor(swept.result, swept.evaluator, false).references.empty());
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, true);
+  REQUIRE(evidence.references.size() == 1);
+  CHECK(evidence.references[0].name == "undisturbed run");
+  CHECK_FALSE(evidence.references[0].times_s.empty());
+  const int worst = sweep::WorstRow(swept.result).value();
+  for (int row = 0; row < 4; ++row) {
+    CHECK(evidence.reference_of_row[row] == (row == worst ? 0 : -1));
+  }
+  const auto pair = WorstPair(swept.result, swept.evaluator);
+  REQUIRE(pair);
+  CHECK(pair->real == "undisturbed run");
+  CHECK(pair->sim == "simulator");
+}
+
+TEST_CASE("Without a gap there is no worst pair") {
+  Swept swept(SmallGrid({"trial.timeout_s=0.5"}));
+  CHECK_FALSE(WorstPair(swept.result, swept.evaluator));
+}
+
+TEST_CASE("The page of a sweep that runs begins before a trial, grows with them, and goes") {
+  const test::TemporaryFolder folder;
+  Swept swept(SmallGrid());
+  const fs::path file = folder / "live.html";
+  {
+    LivePage page(folder.Path(), swept.evaluator);
+    CHECK_THAT(page.Url(), Catch::StartsWith("http://127.0.0.1:"));
+    CHECK_THAT(files::ReadFile(file), Contains("The first trials are running."));
+    page.Tick();  // without a row nothing is drawn, however late
+    for (const sweep::TrialRow& row : swept.result.rows) page.Seen(row);
+    test::WaitUntil("the page is drawn", [&] {
+      page.Tick();
+      return files::ReadFile(file).find("first trials") == std::string::npos;
+    });
+    const int failures = swept.result.all.failures;
+    CHECK_THAT(files::ReadFile(file), Contains("4 trials so far, " + std::to_string(failures) +
+                                               " of them failed"));
+    fs::remove(file);
+    page.Tick();  // nothing new
+    CHECK_FALSE(fs::exists(file));
+    test::WriteText(file, "x");
+    page.End();
+    CHECK_FALSE(fs::exists(file));
+    test::WriteText(file, "x");
+  }
+  CHECK_FALSE(fs::exists(file));
+}
+
+}  // namespace
+}  // namespace rift::sessions

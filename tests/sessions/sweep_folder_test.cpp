@@ -1,0 +1,90 @@
+// The files in the folder of a sweep: which are saved, which are removed, what keeps others out.
+#include "sessions/sweep_folder.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "rift/report/json/json.hpp"
+#include "rift/sessions/sweep/journal.hpp"
+#include "support/processes/process.hpp"
+
+namespace rift::sessions {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kReport{"report.html", "explanation.json", "likeness.json",
+                                       "programs.json", "figures/fig.svg"};
+const std::vector<std::string> kFurther{"shrunk/table.csv", "shrunk.json", "rare_event.json"};
+const std::vector<std::string> kKept{"table.csv",     "summary.json",   "experiment.yaml",
+                                     "journal.sqlite", "suggested.yaml", "suggested/1_1/trajectory.csv"};
+
+void Fill(const fs::path& folder) {
+  for (const auto* names : {&kReport, &kFurther, &kKept}) {
+    for (const std::string& name : *names) {
+      fs::create_directories((folder / name).parent_path());
+      test::WriteText(folder / name, "x");
+    }
+  }
+}
+
+TEST_CASE("An earlier report is removed without the answers to further questions, drives never") {
+  const test::TemporaryFolder folder;
+  Fill(folder.Path());
+  const auto are_there = [&](const std::vector<std::string>& names, bool there) {
+    for (const std::string& name : names) {
+      INFO(name);
+      CHECK(fs::exists(folder.Path() / name) == there);
+    }
+  };
+  RemoveReport(folder.Path());
+  are_there(kReport, false);
+  CHECK_FALSE(fs::exists(folder / "figures"));
+  are_there(kFurther, true);
+  are_there(kKept, true);
+  Fill(folder.Path());
+  RemoveFindings(folder.Path());
+  are_there(kReport, false);
+  are_there(kFurther, false);
+  CHECK_FALSE(fs::exists(folder / "shrunk"));
+  are_there(kKept, true);
+}
+
+TEST_CASE("A saved sweep is its experiment, what it read, its table and its summary") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "a.csv", "t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,0.5,0.01,0\n2,1,0,0\n");
+  test::WriteText(folder / "b.csv", "t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,0.5,0.03,0\n2,1,0,0\n");
+  const experiment::Experiment logs =
+      LoadText("candidate: {kind: logs, path: " + (folder / "a.csv") +
+               "}\nreference: {kind: logs, path: " + (folder / "b.csv") + "}\n");
+  SweepTold told;
+  const auto result = SweepInto(folder / "out", logs, told);
+  REQUIRE(result);
+  CHECK(files::ReadFile(folder / "out/experiment.yaml") == experiment::WriteExperiment(logs));
+  CHECK(files::ReadFile(folder / "out/table.csv") == report::TableCsv(*result));
+  CHECK(files::ReadFile(folder / "out/summary.json") == report::SummaryJson(*result));
+  const std::string inputs = files::ReadFile(folder / "out/inputs.txt");
+  CHECK_THAT(inputs, Catch::Contains(folder / "a.csv") && Catch::Contains(folder / "b.csv"));
+  CHECK(experiment::WriteExperiment(SavedExperiment(folder / "out")) ==
+        experiment::WriteExperiment(logs));
+}
+
+TEST_CASE("A journal lets another experiment say by itself what differs, but not logs and fits") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "experiment.yaml", "of others");
+  test::WriteText(folder / kJournalName, "");
+  CHECK_FALSE(HoldsOtherExperiment(folder.Path(), SmallGrid()));
+  experiment::Experiment fit = SmallGrid();
+  fit.goal = experiment::Goal::kCalibrate;
+  CHECK(HoldsOtherExperiment(folder.Path(), fit));
+  const experiment::Experiment logs = LoadText(
+      "candidate: {kind: logs, path: a.csv}\nreference: {kind: logs, path: b.csv}\n");
+  CHECK(HoldsOtherExperiment(folder.Path(), logs));
+  test::WriteText(folder / "experiment.yaml", experiment::WriteExperiment(logs));
+  CHECK_FALSE(HoldsOtherExperiment(folder.Path(), logs));
+  fs::remove(folder / "experiment.yaml");
+  CHECK_FALSE(HoldsOtherExperiment(folder.Path(), fit));
+}
+
+}  // namespace
+}  // namespace rift::sessions
