@@ -7,8 +7,8 @@
 
 #include "rift/sessions/sweep/live_page.hpp"
 #include "rift/sessions/sweep/suggested.hpp"
-#include "rift/trajectory/log.hpp"
 #include "rift/sweep/falsify/evidence.hpp"
+#include "rift/trajectory/log.hpp"
 #include "sessions/sweep/page_evidence.hpp"
 #include "sessions/sweep_folder.hpp"
 #include "support/processes/process.hpp"
@@ -90,7 +90,8 @@ std::string Path(double bend_m, int rows = 60) {
   trajectory::Trajectory path;
   for (int i = 0; i <= rows; ++i) {
     const double u = i / double(rows);
-    path.poses.push_back({.t_s = 4.0 * u, .x_m = u, .y_m = bend_m * u * u, .yaw_rad = 2 * bend_m * u});
+    path.poses.push_back(
+        {.t_s = 4.0 * u, .x_m = u, .y_m = bend_m * u * u, .yaw_rad = 2 * bend_m * u});
   }
   return trajectory::WriteRift(path);
 }
@@ -108,10 +109,12 @@ experiment::Experiment LogsIn(const test::TemporaryFolder& folder) {
   return LoadText("space: {surface: [ice, sand]}\ncandidate: {kind: logs, path: \"" +
                   (folder / "{surface}{trial}_sim.csv") +
                   "\"}\nreference: {kind: logs, trials: [1, 2], path: \"" +
-                  (folder / "{surface}{trial}_real.csv") + "\"}\nlikeness: {shuffles: 19}\ngap: {skip_start: 0.1}\n");
+                  (folder / "{surface}{trial}_real.csv") +
+                  "\"}\nlikeness: {shuffles: 19}\ngap: {skip_start: 0.1}\n");
 }
 
-TEST_CASE("Every log of the robot is a reference of the page with its trial, and likeness is saved") {
+TEST_CASE(
+    "Every log of the robot is a reference of the page with its trial, and likeness is saved") {
   const test::QuickGnuplot quick;
   const test::TemporaryFolder logs;
   Swept swept(LogsIn(logs));
@@ -147,7 +150,8 @@ TEST_CASE("Equal references are kept once, and a row without a log has none") {
   CHECK(evidence.reference_of_row == std::vector<int>{0, -1, 1, 0});
 }
 
-TEST_CASE("The path of a task is the reference of all its repeats, without times, with its waypoints") {
+TEST_CASE(
+    "The path of a task is the reference of all its repeats, without times, with its waypoints") {
   Swept swept(SmallGrid());
   const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
   REQUIRE(evidence.references.size() == 1);
@@ -200,8 +204,8 @@ TEST_CASE("The page of a sweep that runs begins before a trial, grows with them,
       return files::ReadFile(file).find("first trials") == std::string::npos;
     });
     const int failures = swept.result.all.failures;
-    CHECK_THAT(files::ReadFile(file), Contains("4 trials so far, " + std::to_string(failures) +
-                                               " of them failed"));
+    CHECK_THAT(files::ReadFile(file),
+               Contains("4 trials so far, " + std::to_string(failures) + " of them failed"));
     fs::remove(file);
     page.Tick();  // nothing new
     CHECK_FALSE(fs::exists(file));

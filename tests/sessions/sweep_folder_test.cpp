@@ -16,8 +16,9 @@ namespace fs = std::filesystem;
 const std::vector<std::string> kReport{"report.html", "explanation.json", "likeness.json",
                                        "programs.json", "figures/fig.svg"};
 const std::vector<std::string> kFurther{"shrunk/table.csv", "shrunk.json", "rare_event.json"};
-const std::vector<std::string> kKept{"table.csv",     "summary.json",   "experiment.yaml",
-                                     "journal.sqlite", "suggested.yaml", "suggested/1_1/trajectory.csv"};
+const std::vector<std::string> kKept{"table.csv",       "summary.json",
+                                     "experiment.yaml", "journal.sqlite",
+                                     "suggested.yaml",  "suggested/1_1/trajectory.csv"};
 
 void Fill(const fs::path& folder) {
   for (const auto* names : {&kReport, &kFurther, &kKept}) {
@@ -77,8 +78,8 @@ TEST_CASE("A journal lets another experiment say by itself what differs, but not
   experiment::Experiment fit = SmallGrid();
   fit.goal = experiment::Goal::kCalibrate;
   CHECK(HoldsOtherExperiment(folder.Path(), fit));
-  const experiment::Experiment logs = LoadText(
-      "candidate: {kind: logs, path: a.csv}\nreference: {kind: logs, path: b.csv}\n");
+  const experiment::Experiment logs =
+      LoadText("candidate: {kind: logs, path: a.csv}\nreference: {kind: logs, path: b.csv}\n");
   CHECK(HoldsOtherExperiment(folder.Path(), logs));
   test::WriteText(folder / "experiment.yaml", experiment::WriteExperiment(logs));
   CHECK_FALSE(HoldsOtherExperiment(folder.Path(), logs));

@@ -27,11 +27,11 @@ experiment::Experiment Search(const std::vector<std::string>& overrides = {}) {
 TEST_CASE("A grid says its trials and a search its settings, to who watches and in the journal") {
   const test::TemporaryFolder folder;
   SweepTold grid, search;
-  REQUIRE(SweepInto(folder / "grid",
-                    LoadText(kShortWay +
-                             "reference: {kind: path, trials: 3}\nspace: {surface: [ground, "
-                             "parchment], control.v_min: [0.15, 0.2]}\n"),
-                    grid));
+  REQUIRE(SweepInto(
+      folder / "grid",
+      LoadText(kShortWay + "reference: {kind: path, trials: 3}\nspace: {surface: [ground, "
+                           "parchment], control.v_min: [0.15, 0.2]}\n"),
+      grid));
   CHECK(grid.size.most == 12);
   CHECK_FALSE(grid.size.is_settings);
   CHECK(grid.trials == 12);
@@ -123,7 +123,8 @@ TEST_CASE("A damaged row is said with its file and run again") {
   CHECK(report::TableCsv(*after) == report::TableCsv(*before));
 }
 
-TEST_CASE("Logs are compared in this process: no journal, each row told once, and it can be stopped") {
+TEST_CASE(
+    "Logs are compared in this process: no journal, each row told once, and it can be stopped") {
   const test::TemporaryFolder folder;
   for (const char* name : {"a1.csv", "a2.csv", "b1.csv", "b2.csv"}) {
     test::WriteText(folder / name, "t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,0.5,0.01,0\n2,1,0,0\n");
@@ -169,25 +170,26 @@ TEST_CASE("A rare event announces the most trials it may take and can be stopped
   sweep::Evaluator evaluator(search, "sweep.yaml", FileInputs());
   const auto result = RunSweep(evaluator, {.out = folder.Path()}, ObserverOf(told));
   REQUIRE(result);
-  CHECK_FALSE(Answer({.rare_event = true}, folder.Path(), *result, evaluator, {},
-                     ObserverOf(stopped)));
+  CHECK_FALSE(
+      Answer({.rare_event = true}, folder.Path(), *result, evaluator, {}, ObserverOf(stopped)));
   CHECK(stopped.size.most == 8 * 300 * 10);  // replicas x samples x levels
   CHECK_FALSE(stopped.size.is_settings);
   CHECK_FALSE(fs::exists(folder / "rare_event.json"));
   // Its trials are kept apart from those of the table, and the next call goes on with them.
   CHECK(ReadStatus(folder.Path()).summary.trials_by_status.at("ok") == 5);
   SweepTold more{.stops_after = stopped.trials + 1};
-  CHECK_FALSE(Answer({.rare_event = true}, folder.Path(), *result, evaluator, {}, ObserverOf(more)));
+  CHECK_FALSE(
+      Answer({.rare_event = true}, folder.Path(), *result, evaluator, {}, ObserverOf(more)));
   CHECK(more.from_journal >= 20);
 }
 
 TEST_CASE("A shrunk row is saved with the trials its claims rest on, as a folder to replay") {
   const test::TemporaryFolder folder;
   SweepTold told;
-  const experiment::Experiment grid = LoadText(
-      kShortWay +
-      "gap: {threshold_m: 0.004}\nreference: {kind: path, trials: 1}\n"
-      "space: {mismatch: [0, 0.2], control.v_min: [0.15, 0.16]}\n");
+  const experiment::Experiment grid =
+      LoadText(kShortWay +
+               "gap: {threshold_m: 0.004}\nreference: {kind: path, trials: 1}\n"
+               "space: {mismatch: [0, 0.2], control.v_min: [0.15, 0.16]}\n");
   sweep::Evaluator evaluator(grid, "sweep.yaml", FileInputs());
   const auto result = RunSweep(evaluator, {.out = folder.Path()}, ObserverOf(told));
   REQUIRE(result);
