@@ -56,9 +56,10 @@ std::string PatternOf(std::string_view key) {
 }
 
 double NiceStep(double least) {
+  constexpr double kRounded = 1.0 - 1e-9;  // (5.4 - 5) / 20 is a little more than 0.02
   const double power = std::pow(10.0, std::floor(std::log10(least)));
   for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= least) return factor * power;
+    if (factor * power >= kRounded * least) return factor * power;
   }
   return 10.0 * power;
 }
