@@ -33,13 +33,12 @@ experiment::Experiment PaperTask() {
 }
 
 TEST_CASE("The segments of an identification are those that its fit was tried with") {
-  const std::vector<control::Segment> segments =
-      IdentificationDrive(PaperTask()).program.segments;
+  const std::vector<control::Segment> segments = IdentificationDrive(PaperTask()).program.segments;
   // {way in m or turn in degrees, power} without the holds between them.
   const std::vector<std::pair<double, double>> motions{
-      {0.20, 0.15}, {-0.20, 0.20}, {0.30, 0.30}, {-0.30, 0.45},          // straight
-      {180, 0.15},  {-180, 0.15},  {360, 0.30},  {-360, 0.30},           // on the spot
-      {90, 0.20},   {-90, 0.30},   {-0.30, 0.25}, {-90, 0.20}, {90, 0.30}, {-0.20, 0.20}};
+      {0.20, 0.15}, {-0.20, 0.20}, {0.30, 0.30},  {-0.30, 0.45},  // straight
+      {180, 0.15},  {-180, 0.15},  {360, 0.30},   {-360, 0.30},   // on the spot
+      {90, 0.20},   {-90, 0.30},   {-0.30, 0.25}, {-90, 0.20},   {90, 0.30}, {-0.20, 0.20}};
   size_t motion = 0;
   for (size_t i = 0; i < segments.size(); ++i) {
     INFO("segment " << i);
@@ -104,7 +103,8 @@ TEST_CASE("What an identification fits has these ranges and is known so well bes
   }
 }
 
-TEST_CASE("A series is whatever of its four flags was given, and what comes next says the command") {
+TEST_CASE(
+    "A series is whatever of its four flags was given, and what comes next says the command") {
   CHECK_FALSE(SeriesRequest{}.IsSeries());
   CHECK(SeriesRequest{.repeat = 1}.IsSeries());
   CHECK(SeriesRequest{.grid = true}.IsSeries());
@@ -171,8 +171,8 @@ TEST_CASE("A grid that is no grid to drive is refused with its name and why") {
                     "paper: only goal: grid has a table of settings to drive");
   experiment = PaperTask();
   experiment.space.parameters = {{.key = "control.note", .levels = {{".hidden", {}}}}};
-  CHECK_THROWS_WITH(PlanGrid(experiment, "/out"), Contains("is no folder name") ||
-                                                      Contains("control.note"));
+  CHECK_THROWS_WITH(PlanGrid(experiment, "/out"),
+                    Contains("is no folder name") || Contains("control.note"));
 }
 
 /// A person who answers with one key.
@@ -181,20 +181,22 @@ Console Answering(char key, std::vector<std::string>& told) {
           .ask = [key](const std::string&, std::string_view) { return key; }};
 }
 
-TEST_CASE("A series tells of each drive that is left, counts those done, and goes on with the next") {
+TEST_CASE(
+    "A series tells of each drive that is left, counts those done, and goes on with the next") {
   const test::TemporaryFolder folder;
   fs::create_directories(folder / "2");
   for (const char* name : {"1.unfinished", "3.unfinished"}) fs::create_directories(folder / name);
   std::vector<std::string> told;
-  CHECK(DriveAll({folder.Path(), PlanRepeats(PaperTask(), 3, folder.Path())},
-                 Answering('s', told), [] {}) == SeriesEnd::kLeft);
+  CHECK(DriveAll({folder.Path(), PlanRepeats(PaperTask(), 3, folder.Path())}, Answering('s', told),
+                 [] {}) == SeriesEnd::kLeft);
   CHECK(told == std::vector<std::string>{
                     "3 drives into " + folder.Path().string() + ", 1 of them done",
                     "drive 1 of 3: trial 1", "drive 3 of 3: trial 3",
                     "2 of 3 drives did not reach the end; the same command asks about them again"});
 }
 
-TEST_CASE("What a drive depends on keeps another series out, what may change from day to day does not") {
+TEST_CASE(
+    "What a drive depends on keeps another series out, what may change from day to day does not") {
   const test::TemporaryFolder folder;
   fs::create_directories(folder / "1");
   std::vector<std::string> told;
@@ -221,8 +223,8 @@ TEST_CASE("What a drive depends on keeps another series out, what may change fro
 }
 
 TEST_CASE("An address takes what a scene says and leaves the rest as it was") {
-  const DriveAddress all = AddressOf(
-      R"({"port": "/dev/a", "camera": "http://b", "calibration": "c.yaml", "more": 1})");
+  const DriveAddress all =
+      AddressOf(R"({"port": "/dev/a", "camera": "http://b", "calibration": "c.yaml", "more": 1})");
   CHECK(all.port == "/dev/a");
   CHECK(all.camera == "http://b");
   CHECK(all.calibration == "c.yaml");
@@ -292,9 +294,8 @@ TEST_CASE("A drive needs its experiment and its log to be seen again") {
     test::WriteText(folder / "trajectory.csv", "x");
     CHECK_NOTHROW(RequireDrive(folder.Path()));
     fs::remove(folder.Path() / name);
-    CHECK_THROWS_WITH(RequireDrive(folder.Path()), folder.Path().string() +
-                                                       " holds no drive: there is no " + name +
-                                                       " in it");
+    CHECK_THROWS_WITH(RequireDrive(folder.Path()),
+                      folder.Path().string() + " holds no drive: there is no " + name + " in it");
   }
 }
 

@@ -97,8 +97,8 @@ TEST_CASE("The log of a tracking run is no input, whichever it is") {
 TEST_CASE("A log is no picture of its camera's pattern, but may lie beside them") {
   Names names;
   names.job.log = names.folder / "frames/001.jpg";
-  CHECK_THROWS_WITH(names.Check(), "--out " + names.job.log +
-                                       " is one of the camera's pictures: name a log");
+  CHECK_THROWS_WITH(names.Check(),
+                    "--out " + names.job.log + " is one of the camera's pictures: name a log");
   names.job.log = names.folder / "frames/log.csv";
   CHECK_NOTHROW(names.Check());
   names.job.log = names.folder / "log.jpg";

@@ -1,0 +1,163 @@
+// The task of an experiment, and what is asked of it before a robot is driven.
+#include "rift/experiment/task.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+
+#include "rift/experiment/experiment.hpp"
+
+namespace rift::experiment {
+namespace {
+
+using Catch::Matchers::Contains;
+
+Experiment Load(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return LoadExperiment("task.yaml", overrides, [&](const std::string&) { return text; });
+}
+
+Experiment Way(double x_m, double y_m) {
+  Experiment experiment;
+  experiment.waypoints = {{"start", 0.0, 0.0, 0.0, true}, {"end", x_m, y_m, {}, true}};
+  return experiment;
+}
+
+TEST_CASE("A task is a program or waypoints, and one of them is needed") {
+  CHECK_THROWS_WITH(RequireWaypoints({}, "robot.yaml"),
+                    Contains("robot.yaml: it has no waypoints") &&
+                        Contains("include: [robot.yaml, configs/waypoints/paper.yaml]"));
+  CHECK_NOTHROW(RequireWaypoints(Way(1, 0), "a.yaml"));
+  Experiment program;
+  program.program.segments = {{.straight_m = 1.0, .power = 0.3}};
+  CHECK_NOTHROW(RequireWaypoints(program, "a.yaml"));
+  CHECK_NOTHROW(RequireTask(Way(1, 0), "a.yaml"));
+  Experiment nowhere = Way(1, 0);
+  nowhere.waypoints.resize(1);
+  CHECK_THROWS_WITH(RequireTask(nowhere, "a.yaml"), Catch::StartsWith("a.yaml: "));
+}
+
+TEST_CASE("A program starts at the one waypoint there may be, turned by its heading") {
+  Experiment experiment;
+  experiment.program.segments = {{.straight_m = 1.0, .power = 0.3}};
+  CHECK(TaskOf(experiment).Start().x_m == 0.0);
+  CHECK(TaskOf(experiment).Start().yaw_rad == 0.0);
+  experiment.waypoints = {{"start", 0.5, -0.25, 90.0, true}};
+  CHECK(TaskOf(experiment).Start().x_m == 0.5);
+  CHECK(TaskOf(experiment).Start().y_m == -0.25);
+  CHECK(TaskOf(experiment).Start().yaw_rad == Approx(geometry::kPi / 2.0));
+  experiment.waypoints.push_back(experiment.waypoints[0]);
+  CHECK_THROWS_WITH(TaskOf(experiment), Contains("2 waypoints beside a program"));
+}
+
+TEST_CASE("A program has to end before its trial does, with settling and rest") {
+  Experiment experiment;
+  experiment.program.segments = {{.straight_m = 0.1, .power = 0.3}, {.hold_s = 10.0}};
+  const double driven_s =
+      control::Program(experiment.program, experiment.hardware.odometry.drive, {}).Duration_s();
+  experiment.program.rest_s = 2.0;
+  experiment.trial.settle_s = 1.5;
+  experiment.trial.timeout_s = driven_s + 3.6;
+  CHECK_NOTHROW(TaskOf(experiment));
+  experiment.trial.timeout_s = driven_s + 3.5;
+  CHECK_THROWS_WITH(TaskOf(experiment), Contains("the program takes 1") &&
+                                            Contains("with settling and rest, and trial.timeout_s"));
+}
+
+TEST_CASE("A waypoint outside of the arena is named by its number and place") {
+  Experiment experiment = Way(0.5, 0.25);
+  CHECK_NOTHROW(RequireReachableWaypoints(experiment, "a.yaml"));
+  experiment.trial.arena.x_max_m = 0.4;
+  CHECK_THROWS_WITH(RequireReachableWaypoints(experiment, "a.yaml"),
+                    Contains("a.yaml: waypoints[1] (end) at x 0.5 m, y 0.25 m lies outside "
+                             "trial.arena"));
+  experiment.waypoints[1].name.clear();
+  CHECK_THROWS_WITH(RequireReachableWaypoints(experiment, "a.yaml"),
+                    Contains("waypoints[1] at x 0.5 m, y 0.25 m lies"));
+}
+
+TEST_CASE("Waypoints that no robot reaches in time are taken for millimetres, near ones never") {
+  const auto check = [](double x_m, double y_m, double timeout_s) {
+    Experiment experiment = Way(x_m, y_m);
+    experiment.trial.timeout_s = timeout_s;
+    auto& arena = experiment.trial.arena;
+    arena.x_min_m = arena.y_min_m = -1000.0;
+    arena.x_max_m = arena.y_max_m = 1000.0;
+    RequireReachableWaypoints(experiment, "a.yaml");
+  };
+  // 5 m/s over the time of a trial.
+  CHECK_NOTHROW(check(100.0, 0.0, 20.0));
+  CHECK_THROWS_WITH(check(101.0, 0.0, 20.0), Contains("101 m apart in all, as far as 101 m out") &&
+                                                 Contains("trial.timeout_s, 20 s"));
+  CHECK_THROWS(check(0.0, -101.0, 20.0));
+  CHECK_THROWS(check(-101.0, 0.0, 20.0));
+  CHECK_NOTHROW(check(19.9, 0.0, 1.0));  // slow, but below a camera
+  CHECK_THROWS(check(20.0, 0.0, 1.0));
+}
+
+TEST_CASE("The tag is held to the floor that the surface's shape allows") {
+  const auto ground_on = [](const std::string& surface, vision::Ground said) {
+    Experiment experiment;
+    experiment.simulation.terrain.surface = surface;
+    experiment.track.tag.ground = said;
+    return TagOn(experiment).ground;
+  };
+  using vision::Ground;
+  CHECK(ground_on("ground", Ground::kFlat) == Ground::kFlat);
+  CHECK(ground_on("bump", Ground::kFlat) == Ground::kBumps);
+  CHECK(ground_on("uphill", Ground::kFlat) == Ground::kFree);
+  CHECK(ground_on("nowhere", Ground::kFlat) == Ground::kFlat);
+  CHECK(ground_on("bump", Ground::kFree) == Ground::kFree);
+  CHECK(ground_on("uphill", Ground::kBumps) == Ground::kBumps);
+}
+
+TEST_CASE("Values of an experiment by their keys are one line each") {
+  Experiment experiment = Way(0.5, 0.25);
+  const auto values = FlatValues(experiment);
+  CHECK(values.at("gap.threshold_m") == "0.06");
+  CHECK(values.at("goal") == "grid");
+  CHECK(values.at("waypoints").find('\n') == std::string::npos);
+  CHECK(values.at("waypoints").find("  ") == std::string::npos);
+  CHECK_THAT(values.at("waypoints"), Contains("0.25"));
+  for (const auto& [key, value] : values) {
+    INFO(key);
+    CHECK((value.empty() || (value.front() != ' ' && value.back() != ' ')));
+  }
+}
+
+TEST_CASE("Every key is described with its type, default, help and the step of a person") {
+  const std::string keys = DescribeKeys();
+  const auto of = [&](const std::string& key) {
+    const size_t at = ("\n" + keys).find("\n" + key + ": ");
+    REQUIRE(at != std::string::npos);
+    return keys.substr(at, keys.find('\n', keys.find('\n', at) + 1) - at);
+  };
+  CHECK_THAT(of("control.v_min"), Contains("(a person can set it on the robot, in steps of 0.01)"));
+  CHECK_THAT(of("control.derivative_kick"), Catch::EndsWith("(a person can set it on the robot)"));
+  CHECK_THAT(of("simulation.motor.mismatch"), !Contains("a person can set it"));
+  CHECK_THAT(of("gap.threshold_m"), Contains("[0.06]") && Contains("\n    a gap above this"));
+  CHECK_THAT(of("seed"), !Contains("a person can set it"));
+}
+
+TEST_CASE("A picture of a heightfield and paths of logs are made absolute where a file names them") {
+  const Experiment experiment = Load(
+      "simulation: {terrain: {surfaces: {hill: {shape: heightfield, image: hill.png}}}}\n"
+      "candidate: {kind: logs, path: sim.csv}\nreference: {kind: logs, path: sub/../real.csv}\n");
+  const std::string here = std::filesystem::current_path().string();
+  CHECK(experiment.simulation.terrain.surfaces.at("hill").image == here + "/hill.png");
+  CHECK(experiment.candidate.path.text == here + "/sim.csv");
+  CHECK(experiment.reference.path.text == here + "/real.csv");
+  CHECK(Load("waypoints: []\n").candidate.path.text.empty());
+}
+
+TEST_CASE("More than may be taken is refused before anything is computed") {
+  CHECK_THROWS_WITH(Load("gap: {samples: 10000000}\n"), Contains("task.yaml"));
+  const auto grid = [](int trials, const std::string& goal) {
+    return Load("goal: " + goal + "\nreference: {trials: " + std::to_string(trials) +
+                "}\nspace: {control.v_min: [0.12, 0.14, 0.15, 0.16]}\n");
+  };
+  CHECK_NOTHROW(grid(1000, "grid"));
+  CHECK_THROWS_WITH(grid(1'000'000, "grid"), Contains("4"));
+}
+
+}  // namespace
+}  // namespace rift::experiment
