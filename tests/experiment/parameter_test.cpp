@@ -199,13 +199,24 @@ TEST_CASE("A value is set to the nearest step within its range, and a level as i
 }
 
 TEST_CASE("A name's unit is its ending, and the word before it its label") {
-  const std::vector<std::pair<std::string, std::string>> units{
-      {"a_rad_per_mps", "rad/(m/s)"}, {"a_ns_per_m", "N s/m"}, {"a_n_per_m", "N/m"},
-      {"a_rad_s", "rad/s"},           {"a_kg_m2", "kg m²"},    {"a_mps2", "m/s²"},
-      {"a_deg_s", "°/s"},             {"a_mps", "m/s"},        {"a_rad", "rad"},
-      {"a_deg", "°"},                 {"a_kg", "kg"},          {"a_nm", "N m"},
-      {"a_hz", "Hz"},                 {"a_ms", "ms"},          {"a_mm", "mm"},
-      {"a_px", "px"},                 {"a_m", "m"},            {"a_s", "s"}};
+  const std::vector<std::pair<std::string, std::string>> units{{"a_rad_per_mps", "rad/(m/s)"},
+                                                               {"a_ns_per_m", "N s/m"},
+                                                               {"a_n_per_m", "N/m"},
+                                                               {"a_rad_s", "rad/s"},
+                                                               {"a_kg_m2", "kg m²"},
+                                                               {"a_mps2", "m/s²"},
+                                                               {"a_deg_s", "°/s"},
+                                                               {"a_mps", "m/s"},
+                                                               {"a_rad", "rad"},
+                                                               {"a_deg", "°"},
+                                                               {"a_kg", "kg"},
+                                                               {"a_nm", "N m"},
+                                                               {"a_hz", "Hz"},
+                                                               {"a_ms", "ms"},
+                                                               {"a_mm", "mm"},
+                                                               {"a_px", "px"},
+                                                               {"a_m", "m"},
+                                                               {"a_s", "s"}};
   for (const auto& [name, unit] : units) {
     INFO(name);
     CHECK(UnitOf(name) == unit);
@@ -259,8 +270,8 @@ TEST_CASE("A template that cannot be filled in says which field and which value"
   CHECK_THROWS_WITH(Fill("{v_min:03d}", kTheta), Contains("{v_min:03d} does not fit '0.20'"));
   for (const char* broken : {"{a", "a}", "{a{b}}", "}{", "{{a}"}) {
     INFO(broken);
-    CHECK_THROWS_WITH(TemplateNames(broken), std::string("path '") + broken +
-                                                 "' has a brace without its partner");
+    CHECK_THROWS_WITH(TemplateNames(broken),
+                      std::string("path '") + broken + "' has a brace without its partner");
   }
 }
 

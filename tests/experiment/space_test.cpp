@@ -55,36 +55,36 @@ TEST_CASE("An axis that breaks a rule is refused with the rule") {
   struct Wrong {
     std::string axis, says;
   };
-  const Wrong wrong = GENERATE(values<Wrong>(
-      {{"[]", "an axis needs at least one value"},
-       {"[1, 2, 1.0]", "an axis has each value once"},
-       {"[ice, ice]", "an axis has each value once"},
-       {"[[1]]", "must be a number or a text"},
-       {"3", "must be a list of values, or {min: a, max: b}"},
-       {"{min: 1}", "a range needs min and max; max is missing"},
-       {"{max: 1}", "a range needs min and max; min is missing"},
-       {"{min: a, max: 1}", "must be a number"},
-       {"{min: 0, max: b}", "must be a number"},
-       {"{min: 1, max: 1}", "min is 1, and it must be below max, which is 1"},
-       {"{min: 2, max: 1}", "min is 2, and it must be below max, which is 1"},
-       {"{min: 0, max: 1, scale: log}", "scale: log needs min above 0, which is 0"},
-       {"{min: 1, max: 4, scale: log, integer: true}", "and no integers"},
-       {"{min: 1, max: 4, scale: cubic}", "cubic"},
-       {"{min: 0.5, max: 4, integer: true}", "min and max of integers must be whole"},
-       {"{min: 0, max: 4.5, integer: true}", "min and max of integers must be whole"},
-       {"{min: 0, max: 4, integer: maybe}", "maybe"},
-       {"{min: 0, max: 1, nominal: 1.1}", "must be a number in its range"},
-       {"{min: 0, max: 1, nominal: -0.1}", "must be a number in its range"},
-       {"{min: 0, max: 1, nominal: a}", "must be a number in its range"},
-       {"{values: [1, 2], nominal: 1}", "must be a number in its range"},
-       {"{min: 0, max: 1, step: 0}", "must be a number above 0"},
-       {"{min: 0, max: 1, step: -1}", "must be a number above 0"},
-       {"{values: [1, 2], step: 1}", "belongs to a range"},
-       {"{values: [1, 2], min: 1}", "has values, or min and max: not both"},
-       {"{values: [1, 2], max: 1}", "has values, or min and max: not both"},
-       {"{values: [1, 2], scale: log}", "has values, or min and max: not both"},
-       {"{values: [1, 2], integer: true}", "has values, or min and max: not both"},
-       {"{values: 1}", "must be a list"}}));
+  const Wrong wrong = GENERATE(
+      values<Wrong>({{"[]", "an axis needs at least one value"},
+                     {"[1, 2, 1.0]", "an axis has each value once"},
+                     {"[ice, ice]", "an axis has each value once"},
+                     {"[[1]]", "must be a number or a text"},
+                     {"3", "must be a list of values, or {min: a, max: b}"},
+                     {"{min: 1}", "a range needs min and max; max is missing"},
+                     {"{max: 1}", "a range needs min and max; min is missing"},
+                     {"{min: a, max: 1}", "must be a number"},
+                     {"{min: 0, max: b}", "must be a number"},
+                     {"{min: 1, max: 1}", "min is 1, and it must be below max, which is 1"},
+                     {"{min: 2, max: 1}", "min is 2, and it must be below max, which is 1"},
+                     {"{min: 0, max: 1, scale: log}", "scale: log needs min above 0, which is 0"},
+                     {"{min: 1, max: 4, scale: log, integer: true}", "and no integers"},
+                     {"{min: 1, max: 4, scale: cubic}", "cubic"},
+                     {"{min: 0.5, max: 4, integer: true}", "min and max of integers must be whole"},
+                     {"{min: 0, max: 4.5, integer: true}", "min and max of integers must be whole"},
+                     {"{min: 0, max: 4, integer: maybe}", "maybe"},
+                     {"{min: 0, max: 1, nominal: 1.1}", "must be a number in its range"},
+                     {"{min: 0, max: 1, nominal: -0.1}", "must be a number in its range"},
+                     {"{min: 0, max: 1, nominal: a}", "must be a number in its range"},
+                     {"{values: [1, 2], nominal: 1}", "must be a number in its range"},
+                     {"{min: 0, max: 1, step: 0}", "must be a number above 0"},
+                     {"{min: 0, max: 1, step: -1}", "must be a number above 0"},
+                     {"{values: [1, 2], step: 1}", "belongs to a range"},
+                     {"{values: [1, 2], min: 1}", "has values, or min and max: not both"},
+                     {"{values: [1, 2], max: 1}", "has values, or min and max: not both"},
+                     {"{values: [1, 2], scale: log}", "has values, or min and max: not both"},
+                     {"{values: [1, 2], integer: true}", "has values, or min and max: not both"},
+                     {"{values: 1}", "must be a list"}}));
   INFO(wrong.axis);
   CHECK_THROWS_WITH(AxisOf(wrong.axis), Contains("task.yaml:4") && Contains(wrong.says));
 }
@@ -143,7 +143,8 @@ TEST_CASE("Trials are counted from one to a million, or named once each") {
   CHECK_THROWS_WITH(trials("[1, 2, 1]"), Contains("trial 1 stands there twice"));
 }
 
-TEST_CASE("A value of a program at rest is what its axis says, else its middle or its first level") {
+TEST_CASE(
+    "A value of a program at rest is what its axis says, else its middle or its first level") {
   const auto nominal = [](const std::string& axis) {
     return NominalTheta(Load(kProgram + "space: {mu: " + axis + "}\n")).at(0);
   };
@@ -153,7 +154,8 @@ TEST_CASE("A value of a program at rest is what its axis says, else its middle o
   CHECK(nominal("{min: 1, max: 4, integer: true}").number == 2.0);
   CHECK(nominal("[ice, sand]").text == "ice");
   const std::string own = "space: {control.v_min: {min: 0.1, max: 0.2, nominal: 0.15}}\n";
-  CHECK_THROWS_WITH(Load("goal: falsify\n" + own), Contains("nominal is of a program's parameters"));
+  CHECK_THROWS_WITH(Load("goal: falsify\n" + own),
+                    Contains("nominal is of a program's parameters"));
 }
 
 TEST_CASE("Only keys that change a simulated trial are an axis, and whole keys take whole ranges") {
@@ -221,11 +223,12 @@ TEST_CASE("A fit has its ranges and priors, and starts at the experiment's own v
   CHECK(fit[1].prior_sd == 0.02);
 }
 
-TEST_CASE("Braces in a fit stand for each level of that parameter, wherever it stands in the space") {
-  const Experiment fit =
-      Load("goal: calibrate\nspace: {control.v_min: [0.15], surface: [ground, parchment]}\n"
-           "reference: {kind: logs, path: \"{surface}{v_min}{trial}.csv\", trials: [1, 2]}\n"
-           "calibrate: {fit: {\"surfaces.{surface}.mu\": {min: 0.1, max: 1.2}}}\n");
+TEST_CASE(
+    "Braces in a fit stand for each level of that parameter, wherever it stands in the space") {
+  const Experiment fit = Load(
+      "goal: calibrate\nspace: {control.v_min: [0.15], surface: [ground, parchment]}\n"
+      "reference: {kind: logs, path: \"{surface}{v_min}{trial}.csv\", trials: [1, 2]}\n"
+      "calibrate: {fit: {\"surfaces.{surface}.mu\": {min: 0.1, max: 1.2}}}\n");
   REQUIRE(fit.calibrate.fit.list.size() == 2);
   CHECK(fit.calibrate.fit.list[0].key == "simulation.terrain.surfaces.ground.mu");
   CHECK(fit.calibrate.fit.list[1].key == "simulation.terrain.surfaces.parchment.mu");
@@ -237,18 +240,18 @@ TEST_CASE("A range of a fit is two numbers, or four with what is known") {
   struct Wrong {
     std::string range, says;
   };
-  const Wrong wrong = GENERATE(values<Wrong>(
-      {{"3", "must be {min: a, max: b}"},
-       {"{min: 0}", "max is missing"},
-       {"{min: 0.2, max: 0.1}", "must be below max"},
-       {"{min: -0.1, max: 0.1, mean: 0}", "must be {min: a, max: b}"},
-       {"{min: -0.1, max: 0.1, sd: 0.1}", "must be {min: a, max: b}"},
-       {"{min: -0.1, max: 0.1, median: 0, sd: 0.1}", "must be {min: a, max: b}"},
-       {"{min: -0.1, max: 0.1, mean: x, sd: 0.1}", "must be a number"},
-       {"{min: -0.1, max: 0.1, mean: 0, sd: 0}", "must be above 0"},
-       {"{min: -0.1, max: 0.1, mean: 0, sd: -1}", "must be above 0"},
-       {"{min: -0.1, max: 0.1, mean: 0.11, sd: 0.1}", "must lie in the range"},
-       {"{min: -0.1, max: 0.1, mean: -0.11, sd: 0.1}", "must lie in the range"}}));
+  const Wrong wrong = GENERATE(
+      values<Wrong>({{"3", "must be {min: a, max: b}"},
+                     {"{min: 0}", "max is missing"},
+                     {"{min: 0.2, max: 0.1}", "must be below max"},
+                     {"{min: -0.1, max: 0.1, mean: 0}", "must be {min: a, max: b}"},
+                     {"{min: -0.1, max: 0.1, sd: 0.1}", "must be {min: a, max: b}"},
+                     {"{min: -0.1, max: 0.1, median: 0, sd: 0.1}", "must be {min: a, max: b}"},
+                     {"{min: -0.1, max: 0.1, mean: x, sd: 0.1}", "must be a number"},
+                     {"{min: -0.1, max: 0.1, mean: 0, sd: 0}", "must be above 0"},
+                     {"{min: -0.1, max: 0.1, mean: 0, sd: -1}", "must be above 0"},
+                     {"{min: -0.1, max: 0.1, mean: 0.11, sd: 0.1}", "must lie in the range"},
+                     {"{min: -0.1, max: 0.1, mean: -0.11, sd: 0.1}", "must lie in the range"}}));
   INFO(wrong.range);
   CHECK_THROWS_WITH(LoadFit("{motor.mismatch: " + wrong.range + "}"),
                     Contains("task.yaml:4") && Contains(wrong.says));
@@ -347,9 +350,8 @@ TEST_CASE("A program's fit takes no name that its trials have already, and whole
   }
   CHECK_THROWS_WITH(LoadProgramFit("{surface: {min: 0.1, max: 0.5}}"),
                     Contains("shares its name 'surface'"));
-  CHECK_THROWS_WITH(
-      LoadProgramFit("{a.mu: {min: 0.1, max: 0.5}, b.mu: {min: 0.1, max: 0.5}}"),
-      Contains("shares its name 'mu'"));
+  CHECK_THROWS_WITH(LoadProgramFit("{a.mu: {min: 0.1, max: 0.5}, b.mu: {min: 0.1, max: 0.5}}"),
+                    Contains("shares its name 'mu'"));
   CHECK_THROWS_WITH(LoadProgramFit(mu, {"calibrate.method.runs=0"}),
                     Contains("calibrate.method.runs is 0"));
   for (const char* horizon : {"phases=2", "most_frames=7", "moved_m=0.123"}) {

@@ -59,8 +59,9 @@ TEST_CASE("A program has to end before its trial does, with settling and rest") 
   experiment.trial.timeout_s = driven_s + 3.6;
   CHECK_NOTHROW(TaskOf(experiment));
   experiment.trial.timeout_s = driven_s + 3.5;
-  CHECK_THROWS_WITH(TaskOf(experiment), Contains("the program takes 1") &&
-                                            Contains("with settling and rest, and trial.timeout_s"));
+  CHECK_THROWS_WITH(
+      TaskOf(experiment),
+      Contains("the program takes 1") && Contains("with settling and rest, and trial.timeout_s"));
 }
 
 TEST_CASE("A waypoint outside of the arena is named by its number and place") {
@@ -138,7 +139,8 @@ TEST_CASE("Every key is described with its type, default, help and the step of a
   CHECK_THAT(of("seed"), !Contains("a person can set it"));
 }
 
-TEST_CASE("A picture of a heightfield and paths of logs are made absolute where a file names them") {
+TEST_CASE(
+    "A picture of a heightfield and paths of logs are made absolute where a file names them") {
   const Experiment experiment = Load(
       "simulation: {terrain: {surfaces: {hill: {shape: heightfield, image: hill.png}}}}\n"
       "candidate: {kind: logs, path: sim.csv}\nreference: {kind: logs, path: sub/../real.csv}\n");

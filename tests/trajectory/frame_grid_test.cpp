@@ -63,6 +63,7 @@ TEST_CASE("Stamps go back to the frames they were taken on, whatever the loop an
       CHECK(ErrorOf_s(found.trajectory, made.captured_s) < 0.0045);
       CHECK(found.grid.Smoother() > 2.0);
       CHECK(found.grid.outside_share < 0.2);
+      CHECK(found.grid.outside_share >= 0.0);
     }
   }
 }
@@ -77,6 +78,38 @@ TEST_CASE("The mean of the stamps stays, they rise, and nothing but them changes
     if (i > 0) CHECK(after.poses[i].t_s > after.poses[i - 1].t_s);
   }
   CHECK(change_s / static_cast<double>(after.poses.size()) == Approx(0.0).margin(1e-9));
+}
+
+TEST_CASE("Rows that are not of the newest frame are a share of all") {
+  // Every third stamp is two frames late.
+  Made made = Logged(1.0 / 30.0, 0.06, 3);
+  for (size_t i = 0; i < made.log.poses.size(); i += 3) made.log.poses[i].t_s += 0.02;
+  const OnFrames result = PutOnFrames(made.log, 30.0);
+  CHECK(result.grid.outside_share > 0.05);
+  CHECK(result.grid.outside_share < 0.6);
+}
+
+TEST_CASE("What was done to the stamps, or why nothing was, is told in one line") {
+  CHECK(FrameGrid{
+            .is_found = true, .period_s = 0.0333, .roughness_before = 0.6, .roughness_after = 0.2}
+            .Text() ==
+        "stamps put back on frames 33.30 ms apart: speeds from row to row are 3.0 times smoother");
+  CHECK(FrameGrid{}.Text() ==
+        "no frame grid is looked for in fewer than 12 rows in motion or in "
+        "more than 100 s: the stamps stay");
+  CHECK(FrameGrid{.is_best = false, .roughness_before = 0.6, .roughness_after = 0.2}.Text() ==
+        "no frame grid of this rate: one of a rate 10 % off explains the log better: the stamps "
+        "stay");
+  CHECK_THAT(
+      (FrameGrid{.is_best = true, .roughness_before = 0.6, .roughness_after = 0.5}.Text()),
+      Catch::StartsWith("no frame grid: with one speeds would be 1.20 times smoother, and "));
+  const Made made = Logged(1.0 / 30.0, 0.06, 3);
+  CHECK(OnFramesOf(made.log, 0.0).poses[9].t_s == made.log.poses[9].t_s);
+  CHECK(OnFramesOf(made.log, 30.0).poses[9].t_s != made.log.poses[9].t_s);
+  CHECK_THROWS_AS(PutOnFrames(made.log, 0.99), std::invalid_argument);
+  CHECK_NOTHROW(PutOnFrames(made.log, 1.0));
+  CHECK_NOTHROW(PutOnFrames(made.log, 1000.0));
+  CHECK_THROWS_AS(PutOnFrames(made.log, 1001.0), std::invalid_argument);
 }
 
 TEST_CASE("A log without a grid keeps its stamps") {

@@ -1,0 +1,221 @@
+// Logs that look read in a wrong way: what no robot on wheels does, and the mistake behind it.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "rift/trajectory/log.hpp"
+
+namespace rift::trajectory {
+namespace {
+
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+constexpr double kPi = 3.141592653589793;
+
+/// A curve of 2 m at 0.3 m/s, turning from -40 to 40 degrees, 20 rows a second.
+Trajectory Curve() {
+  Trajectory log;
+  double x_m = 0.0, y_m = 0.0;
+  for (int i = 0; i < 134; ++i) {
+    const double yaw_rad = kPi / 180.0 * (-40.0 + 80.0 * i / 133.0);
+    log.poses.push_back({.t_s = 0.05 * i,
+                         .x_m = x_m,
+                         .y_m = y_m,
+                         .z_m = 0.0,
+                         .roll_rad = 0.0,
+                         .pitch_rad = 0.0,
+                         .yaw_rad = yaw_rad});
+    x_m += 0.015 * std::cos(yaw_rad);
+    y_m += 0.015 * std::sin(yaw_rad);
+  }
+  return log;
+}
+
+std::vector<std::string> DoubtsOf(const std::function<void(StampedPose&)>& mistake,
+                                  bool in_space = false) {
+  Trajectory log = Curve();
+  for (StampedPose& pose : log.poses) mistake(pose);
+  return Doubts(log, in_space);
+}
+
+/// The only doubt.
+std::string DoubtOf(const std::function<void(StampedPose&)>& mistake) {
+  const std::vector<std::string> doubts = DoubtsOf(mistake);
+  return doubts.size() == 1 ? doubts[0] : "doubts: " + std::to_string(doubts.size());
+}
+
+TEST_CASE("A sound log is not doubted, backwards and mirrored with its yaw included") {
+  CHECK(Doubts(Curve()).empty());
+  CHECK(DoubtsOf([](StampedPose& p) { p.yaw_rad += kPi; }).empty());
+  CHECK(DoubtsOf([](StampedPose& p) {
+          p.y_m = -p.y_m;
+          p.yaw_rad = -p.yaw_rad;
+        }).empty());
+  CHECK(Doubts({}).empty());
+}
+
+TEST_CASE("A yaw against the direction of travel is doubted with the mistake that mends it") {
+  const std::string head = "the yaw disagrees with the direction of travel: ";
+  CHECK(DoubtOf([](StampedPose& p) { p.yaw_rad *= 180.0 / kPi; }) ==
+        head + "degrees read as radians? name the unit as in yaw=COLUMN:deg");
+  CHECK(DoubtOf([](StampedPose& p) { p.yaw_rad += kPi / 2.0; }) ==
+        head + "a yaw of another zero, a quarter turn off?");
+  CHECK(DoubtOf([](StampedPose& p) { p.yaw_rad -= kPi / 2.0; }) ==
+        head + "a yaw of another zero, a quarter turn off?");
+  CHECK(DoubtOf([](StampedPose& p) { p.yaw_rad = 7.0 * p.x_m; }) ==
+        head + "is it another column?");
+  // Along a circle the mistakes of axes are told apart.
+  const auto on_circle = [](const std::function<void(StampedPose&)>& mistake) {
+    Trajectory log;
+    for (int i = 0; i < 140; ++i) {
+      const double turn_rad = 0.04 * i;
+      log.poses.push_back({.t_s = 0.05 * i,
+                           .x_m = 0.5 * std::sin(turn_rad),
+                           .y_m = 0.5 - 0.5 * std::cos(turn_rad),
+                           .yaw_rad = turn_rad});
+      mistake(log.poses.back());
+    }
+    const std::vector<std::string> doubts = Doubts(log);
+    return doubts.size() == 1 ? doubts[0] : "doubts: " + std::to_string(doubts.size());
+  };
+  CHECK(on_circle([](StampedPose&) {}) == "doubts: 0");
+  CHECK(on_circle([](StampedPose& p) { std::swap(p.x_m, p.y_m); }) ==
+        head + "x and y swapped, or a yaw from north, clockwise?");
+  CHECK(on_circle([](StampedPose& p) { p.y_m = -p.y_m; }) ==
+        head +
+            "y mirrored, or a yaw that counts clockwise? turn one of them as in y=-COLUMN");
+  CHECK(on_circle([](StampedPose& p) { p.yaw_rad *= kPi / 180.0; }) ==
+        head + "radians read as degrees?");
+}
+
+TEST_CASE("A yaw is not held against fewer than ten pieces of a path, nor one that is not known") {
+  CHECK(DoubtsOf([](StampedPose& p) { p.yaw_rad = StampedPose::kNotLogged; }).empty());
+  Trajectory shorter = Curve();
+  for (StampedPose& pose : shorter.poses) pose.yaw_rad += kPi / 2.0;
+  shorter.poses.resize(9);
+  CHECK(Doubts(shorter).empty());
+  CHECK(DoubtsOf([](StampedPose& p) { p.yaw_rad += kPi / 2.0; }, true).empty());  // in space
+}
+
+TEST_CASE("Poses seconds apart, or a ten-thousandth of one, are times of another unit") {
+  const auto apart = [](double factor) {
+    return DoubtsOf([factor](StampedPose& p) { p.t_s *= factor; });
+  };
+  CHECK(apart(39.9).empty());  // 1.995 s
+  REQUIRE(apart(40.1).size() == 1);
+  CHECK_THAT(apart(40.1)[0], StartsWith("its poses are 2 s apart: are its times in ms, us or ns?"));
+  CHECK_THAT(apart(1000.0)[0], StartsWith("its poses are 50 s apart"));
+  REQUIRE(apart(1e-4).size() == 1);  // 5 us: its speed is not doubted as well
+  CHECK_THAT(apart(1e-4)[0], Contains("are its times in another unit than they are read in?"));
+}
+
+TEST_CASE("A robot faster than ten metres a second has its positions in another unit") {
+  const auto scaled = [](double factor) {
+    return DoubtsOf([factor](StampedPose& p) {
+      p.x_m *= factor;
+      p.y_m *= factor;
+    });
+  };
+  CHECK(scaled(33.0).empty());  // 9.9 m/s
+  REQUIRE(scaled(34.0).size() == 1);
+  CHECK_THAT(scaled(34.0)[0], StartsWith("it moves at 10.2 m/s, and no robot here drives faster "
+                                         "than 10: are its positions in mm or cm?"));
+}
+
+TEST_CASE("A path within three millimetres is metres read as a smaller unit") {
+  const auto scaled = [](double extent_m) {
+    const Trajectory log = Curve();
+    const double whole_m = (log.poses.back().Position() - log.poses.front().Position()).norm();
+    return DoubtsOf([factor = extent_m / whole_m](StampedPose& p) {
+      p.x_m *= factor;
+      p.y_m *= factor;
+    });
+  };
+  CHECK(scaled(0.0031).empty());
+  REQUIRE(scaled(0.0029).size() == 1);
+  CHECK_THAT(scaled(0.0029)[0], StartsWith("the whole path lies within 0.0029 m"));
+}
+
+TEST_CASE("In space a height is a part of the way and of its speed") {
+  Trajectory log = Curve();
+  for (StampedPose& pose : log.poses) {
+    pose.z_m = 11.0 * pose.t_s;
+    pose.x_m *= 1e-4;
+    pose.y_m *= 1e-4;
+  }
+  REQUIRE(Doubts(log, true).size() == 1);
+  CHECK_THAT(Doubts(log, true)[0], StartsWith("it moves at 11 m/s"));
+  CHECK_THAT(Doubts(log, false)[0], StartsWith("the whole path lies within"));
+}
+
+/// Every position `times` times in a row.
+std::vector<std::string> DoubtsOfRepeated(size_t rows, size_t times, size_t alone = 0) {
+  const Trajectory curve = Curve();
+  Trajectory log;
+  for (size_t i = 0; i < rows; ++i) {
+    const size_t copies = i < alone ? 1 : times;
+    for (size_t k = 0; k < copies; ++k) {
+      log.poses.push_back(curve.poses[i]);
+      log.poses.back().t_s = 0.05 * static_cast<double>(log.poses.size());
+    }
+  }
+  return Doubts(log);
+}
+
+TEST_CASE("Rows that are each there twice are doubted from ten on, if four of five are") {
+  REQUIRE(DoubtsOfRepeated(100, 2).size() == 1);
+  CHECK(DoubtsOfRepeated(100, 2)[0] ==
+        "100 of 100 positions are there twice in a row: are its rows doubled?");
+  CHECK(DoubtsOfRepeated(100, 3).empty());
+  CHECK(DoubtsOfRepeated(10, 2).size() == 1);
+  CHECK(DoubtsOfRepeated(9, 2).empty());
+  CHECK(DoubtsOfRepeated(100, 2, 20).size() == 1);
+  CHECK(DoubtsOfRepeated(100, 2, 21).empty());
+}
+
+TEST_CASE("A coordinate that jumps between few values is that of a target, x or y") {
+  const bool is_x = GENERATE(true, false);
+  const auto log_with = [&](int values, double jump_m) {
+    Trajectory log = Curve();
+    for (size_t i = 0; i < log.poses.size(); ++i) {
+      StampedPose& pose = log.poses[i];
+      pose.yaw_rad = StampedPose::kNotLogged;
+      const double step = jump_m * std::floor(values * static_cast<double>(i) / static_cast<double>(log.poses.size()));
+      (is_x ? pose.y_m : pose.x_m) = 0.01 * static_cast<double>(i);
+      (is_x ? pose.x_m : pose.y_m) = step;
+    }
+    return Doubts(log);
+  };
+  REQUIRE(log_with(4, 0.5).size() == 1);
+  CHECK(log_with(4, 0.5)[0] ==
+        std::string("its ") + (is_x ? "x" : "y") +
+            " has 4 values only and jumps between them, by up to 0.5 m: is it the column of a "
+            "target or waypoint?");
+  CHECK(log_with(1, 0.5).empty());       // a straight way
+  CHECK(log_with(4, 0.019).empty());     // no jump
+  CHECK(log_with(12, 0.5).size() == 1);
+  CHECK(log_with(13, 0.5).empty());
+}
+
+TEST_CASE("A robot that lies on its side is a mistake of angles, by roll or by pitch") {
+  for (const bool is_roll : {true, false}) {
+    const auto tilted = [is_roll](double tilt_rad) {
+      return DoubtsOf([=](StampedPose& p) { (is_roll ? p.roll_rad : p.pitch_rad) = tilt_rad; });
+    };
+    CHECK(tilted(0.79).empty());
+    CHECK(tilted(-0.79).empty());
+    REQUIRE(tilted(0.81).size() == 1);
+    CHECK_THAT(tilted(-0.81)[0], StartsWith("the robot lies on its side, 0.81 rad of roll or pitch"));
+  }
+  CHECK(DoubtsOf([](StampedPose& p) { p.roll_rad = 2.0 * kPi; }).empty());  // the same as upright
+  CHECK(DoubtsOf([](StampedPose& p) { p.roll_rad = 1.5; }, true).empty());  // a drone may
+  CHECK(DoubtsOf([](StampedPose& p) {
+          p.roll_rad = p.pitch_rad = StampedPose::kNotLogged;
+        }).empty());
+}
+
+}  // namespace
+}  // namespace rift::trajectory
