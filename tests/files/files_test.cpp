@@ -5,9 +5,12 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <thread>
 
 #include "rift/files/append_file.hpp"
 #include "rift/files/folder_lock.hpp"
@@ -121,12 +124,51 @@ TEST_CASE("A folder is held by one at a time and free again afterwards") {
     CHECK(fs::is_directory(held));
     CHECK(FolderLock::IsHeld(held));
     CHECK_NOTHROW(lock.RequireInPlace());
+    CHECK_THROWS_WITH(FolderLock(held),
+                      Contains("another sweep is at work in " + held.string() +
+                               ": wait for it (rift sweep --status " + held.string() + ")"));
+    CHECK(FolderLock::IsHeld(held));
   }
   CHECK_FALSE(FolderLock::IsHeld(held));
   CHECK_FALSE(FolderLock::IsHeld(folder / "none"));
   CHECK_NOTHROW(FolderLock(held));
   test::WriteText(folder / "file", "x");
   CHECK_THROWS_WITH(FolderLock(folder / "file"), Contains("cannot "));
+}
+
+TEST_CASE("A folder that is let go while another waits for it is had") {
+  const test::TemporaryFolder folder;
+  auto first = std::make_unique<FolderLock>(folder.Path());
+  std::thread leaves([&first] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    first.reset();
+  });
+  CHECK_NOTHROW(FolderLock(folder.Path()));
+  leaves.join();
+}
+
+TEST_CASE("An input is found by its name here, by its whole path, or not at all") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "a.yaml", "x");
+  CHECK(FindInput(folder / "a.yaml") == folder / "a.yaml");
+  CHECK(FindInput("no/such/file.yaml") == "no/such/file.yaml");
+  CHECK(FindInput("").empty());
+}
+
+TEST_CASE("Every file system of other machines has its name by its number, signed or not") {
+  const std::vector<std::pair<unsigned long, std::string>> kinds{
+      {0x6969, "NFS"},          {0x517B, "SMB"},      {0xFF534D42, "CIFS"},  {0xFE534D42, "SMB2"},
+      {0x0BD00BD0, "Lustre"},   {0x47504653, "GPFS"}, {0x65735546, "FUSE"},  {0x19830326, "BeeGFS"},
+      {0x00C36400, "Ceph"},     {0x5346414F, "AFS"},  {0x6B414653, "AFS"},   {0xAAD7AAEA, "PanFS"},
+      {0x20030528, "OrangeFS"}, {0x01021997, "9P"},   {0x73757245, "Coda"},  {0x7461636F, "OCFS2"},
+      {0x01161970, "GFS2"},     {0x564C, "NCP"},      {0x786F4256, "vboxsf"}};
+  for (const auto& [type, name] : kinds) {
+    INFO(name);
+    CHECK(NetworkFileSystemName(type) == name);
+    CHECK(NetworkFileSystemName(type | 0xFFFFFFFF00000000UL) == name);
+  }
+  CHECK(NetworkFileSystemName(0xEF53).empty());  // ext4
+  CHECK(NetworkFileSystemOf("/no/such/folder").empty());
 }
 
 TEST_CASE("A held folder is missed where it was removed, moved or replaced") {

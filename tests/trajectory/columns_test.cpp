@@ -71,8 +71,8 @@ TEST_CASE("Each quantity is read from its own column in its own unit") {
 }
 
 TEST_CASE("Units of a kind hold for every quantity of it that names none") {
-  const Trajectory log = Read("t,x,y,yaw\n1,10,20,90\n2,30,40,180\n", "t=t,x=x,y=y:m,yaw=yaw",
-                              "cm,min,deg");
+  const Trajectory log =
+      Read("t,x,y,yaw\n1,10,20,90\n2,30,40,180\n", "t=t,x=x,y=y:m,yaw=yaw", "cm,min,deg");
   CHECK(log.poses[1].t_s == 120.0);
   CHECK(log.poses[1].x_m == Approx(0.3));
   CHECK(log.poses[1].y_m == 40.0);
@@ -103,8 +103,8 @@ TEST_CASE("A column is named by its number from 1 where no name is so") {
 TEST_CASE("A yaw of a quaternion is its turn about z, tilted ones have roll and pitch too") {
   const double half = 0.35;
   const auto text = [](double qx, double qy, double qz, double qw) {
-    const std::string q = std::to_string(qx) + "," + std::to_string(qy) + "," +
-                          std::to_string(qz) + "," + std::to_string(qw);
+    const std::string q = std::to_string(qx) + "," + std::to_string(qy) + "," + std::to_string(qz) +
+                          "," + std::to_string(qw);
     return "t,x,y,a,b,c,d\n0,0,0," + q + "\n1,1,1," + q + "\n";
   };
   const std::string columns = "t=t,x=x,y=y,qx=a,qy=b,qz=c,qw=d";
@@ -117,9 +117,11 @@ TEST_CASE("A yaw of a quaternion is its turn about z, tilted ones have roll and 
   const StampedPose pitch = Read(text(0, std::sin(half), 0, std::cos(half)), columns).poses[0];
   CHECK(pitch.pitch_rad == Approx(0.7).epsilon(1e-5));
   // Without qx and qy it is upright.
-  CHECK(Read(text(9, 9, std::sin(half), std::cos(half)), "t=t,x=x,y=y,qz=c,qw=d").poses[0].yaw_rad ==
-        Approx(0.7).epsilon(1e-5));
-  CHECK_THROWS_WITH(Read(text(0, 0, 0, 0), columns), Contains("log.csv:2: the quaternion has zero"));
+  CHECK(
+      Read(text(9, 9, std::sin(half), std::cos(half)), "t=t,x=x,y=y,qz=c,qw=d").poses[0].yaw_rad ==
+      Approx(0.7).epsilon(1e-5));
+  CHECK_THROWS_WITH(Read(text(0, 0, 0, 0), columns),
+                    Contains("log.csv:2: the quaternion has zero"));
 }
 
 TEST_CASE("Columns that break a rule are refused with the rule") {
@@ -143,9 +145,8 @@ TEST_CASE("Columns that break a rule are refused with the rule") {
   CHECK_NOTHROW(CheckColumns({.columns = " t = a , x = b , y = c "}));
   CHECK_THROWS_WITH(CheckColumns({.units = "furlong", .columns_flag = "--sim-columns "}),
                     Catch::StartsWith("--sim-units: 'furlong' is none of"));
-  CHECK_THROWS_WITH(
-      CheckColumns({.columns = "t=a", .columns_flag = "--set candidate.columns="}),
-      Catch::StartsWith("candidate.columns: x is missing"));
+  CHECK_THROWS_WITH(CheckColumns({.columns = "t=a", .columns_flag = "--set candidate.columns="}),
+                    Catch::StartsWith("candidate.columns: x is missing"));
   CHECK_THROWS_AS(CheckColumns({.format = Format::kTum, .columns = "t=a,x=b,y=c"}),
                   std::invalid_argument);
 }
@@ -163,8 +164,8 @@ TEST_CASE("A cell that is no number is refused by its column, a row without posi
   CHECK_THROWS_WITH(Read("a,b,c\n0,1,2\n,2,3\n", "t=a,x=b,y=c"), "log.csv:3: column a is empty");
   CHECK_THROWS_WITH(Read("a,b,c\n0,1,2\n1,,3\n", "t=a,x=b,y=c"), "log.csv:3: column b is empty");
   CHECK_THROWS_WITH(Read("a,b,c\n0,1,2\n1,2,\n", "t=a,x=b,y=c"), "log.csv:3: column c is empty");
-  const Log log = ReadLog("a,b,c\n0,1,2\n1,,\n2,,\n3,2,3\n", "log.csv",
-                          ReadOptions{.columns = "t=a,x=b,y=c"});
+  const Log log =
+      ReadLog("a,b,c\n0,1,2\n1,,\n2,,\n3,2,3\n", "log.csv", ReadOptions{.columns = "t=a,x=b,y=c"});
   CHECK(log.trajectory.poses.size() == 2);
   CHECK(log.notes == std::vector<std::string>{"2 rows are left out: they hold no position"});
 }
@@ -223,9 +224,11 @@ TEST_CASE("Words of a column's name tell its quantity and what is none of the po
     }
     const std::string guess = GuessColumns(text, "log", "");
     const size_t at = guess.find("=" + column);
-    return at == guess.npos ? "" : guess.substr(guess.rfind(',', at) + 1, at - guess.rfind(',', at) - 1);
+    return at == guess.npos ? ""
+                            : guess.substr(guess.rfind(',', at) + 1, at - guess.rfind(',', at) - 1);
   };
-  for (const char* yaw : {"yaw", "theta", "heading", "psi", "phi", "angle", "robotYaw", "th", "rz"}) {
+  for (const char* yaw :
+       {"yaw", "theta", "heading", "psi", "phi", "angle", "robotYaw", "th", "rz"}) {
     INFO(yaw);
     CHECK(guessed(yaw, 0.0, 0.01) == "yaw");
   }

@@ -65,8 +65,7 @@ TEST_CASE("A yaw against the direction of travel is doubted with the mistake tha
         head + "a yaw of another zero, a quarter turn off?");
   CHECK(DoubtOf([](StampedPose& p) { p.yaw_rad -= kPi / 2.0; }) ==
         head + "a yaw of another zero, a quarter turn off?");
-  CHECK(DoubtOf([](StampedPose& p) { p.yaw_rad = 7.0 * p.x_m; }) ==
-        head + "is it another column?");
+  CHECK(DoubtOf([](StampedPose& p) { p.yaw_rad = 7.0 * p.x_m; }) == head + "is it another column?");
   // Along a circle the mistakes of axes are told apart.
   const auto on_circle = [](const std::function<void(StampedPose&)>& mistake) {
     Trajectory log;
@@ -85,8 +84,7 @@ TEST_CASE("A yaw against the direction of travel is doubted with the mistake tha
   CHECK(on_circle([](StampedPose& p) { std::swap(p.x_m, p.y_m); }) ==
         head + "x and y swapped, or a yaw from north, clockwise?");
   CHECK(on_circle([](StampedPose& p) { p.y_m = -p.y_m; }) ==
-        head +
-            "y mirrored, or a yaw that counts clockwise? turn one of them as in y=-COLUMN");
+        head + "y mirrored, or a yaw that counts clockwise? turn one of them as in y=-COLUMN");
   CHECK(on_circle([](StampedPose& p) { p.yaw_rad *= kPi / 180.0; }) ==
         head + "radians read as degrees?");
 }
@@ -183,7 +181,8 @@ TEST_CASE("A coordinate that jumps between few values is that of a target, x or 
     for (size_t i = 0; i < log.poses.size(); ++i) {
       StampedPose& pose = log.poses[i];
       pose.yaw_rad = StampedPose::kNotLogged;
-      const double step = jump_m * std::floor(values * static_cast<double>(i) / static_cast<double>(log.poses.size()));
+      const double step = jump_m * std::floor(values * static_cast<double>(i) /
+                                              static_cast<double>(log.poses.size()));
       (is_x ? pose.y_m : pose.x_m) = 0.01 * static_cast<double>(i);
       (is_x ? pose.x_m : pose.y_m) = step;
     }
@@ -194,8 +193,8 @@ TEST_CASE("A coordinate that jumps between few values is that of a target, x or 
         std::string("its ") + (is_x ? "x" : "y") +
             " has 4 values only and jumps between them, by up to 0.5 m: is it the column of a "
             "target or waypoint?");
-  CHECK(log_with(1, 0.5).empty());       // a straight way
-  CHECK(log_with(4, 0.019).empty());     // no jump
+  CHECK(log_with(1, 0.5).empty());    // a straight way
+  CHECK(log_with(4, 0.019).empty());  // no jump
   CHECK(log_with(12, 0.5).size() == 1);
   CHECK(log_with(13, 0.5).empty());
 }
@@ -208,13 +207,13 @@ TEST_CASE("A robot that lies on its side is a mistake of angles, by roll or by p
     CHECK(tilted(0.79).empty());
     CHECK(tilted(-0.79).empty());
     REQUIRE(tilted(0.81).size() == 1);
-    CHECK_THAT(tilted(-0.81)[0], StartsWith("the robot lies on its side, 0.81 rad of roll or pitch"));
+    CHECK_THAT(tilted(-0.81)[0],
+               StartsWith("the robot lies on its side, 0.81 rad of roll or pitch"));
   }
   CHECK(DoubtsOf([](StampedPose& p) { p.roll_rad = 2.0 * kPi; }).empty());  // the same as upright
   CHECK(DoubtsOf([](StampedPose& p) { p.roll_rad = 1.5; }, true).empty());  // a drone may
-  CHECK(DoubtsOf([](StampedPose& p) {
-          p.roll_rad = p.pitch_rad = StampedPose::kNotLogged;
-        }).empty());
+  CHECK(
+      DoubtsOf([](StampedPose& p) { p.roll_rad = p.pitch_rad = StampedPose::kNotLogged; }).empty());
 }
 
 }  // namespace

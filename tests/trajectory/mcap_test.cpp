@@ -113,8 +113,8 @@ TEST_CASE("An MCAP file begins with its header, ends with its footer, and names 
       CHECK(f.Number(4) == 0);
     }
   }
-  CHECK(schemas == std::vector<std::string>{"1 foxglove.PoseInFrame jsonschema",
-                                            "2 rift.Signals jsonschema"});
+  CHECK(schemas ==
+        std::vector<std::string>{"1 foxglove.PoseInFrame jsonschema", "2 rift.Signals jsonschema"});
   CHECK(topics ==
         std::vector<std::string>{"1 1 /pose json", "2 1 /target json", "3 2 /signals json"});
 }
@@ -136,7 +136,8 @@ TEST_CASE("Each row is a pose, a target where it has one, and its signals, at it
         R"({"timestamp":{"sec":1,"nsec":500000000},"frame_id":"world","pose":{)"
         R"("position":{"x":0.25,"y":-0.5,"z":0},"orientation":{"x":0,"y":0,"z":0,"w":1}}})");
   CHECK_THAT(messages[2].json, Contains(R"("position":{"x":0.75,"y":1,"z":0.125})") &&
-                                   Contains(R"("z":1,)") && Contains(R"("sec":2,"nsec":250000000)"));
+                                   Contains(R"("z":1,)") &&
+                                   Contains(R"("sec":2,"nsec":250000000)"));
   CHECK_THAT(messages[3].json, Contains(R"("position":{"x":4,"y":-3,"z":0},"orientation":{)"
                                         R"("x":0,"y":0,"z":0,"w":1})"));
   CHECK(messages[1].json == R"({"power \"left\"":0.5,"count":7})");

@@ -4,9 +4,9 @@
 #include <limits>
 #include <string>
 
+#include "rift/trajectory/csv.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/trajectory/read_options.hpp"
-#include "rift/trajectory/csv.hpp"
 #include "trajectory/plausibility.hpp"
 
 namespace rift::trajectory {
@@ -20,10 +20,10 @@ std::string Row(double t_s, double x_m, const std::string& rest = "0,0,0,0,0,1")
 }
 
 TEST_CASE("Each step back in time is counted, the last one too, and channels go with their rows") {
-  const Log log = ReadLog(kHeader + Row(1, 1, "0,0,0,0,0,10") + Row(3, 3, "0,0,0,0,0,30") +
-                              Row(2, 2, "0,0,0,0,0,20") + Row(4, 4, "0,0,0,0,0,40") +
-                              Row(0, 0, "0,0,0,0,0,0"),
-                          "log");
+  const Log log =
+      ReadLog(kHeader + Row(1, 1, "0,0,0,0,0,10") + Row(3, 3, "0,0,0,0,0,30") +
+                  Row(2, 2, "0,0,0,0,0,20") + Row(4, 4, "0,0,0,0,0,40") + Row(0, 0, "0,0,0,0,0,0"),
+              "log");
   CHECK(log.notes == std::vector<std::string>{"time runs backwards 2 times: rows sorted"});
   REQUIRE(log.trajectory.poses.size() == 5);
   for (size_t i = 0; i < 5; ++i) {
@@ -48,8 +48,9 @@ TEST_CASE("A log needs two poses and a way, in the plane or in space") {
   CHECK(ReadLog(lift, "log", ReadOptions{.in_space = true}).trajectory.poses.size() == 2);
   CHECK_THROWS_WITH(
       ReadLog(kHeader + Row(0, 1) + Row(1, 2, "0,,0,0,0,1"), "log", ReadOptions{.in_space = true}),
-      Contains("log: the pose at 1 s has no height z") && Contains("log z_m, or name its column: "
-                                                                   "--columns t=...,x=...,y=...,z"));
+      Contains("log: the pose at 1 s has no height z") &&
+          Contains("log z_m, or name its column: "
+                   "--columns t=...,x=...,y=...,z"));
   CHECK_THROWS_WITH(ReadLog("t,x,y,z,roll,pitch,yaw\n0,0,0,1,0,0,0\n1,1,0,1,0,0,0\n", "log",
                             ReadOptions{.in_space = true}),
                     Contains("name its format, tracker or webots"));
@@ -139,13 +140,11 @@ TEST_CASE("Every value beyond what a robot logs is named with its bound, and the
     std::string name, question;
   };
   const std::string metres = "is the log in metres and seconds?", angle = "is it an angle?";
-  const std::vector<Limit> limits{{&StampedPose::t_s, 1e12, "t", metres},
-                                  {&StampedPose::x_m, 1e6, "x", metres},
-                                  {&StampedPose::y_m, 1e6, "y", metres},
-                                  {&StampedPose::z_m, 1e6, "z", metres},
-                                  {&StampedPose::roll_rad, 1e6, "roll", angle},
-                                  {&StampedPose::pitch_rad, 1e6, "pitch", angle},
-                                  {&StampedPose::yaw_rad, 1e6, "yaw", angle}};
+  const std::vector<Limit> limits{
+      {&StampedPose::t_s, 1e12, "t", metres},       {&StampedPose::x_m, 1e6, "x", metres},
+      {&StampedPose::y_m, 1e6, "y", metres},        {&StampedPose::z_m, 1e6, "z", metres},
+      {&StampedPose::roll_rad, 1e6, "roll", angle}, {&StampedPose::pitch_rad, 1e6, "pitch", angle},
+      {&StampedPose::yaw_rad, 1e6, "yaw", angle}};
   for (const Limit& one : limits) {
     for (const double sign : {1.0, -1.0}) {
       INFO(one.name << " " << sign);
@@ -154,8 +153,7 @@ TEST_CASE("Every value beyond what a robot logs is named with its bound, and the
       CHECK_NOTHROW(CheckMagnitudes(pose, "log", 7));
       pose.*one.member = sign * one.limit * 1.001;
       CHECK_THROWS_WITH(CheckMagnitudes(pose, "log", 7),
-                        Catch::StartsWith("log:7: " + one.name + " is ") &&
-                            Contains(one.question));
+                        Catch::StartsWith("log:7: " + one.name + " is ") && Contains(one.question));
     }
   }
 }
