@@ -1,0 +1,130 @@
+#include "rift/sweep/explain/clusters.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+namespace rift::sweep {
+namespace {
+
+/// A failure whose errors grow evenly to (x, y) at the end.
+TrialRow Failure(double x_m, double y_m, const char* level = "a") {
+  TrialRow row;
+  row.theta = {{level, {}}};
+  row.falsified = true;
+  row.comparison.gap_m = std::hypot(x_m, y_m);
+  row.comparison.gap_u = 0.5;
+  for (int k = 1; k <= 8; ++k) row.evidence.errors_m.push_back({x_m * k / 8.0, y_m * k / 8.0});
+  return row;
+}
+
+TrialRow Passing(const char* level = "b") {
+  TrialRow row = Failure(0.0, 0.01, level);
+  row.falsified = false;
+  return row;
+}
+
+TrialRow Ended(TrialStatus status, const char* level = "a") {
+  TrialRow row;
+  row.theta = {{level, {}}};
+  row.status = status;
+  return row;
+}
+
+SweepResult Of(std::vector<TrialRow> rows) {
+  SweepResult result;
+  result.parameters = {{.key = "sim.surface", .levels = {{"a", {}}, {"b", {}}}}};
+  result.rows = std::move(rows);
+  Summarise(result);
+  return result;
+}
+
+TEST_CASE("The rows of a kind stand from the most typical to the least") {
+  const SweepResult result = Of({Failure(0.0, 0.10), Passing(), Failure(0.0, 0.13),
+                                 Failure(0.0, 0.121), Failure(0.0, 0.125)});
+  const std::vector<FailureCluster> clusters = ClusterFailures(result, {.most_clusters = 1});
+  REQUIRE(clusters.size() == 1);
+  // Their mean is 0.119.
+  CHECK(clusters[0].rows == std::vector<int>{3, 4, 2, 0});
+  CHECK(clusters[0].mean_gap_m == Approx(0.119));
+  CHECK(clusters[0].mean_u == Approx(0.5));
+  CHECK(clusters[0].end_error_m.x() == Approx(0.0).margin(1e-12));
+  CHECK(clusters[0].end_error_m.y() == Approx(0.119));
+}
+
+TEST_CASE("A kind is told with its number, gap, place, error at the end and where it happens") {
+  const SweepResult result = Of({Failure(0.06, -0.08), Failure(0.06, -0.08), Passing(), Passing()});
+  CHECK(ClusterFailures(result)[0].sentence ==
+        "2 with a mean gap of 0.100 m at u = 0.50; at the end the reference lies +0.060 m in x and "
+        "-0.080 m in y from the candidate; mostly at surface a (2 of 2)");
+}
+
+TEST_CASE("Three kinds that lie apart are three, the largest first") {
+  std::vector<TrialRow> rows;
+  for (int i = 0; i < 3; ++i) rows.push_back(Failure(0.1 + 0.001 * i, 0.0));
+  for (int i = 0; i < 5; ++i) rows.push_back(Failure(0.0, 0.2 + 0.001 * i));
+  for (int i = 0; i < 4; ++i) rows.push_back(Failure(-0.3 + 0.001 * i, 0.0));
+  const SweepResult result = Of(rows);
+  const std::vector<FailureCluster> clusters = ClusterFailures(result);
+  REQUIRE(clusters.size() == 3);
+  CHECK(clusters[0].rows.size() == 5);
+  CHECK(clusters[1].rows.size() == 4);
+  CHECK(clusters[2].rows.size() == 3);
+  CHECK(clusters[0].end_error_m.y() == Approx(0.202));
+  CHECK(clusters[1].end_error_m.x() == Approx(-0.2985));
+  CHECK(clusters[2].end_error_m.x() == Approx(0.101));
+  CHECK(ClusterFailures(result, {.most_clusters = 2}).size() == 2);
+  CHECK(ClusterFailures(result, {.least_silhouette = 0.9999}).size() == 1);
+}
+
+TEST_CASE("Kinds are found with some of many failures, and every failure belongs to one") {
+  std::vector<TrialRow> rows;
+  for (int i = 0; i < 40; ++i) rows.push_back(Failure(i % 2 == 0 ? 0.1 : -0.1, 0.0001 * i));
+  const std::vector<FailureCluster> clusters = ClusterFailures(Of(rows), {.most_compared = 14});
+  REQUIRE(clusters.size() == 2);
+  CHECK(clusters[0].rows.size() == 20);
+  CHECK(clusters[1].rows.size() == 20);
+}
+
+TEST_CASE("Every end of a run but a log that is not there is a kind of its own") {
+  const SweepResult result = Of({Ended(TrialStatus::kFell), Ended(TrialStatus::kMissing),
+                                 Ended(TrialStatus::kLost), Ended(TrialStatus::kUnreadable),
+                                 Ended(TrialStatus::kLost, "b"), Ended(TrialStatus::kCrashed)});
+  const std::vector<FailureCluster> clusters = ClusterFailures(result);
+  REQUIRE(clusters.size() == 3);
+  CHECK(clusters[0].status == TrialStatus::kLost);
+  CHECK(clusters[0].rows == std::vector<int>{2, 4});
+  CHECK(clusters[0].sentence == "2 ended as 'lost', at no particular value of a parameter");
+  CHECK(std::isnan(clusters[0].mean_gap_m));
+  CHECK(clusters[1].status == TrialStatus::kFell);
+  CHECK(clusters[2].status == TrialStatus::kCrashed);
+}
+
+TEST_CASE("A value stands out with 60 % of the failures, and a quarter more than in the table") {
+  const auto where_of = [](int failing_a, int failing_b, int passing_a, int passing_b) {
+    std::vector<TrialRow> rows;
+    for (int i = 0; i < failing_a; ++i) rows.push_back(Failure(0.1, 0.0, "a"));
+    for (int i = 0; i < failing_b; ++i) rows.push_back(Failure(0.1, 0.0, "b"));
+    for (int i = 0; i < passing_a; ++i) rows.push_back(Passing("a"));
+    for (int i = 0; i < passing_b; ++i) rows.push_back(Passing("b"));
+    const std::string sentence = ClusterFailures(Of(rows))[0].sentence;
+    return sentence.substr(sentence.rfind("; ") + 2);
+  };
+  const std::string none = "at no particular value of a parameter";
+  CHECK(where_of(6, 4, 0, 10) == "mostly at surface a (6 of 10)");  // twice as often
+  CHECK(where_of(5, 5, 0, 10) == none);                             // 50 %
+  CHECK(where_of(4, 0, 12, 4) == "mostly at surface a (4 of 4)");   // 100 % of usually 80 %
+  CHECK(where_of(4, 0, 13, 4) == none);                             // of usually 81 %
+}
+
+TEST_CASE("Values of a range are no place, and failures without errors are left out") {
+  SweepResult result = Of({Failure(0.1, 0.0), Failure(0.1, 0.0)});
+  result.parameters[0].levels.clear();
+  CHECK(ClusterFailures(result)[0].sentence.ends_with("; at no particular value of a parameter"));
+  result.rows[0].evidence.errors_m.clear();
+  CHECK(ClusterFailures(result)[0].rows == std::vector<int>{1});
+  result.rows[1].falsified = false;
+  CHECK(ClusterFailures(result).empty());
+}
+
+}  // namespace
+}  // namespace rift::sweep

@@ -1,0 +1,118 @@
+#include "rift/sweep/explain/failing_region.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+namespace rift::sweep {
+namespace {
+
+const experiment::Parameter kSurface{.key = "surface", .levels = {{"ice", {}}, {"rock", {}}}};
+const experiment::Parameter kSpeed{.key = "speed", .levels = {{"1", 1.0}, {"2", 2.0}, {"3", 3.0}}};
+const experiment::Parameter kRange{.key = "range", .min = 10.0, .max = 34.0};
+
+TrialRow Row(experiment::Theta theta, bool falsified) {
+  TrialRow row{.theta = std::move(theta), .falsified = falsified};
+  return row;
+}
+
+TEST_CASE("Over two lists each pair of values is a cell with the share of its own trials") {
+  SweepResult result;
+  result.parameters = {kSurface, kSpeed};
+  const auto add = [&](int surface, int speed, bool falsified) {
+    result.rows.push_back(Row(
+        {kSurface.levels[static_cast<size_t>(surface)], kSpeed.levels[static_cast<size_t>(speed)]},
+        falsified));
+  };
+  add(0, 2, true);
+  add(0, 2, false);
+  add(0, 2, false);
+  add(1, 0, true);
+  add(1, 0, true);
+  add(1, 2, false);
+  result.rows[5].status = TrialStatus::kCrashed;  // tells nothing
+  const FailingRegion region = MapFailures(result, {1, 0});
+  CHECK(region.x_parameter == 1);
+  CHECK(region.y_parameter == 0);
+  CHECK_FALSE(region.is_smoothed);
+  REQUIRE(region.cells.size() == 6);  // x runs first
+  const int trials[] = {0, 0, 3, 2, 0, 0};
+  const double shares[] = {NAN, NAN, 1.0 / 3.0, 1.0, NAN, NAN};
+  for (size_t i = 0; i < 6; ++i) {
+    const RegionCell& cell = region.cells[i];
+    INFO(i);
+    CHECK(cell.x == kSpeed.levels[i % 3].text);
+    CHECK(cell.y == kSurface.levels[i / 3].text);
+    CHECK(cell.x_low == static_cast<double>(i % 3));
+    CHECK(cell.x_high == static_cast<double>(i % 3) + 1.0);
+    CHECK(cell.y_low == static_cast<double>(i / 3));
+    CHECK(cell.y_high == static_cast<double>(i / 3) + 1.0);
+    CHECK(cell.trials == trials[i]);
+    if (trials[i] == 0) {
+      CHECK(std::isnan(cell.share));
+    } else {
+      CHECK(cell.share == Approx(shares[i]));
+    }
+  }
+}
+
+TEST_CASE("A range is cut into 24 patches that count the twelve nearest trials") {
+  SweepResult result;
+  result.parameters = {kRange, kSurface};
+  for (int i = 0; i < 48; ++i) {
+    const double value = 10.25 + 0.5 * i;
+    for (const experiment::ParameterValue& surface : kSurface.levels) {
+      result.rows.push_back(
+          Row({{std::to_string(value), value}, surface}, value > 22.0 && surface.text == "ice"));
+    }
+  }
+  const FailingRegion region = MapFailures(result, {0, 1});
+  CHECK(region.is_smoothed);
+  REQUIRE(region.cells.size() == 48);
+  CHECK(region.cells[0].x == "10 to 11");
+  CHECK(region.cells[0].x_low == 10.0);
+  CHECK(region.cells[0].x_high == 11.0);
+  CHECK(region.cells[23].x == "33 to 34");
+  CHECK(region.cells[23].y == "ice");
+  CHECK(region.cells[24].y == "rock");
+  CHECK(region.cells[24].y_low == 1.0);
+  for (const RegionCell& cell : region.cells) CHECK(cell.trials == 12);
+  CHECK(region.cells[2].share == 0.0);
+  CHECK(region.cells[21].share == 1.0);
+  CHECK(region.cells[45].share == 0.0);  // on rock nothing fails
+  // Between 21 and 22 three of the six trials within a range of three are above 22: by symmetry
+  // the patches beside the bound mirror each other.
+  CHECK(region.cells[11].share + region.cells[12].share == Approx(1.0));
+  CHECK(region.cells[11].share < 0.5);
+  result.rows.resize(5);
+  for (const RegionCell& cell : MapFailures(result, {0, 1}).cells) CHECK(cell.trials == 5);
+}
+
+TEST_CASE("Either side may be the range, and either may be missing") {
+  SweepResult result;
+  result.parameters = {kRange, kSurface};
+  result.rows = {Row({{"12", 12.0}, kSurface.levels[0]}, true)};
+  CHECK(MapFailures(result, {1, 0}).is_smoothed);
+  CHECK(MapFailures(result, {1, 0}).cells.size() == 48);
+  CHECK(MapFailures(result, {1, 0}).cells[1].x == "rock");
+  CHECK(MapFailures(result, {-1, 0}).cells.empty());
+  CHECK(MapFailures(result, {0, -1}).cells.empty());
+  CHECK(MapFailures(result, {0, -1}).x_parameter == -1);
+}
+
+TEST_CASE("The most influential parameters have the largest shares and vary") {
+  SweepResult result;
+  result.parameters = {kSurface, {.key = "one", .levels = {{"1", 1.0}}}, kSpeed, kRange};
+  Effects effects;
+  CHECK(MostInfluential(result, effects) == std::array<int, 2>{0, 2});  // in their order
+  effects.parameters = {{.parameter = 3, .share = 0.5}, {.parameter = 2, .share = 0.3}};
+  CHECK(MostInfluential(result, effects) == std::array<int, 2>{3, 2});
+  effects.parameters[1].share = gap::kNotComputed;
+  CHECK(MostInfluential(result, effects) == std::array<int, 2>{3, 0});
+  result.parameters = {kSurface, {.key = "one", .levels = {{"1", 1.0}}}};
+  CHECK(MostInfluential(result, {}) == std::array<int, 2>{-1, -1});
+  result.parameters = {kSurface};
+  CHECK(MostInfluential(result, {}) == std::array<int, 2>{-1, -1});
+}
+
+}  // namespace
+}  // namespace rift::sweep
