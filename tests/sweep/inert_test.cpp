@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <string>
 
 #include "rift/sweep/explain/anatomy.hpp"
 #include "rift/sweep/falsify/result.hpp"
@@ -162,6 +163,151 @@ TEST_CASE("The parts of the gap add up and the noise floor bounds what can be re
   CHECK(anatomy.removable_m.mean == Approx(anatomy.gap_m.mean - 0.02));
   CHECK(IsClear(anatomy.start_m));
   CHECK(anatomy.timing_m.mean == Approx(0.05));
+}
+
+/// One surface, `levels` of a limit of the controller, two trials; every path is its own.
+SweepResult Limits(const std::string& key, const std::vector<double>& levels) {
+  SweepResult result;
+  result.parameters = {{.key = key}};
+  std::uint64_t path = 1;
+  for (const double level : levels) {
+    result.parameters[0].levels.push_back(experiment::NumberValue(level));
+    for (const char* trial : {"1", "2"}) {
+      TrialRow row{.theta = {experiment::NumberValue(level)}, .trial = trial};
+      row.comparison.gap_m = 0.01 * static_cast<double>(path % 3);
+      row.evidence.fingerprint = path++;
+      result.rows.push_back(row);
+    }
+  }
+  return result;
+}
+
+TEST_CASE("Each limit is told by its own count, by what it cuts, and for the side that it is of") {
+  struct Limit {
+    const char* key;
+    size_t trial::LimitCounts::*bound;
+    double trial::LimitCounts::*largest;
+  };
+  const Limit limits[] = {
+      {"control.v_max", &trial::LimitCounts::v_max, &trial::LimitCounts::largest_raw_v},
+      {"control.cruise_speed", &trial::LimitCounts::cruise_cap, &trial::LimitCounts::largest_raw_v},
+      {"control.w_max", &trial::LimitCounts::w_max, &trial::LimitCounts::largest_raw_w}};
+  for (const Limit& limit : limits) {
+    for (const bool is_candidate : {true, false}) {
+      INFO(limit.key << (is_candidate ? " candidate" : " reference"));
+      SweepResult result = Limits(limit.key, {0.2, 0.6});
+      for (size_t i = 0; i < 4; ++i) {
+        TrialEvidence& evidence = result.rows[i].evidence;
+        trial::LimitCounts& counts =
+            (is_candidate ? evidence.candidate_limits : evidence.reference_limits).emplace();
+        counts.decisions = 10 + i;
+        counts.v_max = counts.cruise_cap = counts.w_max = 0;
+        counts.*limit.bound = i == 1 ? 4 : 0;
+        counts.largest_raw_v = counts.largest_raw_w = 0.9;
+        counts.*limit.largest = 0.3 + 0.01 * static_cast<double>(i);
+      }
+      Summarise(result);
+      const Inertness inert = FindInert(result, {})[0];
+      const auto& uses = is_candidate ? inert.candidate_limit : inert.reference_limit;
+      CHECK((is_candidate ? inert.reference_limit : inert.candidate_limit).empty());
+      REQUIRE(uses.size() == 2);
+      CHECK(uses[0].level == "0.2");
+      CHECK(uses[0].value == 0.2);
+      CHECK(uses[0].runs == 2);
+      CHECK(uses[0].runs_bound == 1);
+      CHECK(uses[0].decisions == 21);
+      CHECK(uses[0].bound == 4);
+      CHECK(uses[0].largest_raw == Approx(0.31));
+      CHECK(uses[1].decisions == 25);
+      CHECK(uses[1].runs_bound == 0);
+      CHECK(uses[1].largest_raw == Approx(0.33));
+      REQUIRE(inert.sentences.size() == 1);
+      const std::string name = result.parameters[0].Name();
+      CHECK(inert.sentences[0] ==
+            name + " 0.6 never bound: the " + (is_candidate ? "candidate" : "reference") +
+                "'s controller asked for 0.33 at most; 0.2 bound in 4 of 21 decisions of 2 runs");
+      CHECK(inert.is_explained);
+      CHECK(inert.IsInert());
+    }
+  }
+}
+
+TEST_CASE("A limit that always bound, or of which nothing is known, explains nothing") {
+  SweepResult result = Limits("control.v_max", {0.2, 0.6});
+  CHECK(FindInert(result, {})[0].sentences.empty());
+  CHECK_FALSE(FindInert(result, {})[0].IsInert());
+  for (TrialRow& row : result.rows) row.evidence.candidate_limits.emplace().v_max = 1;
+  CHECK(FindInert(result, {})[0].sentences.empty());
+  CHECK(FindInert(result, {})[0].candidate_limit.size() == 2);
+  result = Limits("control.v_min", {0.2, 0.6});  // a lower limit
+  for (TrialRow& row : result.rows) row.evidence.candidate_limits.emplace().v_max = 0;
+  CHECK(FindInert(result, {})[0].candidate_limit.empty());
+}
+
+TEST_CASE("Pairs are of neighbouring values with everything else equal, and a path each") {
+  SweepResult result = Limits("x", {1.0, 2.0, 3.0});
+  result.rows[1].evidence.fingerprint = result.rows[3].evidence.fingerprint;  // trial 2 of 1 and 2
+  result.rows[0].evidence.fingerprint = result.rows[4].evidence.fingerprint;  // of 1 and 3
+  result.rows[5].evidence.fingerprint = 0;
+  const Inertness inert = FindInert(result, {})[0];
+  REQUIRE(inert.pairs.size() == 2);
+  CHECK(inert.pairs[0].a == "1");
+  CHECK(inert.pairs[0].b == "2");
+  CHECK(inert.pairs[0].compared == 2);
+  CHECK(inert.pairs[0].identical == 1);
+  CHECK(inert.pairs[1].compared == 1);
+  CHECK(inert.pairs[1].identical == 0);
+  CHECK(inert.compared == 3);
+  CHECK(inert.identical == 1);
+  CHECK_FALSE(inert.NeverChangedAPath());
+}
+
+TEST_CASE("A single pair that is the same is told as such, and of many values the first five") {
+  SweepResult one = Limits("x", {1.0, 2.0});
+  one.rows.erase(one.rows.begin() + 1);
+  one.rows.pop_back();
+  one.rows[1].evidence.fingerprint = one.rows[0].evidence.fingerprint;
+  CHECK(FindInert(one, {})[0].sentences.at(0) ==
+        "x did not change the candidate's path in the one pair of trials that differ in it alone: "
+        "the two are the same to the last bit");
+  for (const int values : {6, 7, 9}) {
+    std::vector<double> levels;
+    for (int i = 1; i <= values + 1; ++i) levels.push_back(i);
+    SweepResult result = Limits("x", levels);
+    for (const TrialRow& row : std::vector<TrialRow>(result.rows)) {
+      result.rows.push_back(row);
+      result.rows.back().trial += "'";
+    }
+    for (size_t i = 0; i < result.rows.size(); ++i) {  // all but the last value drive one path
+      if (*result.rows[i].theta[0].number <= values) result.rows[i].evidence.fingerprint = 77;
+    }
+    const std::string names = values == 6   ? "1, 2, 3, 4, 5 and 6"
+                              : values == 7 ? "1, 2, 3, 4, 5 and 2 more"
+                                            : "1, 2, 3, 4, 5 and 4 more";
+    CHECK(FindInert(result, {})[0].sentences.at(0) ==
+          "with x " + names + " the candidate drove the same path to the last bit in all " +
+              std::to_string(4 * (values - 1)) + " pairs of trials");
+  }
+}
+
+TEST_CASE("Groups of equal values are told apart, and two equal paths alone are no group") {
+  SweepResult result = Limits("x", {1.0, 2.0, 3.0, 4.0, 5.0});
+  for (const TrialRow& row : std::vector<TrialRow>(result.rows)) {
+    result.rows.push_back(row);
+    result.rows.back().trial += "'";
+  }
+  const auto paths = [&](const std::vector<std::uint64_t>& by_level) {
+    for (TrialRow& row : result.rows) {
+      row.evidence.fingerprint = by_level[static_cast<size_t>(*row.theta[0].number) - 1];
+    }
+    return FindInert(result, {})[0].sentences;
+  };
+  CHECK(paths({1, 1, 2, 3, 3}).at(0) ==
+        "with x 1 and 2, and with 4 and 5 the candidate drove the same path to the last bit in all "
+        "8 pairs of trials");
+  CHECK(paths({1, 2, 3, 4, 5}).empty());
+  std::erase_if(result.rows, [](const TrialRow& row) { return row.trial.size() > 1; });
+  CHECK(paths({1, 1, 2, 3, 4}).empty());  // two pairs
 }
 
 }  // namespace

@@ -111,5 +111,48 @@ TEST_CASE("Back again everything is the other way round, and one setting counts 
                     Catch::Contains("first and second have no setting in common"));
 }
 
+TEST_CASE("Settings stand by how much their share of failures changed, equal ones by their keys") {
+  const auto sweep = [](bool is_after) {
+    TabledSweep made{.folder = is_after ? "after" : "before"};
+    const auto add = [&](const char* key, int failures_before, int failures_after) {
+      for (int i = 0; i < 4; ++i) {
+        made.trials.push_back(
+            Trial(key, std::to_string(i), 0.05, i < (is_after ? failures_after : failures_before)));
+      }
+    };
+    add("d", 2, 1);  // by a quarter
+    add("c", 0, 2);  // by a half, worse
+    add("b", 3, 1);  // by a half, better
+    add("a", 1, 1);
+    add("e", 4, 0);
+    return made;
+  };
+  const SweepChange change = CompareSweeps(sweep(false), sweep(true), {});
+  std::string order;
+  for (const SettingChange& setting : change.settings) order += setting.setting.back();
+  CHECK(order == "ebcda");
+  CHECK(change.now_hold == 2 + 4 + 1);
+  CHECK(change.now_fail == 2);
+}
+
+TEST_CASE("Trials that do not tell change nothing, and without a gap they are no pair") {
+  TabledSweep before{.folder = "b", .trials = {Lost("a", "1"), Trial("a", "2", 0.02, false)}};
+  TabledSweep after{.folder = "a", .trials = {Trial("a", "1", 0.09, true), Lost("a", "2")}};
+  before.trials[0].falsified = true;  // of a trial that does not tell
+  const SweepChange change = CompareSweeps(before, after, {});
+  CHECK(change.now_hold == 0);
+  CHECK(change.now_fail == 0);
+  REQUIRE(change.settings.size() == 1);
+  CHECK(change.settings[0].pairs == 0);
+  CHECK(std::isnan(change.settings[0].gap_change_m));
+  CHECK(change.settings[0].before.told == 1);
+  CHECK(change.settings[0].before.failures == 0);
+  CHECK(change.settings[0].after.failures == 1);
+  CHECK(change.settings[0].before.verdict.empty());
+  CHECK(change.all.pairs == 0);
+  CHECK(change.all.before.mean_gap_m == Approx(0.02));
+  CHECK(change.all.after.mean_gap_m == Approx(0.09));
+}
+
 }  // namespace
 }  // namespace rift::sweep

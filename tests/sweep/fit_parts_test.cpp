@@ -1,0 +1,231 @@
+// Parts of a fit: scales, weights, traits, series of numbers, lengths, detours.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "rift/sweep/calibrate/likeness.hpp"
+#include "rift/sweep/calibrate/prediction.hpp"
+#include "rift/sweep/calibrate/repeated_trial.hpp"
+#include "support/inputs/paths.hpp"
+#include "sweep/calibrate/errors.hpp"
+#include "sweep/calibrate/series.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using trajectory::Trajectory;
+
+LogErrors Errors(const std::vector<int>& frames, const std::vector<double>& motions) {
+  LogErrors errors{.frames = frames};
+  errors.motions = Eigen::VectorXd(static_cast<Eigen::Index>(motions.size()));
+  for (size_t i = 0; i < motions.size(); ++i) errors.motions[static_cast<int>(i)] = motions[i];
+  errors.traits = Eigen::VectorXd::Zero(kTraits + 1);
+  return errors;
+}
+
+TEST_CASE("The scale of an error is the scatter of its kind and channel over all logs") {
+  CalibrationOptions options;
+  options.horizon.most_frames = 3;
+  const std::vector<LogErrors> errors{
+      Errors({1, 2, 1}, {1.0, -10.0, 0.1, 7.0, 70.0, 0.7, -3.0, 30.0, 0.3}),
+      Errors({1}, {2.0, 20.0, -0.2})};
+  const Eigen::MatrixXd scale = ScaleOf(errors, options);
+  REQUIRE(scale.rows() == 3);
+  REQUIRE(scale.cols() == 3);
+  CHECK(scale(0, 0) == Approx(1.4826 * 2.0));
+  CHECK(scale(0, 1) == Approx(1.4826 * 20.0));
+  CHECK(scale(0, 2) == Approx(1.4826 * 0.2));
+  CHECK(scale(1, 0) == Approx(1.4826 * 7.0));
+  CHECK(scale(1, 2) == Approx(1.4826 * 0.7));
+  CHECK(scale(2, 0) == 1.0);  // none of three frames
+  CHECK(ScaleOf({Errors({1}, {0.0, 0.0, 0.0})}, options)(0, 0) == 1e-9);
+}
+
+TEST_CASE(
+    "Errors count over their scale, motions by their number of frames, traits by their weight") {
+  CalibrationOptions options;
+  options.horizon.most_frames = 4;
+  options.likeness_weight = 9.0;
+  options.outlier_sd = 3.0;
+  Eigen::MatrixXd scale = Eigen::MatrixXd::Ones(4, 3);
+  scale.row(0) << 0.1, 0.2, 0.5;
+  scale.row(1) << 1.0, 2.0, 4.0;
+  LogErrors errors = Errors({2, 1}, {1.0, 2.0, -4.0, 0.3, -0.2, 0.25});
+  errors.traits << 0.5, -1.0, 3.0, 5.0, -15.0;
+  const Eigen::VectorXd weighted = Weighted(errors, scale, options);
+  REQUIRE(weighted.size() == 11);
+  const double expected[] = {0.5, 0.5, -0.5, 1.5, -0.5, 0.25, 1.5, -3.0, 9.0};
+  for (int i = 0; i < 9; ++i) CHECK(weighted[i] == Approx(expected[i]));
+  // Beyond 3 the square grows in proportion: 3 (2 * 5 - 3) = 21 and 3 (2 * 15 - 3) = 81.
+  CHECK(weighted[9] == Approx(3.0 * std::sqrt(21.0)));
+  CHECK(weighted[10] == Approx(-3.0 * 9.0));
+}
+
+TEST_CASE("The mean of traits is over the runs that tell them") {
+  CHECK_FALSE(MeanTraits({}));
+  CHECK_FALSE(MeanTraits({Traits(), Traits()}));
+  const Traits mean = MeanTraits({Traits(Eigen::Vector4d(1.0, 2.0, 3.0, 4.0)), Traits(),
+                                  Traits(Eigen::Vector4d(3.0, 2.0, 1.0, 8.0))});
+  REQUIRE(mean);
+  CHECK(*mean == Eigen::Vector4d(2.0, 2.0, 2.0, 6.0));
+}
+
+TEST_CASE("A share is of the values there are") {
+  const auto is_large = [](double value) { return value > 2.0; };
+  CHECK(ShareOf({1.0, 2.0, 3.0, 4.0}, is_large) == 0.5);
+  CHECK(ShareOf({1.0, 2.0, 3.0}, is_large) == Approx(1.0 / 3.0));
+  CHECK(std::isnan(ShareOf({}, is_large)));
+}
+
+TEST_CASE("A robust scatter is 1.4826 times the median size") {
+  CHECK(RobustScatter({-1.0, 2.0, -30.0}) == Approx(1.4826 * 2.0));
+  CHECK(RobustScatter({-1.0, 2.0}) == Approx(1.4826 * 1.5));
+}
+
+TEST_CASE("An autocorrelation is of deviations from the mean, with at least eight pairs") {
+  const std::vector<double> alternating{6, 4, 6, 4, 6, 4, 6, 4, 6, 4};
+  CHECK(Autocorrelation(alternating, 0) == Approx(1.0));
+  CHECK(Autocorrelation(alternating, 1) == Approx(-0.9));
+  CHECK(Autocorrelation(alternating, 2) == Approx(0.8));
+  CHECK(std::isnan(Autocorrelation(alternating, 3)));
+  CHECK(std::isnan(Autocorrelation(std::vector<double>(20, 1.0), 1)));
+  std::vector<double> step(16, 0.0);
+  std::fill(step.begin() + 8, step.end(), 1.0);  // all but one of fifteen pairs agree
+  CHECK(Autocorrelation(step, 1) == Approx((14.0 - 1.0) / 16.0));
+}
+
+TEST_CASE("Two points are as bimodal as can be, even values 5/9, and skewness counts either way") {
+  CHECK(Bimodality({1, 1, 3, 3}) == Approx(1.0));
+  CHECK(Bimodality({-1, -1, -1, 2}) == Approx(1.0));  // two points, unevenly often
+  CHECK(Bimodality({1, 1, 1, -2}) == Approx(1.0));
+  std::vector<double> even;
+  for (int i = 0; i < 2000; ++i) even.push_back(0.001 * i);
+  CHECK(Bimodality(even) == Approx(5.0 / 9.0).epsilon(1e-3));
+  CHECK(std::isnan(Bimodality({2.0, 2.0})));
+}
+
+Trajectory Line(std::vector<double> x_m) {
+  Trajectory path;
+  for (const double x : x_m) path.poses.push_back({.t_s = x, .x_m = x});
+  return path;
+}
+
+TEST_CASE("A length by strides counts moves of 20 mm, from where the last one ended") {
+  CHECK(LengthByStrides_m(Line({0.0})) == 0.0);
+  CHECK(LengthByStrides_m(Line({0.0, 0.019, 0.0, 0.019})) == 0.0);
+  CHECK(LengthByStrides_m(Line({0.0, 0.01, 0.02001, 0.03})) == Approx(0.02001));
+  CHECK(LengthByStrides_m(Line({0.0, 0.5, 0.1})) == Approx(0.9));
+  Trajectory sideways = Line({0.0, 0.0});
+  sideways.poses[1].y_m = -0.3;
+  CHECK(LengthByStrides_m(sideways) == Approx(0.3));
+}
+
+RepeatedTrial Trial(const std::string& setting, double real_m, const std::vector<double>& runs_m) {
+  RepeatedTrial trial{.setting = setting, .real = test::StraightPath(real_m, 50)};
+  for (const double run_m : runs_m) trial.runs.push_back(test::StraightPath(run_m, 50));
+  return trial;
+}
+
+TEST_CASE("Runs beyond the longest real path of their setting times the limit are detours") {
+  const std::vector<RepeatedTrial> trials = WithoutDetours(
+      {Trial("a", 1.0, {1.9, 2.5}), Trial("a", 1.6, {2.5, 1.0}), Trial("b", 0.8, {1.1, 1.3, 9.0})},
+      1.5);
+  CHECK(trials[0].runs.size() == 1);  // the longest of a is 1.6: up to 2.4
+  CHECK(trials[0].circled_runs == 1);
+  CHECK(trials[0].failed_runs == 1);
+  CHECK(trials[1].runs.size() == 1);
+  CHECK(trials[2].runs.size() == 1);
+  CHECK(trials[2].circled_runs == 2);
+  CHECK(trials[2].failed_runs == 2);
+  const auto longest = LongestBySetting_m(std::vector<RepeatedTrial>(trials), &RepeatedTrial::real);
+  CHECK(longest.at("a") == Approx(1.6).margin(0.03));
+  CHECK(longest.at("b") == Approx(0.8).margin(0.03));
+}
+
+/// One metre along x, so far to the left.
+Trajectory Lane(double left_m) {
+  return test::Moved(test::StraightPath(1.0, 101), {0.0, left_m, 0.0});
+}
+
+RepeatedTrial Lanes(const std::string& setting, double real_m, const std::vector<double>& runs_m) {
+  RepeatedTrial trial{.setting = setting,
+                      .real = Lane(real_m),
+                      .waypoints = {{.name = "s"}, {.name = "e", .x_m = 1.0}}};
+  for (const double run_m : runs_m) trial.runs.push_back(Lane(run_m));
+  return trial;
+}
+
+TEST_CASE("A simulator predicts by its mean path, beside what the other real trials would") {
+  gap::LikenessOptions options;
+  options.bootstrap.resamples = 200;
+  std::vector<RepeatedTrial> trials{Lanes("a", 0.00, {0.02, 0.04}), Lanes("a", 0.05, {0.06}),
+                                    Lanes("b", 0.10, {0.10, 0.12}), Lanes("c", 0.3, {0.2}),
+                                    Lanes("d", 0.3, {})};
+  trials[2].other_reals = {Lane(0.13), Lane(0.05)};
+  trials[4].other_reals = {Lane(0.13)};  // without a run
+  const PathPrediction found = MeasurePrediction(trials, {}, options, 1);
+  CHECK(found.reals == 3);  // c has no other real trial
+  // Simulated: 0.03, 0.01, 0.01; others: 0.05, 0.05, (0.03 + 0.05) / 2.
+  CHECK(found.simulated_m == Approx(0.05 / 3.0));
+  CHECK(found.other_real_m == Approx(0.14 / 3.0));
+  CHECK(found.difference_m == Approx(-0.03));
+  CHECK(found.difference_interval_m.low <= found.difference_m);
+  CHECK(found.difference_interval_m.high >= found.difference_m);
+  CHECK(std::isnan(MeasurePrediction({trials[3]}, {}, options, 1).simulated_m));
+  CHECK(MeasurePrediction({trials[3]}, {}, options, 1).reals == 0);
+}
+
+TEST_CASE("Settings are ranked by how far their last real trial, its runs, and the others stray") {
+  gap::LikenessOptions options;
+  options.bootstrap.resamples = 200;
+  std::vector<RepeatedTrial> trials;
+  const auto add = [&](const char* setting, double real, double run_mean, double other) {
+    trials.push_back(Lanes(setting, other, {9.0}));  // not the last: its runs do not count
+    trials.push_back(Lanes(setting, real, {run_mean - 0.001, run_mean + 0.001}));
+  };
+  add("a", 0.01, 0.05, 0.04);
+  add("b", 0.02, 0.06, 0.03);
+  add("c", 0.03, 0.07, 0.02);
+  add("d", 0.04, 0.08, 0.01);
+  RankAgreement ranks = MeasureRanks(trials, {}, options, 1);
+  CHECK(ranks.settings == 4);
+  CHECK(ranks.simulated == Approx(1.0));
+  CHECK(ranks.real == Approx(-1.0));
+  trials.back().real = Lane(0.0);  // d now is the least
+  ranks = MeasureRanks(trials, {}, options, 1);
+  CHECK(ranks.simulated == Approx(-0.2));  // ranks 2 3 4 1 and 1 2 3 4
+  CHECK(ranks.real == Approx(0.2));
+  trials.back().runs.clear();
+  CHECK(MeasureRanks(trials, {}, options, 1).settings == 3);
+  trials.back() = Lanes("d", 0.04, {0.08});
+  trials.back().waypoints.pop_back();
+  CHECK(MeasureRanks(trials, {}, options, 1).settings == 3);
+  trials.erase(trials.begin());  // a has no other real trial
+  CHECK(MeasureRanks(trials, {}, options, 1).settings == 2);
+  CHECK(std::isnan(MeasureRanks(trials, {}, options, 1).simulated));
+}
+
+TEST_CASE("Likeness counts every run, those that failed and those that circled") {
+  gap::LikenessOptions options;
+  options.bootstrap.resamples = 50;
+  options.shuffles = 19;
+  std::vector<RepeatedTrial> trials;
+  for (int i = 0; i < 4; ++i) {
+    trials.push_back(Lanes(i < 2 ? "a" : "b", 0.01 * i, {0.01 * i + 0.001}));
+  }
+  trials[1].failed_runs = 2;
+  trials[3].runs.push_back(test::StraightPath(1.8, 50));
+  std::mt19937_64 generator(1);
+  const DriveLikeness likeness = MeasureDriveLikeness(trials, true, {}, options, generator);
+  CHECK(likeness.runs == 4 + 2 + 1);
+  CHECK(likeness.failed_runs == 3);
+  CHECK(likeness.circled_runs == 1);
+  CHECK(likeness.prediction.reals == 4);
+  CHECK(likeness.prediction.simulated_m == Approx(0.001));
+  CHECK(likeness.prediction.other_real_m == Approx(0.01));
+  CHECK(likeness.told_apart.features.size() == DriveFeatures().size());
+  CHECK(std::isnan(likeness.loop_delay_s.sim));  // straight ways tell none
+}
+
+}  // namespace
+}  // namespace rift::sweep

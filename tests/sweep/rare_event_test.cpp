@@ -1,0 +1,156 @@
+// Rare events over an experiment's space, and how often random draws fail.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "rift/statistics/inference.hpp"
+#include "rift/sweep/explain/failure_probability.hpp"
+#include "rift/sweep/falsify/result.hpp"
+
+namespace rift::sweep {
+namespace {
+
+TrialRow Draw(double x, TrialStatus status, bool falsified) {
+  TrialRow row{.theta = {experiment::NumberValue(x)}, .status = status, .falsified = falsified};
+  row.is_random_draw = true;
+  return row;
+}
+
+TEST_CASE("Of each drawn setting the first trial that tells counts") {
+  SweepResult result;
+  result.parameters = {{.key = "x", .min = 0.0, .max = 1.0}};
+  using enum TrialStatus;
+  result.rows = {Draw(0.1, kOk, true),       Draw(0.1, kOk, false),     // fails
+                 Draw(0.2, kCrashed, false), Draw(0.2, kFell, true),    // fails, the second
+                 Draw(0.3, kOk, false),      Draw(0.3, kOk, true),      // passes
+                 Draw(0.4, kHung, false),    Draw(0.4, kHung, false),   // does not tell
+                 Draw(0.5, kOk, false),      Draw(0.6, kFell, false)};  // passes; does not tell
+  TrialRow chosen = Draw(0.7, kOk, true);
+  chosen.is_random_draw = false;
+  result.rows.push_back(chosen);
+  Summarise(result);
+  const FailureProbability found = EstimateFailureProbability(result);
+  CHECK(found.draws == 4);
+  CHECK(found.failures == 2);
+  CHECK(found.untold == 2);
+  CHECK(found.share == 0.5);
+  CHECK(found.low == Approx(0.067586).margin(1e-6));  // R: binom.test(2, 4)
+  CHECK(found.high == Approx(0.932414).margin(1e-6));
+  CHECK(found.sentence ==
+        "Over the space 50 % of the runs fail, between 6.76 and 93.2 % with 95 % confidence "
+        "(Clopper-Pearson, 2 of 4 runs, each at a setting drawn at random; 2 more do not tell)");
+  result.rows.resize(2);
+  Summarise(result);
+  CHECK(
+      EstimateFailureProbability(result).sentence.ends_with("each at a setting drawn at random)"));
+}
+
+experiment::Experiment Plan() {
+  experiment::Experiment plan;
+  plan.seed = 5;
+  plan.space.parameters = {{.key = "x", .min = -2.0, .max = 6.0},
+                           {.key = "n", .min = 1.0, .max = 4.0, .is_integer = true},
+                           {.key = "s", .levels = {{"a", {}}, {"b", {}}}},
+                           {.key = "l", .min = 1.0, .max = 100.0, .is_logarithmic = true}};
+  plan.reference.trials.names = {"p", "q"};
+  return plan;
+}
+
+TEST_CASE(
+    "Runs of a rare event are drawn evenly over every kind of axis, with seeds of their own") {
+  std::vector<TrialRequest> asked;
+  const RareEvent event = EstimateRareEvent(
+      Plan(),
+      [&](const std::vector<TrialRequest>& requests) {
+        std::vector<TrialRow> rows;
+        for (const TrialRequest& request : requests) {
+          asked.push_back(request);
+          rows.push_back(RowFor(request));
+          rows.back().comparison.gap_m = *request.theta[0].number > 4.0 ? 0.08 : 0.04;
+        }
+        return rows;
+      },
+      {.replicas = 5, .samples_per_level = 400, .level_share = 0.1});
+  CHECK(event.levels == 1);
+  CHECK(event.evaluations == 2000);
+  CHECK(event.is_reached);
+  CHECK(event.probability == Approx(0.25).margin(0.03));
+  const statistics::Interval exact = statistics::ClopperPearson(
+      static_cast<int>(std::lround(event.probability * 2000)), 2000, 0.95);
+  CHECK(event.low == Approx(exact.low));
+  CHECK(event.high == Approx(exact.high));
+  REQUIRE(asked.size() == 2000);
+  std::set<std::uint64_t> seeds;
+  std::map<std::string, int> whole, words;
+  double below_ten = 0.0, least = 9.0, most = -9.0;
+  for (size_t i = 0; i < asked.size(); ++i) {
+    seeds.insert(*asked[i].seed);
+    CHECK(asked[i].trial == (i % 2 == 0 ? "p" : "q"));
+    least = std::min(least, *asked[i].theta[0].number);
+    most = std::max(most, *asked[i].theta[0].number);
+    ++whole[asked[i].theta[1].text];
+    ++words[asked[i].theta[2].text];
+    below_ten += *asked[i].theta[3].number < 10.0;
+  }
+  CHECK(seeds.size() == 2000);
+  CHECK(least == Approx(-2.0).margin(0.05));
+  CHECK(most == Approx(6.0).margin(0.05));
+  REQUIRE(whole.size() == 4);
+  for (const auto& [value, n] : whole) CHECK(n == Approx(500).margin(90));  // 4.6 sigma
+  CHECK(words["a"] == Approx(1000).margin(100));
+  CHECK(words["b"] == Approx(1000).margin(100));
+  CHECK(below_ten == Approx(1000).margin(100));
+}
+
+std::vector<double> Each(const std::vector<std::vector<double>>& points, double share) {
+  std::vector<double> values;
+  for (const std::vector<double>& point : points) values.push_back(point[0] - share);
+  return values;
+}
+
+TEST_CASE("A probability of a thousandth takes three levels of a tenth") {
+  const RareEvent event = EstimateRareEvent(
+      1, [](const auto& points) { return Each(points, 1e-3); }, 11, {.replicas = 12});
+  CHECK(event.is_reached);
+  CHECK(event.levels >= 3);
+  CHECK(event.levels <= 4);
+  CHECK(std::log10(event.probability) == Approx(-3.0).margin(0.15));
+  CHECK(event.low < 1e-3);
+  CHECK(event.high > 1e-3);
+  // Even in the logarithm around the estimate.
+  CHECK(event.low * event.high == Approx(event.probability * event.probability));
+  CHECK(event.coefficient_of_variation > 0.0);
+  CHECK(event.coefficient_of_variation < 0.3);
+}
+
+TEST_CASE("Fewer levels, or a smaller share of each, reach as far as their product") {
+  const RareEvent bound = EstimateRareEvent(
+      1, [](const auto& points) { return Each(points, 1e-9); }, 3, {.most_levels = 2});
+  CHECK_FALSE(bound.is_reached);
+  CHECK(bound.levels == 2);
+  CHECK(bound.high == Approx(0.01).epsilon(0.05));
+  CHECK(bound.probability == bound.high);
+  CHECK(bound.low == 0.0);
+  const RareEvent half = EstimateRareEvent(1, [](const auto& points) { return Each(points, 1e-9); },
+                                           3, {.level_share = 0.5, .most_levels = 3});
+  CHECK(half.high == Approx(0.125).epsilon(0.05));
+}
+
+TEST_CASE("A loss at the threshold is a failure, one without a value is none, no axis is refused") {
+  const auto of = [](double value) {
+    return EstimateRareEvent(
+        1, [=](const auto& points) { return std::vector<double>(points.size(), value); }, 1,
+        {.replicas = 4, .samples_per_level = 20, .most_levels = 2});
+  };
+  CHECK(of(0.0).probability == 1.0);
+  CHECK(of(0.0).levels == 1);
+  CHECK_FALSE(of(1e-9).is_reached);
+  CHECK_FALSE(of(NAN).is_reached);
+  CHECK_THROWS_WITH(EstimateRareEvent(0, {}, 1),
+                    "a rare event needs a space of at least one "
+                    "parameter");
+}
+
+}  // namespace
+}  // namespace rift::sweep

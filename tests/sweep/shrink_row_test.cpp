@@ -1,0 +1,152 @@
+// Which row of a sweep is shrunk, with which random numbers, and what a person reads of values.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "rift/sweep/explain/shrink.hpp"
+#include "rift/sweep/falsify/result.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using Catch::Matchers::Contains;
+
+experiment::ParameterValue Number(double number) { return experiment::NumberValue(number); }
+
+TrialRow Row(double gap_m) {
+  TrialRow row{.theta = {Number(0.25), Number(0.5)}, .trial = "2", .seed = 41};
+  row.comparison.gap_m = gap_m;
+  row.falsified = gap_m > 0.06;
+  return row;
+}
+
+SweepResult Four() {
+  SweepResult result;
+  result.parameters = {{.key = "control.v_min", .min = 0.0, .max = 1.0},
+                       {.key = "control.w_max", .min = 0.0, .max = 1.0}};
+  result.rows = {Row(0.02), Row(0.07), Row(0.09), Row(0.08)};
+  result.rows[3].status = TrialStatus::kCrashed;
+  result.rows[3].falsified = false;
+  return result;
+}
+
+TEST_CASE("A row is named by its number in the table, or as the worst") {
+  const SweepResult result = Four();
+  CHECK(FailingRow(result, "2") == 1);
+  CHECK(FailingRow(result, "3") == 2);
+  CHECK(FailingRow(result, "worst") == 2);
+}
+
+TEST_CASE("A row that is not there or does not fail is refused with what it did") {
+  const SweepResult result = Four();
+  for (const char* id : {"0", "5", "-1", "2.0", "2 ", "", "Worst", "99999999999999999999999"}) {
+    INFO(id);
+    CHECK_THROWS_WITH(FailingRow(result, id),
+                      std::string("--shrink ") + id + ": table.csv has the rows 1 to 4");
+  }
+  CHECK_THROWS_WITH(FailingRow(result, "1"),
+                    "--shrink 1: row 1 does not fail (its gap is 0.0200 m, and above 0.06 m "
+                    "falsifies); --shrink worst takes the worst");
+  CHECK_THROWS_WITH(FailingRow(result, "4"),
+                    "--shrink 4: row 4 does not fail (it ended as 'crashed', and above 0.06 m "
+                    "falsifies); --shrink worst takes the worst");
+}
+
+TEST_CASE("Where nothing fails or nothing tells the worst cannot be shrunk") {
+  SweepResult result = Four();
+  result.rows = {Row(0.02), Row(0.05)};
+  CHECK_THROWS_WITH(FailingRow(result, "worst"),
+                    "--shrink worst: row 2 does not fail (its gap is 0.0500 m, and above 0.06 m "
+                    "falsifies): nothing of this sweep can be shrunk");
+  for (TrialRow& row : result.rows) row.status = TrialStatus::kMissing;
+  CHECK_THROWS_WITH(FailingRow(result, "worst"), "--shrink worst: no trial has a gap");
+}
+
+TEST_CASE("A failure without a gap is the worst where no gap fails") {
+  SweepResult result = Four();
+  result.rows = {Row(0.02), Row(0.05), Row(0.05)};
+  result.rows[2].status = TrialStatus::kFell;
+  result.rows[2].falsified = true;
+  CHECK(FailingRow(result, "worst") == 2);
+}
+
+TEST_CASE("A row is shrunk with its repeat and random numbers, and its claims are run") {
+  experiment::Experiment experiment;
+  experiment.control.v_min = 0.125;
+  experiment.control.w_max = 0.5;
+  SweepResult result = Four();
+  experiment.space.parameters = result.parameters;
+  for (TrialRow& row : result.rows) row.theta = {Number(0.625), Number(0.75)};
+  result.gap.threshold_m = 0.05;
+  int runs = 0;
+  const RunAllTrials run = [&](const std::vector<TrialRequest>& requests) {
+    std::vector<TrialRow> rows;
+    for (const TrialRequest& request : requests) {
+      ++runs;
+      CHECK(request.trial == "2");
+      CHECK(request.seed == 41u);
+      TrialRow row{.theta = request.theta, .trial = request.trial, .seed = request.seed};
+      row.comparison.gap_m = 0.1 * *request.theta[0].number;  // fails above v_min = 0.5
+      row.falsified = row.comparison.gap_m > 0.05;
+      rows.push_back(row);
+    }
+    return rows;
+  };
+  const ShrunkRow shrunk = ShrinkRow(experiment, result, 2, {}, run);
+  CHECK(shrunk.id == 3);
+  CHECK(shrunk.nominal == experiment::Theta{Number(0.125), Number(0.5)});
+  CHECK(shrunk.shrunk.changed == std::vector<int>{0});
+  CHECK(*shrunk.shrunk.theta[0].number > 0.5);
+  CHECK(*shrunk.shrunk.theta[0].number <= 0.5 + 0.02 * 0.5);
+  CHECK(shrunk.shrunk.robustness == Approx(0.05 - 0.1 * *shrunk.shrunk.theta[0].number));
+  REQUIRE(shrunk.rows.size() == 3);  // the row, the shrunk one, and that without its change
+  CHECK(*shrunk.rows[0].theta[0].number == 0.625);
+  CHECK(*shrunk.rows[0].theta[1].number == 0.75);
+  CHECK(shrunk.rows[1].theta == shrunk.shrunk.theta);
+  CHECK(shrunk.rows[2].theta == shrunk.nominal);
+  CHECK(runs == shrunk.shrunk.evaluations + 3);
+}
+
+TEST_CASE("A change downwards is shrunk upwards, values have six digits, no setting runs twice") {
+  const std::vector<experiment::Parameter> space{
+      {.key = "x", .min = 0.0, .max = 1.0},
+      {.key = "n", .levels = {{"9", 9.0}, {"1", 1.0}, {"5", 5.0}, {"3", 3.0}, {"11", 11.0}}}};
+  const experiment::Theta nominal{Number(0.9), {"9", 9.0}}, failing{Number(0.1), {"1", 1.0}};
+  std::set<experiment::Theta> asked;
+  int runs = 0;
+  const Robustness robustness = [&](const experiment::Theta& theta) {
+    ++runs;
+    CHECK(asked.insert(theta).second);
+    return *theta[0].number < 0.4321 && *theta[1].number < 4.0 ? -0.5 : 0.5;
+  };
+  const ShrunkFailure shrunk = Shrink(space, nominal, failing, robustness, {.tolerance = 1e-4});
+  CHECK(*shrunk.theta[0].number < 0.4321);
+  CHECK(*shrunk.theta[0].number > 0.4321 - 1e-4 * 0.8 - 1e-6);
+  CHECK(shrunk.theta[0].text.size() <= 8);  // 0.xxxxxx
+  CHECK(shrunk.theta[1].text == "3");
+  CHECK(shrunk.evaluations == runs);
+  CHECK(shrunk.changed == std::vector<int>{0, 1});
+  CHECK(shrunk.is_minimal);
+}
+
+TEST_CASE("A failure at the experiment's own values has no change left") {
+  const std::vector<experiment::Parameter> space{{.key = "x", .min = 0.0, .max = 1.0}};
+  const ShrunkFailure shrunk =
+      Shrink(space, {Number(0.5)}, {Number(0.9)}, [](const experiment::Theta&) { return -0.25; });
+  CHECK(shrunk.changed.empty());
+  CHECK(shrunk.theta[0].text == "0.5");
+  CHECK(shrunk.is_fewest);
+  CHECK(shrunk.is_minimal);
+  CHECK(shrunk.evaluations == 2);
+  CHECK(shrunk.robustness == -0.25);
+}
+
+TEST_CASE("A gap at the threshold holds") {
+  const std::vector<experiment::Parameter> space{{.key = "x", .min = 0.0, .max = 1.0}};
+  CHECK_THROWS_WITH(
+      Shrink(space, {Number(0.5)}, {Number(0.9)}, [](const experiment::Theta&) { return 0.0; }),
+      Contains("nothing to shrink") && Contains("robustness 0 m"));
+}
+
+}  // namespace
+}  // namespace rift::sweep
