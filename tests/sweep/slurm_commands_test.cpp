@@ -1,0 +1,380 @@
+// What the commands of Slurm are given and how their answers are read, with stand-ins for them.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+
+#include "rift/sweep/run/slurm.hpp"
+#include "rift/sweep/run/slurm_options.hpp"
+#include "rift/sweep/run/slurm_shards.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/environment.hpp"
+#include "support/processes/process.hpp"
+
+namespace rift::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Facts kFacts{{"seed", "1"}};
+
+/// Commands that write down their arguments and give the answers they are told.
+class Stand {
+ public:
+  Stand() {
+    for (const char* name : {"sbatch", "squeue", "scancel", "scontrol"}) {
+      test::WriteText(bin_ / name, "#!/bin/sh\nD='" + folder_.Path().string() +
+                                       "'; N=${0##*/}\n"
+                                       "printf '%s\\n' \"$@\" >> \"$D/$N.args\"\n"
+                                       "[ ! -f \"$D/$N.also\" ] || . \"$D/$N.also\"\n"
+                                       "[ ! -f \"$D/$N.err\" ] || cat \"$D/$N.err\" >&2\n"
+                                       "[ ! -f \"$D/$N.out\" ] || cat \"$D/$N.out\"\n"
+                                       "[ ! -f \"$D/$N.code\" ] || exit $(cat \"$D/$N.code\")\n");
+      fs::permissions(bin_ / name, fs::perms::owner_all);
+    }
+  }
+
+  void Answers(const std::string& name, const std::string& out) const {
+    test::WriteText(folder_ / (name + ".out"), out);
+  }
+  void Fails(const std::string& name, const std::string& words,
+             const std::string& code = "1") const {
+    test::WriteText(folder_ / (name + ".err"), words);
+    test::WriteText(folder_ / (name + ".code"), code);
+  }
+  /// Lines of a shell in the middle of a command; $D is this folder.
+  void Does(const std::string& name, const std::string& lines) const {
+    test::WriteText(folder_ / (name + ".also"), lines);
+  }
+  /// A line for each argument since the last call.
+  std::string Arguments(const std::string& name) const {
+    const fs::path file = folder_ / (name + ".args");
+    if (!fs::exists(file)) return "";
+    const std::string text = test::ReadFile(file);
+    fs::remove(file);
+    return text;
+  }
+  std::string operator/(const std::string& name) const { return folder_ / name; }
+
+ private:
+  test::TemporaryFolder folder_;
+  fs::path bin_ = folder_.Path() / "bin";
+  test::Environment path_{"PATH", bin_.string() + ":" + std::getenv("PATH")};
+};
+
+const SlurmArray kArray{.name = "rift-a",
+                        .tasks = {0, 1, 2, 5},
+                        .script = "/o/array.sh",
+                        .logs = "/o/50%",
+                        .folder = "/work here"};
+
+TEST_CASE("An array is submitted with its name, folders, tasks and processors, and gives its id") {
+  const Stand stand;
+  stand.Answers("sbatch", "123\n");
+  SlurmOptions options;
+  options.cpus_per_task = 3;
+  CHECK(SubmitArray(kArray, options) == "123");
+  CHECK(stand.Arguments("sbatch") ==
+        "--parsable\n--propagate=NONE\n--job-name=rift-a\n--chdir=/work here\n"
+        "--output=/o/50%%/%a.log\n--open-mode=append\n--requeue\n--cpus-per-task=3\n"
+        "--array=0-2,5\n/o/array.sh\n");
+  options.shards_at_once = 7;
+  options.account = "me";
+  options.partition = "fast";
+  options.time_limit = "1:00:00";
+  options.arguments = {"--nice", "--qos=low"};
+  stand.Answers("sbatch", "77;cluster\n");
+  CHECK(SubmitArray(kArray, options) == "77");
+  const std::string arguments = stand.Arguments("sbatch");
+  CHECK(
+      arguments.ends_with("--array=0-2,5%7\n--account=me\n--partition=fast\n--time=1:00:00\n"
+                          "--nice\n--qos=low\n/o/array.sh\n"));
+  stand.Answers("sbatch", "Submitted\n");
+  CHECK_THROWS_WITH(SubmitArray(kArray, options), "sbatch told no job id, but: Submitted\n");
+}
+
+TEST_CASE("Tasks in the queue stand by their index with job, state and reason") {
+  const Stand stand;
+  stand.Answers("squeue",
+                "12_3|RUNNING|None\n12_0|PENDING|Resources\n13_10|REQUEUE_HOLD|JobHoldMaxRequeue\n"
+                "14|RUNNING|None\n|_5\nnothing\n12_4|PENDING\n");
+  const std::map<int, SlurmTask> tasks = QueuedTasks("rift-a");
+  CHECK(stand.Arguments("squeue") ==
+        "--me\n--noheader\n--array\n--name=rift-a\n--format=%i|%T|%r\n");
+  REQUIRE(tasks.size() == 3);
+  CHECK(tasks.at(3).job == "12");
+  CHECK(tasks.at(3).state == "RUNNING");
+  CHECK(tasks.at(3).reason.empty());
+  CHECK_FALSE(tasks.at(3).IsWaiting());
+  CHECK_FALSE(tasks.at(3).IsGivenUp());
+  CHECK(tasks.at(0).reason == "Resources");
+  CHECK(tasks.at(0).IsWaiting());
+  CHECK(tasks.at(10).job == "13");
+  CHECK(tasks.at(10).IsWaiting());
+  CHECK(tasks.at(10).IsGivenUp());
+}
+
+TEST_CASE("Jobs are cancelled once each, a task by its index, and none without jobs") {
+  const Stand stand;
+  CancelArrays("rift-a");
+  CHECK(stand.Arguments("scancel").empty());
+  stand.Answers("squeue", "9_1|RUNNING|None\n12_3|RUNNING|None\n9_2|PENDING|None\n");
+  CancelArrays("rift-a");
+  CHECK(stand.Arguments("scancel") == "12\n9\n");
+  CancelTask({.job = "12"}, 4);
+  CHECK(stand.Arguments("scancel") == "12_4\n");
+}
+
+TEST_CASE("What Slurm cannot answer now is told apart from what it refuses") {
+  const Stand stand;
+  for (const char* busy :
+       {"sbatch: error: Resource temporarily unavailable", "please try again", "Socket timed out",
+        "Unable to contact slurm controller", "Connection refused", "submit limit reached",
+        "over the job limit", "QOSMaxSubmitJobPerUserLimit", "AssocMaxSubmitJobLimit"}) {
+    INFO(busy);
+    stand.Fails("sbatch", std::string("a line before\n") + busy + "\n");
+    CHECK_THROWS_AS(SubmitArray(kArray, {}), SlurmBusy);
+  }
+  const auto refusal = [&](const std::string& words, const std::string& code = "1") {
+    stand.Fails("sbatch", words, code);
+    try {
+      SubmitArray(kArray, {});
+    } catch (const SlurmBusy&) {
+      return std::string("busy");
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  CHECK(refusal("sbatch: error: Invalid account\n") == "sbatch: error: Invalid account");
+  CHECK(refusal("Invalid partition\n") == "sbatch: Invalid partition");
+  CHECK(refusal("", "3") == "sbatch: failed without a word");
+  CHECK(refusal("cannot resolve configuration source\n") ==
+        "sbatch: cannot resolve configuration source; --engine slurm works where Slurm answers, as "
+        "on its login node: use --engine local here");
+}
+
+TEST_CASE("The largest array is the cluster's, and Slurm's default where nobody says") {
+  const Stand stand;
+  stand.Answers("scontrol", "MaxJobCount = 10\nMaxArraySize            = 501\nMaxArray = 3\n");
+  CHECK(MaxArraySize() == 501);
+  CHECK(stand.Arguments("scontrol") == "show\nconfig\n");
+  stand.Answers("scontrol", "MaxArraySize = 0\n");
+  CHECK(MaxArraySize() == 1);
+  stand.Answers("scontrol", "MaxJobCount = 10\nMaxArraySize\n");
+  CHECK(MaxArraySize() == 1001);
+  stand.Fails("scontrol", "Unable to contact slurm controller\n");
+  CHECK(MaxArraySize() == 1001);
+  stand.Fails("scontrol", "no such command\n");
+  CHECK_THROWS_AS(MaxArraySize(), std::runtime_error);
+}
+
+TEST_CASE("Without Slurm's commands the message says which engine works") {
+  const test::TemporaryFolder empty;
+  const test::Environment path("PATH", empty.Path().string());
+  CHECK_THROWS_WITH(MaxArraySize(), Catch::Contains("cannot run scontrol") &&
+                                        Catch::Contains("without them use --engine local"));
+}
+
+Shard ShardOf(const std::string& request) { return {.facts = "f", .requests = {request}}; }
+
+/// A cluster that has finished what it is given, where a journal lies ready in `ready`.
+class Cluster : public Stand {
+ public:
+  Cluster() {
+    fs::create_directories(*this / "ready");
+    Answers("sbatch", "41\n");
+    Does("sbatch",
+         "for A; do S=$A; done\nF=${S%/*}\nI=0\nO=${F%/slurm/*}/shards\n"
+         "while read -r NAME; do\n"
+         "  [ ! -f \"$D/ready/$NAME\" ] || cp \"$D/ready/$NAME\" \"$O/$NAME.sqlite\"\n"
+         "done < \"$F/shards\"\n");
+  }
+  void Finishes(const Shard& shard, const std::string& key) const {
+    Journal journal(*this / ("ready/" + ShardName(EncodeShard(shard))), kFacts);
+    journal.Add(key, {"ok", 0.01, false, "row of " + key});
+    journal.Close();
+  }
+  fs::path Out() const { return *this / "out"; }
+};
+
+SlurmOptions Quick(int most = 1000) {
+  SlurmOptions options;
+  options.poll_s = 0.001;
+  options.max_array_size = most;
+  options.cpus_per_task = 2;
+  options.copy_every_s = 4.5;
+  options.program = "/bin/my rift";
+  options.prologue = {"module load x"};
+  return options;
+}
+
+TEST_CASE("The rows of all shards are in the journal, and what only their jobs need is gone") {
+  const Cluster cluster;
+  fs::create_directories(cluster.Out());
+  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  const std::vector<Shard> shards{ShardOf("a"), ShardOf("b"), ShardOf("c")};
+  cluster.Finishes(shards[0], "a");
+  cluster.Finishes(shards[1], "b");
+  cluster.Finishes(shards[2], "c");
+  std::vector<ShardCounts> seen;
+  SlurmShards::Watch watch;
+  watch.seen = [&](const ShardCounts& counts) {
+    seen.push_back(counts);
+    const bool is_open = SlurmShards::AreOpen(cluster.Out());
+    CHECK(is_open);
+  };
+  const SlurmOptions options = Quick(2);  // two arrays
+  SlurmShards slurm(cluster.Out(), options, "experiment: text\n", journal, watch);
+  CHECK(slurm.Run({}));
+  CHECK(cluster.Arguments("sbatch").empty());
+  CHECK(slurm.Run(shards));
+  for (const char* key : {"a", "b", "c"}) CHECK(journal.Find(key) == std::string("row of ") + key);
+  REQUIRE(seen.size() >= 2);
+  CHECK(seen.front().total == 3);
+  CHECK(seen.front().done == 0);
+  CHECK(seen.back().done == seen.back().total);
+  CHECK_FALSE(SlurmShards::AreOpen(cluster.Out()));
+  const fs::path first = cluster.Out() / "slurm/1", second = cluster.Out() / "slurm/2";
+  CHECK(test::ReadFile(first / "jobs") == "41 0-1\n");
+  CHECK(test::ReadFile(second / "jobs") == "41 0\n");
+  for (const fs::path& array : {first, second}) {
+    CHECK_FALSE(fs::exists(array / "shards"));
+    CHECK_FALSE(fs::exists(array / "0.shard"));
+    CHECK_FALSE(fs::exists(array / "experiment.yaml"));
+  }
+  CHECK_FALSE(fs::exists(cluster.Out() / "shards"));
+  CHECK(test::ReadFile(first / "array.sh") ==
+        "#!/bin/bash\n# A task of the job array of a sweep: one shard.\n"
+        "[ -z \"${SLURM_TMPDIR:-}\" ] || export TMPDIR=\"$SLURM_TMPDIR\"\nmodule load x\n"
+        "exec '/bin/my rift' sweep '" +
+            (first / "experiment.yaml").string() + "' --out '" + cluster.Out().string() +
+            "' --shard '" + first.string() +
+            "'/\"$SLURM_ARRAY_TASK_ID\".shard --jobs 2 --copy-every 4.5 --large-inputs\n");
+  // The next array has the next number.
+  const Shard more = ShardOf("d");
+  cluster.Finishes(more, "d");
+  CHECK(slurm.Run({more}));
+  CHECK(fs::exists(cluster.Out() / "slurm/3/jobs"));
+}
+
+TEST_CASE("A shard that leaves no journal is run three times, and told with its last words") {
+  const Cluster cluster;
+  fs::create_directories(cluster.Out());
+  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  const std::vector<Shard> shards{ShardOf("a"), ShardOf("b")};
+  cluster.Finishes(shards[0], "a");
+  cluster.Does("sbatch", test::ReadFile(cluster / "sbatch.also") +
+                             "printf 'first\\nthe last words\\n\\n' > \"$F/1.log\"\n");
+  const SlurmOptions options = Quick();
+  SlurmShards slurm(cluster.Out(), options, "", journal, {});
+  CHECK_THROWS_WITH(slurm.Run(shards),
+                    Catch::StartsWith("shard 1 of " + (cluster.Out() / "slurm/1").string() +
+                                      " was run 3 times and left no journal; the last line of ") &&
+                        Catch::EndsWith("1.log: the last words"));
+  CHECK(test::ReadFile(cluster.Out() / "slurm/1/jobs") == "41 0-1\n41 1\n41 1\n");
+  CHECK(journal.Find("a"));
+  CHECK(SlurmShards::AreOpen(cluster.Out()));
+  SlurmShards::Forget(cluster.Out());
+  CHECK_FALSE(fs::exists(cluster.Out() / "slurm"));
+  CHECK_FALSE(fs::exists(cluster.Out() / "shards"));
+}
+
+TEST_CASE("Whoever is told to stop cancels the jobs, and the next takes in what they left") {
+  const Cluster cluster;
+  fs::create_directories(cluster.Out());
+  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  const Shard shard = ShardOf("a");
+  const SlurmOptions options = Quick();
+  int looks = 0;
+  SlurmShards::Watch watch;
+  watch.seen = [&](const ShardCounts& counts) {
+    ++looks;
+    if (looks == 2) {
+      CHECK(counts.running == 1);
+      CHECK(counts.pending == 0);
+    }
+  };
+  watch.go_on = [&] { return looks < 2; };
+  cluster.Answers("squeue", "41_0|RUNNING|None\n");
+  SlurmShards stopped(cluster.Out(), options, "", journal, watch);
+  CHECK_FALSE(stopped.Run({shard}));
+  CHECK(cluster.Arguments("scancel") == "41\n");
+  CHECK(SlurmShards::AreOpen(cluster.Out()));
+
+  const std::optional<ShardCounts> open = ReadShardCounts(cluster.Out());
+  REQUIRE(open);
+  CHECK(*open == ShardCounts{.total = 1, .running = 1});
+  cluster.Answers("squeue", "41_0|PENDING|Priority\n");
+  CHECK(*ReadShardCounts(cluster.Out()) ==
+        ShardCounts{.total = 1, .pending = 1, .reason = "Priority"});
+  cluster.Answers("squeue", "");
+  cluster.Finishes(shard, "a");
+  cluster.Arguments("sbatch");
+  SlurmShards next(cluster.Out(), options, "", journal, {});
+  CHECK(next.Resume());
+  CHECK(cluster.Arguments("sbatch").ends_with("array.sh\n"));  // once more
+  CHECK(journal.Find("a") == "row of a");
+  CHECK_FALSE(ReadShardCounts(cluster.Out()));
+  CHECK(next.Resume());  // nothing is open
+}
+
+TEST_CASE("A task that Slurm holds for good is cancelled, and told") {
+  const Cluster cluster;
+  fs::create_directories(cluster.Out());
+  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  const Shard shard = ShardOf("a");
+  const SlurmOptions options = Quick();
+  std::vector<std::string> said;
+  int looks = 0;
+  SlurmShards::Watch watch;
+  watch.say = [&](const std::string& line) { said.push_back(line); };
+  watch.seen = [&](const ShardCounts&) {
+    ++looks;
+    if (looks == 1) cluster.Answers("squeue", "41_0|PENDING|JobHoldMaxRequeue\n");
+    if (looks == 2) {
+      cluster.Answers("squeue", "");
+      cluster.Finishes(shard, "a");
+    }
+  };
+  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
+  CHECK(slurm.Run({shard}));
+  REQUIRE(said.size() == 1);
+  CHECK(said[0] == "note: shard 0 of " + (cluster.Out() / "slurm/1").string() +
+                       " lost its node so often that Slurm holds it (JobHoldMaxRequeue); it is "
+                       "submitted anew");
+  CHECK(cluster.Arguments("scancel").starts_with("41_0\n"));
+  CHECK(test::ReadFile(cluster.Out() / "slurm/1/jobs") == "41 0\n41 0\n");
+}
+
+TEST_CASE("A busy cluster is asked again with half of the tasks, and complained of once") {
+  const Cluster cluster;
+  fs::create_directories(cluster.Out());
+  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  std::vector<Shard> shards;
+  for (const char* key : {"a", "b", "c", "d", "e"}) {
+    shards.push_back(ShardOf(key));
+    cluster.Finishes(shards.back(), key);
+  }
+  const std::string finishes = test::ReadFile(cluster / "sbatch.also");
+  // Refused twice, and then no more.
+  cluster.Does("sbatch",
+               "echo x >> \"$D/tried\"\nif [ $(wc -l < \"$D/tried\") -le 2 ]; then\n"
+               "  echo 'over the job limit' >&2; exit 1\nfi\n" +
+                   finishes);
+  const SlurmOptions options = Quick();
+  std::vector<std::string> said;
+  SlurmShards::Watch watch;
+  watch.say = [&](const std::string& line) { said.push_back(line); };
+  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
+  CHECK(slurm.Run(shards));
+  CHECK(said == std::vector<std::string>{"note: sbatch: over the job limit; trying again"});
+  const std::string arguments = cluster.Arguments("sbatch");
+  CHECK(arguments.find("--array=0-4\n") != std::string::npos);  // all
+  CHECK(arguments.find("--array=0-1\n") != std::string::npos);  // then half of five
+  CHECK(arguments.find("--array=0\n") != std::string::npos);    // then half of two
+}
+
+}  // namespace
+}  // namespace rift::sweep
