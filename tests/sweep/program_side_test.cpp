@@ -1,0 +1,434 @@
+// Runs of somebody else's program, here a few lines of a shell.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "rift/files/files.hpp"
+#include "rift/sweep/falsify/candidate_runs.hpp"
+#include "rift/sweep/falsify/program_files.hpp"
+#include "support/inputs/paths.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/environment.hpp"
+#include "support/processes/process.hpp"
+#include "sweep/falsify/program_side.hpp"
+
+namespace rift::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+
+const Inputs kFiles{[](const std::string& path) { return files::ReadIfThere(path); },
+                    [](const std::string&) {}};
+
+/// An experiment whose candidate is `sh FOLDER/sim.sh ARGUMENTS`, with a log beside it to be
+/// copied.
+class Shell {
+ public:
+  explicit Shell(const std::string& lines, std::vector<std::string> arguments = {"{out}"}) {
+    test::WriteText(folder_ / "sim.sh", "HERE='" + folder_.Path().string() + "'\n" + lines + "\n");
+    test::WriteText(folder_ / "good.csv", trajectory::WriteRift(test::StraightPath(0.75, 16)));
+    experiment.candidate.kind = experiment::CandidateKind::kProgram;
+    experiment.candidate.run.words = {"sh", folder_ / "sim.sh"};
+    for (std::string& one : arguments) experiment.candidate.run.words.push_back(std::move(one));
+    experiment.waypoints = {{.name = "s"}, {.name = "e", .x_m = 1.0, .y_m = 0.5}};
+    experiment.reference.kind = experiment::ReferenceKind::kPath;
+    experiment.reference.trials.names = {"1"};
+    experiment.space.parameters = {{.key = "mu", .min = 0.0, .max = 1.0, .nominal = 0.5},
+                                   {.key = "floor", .levels = {{"ice", {}}, {"rock", {}}}}};
+    experiment.seed = 9;
+    experiment.run.retries = 0;
+    experiment.run.memory_mb = 512;
+  }
+
+  Recording Run(std::optional<std::uint64_t> seed = 7) const {
+    return CandidateProgram(experiment, {}, kFiles)
+        ->Run({.theta = {{"0.25", 0.25}, {"ice", {}}}, .trial = "1", .seed = seed});
+  }
+  std::string Read(const std::string& name) const { return test::ReadFile(folder_ / name); }
+  std::string operator/(const std::string& name) const { return folder_ / name; }
+  std::string Refusal() const {
+    try {
+      CandidateProgram(experiment, {}, kFiles);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  experiment::Experiment experiment;
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_CASE("A program finds the values of its trial in arguments, environment and a file") {
+  const Shell shell(
+      "printf '%s\\n' \"$@\" > \"$HERE/args\"; printf '%s' \"$RIFT_TRIAL\" > "
+      "\"$HERE/env\"; cp \"$6\" \"$HERE/theta\"; cp \"$HERE/good.csv\" \"$5\"",
+      {"{mu:.3f}", "{floor}", "{trial}", "{seed}", "{out}", "{theta}", "{folder}"});
+  const Recording run = shell.Run();
+  REQUIRE(run.status == TrialStatus::kOk);
+  CHECK(run.source == "program with seed 7");
+  CHECK(run.trajectory.poses.size() == 16);
+  CHECK(run.trajectory.poses.back().x_m == Approx(0.75));
+  CHECK(std::isnan(run.left_m));
+  const std::string arguments = shell.Read("args");
+  CHECK(arguments.starts_with("0.250\nice\n1\n7\n"));
+  const auto trial = nlohmann::json::parse(shell.Read("theta"));
+  CHECK(trial == nlohmann::json::parse(shell.Read("env")));
+  CHECK(trial["theta"]["mu"] == 0.25);
+  CHECK(trial["theta"]["floor"] == "ice");
+  CHECK(trial["seed"] == 7);
+  CHECK(trial["trial"] == "1");
+  const std::string folder = fs::path(trial["out"].get<std::string>()).parent_path().string();
+  CHECK(
+      arguments.ends_with(folder + "/trajectory.csv\n" + folder + "/theta.json\n" + folder + "\n"));
+  CHECK_FALSE(fs::exists(folder));
+  CHECK(shell.Run(std::nullopt).source == "program with seed 9");  // the experiment's
+}
+
+TEST_CASE("Exit codes are ends of a run as the side says, with what is left to the last waypoint") {
+  struct Case {
+    int code;
+    TrialStatus status;
+  };
+  for (const Case& one : {Case{10, TrialStatus::kTimedOut}, Case{11, TrialStatus::kFell},
+                          Case{12, TrialStatus::kLeftArena}, Case{13, TrialStatus::kLost},
+                          Case{14, TrialStatus::kFault}, Case{1, TrialStatus::kFault}}) {
+    INFO(one.code);
+    Shell shell("cp \"$HERE/good.csv\" \"$1\"; echo 'last words' >&2; exit " +
+                std::to_string(one.code));
+    const Recording run = shell.Run();
+    CHECK(run.status == one.status);
+    CHECK_THAT(run.reason, Contains("last words"));
+    CHECK(run.left_m == Approx(std::hypot(0.25, 0.5)));
+    CHECK(run.trajectory.poses.size() == 16);
+    shell.experiment.waypoints.pop_back();
+    CHECK(std::isnan(shell.Run().left_m));
+  }
+  Shell shell("exit 21");
+  shell.experiment.candidate.exit_codes = {20, 21, 22, 23};
+  CHECK(shell.Run().status == TrialStatus::kFell);
+  CHECK(std::isnan(shell.Run().left_m));  // no log tells how far it came
+  shell.experiment.candidate.exit_codes.fell = 22;
+  CHECK(shell.Run().status == TrialStatus::kFault);
+}
+
+TEST_CASE("A crash is tried again as often as is allowed, and anything else once") {
+  Shell shell("echo x >> \"$HERE/runs\"; kill -SEGV $$");
+  const auto runs = [&] {
+    const std::string text = shell.Read("runs");
+    fs::remove(shell / "runs");
+    return text.size() / 2;
+  };
+  Recording run = shell.Run();
+  CHECK(run.status == TrialStatus::kCrashed);
+  CHECK(run.reason == "ended by signal 11 (Segmentation fault)");
+  CHECK(runs() == 1);
+  shell.experiment.run.retries = 1;
+  CHECK(shell.Run().reason == "ended by signal 11 (Segmentation fault), twice");
+  CHECK(runs() == 2);
+  shell.experiment.run.retries = 2;
+  CHECK(shell.Run().reason == "ended by signal 11 (Segmentation fault), 3 times");
+  CHECK(runs() == 3);
+  test::WriteText(shell / "sim.sh", "echo x >> '" + shell / "runs" + "'; exit 1");
+  CHECK(shell.Run().status == TrialStatus::kFault);
+  CHECK(runs() == 1);
+}
+
+TEST_CASE("Memory and files beyond the limit are told apart from other ends") {
+  const auto run = [](const std::string& words) {
+    return Shell("echo '" + words + "' >&2; exit 1").Run();
+  };
+  for (const char* words : {"std::bad_alloc", "MemoryError: no"}) {
+    CHECK(run(words).status == TrialStatus::kOutOfMemory);
+    CHECK(run(words).reason ==
+          std::string("wanted memory of more than 512 MB (run.memory_mb): ") + words);
+  }
+  CHECK(run("write: File too large").reason ==
+        "wanted a file of more than 512 MB (run.memory_mb): write: File too large");
+  CHECK(run("write: File too large").status == TrialStatus::kOutOfMemory);
+  CHECK(run("no friction").status == TrialStatus::kFault);
+  CHECK(Shell("kill -XFSZ $$").Run().status == TrialStatus::kOutOfMemory);
+}
+
+TEST_CASE("A run that says it is well and leaves no log, or a bad one, is told so") {
+  CHECK(Shell("exit 0").Run().status == TrialStatus::kFault);
+  CHECK(Shell("exit 0").Run().reason == "ended well and wrote no trajectory to {out}");
+  const Recording bad = Shell("echo 't_s,x_m,y_m' > \"$1\"").Run();
+  CHECK(bad.status == TrialStatus::kUnreadable);
+  CHECK(bad.reason.starts_with("its trajectory: "));
+  const Recording backwards =
+      Shell("printf 't_s,x_m,y_m\\n0,0,0\\n2,1,0\\n1,2,0\\n' > \"$1\"").Run();
+  CHECK(backwards.status == TrialStatus::kUnreadable);
+  CHECK_THAT(backwards.reason, Contains("time runs backwards in it"));
+  const Recording cut = Shell("printf 't_s,x_m,y_m\\n0,0,0\\n1,1,0\\n2,2' > \"$1\"").Run();
+  CHECK(cut.status == TrialStatus::kUnreadable);
+  CHECK_THAT(cut.reason, Contains("cut short"));
+  // Of one that did not arrive the log is told if it can be read, and is no reason.
+  const Recording fell = Shell("echo nothing > \"$1\"; exit 11").Run();
+  CHECK(fell.status == TrialStatus::kFell);
+  CHECK(fell.trajectory.poses.empty());
+}
+
+/// Does that for each line that it is told.
+struct Persistent : Shell {
+  explicit Persistent(const std::string& on_line)
+      : Shell("while read -r LINE; do\n" + on_line + "\ndone", {"{folder}"}) {
+    experiment.candidate.persistent = true;
+  }
+};
+
+TEST_CASE("A persistent program answers each trial with a status, a reason and perhaps a log") {
+  const std::string log = "t_s,x_m,y_m\\\\n0,0,0\\\\n1,0.4,0.5\\\\n";
+  const auto answer = [&](const std::string& text) {
+    return Persistent("printf '" + text + "\\n'").Run();
+  };
+  const Recording ok = answer("{\"status\": \"ok\", \"log\": \"" + log + "\"}");
+  CHECK(ok.status == TrialStatus::kOk);
+  CHECK(ok.reason.empty());
+  CHECK(ok.trajectory.poses.size() == 2);
+  const Recording fell =
+      answer("{\"status\": \"fell\", \"reason\": \"on its side\", \"log\": \"" + log + "\"}");
+  CHECK(fell.status == TrialStatus::kFell);
+  CHECK(fell.reason == "on its side");
+  CHECK(fell.left_m == Approx(0.6));
+  CHECK(answer("{\"status\": \"timed_out\"}").status == TrialStatus::kTimedOut);
+  CHECK(answer("{\"status\": \"left_arena\"}").status == TrialStatus::kLeftArena);
+  CHECK(answer("{\"status\": \"lost\"}").status == TrialStatus::kLost);
+  CHECK(answer("{\"status\": \"fault\"}").reason == "the program says so");
+  CHECK(answer("{\"status\": \"ok\"}").reason == "ended well and wrote no trajectory to {out}");
+  CHECK(answer("{\"status\": \"crashed\"}").reason ==
+        "answered with the status 'crashed', and it must be one of ok, timed_out, fell, "
+        "left_arena, lost, fault");
+  for (const char* text : {"hello", "[]", "{\"state\": \"ok\"}", "{\"status\": 3}"}) {
+    CHECK(answer(text).status == TrialStatus::kFault);
+    CHECK_THAT(answer(text).reason, Contains("a line of JSON with a status is expected"));
+  }
+}
+
+TEST_CASE(
+    "A persistent program serves several trials, is started anew after its end, and says why") {
+  const Persistent shell(
+      "echo x >> \"$HERE/lines\"\ncp \"$HERE/good.csv\" \"$1/trajectory.csv\"\n"
+      "echo '{\"status\": \"ok\"}'");
+  test::WriteText(shell / "sim.sh",
+                  "echo y >> '" + shell / "starts" + "'\n" + shell.Read("sim.sh"));
+  const auto program = CandidateProgram(shell.experiment, {}, kFiles);
+  const TrialRequest request{.theta = {{"0.25", 0.25}, {"ice", {}}}, .trial = "1", .seed = 7};
+  for (int i = 0; i < 3; ++i) CHECK(program->Run(request).status == TrialStatus::kOk);
+  CHECK(shell.Read("lines") == "x\nx\nx\n");
+  CHECK(shell.Read("starts") == "y\n");
+  const Persistent ends("echo 'out of ideas' >&2; exit 3");
+  const Recording end = ends.Run();
+  CHECK(end.status == TrialStatus::kCrashed);
+  CHECK(end.reason.starts_with("ended in the middle of a trial: "));
+  CHECK_THAT(end.reason, Contains("out of ideas"));
+}
+
+TEST_CASE("What a program lacks is said when it is made") {
+  Shell shell("exit 0");
+  shell.experiment.candidate.run.words = {};
+  CHECK(shell.Refusal() ==
+        "candidate.run is missing: name the program, such as candidate.run: [python3, sim.py, "
+        "--out, \"{out}\"]");
+  shell.experiment.candidate.run.words = {"sh", "{friction}"};
+  CHECK(shell.Refusal().starts_with("candidate.run: path '{friction}' names {friction}"));
+  shell.experiment.candidate.run.words = {"sh", "gone.sh"};
+  CHECK(shell.Refusal() ==
+        "candidate.run: there is no file 'gone.sh' beside the experiment, and sh would end at once "
+        "in every trial: name it from the experiment's folder, or with its whole path");
+  Persistent persistent(":");
+  CHECK(persistent.Refusal() == "accepted");
+  persistent.experiment.candidate.run.words.push_back("{seed}");
+  CHECK(persistent.Refusal() ==
+        "candidate.run: '{seed}': a persistent program is told of its trials in lines of JSON");
+  Shell other("exit 0");
+  CHECK(ReferenceProgram(other.experiment, {}, kFiles) == nullptr);
+  other.experiment.candidate.kind = experiment::CandidateKind::kLogs;
+  CHECK(CandidateProgram(other.experiment, {}, kFiles) == nullptr);
+}
+
+TEST_CASE("The files among the arguments of a program have fingerprints") {
+  const Shell shell("exit 0");
+  const std::string hashes = CandidateProgram(shell.experiment, {}, kFiles)->HashesText();
+  CHECK(hashes.size() == 32 + 2 + (shell / "sim.sh").size() + 1);
+  CHECK(hashes.ends_with("  " + shell / "sim.sh" + "\n"));
+  test::WriteText(shell / "sim.sh", "exit 1");
+  CHECK(CandidateProgram(shell.experiment, {}, kFiles)->HashesText() != hashes);
+}
+
+TEST_CASE(
+    "A script that is not there is known by its interpreter and its ending, and no other word") {
+  const auto is_refused = [](const std::vector<std::string>& words) {
+    try {
+      RequireScript(words);
+    } catch (const std::invalid_argument&) {
+      return true;
+    }
+    return false;
+  };
+  for (const auto& [interpreter, script] :
+       std::vector<std::pair<std::string, std::string>>{{"python", "a.py"},
+                                                        {"node", "a.js"},
+                                                        {"node", "a.mjs"},
+                                                        {"node", "a.cjs"},
+                                                        {"ruby", "a.rb"},
+                                                        {"perl", "a.pl"},
+                                                        {"bash", "a.sh"},
+                                                        {"sh", "a.sh"},
+                                                        {"julia", "a.jl"},
+                                                        {"lua", "a.lua"},
+                                                        {"Rscript", "a.R"},
+                                                        {"octave", "a.sh"},
+                                                        {"python3", "a.py"},
+                                                        {"python3.11", "a.py"},
+                                                        {"/usr/bin/python3", "a.py"}}) {
+    INFO(interpreter << " " << script);
+    CHECK(is_refused({interpreter, script}));
+  }
+  CHECK_FALSE(is_refused({"python3"}));
+  CHECK_FALSE(is_refused({"python3", "-m"}));
+  CHECK_FALSE(is_refused({"python3", "{script}.py"}));
+  CHECK_FALSE(is_refused({"python3", "a.txt"}));
+  CHECK_FALSE(is_refused({"mine", "a.py"}));
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "a.py", "");
+  CHECK_FALSE(is_refused({"python3", folder / "a.py"}));
+  CHECK(is_refused({"python3", folder / "b.py"}));
+}
+
+TEST_CASE("A program is there when it may be executed, by its whole path or a name in PATH") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "mine", "#!/bin/sh\n");
+  fs::create_directories(folder / "bin/folder");
+  test::WriteText(folder / "bin/named", "#!/bin/sh\n");
+  fs::permissions(folder / "bin/named", fs::perms::owner_all);
+  const test::Environment path("PATH", folder / "empty:" + folder / "bin");
+  experiment::Experiment experiment;
+  const auto refusal = [&](const std::string& word, bool is_reference = false) -> std::string {
+    experiment.candidate.kind =
+        is_reference ? experiment::CandidateKind::kLogs : experiment::CandidateKind::kProgram;
+    experiment.reference.kind =
+        is_reference ? experiment::ReferenceKind::kProgram : experiment::ReferenceKind::kPath;
+    (is_reference ? experiment.reference.run : experiment.candidate.run).words = {word};
+    try {
+      RequirePrograms(experiment, "e.yaml");
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(refusal("named").empty());
+  CHECK(refusal("named", true).empty());
+  CHECK(refusal("{program}").empty());
+  CHECK(refusal("gone") ==
+        "e.yaml: candidate.run: there is no program 'gone' in PATH: install it, or mend the name");
+  CHECK(refusal("gone", true).starts_with("e.yaml: reference.run: there is no program 'gone'"));
+  CHECK(refusal("folder").find("there is no program 'folder'") != std::string::npos);
+  CHECK(refusal(folder / "mine") ==
+        "e.yaml: candidate.run: " + folder / "mine" +
+            " is not executable: chmod +x it, or name its interpreter first");
+  fs::permissions(folder / "mine", fs::perms::owner_all);
+  CHECK(refusal(folder / "mine").empty());
+  CHECK(refusal("./mine").find("there is no program ./mine") != std::string::npos);
+  CHECK(refusal(folder / "bin").find("there is no program") != std::string::npos);
+  experiment.candidate.kind = experiment::CandidateKind::kLogs;
+  experiment.candidate.run.words = {"gone"};
+  CHECK_NOTHROW(RequirePrograms(experiment, "e.yaml"));
+}
+
+TEST_CASE("Runs for whoever wants their paths come in order, with how each of them ended") {
+  Shell shell(
+      "[ \"$2\" != 2 ] || kill -SEGV $$\n[ \"$2\" != 3 ] || exit 12\n"
+      "cp \"$HERE/good.csv\" \"$1\"",
+      {"{out}", "{seed}"});
+  Evaluator evaluator(shell.experiment, "e.yaml", kFiles);
+  std::vector<TrialRequest> requests;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    requests.push_back({.theta = {{"0.25", 0.25}, {"ice", {}}}, .trial = "1", .seed = seed});
+  }
+  for (const int workers : {1, 2}) {
+    const std::vector<Recording> runs = CandidateRuns(evaluator, workers).Run(requests);
+    REQUIRE(runs.size() == 3);
+    CHECK(runs[0].status == TrialStatus::kOk);
+    CHECK(runs[0].trajectory.poses.size() == 16);
+    CHECK(runs[1].status == TrialStatus::kCrashed);
+    CHECK(runs[2].status == TrialStatus::kLeftArena);
+  }
+  const ProgramTrial good = RunProgramTrial(evaluator, requests[0]);
+  CHECK(good.row.status == TrialStatus::kOk);
+  CHECK(good.row.seed == 1u);
+  CHECK(good.row.candidate == "program with seed 1");
+  CHECK(good.row.reference == "waypoint path");
+  CHECK(good.candidate.trajectory.poses.size() == 16);
+  CHECK(good.row.comparison.gap_m ==
+        Approx(gap::Gap(good.candidate.trajectory, evaluator.IdealPathAt(requests[0].theta),
+                        shell.experiment.gap)));
+  CHECK(RunProgramTrial(evaluator, requests[1]).row.status == TrialStatus::kCrashed);
+  shell.experiment.run.timeout_s = 0.2;
+  test::WriteText(shell / "sim.sh", "sleep 60");
+  const ProgramTrial hung = RunProgramTrial(evaluator, requests[0]);
+  CHECK(hung.row.status == TrialStatus::kHung);
+  CHECK(hung.row.candidate == "program with seed 1");
+  CHECK(hung.row.reference == "waypoint path");
+  CHECK(hung.candidate.status == TrialStatus::kHung);
+  CHECK(hung.candidate.reason == hung.row.reason);
+}
+
+TEST_CASE("Where the nominal run of a seed fails by noise another seed takes its place") {
+  Shell shell("case $2 in 10|11) exit 10;; esac\ncp \"$HERE/good.csv\" \"$1\"",
+              {"{out}", "{seed}"});
+  shell.experiment.reference.kind = experiment::ReferenceKind::kNominal;
+  shell.experiment.reference.trials.names = {"1", "2", "3", "4"};
+  Evaluator evaluator(shell.experiment, "e.yaml", kFiles);
+  std::vector<ReferenceProgress> told;
+  const auto replaced = evaluator.CheckReferences({1, [&](const ReferenceProgress& progress) {
+                                                     told.push_back(progress);
+                                                     return true;
+                                                   }});
+  REQUIRE(replaced);
+  REQUIRE(replaced->size() == 2);
+  CHECK((*replaced)[0].seed == 10);
+  CHECK((*replaced)[1].seed == 11);
+  for (const ReplacedReference& one : *replaced) {
+    CHECK(one.used != one.seed);
+    CHECK_THAT(one.reason, Contains("exit"));
+  }
+  REQUIRE_FALSE(told.empty());
+  CHECK(told.front().seeds == 4);
+  TrialRow row{.theta = {{"0.5", 0.5}, {"ice", {}}}, .trial = "2", .seed = 10};
+  evaluator.NameSides(row);
+  const std::string used = "program with seed " + std::to_string((*replaced)[0].used);
+  CHECK(row.candidate == used);
+  CHECK(row.reference == used);
+  const TrialRow evaluated = evaluator.Evaluate(RequestOf(row));
+  CHECK(evaluated.seed == (*replaced)[0].used);
+  CHECK(evaluated.comparison.gap_m == 0.0);  // the same program with the same seed
+  CHECK_FALSE(Evaluator(shell.experiment, "e.yaml", kFiles)
+                  .CheckReferences({1, [](const ReferenceProgress&) { return false; }}));
+}
+
+TEST_CASE("A nominal run that no seed mends, or that never arrives, is told once and at once") {
+  Shell shell("echo x >> \"$HERE/runs\"; exit 1", {"{out}"});
+  shell.experiment.reference.kind = experiment::ReferenceKind::kNominal;
+  shell.experiment.reference.trials.names = {"1", "2", "3"};
+  CHECK_THROWS_WITH(
+      Evaluator(shell.experiment, "e.yaml", kFiles).CheckReferences(),
+      Catch::StartsWith("e.yaml: reference.kind is nominal, and the run with the experiment's own "
+                        "values and seed 9 gives no trajectory to compare with (fault): "));
+  CHECK(shell.Read("runs") == "x\n");
+  test::WriteText(shell / "sim.sh", "echo y >> '" + shell / "runs" + "'; exit 13");
+  CHECK_THROWS_WITH(
+      Evaluator(shell.experiment, "e.yaml", kFiles).CheckReferences(),
+      Catch::StartsWith("e.yaml: reference.kind is nominal, and the run with the experiment's own "
+                        "values does not arrive, with seed 9 nor with 50 others: "));
+  CHECK(shell.Read("runs").size() == 2 * (1 + 51));
+  shell.experiment.reference.kind = experiment::ReferenceKind::kPath;
+  CHECK(Evaluator(shell.experiment, "e.yaml", kFiles).CheckReferences()->empty());
+}
+
+}  // namespace
+}  // namespace rift::sweep
