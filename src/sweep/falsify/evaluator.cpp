@@ -380,8 +380,9 @@ TrialRow Evaluator::Evaluate(const TrialRequest& asked) {
   if (experiment_.objective == experiment::Objective::kOdometry) return EvaluateOdometry(asked);
   TrialRequest request = asked;
   if (request.seed) request.seed = SeedWithReference(*request.seed);
-  const Recording reference = Reference(request);
+  Recording reference{.source = PathName()};  // the only one that depends on the setting's values
   try {
+    reference = Reference(request);
     const Recording candidate = Candidate(request, reference);
     TrialRow row = CompareTrial(experiment_, request, candidate, reference);
     if (row.IsOk()) row.doubts = DoubtsOf(experiment_, candidate, reference);

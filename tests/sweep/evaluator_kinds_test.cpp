@@ -1,0 +1,388 @@
+// Which kinds of sides go together, how they are named, and what the evaluator says of logs.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "rift/sweep/falsify/evaluator.hpp"
+#include "rift/sweep/falsify/settings.hpp"
+#include "rift/trajectory/log.hpp"
+#include "support/inputs/paths.hpp"
+#include "support/inputs/png_bytes.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using Catch::Matchers::Contains;
+using experiment::CandidateKind;
+using experiment::Objective;
+using experiment::ReferenceKind;
+using experiment::Start;
+
+/// Files by name.
+using Files = std::map<std::string, std::string>;
+
+Inputs InputsOf(const Files& files) {
+  return {[&files](const std::string& path) -> std::optional<std::string> {
+            const auto found = files.find(path);
+            return found == files.end() ? std::nullopt : std::optional(found->second);
+          },
+          [](const std::string&) {}};
+}
+
+std::string LogAside(double left_m) {
+  return trajectory::WriteRift(test::Moved(test::StraightPath(0.75, 40), {0.0, left_m, 0.0}));
+}
+
+experiment::Experiment Logs() {
+  experiment::Experiment experiment;
+  experiment.candidate.kind = CandidateKind::kLogs;
+  experiment.candidate.path.text = "sim_{s}.csv";
+  experiment.reference.kind = ReferenceKind::kLogs;
+  experiment.reference.path.text = "{s}_{trial}.csv";
+  experiment.reference.trials.names = {"1", "2", "3"};
+  experiment.space.parameters = {{.key = "s", .levels = {{"a", {}}, {"b", {}}}}};
+  return experiment;
+}
+
+experiment::Experiment Simulation() {
+  experiment::Experiment experiment;
+  experiment.waypoints = {{.name = "s"}, {.name = "e", .x_m = 0.4}};
+  experiment.reference.kind = ReferenceKind::kPath;
+  experiment.reference.trials.names = {"1"};
+  return experiment;
+}
+
+std::string Refusal(const experiment::Experiment& experiment) {
+  const Files none;
+  try {
+    Evaluator(experiment, "e.yaml", InputsOf(none));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST_CASE("Paths of logs that are missing, or name what there is not, are refused with their key") {
+  CHECK(Refusal(Logs()) == "accepted");
+  experiment::Experiment without = Logs();
+  without.candidate.path.text.clear();
+  CHECK(Refusal(without) ==
+        "e.yaml: candidate.path is missing: name the logs, such as candidate.path: "
+        "logs/{surface}_{trial}.csv");
+  without = Logs();
+  without.reference.path.text.clear();
+  CHECK(Refusal(without).starts_with("e.yaml: reference.path is missing: "));
+  without = Logs();
+  without.candidate.path.text = "{t}.csv";
+  CHECK(Refusal(without).starts_with("e.yaml: candidate.path: path '{t}.csv' names {t}"));
+  without = Logs();
+  without.reference.path.text = "{t}.csv";
+  CHECK(Refusal(without).starts_with("e.yaml: reference.path: path '{t}.csv' names {t}"));
+  without = Logs();
+  without.candidate.path.text = "sim.csv";
+  without.reference.path.text = "{trial}.csv";
+  CHECK(Refusal(without) ==
+        "e.yaml: space.s is in neither candidate.path nor reference.path as {s}: they name "
+        "{trial}");
+  without.candidate.path.text = without.reference.path.text = "x.csv";
+  CHECK_THAT(Refusal(without), Contains("they name nothing"));
+}
+
+TEST_CASE("A start at the reference needs logs to start from, and a robot that rift places") {
+  experiment::Experiment experiment = Simulation();
+  experiment.start = Start::kReference;
+  CHECK(Refusal(experiment) ==
+        "e.yaml: start is reference, and reference.kind is path: only logs tell where the robot "
+        "stood");
+  experiment.reference.kind = ReferenceKind::kNominal;
+  CHECK_THAT(Refusal(experiment), Contains("reference.kind is nominal"));
+  experiment.reference.kind = ReferenceKind::kLogs;
+  experiment.reference.path.text = "x.csv";
+  CHECK(Refusal(experiment) == "accepted");
+  experiment.candidate.kind = CandidateKind::kProgram;
+  experiment.candidate.run.words = {"sim"};
+  CHECK(Refusal(experiment) ==
+        "e.yaml: start is reference, and candidate.kind is program: rift does not place somebody "
+        "else's robot; leave start out");
+}
+
+TEST_CASE("Odometry as the objective is of one's own runs, and no program has encoders") {
+  experiment::Experiment experiment = Simulation();
+  experiment.objective = Objective::kOdometry;
+  CHECK(Refusal(experiment) == "accepted");
+  experiment.reference.kind = ReferenceKind::kLogs;
+  experiment.reference.path.text = "x.csv";
+  CHECK_THAT(Refusal(experiment), Contains("and reference.kind is logs: name logs as candidate"));
+  experiment.reference.kind = ReferenceKind::kPath;
+  experiment.candidate.kind = CandidateKind::kProgram;
+  experiment.candidate.run.words = {"sim"};
+  CHECK(Refusal(experiment) ==
+        "e.yaml: objective is odometry, and a program (candidate.kind) has no encoders for rift");
+}
+
+TEST_CASE("A gap in space is refused for whatever has no height") {
+  experiment::Experiment logs = Logs();
+  logs.gap.dimension = gap::Dimension::kXyz;
+  CHECK(Refusal(logs) == "accepted");
+  experiment::Experiment experiment = Simulation();
+  experiment.gap.dimension = gap::Dimension::kXyz;
+  CHECK_THAT(Refusal(experiment),
+             Contains("gap.dimension is xyz, and candidate.kind is simulation"));
+  logs.reference.tag_offset_m = 0.03;
+  CHECK_THAT(Refusal(logs), Contains("and reference.tag_offset_m is 0.03"));
+  logs = Logs();
+  logs.gap.dimension = gap::Dimension::kXyz;
+  logs.waypoints = Simulation().waypoints;
+  logs.reference.kind = ReferenceKind::kPath;
+  CHECK_THAT(Refusal(logs), Contains("and reference.kind is path"));
+  logs.reference.kind = ReferenceKind::kNominal;
+  logs.objective = Objective::kOdometry;
+  CHECK_THAT(Refusal(logs), Contains("and objective is odometry"));
+}
+
+TEST_CASE("A task that is none is said before the first trial, where there is to be one") {
+  experiment::Experiment experiment = Simulation();
+  experiment.waypoints.clear();
+  CHECK(Refusal(experiment).starts_with("e.yaml: "));
+  experiment.candidate.kind = CandidateKind::kLogs;
+  experiment.candidate.path.text = "x.csv";
+  CHECK(Refusal(experiment).starts_with("e.yaml: "));  // against its path
+  experiment.reference.kind = ReferenceKind::kNominal;
+  CHECK(Refusal(experiment).starts_with("e.yaml: "));
+  experiment.reference.kind = ReferenceKind::kLogs;
+  experiment.reference.path.text = "y.csv";
+  CHECK(Refusal(experiment) == "accepted");  // logs against logs need none
+}
+
+TEST_CASE("Both sides are named by what they are") {
+  const Files none;
+  TrialRow row{.theta = {{"a", {}}}, .trial = "2", .seed = 5};
+  const experiment::Experiment logs = Logs();
+  Evaluator(logs, "e.yaml", InputsOf(none)).NameSides(row);
+  CHECK(row.candidate == "sim_a.csv");
+  CHECK(row.reference == "a_2.csv");
+  experiment::Experiment simulation = Simulation();
+  row.theta.clear();
+  Evaluator(simulation, "e.yaml", InputsOf(none)).NameSides(row);
+  CHECK(row.candidate == "simulation with seed 5");
+  CHECK(row.reference == "waypoint path");
+  row.seed.reset();
+  simulation.seed = 8;
+  simulation.reference.kind = ReferenceKind::kNominal;
+  Evaluator(simulation, "e.yaml", InputsOf(none)).NameSides(row);
+  CHECK(row.candidate == "simulation with seed 8");
+  CHECK(row.reference == "simulation with seed 8");
+  experiment::Experiment program = Simulation();
+  program.waypoints.clear();
+  program.program.segments = {{.straight_m = 0.3}};
+  program.program.power = 0.3;
+  Evaluator(program, "e.yaml", InputsOf(none)).NameSides(row);
+  CHECK(row.reference == "program path");
+  program = Simulation();
+  program.reference.kind = ReferenceKind::kProgram;
+  program.reference.run.words = {"sim"};
+  row.seed = 3;
+  Evaluator(program, "e.yaml", InputsOf(none)).NameSides(row);
+  CHECK(row.candidate == "simulation with seed 3");
+  CHECK(row.reference == "program with seed 3");
+}
+
+TEST_CASE("The noise floor is the mean gap of the logs that are there, each once") {
+  const Files files{{"a_1.csv", LogAside(0.0)},
+                    {"a_2.csv", LogAside(0.02)},
+                    {"a_3.csv", LogAside(0.06)},
+                    {"b_1.csv", LogAside(0.0)}};
+  experiment::Experiment experiment = Logs();
+  Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
+  CHECK(evaluator.NoiseFloor_m({{"a", {}}}) == Approx((0.02 + 0.06 + 0.04) / 3.0));
+  CHECK(std::isnan(evaluator.NoiseFloor_m({{"b", {}}})));  // one log is there
+  experiment.reference.trials.names = {"1"};
+  CHECK(std::isnan(Evaluator(experiment, "e.yaml", InputsOf(files)).NoiseFloor_m({{"a", {}}})));
+  experiment::Experiment shared = Logs();
+  shared.candidate.path.text = "{s}_{trial}_sim.csv";
+  shared.reference.path.text = "{s}_1.csv";  // the same for all trials
+  CHECK(std::isnan(Evaluator(shared, "e.yaml", InputsOf(files)).NoiseFloor_m({{"a", {}}})));
+  experiment::Experiment path = Simulation();
+  path.reference.trials.names = {"1", "2"};
+  CHECK(std::isnan(Evaluator(path, "e.yaml", InputsOf(files)).NoiseFloor_m({})));
+}
+
+TEST_CASE(
+    "The noise floor of nominal runs is the mean gap of their seeds, the same for all settings") {
+  experiment::Experiment experiment = Simulation();
+  experiment.reference.kind = ReferenceKind::kNominal;
+  experiment.reference.trials.names = {"1", "2"};
+  experiment.seed = 11;
+  const Files none;
+  Evaluator evaluator(experiment, "e.yaml", InputsOf(none));
+  std::vector<trajectory::Trajectory> runs;
+  for (const std::uint64_t seed : {11, 12}) {
+    runs.push_back(Simulate(evaluator.TrialFor({.seed = seed}, {})).result.trajectory);
+  }
+  const double floor_m = gap::Gap(runs[0], runs[1], experiment.gap);
+  CHECK(floor_m > 0.0);
+  CHECK(evaluator.NoiseFloor_m({}) ==
+        Approx(0.5 * (floor_m + gap::Gap(runs[1], runs[0], experiment.gap))));
+}
+
+TEST_CASE("Logs of a range are refused, and others read once, before the first trial") {
+  experiment::Experiment experiment = Logs();
+  experiment.candidate.kind = CandidateKind::kSimulation;
+  experiment.waypoints = Simulation().waypoints;
+  experiment.space.parameters = {{.key = "control.v_min", .min = 0.1, .max = 0.2, .origin = "e:3"}};
+  experiment.reference.path.text = "{trial}.csv";
+  std::map<std::string, int> read;
+  const Inputs inputs{[&](const std::string& path) -> std::optional<std::string> {
+                        ++read[path];
+                        return LogAside(0.0);
+                      },
+                      [](const std::string&) {}};
+  Evaluator evaluator(experiment, "e.yaml", inputs);
+  evaluator.LoadLogs();
+  evaluator.LoadLogs();
+  CHECK(read == std::map<std::string, int>{{"1.csv", 1}, {"2.csv", 1}, {"3.csv", 1}});
+  experiment.reference.path.text = "{v_min}.csv";
+  CHECK_THROWS_WITH(Evaluator(experiment, "e.yaml", inputs).LoadLogs(),
+                    "e:3: space.control.v_min is a range, and reference.path names a log for each "
+                    "value of it: write a list of those there are");
+}
+
+TEST_CASE("A trial's key holds the bytes of both logs") {
+  Files files{{"a_1.csv", LogAside(0.0)}, {"sim_a.csv", LogAside(0.02)}};
+  const experiment::Experiment experiment = Logs();
+  const TrialRequest request{.theta = {{"a", {}}}, .trial = "1"};
+  const auto key = [&] {
+    Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
+    evaluator.LoadLogs();
+    return evaluator.KeyOf(request);
+  };
+  const std::string before = key();
+  CHECK_THAT(before, Contains(" log=") && Contains(" candidate="));
+  files["sim_a.csv"] = LogAside(0.03);
+  const std::string of_candidate = key();
+  CHECK(of_candidate != before);
+  files["a_1.csv"] = LogAside(0.01);
+  CHECK(key() != of_candidate);
+}
+
+TEST_CASE("A heightfield's picture is part of a trial's key at the settings that drive on it") {
+  experiment::Experiment experiment = Simulation();
+  simulation::SurfaceOptions hills;
+  hills.shape = simulation::Shape::kHeightfield;
+  hills.image = "hills.png";
+  experiment.simulation.terrain.surfaces["hills"] = hills;
+  experiment.space.parameters = {
+      {.key = "simulation.terrain.surface", .levels = {{"ground", {}}, {"hills", {}}}}};
+  Files files{{"hills.png", test::RampPng(100)}};
+  const auto key = [&](const char* surface) {
+    Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
+    const std::string text = evaluator.KeyOf({.theta = {{surface, {}}}, .trial = "1", .seed = 1});
+    const bool has_picture = evaluator.InputsText().ends_with("  hills.png\n");
+    CHECK(has_picture == (text.find(" picture=") != text.npos));
+    return text;
+  };
+  CHECK(key("ground").find("picture") == std::string::npos);
+  const std::string before = key("hills");
+  CHECK_THAT(before, Contains(" picture="));
+  files["hills.png"] = test::RampPng(200);
+  CHECK(key("hills") != before);
+  experiment.reference.kind = ReferenceKind::kNominal;  // driven on the ground at every setting
+  CHECK(key("ground").find("picture") == std::string::npos);
+  experiment.simulation.terrain.surface = "hills";
+  CHECK_THAT(key("ground"), Contains(" picture="));
+}
+
+TEST_CASE("A drive of the robot is a row with how it ended, against the reference of its trial") {
+  experiment::Experiment experiment = Simulation();
+  Files files{{"drive.csv",
+               trajectory::WriteRift(test::Moved(test::StraightPath(0.4, 40), {0.0, 0.07, 0.0}))}};
+  Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
+  const TrialRequest request{.trial = "1", .seed = 3};
+  const TrialRow arrived = evaluator.EvaluateDriven(request, "drive.csv", trial::Outcome::kReached);
+  CHECK(arrived.IsOk());
+  CHECK(arrived.comparison.gap_m == Approx(0.07));
+  CHECK(arrived.falsified);
+  CHECK(arrived.candidate == "drive.csv");
+  CHECK(arrived.reference == "waypoint path");
+  CHECK(arrived.seed == 3u);
+  const TrialRow fell = evaluator.EvaluateDriven(request, "drive.csv", trial::Outcome::kFell);
+  CHECK(fell.status == TrialStatus::kFell);
+  CHECK(fell.reason == "drive.csv: the robot did not reach the end");
+  CHECK(fell.falsified);
+  CHECK(evaluator.EvaluateDriven(request, "gone.csv", trial::Outcome::kFell).status ==
+        TrialStatus::kMissing);
+  experiment.objective = Objective::kOdometry;
+  CHECK_THROWS_WITH(evaluator.EvaluateDriven(request, "drive.csv", trial::Outcome::kReached),
+                    Contains("objective is odometry, and suggested drives"));
+}
+
+TEST_CASE("Where references are logs, a drive takes their place beside a simulated run") {
+  experiment::Experiment experiment = Simulation();
+  experiment.reference.kind = ReferenceKind::kLogs;
+  experiment.reference.path.text = "x.csv";
+  Files files;
+  Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
+  const TrialRequest request{.trial = "1", .seed = 3};
+  const SimulatedRun run = Simulate(evaluator.TrialFor(request, {}));
+  files["drive.csv"] = trajectory::WriteRift(run.result.trajectory);
+  const TrialRow row = evaluator.EvaluateDriven(request, "drive.csv", trial::Outcome::kReached);
+  CHECK(row.IsOk());
+  CHECK(row.candidate == "simulation with seed 3");
+  CHECK(row.reference == "drive.csv");
+  CHECK(row.comparison.gap_m < 1e-6);
+}
+
+TEST_CASE("A setting that breaks a rule, and a start without a yaw, are rows that say so") {
+  experiment::Experiment experiment = Simulation();
+  experiment.space.parameters = {{.key = "trial.pose_stale_s", .min = 0.1, .max = 9.0}};
+  const Files none;
+  for (const ReferenceKind kind : {ReferenceKind::kPath, ReferenceKind::kNominal}) {
+    experiment.reference.kind = kind;
+    const TrialRow broken = Evaluator(experiment, "e.yaml", InputsOf(none))
+                                .Evaluate({.theta = {{"5", 5.0}}, .trial = "1", .seed = 1});
+    CHECK(broken.status == TrialStatus::kInvalid);
+    CHECK_THAT(broken.reason, Contains("pose_stale_s is 5, and it must not exceed lost_after_s"));
+    CHECK(broken.candidate == "experiment");
+    CHECK(broken.reference ==
+          (kind == ReferenceKind::kPath ? "waypoint path" : "simulation with seed 1"));
+    CHECK_FALSE(broken.falsified);
+  }
+  experiment = Simulation();
+  experiment.start = Start::kReference;
+  experiment.reference.kind = ReferenceKind::kLogs;
+  experiment.reference.path.text = "x.csv";
+  trajectory::Trajectory log = test::StraightPath(0.4, 40);
+  for (auto& pose : log.poses) pose.yaw_rad = NAN;
+  const Files files{{"x.csv", trajectory::WriteRift(log)}};
+  const TrialRow row =
+      Evaluator(experiment, "e.yaml", InputsOf(files)).Evaluate({.trial = "1", .seed = 1});
+  CHECK(row.status == TrialStatus::kUnreadable);
+  CHECK(row.reason == "x.csv: start: reference needs its yaw: set reference.format");
+}
+
+TEST_CASE("A robot that starts at its reference stands where the tag was, behind it") {
+  const trajectory::Trajectory log = test::Moved(test::StraightPath(0.4, 200), {1.0, 2.0, 0.5});
+  simulation::MocapOptions mocap;
+  mocap.tag_ahead_m = 0.04;
+  const geometry::Pose2 stood = trajectory::StandingPose(log);
+  const geometry::Pose2 start = StartFromLog(log, 0.03, mocap);
+  CHECK(start.yaw_rad == Approx(stood.yaw_rad));
+  CHECK(start.x_m == Approx(stood.x_m - 0.07 * std::cos(stood.yaw_rad)));
+  CHECK(start.y_m == Approx(stood.y_m - 0.07 * std::sin(stood.yaw_rad)));
+}
+
+TEST_CASE("A log is moved along its yaw by the tag's offset, and refused where it has none") {
+  const std::string text =
+      trajectory::WriteRift(test::Moved(test::StraightPath(0.4, 5), {0, 0, 1}));
+  const trajectory::Log moved = ReadMovedLog(text, "x.csv", {.tag_offset_m = 0.1});
+  CHECK(moved.trajectory.poses[0].x_m == Approx(0.1 * std::cos(1.0)));
+  CHECK(moved.trajectory.poses[0].y_m == Approx(0.1 * std::sin(1.0)));
+  CHECK(ReadMovedLog("t_s,x_m,y_m\n0,0,0\n1,1,0\n", "x.csv", {}).trajectory.poses.size() == 2);
+  CHECK_THROWS_WITH(
+      ReadMovedLog("t_s,x_m,y_m\n0,0,0\n1,1,0\n", "x.csv", {.tag_offset_m = -0.02}),
+      "x.csv: a tag offset of -0.02 m needs the yaw, and it logs none: leave the tag offset at 0");
+}
+
+}  // namespace
+}  // namespace rift::sweep
