@@ -6,10 +6,12 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <stdexcept>
 
 #include "support/inputs/trials.hpp"
@@ -184,6 +186,91 @@ TEST_CASE("A reader sees a running sweep") {
   CHECK(*summary.largest_gap_m == 0.09);
   CHECK(summary.largest_key == "b");
   CHECK(summary.notes.at("state") == "running");
+}
+
+TEST_CASE("Of many keys that differ the first five are named, in their order, and how many more") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  Journal(file, {{"a", "1"}, {"b", "1"}, {"c", "1"}, {"d", "1"}, {"same", "1"}}).Close();
+  Facts now{{"a", "2"}, {"b", "2"}, {"c", "2"}, {"same", "1"}, {"x", "3"}};
+  const std::string five =
+      "a was 1 and is 2; b was 1 and is 2; c was 1 and is 2; d was 1 and is not set; x is 3 and "
+      "was not set";
+  const auto differences = [&] {
+    const std::string text = Refusal([&] { Journal(file, now); });
+    const size_t begin = text.find(": ") + 2;
+    return text.substr(begin, text.find("; choose another folder") - begin);
+  };
+  CHECK(differences() == five);
+  now["y"] = "4";
+  CHECK(differences() == five + "; and 1 more");
+  now["z"] = "5";
+  CHECK(differences() == five + "; and 2 more");
+}
+
+TEST_CASE("Facts have a hash of their keys and values, each in its place") {
+  const Facts facts{{"a", "1"}, {"b", "2"}};
+  CHECK(HashOf(facts) == HashOf({{"b", "2"}, {"a", "1"}}));
+  CHECK(HashOf(facts) != HashOf({{"a", "2"}, {"b", "1"}}));
+  CHECK(HashOf(facts) != HashOf({{"a", "1"}}));
+  CHECK(HashOf(facts).size() == 32);
+}
+
+TEST_CASE("A summary counts by status, and takes the first key of the largest gaps") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  Journal journal(file, kFacts);
+  journal.Add("z", Entry(0.09));
+  journal.Add("y", Entry(0.09));
+  journal.Add("x", Entry(0.01));
+  journal.Add("w", {"fell", std::nan(""), true, ""});
+  journal.Add(std::string("beside the table: ") + "v", Entry(0.5));
+  journal.Close();
+  const JournalSummary summary = ReadJournal(file);
+  CHECK(summary.trials_by_status == std::map<std::string, int>{{"fell", 1}, {"ok", 3}});
+  CHECK(summary.falsified == 3);
+  CHECK(summary.largest_key == "y");
+  CHECK(summary.damaged == 0);
+  Journal::Remove(file);
+  Journal(file, kFacts).Close();
+  CHECK_FALSE(ReadJournal(file).largest_gap_m);
+  CHECK(ReadJournal(file).falsified == 0);
+}
+
+TEST_CASE("What is added again takes the place of what was there, and so do notes") {
+  const test::TemporaryFolder folder;
+  Journal journal(folder / "journal.sqlite", kFacts);
+  CHECK_FALSE(journal.Note("state"));
+  CHECK_FALSE(journal.Has("x"));
+  journal.Add("x", {"ok", 0.01, false, "first"});
+  journal.Add("x", {"ok", -0.0, false, "second"});
+  journal.SetNote("state", "running");
+  journal.SetNote("state", "done");
+  CHECK(journal.Find("x") == "second");
+  CHECK(journal.Has("x"));
+  CHECK(journal.Note("state") == "done");
+  journal.Close();
+  CHECK(ReadJournal(folder / "journal.sqlite").trials_by_status.at("ok") == 1);
+}
+
+TEST_CASE("A merge takes over every value of a row, and how long the other took") {
+  const test::TemporaryFolder folder;
+  Journal other(folder / "other", kFacts);
+  other.Add("fell", {"fell", std::nan(""), true, "a"});
+  other.Add("ok", {"ok", 0.07, true, "b"});
+  other.SetNote("elapsed_s", "12.5");
+  other.SetNote("state", "done");
+  other.Close();
+  Journal journal(folder / "all", kFacts);
+  CHECK(journal.Merge(folder / "other").trials == 2);
+  CHECK(journal.Note("elapsed_s") == "12.5");
+  CHECK_FALSE(journal.Note("state"));
+  journal.Close();
+  const JournalSummary summary = ReadJournal(folder / "all");
+  CHECK(summary.falsified == 2);
+  CHECK(summary.trials_by_status.at("fell") == 1);
+  CHECK(summary.largest_key == "ok");
+  CHECK(*summary.largest_gap_m == 0.07);
 }
 
 }  // namespace

@@ -187,5 +187,103 @@ TEST_CASE("A sweep that is stopped goes on with the trials that are missing") {
   CHECK(SameRows(*whole, SweepWith(1, nullptr)));
 }
 
+/// A row with a value of its own in each member.
+TrialRow FullRow() {
+  TrialRow row = RowFor({.theta = {{"fine", {}}}, .trial = "1", .seed = 7});
+  row.status = TrialStatus::kTimedOut;
+  row.reason = "why";
+  row.candidate = "c";
+  row.reference = "r";
+  row.comparison.gap_m = 0.1;
+  row.comparison.equal_time_m = 0.2;
+  row.way_gap_m = 0.3;
+  row.falsified = true;
+  row.left_m = 0.4;
+  row.evidence.fingerprint = 5;
+  row.evidence.candidate_limits.emplace().decisions = 6;
+  row.evidence.reference_limits.emplace().decisions = 7;
+  row.evidence.errors_m = {{0.8, 0.9}};
+  row.evidence.path_m = {{1.0F, 2.0F}, {3.0F, 4.0F}};
+  row.evidence.path_times_s = {5.0F, 6.0F};
+  row.doubts = {{DoubtAbout::kReference, "doubt"}};
+  return row;
+}
+
+TEST_CASE("Every finding of a row comes back from its bytes, and what was asked for stays") {
+  TrialRow back = RowFor({.theta = {{"other", {}}}, .trial = "9", .is_random_draw = true});
+  DecodeFindings(EncodeFindings(FullRow()), back);
+  CHECK(back.theta[0].text == "other");
+  CHECK(back.trial == "9");
+  CHECK(back.is_random_draw);
+  CHECK(back.seed == 7u);  // which may have been replaced
+  CHECK(back.status == TrialStatus::kTimedOut);
+  CHECK(back.reason == "why");
+  CHECK(back.candidate == "c");
+  CHECK(back.reference == "r");
+  CHECK(back.comparison.gap_m == 0.1);
+  CHECK(back.comparison.equal_time_m == 0.2);
+  CHECK(back.way_gap_m == 0.3);
+  CHECK(back.falsified);
+  CHECK(back.left_m == 0.4);
+  CHECK(back.evidence.fingerprint == 5);
+  CHECK(back.evidence.candidate_limits->decisions == 6);
+  CHECK(back.evidence.reference_limits->decisions == 7);
+  CHECK(back.evidence.errors_m[0] == Eigen::Vector2d(0.8, 0.9));
+  CHECK(back.evidence.path_m[1] == Eigen::Vector2f(3.0F, 4.0F));
+  CHECK(back.evidence.path_times_s == std::vector<float>{5.0F, 6.0F});
+  REQUIRE(back.doubts.size() == 1);
+  CHECK(back.doubts[0].about == DoubtAbout::kReference);
+  CHECK(back.doubts[0].text == "doubt");
+  CHECK_THROWS_WITH(DecodeFindings(EncodeFindings(back) + "x", back),
+                    Catch::Contains("of another layout"));
+}
+
+TEST_CASE("Every part of a request comes back from its bytes") {
+  const TrialRequest request{
+      .theta = {{"0.2", 0.2}, {"ice", {}}}, .trial = "3", .seed = 11, .is_random_draw = true};
+  const TrialRequest back = DecodeRequest(EncodeRequest(request));
+  CHECK(back.theta == request.theta);
+  CHECK(back.trial == "3");
+  CHECK(back.seed == 11u);
+  CHECK(back.is_random_draw);
+  CHECK_FALSE(DecodeRequest(EncodeRequest({.trial = "3"})).seed);
+}
+
+TEST_CASE("A runner knows what its journal lacks, and keeps the first paths alone") {
+  const test::TemporaryFolder folder;
+  Journal journal(folder / "journal.sqlite", {{"version", "1"}});
+  std::vector<TrialRequest> requests;
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    requests.push_back({.theta = {{"fine", {}}}, .trial = "1", .seed = seed});
+  }
+  const Evaluate full = [](const TrialRequest&) { return FullRow(); };
+  TrialRunner runner(full, KeyOf, &journal, 1, {}, {}, 3);
+  CHECK(runner.PathsLeft() == 3);
+  CHECK_FALSE(runner.HasAll(requests));
+  CHECK(runner.HasAll({}));
+  CHECK(runner.Missing(requests) == std::vector<size_t>{0, 1, 2, 3, 4});
+  const auto rows = runner.Run({requests[1], requests[3]});
+  REQUIRE(rows);
+  CHECK((*rows)[0].evidence.path_m.size() == 2);
+  CHECK((*rows)[1].evidence.path_times_s.size() == 2);
+  CHECK(runner.PathsLeft() == 1);
+  CHECK(runner.Missing(requests) == std::vector<size_t>{0, 2, 4});
+  CHECK(runner.HasAll({requests[3], requests[1]}));
+  CHECK_FALSE(runner.HasAll({requests[3], requests[0]}));
+  const auto more = runner.Run({requests[1], requests[2], requests[0]});  // one from the journal
+  REQUIRE(more);
+  CHECK((*more)[0].evidence.path_m.size() == 2);
+  CHECK((*more)[1].evidence.path_m.empty());
+  CHECK((*more)[2].evidence.path_m.empty());
+  CHECK((*more)[2].evidence.errors_m.size() == 1);
+  CHECK(runner.PathsLeft() == 0);
+  const auto again = runner.Run({requests[1]});
+  CHECK((*again)[0].evidence.path_m.empty());  // from the journal, which has it
+  TrialRunner without(full, KeyOf, nullptr, 1, {}, {});
+  CHECK_FALSE(without.HasAll({}));
+  CHECK(without.Missing(requests).size() == 5);
+  CHECK(without.PathsLeft() == 5000);
+}
+
 }  // namespace
 }  // namespace rift::sweep
