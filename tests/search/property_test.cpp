@@ -75,6 +75,57 @@ TEST_CASE("Every strategy proposes the points that were approved, to six digits"
   CHECK(test::DifferenceFromPinned("search/proposals.txt", text) == "");
 }
 
+/// Every `every`th point of a search, and its last.
+std::string Sampled(const std::string& name, Method method, int budget, int every,
+                    const std::vector<Axis>& axes,
+                    const std::function<double(const Point&)>& loss) {
+  std::string text = name + "\n";
+  const std::vector<Evaluation> all = Run(method, budget, 5, axes, loss);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const bool is_shown = (k + 1) % static_cast<std::size_t>(every) == 0 || k + 1 == all.size();
+    if (!is_shown) continue;
+    text += fmt::format("  {}:", k);
+    for (const double value : all[k].point) text += fmt::format(" {:.5g}", value);
+    text += fmt::format(" > {:.5g}\n", all[k].loss);
+  }
+  return text;
+}
+
+TEST_CASE("Long searches, with restarts and what goes beyond them, propose what was approved") {
+  const std::vector<Axis> two{kUnlike[0], kUnlike[1]};
+  const auto ridge = [](const Point& p) {
+    const double a = p[0] - 1.3, b = p[1] - 10.4;
+    return std::abs(a + 2.0 * b) + 0.3 * std::abs(a);
+  };
+  const auto waves = [](const Point& p) {
+    return std::sin(7.0 * p[0]) + std::cos(11.0 * p[1]) + 0.1 * std::pow(p[0] - 1.0, 2);
+  };
+  const std::vector<Axis> words{{"u", AxisKind::kCategorical, 0, 6},
+                                {"v", AxisKind::kCategorical, 0, 4},
+                                {"n", AxisKind::kInteger, -8, 8}};
+  const auto of_words = [](const Point& p) {
+    return std::abs(p[0] - 4.0) + 2.0 * (p[1] == 3.0 ? 0.0 : 1.0) + 0.05 * p[2] * p[2] +
+           (p[0] == 1.0 && p[2] == 5.0 ? -4.0 : 0.0);
+  };
+  std::string text;
+  for (const Method method : {Method::kCmaEs, Method::kEvolution, Method::kCrs, Method::kBobyqa}) {
+    const std::string name(EnumNames(Method{})[static_cast<std::size_t>(method)]);
+    // A local model runs over all its losses again for each point.
+    const int budget = method == Method::kBobyqa ? 200 : 600;
+    text += Sampled(name + ", a ridge", method, budget, 40, two, ridge);
+    text += Sampled(name + ", waves", method, budget, 40, two, waves);
+    text += Sampled(name + ", words", method, 200, 20, words, of_words);
+    text += Sampled(name + ", unlike axes", method, budget, 40, kUnlike, Skewed);
+  }
+  text += Sampled("surrogate, waves", Method::kSurrogate, 160, 20, two, waves);
+  text += Sampled("surrogate, words", Method::kSurrogate, 120, 20, words, of_words);
+  text += Sampled("portfolio, waves", Method::kPortfolio, 680, 40, two, waves);
+  text += Sampled("portfolio, a ridge", Method::kPortfolio, 250, 25, two, ridge);
+  text += Sampled("portfolio, words", Method::kPortfolio, 300, 25, words, of_words);
+  text += Sampled("portfolio, unlike axes", Method::kPortfolio, 400, 50, kUnlike, Skewed);
+  CHECK(test::DifferenceFromPinned("search/long_searches.txt", text) == "");
+}
+
 TEST_CASE("Each axis of a Latin hypercube has one point in each stratum, and axes are unrelated") {
   const std::vector<Axis> axes{{"a", AxisKind::kContinuous, 0.0, 1.0},
                                {"b", AxisKind::kContinuous, 0.0, 1.0},
