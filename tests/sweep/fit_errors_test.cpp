@@ -79,5 +79,18 @@ TEST_CASE("Simulated repeats that are further apart than the logs are an error o
   CHECK(spread(3) == Approx(std::log(4.0) / scatter));
 }
 
+TEST_CASE("How far repeats are apart leaves the first tenth of their paths out") {
+  Trajectory jump = Lane(0.03);
+  for (size_t i = 0; i < 2; ++i) jump.poses[i].y_m += 0.02;  // the first twentieth of the way
+  CalibrationLog second = Log("a", 0.0);
+  second.log = jump;
+  Told simulator(std::vector<LogPrediction>(2));
+  CHECK(TraitsOfLogs({Log("a", 0.0), second}, simulator, {}).log_spread[1] ==
+        Approx(std::log(0.03)).margin(0.1));  // not log 0.05
+  // The same path twice is a tenth of a millimetre apart.
+  CHECK(TraitsOfLogs({Log("a", 0.0), Log("a", 0.0)}, simulator, {}).log_spread[1] ==
+        Approx(std::log(1e-4)));
+}
+
 }  // namespace
 }  // namespace rift::sweep
