@@ -56,7 +56,8 @@ double NoncentralF(double df1, double df2, double lambda, double f) {
   const double x = df1 * f / (df1 * f + df2);
   double sum = 0.0;
   for (int j = 0; j < 2000; ++j) {
-    const double weight = std::exp(-lambda / 2.0 + j * std::log(lambda / 2.0) - std::lgamma(j + 1.0));
+    const double weight =
+        std::exp(-lambda / 2.0 + j * std::log(lambda / 2.0) - std::lgamma(j + 1.0));
     sum += weight * BetaCdf(df1 / 2.0 + j, df2 / 2.0, x);
   }
   return sum;
@@ -107,8 +108,8 @@ TEST_CASE("Groups of unequal size and empty ones: the analysis of variance by ha
 
 TEST_CASE("The evidence of one trial is the mean of five likelihood ratios") {
   // Odds 2, 3.5, 7, 20 and 100 times those of the bound 0.1, weights 3/8, 2/8 and 1/8 each.
-  const double hit = 0.375 * 2 / 1.1 + 0.25 * 3.5 / 1.25 + 0.125 * 7 / 1.6 + 0.125 * 20 / 2.9 +
-                     0.125 * 100 / 10.9;
+  const double hit =
+      0.375 * 2 / 1.1 + 0.25 * 3.5 / 1.25 + 0.125 * 7 / 1.6 + 0.125 * 20 / 2.9 + 0.125 * 100 / 10.9;
   const double miss = 0.375 / 1.1 + 0.25 / 1.25 + 0.125 / 1.6 + 0.125 / 2.9 + 0.125 / 10.9;
   CHECK(EvidenceOnShare(1, 1, 0.1).above == Approx(std::log(hit)));
   CHECK(EvidenceOnShare(0, 1, 0.1).above == Approx(std::log(miss)));
@@ -192,8 +193,8 @@ TEST_CASE("Random numbers of other seeds and streams are others, in every word o
     return Random(seed, stream).Uniform();
   };
   const std::uint64_t high = std::uint64_t{1} << 32;
-  std::set<double> values{first(1, 2), first(2, 1), first(1 + high, 2), first(1, 2 + high),
-                          first(1, 3), first(2, 2)};
+  std::set<double> values{first(1, 2),        first(2, 1), first(1 + high, 2),
+                          first(1, 2 + high), first(1, 3), first(2, 2)};
   CHECK(values.size() == 6);
   CHECK(first(1, 2) == first(1, 2));
   Random random(5, 6);
@@ -243,7 +244,8 @@ TEST_CASE("A rank correlation with ties is that of the mean ranks") {
   CHECK(std::isnan(RankCorrelation(std::vector<double>{1, 2, 3}, std::vector<double>{1, 1, 1})));
 }
 
-TEST_CASE("A counter's normal is Box and Muller's of its two uniforms, and heavy tails are Bailey's") {
+TEST_CASE(
+    "A counter's normal is Box and Muller's of its two uniforms, and heavy tails are Bailey's") {
   const CounterRandom random(3, 4);
   const double u = random.Uniform(7, 0), v = random.Uniform(7, 1);
   CHECK(random.Normal(7, 0) ==

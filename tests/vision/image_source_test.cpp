@@ -88,8 +88,8 @@ TEST_CASE("What is no picture, or more than is put up with, is passed over and c
   WriteGrey(folder / "a4.png", 104, 200, 100);  // 20,000 pixels
   std::ofstream(folder / "a5.png") << std::string(12'001, 'x');
   WriteGrey(folder / "a6.png", 106);
-  const auto source = OpenCamera(folder.Path().string(),
-                                 {.most_mbyte = 0.012, .most_mpixel = 19'999e-6});
+  const auto source =
+      OpenCamera(folder.Path().string(), {.most_mbyte = 0.012, .most_mpixel = 19'999e-6});
   CHECK(GreysOf(*source) == std::vector<int>{101, -1, -1, -1, -1, 106});
   CHECK(source->Notes().skipped == 4);
   Frame frame;
