@@ -82,5 +82,47 @@ TEST_CASE("A row of recorded logs has nothing to be made again from") {
                         ": candidate.kind is logs: there is nothing to simulate again");
 }
 
+/// Programs of others: a way ahead in 101 rows, `bend` aside at its end; beyond 0.4 it did not
+/// arrive.
+constexpr const char* kProgram = R"(#!/bin/sh
+awk -v bend="$1" -v by="$3" 'BEGIN {
+  print "t_s,x_m,y_m,yaw_rad"
+  for (i = 0; i <= 100; ++i) print 0.05 * i "," 0.01 * i "," by * i * i / 1e4 + bend * i / 100 ",0"
+}' > "$2"
+[ "${1#0.5}" = "$1" ] || exit 10
+)";
+
+TEST_CASE("A row of somebody else's program is run again and held against the table") {
+  const test::TemporaryFolder folder;
+  const std::string program = folder / "sim.sh";
+  test::WriteText(program, kProgram);
+  fs::permissions(program, fs::perms::owner_all);
+  const experiment::Experiment experiment =
+      LoadText("candidate: {kind: program, run: [" + program + ", \"{bend}\", \"{out}\", 0.01]}\n" +
+               "reference: {kind: nominal}\nspace: {bend: [0, 0.03, 0.5]}\n");
+  SweepTold told;
+  const auto result = SweepInto(folder / "out", experiment, told);
+  REQUIRE(result);
+  REQUIRE(result->rows.size() == 3);
+  INFO(result->rows[1].reason);
+  CHECK(result->rows[1].comparison.gap_m == Approx(0.03).margin(1e-3));
+  const auto replay = ReplayProgramRow(folder / "out", "2", FileInputs());
+  REQUIRE(replay);
+  CHECK(replay->has_arrived);
+  REQUIRE(replay->trajectory.poses.size() == 101);
+  CHECK(replay->trajectory.poses.back().y_m == Approx(0.04));
+  CHECK_THAT(replay->verdict, Catch::StartsWith("row 2: status ok, gap 0.0"));
+  CHECK(replay->experiment.name == experiment.name);
+  const auto failed = ReplayProgramRow(folder / "out", "3", FileInputs());
+  REQUIRE(failed);
+  CHECK_FALSE(failed->has_arrived);
+  CHECK_THAT(failed->verdict, Contains("status timed_out, no gap"));
+  std::string changed = kProgram;
+  changed.replace(changed.find("bend * i"), 8, "2 * bend * i");
+  test::WriteText(program, changed);
+  CHECK_THROWS_WITH(ReplayProgramRow(folder / "out", "2", FileInputs()),
+                    Contains("row 2 comes out different"));
+}
+
 }  // namespace
 }  // namespace rift::sessions
