@@ -58,7 +58,9 @@ TEST_CASE("A folder of outputs is no file, no name of one and not stdout") {
   CHECK_THROWS_WITH(RequireFolderName("-", "a sweep"),
                     "--out -: a sweep is a folder of files and cannot go to stdout: name a folder");
   CHECK_THROWS_WITH(RequireFolderName(folder / "a", "a sweep"), Contains("is a file, and a sweep"));
-  for (const char* name : {"x.csv", "x.html", "x.json", "x.mp4", "x.svg", "x.yaml", "x.zip"}) {
+  for (const char* name :
+       {"x.csv", "x.html", "x.json", "x.log", "x.mcap", "x.mp4", "x.pdf", "x.png", "x.svg", "x.tum",
+        "x.txt", "x.xlsx", "x.yaml", "x.yml", "x.zip"}) {
     CHECK_THROWS_WITH(RequireFolderName(folder / name, "a run"),
                       Contains("is the name of a file, and a run is a folder"));
   }

@@ -34,9 +34,9 @@ struct Fitted {
   void WriteLog(int trial, double mismatch) const {
     const experiment::Experiment robot =
         LoadText(kDrive, {"simulation.motor.mismatch=" + std::to_string(mismatch)});
-    const sweep::SimulatedRun run = sweep::Simulate(sweep::SimulatedTrialOf(
-        robot, experiment::TaskOf(robot).Start(), static_cast<std::uint64_t>(trial), "robot.yaml",
-        FileInputs()));
+    const sweep::SimulatedRun run = sweep::Simulate(
+        sweep::SimulatedTrialOf(robot, experiment::TaskOf(robot).Start(),
+                                static_cast<std::uint64_t>(trial), "robot.yaml", FileInputs()));
     test::WriteText(folder / ("log" + std::to_string(trial) + ".csv"),
                     trajectory::WriteRift(run.result.trajectory));
   }
@@ -100,8 +100,7 @@ TEST_CASE("A fit comes back from the journal that keeps it, with its notes but n
   CHECK(entry.status == "ok");
   CHECK(std::isnan(entry.gap_m));
   journal.Add(kept.key(), entry);
-  const auto found =
-      kept.Find(journal, [&](const std::string& line) { again.push_back(line); });
+  const auto found = kept.Find(journal, [&](const std::string& line) { again.push_back(line); });
   REQUIRE(found);
   CHECK(found->calibration.parameters[0].value == Approx(0.05).margin(0.03));
   std::vector<std::string> notes;
@@ -164,8 +163,8 @@ TEST_CASE("A fit on a cluster that is told to stop finds nothing, and its shard 
   SweepObserver observer = ObserverOf(told);
   observer.watch_for_stop = [] { return [] { return false; }; };
   sweep::Evaluator evaluator(experiment, "fit.yaml", FileInputs());
-  CHECK_FALSE(Fit(evaluator, {.out = out, .cluster = &options}, observer,
-                  [](const std::string&) {}));
+  CHECK_FALSE(
+      Fit(evaluator, {.out = out, .cluster = &options}, observer, [](const std::string&) {}));
   fitted.WriteLog(1, 0.02);
   const ShardFile shard = ReadShard(out / "slurm/1/0.shard", experiment);
   CHECK_THROWS_WITH(

@@ -44,7 +44,8 @@ struct Nodes {
     is_busy = true;
     std::error_code none;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(out / "slurm", none)) {
-      if (entry.path().extension() != ".shard" || !std::filesystem::exists(out / "shards")) continue;
+      if (entry.path().extension() != ".shard" || !std::filesystem::exists(out / "shards"))
+        continue;
       if (!computed.insert(entry.path()).second) continue;
       const ShardFile shard = ReadShard(entry.path(), experiment);
       sizes.push_back(shard.shard.requests.size());
