@@ -1,86 +1,40 @@
 // A sweep in its folder, driven by somebody who is no terminal.
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
-#include "rift/sessions/sweep/folder.hpp"
 #include "rift/sessions/sweep/further_questions.hpp"
 #include "rift/sessions/sweep/journal.hpp"
-#include "rift/sessions/sweep/run.hpp"
+#include "sessions/sweep_folder.hpp"
 #include "support/processes/process.hpp"
 
 namespace rift::sessions {
 namespace {
 
-/// What a sweep told, and when it is asked to end.
-struct Told {
-  int most = 0;
-  int trials = 0;
-  int from_journal = 0;
-  std::vector<std::string> ends{};
-  int stops_after = 1'000'000;  ///< trials
-};
-
-class Counter final : public TrialProgress {
- public:
-  explicit Counter(Told& told) : told_(told) {}
-
-  void Seen(const sweep::TrialRow&, bool from_journal) override {
-    ++told_.trials;
-    told_.from_journal += from_journal;
-  }
-  void Warn(const std::string&) override {}
-  void Tick() override {}
-  void Tick(const sweep::ReferenceProgress&) override {}
-  void End(const std::string& state) override { told_.ends.push_back(state); }
-
- private:
-  Told& told_;
-};
-
-SweepObserver ObserverOf(Told& told) {
-  return {.say = [](const std::string&) {},
-          .begin =
-              [&told](const SweepSize& size) {
-                told.most = size.most;
-                return std::make_unique<Counter>(told);
-              },
-          .shards = [](const sweep::ShardCounts&) {},
-          .watch_for_stop = [&told] { return [&told] { return told.trials < told.stops_after; }; }};
-}
-
 experiment::Experiment Grid(const std::vector<std::string>& overrides = {}) {
-  return experiment::LoadExperiment("grid.yaml", overrides, [](const std::string&) {
-    return std::string(
-        "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]\n"
-        "gap: {threshold_m: 0.01}\nreference: {kind: path, trials: 10}\n"
-        "space: {surface: [ground, parchment]}\n");
-  });
+  return LoadText(kShortWay +
+                      "gap: {threshold_m: 0.01}\nreference: {kind: path, trials: 10}\n"
+                      "space: {surface: [ground, parchment]}\n",
+                  overrides);
 }
 
 /// The table of a sweep in a folder.
 std::optional<std::string> Run(const experiment::Experiment& experiment, const std::string& out,
-                               Told& told) {
-  std::filesystem::create_directories(out);
-  sweep::Evaluator evaluator(experiment, "grid.yaml",
-                             {[](const std::string& path) { return files::ReadIfThere(path); },
-                              [](const std::string&) {}});
-  const auto result = RunSweep(evaluator, {.out = out}, ObserverOf(told));
+                               SweepTold& told) {
+  const auto result = SweepInto(out, experiment, told);
   if (!result) return std::nullopt;
-  SaveResult(out, evaluator, *result);
   return report::TableCsv(*result);
 }
 
 TEST_CASE("A sweep tells its observer every trial and how it ended") {
   const test::TemporaryFolder folder;
-  Told told;
+  SweepTold told;
   const auto table = Run(Grid(), folder / "out", told);
   REQUIRE(table);
-  CHECK(told.most == 20);
+  CHECK(told.size.most == 20);
   CHECK(told.trials == 20);
   CHECK(told.from_journal == 0);
   CHECK(told.ends == std::vector<std::string>{"done"});
@@ -90,7 +44,7 @@ TEST_CASE("A sweep tells its observer every trial and how it ended") {
 
 TEST_CASE("A sweep that its observer stops goes on from its journal and ends the same") {
   const test::TemporaryFolder folder;
-  Told whole, stopped{.stops_after = 3}, rest;
+  SweepTold whole, stopped{.stops_after = 3}, rest;
   const auto table = Run(Grid(), folder / "whole", whole);
   CHECK_FALSE(Run(Grid(), folder / "out", stopped));
   CHECK(stopped.ends == std::vector<std::string>{"stopped"});
@@ -141,11 +95,9 @@ TEST_CASE("A folder holds another experiment where no journal says so by itself"
 
 TEST_CASE("Questions that cost trials are answered into the folder, and not at all when stopped") {
   const test::TemporaryFolder folder;
-  Told told, stopped{.stops_after = 0};
+  SweepTold told, stopped{.stops_after = 0};
   const experiment::Experiment grid = Grid({"gap.threshold_m=0.0001"});
-  sweep::Evaluator evaluator(grid, "grid.yaml",
-                             {[](const std::string& path) { return files::ReadIfThere(path); },
-                              [](const std::string&) {}});
+  sweep::Evaluator evaluator(grid, "grid.yaml", FileInputs());
   const auto result = RunSweep(evaluator, {.out = folder.Path()}, ObserverOf(told));
   REQUIRE(result);
   CHECK_FALSE(Answer({}, folder.Path(), *result, evaluator, {}, ObserverOf(told))->shrunk);

@@ -12,9 +12,9 @@ namespace {
 
 struct Made {
   std::string header = "clock,px,py";
-  double step = 0.05;   ///< of the clock from row to row
-  double speed = 0.3;   ///< of x, over the clock
-  double yaw = 0.0;     ///< largest, where the header has one more column
+  double step = 0.05;  ///< of the clock from row to row
+  double speed = 0.3;  ///< of x, over the clock
+  double yaw = 0.0;    ///< largest, where the header has one more column
 };
 
 std::string GuessOf(const Made& made) {
@@ -69,8 +69,8 @@ TEST_CASE("Names are parted at humps, dots, blanks and brackets, and end in thei
   CHECK(GuessOf({.header = "millis,x_ft,y_ft"}).substr(0, 11) == "t=millis:ms");
   CHECK(GuessOf({.header = "micros,x,y"}).substr(0, 11) == "t=micros:us");
   CHECK(GuessOf({.header = "nanos,x,y"}).substr(0, 10) == "t=nanos:ns");
-  CHECK(GuessOf({.header = "t,x,y,heading_degrees", .yaw = 1.0}).ends_with(
-      "yaw=heading_degrees:deg"));
+  CHECK(GuessOf({.header = "t,x,y,heading_degrees", .yaw = 1.0})
+            .ends_with("yaw=heading_degrees:deg"));
   CHECK(GuessOf({.header = "t,x,y,heading_radians", .yaw = 1.0}).ends_with("yaw=heading_radians"));
 }
 
