@@ -268,6 +268,8 @@ TEST_CASE("A template that cannot be filled in says which field and which value"
   CHECK_THROWS_WITH(Fill("{surface:.2f}", kTheta),
                     "path '{surface:.2f}' cannot be filled in: {surface:.2f} does not fit 'ice'");
   CHECK_THROWS_WITH(Fill("{v_min:03d}", kTheta), Contains("{v_min:03d} does not fit '0.20'"));
+  CHECK_THROWS_WITH(Fill("{v_min:.2f}{surface:.1f}", kTheta),
+                    Contains("{surface:.1f} does not fit 'ice'"));
   for (const char* broken : {"{a", "a}", "{a{b}}", "}{", "{{a}"}) {
     INFO(broken);
     CHECK_THROWS_WITH(TemplateNames(broken),

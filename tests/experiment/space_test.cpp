@@ -3,10 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "rift/experiment/ensemble.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/experiment/program_parameters.hpp"
 #include "rift/experiment/space_yaml.hpp"
 #include "rift/yaml/node.hpp"
+#include "support/processes/process.hpp"
 
 namespace rift::experiment {
 namespace {
@@ -156,6 +158,9 @@ TEST_CASE(
   const std::string own = "space: {control.v_min: {min: 0.1, max: 0.2, nominal: 0.15}}\n";
   CHECK_THROWS_WITH(Load("goal: falsify\n" + own),
                     Contains("nominal is of a program's parameters"));
+  CHECK_THROWS_WITH(Load("goal: falsify\nspace: {control.v_max: [0.3], control.v_min: {min: 0.1, "
+                         "max: 0.2, nominal: 0.15}}\n"),
+                    Contains("space.control.v_min: nominal is of a program's parameters"));
 }
 
 TEST_CASE("Only keys that change a simulated trial are an axis, and whole keys take whole ranges") {
@@ -221,6 +226,53 @@ TEST_CASE("A fit has its ranges and priors, and starts at the experiment's own v
   CHECK(fit[1].key == "simulation.link.delay_s");
   CHECK(fit[1].prior_mean == 0.05);
   CHECK(fit[1].prior_sd == 0.02);
+}
+
+TEST_CASE("A fit comes back from what was saved of it, with what is known and without") {
+  const Experiment first = LoadFit(
+      "{motor.mismatch: {min: -0.1, max: 0.2}, link.delay_s: {min: 0, max: 0.3, mean: 0.05, sd: "
+      "0.02}}");
+  const Experiment again = Load(WriteExperiment(first));
+  CHECK(WriteExperiment(again) == WriteExperiment(first));
+  const auto& fit = again.calibrate.fit.list;
+  REQUIRE(fit.size() == 2);
+  CHECK(fit[0].min == -0.1);
+  CHECK(fit[0].max == 0.2);
+  CHECK(fit[0].prior_sd == 0.0);
+  CHECK(fit[1].prior_mean == 0.05);
+  CHECK(fit[1].prior_sd == 0.02);
+}
+
+TEST_CASE("An argument of a program that is a file beside the experiment is that file") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "sim.py", "");
+  const std::string file = folder / "task.yaml";
+  const auto words = [&](const std::string& run) {
+    return LoadExperiment(file, {},
+                          [&](const std::string&) {
+                            return "goal: falsify\ncandidate: {kind: program, run: " + run +
+                                   "}\nreference: {kind: nominal}\nspace: {a: [1]}\n";
+                          })
+        .candidate.run.words;
+  };
+  CHECK(words("[python3, sim.py, --mu, \"{a}\", 0.5, \"\"]") ==
+        std::vector<std::string>{"python3", folder / "sim.py", "--mu", "{a}", "0.5", ""});
+  CHECK(words("[none.py]") == std::vector<std::string>{"none.py"});
+  CHECK_THROWS_WITH(words("sim.py"), Contains("must be a list: [python3, sim.py, ...]"));
+  CHECK_THROWS_WITH(words("[[1]]"), Contains("every argument must be a text or a number"));
+}
+
+TEST_CASE("An ensemble has each key once, and in each draw a value for each") {
+  const auto check = [](const Ensemble& ensemble) { ensemble.Check(); };
+  CHECK_NOTHROW(check({}));
+  CHECK_NOTHROW(check({{"a", "b"}, {{1.0, 2.0}, {3.0, 4.0}}}));
+  CHECK_THROWS_WITH(check({{"a", "b", "a"}, {{1.0, 2.0, 3.0}}}), "keys: a stands there twice");
+  CHECK_THROWS_WITH(check({{"a"}, {}}), Contains("keys and draws go together"));
+  CHECK_THROWS_WITH(check({{}, {{1.0}}}), Contains("keys and draws go together"));
+  CHECK_THROWS_WITH(check({{"a", "b"}, {{1.0}, {3.0, 4.0}}}),
+                    "draws[0] has 1 values, but there are 2 keys");
+  CHECK_THROWS_WITH(check({{"a"}, {{1.0}, {3.0, 4.0}}}),
+                    "draws[1] has 2 values, but there are 1 keys");
 }
 
 TEST_CASE(

@@ -26,7 +26,8 @@ using Catch::Matchers::Contains;
 struct Address {
   explicit Address(const std::string& url) {
     std::smatch found;
-    REQUIRE(std::regex_match(url, found, std::regex(R"(http://127\.0\.0\.1:(\d+)(/[0-9a-f]{32}/))")));
+    REQUIRE(
+        std::regex_match(url, found, std::regex(R"(http://127\.0\.0\.1:(\d+)(/[0-9a-f]{32}/))")));
     port = std::stoi(found[1]);
     path = found[2];
   }
@@ -88,9 +89,8 @@ TEST_CASE("Other paths, other methods and files that are gone are not found, and
   test::WriteText(folder / "live", "it runs");
   PageServer server({folder / "live"});
   const Address at(server.Url());
-  for (const std::string& line :
-       {std::string("GET /"), "GET " + at.path + "x", "POST " + at.path,
-        "GET /" + std::string(32, '0') + "/", std::string("GET /live")}) {
+  for (const std::string& line : {std::string("GET /"), "GET " + at.path + "x", "POST " + at.path,
+                                  "GET /" + std::string(32, '0') + "/", std::string("GET /live")}) {
     INFO(line);
     const std::string answer = Ask(at.port, line);
     CHECK_THAT(answer, Contains("404 Not Found") && !Contains("it runs"));

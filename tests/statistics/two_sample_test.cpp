@@ -128,5 +128,55 @@ TEST_CASE("The same seed gives the same test") {
   CHECK(a.accuracy == other.accuracy);
 }
 
+TEST_CASE(
+    "Every feature has its evidence, the one that tells first, and numbers of groups have gaps") {
+  // Feature 1 tells all, 0 nothing, 2 the opposite way round; groups 0 and 5.
+  std::vector<Observation> observations;
+  for (const size_t group : {0, 5}) {
+    for (int i = 0; i < 4; ++i) {
+      const bool is_first = i < 2;
+      observations.push_back(
+          {.features = {double(i % 2), is_first ? 1.0 : 0.0, is_first ? -3.0 : 4.0},
+           .is_first = is_first,
+           .group = group});
+    }
+  }
+  TwoSampleOptions options;
+  options.permutations = 19;
+  const TwoSampleTest test = TestTwoSamples(observations, options, {}, 1);
+  CHECK(test.groups == 2);
+  CHECK(test.first == 4);
+  CHECK(test.second == 4);
+  CHECK(test.accuracy == 1.0);
+  CHECK(test.p >= 1.0 / 20.0);
+  CHECK(test.p <= 1.0);
+  REQUIRE(test.features.size() == 3);
+  CHECK(test.features[0].feature == 1);
+  CHECK(test.features[0].accuracy == 1.0);
+  CHECK(test.features[0].weight > 0.0);
+  CHECK(test.features[1].feature == 2);
+  CHECK(test.features[1].accuracy == 1.0);
+  CHECK(test.features[1].weight < 0.0);
+  CHECK(test.features[2].feature == 0);
+  CHECK(test.features[2].accuracy == Approx(0.5));
+  options.permutations = 0;
+  CHECK(std::isnan(TestTwoSamples(observations, options, {}, 1).p));
+  CHECK(TestTwoSamples(observations, options, {}, 1).accuracy == 1.0);
+}
+
+TEST_CASE("One observation of the first sample among others is told") {
+  std::vector<Observation> observations;
+  for (size_t group = 0; group < 3; ++group) {
+    observations.push_back({.features = {0.0}, .is_first = false, .group = group});
+    observations.push_back({.features = {1.0}, .is_first = true, .group = group});
+  }
+  observations.resize(4);
+  const TwoSampleTest test = TestTwoSamples(observations, {}, {}, 1);
+  CHECK(test.first == 2);
+  CHECK(test.accuracy == 1.0);
+  std::erase_if(observations, [](const Observation& one) { return !one.is_first; });
+  CHECK(std::isnan(TestTwoSamples(observations, {}, {}, 1).accuracy));
+}
+
 }  // namespace
 }  // namespace rift::statistics
