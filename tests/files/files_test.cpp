@@ -18,6 +18,7 @@
 #include "rift/files/outputs.hpp"
 #include "rift/files/process_end.hpp"
 #include "rift/files/shell_word.hpp"
+#include "support/processes/file_size_limit.hpp"
 #include "support/processes/process.hpp"
 
 namespace rift::files {
@@ -134,6 +135,49 @@ TEST_CASE("A folder is held by one at a time and free again afterwards") {
   CHECK_NOTHROW(FolderLock(held));
   test::WriteText(folder / "file", "x");
   CHECK_THROWS_WITH(FolderLock(folder / "file"), Contains("cannot "));
+}
+
+TEST_CASE("A text that finds no room stands in the file up to its last whole line") {
+  std::signal(SIGXFSZ, SIG_IGN);  // as in the program (terminal/process_start.hpp)
+  const test::TemporaryFolder folder;
+  AppendFile file(folder / "log");
+  file.Append("first\nsecond\n");
+  {
+    const test::FileSizeLimit limit(25);
+    CHECK_THROWS_WITH(file.Append("third\nfourth\nfifth\n"),
+                      "cannot write " + (folder / "log") + ": File too large");
+  }
+  CHECK(ReadFile(folder / "log") == "first\nsecond\nthird\n");
+  file.Append("again\n");
+  CHECK(ReadFile(folder / "log") == "first\nsecond\nthird\nagain\n");
+  file.Append("");
+  CHECK_NOTHROW(file.Sync());
+}
+
+TEST_CASE("A file without a folder is written where the process is, and a device as it is") {
+  const test::TemporaryFolder folder;
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.Path());
+  CHECK_NOTHROW(WriteFile("a.txt", "here"));
+  CHECK(ReadFile("a.txt") == "here");
+  fs::current_path(before);
+  CHECK(ReadFile(folder / "a.txt") == "here");
+  CHECK_NOTHROW(WriteFile("/dev/null", "nowhere"));
+  CHECK_THROWS_WITH(WriteFile("/dev/full", "no room"), Contains("cannot write /dev/full"));
+}
+
+TEST_CASE("Forty links lead to a file and one more leads nowhere") {
+  const test::TemporaryFolder folder;
+  fs::path last = folder / "file";
+  for (int i = 1; i <= 41; ++i) {
+    const fs::path link = folder / ("link" + std::to_string(i));
+    fs::create_symlink(last, link);
+    last = link;
+  }
+  CHECK_THROWS_WITH(WriteFile(folder / "link41", "x"), Contains("cannot write"));
+  CHECK_FALSE(fs::exists(folder / "file"));
+  CHECK_NOTHROW(WriteFile(folder / "link40", "x"));
+  CHECK(ReadFile(folder / "file") == "x");
 }
 
 TEST_CASE("A folder that is let go while another waits for it is had") {

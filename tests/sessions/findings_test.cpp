@@ -139,6 +139,22 @@ TEST_CASE(
   CHECK_THAT(files::ReadFile(out / "report.html"), Contains("robot, trial 2"));
 }
 
+TEST_CASE("A page draws the references of a hundred rows and of no more") {
+  const test::TemporaryFolder logs;
+  for (int trial = 1; trial <= 102; ++trial) {
+    const std::string stem = logs / std::to_string(trial);
+    test::WriteText(stem + "_real.csv", Path(0.001 * trial, 12));
+    test::WriteText(stem + "_sim.csv", Path(0.0, 12));
+  }
+  Swept swept(LoadText("candidate: {kind: logs, path: \"" + (logs / "{trial}_sim.csv") +
+                       "\"}\nreference: {kind: logs, trials: 102, path: \"" +
+                       (logs / "{trial}_real.csv") + "\"}\ngap: {samples: 50}\n"));
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
+  CHECK(evidence.references.size() == 100);
+  CHECK(evidence.reference_of_row[99] == 99);
+  CHECK(evidence.reference_of_row[100] == -1);
+}
+
 TEST_CASE("Equal references are kept once, and a row without a log has none") {
   const test::TemporaryFolder logs;
   const experiment::Experiment experiment = LogsIn(logs);

@@ -162,6 +162,8 @@ TEST_CASE("A cell that is no number is refused by its column, a row without posi
   CHECK_THROWS_WITH(Read("a,b,c\n0,1,2\n1,two,3\n", "t=a,x=b,y=c"),
                     "log.csv:3: column b is 'two': a finite number is expected");
   CHECK_THROWS_WITH(Read("a,b,c\n0,1,2\n,2,3\n", "t=a,x=b,y=c"), "log.csv:3: column a is empty");
+  CHECK_THROWS_WITH(Read("a,n,b,c\n0,0,1,2\n,5,2,3\n", "t=a+n:ns,x=b,y=c"),
+                    "log.csv:3: column a is empty");
   CHECK_THROWS_WITH(Read("a,b,c\n0,1,2\n1,,3\n", "t=a,x=b,y=c"), "log.csv:3: column b is empty");
   CHECK_THROWS_WITH(Read("a,b,c\n0,1,2\n1,2,\n", "t=a,x=b,y=c"), "log.csv:3: column c is empty");
   const Log log =
@@ -177,6 +179,7 @@ TEST_CASE("Cells stand between commas, semicolons, tabs or blanks, whichever the
   CHECK(y_of("t,x,y\n0,1,2.5\n1,2,3.5\n") == 3.5);
   CHECK(y_of("t;x;y\n0;1;2,5\n1;2;3,5\n") == 3.5);
   CHECK(y_of("t;x;y\n0;1;2.5\n1;2;3.5\n") == 3.5);
+  CHECK(Read("t,x,y;m\n0,1,2.5\n1,2,3.5\n", "t=t,x=x,y=y;m").poses[1].y_m == 3.5);
   CHECK(y_of("t\tx\ty\n0\t1\t2.5\n1\t2\t3.5\n") == 3.5);
   CHECK(y_of("t x y\n0 1 2.5\n1 2 3.5\n") == 3.5);
   CHECK(y_of("# a comment\n# t x y\n0 1 2.5\n\n# more\n1 2 3.5\n") == 3.5);

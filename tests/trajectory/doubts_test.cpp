@@ -123,6 +123,21 @@ TEST_CASE("A robot faster than ten metres a second has its positions in another 
                                          "than 10: are its positions in mm or cm?"));
 }
 
+TEST_CASE("A robot that stands most of the time is judged by its speed while it moves") {
+  Trajectory log = Curve();
+  for (StampedPose& pose : log.poses) {
+    pose.x_m *= 40.0;
+    pose.y_m *= 40.0;
+  }
+  const StampedPose last = log.poses.back();
+  for (int i = 1; i <= 300; ++i) {
+    log.poses.push_back(last);
+    log.poses.back().t_s += 0.05 * i;
+  }
+  REQUIRE(Doubts(log).size() == 1);
+  CHECK_THAT(Doubts(log)[0], StartsWith("it moves at 12 m/s"));
+}
+
 TEST_CASE("A path within three millimetres is metres read as a smaller unit") {
   const auto scaled = [](double extent_m) {
     const Trajectory log = Curve();

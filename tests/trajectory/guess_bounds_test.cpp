@@ -44,6 +44,15 @@ TEST_CASE("The unit of a clock follows from its steps") {
   CHECK(unit_at(5.1e5) == "t=clock:ns");
 }
 
+TEST_CASE("A column that steps back a little is no time") {
+  std::string text = "time,px,py\n";
+  for (int i = 0; i < 60; ++i) {
+    text += fmt::format("{:.3f},{:.4f},{:.4f}\n", 0.05 * i - (i == 30 ? 0.1 : 0.0), 0.015 * i,
+                        0.01 * (i % 7));
+  }
+  CHECK(GuessColumns(text, "log", "").find("t=time") == std::string::npos);
+}
+
 TEST_CASE("A path faster than ten metres a second is in millimetres") {
   CHECK(GuessOf({.speed = 9.9}) == "t=clock,x=px,y=py");
   CHECK(GuessOf({.speed = 10.1}) == "t=clock,x=px:mm,y=py:mm");
