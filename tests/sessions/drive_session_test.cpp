@@ -1,5 +1,8 @@
 // Drives before and after they are made: their plan, their start, the command before each, and a
 // drive seen again.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
@@ -195,6 +198,27 @@ TEST_CASE(
                     "2 of 3 drives did not reach the end; the same command asks about them again"});
 }
 
+TEST_CASE("An earlier try is set aside under the next number before the drive is made again") {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> told;
+  Console console = Answering('a', told);
+  console.show = [](const std::string&) {};
+  console.hide = console.ring = [] {};
+  DriveSeries series{folder.Path(), PlanRepeats(PaperTask(), 1, folder.Path())};
+  series.setup.yes = true;
+  series.setup.address = {"/dev/none", "none", folder / "none.yaml"};
+  for (int tries = 1; tries <= 2; ++tries) {
+    fs::create_directories(folder / "1.unfinished");
+    test::WriteText(folder / "1.unfinished/trajectory.csv", std::to_string(tries));
+    // There is no calibration: the drive itself cannot begin.
+    CHECK_THROWS_WITH(DriveAll(series, console, [] {}), Contains("none.yaml"));
+    CHECK_FALSE(fs::exists(folder / "1.unfinished"));
+  }
+  CHECK(files::ReadFile(folder / "1.unfinished1/trajectory.csv") == "1");
+  CHECK(files::ReadFile(folder / "1.unfinished2/trajectory.csv") == "2");
+  CHECK_FALSE(fs::exists(folder / "1"));
+}
+
 TEST_CASE(
     "What a drive depends on keeps another series out, what may change from day to day does not") {
   const test::TemporaryFolder folder;
@@ -244,10 +268,22 @@ TEST_CASE("A scene command that fails says how, by its code or its signal") {
                     "--before-each: no_such_program_anywhere could not be run");
   CHECK_NOTHROW(SceneCommand({"sh", "-c", "echo text; printf 'no line end'"}));
   CHECK_FALSE(SceneCommand({"sh", "-c", "echo text"}).address());
-  // Its input is empty, so that no key is taken from the person.
-  CHECK_NOTHROW(SceneCommand({"sh", "-c", "! read line"}));
   // A line of JSON at the end of the output, without an end of its own.
   CHECK(SceneCommand({"printf", "{\"port\": \"/dev/a\"}"}).address()->port == "/dev/a");
+}
+
+TEST_CASE("The input of a scene command is empty, so that no key is taken from the person") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "keys", "a key\n");
+  const int own = ::dup(STDIN_FILENO), keys = ::open((folder / "keys").c_str(), O_RDONLY);
+  ::dup2(keys, STDIN_FILENO);
+  CHECK_NOTHROW(SceneCommand({"sh", "-c", "! read line"}));
+  char first = 0;
+  CHECK(::read(STDIN_FILENO, &first, 1) == 1);
+  CHECK(first == 'a');
+  ::dup2(own, STDIN_FILENO);
+  ::close(own);
+  ::close(keys);
 }
 
 const geometry::Pose2 kStart{1.0, 2.0, 0.0};
