@@ -1,0 +1,110 @@
+// A log whose yaw rate answers known commands exactly, by a known delay, gain and bias.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "rift/trial/loop_delay.hpp"
+
+namespace rift::trial {
+namespace {
+
+constexpr double kTwoPi = 6.283185307179586;
+
+/// Steering (right minus left) that changes every 0.35 s, and what a heading makes of it.
+double SteeringAt(double t_s) {
+  if (t_s < 0.0) return 0.0;
+  const double values[] = {0.2, -0.1, 0.3, 0.0, -0.25, 0.1, 0.4, -0.3};
+  return values[static_cast<size_t>(t_s / 0.35) % 8];
+}
+
+struct Made {
+  trajectory::Trajectory log;
+  std::vector<SentCommand> sent;
+};
+
+/// Ten seconds at 20 Hz, 0.2 m/s, from `starts_s` on the clock.
+Made Answering(double lag_s, double gain, double bias, double starts_s = 100.0) {
+  Made made;
+  for (int i = 0; i * 0.35 < 10.0; ++i) {
+    const double t_s = 0.35 * i, half = 0.5 * SteeringAt(t_s + 1e-6);
+    made.sent.push_back({starts_s + t_s, {0.3 - half, 0.3 + half}});
+  }
+  double yaw_rad = 3.0;  // it passes half a turn
+  constexpr double kStep_s = 1e-3;
+  for (int i = 0; i <= 10'000; ++i) {
+    const double t_s = i * kStep_s;
+    if (i % 50 == 0) {
+      made.log.poses.push_back(
+          {.t_s = starts_s + t_s, .x_m = 0.2 * t_s, .yaw_rad = std::remainder(yaw_rad, kTwoPi)});
+    }
+    yaw_rad += kStep_s * (gain * SteeringAt(t_s + 0.5 * kStep_s - lag_s) + bias);
+  }
+  return made;
+}
+
+TEST_CASE("A command's delay, gain and bias are found as they are") {
+  for (const double lag_s : {0.0, 0.12, 0.3}) {
+    const Made made = Answering(lag_s, 5.0, 0.2);
+    const LoopDelay found =
+        EstimateCommandDelay(made.log, made.sent, {.max_lag_s = 0.6, .lag_step_s = 0.02});
+    INFO(lag_s);
+    CHECK(found.lag_s == Approx(lag_s).margin(0.005));
+    CHECK(found.gain_rad_s == Approx(5.0).epsilon(0.02));
+    CHECK(found.bias_rad_s == Approx(0.2).margin(0.02));
+    CHECK(found.r2 > 0.99);
+    REQUIRE(found.lags_s.size() == 31);
+    CHECK(found.lags_s[30] == Approx(0.6));
+    CHECK(found.r2_at_lag.size() == 31);
+  }
+}
+
+TEST_CASE("Steering that turns the robot the other way explains nothing at its delay") {
+  const Made made = Answering(0.12, -5.0, 0.0);
+  const LoopDelay found =
+      EstimateCommandDelay(made.log, made.sent, {.max_lag_s = 0.2, .lag_step_s = 0.02});
+  CHECK(found.r2_at_lag[6] == 0.0);
+  const Made still = Answering(0.12, 0.0, 0.0);
+  const LoopDelay none = EstimateCommandDelay(still.log, still.sent);
+  CHECK(none.lag_s == -1.0);
+  CHECK(none.r2 == 0.0);
+}
+
+TEST_CASE("A log counts from where the robot has moved so far on") {
+  const Made made = Answering(0.1, 5.0, 0.0);
+  const auto intervals = [&](double moved_m) {
+    return EstimateCommandDelay(made.log, made.sent, {.moved_m = moved_m}).intervals;
+  };
+  CHECK(intervals(0.0) == 200);
+  CHECK(intervals(0.4995) == 150);  // 0.01 m a row
+  CHECK(intervals(1.0005) == 99);
+}
+
+TEST_CASE("Lags must step, logs must have rows and a yaw, and commands must be there") {
+  Made made = Answering(0.1, 5.0, 0.0);
+  const auto refusal = [&](const LoopDelayOptions& options) -> std::string {
+    try {
+      EstimateCommandDelay(made.log, made.sent, options);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(refusal({.lag_step_s = 0.0}).starts_with("lag_step_s is 0 and max_lag_s"));
+  CHECK(refusal({.max_lag_s = -0.1}).find("max_lag_s -0.1") != std::string::npos);
+  CHECK(refusal({.max_lag_s = 0.0}).empty());
+  CHECK(refusal({.moved_m = 1.92}) ==
+        "the loop delay needs 10 intervals in motion, and the log has 8");
+  const auto log = made.log;
+  made.log.poses.resize(10);
+  CHECK(refusal({}) == "the loop delay needs yaw and more than 10 poses, and the log has 10");
+  made.log = log;
+  made.log.poses[5].yaw_rad = std::nan("");
+  CHECK(refusal({}) ==
+        "the loop delay needs yaw and more than 10 poses, and the log has 201 without yaw");
+  made.log = log;
+  made.sent.clear();
+  CHECK(refusal({}) == "the loop delay needs commands, and none was sent");
+}
+
+}  // namespace
+}  // namespace rift::trial
