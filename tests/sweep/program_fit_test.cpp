@@ -1,0 +1,197 @@
+// A fit of somebody else's program, here a line of awk: which runs it asks for, and what it finds.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "rift/files/files.hpp"
+#include "rift/sweep/calibrate/identification.hpp"
+#include "rift/trajectory/log.hpp"
+#include "support/inputs/paths.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/processes/process.hpp"
+#include "sweep/calibrate/program_twins.hpp"
+
+namespace rift::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using trajectory::Trajectory;
+
+/// A way of `k` metres that ends a little to the left by the seed's last digit.
+class Bench {
+ public:
+  explicit Bench(const std::string& before = "") {
+    test::WriteText(folder_ / "sim.sh",
+                    "echo \"$2 $3\" >> '" + folder_ / "asked" + "'\n" + before +
+                        "\nawk -v k=\"$2\" -v s=\"$3\" 'BEGIN { print \"t_s,x_m,y_m,yaw_rad\"; "
+                        "for (i = 0; i <= 40; ++i) print i / 20 \",\" k * i / 40 \",\" "
+                        "0.001 * (s % 10) * i / 40 \",0\" }' > \"$1\"\n");
+    experiment.goal = experiment::Goal::kCalibrate;
+    experiment.seed = 30;
+    experiment.candidate.kind = experiment::CandidateKind::kProgram;
+    experiment.candidate.run.words = {"sh", folder_ / "sim.sh", "{out}", "{k}", "{seed}"};
+    experiment.reference.kind = experiment::ReferenceKind::kLogs;
+    experiment.reference.path.text = "{s}_{trial}.csv";
+    experiment.reference.trials.names = {"1", "2"};
+    experiment.space.parameters = {{.key = "s", .levels = {{"a", {}}, {"b", {}}}}};
+    experiment.calibrate.fit.list = {{.key = "k", .min = 0.5, .max = 2.0, .start = 0.8}};
+    experiment.calibrate.judge_runs = 2;
+    experiment.calibrate.method.runs = 1;
+    experiment.calibrate.method.iterations = 3;
+    experiment.calibrate.method.corrections = 0;
+    experiment.calibrate.method.resamples = 50;
+    experiment.likeness.shuffles = 19;
+    experiment.likeness.bootstrap.resamples = 50;
+    for (const char* name : {"a_1.csv", "a_2.csv", "b_1.csv", "b_2.csv"}) {
+      logs[name] = trajectory::WriteRift(test::Moved(test::StraightPath(1.2, 41), {0, 0, 0.001}));
+    }
+  }
+
+  Inputs AsInputs() const {
+    return {[this](const std::string& path) -> std::optional<std::string> {
+              const auto found = logs.find(path);
+              return found != logs.end() ? std::optional(found->second) : files::ReadIfThere(path);
+            },
+            [](const std::string&) {}};
+  }
+  /// What it was asked for since the last call, sorted: "k seed" a line.
+  std::vector<std::string> Asked() const {
+    std::vector<std::string> lines;
+    if (!fs::exists(folder_ / "asked")) return lines;
+    std::istringstream text(test::ReadFile(folder_ / "asked"));
+    for (std::string line; std::getline(text, line);) lines.push_back(line);
+    fs::remove(folder_ / "asked");
+    std::sort(lines.begin(), lines.end());
+    return lines;
+  }
+
+  experiment::Experiment experiment;
+  std::map<std::string, std::string> logs;
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+const Say kSilent = [](const std::string&) {};
+
+TEST_CASE("A program's parameter is found from whole runs, and judged by others") {
+  const Bench bench;
+  Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
+  std::vector<std::string> said;
+  const CalibrationReport report =
+      Identify(evaluator, 1, [&](const std::string& line) { said.push_back(line); });
+  REQUIRE(report.values.size() == 1);
+  CHECK(report.values[0] == Approx(1.2).margin(0.02));
+  CHECK(report.errors.empty());  // nobody can ask a program for the next frames
+  REQUIRE(report.trials.size() == 4);
+  for (const CalibrationTrial& trial : report.trials) {
+    CHECK(trial.gap_after_m < 0.1 * trial.gap_before_m);
+    CHECK(trial.gap_before_m == Approx(0.4).margin(0.01));
+  }
+  CHECK(said[0] == "fitting 1 parameters to 4 logs; 0 held out");
+  CHECK(said[1].starts_with("note: a program is fitted and judged by whole runs"));
+  // Each log has seeds of its own, and those that judge are none that were fitted with.
+  const std::vector<std::string> asked = bench.Asked();
+  const auto has = [&](const std::string& end) {
+    return std::any_of(asked.begin(), asked.end(),
+                       [&](const std::string& line) { return line.ends_with(" " + end); });
+  };
+  for (const char* seed : {"30", "100030", "200030", "300030", "50030", "50031", "350030"}) {
+    INFO(seed);
+    CHECK(has(seed));
+  }
+  CHECK_FALSE(has("31"));
+  CHECK_FALSE(has("50032"));
+}
+
+std::vector<CalibrationLog> Logs(const Bench& bench, double longest_m) {
+  std::vector<CalibrationLog> logs;
+  for (const char* name : {"a_1.csv", "b_1.csv"}) {
+    logs.push_back(
+        {.name = name,
+         .setting = name,
+         .log =
+             trajectory::ReadLog(bench.logs.at(name), name, trajectory::Format::kRift).trajectory,
+         .longest_m = longest_m});
+  }
+  return logs;
+}
+
+std::vector<TrialRequest> Requests() {
+  return {{.theta = {{"a", {}}}, .trial = "1", .seed = 7},
+          {.theta = {{"b", {}}}, .trial = "1", .seed = 500}};
+}
+
+TEST_CASE("Runs that predict have seeds that count up from those of their log") {
+  const Bench bench;
+  Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
+  CandidateRuns runs(evaluator, 1);
+  ProgramTwins twins(runs, Requests(), bench.experiment, "e.yaml", kSilent);
+  CHECK(twins.HasWholeRunsOnly());
+  CalibrationOptions options = OfWholeRuns({});
+  CHECK(options.horizon.most_frames == 1);
+  CHECK(options.horizon.phases == 0);
+  CHECK(options.step == Approx(0.03));
+  options.runs = 3;
+  const auto predictions = twins.Predict(Logs(bench, 9.0), {1.5}, options);
+  CHECK(bench.Asked() ==
+        std::vector<std::string>{"1.5 500", "1.5 501", "1.5 502", "1.5 7", "1.5 8", "1.5 9"});
+  REQUIRE(predictions.size() == 2);
+  CHECK(predictions[0].runs.size() == 3);
+  REQUIRE(predictions[0].motions.size() == 48);
+  CHECK(predictions[0].motions[45] == Approx(0.3).margin(1e-4));  // 1.5 of 1.2 at the end
+  CHECK(predictions[0].motions[46] == Approx(0.008 - 0.0012).margin(1e-4));  // seeds 7, 8 and 9
+  CHECK(predictions[1].motions[46] == Approx(0.001 - 0.0012).margin(1e-4));  // 500, 501 and 502
+  CHECK(predictions[0].frames == std::vector<int>(16, 1));
+  REQUIRE(predictions[0].mean_traits);
+  CHECK((*predictions[0].mean_traits)[kLogSpeed] == Approx(std::log(0.75)).margin(0.02));
+}
+
+TEST_CASE("Runs in the place of logs are tried again with other seeds while they are too long") {
+  const Bench bench;
+  Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
+  CandidateRuns runs(evaluator, 1);
+  ProgramTwins twins(runs, Requests(), bench.experiment, "e.yaml", kSilent);
+  CHECK(twins.LogsAt(Logs(bench, 9.0), {1.5}, 0).size() == 2);
+  CHECK(bench.Asked() == std::vector<std::string>{"1.5 20007", "1.5 20500"});
+  twins.LogsAt(Logs(bench, 9.0), {1.5}, 2);
+  CHECK(bench.Asked() == std::vector<std::string>{"1.5 60007", "1.5 60500"});
+  const std::vector<Trajectory> last = twins.LogsAt(Logs(bench, 1.0), {1.5}, 0);
+  const std::vector<std::string> asked = bench.Asked();
+  CHECK(asked.size() == 20);  // ten tries each
+  CHECK(std::count(asked.begin(), asked.end(), "1.5 9020007") == 1);
+  CHECK(last[0].poses.back().x_m == Approx(1.5));  // the last stands
+}
+
+TEST_CASE("A program that gives no path at all where the fit starts, or none for a log, is told") {
+  const Bench bench("echo 'no such friction' >&2; exit 1");
+  Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
+  CandidateRuns runs(evaluator, 1);
+  ProgramTwins twins(runs, Requests(), bench.experiment, "e.yaml", kSilent);
+  CalibrationOptions options = OfWholeRuns({});
+  options.runs = 1;
+  CHECK_THROWS_WITH(twins.Predict(Logs(bench, 9.0), {1.5}, options),
+                    Catch::StartsWith("e.yaml: not one of 2 runs of the program where the fit "
+                                      "starts gives a path; the first: ") &&
+                        Catch::Contains("no such friction"));
+  CHECK_THROWS_WITH(twins.LogsAt(Logs(bench, 9.0), {1.5}, 0),
+                    Catch::StartsWith("e.yaml: none of 10 runs of the program in the place of "
+                                      "a_1.csv gives a path: "));
+}
+
+TEST_CASE("A path is one of two poses that moves and whose length is a number") {
+  Recording run{.trajectory = test::StraightPath(1.0, 2)};
+  CHECK(HasPath(run));
+  run.trajectory.poses[1].x_m = 0.0;
+  CHECK_FALSE(HasPath(run));
+  run.trajectory.poses[1].x_m = std::nan("");
+  CHECK_FALSE(HasPath(run));
+  run.trajectory.poses.resize(1);
+  CHECK_FALSE(HasPath(run));
+}
+
+}  // namespace
+}  // namespace rift::sweep
