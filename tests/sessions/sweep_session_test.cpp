@@ -58,19 +58,14 @@ TEST_CASE("A sweep that its observer stops goes on from its journal and ends the
 
 TEST_CASE("A search whose time has passed before its first trial tries its first settings") {
   const test::TemporaryFolder folder;
-  const experiment::Experiment search = experiment::LoadExperiment(
-      "search.yaml", {"search.max_s=1e-9", "search.batch=3", "falsify.until=budget"},
-      [](const std::string&) {
-        return std::string(
-            "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]\n"
-            "goal: falsify\nreference: {kind: path, trials: 1}\n"
-            "search: {strategy: random, budget: 100}\n"
-            "space: {control.v_min: {min: 0.1, max: 0.2}}\n");
-      });
-  sweep::Evaluator evaluator(search, "search.yaml",
-                             {[](const std::string& path) { return files::ReadIfThere(path); },
-                              [](const std::string&) {}});
-  Told told;
+  const experiment::Experiment search =
+      LoadText(kShortWay +
+                   "goal: falsify\nreference: {kind: path, trials: 1}\n"
+                   "search: {strategy: random, budget: 100}\n"
+                   "space: {control.v_min: {min: 0.1, max: 0.2}}\n",
+               {"search.max_s=1e-9", "search.batch=3", "falsify.until=budget"});
+  sweep::Evaluator evaluator(search, "search.yaml", FileInputs());
+  SweepTold told;
   const auto result = RunSweep(evaluator, {.out = folder.Path()}, ObserverOf(told));
   REQUIRE(result);
   CHECK(result->rows.size() == 3);
