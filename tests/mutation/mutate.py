@@ -213,17 +213,31 @@ def drawn(faults, seed):
             yield fault
 
 
+RUNNING = set()  # process groups, one for each job
+
+
+def end_all(*_):
+    """What is told to end leaves nothing running; a fault that was planted stays in its copy."""
+    for group in list(RUNNING):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(group, signal.SIGKILL)
+    os._exit(1)
+
+
 def run(command, cwd, timeout_s, log):
     """Exit code, or None after `timeout_s`; the process and its children are ended then."""
     with open(log, "ab") as out:
         process = subprocess.Popen(command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=out, stderr=out,
                                    start_new_session=True)
+        RUNNING.add(process.pid)
         try:
             return process.wait(timeout_s)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
             return None
+        finally:
+            RUNNING.discard(process.pid)
 
 
 def copy_tree(tree):
@@ -354,6 +368,8 @@ def arguments():
 
 def main():
     args = arguments()
+    for stop in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(stop, end_all)
     order = list(drawn(list(all_faults(ROOT, args.room)), args.seed))
     if args.list:
         for fault in order[:args.count]:
