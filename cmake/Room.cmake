@@ -45,7 +45,7 @@ function(rift_room_test name)
   target_link_libraries(rift_${name}_test PRIVATE rift_test_support ${ARG_LIBRARIES})
   rift_compile_options(rift_${name}_test)
   catch_discover_tests(rift_${name}_test TEST_PREFIX "${name}: "
-                       PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "SKIPPED:")
+                       PROPERTIES TIMEOUT 1200 SKIP_REGULAR_EXPRESSION "SKIPPED:")
 endfunction()
 
 # rift_benchmark(NAME target...): tests/benchmarks/NAME_benchmark.cpp with Google Benchmark.
