@@ -3,7 +3,8 @@
 #include <cmath>
 #include <complex>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
+
+#include "opencv_pose.hpp"
 
 namespace rift::vision {
 namespace {
@@ -68,14 +69,8 @@ std::vector<Eigen::Isometry3d> PlanarPoses(const std::vector<Eigen::Vector2d>& i
                       cv::SOLVEPNP_IPPE);
   std::vector<Eigen::Isometry3d> poses;
   for (std::size_t i = 0; i < turns.size(); ++i) {
-    cv::Matx33d rotation;
-    cv::Rodrigues(turns[i], rotation);
-    Eigen::Matrix3d linear;
-    cv::cv2eigen(rotation, linear);
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear() = linear * turned_from_plane;
-    pose.translation() =
-        Eigen::Vector3d(places[i].at<double>(0), places[i].at<double>(1), places[i].at<double>(2));
+    Eigen::Isometry3d pose = IsometryOf(turns[i], places[i]);
+    pose.linear() *= turned_from_plane;
     poses.push_back(pose);
   }
   return poses;

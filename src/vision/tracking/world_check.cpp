@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "opencv_pose.hpp"
+
 namespace rift::vision {
 namespace {
 
@@ -32,18 +34,9 @@ double NearestOfThree_m(const CameraModel& camera, const std::vector<WorldPoint>
                cv::SOLVEPNP_P3P);
   double nearest_m = HUGE_VAL;
   for (std::size_t i = 0; i < turns.size(); ++i) {
-    cv::Matx33d turn;
-    cv::Rodrigues(turns[i], turn);
     CameraModel posed = camera;
-    Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) {
-        camera_from_world.linear()(row, column) = turn(row, column);
-      }
-      camera_from_world.translation()(row) = shifts[i].at<double>(row);
-    }
     posed.world.emplace();
-    posed.world->world_from_camera = camera_from_world.inverse();
+    posed.world->world_from_camera = IsometryOf(turns[i], shifts[i]).inverse();
     if (posed.world->world_from_camera.translation().z() <= 0.0) continue;
     const auto p_m = MapFromPixel(posed, fourth.pixel, fourth.p_in_world.z());
     if (p_m) nearest_m = std::min(nearest_m, (*p_m - fourth.p_in_world.head<2>()).norm());

@@ -9,6 +9,7 @@
 #include <opencv2/core/eigen.hpp>
 #include <stdexcept>
 
+#include "opencv_pose.hpp"
 #include "planar_pose.hpp"
 #include "rift/vision/camera/camera_model.hpp"
 #include "rift/vision/tracking/world_check.hpp"
@@ -19,18 +20,6 @@ namespace {
 constexpr std::size_t kLeastPoints = 4;
 constexpr double kFlat_m = 1e-6;
 constexpr double kThinnest = 0.05;  // width to length of the cloud of points
-
-Eigen::Isometry3d IsometryOf(const cv::Mat& turn, const cv::Mat& shift) {
-  cv::Matx33d rotation;
-  cv::Rodrigues(turn, rotation);
-  Eigen::Matrix3d linear;
-  cv::cv2eigen(rotation, linear);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = linear;
-  pose.translation() =
-      Eigen::Vector3d(shift.at<double>(0), shift.at<double>(1), shift.at<double>(2));
-  return pose;
-}
 
 std::vector<cv::Point3d> PlacesOf(const std::vector<WorldPoint>& points) {
   std::vector<cv::Point3d> places;
