@@ -1,0 +1,40 @@
+#include "support/http.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+#include <catch2/catch.hpp>
+#include <cerrno>
+
+#include "support/until.hpp"
+
+namespace rift::test {
+
+std::string AskServer(int port, const std::string& request_line) {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  const timeval longest{.tv_sec = kGiveUp.count(), .tv_usec = 0};
+  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &longest, sizeof longest);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  std::string answer;
+  if (::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
+    const std::string request = request_line + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    REQUIRE(::write(socket, request.data(), request.size()) ==
+            static_cast<ssize_t>(request.size()));
+    char bytes[4096];
+    ssize_t n = 0;
+    while ((n = ::read(socket, bytes, sizeof bytes)) > 0) {
+      answer.append(bytes, static_cast<size_t>(n));
+    }
+    INFO("the answer to " << request_line << " so far: " << answer);
+    CHECK_FALSE((n < 0 && errno == EAGAIN));  // waited in vain for its end
+  }
+  ::close(socket);
+  return answer;
+}
+
+}  // namespace rift::test

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace rift::test {
+
+/// The whole answer of the server at `port` of this machine to a request by hand, its first line
+/// "GET /x" or the like; empty when there is no server. Fails the test when the answer does not end.
+std::string AskServer(int port, const std::string& request_line);
+
+}  // namespace rift::test
