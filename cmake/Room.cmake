@@ -31,11 +31,12 @@ function(rift_room name)
   rift_compile_options(${target})
 endfunction()
 
-# rift_room_test(NAME [LIBRARIES target...]): every tests/NAME/*_test.cpp in one Catch2 program,
-# each test case known to CTest by its sentence.
+# rift_room_test(NAME [LIBRARIES target...]): every tests/NAME/*_test.cpp, and those of the folders in
+# it, in one Catch2 program, each test case known to CTest by its sentence.
 function(rift_room_test name)
   cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp")
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp"
+    "${PROJECT_SOURCE_DIR}/tests/${name}/*/*_test.cpp")
   if(NOT sources)
     return()
   endif()

@@ -1,19 +1,14 @@
 // rift sweep --serve: the report of a sweep that runs.
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <sys/time.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <regex>
 #include <thread>
 
 #include "sessions/sweep/page_server.hpp"
+#include "support/http.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/running_rift.hpp"
@@ -37,32 +32,6 @@ Address LiveAddress(const std::string& err) {
     return {};
   }
   return {std::stoi(found[1]), found[2]};
-}
-
-/// The whole answer of a server on this machine; empty when there is none. Fails when it hangs.
-std::string Get(int port, const std::string& path) {
-  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  const timeval longest{.tv_sec = test::kGiveUp.count(), .tv_usec = 0};
-  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &longest, sizeof longest);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  std::string answer;
-  if (::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
-    const std::string request = "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
-    REQUIRE(::write(socket, request.data(), request.size()) ==
-            static_cast<ssize_t>(request.size()));
-    char bytes[4096];
-    ssize_t n = 0;
-    while ((n = ::read(socket, bytes, sizeof bytes)) > 0) {
-      answer.append(bytes, static_cast<size_t>(n));
-    }
-    INFO("the answer to " << path << " so far: " << answer);
-    CHECK_FALSE((n < 0 && errno == EAGAIN));  // waited in vain for its end
-  }
-  ::close(socket);
-  return answer;
 }
 
 /// Local addresses that listen at the port, as the kernel writes them.
@@ -95,7 +64,7 @@ TEST_CASE("A sweep shows its report growing at an address of this machine alone"
   CHECK(Listening(at.port) == "0100007F" + Listening(at.port).substr(8));
   std::string page;
   sweep.WaitUntil("trials on the page", [&] {
-    page = Get(at.port, at.path);
+    page = test::AskServer(at.port, "GET " + at.path);
     return page.find("trials so far") != page.npos;
   });
   CHECK_THAT(page, Contains("200 OK") && Contains("no-store") && Contains("\"running\":true") &&
@@ -103,12 +72,13 @@ TEST_CASE("A sweep shows its report growing at an address of this machine alone"
   for (const std::string& path : {std::string("/"), "/" + std::string(32, '0') + "/", at.path + "x",
                                   std::string("/live.html"), at.path + "../table.csv"}) {
     INFO(path);
-    CHECK_THAT(Get(at.port, path), Contains("404 Not Found") && !Contains("html><"));
+    CHECK_THAT(test::AskServer(at.port, "GET " + path),
+               Contains("404 Not Found") && !Contains("html><"));
   }
   sweep.Signal(SIGINT);
   sweep.Wait();
   CHECK_FALSE(std::filesystem::exists(out + "/live.html"));
-  CHECK(Get(at.port, at.path).empty());
+  CHECK(test::AskServer(at.port, "GET " + at.path).empty());
 }
 
 TEST_CASE("A sweep that was watched serves its finished report before it ends") {
@@ -123,7 +93,7 @@ TEST_CASE("A sweep that was watched serves its finished report before it ends") 
   const Address at = LiveAddress(sweep.Err());
   std::string page;
   sweep.WaitUntil("the finished report", [&] {
-    page = Get(at.port, at.path);
+    page = test::AskServer(at.port, "GET " + at.path);
     return page.find("\"running\":false") != page.npos;
   });
   CHECK(sweep.Wait().exit_code == 0);
@@ -140,12 +110,12 @@ TEST_CASE("A page server waits for the last page, whatever of the others was jus
   std::atomic<bool> has_asked_again = false;
   std::string first, last;
   std::thread watcher([&] {
-    first = Get(at.port, at.path);
+    first = test::AskServer(at.port, "GET " + at.path);
     // Long enough for a server that takes this answer for the last one.
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     std::filesystem::remove(folder / "live");
     has_asked_again = true;
-    last = Get(at.port, at.path);
+    last = test::AskServer(at.port, "GET " + at.path);
   });
   const bool has_served = server.WaitForLast(1000 * static_cast<int>(test::kGiveUp.count()));
   const bool was_in_time = has_asked_again;

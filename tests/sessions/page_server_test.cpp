@@ -1,12 +1,6 @@
 // The server of the page of a sweep that runs.
 #include "sessions/sweep/page_server.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <sys/time.h>
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <memory>
@@ -14,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "support/http.hpp"
 #include "support/processes/process.hpp"
 #include "support/until.hpp"
 
@@ -35,28 +30,6 @@ struct Address {
   std::string path;
 };
 
-/// The whole answer; empty when there is no server.
-std::string Ask(int port, const std::string& request_line) {
-  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  const timeval longest{.tv_sec = test::kGiveUp.count(), .tv_usec = 0};
-  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &longest, sizeof longest);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  std::string answer;
-  if (::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
-    const std::string request = request_line + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
-    CHECK(::write(socket, request.data(), request.size()) == static_cast<ssize_t>(request.size()));
-    char bytes[4096];
-    for (ssize_t n = 0; (n = ::read(socket, bytes, sizeof bytes)) > 0;) {
-      answer.append(bytes, static_cast<size_t>(n));
-    }
-  }
-  ::close(socket);
-  return answer;
-}
-
 TEST_CASE("A page server is not watched and has served nothing before it was asked") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "live", "it runs");
@@ -72,14 +45,14 @@ TEST_CASE("The first of its files that is there is served whole, and the last on
   test::WriteText(folder / "report", "it is over");
   PageServer server({folder / "live", folder / "report"});
   const Address at(server.Url());
-  const std::string live = Ask(at.port, "GET " + at.path);
+  const std::string live = test::AskServer(at.port, "GET " + at.path);
   CHECK_THAT(live, Catch::StartsWith("HTTP/1.1 200 OK\r\n") && Catch::EndsWith("\r\n\r\nit runs"));
   CHECK_THAT(live, Contains("Content-Type: text/html; charset=utf-8") &&
                        Contains("Cache-Control: no-store"));
   test::WaitUntil("the server tells of it", [&] { return server.IsWatched(); });
   CHECK_FALSE(server.WaitForLast(0));
   fs::remove(folder / "live");
-  CHECK_THAT(Ask(at.port, "GET " + at.path), Catch::EndsWith("\r\n\r\nit is over"));
+  CHECK_THAT(test::AskServer(at.port, "GET " + at.path), Catch::EndsWith("\r\n\r\nit is over"));
   CHECK(server.WaitForLast(60'000));
   CHECK(server.WaitForLast(0));  // it stays known
 }
@@ -92,11 +65,11 @@ TEST_CASE("Other paths, other methods and files that are gone are not found, and
   for (const std::string& line : {std::string("GET /"), "GET " + at.path + "x", "POST " + at.path,
                                   "GET /" + std::string(32, '0') + "/", std::string("GET /live")}) {
     INFO(line);
-    const std::string answer = Ask(at.port, line);
+    const std::string answer = test::AskServer(at.port, line);
     CHECK_THAT(answer, Contains("404 Not Found") && !Contains("it runs"));
   }
   fs::remove(folder / "live");
-  CHECK_THAT(Ask(at.port, "GET " + at.path), Contains("404 Not Found"));
+  CHECK_THAT(test::AskServer(at.port, "GET " + at.path), Contains("404 Not Found"));
   CHECK_FALSE(server.IsWatched());
 }
 
@@ -108,10 +81,10 @@ TEST_CASE("Two page servers have addresses of their own, and one that is gone an
   const Address a(first->Url()), b(second.Url());
   CHECK(a.port != b.port);
   CHECK(a.path != b.path);
-  CHECK_THAT(Ask(b.port, "GET " + a.path), Contains("404 Not Found"));
+  CHECK_THAT(test::AskServer(b.port, "GET " + a.path), Contains("404 Not Found"));
   first.reset();
-  CHECK(Ask(a.port, "GET " + a.path).empty());
-  CHECK_THAT(Ask(b.port, "GET " + b.path), Contains("200 OK"));
+  CHECK(test::AskServer(a.port, "GET " + a.path).empty());
+  CHECK_THAT(test::AskServer(b.port, "GET " + b.path), Contains("200 OK"));
 }
 
 }  // namespace

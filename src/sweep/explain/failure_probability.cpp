@@ -233,7 +233,8 @@ void CountDraws(const std::vector<Replica>& replicas, RareEvent& event) {
 }
 
 /// Around the mean of the replicas, even in the logarithm, since their estimates are skewed; by
-/// what skewness is left, Student's quantile of 97 % covers 95 % (tests/sweep/failures_test.cpp).
+/// what skewness is left, Student's quantile of 97 % covers 95 %
+/// (tests/sweep/explain/failures_test.cpp).
 void MeasureScatter(const std::vector<double>& estimates, RareEvent& event) {
   constexpr double kQuantile = 0.986;
   event.coefficient_of_variation = statistics::StandardError(estimates) / event.probability;

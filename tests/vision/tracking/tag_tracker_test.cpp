@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "rendered_tags.hpp"
 #include "rift/geometry/pose2.hpp"
+#include "vision/rendered_tags.hpp"
 
 namespace rift::vision {
 namespace {

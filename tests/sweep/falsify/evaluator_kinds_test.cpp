@@ -7,6 +7,7 @@
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/log.hpp"
+#include "support/inputs/memory_files.hpp"
 #include "support/inputs/paths.hpp"
 #include "support/inputs/png_bytes.hpp"
 
@@ -18,17 +19,8 @@ using experiment::CandidateKind;
 using experiment::Objective;
 using experiment::ReferenceKind;
 using experiment::Start;
-
-/// Files by name.
-using Files = std::map<std::string, std::string>;
-
-Inputs InputsOf(const Files& files) {
-  return {[&files](const std::string& path) -> std::optional<std::string> {
-            const auto found = files.find(path);
-            return found == files.end() ? std::nullopt : std::optional(found->second);
-          },
-          [](const std::string&) {}};
-}
+using test::Files;
+using test::InputsOf;
 
 std::string LogAside(double left_m) {
   return trajectory::WriteRift(test::Moved(test::StraightPath(0.75, 40), {0.0, left_m, 0.0}));

@@ -12,8 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "ray_renderer.hpp"
-#include "rendered_tags.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/statistics/descriptive.hpp"
 #include "rift/vision/camera/picture_reader.hpp"
@@ -21,6 +19,8 @@
 #include "rift/vision/tracking/tag_detector.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
 #include "rift/vision/tracking/tag_visibility.hpp"
+#include "vision/ray_renderer.hpp"
+#include "vision/rendered_tags.hpp"
 
 namespace rift::vision {
 namespace {

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <random>
 
-#include "ray_renderer.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/vision/rendering/precision_map.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
 #include "rift/vision/tracking/tag_visibility.hpp"
+#include "vision/ray_renderer.hpp"
 
 namespace rift::vision {
 namespace {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <opencv2/core.hpp>
 
-#include "rendered_tags.hpp"
+#include "vision/rendered_tags.hpp"
 
 namespace rift::vision {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 
-#include "rendered_tags.hpp"
+#include "vision/rendered_tags.hpp"
 
 namespace rift::vision {
 namespace {

@@ -7,8 +7,8 @@
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "rendered_tags.hpp"
 #include "rift/vision/camera/picture_reader.hpp"
+#include "vision/rendered_tags.hpp"
 #include "vision/tracking/edge_fit.hpp"
 
 namespace rift::vision {

@@ -8,6 +8,7 @@
 #include "rift/sweep/calibrate/identification.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/trajectory/log.hpp"
+#include "support/inputs/memory_files.hpp"
 #include "support/inputs/paths.hpp"
 
 namespace rift::sweep {
@@ -15,16 +16,8 @@ namespace {
 
 using experiment::CandidateKind;
 using experiment::ReferenceKind;
-
-using Files = std::map<std::string, std::string>;
-
-Inputs InputsOf(const Files& files) {
-  return {[&files](const std::string& path) -> std::optional<std::string> {
-            const auto found = files.find(path);
-            return found == files.end() ? std::nullopt : std::optional(found->second);
-          },
-          [](const std::string&) {}};
-}
+using test::Files;
+using test::InputsOf;
 
 std::string Aside(double left_m, double length_m = 1.0) {
   return trajectory::WriteRift(test::Moved(test::StraightPath(length_m, 101), {0.0, left_m, 0.0}));

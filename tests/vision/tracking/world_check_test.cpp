@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "rendered_tags.hpp"
+#include "vision/rendered_tags.hpp"
 
 namespace rift::vision {
 namespace {

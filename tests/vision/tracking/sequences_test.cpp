@@ -9,12 +9,12 @@
 #include <random>
 #include <vector>
 
-#include "ray_renderer.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/statistics/descriptive.hpp"
 #include "rift/vision/tracking/tag_detector.hpp"
 #include "rift/vision/tracking/tag_tracker.hpp"
 #include "rift/vision/tracking/tag_visibility.hpp"
+#include "vision/ray_renderer.hpp"
 
 namespace rift::vision {
 namespace {
