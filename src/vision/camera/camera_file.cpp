@@ -144,9 +144,6 @@ void ReadDistortion(const yaml::Node& root, CameraModel& camera) {
   }
 }
 
-/// The most ids that a family has, less one: tagStandard41h12 (see TagFamily, of another room).
-constexpr int kLastTagId = 2114;
-
 /// A reference tag of a world frame as it is written.
 struct MarkBlock {
   int id = 0;

@@ -17,6 +17,9 @@ enum class Lens {
 };
 constexpr std::array<std::string_view, 2> EnumNames(Lens) { return {"plumb_bob", "equidistant"}; }
 
+/// The last id of the AprilTag family that has most of them, tagStandard41h12.
+inline constexpr int kLastTagId = 2114;
+
 /// A reference tag that set the world frame: when it is seen elsewhere, the camera was moved.
 struct ReferenceMark {
   int tag_id = 0;

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "rift/vision/camera/camera_model.hpp"
+
 namespace rift::vision {
 
 /// The AprilTag families that are read (apriltag.org). The name tells bits and the least number of
@@ -41,8 +43,7 @@ constexpr TagShape ShapeOf(TagFamily family) {
   return kShapes[static_cast<std::size_t>(family)];
 }
 
-/// The most ids that any of them has, less one.
-inline constexpr int kLastTagId = 2114;
+static_assert(ShapeOf(TagFamily::kStandard41h12).ids - 1 == kLastTagId);
 
 constexpr std::string_view NameOf(TagFamily family) {
   return EnumNames(family)[static_cast<std::size_t>(family)];
