@@ -168,9 +168,10 @@ std::string PredictionText(const sweep::PathPrediction& prediction) {
 std::string IntervalsText(const std::vector<sweep::GroupLikeness>& groups, size_t width) {
   std::string text = fmt::format(
       "with intervals over settings; path_mm: gap of the mean simulated path to a real one - gap "
-      "of the other real trials to it; rank: correlation of the gap to the task over settings\n"
+      "of the other real trials to it; rank: correlation of the gap to the task over settings; "
+      "failed: runs that did not arrive, or circled before they did\n"
       "{:<{}}  {:>18}  {:>18}  {:>18}  {:>26}  {:>20}  {:>20}  {:>10}\n",
-      "", width, "spread", "weave", "speed", "path_mm", "rank simulated", "rank real", "circled");
+      "", width, "spread", "weave", "speed", "path_mm", "rank simulated", "rank real", "failed");
   for (const auto& [level, likeness] : groups) {
     const gap::Likeness& path = likeness.path;
     const sweep::RankAgreement& ranks = likeness.ranks;
@@ -181,7 +182,7 @@ std::string IntervalsText(const std::vector<sweep::GroupLikeness>& groups, size_
                         PredictionText(likeness.prediction),
                         WithInterval(ranks.simulated, ranks.simulated_interval, 2),
                         WithInterval(ranks.real, ranks.real_interval, 2),
-                        fmt::format("{}/{}", likeness.circled_runs, likeness.runs));
+                        fmt::format("{}/{}", likeness.failed_runs, likeness.runs));
   }
   return text;
 }
