@@ -15,7 +15,7 @@ namespace {
 std::string SourcesOf(const std::string& room) {
   std::string text;
   for (const auto& entry :
-       std::filesystem::directory_iterator(test::SourceDir() + "/tests/" + room)) {
+       std::filesystem::recursive_directory_iterator(test::SourceDir() + "/tests/" + room)) {
     if (entry.path().extension() == ".cpp") text += test::ReadFile(entry.path().string());
   }
   text = std::regex_replace(text, std::regex(R"(\n\s*)"), "");
