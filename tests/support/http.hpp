@@ -5,7 +5,8 @@
 namespace rift::test {
 
 /// The whole answer of the server at `port` of this machine to a request by hand, its first line
-/// "GET /x" or the like; empty when there is no server. Fails the test when the answer does not end.
+/// "GET /x" or the like; empty when there is no server. Fails the test when the answer does not
+/// end.
 std::string AskServer(int port, const std::string& request_line);
 
 }  // namespace rift::test

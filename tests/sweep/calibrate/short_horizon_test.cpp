@@ -153,6 +153,55 @@ TEST_CASE("The structure of errors is the mean and size of each kind over the lo
   CHECK(std::isnan(StructureOfErrors({}, {}, {}, kHorizon).lag_s));
 }
 
+TEST_CASE("A wave of the logged turn is found by its frequency, which is most of the errors") {
+  for (const double planted_hz : {0.6, 1.5}) {
+    // A robot that goes straight on and never steers; it is the log that turns to and fro.
+    SimulatedTrial straight = Exact();
+    straight.task = std::vector<control::Waypoint>{{.name = "a"}, {.name = "b", .x_m = 2.0}};
+    straight.control.heading = {0.0, 0.0, 0.0};
+    straight.control.w_min = 0.0;
+    Trajectory log = Simulate(straight).result.trajectory;
+    for (auto& pose : log.poses) {
+      pose.yaw_rad += 0.1 * std::sin(2.0 * std::numbers::pi * planted_hz * pose.t_s);
+    }
+    const std::vector<CalibrationLog> logs{{.name = "1", .log = log}};
+    const ErrorStructure found = StructureOfErrors(
+        logs, [&](size_t, const std::vector<double>&) { return straight; }, {}, kHorizon);
+    INFO(planted_hz << " Hz, over " << found.motions << " motions of " << found.horizon_s << " s");
+    CHECK(found.frequency_hz == Approx(planted_hz).margin(0.051));  // a step of the search
+    CHECK(found.frequency_share > 0.9);
+    // The chord of the sine over the horizon.
+    CHECK(found.turned_rad ==
+          Approx(0.1 * std::sqrt(2.0) * std::sin(std::numbers::pi * planted_hz * found.horizon_s))
+              .epsilon(0.05));
+  }
+}
+
+TEST_CASE("A simulator whose radio is slower turns after the robot, by what its radio takes") {
+  const auto lag_s = [](double simulated_s, double logged_s) {
+    std::vector<CalibrationLog> logs;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      SimulatedTrial robot = Exact();
+      robot.task = std::vector<control::Waypoint>{{.name = "a"}, {.name = "b", .x_m = 2.0}};
+      robot.seed = seed;
+      robot.start.yaw_rad = 0.3;
+      robot.simulation.link.delay_s = logged_s;
+      logs.push_back({.name = std::to_string(seed), .log = Simulate(robot).result.trajectory});
+    }
+    const auto twin = [&](size_t, const std::vector<double>&) {
+      SimulatedTrial trial = Exact();
+      trial.task = std::vector<control::Waypoint>{{.name = "a"}, {.name = "b", .x_m = 2.0}};
+      trial.start.yaw_rad = 0.3;
+      trial.simulation.link.delay_s = simulated_s;
+      return trial;
+    };
+    return StructureOfErrors(logs, twin, {}, kHorizon).lag_s;
+  };
+  CHECK(lag_s(0.15, 0.05) == Approx(0.1).margin(0.03));
+  CHECK(lag_s(0.05, 0.15) == Approx(-0.1).margin(0.03));
+  CHECK(lag_s(0.05, 0.05) == Approx(0.0).margin(0.011));
+}
+
 TEST_CASE("A mismatch of the motors to either side turns the simulator to that side") {
   const std::vector<CalibrationLog> logs{{.name = "1", .log = Log()}};
   const auto bias_rad = [&](double mismatch) {
