@@ -316,7 +316,7 @@ TEST_CASE(
   CHECK(failed.exit_code == 3);
   INFO(failed.err);
   CHECK(failed.err.find("no such module: gcc") != std::string::npos);
-  CHECK(slurm.Queued() == 0);
+  test::WaitUntil("the queue is empty", [&] { return slurm.Queued() == 0; });
 }
 
 TEST_CASE("What no cluster can do is refused before anything is submitted") {
