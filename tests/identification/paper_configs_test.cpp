@@ -38,8 +38,7 @@ TEST_CASE("The Webots twin follows the authors' Webots logs") {
 }
 
 // The delayed loop is chaotic: which of the runs pass a waypoint and circle until the time is up
-// changes with a tenth of a millimetre at the start, how many does not (9 and 10 of 288 over six
-// seeds, with two definitions of where the robot stood).
+// changes with a tenth of a millimetre at the start, how many does not: 8 % (79 of 960).
 TEST_CASE("The paper grid on the simulator finishes nearly every trial close to the robot") {
   RIFT_SKIP_WITHOUT_TRIALS();
   int finished = 0, unfinished = 0;
@@ -51,7 +50,7 @@ TEST_CASE("The paper grid on the simulator finishes nearly every trial close to 
     sum_m += summary["mean_gap_m"].get<double>();
   }
   CHECK(finished + unfinished == 3 * 48);
-  CHECK(unfinished <= 7);  // 5 %
+  CHECK(unfinished <= 20);  // beyond the mean of 12 in one of a hundred
   CHECK(sum_m / 3.0 < 0.047);
 }
 
@@ -65,20 +64,21 @@ TEST_CASE("The simulated robot drives and answers and weaves like the real one o
   gap.skip_start = 0.1;
   std::mt19937_64 generator(1);
   const sweep::DriveLikeness found = sweep::MeasureDriveLikeness(
-      test::DriveGrid(study, trials, 10), true, gap, {.shuffles = 19}, generator);
+      test::DriveGrid(study, trials, 10), true, gap, {.shuffles = 99}, generator);
   const gap::Likeness& path = found.path;
   INFO("gap " << path.mean_gap_m << " m, mean path " << path.mean_path_gap_m << " m, delay "
-              << found.loop_delay_s.sim << " s, missed " << found.failed_runs);
+              << found.loop_delay_s.sim << " s, missed " << found.failed_runs << ", told apart "
+              << found.told_apart.all.accuracy << ", p " << found.told_apart.all.p);
   CHECK(path.mean_gap_m < 1.2 * path.spread_m.real);
   CHECK(path.mean_path_gap_m < path.spread_m.real);
   CHECK(found.loop_delay_s.sim == Approx(found.loop_delay_s.real).margin(0.02));
   CHECK(found.loop_r2.sim == Approx(found.loop_r2.real).margin(0.08));
-  CHECK(path.speed_mps.Ratio() == Approx(1.0).margin(0.08));
-  for (const double ratio : {path.weave_m.Ratio(), path.spread_m.Ratio()}) {
-    CHECK(ratio > 0.75);
-    CHECK(ratio < 1.33);
-  }
-  CHECK(found.failed_runs < 20);
+  CHECK(path.speed_mps.Ratio() == Approx(1.0).margin(0.03));
+  CHECK(path.weave_m.Ratio() == Approx(1.0).margin(0.1));
+  CHECK(path.spread_m.Ratio() == Approx(1.0).margin(0.1));
+  CHECK(found.told_apart.all.accuracy < 0.6);
+  CHECK(found.told_apart.all.p > 0.01);
+  CHECK(found.failed_runs < 50);  // of 480
 }
 
 TEST_CASE("Without the delays of link and listener the robot hardly weaves") {
