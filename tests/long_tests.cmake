@@ -1,11 +1,12 @@
 # Seconds that the longest tests take one by one: ctest starts them first, so that none of them is
-# left over when all else is done.
-set_tests_properties([==[drive:An identification on the twin leaves a fit that the next command makes]==] PROPERTIES COST 72)
+# left over when all else is done. Those with PROCESSORS drive again and again in real time, and are
+# stopped where too much runs beside them.
+set_tests_properties([==[drive:An identification on the twin leaves a fit that the next command makes]==] PROPERTIES COST 72 PROCESSORS 4)
 set_tests_properties([==[commands:With real daemons of Slurm: the bytes of a local run, whatever fails on the way]==] PROPERTIES COST 71)
 set_tests_properties([==[commands:The recipes of the README, and of docs after it, work as they are printed]==] PROPERTIES COST 75)
 set_tests_properties([==[drive:A drive whose streams are closed or full arrives and its robot hears commands alone]==] PROPERTIES COST 41)
 set_tests_properties([==[twin:The twin is seen to drive as it is told and to stop after the last command]==] PROPERTIES COST 33)
-set_tests_properties([==[drive:A grid driven on twins and killed in the middle goes on and ends with its report]==] PROPERTIES COST 32)
+set_tests_properties([==[drive:A grid driven on twins and killed in the middle goes on and ends with its report]==] PROPERTIES COST 32 PROCESSORS 4)
 set_tests_properties([==[commands:Only a nominal run that did not arrive is tried with other seeds, each on its own time]==] PROPERTIES COST 30)
 set_tests_properties([==[commands:A robot hears nothing but commands when the streams of a ping are closed or full]==] PROPERTIES COST 29)
 set_tests_properties([==[sweep:A sweep that is stopped goes on with the trials that are missing]==] PROPERTIES COST 24)
@@ -13,8 +14,8 @@ set_tests_properties([==[sweep:The rows of a sweep are the same for one worker a
 set_tests_properties([==[vision:Tags of every family are measured as well as tag36h11 from 20 to 60 px]==] PROPERTIES COST 19)
 set_tests_properties([==[drive:A drive whose words nobody reads waits before anything moves, and then arrives]==] PROPERTIES COST 17)
 set_tests_properties([==[commands:Shrinking and rare events are a job each and give the files of a local run]==] PROPERTIES COST 17)
-set_tests_properties([==[drive:Suggested experiments are driven on twins and the sweep says what they confirmed]==] PROPERTIES COST 16)
-set_tests_properties([==[drive:Repeats are driven into numbered folders and a sweep reads them]==] PROPERTIES COST 16)
+set_tests_properties([==[drive:Suggested experiments are driven on twins and the sweep says what they confirmed]==] PROPERTIES COST 16 PROCESSORS 4)
+set_tests_properties([==[drive:Repeats are driven into numbered folders and a sweep reads them]==] PROPERTIES COST 16 PROCESSORS 4)
 set_tests_properties([==[commands:A sweep of a program that is killed goes on and leaves no process]==] PROPERTIES COST 15)
 set_tests_properties([==[drive:A drive without display, home and locale, with a clock that jumps, arrives]==] PROPERTIES COST 15)
 set_tests_properties([==[commands:A robot in an engine of others is falsified and replayed, with the same bytes]==] PROPERTIES COST 15)

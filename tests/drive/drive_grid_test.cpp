@@ -6,6 +6,7 @@
 #include "rift/files/files.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/running_rift.hpp"
+#include "support/processes/until_done.hpp"
 #include "support/tree.hpp"
 #include "support/until.hpp"
 
@@ -60,14 +61,6 @@ struct Bench {
   test::TemporaryFolder folder;
 };
 
-/// The same command until it is done: a busy machine may make the guard stop a drive, or
-/// the link break its budget.
-test::ProcessResult GoOn(const std::vector<std::string>& command) {
-  test::ProcessResult result;
-  for (int i = 0; i < 5 && (i == 0 || result.exit_code != 0); ++i) result = test::RunRift(command);
-  return result;
-}
-
 /// True while a process has the text among its arguments.
 bool IsAtWork(const std::string& text) {
   std::error_code gone;
@@ -105,7 +98,7 @@ bool GridGoesOnAfterKill() {
   CHECK_FALSE(bench.Has("cardboard_1.unfinished"));
   const std::string first = bench.Read("ground_1/trajectory.csv");
 
-  const test::ProcessResult result = GoOn(command);
+  const test::ProcessResult result = test::RunUntilDone(command);
   INFO(result.out << result.err);
   REQUIRE(result.exit_code == 0);
   CHECK_THAT(result.err, Catch::Contains("lay the cardboard"));
@@ -127,15 +120,13 @@ bool GridGoesOnAfterKill() {
 }
 
 TEST_CASE("A grid driven on twins and killed in the middle goes on and ends with its report") {
-  bool is_done = false;
-  for (int i = 0; i < 5 && !is_done; ++i) is_done = GridGoesOnAfterKill();
-  CHECK(is_done);
+  test::WaitUntil("a grid that was killed has gone on to its end", GridGoesOnAfterKill);
 }
 
 TEST_CASE("Repeats are driven into numbered folders and a sweep reads them") {
   const Bench bench;
-  const test::ProcessResult result =
-      GoOn(bench.Command({"--repeat", "2"}, "--out " + (bench.folder / "twins/{trial}")));
+  const test::ProcessResult result = test::RunUntilDone(
+      bench.Command({"--repeat", "2"}, "--out " + (bench.folder / "twins/{trial}")));
   INFO(result.out << result.err);
   REQUIRE(result.exit_code == 0);
   CHECK(bench.Has("1/trajectory.csv"));
@@ -147,8 +138,8 @@ TEST_CASE("Repeats are driven into numbered folders and a sweep reads them") {
   CHECK(std::count(table.begin(), table.end(), '\n') == 1 + 2);
   CHECK(table.find("run/2/trajectory.csv") != table.npos);
 
-  const test::ProcessResult more =
-      GoOn(bench.Command({"--repeat", "3"}, "--out " + (bench.folder / "twins/{trial}")));
+  const test::ProcessResult more = test::RunUntilDone(
+      bench.Command({"--repeat", "3"}, "--out " + (bench.folder / "twins/{trial}")));
   INFO(more.err);
   CHECK(more.exit_code == 0);
   CHECK_THAT(more.err, Catch::Contains("2 of them done"));
@@ -176,11 +167,11 @@ TEST_CASE("Suggested experiments are driven on twins and the sweep says what the
   REQUIRE(first.exit_code == 0);
   REQUIRE(fs::exists(sweep + "/suggested.yaml"));
   const test::ProcessResult driven =
-      GoOn({"drive", "--suggested", sweep, "--yes", "--before-each",
-            test::BuildDir() + "/rift simulate " + (bench.folder / "task.yaml") +
-                " --twin --force --seed {trial} --set control.v_min={v_min} --set "
-                "simulation.motor.mismatch=-0.3 --out " +
-                (bench.folder / "twins/{v_min}_{trial}")});
+      test::RunUntilDone({"drive", "--suggested", sweep, "--yes", "--before-each",
+                          test::BuildDir() + "/rift simulate " + (bench.folder / "task.yaml") +
+                              " --twin --force --seed {trial} --set control.v_min={v_min} --set "
+                              "simulation.motor.mismatch=-0.3 --out " +
+                              (bench.folder / "twins/{v_min}_{trial}")});
   INFO(driven.out << driven.err);
   REQUIRE(driven.exit_code == 0);
   CHECK(fs::exists(sweep + "/suggested/1_1/trajectory.csv"));

@@ -6,6 +6,7 @@
 #include "rift/odometry/program_runs.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/until_done.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -57,9 +58,7 @@ TEST_CASE("A program is driven on the twin and its odometry is the twin's true m
                                          test::BuildDir() + "/rift simulate " +
                                              (folder / "task.yaml") + " --twin --force --out " +
                                              (folder / "twin")};
-  test::ProcessResult result;
-  // A busy machine may make the guard stop a drive.
-  for (int i = 0; i < 5 && (i == 0 || result.exit_code != 0); ++i) result = test::RunRift(command);
+  const test::ProcessResult result = test::RunUntilDone(command);
   INFO(result.out << result.err);
   REQUIRE(result.exit_code == 0);
   const fs::path run = folder / "run/1";

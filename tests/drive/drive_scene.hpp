@@ -67,11 +67,10 @@ inline bool WasInterrupted(Scene& scene) {
 /// was not.
 template <class Drive>
 void Uninterrupted(int moving_pictures, const Drive& drive) {
-  for (int i = 0; i < 5; ++i) {
+  WaitUntil("a drive was not interrupted", [&] {
     Scene scene(moving_pictures);
-    if (drive(scene)) return;
-  }
-  FAIL("five drives were interrupted: the machine is too busy");
+    return drive(scene);
+  });
 }
 
 inline constexpr int kAll = 1'000'000;

@@ -6,6 +6,7 @@
 #include "rift/files/files.hpp"
 #include "support/inputs/paper_waypoints.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/until_done.hpp"
 #include "support/tree.hpp"
 
 namespace rift::sessions {
@@ -87,9 +88,7 @@ hardware:
                                          test::BuildDir() + "/rift simulate " +
                                              (folder / "task.yaml") + " --twin --force --out " +
                                              (folder / "twin{trial}")};
-  test::ProcessResult result;
-  // A busy machine may make the guard stop a drive.
-  for (int i = 0; i < 5 && (i == 0 || result.exit_code != 0); ++i) result = test::RunRift(command);
+  const test::ProcessResult result = test::RunUntilDone(command);
   INFO(result.out << result.err);
   REQUIRE(result.exit_code == 0);
   CHECK_THAT(result.err, Catch::Contains("fit the simulated robot: rift sweep"));

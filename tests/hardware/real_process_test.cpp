@@ -131,14 +131,14 @@ struct Moving {
 
 /// A robot that moves at its host's word; begun again where the machine was too busy for the host.
 std::unique_ptr<Moving> StartMoving(double speed) {
-  for (int i = 0; i < 5; ++i) {
-    auto moving = std::make_unique<Moving>(speed);
+  std::unique_ptr<Moving> moving;
+  test::WaitUntil("a host has made the robot move", [&] {
+    moving = std::make_unique<Moving>(speed);
     moving->robot.Until("the robot moves or its host has given up",
                         [&] { return moving->robot.Moves() || moving->host.IsOver(); });
-    if (moving->robot.Moves()) return moving;
-  }
-  FAIL("five hosts gave up: the machine is too busy");
-  return nullptr;
+    return moving->robot.Moves();
+  });
+  return moving;
 }
 
 TEST_CASE("The listener alone stops the motors of a host that was killed") {
