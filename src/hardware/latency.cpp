@@ -86,14 +86,19 @@ void AddAngle(std::vector<Angle>& angles, double t_s, double rad) {
   angles.push_back({t_s, before_rad + geometry::WrapToPi(rad - before_rad)});
 }
 
-std::optional<Lag> EstimateLag(std::span<const Angle> follower, std::span<const Angle> leader,
-                               double least_s, double most_s) {
+namespace {
+
+enum class Side { kAny, kSame };
+
+std::optional<Lag> BestLag(std::span<const Angle> follower, std::span<const Angle> leader,
+                           double least_s, double most_s, Side side) {
   constexpr double kLeastTurn_rad = 1e-3;
   if (follower.size() < kLeastSamples) return std::nullopt;
   if (Range(follower) < kLeastTurn_rad || Range(leader) < kLeastTurn_rad) return std::nullopt;
   std::vector<Lag> fits;
   for (double lag_s = least_s; lag_s <= most_s + 1e-9; lag_s += kLagStep_s) {
-    if (const std::optional<Lag> fit = FitAt(follower, leader, lag_s)) fits.push_back(*fit);
+    const std::optional<Lag> fit = FitAt(follower, leader, lag_s);
+    if (fit && (side == Side::kAny || fit->scale > 0.0)) fits.push_back(*fit);
   }
   if (fits.empty()) return std::nullopt;
   const auto best = std::min_element(fits.begin(), fits.end(), [](const Lag& a, const Lag& b) {
@@ -108,6 +113,13 @@ std::optional<Lag> EstimateLag(std::span<const Angle> follower, std::span<const 
   const double curvature = before - 2.0 * here + after;
   if (curvature > 0.0) found.lag_s += 0.5 * kLagStep_s * (before - after) / curvature;
   return found;
+}
+
+}  // namespace
+
+std::optional<Lag> EstimateLag(std::span<const Angle> follower, std::span<const Angle> leader,
+                               double least_s, double most_s) {
+  return BestLag(follower, leader, least_s, most_s, Side::kAny);
 }
 
 std::vector<Angle> WheelTurns(std::span<const EncoderReading> readings, double rad_per_count) {
@@ -217,19 +229,30 @@ LoopDelay DelayOf(const std::vector<Angle>& wheels, const std::vector<double>& p
   return delay;
 }
 
-/// Steering to the left must turn wheels and picture to the left. The scale of a fit over all lags
-/// has the sign of the answer, since the pulses begin and end at different times.
+/// To which side an angle follows commands: 1, -1, or 0 where that cannot be told. Pulses to and
+/// fro look alike half a period later to the other side, but for where they begin and end: of
+/// angles that came unevenly either side may fit a little better, so the better one must be so by
+/// far.
+int SideOf(std::span<const Angle> angles, std::span<const Angle> commanded) {
+  constexpr double kMostNoise = 0.25;
+  std::vector<Angle> opposite(commanded.begin(), commanded.end());
+  for (Angle& angle : opposite) angle.rad = -angle.rad;
+  const auto noise_rad = [&](std::span<const Angle> leader) {
+    const std::optional<Lag> lag = BestLag(angles, leader, 0.0, kMostLag_s, Side::kSame);
+    return lag ? lag->residual_rad : Range(angles);
+  };
+  const double same_rad = noise_rad(commanded), opposite_rad = noise_rad(opposite);
+  const double best_rad = std::min(same_rad, opposite_rad);
+  if (best_rad > kMostNoise * Range(angles)) return 0;
+  if (best_rad > 0.5 * std::max(same_rad, opposite_rad)) return 0;
+  return same_rad < opposite_rad ? 1 : -1;
+}
+
+/// Steering to the left must turn wheels and picture to the left.
 void RequireSides(std::span<const Angle> seen, std::span<const Angle> wheels,
                   std::span<const Angle> commanded) {
-  constexpr double kMostNoise = 0.25;
-  const auto side = [&](std::span<const Angle> angles) {
-    const std::optional<Lag> lag = EstimateLag(angles, commanded, 0.0, kMostLag_s);
-    const bool is_clear = lag && lag->residual_rad < kMostNoise * Range(angles);
-    return is_clear ? lag->scale : 0.0;
-  };
-  const double seen_side = side(seen), wheel_side = side(wheels);
-  if (!(seen_side < 0.0)) return;
-  if (wheel_side > 0.0) {
+  if (SideOf(seen, commanded) >= 0) return;
+  if (SideOf(wheels, commanded) > 0) {
     throw std::runtime_error(
         "steered to the left, the wheels turned the robot to the left by their encoders and the "
         "picture shows it turning to the right: the picture is mirrored, or left and right are "
@@ -241,7 +264,11 @@ void RequireSides(std::span<const Angle> seen, std::span<const Angle> wheels,
       "mirrored picture show the same)");
 }
 
-constexpr double kLeastScale = 0.4, kMostScale = 2.5;  // of the picture's turn over the wheels'
+/// The picture's turn over the wheels'.
+bool IsAsFar(double seen_rad, double turned_rad) {
+  constexpr double kLeastScale = 0.4, kMostScale = 2.5;
+  return seen_rad > kLeastScale * turned_rad && seen_rad < kMostScale * turned_rad;
+}
 
 void RequireSeen(bool is_seen, double turned_rad, double seen_rad) {
   if (is_seen) return;
@@ -257,9 +284,16 @@ void RequireSeen(bool is_seen, double turned_rad, double seen_rad) {
 Lag RequireBehindWheels(const std::optional<Lag>& lag, const std::vector<Angle>& wheels,
                         double seen_rad) {
   constexpr double kMostNoise = 0.25, kLeast_s = 0.02;
-  RequireSeen(lag && lag->scale > kLeastScale && lag->scale < kMostScale &&
-                  lag->residual_rad < kMostNoise * seen_rad,
-              Range(wheels), seen_rad);
+  const double turned_rad = Range(wheels);
+  RequireSeen(lag && IsAsFar(seen_rad, turned_rad), turned_rad, seen_rad);
+  if (!IsAsFar(lag->scale, 1.0) || lag->residual_rad > kMostNoise * seen_rad) {
+    throw std::runtime_error(fmt::format(
+        "the picture shows a turn of {:.1f} deg as the wheels made one of {:.1f} deg, but not when "
+        "they did: this machine is too busy for pictures and encoders to come evenly, or it is "
+        "another robot's tag; end what else it does and start again "
+        "(hardware.turn.enabled=false leaves this check out)",
+        geometry::DegFromRad(seen_rad), geometry::DegFromRad(turned_rad)));
+  }
   const double spacing_s = WidestSpacing_s(wheels);
   if (lag->lag_s >= -std::max(kLeast_s, spacing_s)) return *lag;
   throw std::runtime_error(fmt::format(
@@ -274,8 +308,7 @@ Lag RequireBehindWheels(const std::optional<Lag>& lag, const std::vector<Angle>&
 Lag RequireBehindCommands(const std::optional<Lag>& lag, const std::vector<Angle>& wheels,
                           double seen_rad) {
   const double turned_rad = Range(wheels);
-  const bool is_as_far =
-      wheels.empty() || (seen_rad > kLeastScale * turned_rad && seen_rad < kMostScale * turned_rad);
+  const bool is_as_far = wheels.empty() || IsAsFar(seen_rad, turned_rad);
   RequireSeen(lag && lag->scale > 0.0 && is_as_far, turned_rad, seen_rad);
   return *lag;
 }

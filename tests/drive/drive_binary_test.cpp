@@ -55,7 +55,7 @@ void CheckWholeDrive(Scene& scene, const test::ProcessResult& result) {
 TEST_CASE("The binary drives a robot under a camera to the last waypoint") {
   Uninterrupted(kAll, [](Scene& scene) {
     const test::ProcessResult result = test::RunRift(scene.Arguments());
-    if (WasInterrupted(scene)) return false;
+    if (WasInterrupted(scene, result.exit_code)) return false;
     CheckWholeDrive(scene, result);
     return true;
   });
@@ -70,7 +70,7 @@ TEST_CASE("A drive whose streams are closed or full arrives and its robot hears 
       const test::ProcessResult result = test::RunRift(scene.Arguments(), streams.redirection);
       INFO(streams.redirection << ": " << result.out << result.err << scene.floor.Told());
       CHECK(scene.floor.NoCommands() == "");
-      if (WasInterrupted(scene)) return false;
+      if (WasInterrupted(scene, result.exit_code)) return false;
       CHECK(result.exit_code == (streams.take_results ? 0 : 3));
       CHECK(scene.Summary()["outcome"] == "reached");
       CHECK(scene.Summary()["stop"]["acknowledged"] == true);
@@ -87,7 +87,7 @@ TEST_CASE("A dry run of the binary decides and the robot stands where it stood")
     const test::ProcessResult result = test::RunRift(arguments);
     INFO(result.out << result.err);
     CHECK(scene.floor.Pose() == start);
-    if (WasInterrupted(scene)) return false;
+    if (WasInterrupted(scene, result.exit_code)) return false;
     CHECK(result.exit_code == 0);
     CHECK_THAT(result.err, Catch::Contains("nothing moves"));
     CHECK_THAT(result.out, Catch::Contains("zeros alone"));
@@ -132,7 +132,7 @@ TEST_CASE("A camera that repeats its last picture stops the robot whatever else 
       WaitForMotion(rift, scene);
       scene.floor.RepeatPicture(repeat);
       const test::ProcessResult result = rift.Wait();
-      if (WasInterrupted(scene)) return false;
+      if (WasInterrupted(scene, result.exit_code, "pose_stands")) return false;
       INFO(static_cast<int>(repeat) << result.out << result.err << scene.floor.Told());
       CHECK(result.exit_code == 1);
       const std::string reason = scene.Summary()["stop"]["reason"];
@@ -152,7 +152,7 @@ TEST_CASE("A signal to the binary stops the robot and the run is saved with its 
       WaitForMotion(rift, scene);
       rift.Signal(signal);
       const test::ProcessResult result = rift.Wait();
-      if (WasInterrupted(scene)) return false;
+      if (WasInterrupted(scene, result.exit_code)) return false;
       INFO(result.out << result.err);
       CHECK(result.exit_code == 1);
       CHECK_FALSE(scene.floor.Moves());
@@ -170,7 +170,7 @@ TEST_CASE("The robot of a killed binary stops by itself") {
     WaitForMotion(rift, scene);
     rift.Signal(SIGKILL);
     const test::ProcessResult result = rift.Wait();
-    if (WasInterrupted(scene)) return false;
+    if (WasInterrupted(scene, result.exit_code)) return false;
     INFO(result.out << result.err);
     CHECK(result.exit_code == 128 + SIGKILL);
     test::WaitUntil("the robot stands", [&] { return !scene.floor.Moves(); });
@@ -197,7 +197,7 @@ TEST_CASE("A killed drive leaves its rows, which rift gap and a replay read") {
     rift.Signal(SIGKILL);
     const geometry::Pose2 end = scene.floor.Pose();
     const test::ProcessResult result = rift.Wait();
-    if (WasInterrupted(scene)) return false;
+    if (WasInterrupted(scene, result.exit_code)) return false;
     INFO(result.out << result.err);
     CHECK(result.exit_code == 128 + SIGKILL);
     CHECK(scene.Summary()["state"] == "interrupted");
@@ -225,13 +225,12 @@ TEST_CASE("A killed drive leaves its rows, which rift gap and a replay read") {
 bool IsStoppedForItsLog(test::RunningRift& rift, Scene& scene, const std::string& says) {
   const test::ProcessResult result = rift.Wait();
   INFO(result.out << result.err);
-  const auto summary = nlohmann::json::parse(result.out);
-  if (summary["stop"]["reason"] != "log_failed") return false;  // a busy machine came first
-  if (summary["stop"]["acknowledged"] != true) return false;    // the robot's answer came too late
+  const std::optional<nlohmann::json> summary = test::StoppedForItsLog(result);
+  if (!summary) return false;
   CHECK(result.exit_code == 3);
   CHECK_FALSE(scene.floor.Moves());
   CHECK_THAT(result.err, Catch::Contains("rift: the log is not whole") && Catch::Contains(says));
-  CHECK(summary["state"] == "interrupted");
+  CHECK((*summary)["state"] == "interrupted");
   return true;
 }
 
@@ -285,7 +284,7 @@ TEST_CASE("A camera that goes away in the middle stops the robot even without a 
     std::vector<std::string> arguments = scene.Arguments();
     arguments.push_back("--view");
     const test::ProcessResult result = test::RunRift(arguments);
-    if (WasInterrupted(scene)) return false;
+    if (WasInterrupted(scene, result.exit_code)) return false;
     INFO(result.out << result.err);
     CHECK(result.exit_code == 1);
     CHECK_FALSE(scene.floor.Moves());
@@ -333,7 +332,7 @@ TEST_CASE("A device is asked for the size of its calibration as in tracking") {
                      {"--set", "trial.timeout_s=3", "--set", "track.capture.same_s=60", "--set",
                       "hardware.turn.enabled=false", "--any-start"});
     const test::ProcessResult result = test::RunRift(arguments);
-    if (WasInterrupted(scene)) return false;
+    if (WasInterrupted(scene, result.exit_code)) return false;
     INFO(result.out << result.err);
     CHECK(result.exit_code == 1);
     CHECK_THAT(result.err, Catch::Contains("the robot stands at x"));

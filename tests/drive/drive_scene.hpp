@@ -3,7 +3,10 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "floor.hpp"
@@ -50,17 +53,31 @@ struct Scene {
 };
 
 /// True when the guard stopped the drive since somebody looked away for longer than the most
-/// patient limits, as it must on a machine that is that busy, or when the robot's answer to the
-/// stop came too late to be waited for.
-inline bool WasInterrupted(Scene& scene) {
-  if (!std::filesystem::exists(scene.folder / "run/summary.json")) return false;
+/// patient limits, as it must on a machine that is that busy, when pictures came too unevenly for
+/// the start or the drive, or when the robot's answer to the stop came too late to be waited for.
+/// `planted`: the reason for which the test wants it stopped.
+inline bool WasInterrupted(Scene& scene, int exit_code, const std::string& planted = "") {
+  if (!std::filesystem::exists(scene.folder / "run/summary.json")) return exit_code == 3;
   const auto summary = scene.Summary();
   if (!summary.contains("stop")) return false;  // killed
   const std::string reason = summary["stop"]["reason"];
   INFO(scene.floor.Told());
   CHECK(scene.floor.WasObedient());
-  return reason == "link_lagging" || reason == "host_stalled" || reason == "pose_stale" ||
-         reason == "control_stale" || summary["stop"]["acknowledged"] != true;
+  if (summary["stop"]["acknowledged"] != true) return true;
+  const std::set<std::string> of_busy_machines{"link_lagging",  "host_stalled",   "pose_stale",
+                                               "control_stale", "robot_stopped",  "pose_stands",
+                                               "pose_lags",     "pose_disagrees", "pose_disorder"};
+  return reason != planted && of_busy_machines.contains(reason);
+}
+
+/// What `rift drive --json` says of a drive that was stopped since its log could not be written;
+/// none where a busy machine came first, or kept it from starting.
+inline std::optional<nlohmann::json> StoppedForItsLog(const ProcessResult& result) {
+  if (result.out.empty()) return std::nullopt;
+  nlohmann::json summary = nlohmann::json::parse(result.out);
+  const bool is_so =
+      summary["stop"]["reason"] == "log_failed" && summary["stop"]["acknowledged"] == true;
+  return is_so ? std::optional(std::move(summary)) : std::nullopt;
 }
 
 /// Runs `drive` on a new scene, which returns false for a drive that was interrupted, until one

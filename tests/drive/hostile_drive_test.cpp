@@ -51,9 +51,7 @@ TEST_CASE("A disk that becomes full stops the robot first and keeps whole rows")
     arguments.push_back("--json");
     const test::ProcessResult result = test::RunRift(arguments);
     INFO(result.out << result.err);
-    const auto summary = nlohmann::json::parse(result.out);
-    if (summary["stop"]["reason"] != "log_failed") return false;  // a busy machine came first
-    if (summary["stop"]["acknowledged"] != true) return false;
+    if (!test::StoppedForItsLog(result)) return false;
     CHECK(result.exit_code == 3);
     CHECK_FALSE(scene.floor.Moves());
     CHECK_THAT(result.err, Catch::Contains("rift: the log is not whole") &&
@@ -80,9 +78,7 @@ TEST_CASE("A run folder that is replaced during the drive stops the robot first"
     fs::copy(elsewhere, run);
     const test::ProcessResult result = rift.Wait();
     INFO(result.out << result.err);
-    const auto summary = nlohmann::json::parse(result.out);
-    if (summary["stop"]["reason"] != "log_failed") return false;  // a busy machine came first
-    if (summary["stop"]["acknowledged"] != true) return false;
+    if (!test::StoppedForItsLog(result)) return false;
     CHECK(result.exit_code == 3);
     CHECK_FALSE(scene.floor.Moves());
     CHECK_THAT(result.err, Catch::Contains("was removed or moved"));
@@ -100,7 +96,7 @@ TEST_CASE("A drive without display, home and locale, with a clock that jumps, ar
     changed.emplace_back("LD_PRELOAD", test::BuildDir() + "/tests/librift_system_shim.so");
     changed.emplace_back("RIFT_SHIM_CLOCK", "1");
     const test::ProcessResult result = test::RunRift(scene.Arguments());
-    if (WasInterrupted(scene)) return false;
+    if (WasInterrupted(scene, result.exit_code)) return false;
     INFO(result.out << result.err);
     CHECK(result.exit_code == 0);
     CHECK(scene.Summary()["outcome"] == "reached");
@@ -120,7 +116,7 @@ TEST_CASE("A drive in a terminal of 20 columns is started by Enter and its lines
       is_started = true;
       return "\n";
     });
-    if (WasInterrupted(scene)) return false;
+    if (WasInterrupted(scene, run.exit_code)) return false;
     INFO(run.shown);
     CHECK(run.exit_code == 0);
     CHECK(is_started);
@@ -144,7 +140,7 @@ TEST_CASE("A drive whose words nobody reads waits before anything moves, and the
     std::string told = pipe.Drain();
     const test::ProcessResult result = rift.Wait();
     told += pipe.Drain();
-    if (WasInterrupted(scene)) return false;
+    if (WasInterrupted(scene, result.exit_code)) return false;
     INFO(result.out << told);
     CHECK(result.exit_code == 0);
     CHECK_THAT(told, Catch::Contains("worst stopping distance"));
@@ -172,7 +168,7 @@ TEST_CASE("A robot under way is driven on and stopped when nobody reads the word
     const bool moves = scene.floor.Moves();
     told += pipe.Drain();
     const test::ProcessResult result = rift.Wait();
-    if (WasInterrupted(scene)) return false;
+    if (WasInterrupted(scene, result.exit_code)) return false;
     INFO(result.out << told);
     CHECK_FALSE(moves);
     CHECK(result.exit_code == 0);
