@@ -34,7 +34,7 @@ TEST_CASE("A planted radio delay is found from below and from above") {
     planted[0].start = start;
     sweep::CalibrationOptions options;
     options.runs = 0;
-    options.horizon.phases = 6;
+    options.horizon.phases = 3;
     options.corrections = 0;
     const sweep::Calibration found =
         test::FindPlanted(test::LoadGridStudy(), planted, 5, 8, options, 2);
