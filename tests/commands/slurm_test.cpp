@@ -46,6 +46,7 @@ falsify: {until: budget, most_repeats: 4}
 )";
 // Only the mismatch of the wheels drives the robot off the path of the nominal run.
 const std::string kFailing = kTask + R"(goal: falsify
+simulation: {step_s: 0.008}
 space:
   surface: [ground, parchment]
   mismatch: {min: -0.25, max: 0.25}
