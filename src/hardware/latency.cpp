@@ -229,30 +229,32 @@ LoopDelay DelayOf(const std::vector<Angle>& wheels, const std::vector<double>& p
   return delay;
 }
 
-/// To which side an angle follows commands: 1, -1, or 0 where that cannot be told. Pulses to and
-/// fro look alike half a period later to the other side, but for where they begin and end: of
-/// angles that came unevenly either side may fit a little better, so the better one must be so by
-/// far.
-int SideOf(std::span<const Angle> angles, std::span<const Angle> commanded) {
-  constexpr double kMostNoise = 0.25;
-  std::vector<Angle> opposite(commanded.begin(), commanded.end());
-  for (Angle& angle : opposite) angle.rad = -angle.rad;
-  const auto noise_rad = [&](std::span<const Angle> leader) {
-    const std::optional<Lag> lag = BestLag(angles, leader, 0.0, kMostLag_s, Side::kSame);
-    return lag ? lag->residual_rad : Range(angles);
-  };
-  const double same_rad = noise_rad(commanded), opposite_rad = noise_rad(opposite);
-  const double best_rad = std::min(same_rad, opposite_rad);
-  if (best_rad > kMostNoise * Range(angles)) return 0;
-  if (best_rad > 0.5 * std::max(same_rad, opposite_rad)) return 0;
-  return same_rad < opposite_rad ? 1 : -1;
-}
+constexpr const char* kTooBusy =
+    "this machine is too busy for pictures and encoders to come evenly, or it is another robot's "
+    "tag; end what else it does and start again (hardware.turn.enabled=false leaves this check "
+    "out)";
 
-/// Steering to the left must turn wheels and picture to the left.
+/// Steering to the left must turn wheels and picture to the left. Pulses to and fro look alike half
+/// a period later to the other side, but for where they begin and end: of pictures that came
+/// unevenly the other side may fit a little better, so it is named only where it fits better by
+/// far.
 void RequireSides(std::span<const Angle> seen, std::span<const Angle> wheels,
                   std::span<const Angle> commanded) {
-  if (SideOf(seen, commanded) >= 0) return;
-  if (SideOf(wheels, commanded) > 0) {
+  constexpr double kMostNoise = 0.25, kByFar = 0.5;
+  const auto fit = [&](std::span<const Angle> angles) {
+    const std::optional<Lag> lag = EstimateLag(angles, commanded, 0.0, kMostLag_s);
+    const bool is_clear = lag && lag->residual_rad < kMostNoise * Range(angles);
+    return is_clear ? *lag : Lag{};
+  };
+  const Lag other = fit(seen);
+  if (!(other.scale < 0.0)) return;
+  const std::optional<Lag> same = BestLag(seen, commanded, 0.0, kMostLag_s, Side::kSame);
+  if (same && other.residual_rad > kByFar * same->residual_rad) {
+    throw std::runtime_error(
+        fmt::format("the picture shows a turn of {:.1f} deg, and not clearly to which side: {}",
+                    geometry::DegFromRad(Range(seen)), kTooBusy));
+  }
+  if (fit(wheels).scale > 0.0) {
     throw std::runtime_error(
         "steered to the left, the wheels turned the robot to the left by their encoders and the "
         "picture shows it turning to the right: the picture is mirrored, or left and right are "
@@ -289,10 +291,8 @@ Lag RequireBehindWheels(const std::optional<Lag>& lag, const std::vector<Angle>&
   if (!IsAsFar(lag->scale, 1.0) || lag->residual_rad > kMostNoise * seen_rad) {
     throw std::runtime_error(fmt::format(
         "the picture shows a turn of {:.1f} deg as the wheels made one of {:.1f} deg, but not when "
-        "they did: this machine is too busy for pictures and encoders to come evenly, or it is "
-        "another robot's tag; end what else it does and start again "
-        "(hardware.turn.enabled=false leaves this check out)",
-        geometry::DegFromRad(seen_rad), geometry::DegFromRad(turned_rad)));
+        "they did: {}",
+        geometry::DegFromRad(seen_rad), geometry::DegFromRad(turned_rad), kTooBusy));
   }
   const double spacing_s = WidestSpacing_s(wheels);
   if (lag->lag_s >= -std::max(kLeast_s, spacing_s)) return *lag;

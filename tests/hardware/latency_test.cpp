@@ -69,20 +69,32 @@ TEST_CASE("Encoders that answer rarely and late time nothing but the sum of the 
   }
 }
 
-TEST_CASE(
-    "Pictures that come as a busy machine lets them are called uneven, and no side is named") {
-  Bench bench;
-  // Now and then none comes for long, and then one that is as old; never an older one than before.
-  std::vector<double> yaws_rad;
-  size_t shown = 0;
-  bench.bend = [&](trial::PoseMeasurement& pose) {
+/// Now and then no picture comes for long, and then one that is as old; never an older one than
+/// before.
+void Stall(Bench& bench) {
+  bench.bend = [yaws_rad = std::vector<double>{},
+                shown = size_t{0}](trial::PoseMeasurement& pose) mutable {
     yaws_rad.push_back(pose.world_from_robot.yaw_rad);
     const size_t late = yaws_rad.size() % 23;
     shown = std::max(shown, yaws_rad.size() - 1 - std::min(late, yaws_rad.size() - 1));
     pose.world_from_robot.yaw_rad = yaws_rad[shown];
   };
+}
+
+TEST_CASE(
+    "Pictures that come as a busy machine lets them are called uneven, and no side is named") {
+  Bench bench;
+  Stall(bench);
   CHECK_THROWS_WITH(TurnOn(bench, {}, Protocol::kFramed),
                     Catch::Contains("but not when they did: this machine is too busy"));
+}
+
+TEST_CASE("A robot that turns to the other side is refused whatever the pictures are like") {
+  Bench bench;
+  Stall(bench);
+  HardwareOptions hardware;
+  hardware.plain.format = "{right:.2f} {left:.2f}\n";
+  CHECK_THROWS(TurnOn(bench, hardware, Protocol::kPlain));
 }
 
 TEST_CASE("A picture that is ahead of its wheels is refused") {
