@@ -143,7 +143,8 @@ std::unique_ptr<Moving> StartMoving(double speed) {
 
 TEST_CASE("The listener alone stops the motors of a host that was killed") {
   const std::unique_ptr<Moving> moving = StartMoving(0.3);
-  auto& [robot, host] = *moving;
+  RobotEnd& robot = moving->robot;
+  Host& host = moving->host;
   ::kill(host.pid, SIGKILL);
   robot.Until("the robot stands", [&] { return !robot.Moves(); });
   // In its first turn 300 ms or more after the last command, and in none before.
@@ -154,7 +155,8 @@ TEST_CASE("The listener alone stops the motors of a host that was killed") {
 
 TEST_CASE("A host that was stopped and continued has been stopped for good") {
   const std::unique_ptr<Moving> moving = StartMoving(0.3);
-  auto& [robot, host] = *moving;
+  RobotEnd& robot = moving->robot;
+  Host& host = moving->host;
   ::kill(host.pid, SIGSTOP);
   const double stopped_s = robot.clock.Now_s();
   robot.Until("the robot stands", [&] { return !robot.Moves(); });
@@ -174,7 +176,8 @@ TEST_CASE("A host that was stopped and continued has been stopped for good") {
 TEST_CASE("A signal stops the robot before the program ends and the stop is acknowledged") {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const std::unique_ptr<Moving> moving = StartMoving(0.1);
-    auto& [robot, host] = *moving;
+    RobotEnd& robot = moving->robot;
+    Host& host = moving->host;
     ::kill(host.pid, signal);
     // The host is asked first: what it ended with, the robot had heard by then.
     robot.Until("the robot stands", [&] {
@@ -191,7 +194,8 @@ TEST_CASE("A signal stops the robot before the program ends and the stop is ackn
 
 TEST_CASE("A pseudo terminal that closes is a port that went away") {
   const std::unique_ptr<Moving> moving = StartMoving(1.0);
-  auto& [robot, host] = *moving;
+  RobotEnd& robot = moving->robot;
+  Host& host = moving->host;
   robot.terminal.Close();
   test::WaitUntil("the host ends", [&] { return host.IsOver(); });
   CHECK(host.ExitCode() == static_cast<int>(StopReason::kPortGone));
