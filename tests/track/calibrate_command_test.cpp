@@ -85,22 +85,5 @@ TEST_CASE("A picture without a board is refused with its name and no file") {
   CHECK_FALSE(fs::exists(out / "cam.yaml"));
 }
 
-TEST_CASE("The photographs of the paper's camera are not called good and why is named") {
-  const fs::path folder = fs::path(test::SourceDir()) / "../shared/calibration/victure";
-  if (!fs::exists(folder)) {
-    WARN("SKIPPED: the photographs are not beside this clone (../shared/calibration)");
-    return;
-  }
-  const test::TemporaryFolder out;
-  const ProcessResult result =
-      RunRift({"track", "--calibrate", "--board", "13x9", "--square", "0.025", "--images",
-               folder.string(), "--out", out / "cam.yaml"});
-  INFO(result.out << result.err);
-  CHECK(result.exit_code <= 1);
-  CHECK_THAT(result.out, Contains("verdict: ") && !Contains("verdict: good"));
-  CHECK_THAT(result.out, Contains("calibration_00.jpg is left out: the picture is black"));
-  CHECK_THAT(result.out, Contains("drawn over") && Contains("px RMS") && Contains("not flat"));
-}
-
 }  // namespace
 }  // namespace rift

@@ -222,6 +222,29 @@ class Replica {
   bool is_done_ = false;
 };
 
+/// Asks for the next points of all of them at once; false: all are done.
+bool Advance(std::span<Replica> replicas, const UnitRobustness& robustness) {
+  std::vector<std::vector<double>> points;
+  for (const Replica& replica : replicas) {
+    points.insert(points.end(), replica.Asked().begin(), replica.Asked().end());
+  }
+  if (points.empty()) return false;
+  const std::vector<double> values = robustness(points);
+  size_t taken = 0;
+  for (Replica& replica : replicas) {
+    const size_t count = replica.Asked().size();
+    if (count > 0) replica.Take(std::span(values).subspan(taken, count));
+    taken += count;
+  }
+  return true;
+}
+
+/// Half of the draws fail: the rest of the replicas would say no more than that it is not rare.
+bool IsCommon(const Replica& first) {
+  constexpr double kShare = 0.5;
+  return first.Levels() == 1 && first.IsReached() && first.Bound() >= kShare;
+}
+
 /// Of draws that all failed or not at once.
 void CountDraws(const std::vector<Replica>& replicas, RareEvent& event) {
   double failures = 0.0;
@@ -271,25 +294,16 @@ RareEvent EstimateRareEvent(int dimensions, const UnitRobustness& robustness, st
     throw std::invalid_argument("a rare event needs a space of at least one parameter");
   }
   std::vector<Replica> replicas;
-  for (int i = 0; i < options.replicas; ++i) {
-    const std::uint64_t own_seed =
-        statistics::SeedOfStream(seed, static_cast<std::uint64_t>(i) + 1);
+  const auto add = [&] {
+    const std::uint64_t own_seed = statistics::SeedOfStream(seed, replicas.size() + 1);
     replicas.emplace_back(dimensions, own_seed, options);
-  }
-  for (;;) {
-    std::vector<std::vector<double>> points;
-    for (const Replica& replica : replicas) {
-      points.insert(points.end(), replica.Asked().begin(), replica.Asked().end());
-    }
-    if (points.empty()) break;
-    const std::vector<double> values = robustness(points);
-    size_t taken = 0;
-    for (Replica& replica : replicas) {
-      const size_t count = replica.Asked().size();
-      if (count > 0) replica.Take(std::span(values).subspan(taken, count));
-      taken += count;
-    }
-  }
+  };
+  add();
+  Advance(replicas, robustness);
+  if (IsCommon(replicas.front())) return Conclude(replicas);
+  while (static_cast<int>(replicas.size()) < options.replicas) add();
+  Advance(std::span(replicas).subspan(1), robustness);
+  while (Advance(replicas, robustness)) continue;
   return Conclude(replicas);
 }
 

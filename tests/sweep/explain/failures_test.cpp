@@ -209,6 +209,8 @@ std::vector<PlantedRegion> PlantedRegions(std::mt19937_64& noise) {
              const bool is_the_one = std::floor(5.0 * x[2]) == 3.0;
              return is_the_one ? std::max(x[0], x[1]) - std::sqrt(1e-3) : 0.3 + 0.2 * x[0];
            }},
+          // Where the first replica ends it or not by chance.
+          {"half of the space", 0.5, 1, [](std::span<const double> x) { return x[0] - 0.5; }},
           // A gap that grows towards a corner, and runs that do not arrive in a box that nothing
           // announces: there the loss is the threshold and the way left.
           {"with non-arrivals", 0.01 + 1e-3, 2, [](std::span<const double> x) {
@@ -306,11 +308,13 @@ TEST_CASE("A rare event asks for the runs of all replicas and chains at once") {
                                             },
                                             3, {.replicas = 4, .samples_per_level = 100});
   CHECK(event.is_reached);
-  CHECK(asked.front() == 400);
+  // One replica tells whether the event is rare at all.
+  CHECK(asked[0] == 100);
+  CHECK(asked[1] == 300);
   // A tenth of a level's samples are seeds of chains of ten: nine steps in each level behind it,
   // or fewer where samples are equal.
-  CHECK(asked.size() <= 1 + 9 * static_cast<size_t>(event.levels - 1));
-  CHECK(asked[1] == 40);
+  CHECK(asked.size() <= 2 + 9 * static_cast<size_t>(event.levels - 1));
+  CHECK(asked[2] == 40);
   CHECK(static_cast<size_t>(event.evaluations) == std::accumulate(asked.begin(), asked.end(), 0UL));
 }
 
@@ -320,10 +324,19 @@ TEST_CASE("What never fails is bounded and what fails often needs one level") {
   CHECK_FALSE(never.is_reached);
   CHECK(never.low == 0.0);
   CHECK(never.high < 1e-2);
-  const RareEvent often =
-      EstimateRareEvent(1, OfEach([](std::span<const double> x) { return x[0] - 0.5; }), 1);
+  const auto below = [](double share) {
+    return EstimateRareEvent(1, OfEach([=](std::span<const double> x) { return x[0] - share; }), 1,
+                             {.replicas = 8, .samples_per_level = 300});
+  };
+  const RareEvent often = below(0.4);
   CHECK(often.levels == 1);
-  CHECK(often.probability == Approx(0.5).margin(0.07));
+  CHECK(often.evaluations == 2400);
+  CHECK(often.probability == Approx(0.4).margin(0.04));
+  const RareEvent mostly = below(0.7);
+  CHECK(mostly.levels == 1);
+  CHECK(mostly.evaluations == 300);
+  CHECK(mostly.probability == Approx(0.7).margin(0.1));
+  CHECK((mostly.low < 0.7 && mostly.high > 0.7));
   CHECK(EstimateRareEvent(1, OfEach([](std::span<const double>) { return NAN; }), 1).is_reached ==
         false);
 }

@@ -67,6 +67,7 @@ using UnitRobustness = std::function<std::vector<double>(const std::vector<std::
 /// trials for each factor of ten, where plain sampling needs ten times as many. Replicas start from
 /// draws of their own, and what one of them misses (a second region, a category) shows in their
 /// scatter; where all of them find failures at once, their draws are counted (Clopper-Pearson).
+/// Where half of the first replica's draws fail, it alone is counted: the event is not rare.
 /// Replicas, and within a level the chains, go on side by side: each call of `robustness` has the
 /// next point of all of them, some hundred as a rule.
 RareEvent EstimateRareEvent(int dimensions, const UnitRobustness& robustness, std::uint64_t seed,
