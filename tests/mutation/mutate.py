@@ -53,7 +53,7 @@ TESTS = {
     "report": ["report", "commands", "drive", "track"],
     "view": ["view", "track", "commands"],
     "flags": ["flags", "commands"],
-    "sessions": ["sessions", "drive", "track", "twin", "commands"],
+    "sessions": ["sessions", "camera_sessions", "drive", "track", "twin", "commands"],
     "commands": ["commands", "drive", "track", "twin"],
 }
 
