@@ -7,6 +7,7 @@
 #include "support/documented.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 
 namespace rift {
 namespace {
@@ -49,6 +50,7 @@ struct Bench {
     return RunRift(words);
   }
 
+  test::QuickGnuplot gnuplot;
   test::TemporaryFolder folder;
   std::string task = folder / "task.yaml";
   std::string file = folder / "calibrate.yaml";

@@ -9,6 +9,7 @@
 #include "support/inputs/trials.hpp"
 #include "support/processes/browser.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 
 namespace rift {
 namespace {
@@ -50,6 +51,7 @@ struct Logs {
     REQUIRE(result.exit_code == 0);
     return folder / name;
   }
+  test::QuickGnuplot gnuplot;
   test::TemporaryFolder folder;
 };
 

@@ -11,6 +11,7 @@
 #include "support/documented.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/processes/shell.hpp"
 #include "support/tree.hpp"
 
@@ -54,6 +55,7 @@ struct Bench {
     return RunRift(words);
   }
 
+  test::QuickGnuplot gnuplot;
   TemporaryFolder folder;
 };
 

@@ -11,6 +11,7 @@
 #include "rift/sweep/run/journal.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/processes/running_rift.hpp"
 #include "support/processes/slurm.hpp"
 #include "support/tree.hpp"
@@ -91,6 +92,7 @@ struct Sweep {
   std::string Read(const std::string& name) const { return ReadFile(folder / name); }
   bool Has(const std::string& name) const { return fs::exists(folder / name); }
 
+  test::QuickGnuplot gnuplot;
   test::TemporaryFolder folder;
   std::string file = folder / "experiment.yaml";
   std::string engine = folder / "engine.yaml";

@@ -11,6 +11,7 @@
 
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -155,6 +156,7 @@ struct Bench {
   }
   json Summary() const { return json::parse(ReadFile(fs::path(folder / "out") / "summary.json")); }
 
+  test::QuickGnuplot gnuplot;
   TemporaryFolder folder;
 };
 

@@ -10,6 +10,7 @@
 
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -71,6 +72,7 @@ struct Bench {
     return json::parse(ReadFile(fs::path(folder / "out") / "summary.json")).at("doubts");
   }
 
+  test::QuickGnuplot gnuplot;
   TemporaryFolder folder;
 };
 

@@ -6,6 +6,7 @@
 #include "support/documented.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -41,6 +42,7 @@ struct Sweep {
   }
   json File(const std::string& name) const { return json::parse(ReadFile(out + "/" + name)); }
 
+  test::QuickGnuplot gnuplot;
   test::TemporaryFolder folder;
   std::string file = folder / "experiment.yaml";
   std::string out = folder / "out";

@@ -11,6 +11,7 @@
 #include "rift/sweep/run/journal.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/processes/running_rift.hpp"
 
 namespace rift {
@@ -69,6 +70,7 @@ struct Sweep {
     return trials;
   }
 
+  test::QuickGnuplot gnuplot;
   test::TemporaryFolder folder;
   std::string file = folder / "experiment.yaml";
 };
