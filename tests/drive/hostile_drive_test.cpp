@@ -21,7 +21,7 @@ using test::Environment;
 using test::kAll;
 using test::Scene;
 using test::Uninterrupted;
-using test::WasInterrupted;
+using test::WasInterruptedOrLate;
 
 TEST_CASE("A run folder that cannot be written ends a drive before anything moves") {
   Scene scene;
@@ -96,7 +96,7 @@ TEST_CASE("A drive without display, home and locale, with a clock that jumps, ar
     changed.emplace_back("LD_PRELOAD", test::BuildDir() + "/tests/librift_system_shim.so");
     changed.emplace_back("RIFT_SHIM_CLOCK", "1");
     const test::ProcessResult result = test::RunRift(scene.Arguments());
-    if (WasInterrupted(scene, result.exit_code)) return false;
+    if (WasInterruptedOrLate(scene, result.exit_code)) return false;
     INFO(result.out << result.err);
     CHECK(result.exit_code == 0);
     CHECK(scene.Summary()["outcome"] == "reached");
@@ -116,7 +116,7 @@ TEST_CASE("A drive in a terminal of 20 columns is started by Enter and its lines
       is_started = true;
       return "\n";
     });
-    if (WasInterrupted(scene, run.exit_code)) return false;
+    if (WasInterruptedOrLate(scene, run.exit_code)) return false;
     INFO(run.shown);
     CHECK(run.exit_code == 0);
     CHECK(is_started);
@@ -140,7 +140,7 @@ TEST_CASE("A drive whose words nobody reads waits before anything moves, and the
     std::string told = pipe.Drain();
     const test::ProcessResult result = rift.Wait();
     told += pipe.Drain();
-    if (WasInterrupted(scene, result.exit_code)) return false;
+    if (WasInterruptedOrLate(scene, result.exit_code)) return false;
     INFO(result.out << told);
     CHECK(result.exit_code == 0);
     CHECK_THAT(told, Catch::Contains("worst stopping distance"));
@@ -168,7 +168,7 @@ TEST_CASE("A robot under way is driven on and stopped when nobody reads the word
     const bool moves = scene.floor.Moves();
     told += pipe.Drain();
     const test::ProcessResult result = rift.Wait();
-    if (WasInterrupted(scene, result.exit_code)) return false;
+    if (WasInterruptedOrLate(scene, result.exit_code)) return false;
     INFO(result.out << told);
     CHECK_FALSE(moves);
     CHECK(result.exit_code == 0);

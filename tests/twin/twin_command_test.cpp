@@ -30,7 +30,7 @@ constexpr double kPower = 0.2;
 // Limits that a loaded machine keeps as well.
 constexpr const char* kPatient = R"(
 track: {tag: {acquire_decimate: 1, lost_after_s: 5}, capture: {silent_s: 20, same_s: 20, open_timeout_s: 60}}
-trial: {pose_stale_s: 5, lost_after_s: 20, timeout_s: 300}
+trial: {pose_stale_s: 5, lost_after_s: 20, timeout_s: 60}
 hardware:
   line: {hello_s: 20}
   guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
