@@ -26,7 +26,7 @@ experiment::Experiment ShortTask() {
   return experiment;
 }
 
-Simulated MakeRun(experiment::Experiment experiment) {
+Simulated MakeRun(const experiment::Experiment& experiment) {
   const sweep::Inputs inputs{[](const std::string& path) { return files::ReadIfThere(path); },
                              [](const std::string&) {}};
   const geometry::Pose2 start = experiment::TaskOf(experiment).Start();

@@ -47,12 +47,16 @@ struct Host {
   /// The power until it is so.
   void Drive(double power, const std::string& what, const std::function<bool()>& is_so) {
     link.Put({power, power}, true);
+    longest_pause_s = 0.0;
     test::WaitUntil(what, [&] {
       clock.Wait(0.001);
       const double now_s = clock.Now_s();
       const size_t sent = link.sent_count();
       link.Tick(now_s);
-      if (link.sent_count() != sent) last_word_s = now_s;
+      if (link.sent_count() != sent) {
+        longest_pause_s = std::max(longest_pause_s, now_s - last_word_s);
+        last_word_s = now_s;
+      }
       for (const auto& heard : link.TakeHeard()) {
         answer = heard.answer;
         ++answers;
@@ -84,7 +88,8 @@ struct Host {
   hardware::RobotLink link;
   std::optional<hardware::Answer> answer;
   int answers = 0;
-  double last_word_s = 0.0;  ///< a moment before the last command was sent
+  double last_word_s = 0.0;      ///< a moment before the last command was sent
+  double longest_pause_s = 0.0;  ///< between two commands since the power was changed
 };
 
 /// The camera's side of a host: where the tag was seen, and when the picture came.
@@ -121,7 +126,7 @@ double Off_m(const vision::Sighting& seen, const trajectory::StampedPose& truth)
                     seen.map_from_tag.translation().y() - truth.y_m);
 }
 
-/// False when the twin ended before, since this machine looked away for longer than it stands.
+/// False when this machine looked away for longer than the twin stands, or than its watchdog waits.
 bool IsSeenToDriveAndStop() {
   test::TwinProcess twin({"--set", "twin.still_s=1"});
   Eye eye(twin.Get("camera"), twin.Get("calibration"));
@@ -134,6 +139,7 @@ bool IsSeenToDriveAndStop() {
     const std::int32_t counts = 400;  // 0.11 m
     host.DriveUntil("the wheels turned", [&] { return host.answer->left > counts; });
     last_word_s = host.last_word_s;
+    if (host.longest_pause_s > 0.25) return false;
   } catch (const hardware::LineGone&) {
     return false;
   }
