@@ -19,7 +19,7 @@
 #include "rift/trajectory/log.hpp"
 #include "sessions/drive/before_each.hpp"
 #include "sessions/drive/start_gate.hpp"
-#include "support/inputs/paper_waypoints.hpp"
+#include "support/inputs/paper_task.hpp"
 #include "support/processes/process.hpp"
 
 namespace rift::sessions {
@@ -28,15 +28,9 @@ namespace {
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 
-experiment::Experiment PaperTask() {
-  experiment::Experiment experiment;
-  experiment.name = "paper";
-  experiment.waypoints = test::PaperWaypoints();
-  return experiment;
-}
-
 TEST_CASE("The segments of an identification are those that its fit was tried with") {
-  const std::vector<control::Segment> segments = IdentificationDrive(PaperTask()).program.segments;
+  const std::vector<control::Segment> segments =
+      IdentificationDrive(test::PaperTask()).program.segments;
   // {way in m or turn in degrees, power} without the holds between them.
   const std::vector<std::pair<double, double>> motions{
       {0.20, 0.15}, {-0.20, 0.20}, {0.30, 0.30},  {-0.30, 0.45},  // straight
@@ -64,7 +58,7 @@ TEST_CASE("The segments of an identification are those that its fit was tried wi
 }
 
 TEST_CASE("An identification keeps the first waypoint and rests long enough, longer where it was") {
-  experiment::Experiment task = PaperTask();
+  experiment::Experiment task = test::PaperTask();
   const experiment::Experiment drive = IdentificationDrive(task);
   CHECK(drive.name == "paper_identify");
   CHECK(drive.waypoints.size() == 1);
@@ -85,7 +79,7 @@ TEST_CASE("An identification keeps the first waypoint and rests long enough, lon
 }
 
 TEST_CASE("What an identification fits has these ranges and is known so well beside the logs") {
-  const auto fit = IdentificationFit(PaperTask()).calibrate.fit.list;
+  const auto fit = IdentificationFit(test::PaperTask()).calibrate.fit.list;
   struct Free {
     std::string key;
     double min, max, mean, sd;
@@ -114,8 +108,8 @@ TEST_CASE(
   CHECK(SeriesRequest{.identify = true}.IsSeries());
   CHECK(SeriesRequest{.suggested = "out"}.IsSeries());
   CHECK_FALSE(SeriesRequest{.before_each = "reset"}.IsSeries());
-  CHECK(PlanSeries({.grid = true}, PaperTask(), "/out").next.empty());
-  const SeriesPlan repeats = PlanSeries({.repeat = 2}, PaperTask(), "/out");
+  CHECK(PlanSeries({.grid = true}, test::PaperTask(), "/out").next.empty());
+  const SeriesPlan repeats = PlanSeries({.repeat = 2}, test::PaperTask(), "/out");
   CHECK(repeats.next == "against the simulator: rift sweep /out/sweep.yaml --out /out/sweep");
   REQUIRE(repeats.trials.size() == 2);
   CHECK(repeats.trials[1].label == "trial 2");
@@ -125,18 +119,18 @@ TEST_CASE(
   CHECK(repeats.sweep.goal == experiment::Goal::kGrid);
   CHECK(repeats.sweep.reference.tag_offset_m == 0.0);
   CHECK(repeats.sweep.reference.format == trajectory::Format::kRift);
-  const SeriesPlan identify = PlanSeries({.identify = true}, PaperTask(), "/out");
+  const SeriesPlan identify = PlanSeries({.identify = true}, test::PaperTask(), "/out");
   CHECK(identify.next ==
         "fit the simulated robot: rift sweep /out/sweep.yaml --out /out/sweep --write-robot "
         "/out/robot.yaml");
   CHECK(identify.trials.size() == 5);
   CHECK(identify.sweep.goal == experiment::Goal::kCalibrate);
-  CHECK(PlanSeries({.repeat = 3, .identify = true}, PaperTask(), "/out").trials.size() == 3);
+  CHECK(PlanSeries({.repeat = 3, .identify = true}, test::PaperTask(), "/out").trials.size() == 3);
 }
 
 TEST_CASE("Suggested experiments are driven as often as they say, into folders of their sweep") {
   const test::TemporaryFolder folder;
-  experiment::Experiment experiment = PaperTask();
+  experiment::Experiment experiment = test::PaperTask();
   experiment.space.parameters = {
       {.key = "simulation.terrain.surface", .levels = {{"ground", {}}, {"parchment", {}}}},
       {.key = "control.v_min", .min = 0.1, .max = 0.2}};
@@ -168,11 +162,11 @@ TEST_CASE("Suggested experiments are driven as often as they say, into folders o
 }
 
 TEST_CASE("A grid that is no grid to drive is refused with its name and why") {
-  experiment::Experiment experiment = PaperTask();
+  experiment::Experiment experiment = test::PaperTask();
   experiment.goal = experiment::Goal::kFalsify;
   CHECK_THROWS_WITH(PlanGrid(experiment, "/out"),
                     "paper: only goal: grid has a table of settings to drive");
-  experiment = PaperTask();
+  experiment = test::PaperTask();
   experiment.space.parameters = {{.key = "control.note", .levels = {{".hidden", {}}}}};
   CHECK_THROWS_WITH(PlanGrid(experiment, "/out"),
                     Contains("is no folder name") || Contains("control.note"));
@@ -190,8 +184,8 @@ TEST_CASE(
   fs::create_directories(folder / "2");
   for (const char* name : {"1.unfinished", "3.unfinished"}) fs::create_directories(folder / name);
   std::vector<std::string> told;
-  CHECK(DriveAll({folder.Path(), PlanRepeats(PaperTask(), 3, folder.Path())}, Answering('s', told),
-                 [] {}) == SeriesEnd::kLeft);
+  CHECK(DriveAll({folder.Path(), PlanRepeats(test::PaperTask(), 3, folder.Path())},
+                 Answering('s', told), [] {}) == SeriesEnd::kLeft);
   CHECK(told == std::vector<std::string>{
                     "3 drives into " + folder.Path().string() + ", 1 of them done",
                     "drive 1 of 3: trial 1", "drive 3 of 3: trial 3",
@@ -204,7 +198,7 @@ TEST_CASE("An earlier try is set aside under the next number before the drive is
   Console console = Answering('a', told);
   console.show = [](const std::string&) {};
   console.hide = console.ring = [] {};
-  DriveSeries series{folder.Path(), PlanRepeats(PaperTask(), 1, folder.Path())};
+  DriveSeries series{folder.Path(), PlanRepeats(test::PaperTask(), 1, folder.Path())};
   series.setup.yes = true;
   series.setup.address = {"/dev/none", "none", folder / "none.yaml"};
   for (int tries = 1; tries <= 2; ++tries) {
@@ -228,7 +222,7 @@ TEST_CASE(
     DriveAll({folder.Path(), PlanRepeats(experiment, 1, folder.Path())}, Answering('q', told),
              [] {});
   };
-  const experiment::Experiment first = PaperTask();
+  const experiment::Experiment first = test::PaperTask();
   drive(first);
   experiment::Experiment next = first;
   next.hardware.line.baud = 9600;
@@ -337,7 +331,7 @@ TEST_CASE("A drive needs its experiment and its log to be seen again") {
 
 TEST_CASE("A drive is seen again level on the floor, with the task it had and how it ended") {
   const test::TemporaryFolder folder;
-  test::WriteText(folder / "experiment.yaml", experiment::WriteExperiment(PaperTask()));
+  test::WriteText(folder / "experiment.yaml", experiment::WriteExperiment(test::PaperTask()));
   trajectory::Trajectory seen;
   for (int i = 0; i < 5; ++i) {
     seen.poses.push_back({.t_s = 0.1 * i,
@@ -366,11 +360,11 @@ TEST_CASE("A drive is seen again level on the floor, with the task it had and ho
   CHECK(shown.logged.poses[4].z_m == 0.08);
   REQUIRE(shown.waypoints.size() == 4);
   CHECK(shown.waypoints[3].name == "end");
-  CHECK(shown.body.track_m == view::ShapeOf(PaperTask().simulation.body).track_m);
+  CHECK(shown.body.track_m == view::ShapeOf(test::PaperTask().simulation.body).track_m);
 }
 
 TEST_CASE("What a robot is driven with is the experiment's task, control, trial and hardware") {
-  experiment::Experiment experiment = PaperTask();
+  experiment::Experiment experiment = test::PaperTask();
   experiment.control.v_max = 0.37;
   experiment.trial.timeout_s = 33.0;
   experiment.hardware.line.baud = 57600;
@@ -393,7 +387,7 @@ TEST_CASE("A calibration without a world frame drives nothing and says what to d
   DriveSession session({.address = {"/dev/none", "none", folder / "lens.yaml"}}, console);
   CHECK_NOTHROW(session.RequireLog());
   CHECK(session.LogFailure().empty());
-  CHECK_THROWS(session.DriveInto(folder.Path() / "run", PaperTask()));
+  CHECK_THROWS(session.DriveInto(folder.Path() / "run", test::PaperTask()));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "rift/sessions/simulate/run.hpp"
-#include "support/inputs/paper_waypoints.hpp"
+#include "support/inputs/paper_task.hpp"
 #include "support/processes/process.hpp"
 
 namespace rift::sessions {
@@ -10,13 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
-
-experiment::Experiment PaperTask() {
-  experiment::Experiment experiment;
-  experiment.name = "paper";
-  experiment.waypoints = test::PaperWaypoints();
-  return experiment;
-}
 
 TEST_CASE("A run goes into a folder, or beside the log that was named") {
   CHECK(RunFiles("out/run").summary == "out/run/summary.json");
@@ -28,7 +21,7 @@ TEST_CASE("A run goes into a folder, or beside the log that was named") {
 TEST_CASE("A run is replaced by the run of the same experiment and by no other") {
   const test::TemporaryFolder folder;
   const fs::path out = folder / "run";
-  const experiment::Experiment experiment = PaperTask();
+  const experiment::Experiment experiment = test::PaperTask();
   const auto check = [&](const experiment::Experiment& next, bool force) {
     CheckRunNames(out, next, {}, {}, force);
   };
@@ -46,10 +39,10 @@ TEST_CASE("A run is replaced by the run of the same experiment and by no other")
 TEST_CASE("What is written beside a run is no file of it, and a run for a pipe has none") {
   const test::TemporaryFolder folder;
   const fs::path truth = folder / "sim.truth.csv";
-  CHECK_THROWS_WITH(CheckRunNames(folder / "sim.csv", PaperTask(), {}, {truth}, false),
+  CHECK_THROWS_WITH(CheckRunNames(folder / "sim.csv", test::PaperTask(), {}, {truth}, false),
                     Contains("another output"));
-  CHECK_NOTHROW(CheckRunNames("-", PaperTask(), {}, {truth, "-/truth.csv"}, false));
-  CHECK_THROWS_WITH(CheckRunNames("-", PaperTask(), {truth}, {truth}, false),
+  CHECK_NOTHROW(CheckRunNames("-", test::PaperTask(), {}, {truth, "-/truth.csv"}, false));
+  CHECK_THROWS_WITH(CheckRunNames("-", test::PaperTask(), {truth}, {truth}, false),
                     Contains("is an input"));
 }
 

@@ -6,7 +6,7 @@
 #include "rift/files/files.hpp"
 #include "rift/sessions/simulate/twin.hpp"
 #include "rift/vision/camera/camera_file.hpp"
-#include "support/inputs/paper_waypoints.hpp"
+#include "support/inputs/paper_task.hpp"
 #include "support/processes/process.hpp"
 
 namespace rift::sessions {
@@ -15,10 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 
-experiment::Experiment PaperTask() {
-  experiment::Experiment experiment;
-  experiment.name = "paper";
-  experiment.waypoints = test::PaperWaypoints();
+experiment::Experiment SeededTask() {
+  experiment::Experiment experiment = test::PaperTask();
   experiment.seed = 9;
   return experiment;
 }
@@ -45,7 +43,7 @@ TEST_CASE("Every file of a twin's folder keeps another twin out, and none is an 
 
 TEST_CASE("A twin begins at the first waypoint with the seed, and its two files say so") {
   const test::TemporaryFolder folder;
-  experiment::Experiment experiment = PaperTask();
+  experiment::Experiment experiment = SeededTask();
   experiment.track.tag.family = vision::TagFamily::k25h9;
   experiment.simulation.mocap.exposure_s = 0.004;
   experiment.twin.fps = 20.0;
@@ -95,7 +93,7 @@ TEST_CASE("A twin that is ended before it drove leaves its whole folder, made ag
   const bool is_removed = GENERATE(false, true);
   const test::TemporaryFolder folder;
   const fs::path out = folder / "twin";
-  const PreparedTwin prepared = Prepare(PaperTask(), out);
+  const PreparedTwin prepared = Prepare(SeededTask(), out);
   const std::string setup = files::ReadFile(out / "experiment.yaml");
   bool is_announced = false;
   const twin::TwinRun run = ServeTwin(

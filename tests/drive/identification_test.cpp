@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rift/files/files.hpp"
-#include "support/inputs/paper_waypoints.hpp"
+#include "support/inputs/paper_task.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/until_done.hpp"
 #include "support/tree.hpp"
@@ -12,15 +12,8 @@
 namespace rift::sessions {
 namespace {
 
-experiment::Experiment PaperTask() {
-  experiment::Experiment experiment;
-  experiment.name = "paper";
-  experiment.waypoints = test::PaperWaypoints();
-  return experiment;
-}
-
 TEST_CASE("The program of an identification turns and drives both ways within half a metre") {
-  const experiment::Experiment drive = IdentificationDrive(PaperTask());
+  const experiment::Experiment drive = IdentificationDrive(test::PaperTask());
   REQUIRE(drive.waypoints.size() == 1);
   CHECK(drive.waypoints[0].name == "start");
   const control::Program program(drive.program, {}, {0.0, 0.0, 0.0});
@@ -44,7 +37,7 @@ TEST_CASE("The program of an identification turns and drives both ways within ha
 }
 
 TEST_CASE("The fit of an identification is to all its logs and keeps what an experiment fits") {
-  experiment::Experiment logs = PaperTask();
+  experiment::Experiment logs = test::PaperTask();
   logs.calibrate.holdout.names = {"2"};
   const experiment::Experiment fit = IdentificationFit(logs);
   CHECK(fit.goal == experiment::Goal::kCalibrate);
