@@ -7,6 +7,7 @@
 It never edits the tree it lies in: the files that git knows there, and new ones, are copied to
 FOLDER/tree0 (tree1 ...; one for each of --jobs) and built there. A fault is found when a test program
 of its room, or of a room that uses it (TESTS below), fails or takes more than three times its time.
+The tests of a program that take longer than LONG_S are run after its others.
 Faults that do not compile do not count and are drawn anew. Every outcome is a line of
 FOLDER/outcomes.jsonl; --resume goes on after the last.
 """
@@ -56,6 +57,8 @@ TESTS = {
     "sessions": ["sessions", "camera_sessions", "drive", "track", "twin", "commands"],
     "commands": ["commands", "drive", "track", "twin"],
 }
+
+LONG_S = 5.0
 
 # Words whose exchange is a likely slip. Whole words, and parts of names such as gap_x_m or LeftWheel.
 PAIRS = [
@@ -281,14 +284,27 @@ def program(tree, test):
 
 
 def baseline(tree, tests):
-    times = {}
-    log = tree.parent / f"{tree.name}.log"
+    """Of each test program, its parts in the order they are run: (filter of Catch2, seconds)."""
+    parts = {}
+    log = tree.parent / f"{tree.name}.baseline.log"
     for test in tests:
-        start = time.monotonic()
-        if run([program(tree, test)], tree / "build", 1800, log) != 0:
+        log.write_bytes(b"")
+        if run([program(tree, test), "--durations", "yes"], tree / "build", 1800, log) != 0:
             sys.exit(f"the tests of {test} fail without a fault: {log}")
-        times[test] = time.monotonic() - start
-    return times
+        names = subprocess.run([program(tree, test), "--list-test-names-only"], check=False,
+                               capture_output=True, text=True).stdout.splitlines()
+        parts[test] = parts_of(log.read_text(errors="replace"), [n for n in names if n])
+    return parts
+
+
+def parts_of(durations, names):
+    times = dict.fromkeys(names, 0.0)
+    for seconds, name in re.findall(r"^([\d.]+) s: (.*)$", durations, flags=re.MULTILINE):
+        if name in times:
+            times[name] = max(times[name], float(seconds))
+    halves = [[n for n in names if times[n] <= LONG_S], [n for n in names if times[n] > LONG_S]]
+    return [(",".join(re.sub(r"([\\,\[])", r"\\\1", n) for n in half), sum(times[n] for n in half))
+            for half in halves if half]
 
 
 def failed_test(log):
@@ -301,7 +317,7 @@ def tests_of(room, most):
     return TESTS.get(room, ["commands"])[:most]
 
 
-def try_fault(tree, fault, tests, times):
+def try_fault(tree, fault, tests, parts):
     """The outcome of one fault: `found` by a test, `survived` or `does not compile`."""
     path = tree / fault.path
     good = path.read_text(encoding="utf-8")
@@ -317,10 +333,11 @@ def try_fault(tree, fault, tests, times):
             log.write_bytes(b"")
             if build(tree, [test], log, 1) != 0:
                 return {**outcome, "status": "does not compile"}
-            code = run([program(tree, test), "--abort"], tree / "build", 30 + 3 * times[test], log)
-            if code != 0:
-                name = "no end" if code is None else failed_test(log)
-                return {**outcome, "status": "found", "by": test, "test": name}
+            for names, seconds in parts[test]:
+                code = run([program(tree, test), "--abort", names], tree / "build", 30 + 3 * seconds, log)
+                if code != 0:
+                    name = "no end" if code is None else failed_test(log)
+                    return {**outcome, "status": "found", "by": test, "test": name}
         return {**outcome, "status": "survived"}
     finally:
         path.write_text(good, encoding="utf-8")
@@ -387,9 +404,9 @@ def main():
         for tree in trees:
             prepare(tree, tests, args.jobs)
         kept = folder / "baseline.json"
-        times = json.loads(kept.read_text()) if args.resume and kept.exists() else {}
-        times.update(baseline(trees[0], [t for t in tests if t not in times]))
-        kept.write_text(json.dumps(times, indent=1) + "\n")
+        parts = json.loads(kept.read_text()) if args.resume and kept.exists() else {}
+        parts.update(baseline(trees[0], [t for t in tests if t not in parts]))
+        kept.write_text(json.dumps(parts, indent=1) + "\n")
     outcomes = [json.loads(l) for l in journal.read_text().splitlines()] if journal.exists() else []
     asked = {f.key for f in order}
     done = {o["key"] for o in outcomes}
@@ -403,7 +420,7 @@ def main():
                 break
             with held(args.lock):
                 for outcome in pool.map(
-                        lambda p: try_fault(*p, tests_of(p[1].room, args.programs), times),
+                        lambda p: try_fault(*p, tests_of(p[1].room, args.programs), parts),
                         zip(trees, batch)):
                     outcomes.append(outcome)
                     counted += outcome["status"] != "does not compile"
