@@ -100,6 +100,26 @@ TEST_CASE("The error distribution ends at a share of one hundred percent") {
   CHECK_THAT(figure.plot, Contains(" 100 \nEOD"));
 }
 
+double AxisEndOf(const Figure& figure, const std::string& axis) {
+  const std::string begin = "set " + axis + "range [0:";
+  const std::size_t at = figure.plot.find(begin);
+  REQUIRE(at != std::string::npos);
+  return std::stod(figure.plot.substr(at + begin.size()));
+}
+
+TEST_CASE("Axes of errors end beyond the largest error and the threshold, by less than as much") {
+  for (const double amplitude_m : {0.01, 0.05, 0.0951, 0.0999, 0.1, 0.19, 0.3, 0.499}) {
+    const ComparedPair pair = synthetic::Pair(amplitude_m);
+    const double largest_m = std::max(pair.comparison.gap_m, gap::GapOptions{}.threshold_m);
+    INFO("gap " << pair.comparison.gap_m);
+    for (const double end_m :
+         {AxisEndOf(ErrorFigure({pair}, {}), "y"), AxisEndOf(ErrorCdfFigure({pair}, {}), "x")}) {
+      CHECK(end_m >= 1.05 * largest_m);
+      CHECK(end_m < 2.0 * 1.05 * largest_m);
+    }
+  }
+}
+
 TEST_CASE("No pair is refused") { CHECK_THROWS_AS(OverlayFigure({}), std::invalid_argument); }
 
 }  // namespace

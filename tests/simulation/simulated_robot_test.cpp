@@ -74,6 +74,23 @@ TEST_CASE("The clock does not drift when the step does not divide the control in
   CHECK(robot.Truth().t_s > 10.0 - 0.007);
 }
 
+TEST_CASE("The true pose leans with the ramp, up, down and across") {
+  SimulationOptions options = Ideal();
+  options.terrain.surface = "downhill";
+  const double slope_rad = 0.255;
+  // Pitch is positive with the nose down, roll with the right side down (x forward, y left, z up).
+  const auto leans = [&](double yaw_rad, double roll_rad, double pitch_rad) {
+    SimulatedRobot robot(options, {0.45, 0.0, yaw_rad}, 1);
+    robot.Advance(0.1);
+    CHECK(robot.Truth().roll_rad == Approx(roll_rad).margin(0.01));
+    CHECK(robot.Truth().pitch_rad == Approx(pitch_rad).margin(0.01));
+    CHECK(robot.Truth().yaw_rad == Approx(yaw_rad).margin(0.01));
+  };
+  leans(0.0, 0.0, slope_rad);
+  leans(1.5707963, slope_rad, 0.0);
+  leans(-1.5707963, -slope_rad, 0.0);
+}
+
 TEST_CASE("Without link delay a power drives the wheel at its share of the full speed") {
   SimulatedRobot robot(Ideal(), {}, 1);
   robot.Command({0.2, 0.2});

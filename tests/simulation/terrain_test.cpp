@@ -48,6 +48,18 @@ TEST_CASE("Where the ground is one plane that plane is the ground") {
   CHECK_FALSE(terrain.PlaneNear(0.05, 0.1, 0.02));
 }
 
+TEST_CASE("The plane of a table ends at its edges, on every side") {
+  TerrainOptions options;
+  options.table_half_size_m = 1.0;
+  const Terrain terrain(options);
+  for (const double sign : {-1.0, 1.0}) {
+    CHECK(terrain.PlaneNear(sign * 0.9, 0.0, 0.02));
+    CHECK(terrain.PlaneNear(0.0, sign * 0.9, 0.02));
+    CHECK_FALSE(terrain.PlaneNear(sign * 0.99, 0.0, 0.02));
+    CHECK_FALSE(terrain.PlaneNear(0.0, sign * 0.99, 0.02));
+  }
+}
+
 TEST_CASE("Blocks stand on a grid in both directions") {
   const Terrain terrain = Named("bump");
   CHECK(terrain.HeightAt(0.0, 0.0) == 0.004);

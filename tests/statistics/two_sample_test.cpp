@@ -93,7 +93,9 @@ TEST_CASE("Neither the unit of a feature nor what is not known changes what can 
   for (Observation& one : observations) one.features[1] = NAN;
   CHECK(TestTwoSamples(observations, {.permutations = 0}, {}, 1).accuracy > 0.9);
   for (Observation& one : observations) one.features.assign(kFeatures, NAN);
-  CHECK(TestTwoSamples(observations, {.permutations = 0}, {}, 1).accuracy == 0.5);
+  const TwoSampleTest unknown = TestTwoSamples(observations, {.permutations = 19}, {}, 1);
+  CHECK(unknown.accuracy == 0.5);
+  CHECK(unknown.p == 1.0);  // each permutation gives as much
 }
 
 TEST_CASE("Separable samples have finite weights and all are told") {

@@ -1,9 +1,13 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 
 #include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/camera/jpeg.hpp"
 #include "rift/vision/rendering/print_sheet.hpp"
 #include "support/documented.hpp"
 #include "support/inputs/trials.hpp"
@@ -106,6 +110,29 @@ TEST_CASE("The same recording gives the same bytes") {
   REQUIRE(RunRift(Tracking(folder / "a.csv")).exit_code == 0);
   REQUIRE(RunRift(Tracking(folder / "b.csv")).exit_code == 0);
   CHECK(test::ReadFile(folder / "a.csv") == test::ReadFile(folder / "b.csv"));
+}
+
+TEST_CASE("The rows of a second are counted from the first row, not from the first picture") {
+  const test::TemporaryFolder folder;
+  const std::vector<std::uint8_t> empty =
+      vision::WriteJpeg(cv::Mat1b(720, 960, std::uint8_t{128}), 80, false);
+  for (int i = 0; i < 30; ++i) {
+    const std::string name = fmt::format("{:03}.jpg", i);
+    if (i < 10) {  // the robot is not there yet
+      test::WriteText(folder / name, {empty.begin(), empty.end()});
+    } else {
+      fs::copy_file(kData + "/frames/" + name, folder / name);
+    }
+  }
+  std::vector<std::string> words = Tracking(folder / "log.csv");
+  words[2] = folder / "*.jpg";
+  const ProcessResult result = RunRift(words);
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.out, Contains("20 rows in 1.3 s, 15.0 a second"));
+  const json run = json::parse(test::ReadFile(folder / "log.run.json"));
+  CHECK(run["rows"] == 20);
+  CHECK(run["rows_per_s"].get<double>() == Approx(15.0));
 }
 
 TEST_CASE("rift gap reads a tracked log against its truth") {

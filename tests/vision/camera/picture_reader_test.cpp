@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <opencv2/core.hpp>
 
+#include "rift/vision/camera/jpeg.hpp"
 #include "vision/rendered_tags.hpp"
 
 namespace rift::vision {
@@ -56,6 +57,19 @@ TEST_CASE("Compressed and raw frames show the same picture") {
   const cv::Mat b(1080, 1920, CV_8UC1, grey->pixels.data());
   CHECK(cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total()) < 2.0);
   CHECK(cv::norm(a, b, cv::NORM_INF) < 25.0);
+}
+
+TEST_CASE("A grey picture that is written in colour is grey in every channel, whatever its shape") {
+  for (const cv::Size size : {cv::Size(640, 48), cv::Size(48, 640), cv::Size(33, 65)}) {
+    cv::Mat1b grey(size);
+    for (int y = 0; y < size.height; ++y) grey.row(y).setTo(60 + 100 * y / size.height);
+    const cv::Mat read = DecodeJpeg(WriteJpeg(grey, 95, true), true, 8);
+    REQUIRE(read.size() == size);
+    cv::Mat expected;
+    cv::merge(std::vector<cv::Mat>(3, grey), expected);
+    INFO(size.width << " x " << size.height);
+    CHECK(cv::norm(read, expected, cv::NORM_INF) < 5.0);
+  }
 }
 
 TEST_CASE("Damaged frames are told from whole ones") {
