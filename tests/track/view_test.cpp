@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "rift/vision/camera/camera_file.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/environment.hpp"
 #include "support/processes/running_rift.hpp"
@@ -74,6 +77,59 @@ TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
   INFO(simulated.err);
   CHECK(simulated.exit_code <= 1);
   CHECK(std::filesystem::exists(folder / "sim/trajectory.csv"));
+}
+
+TEST_CASE("Points of the floor clicked in the window set the world frame") {
+  const test::VirtualDisplay server;
+  if (!server.Runs() || !Succeeds("command -v xdotool")) {
+    WARN("SKIPPED: Xvfb or xdotool is not installed");
+    return;
+  }
+  const test::TemporaryFolder folder;
+  const Environment display("DISPLAY", server.Name());
+  const std::string file = kData + "/camera.yaml";
+  const vision::CameraModel truth = vision::ReadCamera(test::ReadFile(file), file);
+  vision::CameraModel camera = truth;
+  camera.world.reset();
+  test::WriteText(folder / "camera.yaml", vision::WriteCamera(camera));
+  const std::vector<Eigen::Vector2d> points{{-0.2, -0.15}, {0.25, -0.1}, {0.2, 0.15}, {-0.15, 0.2}};
+  std::string marks = "points:\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    marks += fmt::format("  - {{name: p{}, x_m: {}, y_m: {}}}\n", i, points[i].x(), points[i].y());
+  }
+  test::WriteText(folder / "world.yaml", marks);
+  test::RunningRift rift({"track", "--camera", kData + "/frames/*.jpg", "--calibration",
+                          folder / "camera.yaml", "--out", folder / "log.csv", "--world",
+                          folder / "world.yaml"});
+  const std::string window = "xdotool search --onlyvisible --name '^rift track: world frame$' ";
+  rift.WaitUntil("the window shows a picture", [&] {
+    return Succeeds("test $(" + window + "getwindowgeometry --shell | " +
+                    "sed -n s/^HEIGHT=//p) -gt 300");
+  });
+  const auto click = [&](const Eigen::Vector2d& pixel) {
+    REQUIRE(Succeeds(
+        window + fmt::format("mousemove --window %1 {:.0f} {:.0f} click 1", pixel.x(), pixel.y())));
+  };
+  for (const Eigen::Vector2d& point : points) {
+    const Eigen::Vector3d p_in_world(point.x(), point.y(), 0.0);
+    const auto pixels =
+        vision::PixelsFromPoints(truth, {truth.world->world_from_camera.inverse() * p_in_world});
+    click(pixels.front());
+  }
+  const ProcessResult result = rift.Wait();
+  INFO(result.out << result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.err, Contains("world frame from 4 clicked points"));
+  const vision::CameraModel found =
+      vision::ReadCamera(test::ReadFile(folder / "camera.yaml"), "camera.yaml");
+  REQUIRE(found.world);
+  // Half a pixel is 0.4 mm there.
+  CHECK(
+      (found.world->world_from_camera.translation() - truth.world->world_from_camera.translation())
+          .norm() < 0.005);
+  CHECK(found.world->residual_m < 0.001);
+  const auto run = nlohmann::json::parse(test::ReadFile(folder / "log.run.json"));
+  CHECK(run["frame"]["origin"] == "4 clicked points");
 }
 
 }  // namespace
