@@ -86,10 +86,11 @@ hardware:
   REQUIRE(result.exit_code == 0);
   CHECK_THAT(result.err, Catch::Contains("fit the simulated robot: rift sweep"));
 
-  const test::ProcessResult fit = test::RunRift(
-      {"sweep", folder / "run/sweep.yaml", "--out", folder / "fit", "--write-robot",
-       folder / "robot.yaml", "--set", "calibrate.judge_runs=2", "--set",
-       "calibrate.method.iterations=1", "--set", "calibrate.method.horizon.phases=1"});
+  const test::ProcessResult fit =
+      test::RunRift({"sweep", folder / "run/sweep.yaml", "--out", folder / "fit", "--write-robot",
+                     folder / "robot.yaml", "--set", "calibrate.judge_runs=2", "--set",
+                     "calibrate.method.iterations=1", "--set", "calibrate.method.horizon.phases=1",
+                     "--set", "calibrate.method.corrections=0"});
   INFO(fit.out << fit.err);
   // A fit that is not better than its start, the robot's own values, is refused in words.
   const bool is_refused = fit.err.find("worse than") != std::string::npos;
