@@ -52,6 +52,10 @@ TEST_CASE("A port that cannot be had is refused with what to do") {
   CHECK_THROWS_WITH(SerialPort("/dev/no_such_port", 9600, 0.1),
                     Catch::Contains("no serial port /dev/no_such_port"));
   CHECK_THROWS_WITH(SerialPort("/dev/null", 9600, 0.1), Catch::Contains("is no serial port"));
+  // Nobody, not even root, may write to this file; its group has no ports.
+  CHECK_THROWS_WITH(SerialPort("/sys/devices/system/cpu/online", 9600, 0.1),
+                    Catch::Contains("no permission to open") &&
+                        Catch::Contains("its group (root) does not give it to people"));
   PseudoTerminal terminal;
   const SerialPort first(terminal.path(), 9600, 0.1);
   CHECK_THROWS_WITH(SerialPort(terminal.path(), 9600, 0.1),

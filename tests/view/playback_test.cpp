@@ -42,6 +42,8 @@ TEST_CASE("Leaving and starting over have keys and no key changes nothing") {
   CHECK_FALSE(AfterKey({}, -1).left);
   const Playback over{.t_s = 3.0, .over_since_s = 2.0};
   CHECK(AfterKey(over, 'r').t_s == 0.0);
+  CHECK_FALSE(AfterKey({.paused = true}, 'r').paused);
+  CHECK_FALSE(AfterKey({.paused = true}, 'R').paused);
   CHECK(AfterKey(over, 'r').over_since_s == 0.0);
 }
 

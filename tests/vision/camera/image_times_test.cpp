@@ -12,6 +12,11 @@ TEST_CASE("Pictures come in natural order and the numbers in their names are the
   std::vector<std::string> files{"run/frame10.jpg", "run/frame2.jpg", "run/frame1.jpg"};
   std::sort(files.begin(), files.end(), IsBefore);
   CHECK(files == std::vector<std::string>{"run/frame1.jpg", "run/frame2.jpg", "run/frame10.jpg"});
+  CHECK(IsBefore("aa", "b"));
+  CHECK_FALSE(IsBefore("b", "aa"));
+  CHECK(IsBefore("a", "aa"));
+  CHECK(IsBefore("a9b", "a10"));
+  CHECK_FALSE(IsBefore("a10", "a10"));
   // 3 to 9 are missing: at 10 a second the last one is 0.9 s after the first.
   CHECK(TimesByNames(files, 10.0).back() == Approx(0.9));
   // Every tenth picture was kept: the usual step is one period.
