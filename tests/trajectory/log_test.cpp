@@ -240,7 +240,9 @@ TEST_CASE("A bad log is refused with its row and its rule") {
         "log.csv:3: column x_m is '1e999': a finite number is expected");
   CHECK(Refusal(good + "1,1.2.3,0\n") ==
         "log.csv:3: column x_m is '1.2.3': a finite number is expected");
+  CHECK(Refusal(good + ",1,0\n") == "log.csv:3: column t_s is empty");
   CHECK(Refusal(good + "1,,0\n") == "log.csv:3: column x_m is empty");
+  CHECK(Refusal(good + "1,0,\n") == "log.csv:3: column y_m is empty");
   CHECK(Refusal(good + "1,2\n") == "log.csv:3: the row has 2 cells where 3 are expected");
   CHECK(Refusal(good + "1,2,3,4\n") == "log.csv:3: the row has 4 cells where 3 are expected");
   CHECK(Refusal(good + "1,2,3,\n") == "log.csv:3: the row has 4 cells where 3 are expected");
