@@ -123,6 +123,12 @@ void RefuseNoText(std::string_view text, const std::string& name) {
   }
 }
 
+void NoteLeftOut(size_t rows, std::string_view why, Log& log) {
+  if (rows == 0) return;
+  const std::string number = rows == 1 ? "1 row is" : fmt::format("{} rows are", rows);
+  log.notes.push_back(fmt::format("{} left out: {}", number, why));
+}
+
 /// rift ends each row with a line end, so one that lacks it and cells too was cut short when its
 /// writer was killed or the disk was full.
 std::string_view WithoutTornRow(std::string_view text, Log& log) {
@@ -164,14 +170,8 @@ Log ReadLog(std::string_view text, const std::string& name, const ReadOptions& o
     rows = ReadRows(text, name, log.format);
   }
   log.trajectory = std::move(rows.trajectory);
-  if (rows.untracked > 0) {
-    log.notes.push_back(fmt::format(
-        "{} rows are left out: by their track_state predicted, ambiguous or lost", rows.untracked));
-  }
-  if (rows.without_position > 0) {
-    log.notes.push_back(
-        fmt::format("{} rows are left out: they hold no position", rows.without_position));
-  }
+  NoteLeftOut(rows.untracked, "track_state is predicted, ambiguous or lost", log);
+  NoteLeftOut(rows.without_position, "no position", log);
   if (!has_own_columns) NoteDoubtfulAngles(log);
   ConvertUnitsAndFrame(log);
   if (!TimeRises(log.trajectory)) SortByTime(log);

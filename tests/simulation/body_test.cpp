@@ -37,8 +37,8 @@ TEST_CASE("A body that no robot has is refused with the key, from its limit on")
   for (const double side : {-1.0, 1.0}) {
     for (const double share : {0.29, 0.31}) {
       body = {};
-      body.caster_below_m = body.wheel_radius_m - body.caster_radius_m +
-                            side * share * std::abs(body.caster_ahead_m);
+      body.caster_below_m =
+          body.wheel_radius_m - body.caster_radius_m + side * share * std::abs(body.caster_ahead_m);
       INFO("off the ground by " << side * share << " of the caster's distance");
       if (share < 0.3) {
         CHECK_NOTHROW(body.Check());

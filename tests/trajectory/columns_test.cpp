@@ -169,7 +169,7 @@ TEST_CASE("A cell that is no number is refused by its column, a row without posi
   const Log log =
       ReadLog("a,b,c\n0,1,2\n1,,\n2,,\n3,2,3\n", "log.csv", ReadOptions{.columns = "t=a,x=b,y=c"});
   CHECK(log.trajectory.poses.size() == 2);
-  CHECK(log.notes == std::vector<std::string>{"2 rows are left out: they hold no position"});
+  CHECK(log.notes == std::vector<std::string>{"2 rows are left out: no position"});
 }
 
 TEST_CASE("Cells stand between commas, semicolons, tabs or blanks, whichever the first line has") {
