@@ -41,6 +41,22 @@ TEST_CASE("A simulated trial is drawn from above and from the side and over time
   CHECK_THAT(svg, !Contains("elsewhere"));
 }
 
+TEST_CASE("A waypoint far from the path is on the drawing, on either axis") {
+  for (const Eigen::Vector2d& far_m : {Eigen::Vector2d(2.0, 0.1), Eigen::Vector2d(0.1, -3.0)}) {
+    SimulatedTrial trial = Downhill();
+    trial.waypoints.push_back({"far", far_m});
+    const std::string plot = SimulationFigure(trial).plot;
+    const std::regex ranges(R"(set xrange \[(\S+):(\S+)\]\nset yrange \[(\S+):(\S+)\])");
+    std::smatch match;
+    REQUIRE(std::regex_search(plot, match, ranges));
+    CHECK(std::stod(match[1]) < std::min(0.0, far_m.x()));
+    CHECK(std::stod(match[2]) > std::max(0.5, far_m.x()));
+    CHECK(std::stod(match[2]) < std::max(0.5, far_m.x()) + 0.5);
+    CHECK(std::stod(match[3]) < std::min(0.0, far_m.y()));
+    CHECK(std::stod(match[4]) > std::max(0.0, far_m.y()));
+  }
+}
+
 TEST_CASE("Speed is the length along the slope for each second") {
   const std::string plot = SimulationFigure(Downhill()).plot;
   const std::regex row(R"(\$speed << EOD\n(?:\S+ \S+ \n){50}(\S+) (\S+) \n)");

@@ -61,6 +61,15 @@ TEST_CASE("Rendered chessboard corners lie where OpenCV projects them") {
   }
   CHECK(mean.norm() < 0.005);
   CHECK(worst < 0.1);  // cornerSubPix itself: its window of 11 px is not flat under this lens
+  // The first four squares inside the corners: as on OpenCV's board, the outermost is black.
+  const auto grey_between = [&](std::size_t i) {
+    const auto next = i + static_cast<std::size_t>(board.columns) + 1;
+    return picture.at<std::uint8_t>(cv::Point(0.5 * (projected[i] + projected[next])));
+  };
+  CHECK(grey_between(0) < 80);
+  CHECK(grey_between(1) > 140);
+  CHECK(grey_between(static_cast<std::size_t>(board.columns)) > 140);
+  CHECK(grey_between(static_cast<std::size_t>(board.columns) + 1) < 80);
 }
 
 TEST_CASE("The robot is drawn where its pose says and the right way round") {
