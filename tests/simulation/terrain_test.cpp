@@ -78,7 +78,9 @@ TEST_CASE("A patch has the grip of its own and the last one counts") {
   CHECK(terrain.GripAt(0.5, 0.5).mu == 0.3);
   CHECK(terrain.GripAt(0.05, 0.05).mu == 0.05);
   wet.x_max_m = -2.0;
-  CHECK_THROWS_WITH(wet.Check(), Catch::Contains("x_min_m"));
+  CHECK_THROWS_WITH(wet.Check(), "x_min_m is -1, but it must lie below x_max_m, -2");
+  wet = {-3.0, 1.0, 0.25, 0.25, 0.3, 0.0, 0.0};
+  CHECK_THROWS_WITH(wet.Check(), "y_min_m is 0.25, but it must lie below y_max_m, 0.25");
 }
 
 TerrainOptions Heightfield() {
