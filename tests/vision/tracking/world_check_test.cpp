@@ -43,6 +43,17 @@ TEST_CASE("A tag that lies elsewhere, two that are swapped and a stretched axis 
     CHECK_THROWS_WITH(CheckPoints(camera, points, kLimit_m),
                       Contains("tag 4 is wrong") && Contains("mm away"));
   }
+  SECTION("one moved so little that the mean is within the limit") {
+    points[3].p_in_world.x() += 0.012;
+    CHECK_THROWS_WITH(CheckPoints(camera, points, kLimit_m),
+                      Contains("mm off where the others put it (limit") &&
+                          Contains(", for one twice that): tag 4 is wrong"));
+  }
+  SECTION("one moved so far that the mean is beyond it") {
+    points[3].p_in_world.x() += 0.1;
+    CHECK_THROWS_WITH(CheckPoints(camera, points, kLimit_m),
+                      Contains("mm RMS (limit") && !Contains("twice that"));
+  }
   SECTION("two swapped") {
     std::swap(points[1].p_in_world, points[5].p_in_world);
     CHECK_THROWS_WITH(CheckPoints(camera, points, kLimit_m),
