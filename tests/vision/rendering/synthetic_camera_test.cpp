@@ -64,7 +64,7 @@ TEST_CASE("Rendered chessboard corners lie where OpenCV projects them") {
   // The first four squares inside the corners: as on OpenCV's board, the outermost is black.
   const auto grey_between = [&](std::size_t i) {
     const auto next = i + static_cast<std::size_t>(board.columns) + 1;
-    return picture.at<std::uint8_t>(cv::Point(0.5 * (projected[i] + projected[next])));
+    return int{picture.at<std::uint8_t>(cv::Point(0.5 * (projected[i] + projected[next])))};
   };
   CHECK(grey_between(0) < 80);
   CHECK(grey_between(1) > 140);
