@@ -10,7 +10,7 @@
 #include "support/processes/running_rift.hpp"
 #include "support/processes/virtual_display.hpp"
 #include "track/camera_to_calibrate.hpp"
-#include "track/window_keys.hpp"
+#include "track/window_user.hpp"
 #include "vision/mjpeg_server.hpp"
 
 namespace rift {
@@ -88,16 +88,13 @@ std::vector<std::string> Calibrating(const HeldBoard& board, const std::string& 
 TEST_CASE("A board moved about before a live camera calibrates it, and the window asks for keys") {
   const bool is_early = GENERATE(false, true);
   const test::VirtualDisplay server;
-  if (!server.Runs() || !Succeeds("command -v xdotool")) {
-    WARN("SKIPPED: Xvfb or xdotool is not installed");
-    return;
-  }
+  if (!test::CanUseWindows(server)) return;
   const test::TemporaryFolder folder;
   const Environment display("DISPLAY", server.Name());
   HeldBoard board;
   test::RunningRift rift(Calibrating(board, folder / "cam.yaml"));
   const std::string window =
-      "xdotool search --onlyvisible --name '^rift track: calibration$' windowfocus --sync %1 key ";
+      test::WindowOf("rift track: calibration") + "windowfocus --sync %1 key ";
   const auto says = [&](const std::string& line, int times = 1) {
     rift.WaitUntil(line, [&] { return CountOf(line, rift.Err()) >= times; });
   };

@@ -15,7 +15,7 @@
 #include "support/processes/shell.hpp"
 #include "support/tree.hpp"
 #include "support/until.hpp"
-#include "track/window_keys.hpp"
+#include "track/window_user.hpp"
 
 namespace rift {
 namespace {

@@ -10,7 +10,7 @@
 #include "support/processes/running_rift.hpp"
 #include "support/processes/virtual_display.hpp"
 #include "support/tree.hpp"
-#include "track/window_keys.hpp"
+#include "track/window_user.hpp"
 
 namespace rift {
 namespace {
@@ -25,10 +25,7 @@ const std::string kData = test::SourceDir() + "/data/camera";
 
 TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
   const test::VirtualDisplay server;
-  if (!server.Runs() || !Succeeds("command -v xdotool")) {
-    WARN("SKIPPED: Xvfb or xdotool is not installed");
-    return;
-  }
+  if (!test::CanUseWindows(server)) return;
   const test::TemporaryFolder folder;
   const Environment display("DISPLAY", server.Name());
   // The shim's camera goes on for ever.
@@ -42,11 +39,8 @@ TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
                             "--record-waypoints", waypoints, "--set", "track.capture.silent_s=60"});
     {
       const Environment none("LD_PRELOAD", "");
-      const std::string window = "xdotool search --onlyvisible --name '^rift track$' ";
-      rift.WaitUntil("the window shows a picture", [&] {
-        return Succeeds("test $(" + window + "getwindowgeometry --shell | " +
-                        "sed -n s/^HEIGHT=//p) -gt 300");
-      });
+      const std::string window = test::WindowOf("rift track");
+      test::WaitForPicture(rift, window);
       // Each click and key but the last changes the file.
       const auto saved = [&] {
         return std::filesystem::exists(waypoints) ? test::ReadFile(waypoints) : "";
@@ -81,10 +75,7 @@ TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
 
 TEST_CASE("Points of the floor clicked in the window set the world frame") {
   const test::VirtualDisplay server;
-  if (!server.Runs() || !Succeeds("command -v xdotool")) {
-    WARN("SKIPPED: Xvfb or xdotool is not installed");
-    return;
-  }
+  if (!test::CanUseWindows(server)) return;
   const test::TemporaryFolder folder;
   const Environment display("DISPLAY", server.Name());
   const std::string file = kData + "/camera.yaml";
@@ -101,11 +92,8 @@ TEST_CASE("Points of the floor clicked in the window set the world frame") {
   test::RunningRift rift({"track", "--camera", kData + "/frames/*.jpg", "--calibration",
                           folder / "camera.yaml", "--out", folder / "log.csv", "--world",
                           folder / "world.yaml"});
-  const std::string window = "xdotool search --onlyvisible --name '^rift track: world frame$' ";
-  rift.WaitUntil("the window shows a picture", [&] {
-    return Succeeds("test $(" + window + "getwindowgeometry --shell | " +
-                    "sed -n s/^HEIGHT=//p) -gt 300");
-  });
+  const std::string window = test::WindowOf("rift track: world frame");
+  test::WaitForPicture(rift, window);
   const auto click = [&](const Eigen::Vector2d& pixel) {
     REQUIRE(Succeeds(
         window + fmt::format("mousemove --window %1 {:.0f} {:.0f} click 1", pixel.x(), pixel.y())));
