@@ -87,6 +87,7 @@ TEST_CASE("The true pose leans with the ramp, up, down and across") {
     CHECK(robot.Truth().yaw_rad == Approx(yaw_rad).margin(0.01));
   };
   leans(0.0, 0.0, slope_rad);
+  leans(3.13, 0.0, -slope_rad);
   leans(1.5707963, slope_rad, 0.0);
   leans(-1.5707963, -slope_rad, 0.0);
 }

@@ -142,6 +142,8 @@ TEST_CASE("A log without yaw or targets or motion has the other features") {
   CHECK(std::isnan(Feature(log, "yaw_residual_rad")));
   CHECK(std::isnan(Feature(log, "miss_m")));
   CHECK(Feature(log, "cruise_mps") == Approx(0.3));
+  log.poses.resize(5);
+  CHECK(std::isnan(Feature(log, "interval_median_s")));
   Trajectory brief = Drive(Straight, 0.1);
   brief.poses.resize(8);
   CHECK(Feature(brief, "interval_median_s") == Approx(0.05));
