@@ -20,7 +20,6 @@
 namespace rift {
 namespace {
 
-using Catch::Matchers::Contains;
 using test::ProcessResult;
 
 const std::string kData = test::SourceDir() + "/data/camera";
