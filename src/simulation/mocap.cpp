@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "rift/geometry/pose2.hpp"
 
@@ -34,6 +35,7 @@ enum Draw : std::uint64_t {
 };
 
 constexpr double kClockTick_s = 1e-6;
+constexpr double kNever_s = std::numeric_limits<double>::infinity();
 constexpr double kStanding_mps = 0.01;
 
 TruePose Interpolate(const TruePose& before, const TruePose& after, double t_s) {
@@ -68,13 +70,12 @@ Eigen::Vector3d TagInWorld(const TruePose& pose, const MocapOptions& options) {
 
 constexpr double kShortestPeriod_s = 0.005;
 
-MocapOptions OfThisRun(MocapOptions options, std::uint64_t seed,
-                       std::optional<double> host_period_s) {
+MocapOptions OfThisRun(MocapOptions options, std::uint64_t seed) {
   const statistics::CounterRandom drawn(seed, kRunStream);
   options.host_late_share *= 2.0 * drawn.Uniform(0, kRunLateShare);
   if (options.host_period_s) {
     options.host_period_s =
-        std::max(kShortestPeriod_s, host_period_s.value_or(*options.host_period_s) +
+        std::max(kShortestPeriod_s, *options.host_period_s +
                                         options.host_period_spread_s * drawn.Normal(0, kRunPeriod));
   }
   return options;
@@ -82,8 +83,8 @@ MocapOptions OfThisRun(MocapOptions options, std::uint64_t seed,
 
 }  // namespace
 
-Mocap::Mocap(const MocapOptions& options, std::uint64_t seed, std::optional<double> host_period_s)
-    : options_(OfThisRun(options, seed, host_period_s)),
+Mocap::Mocap(const MocapOptions& options, std::uint64_t seed)
+    : options_(OfThisRun(options, seed)),
       noise_(seed, kPoseStream),
       host_noise_(seed, kHostStream),
       standing_factor_(std::exp(options.noise_spread *
@@ -91,7 +92,7 @@ Mocap::Mocap(const MocapOptions& options, std::uint64_t seed, std::optional<doub
       phase_s_(options.rate_hz > 0.0
                    ? statistics::CounterRandom(seed, kPhaseStream).Uniform(0, 0) / options.rate_hz
                    : 0.0),
-      last_stamp_s_(-std::numeric_limits<double>::infinity()) {
+      last_stamp_s_(-kNever_s) {
   host_done_s_ = options_.host_period_s.value_or(0.0) *
                  statistics::CounterRandom(seed, kPhaseStream).Uniform(1, 0);
 }
@@ -134,27 +135,43 @@ void Mocap::TakeFrame(const TruePose& pose, double speed_mps, std::uint64_t fram
   on_the_way_.push_back({arrives_s, measurement});
 }
 
-/// Every turn of the host ends with the newest picture that is old enough to have been worked on,
-/// if there is one since the last turn, stamped with the end of the turn.
+/// Frames that reach the driver while it holds a picture are dropped; a host that finds none waits
+/// for the next.
 void Mocap::RunHost(double until_s) {
-  while (host_done_s_ <= until_s) {
-    std::optional<trial::PoseMeasurement> taken;
-    while (!in_camera_.empty() && in_camera_.front().captured_s <= host_done_s_ - Latency_s()) {
-      taken = in_camera_.front();
+  for (;;) {
+    const double arrives_s =
+        in_camera_.empty() ? kNever_s : in_camera_.front().captured_s + Latency_s();
+    if (std::min(arrives_s, host_done_s_) > until_s) return;
+    if (arrives_s <= host_done_s_) {
+      if (!with_driver_) with_driver_ = in_camera_.front();
       in_camera_.pop_front();
+      if (host_done_s_ == kNever_s) BeginTurn(arrives_s);
+    } else {
+      EndTurn();
     }
-    if (taken) {
-      taken->captured_s = host_done_s_;
-      on_the_way_.push_back({host_done_s_, *taken});
-    }
-    const std::uint64_t turn = host_turns_++;
-    host_wandered_s_ += options_.host_wander_s * host_noise_.Normal(turn, kWander);
-    const bool late = host_noise_.Uniform(turn, kLate) < options_.host_late_share;
-    host_done_s_ += std::max(0.5 * *options_.host_period_s,
-                             *options_.host_period_s + host_wandered_s_ +
-                                 options_.host_jitter_s * host_noise_.Normal(turn, kTurnJitter) +
-                                 (late ? options_.host_late_s : 0.0));
   }
+}
+
+void Mocap::EndTurn() {
+  const double now_s = std::exchange(host_done_s_, kNever_s);
+  if (in_work_) {
+    in_work_->captured_s = now_s;
+    on_the_way_.push_back({now_s, *in_work_});
+    in_work_.reset();
+  }
+  if (with_driver_) BeginTurn(now_s);
+}
+
+void Mocap::BeginTurn(double now_s) {
+  in_work_ = std::exchange(with_driver_, std::nullopt);
+  const std::uint64_t turn = host_turns_++;
+  host_wandered_s_ += options_.host_wander_s * host_noise_.Normal(turn, kWander);
+  const bool late = host_noise_.Uniform(turn, kLate) < options_.host_late_share;
+  host_done_s_ =
+      now_s + std::max(0.5 * *options_.host_period_s,
+                       *options_.host_period_s + host_wandered_s_ +
+                           options_.host_jitter_s * host_noise_.Normal(turn, kTurnJitter) +
+                           (late ? options_.host_late_s : 0.0));
 }
 
 trial::PoseMeasurement Mocap::Measure(const TruePose& pose, double speed_mps,

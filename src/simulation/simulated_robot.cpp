@@ -115,10 +115,10 @@ SimulatedRobot::SimulatedRobot(const SimulationOptions& options, const geometry:
                                std::uint64_t seed, std::shared_ptr<const HeightImage> image)
     : options_(Checked(options, start)),
       world_(options.body, Terrain(options.terrain, std::move(image)), start, options.step_s),
-      motors_{Motor(OfRun(options.motor, seed), Side::kLeft),
-              Motor(OfRun(options.motor, seed), Side::kRight)},
+      motors_{Motor(OfRun(options.MotorOfSession(), seed), Side::kLeft),
+              Motor(OfRun(options.MotorOfSession(), seed), Side::kRight)},
       link_(options.link, seed),
-      mocap_(options.mocap, seed, options.terrain.Chosen().host_period_s),
+      mocap_(options.MocapOfSession(), seed),
       ground_(seed, kGroundStream),
       counts_per_rev_(options.encoder.counts_per_rev.value_or(
           DataOf(options.motor.gearing).encoder_counts_per_rev)),

@@ -61,6 +61,46 @@ TEST_CASE("Uneven ground turns the robot as a random walk over its way") {
   CHECK(spread_rad(0.1, 2.0) == Approx(near_rad).epsilon(0.25));  // the way counts, not the time
 }
 
+TEST_CASE("What a session on a surface has of its own stands beside what the robot has") {
+  SimulationOptions options;
+  options.mocap.host_period_s = 0.05;
+  options.mocap.noise_across_m = 0.001;
+  options.mocap.blur_yaw_rad_per_mps = 0.02;
+  options.motor.mismatch = 0.03;
+  SurfaceOptions& surface = options.terrain.surfaces["cardboard"];
+  surface.host_period_s = 0.06;
+  surface.tracker_noise = 1.5;
+  surface.mismatch = -0.01;
+  CHECK(*options.MocapOfSession().host_period_s == 0.05);
+  CHECK(options.MocapOfSession().noise_across_m == 0.001);
+  CHECK(options.MotorOfSession().mismatch == 0.03);
+  options.terrain.surface = "cardboard";
+  CHECK(*options.MocapOfSession().host_period_s == 0.06);
+  CHECK(options.MocapOfSession().noise_across_m == Approx(0.0015));
+  CHECK(options.MocapOfSession().blur_yaw_rad_per_mps == Approx(0.03));
+  CHECK(options.MocapOfSession().stamp_jitter_s == options.mocap.stamp_jitter_s);
+  CHECK(options.MotorOfSession().mismatch == Approx(0.02));
+  options.mocap.host_period_s.reset();
+  CHECK_FALSE(options.MocapOfSession().host_period_s);
+}
+
+TEST_CASE("The session's mismatch turns the robot as the robot's own does, and either way") {
+  for (const double mismatch : {-0.02, 0.02}) {
+    const auto yaw_after = [&](bool is_of_session) {
+      SimulationOptions options;
+      options.link = LinkOptions{.delay_s = 0.0};
+      (is_of_session ? options.terrain.surfaces["ground"].mismatch : options.motor.mismatch) =
+          mismatch;
+      SimulatedRobot robot(options, {}, 1);
+      robot.Command({0.3, 0.3});
+      robot.Advance(1.0);
+      return robot.Truth().yaw_rad;
+    };
+    CHECK(yaw_after(true) == yaw_after(false));
+    CHECK(yaw_after(true) * mismatch < 0.0);
+  }
+}
+
 TEST_CASE("Each run draws its own mismatch about the mean one") {
   SimulationOptions options = Steady();
   options.motor.mismatch = 0.02;

@@ -57,9 +57,13 @@ struct MocapOptions {
           "scatter of the moment of a frame about its tick in s (trials: 48 to 64 ms apart)");
     field(
         "host_period_s", self.host_period_s, 0.005, 2.0,
-        "the host takes the newest picture this often and stamps its pose when it is done, as the "
-        "authors' does (median; 0.051 to 0.063 in the logs): intervals between captures are whole "
-        "frames, stamps are the host's; none: every frame is measured, stamped when captured");
+        "the host fetches a picture this often and stamps its pose when it is done, as the "
+        "authors' "
+        "does (median; 0.051 to 0.063 in the logs); the driver holds one picture, the first since "
+        "the last was fetched, so a stamp is two turns of the host later, less up to a frame "
+        "(logs: "
+        "the way between two rows follows the turn two before, slope 1.06 +- 0.13, not the last, "
+        "-0.06); none: every frame is measured, stamped when captured");
     field("host_period_spread_s", self.host_period_spread_s, 0.0, 0.2,
           "standard deviation of host_period_s from run to run in s (logs of a surface: 0.0024 to "
           "0.0034)");
@@ -76,8 +80,10 @@ struct MocapOptions {
           "by how much a late turn is longer in s (logs: 0.011 on every surface)");
     field("exposure_s", self.exposure_s, 0.0, 0.2,
           "shutter time in s; the pose is that of its middle (estimate)");
-    field("processing_s", self.processing_s, 0.0, 2.0,
-          "from the end of the exposure to the pose in s (camera and detection: 0.06 to 0.1)");
+    field(
+        "processing_s", self.processing_s, 0.0, 2.0,
+        "from the end of the exposure to the pose in s (camera and detection: 0.06 to 0.1); with a "
+        "host's period to the driver alone");
     field("noise_across_m", self.noise_across_m, 0.0, 0.1,
           "scatter across the heading at rest in m (trials: 0.00035)");
     field("blur_across_s", self.blur_across_s, 0.0, 0.1,
@@ -109,12 +115,11 @@ struct MocapOptions {
 
 /// An overhead camera that measures the tag's pose. What it sees arrives later than it was seen;
 /// frame k has its own random values, so nothing depends on how often anyone looks. With a host's
-/// period, the camera's frames are a grid that the host's loop samples.
+/// period, the camera's frames are a grid that the host's loop samples, through the one picture
+/// that the driver holds.
 class Mocap {
  public:
-  /// `host_period_s`: instead of that of the options, for a surface with one of its own.
-  Mocap(const MocapOptions& options, std::uint64_t seed,
-        std::optional<double> host_period_s = std::nullopt);
+  Mocap(const MocapOptions& options, std::uint64_t seed);
 
   /// The robot moved from `before` to `after`, with before.t_s <= after.t_s: takes every frame due
   /// in between, the pose interpolated to its moment.
@@ -133,6 +138,8 @@ class Mocap {
   double Latency_s() const { return 0.5 * options_.exposure_s + options_.processing_s; }
   void TakeFrame(const TruePose& pose, double speed_mps, std::uint64_t frame);
   void RunHost(double until_s);
+  void BeginTurn(double now_s);
+  void EndTurn();
   trial::PoseMeasurement Measure(const TruePose& pose, double speed_mps, std::uint64_t frame) const;
 
   MocapOptions options_;  ///< with what this run drew of the host's period and its late turns
@@ -142,10 +149,12 @@ class Mocap {
   double phase_s_;
   std::uint64_t next_frame_ = 0;
   double last_stamp_s_;
-  double host_done_s_ = 0.0;  ///< when the host's next turn ends
+  double host_done_s_ = 0.0;  ///< when the host's turn ends; infinite while it waits for a picture
   std::uint64_t host_turns_ = 0;
   double host_wandered_s_ = 0.0;
-  std::deque<trial::PoseMeasurement> in_camera_;  ///< captured, not yet taken by the host
+  std::deque<trial::PoseMeasurement> in_camera_;       ///< captured, not yet with the driver
+  std::optional<trial::PoseMeasurement> with_driver_;  ///< the next that the host will fetch
+  std::optional<trial::PoseMeasurement> in_work_;      ///< stamped when the host's turn ends
   std::deque<Arrival> on_the_way_;
   std::optional<trial::PoseMeasurement> newest_;
 };

@@ -26,6 +26,10 @@ struct SimulationOptions {
   MocapOptions mocap;
   TerrainOptions terrain;
 
+  /// Camera and motors with what the session on the chosen surface has of its own.
+  MocapOptions MocapOfSession() const;
+  MotorOptions MotorOfSession() const;
+
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {

@@ -33,6 +33,8 @@ struct SurfaceOptions {
   double caster_factor = 1.0;
   double unevenness = 0.0;
   std::optional<double> host_period_s;
+  double tracker_noise = 1.0;
+  double mismatch = 0.0;
   double ramp_rad = 0.255;
   double ramp_top_m = 0.24;
   double ramp_edge_x_m = 0.05;
@@ -64,6 +66,12 @@ struct SurfaceOptions {
         "share: dust, fibres, a tyre that is not round; it turns the robot at random");
     field("host_period_s", self.host_period_s, 0.005, 2.0,
           "mocap.host_period_s in the session on this surface; none: that of mocap");
+    field("tracker_noise", self.tracker_noise, 0.0, 20.0,
+          "scatter of the measured pose in the session on this surface, as a multiple of that of "
+          "mocap: light, distance from the camera");
+    field("mismatch", self.mismatch, -0.5, 0.5,
+          "motor.mismatch in the session on this surface less motor.mismatch: another battery, "
+          "cleaned wheels");
     field("ramp_rad", self.ramp_rad, 0.001, 0.7,
           "inclination of the board in rad (z in the downhill logs; authors' world: 0.2404)");
     field("ramp_top_m", self.ramp_top_m, 0.0, 2.0,

@@ -21,10 +21,11 @@ double Latency_s(const simulation::MocapOptions& mocap) {
   return 0.5 * mocap.exposure_s + mocap.processing_s;
 }
 
-/// How long before its stamp a pose was captured: a host that stamps what it has done takes a frame
-/// that is up to a frame older than need be.
+/// How long before its stamp a pose was captured, on average: a host works for a turn on a picture
+/// that the driver has held since the turn before, of the first frame after that began.
 double StampAge_s(const simulation::MocapOptions& mocap) {
-  return mocap.host_period_s ? Latency_s(mocap) + 0.5 / mocap.rate_hz : 0.0;
+  if (!mocap.host_period_s) return 0.0;
+  return Latency_s(mocap) + 2.0 * *mocap.host_period_s - 0.5 / mocap.rate_hz;
 }
 
 /// The simulated robot seen through the eyes of a log: it moves as it is told, and reports what the
@@ -34,9 +35,8 @@ class RobotOfLog : public trial::Robot {
   RobotOfLog(const SimulatedTrial& trial, const Trajectory& log)
       : robot_(trial.simulation, trial.start, trial.seed, trial.image),
         log_(log),
-        arrival_s_(StampAge_s(trial.simulation.mocap) > 0.0 ? 0.0
-                                                            : Latency_s(trial.simulation.mocap)),
-        stamp_age_s_(StampAge_s(trial.simulation.mocap)),
+        arrival_s_(trial.simulation.mocap.host_period_s ? 0.0 : Latency_s(trial.simulation.mocap)),
+        stamp_age_s_(StampAge_s(trial.simulation.MocapOfSession())),
         point_from_robot_{trial.simulation.mocap.tag_ahead_m, 0.0, 0.0} {
     RecordTruth();
   }
