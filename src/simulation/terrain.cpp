@@ -135,8 +135,9 @@ std::optional<Plane> Terrain::PlaneNear(double x_m, double y_m, double reach_m) 
   const double foot_m = surface_.ramp_top_m / std::tan(surface_.ramp_rad);
   const double sign = surface_.shape == Shape::kRampDown ? 1.0 : -1.0;
   const double past_edge_m = sign * (x_m - surface_.ramp_edge_x_m);
-  const bool sloped = past_edge_m > reach_m && past_edge_m < foot_m - reach_m;
-  const bool level = past_edge_m < -reach_m || past_edge_m > foot_m + reach_m;
+  const double bend_m = 0.5 * surface_.ramp_bend_m;
+  const bool sloped = past_edge_m > bend_m + reach_m && past_edge_m < foot_m - reach_m;
+  const bool level = past_edge_m < -bend_m - reach_m || past_edge_m > foot_m + reach_m;
   if (!sloped && !level) return std::nullopt;
   const Eigen::Vector3d normal =
       level ? Eigen::Vector3d::UnitZ()
@@ -167,8 +168,11 @@ bool Terrain::OnTable(double x_m, double y_m, double margin_m) const {
 double Terrain::RampHeight(double x_m) const {
   const double sign = surface_.shape == Shape::kRampDown ? 1.0 : -1.0;
   const double past_edge_m = sign * (x_m - surface_.ramp_edge_x_m);
-  return std::clamp(surface_.ramp_top_m - past_edge_m * std::tan(surface_.ramp_rad), 0.0,
-                    surface_.ramp_top_m);
+  const double into_bend_m = past_edge_m + 0.5 * surface_.ramp_bend_m;
+  const double level_m = into_bend_m > 0.0 && into_bend_m < surface_.ramp_bend_m
+                             ? 0.5 * into_bend_m * into_bend_m / surface_.ramp_bend_m
+                             : std::max(0.0, past_edge_m);
+  return std::max(0.0, surface_.ramp_top_m - level_m * std::tan(surface_.ramp_rad));
 }
 
 double Terrain::BumpHeight(double x_m, double y_m) const {

@@ -48,6 +48,41 @@ TEST_CASE("Where the ground is one plane that plane is the ground") {
   CHECK_FALSE(terrain.PlaneNear(0.05, 0.1, 0.02));
 }
 
+TEST_CASE("A bent board turns evenly from plateau to slope, downhill and uphill") {
+  const double bend_m = 0.2, steep = std::tan(0.255);
+  for (const Shape shape : {Shape::kRampDown, Shape::kRampUp}) {
+    TerrainOptions options;
+    SurfaceOptions& board = options.surfaces["ground"];
+    board.shape = shape;
+    board.ramp_edge_x_m = 0.05;
+    const Terrain sharp(options);
+    board.ramp_bend_m = bend_m;
+    const Terrain bent(options);
+    const double ahead = shape == Shape::kRampDown ? 1.0 : -1.0;
+    const auto x = [&](double past_edge_m) { return 0.05 + ahead * past_edge_m; };
+    for (const double away_m : {-0.3, -0.1, 0.1, 0.3}) {
+      CHECK(bent.HeightAt(x(away_m), 0.0) == Approx(sharp.HeightAt(x(away_m), 0.0)).margin(1e-12));
+    }
+    CHECK(bent.HeightAt(x(0.0), 0.0) == Approx(0.24 - steep * bend_m / 8.0));
+    for (double past_m = -0.09; past_m < 0.1; past_m += 0.02) {
+      const Eigen::Vector3d normal = bent.NormalAt(x(past_m), 0.0);
+      CHECK(ahead * normal.x() / normal.z() == Approx(steep * (past_m + 0.1) / bend_m));
+    }
+    int planes = 0;
+    for (double off_m = -0.5; off_m < 0.5; off_m += 0.013) {
+      const auto plane = bent.PlaneNear(0.05 + off_m, 0.1, 0.02);
+      if (!plane) continue;
+      ++planes;
+      for (const double reach : {-0.02, 0.02}) {
+        const double there = 0.05 + off_m + reach;
+        const Eigen::Vector3d p(there, 0.1, bent.HeightAt(there, 0.1));
+        CHECK(plane->normal.dot(p - plane->point) == Approx(0.0).margin(1e-12));
+      }
+    }
+    CHECK(planes > 50);
+  }
+}
+
 TEST_CASE("The plane of a table ends at its edges, on every side") {
   TerrainOptions options;
   options.table_half_size_m = 1.0;

@@ -38,6 +38,7 @@ struct SurfaceOptions {
   double ramp_rad = 0.255;
   double ramp_top_m = 0.24;
   double ramp_edge_x_m = 0.05;
+  double ramp_bend_m = 0.0;
   double bump_size_m = 0.020;
   double bump_pitch_m = 0.060;
   double bump_height_m = 0.004;
@@ -79,6 +80,10 @@ struct SurfaceOptions {
     field("ramp_edge_x_m", self.ramp_edge_x_m, -10.0, 10.0,
           "x at which plateau and slope meet, in m (z of the logs, axle: downhill 0.05, uphill "
           "0.31)");
+    field(
+        "ramp_bend_m", self.ramp_bend_m, 0.0, 1.0,
+        "length in x over which plateau turns into slope, evenly, the edge in its middle, in m; 0: "
+        "a sharp edge (downhill, z beside that on flat ground: 0.22)");
     field("bump_size_m", self.bump_size_m, 0.001, 1.0,
           "side of a block in m (paper's board: 0.02)");
     field("bump_pitch_m", self.bump_pitch_m, 0.002, 2.0,
