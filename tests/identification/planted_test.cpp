@@ -1,6 +1,7 @@
 #include "identification/planted.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 namespace rift {
 namespace {
@@ -63,6 +64,58 @@ TEST_CASE("A calibration without a simulated log of the fit is the least error a
   // What simulated logs tell scatters too.
   CHECK(least.parameters[0].high - least.parameters[0].low <
         corrected.parameters[0].high - corrected.parameters[0].low);
+}
+
+TEST_CASE("Whole drives tell the ground's unevenness and a pull, and nothing of what never acts") {
+  std::vector<test::Planted> planted = test::PlantAt(3);
+  planted = {{"simulation.terrain.surfaces.parchment.unevenness", 0.0, 0.16, 0.02, 0.09},
+             planted[1],
+             planted[3]};
+  sweep::CalibrationOptions options;
+  options.runs = 0;
+  options.iterations = 1;
+  options.corrections = 0;
+  options.horizon.phases = 2;
+  options.features = {.rounds = 2, .draws = 100};
+  const sweep::Calibration found =
+      test::FindPlanted(test::LoadGridStudy(), planted, 3, 8, options, 2);
+  for (size_t i = 0; i < 2; ++i) {
+    const sweep::CalibratedParameter& one = found.parameters[i];
+    INFO(planted[i].key << ": " << one.value << " in [" << one.low << ", " << one.high << "], "
+                        << planted[i].truth << " was planted");
+    CHECK(one.low < planted[i].truth);
+    CHECK(planted[i].truth < one.high);
+    CHECK(one.high - one.low < 0.6 * (planted[i].max - planted[i].min));
+    CHECK_FALSE(one.is_from_prior);
+  }
+  const sweep::CalibratedParameter& unseen = found.parameters[2];
+  CHECK_FALSE(unseen.has_effect);
+  CHECK(unseen.value == Approx(planted[2].start));
+  CHECK(std::isnan(found.correlation(2, 0)));
+  CHECK(std::abs(found.correlation(1, 0)) < 1.0);
+  CHECK(found.loss_after < found.loss_before);
+}
+
+TEST_CASE("Threads change no byte of a fit by features") {
+  std::vector<test::Planted> planted = {test::PlantAt(4)[1]};
+  sweep::CalibrationOptions options;
+  options.runs = 0;
+  options.iterations = 1;
+  options.corrections = 0;
+  options.horizon.phases = 1;
+  options.features = {.rounds = 1, .draws = 50};
+  const sweep::Calibration alone =
+      test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 1);
+  const sweep::Calibration together =
+      test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 3);
+  CHECK(alone.parameters[0].value == together.parameters[0].value);
+  CHECK(alone.parameters[0].high == together.parameters[0].high);
+  CHECK(alone.loss_before == together.loss_before);
+  options.features.rounds = 0;
+  const sweep::Calibration by_motions =
+      test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 2);
+  CHECK(alone.parameters[0].value != by_motions.parameters[0].value);
+  CHECK(alone.trials_simulated == by_motions.trials_simulated + 3 * (50 + 2 * 8));
 }
 
 TEST_CASE("Threads change no byte of a calibration") {

@@ -131,11 +131,13 @@ std::string WhyNotWritten(const sweep::Calibration& fit, const std::string& file
 
 std::string CalibrationText(const sweep::CalibrationReport& report) {
   const sweep::Calibration& fit = report.calibration;
-  std::string text =
-      fmt::format("loss {:.4f} > {:.4f} in {} steps{}, {} trials simulated\n\n", fit.loss_before,
-                  fit.loss_after, fit.steps,
-                  fit.has_converged ? "" : " (not converged: raise calibrate.method.iterations)",
-                  fit.trials_simulated);
+  std::string text = fmt::format(
+      "loss {:.4f} > {:.4f} in {} steps{}, {} trials simulated\n\n", fit.loss_before,
+      fit.loss_after, fit.steps,
+      fit.has_converged
+          ? ""
+          : " (not converged: raise iterations, or features.rounds, of calibrate.method)",
+      fit.trials_simulated);
   text += ParameterText(fit) + CorrelationText(fit) + AgreementText(report) + '\n' +
           JudgedText(report.judged) + '\n';
   for (const sweep::CalibrationReport::Errors& errors : report.errors) text += ErrorText(errors);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "feature_fit.hpp"
 #include "fitted_simulator.hpp"
 #include "intervals.hpp"
 #include "model.hpp"
@@ -233,7 +234,11 @@ Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
                       const CalibrationOptions& options, std::mt19937_64& generator, int threads,
                       const CalibrationStep& on_step) {
   SimulatedTwins simulator(twin, threads);
-  return Calibrate(parameters, logs, simulator, options, generator, on_step);
+  Calibration found = Calibrate(parameters, logs, simulator, options, generator, on_step);
+  if (options.features.rounds > 0) {
+    FitFeatures(logs, twin, options, generator(), threads, on_step, found);
+  }
+  return found;
 }
 
 std::vector<StartAgreement> AgreementOf(const std::vector<Calibration>& fits) {

@@ -124,7 +124,9 @@ void Identifier::Load() {
                            .is_held_out = IsHeldOut(request.trial)},
                           {.name = real.source,
                            .setting = SettingKey(parameters, theta),
-                           .log = real.trajectory}});
+                           .log = real.trajectory,
+                           .group = MainLevel(parameters, theta),
+                           .drives_grid_fps = experiment_.candidate.grid_fps}});
     }
   }
   if (Side(false).size() >= 2) return;
@@ -343,6 +345,9 @@ std::string Identifier::ProgressText(const CalibrationProgress& progress,
       break;
     case CalibrationProgress::Part::kCorrection:
       text += fmt::format("correction by simulated logs {} of", progress.step);
+      break;
+    case CalibrationProgress::Part::kFeatures:
+      text += fmt::format("features of whole drives, round {} of", progress.step);
       break;
   }
   text += fmt::format(" {}:", progress.most);

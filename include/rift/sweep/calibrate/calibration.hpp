@@ -20,6 +20,10 @@ struct CalibrationLog {
   /// No simulated log that stands for this one is longer, by strides: such a run circled about a
   /// waypoint, as no log here does, and would count more than all the others.
   double longest_m = std::numeric_limits<double>::infinity();
+  /// Logs of one group answer alike to the parameters, as those of one surface do.
+  std::string group{};
+  /// Of the frames on which the stamps of its drives are put (trajectory::OnFramesOf); 0: none.
+  double drives_grid_fps = 0.0;
 };
 
 /// The simulated twin of a log, with one value for each free parameter. It starts where the robot
@@ -28,7 +32,7 @@ using TwinAt = std::function<SimulatedTrial(size_t log, const std::vector<double
 
 /// How far a fit is.
 struct CalibrationProgress {
-  enum class Part { kMotions, kDescent, kCorrection };
+  enum class Part { kMotions, kDescent, kCorrection, kFeatures };
   Part part = Part::kDescent;
   int step = 0;  ///< of this part
   int most = 0;  ///< that part may end before
@@ -64,7 +68,7 @@ struct StartAgreement {
 struct Calibration {
   std::vector<CalibratedParameter> parameters;
   Eigen::MatrixXd correlation;  ///< of the estimates; NaN in rows of parameters without effect
-  double loss_before = 0.0;     ///< mean squared error in standard deviations of the last fit
+  double loss_before = 0.0;     ///< mean squared error in standard deviations of the last part
   double loss_after = 0.0;
   int steps = 0;  ///< of the fit
   bool has_converged = false;
@@ -83,8 +87,10 @@ std::vector<StartAgreement> AgreementOf(const std::vector<Calibration>& fits);
 /// bang-bang loop they are chaotic. A prior adds the square of the distance from its mean over its
 /// standard deviation, as one more error. Intervals and correlations: bootstrap over logs, each
 /// draw fitted by one Gauss-Newton step; over the logs alone and over logs and the simulated ones
-/// of the corrections together, whichever is wider. Throws std::invalid_argument for no logs, no
-/// parameters or a start out of range. `threads` evaluate logs at once and change no result.
+/// of the corrections together, whichever is wider. With options.features.rounds the estimate then
+/// goes on to where whole drives have the features of the logs. Throws std::invalid_argument for no
+/// logs, no parameters or a start out of range. `threads` evaluate logs at once and change no
+/// result.
 Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                       const CalibrationOptions& options, std::mt19937_64& generator,

@@ -21,9 +21,31 @@ struct ShortHorizonOptions {
   }
 };
 
+/// The last part of a fit: what whole runs are like, as a function of the parameters.
+struct FeatureFitOptions {
+  int rounds = 0;
+  int draws = 300;
+  double failures = 1.0;
+
+  /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("rounds", self.rounds, 0, 20,
+          "how often values are drawn about the estimate, each log driven once at each draw, and "
+          "the features of the drives regressed on the values; the estimate goes to where they are "
+          "those of the logs; 0: the fit ends with the motions");
+    field("draws", self.draws, 50, 100'000, "draws of the values in a round");
+    field(
+        "failures", self.failures, 0.0, 1000.0,
+        "weight of drives that do not arrive, or on a detour, which no log of the fit is; 1: that "
+        "of so many logs (-2 log of the share that arrives), as if none had been driven again");
+  }
+};
+
 /// How a simulator is fitted to logs.
 struct CalibrationOptions {
   ShortHorizonOptions horizon;
+  FeatureFitOptions features;
   int runs = 4;
   double likeness_weight = 4.0;
   int iterations = 12;
@@ -40,6 +62,7 @@ struct CalibrationOptions {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("horizon", self.horizon, "prediction of the next frames from the logged ones");
+    field("features", self.features, "fit by what tells simulated logs from real ones");
     field("runs", self.runs, 0, 1000,
           "whole simulated runs of each log, for weave, spread, speed and loop delay; 0: the next "
           "frames alone decide");

@@ -1,0 +1,239 @@
+#include "feature_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "feature_model.hpp"
+#include "model.hpp"
+#include "rift/statistics/inference.hpp"
+#include "rift/statistics/random.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using Eigen::Index;
+
+constexpr std::uint64_t kDrawStream = 111;
+constexpr double kFarthest = 2.0;  // draws and estimates of a round, in scatters
+/// Scatter of the first draws and the least of later ones, as shares of the ranges.
+constexpr double kFirstScatter = 0.15, kLeastScatter = 0.02;
+/// Draws reach as far as the estimate is uncertain, twice: slopes over less are noise.
+constexpr double kReach = 2.0;
+constexpr int kMostSteps = 200;
+constexpr double kConverged = 1e-6;
+constexpr double kLargestDamping = 1e9;
+/// Drives of each log behind the losses.
+constexpr int kJudgeRuns = 8;
+
+/// One region of values, about a centre in shares of the ranges.
+class Region {
+ public:
+  Region(Eigen::VectorXd centre, Eigen::VectorXd scatter, const Prior& prior)
+      : centre_(std::move(centre)), scatter_(std::move(scatter)), prior_(prior) {}
+
+  /// As far as ranges allow: a draw beyond a bound is one at it.
+  Eigen::MatrixXd Drawn(int draws, statistics::Random& random) const {
+    Eigen::MatrixXd z(draws, centre_.size());
+    for (Index i = 0; i < z.rows(); ++i) {
+      for (Index k = 0; k < z.cols(); ++k) {
+        z(i, k) = std::clamp(random.Normal(), Low()[k], High()[k]);
+      }
+    }
+    return z;
+  }
+  Eigen::VectorXd SharesAt(const Eigen::VectorXd& z) const {
+    return (centre_ + scatter_.cwiseProduct(z)).cwiseMax(0.0).cwiseMin(1.0);
+  }
+  Eigen::VectorXd Least(const FeatureModel& model) const;
+  /// Covariance of the shares about z.
+  Eigen::MatrixXd CovarianceAt(const FeatureModel& model, const Eigen::VectorXd& z) const {
+    const Eigen::MatrixXd half = 0.5 * WithPrior(model, z).hessian;
+    Eigen::MatrixXd matrix = half;
+    matrix.diagonal().array() += RidgeOf(half);
+    const Eigen::MatrixXd inverse =
+        matrix.ldlt().solve(Eigen::MatrixXd::Identity(z.size(), z.size()));
+    return scatter_.asDiagonal() * inverse * scatter_.asDiagonal();
+  }
+
+ private:
+  Eigen::VectorXd Low() const { return (-centre_).cwiseQuotient(scatter_).cwiseMax(-kFarthest); }
+  Eigen::VectorXd High() const {
+    return (1.0 - centre_.array()).matrix().cwiseQuotient(scatter_).cwiseMin(kFarthest);
+  }
+  FeatureModel::Expansion WithPrior(const FeatureModel& model, const Eigen::VectorXd& z) const {
+    FeatureModel::Expansion at = model.At(z);
+    const Eigen::VectorXd shares = centre_ + scatter_.cwiseProduct(z);
+    at.loss += prior_.LossAt(shares);
+    at.gradient += 2.0 * scatter_.cwiseProduct(prior_.GradientAt(shares));
+    at.hessian +=
+        2.0 * scatter_.cwiseAbs2().cwiseProduct(prior_.weight).asDiagonal().toDenseMatrix();
+    return at;
+  }
+
+  Eigen::VectorXd centre_, scatter_;
+  const Prior& prior_;
+};
+
+/// Levenberg and Marquardt within the region; what a bound stops is left alone.
+Eigen::VectorXd Region::Least(const FeatureModel& model) const {
+  const Eigen::VectorXd low = Low(), high = High();
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(centre_.size());
+  FeatureModel::Expansion at = WithPrior(model, z);
+  double damping = 1e-2;
+  for (int i = 0; i < kMostSteps && damping < kLargestDamping; ++i) {
+    Eigen::MatrixXd matrix = at.hessian;
+    matrix.diagonal() *= 1.0 + damping;
+    matrix.diagonal().array() += RidgeOf(at.hessian);
+    Eigen::VectorXd slope = at.gradient;
+    for (Index k = 0; k < z.size(); ++k) {
+      const bool is_stopped =
+          (z[k] <= low[k] && slope[k] > 0.0) || (z[k] >= high[k] && slope[k] < 0.0);
+      if (!is_stopped) continue;
+      matrix.row(k).setZero();
+      matrix.col(k).setZero();
+      matrix(k, k) = 1.0;
+      slope[k] = 0.0;
+    }
+    const Eigen::VectorXd tried = (z - matrix.ldlt().solve(slope)).cwiseMax(low).cwiseMin(high);
+    const FeatureModel::Expansion there = WithPrior(model, tried);
+    if (there.loss >= at.loss) {
+      damping *= 10.0;
+      continue;
+    }
+    const double moved = (tried - z).cwiseAbs().maxCoeff();
+    z = tried, at = there;
+    damping = std::max(1e-6, 0.1 * damping);
+    if (moved < kConverged) break;
+  }
+  return z;
+}
+
+/// The parameters that change anything, in shares of their ranges; the others stay where they are.
+class Active {
+ public:
+  explicit Active(const Calibration& found) {
+    all_.resize(static_cast<Index>(found.parameters.size()));
+    start_ = all_;
+    for (const CalibratedParameter& one : found.parameters) {
+      const experiment::FreeParameter& p = one.parameter;
+      const auto k = static_cast<Index>(parameters_.size());
+      all_[k] = (one.value - p.min) / (p.max - p.min);
+      start_[k] = (p.start - p.min) / (p.max - p.min);
+      if (one.has_effect) places_.push_back(k);
+      parameters_.push_back(p);
+    }
+    const Prior all = PriorOf(parameters_);
+    prior_ = {all.mean(places_), all.weight(places_)};
+  }
+
+  Eigen::VectorXd Found() const { return all_(places_); }
+  Eigen::VectorXd Start() const { return start_(places_); }
+  const Prior& PriorOfThem() const { return prior_; }
+  /// Of all parameters.
+  std::vector<double> Values(const Eigen::VectorXd& shares) const {
+    Eigen::VectorXd all = all_;
+    all(places_) = shares;
+    return ValuesAt(parameters_, all);
+  }
+  /// An interval ends with the range.
+  void Tell(const Eigen::VectorXd& shares, const Eigen::MatrixXd& covariance,
+            const CalibrationOptions& options, Calibration& found) const;
+
+ private:
+  std::vector<experiment::FreeParameter> parameters_;
+  std::vector<Index> places_;
+  Eigen::VectorXd all_, start_;
+  Prior prior_;
+};
+
+void Active::Tell(const Eigen::VectorXd& shares, const Eigen::MatrixXd& covariance,
+                  const CalibrationOptions& options, Calibration& found) const {
+  const double deviations = statistics::NormalQuantile(0.5 + 0.5 * options.confidence);
+  const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd correlation =
+      sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
+  found.correlation.setConstant(std::numeric_limits<double>::quiet_NaN());
+  found.correlation(places_, places_) = correlation;
+  for (size_t i = 0; i < places_.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    CalibratedParameter& one = found.parameters[static_cast<size_t>(places_[i])];
+    const double min = one.parameter.min, width = one.parameter.max - min;
+    const double reach = deviations * sd[k];
+    one.value = min + shares[k] * width;
+    one.low = min + std::max(0.0, shares[k] - reach) * width;
+    one.high = min + std::min(1.0, shares[k] + reach) * width;
+    one.is_at_bound = shares[k] <= 0.0 || shares[k] >= 1.0;
+    one.is_identified = reach <= options.identified_share;
+    // The posterior's weight is the sum of both.
+    one.is_from_prior = prior_.weight[k] > 0.5 / (sd[k] * sd[k]);
+  }
+}
+
+/// Logs x features of the logs themselves.
+Eigen::MatrixXd RealRows(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
+                         const std::vector<double>& values) {
+  Eigen::MatrixXd rows;
+  for (size_t i = 0; i < logs.size(); ++i) {
+    const Eigen::VectorXd row = FeatureRow(logs[i].log, twin(i, values));
+    if (i == 0) rows.resize(static_cast<Index>(logs.size()), row.size());
+    rows.row(static_cast<Index>(i)) = row;
+  }
+  return rows;
+}
+
+}  // namespace
+
+void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
+                 const CalibrationOptions& options, std::uint64_t seed, int threads,
+                 const CalibrationStep& on_step, Calibration& found) {
+  const Active active(found);
+  const Prior& prior = active.PriorOfThem();
+  Eigen::VectorXd shares = active.Found();
+  if (shares.size() == 0) return;
+  std::vector<std::string> group_of_log;
+  for (const CalibrationLog& log : logs) group_of_log.push_back(log.group);
+  const Eigen::MatrixXd real = RealRows(logs, twin, active.Values(shares));
+  const auto drive = [&](const std::vector<std::vector<double>>& values, int round) {
+    found.trials_simulated += values.size() * logs.size();
+    return DriveAt(values, logs, twin, static_cast<std::uint64_t>(round), threads);
+  };
+  statistics::Random random(seed, kDrawStream);
+  Eigen::VectorXd scatter = Eigen::VectorXd::Constant(shares.size(), kFirstScatter);
+  for (int round = 0; round < options.features.rounds; ++round) {
+    const Region region(shares, scatter, prior);
+    const Eigen::MatrixXd draws = region.Drawn(options.features.draws, random);
+    std::vector<std::vector<double>> values;
+    for (Index i = 0; i < draws.rows(); ++i) {
+      values.push_back(active.Values(region.SharesAt(draws.row(i))));
+    }
+    const FeatureModel model(group_of_log, real, draws, drive(values, round),
+                             options.features.failures);
+    const auto features = static_cast<double>(model.FeatureCount());
+    const Eigen::VectorXd z = region.Least(model);
+    shares = region.SharesAt(z);
+    const Eigen::MatrixXd covariance = region.CovarianceAt(model, z);
+    scatter = (kReach * covariance.diagonal().cwiseSqrt()).cwiseMin(scatter);
+    scatter = scatter.cwiseMax(kLeastScatter);
+    found.has_converged = z.cwiseAbs().maxCoeff() < kFarthest;
+    if (on_step) {
+      on_step({.part = CalibrationProgress::Part::kFeatures,
+               .step = round + 1,
+               .most = options.features.rounds,
+               .loss = model.At(z).loss / features,
+               .values = active.Values(shares)});
+    }
+    if (round + 1 < options.features.rounds) continue;
+    active.Tell(shares, covariance, options, found);
+    const auto loss_at = [&](const Eigen::VectorXd& at) {
+      const std::vector<std::vector<double>> repeated(kJudgeRuns, active.Values(at));
+      return (model.LossOf(drive(repeated, options.features.rounds)) + prior.LossAt(at)) / features;
+    };
+    found.loss_before = loss_at(active.Start());
+    found.loss_after = loss_at(shares);
+  }
+}
+
+}  // namespace rift::sweep

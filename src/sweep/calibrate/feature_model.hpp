@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "feature_rows.hpp"
+
+namespace rift::sweep {
+
+/// Logs of one group answer alike to the parameters: what their drives are like on average, as a
+/// quadratic function of the parameters without products, regressed over drawn values (Beaumont,
+/// Zhang and Balding 2002), beside the real logs.
+class FeatureModel {
+ public:
+  /// `group_of_log`: the same text for logs of one group; `real`: logs x features; `draws`: draws x
+  /// parameters, about 0 and of unit scatter; `driven`: one element for each draw; `failures`:
+  /// FeatureFitOptions::failures.
+  FeatureModel(const std::vector<std::string>& group_of_log, const Eigen::MatrixXd& real,
+               const Eigen::MatrixXd& draws, const std::vector<FeatureRows>& driven,
+               double failures = 1.0);
+
+  /// Of -2 log likelihood: features of each log normal about the mean of the simulated drives
+  /// (synthetic likelihood, Wood 2010), and no log failed.
+  struct Expansion {
+    double loss = 0.0;
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd hessian;  ///< Gauss and Newton's
+  };
+  Expansion At(const Eigen::VectorXd& z) const;
+
+  /// The same loss of drives at one set of values, several for each log, without the regression.
+  double LossOf(const std::vector<FeatureRows>& driven) const;
+  double FailingShareAt(const Eigen::VectorXd& z) const;
+  size_t FeatureCount() const;
+
+ private:
+  struct Group {
+    std::vector<Eigen::Index> logs;
+    std::vector<Eigen::Index> told;  ///< features that both sides tell and that vary
+    Eigen::VectorXd low, high;       ///< what is beyond counts as this; of all features
+    Eigen::MatrixXd log_mean;        ///< logs of the group x features: of the drives at all draws
+    Eigen::VectorXd real_off;        ///< told features: mean of the real logs, off log_mean
+    Eigen::MatrixXd weights;         ///< inverse covariance of real_off
+    Eigen::MatrixXd slopes;          ///< (1 + 2 parameters) x told features
+    Eigen::VectorXd failing;         ///< the same of the share of drives that failed
+  };
+  Group GroupOf(std::vector<Eigen::Index> logs, const Eigen::MatrixXd& real,
+                const Eigen::MatrixXd& draws, const std::vector<FeatureRows>& driven) const;
+  Eigen::MatrixXd Kept(const Group& group, const Eigen::MatrixXd& rows) const;
+
+  double FailureWeight(const Group& group) const {
+    return 2.0 * failures_ * static_cast<double>(group.logs.size());
+  }
+
+  double failures_;
+  std::vector<bool> is_positive_;  ///< such features are told as logarithms
+  std::vector<Group> groups_;
+};
+
+}  // namespace rift::sweep

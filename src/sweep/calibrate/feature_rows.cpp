@@ -1,0 +1,104 @@
+#include "feature_rows.hpp"
+
+#include <cmath>
+#include <future>
+#include <limits>
+#include <stdexcept>
+
+#include "rift/statistics/random.hpp"
+#include "rift/sweep/calibrate/drive_features.hpp"
+#include "rift/sweep/calibrate/repeated_trial.hpp"
+#include "rift/trajectory/frame_grid.hpp"
+#include "rift/trial/loop_delay.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using trajectory::StampedPose;
+using trajectory::Trajectory;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t kFeatureStream = 110;
+constexpr std::uint64_t kMostDraws = 1'000'000;
+
+void AppendSteering(const Trajectory& path, const SimulatedTrial& twin, std::vector<double>& row) {
+  trial::LoopDelay delay;
+  try {
+    delay = trial::EstimateLoopDelay(path, twin.task.waypoints, twin.control);
+  } catch (const std::invalid_argument&) {
+    // It hardly drove.
+  }
+  const bool is_told = delay.lag_s >= 0.0;
+  for (const double value : {delay.lag_s, delay.gain_rad_s, delay.bias_rad_s}) {
+    row.push_back(is_told ? value : kNone);
+  }
+}
+
+/// Left of the line from waypoint to waypoint, of the last row that drove to each.
+void AppendSides(const Trajectory& path, const SimulatedTrial& twin, std::vector<double>& row) {
+  const std::vector<control::Waypoint>& waypoints = twin.task.waypoints;
+  for (size_t i = 1; i < waypoints.size(); ++i) {
+    const Eigen::Vector2d from(waypoints[i - 1].x_m, waypoints[i - 1].y_m);
+    const Eigen::Vector2d to(waypoints[i].x_m, waypoints[i].y_m);
+    const Eigen::Vector2d ahead = (to - from).normalized();
+    double side_m = kNone;
+    for (const StampedPose& pose : path.poses) {
+      const Eigen::Vector2d target(pose.target_x_m, pose.target_y_m);
+      if (!((target - to).norm() < 1e-6)) continue;
+      const Eigen::Vector2d off = pose.Position() - to;
+      side_m = ahead.x() * off.y() - ahead.y() * off.x();
+    }
+    row.push_back(side_m);
+  }
+}
+
+}  // namespace
+
+Eigen::VectorXd FeatureRow(const Trajectory& path, const SimulatedTrial& twin) {
+  const std::vector<double> all = FeaturesOf(path, {});
+  std::vector<double> row;
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (!DriveFeatures()[i].is_timing) row.push_back(all[i]);
+  }
+  AppendSteering(path, twin, row);
+  AppendSides(path, twin, row);
+  return Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size()));
+}
+
+std::vector<FeatureRows> DriveAt(const std::vector<std::vector<double>>& values,
+                                 const std::vector<CalibrationLog>& logs, const TwinAt& twin,
+                                 std::uint64_t round, int threads) {
+  std::vector<FeatureRows> driven(values.size());
+  const auto drive = [&](size_t draw) {
+    FeatureRows& at = driven[draw];
+    at.has_failed = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(logs.size()));
+    for (size_t i = 0; i < logs.size(); ++i) {
+      SimulatedTrial trial = twin(i, values[draw]);
+      trial.seed = statistics::SeedOfStream(statistics::SeedOfStream(trial.seed, kFeatureStream),
+                                            round * kMostDraws + draw);
+      const SimulatedRun run = Simulate(trial);
+      Eigen::VectorXd row =
+          FeatureRow(trajectory::OnFramesOf(run.result.trajectory, logs[i].drives_grid_fps), trial);
+      const auto log = static_cast<Eigen::Index>(i);
+      if (i == 0) at.rows.resize(static_cast<Eigen::Index>(logs.size()), row.size());
+      if (run.result.outcome != trial::Outcome::kReached ||
+          LengthByStrides_m(run.result.trajectory) > logs[i].longest_m) {
+        row.setConstant(kNone);
+        at.has_failed[log] = 1.0;
+      }
+      at.rows.row(log) = row;
+    }
+  };
+  const auto work = [&](size_t first) {
+    for (size_t i = first; i < values.size(); i += static_cast<size_t>(threads)) drive(i);
+  };
+  std::vector<std::future<void>> workers;
+  for (int i = 1; i < threads; ++i) {
+    workers.push_back(std::async(std::launch::async, work, static_cast<size_t>(i)));
+  }
+  work(0);
+  for (std::future<void>& worker : workers) worker.get();
+  return driven;
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,159 @@
+// What drives are like, regressed on the values they were driven at: made-up drives with a known
+// answer, no simulator.
+
+#include "sweep/calibrate/feature_model.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "rift/statistics/random.hpp"
+
+namespace rift::sweep {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr int kLogs = 6;
+
+/// Three features that answer two parameters: linear, with a square, and not at all.
+Eigen::Vector3d MeanAt(const Eigen::Vector2d& z) {
+  return {2.0 + 0.5 * z[0] - 0.2 * z[1], -1.0 + 0.3 * z[1] + 0.1 * z[0] * z[0], 4.0};
+}
+
+struct Made {
+  Eigen::MatrixXd real, draws;
+  std::vector<FeatureRows> driven;
+  std::vector<std::string> groups = std::vector<std::string>(kLogs, "ground");
+};
+
+/// Logs that differ from each other by `log`, driven at `truth` for real, each scattering by
+/// `noise`; `failing` of the drives where the first parameter is above 0.
+Made MakeDrives(const Eigen::Vector2d& truth, double noise, double failing = 0.0) {
+  statistics::Random random(5, 1);
+  const auto row = [&](const Eigen::Vector2d& z, int log) -> Eigen::RowVectorXd {
+    Eigen::RowVectorXd one = MeanAt(z).transpose().array() + 0.3 * log;
+    for (double& value : one) value += noise * random.Normal();
+    return one;
+  };
+  Made made{.real = Eigen::MatrixXd(kLogs, 3), .draws = Eigen::MatrixXd(400, 2)};
+  for (int log = 0; log < kLogs; ++log) {
+    made.real.row(log) = MeanAt(truth).transpose().array() + 0.3 * log;
+  }
+  for (Eigen::Index i = 0; i < made.draws.rows(); ++i) {
+    made.draws.row(i) << random.Normal(), random.Normal();
+    FeatureRows& at = made.driven.emplace_back();
+    at.rows.resize(kLogs, 3);
+    at.has_failed = Eigen::VectorXd::Zero(kLogs);
+    for (int log = 0; log < kLogs; ++log) {
+      at.rows.row(log) = row(made.draws.row(i), log);
+      if (made.draws(i, 0) > 0.0 && random.Uniform() < failing) {
+        at.has_failed[log] = 1.0;
+        at.rows.row(log).setConstant(kNone);
+      }
+    }
+  }
+  return made;
+}
+
+double LossAt(const FeatureModel& model, double first, double second) {
+  return model.At(Eigen::Vector2d(first, second)).loss;
+}
+
+TEST_CASE("Drives are like the logs at the values that the logs were driven with") {
+  const Eigen::Vector2d truth(0.8, -0.6);
+  const Made made = MakeDrives(truth, 0.05);
+  const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+  CHECK(model.FeatureCount() == 3);
+  const double least = LossAt(model, truth[0], truth[1]);
+  CHECK(least < 1.0);
+  for (const double off : {-0.4, 0.4}) {
+    CHECK(LossAt(model, truth[0] + off, truth[1]) > least + 1.0);
+    CHECK(LossAt(model, truth[0], truth[1] + off) > least + 1.0);
+  }
+}
+
+TEST_CASE("Slope and curvature of the loss are those of the loss") {
+  const Made made = MakeDrives({0.8, -0.6}, 0.05, 0.3);
+  const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+  const Eigen::Vector2d z(0.5, 0.3);
+  const FeatureModel::Expansion at = model.At(z);
+  constexpr double kStep = 1e-5;
+  for (int k = 0; k < 2; ++k) {
+    Eigen::Vector2d above = z, below = z;
+    above[k] += kStep, below[k] -= kStep;
+    CHECK(at.gradient[k] ==
+          Approx((model.At(above).loss - model.At(below).loss) / (2.0 * kStep)).epsilon(1e-4));
+  }
+  CHECK(at.hessian(0, 1) == Approx(at.hessian(1, 0)));
+  CHECK(at.hessian.determinant() > 0.0);
+}
+
+TEST_CASE("What most drives of some values fail with is no drive of the logs, which all arrived") {
+  const Made made = MakeDrives({0.0, 0.0}, 0.05, 0.5);
+  const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+  CHECK(model.FailingShareAt(Eigen::Vector2d(1.5, 0.0)) > 0.25);
+  CHECK(model.FailingShareAt(Eigen::Vector2d(-1.5, 0.0)) < 0.1);
+  const Made sound = MakeDrives({0.0, 0.0}, 0.05, 0.0);
+  const FeatureModel all(sound.groups, sound.real, sound.draws, sound.driven);
+  CHECK(all.FailingShareAt(Eigen::Vector2d(1.5, 0.0)) == 0.0);
+  // Twice the share for each log (-2 log (1 - p)).
+  const double by_failures = LossAt(model, 1.0, 0.0) - LossAt(all, 1.0, 0.0);
+  CHECK(by_failures ==
+        Approx(2.0 * kLogs * model.FailingShareAt(Eigen::Vector2d(1.0, 0.0))).epsilon(0.3));
+}
+
+TEST_CASE(
+    "A feature that no log tells or that no drive varies has no say, and one log is no outlier") {
+  const Eigen::Vector2d truth(0.4, 0.2);
+  Made made = MakeDrives(truth, 0.05);
+  for (FeatureRows& one : made.driven) one.rows.col(2).setConstant(4.0);
+  CHECK(FeatureModel(made.groups, made.real, made.draws, made.driven).FeatureCount() == 3);
+  for (int log = 0; log < kLogs; ++log) made.real(log, 2) = 4.0;
+  CHECK(FeatureModel(made.groups, made.real, made.draws, made.driven).FeatureCount() == 2);
+  made.real.col(1).setConstant(kNone);
+  CHECK(FeatureModel(made.groups, made.real, made.draws, made.driven).FeatureCount() == 1);
+
+  Made wild = MakeDrives(truth, 0.05), wilder = wild;
+  wild.real(3, 0) = 40.0;
+  wilder.real(3, 0) = 4e6;
+  CHECK(LossAt(FeatureModel(wild.groups, wild.real, wild.draws, wild.driven), 0.4, 0.2) ==
+        Approx(LossAt(FeatureModel(wilder.groups, wilder.real, wilder.draws, wilder.driven), 0.4,
+                      0.2)));
+}
+
+TEST_CASE("Groups answer the parameters each in its own way") {
+  Made made = MakeDrives({0.5, 0.0}, 0.05);
+  // Of the second half of the logs the first feature falls where it rises in the first half.
+  for (int log = kLogs / 2; log < kLogs; ++log) {
+    made.groups[static_cast<size_t>(log)] = "cardboard";
+    made.real(log, 0) = 10.0 - made.real(log, 0);
+    for (FeatureRows& one : made.driven) one.rows(log, 0) = 10.0 - one.rows(log, 0);
+  }
+  const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+  CHECK(model.FeatureCount() == 6);
+  const double least = LossAt(model, 0.5, 0.0);
+  CHECK(least < 1.5);
+  CHECK(LossAt(model, 0.0, 0.0) > least + 1.0);
+  CHECK(LossAt(model, 1.0, 0.0) > least + 1.0);
+}
+
+TEST_CASE("The loss of drives is that of the regression where they were driven") {
+  const Made made = MakeDrives({0.8, -0.6}, 0.05);
+  const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+  std::vector<FeatureRows> at_truth(40), elsewhere(40);
+  statistics::Random random(9, 2);
+  for (size_t i = 0; i < at_truth.size(); ++i) {
+    at_truth[i].has_failed = elsewhere[i].has_failed = Eigen::VectorXd::Zero(kLogs);
+    at_truth[i].rows = made.real;
+    elsewhere[i].rows = made.real;
+    elsewhere[i].rows.col(0).array() += 0.3;
+    for (double& value : at_truth[i].rows.reshaped()) value += 0.05 * random.Normal();
+  }
+  CHECK(model.LossOf(at_truth) < 1.0);
+  CHECK(model.LossOf(elsewhere) > model.LossOf(at_truth) + 1.0);
+  for (FeatureRows& one : at_truth) one.has_failed.setConstant(0.5);
+  CHECK(model.LossOf(at_truth) > kLogs);
+}
+
+}  // namespace
+}  // namespace rift::sweep
