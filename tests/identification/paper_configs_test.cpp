@@ -88,7 +88,8 @@ TEST_CASE("Without the delays of link and listener the robot hardly weaves") {
             3),
       "");
   CHECK(all.weave_m < 0.55 * all.real_weave_m);
-  CHECK(all.spread_m < 0.5 * all.real_spread_m);
+  // The two turns of the host that a pose is old remain.
+  CHECK(all.spread_m < 0.6 * all.real_spread_m);
 }
 
 }  // namespace

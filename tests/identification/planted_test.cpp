@@ -42,7 +42,8 @@ TEST_CASE("A planted radio delay is found from below and from above") {
     const sweep::CalibratedParameter& delay = found.parameters[0];
     INFO("from " << start << ": " << delay.value << " in [" << delay.low << ", " << delay.high
                  << "], " << planted[0].truth << " was planted");
-    CHECK(delay.value == Approx(planted[0].truth).margin(0.02));
+    // A pose is up to a frame, 33 ms, younger than the replay takes it for.
+    CHECK(delay.value == Approx(planted[0].truth).margin(0.025));
     CHECK(found.has_converged);
   }
 }
@@ -66,32 +67,36 @@ TEST_CASE("A calibration without a simulated log of the fit is the least error a
         corrected.parameters[0].high - corrected.parameters[0].low);
 }
 
-TEST_CASE("Whole drives tell the ground's unevenness and a pull, and nothing of what never acts") {
+TEST_CASE("Whole drives tell a tracker's scatter and a pull, and nothing of what never acts") {
   std::vector<test::Planted> planted = test::PlantAt(3);
-  planted = {{"simulation.terrain.surfaces.parchment.unevenness", 0.0, 0.16, 0.02, 0.09},
+  planted = {{"simulation.terrain.surfaces.parchment.tracker_noise", 0.2, 3.0, 0.8, 1.8},
              planted[1],
+             {"simulation.terrain.surfaces.parchment.unevenness", 0.0, 0.16, 0.03, 0.09},
              planted[3]};
   sweep::CalibrationOptions options;
   options.runs = 0;
   options.iterations = 1;
   options.corrections = 0;
   options.horizon.phases = 2;
-  options.features = {.rounds = 2, .draws = 100};
+  options.features = {.rounds = 2, .draws = 120};
   const sweep::Calibration found =
       test::FindPlanted(test::LoadGridStudy(), planted, 3, 8, options, 2);
-  for (size_t i = 0; i < 2; ++i) {
+  for (size_t i = 0; i < 3; ++i) {
     const sweep::CalibratedParameter& one = found.parameters[i];
     INFO(planted[i].key << ": " << one.value << " in [" << one.low << ", " << one.high << "], "
                         << planted[i].truth << " was planted");
     CHECK(one.low < planted[i].truth);
     CHECK(planted[i].truth < one.high);
-    CHECK(one.high - one.low < 0.6 * (planted[i].max - planted[i].min));
     CHECK_FALSE(one.is_from_prior);
+    // Eight drives on uneven ground are hardly like others: what is open is said to be.
+    const double share = (one.high - one.low) / (planted[i].max - planted[i].min);
+    CHECK((i == 2 ? share > 0.4 : share < 0.7));
   }
-  const sweep::CalibratedParameter& unseen = found.parameters[2];
+  CHECK_FALSE(found.parameters[2].is_identified);
+  const sweep::CalibratedParameter& unseen = found.parameters[3];
   CHECK_FALSE(unseen.has_effect);
-  CHECK(unseen.value == Approx(planted[2].start));
-  CHECK(std::isnan(found.correlation(2, 0)));
+  CHECK(unseen.value == Approx(planted[3].start));
+  CHECK(std::isnan(found.correlation(3, 0)));
   CHECK(std::abs(found.correlation(1, 0)) < 1.0);
   CHECK(found.loss_after < found.loss_before);
 }

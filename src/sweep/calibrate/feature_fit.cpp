@@ -22,6 +22,9 @@ constexpr double kFarthest = 2.0;  // draws and estimates of a round, in scatter
 constexpr double kFirstScatter = 0.15, kLeastScatter = 0.02;
 /// Draws reach as far as the estimate is uncertain, twice: slopes over less are noise.
 constexpr double kReach = 2.0;
+/// 1 / sd^2 of an even spread over a range about its end.
+constexpr double kUntold = 3.0;
+constexpr double kTriedStep = 0.1;  // of a range, for whether a parameter changes anything
 constexpr int kMostSteps = 200;
 constexpr double kConverged = 1e-6;
 constexpr double kLargestDamping = 1e9;
@@ -50,9 +53,10 @@ class Region {
   Eigen::VectorXd Least(const FeatureModel& model) const;
   /// Covariance of the shares about z.
   Eigen::MatrixXd CovarianceAt(const FeatureModel& model, const Eigen::VectorXd& z) const {
-    const Eigen::MatrixXd half = 0.5 * WithPrior(model, z).hessian;
-    Eigen::MatrixXd matrix = half;
-    matrix.diagonal().array() += RidgeOf(half);
+    Eigen::MatrixXd matrix = model.InformationAt(z);
+    matrix.diagonal() += scatter_.cwiseAbs2().cwiseProduct(prior_.weight);
+    // A parameter that nothing tells is as uncertain as its range is wide.
+    matrix.diagonal() += kUntold * scatter_.cwiseAbs2();
     const Eigen::MatrixXd inverse =
         matrix.ldlt().solve(Eigen::MatrixXd::Identity(z.size(), z.size()));
     return scatter_.asDiagonal() * inverse * scatter_.asDiagonal();
@@ -172,6 +176,31 @@ void Active::Tell(const Eigen::VectorXd& shares, const Eigen::MatrixXd& covarian
   }
 }
 
+bool IsSame(const trajectory::Trajectory& a, const trajectory::Trajectory& b) {
+  return std::equal(a.poses.begin(), a.poses.end(), b.poses.begin(), b.poses.end(),
+                    [](const auto& one, const auto& other) {
+                      return one.t_s == other.t_s && one.Planar() == other.Planar();
+                    });
+}
+
+/// Motions do not see all that whole drives do, such as the tracker's scatter.
+void FindEffects(const std::vector<CalibrationLog>& logs, const TwinAt& twin, Calibration& found) {
+  std::vector<double> values;
+  for (const CalibratedParameter& one : found.parameters) values.push_back(one.value);
+  for (size_t k = 0; k < values.size(); ++k) {
+    CalibratedParameter& one = found.parameters[k];
+    const double width = one.parameter.max - one.parameter.min;
+    const bool is_low = one.value < one.parameter.min + 0.5 * width;
+    std::vector<double> moved = values;
+    moved[k] += (is_low ? kTriedStep : -kTriedStep) * width;
+    for (size_t i = 0; i < logs.size() && !one.has_effect; ++i) {
+      one.has_effect = !IsSame(Simulate(twin(i, values)).result.trajectory,
+                               Simulate(twin(i, moved)).result.trajectory);
+      found.trials_simulated += 2;
+    }
+  }
+}
+
 /// Logs x features of the logs themselves.
 Eigen::MatrixXd RealRows(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                          const std::vector<double>& values) {
@@ -189,6 +218,7 @@ Eigen::MatrixXd RealRows(const std::vector<CalibrationLog>& logs, const TwinAt& 
 void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                  const CalibrationOptions& options, std::uint64_t seed, int threads,
                  const CalibrationStep& on_step, Calibration& found) {
+  FindEffects(logs, twin, found);
   const Active active(found);
   const Prior& prior = active.PriorOfThem();
   Eigen::VectorXd shares = active.Found();

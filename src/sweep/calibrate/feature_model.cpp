@@ -1,10 +1,12 @@
 #include "feature_model.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "rift/statistics/descriptive.hpp"
@@ -23,6 +25,7 @@ constexpr double kModelError = 0.1;
 /// Dozens of features of a few logs: their correlations are those of the drives, weakened.
 constexpr double kCorrelation = 0.6;
 constexpr double kSlopeRidge = 0.5, kSquareRidge = 4.0;
+constexpr double kNoScatter = 1e-12;
 constexpr size_t kFewestLogs = 4;  ///< whose own scatter is looked at
 
 /// 1, z and the squares of z.
@@ -38,13 +41,17 @@ Eigen::MatrixXd BasisOf(const Eigen::MatrixXd& draws) {
   return basis;
 }
 
-/// Least squares with a ridge, so that squares have to be seen to count.
-Eigen::MatrixXd Regressed(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& values) {
+/// Of least squares with a ridge, so that squares have to be seen to count.
+Eigen::MatrixXd NormalMatrix(const Eigen::MatrixXd& basis) {
   const Index parameters = (basis.cols() - 1) / 2;
   Eigen::MatrixXd normal = basis.transpose() * basis;
   normal.diagonal().segment(1, parameters).array() += kSlopeRidge;
   normal.diagonal().tail(parameters).array() += kSquareRidge;
-  return normal.ldlt().solve(basis.transpose() * values);
+  return normal;
+}
+
+Eigen::MatrixXd Regressed(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& values) {
+  return NormalMatrix(basis).ldlt().solve(basis.transpose() * values);
 }
 
 std::vector<double> KnownOf(const auto& values) {
@@ -63,6 +70,69 @@ Eigen::VectorXd MeanOfKnown(const Eigen::MatrixXd& rows) {
     mean[k] = known.empty() ? kNone : statistics::Mean(known);
   }
   return mean;
+}
+
+Eigen::MatrixXd ZeroWhereUnknown(const Eigen::MatrixXd& rows) {
+  return rows.unaryExpr([](double value) { return std::isnan(value) ? 0.0 : value; });
+}
+
+/// Of each feature, beyond which a drive is an outlier.
+std::pair<Eigen::VectorXd, Eigen::VectorXd> LimitsOf(const Eigen::MatrixXd& drives) {
+  Eigen::VectorXd low = Eigen::VectorXd::Zero(drives.cols()), high = low;
+  for (Index k = 0; k < drives.cols(); ++k) {
+    const std::vector<double> known = KnownOf(drives.col(k));
+    if (known.empty()) continue;
+    const double beyond =
+        0.5 * (statistics::Quantile(known, 0.75) - statistics::Quantile(known, 0.25));
+    low[k] = statistics::Quantile(known, kTail) - beyond;
+    high[k] = statistics::Quantile(known, 1.0 - kTail) + beyond;
+  }
+  return {low, high};
+}
+
+/// Of drives that are stacked draw by draw, `logs` of each.
+Eigen::MatrixXd MeansOfLogs(const Eigen::MatrixXd& drives, Index logs) {
+  Eigen::MatrixXd means(logs, drives.cols());
+  for (Index log = 0; log < logs; ++log) {
+    const auto own = Eigen::seqN(log, drives.rows() / logs, logs);
+    means.row(log) = MeanOfKnown(drives(own, Eigen::all));
+  }
+  return means;
+}
+
+/// Which features both sides tell, and the inverse covariance of the mean of the logs there.
+/// `real_off`: the logs; `scattered`: what the regression leaves of the drives.
+std::pair<std::vector<Index>, Eigen::MatrixXd> ToldAndWeights(const Eigen::MatrixXd& real_off,
+                                                              const Eigen::MatrixXd& scattered) {
+  std::vector<Index> told;
+  std::vector<double> logs, deviations;
+  for (Index k = 0; k < real_off.cols(); ++k) {
+    const std::vector<double> of_logs = KnownOf(real_off.col(k)),
+                              of_drives = KnownOf(scattered.col(k));
+    double deviation = statistics::RootMeanSquare(of_drives);
+    if (of_logs.size() >= kFewestLogs) {
+      deviation = std::max(deviation, statistics::StandardDeviation(of_logs));
+    }
+    if (of_logs.empty() || of_drives.size() < 2 || !(deviation > kNoScatter)) continue;
+    told.push_back(k);
+    logs.push_back(static_cast<double>(of_logs.size()));
+    deviations.push_back(deviation);
+  }
+  const Eigen::MatrixXd known = ZeroWhereUnknown(scattered(Eigen::all, told));
+  const Eigen::MatrixXd products = known.transpose() * known;
+  Eigen::MatrixXd covariance(products.rows(), products.cols());
+  for (Index a = 0; a < covariance.rows(); ++a) {
+    for (Index b = 0; b < covariance.cols(); ++b) {
+      const double scale = std::sqrt(products(a, a) * products(b, b));
+      const double correlation = a == b        ? 1.0
+                                 : scale > 0.0 ? kCorrelation * products(a, b) / scale
+                                               : 0.0;
+      covariance(a, b) = correlation * deviations[a] * deviations[b] / std::sqrt(logs[a] * logs[b]);
+    }
+    covariance(a, a) += std::pow(kModelError * deviations[a], 2);
+  }
+  return {told,
+          covariance.ldlt().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()))};
 }
 
 /// Rows of the same drives one below the other.
@@ -91,6 +161,10 @@ FeatureModel::FeatureModel(const std::vector<std::string>& group_of_log,
                              return is_above_zero(one.rows);
                            }));
   }
+  const Index coefficients = 1 + 2 * draws.cols();
+  basis_covariance_ = NormalMatrix(BasisOf(draws))
+                          .ldlt()
+                          .solve(Eigen::MatrixXd::Identity(coefficients, coefficients));
   std::map<std::string, std::vector<Index>> logs_of;
   for (size_t i = 0; i < group_of_log.size(); ++i) {
     logs_of[group_of_log[i]].push_back(static_cast<Index>(i));
@@ -118,79 +192,34 @@ FeatureModel::Group FeatureModel::GroupOf(std::vector<Index> logs, const Eigen::
                                           const std::vector<FeatureRows>& driven) const {
   Group group{.logs = std::move(logs)};
   const auto count = static_cast<Index>(group.logs.size());
-  const auto draw_count = static_cast<Index>(driven.size());
-  const Index features = real.cols();
-
-  Eigen::MatrixXd all = Kept(group, Stacked(driven, group.logs));
-  group.low = group.high = Eigen::VectorXd::Zero(features);
-  for (Index k = 0; k < features; ++k) {
-    const std::vector<double> known = KnownOf(all.col(k));
-    if (known.empty()) continue;
-    const double beyond =
-        0.5 * (statistics::Quantile(known, 0.75) - statistics::Quantile(known, 0.25));
-    group.low[k] = statistics::Quantile(known, kTail) - beyond;
-    group.high[k] = statistics::Quantile(known, 1.0 - kTail) + beyond;
-  }
-  all = Kept(group, Stacked(driven, group.logs));
-
+  std::tie(group.low, group.high) = LimitsOf(Kept(group, Stacked(driven, group.logs)));
   // Each log has a mean of its own; what is regressed is how its drives differ from that.
-  group.log_mean.resize(count, features);
-  for (Index log = 0; log < count; ++log) {
-    const auto own = Eigen::seqN(log, draw_count, count);
-    group.log_mean.row(log) = MeanOfKnown(all(own, Eigen::all));
-    for (Index draw = 0; draw < draw_count; ++draw) {
-      all.row(draw * count + log) -= group.log_mean.row(log);
-    }
-  }
+  Eigen::MatrixXd drives = Kept(group, Stacked(driven, group.logs));
+  group.log_mean = MeansOfLogs(drives, count);
+  drives -= group.log_mean.replicate(draws.rows(), 1);
   const Eigen::MatrixXd real_off = Kept(group, real(group.logs, Eigen::all)) - group.log_mean;
-  Eigen::MatrixXd mean_of_draw(draw_count, features);
-  Eigen::VectorXd failing(draw_count);
-  for (Index draw = 0; draw < draw_count; ++draw) {
-    mean_of_draw.row(draw) = MeanOfKnown(all.middleRows(draw * count, count));
+
+  Eigen::MatrixXd mean_of_draw(draws.rows(), real.cols());
+  Eigen::VectorXd failing(draws.rows());
+  for (Index draw = 0; draw < draws.rows(); ++draw) {
+    mean_of_draw.row(draw) = MeanOfKnown(drives.middleRows(draw * count, count));
     failing[draw] = driven[static_cast<size_t>(draw)].has_failed(group.logs).mean();
   }
   const Eigen::MatrixXd basis = BasisOf(draws);
   group.failing = Regressed(basis, failing);
-
-  const Eigen::MatrixXd slopes = Regressed(basis, mean_of_draw.unaryExpr([](double value) {
-    return std::isnan(value) ? 0.0 : value;  // no log told it at this draw: the mean of all
-  }));
+  // A draw at which no log tells a feature has the mean of all.
+  const Eigen::MatrixXd slopes = Regressed(basis, ZeroWhereUnknown(mean_of_draw));
   const Eigen::MatrixXd regressed = basis * slopes;
-  Eigen::MatrixXd scattered = all;
-  for (Index draw = 0; draw < draw_count; ++draw) {
-    scattered.middleRows(draw * count, count).rowwise() -= regressed.row(draw);
+  for (Index draw = 0; draw < draws.rows(); ++draw) {
+    drives.middleRows(draw * count, count).rowwise() -= regressed.row(draw);
   }
-  std::vector<double> told_logs, deviations;
-  for (Index k = 0; k < features; ++k) {
-    const std::vector<double> of_logs = KnownOf(real_off.col(k)),
-                              of_drives = KnownOf(scattered.col(k));
-    double deviation = statistics::RootMeanSquare(of_drives);
-    if (of_logs.size() >= kFewestLogs) {
-      deviation = std::max(deviation, statistics::StandardDeviation(of_logs));
-    }
-    if (of_logs.empty() || of_drives.size() < 2 || !(deviation > 1e-12)) continue;
-    group.told.push_back(k);
-    told_logs.push_back(static_cast<double>(of_logs.size()));
-    deviations.push_back(deviation);
-  }
-  const auto told = static_cast<Index>(group.told.size());
+  std::tie(group.told, group.weights) = ToldAndWeights(real_off, drives);
+  const Eigen::MatrixXd left =
+      ZeroWhereUnknown(mean_of_draw)(Eigen::all, group.told) - regressed(Eigen::all, group.told);
+  group.slope_noise = (group.weights * (left.transpose() * left)).trace() /
+                      static_cast<double>(std::max<Index>(1, draws.rows() - basis.cols()));
   group.slopes = slopes(Eigen::all, group.told);
   group.real_off = MeanOfKnown(real_off(Eigen::all, group.told));
-  const Eigen::MatrixXd known = scattered(Eigen::all, group.told).unaryExpr([](double value) {
-    return std::isnan(value) ? 0.0 : value;
-  });
-  const Eigen::MatrixXd products = known.transpose() * known;
-  Eigen::MatrixXd covariance(told, told);
-  for (Index a = 0; a < told; ++a) {
-    for (Index b = 0; b < told; ++b) {
-      const double correlation =
-          a == b ? 1.0 : kCorrelation * products(a, b) / std::sqrt(products(a, a) * products(b, b));
-      covariance(a, b) =
-          correlation * deviations[a] * deviations[b] / std::sqrt(told_logs[a] * told_logs[b]);
-    }
-    covariance(a, a) += std::pow(kModelError * deviations[a], 2);
-  }
-  group.weights = covariance.ldlt().solve(Eigen::MatrixXd::Identity(told, told));
   return group;
 }
 
@@ -214,6 +243,22 @@ FeatureModel::Expansion FeatureModel::At(const Eigen::VectorXd& z) const {
                              2.0 * z.cwiseProduct(group.failing.tail(z.size())));
   }
   return at;
+}
+
+/// Slopes are regressed over few drives, and what they scatter by looks like slope: it is known,
+/// and goes out (errors in variables).
+Eigen::MatrixXd FeatureModel::InformationAt(const Eigen::VectorXd& z) const {
+  const Index parameters = z.size();
+  Eigen::MatrixXd slope_of_basis = Eigen::MatrixXd::Zero(parameters, basis_covariance_.rows());
+  slope_of_basis.middleCols(1, parameters).setIdentity();
+  slope_of_basis.rightCols(parameters) = (2.0 * z).asDiagonal();
+  double noise = 0.0;
+  for (const Group& group : groups_) noise += group.slope_noise;
+  const Eigen::MatrixXd information =
+      0.5 * At(z).hessian - noise * slope_of_basis * basis_covariance_ * slope_of_basis.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         solver.eigenvectors().transpose();
 }
 
 double FeatureModel::LossOf(const std::vector<FeatureRows>& driven) const {

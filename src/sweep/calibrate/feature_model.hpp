@@ -28,6 +28,9 @@ class FeatureModel {
     Eigen::MatrixXd hessian;  ///< Gauss and Newton's
   };
   Expansion At(const Eigen::VectorXd& z) const;
+  /// Half the Hessian without what the scatter of the regressed slopes adds to it: how surely the
+  /// logs tell z.
+  Eigen::MatrixXd InformationAt(const Eigen::VectorXd& z) const;
 
   /// The same loss of drives at one set of values, several for each log, without the regression.
   double LossOf(const std::vector<FeatureRows>& driven) const;
@@ -44,6 +47,7 @@ class FeatureModel {
     Eigen::MatrixXd weights;         ///< inverse covariance of real_off
     Eigen::MatrixXd slopes;          ///< (1 + 2 parameters) x told features
     Eigen::VectorXd failing;         ///< the same of the share of drives that failed
+    double slope_noise = 0.0;  ///< what the features scatter by from draw to draw, weighted, summed
   };
   Group GroupOf(std::vector<Eigen::Index> logs, const Eigen::MatrixXd& real,
                 const Eigen::MatrixXd& draws, const std::vector<FeatureRows>& driven) const;
@@ -56,6 +60,7 @@ class FeatureModel {
   double failures_;
   std::vector<bool> is_positive_;  ///< such features are told as logarithms
   std::vector<Group> groups_;
+  Eigen::MatrixXd basis_covariance_;  ///< of coefficients, for a scatter of 1 from draw to draw
 };
 
 }  // namespace rift::sweep
