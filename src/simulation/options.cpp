@@ -18,7 +18,7 @@ MocapOptions SimulationOptions::MocapOfSession() const {
 
 MotorOptions SimulationOptions::MotorOfSession() const {
   MotorOptions session = motor;
-  session.mismatch += terrain.Chosen().mismatch;
+  session.mismatch += terrain.Chosen().session_mismatch;
   return session;
 }
 

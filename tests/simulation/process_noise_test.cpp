@@ -70,7 +70,7 @@ TEST_CASE("What a session on a surface has of its own stands beside what the rob
   SurfaceOptions& surface = options.terrain.surfaces["cardboard"];
   surface.host_period_s = 0.06;
   surface.tracker_noise = 1.5;
-  surface.mismatch = -0.01;
+  surface.session_mismatch = -0.01;
   CHECK(*options.MocapOfSession().host_period_s == 0.05);
   CHECK(options.MocapOfSession().noise_across_m == 0.001);
   CHECK(options.MotorOfSession().mismatch == 0.03);
@@ -89,8 +89,8 @@ TEST_CASE("The session's mismatch turns the robot as the robot's own does, and e
     const auto yaw_after = [&](bool is_of_session) {
       SimulationOptions options;
       options.link = LinkOptions{.delay_s = 0.0};
-      (is_of_session ? options.terrain.surfaces["ground"].mismatch : options.motor.mismatch) =
-          mismatch;
+      (is_of_session ? options.terrain.surfaces["ground"].session_mismatch
+                     : options.motor.mismatch) = mismatch;
       SimulatedRobot robot(options, {}, 1);
       robot.Command({0.3, 0.3});
       robot.Advance(1.0);

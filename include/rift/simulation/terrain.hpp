@@ -34,7 +34,7 @@ struct SurfaceOptions {
   double unevenness = 0.0;
   std::optional<double> host_period_s;
   double tracker_noise = 1.0;
-  double mismatch = 0.0;
+  double session_mismatch = 0.0;
   double ramp_rad = 0.255;
   double ramp_top_m = 0.24;
   double ramp_edge_x_m = 0.05;
@@ -70,7 +70,7 @@ struct SurfaceOptions {
     field("tracker_noise", self.tracker_noise, 0.0, 20.0,
           "scatter of the measured pose in the session on this surface, as a multiple of that of "
           "mocap: light, distance from the camera");
-    field("mismatch", self.mismatch, -0.5, 0.5,
+    field("session_mismatch", self.session_mismatch, -0.5, 0.5,
           "motor.mismatch in the session on this surface less motor.mismatch: another battery, "
           "cleaned wheels");
     field("ramp_rad", self.ramp_rad, 0.001, 0.7,
