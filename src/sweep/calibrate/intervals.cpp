@@ -91,11 +91,12 @@ Scatter ScatterOf(Eigen::MatrixXd draws, double confidence) {
     draws.col(k) = draws.col(k).cwiseMax(low).cwiseMin(high);
   }
   const Eigen::MatrixXd centred = draws.rowwise() - draws.colwise().mean();
-  Eigen::MatrixXd covariance = centred.transpose() * centred;
-  // A product of many rows is not the same to the last bit on both sides of the diagonal.
-  covariance.triangularView<Eigen::StrictlyUpper>() = covariance.transpose().eval();
+  const Eigen::MatrixXd covariance = centred.transpose() * centred;
   const Eigen::VectorXd inverse_sd = covariance.diagonal().cwiseSqrt().cwiseInverse();
   scatter.correlation = inverse_sd.asDiagonal() * covariance * inverse_sd.asDiagonal();
+  // Rounding differs on the two sides of the diagonal.
+  scatter.correlation.triangularView<Eigen::StrictlyUpper>() =
+      scatter.correlation.transpose().eval();
   return scatter;
 }
 
