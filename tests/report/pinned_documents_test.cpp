@@ -194,6 +194,13 @@ TEST_CASE("A calibration is told and drawn as it was approved") {
   text += RobotYaml(experiment, report, "abc1  logs/a/real1.csv\nno two words\nabc2  real2.csv\n",
                     "/somewhere/fit.yaml");
   CHECK(DifferenceFromPinned("report/calibration.txt", text) == "");
+
+  experiment.calibrate.method.features = {.rounds = 3, .draws = 250};
+  const std::string by_features = RobotYaml(experiment, report, "", "fit.yaml");
+  CHECK_THAT(by_features,
+             Catch::Contains("then features of whole drives,\n# 3 rounds of 250 draws; "
+                             "intervals: posterior.\n"));
+  CHECK_THAT(by_features, !Catch::Contains("bootstrap"));
 }
 
 /// A path that no motion and no exchange of its axes maps onto itself.

@@ -52,6 +52,14 @@ std::string Indented(const std::string& lines) {
   return text;
 }
 
+/// What made estimate and intervals in the end.
+std::string LastPartText(const sweep::CalibrationOptions& method) {
+  if (method.features.rounds == 0) return "intervals: bootstrap over the logs";
+  return fmt::format(
+      "then features of whole drives,\n# {} rounds of {} draws; intervals: posterior",
+      method.features.rounds, method.features.draws);
+}
+
 std::string Head(const experiment::Experiment& experiment, const sweep::CalibrationReport& report,
                  const std::string& inputs, const std::string& experiment_file) {
   const sweep::Calibration& fit = report.calibration;
@@ -61,12 +69,12 @@ std::string Head(const experiment::Experiment& experiment, const sweep::Calibrat
       "# Written by rift sweep {} --write-robot (rift {}), goal: calibrate.\n"
       "# How: short-horizon prediction (1 to {} frames) and weave, spread, speed and loop delay "
       "of\n"
-      "# whole runs (Levenberg-Marquardt, {} steps{}); intervals: bootstrap over the logs.\n"
+      "# whole runs (Levenberg-Marquardt, {} steps{}); {}.\n"
       "# {} logs fitted, {} held out; loss {:.4f} before, {:.4f} after.\n",
       std::filesystem::path(experiment_file).filename().string(), RIFT_VERSION,
       experiment.calibrate.method.horizon.most_frames, fit.steps,
-      fit.has_converged ? "" : ", not converged", report.trials.size() - held, held,
-      fit.loss_before, fit.loss_after);
+      fit.has_converged ? "" : ", not converged", LastPartText(experiment.calibrate.method),
+      report.trials.size() - held, held, fit.loss_before, fit.loss_after);
   for (const sweep::JudgedGroup& group : report.judged) {
     if (group.level != "all") continue;
     text += fmt::format(
