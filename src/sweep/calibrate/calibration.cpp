@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -80,23 +79,11 @@ Eigen::VectorXd Fit::StartOf(const std::vector<experiment::FreeParameter>& param
   return shares;
 }
 
-/// A Gauss-Newton step that leaves alone what a bound stops.
 Eigen::VectorXd Fit::StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
                              double damping) const {
-  Eigen::MatrixXd matrix = hessian;
-  matrix.diagonal() *= 1.0 + damping;
-  matrix.diagonal().array() += RidgeOf(hessian);
-  Eigen::VectorXd slope = gradient;
-  for (Eigen::Index k = 0; k < slope.size(); ++k) {
-    const bool is_stopped =
-        (shares_[k] <= 0.0 && slope[k] > 0.0) || (shares_[k] >= 1.0 && slope[k] < 0.0);
-    if (!is_stopped) continue;
-    matrix.row(k).setZero();
-    matrix.col(k).setZero();
-    matrix(k, k) = 1.0;
-    slope[k] = 0.0;
-  }
-  return -matrix.ldlt().solve(slope);
+  const Eigen::VectorXd low = Eigen::VectorXd::Zero(shares_.size());
+  const Eigen::VectorXd high = Eigen::VectorXd::Ones(shares_.size());
+  return StepWithin(shares_, low, high, hessian, gradient, damping);
 }
 
 void Fit::Tell(const CalibrationStep& on_step, Part part, int step, int most) const {

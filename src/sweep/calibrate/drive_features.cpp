@@ -10,7 +10,6 @@
 #include "rift/gap/likeness.hpp"
 #include "rift/statistics/descriptive.hpp"
 #include "rift/sweep/calibrate/repeated_trial.hpp"
-#include "series.hpp"
 
 namespace rift::sweep {
 namespace {

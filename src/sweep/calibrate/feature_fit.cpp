@@ -88,20 +88,9 @@ Eigen::VectorXd Region::Least(const FeatureModel& model) const {
   FeatureModel::Expansion at = WithPrior(model, z);
   double damping = 1e-2;
   for (int i = 0; i < kMostSteps && damping < kLargestDamping; ++i) {
-    Eigen::MatrixXd matrix = at.hessian;
-    matrix.diagonal() *= 1.0 + damping;
-    matrix.diagonal().array() += RidgeOf(at.hessian);
-    Eigen::VectorXd slope = at.gradient;
-    for (Index k = 0; k < z.size(); ++k) {
-      const bool is_stopped =
-          (z[k] <= low[k] && slope[k] > 0.0) || (z[k] >= high[k] && slope[k] < 0.0);
-      if (!is_stopped) continue;
-      matrix.row(k).setZero();
-      matrix.col(k).setZero();
-      matrix(k, k) = 1.0;
-      slope[k] = 0.0;
-    }
-    const Eigen::VectorXd tried = (z - matrix.ldlt().solve(slope)).cwiseMax(low).cwiseMin(high);
+    const Eigen::VectorXd tried = (z + StepWithin(z, low, high, at.hessian, at.gradient, damping))
+                                      .cwiseMax(low)
+                                      .cwiseMin(high);
     const FeatureModel::Expansion there = WithPrior(model, tried);
     if (there.loss >= at.loss) {
       damping *= 10.0;

@@ -28,18 +28,14 @@ constexpr double kSlopeRidge = 0.5, kSquareRidge = 4.0;
 constexpr double kNoScatter = 1e-12;
 constexpr size_t kFewestLogs = 4;  ///< whose own scatter is looked at
 
-/// 1, z and the squares of z.
-Eigen::VectorXd BasisAt(const Eigen::VectorXd& z) {
-  Eigen::VectorXd basis(1 + 2 * z.size());
-  basis << 1.0, z, z.cwiseAbs2();
-  return basis;
-}
-
+/// Of each row z: 1, z and the squares of z.
 Eigen::MatrixXd BasisOf(const Eigen::MatrixXd& draws) {
   Eigen::MatrixXd basis(draws.rows(), 1 + 2 * draws.cols());
   basis << Eigen::VectorXd::Ones(draws.rows()), draws, draws.cwiseAbs2();
   return basis;
 }
+
+Eigen::VectorXd BasisAt(const Eigen::VectorXd& z) { return BasisOf(z.transpose()).transpose(); }
 
 /// Of least squares with a ridge, so that squares have to be seen to count.
 Eigen::MatrixXd NormalMatrix(const Eigen::MatrixXd& basis) {
@@ -192,9 +188,10 @@ FeatureModel::Group FeatureModel::GroupOf(std::vector<Index> logs, const Eigen::
                                           const std::vector<FeatureRows>& driven) const {
   Group group{.logs = std::move(logs)};
   const auto count = static_cast<Index>(group.logs.size());
-  std::tie(group.low, group.high) = LimitsOf(Kept(group, Stacked(driven, group.logs)));
+  const Eigen::MatrixXd stacked = Stacked(driven, group.logs);
+  std::tie(group.low, group.high) = LimitsOf(Kept(group, stacked));
   // Each log has a mean of its own; what is regressed is how its drives differ from that.
-  Eigen::MatrixXd drives = Kept(group, Stacked(driven, group.logs));
+  Eigen::MatrixXd drives = Kept(group, stacked);
   group.log_mean = MeansOfLogs(drives, count);
   drives -= group.log_mean.replicate(draws.rows(), 1);
   const Eigen::MatrixXd real_off = Kept(group, real(group.logs, Eigen::all)) - group.log_mean;
@@ -272,10 +269,7 @@ double FeatureModel::LossOf(const std::vector<FeatureRows>& driven) const {
       failing += driven[i].has_failed(group.logs).mean() / static_cast<double>(driven.size());
     }
     const Eigen::VectorXd error =
-        MeanOfKnown(off(Eigen::all, group.told)).unaryExpr([](double value) {
-          return std::isnan(value) ? 0.0 : value;
-        }) -
-        group.real_off;
+        ZeroWhereUnknown(MeanOfKnown(off(Eigen::all, group.told))) - group.real_off;
     loss += error.dot(group.weights * error) + FailureWeight(group) * failing;
   }
   return loss;

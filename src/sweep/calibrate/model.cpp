@@ -1,5 +1,6 @@
 #include "model.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "fitted_simulator.hpp"
@@ -63,6 +64,25 @@ size_t Count(const Blocks& blocks) {
 double RidgeOf(const Eigen::MatrixXd& hessian) {
   constexpr double kRidge = 1e-9;
   return kRidge + kRidge * hessian.diagonal().maxCoeff();
+}
+
+Eigen::VectorXd StepWithin(const Eigen::VectorXd& at, const Eigen::VectorXd& low,
+                           const Eigen::VectorXd& high, const Eigen::MatrixXd& hessian,
+                           const Eigen::VectorXd& gradient, double damping) {
+  Eigen::MatrixXd matrix = hessian;
+  matrix.diagonal() *= 1.0 + damping;
+  matrix.diagonal().array() += RidgeOf(hessian);
+  Eigen::VectorXd slope = gradient;
+  for (Eigen::Index k = 0; k < slope.size(); ++k) {
+    const bool is_stopped =
+        (at[k] <= low[k] && slope[k] > 0.0) || (at[k] >= high[k] && slope[k] < 0.0);
+    if (!is_stopped) continue;
+    matrix.row(k).setZero();
+    matrix.col(k).setZero();
+    matrix(k, k) = 1.0;
+    slope[k] = 0.0;
+  }
+  return -matrix.ldlt().solve(slope);
 }
 
 ErrorModel::ErrorModel(const std::vector<experiment::FreeParameter>& parameters,

@@ -55,6 +55,11 @@ struct Linearised {
 /// What is added to the diagonal of a Hessian to keep parameters without effect where they are.
 double RidgeOf(const Eigen::MatrixXd& hessian);
 
+/// A damped Gauss-Newton step from `at` that leaves alone what a bound stops.
+Eigen::VectorXd StepWithin(const Eigen::VectorXd& at, const Eigen::VectorXd& low,
+                           const Eigen::VectorXd& high, const Eigen::MatrixXd& hessian,
+                           const Eigen::VectorXd& gradient, double damping);
+
 /// Errors of a set of logs as a function of the shares.
 class ErrorModel {
  public:

@@ -7,8 +7,8 @@
 #include "rift/sweep/calibrate/prediction.hpp"
 #include "rift/sweep/calibrate/repeated_trial.hpp"
 #include "support/inputs/paths.hpp"
+#include "sweep/calibrate/drive_measures.hpp"
 #include "sweep/calibrate/errors.hpp"
-#include "sweep/calibrate/series.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -104,7 +104,7 @@ TEST_CASE("Two points are as bimodal as can be, even values 5/9, and skewness co
   CHECK(std::isnan(Bimodality({2.0, 2.0})));
 }
 
-Trajectory Line(std::vector<double> x_m) {
+Trajectory Line(const std::vector<double>& x_m) {
   Trajectory path;
   for (const double x : x_m) path.poses.push_back({.t_s = x, .x_m = x});
   return path;
