@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <thread>
 
 #include "descriptor.hpp"
 #include "rift/limits/limits.hpp"
@@ -159,6 +161,17 @@ std::string FindInput(const std::string& name) {
     if (fs::exists(installed, not_there)) return installed.string();
   }
   return name;
+}
+
+std::error_code RemoveAll(const std::filesystem::path& path) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  std::error_code error;
+  do {
+    std::filesystem::remove_all(path, error);
+    if (error != std::errc::directory_not_empty) return error;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  } while (std::chrono::steady_clock::now() < end);
+  return error;
 }
 
 bool IsStandardStream(const std::filesystem::path& path) { return StreamTo(path) != nullptr; }

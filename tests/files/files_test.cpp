@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
@@ -31,6 +32,26 @@ std::size_t FilesIn(const fs::path& folder) {
   std::size_t count = 0;
   for (const auto& entry : fs::directory_iterator(folder)) count += entry.is_regular_file();
   return count;
+}
+
+TEST_CASE("A folder that another still writes in is removed whole") {
+  const test::TemporaryFolder folder;
+  for (int round = 0; round < 10; ++round) {
+    fs::create_directories(folder / "shards");
+    std::atomic<bool> has_begun = false;
+    std::thread writer([&] {
+      for (int i = 0; i < 200; ++i) {
+        std::ofstream(folder / ("shards/" + std::to_string(i))) << i;
+        has_begun = true;
+      }
+    });
+    while (!has_begun) std::this_thread::yield();
+    const std::error_code error = RemoveAll(folder / "shards");
+    writer.join();
+    CHECK_FALSE(error);
+    CHECK_FALSE(fs::exists(folder / "shards"));
+  }
+  CHECK_FALSE(RemoveAll(folder / "shards"));
 }
 
 TEST_CASE("A file of any length is read as it was written and leaves nothing beside it") {

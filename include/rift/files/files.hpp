@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace rift::files {
 
@@ -22,6 +23,10 @@ std::string FindInput(const std::string& name);
 /// is written to as it is, and a link leads to its file. Missing parent folders are made. Throws
 /// std::runtime_error with the path and the system's reason.
 void WriteFile(const std::filesystem::path& target, std::string_view text);
+
+/// Removes a file, or a folder with all that is in it; nothing there is fine. A folder that others
+/// still write in is tried again for 5 s. The system's reason where something is left.
+std::error_code RemoveAll(const std::filesystem::path& path);
 
 /// True for the file that stdout or stderr of this process goes to, as /dev/stdout is. WriteFile()
 /// puts the text behind what the stream holds and replaces nothing.

@@ -174,8 +174,7 @@ bool SlurmShards::Drive(std::vector<Group> groups) {
         return true;
       });
       if (groups.empty()) {
-        std::error_code ignored;
-        fs::remove_all(out_ / "shards", ignored);
+        files::RemoveAll(out_ / "shards");
         return true;
       }
       for (Group& group : groups) Submit(group);
@@ -349,9 +348,9 @@ void SlurmShards::Forget(const fs::path& out) {
   for (const auto& [number, folder] : Arrays(out)) {
     if (!OpenShards(folder).empty()) CancelArrays(JobName(folder));
   }
-  std::error_code error;
+  // Tasks that are being cancelled still write there.
   for (const char* name : {"slurm", "shards"}) {
-    fs::remove_all(out / name, error);
+    const std::error_code error = files::RemoveAll(out / name);
     if (!error) continue;
     throw std::runtime_error(
         fmt::format("cannot remove {}: {}", (out / name).string(), error.message()));
