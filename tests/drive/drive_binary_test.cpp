@@ -329,9 +329,12 @@ TEST_CASE("A device is asked for the size of its calibration as in tracking") {
     };
     set("--camera", "/dev/video0");
     set("--calibration", calibration);
-    arguments.insert(arguments.end(),
-                     {"--set", "trial.timeout_s=3", "--set", "track.capture.same_s=60", "--set",
-                      "hardware.turn.enabled=false", "--any-start"});
+    // One picture for ever repeats, and until the robot first tells that its wheels stand, they are
+    // taken to do as they are told.
+    arguments.insert(
+        arguments.end(),
+        {"--set", "trial.timeout_s=3", "--set", "track.capture.same_s=60", "--set",
+         "hardware.turn.enabled=false", "--set", "hardware.evidence.repeats_s=60", "--any-start"});
     const test::ProcessResult result = test::RunRift(arguments);
     if (WasInterrupted(scene, result.exit_code)) return false;
     INFO(result.out << result.err);
