@@ -21,11 +21,13 @@ double Latency_s(const simulation::MocapOptions& mocap) {
   return 0.5 * mocap.exposure_s + mocap.processing_s;
 }
 
-/// How long before its stamp a pose was captured, on average: a host works for a turn on a picture
-/// that the driver has held since the turn before, of the first frame after that began.
+/// How long before its stamp a pose was captured, on average over turns that are not late: a host
+/// works for a turn on a picture that the driver has held since the turn before, of the first frame
+/// after that began. A host that is faster than the camera waits for each frame.
 double StampAge_s(const simulation::MocapOptions& mocap) {
-  if (!mocap.host_period_s) return 0.0;
-  return Latency_s(mocap) + 2.0 * *mocap.host_period_s - 0.5 / mocap.rate_hz;
+  if (!mocap.host_period_s || mocap.rate_hz == 0.0) return 0.0;
+  const double turn_s = *mocap.host_period_s, frame_s = 1.0 / mocap.rate_hz;
+  return Latency_s(mocap) + (turn_s < frame_s ? turn_s : 2.0 * turn_s - 0.5 * frame_s);
 }
 
 /// The simulated robot seen through the eyes of a log: it moves as it is told, and reports what the
