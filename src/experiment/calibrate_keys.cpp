@@ -136,6 +136,12 @@ void CheckMethodOfProgram(const Experiment& experiment, const std::string& path)
         "a program: leave it out, its whole runs are fitted",
         path));
   }
+  if (method.features.rounds > 0) {
+    throw yaml::Error(fmt::format(
+        "{}: calibrate.method.features.rounds is {}, and features are fitted by drives of "
+        "rift's own simulator: leave it out, a program's whole runs are fitted",
+        path, method.features.rounds));
+  }
   if (method.runs > 0) return;
   throw yaml::Error(
       fmt::format("{}: calibrate.method.runs is 0, and a program is fitted by its whole runs: set "

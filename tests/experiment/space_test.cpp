@@ -410,6 +410,8 @@ TEST_CASE("A program's fit takes no name that its trials have already, and whole
     CHECK_THROWS_WITH(LoadProgramFit(mu, {std::string("calibrate.method.horizon.") + horizon}),
                       Contains("calibrate.method.horizon predicts the next frames"));
   }
+  CHECK_THROWS_WITH(LoadProgramFit(mu, {"calibrate.method.features.rounds=2"}),
+                    Contains("calibrate.method.features.rounds is 2"));
   CHECK_NOTHROW(LoadProgramFit(mu, {"reference.tag_offset_m=0.03"}));
 }
 
