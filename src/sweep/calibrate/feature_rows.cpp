@@ -1,7 +1,9 @@
 #include "feature_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <future>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -34,21 +36,28 @@ void AppendSteering(const Trajectory& path, const SimulatedTrial& twin, std::vec
   }
 }
 
-/// Left of the line from waypoint to waypoint, of the last row that drove to each.
+bool DrivesTo(const StampedPose& pose, const Eigen::Vector2d& place) {
+  return (Eigen::Vector2d(pose.target_x_m, pose.target_y_m) - place).norm() < 1e-6;
+}
+
+/// Left of the line from waypoint to waypoint, of the last row that drove to each. A place may be
+/// driven to more than once.
 void AppendSides(const Trajectory& path, const SimulatedTrial& twin, std::vector<double>& row) {
   const std::vector<control::Waypoint>& waypoints = twin.task.waypoints;
+  auto pose = path.poses.begin();
   for (size_t i = 1; i < waypoints.size(); ++i) {
-    const Eigen::Vector2d from(waypoints[i - 1].x_m, waypoints[i - 1].y_m);
-    const Eigen::Vector2d to(waypoints[i].x_m, waypoints[i].y_m);
-    const Eigen::Vector2d ahead = (to - from).normalized();
-    double side_m = kNone;
-    for (const StampedPose& pose : path.poses) {
-      const Eigen::Vector2d target(pose.target_x_m, pose.target_y_m);
-      if (!((target - to).norm() < 1e-6)) continue;
-      const Eigen::Vector2d off = pose.Position() - to;
-      side_m = ahead.x() * off.y() - ahead.y() * off.x();
+    const Eigen::Vector2d from = waypoints[i - 1].Position(), to = waypoints[i].Position();
+    const auto drives_to = [&to](const StampedPose& one) { return DrivesTo(one, to); };
+    const auto first = std::find_if(pose, path.poses.end(), drives_to);
+    const auto last = std::find_if_not(first, path.poses.end(), drives_to);
+    if (first == last) {
+      row.push_back(kNone);
+      continue;
     }
-    row.push_back(side_m);
+    const Eigen::Vector2d ahead = (to - from).normalized();
+    const Eigen::Vector2d off = std::prev(last)->Position() - to;
+    row.push_back(ahead.x() * off.y() - ahead.y() * off.x());
+    pose = last;
   }
 }
 
