@@ -62,7 +62,11 @@ simulation::SimulationOptions AsTwin(simulation::SimulationOptions simulation,
   simulation.link.watchdog_s = 1e-3 * hardware::Listener::kWatchdog_ms;
   simulation.mocap.rate_hz = options.fps;
   simulation.mocap.frame_jitter_s = 0.0;
-  simulation.mocap.host_period_s.reset();  // the host is a real one
+  if (simulation.mocap.host_period_s) {
+    // The host is a real one; what is told of a simulated one is the way to its driver alone.
+    simulation.mocap.processing_s += options.host_share_s;
+    simulation.mocap.host_period_s.reset();
+  }
   // A log may be of the robot's point on the floor; a picture shows the tag where it is.
   if (simulation.mocap.tag_above_m == 0.0) {
     simulation.mocap.tag_above_m = options.camera.body_height_m;

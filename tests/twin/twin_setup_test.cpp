@@ -29,6 +29,10 @@ TEST_CASE("A simulation as the twin runs it has its line, its camera and its enc
   CHECK(as.mocap.rate_hz == 25.0);
   CHECK(as.mocap.frame_jitter_s == 0.0);
   CHECK_FALSE(as.mocap.host_period_s);
+  // Without its simulated host there is the real one, which finds the tag in a time of its own.
+  CHECK(as.mocap.processing_s == options.mocap.processing_s + twin.host_share_s);
+  options.mocap.host_period_s.reset();
+  CHECK(AsTwin(options, twin).mocap.processing_s == options.mocap.processing_s);
   CHECK(as.mocap.tag_above_m == 0.04);
   CHECK(as.encoder.reported);
   options.mocap.tag_above_m = 0.02;
