@@ -42,7 +42,7 @@ TEST_CASE("A planted radio delay is found from below and from above") {
     const sweep::CalibratedParameter& delay = found.parameters[0];
     INFO("from " << start << ": " << delay.value << " in [" << delay.low << ", " << delay.high
                  << "], " << planted[0].truth << " was planted");
-    // A pose is up to a frame, 33 ms, younger than the replay takes it for.
+    // A replay takes each pose for as old as poses are on average; they differ by a frame, 33 ms.
     CHECK(delay.value == Approx(planted[0].truth).margin(0.025));
     CHECK(found.has_converged);
   }
@@ -121,6 +121,9 @@ TEST_CASE("Threads change no byte of a fit by features") {
       test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 2);
   CHECK(alone.parameters[0].value != by_motions.parameters[0].value);
   CHECK(alone.trials_simulated == by_motions.trials_simulated + 3 * (50 + 2 * 8));
+  options.features = {.rounds = 1, .draws = 5};
+  CHECK_THROWS_WITH(test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 2),
+                    Catch::Contains("draws is 5, and 1 parameters that act need 6 or more"));
 }
 
 TEST_CASE("Threads change no byte of a calibration") {

@@ -13,6 +13,12 @@ TEST_CASE("A fit that is worse than its start is not written, and both losses sa
   CHECK(why.find("robot.yaml is not written") == 0);
   CHECK(why.find("1.5000 after 1.2500") != std::string::npos);
   CHECK(why.find('\n') == std::string::npos);
+  // By more than what drives scatter by.
+  fit.loss_noise = 0.13;
+  CHECK(WhyNotWritten(fit, "robot.yaml").empty());
+  fit.loss_noise = 0.12;
+  CHECK_FALSE(WhyNotWritten(fit, "robot.yaml").empty());
+  fit.loss_noise = 0.0;
   fit.loss_after = fit.loss_before;
   CHECK(WhyNotWritten(fit, "robot.yaml").empty());
 }

@@ -125,7 +125,7 @@ std::string WhyNotWritten(const sweep::Calibration& fit, const std::string& file
   if (!fit.IsWorseThanStart()) return "";
   return fmt::format(
       "{} is not written: the fit is worse than its start, with a loss of {:.4f} after {:.4f}: "
-      "raise calibrate.method.iterations, or set calibrate.method.corrections=0",
+      "raise iterations or features.rounds of calibrate.method, or set its corrections to 0",
       file, fit.loss_after, fit.loss_before);
 }
 

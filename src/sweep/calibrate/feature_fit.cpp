@@ -1,13 +1,17 @@
 #include "feature_fit.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "feature_model.hpp"
 #include "model.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/inference.hpp"
 #include "rift/statistics/random.hpp"
 
@@ -27,6 +31,7 @@ constexpr double kUntold = 3.0;
 constexpr double kTriedStep = 0.1;  // of a range, for whether a parameter changes anything
 constexpr int kMostSteps = 200;
 constexpr double kConverged = 1e-6;
+constexpr double kRounding = 1e-9;
 constexpr double kLargestDamping = 1e9;
 /// Drives of each log behind the losses.
 constexpr int kJudgeRuns = 8;
@@ -59,7 +64,8 @@ class Region {
     matrix.diagonal() += kUntold * scatter_.cwiseAbs2();
     const Eigen::MatrixXd inverse =
         matrix.ldlt().solve(Eigen::MatrixXd::Identity(z.size(), z.size()));
-    return scatter_.asDiagonal() * inverse * scatter_.asDiagonal();
+    const Eigen::MatrixXd covariance = scatter_.asDiagonal() * inverse * scatter_.asDiagonal();
+    return 0.5 * (covariance + covariance.transpose());  // one number on both sides of the diagonal
   }
 
  private:
@@ -146,8 +152,7 @@ void Active::Tell(const Eigen::VectorXd& shares, const Eigen::MatrixXd& covarian
                   const CalibrationOptions& options, Calibration& found) const {
   const double deviations = statistics::NormalQuantile(0.5 + 0.5 * options.confidence);
   const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
-  const Eigen::MatrixXd correlation =
-      sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd correlation = covariance.cwiseQuotient(sd * sd.transpose());
   found.correlation.setConstant(std::numeric_limits<double>::quiet_NaN());
   found.correlation(places_, places_) = correlation;
   for (size_t i = 0; i < places_.size(); ++i) {
@@ -158,7 +163,7 @@ void Active::Tell(const Eigen::VectorXd& shares, const Eigen::MatrixXd& covarian
     one.value = min + shares[k] * width;
     one.low = min + std::max(0.0, shares[k] - reach) * width;
     one.high = min + std::min(1.0, shares[k] + reach) * width;
-    one.is_at_bound = shares[k] <= 0.0 || shares[k] >= 1.0;
+    one.is_at_bound = shares[k] <= kRounding || shares[k] >= 1.0 - kRounding;
     one.is_identified = reach <= options.identified_share;
     // The posterior's weight is the sum of both.
     one.is_from_prior = prior_.weight[k] > 0.5 / (sd[k] * sd[k]);
@@ -190,6 +195,16 @@ void FindEffects(const std::vector<CalibrationLog>& logs, const TwinAt& twin, Ca
   }
 }
 
+/// Draws that are as many as the coefficients are met exactly, and what they scatter by looks like
+/// what the logs tell.
+void CheckDraws(const FeatureFitOptions& options, Index parameters) {
+  const auto least = 2 * FeatureModel::Coefficients(parameters);
+  if (options.draws >= least) return;
+  throw std::invalid_argument(fmt::format(
+      "calibrate.method.features.draws is {}, and {} parameters that act need {} or more",
+      options.draws, parameters, least));
+}
+
 /// Logs x features of the logs themselves.
 Eigen::MatrixXd RealRows(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                          const std::vector<double>& values) {
@@ -202,6 +217,20 @@ Eigen::MatrixXd RealRows(const std::vector<CalibrationLog>& logs, const TwinAt& 
   return rows;
 }
 
+/// Standard error of how the losses of these drives differ: jackknife over the drives of a log.
+double NoiseOfDifference(const FeatureModel& model, const std::vector<FeatureRows>& before,
+                         const std::vector<FeatureRows>& after) {
+  std::vector<double> differences;
+  for (size_t left_out = 0; left_out < before.size(); ++left_out) {
+    std::vector<FeatureRows> fewer_before = before, fewer_after = after;
+    fewer_before.erase(fewer_before.begin() + static_cast<std::ptrdiff_t>(left_out));
+    fewer_after.erase(fewer_after.begin() + static_cast<std::ptrdiff_t>(left_out));
+    differences.push_back(model.LossOf(fewer_after) - model.LossOf(fewer_before));
+  }
+  return static_cast<double>(differences.size() - 1) * statistics::StandardDeviation(differences) /
+         std::sqrt(static_cast<double>(differences.size()));
+}
+
 }  // namespace
 
 void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
@@ -212,6 +241,7 @@ void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
   const Prior& prior = active.PriorOfThem();
   Eigen::VectorXd shares = active.Found();
   if (shares.size() == 0) return;
+  CheckDraws(options.features, shares.size());
   std::vector<std::string> group_of_log;
   for (const CalibrationLog& log : logs) group_of_log.push_back(log.group);
   const Eigen::MatrixXd real = RealRows(logs, twin, active.Values(shares));
@@ -246,12 +276,16 @@ void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
     }
     if (round + 1 < options.features.rounds) continue;
     active.Tell(shares, covariance, options, found);
-    const auto loss_at = [&](const Eigen::VectorXd& at) {
+    // With the same noise on both sides.
+    const auto drive_often = [&](const Eigen::VectorXd& at) {
       const std::vector<std::vector<double>> repeated(kJudgeRuns, active.Values(at));
-      return (model.LossOf(drive(repeated, options.features.rounds)) + prior.LossAt(at)) / features;
+      return drive(repeated, options.features.rounds);
     };
-    found.loss_before = loss_at(active.Start());
-    found.loss_after = loss_at(shares);
+    const std::vector<FeatureRows> before = drive_often(active.Start()),
+                                   after = drive_often(shares);
+    found.loss_before = (model.LossOf(before) + prior.LossAt(active.Start())) / features;
+    found.loss_after = (model.LossOf(after) + prior.LossAt(shares)) / features;
+    found.loss_noise = NoiseOfDifference(model, before, after) / features;
   }
 }
 

@@ -30,7 +30,7 @@ constexpr size_t kFewestLogs = 4;  ///< whose own scatter is looked at
 
 /// Of each row z: 1, z and the squares of z.
 Eigen::MatrixXd BasisOf(const Eigen::MatrixXd& draws) {
-  Eigen::MatrixXd basis(draws.rows(), 1 + 2 * draws.cols());
+  Eigen::MatrixXd basis(draws.rows(), FeatureModel::Coefficients(draws.cols()));
   basis << Eigen::VectorXd::Ones(draws.rows()), draws, draws.cwiseAbs2();
   return basis;
 }
@@ -157,7 +157,7 @@ FeatureModel::FeatureModel(const std::vector<std::string>& group_of_log,
                              return is_above_zero(one.rows);
                            }));
   }
-  const Index coefficients = 1 + 2 * draws.cols();
+  const Index coefficients = Coefficients(draws.cols());
   basis_covariance_ = NormalMatrix(BasisOf(draws))
                           .ldlt()
                           .solve(Eigen::MatrixXd::Identity(coefficients, coefficients));
@@ -268,8 +268,9 @@ double FeatureModel::LossOf(const std::vector<FeatureRows>& driven) const {
       off.middleRows(static_cast<Index>(i) * count, count) -= group.log_mean;
       failing += driven[i].has_failed(group.logs).mean() / static_cast<double>(driven.size());
     }
-    const Eigen::VectorXd error =
-        ZeroWhereUnknown(MeanOfKnown(off(Eigen::all, group.told))) - group.real_off;
+    const Eigen::VectorXd reach = (group.high - group.low)(group.told);
+    Eigen::VectorXd error = MeanOfKnown(off(Eigen::all, group.told)) - group.real_off;
+    error = error.array().isNaN().select(reach, error);
     loss += error.dot(group.weights * error) + FailureWeight(group) * failing;
   }
   return loss;

@@ -20,6 +20,9 @@ class FeatureModel {
                const Eigen::MatrixXd& draws, const std::vector<FeatureRows>& driven,
                double failures = 1.0);
 
+  /// What is regressed of each feature: its mean, slopes and squares.
+  static Eigen::Index Coefficients(Eigen::Index parameters) { return 1 + 2 * parameters; }
+
   /// Of -2 log likelihood: features of each log normal about the mean of the simulated drives
   /// (synthetic likelihood, Wood 2010), and no log failed.
   struct Expansion {
@@ -32,7 +35,8 @@ class FeatureModel {
   /// logs tell z.
   Eigen::MatrixXd InformationAt(const Eigen::VectorXd& z) const;
 
-  /// The same loss of drives at one set of values, several for each log, without the regression.
+  /// The same loss of drives at one set of values, several for each log, without the regression. A
+  /// feature that no drive of a group tells is as far off as its drives have ever been.
   double LossOf(const std::vector<FeatureRows>& driven) const;
   double FailingShareAt(const Eigen::VectorXd& z) const;
   size_t FeatureCount() const;

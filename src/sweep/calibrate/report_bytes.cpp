@@ -40,6 +40,7 @@ void Members(C& codec, T& fit) {
   codec(fit.correlation);
   codec(fit.loss_before);
   codec(fit.loss_after);
+  codec(fit.loss_noise);
   codec(fit.steps);
   codec(fit.has_converged);
   codec(fit.trials_simulated);

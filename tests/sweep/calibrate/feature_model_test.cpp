@@ -86,6 +86,41 @@ TEST_CASE("Slope and curvature of the loss are those of the loss") {
   }
   CHECK(at.hessian(0, 1) == Approx(at.hessian(1, 0)));
   CHECK(at.hessian.determinant() > 0.0);
+
+  // Where the errors are small, Gauss and Newton's curvature is that of the loss.
+  const Made at_truth = MakeDrives({0.8, -0.6}, 0.05);
+  const FeatureModel near(at_truth.groups, at_truth.real, at_truth.draws, at_truth.driven);
+  const auto slope = [&near](double first, double second) {
+    return near.At(Eigen::Vector2d(first, second)).gradient;
+  };
+  const Eigen::MatrixXd curvature = near.At(Eigen::Vector2d(0.8, -0.6)).hessian;
+  const Eigen::Vector2d along_first = (slope(0.81, -0.6) - slope(0.79, -0.6)) / 0.02;
+  const Eigen::Vector2d along_second = (slope(0.8, -0.59) - slope(0.8, -0.61)) / 0.02;
+  CHECK(along_first[0] == Approx(curvature(0, 0)).epsilon(0.05));
+  CHECK(along_first[1] == Approx(curvature(1, 0)).epsilon(0.05));
+  CHECK(along_second[1] == Approx(curvature(1, 1)).epsilon(0.05));
+}
+
+TEST_CASE("Estimates scatter by what the information says, in noise that logs and drives share") {
+  constexpr int kFits = 60;
+  const Eigen::Vector2d truth(0.3, -0.2);
+  double scatter = 0.0, told = 0.0;
+  for (int fit = 0; fit < kFits; ++fit) {
+    Made made = MakeDrives(truth, 0.3);
+    statistics::Random random(static_cast<std::uint64_t>(fit), 7);
+    for (double& value : made.real.reshaped()) value += 0.3 * random.Normal();
+    const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+    Eigen::Vector2d z = truth;
+    for (int i = 0; i < 20; ++i) {
+      const FeatureModel::Expansion at = model.At(z);
+      z -= at.hessian.inverse() * at.gradient;
+    }
+    scatter += (z - truth).squaredNorm() / kFits;
+    told += model.InformationAt(z).inverse().trace() / kFits;
+  }
+  // A simulator is never quite the robot (a tenth of a drive's scatter), which is told as well.
+  CHECK(told > scatter);
+  CHECK(told < 2.0 * scatter);
 }
 
 TEST_CASE("What most drives of some values fail with is no drive of the logs, which all arrived") {
@@ -155,6 +190,11 @@ TEST_CASE("The loss of drives is that of the regression where they were driven")
   CHECK(model.LossOf(elsewhere) > model.LossOf(at_truth) + 1.0);
   for (FeatureRows& one : at_truth) one.has_failed.setConstant(0.5);
   CHECK(model.LossOf(at_truth) > kLogs);
+
+  // Nothing that arrives is no drive like the logs, whatever weight failures have.
+  const FeatureModel careless(made.groups, made.real, made.draws, made.driven, 0.0);
+  for (FeatureRows& one : at_truth) one.rows.setConstant(kNone);
+  CHECK(careless.LossOf(at_truth) > careless.LossOf(elsewhere));
 }
 
 }  // namespace

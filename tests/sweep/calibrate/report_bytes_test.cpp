@@ -137,6 +137,7 @@ TEST_CASE("Every member of a calibration comes back, each with a value of its ow
   report.calibration.correlation << 1.0, 0.25, 0.75, 0.5;
   report.calibration.loss_before = 9.0;
   report.calibration.loss_after = 10.0;
+  report.calibration.loss_noise = 10.5;
   report.calibration.steps = 11;
   report.calibration.has_converged = true;
   report.calibration.trials_simulated = 12;
@@ -177,6 +178,7 @@ TEST_CASE("Every member of a calibration comes back, each with a value of its ow
   CHECK(back.calibration.correlation == report.calibration.correlation);
   CHECK(back.calibration.loss_before == 9.0);
   CHECK(back.calibration.loss_after == 10.0);
+  CHECK(back.calibration.loss_noise == 10.5);
   CHECK(back.calibration.steps == 11);
   CHECK(back.calibration.has_converged);
   CHECK(back.calibration.trials_simulated == 12);

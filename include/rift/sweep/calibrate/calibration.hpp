@@ -70,12 +70,13 @@ struct Calibration {
   Eigen::MatrixXd correlation;  ///< of the estimates; NaN in rows of parameters without effect
   double loss_before = 0.0;     ///< mean squared error in standard deviations of the last part
   double loss_after = 0.0;
-  int steps = 0;  ///< of the fit
+  double loss_noise = 0.0;  ///< standard error of their difference, where drives are drawn for it
+  int steps = 0;            ///< of the fit
   bool has_converged = false;
   size_t trials_simulated = 0;
 
-  /// Both losses are of one scale: that of the last step.
-  bool IsWorseThanStart() const { return loss_after > loss_before; }
+  /// Both losses are of one scale: that of the last step. By more than chance.
+  bool IsWorseThanStart() const { return loss_after > loss_before + 2.0 * loss_noise; }
 };
 
 /// Compares fits of the same parameters; empty for fewer than two.
