@@ -24,11 +24,11 @@ struct FrameGrid {
 
 /// A log whose time stamps stand on the frames of a camera of about `fps` frames a second.
 ///
-/// A loop that takes the newest frame and stamps the pose when it was found sees frames 33 and 67
-/// ms apart at stamps that are 60 ms apart: speeds from row to row jump by a factor of two. Here
-/// each row gets the frame that makes the speeds change least, from those that were at most about a
-/// frame old (Viterbi over the rows; period within 0.2 % and phase by search). The mean of all
-/// stamps stays: a constant delay cannot be seen.
+/// A loop that takes a frame a turn and stamps the pose turns later sees frames 33 and 67 ms apart
+/// at stamps that are 60 ms apart: speeds from row to row jump by a factor of two. Here each row
+/// gets the frame that makes the speeds change least, from those within about a frame of its stamp
+/// (Viterbi over the rows; period within 0.2 % and phase by search), as if all poses were equally
+/// old. The mean of all stamps stays: a constant delay cannot be seen.
 ///
 /// Nothing is changed unless the speeds become smoother by `kLeastSmoother`, since a grid that is
 /// not there makes them rougher, and unless grids of rates 10 % off explain less; nor for fewer
