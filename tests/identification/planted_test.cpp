@@ -120,7 +120,7 @@ TEST_CASE("Threads change no byte of a fit by features") {
   const sweep::Calibration by_motions =
       test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 2);
   CHECK(alone.parameters[0].value != by_motions.parameters[0].value);
-  CHECK(alone.trials_simulated == by_motions.trials_simulated + 3 * (50 + 2 * 8));
+  CHECK(alone.trials_simulated == by_motions.trials_simulated + 3 * (2 + 50 + 2 * 8));
   options.features = {.rounds = 1, .draws = 5};
   CHECK_THROWS_WITH(test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 2),
                     Catch::Contains("draws is 5, and 1 parameters that act need 6 or more"));

@@ -21,6 +21,7 @@ namespace {
 using Eigen::Index;
 
 constexpr std::uint64_t kDrawStream = 111;
+constexpr int kPair = 2;
 constexpr double kFarthest = 2.0;  // draws and estimates of a round, in scatters
 /// Scatter of the first draws and the least of later ones, as shares of the ranges.
 constexpr double kFirstScatter = 0.15, kLeastScatter = 0.02;
@@ -42,15 +43,16 @@ class Region {
   Region(Eigen::VectorXd centre, Eigen::VectorXd scatter, const Prior& prior)
       : centre_(std::move(centre)), scatter_(std::move(scatter)), prior_(prior) {}
 
-  /// As far as ranges allow: a draw beyond a bound is one at it.
+  /// Pairs on both sides of the centre (antithetic: what two drives of the same noise share is in
+  /// no slope), as far as ranges allow: a draw beyond a bound is one at it.
   Eigen::MatrixXd Drawn(int draws, statistics::Random& random) const {
     Eigen::MatrixXd z(draws, centre_.size());
     for (Index i = 0; i < z.rows(); ++i) {
-      for (Index k = 0; k < z.cols(); ++k) {
-        z(i, k) = std::clamp(random.Normal(), Low()[k], High()[k]);
-      }
+      for (Index k = 0; k < z.cols(); ++k)
+        z(i, k) = i % kPair == 0 ? random.Normal() : -z(i - 1, k);
     }
-    return z;
+    return z.cwiseMax(Low().transpose().replicate(draws, 1))
+        .cwiseMin(High().transpose().replicate(draws, 1));
   }
   Eigen::VectorXd SharesAt(const Eigen::VectorXd& z) const {
     return (centre_ + scatter_.cwiseProduct(z)).cwiseMax(0.0).cwiseMin(1.0);
@@ -128,6 +130,7 @@ class Active {
     prior_ = {all.mean(places_), all.weight(places_)};
   }
 
+  const std::vector<Index>& Places() const { return places_; }
   Eigen::VectorXd Found() const { return all_(places_); }
   Eigen::VectorXd Start() const { return start_(places_); }
   const Prior& PriorOfThem() const { return prior_; }
@@ -177,22 +180,29 @@ bool IsSame(const trajectory::Trajectory& a, const trajectory::Trajectory& b) {
                     });
 }
 
-/// Motions do not see all that whole drives do, such as the tracker's scatter.
-void FindEffects(const std::vector<CalibrationLog>& logs, const TwinAt& twin, Calibration& found) {
+/// Logs x parameters: whether it changes a drive of the log. Motions do not see all that whole
+/// drives do, such as the tracker's scatter.
+FeatureModel::Acts FindEffects(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
+                               Calibration& found) {
   std::vector<double> values;
   for (const CalibratedParameter& one : found.parameters) values.push_back(one.value);
-  for (size_t k = 0; k < values.size(); ++k) {
-    CalibratedParameter& one = found.parameters[k];
-    const double width = one.parameter.max - one.parameter.min;
-    const bool is_low = one.value < one.parameter.min + 0.5 * width;
-    std::vector<double> moved = values;
-    moved[k] += (is_low ? kTriedStep : -kTriedStep) * width;
-    for (size_t i = 0; i < logs.size() && !one.has_effect; ++i) {
-      one.has_effect = !IsSame(Simulate(twin(i, values)).result.trajectory,
-                               Simulate(twin(i, moved)).result.trajectory);
-      found.trials_simulated += 2;
+  FeatureModel::Acts acts(static_cast<Index>(logs.size()), static_cast<Index>(values.size()));
+  for (size_t i = 0; i < logs.size(); ++i) {
+    const SimulatedRun run = Simulate(twin(i, values));
+    for (size_t k = 0; k < values.size(); ++k) {
+      CalibratedParameter& one = found.parameters[k];
+      const double width = one.parameter.max - one.parameter.min;
+      const bool is_low = one.value < one.parameter.min + 0.5 * width;
+      std::vector<double> moved = values;
+      moved[k] += (is_low ? kTriedStep : -kTriedStep) * width;
+      const bool acts_here =
+          !IsSame(run.result.trajectory, Simulate(twin(i, moved)).result.trajectory);
+      acts(static_cast<Index>(i), static_cast<Index>(k)) = acts_here;
+      one.has_effect = one.has_effect || acts_here;
     }
+    found.trials_simulated += 1 + values.size();
   }
+  return acts;
 }
 
 /// Draws that are as many as the coefficients are met exactly, and what they scatter by looks like
@@ -236,8 +246,9 @@ double NoiseOfDifference(const FeatureModel& model, const std::vector<FeatureRow
 void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                  const CalibrationOptions& options, std::uint64_t seed, int threads,
                  const CalibrationStep& on_step, Calibration& found) {
-  FindEffects(logs, twin, found);
+  const FeatureModel::Acts all_acts = FindEffects(logs, twin, found);
   const Active active(found);
+  const FeatureModel::Acts acts = all_acts(Eigen::all, active.Places());
   const Prior& prior = active.PriorOfThem();
   Eigen::VectorXd shares = active.Found();
   if (shares.size() == 0) return;
@@ -245,20 +256,24 @@ void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
   std::vector<std::string> group_of_log;
   for (const CalibrationLog& log : logs) group_of_log.push_back(log.group);
   const Eigen::MatrixXd real = RealRows(logs, twin, active.Values(shares));
-  const auto drive = [&](const std::vector<std::vector<double>>& values, int round) {
+  const auto drive = [&](const std::vector<std::vector<double>>& values, int round, int alike) {
     found.trials_simulated += values.size() * logs.size();
-    return DriveAt(values, logs, twin, static_cast<std::uint64_t>(round), threads);
+    return DriveAt(values, logs, twin, static_cast<std::uint64_t>(round), alike, threads);
   };
   statistics::Random random(seed, kDrawStream);
   Eigen::VectorXd scatter = Eigen::VectorXd::Constant(shares.size(), kFirstScatter);
   for (int round = 0; round < options.features.rounds; ++round) {
     const Region region(shares, scatter, prior);
-    const Eigen::MatrixXd draws = region.Drawn(options.features.draws, random);
+    const bool is_last = round + 1 == options.features.rounds;
+    const Eigen::MatrixXd draws =
+        region.Drawn(is_last ? std::max(options.features.draws, options.features.last_draws)
+                             : options.features.draws,
+                     random);
     std::vector<std::vector<double>> values;
     for (Index i = 0; i < draws.rows(); ++i) {
       values.push_back(active.Values(region.SharesAt(draws.row(i))));
     }
-    const FeatureModel model(group_of_log, real, draws, drive(values, round),
+    const FeatureModel model(group_of_log, real, draws, acts, drive(values, round, kPair),
                              options.features.failures);
     const auto features = static_cast<double>(model.FeatureCount());
     const Eigen::VectorXd z = region.Least(model);
@@ -274,12 +289,12 @@ void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                .loss = model.At(z).loss / features,
                .values = active.Values(shares)});
     }
-    if (round + 1 < options.features.rounds) continue;
+    if (!is_last) continue;
     active.Tell(shares, covariance, options, found);
     // With the same noise on both sides.
     const auto drive_often = [&](const Eigen::VectorXd& at) {
       const std::vector<std::vector<double>> repeated(kJudgeRuns, active.Values(at));
-      return drive(repeated, options.features.rounds);
+      return drive(repeated, options.features.rounds, 1);
     };
     const std::vector<FeatureRows> before = drive_often(active.Start()),
                                    after = drive_often(shares);

@@ -50,6 +50,14 @@ Eigen::MatrixXd Regressed(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& v
   return NormalMatrix(basis).ldlt().solve(basis.transpose() * values);
 }
 
+/// Where the coefficients of some of the parameters stand among those of all.
+std::vector<Index> PlacesOf(const std::vector<Index>& some, Index all) {
+  std::vector<Index> places{0};
+  for (const Index k : some) places.push_back(1 + k);
+  for (const Index k : some) places.push_back(1 + all + k);
+  return places;
+}
+
 std::vector<double> KnownOf(const auto& values) {
   std::vector<double> known;
   for (const double value : values) {
@@ -145,7 +153,8 @@ Eigen::MatrixXd Stacked(const std::vector<FeatureRows>& driven, const std::vecto
 
 FeatureModel::FeatureModel(const std::vector<std::string>& group_of_log,
                            const Eigen::MatrixXd& real, const Eigen::MatrixXd& draws,
-                           const std::vector<FeatureRows>& driven, double failures)
+                           const Acts& acts, const std::vector<FeatureRows>& driven,
+                           double failures)
     : failures_(failures) {
   for (Index k = 0; k < real.cols(); ++k) {
     const auto is_above_zero = [k](const Eigen::MatrixXd& rows) {
@@ -157,16 +166,12 @@ FeatureModel::FeatureModel(const std::vector<std::string>& group_of_log,
                              return is_above_zero(one.rows);
                            }));
   }
-  const Index coefficients = Coefficients(draws.cols());
-  basis_covariance_ = NormalMatrix(BasisOf(draws))
-                          .ldlt()
-                          .solve(Eigen::MatrixXd::Identity(coefficients, coefficients));
   std::map<std::string, std::vector<Index>> logs_of;
   for (size_t i = 0; i < group_of_log.size(); ++i) {
     logs_of[group_of_log[i]].push_back(static_cast<Index>(i));
   }
   for (auto& [name, logs] : logs_of) {
-    groups_.push_back(GroupOf(std::move(logs), real, draws, driven));
+    groups_.push_back(GroupOf(std::move(logs), real, draws, acts, driven));
   }
 }
 
@@ -184,7 +189,7 @@ Eigen::MatrixXd FeatureModel::Kept(const Group& group, const Eigen::MatrixXd& ro
 }
 
 FeatureModel::Group FeatureModel::GroupOf(std::vector<Index> logs, const Eigen::MatrixXd& real,
-                                          const Eigen::MatrixXd& draws,
+                                          const Eigen::MatrixXd& draws, const Acts& acts,
                                           const std::vector<FeatureRows>& driven) const {
   Group group{.logs = std::move(logs)};
   const auto count = static_cast<Index>(group.logs.size());
@@ -202,11 +207,24 @@ FeatureModel::Group FeatureModel::GroupOf(std::vector<Index> logs, const Eigen::
     mean_of_draw.row(draw) = MeanOfKnown(drives.middleRows(draw * count, count));
     failing[draw] = driven[static_cast<size_t>(draw)].has_failed(group.logs).mean();
   }
-  const Eigen::MatrixXd basis = BasisOf(draws);
-  group.failing = Regressed(basis, failing);
+  std::vector<Index> acting;
+  for (Index k = 0; k < draws.cols(); ++k) {
+    if (acts(group.logs, k).any()) acting.push_back(k);
+  }
+  const std::vector<Index> places = PlacesOf(acting, draws.cols());
+  const Eigen::MatrixXd basis = BasisOf(draws(Eigen::all, acting));
+  group.basis_covariance =
+      Eigen::MatrixXd::Zero(Coefficients(draws.cols()), Coefficients(draws.cols()));
+  const Eigen::MatrixXd own_covariance =
+      NormalMatrix(basis).ldlt().solve(Eigen::MatrixXd::Identity(basis.cols(), basis.cols()));
+  group.basis_covariance(places, places) = own_covariance;
+  group.failing = Eigen::VectorXd::Zero(Coefficients(draws.cols()));
+  group.failing(places) = Regressed(basis, failing);
   // A draw at which no log tells a feature has the mean of all.
-  const Eigen::MatrixXd slopes = Regressed(basis, ZeroWhereUnknown(mean_of_draw));
-  const Eigen::MatrixXd regressed = basis * slopes;
+  const Eigen::MatrixXd own_slopes = Regressed(basis, ZeroWhereUnknown(mean_of_draw));
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(Coefficients(draws.cols()), real.cols());
+  slopes(places, Eigen::all) = own_slopes;
+  const Eigen::MatrixXd regressed = basis * own_slopes;
   for (Index draw = 0; draw < draws.rows(); ++draw) {
     drives.middleRows(draw * count, count).rowwise() -= regressed.row(draw);
   }
@@ -246,13 +264,13 @@ FeatureModel::Expansion FeatureModel::At(const Eigen::VectorXd& z) const {
 /// and goes out (errors in variables).
 Eigen::MatrixXd FeatureModel::InformationAt(const Eigen::VectorXd& z) const {
   const Index parameters = z.size();
-  Eigen::MatrixXd slope_of_basis = Eigen::MatrixXd::Zero(parameters, basis_covariance_.rows());
+  Eigen::MatrixXd slope_of_basis = Eigen::MatrixXd::Zero(parameters, Coefficients(parameters));
   slope_of_basis.middleCols(1, parameters).setIdentity();
   slope_of_basis.rightCols(parameters) = (2.0 * z).asDiagonal();
-  double noise = 0.0;
-  for (const Group& group : groups_) noise += group.slope_noise;
+  Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(Coefficients(parameters), Coefficients(parameters));
+  for (const Group& group : groups_) noise += group.slope_noise * group.basis_covariance;
   const Eigen::MatrixXd information =
-      0.5 * At(z).hessian - noise * slope_of_basis * basis_covariance_ * slope_of_basis.transpose();
+      0.5 * At(z).hessian - slope_of_basis * noise * slope_of_basis.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
          solver.eigenvectors().transpose();

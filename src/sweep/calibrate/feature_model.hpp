@@ -13,12 +13,15 @@ namespace rift::sweep {
 /// Zhang and Balding 2002), beside the real logs.
 class FeatureModel {
  public:
+  using Acts = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
+
   /// `group_of_log`: the same text for logs of one group; `real`: logs x features; `draws`: draws x
-  /// parameters, about 0 and of unit scatter; `driven`: one element for each draw; `failures`:
-  /// FeatureFitOptions::failures.
+  /// parameters, about 0 and of unit scatter; `acts`: logs x parameters, whether it changes drives
+  /// of the log, without which its slopes are none; `driven`: one element for each draw;
+  /// `failures`: FeatureFitOptions::failures.
   FeatureModel(const std::vector<std::string>& group_of_log, const Eigen::MatrixXd& real,
-               const Eigen::MatrixXd& draws, const std::vector<FeatureRows>& driven,
-               double failures = 1.0);
+               const Eigen::MatrixXd& draws, const Acts& acts,
+               const std::vector<FeatureRows>& driven, double failures = 1.0);
 
   /// What is regressed of each feature: its mean, slopes and squares.
   static Eigen::Index Coefficients(Eigen::Index parameters) { return 1 + 2 * parameters; }
@@ -52,9 +55,11 @@ class FeatureModel {
     Eigen::MatrixXd slopes;          ///< (1 + 2 parameters) x told features
     Eigen::VectorXd failing;         ///< the same of the share of drives that failed
     double slope_noise = 0.0;  ///< what the features scatter by from draw to draw, weighted, summed
+    Eigen::MatrixXd basis_covariance;  ///< of coefficients, for a scatter of 1 from draw to draw
   };
   Group GroupOf(std::vector<Eigen::Index> logs, const Eigen::MatrixXd& real,
-                const Eigen::MatrixXd& draws, const std::vector<FeatureRows>& driven) const;
+                const Eigen::MatrixXd& draws, const Acts& acts,
+                const std::vector<FeatureRows>& driven) const;
   Eigen::MatrixXd Kept(const Group& group, const Eigen::MatrixXd& rows) const;
 
   double FailureWeight(const Group& group) const {
@@ -64,7 +69,6 @@ class FeatureModel {
   double failures_;
   std::vector<bool> is_positive_;  ///< such features are told as logarithms
   std::vector<Group> groups_;
-  Eigen::MatrixXd basis_covariance_;  ///< of coefficients, for a scatter of 1 from draw to draw
 };
 
 }  // namespace rift::sweep

@@ -76,7 +76,7 @@ Eigen::VectorXd FeatureRow(const Trajectory& path, const SimulatedTrial& twin) {
 
 std::vector<FeatureRows> DriveAt(const std::vector<std::vector<double>>& values,
                                  const std::vector<CalibrationLog>& logs, const TwinAt& twin,
-                                 std::uint64_t round, int threads) {
+                                 std::uint64_t round, int alike, int threads) {
   std::vector<FeatureRows> driven(values.size());
   const auto drive = [&](size_t draw) {
     FeatureRows& at = driven[draw];
@@ -84,7 +84,7 @@ std::vector<FeatureRows> DriveAt(const std::vector<std::vector<double>>& values,
     for (size_t i = 0; i < logs.size(); ++i) {
       SimulatedTrial trial = twin(i, values[draw]);
       trial.seed = statistics::SeedOfStream(statistics::SeedOfStream(trial.seed, kFeatureStream),
-                                            round * kMostDraws + draw);
+                                            round * kMostDraws + draw / static_cast<size_t>(alike));
       const SimulatedRun run = Simulate(trial);
       Eigen::VectorXd row =
           FeatureRow(trajectory::OnFramesOf(run.result.trajectory, logs[i].drives_grid_fps), trial);

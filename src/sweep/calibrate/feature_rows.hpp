@@ -19,10 +19,11 @@ struct FeatureRows {
   Eigen::VectorXd has_failed;  ///< 1 for a drive that did not arrive, or only on a detour
 };
 
-/// One element for each set of values; the seed of each drive is its own and that of no other
-/// `round`. `threads` drive at once and change no result.
+/// One element for each set of values. The first `alike` sets, and each `alike` after them, are
+/// driven with the same noise, which is that of no other sets, logs or `round`. `threads` drive at
+/// once and change no result.
 std::vector<FeatureRows> DriveAt(const std::vector<std::vector<double>>& values,
                                  const std::vector<CalibrationLog>& logs, const TwinAt& twin,
-                                 std::uint64_t round, int threads);
+                                 std::uint64_t round, int alike, int threads);
 
 }  // namespace rift::sweep

@@ -23,6 +23,7 @@ Eigen::Vector3d MeanAt(const Eigen::Vector2d& z) {
 struct Made {
   Eigen::MatrixXd real, draws;
   std::vector<FeatureRows> driven;
+  FeatureModel::Acts acts = FeatureModel::Acts::Constant(kLogs, 2, true);
   std::vector<std::string> groups = std::vector<std::string>(kLogs, "ground");
 };
 
@@ -62,7 +63,7 @@ double LossAt(const FeatureModel& model, double first, double second) {
 TEST_CASE("Drives are like the logs at the values that the logs were driven with") {
   const Eigen::Vector2d truth(0.8, -0.6);
   const Made made = MakeDrives(truth, 0.05);
-  const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+  const FeatureModel model(made.groups, made.real, made.draws, made.acts, made.driven);
   CHECK(model.FeatureCount() == 3);
   const double least = LossAt(model, truth[0], truth[1]);
   CHECK(least < 1.0);
@@ -74,7 +75,7 @@ TEST_CASE("Drives are like the logs at the values that the logs were driven with
 
 TEST_CASE("Slope and curvature of the loss are those of the loss") {
   const Made made = MakeDrives({0.8, -0.6}, 0.05, 0.3);
-  const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+  const FeatureModel model(made.groups, made.real, made.draws, made.acts, made.driven);
   const Eigen::Vector2d z(0.5, 0.3);
   const FeatureModel::Expansion at = model.At(z);
   constexpr double kStep = 1e-5;
@@ -89,7 +90,8 @@ TEST_CASE("Slope and curvature of the loss are those of the loss") {
 
   // Where the errors are small, Gauss and Newton's curvature is that of the loss.
   const Made at_truth = MakeDrives({0.8, -0.6}, 0.05);
-  const FeatureModel near(at_truth.groups, at_truth.real, at_truth.draws, at_truth.driven);
+  const FeatureModel near(at_truth.groups, at_truth.real, at_truth.draws, at_truth.acts,
+                          at_truth.driven);
   const auto slope = [&near](double first, double second) {
     return near.At(Eigen::Vector2d(first, second)).gradient;
   };
@@ -101,6 +103,28 @@ TEST_CASE("Slope and curvature of the loss are those of the loss") {
   CHECK(along_second[1] == Approx(curvature(1, 1)).epsilon(0.05));
 }
 
+TEST_CASE("A parameter that does not act on a group has no slope there, and chance tells nothing") {
+  Made made = MakeDrives({0.8, -0.6}, 0.3);
+  for (int log = 0; log < kLogs / 2; ++log) made.groups[static_cast<size_t>(log)] = "cardboard";
+  const Eigen::Vector2d z(0.3, 0.4);
+  const auto told = [&] {
+    const FeatureModel model(made.groups, made.real, made.draws, made.acts, made.driven);
+    return std::pair(model.At(z), model.InformationAt(z));
+  };
+  made.acts.col(0).head(kLogs / 2) = false;
+  const auto [half, half_information] = told();
+  made.acts.col(0) = false;
+  const auto [none, none_information] = told();
+  CHECK(none.gradient[0] == 0.0);
+  CHECK(none.hessian(0, 1) == 0.0);
+  CHECK(none_information(0, 0) == 0.0);
+  CHECK(half.gradient[0] != 0.0);
+  CHECK(half_information(0, 0) > 0.0);
+  made.acts = true;
+  // The other half tells it as well.
+  CHECK(told().second(0, 0) > 1.5 * half_information(0, 0));
+}
+
 TEST_CASE("Estimates scatter by what the information says, in noise that logs and drives share") {
   constexpr int kFits = 60;
   const Eigen::Vector2d truth(0.3, -0.2);
@@ -109,7 +133,7 @@ TEST_CASE("Estimates scatter by what the information says, in noise that logs an
     Made made = MakeDrives(truth, 0.3);
     statistics::Random random(static_cast<std::uint64_t>(fit), 7);
     for (double& value : made.real.reshaped()) value += 0.3 * random.Normal();
-    const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+    const FeatureModel model(made.groups, made.real, made.draws, made.acts, made.driven);
     Eigen::Vector2d z = truth;
     for (int i = 0; i < 20; ++i) {
       const FeatureModel::Expansion at = model.At(z);
@@ -125,16 +149,17 @@ TEST_CASE("Estimates scatter by what the information says, in noise that logs an
 
 TEST_CASE("What most drives of some values fail with is no drive of the logs, which all arrived") {
   const Made made = MakeDrives({0.0, 0.0}, 0.05, 0.5);
-  const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+  const FeatureModel model(made.groups, made.real, made.draws, made.acts, made.driven);
   CHECK(model.FailingShareAt(Eigen::Vector2d(1.5, 0.0)) > 0.25);
   CHECK(model.FailingShareAt(Eigen::Vector2d(-1.5, 0.0)) < 0.1);
   const Made sound = MakeDrives({0.0, 0.0}, 0.05, 0.0);
-  const FeatureModel all(sound.groups, sound.real, sound.draws, sound.driven);
+  const FeatureModel all(sound.groups, sound.real, sound.draws, sound.acts, sound.driven);
   CHECK(all.FailingShareAt(Eigen::Vector2d(1.5, 0.0)) == 0.0);
   // Twice the share for each log (-2 log (1 - p)), and as often as is asked for.
   const auto weighted = [&](double failures) {
-    return LossAt(FeatureModel(made.groups, made.real, made.draws, made.driven, failures), 1.0,
-                  0.0);
+    return LossAt(
+        FeatureModel(made.groups, made.real, made.draws, made.acts, made.driven, failures), 1.0,
+        0.0);
   };
   const double by_failures = 2.0 * kLogs * model.FailingShareAt(Eigen::Vector2d(1.0, 0.0));
   CHECK(weighted(1.0) - weighted(0.0) == Approx(by_failures));
@@ -146,16 +171,19 @@ TEST_CASE(
   const Eigen::Vector2d truth(0.4, 0.2);
   Made made = MakeDrives(truth, 0.05);
   for (FeatureRows& one : made.driven) one.rows.col(2).setConstant(4.0);
-  CHECK(FeatureModel(made.groups, made.real, made.draws, made.driven).FeatureCount() == 2);
+  CHECK(FeatureModel(made.groups, made.real, made.draws, made.acts, made.driven).FeatureCount() ==
+        2);
   made.real.col(1).setConstant(kNone);
-  CHECK(FeatureModel(made.groups, made.real, made.draws, made.driven).FeatureCount() == 1);
+  CHECK(FeatureModel(made.groups, made.real, made.draws, made.acts, made.driven).FeatureCount() ==
+        1);
 
   Made wild = MakeDrives(truth, 0.05), wilder = wild;
   wild.real(3, 0) = 40.0;
   wilder.real(3, 0) = 4e6;
-  CHECK(LossAt(FeatureModel(wild.groups, wild.real, wild.draws, wild.driven), 0.4, 0.2) ==
-        Approx(LossAt(FeatureModel(wilder.groups, wilder.real, wilder.draws, wilder.driven), 0.4,
-                      0.2)));
+  CHECK(LossAt(FeatureModel(wild.groups, wild.real, wild.draws, wild.acts, wild.driven), 0.4,
+               0.2) == Approx(LossAt(FeatureModel(wilder.groups, wilder.real, wilder.draws,
+                                                  wilder.acts, wilder.driven),
+                                     0.4, 0.2)));
 }
 
 TEST_CASE("Groups answer the parameters each in its own way") {
@@ -166,7 +194,7 @@ TEST_CASE("Groups answer the parameters each in its own way") {
     made.real(log, 0) = 10.0 - made.real(log, 0);
     for (FeatureRows& one : made.driven) one.rows(log, 0) = 10.0 - one.rows(log, 0);
   }
-  const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+  const FeatureModel model(made.groups, made.real, made.draws, made.acts, made.driven);
   CHECK(model.FeatureCount() == 6);
   const double least = LossAt(model, 0.5, 0.0);
   CHECK(least < 1.5);
@@ -176,7 +204,7 @@ TEST_CASE("Groups answer the parameters each in its own way") {
 
 TEST_CASE("The loss of drives is that of the regression where they were driven") {
   const Made made = MakeDrives({0.8, -0.6}, 0.05);
-  const FeatureModel model(made.groups, made.real, made.draws, made.driven);
+  const FeatureModel model(made.groups, made.real, made.draws, made.acts, made.driven);
   std::vector<FeatureRows> at_truth(40), elsewhere(40);
   statistics::Random random(9, 2);
   for (size_t i = 0; i < at_truth.size(); ++i) {
@@ -192,7 +220,7 @@ TEST_CASE("The loss of drives is that of the regression where they were driven")
   CHECK(model.LossOf(at_truth) > kLogs);
 
   // Nothing that arrives is no drive like the logs, whatever weight failures have.
-  const FeatureModel careless(made.groups, made.real, made.draws, made.driven, 0.0);
+  const FeatureModel careless(made.groups, made.real, made.draws, made.acts, made.driven, 0.0);
   for (FeatureRows& one : at_truth) one.rows.setConstant(kNone);
   CHECK(careless.LossOf(at_truth) > careless.LossOf(elsewhere));
 }

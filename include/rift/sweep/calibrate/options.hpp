@@ -25,6 +25,7 @@ struct ShortHorizonOptions {
 struct FeatureFitOptions {
   int rounds = 0;
   int draws = 300;
+  int last_draws = 0;
   double failures = 1.0;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
@@ -35,6 +36,8 @@ struct FeatureFitOptions {
           "the features of the drives regressed on the values; the estimate goes to where they are "
           "those of the logs; 0: the fit ends with the motions");
     field("draws", self.draws, 50, 100'000, "draws of the values in a round");
+    field("last_draws", self.last_draws, 0, 100'000,
+          "of the last round, where they are more: what starts disagree by falls with their root");
     field(
         "failures", self.failures, 0.0, 1000.0,
         "weight of drives that do not arrive, or on a detour, which no log of the fit is; 1: that "
