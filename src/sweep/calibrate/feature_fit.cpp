@@ -274,7 +274,7 @@ void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
       values.push_back(active.Values(region.SharesAt(draws.row(i))));
     }
     const FeatureModel model(group_of_log, real, draws, acts, drive(values, round, kPair),
-                             options.features.failures);
+                             options.features.failures, kPair);
     const auto features = static_cast<double>(model.FeatureCount());
     const Eigen::VectorXd z = region.Least(model);
     shares = region.SharesAt(z);

@@ -50,6 +50,32 @@ Eigen::MatrixXd Regressed(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& v
   return NormalMatrix(basis).ldlt().solve(basis.transpose() * values);
 }
 
+/// d basis / dz: parameters x coefficients.
+Eigen::MatrixXd SlopeOfBasisAt(const Eigen::VectorXd& z) {
+  Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(z.size(), FeatureModel::Coefficients(z.size()));
+  slope.middleCols(1, z.size()).setIdentity();
+  slope.rightCols(z.size()) = (2.0 * z).asDiagonal();
+  return slope;
+}
+
+/// Covariance of regressed coefficients, features weighted and summed; `left`: what the regression
+/// leaves, draws x features. Draws that share their noise scatter together (Liang and Zeger 1986).
+Eigen::MatrixXd NoiseOfSlopes(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& left,
+                              const Eigen::MatrixXd& weights, Index alike) {
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(basis.cols(), basis.cols());
+  for (Index first = 0; first < basis.rows(); first += alike) {
+    const Index count = std::min(alike, basis.rows() - first);
+    const Eigen::MatrixXd own =
+        basis.middleRows(first, count).transpose() * left.middleRows(first, count);
+    scatter += own * weights * own.transpose();
+  }
+  const auto normal = NormalMatrix(basis).ldlt();
+  const Eigen::MatrixXd half = normal.solve(scatter);
+  const auto draws = static_cast<double>(basis.rows());
+  return draws / std::max(1.0, draws - static_cast<double>(basis.cols())) *
+         normal.solve(half.transpose());
+}
+
 /// Where the coefficients of some of the parameters stand among those of all.
 std::vector<Index> PlacesOf(const std::vector<Index>& some, Index all) {
   std::vector<Index> places{0};
@@ -154,8 +180,8 @@ Eigen::MatrixXd Stacked(const std::vector<FeatureRows>& driven, const std::vecto
 FeatureModel::FeatureModel(const std::vector<std::string>& group_of_log,
                            const Eigen::MatrixXd& real, const Eigen::MatrixXd& draws,
                            const Acts& acts, const std::vector<FeatureRows>& driven,
-                           double failures)
-    : failures_(failures) {
+                           double failures, int alike)
+    : failures_(failures), alike_(alike) {
   for (Index k = 0; k < real.cols(); ++k) {
     const auto is_above_zero = [k](const Eigen::MatrixXd& rows) {
       return std::all_of(rows.col(k).begin(), rows.col(k).end(),
@@ -213,11 +239,6 @@ FeatureModel::Group FeatureModel::GroupOf(std::vector<Index> logs, const Eigen::
   }
   const std::vector<Index> places = PlacesOf(acting, draws.cols());
   const Eigen::MatrixXd basis = BasisOf(draws(Eigen::all, acting));
-  group.basis_covariance =
-      Eigen::MatrixXd::Zero(Coefficients(draws.cols()), Coefficients(draws.cols()));
-  const Eigen::MatrixXd own_covariance =
-      NormalMatrix(basis).ldlt().solve(Eigen::MatrixXd::Identity(basis.cols(), basis.cols()));
-  group.basis_covariance(places, places) = own_covariance;
   group.failing = Eigen::VectorXd::Zero(Coefficients(draws.cols()));
   group.failing(places) = Regressed(basis, failing);
   // A draw at which no log tells a feature has the mean of all.
@@ -231,21 +252,28 @@ FeatureModel::Group FeatureModel::GroupOf(std::vector<Index> logs, const Eigen::
   std::tie(group.told, group.weights) = ToldAndWeights(real_off, drives);
   const Eigen::MatrixXd left =
       ZeroWhereUnknown(mean_of_draw)(Eigen::all, group.told) - regressed(Eigen::all, group.told);
-  group.slope_noise = (group.weights * (left.transpose() * left)).trace() /
-                      static_cast<double>(std::max<Index>(1, draws.rows() - basis.cols()));
+  group.slope_noise = Eigen::MatrixXd::Zero(Coefficients(draws.cols()), Coefficients(draws.cols()));
+  group.slope_noise(places, places) = NoiseOfSlopes(basis, left, group.weights, alike_);
   group.slopes = slopes(Eigen::all, group.told);
   group.real_off = MeanOfKnown(real_off(Eigen::all, group.told));
   return group;
 }
 
+Eigen::MatrixXd FeatureModel::SlopeNoise() const {
+  Eigen::MatrixXd noise = groups_.front().slope_noise;
+  for (size_t i = 1; i < groups_.size(); ++i) noise += groups_[i].slope_noise;
+  return noise;
+}
+
 FeatureModel::Expansion FeatureModel::At(const Eigen::VectorXd& z) const {
-  Expansion at{.gradient = Eigen::VectorXd::Zero(z.size()),
-               .hessian = Eigen::MatrixXd::Zero(z.size(), z.size())};
   const Eigen::VectorXd basis = BasisAt(z);
+  const Eigen::MatrixXd slope_of_basis = SlopeOfBasisAt(z), noise = SlopeNoise();
+  Expansion at{.loss = -basis.dot(noise * basis),
+               .gradient = -2.0 * slope_of_basis * (noise * basis),
+               .hessian = Eigen::MatrixXd::Zero(z.size(), z.size())};
   for (const Group& group : groups_) {
     const Eigen::VectorXd error = group.slopes.transpose() * basis - group.real_off;
-    Eigen::MatrixXd slope = group.slopes.middleRows(1, z.size());
-    slope += (2.0 * z).asDiagonal() * group.slopes.bottomRows(z.size());
+    const Eigen::MatrixXd slope = slope_of_basis * group.slopes;
     at.loss += error.dot(group.weights * error);
     at.gradient += 2.0 * slope * (group.weights * error);
     at.hessian += 2.0 * slope * group.weights * slope.transpose();
@@ -254,23 +282,15 @@ FeatureModel::Expansion FeatureModel::At(const Eigen::VectorXd& z) const {
     if (share <= 0.0) continue;
     const double weight = FailureWeight(group);
     at.loss += weight * share;
-    at.gradient += weight * (group.failing.segment(1, z.size()) +
-                             2.0 * z.cwiseProduct(group.failing.tail(z.size())));
+    at.gradient += weight * slope_of_basis * group.failing;
   }
   return at;
 }
 
-/// Slopes are regressed over few drives, and what they scatter by looks like slope: it is known,
-/// and goes out (errors in variables).
 Eigen::MatrixXd FeatureModel::InformationAt(const Eigen::VectorXd& z) const {
-  const Index parameters = z.size();
-  Eigen::MatrixXd slope_of_basis = Eigen::MatrixXd::Zero(parameters, Coefficients(parameters));
-  slope_of_basis.middleCols(1, parameters).setIdentity();
-  slope_of_basis.rightCols(parameters) = (2.0 * z).asDiagonal();
-  Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(Coefficients(parameters), Coefficients(parameters));
-  for (const Group& group : groups_) noise += group.slope_noise * group.basis_covariance;
+  const Eigen::MatrixXd slope_of_basis = SlopeOfBasisAt(z);
   const Eigen::MatrixXd information =
-      0.5 * At(z).hessian - slope_of_basis * noise * slope_of_basis.transpose();
+      0.5 * At(z).hessian - slope_of_basis * SlopeNoise() * slope_of_basis.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
          solver.eigenvectors().transpose();

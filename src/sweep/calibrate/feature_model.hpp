@@ -18,24 +18,25 @@ class FeatureModel {
   /// `group_of_log`: the same text for logs of one group; `real`: logs x features; `draws`: draws x
   /// parameters, about 0 and of unit scatter; `acts`: logs x parameters, whether it changes drives
   /// of the log, without which its slopes are none; `driven`: one element for each draw;
-  /// `failures`: FeatureFitOptions::failures.
+  /// `failures`: FeatureFitOptions::failures; `alike`: as in DriveAt.
   FeatureModel(const std::vector<std::string>& group_of_log, const Eigen::MatrixXd& real,
                const Eigen::MatrixXd& draws, const Acts& acts,
-               const std::vector<FeatureRows>& driven, double failures = 1.0);
+               const std::vector<FeatureRows>& driven, double failures = 1.0, int alike = 1);
 
   /// What is regressed of each feature: its mean, slopes and squares.
   static Eigen::Index Coefficients(Eigen::Index parameters) { return 1 + 2 * parameters; }
 
   /// Of -2 log likelihood: features of each log normal about the mean of the simulated drives
-  /// (synthetic likelihood, Wood 2010), and no log failed.
+  /// (synthetic likelihood, Wood 2010), and no log failed. What the noise of the regressed slopes
+  /// adds to it on average is taken out (corrected score, Nakamura 1990): it grows with z, and
+  /// would hold an estimate near 0.
   struct Expansion {
     double loss = 0.0;
     Eigen::VectorXd gradient;
-    Eigen::MatrixXd hessian;  ///< Gauss and Newton's
+    Eigen::MatrixXd hessian;  ///< Gauss and Newton's of the loss with that noise: positive
   };
   Expansion At(const Eigen::VectorXd& z) const;
-  /// Half the Hessian without what the scatter of the regressed slopes adds to it: how surely the
-  /// logs tell z.
+  /// Half the Hessian without that noise: how surely the logs tell z.
   Eigen::MatrixXd InformationAt(const Eigen::VectorXd& z) const;
 
   /// The same loss of drives at one set of values, several for each log, without the regression. A
@@ -54,19 +55,20 @@ class FeatureModel {
     Eigen::MatrixXd weights;         ///< inverse covariance of real_off
     Eigen::MatrixXd slopes;          ///< (1 + 2 parameters) x told features
     Eigen::VectorXd failing;         ///< the same of the share of drives that failed
-    double slope_noise = 0.0;  ///< what the features scatter by from draw to draw, weighted, summed
-    Eigen::MatrixXd basis_covariance;  ///< of coefficients, for a scatter of 1 from draw to draw
+    Eigen::MatrixXd slope_noise;     ///< of coefficients: their covariance, weighted, summed
   };
   Group GroupOf(std::vector<Eigen::Index> logs, const Eigen::MatrixXd& real,
                 const Eigen::MatrixXd& draws, const Acts& acts,
                 const std::vector<FeatureRows>& driven) const;
   Eigen::MatrixXd Kept(const Group& group, const Eigen::MatrixXd& rows) const;
+  Eigen::MatrixXd SlopeNoise() const;
 
   double FailureWeight(const Group& group) const {
     return 2.0 * failures_ * static_cast<double>(group.logs.size());
   }
 
   double failures_;
+  Eigen::Index alike_;
   std::vector<bool> is_positive_;  ///< such features are told as logarithms
   std::vector<Group> groups_;
 };

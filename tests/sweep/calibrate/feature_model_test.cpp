@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/random.hpp"
 
 namespace rift::sweep {
@@ -29,14 +30,15 @@ struct Made {
 
 /// Logs that differ from each other by `log`, driven at `truth` for real, each scattering by
 /// `noise`; `failing` of the drives where the first parameter is above 0.
-Made MakeDrives(const Eigen::Vector2d& truth, double noise, double failing = 0.0) {
-  statistics::Random random(5, 1);
+Made MakeDrives(const Eigen::Vector2d& truth, double noise, double failing = 0.0, int draws = 400,
+                std::uint64_t seed = 5) {
+  statistics::Random random(seed, 1);
   const auto row = [&](const Eigen::Vector2d& z, int log) -> Eigen::RowVectorXd {
     Eigen::RowVectorXd one = MeanAt(z).transpose().array() + 0.3 * log;
     for (double& value : one) value += noise * random.Normal();
     return one;
   };
-  Made made{.real = Eigen::MatrixXd(kLogs, 3), .draws = Eigen::MatrixXd(400, 2)};
+  Made made{.real = Eigen::MatrixXd(kLogs, 3), .draws = Eigen::MatrixXd(draws, 2)};
   for (int log = 0; log < kLogs; ++log) {
     made.real.row(log) = MeanAt(truth).transpose().array() + 0.3 * log;
   }
@@ -145,6 +147,49 @@ TEST_CASE("Estimates scatter by what the information says, in noise that logs an
   // A simulator is never quite the robot (a tenth of a drive's scatter), which is told as well.
   CHECK(told > scatter);
   CHECK(told < 2.0 * scatter);
+}
+
+TEST_CASE(
+    "Estimates of few noisy draws lie about the truth, also of draws that share their noise") {
+  constexpr int kFits = 400, kDraws = 60, kIdle = 30;
+  constexpr double kNoise = 0.6;
+  const Eigen::Vector2d truth(0.8, -0.6);
+  for (const int alike : {1, 2}) {
+    std::vector<double> first, second;
+    for (int fit = 0; fit < kFits; ++fit) {
+      const auto seed = static_cast<std::uint64_t>(fit + 1);
+      Made made = MakeDrives(truth, 0.0, 0.0, kDraws, seed);
+      statistics::Random random(seed, 8);
+      // Features that answer nothing add to the noise, and to nothing else.
+      const auto with_idle = [](const Eigen::MatrixXd& rows) {
+        Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(rows.rows(), rows.cols() + kIdle);
+        wide.leftCols(rows.cols()) = rows;
+        return wide;
+      };
+      made.real = with_idle(made.real);
+      Eigen::MatrixXd noise;
+      for (size_t i = 0; i < made.driven.size(); ++i) {
+        Eigen::MatrixXd& rows = made.driven[i].rows;
+        rows = with_idle(rows);
+        if (i % static_cast<size_t>(alike) == 0) {
+          noise.resize(rows.rows(), rows.cols());
+          for (double& value : noise.reshaped()) value = kNoise * random.Normal();
+        }
+        rows += noise;
+      }
+      const FeatureModel model(made.groups, made.real, made.draws, made.acts, made.driven, 1.0,
+                               alike);
+      Eigen::Vector2d z = Eigen::Vector2d::Zero();
+      for (int i = 0; i < 100; ++i) {
+        const FeatureModel::Expansion at = model.At(z);
+        z = (z - at.hessian.inverse() * at.gradient).cwiseMax(-2.0).cwiseMin(2.0);
+      }
+      first.push_back(z[0]), second.push_back(z[1]);
+    }
+    CAPTURE(alike);
+    CHECK(statistics::Median(first) == Approx(truth[0]).margin(0.04));
+    CHECK(statistics::Median(second) == Approx(truth[1]).margin(0.04));
+  }
 }
 
 TEST_CASE("What most drives of some values fail with is no drive of the logs, which all arrived") {
