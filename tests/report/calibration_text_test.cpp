@@ -43,6 +43,15 @@ TEST_CASE("Starts agree when they differ by at most 0.3 of half the interval") {
   CHECK_FALSE(sweep::AgreementOf({FitOf(0.1, 0.1, 0.1), FitOf(0.2, 0.1, 0.1)}).front().agrees);
 }
 
+TEST_CASE("Values of several starts stand apart, however long they are") {
+  sweep::CalibrationReport report{.calibration = FitOf(-0.0007646, -0.002, 0.001)};
+  report.calibration.correlation.setIdentity(1, 1);
+  report.agreement = sweep::AgreementOf({report.calibration, FitOf(-0.0008748, -0.002, 0.001)});
+  CHECK(CalibrationText(report).find(
+            "simulation.link.delay_s  -0.0007646  -0.0008748  difference 0.07\n") !=
+        std::string::npos);
+}
+
 TEST_CASE("The flag of a parameter says when the prior and not the logs tell it") {
   sweep::CalibratedParameter parameter;
   CHECK(FlagOf(parameter).empty());

@@ -21,10 +21,15 @@ std::string Change(double before, double after, int decimals) {
   return Number(before, decimals) + " > " + Number(after, decimals);
 }
 
-std::string ParameterText(const sweep::Calibration& fit) {
+size_t KeyWidth(const sweep::Calibration& fit) {
   size_t width = 9;
   for (const CalibratedParameter& p : fit.parameters)
     width = std::max(width, p.parameter.key.size());
+  return width;
+}
+
+std::string ParameterText(const sweep::Calibration& fit) {
+  const size_t width = KeyWidth(fit);
   std::string text = fmt::format("{:<{}}  {:>9}  {:>9}  {:<22}  {}\n", "parameter", width, "start",
                                  "value", "interval", "flag");
   for (const CalibratedParameter& p : fit.parameters) {
@@ -58,10 +63,10 @@ std::string AgreementText(const sweep::CalibrationReport& report) {
   for (size_t i = 0; i < report.agreement.size(); ++i) {
     const sweep::StartAgreement& one = report.agreement[i];
     std::string values;
-    for (const double value : one.values) values += fmt::format("{:>10.4g}", value);
-    text += fmt::format("  {}:{}  difference {:.2f}{}\n",
-                        report.calibration.parameters[i].parameter.key, values, one.difference,
-                        one.agrees ? "" : ", does not agree");
+    for (const double value : one.values) values += fmt::format("  {:>9.4g}", value);
+    text += fmt::format(
+        "{:<{}}{}  difference {:.2f}{}\n", report.calibration.parameters[i].parameter.key,
+        KeyWidth(report.calibration), values, one.difference, one.agrees ? "" : ", does not agree");
   }
   return text;
 }
