@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -10,6 +9,7 @@
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/drive_features.hpp"
 #include "rift/sweep/calibrate/repeated_trial.hpp"
+#include "rift/sweep/run/for_each.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 #include "rift/trial/loop_delay.hpp"
 
@@ -98,15 +98,7 @@ std::vector<FeatureRows> DriveAt(const std::vector<std::vector<double>>& values,
       at.rows.row(log) = row;
     }
   };
-  const auto work = [&](size_t first) {
-    for (size_t i = first; i < values.size(); i += static_cast<size_t>(threads)) drive(i);
-  };
-  std::vector<std::future<void>> workers;
-  for (int i = 1; i < threads; ++i) {
-    workers.push_back(std::async(std::launch::async, work, static_cast<size_t>(i)));
-  }
-  work(0);
-  for (std::future<void>& worker : workers) worker.get();
+  ForEach(values.size(), threads, drive);
   return driven;
 }
 

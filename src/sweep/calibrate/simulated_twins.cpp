@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <stdexcept>
 
 #include "fitted_simulator.hpp"
 #include "model.hpp"
 #include "rift/gap/likeness.hpp"
+#include "rift/sweep/run/for_each.hpp"
 #include "rift/trial/loop_delay.hpp"
 
 namespace rift::sweep {
@@ -66,17 +66,8 @@ std::vector<LogPrediction> SimulatedTwins::Predict(const std::vector<Calibration
                                                    const std::vector<double>& values,
                                                    const CalibrationOptions& options) {
   std::vector<LogPrediction> predictions(logs.size());
-  const auto work = [&](size_t first) {
-    for (size_t i = first; i < logs.size(); i += static_cast<size_t>(threads_)) {
-      predictions[i] = PredictionOf(logs[i], twin_(i, values), options);
-    }
-  };
-  std::vector<std::future<void>> workers;
-  for (int i = 1; i < threads_; ++i) {
-    workers.push_back(std::async(std::launch::async, work, static_cast<size_t>(i)));
-  }
-  work(0);
-  for (std::future<void>& worker : workers) worker.get();
+  ForEach(logs.size(), threads_,
+          [&](size_t i) { predictions[i] = PredictionOf(logs[i], twin_(i, values), options); });
   return predictions;
 }
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <future>
 #include <set>
 #include <string>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "rift/sweep/falsify/candidate_runs.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
+#include "rift/sweep/run/for_each.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 
 namespace rift::sweep {
@@ -127,17 +127,7 @@ void Gathering::RunPrograms(int workers) {
 std::vector<Labelled> Gathering::Drive(int threads) {
   RunPrograms(threads);
   std::vector<SimulatedRun> runs(planned_.size());
-  const auto work = [&](size_t first) {
-    for (size_t i = first; i < planned_.size(); i += static_cast<size_t>(threads)) {
-      runs[i] = Simulate(planned_[i].run);
-    }
-  };
-  std::vector<std::future<void>> workers;
-  for (int i = 1; i < threads; ++i) {
-    workers.push_back(std::async(std::launch::async, work, static_cast<size_t>(i)));
-  }
-  work(0);
-  for (std::future<void>& worker : workers) worker.get();
+  ForEach(planned_.size(), threads, [&](size_t i) { runs[i] = Simulate(planned_[i].run); });
   for (size_t i = 0; i < runs.size(); ++i) {
     RepeatedTrial& trial = trials_[planned_[i].trial].trial;
     if (runs[i].result.outcome == trial::Outcome::kReached) {
