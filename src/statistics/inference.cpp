@@ -27,6 +27,13 @@ double NormalQuantile(double share) {
   return std::numbers::sqrt2 * math::erf_inv(2.0 * share - 1.0);
 }
 
+double MeanOfNormalWithin(double mean, double sd, double low, double high) {
+  const double from = (low - mean) / sd, to = (high - mean) / sd;
+  const math::normal normal;
+  return mean + sd * (math::pdf(normal, from) - math::pdf(normal, to)) /
+                    (math::cdf(normal, to) - math::cdf(normal, from));
+}
+
 double StudentQuantile(double degrees_of_freedom, double share) {
   return math::quantile(math::students_t(degrees_of_freedom), share);
 }

@@ -33,6 +33,21 @@ TEST_CASE("Means of values of one sign, of two, and of squares") {
   CHECK(CentralInterval({0.0, 1.0, 2.0, 3.0, 4.0}, 0.5).high == 3.0);
 }
 
+TEST_CASE("The mean of a normal variable within limits moves away from the nearer one") {
+  // Half of a normal distribution.
+  CHECK(MeanOfNormalWithin(0.0, 2.0, 0.0, 1e3) == Approx(2.0 * std::sqrt(2.0 / M_PI)));
+  CHECK(MeanOfNormalWithin(5.0, 2.0, -1e3, 5.0) == Approx(5.0 - 2.0 * std::sqrt(2.0 / M_PI)));
+  CHECK(MeanOfNormalWithin(0.3, 0.01, 0.0, 1.0) == Approx(0.3));
+  CHECK(MeanOfNormalWithin(0.5, 0.8, 0.0, 1.0) == Approx(0.5));
+  // Hardly told: the middle.
+  CHECK(MeanOfNormalWithin(0.1, 50.0, 0.0, 1.0) == Approx(0.5).epsilon(1e-3));
+  for (const double mean : {0.0, 0.1, 0.4}) {
+    const double within = MeanOfNormalWithin(mean, 0.3, 0.0, 1.0);
+    CHECK(within > mean);
+    CHECK(MeanOfNormalWithin(1.0 - mean, 0.3, 0.0, 1.0) == Approx(1.0 - within));
+  }
+}
+
 TEST_CASE("F with two degrees of freedom, and beta with an integer, have closed forms") {
   for (const double f : {0.1, 1.0, 4.2, 20.0}) {
     for (const double m : {1.0, 9.0, 40.0}) {

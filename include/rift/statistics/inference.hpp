@@ -12,6 +12,9 @@ namespace rift::statistics {
 double NormalCdf(double z);
 /// sqrt(2) erf_inv(2 share - 1); shares below 1e-8 lose digits in 2 share - 1.
 double NormalQuantile(double share);
+/// Mean of a normal variable of which nothing lies outside [low, high]; `mean` and `sd` are those
+/// before, `mean` within [low, high], `sd` above 0.
+double MeanOfNormalWithin(double mean, double sd, double low, double high);
 double StudentQuantile(double degrees_of_freedom, double share);
 
 /// Probability of `successes` in `trials`, each with the probability `share`, which may be 0 or 1.

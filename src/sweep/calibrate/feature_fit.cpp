@@ -140,9 +140,10 @@ class Active {
     all(places_) = shares;
     return ValuesAt(parameters_, all);
   }
-  /// An interval ends with the range.
-  void Tell(const Eigen::VectorXd& shares, const Eigen::MatrixXd& covariance,
-            const CalibrationOptions& options, Calibration& found) const;
+  /// `most_likely`: of the normal posterior, in shares. An interval ends with the range.
+  void Tell(const Eigen::VectorXd& most_likely, const Eigen::VectorXd& mean,
+            const Eigen::MatrixXd& covariance, const CalibrationOptions& options,
+            Calibration& found) const;
 
  private:
   std::vector<experiment::FreeParameter> parameters_;
@@ -151,8 +152,9 @@ class Active {
   Prior prior_;
 };
 
-void Active::Tell(const Eigen::VectorXd& shares, const Eigen::MatrixXd& covariance,
-                  const CalibrationOptions& options, Calibration& found) const {
+void Active::Tell(const Eigen::VectorXd& most_likely, const Eigen::VectorXd& mean,
+                  const Eigen::MatrixXd& covariance, const CalibrationOptions& options,
+                  Calibration& found) const {
   const double deviations = statistics::NormalQuantile(0.5 + 0.5 * options.confidence);
   const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
   const Eigen::MatrixXd correlation = covariance.cwiseQuotient(sd * sd.transpose());
@@ -163,14 +165,26 @@ void Active::Tell(const Eigen::VectorXd& shares, const Eigen::MatrixXd& covarian
     CalibratedParameter& one = found.parameters[static_cast<size_t>(places_[i])];
     const double min = one.parameter.min, width = one.parameter.max - min;
     const double reach = deviations * sd[k];
-    one.value = min + shares[k] * width;
-    one.low = min + std::max(0.0, shares[k] - reach) * width;
-    one.high = min + std::min(1.0, shares[k] + reach) * width;
-    one.is_at_bound = shares[k] <= kRounding || shares[k] >= 1.0 - kRounding;
+    one.value = min + mean[k] * width;
+    one.low = min + std::max(0.0, most_likely[k] - reach) * width;
+    one.high = min + std::min(1.0, most_likely[k] + reach) * width;
+    one.is_at_bound = most_likely[k] <= kRounding || most_likely[k] >= 1.0 - kRounding;
     one.is_identified = reach <= options.identified_share;
     // The posterior's weight is the sum of both.
     one.is_from_prior = prior_.weight[k] > 0.5 / (sd[k] * sd[k]);
   }
+}
+
+/// Of each parameter, where its range cuts the posterior off: near a bound the most likely value
+/// hangs on chance far more than the mean does.
+Eigen::VectorXd MeansWithinRanges(const Eigen::VectorXd& most_likely,
+                                  const Eigen::MatrixXd& covariance) {
+  Eigen::VectorXd means = most_likely;
+  for (Index k = 0; k < means.size(); ++k) {
+    means[k] =
+        statistics::MeanOfNormalWithin(most_likely[k], std::sqrt(covariance(k, k)), 0.0, 1.0);
+  }
+  return means;
 }
 
 bool IsSame(const trajectory::Trajectory& a, const trajectory::Trajectory& b) {
@@ -290,7 +304,9 @@ void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                .values = active.Values(shares)});
     }
     if (!is_last) continue;
-    active.Tell(shares, covariance, options, found);
+    const Eigen::VectorXd most_likely = shares;
+    shares = MeansWithinRanges(most_likely, covariance);
+    active.Tell(most_likely, shares, covariance, options, found);
     // With the same noise on both sides.
     const auto drive_often = [&](const Eigen::VectorXd& at) {
       const std::vector<std::vector<double>> repeated(kJudgeRuns, active.Values(at));
