@@ -181,7 +181,8 @@ FeatureModel::FeatureModel(const std::vector<std::string>& group_of_log,
                            const Eigen::MatrixXd& real, const Eigen::MatrixXd& draws,
                            const Acts& acts, const std::vector<FeatureRows>& driven,
                            double failures, int alike)
-    : failures_(failures), alike_(alike) {
+    : failures_(failures),
+      slope_noise_(Eigen::MatrixXd::Zero(Coefficients(draws.cols()), Coefficients(draws.cols()))) {
   for (Index k = 0; k < real.cols(); ++k) {
     const auto is_above_zero = [k](const Eigen::MatrixXd& rows) {
       return std::all_of(rows.col(k).begin(), rows.col(k).end(),
@@ -197,7 +198,8 @@ FeatureModel::FeatureModel(const std::vector<std::string>& group_of_log,
     logs_of[group_of_log[i]].push_back(static_cast<Index>(i));
   }
   for (auto& [name, logs] : logs_of) {
-    groups_.push_back(GroupOf(std::move(logs), real, draws, acts, driven));
+    groups_.push_back(GroupOf(std::move(logs), real, draws, acts, driven, alike));
+    slope_noise_ += groups_.back().slope_noise;
   }
 }
 
@@ -216,7 +218,7 @@ Eigen::MatrixXd FeatureModel::Kept(const Group& group, const Eigen::MatrixXd& ro
 
 FeatureModel::Group FeatureModel::GroupOf(std::vector<Index> logs, const Eigen::MatrixXd& real,
                                           const Eigen::MatrixXd& draws, const Acts& acts,
-                                          const std::vector<FeatureRows>& driven) const {
+                                          const std::vector<FeatureRows>& driven, int alike) const {
   Group group{.logs = std::move(logs)};
   const auto count = static_cast<Index>(group.logs.size());
   const Eigen::MatrixXd stacked = Stacked(driven, group.logs);
@@ -253,23 +255,17 @@ FeatureModel::Group FeatureModel::GroupOf(std::vector<Index> logs, const Eigen::
   const Eigen::MatrixXd left =
       ZeroWhereUnknown(mean_of_draw)(Eigen::all, group.told) - regressed(Eigen::all, group.told);
   group.slope_noise = Eigen::MatrixXd::Zero(Coefficients(draws.cols()), Coefficients(draws.cols()));
-  group.slope_noise(places, places) = NoiseOfSlopes(basis, left, group.weights, alike_);
+  group.slope_noise(places, places) = NoiseOfSlopes(basis, left, group.weights, alike);
   group.slopes = slopes(Eigen::all, group.told);
   group.real_off = MeanOfKnown(real_off(Eigen::all, group.told));
   return group;
 }
 
-Eigen::MatrixXd FeatureModel::SlopeNoise() const {
-  Eigen::MatrixXd noise = groups_.front().slope_noise;
-  for (size_t i = 1; i < groups_.size(); ++i) noise += groups_[i].slope_noise;
-  return noise;
-}
-
 FeatureModel::Expansion FeatureModel::At(const Eigen::VectorXd& z) const {
   const Eigen::VectorXd basis = BasisAt(z);
-  const Eigen::MatrixXd slope_of_basis = SlopeOfBasisAt(z), noise = SlopeNoise();
-  Expansion at{.loss = -basis.dot(noise * basis),
-               .gradient = -2.0 * slope_of_basis * (noise * basis),
+  const Eigen::MatrixXd slope_of_basis = SlopeOfBasisAt(z);
+  Expansion at{.loss = -basis.dot(slope_noise_ * basis),
+               .gradient = -2.0 * slope_of_basis * (slope_noise_ * basis),
                .hessian = Eigen::MatrixXd::Zero(z.size(), z.size())};
   for (const Group& group : groups_) {
     const Eigen::VectorXd error = group.slopes.transpose() * basis - group.real_off;
@@ -290,7 +286,7 @@ FeatureModel::Expansion FeatureModel::At(const Eigen::VectorXd& z) const {
 Eigen::MatrixXd FeatureModel::InformationAt(const Eigen::VectorXd& z) const {
   const Eigen::MatrixXd slope_of_basis = SlopeOfBasisAt(z);
   const Eigen::MatrixXd information =
-      0.5 * At(z).hessian - slope_of_basis * SlopeNoise() * slope_of_basis.transpose();
+      0.5 * At(z).hessian - slope_of_basis * slope_noise_ * slope_of_basis.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
          solver.eigenvectors().transpose();

@@ -59,18 +59,17 @@ class FeatureModel {
   };
   Group GroupOf(std::vector<Eigen::Index> logs, const Eigen::MatrixXd& real,
                 const Eigen::MatrixXd& draws, const Acts& acts,
-                const std::vector<FeatureRows>& driven) const;
+                const std::vector<FeatureRows>& driven, int alike) const;
   Eigen::MatrixXd Kept(const Group& group, const Eigen::MatrixXd& rows) const;
-  Eigen::MatrixXd SlopeNoise() const;
 
   double FailureWeight(const Group& group) const {
     return 2.0 * failures_ * static_cast<double>(group.logs.size());
   }
 
   double failures_;
-  Eigen::Index alike_;
   std::vector<bool> is_positive_;  ///< such features are told as logarithms
   std::vector<Group> groups_;
+  Eigen::MatrixXd slope_noise_;  ///< of all groups
 };
 
 }  // namespace rift::sweep
