@@ -60,13 +60,14 @@ std::string AgreementText(const sweep::CalibrationReport& report) {
       "fits from {} starts; difference: largest distance of two over half the interval's width, at "
       "most {:g} where they agree\n",
       report.agreement.front().values.size(), sweep::StartAgreement::kAgreement);
+  const size_t width = KeyWidth(report.calibration);
   for (size_t i = 0; i < report.agreement.size(); ++i) {
     const sweep::StartAgreement& one = report.agreement[i];
     std::string values;
     for (const double value : one.values) values += fmt::format("  {:>9.4g}", value);
-    text += fmt::format(
-        "{:<{}}{}  difference {:.2f}{}\n", report.calibration.parameters[i].parameter.key,
-        KeyWidth(report.calibration), values, one.difference, one.agrees ? "" : ", does not agree");
+    text += fmt::format("{:<{}}{}  difference {:.2f}{}\n",
+                        report.calibration.parameters[i].parameter.key, width, values,
+                        one.difference, one.agrees ? "" : ", does not agree");
   }
   return text;
 }
