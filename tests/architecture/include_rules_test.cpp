@@ -196,6 +196,23 @@ TEST_CASE("Every source file that the documents name is there") {
   CHECK(named > 20);
 }
 
+TEST_CASE("docs/rooms.md says of every source file what is done in it") {
+  std::ifstream file(test::SourceDir() + "/docs/rooms.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  int files = 0;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(test::SourceDir() + "/src")) {
+    const std::string ending = entry.path().extension().string();
+    if (ending != ".cpp" && ending != ".py") continue;
+    const std::string name =
+        std::filesystem::relative(entry.path(), test::SourceDir()).generic_string();
+    INFO("docs/rooms.md, Where it is done: a row that ends in | `" << name << "` |");
+    CHECK(text.find("| `" + name + "` |") != std::string::npos);
+    ++files;
+  }
+  CHECK(files > 300);
+}
+
 TEST_CASE("The table keeps simulator, hardware and computation apart") {
   const std::map<std::string, Allowed> table = ReadTable();
   const auto never = [&](const std::string& room, const std::string& other) {
