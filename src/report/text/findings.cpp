@@ -11,6 +11,7 @@
 #include "rift/report/figures/setting_grid.hpp"
 #include "rift/report/text/trial_query.hpp"
 #include "rift/sweep/explain/anatomy.hpp"
+#include "rift/sweep/falsify/distinct_rows.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/enum_name.hpp"
 
