@@ -38,7 +38,12 @@ FactorSplit SplitFactors(const std::vector<experiment::Parameter>& parameters) {
 std::string ShortText(const experiment::Parameter& parameter,
                       const experiment::ParameterValue& value) {
   const bool is_drawn = parameter.IsContinuous() && value.number;
-  return is_drawn ? fmt::format("{:.4g}", *value.number) : value.text;
+  if (!is_drawn) return value.text;
+  // Four digits of the range: of values that agree in their first ones these tell nothing.
+  const double way = parameter.max - parameter.min;
+  const double larger = std::max({std::abs(parameter.min), std::abs(parameter.max), way});
+  const int shared = way > 0.0 ? static_cast<int>(std::log10(larger / way)) : 0;
+  return fmt::format("{:.{}g}", *value.number, std::min(17, 4 + shared));
 }
 
 std::string SettingText(const std::vector<experiment::Parameter>& parameters,

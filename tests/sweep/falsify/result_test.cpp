@@ -70,6 +70,10 @@ const experiment::Parameter kNumbers{.key = "a.b.count", .levels = {{"0.123456",
 TEST_CASE("A value of a range is shortened for people, and one of a list stands as written") {
   CHECK(ShortText(kRange, {"0.12345678", 0.12345678}) == "0.1235");
   CHECK(ShortText(kRange, {"word", {}}) == "word");
+  const experiment::Parameter far{.key = "a", .min = 1e6, .max = 1e6 + 10.0};
+  CHECK(ShortText(far, experiment::NumberValue(1e6 + 4.25)) == "1000004.25");
+  const experiment::Parameter below{.key = "a", .min = -120.0, .max = -119.0};
+  CHECK(ShortText(below, experiment::NumberValue(-119.123456)) == "-119.123");
   CHECK(ShortText(kNumbers, {"0.123456", 0.123456}) == "0.123456");
   CHECK(ShortText(kWords, {"ice", {}}) == "ice");
 }
