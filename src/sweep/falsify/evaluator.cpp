@@ -264,8 +264,10 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
         "{}: objective is odometry, and suggested drives are judged by the gap of their poses",
         experiment_file_));
   }
-  RecordedLogs logs(inputs_,
-                    {{.format = trajectory::Format::kRift}, 0.0, "the format of rift drive"});
+  LogOptions of_drive;
+  of_drive.read.format = trajectory::Format::kRift;
+  of_drive.format_key = "the format of rift drive";
+  RecordedLogs logs(inputs_, of_drive);
   Recording driven = logs.At(path);
   if (driven.status == TrialStatus::kOk && outcome != trial::Outcome::kReached) {
     driven.status = StatusOf(outcome);
