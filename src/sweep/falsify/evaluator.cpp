@@ -22,12 +22,13 @@ namespace {
 using experiment::CandidateKind;
 using experiment::ReferenceKind;
 
-/// What is wrong with an experiment is said with its file.
+/// What is wrong with an experiment is said with its file, where it does not name its line.
 template <class Call>
 auto InFile(const std::string& experiment_file, Call&& call) {
   try {
     return call();
   } catch (const std::invalid_argument& error) {
+    if (std::string_view(error.what()).starts_with(experiment_file + ':')) throw;
     throw std::invalid_argument(fmt::format("{}: {}", experiment_file, error.what()));
   }
 }
