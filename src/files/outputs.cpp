@@ -38,6 +38,19 @@ bool NamesFile(const fs::path& name) {
   return endings.contains(name.extension().string());
 }
 
+/// Throws std::invalid_argument when what is there of the way to a folder is not one.
+void RequireWayTo(const fs::path& folder) {
+  std::error_code not_there;
+  for (fs::path above = folder.parent_path(); !above.empty(); above = above.parent_path()) {
+    if (fs::is_directory(above, not_there)) return;
+    if (fs::exists(above, not_there)) {
+      throw std::invalid_argument(
+          fmt::format("--out {}: {} is a file, and no folder can be below it", folder.string(),
+                      above.string()));
+    }
+  }
+}
+
 /// Throws std::invalid_argument when `file` is there and `force` is not given.
 void RefuseOverwriting(const fs::path& file, bool force) {
   std::error_code not_there;
@@ -82,6 +95,7 @@ void RequireFolderName(const std::string& out, std::string_view what) {
     throw std::invalid_argument(fmt::format(
         "--out -: {} is a folder of files and cannot go to stdout: name a folder", what));
   }
+  RequireWayTo(out);
   if (fs::is_directory(out, not_there) || !NamesFile(out)) return;
   throw std::invalid_argument(fmt::format(
       "--out {} is the name of a file, and {} is a folder of files: name a folder", out, what));

@@ -89,15 +89,37 @@ double NoiseFloor_m(std::span<const trajectory::Trajectory> reals, const GapOpti
   return statistics::Mean(gaps_m);
 }
 
-void Judge(GapResult& result) {
-  std::vector<double> gaps_m;
-  double sum_m = 0.0;
-  for (const GapResult::Trial& trial : result.trials) {
-    gaps_m.push_back(trial.comparison.gap_m);
-    sum_m += trial.comparison.gap_m;
+std::vector<std::optional<size_t>> CopiesAmong(std::span<const trajectory::Trajectory> reals) {
+  const auto are_same = [](const trajectory::Trajectory& a, const trajectory::Trajectory& b) {
+    return std::equal(a.poses.begin(), a.poses.end(), b.poses.begin(), b.poses.end(),
+                      [](const trajectory::StampedPose& p, const trajectory::StampedPose& q) {
+                        const bool no_height = std::isnan(p.z_m) && std::isnan(q.z_m);
+                        return p.Position() == q.Position() && (no_height || p.z_m == q.z_m);
+                      });
+  };
+  std::vector<std::optional<size_t>> copy_of(reals.size());
+  for (size_t i = 0; i < reals.size(); ++i) {
+    for (size_t j = 0; j < i && !copy_of[i]; ++j) {
+      if (!copy_of[j] && are_same(reals[j], reals[i])) copy_of[i] = j;
+    }
   }
-  result.mean_gap_m = sum_m / static_cast<double>(gaps_m.size());
-  result.noise_floor_m = NoiseFloor_m(result.reals, result.options);
+  return copy_of;
+}
+
+void Judge(GapResult& result) {
+  const std::vector<std::optional<size_t>> copy_of = CopiesAmong(result.reals);
+  std::vector<double> gaps_m;
+  std::vector<trajectory::Trajectory> distinct;
+  double sum_m = 0.0;
+  for (size_t i = 0; i < result.trials.size(); ++i) {
+    const double gap_m = result.trials[i].comparison.gap_m;
+    sum_m += gap_m;
+    if (copy_of[i]) continue;
+    gaps_m.push_back(gap_m);
+    distinct.push_back(result.reals[i]);
+  }
+  result.mean_gap_m = sum_m / static_cast<double>(result.trials.size());
+  result.noise_floor_m = NoiseFloor_m(distinct, result.options);
   result.verdict = JudgeRepeats(gaps_m, result.options.threshold_m, result.judged_by);
 }
 

@@ -252,20 +252,33 @@ CellMeasures MeasureCell(std::span<const RunMeasures> runs, std::span<const Traj
   return cell;
 }
 
+bool AreOfOneRobot(std::span<const ProgramRun> runs) {
+  return std::all_of(runs.begin(), runs.end(), [&](const ProgramRun& run) {
+    const OdometryOptions &a = run.wheels, &b = runs.front().wheels;
+    return LeftMetresPerCount(a) == LeftMetresPerCount(b) &&
+           RightMetresPerCount(a) == RightMetresPerCount(b) && a.drive.track_m == b.drive.track_m &&
+           run.tag_ahead_m == runs.front().tag_ahead_m;
+  });
+}
+
 OdometryResult MeasureRuns(std::span<const ProgramRun> runs, bool same_program,
-                           const OdometryOptions& odometry, const RunOptions& options) {
+                           const RunOptions& options) {
   OdometryResult result;
   std::vector<RunMeasures> measures;
   std::vector<Trajectory> cameras;
   std::vector<RunLog> with_encoders;
   for (const ProgramRun& run : runs) {
-    measures.push_back(MeasureRun(run.log, run.program, odometry, options));
+    RunOptions of_run = options;
+    of_run.tag_ahead_m = run.tag_ahead_m;
+    measures.push_back(MeasureRun(run.log, run.program, run.wheels, of_run));
     result.runs.push_back({run.log.name, measures.back()});
     cameras.push_back(run.log.camera);
     if (!run.log.encoders.empty() && measures.back().did_move) with_encoders.push_back(run.log);
   }
   if (same_program && runs.size() > 1) result.cell = MeasureCell(measures, cameras);
-  result.umbmark = UmbmarkOf(with_encoders, odometry, options.tag_ahead_m);
+  if (AreOfOneRobot(runs)) {
+    result.umbmark = UmbmarkOf(with_encoders, runs.front().wheels, runs.front().tag_ahead_m);
+  }
   return result;
 }
 

@@ -10,6 +10,7 @@ namespace rift::trial {
 namespace {
 
 constexpr double kStanding_m = 0.02, kStanding_rad = 0.2;
+constexpr double kWindow_s = 0.5;  // in a shorter one less is a robot that moves
 constexpr double kLeastNearing_mps = 0.005;
 
 /// Between the 5 % and the 95 % quantile.
@@ -60,7 +61,9 @@ double Length_m(const std::vector<control::Waypoint>& waypoints) {
   return length_m;
 }
 
-bool Progress::IsStanding() const { return moved_m < kStanding_m && turned_rad < kStanding_rad; }
+bool Progress::IsStanding() const {
+  return moved_m < kStanding_m * std::min(1.0, last_s / kWindow_s) && turned_rad < kStanding_rad;
+}
 
 bool Progress::IsNearing() const { return nearing_mps > kLeastNearing_mps; }
 

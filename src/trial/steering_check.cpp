@@ -320,6 +320,12 @@ bool IsToExplain(Outcome outcome) {
          outcome == Outcome::kLost;
 }
 
+/// Of those that are explained.
+std::string_view HowItEnded(Outcome outcome) {
+  if (outcome == Outcome::kLeftArena) return "it left the arena (trial.arena)";
+  return outcome == Outcome::kLost ? "it was lost from sight" : "it came no nearer";
+}
+
 void Explain(SteeringCheck& check, const Case& run) {
   if (ExplainRefused(check, run)) return;
   const bool is_stale = ExplainStale(check, run);
@@ -334,11 +340,12 @@ void Explain(SteeringCheck& check, const Case& run) {
   if (run.result.outcome == Outcome::kTimedOut && !is_astray && progress.IsNearing()) {
     ExplainTime(check, run, progress);
   } else {
+    const bool is_within = check.circle_m <= run.navigator.reach_radius_m;
     check.causes.push_back(fmt::format(
-        "it came no nearer, {:.2f} m left, and no limit of the steering explains it: the phase "
-        "margin is {:.0f} deg, and the circle at a heading error of 90 deg, {:.3f} m, lies within "
-        "control.reach_radius_m",
-        progress.left_m, check.margins.phase_margin_deg, check.circle_m));
+        "{}, {:.2f} m left, and no limit of the steering explains it: the phase margin is {:.0f} "
+        "deg, and the circle at a heading error of 90 deg, {:.3f} m, {} control.reach_radius_m",
+        HowItEnded(run.result.outcome), progress.left_m, check.margins.phase_margin_deg,
+        check.circle_m, is_within ? "lies within" : "is larger than"));
   }
 }
 

@@ -39,7 +39,9 @@ void RequireList(const Node& node, const Place& place) {
 
 void FailUnknown(const Node::Entry& entry, std::string_view path, const KnownKeys& known) {
   std::string hint;
-  const std::string nearest = Nearest(entry.key, known.here);
+  std::vector<std::string> here = known.here;
+  if (path.empty()) here.emplace_back("include");  // taken out of a file before it is bound
+  const std::string nearest = Nearest(entry.key, here);
   if (!nearest.empty()) {
     hint = fmt::format("did you mean '{}'?", Join(path, nearest));
   } else {

@@ -8,7 +8,7 @@
 #include <random>
 #include <thread>
 
-#include "rift/sweep/run/journal.hpp"
+#include "rift/sweep/run/journal_summary.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/quick_gnuplot.hpp"

@@ -58,6 +58,12 @@ TEST_CASE("A folder of outputs is no file, no name of one and not stdout") {
   CHECK_THROWS_WITH(RequireFolderName("-", "a sweep"),
                     "--out -: a sweep is a folder of files and cannot go to stdout: name a folder");
   CHECK_THROWS_WITH(RequireFolderName(folder / "a", "a sweep"), Contains("is a file, and a sweep"));
+  for (const char* below : {"a/sub", "a/sub/further", "a/sub.csv"}) {
+    CHECK_THROWS_WITH(RequireFolderName(folder / below, "a sweep"),
+                      "--out " + (folder / below) + ": " + (folder / "a") +
+                          " is a file, and no folder can be below it");
+  }
+  CHECK_NOTHROW(RequireFolderName(folder / "new/sub/further", "a sweep"));
   for (const char* name :
        {"x.csv", "x.html", "x.json", "x.log", "x.mcap", "x.mp4", "x.pdf", "x.png", "x.svg", "x.tum",
         "x.txt", "x.xlsx", "x.yaml", "x.yml", "x.zip"}) {

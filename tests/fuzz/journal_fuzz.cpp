@@ -8,6 +8,7 @@
 
 #include "fuzz.hpp"
 #include "rift/sweep/run/journal.hpp"
+#include "rift/sweep/run/journal_summary.hpp"
 
 namespace rift {
 namespace {

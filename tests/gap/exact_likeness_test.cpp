@@ -163,6 +163,26 @@ TEST_CASE("A result has the mean of its gaps, the floor of its reals and the ver
   CHECK(result.verdict.above == 1);
 }
 
+TEST_CASE("A real log that was copied is one repeat, whatever its clock says") {
+  GapResult result;
+  for (const double gap_m : {0.08, 0.02, 0.08, 0.08}) {
+    result.trials.push_back({"x.csv", {.gap_m = gap_m}});
+    result.reals.push_back(Lane(gap_m));
+  }
+  for (auto& pose : result.reals[2].poses) pose.t_s += 3.0;
+  CHECK(CopiesAmong(result.reals) ==
+        std::vector<std::optional<size_t>>{std::nullopt, std::nullopt, 0, 0});
+  Judge(result);
+  CHECK(result.verdict.repeats == 2);
+  CHECK(result.verdict.above == 1);
+  CHECK(result.noise_floor_m == Approx(0.06));
+  CHECK(result.mean_gap_m == Approx(0.065));  // of all that stand in the table
+  result.reals[2].poses.back().z_m = 0.001;
+  result.reals[3].poses.pop_back();
+  Judge(result);
+  CHECK(result.verdict.repeats == 4);
+}
+
 TEST_CASE("What may fail is falsified, or undecided with a failure") {
   CHECK(JudgeCounts(3, 3, {}).MayFail());
   CHECK(JudgeCounts(1, 1, {}).MayFail());

@@ -222,16 +222,37 @@ TEST_CASE("A cell is the mean of every number over the runs that moved and have 
 }
 
 TEST_CASE("Runs of one program are a cell from two on, and others are none") {
-  const ProgramRun one{Ahead(1.0), std::nullopt};
+  const ProgramRun one{Ahead(1.0), std::nullopt, Millimetres()};
   const std::vector<ProgramRun> two{one, one};
-  const OdometryResult same = MeasureRuns(two, true, Millimetres(), {});
+  const OdometryResult same = MeasureRuns(two, true, {});
   REQUIRE(same.runs.size() == 2);
   CHECK(same.runs[0].name == "r");
   REQUIRE(same.cell);
   CHECK(same.cell->runs == 2);
   CHECK_FALSE(same.umbmark);
-  CHECK_FALSE(MeasureRuns(two, false, Millimetres(), {}).cell);
-  CHECK_FALSE(MeasureRuns(std::vector{one}, true, Millimetres(), {}).cell);
+  CHECK_FALSE(MeasureRuns(two, false, {}).cell);
+  CHECK_FALSE(MeasureRuns(std::vector{one}, true, {}).cell);
+}
+
+TEST_CASE("Each run is measured with its own wheels and tag, in whatever order") {
+  const ProgramRun own{Ahead(1.0), std::nullopt, Millimetres()};
+  ProgramRun larger = own, ahead = own, wide = own;
+  larger.wheels.drive.wheel_radius_m *= 1.1;  // as if it had rolled a tenth further
+  ahead.tag_ahead_m = 0.04;
+  wide.wheels.drive.track_m *= 2.0;
+  const auto drift = [](const std::vector<ProgramRun>& runs, size_t of) {
+    return MeasureRuns(runs, false, {}).runs[of].measures.drift_per_m;
+  };
+  const double small = drift({own}, 0), large = drift({larger}, 0);
+  CHECK(large > small + 0.05);
+  CHECK(drift({own, larger}, 0) == small);
+  CHECK(drift({own, larger}, 1) == large);
+  CHECK(drift({larger, own}, 0) == large);
+  CHECK(drift({larger, own}, 1) == small);
+  CHECK(AreOfOneRobot(std::vector{own, own}));
+  CHECK_FALSE(AreOfOneRobot(std::vector{own, larger}));
+  CHECK_FALSE(AreOfOneRobot(std::vector{own, ahead}));
+  CHECK_FALSE(AreOfOneRobot(std::vector{own, wide}));
 }
 
 /// A turn on the spot by this angle in 40 steps, seen to end at (x, y) in the world's frame; the

@@ -173,6 +173,7 @@ sweep::SweepChange Change(double better_low, double better_high) {
                 .pairs = 13,
                 .gap_change_m = -0.004,
                 .gap_change_95_m = {-0.012, 0.0041}};
+  change.is_over_settings = true;
   change.now_hold = 4;
   change.now_fail = 3;
   change.better_share_95 = {better_low, better_high};
@@ -190,13 +191,16 @@ TEST_CASE("A change from one sweep to another is told as it was approved") {
   sweep::SweepChange change = Change(0.0, 1.0);
   change.keys.assign(23, {"run.timeout_s", "1", "2"});
   change.settings.resize(1);
+  change.is_over_settings = false;
   change.now_hold = change.now_fail = change.only_before = 0;
   text += ChangeText(change);
   change.only_after = 0;
   change.settings.assign(63, change.settings.front());
+  change.is_over_settings = true;
   text += ChangeText(change);
   change.keys.clear();
   change.settings.resize(1);
+  change.is_over_settings = false;
   const std::string page = RenderChange(change);
   text += ChangeText(change) + page.substr(page.find("<body"));
   CHECK(DifferenceFromPinned("report/change.txt", text) == "");

@@ -135,6 +135,12 @@ TEST_CASE("A pair that is doubtful is named, with the threshold where its gap is
   REQUIRE(lines.size() == 1);
   CHECK(lines[0] == "warning: SIM " + (folder / "one.csv") + " and REAL " + (folder / "same.csv") +
                         ": SIM and REAL are the same log: name the robot's own");
+  // A copy of a real log.
+  test::WriteText(folder / "again.csv", Log(0.0, 0.0, 0.05));
+  job.reals = {folder / "near.csv", folder / "again.csv"};
+  CHECK(TellOf(job) ==
+        std::vector<std::string>{"warning: " + (folder / "again.csv") + " has the positions of " +
+                                 (folder / "near.csv") + ": they count as one repeat"});
   // Minutes for seconds, and a gap of a metre.
   trajectory::Trajectory slow = trajectory::ReadLog(Log(0.0, 0.0, 1.0), "far").trajectory;
   for (trajectory::StampedPose& pose : slow.poses) pose.t_s *= 60.0;

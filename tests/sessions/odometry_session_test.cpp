@@ -125,19 +125,29 @@ TEST_CASE("Runs of one program are a cell, and runs of two are not, whichever di
   CHECK_FALSE(has_cell(none, a));
 }
 
-TEST_CASE("The tag's place is that of the first run's experiment unless it was said") {
+TEST_CASE("The tag's place is that of each run's own experiment unless it was said") {
   const test::TemporaryFolder folder;
   LoadedRun run = RunOf(folder, "a", 1.0);
+  const LoadedRun other = run;
   run.experiment->simulation.mocap.tag_ahead_m = 0.25;
   // The camera saw a point ahead of the axle: its end is that far beyond the program's.
   OdometryJob job;
-  const double own = MeasureOdometry({run}, job).runs[0].measures.end_error_m;
-  job.run_options.tag_ahead_m = 0.05;
-  const double said = MeasureOdometry({run}, job).runs[0].measures.end_error_m;
-  run.experiment->simulation.mocap.tag_ahead_m = 0.05;
-  job.run_options.tag_ahead_m = 0.0;
-  CHECK(MeasureOdometry({run}, job).runs[0].measures.end_error_m == said);
+  const auto end_error_m = [&job](const std::vector<LoadedRun>& runs, size_t of) {
+    return MeasureOdometry(runs, job).runs[of].measures.end_error_m;
+  };
+  const double own = end_error_m({run}, 0), on_axle = end_error_m({other}, 0);
+  CHECK(own != on_axle);
+  CHECK(end_error_m({other, run}, 1) == own);
+  CHECK(end_error_m({run, other}, 1) == on_axle);
+  job.tag_ahead_m = 0.05;
+  const double said = end_error_m({run}, 0);
+  CHECK(end_error_m({other, run}, 1) == said);
   CHECK(own != said);
+  job.tag_ahead_m = 0.0;  // also where it is said to be on the axle
+  CHECK(end_error_m({run}, 0) == on_axle);
+  job.tag_ahead_m.reset();
+  run.experiment->simulation.mocap.tag_ahead_m = 0.05;
+  CHECK(end_error_m({run}, 0) == said);
 }
 
 TEST_CASE("Wheels are calibrated where that is asked for, over the runs with encoders alone") {
@@ -164,6 +174,11 @@ TEST_CASE("Wheels are calibrated where that is asked for, over the runs with enc
         Approx(wheels.drive.wheel_radius_m).epsilon(1e-3));
   CHECK(result.runs.size() == 2);
   CHECK(per_count_m > 0.0);
+  LoadedRun another = run;
+  another.experiment->hardware.odometry.drive.wheel_radius_m *= 1.1;
+  CHECK_THROWS_WITH(MeasureOdometry({run, another}, job), Contains("name different wheels"));
+  job.calibrate = false;
+  CHECK_NOTHROW(MeasureOdometry({run, another}, job));
 }
 
 TEST_CASE("Odometry is asked for by any of its three flags") {

@@ -85,6 +85,24 @@ TEST_CASE("A robot stands that neither moves by two centimetres nor turns by a f
   CHECK_FALSE(is_standing(0.0, 0.0, 0.21));
 }
 
+TEST_CASE("In less than half a second a robot that stands moves by as much less") {
+  // Runs whose last third is so long, at a speed that makes 2 cm in half a second.
+  const auto is_standing = [](double last_s, double speed_mps) {
+    TrialResult run = RunOf(301, 1, [](double) { return StampedPose{}; });
+    for (size_t i = 0; i < run.trajectory.poses.size(); ++i) {
+      run.trajectory.poses[i].t_s = 3.0 * last_s * static_cast<double>(i) / 300.0;
+      run.trajectory.poses[i].x_m = speed_mps * run.trajectory.poses[i].t_s;
+    }
+    return ProgressOf(run, kTask).IsStanding();
+  };
+  CHECK(is_standing(0.1, 0.04));
+  CHECK_FALSE(is_standing(0.1, 0.05));  // nine tenths of the way are seen
+  CHECK(is_standing(0.45, 0.04));
+  CHECK_FALSE(is_standing(0.45, 0.05));
+  CHECK(is_standing(1.0, 0.02));
+  CHECK_FALSE(is_standing(1.0, 0.025));
+}
+
 TEST_CASE("A run of two poses at one time has no speed") {
   TrialResult run = RunOf(2, 1, [](double) { return StampedPose{}; });
   run.trajectory.poses[1].t_s = 0.0;

@@ -482,6 +482,32 @@ TEST_CASE("A steering that w_min raises is told so") {
   CHECK_THAT(Joined(check), Catch::Contains("control.w_min raises that to 0.02"));
 }
 
+TEST_CASE("A run that ended on its way is told how it ended, and how large its circle is") {
+  Bench bench;
+  bench.navigator.heading = {0.1, 0.0, 0.0};
+  TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kReached);
+  result.trajectory.poses.resize(result.trajectory.poses.size() / 2);
+  const auto cause = [&](Outcome outcome) {
+    result.outcome = outcome;
+    const SteeringCheck check = bench.Check(result);
+    INFO(Joined(check));
+    CHECK(check.proposals.empty());
+    REQUIRE(check.causes.size() == 1);
+    CHECK_THAT(check.causes[0], Catch::Contains(fmt::format("{:.3f} m, ", check.circle_m)));
+    const bool is_within = check.circle_m <= bench.navigator.reach_radius_m;
+    CHECK_THAT(check.causes[0],
+               Catch::EndsWith(is_within ? "lies within control.reach_radius_m"
+                                         : "is larger than control.reach_radius_m"));
+    return check.causes[0];
+  };
+  for (const double reach_m : {bench.navigator.reach_radius_m, 0.2}) {
+    bench.navigator.reach_radius_m = reach_m;
+    CHECK_THAT(cause(Outcome::kLeftArena), Catch::StartsWith("it left the arena (trial.arena), "));
+    CHECK_THAT(cause(Outcome::kLost), Catch::StartsWith("it was lost from sight, "));
+  }
+}
+
 TEST_CASE("A run that circled and arrived with no limit to blame has no cause") {
   Bench bench;
   bench.navigator.heading = {0.1, 0.0, 0.0};

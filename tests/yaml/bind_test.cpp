@@ -108,6 +108,9 @@ TEST_CASE("An unknown key names the nearest one") {
   CHECK(BindError("gap: {quux: [1]}\n") ==
         "f.yaml:1:7: key 'gap.quux' is a list of 1: no such key; "
         "known keys here: samples, skip_start, align");
+  CHECK(BindError("incude: other.yaml\n") ==
+        "f.yaml:1:1: key 'incude' is other.yaml: no such key; did you mean 'include'?");
+  CHECK_THAT(BindError("gap: {incude: 1}\n"), !Catch::Contains("include"));
 }
 
 TEST_CASE("A number out of range names the range") {

@@ -83,7 +83,12 @@ struct GapResult {
   std::optional<Likeness> likeness;  ///< only with repeats of the simulator
 };
 
-/// Fills in the mean, the noise floor and the verdict from the trials.
+/// For each of the real trajectories the first before it with the same positions, if there is one:
+/// a log that was copied is no repeat of its own.
+std::vector<std::optional<size_t>> CopiesAmong(std::span<const trajectory::Trajectory> reals);
+
+/// Fills in the mean from the trials, and the noise floor and the verdict from those of them that
+/// are no copies.
 void Judge(GapResult& result);
 
 }  // namespace rift::gap

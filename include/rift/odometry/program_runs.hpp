@@ -18,7 +18,7 @@ namespace rift::odometry {
 struct RunOptions {
   int slip_bins = 20;
   double moved_share = 0.1;
-  double tag_ahead_m = 0.0;
+  double tag_ahead_m = 0.0;  ///< the camera's point is so far ahead of the axle: its tag
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
@@ -27,8 +27,6 @@ struct RunOptions {
           "parts of a run over which the slip of a wheel is taken");
     field("moved_share", self.moved_share, 0.0, 1.0,
           "a run that got less far from its start than this share of its program did not move");
-    field("tag_ahead_m", self.tag_ahead_m, -1.0, 1.0,
-          "the camera's point is this far ahead of the axle: its tag");
   }
 };
 
@@ -102,15 +100,21 @@ struct OdometryResult {
   double confidence = 0.95;  ///< of its intervals
 };
 
-/// A run, and the path of the program that it drove.
+/// A run, the path of the program that it drove, and the robot that drove it.
 struct ProgramRun {
   RunLog log;
   std::optional<trajectory::Trajectory> program;
+  OdometryOptions wheels{};
+  double tag_ahead_m = 0.0;  ///< takes the place of RunOptions::tag_ahead_m
 };
 
-/// Everything but the calibration. `same_program`: the runs are repeats of one.
+/// The same wheels, with the tag in the same place.
+bool AreOfOneRobot(std::span<const ProgramRun> runs);
+
+/// Everything but the calibration, each run by its own wheels and tag. `same_program`: the runs are
+/// repeats of one. UMBmark is of runs of one robot.
 OdometryResult MeasureRuns(std::span<const ProgramRun> runs, bool same_program,
-                           const OdometryOptions& odometry, const RunOptions& options);
+                           const RunOptions& options);
 
 /// Mean over 101 evenly spaced u of sqrt(sx^2 + sy^2), sx and sy being the standard deviations
 /// (n-1) of x and y over the paths at that u. NaN for fewer than two.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "rift/report/json/fields.hpp"
 #include "rift/statistics/descriptive.hpp"
@@ -52,7 +53,10 @@ std::string MissesText(const vision::TrackRun& run) {
     kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", run.misses[i],
                          yaml::NameOf(static_cast<vision::Miss>(i)));
   }
-  return all == 0 ? "the tag in every one" : fmt::format("{} without the tag ({})", all, kinds);
+  if (all == 0) return "the tag in every one";
+  const int looked = std::accumulate(run.states.begin(), run.states.end(), 0);
+  if (looked <= run.frames) return fmt::format("{} without the tag ({})", all, kinds);
+  return fmt::format("a tag of several missed {} of {} times ({})", all, looked, kinds);
 }
 
 ordered_json FrameJson(const vision::CameraModel& camera) {

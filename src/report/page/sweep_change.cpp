@@ -58,7 +58,7 @@ std::string RenderChange(const sweep::SweepChange& change) {
   page.set("headline", ChangeSentence(change));
   page.set("class", is_better ? "pass" : is_worse ? "fail" : "unknown");
   page.set("gap", GapChangeText(change.all));
-  page.set("over", change.settings.size() > 1 ? "settings" : "trials");
+  page.set("over", change.is_over_settings ? "settings" : "trials");
   page.set("rows", rows);
   page.set("keys", keys);
   page.set("has_keys", !change.keys.empty());

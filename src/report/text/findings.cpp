@@ -11,6 +11,7 @@
 #include "rift/report/figures/setting_grid.hpp"
 #include "rift/report/text/trial_query.hpp"
 #include "rift/sweep/explain/anatomy.hpp"
+#include "rift/sweep/falsify/distinct_rows.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/enum_name.hpp"
 
@@ -76,6 +77,7 @@ void SayMostAndLeast(const sweep::SweepResult& result, Finding* finding) {
       std::minmax_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
         return std::pair(FailureShare(a), a.mean_gap_m) < std::pair(FailureShare(b), b.mean_gap_m);
       });
+  if (FailureShare(*least) == FailureShare(*most)) return;
   const std::string name = result.parameters[furthest].Name();
   Sentence sentence(fmt::format("Most often at {} ", name));
   SayLevel(name, *most, &sentence);
@@ -102,17 +104,19 @@ void SayKinds(const sweep::Explanation& explanation, Finding* finding) {
 Finding Where(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
   Finding finding{"Where does it fail?", {}};
   const std::optional<int> worst = WorstRow(result);
-  if (!worst) {
+  if (!worst && result.all.failures == 0) {
     finding.sentences.push_back(Sentence("Not known: no trial has a gap."));
     return finding;
   }
   if (!result.parameters.empty() && result.all.failures > 0) SayMostAndLeast(result, &finding);
-  const sweep::TrialRow& row = result.rows[*worst];
-  Sentence largest("The largest gap, ");
-  largest.Link(Metres(row.comparison.gap_m), TrialsNumbered({*worst}))
-      .Say(fmt::format(", is {}, trial {}, at u = {:.2f} of the path.",
-                       SettingLabel(result, row.theta), row.trial, row.comparison.gap_u));
-  finding.sentences.push_back(largest);
+  if (worst) {
+    const sweep::TrialRow& row = result.rows[*worst];
+    Sentence largest("The largest gap, ");
+    largest.Link(Metres(row.comparison.gap_m), TrialsNumbered({*worst}))
+        .Say(fmt::format(", is {}, trial {}, at u = {:.2f} of the path.",
+                         SettingLabel(result, row.theta), row.trial, row.comparison.gap_u));
+    finding.sentences.push_back(largest);
+  }
   for (const sweep::SettingResult* setting : WorstSettings(result)) {
     if (!std::isfinite(setting->mean_gap_m)) continue;
     const auto with_gap = std::count_if(setting->rows.begin(), setting->rows.end(),

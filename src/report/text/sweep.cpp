@@ -225,6 +225,12 @@ std::string BriefText(const sweep::SweepResult& result, const sweep::Explanation
   return text;
 }
 
+size_t CountChanges(const experiment::Theta& theta, const experiment::Theta& nominal) {
+  size_t changes = 0;
+  for (size_t i = 0; i < theta.size(); ++i) changes += !SameValue(theta[i], nominal[i]);
+  return changes;
+}
+
 std::string ReplayCommand(const std::string& folder, size_t row) {
   return fmt::format("rift simulate --replay {} {}", files::ShellWord(folder), row + 1);
 }
@@ -234,12 +240,13 @@ std::string ShrunkText(const sweep::SweepResult& result, const sweep::ShrunkRow&
   const std::vector<experiment::Parameter>& parameters = result.parameters;
   const sweep::TrialRow& failing = found.rows[0];
   const sweep::TrialRow& least = found.rows[1];
+  const size_t changes = CountChanges(failing.theta, found.nominal);
   std::string text = fmt::format(
-      "\nshrunk: row {} ({}; {}) still fails with {} of its {} changes from the experiment's own "
-      "values ({}, above {:g} m; {} trials)\n",
+      "\nshrunk: row {} ({}; {}) still fails with {} of its {} {} from the experiment's own values "
+      "({}, above {:g} m; {} trials)\n",
       found.id, sweep::SettingText(parameters, failing.theta), OutcomeText(failing),
-      found.shrunk.changed.size(), parameters.size(), OutcomeText(least), result.gap.threshold_m,
-      found.shrunk.evaluations);
+      found.shrunk.changed.size(), changes, changes == 1 ? "change" : "changes", OutcomeText(least),
+      result.gap.threshold_m, found.shrunk.evaluations);
   if (found.shrunk.changed.empty()) {
     text += "  it fails with none of them: the experiment's own values do\n";
   }

@@ -56,7 +56,7 @@ std::string ChangeText(const sweep::SweepChange& change) {
   std::string text =
       fmt::format("before: {}\nafter:  {}\n\n{}\nmean gap: {}, 95 % over {}\n\n", change.before,
                   change.after, ChangeSentence(change), GapChangeText(change.all),
-                  change.settings.size() > 1 ? "settings" : "trials");
+                  change.is_over_settings ? "settings" : "trials");
   if (change.keys.empty()) text += "no key differs: the same experiment twice\n";
   for (size_t i = 0; i < std::min(kMostKeys, change.keys.size()); ++i) {
     text += fmt::format("{}: {} -> {}\n", change.keys[i].key, Shortened(change.keys[i].before, 50),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -62,6 +63,15 @@ void SayIfSwapped(const GapJob& job, const gap::GapResult& result, const Say& sa
       by_name     ? "names"
       : by_format ? "formats"
                   : "noise"));
+}
+
+void SayCopies(const gap::GapResult& result, const Say& say) {
+  const std::vector<std::optional<size_t>> copy_of = gap::CopiesAmong(result.reals);
+  for (size_t i = 0; i < copy_of.size(); ++i) {
+    if (!copy_of[i]) continue;
+    say(fmt::format("warning: {} has the positions of {}: they count as one repeat",
+                    result.trials[i].path, result.trials[*copy_of[i]].path));
+  }
 }
 
 void SayDoubts(const gap::GapResult& result, const Say& say) {
@@ -165,6 +175,7 @@ gap::GapResult MeasureGap(const GapJob& job, const Say& say) {
   }
   Judge(result);
   SayIfSwapped(job, result, say);
+  SayCopies(result, say);
   SayDoubts(result, say);
   if (!job.sim_repeats.empty()) result.likeness = MeasureRepeats(job, result, say);
   return result;

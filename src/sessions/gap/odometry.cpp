@@ -77,23 +77,28 @@ LoadedRun LoadRun(const std::string& name, const std::string& program) {
 
 odometry::OdometryResult MeasureOdometry(const std::vector<LoadedRun>& runs,
                                          const OdometryJob& job) {
-  odometry::RunOptions options = job.run_options;
-  odometry::OdometryOptions wheels;
-  if (const auto& experiment = runs.front().experiment) {
-    wheels = experiment->hardware.odometry;
-    if (options.tag_ahead_m == 0.0) options.tag_ahead_m = experiment->simulation.mocap.tag_ahead_m;
-  }
   std::vector<odometry::ProgramRun> driven;
   std::vector<odometry::RunLog> logs;
   for (const LoadedRun& run : runs) {
     logs.push_back(run.run.log);
     driven.push_back(run.run);
+    if (run.experiment) {
+      driven.back().wheels = run.experiment->hardware.odometry;
+      driven.back().tag_ahead_m = run.experiment->simulation.mocap.tag_ahead_m;
+    }
+    driven.back().tag_ahead_m = job.tag_ahead_m.value_or(driven.back().tag_ahead_m);
+  }
+  if (job.calibrate && !odometry::AreOfOneRobot(driven)) {
+    throw std::invalid_argument(
+        "--calibrate-odometry: the experiments of these runs name different wheels, track or tag "
+        "(hardware.odometry, simulation.mocap.tag_ahead_m), and one robot is calibrated: name runs "
+        "of one, or its experiment with --program");
   }
   odometry::OdometryResult result =
-      odometry::MeasureRuns(driven, AreRepeats(runs), wheels, options);
+      odometry::MeasureRuns(driven, AreRepeats(runs), job.run_options);
   if (!job.calibrate) return result;
   std::erase_if(logs, [](const odometry::RunLog& log) { return log.encoders.empty(); });
-  result.calibration = odometry::CalibrateOdometry(logs, wheels, job.calibration);
+  result.calibration = odometry::CalibrateOdometry(logs, driven.front().wheels, job.calibration);
   result.confidence = job.calibration.confidence;
   return result;
 }

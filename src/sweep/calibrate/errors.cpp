@@ -43,6 +43,37 @@ double Huber(double error, double outlier) {
   return std::copysign(std::sqrt(outlier * (2.0 * size - outlier)), error);
 }
 
+double SlopeOfHuber(double error, double outlier) {
+  const double size = std::abs(error);
+  return size <= outlier ? 1.0 : std::sqrt(outlier / (2.0 * size - outlier));
+}
+
+/// What each error is divided by: its scale, its share of the motions of a row, its weight.
+Eigen::VectorXd UnitsOf(const LogErrors& errors, const Eigen::MatrixXd& scale) {
+  const Eigen::Index motions = errors.motions.size();
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(motions + errors.traits.size());
+  for (Eigen::Index i = 0; i < motions; ++i) {
+    units[i] = scale(errors.frames[static_cast<size_t>(i / 3)] - 1, i % 3);
+  }
+  return units;
+}
+
+Eigen::VectorXd WeightsOf(const LogErrors& errors, const CalibrationOptions& options) {
+  const Eigen::Index motions = errors.motions.size();
+  Eigen::VectorXd weights(motions + errors.traits.size());
+  // Motions over 1 to n frames from one row share their frames: together they count once.
+  weights.head(motions).setConstant(1.0 /
+                                    std::sqrt(static_cast<double>(options.horizon.most_frames)));
+  weights.tail(errors.traits.size()).setConstant(std::sqrt(options.likeness_weight));
+  return weights;
+}
+
+Eigen::VectorXd AllOf(const LogErrors& errors) {
+  Eigen::VectorXd all(errors.motions.size() + errors.traits.size());
+  all << errors.motions, errors.traits;
+  return all;
+}
+
 }  // namespace
 
 Traits MeanTraits(const std::vector<Traits>& of_runs) {
@@ -121,19 +152,20 @@ Eigen::MatrixXd ScaleOf(const std::vector<LogErrors>& errors, const CalibrationO
 
 Eigen::VectorXd Weighted(const LogErrors& errors, const Eigen::MatrixXd& scale,
                          const CalibrationOptions& options) {
-  const Eigen::Index motions = errors.motions.size();
-  Eigen::VectorXd weighted(motions + errors.traits.size());
-  // Motions over 1 to n frames from one row share their frames: together they count once.
-  const double share = 1.0 / std::sqrt(static_cast<double>(options.horizon.most_frames));
-  for (Eigen::Index i = 0; i < motions; ++i) {
-    const int frames = errors.frames[static_cast<size_t>(i / 3)];
-    weighted[i] = share * Huber(errors.motions[i] / scale(frames - 1, i % 3), options.outlier_sd);
-  }
-  for (Eigen::Index i = 0; i < errors.traits.size(); ++i) {
-    weighted[motions + i] =
-        std::sqrt(options.likeness_weight) * Huber(errors.traits[i], options.outlier_sd);
-  }
-  return weighted;
+  const Eigen::VectorXd scaled = AllOf(errors).cwiseQuotient(UnitsOf(errors, scale));
+  return WeightsOf(errors, options).cwiseProduct(scaled.unaryExpr([&](double error) {
+    return Huber(error, options.outlier_sd);
+  }));
+}
+
+Eigen::VectorXd WeightedSlope(const LogErrors& errors, const LogErrors& slope,
+                              const Eigen::MatrixXd& scale, const CalibrationOptions& options) {
+  const Eigen::VectorXd units = UnitsOf(errors, scale);
+  const Eigen::VectorXd of_huber = AllOf(errors).cwiseQuotient(units).unaryExpr(
+      [&](double error) { return SlopeOfHuber(error, options.outlier_sd); });
+  return WeightsOf(errors, options)
+      .cwiseProduct(of_huber)
+      .cwiseProduct(AllOf(slope).cwiseQuotient(units));
 }
 
 }  // namespace rift::sweep

@@ -48,4 +48,8 @@ Eigen::MatrixXd ScaleOf(const std::vector<LogErrors>& errors, const CalibrationO
 Eigen::VectorXd Weighted(const LogErrors& errors, const Eigen::MatrixXd& scale,
                          const CalibrationOptions& options);
 
+/// The slope of Weighted at `errors`, where these change with `slope`.
+Eigen::VectorXd WeightedSlope(const LogErrors& errors, const LogErrors& slope,
+                              const Eigen::MatrixXd& scale, const CalibrationOptions& options);
+
 }  // namespace rift::sweep

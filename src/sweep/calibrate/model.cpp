@@ -134,17 +134,30 @@ Blocks ErrorModel::WeightedAt(const Eigen::VectorXd& shares, const Eigen::Matrix
 }
 
 /// Of every error of each log, by central differences, one-sided at a bound.
-Blocks ErrorModel::Slope(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale,
-                         Eigen::Index parameter, double step, const CalibrationOptions& options) {
+Blocks ErrorModel::Slope(const Eigen::VectorXd& shares, const std::vector<LogErrors>& raw,
+                         const Eigen::MatrixXd& scale, Eigen::Index parameter, double step,
+                         const CalibrationOptions& options) {
   Eigen::VectorXd below = shares, above = shares;
   below[parameter] = std::max(0.0, shares[parameter] - step);
   above[parameter] = std::min(1.0, shares[parameter] + step);
-  Blocks slopes = WeightedAt(above, scale, options);
-  const Blocks at_below = WeightedAt(below, scale, options);
+  std::vector<LogErrors> slopes = Errors(above, options);
+  const std::vector<LogErrors> at_below = Errors(below, options);
+  const double way = above[parameter] - below[parameter];
+  Blocks weighted;
   for (size_t i = 0; i < slopes.size(); ++i) {
-    slopes[i] = (slopes[i] - at_below[i]) / (above[parameter] - below[parameter]);
+    if (!simulator_.HasWholeRunsOnly()) {
+      // A motion that leaps over the step is an outlier, and no slope.
+      weighted.push_back(
+          (Weighted(slopes[i], scale, options) - Weighted(at_below[i], scale, options)) / way);
+      continue;
+    }
+    // A step may change whole runs by many times their scatter: cut at outliers the ends would say
+    // that they hardly change.
+    slopes[i].motions = (slopes[i].motions - at_below[i].motions) / way;
+    slopes[i].traits = (slopes[i].traits - at_below[i].traits) / way;
+    weighted.push_back(WeightedSlope(raw[i], slopes[i], scale, options));
   }
-  return slopes;
+  return weighted;
 }
 
 Linearised ErrorModel::LinearisedAt(const Eigen::VectorXd& shares,
@@ -160,10 +173,10 @@ Linearised ErrorModel::LinearisedAt(const Eigen::VectorXd& shares,
     slopes.push_back(Eigen::MatrixXd::Zero(block.size(), shares.size()));
   }
   for (Eigen::Index k = 0; k < shares.size(); ++k) {
-    const Blocks near = Slope(shares, scale, k, step, motions_only);
+    const Blocks near = Slope(shares, raw, scale, k, step, motions_only);
     for (size_t i = 0; i < slopes.size(); ++i) slopes[i].col(k) = near[i];
     if (!has_wide_slopes) continue;
-    const Blocks wide = Slope(shares, scale, k, std::max(step, kStepOfRuns), runs_mostly);
+    const Blocks wide = Slope(shares, raw, scale, k, std::max(step, kStepOfRuns), runs_mostly);
     for (size_t i = 0; i < slopes.size(); ++i) {
       slopes[i].col(k).tail(kTraits + 1) = wide[i].tail(kTraits + 1);
     }

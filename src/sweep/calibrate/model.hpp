@@ -87,8 +87,9 @@ class ErrorModel {
   Blocks WeightedBlocks(const std::vector<LogErrors>& raw, const Eigen::MatrixXd& scale) const;
   Blocks WeightedAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale,
                     const CalibrationOptions& options);
-  Blocks Slope(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale, Eigen::Index parameter,
-               double step, const CalibrationOptions& options);
+  Blocks Slope(const Eigen::VectorXd& shares, const std::vector<LogErrors>& raw,
+               const Eigen::MatrixXd& scale, Eigen::Index parameter, double step,
+               const CalibrationOptions& options);
 
   const std::vector<experiment::FreeParameter>& parameters_;
   std::vector<CalibrationLog> logs_;

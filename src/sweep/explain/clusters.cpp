@@ -195,9 +195,7 @@ std::vector<FailureCluster> ByStatus(const SweepResult& result) {
   std::map<TrialStatus, FailureCluster> by_status;
   for (size_t i = 0; i < result.rows.size(); ++i) {
     const TrialStatus status = result.rows[i].status;
-    const bool is_behaviour = status != TrialStatus::kOk && status != TrialStatus::kMissing &&
-                              status != TrialStatus::kUnreadable;
-    if (!is_behaviour) continue;
+    if (status == TrialStatus::kOk || !result.rows[i].falsified) continue;
     by_status[status].status = status;
     by_status[status].rows.push_back(static_cast<int>(i));
   }

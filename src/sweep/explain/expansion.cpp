@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "rift/sweep/falsify/distinct_rows.hpp"
+
 namespace rift::sweep {
 namespace {
 

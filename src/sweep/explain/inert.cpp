@@ -41,13 +41,16 @@ std::pair<std::string, experiment::Theta> RestOf(const TrialRow& row, int parame
   return {row.trial, std::move(others)};
 }
 
+/// A path and how it ended.
+using Driven = std::pair<std::uint64_t, TrialStatus>;
+
 void ComparePaths(const SweepResult& result, int parameter, Inertness& inert) {
-  std::map<std::pair<std::string, experiment::Theta>,
-           std::map<experiment::ParameterValue, std::uint64_t>>
+  std::map<std::pair<std::string, experiment::Theta>, std::map<experiment::ParameterValue, Driven>>
       paths;
   for (const TrialRow& row : result.rows) {
     if (row.evidence.fingerprint == 0) continue;
-    paths[RestOf(row, parameter)].emplace(row.theta[parameter], row.evidence.fingerprint);
+    paths[RestOf(row, parameter)].emplace(row.theta[parameter],
+                                          Driven{row.evidence.fingerprint, row.status});
   }
   const experiment::Theta& levels = result.parameters[parameter].levels;
   for (size_t i = 0; i + 1 < levels.size(); ++i) {

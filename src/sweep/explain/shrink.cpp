@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "rift/sweep/explain/worst_trial.hpp"
@@ -16,9 +17,21 @@
 namespace rift::sweep {
 namespace {
 
-/// Six digits, since a person reads it; what is tried is what is written.
-experiment::ParameterValue RoundedValue(double number) {
-  return experiment::NumberValue(std::stod(fmt::format("{:.6g}", number)));
+/// Six, since a person reads them, and those that two different numbers share.
+int DigitsFor(double a, double b) {
+  const double way = std::abs(b - a), larger = std::max({std::abs(a), std::abs(b), way});
+  return std::min(17, 6 + static_cast<int>(std::log10(larger / way)));
+}
+
+/// The middle in so many digits, whole for a parameter that counts: what is tried is what is
+/// written. Nothing where no such number lies between the two.
+std::optional<experiment::ParameterValue> MiddleOf(double a, double b, int digits,
+                                                   bool is_integer) {
+  const double middle = 0.5 * (a + b);
+  const double rounded =
+      is_integer ? std::round(middle) : std::stod(fmt::format("{:.{}g}", middle, digits));
+  if (!(std::min(a, b) < rounded && rounded < std::max(a, b))) return std::nullopt;
+  return experiment::NumberValue(rounded);
 }
 
 class Shrinker {
@@ -124,11 +137,12 @@ class Shrinker {
   void Halve(int i) {
     double holds = *nominal_[i].number, fails = *theta_[i].number;
     const double enough = options_.tolerance * std::abs(fails - holds);
+    const int digits = DigitsFor(holds, fails);
     while (std::abs(fails - holds) > enough && HasBudget()) {
+      const auto middle = MiddleOf(holds, fails, digits, parameters_[i].is_integer);
+      if (!middle) return;
       experiment::Theta nearer = theta_;
-      nearer[i] = RoundedValue(0.5 * (holds + fails));
-      const bool is_at_end = *nearer[i].number == holds || *nearer[i].number == fails;
-      if (is_at_end) return;
+      nearer[i] = *middle;
       if (Fails(nearer)) {
         theta_ = nearer;
         fails = *nearer[i].number;

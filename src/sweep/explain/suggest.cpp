@@ -9,6 +9,7 @@
 
 #include "rift/experiment/settable.hpp"
 #include "rift/statistics/inference.hpp"
+#include "rift/sweep/falsify/distinct_rows.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {

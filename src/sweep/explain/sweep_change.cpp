@@ -6,17 +6,21 @@
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
+#include <utility>
 
 #include "rift/statistics/descriptive.hpp"
 
 namespace rift::sweep {
 namespace {
 
-using Trials = std::map<std::string, const TabledTrial*>;  ///< by name
+/// Its name, and which of the trials with it: a search repeats one trial with other seeds.
+using TrialName = std::pair<std::string, int>;
+using Trials = std::map<TrialName, const TabledTrial*>;
 
 struct Setting {
   std::string text;
   Trials trials;
+  std::map<std::string, int> named;  ///< trials of each name
 };
 
 std::map<std::string, Setting> BySetting(const TabledSweep& sweep) {
@@ -24,7 +28,7 @@ std::map<std::string, Setting> BySetting(const TabledSweep& sweep) {
   for (const TabledTrial& trial : sweep.trials) {
     Setting& setting = settings[trial.key];
     setting.text = trial.setting;
-    setting.trials[trial.trial] = &trial;
+    setting.trials[{trial.trial, setting.named[trial.trial]++}] = &trial;
   }
   return settings;
 }
@@ -122,7 +126,8 @@ SweepChange CompareSweeps(const TabledSweep& before, const TabledSweep& after,
                 .before = all_before.Result(""),
                 .after = all_after.Result(""),
                 .pairs = static_cast<int>(by_trial_m.size())};
-  SetChange(by_setting_m.size() > 1 ? by_setting_m : by_trial_m, &change.all);
+  change.is_over_settings = by_setting_m.size() > 1;
+  SetChange(change.is_over_settings ? by_setting_m : by_trial_m, &change.all);
   change.better_share_95 =
       statistics::ClopperPearson(change.now_hold, change.now_hold + change.now_fail, 0.95);
   std::stable_sort(change.settings.begin(), change.settings.end(),

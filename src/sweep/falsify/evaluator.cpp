@@ -4,19 +4,16 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
-#include <set>
 #include <stdexcept>
 
+#include "experiment_sides.hpp"
 #include "program_side.hpp"
-#include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 #include "rift/yaml/bind.hpp"
-#include "rift/yaml/enum_name.hpp"
 #include "simulated_recording.hpp"
 
 namespace rift::sweep {
@@ -25,12 +22,13 @@ namespace {
 using experiment::CandidateKind;
 using experiment::ReferenceKind;
 
-/// What is wrong with the paths of an experiment is said with its file.
+/// What is wrong with an experiment is said with its file, where it does not name its line.
 template <class Call>
 auto InFile(const std::string& experiment_file, Call&& call) {
   try {
     return call();
   } catch (const std::invalid_argument& error) {
+    if (std::string_view(error.what()).starts_with(experiment_file + ':')) throw;
     throw std::invalid_argument(fmt::format("{}: {}", experiment_file, error.what()));
   }
 }
@@ -46,191 +44,57 @@ Recording WithLimits(Recording log, const experiment::Experiment& experiment,
 
 /// How the logs of one side are read; `key` is its block in the experiment.
 template <class Side>
-trajectory::ReadOptions ReadOptionsOf(const Side& side, const std::string& key,
-                                      const gap::GapOptions& gap) {
-  return {side.format, side.columns, side.units, fmt::format("--set {}.columns=", key),
-          gap.IsInSpace()};
+LogOptions LogOptionsOf(const Side& side, const std::string& key, double tag_offset_m,
+                        const gap::GapOptions& gap) {
+  return {{side.format, side.columns, side.units, fmt::format("--set {}.columns=", key),
+           gap.IsInSpace()},
+          tag_offset_m,
+          key + ".format",
+          side.grid_fps};
 }
 
-bool Has(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+LogOptions CandidateLogs(const experiment::Experiment& experiment) {
+  return LogOptionsOf(experiment.candidate, "candidate", 0.0, experiment.gap);
 }
 
-std::string InBraces(const std::set<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "{" : ", {") + name + "}";
-  return text.empty() ? "nothing" : text;
-}
-
-/// One log under two settings would be counted twice.
-void RefuseSharedLogs(const experiment::Experiment& experiment) {
-  const std::vector<experiment::Parameter>& parameters = experiment.space.parameters;
-  const auto is_continuous = [](const experiment::Parameter& parameter) {
-    return parameter.IsContinuous();
-  };
-  if (std::any_of(parameters.begin(), parameters.end(), is_continuous)) return;
-  std::map<std::pair<std::string, std::string>, experiment::Theta> seen;
-  for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
-    const std::string& trial = experiment.reference.trials.names.front();
-    const auto fill = [&](const std::string& path) {
-      return experiment::FillTemplate(path, parameters, theta, trial);
-    };
-    const auto [first, is_new] = seen.try_emplace(
-        {fill(experiment.candidate.path.text), fill(experiment.reference.path.text)}, theta);
-    if (is_new) continue;
-    throw std::invalid_argument(fmt::format(
-        "two settings name the same logs, {} and {}: give the path templates more digits ({})",
-        SettingText(parameters, first->second), SettingText(parameters, theta),
-        first->first.second));
-  }
-}
-
-/// A gap in space needs heights on both sides, and has nothing to do with headings in the plane.
-void CheckDimension(const experiment::Experiment& experiment) {
-  if (!experiment.gap.IsInSpace()) return;
-  const auto refuse = [](const std::string& why) {
-    throw std::invalid_argument("gap.dimension is xyz, " + why);
-  };
-  if (experiment.candidate.kind == CandidateKind::kSimulation) {
-    refuse(
-        "and candidate.kind is simulation, a robot that drives on a floor: use logs or a program");
-  }
-  if (experiment.reference.kind == ReferenceKind::kPath) {
-    refuse("and reference.kind is path, whose waypoints have no height: use logs or a program");
-  }
-  if (experiment.objective == experiment::Objective::kOdometry) {
-    refuse("and objective is odometry, which is of wheels on a floor: leave one of them out");
-  }
-  if (experiment.reference.tag_offset_m != 0.0) {
-    refuse(
-        fmt::format("and reference.tag_offset_m is {:g}, which moves a path along its yaw in the "
-                    "plane: log the point that is to be compared, and leave it out",
-                    experiment.reference.tag_offset_m));
-  }
-}
-
-/// What a template names is said now, before a folder is made.
-void CheckTemplate(const experiment::Experiment& experiment, const experiment::PathTemplate& path,
-                   const std::string& key) {
-  experiment::Theta first;
-  for (const experiment::Parameter& parameter : experiment.space.parameters) {
-    first.push_back(parameter.levels.empty() ? experiment::NumberValue(parameter.min)
-                                             : parameter.levels.front());
-  }
-  try {
-    experiment::FillTemplate(path.text, experiment.space.parameters, first,
-                             experiment.reference.trials.names.front());
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(fmt::format("{}: {}", key, error.what()));
-  }
+LogOptions ReferenceLogs(const experiment::Experiment& experiment) {
+  return LogOptionsOf(experiment.reference, "reference", experiment.reference.tag_offset_m,
+                      experiment.gap);
 }
 
 }  // namespace
-
-void CheckPaths(const experiment::Experiment& experiment) {
-  std::vector<std::string> names = experiment::TemplateNames(experiment.candidate.path.text);
-  const std::vector<std::string> more = experiment::TemplateNames(experiment.reference.path.text);
-  names.insert(names.end(), more.begin(), more.end());
-  for (const experiment::Parameter& parameter : experiment.space.parameters) {
-    if (Has(names, parameter.Name())) continue;
-    throw std::invalid_argument(fmt::format(
-        "{}space.{} is in neither candidate.path nor reference.path as {{{}}}: they name {}",
-        parameter.origin.empty() ? "" : parameter.origin + ": ", parameter.key, parameter.Name(),
-        InBraces({names.begin(), names.end()})));
-  }
-  if (experiment.reference.trials.names.size() > 1 && !Has(names, "trial")) {
-    throw std::invalid_argument(
-        "reference.trials asks for repeats, and no path names {trial} to tell them apart");
-  }
-  RefuseSharedLogs(experiment);
-}
 
 Evaluator::Evaluator(const experiment::Experiment& experiment, std::string experiment_file,
                      Inputs inputs)
     : experiment_(experiment),
       experiment_file_(std::move(experiment_file)),
       inputs_(std::move(inputs)),
-      candidate_logs_(inputs_, {ReadOptionsOf(experiment.candidate, "candidate", experiment.gap),
-                                0.0, "candidate.format", experiment.candidate.grid_fps}),
-      reference_logs_(inputs_, {ReadOptionsOf(experiment.reference, "reference", experiment.gap),
-                                experiment.reference.tag_offset_m, "reference.format",
-                                experiment.reference.grid_fps}) {
+      candidate_logs_(inputs_, CandidateLogs(experiment)),
+      reference_logs_(inputs_, ReferenceLogs(experiment)) {
   InFile(experiment_file_, [&] {
-    trajectory::CheckColumns(ReadOptionsOf(experiment.candidate, "candidate", experiment.gap));
-    trajectory::CheckColumns(ReadOptionsOf(experiment.reference, "reference", experiment.gap));
+    trajectory::CheckColumns(CandidateLogs(experiment).read);
+    trajectory::CheckColumns(ReferenceLogs(experiment).read);
+    CheckSides(experiment);
+    candidate_program_ = CandidateProgram(experiment, CandidateLogs(experiment), inputs_);
+    reference_program_ = ReferenceProgram(experiment, ReferenceLogs(experiment), inputs_);
   });
-  const bool candidate_is_logs = experiment.candidate.kind == CandidateKind::kLogs;
-  const bool reference_is_logs = experiment.reference.kind == ReferenceKind::kLogs;
-  if (candidate_is_logs) RequirePath(experiment.candidate.path, "candidate.path");
-  if (reference_is_logs) RequirePath(experiment.reference.path, "reference.path");
-  InFile(experiment_file_, [&] {
-    if (candidate_is_logs) CheckTemplate(experiment, experiment.candidate.path, "candidate.path");
-    if (reference_is_logs) CheckTemplate(experiment, experiment.reference.path, "reference.path");
-  });
-  if (candidate_is_logs && reference_is_logs) {
-    InFile(experiment_file_, [&] { CheckPaths(experiment); });
-  }
-  InFile(experiment_file_, [&] {
-    candidate_program_ =
-        CandidateProgram(experiment,
-                         {ReadOptionsOf(experiment.candidate, "candidate", experiment.gap), 0.0,
-                          "candidate.format", experiment.candidate.grid_fps},
-                         inputs_);
-    reference_program_ = ReferenceProgram(
-        experiment,
-        {ReadOptionsOf(experiment.reference, "reference", experiment.gap),
-         experiment.reference.tag_offset_m, "reference.format", experiment.reference.grid_fps},
-        inputs_);
-  });
-  // What is wrong with the task is said now, not in trial 1.
-  const bool is_simulated =
-      experiment.candidate.kind == CandidateKind::kSimulation ||
-      (candidate_is_logs && experiment.reference.kind == ReferenceKind::kNominal);
-  if (is_simulated || (experiment.reference.kind == ReferenceKind::kPath && candidate_is_logs)) {
-    TrialOf(experiment, {}, experiment.seed);
-  } else if (experiment.reference.kind == ReferenceKind::kPath) {
-    InFile(experiment_file_, [&] { experiment::TaskOf(experiment); });
-  }
+  CheckTask();
   const auto& surfaces = experiment.simulation.terrain.surfaces;
   may_have_pictures_ = std::any_of(surfaces.begin(), surfaces.end(),
                                    [](const auto& named) { return !named.second.image.empty(); });
-  CheckKinds();
 }
 
-/// Which of objective, start, candidate and reference go together.
-void Evaluator::CheckKinds() const {
-  const experiment::Experiment& experiment = experiment_;
-  InFile(experiment_file_, [&] { CheckDimension(experiment); });
-  const bool reference_is_logs = experiment.reference.kind == ReferenceKind::kLogs;
-  if (candidate_program_ && experiment.objective == experiment::Objective::kOdometry) {
-    throw std::invalid_argument(fmt::format(
-        "{}: objective is odometry, and a program (candidate.kind) has no encoders for rift",
-        experiment_file_));
+/// What is wrong with the task is said now, not in trial 1.
+void Evaluator::CheckTask() const {
+  const bool candidate_is_logs = experiment_.candidate.kind == CandidateKind::kLogs;
+  const bool is_simulated =
+      experiment_.candidate.kind == CandidateKind::kSimulation ||
+      (candidate_is_logs && experiment_.reference.kind == ReferenceKind::kNominal);
+  if (is_simulated || (experiment_.reference.kind == ReferenceKind::kPath && candidate_is_logs)) {
+    TrialOf(experiment_, {}, experiment_.seed);
+  } else if (experiment_.reference.kind == ReferenceKind::kPath) {
+    InFile(experiment_file_, [&] { experiment::TaskOf(experiment_); });
   }
-  if (candidate_program_ && experiment.start == experiment::Start::kReference) {
-    throw std::invalid_argument(
-        fmt::format("{}: start is reference, and candidate.kind is program: rift does not place "
-                    "somebody else's robot; leave start out",
-                    experiment_file_));
-  }
-  if (experiment.objective == experiment::Objective::kOdometry && reference_is_logs) {
-    throw std::invalid_argument(fmt::format(
-        "{}: objective is odometry, which holds each run of the candidate against its own camera, "
-        "and reference.kind is logs: name logs as candidate.path",
-        experiment_file_));
-  }
-  if (experiment.start == experiment::Start::kReference && !reference_is_logs) {
-    throw std::invalid_argument(fmt::format(
-        "{}: start is reference, and reference.kind is {}: only logs tell where the robot stood",
-        experiment_file_, yaml::NameOf(experiment.reference.kind)));
-  }
-}
-
-void Evaluator::RequirePath(const experiment::PathTemplate& path, const std::string& key) const {
-  if (!path.text.empty()) return;
-  throw std::invalid_argument(
-      fmt::format("{}: {} is missing: name the logs, such as {}: logs/{{surface}}_{{trial}}.csv",
-                  experiment_file_, key, key));
 }
 
 std::string Evaluator::Filled(const experiment::PathTemplate& path,
@@ -401,8 +265,10 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
         "{}: objective is odometry, and suggested drives are judged by the gap of their poses",
         experiment_file_));
   }
-  RecordedLogs logs(inputs_,
-                    {{.format = trajectory::Format::kRift}, 0.0, "the format of rift drive"});
+  LogOptions of_drive;
+  of_drive.read.format = trajectory::Format::kRift;
+  of_drive.format_key = "the format of rift drive";
+  RecordedLogs logs(inputs_, of_drive);
   Recording driven = logs.At(path);
   if (driven.status == TrialStatus::kOk && outcome != trial::Outcome::kReached) {
     driven.status = StatusOf(outcome);

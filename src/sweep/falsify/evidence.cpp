@@ -42,6 +42,7 @@ void TrialEvidence::ForgetPath() {
 }
 
 std::uint64_t Fingerprint(const trajectory::Trajectory& path) {
+  if (path.poses.empty()) return 0;
   std::vector<double> values;
   for (const trajectory::StampedPose& pose : path.poses) {
     for (const double value :

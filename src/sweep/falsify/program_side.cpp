@@ -49,6 +49,18 @@ ordered_json TrialJson(const experiment::Experiment& experiment,
           {"out", (fs::path(folder) / kLogName).string()}};
 }
 
+/// What arguments may name of a trial beside its parameters; seed and trial are none anywhere.
+void RefuseNamesOfOurs(const std::vector<experiment::Parameter>& parameters) {
+  for (const experiment::Parameter& parameter : parameters) {
+    for (const std::string_view ours : {"out", "folder", "theta"}) {
+      if (parameter.Name() != ours) continue;
+      throw std::invalid_argument(fmt::format(
+          "{}{}: {{{}}} is what rift tells a program: name the parameter otherwise",
+          parameter.origin.empty() ? "" : parameter.origin + ": ", parameter.key, ours));
+    }
+  }
+}
+
 /// An argument with the values of the trial in the place of their names in braces.
 std::string FilledIn(const std::string& word, const experiment::Experiment& experiment,
                      std::vector<experiment::Parameter> parameters, const TrialRequest& request,
@@ -98,6 +110,7 @@ ProgramSide::ProgramSide(const experiment::Experiment& experiment, ProgramOption
                     "\"{{out}}\"]",
                     options_.key, options_.key));
   }
+  RefuseNamesOfOurs(parameters_);
   const TrialRequest nominal = NominalRequest(experiment);
   for (const std::string& word : options_.run.words) {
     try {

@@ -11,6 +11,7 @@
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/inference.hpp"
+#include "rift/sweep/falsify/distinct_rows.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/verdict.hpp"
 
@@ -37,7 +38,12 @@ FactorSplit SplitFactors(const std::vector<experiment::Parameter>& parameters) {
 std::string ShortText(const experiment::Parameter& parameter,
                       const experiment::ParameterValue& value) {
   const bool is_drawn = parameter.IsContinuous() && value.number;
-  return is_drawn ? fmt::format("{:.4g}", *value.number) : value.text;
+  if (!is_drawn) return value.text;
+  // Four digits of the range: of values that agree in their first ones these tell nothing.
+  const double way = parameter.max - parameter.min;
+  const double larger = std::max({std::abs(parameter.min), std::abs(parameter.max), way});
+  const int shared = way > 0.0 ? static_cast<int>(std::log10(larger / way)) : 0;
+  return fmt::format("{:.{}g}", *value.number, std::min(17, 4 + shared));
 }
 
 std::string SettingText(const std::vector<experiment::Parameter>& parameters,
@@ -66,29 +72,6 @@ double Loss_m(const TrialRow& row, double threshold_m) {
   if (row.IsOk()) return row.CountedGap_m();
   if (!row.falsified) return gap::kNotComputed;
   return threshold_m + (std::isfinite(row.left_m) ? row.left_m : threshold_m);
-}
-
-bool AreIdentical(const TrialRow& a, const TrialRow& b) {
-  const bool is_same_path =
-      a.evidence.fingerprint != 0 && a.evidence.fingerprint == b.evidence.fingerprint;
-  if (!is_same_path || a.status != b.status) return false;
-  return a.IsOk() ? a.comparison.gap_m == b.comparison.gap_m : a.falsified == b.falsified;
-}
-
-std::vector<int> DistinctRows(std::span<const TrialRow> rows, const std::vector<int>& indices) {
-  std::vector<int> distinct;
-  std::multimap<std::uint64_t, int> by_path;
-  for (const int index : indices) {
-    const std::uint64_t path = rows[index].evidence.fingerprint;
-    const auto [begin, end] = by_path.equal_range(path);
-    const bool is_known = std::any_of(begin, end, [&](const auto& known) {
-      return AreIdentical(rows[known.second], rows[index]);
-    });
-    if (is_known) continue;
-    distinct.push_back(index);
-    if (path != 0) by_path.emplace(path, index);
-  }
-  return distinct;
 }
 
 int SweepResult::Count(gap::Verdict verdict) const {
@@ -226,16 +209,6 @@ void Summarise(SweepResult& result) {
     if (parameter.levels.size() > 1) result.anova.push_back(AnovaOf(result, static_cast<int>(i)));
   }
   result.doubts = DoubtsOf(result);
-}
-
-std::vector<int> RowsThatCount(const SweepResult& result) {
-  std::vector<int> rows;
-  for (size_t i = 0; i < result.rows.size(); ++i) {
-    if (std::isfinite(Loss_m(result.rows[i], result.gap.threshold_m))) {
-      rows.push_back(static_cast<int>(i));
-    }
-  }
-  return DistinctRows(result.rows, rows);
 }
 
 std::optional<int> WorstRow(const SweepResult& result) {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "rift/statistics/descriptive.hpp"
+#include "rift/sweep/falsify/distinct_rows.hpp"
 
 namespace rift::sweep {
 namespace {

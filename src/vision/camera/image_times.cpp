@@ -65,6 +65,10 @@ double UsualStep(const std::vector<double>& numbers) {
   return are_multiples ? least : statistics::Median(steps);
 }
 
+std::string FileName(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
 struct TimeLine {
   std::string name;  ///< none: the next picture's
   double t_s = 0.0;
@@ -77,7 +81,7 @@ TimeLine ParseLine(std::string line, const std::string& where) {
   for (std::string each; words >> each;) word.push_back(each);
   char* end = nullptr;
   const double t_s = word.empty() ? 0.0 : std::strtod(word.back().c_str(), &end);
-  if (word.empty() || word.size() > 2 || *end != '\0') {
+  if (word.empty() || word.size() > 2 || *end != '\0' || !std::isfinite(t_s)) {
     throw std::invalid_argument(
         fmt::format("{}: '{}' is no time: seconds, or a picture's name and seconds", where, line));
   }
@@ -118,6 +122,8 @@ std::vector<double> TimesByNames(const std::vector<std::string>& files, double f
 
 std::vector<double> TimesFromText(std::string_view text, const std::string& source,
                                   const std::vector<std::string>& files) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::map<std::string, double> by_name;
   std::vector<double> in_order;
   std::istringstream lines{std::string(text)};
@@ -126,16 +132,28 @@ std::vector<double> TimesFromText(std::string_view text, const std::string& sour
     ++number;
     line = line.substr(0, line.find('#'));
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const TimeLine read = ParseLine(line, fmt::format("{}:{}", source, number));
+    const std::string where = fmt::format("{}:{}", source, number);
+    const TimeLine read = ParseLine(line, where);
     if (read.name.empty()) {
       in_order.push_back(read.t_s);
-    } else {
-      by_name[std::filesystem::path(read.name).filename().string()] = read.t_s;
+    } else if (!by_name.emplace(FileName(read.name), read.t_s).second) {
+      throw std::invalid_argument(
+          fmt::format("{}: a second time for the picture {}", where, read.name));
     }
+    if (!in_order.empty() && !by_name.empty()) {
+      throw std::invalid_argument(fmt::format(
+          "{}: times with and without a picture's name: name all pictures, or none", where));
+    }
+  }
+  // With a picture too few, all after it would have the time of another.
+  if (in_order.size() > files.size()) {
+    throw std::invalid_argument(fmt::format(
+        "{}: {} times for {} pictures: name the pictures, as in `{} 0.5`", source, in_order.size(),
+        files.size(), files.empty() ? "frame1.jpg" : FileName(files.front())));
   }
   std::vector<double> times_s;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto named = by_name.find(std::filesystem::path(files[i]).filename().string());
+    const auto named = by_name.find(FileName(files[i]));
     if (named == by_name.end() && i >= in_order.size()) {
       throw std::invalid_argument(fmt::format("{}: no time for the picture {}", source, files[i]));
     }

@@ -15,8 +15,9 @@ bool IsBefore(const std::string& a, const std::string& b);
 std::vector<double> TimesByNames(const std::vector<std::string>& files, double fps);
 
 /// The same from a file of times: a line for each picture in their order, or `name seconds` in any
-/// order, blanks or commas between; '#' begins a comment. Throws std::invalid_argument
-/// `source:line: ...` for what is no time, for times that do not rise, and for too few.
+/// order (of further pictures as well), blanks or commas between; '#' begins a comment. Throws
+/// std::invalid_argument `source:line: ...` for what is no time, for a picture with two, for times
+/// that do not rise, and for too few or, without names, too many.
 std::vector<double> TimesFromText(std::string_view text, const std::string& source,
                                   const std::vector<std::string>& files);
 

@@ -59,6 +59,23 @@ TEST_CASE(
   // Beyond 3 the square grows in proportion: 3 (2 * 5 - 3) = 21 and 3 (2 * 15 - 3) = 81.
   CHECK(weighted[9] == Approx(3.0 * std::sqrt(21.0)));
   CHECK(weighted[10] == Approx(-3.0 * 9.0));
+  // The slope of each is that of its square beyond 3 as well.
+  constexpr double kStep = 1e-6;
+  LogErrors slope = Errors({2, 1}, {0.7, -1.1, 2.0, 0.05, 0.3, -0.4});
+  slope.traits << 1.0, -0.5, 0.25, 2.0, -3.0;
+  LogErrors above = errors, below = errors;
+  above.motions += kStep * slope.motions;
+  above.traits += kStep * slope.traits;
+  below.motions -= kStep * slope.motions;
+  below.traits -= kStep * slope.traits;
+  const Eigen::VectorXd secant =
+      (Weighted(above, scale, options) - Weighted(below, scale, options)) / (2.0 * kStep);
+  const Eigen::VectorXd weighted_slope = WeightedSlope(errors, slope, scale, options);
+  for (int i = 0; i < 11; ++i) {
+    INFO(i);
+    if (i == 3 || i == 8) continue;  // at 3 the slope beyond begins
+    CHECK(weighted_slope[i] == Approx(secant[i]).epsilon(1e-6));
+  }
 }
 
 TEST_CASE("The mean of traits is over the runs that tell them") {

@@ -118,6 +118,23 @@ std::vector<CalibrationLog> FourLogs() {
           Log("4", 0.54, 11.22)};
 }
 
+TEST_CASE("Whole runs are fitted to the mean also where a step is many times their scatter") {
+  Lines simulator(A, B);
+  simulator.whole_runs_only = true;
+  CalibrationOptions options = LeastSquares();
+  options.outlier_sd = 3.0;  // a step changes the first prediction by 10 and the second by 20
+  options.step = 0.1;
+  options.corrections = GENERATE(0, 1, 4);
+  options.simulated_logs = GENERATE(0, 4);
+  const Calibration fit = FitOf({kA, kB}, FourLogs(), simulator, options);
+  const CalibratedParameter &a = fit.parameters[0], &b = fit.parameters[1];
+  CHECK(a.value == Approx(0.5).margin(1e-4));
+  CHECK(b.value == Approx(11.2).margin(1e-4));
+  // Student's 97.5 % quantile of three degrees, times the deviation of a mean of four.
+  CHECK(0.5 * (a.high - a.low) == Approx(3.18 * 0.04 / std::sqrt(3.0)).epsilon(0.2));
+  CHECK(0.5 * (b.high - b.low) == Approx(3.18 * 0.02 / std::sqrt(3.0)).epsilon(0.2));
+}
+
 TEST_CASE("A straight line is fitted by the mean of what it predicts, in the units of its range") {
   Lines simulator(A, B);
   const Calibration fit = FitOf({kA, kB}, FourLogs(), simulator);

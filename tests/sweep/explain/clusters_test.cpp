@@ -23,10 +23,11 @@ TrialRow Passing(const char* level = "b") {
   return row;
 }
 
-TrialRow Ended(TrialStatus status, const char* level = "a") {
+TrialRow Ended(TrialStatus status, const char* level = "a", bool is_failure = true) {
   TrialRow row;
   row.theta = {{level, {}}};
   row.status = status;
+  row.falsified = is_failure;
   return row;
 }
 
@@ -85,18 +86,18 @@ TEST_CASE("Kinds are found with some of many failures, and every failure belongs
   CHECK(clusters[1].rows.size() == 20);
 }
 
-TEST_CASE("Every end of a run but a log that is not there is a kind of its own") {
-  const SweepResult result = Of({Ended(TrialStatus::kFell), Ended(TrialStatus::kMissing),
-                                 Ended(TrialStatus::kLost), Ended(TrialStatus::kUnreadable),
-                                 Ended(TrialStatus::kLost, "b"), Ended(TrialStatus::kCrashed)});
+TEST_CASE("Every end of a run that counts as a failure is a kind of its own, and no other end") {
+  const SweepResult result =
+      Of({Ended(TrialStatus::kFell), Ended(TrialStatus::kMissing, "a", false),
+          Ended(TrialStatus::kLost), Ended(TrialStatus::kFault, "a", false),
+          Ended(TrialStatus::kLost, "b"), Ended(TrialStatus::kLost, "b", false)});
   const std::vector<FailureCluster> clusters = ClusterFailures(result);
-  REQUIRE(clusters.size() == 3);
+  REQUIRE(clusters.size() == 2);
   CHECK(clusters[0].status == TrialStatus::kLost);
   CHECK(clusters[0].rows == std::vector<int>{2, 4});
   CHECK(clusters[0].sentence == "2 ended as 'lost', at no particular value of a parameter");
   CHECK(std::isnan(clusters[0].mean_gap_m));
   CHECK(clusters[1].status == TrialStatus::kFell);
-  CHECK(clusters[2].status == TrialStatus::kCrashed);
 }
 
 TEST_CASE("A value stands out with 60 % of the failures, and a quarter more than in the table") {

@@ -131,6 +131,37 @@ TEST_CASE("Shrinking random conjunctions always ends with a minimal failure") {
   }
 }
 
+TEST_CASE("A value that is shrunk stays between nominal and failing, however near these are") {
+  struct Case {
+    double nominal, failing, least;
+    bool is_integer;
+    double shrunk_to;
+  };
+  for (const Case& one : {Case{1e6, 1e6 + 10.0, 1e6 + 4.0, false, 1e6 + 4.0},
+                          Case{1000.0, 1000.00819, 1000.008, false, 1000.008},
+                          Case{-5e4, -5e4 - 1e-3, -5e4 - 5e-4, false, -5e4 - 5e-4},
+                          Case{2.0, 9.0, 4.5, true, 5.0}, Case{9.0, 2.0, 4.5, true, 4.0}}) {
+    INFO(one.nominal << " to " << one.failing);
+    const std::vector<experiment::Parameter> space{{.key = "a",
+                                                    .min = std::min(one.nominal, one.failing),
+                                                    .max = std::max(one.nominal, one.failing),
+                                                    .is_integer = one.is_integer}};
+    const double way = one.failing - one.nominal;
+    const Robustness robustness = [&](const experiment::Theta& theta) {
+      const double share = (*theta[0].number - one.nominal) / way;
+      CHECK(share >= 0.0);
+      CHECK(share <= 1.0);
+      if (one.is_integer) CHECK(*theta[0].number == std::round(*theta[0].number));
+      return share > (one.least - one.nominal) / way ? -1.0 : 1.0;
+    };
+    const ShrunkFailure shrunk = Shrink(space, {experiment::NumberValue(one.nominal)},
+                                        {experiment::NumberValue(one.failing)}, robustness);
+    CHECK(robustness(shrunk.theta) < 0.0);
+    CHECK(std::abs(*shrunk.theta[0].number - one.shrunk_to) <= 0.02 * std::abs(way));
+    if (one.is_integer) CHECK(*shrunk.theta[0].number == one.shrunk_to);
+  }
+}
+
 TEST_CASE("What does not fail is not shrunk and a spent budget is told") {
   const experiment::Theta failing{Numeric(0.9), Numeric(0.2), {"3", 3.0}, {"ice", {}}};
   CHECK_THROWS_WITH(

@@ -91,6 +91,28 @@ TEST_CASE("Two sweeps are paired by setting and trial, and what one alone has is
   const double apart = 12.706204736174698 * std::abs(b.gap_change_m - a.gap_change_m) / 2.0;
   CHECK(change.all.gap_change_95_m.low == Approx(over_settings - apart));
   CHECK(change.all.gap_change_95_m.high == Approx(over_settings + apart));
+  CHECK(change.is_over_settings);
+}
+
+TEST_CASE("Repeats of one name count each, and are paired in their order") {
+  TabledSweep before{.folder = "b",
+                     .trials = {Trial("a", "1", 0.07, true), Trial("a", "1", 0.08, true),
+                                Trial("a", "1", 0.02, false), Trial("a", "2", 0.03, false)}};
+  TabledSweep after = before;
+  const SweepChange same = CompareSweeps(before, after, {});
+  CHECK(same.all.before.told == 4);
+  CHECK(same.all.before.failures == 2);
+  CHECK(same.all.before.mean_gap_m == Approx(0.05));
+  CHECK(same.all.pairs == 4);
+  CHECK(same.all.gap_change_m == 0.0);
+  CHECK(same.now_hold + same.now_fail == 0);
+  after.trials.pop_back();
+  after.trials[0] = Trial("a", "1", 0.04, false);
+  const SweepChange change = CompareSweeps(before, after, {});
+  CHECK(change.all.pairs == 3);
+  CHECK(change.all.gap_change_m == Approx(-0.01));
+  CHECK(change.now_hold == 1);
+  CHECK(change.now_fail == 0);
 }
 
 TEST_CASE("Back again everything is the other way round, and one setting counts by its trials") {
@@ -105,6 +127,7 @@ TEST_CASE("Back again everything is the other way round, and one setting counts 
   std::erase_if(two.before.trials, [](const TabledTrial& trial) { return trial.key != "a"; });
   const SweepChange one = CompareSweeps(two.before, two.after, {});
   REQUIRE(one.settings.size() == 1);
+  CHECK_FALSE(one.is_over_settings);
   CHECK(one.all.gap_change_95_m.low == Approx(there.settings[0].gap_change_95_m.low));
   std::erase_if(two.after.trials, [](const TabledTrial& trial) { return trial.key == "a"; });
   CHECK_THROWS_WITH(CompareSweeps(two.before, two.after, {}),
@@ -150,6 +173,7 @@ TEST_CASE("Trials that do not tell change nothing, and without a gap they are no
   CHECK(change.settings[0].after.failures == 1);
   CHECK(change.settings[0].before.verdict.empty());
   CHECK(change.all.pairs == 0);
+  CHECK_FALSE(change.is_over_settings);
   CHECK(change.all.before.mean_gap_m == Approx(0.02));
   CHECK(change.all.after.mean_gap_m == Approx(0.09));
 }

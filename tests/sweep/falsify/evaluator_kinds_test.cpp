@@ -79,6 +79,8 @@ TEST_CASE("Paths of logs that are missing, or name what there is not, are refuse
         "{trial}");
   without.candidate.path.text = without.reference.path.text = "x.csv";
   CHECK_THAT(Refusal(without), Contains("they name nothing"));
+  without.space.parameters[0].origin = "e.yaml:4:9";  // the file is named once
+  CHECK(Refusal(without).starts_with("e.yaml:4:9: space.s is in neither "));
 }
 
 TEST_CASE("A start at the reference needs logs to start from, and a robot that rift places") {

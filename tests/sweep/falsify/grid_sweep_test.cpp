@@ -9,6 +9,7 @@
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "support/inputs/paths.hpp"
+#include "sweep/falsify/experiment_sides.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -240,6 +240,13 @@ TEST_CASE("What a program lacks is said when it is made") {
   CHECK(shell.Refusal() ==
         "candidate.run: there is no file 'gone.sh' beside the experiment, and sh would end at once "
         "in every trial: name it from the experiment's folder, or with its whole path");
+  for (const char* name : {"out", "folder", "theta"}) {
+    Shell named("exit 0");
+    named.experiment.space.parameters = {
+        {.key = std::string("sim.") + name, .levels = {{"1", 1.0}}, .origin = "e.yaml:7:3"}};
+    CHECK(named.Refusal() == std::string("e.yaml:7:3: sim.") + name + ": {" + name +
+                                 "} is what rift tells a program: name the parameter otherwise");
+  }
   Persistent persistent(":");
   CHECK(persistent.Refusal() == "accepted");
   persistent.experiment.candidate.run.words.push_back("{seed}");

@@ -50,30 +50,6 @@ TEST_CASE("A loss is the gap that counts, or the threshold and the way left, or 
   CHECK(Ok(0.01).Tells());
 }
 
-TEST_CASE("Trials are identical with the same path and the same end") {
-  CHECK(AreIdentical(Ok(0.05, 7), Ok(0.05, 7)));
-  CHECK_FALSE(AreIdentical(Ok(0.05, 7), Ok(0.05, 8)));
-  CHECK_FALSE(AreIdentical(Ok(0.05, 0), Ok(0.05, 0)));  // nothing is known of their paths
-  CHECK_FALSE(AreIdentical(Ok(0.05, 7), Ok(0.051, 7)));
-  CHECK(AreIdentical(Failed(0.5, 7), Failed(0.5, 7)));
-  CHECK_FALSE(AreIdentical(Failed(0.5, 7), Ok(0.05, 7)));
-  TrialRow fell = Failed(0.5, 7);
-  fell.status = TrialStatus::kFell;
-  CHECK_FALSE(AreIdentical(Failed(0.5, 7), fell));
-  TrialRow uncounted = Failed(0.5, 7);
-  uncounted.falsified = false;
-  CHECK_FALSE(AreIdentical(Failed(0.5, 7), uncounted));
-  CHECK(AreIdentical(uncounted, uncounted));
-}
-
-TEST_CASE("Of identical rows the first stands, and rows without a path stand each") {
-  const std::vector<TrialRow> rows{Ok(0.05, 7), Ok(0.05, 7), Ok(0.06, 7), Ok(0.01, 0),
-                                   Ok(0.01, 0), Ok(0.06, 7), Ok(0.05, 9), Ok(0.05, 7)};
-  CHECK(DistinctRows(rows, {0, 1, 2, 3, 4, 5, 6, 7}) == std::vector<int>{0, 2, 3, 4, 6});
-  CHECK(DistinctRows(rows, {7, 5, 1}) == std::vector<int>{7, 5});
-  CHECK(DistinctRows(rows, {}).empty());
-}
-
 TEST_CASE("The worst row is the first with the largest gap, and has one") {
   SweepResult result;
   CHECK_FALSE(WorstRow(result));
@@ -87,14 +63,6 @@ TEST_CASE("The worst row is the first with the largest gap, and has one") {
   CHECK(WorstRow(result) == 4);
 }
 
-TEST_CASE("Rows that count are the distinct ones with a loss") {
-  SweepResult result;
-  TrialRow missing;
-  missing.status = TrialStatus::kMissing;
-  result.rows = {missing, Ok(0.05, 7), Ok(0.05, 7), Failed(0.1, 3), Failed(0.1, 3), Ok(0.02)};
-  CHECK(RowsThatCount(result) == std::vector<int>{1, 3, 5});
-}
-
 const experiment::Parameter kRange{.key = "control.v_min", .min = 0.0, .max = 1.0};
 const experiment::Parameter kWords{.key = "surface", .levels = {{"ice", {}}, {"rock", {}}}};
 const experiment::Parameter kNumbers{.key = "a.b.count", .levels = {{"0.123456", 0.123456}}};
@@ -102,6 +70,10 @@ const experiment::Parameter kNumbers{.key = "a.b.count", .levels = {{"0.123456",
 TEST_CASE("A value of a range is shortened for people, and one of a list stands as written") {
   CHECK(ShortText(kRange, {"0.12345678", 0.12345678}) == "0.1235");
   CHECK(ShortText(kRange, {"word", {}}) == "word");
+  const experiment::Parameter far{.key = "a", .min = 1e6, .max = 1e6 + 10.0};
+  CHECK(ShortText(far, experiment::NumberValue(1e6 + 4.25)) == "1000004.25");
+  const experiment::Parameter below{.key = "a", .min = -120.0, .max = -119.0};
+  CHECK(ShortText(below, experiment::NumberValue(-119.123456)) == "-119.123");
   CHECK(ShortText(kNumbers, {"0.123456", 0.123456}) == "0.123456");
   CHECK(ShortText(kWords, {"ice", {}}) == "ice");
 }

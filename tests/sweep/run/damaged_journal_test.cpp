@@ -7,6 +7,7 @@
 
 #include "rift/sweep/falsify/trial_runner.hpp"
 #include "rift/sweep/run/journal.hpp"
+#include "rift/sweep/run/journal_summary.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
 

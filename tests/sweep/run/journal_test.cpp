@@ -14,6 +14,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "rift/sweep/run/journal_summary.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/child_end.hpp"
 #include "support/processes/process.hpp"

@@ -8,6 +8,7 @@
 #include "rift/files/network_file_system.hpp"
 #include "rift/files/shell_word.hpp"
 #include "rift/sweep/run/journal.hpp"
+#include "rift/sweep/run/journal_summary.hpp"
 #include "rift/sweep/run/slurm.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"

@@ -32,6 +32,21 @@ TEST_CASE("A file of times is read by order or by name and is held to its rules"
   CHECK_THROWS_WITH(TimesFromText("0.5\nsoon\n", "t.txt", files), Contains("t.txt:2"));
   CHECK_THROWS_WITH(TimesFromText("0.5\n", "t.txt", files), Contains("no time for the picture"));
   CHECK_THROWS_WITH(TimesFromText("2\n1\n", "t.txt", files), Contains("not later"));
+  for (const char* none : {"nan", "-nan", "inf", "-inf", "1e999"}) {
+    INFO(none);
+    CHECK_THROWS_WITH(TimesFromText("0.5\n" + std::string(none) + "\n", "t.txt", files),
+                      Contains("t.txt:2") && Contains("is no time"));
+  }
+  CHECK(TimesFromText("\xEF\xBB\xBF"
+                      "1\n2\n",
+                      "t", files) == std::vector<double>{1.0, 2.0});
+  CHECK_THROWS_WITH(TimesFromText("1\n2\n3\n", "t", files),
+                    "t: 3 times for 2 pictures: name the pictures, as in `a.jpg 0.5`");
+  CHECK_THROWS_WITH(TimesFromText("a.jpg 1\nb.jpg 2\nrun/a.jpg 1\n", "t", files),
+                    "t:3: a second time for the picture run/a.jpg");
+  CHECK_THROWS_WITH(TimesFromText("1\nb.jpg 2\n", "t", files),
+                    Contains("t:2: times with and without a picture's name"));
+  CHECK(TimesFromText("c.jpg 0\na.jpg 1\nb.jpg 2\n", "t", files) == std::vector<double>{1.0, 2.0});
 }
 
 }  // namespace

@@ -24,7 +24,7 @@
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
-#include "rift/sweep/run/journal.hpp"
+#include "rift/sweep/run/journal_summary.hpp"
 #include "rift/sweep/run/slurm_shards.hpp"
 #include "rift/trial/steering_check.hpp"
 #include "rift/trial/trial.hpp"

@@ -16,6 +16,7 @@ struct OdometryJob {
   bool odometry = false;
   std::string program;  ///< experiment of all runs; empty: the one in the folder of each
   bool calibrate = false;
+  std::optional<double> tag_ahead_m;  ///< of all runs; nothing: as the experiment of each has it
   odometry::RunOptions run_options;
   odometry::CalibrationOptions calibration;  ///< of `calibrate`
 
@@ -32,6 +33,9 @@ struct OdometryJob {
           "the same, and find wheel radii and track from all runs (squares both ways tell them "
           "best)");
     odometry::RunOptions::Fields(self.run_options, field);
+    field("tag_ahead_m", self.tag_ahead_m, -1.0, 1.0,
+          "the camera's point is this far ahead of the axle: its tag (else what the experiment of "
+          "a run says, or 0)");
     field("window_s", self.calibration.window_s, 0.2, 1e4,
           "of --calibrate-odometry: runs are cut into pieces of this length, and each counts as "
           "one observation");
@@ -50,8 +54,9 @@ struct LoadedRun {
 /// the log against.
 LoadedRun LoadRun(const std::string& name, const std::string& program);
 
-/// Holds camera, encoders and program of runs (at least one) together; finds wheel radii and track
-/// as well where the job says so.
+/// Holds camera, encoders and program of runs (at least one) together, each with the wheels and the
+/// tag of its experiment; finds wheel radii and track as well where the job says so. Throws
+/// std::invalid_argument when these are asked for of runs whose experiments name different robots.
 odometry::OdometryResult MeasureOdometry(const std::vector<LoadedRun>& runs,
                                          const OdometryJob& job);
 

@@ -6,6 +6,7 @@
 
 #include "rift/experiment/experiment.hpp"
 #include "rift/sweep/run/journal.hpp"
+#include "rift/sweep/run/journal_summary.hpp"
 #include "rift/sweep/run/slurm_shards.hpp"
 
 namespace rift::sessions {

@@ -39,7 +39,7 @@ struct ChangedSide {
 struct SettingChange {
   std::string setting;
   ChangedSide before, after;
-  int pairs = 0;                    ///< trials of the same name with a gap in both
+  int pairs = 0;  ///< trials with a gap in both: of one name the first of each, the second, ...
   double gap_change_m = kNotKnown;  ///< mean of after - before over the pairs
   statistics::Interval gap_change_95_m{kNotKnown, kNotKnown};
 };
@@ -57,8 +57,9 @@ struct SweepChange {
   int only_before = 0;                  ///< settings that the other does not have
   int only_after = 0;
   /// Over the settings of both; the interval of the change of the mean gap is over settings where
-  /// there are several, else over trials (Student).
+  /// several have pairs, else over trials (Student).
   SettingChange all;
+  bool is_over_settings = false;
   int now_hold = 0;  ///< trials that failed before and hold after
   int now_fail = 0;
   /// 95 % (Clopper-Pearson) for the share of now_hold in the trials that changed: above a half, it

@@ -99,9 +99,8 @@ class Evaluator {
 
  private:
   std::vector<odometry::EncoderReading> EncodersBeside(const std::string& log) const;
-  void RequirePath(const experiment::PathTemplate& path, const std::string& key) const;
   std::string Filled(const experiment::PathTemplate& path, const TrialRequest& request) const;
-  void CheckKinds() const;
+  void CheckTask() const;
   void LoadLogsOf(const experiment::PathTemplate& path, const char* key, RecordedLogs& logs) const;
   /// Of the heightfields that a trial at this setting is driven on.
   std::set<std::string> PicturesOf(const TrialRequest& request) const;
@@ -131,9 +130,5 @@ class Evaluator {
 /// One candidate against one reference. Without one of them it is a row with its status.
 TrialRow CompareTrial(const experiment::Experiment& experiment, const TrialRequest& request,
                       const Recording& candidate, const Recording& reference);
-
-/// Throws std::invalid_argument when a path template of logs names no parameter, or a parameter or
-/// the trials are named by no path: the same rows would stand there under several labels.
-void CheckPaths(const experiment::Experiment& experiment);
 
 }  // namespace rift::sweep

@@ -42,8 +42,9 @@ std::vector<Eigen::Vector2f> EvenPath(const trajectory::Trajectory& candidate,
 /// does not move.
 std::vector<float> EvenTimes_s(const trajectory::Trajectory& path, const gap::GapOptions& options);
 
-/// Equal for paths whose poses are the same to the last bit, and never 0. Times are left out, since
-/// some simulators stamp their rows with a wall clock; so are channels and targets.
+/// Equal for paths whose poses are the same to the last bit; 0 for one without poses alone. Times
+/// are left out, since some simulators stamp their rows with a wall clock; so are channels and
+/// targets.
 std::uint64_t Fingerprint(const trajectory::Trajectory& path);
 
 /// Reference minus candidate, in world axes, at u = 1/8, 2/8, ... 1: enough to tell one kind of

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -83,12 +82,6 @@ struct TrialRow {
 /// robot still had to go, so that one that never starts is worse than one that stops just before
 /// the end. NaN of a trial that does not tell.
 double Loss_m(const TrialRow& row, double threshold_m);
-
-/// The same candidate path held against the same reference, to the last bit.
-bool AreIdentical(const TrialRow& a, const TrialRow& b);
-
-/// Of these rows the first of each that are identical: what statistics count.
-std::vector<int> DistinctRows(std::span<const TrialRow> rows, const std::vector<int>& indices);
 
 /// All repeats of one setting.
 struct SettingResult {
@@ -209,9 +202,6 @@ void Summarise(SweepResult& result);
 
 /// Error rate of the F test that SmallestDetectable plans for.
 inline constexpr double kSignificance = 0.05;
-
-/// The distinct rows that tell: what the statistics of a whole sweep are made of.
-std::vector<int> RowsThatCount(const SweepResult& result);
 
 /// Index of the row with the largest gap; empty when no trial has one.
 std::optional<int> WorstRow(const SweepResult& result);

@@ -1,0 +1,152 @@
+#include "rift/sweep/falsify/distinct_rows.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+
+namespace rift::sweep {
+namespace {
+
+/// Rows that agree in it are copies: their noise, how they ended, and their setting but for the
+/// parameter `without`, where there is one.
+struct CopyKey {
+  std::optional<size_t> without;
+  experiment::Theta theta;
+  std::string trial;
+  std::optional<std::uint64_t> seed;
+  TrialStatus status = TrialStatus::kOk;
+  bool falsified = false;
+  double gap_m = 0.0;
+
+  bool operator<(const CopyKey& other) const { return Tied() < other.Tied(); }
+
+ private:
+  auto Tied() const
+      -> std::tuple<const std::optional<size_t>&, const experiment::Theta&, const std::string&,
+                    const std::optional<std::uint64_t>&, TrialStatus, bool, double> {
+    return {without, theta, trial, seed, status, falsified, gap_m};
+  }
+};
+
+CopyKey EndOf(const TrialRow& row) {
+  return {.status = row.status,
+          .falsified = row.falsified,
+          .gap_m = row.IsOk() ? row.comparison.gap_m : 0.0};
+}
+
+/// Which rows are copies of one another, as sets that grow together.
+class CopySets {
+ public:
+  explicit CopySets(size_t rows) : first_(rows) { std::iota(first_.begin(), first_.end(), 0); }
+
+  size_t FirstOf(size_t row) {
+    while (first_[row] != row) row = first_[row] = first_[first_[row]];
+    return row;
+  }
+  void Join(size_t a, size_t b) {
+    a = FirstOf(a);
+    b = FirstOf(b);
+    first_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<size_t> first_;
+};
+
+/// Finds the copies among rows of one path.
+class CopyFinder {
+ public:
+  CopyFinder(std::span<const TrialRow> rows, const std::vector<int>& indices)
+      : rows_(rows), indices_(indices), sets_(indices.size()) {
+    for (const int index : indices) ++repeats_[rows[index].theta];
+  }
+
+  void Find(const std::vector<size_t>& places) {
+    std::map<std::pair<experiment::Theta, CopyKey>, std::vector<size_t>> by_setting;
+    for (const size_t place : places) {
+      const TrialRow& row = At(place);
+      by_setting[{row.theta, EndOf(row)}].push_back(place);
+    }
+    std::map<CopyKey, size_t> seen;
+    for (const auto& [setting, repeats] : by_setting) {
+      const bool are_all = static_cast<int>(repeats.size()) == repeats_.at(setting.first);
+      for (const size_t place : repeats) {
+        if (are_all) sets_.Join(repeats.front(), place);
+        JoinByKeys(place, seen);
+      }
+    }
+  }
+
+  bool IsFirst(size_t place) { return sets_.FirstOf(place) == place; }
+
+ private:
+  const TrialRow& At(size_t place) const { return rows_[indices_[place]]; }
+
+  void JoinByKeys(size_t place, std::map<CopyKey, size_t>& seen) {
+    const TrialRow& row = At(place);
+    CopyKey key = EndOf(row);
+    key.theta = row.theta;
+    key.seed = row.seed;
+    Join(key, place, seen);  // another repeat of the setting, with the same seed or none
+    key.trial = row.trial;
+    for (size_t i = 0; i < row.theta.size(); ++i) {
+      key.without = i;
+      key.theta = row.theta;
+      key.theta.erase(key.theta.begin() + static_cast<std::ptrdiff_t>(i));
+      Join(key, place, seen);
+    }
+  }
+
+  void Join(const CopyKey& key, size_t place, std::map<CopyKey, size_t>& seen) {
+    const auto [found, is_new] = seen.try_emplace(key, place);
+    if (!is_new) sets_.Join(found->second, place);
+  }
+
+  std::span<const TrialRow> rows_;
+  const std::vector<int>& indices_;
+  CopySets sets_;
+  std::map<experiment::Theta, int> repeats_;
+};
+
+/// Places in `indices` of the rows that share their path with another, by path.
+std::unordered_map<std::uint64_t, std::vector<size_t>> SharedPaths(
+    std::span<const TrialRow> rows, const std::vector<int>& indices) {
+  std::unordered_map<std::uint64_t, std::vector<size_t>> by_path;
+  for (size_t i = 0; i < indices.size(); ++i) {
+    const std::uint64_t path = rows[indices[i]].evidence.fingerprint;
+    if (path != 0) by_path[path].push_back(i);
+  }
+  std::erase_if(by_path, [](const auto& entry) { return entry.second.size() < 2; });
+  return by_path;
+}
+
+}  // namespace
+
+std::vector<int> DistinctRows(std::span<const TrialRow> rows, const std::vector<int>& indices) {
+  const auto shared = SharedPaths(rows, indices);
+  if (shared.empty()) return indices;
+  CopyFinder finder(rows, indices);
+  for (const auto& [path, places] : shared) finder.Find(places);
+  std::vector<int> distinct;
+  for (size_t i = 0; i < indices.size(); ++i) {
+    if (finder.IsFirst(i)) distinct.push_back(indices[i]);
+  }
+  return distinct;
+}
+
+std::vector<int> RowsThatCount(const SweepResult& result) {
+  std::vector<int> rows;
+  for (size_t i = 0; i < result.rows.size(); ++i) {
+    if (std::isfinite(Loss_m(result.rows[i], result.gap.threshold_m))) {
+      rows.push_back(static_cast<int>(i));
+    }
+  }
+  return DistinctRows(result.rows, rows);
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,143 @@
+#include "rift/sweep/falsify/distinct_rows.hpp"
+
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <string>
+
+namespace rift::sweep {
+namespace {
+
+using Rows = std::vector<TrialRow>;
+
+TrialRow Ok(double gap_m, std::uint64_t fingerprint = 0) {
+  TrialRow row;
+  row.comparison.gap_m = gap_m;
+  row.falsified = gap_m > 0.06;
+  row.evidence.fingerprint = fingerprint;
+  return row;
+}
+
+TrialRow Failed(double left_m, std::uint64_t fingerprint = 0) {
+  TrialRow row;
+  row.status = TrialStatus::kTimedOut;
+  row.falsified = true;
+  row.left_m = left_m;
+  row.evidence.fingerprint = fingerprint;
+  return row;
+}
+
+TrialRow At(TrialRow row, const std::vector<int>& values, const std::string& trial = "1",
+            std::optional<std::uint64_t> seed = {}) {
+  for (const int value : values) {
+    row.theta.push_back({std::to_string(value), static_cast<double>(value)});
+  }
+  row.trial = trial;
+  row.seed = seed;
+  return row;
+}
+
+std::vector<int> Distinct(const Rows& rows) {
+  std::vector<int> all(rows.size());
+  std::iota(all.begin(), all.end(), 0);
+  return DistinctRows(rows, all);
+}
+
+bool AreCopies(const TrialRow& a, const TrialRow& b) { return Distinct({a, b}).size() == 1; }
+
+TEST_CASE("Copies have the same path, the same gap and the same end") {
+  CHECK(AreCopies(Ok(0.05, 7), Ok(0.05, 7)));
+  CHECK_FALSE(AreCopies(Ok(0.05, 7), Ok(0.05, 8)));
+  CHECK_FALSE(AreCopies(Ok(0.05, 0), Ok(0.05, 0)));  // nothing is known of their paths
+  CHECK_FALSE(AreCopies(Ok(0.05, 7), Ok(0.051, 7)));
+  CHECK(AreCopies(Failed(0.5, 7), Failed(0.5, 7)));
+  CHECK_FALSE(AreCopies(Failed(0.5, 0), Failed(0.5, 0)));
+  CHECK_FALSE(AreCopies(Failed(0.5, 7), Ok(0.05, 7)));
+  TrialRow fell = Failed(0.5, 7);
+  fell.status = TrialStatus::kFell;
+  CHECK_FALSE(AreCopies(Failed(0.5, 7), fell));
+  TrialRow uncounted = Failed(0.5, 7);
+  uncounted.falsified = false;
+  CHECK_FALSE(AreCopies(Failed(0.5, 7), uncounted));
+  CHECK(AreCopies(uncounted, uncounted));
+}
+
+TEST_CASE(
+    "Of copies the first stands, in the order asked for, and rows without a path stand each") {
+  const Rows rows{Ok(0.05, 7), Ok(0.05, 7), Ok(0.06, 7), Ok(0.01, 0),
+                  Ok(0.01, 0), Ok(0.06, 7), Ok(0.05, 9), Ok(0.05, 7)};
+  CHECK(DistinctRows(rows, {0, 1, 2, 3, 4, 5, 6, 7}) == std::vector<int>{0, 2, 3, 4, 6});
+  CHECK(DistinctRows(rows, {7, 5, 1}) == std::vector<int>{7, 5});
+  CHECK(DistinctRows(rows, {}).empty());
+}
+
+TEST_CASE("Repeats with seeds of their own are one run where all are the same, else a draw each") {
+  const auto repeat = [](const TrialRow& row, std::uint64_t seed) {
+    return At(row, {3}, std::to_string(seed), seed);
+  };
+  Rows rows;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) rows.push_back(repeat(Ok(0.05, 7), seed));
+  CHECK(Distinct(rows) == std::vector<int>{0});
+  rows.push_back(repeat(Failed(0.5, 8), 7));
+  rows.push_back(repeat(Failed(0.5, 8), 8));
+  CHECK(Distinct(rows).size() == 8);
+  rows.push_back(rows.back());  // the same seed again
+  CHECK(Distinct(rows).size() == 8);
+  // Another setting without chance beside it is one run, and of a search all trials are named 1.
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) rows.push_back(At(Ok(0.02, 9), {4}, "1", seed));
+  CHECK(Distinct(rows).size() == 9);
+  // Asked about the first six alone, chance is not seen to act.
+  CHECK(DistinctRows(rows, {0, 1, 2, 3, 4, 5}) == std::vector<int>{0});
+}
+
+TEST_CASE("A log that was copied is no second repeat, however many others there are") {
+  const Rows rows{At(Ok(0.05, 7), {1}, "1"), At(Ok(0.04, 7), {1}, "2"), At(Ok(0.05, 7), {1}, "3")};
+  CHECK(Distinct(rows) == std::vector<int>{0, 1});
+}
+
+TEST_CASE("A parameter that does nothing adds no run, whichever it is and whatever is between") {
+  Rows rows;
+  for (const int a : {0, 1}) {
+    for (const int inert : {5, 6, 7}) {
+      for (const int also : {0, 1}) {
+        for (const std::uint64_t seed : {1, 2}) {
+          const std::uint64_t path = 10 * static_cast<std::uint64_t>(a) + seed;
+          rows.push_back(At(Ok(0.01 * static_cast<double>(path), path), {inert, a, also},
+                            std::to_string(seed), seed));
+        }
+      }
+    }
+  }
+  CHECK(Distinct(rows) == std::vector<int>{0, 1, 12, 13});
+  // It does something at one value of the other.
+  for (TrialRow& row : rows) {
+    if (row.theta[1].number == 1.0 && row.theta[0].number == 7.0) row.evidence.fingerprint += 100;
+  }
+  CHECK(Distinct(rows).size() == 6);
+}
+
+TEST_CASE("Settings that differ in two parameters may meet by chance, and both count") {
+  // 2 a + b over three values each: (1, 3) and (2, 1) drive one path, as do (2, 3) and (3, 1).
+  Rows rows;
+  for (const int a : {1, 2, 3}) {
+    for (const int b : {1, 2, 3}) {
+      const int path = 2 * a + b;
+      rows.push_back(At(Ok(0.01 * path, static_cast<std::uint64_t>(path)), {a, b}, "1", 4));
+    }
+  }
+  CHECK(Distinct(rows).size() == 9);
+  // And so do two that differ in one and in their noise.
+  CHECK_FALSE(AreCopies(At(Ok(0.05, 7), {1}, "1", 4), At(Ok(0.05, 7), {2}, "1", 5)));
+  CHECK_FALSE(AreCopies(At(Ok(0.05, 7), {1}, "1", 4), At(Ok(0.05, 7), {2}, "2", 4)));
+  CHECK(AreCopies(At(Ok(0.05, 7), {1}, "1", 4), At(Ok(0.05, 7), {2}, "1", 4)));
+}
+
+TEST_CASE("Rows that count are the distinct ones with a loss") {
+  SweepResult result;
+  TrialRow missing;
+  missing.status = TrialStatus::kMissing;
+  result.rows = {missing, Ok(0.05, 7), Ok(0.05, 7), Failed(0.1, 3), Failed(0.1, 3), Ok(0.02)};
+  CHECK(RowsThatCount(result) == std::vector<int>{1, 3, 5});
+}
+
+}  // namespace
+}  // namespace rift::sweep
