@@ -48,6 +48,22 @@ TEST_CASE("The mean of a normal variable within limits moves away from the neare
   }
 }
 
+TEST_CASE("The mean of a normal variable within limits is that of its density there") {
+  for (const double mean : {0.0, 0.2, 0.9, 1.0}) {
+    for (const double sd : {0.05, 0.4, 3.0}) {
+      constexpr int kParts = 4000;
+      double sum = 0.0, weighted = 0.0;
+      for (int i = 0; i < kParts; ++i) {
+        const double x = -0.5 + 1.5 * (i + 0.5) / kParts;
+        const double density = std::exp(-0.5 * std::pow((x - mean) / sd, 2));
+        sum += density, weighted += density * x;
+      }
+      INFO(mean << " " << sd);
+      CHECK(MeanOfNormalWithin(mean, sd, -0.5, 1.0) == Approx(weighted / sum).margin(1e-5));
+    }
+  }
+}
+
 TEST_CASE("F with two degrees of freedom, and beta with an integer, have closed forms") {
   for (const double f : {0.1, 1.0, 4.2, 20.0}) {
     for (const double m : {1.0, 9.0, 40.0}) {
