@@ -219,6 +219,18 @@ TEST_CASE("A logistic regression weighs both samples alike and leaves constants 
   CHECK(model.inverse[0] == Approx(2.0));  // deviation 1/2
 }
 
+TEST_CASE("A logistic regression knows mean and scatter of what is known of a column") {
+  Eigen::MatrixXd features(8, 1);
+  const double none = std::nan("");
+  features << none, 5, 5, 3, 3, none, 3, 5;
+  Eigen::VectorXd is_first(8);
+  is_first << 1, 1, 1, 1, 0, 0, 0, 0;
+  const LogisticModel model = FitLogistic(features, is_first, 0.0);
+  CHECK(model.mean[0] == Approx(4.0));
+  CHECK(model.inverse[0] == Approx(1.0));
+  CHECK(model.weights[0] == Approx(std::log(2.0)));  // what is not known is at the mean
+}
+
 TEST_CASE("Random numbers of other seeds and streams are others, in every word of both") {
   const auto first = [](std::uint64_t seed, std::uint64_t stream) {
     return Random(seed, stream).Uniform();
