@@ -33,9 +33,10 @@ double Skewed(const Point& p) {
 
 std::vector<Evaluation> Run(Method method, int budget, std::uint64_t seed,
                             const std::vector<Axis>& axes,
-                            const std::function<double(const Point&)>& loss) {
+                            const std::function<double(const Point&)>& loss, int of_batch = 8) {
   SearchOptions options;
   options.strategy = method;
+  options.batch = of_batch;
   const auto strategy = MakeStrategy(options, axes, budget, seed);
   std::vector<Evaluation> all;
   while (static_cast<int>(all.size()) < budget) {
@@ -77,10 +78,10 @@ TEST_CASE("Every strategy proposes the points that were approved, to six digits"
 
 /// Every `every`th point of a search, and its last.
 std::string Sampled(const std::string& name, Method method, int budget, int every,
-                    const std::vector<Axis>& axes,
-                    const std::function<double(const Point&)>& loss) {
+                    const std::vector<Axis>& axes, const std::function<double(const Point&)>& loss,
+                    int of_batch = 8) {
   std::string text = name + "\n";
-  const std::vector<Evaluation> all = Run(method, budget, 5, axes, loss);
+  const std::vector<Evaluation> all = Run(method, budget, 5, axes, loss, of_batch);
   for (std::size_t k = 0; k < all.size(); ++k) {
     const bool is_shown = (k + 1) % static_cast<std::size_t>(every) == 0 || k + 1 == all.size();
     if (!is_shown) continue;
@@ -124,6 +125,35 @@ TEST_CASE("Long searches, with restarts and what goes beyond them, propose what 
   text += Sampled("portfolio, words", Method::kPortfolio, 300, 25, words, of_words);
   text += Sampled("portfolio, unlike axes", Method::kPortfolio, 400, 50, kUnlike, Skewed);
   CHECK(test::DifferenceFromPinned("search/long_searches.txt", text) == "");
+}
+
+TEST_CASE(
+    "Searches of odd spaces, in small batches and with losses that are none, are as approved") {
+  const Axis fixed{"f", AxisKind::kContinuous, 2.5, 2.5}, one{"o", AxisKind::kInteger, 4, 4};
+  const std::vector<std::pair<std::string, std::vector<Axis>>> spaces{
+      {"one range", {kUnlike[0]}},
+      {"no width, one choice", {fixed, kUnlike[0], one, kUnlike[1]}},
+      {"numbers and words", {kUnlike[2], {"m", AxisKind::kInteger, 0, 40}, kUnlike[3]}},
+      {"huge", {{"h", AxisKind::kContinuous, -1e308, 1e308}, kUnlike[1], kUnlike[2]}}};
+  const auto loss = [](const Point& p) {
+    double sum = 0.0, product = 1.0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const double off = std::tanh(0.2 * p[i]) - 0.2 * static_cast<double>(i + 1);
+      sum += off * off * static_cast<double>(i + 1);
+      product *= off;
+    }
+    if (std::sin(40.0 * sum) > 0.9) return std::numeric_limits<double>::infinity();
+    return sum + 0.5 * product - (sum < 0.1 ? 1e120 * (0.1 - sum) : 0.0);
+  };
+  constexpr auto kNames = EnumNames(Method{});
+  std::string text;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    for (const auto& [name, axes] : spaces) {
+      text += Sampled(fmt::format("{}, {}", kNames[i], name), static_cast<Method>(i), 100, 9, axes,
+                      loss, 3);
+    }
+  }
+  CHECK(test::DifferenceFromPinned("search/odd_spaces.txt", text) == "");
 }
 
 TEST_CASE("Each axis of a Latin hypercube has one point in each stratum, and axes are unrelated") {

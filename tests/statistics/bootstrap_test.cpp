@@ -45,5 +45,19 @@ TEST_CASE("Draws that tell nothing are left out and fewer than two groups have n
                        .high));
 }
 
+TEST_CASE("The share of the draws within an interval is widened by Student for few groups") {
+  // Whatever is drawn, the values are 0 to 1000.
+  const auto interval = [](std::size_t groups) {
+    double next = 0.0;
+    return BootstrapGroups(
+        groups, [&next](auto) { return next++; }, {.resamples = 1001, .confidence = 0.5}, 1);
+  };
+  // Of two groups t is 1, times sqrt(2 / 1); of three sqrt(2 / 3), times sqrt(3 / 2).
+  CHECK(interval(2).low == Approx(500.0 * (1.0 - std::erf(1.0))));
+  CHECK(interval(2).high == Approx(500.0 * (1.0 + std::erf(1.0))));
+  CHECK(interval(3).low == Approx(500.0 * (1.0 - std::erf(std::sqrt(0.5)))));
+  CHECK(interval(3).high == Approx(500.0 * (1.0 + std::erf(std::sqrt(0.5)))));
+}
+
 }  // namespace
 }  // namespace rift::statistics

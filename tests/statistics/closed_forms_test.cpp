@@ -48,6 +48,22 @@ TEST_CASE("The mean of a normal variable within limits moves away from the neare
   }
 }
 
+TEST_CASE("The mean of a normal variable within limits is that of its density there") {
+  for (const double mean : {0.0, 0.2, 0.9, 1.0}) {
+    for (const double sd : {0.05, 0.4, 3.0}) {
+      constexpr int kParts = 4000;
+      double sum = 0.0, weighted = 0.0;
+      for (int i = 0; i < kParts; ++i) {
+        const double x = -0.5 + 1.5 * (i + 0.5) / kParts;
+        const double density = std::exp(-0.5 * std::pow((x - mean) / sd, 2));
+        sum += density, weighted += density * x;
+      }
+      INFO(mean << " " << sd);
+      CHECK(MeanOfNormalWithin(mean, sd, -0.5, 1.0) == Approx(weighted / sum).margin(1e-5));
+    }
+  }
+}
+
 TEST_CASE("F with two degrees of freedom, and beta with an integer, have closed forms") {
   for (const double f : {0.1, 1.0, 4.2, 20.0}) {
     for (const double m : {1.0, 9.0, 40.0}) {
@@ -201,6 +217,18 @@ TEST_CASE("A logistic regression weighs both samples alike and leaves constants 
   CHECK(model.weights[1] == 0.0);
   CHECK(model.inverse[1] == 0.0);
   CHECK(model.inverse[0] == Approx(2.0));  // deviation 1/2
+}
+
+TEST_CASE("A logistic regression knows mean and scatter of what is known of a column") {
+  Eigen::MatrixXd features(8, 1);
+  const double none = std::nan("");
+  features << none, 5, 5, 3, 3, none, 3, 5;
+  Eigen::VectorXd is_first(8);
+  is_first << 1, 1, 1, 1, 0, 0, 0, 0;
+  const LogisticModel model = FitLogistic(features, is_first, 0.0);
+  CHECK(model.mean[0] == Approx(4.0));
+  CHECK(model.inverse[0] == Approx(1.0));
+  CHECK(model.weights[0] == Approx(std::log(2.0)));  // what is not known is at the mean
 }
 
 TEST_CASE("Random numbers of other seeds and streams are others, in every word of both") {

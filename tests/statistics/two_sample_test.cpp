@@ -180,5 +180,41 @@ TEST_CASE("One observation of the first sample among others is told") {
   CHECK(std::isnan(TestTwoSamples(observations, {}, {}, 1).accuracy));
 }
 
+/// Two observations of the first sample and one of the second in each group; the first are at the
+/// group's sign, the second at the other.
+std::vector<Observation> Signed(const std::vector<double>& signs) {
+  std::vector<Observation> observations;
+  for (size_t group = 0; group < signs.size(); ++group) {
+    for (int i = 0; i < 3; ++i) {
+      observations.push_back(
+          {.features = {i < 2 ? signs[group] : -signs[group]}, .is_first = i < 2, .group = group});
+    }
+  }
+  return observations;
+}
+
+TEST_CASE(
+    "Each group is told by a classifier that was trained on all the others, and on no other") {
+  // Where the groups contradict each other, more of the others do so than agree.
+  const auto accuracy = [](const std::vector<double>& signs, int folds) {
+    return TestTwoSamples(Signed(signs), {.folds = folds, .permutations = 0}, {}, 1).accuracy;
+  };
+  CHECK(accuracy({1.0, -1.0, 1.0, -1.0}, 4) == 0.0);
+  CHECK(accuracy({1.0, -1.0, 1.0, -1.0}, 2) == 0.0);  // groups 0 and 2 by those of 1 and 3
+  CHECK(accuracy({1.0, 1.0, -1.0, -1.0, 1.0, 1.0}, 12) == Approx(4.0 / 6.0));
+}
+
+TEST_CASE("An accuracy is the mean of both samples' shares, however many each has") {
+  std::vector<Observation> observations = Signed({1.0, 1.0, 1.0, 1.0});
+  observations[0].features[0] = -1.0;  // one of eight of the first sample
+  TwoSampleTest test = TestTwoSamples(observations, {.permutations = 0}, {}, 1);
+  CHECK(test.accuracy == Approx(0.5 * (7.0 / 8.0 + 1.0)));
+  CHECK(test.features[0].accuracy == test.accuracy);
+  observations = Signed({1.0, 1.0, 1.0, 1.0});
+  observations[2].features[0] = 1.0;  // one of four of the second
+  test = TestTwoSamples(observations, {.permutations = 0}, {}, 1);
+  CHECK(test.accuracy == Approx(0.5 * (1.0 + 3.0 / 4.0)));
+}
+
 }  // namespace
 }  // namespace rift::statistics

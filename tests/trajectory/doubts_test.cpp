@@ -231,5 +231,85 @@ TEST_CASE("A robot that lies on its side is a mistake of angles, by roll or by p
       DoubtsOf([](StampedPose& p) { p.roll_rad = p.pitch_rad = StampedPose::kNotLogged; }).empty());
 }
 
+/// A straight way in `steps` steps of 15 mm, its yaw off by so much.
+std::vector<std::string> DoubtsOfStraight(int steps, double off_rad) {
+  Trajectory log;
+  for (int i = 0; i <= steps; ++i) {
+    log.poses.push_back({.t_s = 0.05 * i, .x_m = 0.015 * i, .yaw_rad = off_rad});
+  }
+  return Doubts(log);
+}
+
+TEST_CASE("A yaw contradicts where twice the cosine of its error is at most 0.4, of ten pieces") {
+  CHECK(DoubtsOfStraight(60, 0.575).empty());  // cos 1.15 = 0.408
+  CHECK(DoubtsOfStraight(60, 0.585).size() == 1);
+  CHECK(DoubtsOfStraight(60, -0.575).empty());
+  CHECK(DoubtsOfStraight(60, -0.585).size() == 1);
+  // A piece is longer than a thirtieth of the way: here each step.
+  CHECK(DoubtsOfStraight(9, 0.7).empty());
+  CHECK(DoubtsOfStraight(10, 0.7).size() == 1);
+  CHECK(DoubtsOfStraight(16, 0.7).size() == 1);
+}
+
+TEST_CASE("A mistake is named where it mends the yaw to within 0.28 rad, else another column") {
+  const auto off = [](double more_rad) {
+    Trajectory log;
+    for (int i = 0; i < 140; ++i) {
+      const double turn_rad = 0.04 * i;
+      log.poses.push_back({.t_s = 0.05 * i,
+                           .x_m = 0.5 * std::sin(turn_rad),
+                           .y_m = 0.5 - 0.5 * std::cos(turn_rad),
+                           .yaw_rad = turn_rad + kPi / 2.0 + more_rad});
+    }
+    const std::vector<std::string> doubts = Doubts(log);
+    return doubts.size() == 1 ? doubts[0] : "";
+  };
+  for (const double sign : {1.0, -1.0}) {
+    CHECK_THAT(off(sign * 0.24), Contains("a quarter turn off?"));
+    CHECK_THAT(off(sign * 0.31), Contains("is it another column?"));
+  }
+}
+
+TEST_CASE("Times are doubted below a ten-thousandth of a second, and speeds only above") {
+  const auto apart = [](double step_s) {
+    return DoubtsOf([step_s](StampedPose& p) { p.t_s *= step_s / 0.05; });
+  };
+  REQUIRE(apart(1.01e-4).size() == 1);
+  CHECK_THAT(apart(1.01e-4)[0], StartsWith("it moves at "));
+  REQUIRE(apart(0.99e-4).size() == 1);
+  CHECK_THAT(apart(0.99e-4)[0], StartsWith("its poses are 9.9e-05 s apart: are its times in "));
+}
+
+TEST_CASE("Nine rows within a millimetre may be all there is, ten are doubted") {
+  const auto rows = [](int count) {
+    Trajectory log;
+    for (int i = 0; i < count; ++i) log.poses.push_back({.t_s = 0.05 * i, .x_m = 1e-4 * i});
+    return Doubts(log).size();
+  };
+  CHECK(rows(9) == 0);
+  CHECK(rows(10) == 1);
+}
+
+TEST_CASE(
+    "A target jumps by two centimetres, further than the robot, which takes five places each") {
+  const bool is_x = GENERATE(true, false);
+  const auto doubts = [&](int places, double step_m, double jump_m) {
+    Trajectory log;
+    for (int i = 0; i < places; ++i) {
+      StampedPose& pose = log.poses.emplace_back();
+      pose.t_s = 0.05 * i;
+      (is_x ? pose.x_m : pose.y_m) = jump_m * (4 * i / places);
+      (is_x ? pose.y_m : pose.x_m) = step_m * i;
+    }
+    return Doubts(log).size();
+  };
+  CHECK(doubts(100, 0.01, 0.0205) == 1);
+  CHECK(doubts(100, 0.01, 0.0195) == 0);
+  CHECK(doubts(100, 0.03, 0.031) == 1);
+  CHECK(doubts(100, 0.03, 0.029) == 0);
+  CHECK(doubts(20, 0.01, 0.5) == 1);
+  CHECK(doubts(19, 0.01, 0.5) == 0);
+}
+
 }  // namespace
 }  // namespace rift::trajectory

@@ -166,5 +166,47 @@ TEST_CASE("The authors' logs stand on 30 frames a second: speeds twice as smooth
   }
 }
 
+/// At 0.3 m/s, on frames that are two and three apart in turns, stamped evenly, after `still` rows
+/// at rest.
+Trajectory TwoAndThree(int rows, int still = 0) {
+  Trajectory log;
+  for (int i = 0; i < rows + still; ++i) {
+    const int moving = std::max(0, i - still);
+    const int frame = 5 * (moving / 2) + 2 * (moving % 2);
+    log.poses.push_back({.t_s = 4.0 + i / 12.0, .x_m = 0.3 * frame / 30.0, .y_m = 1.0});
+  }
+  return log;
+}
+
+TEST_CASE("Roughness is the second difference of speeds over the median, of rows in motion") {
+  // Speeds are 0.8 and 1.2 of the mean, in turns: second differences are 0.8 of it.
+  for (const int still : {0, 30}) {
+    const OnFrames found = PutOnFrames(TwoAndThree(41, still), 30.0);
+    CAPTURE(still);
+    CHECK(found.grid.roughness_before == Approx(1.4826 * 0.8).epsilon(1e-4));
+    CHECK(found.grid.roughness_after == Approx(0.0).margin(1e-6));
+    CHECK(found.grid.outside_share == 0.0);
+    CHECK(found.grid.is_found);
+    CHECK(found.grid.is_best);
+    CHECK(found.grid.period_s == Approx(1.0 / 30.0).epsilon(0.0021));
+    const auto& poses = found.trajectory.poses;
+    for (size_t i = static_cast<size_t>(still) + 2; i < poses.size(); ++i) {
+      CHECK((poses[i].t_s - poses[i - 1].t_s) / (poses[i - 1].t_s - poses[i - 2].t_s) ==
+            Approx(i % 2 == static_cast<size_t>(still) % 2 ? 1.5 : 1.0 / 1.5));
+    }
+  }
+}
+
+TEST_CASE("A grid is looked for in twelve steps in motion, and within a hundred seconds") {
+  CHECK(std::isnan(PutOnFrames(TwoAndThree(12), 30.0).grid.roughness_before));
+  CHECK(PutOnFrames(TwoAndThree(13), 30.0).grid.roughness_before > 0.0);
+  CHECK(std::isnan(PutOnFrames(TwoAndThree(12, 20), 30.0).grid.roughness_before));
+  for (const auto& [duration_s, is_looked_for] : {std::pair{99.9, true}, {100.1, false}}) {
+    Trajectory log = TwoAndThree(21);
+    log.poses.back().t_s = log.poses.front().t_s + duration_s;
+    CHECK(std::isnan(PutOnFrames(log, 30.0).grid.roughness_before) != is_looked_for);
+  }
+}
+
 }  // namespace
 }  // namespace rift::trajectory

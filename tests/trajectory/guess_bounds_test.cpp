@@ -1,9 +1,12 @@
 // Where a guess of units turns from one to the next, and how names of columns are parted.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "trajectory/columns.hpp"
 
@@ -81,6 +84,73 @@ TEST_CASE("Names are parted at humps, dots, blanks and brackets, and end in thei
   CHECK(GuessOf({.header = "t,x,y,heading_degrees", .yaw = 1.0})
             .ends_with("yaw=heading_degrees:deg"));
   CHECK(GuessOf({.header = "t,x,y,heading_radians", .yaw = 1.0}).ends_with("yaw=heading_radians"));
+}
+
+/// The guess for rows of a slow arc with further columns between clock and path.
+std::string GuessWith(const std::vector<std::string>& names,
+                      const std::vector<std::function<double(int)>>& columns) {
+  std::string text = fmt::format("{}\n", fmt::join(names, ","));
+  for (int i = 0; i < 60; ++i) {
+    std::vector<std::string> cells;
+    for (const auto& column : columns) cells.push_back(fmt::format("{:.9f}", column(i)));
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  return GuessColumns(text, "log", "");
+}
+
+double Clock(int i) { return 0.05 * i; }
+double X(int i) { return 0.015 * i; }
+double Y(int i) { return 1e-4 * i * i; }
+
+TEST_CASE("Of columns of one quantity a pose's is taken, then the one of fewest words") {
+  CHECK(GuessWith({"t", "robot.arm.x", "robot.y", "robot.x"}, {Clock, X, Y, X}) ==
+        "t=t,x=robot.x,y=robot.y");
+  CHECK(GuessWith({"t", "robot.x", "robot.y", "robot.arm.x"}, {Clock, X, Y, X}) ==
+        "t=t,x=robot.x,y=robot.y");
+  CHECK(GuessWith({"t", "x", "y", "msg.pose.pose.position.x"}, {Clock, X, Y, X}) ==
+        "t=t,x=msg.pose.pose.position.x,y=y");
+  CHECK(GuessWith({"t", "a.x", "y", "b.x"}, {Clock, X, Y, X}) == "t=t,x=a.x,y=y");
+}
+
+TEST_CASE("A height has the unit of the path, and a tilt that of the yaw") {
+  const auto degrees = [](double rad) { return 57.29577951 * rad; };
+  const auto yaw = [&](int i) { return degrees(std::atan2(2e-4 * i, 0.015)); };
+  CHECK(GuessWith({"t", "x", "y", "z", "roll", "pitch", "yaw"},
+                  {Clock, [](int i) { return 1e3 * X(i); }, [](int i) { return 1e3 * Y(i); },
+                   [](int) { return 30.0; }, [](int) { return 2.0; }, [](int) { return 3.0; },
+                   yaw}) == "t=t,x=x:mm,y=y:mm,z=z:mm,roll=roll:deg,pitch=pitch:deg,yaw=yaw:deg");
+  CHECK(GuessWith({"t", "x", "y", "z", "roll", "pitch", "yaw"},
+                  {Clock, X, Y, [](int) { return 0.03; }, [](int) { return 0.02; },
+                   [](int) { return 0.03; }, [&](int i) { return yaw(i) / 57.29577951; }}) ==
+        "t=t,x=x,y=y,z=z,roll=roll,pitch=pitch,yaw=yaw");
+}
+
+TEST_CASE("A time that no name tells is the first column that rises and is nothing else") {
+  CHECK(GuessWith({"x", "y", "n"}, {X, Y, Clock}) == "t=n,x=x,y=y");
+  CHECK(GuessWith({"still", "n", "x", "y"}, {[](int) { return 1.0; }, Clock, X, Y}) ==
+        "t=n,x=x,y=y");
+  CHECK(GuessWith({"falls", "n", "x", "y"}, {[](int i) { return -Clock(i); }, Clock, X, Y}) ==
+        "t=n,x=x,y=y");
+  // A place of which one coordinate has a name is none without the other.
+  CHECK(GuessWith({"t", "x", "b"}, {Clock, X, Y}) == "");
+  CHECK(GuessWith({"t", "a", "y"}, {Clock, X, Y}) == "");
+  CHECK(GuessWith({"t", "still", "a", "b"}, {Clock, [](int) { return 1.0; }, X, Y}) ==
+        "t=t,x=a,y=b");
+}
+
+TEST_CASE("An angle of 7.8 may be radians beyond a turn, one of 7.9 is in degrees") {
+  // A circle that the yaw goes along, in radians.
+  const auto unit_of = [](double largest) {
+    const auto turn = [largest](int i) { return largest * i / 59.0; };
+    const std::string guess =
+        GuessWith({"t", "x", "y", "yaw"}, {Clock, [&](int i) { return std::sin(turn(i)); },
+                                           [&](int i) { return 1.0 - std::cos(turn(i)); }, turn});
+    return guess.substr(guess.rfind("yaw="));
+  };
+  CHECK(unit_of(7.8) == "yaw=yaw");
+  CHECK(unit_of(-7.8) == "yaw=yaw");
+  CHECK(unit_of(7.9) == "yaw=yaw:deg");
+  CHECK(unit_of(-7.9) == "yaw=yaw:deg");
 }
 
 }  // namespace

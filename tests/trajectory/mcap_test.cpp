@@ -155,6 +155,12 @@ TEST_CASE("Half a target is none, and a log without channels has no signals") {
   CHECK(WriteMcap(log).find("/signals") == std::string::npos);
 }
 
+TEST_CASE("A name of a signal is text of JSON, without bytes that are none there") {
+  Trajectory log = TwoRows();
+  log.channels = {{std::string("a\\b\"c\td\x1f \x7f", 10), {1.0, 2.0}}};
+  CHECK(MessagesOf(RecordsOf(WriteMcap(log)))[1].json == "{\"a\\\\b\\\"cd \x7f\":1}");
+}
+
 TEST_CASE("Times below zero are counted from the first row, and late ones are refused") {
   Trajectory log = TwoRows();
   log.poses[0].t_s = -0.5;

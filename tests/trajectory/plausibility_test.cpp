@@ -69,5 +69,69 @@ TEST_CASE("Every published log is noted in the wrong dialect and not in its own"
   }
 }
 
+TEST_CASE("A yaw beyond a turn is in degrees where it steps by more than half a turn") {
+  const auto notes = [](double step_rad, double last_rad) {
+    std::string text = "t_s,x_m,y_m,yaw_rad\n";
+    for (int i = 0; step_rad * i <= last_rad; ++i) {
+      text += fmt::format("{},{},0,{}\n", i, i, step_rad * i);
+    }
+    return Notes(text, Format::kRift);
+  };
+  CHECK(notes(3.1, 60.0).empty());
+  CHECK(notes(3.2, 60.0).size() == 1);
+  CHECK(notes(3.2, 6.5).size() == 1);
+  CHECK(notes(3.2, 6.2).empty());
+  CHECK(notes(3.0, 990.0).empty());
+  REQUIRE(notes(3.0, 1010.0).size() == 1);  // no robot turns 159 times
+  CHECK(notes(3.0, 1010.0)[0] == "a yaw of 1008.0 rad looks like degrees: is it a tracker log?");
+}
+
+TEST_CASE("Roll and pitch are each held against a turn") {
+  for (const char* angle : {"roll", "pitch"}) {
+    const auto notes = [&](double largest) {
+      return Notes(fmt::format("t_s,x_m,y_m,{}_rad\n0,0,0,0\n1,1,0,{}\n", angle, largest),
+                   Format::kRift);
+    };
+    CHECK(notes(6.25).empty());
+    CHECK(notes(-6.25).empty());
+    REQUIRE(notes(-6.3).size() == 1);
+    CHECK(notes(6.3)[0] ==
+          fmt::format("a {} of 6.3 rad looks like degrees: is it a tracker log?", angle));
+  }
+}
+
+/// Legs of the authors' columns at these directions, in steps of 1 cm.
+std::vector<std::string> NotesOfLegs(const std::vector<double>& directions_rad, int rows,
+                                     double angle) {
+  std::string text = "t,x,y,z,roll,pitch,yaw\n";
+  double x_m = 0.0, y_m = 0.0;
+  for (int i = 0; i < rows; ++i) {
+    const auto leg = static_cast<size_t>(i) * directions_rad.size() / static_cast<size_t>(rows);
+    text += fmt::format("{},{:.9f},{:.9f},0.8,0,0,{}\n", 0.05 * i, x_m, y_m, angle);
+    x_m += 0.01 * std::cos(directions_rad[leg]);
+    y_m += 0.01 * std::sin(directions_rad[leg]);
+  }
+  return Notes(text, Format::kTracker);
+}
+
+TEST_CASE(
+    "A path that turns by more than 0.15 rad, both ways together, has no yaw within 3 degrees") {
+  for (const double side : {1.0, -1.0}) {
+    CHECK(NotesOfLegs({0.0, side * 0.14}, 60, 2.0).empty());
+    REQUIRE(NotesOfLegs({0.0, side * 0.16}, 60, 2.0).size() == 1);
+    CHECK(NotesOfLegs({0.0, side * 0.16}, 60, 2.0)[0] ==
+          "the path turns and no angle exceeds 2.00 degrees, which looks like radians: is it a "
+          "webots log?");
+    CHECK(NotesOfLegs({0.0, side * 0.08, -side * 0.08}, 90, 2.0).size() == 1);
+    CHECK(NotesOfLegs({0.0, side * 0.07, -side * 0.07}, 90, 2.0).empty());
+  }
+  CHECK(NotesOfLegs({3.1, -3.1}, 60, 2.0).empty());  // across half a turn
+  CHECK(NotesOfLegs({0.0, 1.0}, 60, 3.2).empty());
+  CHECK(NotesOfLegs({0.0, 1.0}, 60, 3.1).size() == 1);
+  CHECK(NotesOfLegs({0.0, 1.0}, 60, 0.0).empty());  // it has no angles at all
+  CHECK(NotesOfLegs({0.0, 1.0}, 21, 2.0).size() == 1);
+  CHECK(NotesOfLegs({0.0, 1.0}, 20, 2.0).empty());
+}
+
 }  // namespace
 }  // namespace rift::trajectory

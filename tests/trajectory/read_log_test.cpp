@@ -194,5 +194,71 @@ TEST_CASE("A robot stands as long as it is within the radius, turned the short w
   CHECK(StandingPose(log, 0.005).x_m == Approx(1.002));
 }
 
+TEST_CASE(
+    "Angles of unknown unit are forgotten with the height, and look like degrees beyond a turn") {
+  const auto log = [](const std::string& angles) {
+    return ReadLog("t,x,y,z,roll,pitch,yaw\n0,0,0,1," + angles + "\n1,1,0,1," + angles + "\n",
+                   "log");
+  };
+  for (const char* angles : {"6.2,0,0", "0,-6.2,0", "0,0,6.2"}) {
+    const Log read = log(angles);
+    CHECK(read.unknown_angles ==
+          "its header does not tell degrees (tracker) from radians (webots)");
+    for (const StampedPose& pose : read.trajectory.poses) {
+      for (const double value : {pose.z_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad}) {
+        CHECK(std::isnan(value));
+      }
+    }
+  }
+  for (const char* angles : {"6.3,0,0", "0,-6.3,0", "0,0,6.3"}) {
+    CHECK_THAT(log(angles).unknown_angles, Contains("; an angle of 6.3 looks like degrees"));
+  }
+}
+
+TEST_CASE("A format is refused where the header is another one's, whichever is asked for") {
+  const std::string authors = "t,x,y\n0,0,0\n1,1,0\n", rift = "t_s,x_m,y_m\n0,0,0\n1,1,0\n",
+                    tum = "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n";
+  const auto refusal = [](const std::string& text, Format format) -> std::string {
+    try {
+      ReadLog(text, "log", format);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const Format format : {Format::kTracker, Format::kWebots}) {
+    CHECK(refusal(authors, format).empty());
+    CHECK_THAT(refusal(rift, format), Contains("is of dialect rift, and the format asked for is"));
+    CHECK_THAT(refusal(tum, format), Contains("is of dialect tum, and the format asked for is"));
+  }
+  CHECK(refusal(rift, Format::kRift).empty());
+  CHECK(refusal(tum, Format::kTum).empty());
+  CHECK_THAT(refusal(authors, Format::kRift),
+             Contains("is of dialect tracker or webots, and the format asked for is rift"));
+  CHECK_THAT(refusal(rift, Format::kTum), Contains("rift, and the format asked for is tum"));
+}
+
+TEST_CASE(
+    "Cells without a header are told by their number, and small numbers that are zero refused") {
+  CHECK_THROWS_WITH(ReadLog("0 0 0 0 0 0 0 1\n1 1 0 0 0 0 o 1\n", "log", Format::kTum),
+                    "log:2: column 7 is 'o': a finite number is expected");
+  CHECK_THROWS_WITH(ReadLog("t_s,x_m,y_m\n0,0,0\n1,1e-400,0\n", "log"),
+                    "log:3: column x_m is '1e-400': a finite number is expected");
+  CHECK(csv::Shown("\xF7\xF8") == "\xF7\\xf8");
+  CHECK_THROWS_WITH(ReadLog("t_s,x_m,y_m\r", "log"),
+                    "log: 0 poses, and a trajectory needs at least 2");
+  std::string header = "c0";
+  for (int i = 1; i < 200; ++i) header += ", c" + std::to_string(i);
+  try {
+    ReadLog(header + "\n", "log", ReadOptions{.columns = "t=c0,x=c1,y=nowhere"});
+    FAIL("read");
+  } catch (const std::invalid_argument& error) {
+    CHECK(std::string(error.what()) ==
+          "log:1: columns: y is to be 'nowhere', and there is no such "
+          "column: there are " +
+              header.substr(0, 400));
+  }
+}
+
 }  // namespace
 }  // namespace rift::trajectory

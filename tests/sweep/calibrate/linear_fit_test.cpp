@@ -421,6 +421,12 @@ TEST_CASE("Every prediction of a log counts its replays and its runs") {
   CHECK(few % (4 * 3) == 0);
   options.horizon.phases = 6;
   CHECK(FitOf({kA, kB}, FourLogs(), simulator, options).trials_simulated == 2 * few);
+  // Two of each log, predicted once and on both sides of each parameter.
+  options.corrections = 1;
+  const size_t real = FitOf({kA, kB}, FourLogs(), simulator, options).trials_simulated;
+  options.simulated_logs = 8;
+  CHECK(FitOf({kA, kB}, FourLogs(), simulator, options).trials_simulated ==
+        real + 2 * 4 * 6 * (1 + 2 * 2));
 }
 
 TEST_CASE("Fits without parameters, with one log, or that start beyond their range are refused") {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "rift/files/files.hpp"
+#include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/identification.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/inputs/paths.hpp"
@@ -105,6 +106,83 @@ TEST_CASE("A program's parameter is found from whole runs, and judged by others"
   }
   CHECK_FALSE(has("31"));
   CHECK_FALSE(has("50032"));
+}
+
+TEST_CASE("Further starts of a fit are drawn off the ends of the ranges, with seeds of their own") {
+  Bench bench;
+  bench.experiment.calibrate.starts = 3;
+  bench.experiment.calibrate.method.iterations = 1;
+  Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
+  const CalibrationReport report = Identify(evaluator, 1, kSilent);
+  REQUIRE(report.agreement.size() == 1);
+  CHECK(report.agreement[0].values.size() == 3);
+  const std::vector<std::string> asked = bench.Asked();
+  for (const std::uint64_t start : {0, 1, 2}) {
+    const double share = 0.1 + 0.8 * statistics::Random(30, 80 + start).Uniform();
+    const double expected = start == 0 ? 0.8 : 0.5 + 1.5 * share;
+    for (const std::uint64_t log : {0, 1, 2, 3}) {
+      const std::uint64_t seed = 30 + 100'000 * log + 100 * start;
+      INFO("start " << start << ", log " << log);
+      CHECK(std::any_of(asked.begin(), asked.end(), [&](const std::string& line) {
+        const size_t blank = line.find(' ');
+        return line.substr(blank + 1) == std::to_string(seed) &&
+               std::abs(std::stod(line.substr(0, blank)) - expected) < 1e-9;
+      }));
+    }
+  }
+}
+
+/// "a fitted", "a held out", ...: which groups of logs are judged.
+std::vector<std::string> GroupsOf(const CalibrationReport& report) {
+  std::vector<std::string> groups;
+  for (const JudgedGroup& group : report.judged) groups.push_back(group.level + " " + group.side);
+  return groups;
+}
+
+TEST_CASE("Logs are judged by level and side, those held out beside what the others tell") {
+  Bench bench;
+  bench.logs["a_2.csv"] =
+      trajectory::WriteRift(test::Moved(test::StraightPath(1.2, 41), {0.0, 0.05, 0.001}));
+  bench.experiment.calibrate.method.iterations = 1;
+  bench.experiment.calibrate.judge_runs = 4;
+  const auto report = [&bench] {
+    Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
+    return Identify(evaluator, 1, kSilent);
+  };
+  CHECK(GroupsOf(report()) == std::vector<std::string>{"a fitted", "b fitted", "all fitted"});
+
+  bench.experiment.calibrate.holdout.names = {"2"};
+  const CalibrationReport held = report();
+  CHECK(GroupsOf(held) == std::vector<std::string>{"a fitted", "a held out", "a both", "b fitted",
+                                                   "b held out", "b both", "all fitted",
+                                                   "all held out", "all both"});
+  for (size_t i = 0; i < held.judged.size(); ++i) {
+    const int logs = (i % 3 == 2 ? 2 : 1) * (i < 6 ? 1 : 2);
+    CHECK(held.judged[i].before.runs == 4 * logs);
+    CHECK(held.judged[i].after.runs == 4 * logs);
+  }
+  // The other log of each setting that is not among the chosen ones.
+  CHECK(held.judged[1].after.prediction.other_real_m == Approx(0.05));
+  CHECK(held.judged[4].after.prediction.other_real_m == Approx(0.0).margin(1e-9));
+  CHECK(held.judged[1].after.prediction.simulated_m > 0.04);
+  // Shown is the middle log of those held out, by how near its runs come: a_2 of two.
+  REQUIRE(held.trials.size() == 4);
+  CHECK(held.shown == 1);
+  CHECK(held.trials[1].source == "a_2.csv");
+  CHECK(held.trials[1].level == "a");
+  CHECK(held.trials[1].is_held_out);
+  CHECK_FALSE(held.trials[2].is_held_out);
+  CHECK(held.trials[1].gap_after_m > held.trials[3].gap_after_m);
+  CHECK(held.shown_real.poses.front().y_m == Approx(0.05));
+  CHECK(held.shown_before.size() == 3);
+  CHECK(held.shown_after.size() == 3);
+
+  bench.experiment.calibrate.holdout.names.clear();
+  bench.experiment.space.parameters[0].levels.resize(1);
+  CHECK(GroupsOf(report()) == std::vector<std::string>{"a fitted"});
+  bench.experiment.space.parameters.clear();
+  bench.experiment.reference.path.text = "a_{trial}.csv";
+  CHECK(GroupsOf(report()) == std::vector<std::string>{"all fitted"});
 }
 
 std::vector<CalibrationLog> Logs(const Bench& bench, double longest_m) {

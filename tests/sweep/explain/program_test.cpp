@@ -2,8 +2,14 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
+#include "rift/odometry/odometry.hpp"
 #include "rift/sweep/falsify/settings.hpp"
+#include "rift/trajectory/log.hpp"
+#include "support/inputs/memory_files.hpp"
+#include "support/inputs/paths.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -95,6 +101,39 @@ TEST_CASE("Odometry as the objective needs encoders, and logs of its own") {
   experiment.reference.kind = experiment::ReferenceKind::kLogs;
   experiment.reference.path.text = "{trial}.csv";
   CHECK_THROWS_WITH(Evaluator(experiment, "lap.yaml", kNoFiles), Catch::Contains("candidate.path"));
+}
+
+TEST_CASE("A recorded run is judged by the encoders beside its log, from where it stood") {
+  experiment::Experiment experiment = Lap(0.2);
+  experiment.objective = experiment::Objective::kOdometry;
+  experiment.candidate.kind = experiment::CandidateKind::kLogs;
+  experiment.candidate.path.text = "{trial}/run.csv";
+  const double metres = odometry::MetresPerCount(experiment.hardware.odometry);
+  std::vector<odometry::EncoderReading> wheels;
+  trajectory::Trajectory log = test::Moved(test::StraightPath(0.5, 51), {0.3, -0.2, 0.7});
+  for (const trajectory::StampedPose& pose : log.poses) {
+    const double share = (pose.t_s - log.poses.front().t_s) / log.Duration_s();
+    const auto counts = static_cast<std::int64_t>(std::lround(0.4 * share / metres));
+    wheels.push_back({pose.t_s, {counts, counts}});
+  }
+  test::Files files{{"1/run.csv", trajectory::WriteRift(log)},
+                    {"1/encoders.csv", odometry::EncodersCsv(wheels)}};
+  const auto row = [&] {
+    return Evaluator(experiment, "lap.yaml", test::InputsOf(files)).Evaluate({.trial = "1"});
+  };
+  const TrialRow told = row();
+  REQUIRE(told.IsOk());
+  // Both set out from one place, in one direction: the wheels fall back by a fifth of the way.
+  CHECK(told.comparison.gap_m == Approx(0.1 * told.comparison.gap_u).margin(0.01));
+  CHECK(told.comparison.gap_u > 0.9);
+  CHECK(told.candidate == "1/run.csv, its encoders");
+  CHECK(told.reference == "1/run.csv");
+  for (trajectory::StampedPose& pose : log.poses) pose.yaw_rad = NAN;
+  files["1/run.csv"] = trajectory::WriteRift(log);
+  CHECK(row().status == TrialStatus::kUnreadable);
+  CHECK_THAT(row().reason, Catch::Contains("objective: odometry needs the yaw of the log"));
+  files.erase("1/encoders.csv");
+  CHECK_THAT(row().reason, Catch::Contains("objective: odometry needs encoders (encoders.csv"));
 }
 
 TEST_CASE("The cells of a grid over a program tell its repeats apart from a robot that is stuck") {

@@ -1,12 +1,19 @@
 // Rare events over an experiment's space, and how often random draws fail.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "rift/statistics/inference.hpp"
 #include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "support/pinned.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -150,6 +157,60 @@ TEST_CASE("A loss at the threshold is a failure, one without a value is none, no
   CHECK_THROWS_WITH(EstimateRareEvent(0, {}, 1),
                     "a rare event needs a space of at least one "
                     "parameter");
+}
+
+TEST_CASE("Estimates of rare events, and the points they ask for, are those that were approved") {
+  struct Case {
+    const char* name;
+    int dimensions;
+    RareEventOptions options;
+    std::function<double(const std::vector<double>&)> robustness;
+  };
+  const auto corner = [](const std::vector<double>& x) { return std::max(x[0], x[1]) - 0.02; };
+  const std::vector<Case> cases{
+      {"a corner", 2, {.replicas = 4, .samples_per_level = 60}, corner},
+      {"wide steps",
+       2,
+       {.replicas = 5, .samples_per_level = 47, .level_share = 0.2, .step = 0.7},
+       corner},
+      {"two corners",
+       3,
+       {.replicas = 4, .samples_per_level = 80},
+       [](const std::vector<double>& x) {
+         return std::min({x[0] + x[1], 1.98 - x[0] - x[1] + x[2], 1.0}) - 0.03;
+       }},
+      {"steps",
+       1,
+       {.replicas = 4, .samples_per_level = 50, .level_share = 0.3},
+       [](const std::vector<double>& x) { return std::floor(8.0 * x[0]) / 8.0 - 0.1; }},
+      {"holes",
+       2,
+       {.replicas = 4, .samples_per_level = 60, .most_levels = 3},
+       [](const std::vector<double>& x) {
+         return std::sin(40.0 * x[1]) > 0.8 ? NAN : x[0] * x[0] - 1e-6;
+       }}};
+  std::string text;
+  for (const Case& one : cases) {
+    double sum = 0.0, weighted = 0.0;
+    int asked = 0;
+    const RareEvent event = EstimateRareEvent(
+        one.dimensions,
+        [&](const std::vector<std::vector<double>>& points) {
+          std::vector<double> values;
+          for (const std::vector<double>& point : points) {
+            for (const double x : point) sum += x, weighted += x * (++asked % 101);
+            values.push_back(one.robustness(point));
+          }
+          return values;
+        },
+        21, one.options);
+    text += fmt::format(
+        "{}: {:.9g} in [{:.9g}, {:.9g}], variation {:.9g}, levels {}, runs {}, {}\n", one.name,
+        event.probability, event.low, event.high, event.coefficient_of_variation, event.levels,
+        event.evaluations, event.is_reached ? "reached" : "bounded");
+    text += fmt::format("  {} coordinates, {:.9g}, {:.9g}\n", asked, sum, weighted);
+  }
+  CHECK(test::DifferenceFromPinned("sweep/rare_events.txt", text) == "");
 }
 
 }  // namespace

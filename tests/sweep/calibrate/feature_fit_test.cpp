@@ -1,0 +1,279 @@
+// A fit by features, round by round: each is the least of a model of drives at values that are
+// drawn about the estimate.
+#include "sweep/calibrate/feature_fit.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "rift/statistics/descriptive.hpp"
+#include "rift/statistics/inference.hpp"
+#include "rift/statistics/random.hpp"
+#include "sweep/calibrate/feature_model.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr std::uint64_t kSeed = 4;
+
+/// Mismatch of the motors, something that nothing depends on, and the tracker's noise.
+SimulatedTrial Twin(size_t log, const std::vector<double>& values) {
+  SimulatedTrial twin{.task = std::vector<control::Waypoint>{{.name = "a"},
+                                                             {.name = "b", .x_m = 0.2},
+                                                             {.name = "c", .x_m = 0.2, .y_m = 0.1}},
+                      .seed = 100 + log};
+  twin.simulation.motor.mismatch = values[0];
+  twin.simulation.mocap.noise_across_m = values[2];
+  return twin;
+}
+
+std::vector<CalibrationLog> Logs() {
+  std::vector<CalibrationLog> logs;
+  for (size_t i = 0; i < 2; ++i) {
+    SimulatedTrial robot = Twin(i, {0.03, 0.0, 0.001});
+    robot.seed += 7;
+    logs.push_back({.name = std::to_string(i), .log = Simulate(robot).result.trajectory});
+  }
+  logs[1].group = "another";
+  return logs;
+}
+
+/// As a fit by motions leaves it: of the noise it does not know that it acts.
+Calibration Before(double mismatch_prior_sd = 0.0, double noise = 0.0006) {
+  Calibration found;
+  found.parameters = {
+      {.parameter = {.key = "mismatch", .min = -0.1, .max = 0.1, .start = -0.05}, .value = -0.02},
+      {.parameter = {.key = "nothing", .max = 2.0}, .value = 0.3, .has_effect = false},
+      {.parameter = {.key = "noise", .min = 0.0001, .max = 0.0021, .start = 0.0002},
+       .value = noise,
+       .has_effect = false}};
+  found.parameters[0].parameter.prior_mean = 0.05;
+  found.parameters[0].parameter.prior_sd = mismatch_prior_sd;
+  found.correlation = Eigen::MatrixXd::Zero(3, 3);
+  return found;
+}
+
+CalibrationOptions Options(int rounds, int draws) {
+  CalibrationOptions options;
+  options.features = {.rounds = rounds, .draws = draws, .failures = 0.5};
+  options.confidence = 0.8;
+  options.identified_share = 0.15;
+  return options;
+}
+
+Calibration Fitted(Calibration found, const CalibrationOptions& options,
+                   const CalibrationStep& on_step = {}) {
+  FitFeatures(Logs(), Twin, options, kSeed, 1, on_step, found);
+  return found;
+}
+
+/// Values of both parameters that act, as shares of their ranges, and all three values at shares.
+Vector2d SharesOf(double mismatch, double noise) {
+  return {(mismatch + 0.1) / 0.2, (noise - 0.0001) / 0.002};
+}
+std::vector<double> ValuesOf(const Vector2d& shares) {
+  return {-0.1 + 0.2 * shares[0], 0.3, 0.0001 + 0.002 * shares[1]};
+}
+
+/// The place within the limits where `loss` is least, by ever smaller steps along each parameter.
+Vector2d LeastOf(const std::function<double(const Vector2d&)>& loss, const Vector2d& low,
+                 const Vector2d& high) {
+  Vector2d best = Vector2d::Zero();
+  for (double step = 0.1; step > 1e-6; step *= 0.7) {
+    for (int i = 0; i < 60; ++i) {
+      const Vector2d before = best;
+      for (const Vector2d& by : {Vector2d(step, 0.0), Vector2d(-step, 0.0), Vector2d(0.0, step),
+                                 Vector2d(0.0, -step), Vector2d(step, step), Vector2d(step, -step),
+                                 Vector2d(-step, step), Vector2d(-step, -step)}) {
+        const Vector2d tried = (best + by).cwiseMax(low).cwiseMin(high);
+        if (loss(tried) < loss(best)) best = tried;
+      }
+      if (best == before) break;
+    }
+  }
+  return best;
+}
+
+struct Round {
+  Vector2d shares, mean, sd;
+  double correlation, loss;
+  bool is_within;  ///< two scatters of the draws
+};
+
+/// What a fit does in its rounds, from its parts.
+class Rounds {
+ public:
+  explicit Rounds(const CalibrationOptions& options, const Calibration& before)
+      : options_(options),
+        shares_(SharesOf(before.parameters[0].value, before.parameters[2].value)) {
+    const double sd = before.parameters[0].parameter.prior_sd;
+    if (sd > 0.0) prior_weight_ = std::pow(0.2 / sd, 2);
+    for (size_t i = 0; i < logs_.size(); ++i) {
+      const Eigen::VectorXd row = FeatureRow(logs_[i].log, Twin(i, ValuesOf(shares_)));
+      real_.conservativeResize(static_cast<Eigen::Index>(i) + 1, row.size());
+      real_.row(static_cast<Eigen::Index>(i)) = row;
+    }
+  }
+
+  Round Next(int draws) {
+    const Vector2d low = (-shares_.cwiseQuotient(scatter_)).cwiseMax(-2.0);
+    const Vector2d high = (Vector2d::Ones() - shares_).cwiseQuotient(scatter_).cwiseMin(2.0);
+    Eigen::MatrixXd z(draws, 2);
+    std::vector<std::vector<double>> values;
+    for (int i = 0; i < draws; ++i) {
+      const Vector2d last = drawn_;
+      drawn_ = i % 2 == 0 ? Vector2d(random_.Normal(), 0.0) : Vector2d(-last);
+      if (i % 2 == 0) drawn_[1] = random_.Normal();
+      z.row(i) = drawn_.cwiseMax(low).cwiseMin(high);
+      values.push_back(ValuesOf(At(z.row(i))));
+    }
+    model_.emplace_back(std::vector<std::string>{"", "another"}, real_, z,
+                        FeatureModel::Acts::Constant(2, 2, true), Drive(values, round_++, 2),
+                        options_.features.failures, 2);
+    const FeatureModel& model = model_.back();
+    const auto loss = [&](const Vector2d& at) { return model.At(at).loss + PriorLossAt(At(at)); };
+    const Vector2d least = LeastOf(loss, low, high);
+    Eigen::Matrix2d precision = model.InformationAt(least);
+    precision.diagonal() += 3.0 * scatter_.cwiseAbs2();  // of a parameter that nothing tells
+    precision(0, 0) += scatter_[0] * scatter_[0] * prior_weight_;
+    const Eigen::Matrix2d inverse = precision.inverse();
+    Round round{.shares = At(least),
+                .sd = scatter_.cwiseProduct(inverse.diagonal().cwiseSqrt()),
+                .correlation = inverse(0, 1) / std::sqrt(inverse(0, 0) * inverse(1, 1)),
+                .loss = model.At(least).loss / static_cast<double>(model.FeatureCount()),
+                .is_within = least.cwiseAbs().maxCoeff() < 2.0};
+    for (int k = 0; k < 2; ++k) {
+      round.mean[k] = statistics::MeanOfNormalWithin(round.shares[k], round.sd[k], 0.0, 1.0);
+    }
+    shares_ = round.shares;
+    scatter_ = (2.0 * round.sd).cwiseMin(scatter_).cwiseMax(0.02);
+    return round;
+  }
+
+  /// Losses of eight drives of each log there, without each of them in turn after the first.
+  std::vector<double> LossesAt(const Vector2d& shares) const {
+    const std::vector<FeatureRows> all =
+        Drive(std::vector<std::vector<double>>(8, ValuesOf(shares)), round_, 1);
+    const FeatureModel& model = model_.back();
+    const auto features = static_cast<double>(model.FeatureCount());
+    std::vector<double> losses{(model.LossOf(all) + PriorLossAt(shares)) / features};
+    for (int i = 0; i < 8; ++i) {
+      std::vector<FeatureRows> fewer = all;
+      fewer.erase(fewer.begin() + i);
+      losses.push_back(model.LossOf(fewer) / features);
+    }
+    return losses;
+  }
+
+ private:
+  Vector2d At(const Vector2d& z) const { return shares_ + scatter_.cwiseProduct(z); }
+  double PriorLossAt(const Vector2d& shares) const {
+    return prior_weight_ * std::pow(shares[0] - 0.75, 2);
+  }
+  std::vector<FeatureRows> Drive(const std::vector<std::vector<double>>& values, int round,
+                                 int alike) const {
+    return DriveAt(values, logs_, Twin, static_cast<std::uint64_t>(round), alike, 1);
+  }
+
+  CalibrationOptions options_;
+  std::vector<CalibrationLog> logs_ = Logs();
+  statistics::Random random_{kSeed, 111};
+  Eigen::MatrixXd real_;
+  Vector2d shares_, scatter_ = Vector2d::Constant(0.15), drawn_ = Vector2d::Zero();
+  double prior_weight_ = 0.0;
+  int round_ = 0;
+  std::vector<FeatureModel> model_;
+};
+
+void CheckParameter(const CalibratedParameter& one, const Round& round, int k) {
+  CAPTURE(one.parameter.key);
+  const double min = one.parameter.min, width = one.parameter.max - min;
+  const double reach = 1.2815515655 * round.sd[k];  // the central 0.8 of a normal distribution
+  CHECK((one.value - min) / width == Approx(round.mean[k]).margin(1e-4));
+  CHECK((one.low - min) / width == Approx(std::max(0.0, round.shares[k] - reach)).margin(1e-4));
+  CHECK((one.high - min) / width == Approx(std::min(1.0, round.shares[k] + reach)).margin(1e-4));
+  CHECK(one.has_effect);
+  CHECK(one.is_identified == (reach <= 0.15));
+  CHECK(one.is_at_bound == (round.shares[k] < 1e-9 || round.shares[k] > 1.0 - 1e-9));
+}
+
+TEST_CASE(
+    "Each round goes to the least loss of drives about the last, the next as far as it errs") {
+  for (const double prior_sd : {0.0, 0.00005}) {
+    CAPTURE(prior_sd);
+    const Calibration before = Before(prior_sd, prior_sd > 0.0 ? 0.0002 : 0.0006);
+    CalibrationOptions options = Options(2, 24);
+    options.features.last_draws = 28;
+    std::vector<CalibrationProgress> told;
+    const Calibration found =
+        Fitted(before, options, [&told](const CalibrationProgress& one) { told.push_back(one); });
+    Rounds rounds(options, before);
+    const Round first = rounds.Next(24), last = rounds.Next(28);
+
+    REQUIRE(told.size() == 2);
+    for (const auto& [progress, round] : {std::pair(told[0], first), {told[1], last}}) {
+      CHECK(progress.part == CalibrationProgress::Part::kFeatures);
+      CHECK(progress.most == 2);
+      CHECK(progress.loss == Approx(round.loss).epsilon(1e-4));
+      REQUIRE(progress.values.size() == 3);
+      const Vector2d shares = SharesOf(progress.values[0], progress.values[2]);
+      CHECK((shares - round.shares).norm() < 1e-4);
+      CHECK(progress.values[1] == 0.3);
+    }
+    CHECK(told[0].step == 1);
+    CHECK(told[1].step == 2);
+
+    CheckParameter(found.parameters[0], last, 0);
+    CheckParameter(found.parameters[2], last, 1);
+    CHECK(found.parameters[0].is_from_prior == (prior_sd > 0.0));
+    CHECK_FALSE(found.parameters[2].is_from_prior);
+    CHECK_FALSE(found.parameters[1].has_effect);
+    CHECK(found.parameters[1].value == 0.3);
+    CHECK(found.correlation(0, 2) == Approx(last.correlation).margin(1e-3));
+    CHECK(found.correlation(2, 2) == Approx(1.0));
+    for (const int k : {0, 1, 2}) CHECK(std::isnan(found.correlation(1, k)));
+    CHECK(found.has_converged == last.is_within);
+
+    const std::vector<double> at_start = rounds.LossesAt(SharesOf(-0.05, 0.0002)),
+                              at_end = rounds.LossesAt(last.mean);
+    CHECK(found.loss_before == Approx(at_start[0]));
+    CHECK(found.loss_after == Approx(at_end[0]).epsilon(1e-3));
+    std::vector<double> differences;
+    for (size_t i = 1; i < 9; ++i) differences.push_back(at_end[i] - at_start[i]);
+    CHECK(found.loss_noise ==
+          Approx(7.0 / std::sqrt(8.0) * statistics::StandardDeviation(differences)).epsilon(1e-2));
+    // Of each log: one at the estimate, one for each parameter, the draws, and both losses.
+    CHECK(found.trials_simulated == 2 * (1 + 3 + 24 + 28 + 8 + 8));
+  }
+}
+
+TEST_CASE("A fit by features needs twice as many draws as it regresses numbers of a feature") {
+  CHECK_THROWS_WITH(Fitted(Before(), Options(1, 9)),
+                    "calibrate.method.features.draws is 9, and 2 parameters that act need 10 or "
+                    "more");
+  CHECK(Fitted(Before(), Options(1, 10)).trials_simulated == 2 * (1 + 3 + 10 + 16));
+  CalibrationOptions options = Options(1, 10);
+  options.features.last_draws = 9;  // fewer are none the less
+  CHECK(Fitted(Before(), options).trials_simulated == 2 * (1 + 3 + 10 + 16));
+}
+
+TEST_CASE("A fit by features of what nothing depends on is what it was") {
+  Calibration found = Before();
+  found.parameters = {found.parameters[1]};
+  const TwinAt twin = [](size_t log, const std::vector<double>&) {
+    return Twin(log, {0.0, 0.0, 0.001});
+  };
+  FitFeatures(Logs(), twin, Options(1, 12), kSeed, 1, {}, found);
+  CHECK(found.parameters[0].value == 0.3);
+  CHECK_FALSE(found.parameters[0].has_effect);
+  CHECK(found.trials_simulated == 2 * 2);
+}
+
+}  // namespace
+}  // namespace rift::sweep
