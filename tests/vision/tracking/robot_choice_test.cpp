@@ -86,6 +86,9 @@ TEST_CASE("Of several in reach the nearest is taken, wherever it stands in the l
     CHECK(verdict.is_ambiguous);
     CHECK(choice.Tags() == 3);
   }
+  RobotChoice of_two({});
+  of_two.Choose(0.0, {At(0.0)}, true);
+  CHECK(of_two.Choose(0.03, {At(0.04), At(0.01)}, true).is_ambiguous);
   // Of those beyond reach the first, which is the best that was seen.
   RobotChoice choice({});
   choice.Choose(0.0, {At(0.0)}, true);
@@ -176,6 +179,15 @@ TEST_CASE("A tag where a rival rested is that rival, unless the robot was nearer
   CHECK_FALSE(choice.Choose(2.1, {At(0.7 - 0.019)}, true).robot);
   CHECK(choice.Choose(2.2, {At(0.7 - 0.021 - 0.019)}, true).robot == 0U);
   CHECK_FALSE(choice.IsInDoubt());
+}
+
+TEST_CASE("Rivals that rest in each other's reach are not taken for each other") {
+  RobotChoice choice({});
+  for (const double t_s : {0.0, 0.2, 0.4}) {
+    CHECK(choice.Choose(t_s, {At(0.0), At(0.7), At(0.9)}, true).robot == 0U);
+    CHECK(choice.Choose(t_s, {At(0.0), At(0.9), At(0.7)}, true).robot == 0U);
+  }
+  CHECK(choice.IsInDoubt());
 }
 
 TEST_CASE("What is left of the robot may be a rival's place once it was away for long") {

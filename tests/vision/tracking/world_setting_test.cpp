@@ -111,6 +111,13 @@ TEST_CASE("A robot that moves while its pose is averaged is refused with how far
   Setup single(recording);
   single.options.world_average_s = 0.0;
   CHECK(WorldFromRobot(single.setting).residual_m == 0.0);
+  // Of three pictures the first is held against the last, 0.9 px on.
+  SmallRecording short_one;
+  short_one.Add(RobotAt(0.1, 0.0, 0.5), 2);
+  short_one.Add(RobotAt(0.1, 0.00084, 0.5), 2);
+  Setup three(short_one);
+  three.options.world_average_s = 0.09;
+  CHECK_THROWS_WITH(WorldFromRobot(three.setting), Contains("tag 0 moved by"));
   // 0.4 px are the noise of a corner.
   SmallRecording still;
   still.Add(RobotAt(0.1, 0.0, 0.5), 6);
