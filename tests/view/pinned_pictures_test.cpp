@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "pinned_picture.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/vision/calibration/live_views.hpp"
 #include "support/inputs/paper_camera.hpp"
+#include "support/pinned_picture.hpp"
 #include "view/calibration_picture.hpp"
 #include "view/painter.hpp"
 #include "view/track_picture.hpp"
@@ -12,7 +12,7 @@
 namespace rift::view {
 namespace {
 
-using test::DifferenceFromPinnedPicture;
+using rift::test::DifferenceFromPinnedPicture;
 
 /// A turn to the left over a slope with a step, a hole and two patches, and no two numbers alike.
 Run UnevenRun() {
@@ -49,11 +49,11 @@ TEST_CASE("The picture of a simulated run is the pinned one") {
   const Film film = MakeFilm(UnevenRun());
   const Painter painter(film.fixed, {1280, 720});
   CHECK(DifferenceFromPinnedPicture(
-            "run.png", painter.Paint(film.scenes[film.scenes.size() / 3],
-                                     {"space: stop   arrows: speed", "q: end"})) == "");
-  CHECK(DifferenceFromPinnedPicture("run_end.png", painter.Paint(film.scenes.back())) == "");
+            "view/run.png", painter.Paint(film.scenes[film.scenes.size() / 3],
+                                          {"space: stop   arrows: speed", "q: end"})) == "");
+  CHECK(DifferenceFromPinnedPicture("view/run_end.png", painter.Paint(film.scenes.back())) == "");
   const Painter small(film.fixed, {640, 480});
-  CHECK(DifferenceFromPinnedPicture("run_small.png", small.Paint(film.scenes[40])) == "");
+  CHECK(DifferenceFromPinnedPicture("view/run_small.png", small.Paint(film.scenes[40])) == "");
 }
 
 /// The paper's camera, in front of it a floor that brightens to one side.
@@ -104,11 +104,11 @@ TEST_CASE("The window of tracking is the pinned one") {
   vision::CameraModel camera = rift::test::PaperCamera();
   const vision::Frame frame = FloorFrame(camera);
   TrackScene scene = TwoRobots(camera, frame);
-  CHECK(DifferenceFromPinnedPicture("track.png", DrawTrack(scene).bgr) == "");
+  CHECK(DifferenceFromPinnedPicture("view/track.png", DrawTrack(scene).bgr) == "");
   scene.robots.pop_back();
   scene.frame = nullptr;
   scene.stand_at.reset();
-  CHECK(DifferenceFromPinnedPicture("track_one.png", DrawTrack(scene).bgr) == "");
+  CHECK(DifferenceFromPinnedPicture("view/track_one.png", DrawTrack(scene).bgr) == "");
 }
 
 TEST_CASE("A picture wider than 1280 px is shown smaller, with everything at its place") {
@@ -120,7 +120,7 @@ TEST_CASE("A picture wider than 1280 px is shown smaller, with everything at its
   const TrackPicture drawn = DrawTrack(TwoRobots(camera, frame));
   CHECK(drawn.bgr.cols == 1280);
   CHECK(drawn.px_per_shown == Approx(camera.width_px / 1280.0));
-  CHECK(DifferenceFromPinnedPicture("track_wide.png", drawn.bgr) == "");
+  CHECK(DifferenceFromPinnedPicture("view/track_wide.png", drawn.bgr) == "");
 }
 
 TEST_CASE("The words over a tracked picture say each robot, its path and the camera") {
@@ -177,13 +177,13 @@ TEST_CASE("The window of a calibration is the pinned one") {
                           .takes_by_itself = false,
                           .good_views = 12,
                           .good_coverage = 0.7};
-  CHECK(DifferenceFromPinnedPicture("calibration.png", DrawCalibrating(scene)) == "");
+  CHECK(DifferenceFromPinnedPicture("view/calibration.png", DrawCalibrating(scene)) == "");
   scene.next = {};
   scene.takes_by_itself = true;
   scene.good_views = 2;
   scene.advice.clear();
   scene.status.reason = "it sees no light";
-  CHECK(DifferenceFromPinnedPicture("calibration_covered.png", DrawCalibrating(scene)) == "");
+  CHECK(DifferenceFromPinnedPicture("view/calibration_covered.png", DrawCalibrating(scene)) == "");
 }
 
 }  // namespace

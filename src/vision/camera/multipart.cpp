@@ -123,7 +123,8 @@ std::optional<std::vector<std::uint8_t>> MultipartReader::Take() {
     const std::optional<std::size_t> end = EndOf(*head);
     if (!end) {
       if (waiting_.size() <= head->begin + most_bytes_) return std::nullopt;
-      PassOver(head->begin);
+      // All of it is the part's but for what may be the begin of a boundary.
+      PassOver(std::max(head->begin, waiting_.size() - delimiter_.size()));
       continue;
     }
     std::vector<std::uint8_t> part(waiting_.begin() + static_cast<std::ptrdiff_t>(head->begin),

@@ -53,6 +53,7 @@ class Tracking {
   void WatchReferences(const Frame& frame);
   void Show();
   void HoldLastPicture();
+  bool IsStopped() const;
   bool IsOver() const;
 
   const TrackParts& parts_;
@@ -167,9 +168,14 @@ void Tracking::WatchState() {
   parts_.say(fmt::format("camera {}{}", EnumNames(state)[static_cast<std::size_t>(state)], reason));
 }
 
+/// By the user, or by the time that was asked for.
+bool Tracking::IsStopped() const {
+  if (quit_ || parts_.is_stopped()) return true;
+  return parts_.duration_s && SteadyNow_s() - started_s_ > *parts_.duration_s;
+}
+
 bool Tracking::IsOver() const {
-  if (quit_ || parts_.is_stopped() || IsFinal(run_.status.state)) return true;
-  if (parts_.duration_s && SteadyNow_s() - started_s_ > *parts_.duration_s) return true;
+  if (IsStopped() || IsFinal(run_.status.state)) return true;
   return failing_since_s_ && SteadyNow_s() - *failing_since_s_ > parts_.options.give_up_s;
 }
 
@@ -181,7 +187,7 @@ void Tracking::Show() {
   if (frame_) shown_index_ = frame_->index;
   // A recording is shown at the speed at which it was made.
   while (run_.is_recording && frame_ && SteadyNow_s() - started_s_ < frame_->captured_s && !quit_) {
-    quit_ = !parts_.show(frame_, seen_, run_.status, run_.moved_m) || IsOver();
+    quit_ = !parts_.show(frame_, seen_, run_.status, run_.moved_m) || IsStopped();
     std::this_thread::sleep_for(std::chrono::duration<double>(kTick_s / 4));
   }
   quit_ = quit_ || !parts_.show(frame_, seen_, run_.status, run_.moved_m);

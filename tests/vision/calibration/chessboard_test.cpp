@@ -1,15 +1,20 @@
 #include "rift/vision/calibration/chessboard.hpp"
 
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "rift/vision/camera/jpeg.hpp"
 #include "support/processes/process.hpp"
 
 namespace rift::vision {
 namespace {
 
+using Catch::Matchers::Contains;
+
 constexpr int kSquare_px = 40;
+const Board kBoard{7, 5, 0.025};
 
 /// A board of 7 x 5 inner corners on white, without perspective.
 cv::Mat1b Drawn() {
@@ -49,6 +54,129 @@ TEST_CASE("A board turned any way is found where it is, from its upper left end 
       CHECK((view.corners[static_cast<std::size_t>(i)] - corner(at % 7, at / 7)).norm() < 0.2);
     }
   }
+}
+
+Frame FrameOf(const cv::Mat& picture) {
+  Frame frame{.width_px = picture.cols, .height_px = picture.rows};
+  if (picture.channels() == 3) frame.format = PixelFormat::kBgr;
+  frame.bytes.assign(picture.datastart, picture.dataend);
+  return frame;
+}
+
+TEST_CASE("The corners of a large picture are found to a tenth of its own pixels") {
+  const int times = GENERATE(1, 5);  // 400 and 2000 px wide
+  cv::Mat picture;
+  cv::resize(Drawn(), picture, {}, times, times, cv::INTER_NEAREST);
+  for (const BoardSearch search : {BoardSearch::kThorough, BoardSearch::kQuick}) {
+    const BoardView view = FindBoard(FrameOf(picture), kBoard, "it", search);
+    REQUIRE(view.corners.size() == 35);
+    CHECK(view.method == BoardMethod::kSector);
+    CHECK((view.name == "it" && view.problem.empty() && view.coloured == 0.0));
+    CHECK((view.width_px == 400 * times && view.height_px == 320 * times));
+    for (int i = 0; i < 35; ++i) {
+      const Eigen::Vector2d line(80.0 + kSquare_px * (i % 7), 80.0 + kSquare_px * (i / 7));
+      const Eigen::Vector2d expected = times * line - Eigen::Vector2d::Constant(0.5);
+      CHECK((view.corners[static_cast<std::size_t>(i)] - expected).norm() < 0.1);
+    }
+  }
+}
+
+TEST_CASE("What is drawn over a board in colour is its share of the board's pixels") {
+  cv::Mat picture;
+  cv::cvtColor(Drawn(), picture, cv::COLOR_GRAY2BGR);
+  const auto share = [&](const cv::Scalar& colour, const cv::Rect& where) {
+    cv::Mat drawn = picture.clone();
+    drawn(where).setTo(colour);
+    const BoardView view = FindBoard(FrameOf(drawn), kBoard, "it");
+    REQUIRE(view.corners.size() == 35);
+    return view.coloured;
+  };
+  // 240 by 160 px lie within the corners; the inner part of one white square of 40 px.
+  const cv::Rect inside(130, 90, 20, 20);
+  const double all = 241.0 * 161.0;
+  CHECK(share({0, 0, 255}, inside) == Approx(400.0 / all).epsilon(0.01));
+  CHECK(share({0, 255, 0}, inside) == Approx(400.0 / all).epsilon(0.01));
+  CHECK(share({0, 0, 255}, {50, 90, 20, 20}) == 0.0);  // beside the corners
+  CHECK(share({166, 166, 255}, inside) == 0.0);        // a saturation of 89 of 255
+  CHECK(share({164, 164, 255}, inside) > 0.0);         // of 91
+  CHECK(share({0, 0, 79}, {90, 90, 20, 20}) == 0.0);   // dark on black
+  CHECK(share({0, 0, 81}, {90, 90, 20, 20}) > 0.0);
+}
+
+TEST_CASE("A picture is black where its mean and three deviations are below 40") {
+  const auto problem = [](int grey, int other) {
+    cv::Mat picture(60, 80, CV_8UC1, cv::Scalar(grey));
+    picture.colRange(0, 40).setTo(other);
+    const BoardView view = FindBoard(FrameOf(picture), kBoard, "it");
+    CHECK(view.corners.empty());
+    CHECK(view.method == BoardMethod::kNone);
+    CHECK((view.width_px == 80 && view.height_px == 60));
+    return view.problem;
+  };
+  const std::string none = "no chessboard of 7 x 5 inner corners in it";
+  CHECK(problem(39, 39) == "the picture is black");
+  CHECK(problem(40, 40) == none);
+  CHECK(problem(9, 15) == "the picture is black");   // 12 and thrice 3
+  CHECK(problem(16, 28) == none);                    // 22 and thrice 6
+  CHECK(problem(14, 26) == "the picture is black");  // 20 and thrice 6
+  CHECK(problem(2, 24) == none);                     // 13 and thrice 11
+}
+
+TEST_CASE("Each file is told with its corners or what is wrong with it, until it is stopped") {
+  const test::TemporaryFolder folder;
+  cv::imwrite(folder / "board.png", Drawn());
+  test::WriteText(folder / "text.png", "no picture");
+  const std::vector<std::uint8_t> jpeg = WriteJpeg(Drawn(), 90, false);
+  const auto write = [&](const char* name, std::vector<std::uint8_t> bytes) {
+    std::ofstream(folder / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  };
+  write("board.jpg", jpeg);
+  write("half.jpg", {jpeg.begin(), jpeg.begin() + static_cast<std::ptrdiff_t>(jpeg.size() / 2)});
+  std::vector<std::uint8_t> huge = jpeg;
+  for (std::size_t at = 0; at + 9 < huge.size(); ++at) {
+    if (huge[at] != 0xFF || huge[at + 1] != 0xC0) continue;
+    huge[at + 5] = huge[at + 7] = 0x18;  // 6308 by 6352 pixels and so on: more than 40 million
+    huge[at + 6] = 0xA4;
+    huge[at + 8] = 0xD0;
+  }
+  write("huge.jpg", huge);
+  std::vector<std::string> said;
+  int asked = 0;
+  const ViewListener listener{.is_stopped = [&] { return ++asked > 5; },
+                              .say = [&](const std::string& line) { said.push_back(line); }};
+  std::vector<std::string> files;
+  for (const char* name : {"board.png", "text.png", "board.jpg", "half.jpg", "huge.jpg"}) {
+    files.push_back(folder / name);
+  }
+  const std::vector<BoardView> views = ViewsFromFiles(files, kBoard, listener);
+  REQUIRE(views.size() == 5);
+  CHECK(said == std::vector<std::string>{
+                    "board.png: 35 corners", "text.png: the picture cannot be decoded",
+                    "board.jpg: 35 corners",
+                    "half.jpg: its JPEG is damaged: copy it again, or leave it out",
+                    "huge.jpg: 6352 x 6308 pixels, and at most 40 million are read: make it "
+                    "smaller"});
+  CHECK(views[2].corners.size() == 35);
+  CHECK(views[3].corners.empty());
+  CHECK_THROWS_WITH(ViewsFromFiles(files, kBoard, listener),
+                    "stopped before all pictures were read");
+  Frame damaged{.width_px = 400, .height_px = 320, .format = PixelFormat::kJpeg, .bytes = {1, 2}};
+  CHECK(FindBoard(damaged, kBoard, "frame").problem == "the picture cannot be decoded");
+}
+
+TEST_CASE("A board has 3 to 100 inner corners both ways and squares of up to ten metres") {
+  for (const Board& good : {Board{3, 3, 10.0}, Board{100, 100, 0.001}}) CHECK_NOTHROW(good.Check());
+  for (const auto& [columns, rows] : {std::pair{2, 9}, {9, 2}, {101, 9}, {9, 101}}) {
+    CHECK_THROWS_WITH((Board{columns, rows, 0.025}.Check()),
+                      Contains("a board of " + std::to_string(columns) + " x " +
+                               std::to_string(rows) + " inner corners: there must be 3 to 100"));
+  }
+  CHECK_THROWS_WITH((Board{9, 6, 10.1}.Check()), Contains("squares of 10.1 m"));
+  CHECK_THROWS_WITH((Board{9, 6, 0.0}.Check()), Contains("above 0"));
+  CHECK_THROWS_WITH((Board{9, 6, -1.0}.Check()), Contains("squares of -1 m"));
+  CHECK_THROWS((Board{9, 6, std::nan("")}.Check()));
 }
 
 }  // namespace

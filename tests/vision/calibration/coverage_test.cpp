@@ -175,5 +175,55 @@ TEST_CASE("Views that were not used do not keep the next one from being asked fo
   CHECK_FALSE(NextViewFor(views, kBoard, 0.5).text.empty());
 }
 
+TEST_CASE("The next place is where the coverage grows most, and of equals the one farthest off") {
+  const auto next = [](const std::vector<ViewPlace>& taken, double enough = 0.7) {
+    std::vector<ViewResult> views;
+    for (const ViewPlace& place : taken) views.push_back(Used(Held(place)));
+    return NextViewFor(views, kBoard, enough).place;
+  };
+  const auto is = [](const ViewPlace& a, const ViewPlace& b) {
+    return a.x == b.x && a.y == b.y && a.size == b.size && a.skew == b.skew;
+  };
+  CHECK(is(next({}), {0.05, 0.05, 0.5, 0.6}));
+  // Far and tilted there is one: the opposite corner, near and flat.
+  CHECK(is(next({{0.05, 0.05, 0.25, 0.6}}), {0.95, 0.95, 0.5, 0.05}));
+  CHECK(is(next({{0.95, 0.95, 0.25, 0.6}}), {0.05, 0.05, 0.5, 0.05}));
+  CHECK(is(next({{0.05, 0.95, 0.25, 0.6}}), {0.95, 0.05, 0.5, 0.05}));
+  // Where only tilt is missing it is asked for away from what there is.
+  const ViewPlace tilted = next({{0.05, 0.05, 0.5, 0.05}, {0.95, 0.95, 0.5, 0.05}});
+  CHECK(tilted.skew == 0.6);
+  CHECK(tilted.size == 0.25);
+  CHECK(std::abs(tilted.x - tilted.y) == Approx(0.9));
+  const ViewPlace nearer = next({{0.05, 0.95, 0.25, 0.6}, {0.95, 0.05, 0.25, 0.6}});
+  CHECK(nearer.size == 0.5);
+  CHECK(nearer.skew == 0.05);
+  CHECK(std::abs(nearer.x - nearer.y) < 0.5);
+}
+
+TEST_CASE("A way is told from the first step that is worth it, in each direction") {
+  const ViewPlace now{0.5, 0.5, 0.4, 0.2};
+  CHECK(WayTo(now, {0.5 + 0.199, 0.5 - 0.199, 0.4 + 0.069, 0.29}).empty());
+  CHECK(WayTo(now, {0.5 - 0.199, 0.5 + 0.199, 0.4 - 0.069, 0.0}).empty());
+  CHECK(WayTo(now, {0.71, 0.5, 0.4, 0.2}) == "move it right in the picture");
+  CHECK(WayTo(now, {0.29, 0.5, 0.4, 0.2}) == "move it left in the picture");
+  CHECK(WayTo(now, {0.5, 0.71, 0.4, 0.2}) == "move it down in the picture");
+  CHECK(WayTo(now, {0.5, 0.29, 0.4, 0.2}) == "move it up in the picture");
+  CHECK(WayTo(now, {0.71, 0.29, 0.471, 0.2}) ==
+        "move it right and up in the picture, bring it nearer");
+  CHECK(WayTo(now, {0.5, 0.5, 0.329, 0.2}) == "take it farther away");
+  CHECK(WayTo(now, {0.5, 0.5, 0.4, 0.31}) ==
+        "tilt it by 40 degrees, one corner nearer than the opposite one");
+  const ViewPlace tilted{0.5, 0.5, 0.4, 0.31};
+  CHECK(WayTo(tilted, {0.5, 0.5, 0.4, 0.6}).empty());
+  CHECK(WayTo(tilted, {0.5, 0.5, 0.4, 0.29}) == "turn it to face the camera");
+}
+
+TEST_CASE("A board as large as the picture is wanted in its middle") {
+  const auto outline = OutlineAt({0.05, 0.95, 1.6, 0.0}, kBoard, kWidth_px, kHeight_px);
+  const Eigen::Vector2d middle = (outline[0] + outline[2]) / 2.0;
+  CHECK(middle.x() == Approx(500.0));
+  CHECK(middle.y() == Approx(200.0));
+}
+
 }  // namespace
 }  // namespace rift::vision

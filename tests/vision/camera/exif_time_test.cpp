@@ -134,10 +134,62 @@ TEST_CASE("Pictures are read at the times of their EXIF data") {
 
   Write(folder / "a11.jpg", Photograph{"2026:11:23 12:35:02", ""}.Jpeg());
   CHECK_THROWS_WITH(OpenCamera(folder / "*.jpg", options),
-                    Contains("a11.jpg") && Contains("not later") && Contains("whole seconds"));
+                    Contains("a11.jpg: by its EXIF data it was taken 2.100 s after the first") &&
+                        Contains("not later than the one before (2.100 s)") &&
+                        Contains("whole seconds"));
   Write(folder / "a11.jpg", WriteJpeg(cv::Mat1b(16, 16, std::uint8_t{100}), 80, false));
   CHECK_THROWS_WITH(OpenCamera(folder / "*.jpg", options),
                     Contains("a11.jpg: no DateTimeOriginal") && Contains("--times FILE"));
+}
+
+TEST_CASE("An hour has 60 minutes, a minute may have a leap second, and digits alone count") {
+  const auto seconds = [](const std::string& date, const std::string& fraction = "") {
+    return ExifTime_s(Photograph{date, fraction}.Jpeg());
+  };
+  CHECK(seconds("1970:01:01 23:59:60") == 86400.0);
+  CHECK(seconds("1970:12:31 00:00:00") == 364.0 * 86400.0);
+  for (const char* date : {"1970:01:01 24:00:00", "1970:01:01 00:60:00", "1970:01:01 00:00:61",
+                           "1970:13:01 00:00:00", "1970:01:32 00:00:00", "1970:01:01 00:00:5 ",
+                           "1970:01:01 00:-1:00", "197x:01:01 00:00:00"}) {
+    INFO(date);
+    CHECK_FALSE(seconds(date));
+  }
+  CHECK(seconds("1970:01:01 00:00:00", "5x7").value() == Approx(0.5));
+  CHECK(seconds("1970:01:01 00:00:00", "/9").value() == 0.0);
+  CHECK(seconds("1970:01:01 00:00:00", ":9").value() == 0.0);
+}
+
+TEST_CASE("An entry counts by its tag and its type, and a folder by its offset") {
+  const Bytes whole = Photograph{"1970:01:01 00:00:07", "25"}.Jpeg();
+  constexpr std::size_t kTiff = 2 + 4 + 6;  // behind the start, the segment's head and its name
+  // Places from the TIFF's begin, and what is there.
+  struct Entry {
+    std::size_t at;
+    int was, is;
+  };
+  const auto with = [&](const Entry& entry) {
+    Bytes changed = whole;
+    REQUIRE(changed[kTiff + entry.at] == entry.was);
+    changed[kTiff + entry.at] = static_cast<std::uint8_t>(entry.is);
+    return ExifTime_s(changed);
+  };
+  CHECK(ExifTime_s(whole).value() == Approx(7.25));
+  for (const Entry& entry : {Entry{0, 'I', 'X'},
+                             {1, 'I', 'X'},
+                             {2, 42, 43},
+                             {4, 8, 9},
+                             {10, 0x69, 0x68},
+                             {12, 4, 3},
+                             {18, 26, 27},
+                             {28, 0x03, 0x04},
+                             {30, 2, 3},
+                             {36, 64, 65}}) {
+    INFO("byte " << entry.at);
+    CHECK_FALSE(with(entry));
+  }
+  // The fraction by itself may be missing.
+  CHECK(with({40, 0x91, 0x90}).value() == Approx(7.0));
+  CHECK(with({42, 2, 3}).value() == Approx(7.0));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <random>
 
 namespace rift::vision {
 namespace {
@@ -47,6 +48,92 @@ TEST_CASE("A file of times is read by order or by name and is held to its rules"
   CHECK_THROWS_WITH(TimesFromText("1\nb.jpg 2\n", "t", files),
                     Contains("t:2: times with and without a picture's name"));
   CHECK(TimesFromText("c.jpg 0\na.jpg 1\nb.jpg 2\n", "t", files) == std::vector<double>{1.0, 2.0});
+}
+
+/// Runs of digits without their leading zeros, every other character by itself.
+std::vector<std::string> Words(const std::string& text) {
+  std::vector<std::string> words;
+  bool goes_on = false;
+  for (const char c : text) {
+    const bool is_digit = c >= '0' && c <= '9';
+    if (!is_digit || !goes_on) words.emplace_back();
+    if (words.back() == "0") words.back().clear();
+    words.back() += c;
+    goes_on = is_digit;
+  }
+  return words;
+}
+
+bool IsNumber(const std::string& word) { return word[0] >= '0' && word[0] <= '9'; }
+
+/// Natural order by words: numbers by their size, what is left by its length.
+bool ComesFirst(const std::string& a, const std::string& b) {
+  const std::vector<std::string> x = Words(a), y = Words(b);
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+    if (x[i] == y[i]) continue;
+    if (!IsNumber(x[i]) || !IsNumber(y[i])) return x[i][0] < y[i][0];
+    return std::stol(x[i]) < std::stol(y[i]);
+  }
+  return x.size() != y.size() ? x.size() < y.size() : a < b;
+}
+
+TEST_CASE("Natural order is that of words and numbers, and one order of all names") {
+  std::mt19937 random(3);
+  std::vector<std::string> names;
+  for (int i = 0; i < 120; ++i) {
+    std::string& name = names.emplace_back();
+    for (unsigned k = 0; k < random() % 6; ++k) name += "0011289ab-"[random() % 10];
+  }
+  int wrong = 0;
+  for (const std::string& a : names) {
+    for (const std::string& b : names) {
+      // Where words end within a number, its digits left count, not its words.
+      if (Words(a).size() == Words(b).size()) wrong += IsBefore(a, b) != ComesFirst(a, b);
+      if (a != b) wrong += IsBefore(a, b) == IsBefore(b, a);
+    }
+    wrong += IsBefore(a, a);
+  }
+  CHECK(wrong == 0);
+  CHECK(IsBefore("a01", "a1"));
+  CHECK(IsBefore("a01b", "a2"));
+  CHECK(IsBefore("a0", "a00"));
+  CHECK(IsBefore("a1-", "a1b"));
+}
+
+TEST_CASE("The last number in a name is its time, folder and ending left out") {
+  const auto times_s = [](const std::vector<std::string>& files) {
+    return TimesByNames(files, 10.0);
+  };
+  using Times = std::vector<double>;
+  CHECK(times_s({"run9/a.jp2"}) == Times{0.0});
+  CHECK(times_s({"run1/a.jp2", "run5/b.jp2"}) == Times{0.0, 0.1});
+  CHECK(times_s({"cam2_7x.png", "cam1_9x.png", "cam1_10x.png"}) ==
+        Times{0.0, 2.0 / 10.0, 3.0 / 10.0});
+  CHECK(times_s({"7.png", "9.png", "9.jpg"}) == Times{0.0, 0.1, 0.2});  // they do not rise
+  CHECK(times_s({"7.png", "9.png", "a.png"}) == Times{0.0, 0.1, 0.2});  // one has none
+  CHECK(times_s({"12.png", "15.png", "18.png", "24.png"}) == Times{0.0, 0.1, 0.2, 0.4});
+  // Clock times scatter: the median of 100, 101, 99 and 300 is one picture's.
+  const Times clock = times_s({"1000.png", "1100.png", "1201.png", "1300.png", "1600.png"});
+  CHECK(clock[1] == Approx(100.0 / 100.5 / 10.0));
+  CHECK(clock[4] == Approx(600.0 / 100.5 / 10.0));
+}
+
+TEST_CASE("What is wrong with a file of times is said with its line, picture and numbers") {
+  const std::vector<std::string> files{"run/a.jpg", "run/b.jpg"};
+  using Times = std::vector<double>;
+  CHECK(TimesFromText("\n  \t\r\n1 # one\n#2\n\n3\n4\n", "t", files) == Times{1.0, 3.0});
+  CHECK(TimesFromText("other/b.jpg,,2.5\r\n1e0", "t", files) == Times{1.0, 2.5});
+  CHECK(TimesFromText("7\n8\na.jpg 1\n", "t", files) == Times{1.0, 8.0});
+  const std::string rule = " is no time: seconds, or a picture's name and seconds";
+  CHECK_THROWS_WITH(TimesFromText("\n#\n1.5x\n", "t.txt", files), "t.txt:3: '1.5x'" + rule);
+  CHECK_THROWS_WITH(TimesFromText("a.jpg b.jpg 1\n", "t", files), "t:1: 'a.jpg b.jpg 1'" + rule);
+  CHECK_THROWS_WITH(TimesFromText("a.jpg one\n", "t", files), "t:1: 'a.jpg one'" + rule);
+  CHECK_THROWS_WITH(TimesFromText(",\n", "t", files), "t:1: ' '" + rule);
+  CHECK_THROWS_WITH(TimesFromText("1\n", "t", files), "t: no time for the picture run/b.jpg");
+  CHECK_THROWS_WITH(TimesFromText("b.jpg 2\n", "t", files), "t: no time for the picture run/a.jpg");
+  CHECK_THROWS_WITH(TimesFromText("2\n1.25\n", "t", files),
+                    "t: 1.25 s of run/b.jpg is not later than 2 s of the picture before");
+  CHECK_THROWS_WITH(TimesFromText("2\n2\n", "t", files), Contains("2 s of run/b.jpg is not later"));
 }
 
 }  // namespace

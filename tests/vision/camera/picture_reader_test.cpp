@@ -114,5 +114,72 @@ TEST_CASE("Random bytes in a compressed frame never crash the reader") {
   CHECK(reader.Read(whole));
 }
 
+/// Four by two pixels of blue, green, red and grey, in the bytes of each raw format.
+Frame Colours(PixelFormat format) {
+  Frame frame{.width_px = 4, .height_px = 2, .format = format};
+  const std::vector<cv::Vec3b> bgr{{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {90, 90, 90}};
+  for (int i = 0; i < 8; ++i) {
+    const cv::Vec3b& c = bgr[static_cast<std::size_t>(i % 4)];
+    if (format == PixelFormat::kBgr) frame.bytes.insert(frame.bytes.end(), {c[0], c[1], c[2]});
+    if (format == PixelFormat::kGrey) frame.bytes.push_back(static_cast<std::uint8_t>(10 * i));
+    if (format == PixelFormat::kYuyv) {
+      frame.bytes.push_back(static_cast<std::uint8_t>(10 * i));
+      frame.bytes.push_back(128);
+    }
+  }
+  return frame;
+}
+
+TEST_CASE("A raw picture is grey and coloured as its format says") {
+  PictureReader reader;
+  for (const PixelFormat format : {PixelFormat::kGrey, PixelFormat::kYuyv}) {
+    const Frame frame = Colours(format);
+    const auto patch = reader.Read(frame);
+    REQUIRE(patch);
+    const cv::Mat grey = SmallGreyOf(frame), bgr = BgrOf(frame);
+    REQUIRE((grey.size() == cv::Size(4, 2) && bgr.size() == cv::Size(4, 2)));
+    REQUIRE((grey.type() == CV_8UC1 && bgr.type() == CV_8UC3));
+    for (int i = 0; i < 8; ++i) {
+      CHECK(patch->pixels[static_cast<std::size_t>(i)] == 10 * i);
+      CHECK(grey.at<std::uint8_t>(i / 4, i % 4) == 10 * i);
+      // YUYV holds 16 to 235.
+      const double shown =
+          format == PixelFormat::kGrey ? 10.0 * i : std::max(0.0, (10.0 * i - 16.0) * 1.164);
+      for (int k = 0; k < 3; ++k) {
+        CHECK(bgr.at<cv::Vec3b>(i / 4, i % 4)[k] == Approx(shown).margin(1.0));
+      }
+    }
+    Frame cut = frame;
+    cut.bytes.pop_back();
+    CHECK_FALSE(reader.Read(cut));
+  }
+  const Frame frame = Colours(PixelFormat::kBgr);
+  const auto patch = reader.Read(frame);
+  REQUIRE(patch);
+  const cv::Mat grey = SmallGreyOf(frame), bgr = BgrOf(frame);
+  const std::array<double, 4> weights{0.114 * 255, 0.587 * 255, 0.299 * 255, 90};  // ITU-R BT.601
+  for (int i = 0; i < 8; ++i) {
+    const double expected = weights[static_cast<std::size_t>(i % 4)];
+    CHECK(patch->pixels[static_cast<std::size_t>(i)] == Approx(expected).margin(1.0));
+    CHECK(grey.at<std::uint8_t>(i / 4, i % 4) == Approx(expected).margin(1.0));
+    for (int k = 0; k < 3; ++k) {
+      CHECK(bgr.at<cv::Vec3b>(i / 4, i % 4)[k] == frame.bytes[static_cast<std::size_t>(3 * i + k)]);
+    }
+  }
+}
+
+TEST_CASE("A compressed picture is looked at in an eighth of its size and shown in all of it") {
+  Frame frame{.width_px = 64, .height_px = 40, .format = PixelFormat::kJpeg};
+  frame.bytes = WriteJpeg(cv::Mat1b(40, 64, std::uint8_t{77}), 90, true);
+  const cv::Mat small = SmallGreyOf(frame), bgr = BgrOf(frame);
+  CHECK((small.size() == cv::Size(8, 5) && small.type() == CV_8UC1));
+  CHECK((bgr.size() == cv::Size(64, 40) && bgr.type() == CV_8UC3));
+  CHECK(small.at<std::uint8_t>(2, 2) == Approx(77).margin(1.0));
+  CHECK(bgr.at<cv::Vec3b>(2, 2)[0] == Approx(77).margin(2.0));
+  frame.bytes = {1, 2, 3};
+  CHECK(SmallGreyOf(frame).empty());
+  CHECK(BgrOf(frame).empty());
+}
+
 }  // namespace
 }  // namespace rift::vision

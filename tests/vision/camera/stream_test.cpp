@@ -140,16 +140,55 @@ TEST_CASE("What a server answers is said in words and ends the session at once")
     CameraState state;
   };
   const std::vector<Answer> answers{
+      {"400 Bad Request", "it refuses the request (http 400)", CameraState::kRefused},
       {"401 Unauthorized", "user and password", CameraState::kRefused},
+      {"403 Forbidden", "it refuses this user (http 403)", CameraState::kRefused},
       {"404 Not Found", "nothing at this path", CameraState::kRefused},
-      {"500 Oops", "error of its own", CameraState::kUnplugged}};
+      {"408 Request Timeout", "it refuses the request (http 408)", CameraState::kUnplugged},
+      {"429 Too Many", "it refuses the request (http 429)", CameraState::kUnplugged},
+      {"499 Closed", "it refuses the request (http 499)", CameraState::kRefused},
+      {"500 Oops", "it has an error of its own (http 500)", CameraState::kUnplugged},
+      {"503 Busy", "it is busy, often with too many viewers (http 503)", CameraState::kUnplugged}};
   for (const Answer& answer : answers) {
     synthetic::ScriptedServer server(
         {"HTTP/1.0 " + answer.status + "\r\nContent-Length: 0\r\n\r\n", ""});
     CaptureThread capture = Capturing(server.Url());
     WaitForState(capture, answer.state);
-    CHECK_THAT(capture.Status().reason, Contains(answer.says));
+    CHECK_THAT(capture.Status().reason,
+               Catch::Matchers::StartsWith(server.Url() + ": ") && Contains(answer.says));
   }
+}
+
+TEST_CASE("A stream of parts that are no JPEGs is a wrong format after eleven of them") {
+  const auto state_after = [](int parts, bool has_picture) {
+    std::string answer(kOk);
+    if (has_picture) answer += Part(SmallJpeg());
+    for (int i = 0; i < parts; ++i) answer += Part("this is no picture");
+    if (parts < 11) answer += Part(SmallJpeg());
+    synthetic::ScriptedServer server({answer, ""}, 1);
+    CaptureThread capture = Capturing(server.Url());
+    CaptureStatus status;
+    test::WaitUntil("the stream is over", [&] {
+      status = capture.Status();
+      return IsFinal(status.state) || status.state == CameraState::kReconnecting;
+    });
+    return status;
+  };
+  CHECK(state_after(10, false).delivered == 1);
+  const CaptureStatus wrong = state_after(11, false);
+  CHECK(wrong.state == CameraState::kWrongFormat);
+  CHECK_THAT(wrong.reason, Contains(": the stream's parts are no JPEGs"));
+  CHECK(state_after(12, true).state == CameraState::kReconnecting);
+}
+
+TEST_CASE("What is no address, and what answers without http, is refused with the address") {
+  CHECK_THROWS_WITH(OpenCamera("http://cam:99999/video", {}),
+                    "http://cam:99999/video: it is no address of a camera, http://HOST:PORT/PATH "
+                    "with a port up to 65535");
+  synthetic::ScriptedServer server({"SSH-2.0-OpenSSH_9.2\r\n", ""});
+  CaptureThread capture = Capturing(server.Url());
+  WaitForState(capture, CameraState::kUnplugged);
+  CHECK_THAT(capture.Status().reason, Contains("what answers there does not speak http"));
 }
 
 TEST_CASE("Damaged parts and odd heads are passed over and counted") {

@@ -95,5 +95,120 @@ TEST_CASE("A better frame is not replaced") {
   CHECK(IsWorseThan(first, tags));
 }
 
+TEST_CASE(
+    "A frame in another unit is named by its factor, and what is within the tolerance is not") {
+  CHECK_NOTHROW(CheckScale(1.05 - 1e-9, 0.05, 0.05));
+  CHECK_NOTHROW(CheckScale(0.95 + 1e-9, 0.05, 0.05));
+  CHECK_THROWS(CheckScale(1.05 + 1e-9, 0.05, 0.05));
+  CHECK_THROWS(CheckScale(0.95 - 1e-9, 0.05, 0.05));
+  const auto reason = [](double scale) -> std::string {
+    try {
+      CheckScale(scale, 0.05, 0.05);
+    } catch (const std::invalid_argument& error) {
+      const std::string text = error.what();
+      return text.substr(text.rfind(": ") + 2);
+    }
+    return "";
+  };
+  const std::string metres = ": x_m and y_m are metres";
+  CHECK_THROWS_WITH(
+      CheckScale(100.0, 0.05, 0.05),
+      "in this frame the robot's tag is 5 m wide, printed it is 0.05 m: the places are "
+      "centimetres" +
+          metres);
+  const std::string unclear =
+      "is the tag's size right (--set track.tag.size_m), and are the places metres?";
+  for (const auto& [low, high, unit] : {std::tuple{31.0, 49.0, "inches"},
+                                        {80.0, 125.0, "centimetres"},
+                                        {800.0, 1250.0, "millimetres"}}) {
+    INFO(unit);
+    CHECK_THROWS_WITH(CheckScale(1.001 * low, 0.05, 0.05), Contains(unit));
+    CHECK_THROWS_WITH(CheckScale(0.999 * high, 0.05, 0.05), Contains(unit));
+    CHECK(reason(low) == unclear);
+    CHECK(reason(high) == unclear);
+  }
+}
+
+TEST_CASE("The scale of a frame is the mean side of the tag over its printed side") {
+  const CameraModel camera = test::PaperCamera();
+  TagDetection tag{.id = 4};
+  // Sides of 0.05, 0.1, 0.05 and 0.1 m at a height of 0.03 m.
+  const std::array<Eigen::Vector3d, 4> corners{
+      {{0.1, 0.1, 0.03}, {0.15, 0.1, 0.03}, {0.15, 0.2, 0.03}, {0.1, 0.2, 0.03}}};
+  for (int i = 0; i < 4; ++i) {
+    tag.corners[i] =
+        PixelsFromPoints(camera, {camera.world->world_from_camera.inverse() * corners[i]})[0];
+  }
+  CHECK(*ScaleByTag(camera, {TagDetection{.id = 3}, tag}, 4, 0.05, 0.03) == Approx(1.5));
+  CHECK(*ScaleByTag(camera, {tag}, 4, 0.05, 0.0) == Approx(1.5 * 0.87 / 0.84));
+  CHECK_FALSE(ScaleByTag(camera, {tag}, 4, 0.05, 1.0));  // above the camera
+}
+
+TEST_CASE("A frame is worse from half as much again and 0.2 mm on, and after one of the floor") {
+  const auto is_worse = [](double residual_m, double than_m) {
+    return IsWorseThan({.residual_m = residual_m, .origin = "4 points"},
+                       {.residual_m = than_m, .origin = "5 points"})
+        .has_value();
+  };
+  CHECK_FALSE(is_worse(1.5 * 0.002 + 2e-4 - 1e-9, 0.002));
+  CHECK(is_worse(1.5 * 0.002 + 2e-4 + 1e-9, 0.002));
+  CHECK_FALSE(is_worse(1.9e-4, 0.0));
+  CHECK(is_worse(2.1e-4, 0.0));
+  const WorldFrame first{.residual_m = 0.001, .origin = std::string(kFirstPoseOrigin)};
+  WorldFrame again = first;
+  CHECK_FALSE(IsWorseThan(again, first));
+  again.residual_m = 0.00234;
+  CHECK(
+      *IsWorseThan(again, first) ==
+      "it holds a frame from first pose, 1.00 mm off; the new one is from first pose, 2.34 mm off");
+  CHECK(IsWorseThan(first, {.residual_m = 1.0, .origin = "4 points"}));
+  CHECK_FALSE(IsWorseThan({.residual_m = 1.0, .origin = "4 points"}, first));
+}
+
+/// Places as a camera sees them, without noise.
+std::vector<WorldPoint> Exact(const CameraModel& camera,
+                              const std::vector<Eigen::Vector2d>& places) {
+  std::vector<WorldPoint> points;
+  for (const Eigen::Vector2d& place : places) {
+    const Eigen::Vector3d p(place.x(), place.y(), 0.02);
+    points.push_back(
+        {p, PixelsFromPoints(camera, {camera.world->world_from_camera.inverse() * p})[0], ""});
+  }
+  return points;
+}
+
+TEST_CASE(
+    "How far a point lies off is told to where the others put it, of four by the other three") {
+  const CameraModel camera = test::PaperCamera();
+  std::vector<Eigen::Vector2d> places{{-0.5, -0.25}, {0.5, -0.2}, {0.55, 0.3}, {-0.45, 0.35}};
+  for (const bool has_fifth : {false, true}) {
+    if (has_fifth) places.emplace_back(0.05, 0.1);
+    std::vector<WorldPoint> points = Exact(camera, places);
+    for (const double off_m : LeaveOneOut_m(camera, points)) CHECK(off_m < 1e-4);
+    points[2].p_in_world.head<2>() += Eigen::Vector2d(0.03, -0.04);
+    const std::vector<double> off_m = LeaveOneOut_m(camera, points);
+    REQUIRE(off_m.size() == places.size());
+    CHECK(off_m[2] == Approx(0.05).epsilon(0.01));
+    const std::string says =
+        has_fifth ? "a point is wrong: the others put it 50.0 mm away; measure it again"
+                  : "which one is wrong takes more tags to tell: measure all "
+                    "again, or lay five or more";
+    CHECK_THROWS_WITH(CheckPoints(camera, points, 0.004),
+                      Contains("(limit 4 mm): ") && Contains(says));
+    CHECK_NOTHROW(CheckPoints(camera, points, 10.0));
+  }
+}
+
+TEST_CASE(
+    "Points that only a camera below the floor sees so are said to fit from no place above it") {
+  const CameraModel camera = test::PaperCamera();
+  std::vector<WorldPoint> points =
+      Exact(camera, {{-0.5, -0.25}, {0.5, -0.2}, {0.55, 0.3}, {-0.45, 0.35}, {0.05, 0.1}});
+  for (WorldPoint& point : points) point.p_in_world.y() *= -1.0;
+  CHECK_THROWS_WITH(
+      CheckPoints(camera, points, 0.004),
+      Contains("do not fit what the camera sees, from no place above the floor (limit"));
+}
+
 }  // namespace
 }  // namespace rift::vision

@@ -1,0 +1,71 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+
+#include "rift/vision/calibration/calibration.hpp"
+#include "support/pinned_picture.hpp"
+#include "support/processes/process.hpp"
+
+namespace rift::vision {
+namespace {
+
+using Catch::Matchers::Contains;
+
+/// Four by three corners from `at` along a slanted grid, each with an error of its own.
+ViewResult Seen(const std::string& name, const Eigen::Vector2d& at, double rms_px) {
+  ViewResult result{.view = {.name = name, .width_px = 1920, .height_px = 1080}, .used = true};
+  for (int i = 0; i < 12; ++i) {
+    const int row = i / 4, column = i % 4;
+    result.view.corners.emplace_back(at.x() + 90.0 * column + 10.0 * row, at.y() + 80.0 * row);
+    result.residuals_px.emplace_back(rms_px * std::cos(i), rms_px * std::sin(2.0 * i));
+  }
+  result.rms_px = rms_px;
+  return result;
+}
+
+std::string DifferenceOf(const Calibration& calibration, const std::string& name) {
+  const test::TemporaryFolder folder;
+  DrawCalibration(calibration, folder / "drawn.png");
+  return test::DifferenceFromPinnedPicture("vision/" + name, cv::imread(folder / "drawn.png"));
+}
+
+TEST_CASE("The picture of a calibration is the pinned one") {
+  Calibration calibration;
+  calibration.verdict = CalibrationVerdict::kGood;
+  calibration.camera.lens = Lens::kEquidistant;
+  calibration.rms_px = 0.42;
+  calibration.floor_error_m = 0.00123;
+  calibration.coverage = {.x = 0.3, .y = 0.95, .size = 0.05, .skew = 0.6, .picture = 0.5};
+  calibration.views = {Seen("a.jpg", {100.0, 80.0}, 0.2),
+                       Seen("a name of more than twenty-two letters", {1300.0, 700.0}, 0.5),
+                       Seen("left out", {900.0, 300.0}, 1.5),
+                       {.view = {.name = "black", .width_px = 1920, .height_px = 1080}}};
+  calibration.views[2].used = false;
+  CHECK(DifferenceOf(calibration, "calibration.png") == "");
+}
+
+TEST_CASE("Without a fit every corner is drawn, without errors, and 26 views have a bar") {
+  Calibration refused;
+  refused.coverage.picture = 1.4;
+  for (int i = 0; i < 30; ++i) {
+    ViewResult& result = refused.views.emplace_back(
+        Seen("view" + std::to_string(i), {25.0 + 10.0 * i, 20.0 * i}, 0.0));
+    result.view.width_px = result.view.height_px = 800;  // taller than the map has room for
+    result.rms_px = kNotComputed;
+    if (i % 2 == 0) result.residuals_px.clear();
+    result.used = i % 3 != 0;
+  }
+  CHECK(DifferenceOf(refused, "calibration_refused.png") == "");
+  CHECK(DifferenceOf({}, "calibration_empty.png") == "");
+}
+
+TEST_CASE("A picture that cannot be written is refused with its name and what it must be") {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"drawn.txt", "none/drawn.png"}) {
+    CHECK_THROWS_WITH(DrawCalibration({}, folder / name),
+                      Contains(name) && Contains("it must end in .png or .jpg"));
+  }
+}
+
+}  // namespace
+}  // namespace rift::vision
