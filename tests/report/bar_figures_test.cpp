@@ -129,6 +129,17 @@ TEST_CASE("A series without a single gap keeps its name, its colour and its cros
                  Contains("$trials << EOD\n-0.105 0.026 \n-0.105 0.034 \n0.895 0.046 \n"));
 }
 
+TEST_CASE("A setting that was not tried leaves its place free and the others where they are") {
+  sweep::SweepResult result = synthetic::Grid();
+  std::erase_if(result.rows, [](const sweep::TrialRow& row) {
+    return row.theta[0].text == "sand_fine" && row.theta[1].text == "0.15" &&
+           row.theta[2].text == "0.50";
+  });
+  sweep::Summarise(result);
+  CHECK_THAT(GapBySettingFigure(result, LayOut(result), {}).plot,
+             Contains("$bars_1 << EOD\n-0.105 0.03 0.1932 \n1.895 0.07 0.1932 \nEOD\n"));
+}
+
 /// Mean gaps by row and column; NaN: no gap, 0: no such setting.
 struct Map {
   explicit Map(const std::vector<std::vector<double>>& means_m, size_t letters = 1) {

@@ -95,6 +95,30 @@ TEST_CASE("A map grows with its lines, turns the names of more than six columns,
   CHECK(chart.spec["data"][0]["values"].size() == 4);
 }
 
+TEST_CASE("Names in maps and charts are cut to 32 letters, and links keep them whole") {
+  const std::string fits(32, 'x'), longer(33, 'x'),
+      cut = std::string(16, 'x') + "…" + std::string(15, 'x');
+  sweep::SweepResult result = Pairs(1, 1);
+  sweep::FailingRegion region{.x_parameter = 0, .y_parameter = 1, .cells = {{}, {}}};
+  region.cells[0].x = region.cells[1].y = fits;
+  region.cells[0].y = region.cells[1].x = longer;
+  const json cells = FailureMap(result, region, {}).spec["data"][0]["values"];
+  CHECK(cells[0]["column"] == fits);
+  CHECK(cells[0]["line"] == cut);
+  CHECK(cells[1]["column"] == cut);
+  CHECK(cells[1]["line"] == fits);
+  CHECK(cells[1]["query"] == "a=" + longer + "&b=" + fits);
+  CHECK(cells[1]["tip"]["a"] == longer);
+  sweep::Explanation explanation;
+  for (const std::string& name : {fits, longer}) {
+    explanation.effects.parameters.push_back({.name = name});
+    explanation.effects.parameters.back().share = 0.5;
+  }
+  const json bars = WhyCharts(explanation).at(0).spec["data"][0]["values"];
+  CHECK(bars[0]["label"] == fits);
+  CHECK(bars[1]["label"] == cut);
+}
+
 TEST_CASE("A plane shows up to fifteen hundred trials, and of more every second") {
   for (const auto& [trials, dots] :
        {std::pair{1500, 1500}, {1501, 751}, {3001, 1501}, {3002, 1001}}) {

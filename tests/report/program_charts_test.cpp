@@ -68,6 +68,18 @@ TEST_CASE("Cells of a program lie by surface and speed, with their measure, unit
   CHECK(ProgramCharts(programs.result, {}).empty());
 }
 
+TEST_CASE("A program over one parameter has one line of cells") {
+  Programs programs;
+  programs.result.parameters.pop_back();
+  programs.cells.resize(3);
+  for (size_t i = 0; i < programs.cells.size(); ++i) {
+    programs.cells[i].theta = {synthetic::Word(std::string(1, static_cast<char>('a' + i)))};
+  }
+  CHECK(ProgramCharts(programs.result, programs.cells)[0].spec["height"] == 46);
+  CHECK(programs.Values(0)[2]["line"] == "all");
+  CHECK(programs.Values(0)[2]["column"] == "c");
+}
+
 TEST_CASE("A cell whose robot never moved or that has no run says so and has no value") {
   Programs programs;
   programs.cells[0].measures.moved = 0;
