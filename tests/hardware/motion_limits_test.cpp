@@ -1,6 +1,7 @@
 // Each limit of pose against wheels on both sides: motions in closed form, and when or whether they
 // are stopped.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -58,6 +59,33 @@ TEST_CASE("The speed at which the pose was last seen to move counts when the whe
   const Found found = StopOf(motion);
   CHECK(found.reason == StopReason::kPoseStands);
   CHECK(found.t_s == Approx(2.42).margin(0.011));
+}
+
+TEST_CASE("The speed of the wheels is that of the last tenth of a second") {
+  // 0.03 m in 0.05 s, and then they stand: the way exceeds 0.012 m + 0.1 s x speed once all but
+  // 0.018 m of it are older than that.
+  Motion motion{.times_s = Every(0.001, 2.0)};
+  motion.wheels_m = [](double t_s) {
+    return std::pair(0.0, 0.6 * std::clamp(t_s - 1.0, 0.0, 0.05));
+  };
+  const Found found = StopOf(motion);
+  CHECK(found.reason == StopReason::kPoseStands);
+  CHECK(found.t_s == Approx(1.12).margin(0.0025));
+}
+
+TEST_CASE("Poses of which nothing was told of the wheels are forgotten after four seconds") {
+  for (const auto& [since_s, is_forgotten] : {std::pair{6.0, true}, {4.5, false}}) {
+    MotionCheck check({}, kTrack_m);
+    check.SetLatency(0.0);
+    std::optional<Disagreement> found;
+    for (int i = 0; i < 350 && !found; ++i) {
+      const double t_s = 0.02 * i;  // it is carried for a second
+      check.SeePose({t_s, {0.5 * std::min(t_s, 1.0), 0.0, 0.0}, 0.0, 0.0, 0.0});
+      if (t_s >= since_s) check.SeeWheels({t_s, 0.0, 0.0}, true);
+      found = check.Check();
+    }
+    CHECK(found.has_value() == !is_forgotten);
+  }
 }
 
 TEST_CASE("A pose that moves or turns by more than its jitter stands no longer") {
