@@ -98,6 +98,21 @@ TEST_CASE("Wheels of a robot that does not answer are taken to obey, either one 
   });
 }
 
+TEST_CASE("A stop is acknowledged by the answer to the zero that goes out with it") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  Settle(robot, 0.4, bench);
+  robot.Arm();
+  DriveOn(robot, {0.2, 0.2}, 0.3, bench);
+  bench.Wait(0.045);  // the line is free again
+  const double stopped_s = bench.Now_s();
+  robot.Stop();
+  robot.ConfirmStop(1.0);
+  CHECK(robot.Record().stop_acknowledged == true);
+  // Twice the radio and the bytes of one command and its answer.
+  CHECK(bench.Now_s() - stopped_s == Approx(2 * 0.02 + (11 + 15) * 10.0 / 9600.0).margin(0.005));
+}
+
 TEST_CASE("What the robot did not obey is counted, and so is what was sent and answered") {
   Bench bench;
   RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
