@@ -153,6 +153,13 @@ TEST_CASE("The camera's delay over a whole drive is what was measured and what i
     REQUIRE(run.camera_latency_s);
     CHECK(*run.camera_latency_s == Approx(0.1).margin(0.03));
     CHECK(run.latency.has_value() == is_measured);
+    const LoopDelay parts = is_measured ? run.latency->delay : LoopDelay{0, 0, 0, 0, 0};
+    const std::string said = fmt::format(
+        "loop delay {:.0f} ms: camera {:.0f} ms, host {:.0f} ms, link {:.0f} ms, robot {:.0f} ms",
+        1e3 * *parts.total_s, 1e3 * *parts.camera_s, 1e3 * *parts.host_s, 1e3 * *parts.link_s,
+        1e3 * *parts.robot_s);
+    CHECK((std::find(person.told.begin(), person.told.end(), said) != person.told.end()) ==
+          is_measured);
     CHECK(std::any_of(person.told.begin(), person.told.end(), [](const std::string& line) {
             return line.find("turns a few degrees") != line.npos;
           }) == is_measured);
