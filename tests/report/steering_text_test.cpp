@@ -70,6 +70,45 @@ TEST_CASE("Of the real robot the steering is that of its odometry and of the mea
   CHECK(SteeringOf(experiment, run).model.speed_mps == 0.0);
 }
 
+/// Why a robot that stood under a small power did not move, by its motors.
+std::string WhyItStood(const simulation::SimulationOptions& simulation) {
+  experiment::Experiment experiment = OneLeg();
+  experiment.simulation = simulation;
+  sweep::SimulatedRun run{.result = Standing()};
+  run.result.outcome = trial::Outcome::kTimedOut;
+  for (int i = 0; i < 10; ++i) {
+    run.result.trajectory.poses.push_back(run.result.trajectory.poses.back());
+    run.result.trajectory.poses.back().t_s += 1.0;
+    run.result.commands.push_back({1.0 * i, {0.05, 0.04}});
+  }
+  const std::vector<std::string> causes = SteeringOf(experiment, run).causes;
+  REQUIRE(causes.size() == 1);
+  return causes[0];
+}
+
+TEST_CASE("The power that turns a wheel is that of its friction on its surface, or its dead band") {
+  using Catch::Matchers::Contains;
+  simulation::SimulationOptions simulation;
+  simulation.motor.breakaway_torque_nm = 0.0021;
+  simulation.motor.stall_torque_nm = 0.02;
+  simulation.motor.supply_ratio = 0.8;
+  simulation.motor.dead_band = 0.1;
+  simulation.terrain.surface = "mat";
+  simulation.terrain.surfaces["mat"].rolling_resistance = 0.0;
+  CHECK_THAT(WhyItStood(simulation), Contains("turn from 0.13 (simulation.motor: breakaway"));
+  simulation.terrain.surface = "nowhere";
+  CHECK_THAT(WhyItStood(simulation), Contains("turn from 0.13 (simulation.motor: breakaway"));
+  // As much again by rolling resistance.
+  simulation.terrain.surface = "mat";
+  simulation.terrain.surfaces["mat"].rolling_resistance =
+      0.0021 / (simulation.body.WeightOnWheel_n() * simulation.body.wheel_radius_m);
+  CHECK_THAT(WhyItStood(simulation), Contains("turn from 0.26 (simulation.motor: breakaway"));
+  simulation.motor.dead_band = 0.3;
+  CHECK_THAT(WhyItStood(simulation), Contains("turn from 0.3 (simulation.motor.dead_band)"));
+  simulation.motor.model = simulation::MotorModel::kServo;
+  CHECK_THAT(WhyItStood(simulation), Contains("motors, battery, dead band, or a link"));
+}
+
 trial::SteeringCheck Check() {
   trial::SteeringCheck check;
   check.turns = 1.25;
