@@ -173,6 +173,16 @@ TEST_CASE("Of several pairs the one with the largest gap is marked, and each has
                                                    colour, bulge)));
     }
   }
+  // With that of the simulator seven paths have the eight colours; more are shades.
+  const auto last_colour = [](size_t count) {
+    const std::vector<ComparedPair> many(count, synthetic::Pair(0.1));
+    const std::string plot = OverlayFigure(many).plot;
+    const size_t at = plot.find(fmt::format("$real_path_{} using", count - 1));
+    return plot.substr(plot.find('#', at), 7);
+  };
+  CHECK(last_colour(1) == "#0072B2");
+  CHECK(last_colour(7) == "#999999");
+  CHECK(last_colour(8) == "#FDE725");
   // A name of more than 36 letters is cut in its middle.
   pairs.resize(1);
   for (const size_t letters : {36, 37}) {

@@ -258,6 +258,8 @@ TEST_CASE("Charts of causes are as high as their bars and have twelve effects at
   explanation.effects.parameters.push_back(explanation.effects.parameters[0]);
   CHECK(WhyCharts(explanation)[0].spec["data"][0]["values"].size() == 12);
   CHECK(WhyCharts(explanation).size() == 1);  // nothing is known of the gap's parts
+  explanation.effects.parameters.resize(1);
+  CHECK(WhyCharts(explanation)[0].spec["height"] == 28);
   CHECK(WhyCharts({}).empty());
 }
 

@@ -140,7 +140,8 @@ TEST_CASE("More trials than can be told apart are fifty bins of their quantiles"
   CHECK_THAT(plot, Contains("set xrange [0.188:0.812]\nset yrange [0:0.1]\n") &&
                        Contains("$bins using 1:2:4 with filledcurves") &&
                        Contains("$bins using 1:3 with lines") &&
-                       Contains("$bins using 1:5 with points"));
+                       Contains("$bins using 1:5 with points") &&
+                       Contains("0.06 with lines lw 1.2 dt 2"));
   options.max_points = 5000;
   CHECK(Rows(GapOverParameterFigure("name", result, 0, options).plot, "pass").size() +
             Rows(GapOverParameterFigure("name", result, 0, options).plot, "fail").size() ==
