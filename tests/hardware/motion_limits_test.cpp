@@ -231,6 +231,7 @@ TEST_CASE("A pose that turns to and fro behind the wheels is stopped beyond the 
     const Found stopped = found(0.28, 0.0);
     CHECK(stopped.reason == StopReason::kPoseLags);
     CHECK(stopped.text == "the pose lags the wheels by 0.28 s, and the limit is 0.25 s");
+    CHECK(found(0.26, 0.0).text == "the pose lags the wheels by 0.26 s, and the limit is 0.25 s");
     CHECK(found(0.4, 0.16).reason == kNone);
     CHECK(found(0.44, 0.16).reason == StopReason::kPoseLags);
   }
