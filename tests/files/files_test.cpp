@@ -1,6 +1,7 @@
 #include "rift/files/files.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -62,6 +63,18 @@ TEST_CASE("A file of any length is read as it was written and leaves nothing bes
     WriteFile(folder / "sub/a.bin", text);
     CHECK(ReadFile(folder / "sub/a.bin") == text);
     CHECK(FilesIn(folder.Path() / "sub") == 1);
+  }
+}
+
+TEST_CASE("A file is for whoever the process lets read and write, as those of other programs are") {
+  const test::TemporaryFolder folder;
+  const mode_t before = ::umask(0027);
+  WriteFile(folder / "whole", "text");
+  { AppendFile grows(folder / "grows"); }
+  ::umask(before);
+  for (const char* name : {"whole", "grows"}) {
+    INFO(name);
+    CHECK(fs::status(folder / name).permissions() == fs::perms{0640});
   }
 }
 

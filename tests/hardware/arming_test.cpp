@@ -1,7 +1,10 @@
 #include "rift/hardware/arming.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "bench.hpp"
 #include "support/inputs/paper_waypoints.hpp"
@@ -56,6 +59,111 @@ TEST_CASE("Nothing moves until the operator says yes") {
   CHECK_FALSE(run.has_begun);
   CHECK(run.trial.reason == "stopped before the start: q was pressed");
   CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
+}
+
+/// What is told before a drive that a person gives up, of a start so far from where it stands.
+std::vector<std::string> ToldBefore(Bench& bench, DriveTask task, double off_m) {
+  task.task.waypoints[0].x_m = bench.Pose().x_m + off_m;
+  task.task.waypoints[0].y_m = bench.Pose().y_m;
+  Operator person;
+  DriveParts parts = person.PartsOf(bench);
+  parts.may_arm = [&] {
+    person.stop = {StopReason::kOperator, "q was pressed"};
+    return false;
+  };
+  Drive(parts, task);
+  return person.told;
+}
+
+TEST_CASE(
+    "Before the start it is told how the robot speaks, how far it may go and where it stands") {
+  for (const auto& [off_m, says] : {std::pair{0.099, ""},
+                                    {-0.099, ""},
+                                    {0.101, ": far off, is the world frame right?"},
+                                    {-0.101, ": far off, is the world frame right?"}}) {
+    Bench bench;
+    DriveTask task = PaperTask();
+    task.control.v_max = 0.5;
+    const std::vector<std::string> told = ToldBefore(bench, task, off_m);
+    REQUIRE(told.size() == 3);
+    CHECK(told[0] == "the robot speaks framed");
+    // 1.6 m/s at full power; the link's own delay in place of the 0.1 s that are assumed:
+    // 0.8 m/s x 0.334 s + 0.16 m.
+    CHECK_THAT(told[1],
+               Catch::StartsWith("worst stopping distance 0.42") &&
+                   Catch::Contains("m: at power 0.5, 0.80 m/s x (0.300 s watchdog + 0.03") &&
+                   Catch::EndsWith(" s delay) + braking"));
+    CHECK(told[2] == fmt::format("the robot stands at x -0.282 m, y -0.066 m, {:.3f} m from the "
+                                 "first waypoint{}",
+                                 std::abs(off_m), says));
+  }
+}
+
+TEST_CASE("What stops a drive before its start is a person's wish, or an error with its cause") {
+  for (const StopReason reason :
+       {StopReason::kOperator, StopReason::kSignal, StopReason::kCameraGone}) {
+    Bench bench;
+    Operator person;
+    DriveParts parts = person.PartsOf(bench);
+    bench.tag_is_hidden = true;  // it waits for the first pose
+    const double begun_s = bench.Now_s();
+    parts.stoppers.push_back([&]() -> std::optional<std::pair<StopReason, std::string>> {
+      if (bench.Now_s() < begun_s + 6.0) return std::nullopt;
+      return std::pair(reason, "so it was");
+    });
+    if (reason == StopReason::kCameraGone) {
+      CHECK_THROWS_WITH(Drive(parts, PaperTask()), "stopped before the start: so it was");
+    } else {
+      CHECK(Drive(parts, PaperTask()).trial.reason == "stopped before the start: so it was");
+    }
+    CHECK(bench.Now_s() < begun_s + 7.0);
+    CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
+  }
+}
+
+TEST_CASE("A camera whose pictures are later than their budget is refused after the turn") {
+  for (const auto& [late_s, is_taken] : {std::pair{0.2, true}, {0.3, false}}) {
+    Bench bench;
+    bench.camera_late_s = late_s;
+    Operator person;
+    DriveTask task = PaperTask();
+    task.trial.timeout_s = 1.0;
+    if (is_taken) {
+      const DriveRun run = Drive(person.PartsOf(bench), task);
+      CHECK(run.has_begun);
+      CHECK(*run.latency->delay.camera_s == Approx(late_s).margin(0.02));
+      continue;
+    }
+    CHECK_THROWS_WITH(Drive(person.PartsOf(bench), task),
+                      Catch::Contains("late, and the budget (hardware.evidence.max_latency_s) is "
+                                      "0.250 s"));
+    CHECK(bench.listener->Motors().IsZero());
+  }
+}
+
+TEST_CASE("The camera's delay over a whole drive is what was measured and what is left of it") {
+  for (const bool is_measured : {true, false}) {
+    Bench bench;
+    bench.camera_late_s = 0.1;
+    Operator person;
+    DriveTask task = PaperTask();
+    task.hardware.turn.enabled = is_measured;
+    const DriveRun run = Drive(person.PartsOf(bench), task);
+    INFO(run.trial.reason);
+    REQUIRE(run.camera_latency_s);
+    CHECK(*run.camera_latency_s == Approx(0.1).margin(0.03));
+    CHECK(run.latency.has_value() == is_measured);
+    const LoopDelay parts = is_measured ? run.latency->delay : LoopDelay{0, 0, 0, 0, 0};
+    const std::string said = fmt::format(
+        "loop delay {:.0f} ms: camera {:.0f} ms, host {:.0f} ms, link {:.0f} ms, robot {:.0f} ms",
+        1e3 * *parts.total_s, 1e3 * *parts.camera_s, 1e3 * *parts.host_s, 1e3 * *parts.link_s,
+        1e3 * *parts.robot_s);
+    CHECK((std::find(person.told.begin(), person.told.end(), said) != person.told.end()) ==
+          is_measured);
+    CHECK(std::any_of(person.told.begin(), person.told.end(), [](const std::string& line) {
+            return line.find("turns a few degrees") != line.npos;
+          }) == is_measured);
+  }
 }
 
 TEST_CASE("A dry run goes through the whole trial and no power but zero is ever written") {

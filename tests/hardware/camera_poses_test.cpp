@@ -1,5 +1,6 @@
 #include "rift/hardware/camera_poses.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <condition_variable>
@@ -119,6 +120,86 @@ TEST_CASE("A picture without a tag leaves the last pose and tells that somebody 
   CHECK(news.looked_s == 2.0);
   REQUIRE(news.newest);
   CHECK(news.newest->measured.captured_s == 1.0);
+}
+
+TEST_CASE(
+    "Pictures whose corners stay within four thousandths of a pixel repeat the first of them") {
+  std::atomic<double> off_px = 0.0;
+  std::atomic<bool> is_second_axis = false;
+  Scene scene([&](const vision::Frame& frame) {
+    vision::TrackResult found = LeaningTag(frame);
+    for (Eigen::Vector2d& corner : found.sighting->corners) corner = {100.0, 200.0};
+    Eigen::Vector2d& last = found.sighting->corners.back();
+    (is_second_axis ? last.y() : last.x()) += off_px;
+    return found;
+  });
+  const auto repeats_since_s = [&](double at_s, double by_px) {
+    off_px = off_px + by_px;
+    scene.stage->Put(at_s);
+    return scene.NewsWhen([&](const PoseNews& n) { return n.looked_s == at_s; }).repeats_since_s;
+  };
+  for (const bool is_y : {false, true}) {
+    const double t_s = is_y ? 10.0 : 0.0;
+    is_second_axis = is_y;
+    CHECK_FALSE(repeats_since_s(t_s + 1.0, 5.0));
+    CHECK(repeats_since_s(t_s + 2.0, 0.0039) == t_s + 1.0);
+    CHECK(repeats_since_s(t_s + 3.0, -0.0039) == t_s + 1.0);  // since the first, not the last
+    CHECK_FALSE(repeats_since_s(t_s + 4.0, 0.0041));
+    CHECK_FALSE(repeats_since_s(t_s + 5.0, -0.0041));
+    CHECK(repeats_since_s(t_s + 6.0, 0.0) == t_s + 5.0);
+  }
+}
+
+TEST_CASE("Only a tag that is surely the robot's is a pose, and its absence repeats nothing") {
+  std::atomic<vision::TrackState> state = vision::TrackState::kTracked;
+  std::atomic<bool> is_hidden = false;
+  Scene scene([&](const vision::Frame& frame) {
+    vision::TrackResult found = is_hidden ? vision::TrackResult{} : LeaningTag(frame);
+    if (found.sighting) found.sighting->state = state;
+    return found;
+  });
+  double t_s = 1.0;
+  const auto look = [&] {
+    scene.stage->Put(++t_s);
+    return scene.NewsWhen([&](const PoseNews& n) { return n.looked_s == t_s; });
+  };
+  CHECK(look().newest->measured.captured_s == 2.0);
+  for (const vision::TrackState other :
+       {vision::TrackState::kPredicted, vision::TrackState::kAmbiguous,
+        vision::TrackState::kLost}) {
+    state = other;
+    CHECK(look().newest->measured.captured_s == 2.0);
+  }
+  state = vision::TrackState::kTracked;
+  CHECK(look().newest->measured.captured_s == 6.0);
+  is_hidden = true;
+  CHECK_FALSE(look().repeats_since_s);
+  is_hidden = false;
+  CHECK_FALSE(look().repeats_since_s);
+  CHECK(look().repeats_since_s == 8.0);
+}
+
+TEST_CASE("A state from which no picture comes back is a fault, and each other one is none") {
+  for (const auto& [state, has_spoken, is_fault] :
+       {std::tuple{vision::CameraState::kOpening, false, false},
+        {vision::CameraState::kRunning, true, false},
+        {vision::CameraState::kFrozen, false, true},
+        {vision::CameraState::kFrozen, true, false},
+        {vision::CameraState::kBlack, true, false},
+        {vision::CameraState::kReconnecting, true, true},
+        {vision::CameraState::kReconnecting, false, true},
+        {vision::CameraState::kEnded, true, true}}) {
+    Scene scene(LeaningTag);
+    if (has_spoken) {
+      scene.stage->Put(1.0);
+      scene.NewsWhen([](const PoseNews& n) { return n.newest.has_value(); });
+    }
+    scene.stage->Become(state, "why");
+    const int before = scene.stage->Asked();
+    test::WaitUntil("the state was seen", [&] { return scene.stage->Asked() >= before + 3; });
+    INFO(static_cast<int>(state) << " " << has_spoken);
+    CHECK(scene.poses.Newest().fault.has_value() == is_fault);
+  }
 }
 
 TEST_CASE("A camera that will give no more pictures is a fault and one that pauses is none") {

@@ -1,6 +1,7 @@
 #include "rift/hardware/ping.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "bench.hpp"
 
@@ -22,6 +23,20 @@ TEST_CASE("Ping measures the round trip of a link whose delay is known") {
   CHECK(result.battery_v == Approx(5.0));
   CHECK(BrokenBudget(result, {}).empty());
   CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
+}
+
+TEST_CASE("Jitter is the mean change from one round trip to the next") {
+  Bench bench;
+  bench.line_delay_s = 0.005;
+  // Every second command and its answer take 8 ms longer: after the first two, 22.9 ms apart for
+  // the bytes of a command, one is sent each 31.25 ms.
+  bench.extra_delay_s = [&bench] {
+    return std::fmod(bench.Now_s() - 100.0 + 0.0625 - 0.019, 0.0625) < 0.03125 ? 0.0 : 0.008;
+  };
+  const PingResult result = Ping(bench, bench, {}, Protocol::kFramed, {});
+  CHECK(result.loss == 0.0);
+  CHECK(result.jitter_s == Approx(0.016).margin(0.0015));
+  CHECK(result.max_s == Approx(2 * 0.013 + (11 + 15) * 10.0 / 9600.0).margin(0.003));
 }
 
 TEST_CASE("Ping counts what was lost and for how long in a row") {

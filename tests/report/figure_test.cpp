@@ -26,6 +26,28 @@ TEST_CASE("A figure becomes a PNG that is not blank") {
             .size());
 }
 
+TEST_CASE("A picture has the size, font and scale of its figure and options") {
+  const ReportOptions options{.font_pt = 13, .png_scale = 2};
+  const Figure figure = Plot("plot x\n");
+  const std::string svg = GnuplotScript(figure, FigureFormat::kSvg, options);
+  CHECK_THAT(svg, Contains("set encoding utf8\nset terminal svg noenhanced size 300,200 font "
+                           "'Arial,13' background '#ffffff'\n"));
+  CHECK_THAT(svg, Contains("set border 3 ") && Catch::Matchers::EndsWith("\nplot x\n"));
+  // Cairo draws at 72 points an inch, of which an SVG has 96 pixels.
+  CHECK_THAT(GnuplotScript(figure, FigureFormat::kPng, options),
+             Contains("set terminal pngcairo noenhanced size 600,400 font 'DejaVu Sans,13' "
+                      "fontscale 1.5 linewidth 2 pointscale 2 background '#ffffff'\n"));
+}
+
+TEST_CASE("A figure's file is what its name ends in, and another ending is refused") {
+  CHECK_NOTHROW(RequireFigureName("a.svg"));
+  CHECK_NOTHROW(RequireFigureName("a.b/c.png"));
+  for (const char* name : {"a.pdf", "a", "svg", "a.svg.gz", "a.SVG"}) {
+    CHECK_THROWS_WITH(RequireFigureName(name),
+                      std::string("--figure ") + name + ": the name must end in .svg or .png");
+  }
+}
+
 TEST_CASE("The same figure gives the same bytes") {
   for (const FigureFormat format : {FigureFormat::kSvg, FigureFormat::kPng}) {
     CHECK(Render(Plot("plot sin(x)\n"), format) == Render(Plot("plot sin(x)\n"), format));
@@ -60,6 +82,13 @@ TEST_CASE("A stack holds every figure at its own height") {
   const Figure stack = Stack("all", "", {tall, low});
   CHECK(stack.height_px == 300);
   CHECK(stack.width_px == 300);
+  // From the top down, and from the bottom up as gnuplot counts.
+  CHECK_THAT(stack.plot, Contains("set size 1,0.666666667\nset origin 0,0.333333333\nset xlabel "
+                                  "'upper'") &&
+                             Contains("set size 1,0.333333333\nset origin 0,0\nset xlabel "
+                                      "'lower'"));
+  low.width_px = 340;
+  CHECK(Stack("all", "", {tall, low, tall}).width_px == 340);
   const std::string svg = Render(stack, FigureFormat::kSvg);
   CHECK_THAT(svg, Contains("upper") && Contains("lower"));
 }

@@ -120,6 +120,79 @@ TEST_CASE("Axes of errors end beyond the largest error and the threshold, by les
   }
 }
 
+TEST_CASE(
+    "The overlay covers paths and waypoints with a margin and is never flatter than a quarter") {
+  const auto drawn = [](const std::vector<Eigen::Vector2d>& waypoints_m, int width_px = 480) {
+    ComparedPair pair = synthetic::Pair(0.0);
+    pair.waypoints_m = waypoints_m;
+    const Figure figure = OverlayFigure({pair}, {.width_px = width_px});
+    const size_t begin = figure.plot.find("set xrange");
+    return fmt::format("{}, {} px", figure.plot.substr(begin, figure.plot.find("\nplot") - begin),
+                       figure.height_px);
+  };
+  // The path goes from x = 0 to 1: 6 % of the longer side on each side, and 400 px for 1.12 m.
+  CHECK(drawn({}) == "set xrange [-0.06:1.06]\nset yrange [-0.185:0.185], 242 px");
+  CHECK(drawn({{0.5, 0.6}}) == "set xrange [-0.06:1.06]\nset yrange [-0.06:0.66], 367 px");
+  CHECK(drawn({{0.5, -0.6}}) == "set xrange [-0.06:1.06]\nset yrange [-0.66:0.06], 367 px");
+  CHECK(drawn({{-1.0, 0.0}}) == "set xrange [-1.12:1.12]\nset yrange [-0.37:0.37], 242 px");
+  CHECK(drawn({{2.0, 0.0}}) == "set xrange [-0.12:2.12]\nset yrange [-0.37:0.37], 242 px");
+  CHECK(drawn({{0.0, 4.0}}) == "set xrange [-0.24:1.24]\nset yrange [-0.24:4.24], 640 px");
+  CHECK(drawn({}, 240) == "set xrange [-0.06:1.06]\nset yrange [-0.185:0.185], 220 px");
+}
+
+TEST_CASE("A curve of many samples is thinned to about a thousand and keeps its last one") {
+  for (const auto& [samples, points, second] :
+       {std::tuple{999, 999, 1}, {1999, 1999, 1}, {2000, 1001, 2}, {2501, 1251, 2}}) {
+    gap::GapOptions gap;
+    gap.samples = samples;
+    const ComparedPair pair =
+        ComparePair("sim", synthetic::Path(0.0), "real", synthetic::Path(0.1), gap);
+    REQUIRE(pair.profile.u.size() == static_cast<size_t>(samples));
+    const std::string plot = ErrorFigure({pair}, gap).plot;
+    const std::string head = "$error_0 << EOD\n";
+    const std::string rows =
+        plot.substr(plot.find(head) + head.size(), plot.find("EOD\n$maxima") - head.size());
+    INFO(samples);
+    CHECK(std::count(rows.begin(), rows.end(), '\n') == points);
+    CHECK(rows.find(fmt::format("\n{:.7g} ", pair.profile.u[static_cast<size_t>(second)])) ==
+          rows.find('\n'));
+    CHECK_THAT(rows, Contains("\n1 "));
+  }
+}
+
+TEST_CASE("Of several pairs the one with the largest gap is marked, and each has its own colour") {
+  std::vector<ComparedPair> pairs;
+  for (const double bulge_m : {0.05, 0.12, 0.08}) {
+    pairs.push_back(synthetic::Pair(bulge_m, fmt::format("real of {}", bulge_m)));
+  }
+  for (const Figure& figure : {OverlayFigure(pairs), ErrorFigure(pairs, {})}) {
+    CHECK_THAT(figure.plot, Contains(fmt::format("gap {:.4f} m", pairs[1].comparison.gap_m)));
+    for (const auto& [colour, bulge] :
+         {std::pair{"#0072B2", "0.05"}, {"#009E73", "0.12"}, {"#CC79A7", "0.08"}}) {
+      CHECK_THAT(figure.plot, Contains(fmt::format("lines lw 1.8 lc rgb '{}' title 'real of {}'",
+                                                   colour, bulge)));
+    }
+  }
+  // With that of the simulator seven paths have the eight colours; more are shades.
+  const auto last_colour = [](size_t count) {
+    const std::vector<ComparedPair> many(count, synthetic::Pair(0.1));
+    const std::string plot = OverlayFigure(many).plot;
+    const size_t at = plot.find(fmt::format("$real_path_{} using", count - 1));
+    return plot.substr(plot.find('#', at), 7);
+  };
+  CHECK(last_colour(1) == "#0072B2");
+  CHECK(last_colour(7) == "#999999");
+  CHECK(last_colour(8) == "#FDE725");
+  // A name of more than 36 letters is cut in its middle.
+  pairs.resize(1);
+  for (const size_t letters : {36, 37}) {
+    pairs[0].real = pairs[0].sim = std::string(letters, 'x');
+    const std::string cut = std::string(18, 'x') + "…" + std::string(17, 'x');
+    CHECK_THAT(OverlayFigure(pairs).plot,
+               Contains("title '" + (letters == 36 ? std::string(36, 'x') : cut) + "'"));
+  }
+}
+
 TEST_CASE("No pair is refused") { CHECK_THROWS_AS(OverlayFigure({}), std::invalid_argument); }
 
 }  // namespace

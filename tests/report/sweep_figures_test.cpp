@@ -121,6 +121,58 @@ TEST_CASE("Forty levels are drawn as long as the bars can be told apart") {
   CheckAllRender(set);
 }
 
+TEST_CASE("A figure is left out from one bar or cell more than its limit on, with its number") {
+  // Three surfaces beside four combinations of the other parameters.
+  const sweep::SweepResult result = synthetic::Grid();
+  const auto reason = [&](const std::string& name, const ReportOptions& options) {
+    return ReasonFor(SweepFigures(result, {}, options), name);
+  };
+  CHECK(reason("fig07", {.max_bars = 12}) == "drawn");
+  CHECK(reason("fig07", {.max_bars = 11}) ==
+        "12 bars in 4 colours cannot be told apart: see figure 10");
+  CHECK(reason("fig10", {.max_cells = 12}) == "drawn");
+  CHECK(reason("fig10", {.max_cells = 11}) == "12 cells are too many to read");
+  for (const char* name : {"fig11", "fig12"}) {
+    CHECK(reason(name, {.max_bars = 3}) == "drawn");
+    CHECK(reason(name, {.max_bars = 2}) == "3 bars are too many to read");
+  }
+  CHECK(reason("fig13", {.max_bars = 4}) == "drawn");
+  CHECK(reason("fig13", {.max_bars = 3}) == "4 bars are too many to read");
+  CHECK(reason("fig09", {}) == "the paths of the worst trial are not at hand");
+  // Twelve series have a colour each.
+  for (const int series : {12, 13}) {
+    sweep::SweepResult many = synthetic::Grid({"ice", "rock"});
+    many.parameters.resize(2);
+    many.parameters[1].levels.clear();
+    many.rows.clear();
+    for (int i = 0; i < series; ++i) {
+      many.parameters[1].levels.push_back(synthetic::Numeric(std::to_string(i)));
+      for (const auto& surface : many.parameters[0].levels) {
+        many.rows.push_back(synthetic::Row({surface, many.parameters[1].levels[i]}, "1", 0.05));
+      }
+    }
+    sweep::Summarise(many);
+    const SweepFigureSet set = SweepFigures(many);
+    CHECK_THAT(ReasonFor(set, "fig07"),
+               series == 12 ? Contains("drawn") : Contains("26 bars in 13 colours"));
+  }
+}
+
+TEST_CASE("Parameters' names are file names of letters, digits and dashes") {
+  sweep::SweepResult result = synthetic::Grid();
+  result.parameters.resize(1);
+  for (auto& row : result.rows) row.theta.resize(1);
+  for (const auto& [key, part] :
+       {std::pair{"terrain.(a) b-2  c)", "a_b-2_c"}, {"_x_", "x"}, {"?!", "parameter"}}) {
+    result.parameters[0].key = key;
+    sweep::Summarise(result);
+    const std::vector<std::string> names = Names(SweepFigures(result));
+    REQUIRE(names.size() == 3);
+    CHECK(names[1] == std::string("fig11_gap_by_") + part);
+    CHECK(names[2] == std::string("fig12_failures_by_") + part);
+  }
+}
+
 TEST_CASE("Continuous axes give scatter plots instead of bars") {
   const SweepFigureSet set = SweepFigures(synthetic::Continuous(200));
   CHECK(Names(set) ==

@@ -176,6 +176,11 @@ TEST_CASE("A drive that did not arrive is a failure where its end counts, else i
   REQUIRE(taken.size() == 1);
   CHECK(taken[0].trials == 0);
   CHECK(taken[0].failures == 0);
+  // Those after it are taken all the same.
+  SaveDrive(suggested.Drive(1, 2), 0.05, kReached);
+  taken = suggested.Take(Search({"falsify.count.timed_out=false"}));
+  CHECK(taken[0].trials == 1);
+  CHECK(taken[0].failures == 1);
 }
 
 TEST_CASE("A drive without a proper end is named and not judged") {

@@ -1,0 +1,241 @@
+// Each limit of pose against wheels on both sides: motions in closed form, and when or whether they
+// are stopped.
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "motion.hpp"
+#include "support/mirror.hpp"
+
+namespace rift::hardware {
+namespace {
+
+using geometry::Pose2;
+
+constexpr StopReason kNone = StopReason::kFinished;
+
+/// A wheel that rolls at `mps` from 1 s on.
+double Rolled_m(double t_s, double mps) { return mps * std::max(0.0, t_s - 1.0); }
+
+constexpr double kFine_s = 0.005;
+
+TEST_CASE("Wheels that roll while the pose stands are stopped by their way and their speed") {
+  // 0.012 m and what it rolls in 0.1 s; in max_latency_s as well while the latency is not known;
+  // three times as much without encoders.
+  struct Case {
+    std::optional<double> latency_s;
+    bool is_measured;
+    double max_latency_s, way_m;
+  };
+  for (const auto& [latency_s, is_measured, max_latency_s, way_m] :
+       {Case{0.0, true, 0.25, 0.032}, Case{{}, true, 0.05, 0.042}, Case{0.0, false, 0.25, 0.096},
+        Case{{}, false, 0.25, 0.246}}) {
+    for (const double mps : {0.2, -0.2}) {
+      for (const auto& [left, right] : {std::pair{1.0, 1.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, -1.0}}) {
+        Motion motion{
+            .latency_s = latency_s, .is_measured = is_measured, .times_s = Every(kFine_s)};
+        motion.options.max_latency_s = max_latency_s;
+        motion.wheels_m = [=, left = left, right = right](double t_s) {
+          return std::pair(left * Rolled_m(t_s, mps), right * Rolled_m(t_s, mps));
+        };
+        const Found found = StopOf(motion);
+        INFO(way_m << " " << mps << " " << left << " " << right << ": " << found.text);
+        CHECK(found.reason == StopReason::kPoseStands);
+        CHECK(found.t_s > 1.0 + way_m / 0.2 - 1e-6);
+        CHECK(found.t_s < 1.0 + way_m / 0.2 + 0.007);
+      }
+    }
+  }
+}
+
+TEST_CASE("The speed at which the pose was last seen to move counts when the wheels slow down") {
+  // 0.3 m/s with the pose until 2 s, then 0.1 m/s without it: 0.012 m + 0.1 s x 0.3 m/s.
+  Motion motion{.times_s = Every(kFine_s)};
+  motion.options.still_m = 1e-4;
+  const auto way_m = [](double t_s) { return t_s < 2.0 ? 0.3 * t_s : 0.6 + 0.1 * (t_s - 2.0); };
+  motion.wheels_m = [&](double t_s) { return std::pair(way_m(t_s), way_m(t_s)); };
+  motion.pose = [&](double t_s) { return Pose2{way_m(std::min(t_s, 2.0)), 0.0, 0.0}; };
+  const Found found = StopOf(motion);
+  CHECK(found.reason == StopReason::kPoseStands);
+  CHECK(found.t_s == Approx(2.42).margin(0.011));
+}
+
+TEST_CASE("The speed of the wheels is that of the last tenth of a second") {
+  // 0.03 m in 0.05 s, and then they stand: the way exceeds 0.012 m + 0.1 s x speed once all but
+  // 0.018 m of it are older than that.
+  Motion motion{.times_s = Every(0.001, 2.0)};
+  motion.wheels_m = [](double t_s) {
+    return std::pair(0.0, 0.6 * std::clamp(t_s - 1.0, 0.0, 0.05));
+  };
+  const Found found = StopOf(motion);
+  CHECK(found.reason == StopReason::kPoseStands);
+  CHECK(found.t_s == Approx(1.12).margin(0.0025));
+}
+
+TEST_CASE("Poses of which nothing was told of the wheels are forgotten after four seconds") {
+  for (const auto& [since_s, is_forgotten] : {std::pair{6.0, true}, {4.5, false}}) {
+    MotionCheck check({}, kTrack_m);
+    check.SetLatency(0.0);
+    std::optional<Disagreement> found;
+    for (int i = 0; i < 350 && !found; ++i) {
+      const double t_s = 0.02 * i;  // it is carried for a second
+      check.SeePose({t_s, {0.5 * std::min(t_s, 1.0), 0.0, 0.0}, 0.0, 0.0, 0.0});
+      if (t_s >= since_s) check.SeeWheels({t_s, 0.0, 0.0}, true);
+      found = check.Check();
+    }
+    CHECK(found.has_value() == !is_forgotten);
+  }
+}
+
+TEST_CASE("A pose that moves or turns by more than its jitter stands no longer") {
+  const auto stopped_s = [](const Pose2& moved) {
+    Motion motion{.is_measured = false, .times_s = Every(kFine_s)};
+    motion.wheels_m = [](double t_s) { return std::pair(0.0, Rolled_m(t_s, 0.1)); };
+    motion.pose = [&](double t_s) { return t_s < 1.6 ? Pose2{} : moved; };
+    return StopOf(motion).t_s;
+  };
+  // 3 x (0.012 + 0.1 x 0.1) m take 0.66 s, and from 1.6 s on again where it moved.
+  for (const double sign : {1.0, -1.0}) {
+    CHECK(stopped_s({0.0, sign * 0.0059, 0.0}) == Approx(1.66).margin(0.007));
+    CHECK(stopped_s({0.0, sign * 0.0061, 0.0}) == Approx(2.26).margin(0.007));
+    CHECK(stopped_s({sign * 0.0061, 0.0, 0.0}) == Approx(2.26).margin(0.007));
+    CHECK(stopped_s({0.0, 0.0, geometry::RadFromDeg(sign * 3.9)}) == Approx(1.66).margin(0.007));
+    CHECK(stopped_s({0.0, 0.0, geometry::RadFromDeg(sign * 4.1)}) == Approx(2.26).margin(0.007));
+  }
+}
+
+TEST_CASE("A pose that is pushed or turned while the wheels stand is stopped beyond the limits") {
+  const auto stopped = [](const Pose2& pushed, bool is_measured) {
+    Motion motion{.is_measured = is_measured, .times_s = Every(kFine_s, 2.0)};
+    motion.pose = [&](double t_s) { return t_s < 1.0 ? Pose2{} : pushed; };
+    const Found found = StopOf(motion);
+    if (found.reason != StopReason::kFinished) CHECK(found.reason == StopReason::kWheelsStand);
+    return found.reason == StopReason::kWheelsStand;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    for (const auto& [is_measured, m, deg] : {std::tuple{true, 0.03, 15.0}, {false, 0.09, 45.0}}) {
+      for (const double beyond : {-1e-4, 1e-4}) {
+        CHECK(stopped({sign * (m + beyond), 0.0, 0.0}, is_measured) == (beyond > 0.0));
+        CHECK(stopped({0.0, sign * (m + beyond), 0.0}, is_measured) == (beyond > 0.0));
+        CHECK(stopped({0.0, 0.0, geometry::RadFromDeg(sign * (deg + 1e3 * beyond))}, is_measured) ==
+              (beyond > 0.0));
+      }
+    }
+  }
+}
+
+TEST_CASE("Wheels stand from the budgeted latency after their last step on, whichever stepped") {
+  const auto stopped = [](double left_m, double right_m, double after_s) {
+    Motion motion{.times_s = Every(kFine_s, 2.0)};
+    motion.wheels_m = [=](double t_s) {
+      return t_s < 0.9975 ? std::pair(0.0, 0.0) : std::pair(left_m, right_m);
+    };
+    motion.pose = [=](double t_s) { return t_s < 1.0 + after_s ? Pose2{} : Pose2{0.0, 0.04, 0.0}; };
+    return StopOf(motion).reason == StopReason::kWheelsStand;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    test::OnBothSides("left", "right", [&](const test::Side& side) {
+      const auto stepped = [&](double step_m, double after_s) {
+        const auto wheels = side.Of<std::pair<double, double>>(sign * step_m, 0.0);
+        return stopped(wheels.first, wheels.second, after_s);
+      };
+      CHECK_FALSE(stepped(0.0031, 0.242));  // a pose that lags may still follow
+      CHECK(stepped(0.0031, 0.262));
+      CHECK(stepped(0.0029, 0.242));  // less is no step
+    });
+  }
+}
+
+TEST_CASE("A picture that is repeated while the wheels roll is stopped after both of its limits") {
+  const auto stopped = [](double mps, bool is_measured, double late_s) {
+    Motion motion{.latency_s = late_s,
+                  .is_measured = is_measured,
+                  .late_s = late_s,
+                  .times_s = Every(kFine_s)};
+    motion.wheels_m = [=](double t_s) { return std::pair(Rolled_m(t_s, mps), 0.0); };
+    motion.repeats_since_s = [](double t_s) {
+      return t_s < 1.0 ? std::optional<double>() : std::optional(1.0);
+    };
+    const Found found = StopOf(motion);
+    INFO(found.text);
+    CHECK(found.reason == StopReason::kPictureRepeats);
+    return found.t_s;
+  };
+  for (const double late_s : {0.0, 0.2}) {
+    for (const double sign : {1.0, -1.0}) {
+      CHECK(stopped(sign * 0.2, true, late_s) == Approx(1.1).margin(0.006));      // 0.1 s
+      CHECK(stopped(sign * 0.04, true, late_s) == Approx(1.128).margin(0.006));   // 5 mm
+      CHECK(stopped(sign * 0.04, false, late_s) == Approx(1.378).margin(0.006));  // 15 mm
+    }
+  }
+}
+
+TEST_CASE("Pose and wheels may part by a distance and a share of the way, to every side") {
+  const auto found = [](double x_m, double y_m) {
+    Motion motion{.times_s = Every(0.03)};
+    motion.wheels_m = [](double t_s) { return std::pair(0.1 * t_s, 0.1 * t_s); };
+    motion.pose = [=](double t_s) {
+      return t_s < 1.0 ? Pose2{0.1 * t_s, 0.0, 0.0} : Pose2{0.1 * t_s + x_m, y_m, 0.0};
+    };
+    return StopOf(motion);
+  };
+  // 13 periods of 0.03 s are within 0.4 s: 0.05 m + 0.4 x 0.039 m.
+  for (const auto& [x, y] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
+    CHECK(found(0.0654 * x, 0.0654 * y).reason == kNone);
+    const Found stopped = found(0.0658 * x, 0.0658 * y);
+    CHECK(stopped.reason == StopReason::kPoseDisagrees);
+    CHECK(stopped.text ==
+          "pose and wheels part by 0.066 m within 0.4 s, in which the wheels rolled 0.039 m");
+  }
+}
+
+TEST_CASE("On a circle to either side, forward and backward, the pose follows the wheels exactly") {
+  for (const double v_mps : {0.1, -0.1}) {
+    for (const double w_rad_s : {2.5, -2.5}) {
+      Motion motion{.times_s = Every(0.04)};
+      motion.options.agree_m = 1e-3;
+      motion.options.agree_share = 0.0;
+      motion.wheels_m = [=](double t_s) {
+        return std::pair((v_mps - 0.5 * kTrack_m * w_rad_s) * t_s,
+                         (v_mps + 0.5 * kTrack_m * w_rad_s) * t_s);
+      };
+      motion.pose = [=](double t_s) {
+        const double yaw_rad = w_rad_s * t_s, radius_m = v_mps / w_rad_s;
+        return Pose2{radius_m * std::sin(yaw_rad), radius_m * (1.0 - std::cos(yaw_rad)),
+                     geometry::WrapToPi(yaw_rad)};
+      };
+      const Found found = StopOf(motion);
+      INFO(found.text);
+      CHECK(found.reason == kNone);
+    }
+  }
+}
+
+TEST_CASE("A pose that turns to and fro behind the wheels is stopped beyond the budgeted latency") {
+  for (const double sign : {1.0, -1.0}) {
+    const auto found = [&](double late_s, double known_s) {
+      const auto yaw_rad = [=](double t_s) {
+        return sign * 0.5 * std::sin(3.0 * std::max(0.0, t_s));
+      };
+      Motion motion{.latency_s = known_s, .times_s = Every(0.02, 4.0)};
+      motion.options.blind_m = 0.05;
+      motion.wheels_m = [=](double t_s) {
+        const double rolled_m = 0.5 * kTrack_m * yaw_rad(t_s);
+        return std::pair(-rolled_m, rolled_m);
+      };
+      motion.pose = [=](double t_s) { return Pose2{0.0, 0.0, yaw_rad(t_s - late_s)}; };
+      return StopOf(motion);
+    };
+    CHECK(found(0.24, 0.0).reason == kNone);
+    const Found stopped = found(0.28, 0.0);
+    CHECK(stopped.reason == StopReason::kPoseLags);
+    CHECK(stopped.text == "the pose lags the wheels by 0.28 s, and the limit is 0.25 s");
+    CHECK(found(0.26, 0.0).text == "the pose lags the wheels by 0.26 s, and the limit is 0.25 s");
+    CHECK(found(0.4, 0.16).reason == kNone);
+    CHECK(found(0.44, 0.16).reason == StopReason::kPoseLags);
+  }
+}
+
+}  // namespace
+}  // namespace rift::hardware

@@ -1,0 +1,184 @@
+// What the robot's side of a drive senses and records, beside a bench whose wheels are known.
+
+#include "rift/hardware/real_robot.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "bench.hpp"
+#include "support/mirror.hpp"
+
+namespace rift::hardware {
+namespace {
+
+using control::WheelPower;
+using test::OnBothSides;
+using test::Side;
+
+constexpr double kPeriod_s = 0.02;
+
+void DriveOn(RealRobot& robot, const WheelPower& power, double duration_s, Bench& bench) {
+  for (const double end_s = bench.Now_s() + duration_s; bench.Now_s() < end_s;) {
+    robot.Sense();
+    robot.Command(power);
+    robot.Advance(kPeriod_s);
+  }
+}
+
+/// So long that the robot is seen and has answered.
+void Settle(RealRobot& robot, double duration_s, Bench& bench) {
+  for (const double end_s = bench.Now_s() + duration_s; bench.Now_s() < end_s;) {
+    robot.Sense();
+    robot.Advance(kPeriod_s);
+  }
+}
+
+TEST_CASE("Each wheel's counts, battery and time are those of the robot when it answered") {
+  OnBothSides("left", "right", [](const Side& side) {
+    for (const double sign : {1.0, -1.0}) {
+      Bench bench;
+      bench.battery_mv = 4321;
+      RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+      Settle(robot, 0.4, bench);
+      CHECK(robot.Sense().encoders == control::EncoderCounts{0, 0});
+      robot.Arm();
+      DriveOn(robot, side.Of<WheelPower>(sign * 0.2, sign * 0.1), 0.6, bench);
+      const trial::Sensed sensed = robot.Sense();
+      REQUIRE(sensed.encoders);
+      const auto fast =
+          static_cast<double>(side.IsFirst() ? sensed.encoders->left : sensed.encoders->right);
+      const auto slow =
+          static_cast<double>(side.IsFirst() ? sensed.encoders->right : sensed.encoders->left);
+      CHECK(fast / slow == Approx(2.0).margin(0.02));
+      CHECK(sign * slow > 100.0);
+      CHECK(sensed.now_s == Approx(bench.Now_s() - 100.0));
+
+      const DriveRecord record = robot.Record();
+      CHECK(record.encoders.back().counts == *sensed.encoders);
+      CHECK(record.encoders.back().battery_v == Approx(4.321));
+      REQUIRE(record.round_trips_s.size() == record.encoders.size());
+      // A reading is of the middle of its round trip: half of it before, the command was written,
+      // and half of it after, the answer was heard.
+      size_t settled = 0;
+      for (const PoseStages& pose : record.poses) {
+        if (pose.written_s < 0.0 || pose.answered_s < 0.0) continue;
+        ++settled;
+        bool is_there = false;
+        for (size_t i = 0; i < record.encoders.size(); ++i) {
+          const double half_s = 0.5 * record.round_trips_s[i], at_s = record.encoders[i].t_s;
+          is_there = is_there || (std::abs(at_s - half_s - pose.written_s) < 1e-9 &&
+                                  std::abs(at_s + half_s - pose.answered_s) < 1e-9);
+        }
+        CHECK(is_there);
+      }
+      CHECK(settled > 10);
+    }
+  });
+}
+
+TEST_CASE("Wheels of a robot that does not answer are taken to obey, either one and either way") {
+  OnBothSides("left", "right", [](const Side& side) {
+    for (const double sign : {1.0, -1.0}) {
+      Bench bench;
+      bench.from_robot_is_cut = true;
+      bench.bend = [](trial::PoseMeasurement& pose) { pose.world_from_robot = {0.1, 0.2, 0.3}; };
+      RealRobot robot(bench, bench, bench, {{}, Protocol::kPlain, false});
+      Settle(robot, 0.4, bench);
+      robot.Arm();
+      const double armed_s = bench.Now_s();
+      DriveOn(robot, side.Of<WheelPower>(sign * 0.3, 0.0), 2.0, bench);
+      const std::optional<DriveStop> stop = robot.Record().stop;
+      REQUIRE(stop);
+      CHECK(stop->reason == StopReason::kPoseStands);
+      // 0.48 m/s, 0.1 s after the command; 3 x (0.012 m + 0.35 s x 0.48 m/s) take 1.125 s.
+      CHECK(stop->at_s - (armed_s - 100.0) == Approx(1.26).margin(0.06));
+      CHECK(bench.listener->Motors().IsZero());
+    }
+  });
+}
+
+TEST_CASE("A stop is acknowledged by the answer to the zero that goes out with it") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  Settle(robot, 0.4, bench);
+  robot.Arm();
+  DriveOn(robot, {0.2, 0.2}, 0.3, bench);
+  bench.Wait(0.045);  // the line is free again
+  const double stopped_s = bench.Now_s();
+  robot.Stop();
+  robot.ConfirmStop(1.0);
+  CHECK(robot.Record().stop_acknowledged == true);
+  // Twice the radio and the bytes of one command and its answer.
+  CHECK(bench.Now_s() - stopped_s == Approx(2 * 0.02 + (11 + 15) * 10.0 / 9600.0).margin(0.005));
+}
+
+TEST_CASE("What the robot did not obey is counted, and so is what was sent and answered") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  Settle(robot, 0.5, bench);
+  CHECK(robot.Record().rejected_by_robot == 0);
+  bench.Chatter("no number\nno number\n");
+  Settle(robot, 0.4, bench);
+  DriveRecord record = robot.Record();
+  CHECK(record.rejected_by_robot == 2);
+  CHECK(record.protocol == Protocol::kFramed);
+  CHECK(record.answered == record.round_trips_s.size());
+  CHECK(record.sent >= record.answered);
+  CHECK(record.sent <= record.answered + 3);
+  bench.to_robot_is_cut = true;
+  Settle(robot, 0.4, bench);
+  CHECK(robot.Record().sent > record.sent + 5);
+  CHECK(robot.Record().answered <= record.answered + 3);
+}
+
+TEST_CASE("After its port went away a drive is not armed again") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  Settle(robot, 0.4, bench);
+  bench.line_is_gone = true;
+  Settle(robot, 0.1, bench);
+  CHECK(robot.Record().stop->reason == StopReason::kPortGone);
+  CHECK(robot.Record().stop->text == "the serial port went away: the test pulled it");
+  bench.line_is_gone = false;
+  Settle(robot, 0.4, bench);
+  CHECK_THROWS_WITH(robot.Arm(), "cannot arm: the serial port went away");
+}
+
+TEST_CASE("News are what was recorded since the last news, poses once they are settled") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  Settle(robot, 0.4, bench);
+  robot.Arm();
+  std::vector<PoseStages> poses;
+  std::vector<EncoderReading> encoders;
+  const auto take = [&] {
+    const DriveNews news = robot.TakeNews();
+    poses.insert(poses.end(), news.poses.begin(), news.poses.end());
+    encoders.insert(encoders.end(), news.encoders.begin(), news.encoders.end());
+  };
+  for (int i = 0; i < 40; ++i) {
+    DriveOn(robot, {0.2, 0.2}, 0.05, bench);
+    take();
+  }
+  const DriveRecord record = robot.Record();
+  CHECK(encoders.size() == record.encoders.size());
+  REQUIRE(poses.size() > 30);
+  CHECK(poses.size() >= record.poses.size() - 5);
+  for (size_t i = 0; i < poses.size(); ++i) {
+    CHECK(poses[i].captured_s == record.poses[i].captured_s);
+    CHECK(poses[i].answered_s == record.poses[i].answered_s);  // nothing comes after it was told
+  }
+  // Without answers a pose is given up 2.5 s after its picture; the guard has stopped by then.
+  bench.from_robot_is_cut = true;
+  const size_t before = poses.size();
+  DriveOn(robot, {}, 2.3, bench);
+  take();
+  CHECK(poses.size() <= before + 5);
+  DriveOn(robot, {}, 1.0, bench);
+  take();
+  CHECK(poses.size() > before + 20);
+}
+
+}  // namespace
+}  // namespace rift::hardware

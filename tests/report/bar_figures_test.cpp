@@ -1,0 +1,211 @@
+// Figures of levels and settings beside sizes, labels and data worked out by hand.
+
+#include "report/figures/sweep_plots.hpp"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "report/synthetic_sweep.hpp"
+
+namespace rift::report {
+namespace {
+
+using Catch::Matchers::Contains;
+using sweep::LevelSummary;
+
+std::vector<LevelSummary> Levels(size_t count, size_t letters) {
+  const LevelSummary level{
+      .level = std::string(letters, 'a'), .n = 5, .mean_gap_m = 0.02, .sd_gap_m = 0.004};
+  return std::vector<LevelSummary>(count, level);
+}
+
+constexpr ReportOptions kWide{.width_px = 490};
+
+TEST_CASE("Labels of bars lie flat while they fit, slant up to twenty and stand upright above") {
+  const auto mean = [](size_t count, size_t letters) {
+    return MeanByLevelFigure("name", "surface", Levels(count, letters), 0.06, kWide);
+  };
+  // Ten labels of five letters take 7 px x 6 x 10 of the 490 - 70 px between the axis' ends.
+  const Figure flat = mean(10, 5), slanted = mean(10, 6), most = mean(20, 6), upright = mean(21, 6);
+  CHECK_THAT(flat.plot, Contains(R"(set xtics ('aaaaa'."\n".'n = 5' 0, 'aaaaa'."\n".'n = 5' 1,)"));
+  CHECK(flat.height_px == 326);
+  for (const Figure* figure : {&slanted, &most}) {
+    CHECK_THAT(figure->plot, Contains("set xtics rotate by 40 right ('aaaaaa, n = 5' 0, 'aaaaaa,"));
+    CHECK(figure->height_px == 326 + 50);  // 4.2 px x (6 + 6)
+  }
+  CHECK_THAT(upright.plot, Contains("set xtics rotate by 90 right ('aaaaaa' 0, 'aaaaaa' 1,"));
+  CHECK(upright.height_px == 326 + 39);  // 6.5 px x 6
+  // A label has at most 34 letters.
+  CHECK(mean(21, 34).height_px == 326 + 221);
+  CHECK(mean(21, 35).height_px == 326 + 221);
+  const Figure failures = FailuresByLevelFigure("name", "surface", Levels(10, 6), 0.06, kWide);
+  CHECK_THAT(failures.plot, Contains("rotate by 40 right ('aaaaaa, of 5' 0,"));
+  CHECK(failures.height_px == 294 + 50);
+}
+
+TEST_CASE("A bar chart grows by 16 px a bar up to twice the width of a figure") {
+  for (const auto& [bars, width_px] :
+       {std::pair{1, 490}, {25, 490}, {26, 506}, {55, 970}, {56, 980}, {200, 980}}) {
+    INFO(bars);
+    const auto levels = Levels(static_cast<size_t>(bars), 1);
+    CHECK(MeanByLevelFigure("name", "a", levels, 0.06, kWide).width_px == width_px);
+    CHECK(FailuresByLevelFigure("name", "a", levels, 0.06, kWide).width_px == width_px);
+  }
+}
+
+TEST_CASE("Means of levels are bars, whiskers and crosses at their level's place") {
+  const std::vector<LevelSummary> levels{
+      {.level = "a", .n = 3, .mean_gap_m = 0.02, .sd_gap_m = 0.005},
+      {.level = "b", .not_ok = 1},
+      {.level = "c", .n = 4, .mean_gap_m = 0.081, .sd_gap_m = 0.03},
+      {.level = "d", .n = 1, .mean_gap_m = 0.05},
+      {.level = "e", .n = 2, .mean_gap_m = 0.04, .sd_gap_m = 0.0}};
+  const Figure figure = MeanByLevelFigure("name", "surface", levels, 0.06, {});
+  CHECK(figure.name == "name");
+  CHECK(figure.title == "Mean Sim-to-Real gap by surface");
+  CHECK_THAT(figure.plot,
+             Contains("$bars << EOD\n0 0.02 0.7 \n2 0.081 0.7 \n3 0.05 0.7 \n4 0.04 0.7 \nEOD\n") &&
+                 Contains("$whiskers << EOD\n0 0.02 0.005 \n2 0.081 0.03 \nEOD\n") &&
+                 Contains("$missing << EOD\n1 \nEOD\n"));
+  // 1.03 x (0.081 + 0.03) is below the round 0.12, of which 9 % is where the numbers stand.
+  CHECK_THAT(figure.plot, Contains("set xrange [-0.6:4.6]\nset yrange [0:0.12]\n") &&
+                              Contains("$missing using 1:(0.03 * 0.12) with") &&
+                              Contains("$bars using 1:(0.0108):(sprintf('%.3f', $2))") &&
+                              Contains("0.06 with lines"));
+  // A threshold that no mean reaches ends the axis; without scatter and losses their series go.
+  const Figure bare = MeanByLevelFigure("name", "surface", {levels[3], levels[4]}, 0.3, {});
+  CHECK_THAT(bare.plot, Contains("set xrange [-0.6:1.6]\nset yrange [0:0.4]\n") &&
+                            !Contains("whiskers") && !Contains("missing"));
+  CHECK_THAT(MeanByLevelFigure("n", "a", Levels(12, 1), 0.06, {}).plot, Contains("sprintf"));
+  CHECK_THAT(MeanByLevelFigure("n", "a", Levels(13, 1), 0.06, {}).plot, !Contains("sprintf"));
+}
+
+TEST_CASE("Failures of levels are counted on an axis of about five steps") {
+  for (const auto& [most, end, step] : {std::tuple{0, "1.15", 1},
+                                        {1, "1.15", 1},
+                                        {5, "5.75", 1},
+                                        {6, "6.9", 2},
+                                        {10, "11.5", 2},
+                                        {11, "12.65", 3}}) {
+    std::vector<LevelSummary> levels = Levels(3, 1);
+    levels[1].failures = most;
+    levels[2].not_ok = 1;
+    const Figure figure = FailuresByLevelFigure("name", "surface", levels, 0.06, {});
+    INFO(most);
+    CHECK_THAT(figure.plot,
+               Contains(fmt::format("$bars << EOD\n0 0 0.7 \n1 {} 0.7 \n2 0 0.7 \nEOD\n"
+                                    "$missing << EOD\n2 \nEOD\n",
+                                    most)));
+    CHECK_THAT(figure.plot, Contains(fmt::format("set xrange [-0.6:2.6]\nset yrange [0:{}]\n"
+                                                 "set ytics {}\n",
+                                                 end, step)));
+    CHECK_THAT(figure.plot,
+               Contains(fmt::format("set label '{0}' at 1,{0} center offset 0,0.6\n", most)));
+    CHECK_THAT(figure.plot, Contains(fmt::format("using 1:(0.03 * {}) with", end)));
+    CHECK_THAT(figure.plot, Contains("set ylabel 'trials with gap > 0.06 m'\n"));
+  }
+  CHECK_THAT(FailuresByLevelFigure("n", "a", Levels(40, 1), 0.06, {}).plot, Contains("set label"));
+  CHECK_THAT(FailuresByLevelFigure("n", "a", Levels(41, 1), 0.06, {}).plot, !Contains("set label"));
+}
+
+TEST_CASE("A series without a single gap keeps its name, its colour and its crosses") {
+  sweep::SweepResult result = synthetic::Grid();
+  for (sweep::TrialRow& row : result.rows) {
+    if (row.theta[1].text == "0.15" && row.theta[2].text == "0.30") synthetic::LoseGap(&row, "");
+  }
+  sweep::Summarise(result);
+  const SettingGrid grid = LayOut(result);
+  const Figure figure = GapBySettingFigure(result, grid, {});
+  CHECK_THAT(figure.plot, Contains("keyentry with boxes lc rgb '#0072B2' title 'v_min 0.15, "
+                                   "v_max 0.30'") &&
+                              !Contains("bars_0"));
+  // Four bars of 0.21 around each of the three surfaces: the first at i - 1.5 x 0.21.
+  CHECK_THAT(figure.plot,
+             Contains("$missing << EOD\n-0.315 \n0.685 \n1.685 \nEOD\n") &&
+                 Contains("$bars_1 << EOD\n-0.105 0.03 0.1932 \n0.895 0.05 0.1932 \n"
+                          "1.895 0.07 0.1932 \nEOD\n") &&
+                 Contains("$trials << EOD\n-0.105 0.026 \n-0.105 0.034 \n0.895 0.046 \n"));
+}
+
+TEST_CASE("A setting that was not tried leaves its place free and the others where they are") {
+  sweep::SweepResult result = synthetic::Grid();
+  std::erase_if(result.rows, [](const sweep::TrialRow& row) {
+    return row.theta[0].text == "sand_fine" && row.theta[1].text == "0.15" &&
+           row.theta[2].text == "0.50";
+  });
+  sweep::Summarise(result);
+  CHECK_THAT(GapBySettingFigure(result, LayOut(result), {}).plot,
+             Contains("$bars_1 << EOD\n-0.105 0.03 0.1932 \n1.895 0.07 0.1932 \nEOD\n"));
+}
+
+/// Mean gaps by row and column; NaN: no gap, 0: no such setting.
+struct Map {
+  explicit Map(const std::vector<std::vector<double>>& means_m, size_t letters = 1) {
+    grid.main_name = "main";
+    grid.others_name = "others";
+    for (const auto& row : means_m) settings.emplace_back(row.size());
+    for (size_t i = 0; i < means_m.size(); ++i) {
+      grid.mains.push_back({.level = fmt::format("m{}", i)});
+      grid.cells.emplace_back();
+      for (size_t j = 0; j < means_m[i].size(); ++j) {
+        settings[i][j].mean_gap_m = means_m[i][j];
+        grid.cells[i].push_back(means_m[i][j] == 0.0 ? nullptr : &settings[i][j]);
+      }
+    }
+    for (size_t j = 0; j < means_m[0].size(); ++j) {
+      grid.others.push_back({.level = std::string(letters, 'a')});
+    }
+  }
+
+  std::vector<std::vector<sweep::SettingResult>> settings;
+  SettingGrid grid;
+};
+
+Figure MapOf(size_t columns, size_t rows, size_t letters) {
+  const Map map(std::vector(rows, std::vector<double>(columns, 0.05)), letters);
+  return HeatMapFigure(map.grid, {});
+}
+
+TEST_CASE("A heat map's cells have the colours of its range and numbers that can be read on them") {
+  const Map map({{0.02, 0.0795, 0.0805}, {NAN, 0.0, 0.12}});
+  const std::string plot = HeatMapFigure(map.grid, {}).plot;
+  CHECK_THAT(plot, Contains("$cells << EOD\n0 0 0.02 \n1 0 0.0795 \n2 0 0.0805 \n2 1 0.12 \nEOD"));
+  // White numbers below six tenths of the range, black ones above.
+  CHECK_THAT(plot, Contains("$on_dark << EOD\n0 0 0.02 \n1 0 0.0795 \nEOD") &&
+                       Contains("$on_light << EOD\n2 0 0.0805 \n2 1 0.12 \nEOD") &&
+                       Contains("$on_dark using 1:2:(sprintf('%.3f', $3)) with labels center "
+                                "textcolor rgb '#FFFFFF'") &&
+                       Contains("$on_light using 1:2:(sprintf('%.3f', $3)) with labels center "
+                                "textcolor rgb '#000000'"));
+  CHECK_THAT(plot,
+             Contains("rectangle center 0,1 size 1,1") && Contains("set label 'no gap' at 0,1 ") &&
+                 Contains("rectangle center 1,1 size 1,1") && Contains("set label '' at 1,1 "));
+  CHECK_THAT(plot, Contains("set cbrange [0.02:0.12]\n") &&
+                       Contains("set xlabel 'others'\nset ylabel 'main'\n") &&
+                       Contains("set xrange [-0.5:2.5]\nset yrange [1.5:-0.5]\n"));
+  CHECK_THAT(MapOf(2, 1, 1).plot, Contains("set cbrange [0.05:0.050001]\n"));
+}
+
+TEST_CASE("A heat map is as large as its cells need, and slants names that do not fit") {
+  const auto size = [](const Figure& figure) {
+    return std::pair(figure.width_px, figure.height_px);
+  };
+  CHECK(size(MapOf(5, 1, 1)) == std::pair(480, 140));
+  CHECK(size(MapOf(6, 2, 1)) == std::pair(526, 170));
+  CHECK(size(MapOf(22, 1, 1)) == std::pair(1422, 140));
+  CHECK(size(MapOf(23, 1, 1)) == std::pair(1440, 140));
+  // 56 px are seven letters of 7 px and one between two names.
+  CHECK(size(MapOf(10, 1, 7)) == std::pair(750, 140));
+  CHECK(size(MapOf(10, 1, 8)) == std::pair(750, 140 + 40));
+  CHECK(size(MapOf(10, 1, 40)) == std::pair(750, 140 + 170));
+  CHECK_THAT(MapOf(10, 1, 7).plot, Contains("set xtics scale 0 ("));
+  CHECK_THAT(MapOf(10, 1, 8).plot, Contains("set xtics rotate by 40 right scale 0 ("));
+  // A number needs 40 px, of the 1250 beside the labels.
+  CHECK_THAT(MapOf(31, 1, 1).plot, Contains("sprintf"));
+  CHECK_THAT(MapOf(32, 1, 1).plot, !Contains("sprintf"));
+}
+
+}  // namespace
+}  // namespace rift::report

@@ -1,0 +1,78 @@
+// What is said of a camera's calibration and of tags that are in the picture instead.
+
+#include <catch2/catch.hpp>
+
+#include "rift/report/json/json.hpp"
+
+namespace rift::report {
+namespace {
+
+TEST_CASE("Tags that are in the picture instead are named with the flags that take them") {
+  using vision::TagFamily;
+  std::vector<vision::TagInPicture> found{{TagFamily::k36h11, 7}};
+  CHECK(FoundInsteadText(found, TagFamily::k36h11) == "the picture shows tag36h11 id 7 (--id 7)");
+  found = {
+      {TagFamily::k36h11, 7}, {TagFamily::k25h9, 3}, {TagFamily::k16h5, 1}, {TagFamily::k25h9, 4}};
+  CHECK(FoundInsteadText(found, TagFamily::k25h9) ==
+        "the picture shows tag36h11 id 7 (--set track.tag.family=tag36h11 --id 7), tag25h9 id 3 "
+        "(--id 3), tag16h5 id 1 (--set track.tag.family=tag16h5 --id 1), tag25h9 id 4 (--id 4)");
+  found.resize(6);
+  CHECK_THAT(FoundInsteadText(found, TagFamily::k25h9),
+             Catch::Matchers::EndsWith("tag25h9 id 4 (--id 4) and 2 more"));
+}
+
+vision::Calibration Calibrated() {
+  vision::Calibration c;
+  c.verdict = vision::CalibrationVerdict::kUsable;
+  c.reasons = {"few views", "little tilt"};
+  c.board = {11, 7, 0.03};
+  c.camera.width_px = 640;
+  c.camera.height_px = 480;
+  c.rms_px = 0.1234;
+  c.plumb_bob_px = 0.2345;
+  c.equidistant_px = 0.3456;
+  c.floor_error_m = 0.00123;
+  c.cross_check_m = 0.00234;
+  c.coverage = {0.51, 0.62, 0.73, 0.84};
+  c.parameters = {{"fx", 512.25, 0.75}};
+  vision::ViewResult used, copy, dropped;
+  used.view.name = "a.png";
+  used.used = true;
+  used.rms_px = 0.321;
+  copy.view.name = "b.png";
+  copy.is_copy = true;
+  copy.dropped = "shows the same as a.png";
+  dropped.view.name = "c.png";
+  dropped.dropped = "no board";
+  c.views = {used, copy, dropped};
+  c.next.text = "to the left";
+  return c;
+}
+
+TEST_CASE("A camera's calibration is told with its errors, its coverage and what would help") {
+  vision::Calibration c = Calibrated();
+  const std::string numbers =
+      "plumb_bob 640x480, error 0.123 px RMS (plumb_bob 0.234, equidistant 0.346)\n"
+      "on the floor: 1.23 mm; odd views against even ones: 2.34 mm\n"
+      "coverage: x 51 %, y 62 %, size 73 %, skew 84 %\n"
+      "  fx         512.25 +- 0.75\n"
+      "  a.png: 0.321 px\n"
+      "  b.png: ignored, shows the same as a.png\n";
+  CHECK(CalibrationText(c) ==
+        "verdict: usable\n  few views\n  little tilt\n" + numbers + "next picture: to the left\n");
+  CHECK(CalibrationComment(c) ==
+        "# rift track --calibrate, board 11x7 of 0.03 m squares: usable.\n"
+        "# 0.12 px RMS, 1.2 mm on the floor; odd views against even ones 2.3 mm.\n"
+        "# - few views\n# - little tilt\n");
+  c.verdict = vision::CalibrationVerdict::kGood;
+  c.reasons.clear();
+  CHECK(CalibrationText(c) == "verdict: good\n" + numbers);
+  c.verdict = vision::CalibrationVerdict::kRefuse;
+  c.camera.width_px = 0;
+  CHECK(CalibrationText(c) == "verdict: refuse\nnext picture: to the left\n");
+  c.next.text.clear();
+  CHECK(CalibrationText(c) == "verdict: refuse\n");
+}
+
+}  // namespace
+}  // namespace rift::report

@@ -1,0 +1,74 @@
+#include "rift/report/figures/gnuplot_text.hpp"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+namespace rift::report {
+namespace {
+
+TEST_CASE("A text of more letters than its limit keeps its begin and its end, letters whole") {
+  CHECK(Shortened("abcdefgh", 8) == "abcdefgh");
+  CHECK(Shortened("abcdefghi", 8) == "abcd…ghi");
+  CHECK(Shortened("abcdefghi", 7) == "abc…ghi");
+  CHECK(Shortened("Straße über", 11) == "Straße über");
+  CHECK(Shortened("äöüäöüäöü", 5) == "äö…öü");
+  CHECK(LetterCount("äöü€a") == 5);
+  CHECK(LetterCount("") == 0);
+}
+
+TEST_CASE("Control characters are blanks and bytes that are no text are replaced") {
+  CHECK(PlainText("a\x1f\tb\x7f~ c") == "a  b ~ c");
+  CHECK(PlainText("x\xffy") == "x\xEF\xBF\xBDy");
+  CHECK(Quoted("it's 5 %") == "'it''s 5 %'");
+  CHECK(TicLabel({"5 %", "it's"}) == "'5 %%'.\"\\n\".'it''s'");
+}
+
+TEST_CASE("An axis ends at the next of eleven round numbers of its decade") {
+  CHECK(AxisEnd(0.0) == 1.0);
+  CHECK(AxisEnd(-1.0) == 1.0);
+  CHECK(AxisEnd(NAN) == 1.0);
+  const std::vector<double> rounds{1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0};
+  for (const double decade : {0.001, 0.1, 1.0, 1000.0}) {
+    for (size_t i = 0; i < rounds.size(); ++i) {
+      INFO(rounds[i] << " x " << decade);
+      CHECK(AxisEnd(rounds[i] * decade) == Approx(rounds[i] * decade));
+      if (i > 0) CHECK(AxisEnd(1.001 * rounds[i - 1] * decade) == Approx(rounds[i] * decade));
+    }
+  }
+}
+
+TEST_CASE("Up to eight series have colours of their own, more take even steps of viridis") {
+  std::set<std::string> eight;
+  for (int i = 0; i < 8; ++i) eight.insert(SeriesColour(i, 8));
+  CHECK(eight.size() == 8);
+  CHECK(SeriesColour(0, 8) == "#0072B2");
+  CHECK(SeriesColour(1, 8) == "#E69F00");
+  CHECK(SeriesColour(7, 8) == "#999999");
+  CHECK(SeriesColour(0, 9) == "#440154");
+  CHECK(SeriesColour(8, 9) == "#FDE725");
+  CHECK(SeriesColour(4, 9) == "#21918C");
+  CHECK(SeriesColour(8, 18) == "#21918C");
+  CHECK(SeriesColour(17, 18) == "#FDE725");
+  const std::string palette = ViridisPalette();
+  CHECK(palette.find("(0 '#440154', 1 '#472D7B', 2 '#3B528B'") != palette.npos);
+  CHECK(palette.find(", 8 '#FDE725')\n") != palette.npos);
+}
+
+TEST_CASE("Rows of a data block are numbers of seven digits, and what is none is NaN") {
+  DataBlock block("name");
+  CHECK(block.IsEmpty());
+  block.Add({1.0 / 3.0, 12345678.0, NAN});
+  block.Add({-HUGE_VAL, 0.0});
+  CHECK_FALSE(block.IsEmpty());
+  CHECK(block.Text() == "$name << EOD\n0.3333333 1.234568e+07 NaN \nNaN 0 \nEOD\n");
+  CHECK(Number(0.0600000001) == "0.06");
+  CHECK(Number(1234567.0) == "1.23457e+06");
+  CHECK(ThresholdLine(0.06) ==
+        "0.06 with lines lw 1.2 dt 2 lc rgb '#000000' title 'threshold 0.06 m'");
+}
+
+}  // namespace
+}  // namespace rift::report

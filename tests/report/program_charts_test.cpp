@@ -1,0 +1,118 @@
+// Charts of a program's runs beside values that are chosen.
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "report/page/parts.hpp"
+#include "report/synthetic_sweep.hpp"
+
+namespace rift::report {
+namespace {
+
+using nlohmann::json;
+
+/// Two surfaces beside two speeds, with a cell for each pair.
+struct Programs {
+  Programs() {
+    result.parameters = {{"terrain.surface", {synthetic::Word("ice"), synthetic::Word("mat")}},
+                         {"program.v", {synthetic::Numeric("0.1"), synthetic::Numeric("0.2")}}};
+    for (const auto& surface : result.parameters[0].levels) {
+      for (const auto& v : result.parameters[1].levels) {
+        sweep::ProgramCell cell{.theta = {surface, v}};
+        const double n = static_cast<double>(cells.size());
+        cell.measures = {.runs = 5, .moved = 4};
+        cell.measures.deviation_m = 0.01 + 0.02 * n;
+        cell.measures.spread_m = 0.005 + 0.001 * n;
+        cell.measures.drift_per_m = 0.03 + 0.01 * n;
+        cells.push_back(cell);
+      }
+    }
+  }
+  json Values(size_t chart) const {
+    return ProgramCharts(result, cells).at(chart).spec["data"][0]["values"];
+  }
+  json Signal(size_t chart, const std::string& name) const {
+    const std::vector<PageChart> charts = ProgramCharts(result, cells);
+    for (const json& signal : charts.at(chart).spec["signals"]) {
+      if (signal["name"] == name) return signal["value"];
+    }
+    return nullptr;
+  }
+
+  sweep::SweepResult result;
+  std::vector<sweep::ProgramCell> cells;
+};
+
+TEST_CASE("Cells of a program lie by surface and speed, with their measure, unit and runs") {
+  const Programs programs;
+  REQUIRE(ProgramCharts(programs.result, programs.cells).size() == 3);
+  const json values = programs.Values(0);
+  REQUIRE(values.size() == 4);
+  CHECK(values[1]["column"] == "ice");
+  CHECK(values[1]["line"] == "0.2");
+  CHECK(values[1]["value"].get<double>() == Approx(0.03));
+  CHECK(values[1]["word"] == "");
+  CHECK(values[1]["tip"]["distance (m)"] == "0.03");
+  CHECK(values[1]["tip"]["runs that moved"] == "4 of 5");
+  CHECK(values[2]["column"] == "mat");
+  CHECK(values[2]["line"] == "0.1");
+  CHECK(programs.Values(1)[3]["value"].get<double>() == Approx(0.008));
+  CHECK(programs.Values(2)[3]["value"].get<double>() == Approx(6.0));  // per cent
+  CHECK(programs.Values(2)[3]["tip"]["drift (%)"] == "6");
+  // Letters turn dark at six tenths of the range.
+  CHECK(programs.Signal(0, "middle").get<double>() == Approx(0.01 + 0.6 * 0.06));
+  CHECK(programs.Signal(0, "x_title") == "surface");
+  CHECK(programs.Signal(0, "y_title") == "v");
+  CHECK(programs.Signal(0, "legend_title") == "distance (m)");
+  CHECK(ProgramCharts(programs.result, programs.cells)[0].spec["height"] == 92);
+  CHECK(ProgramCharts(programs.result, {}).empty());
+}
+
+TEST_CASE("A program over one parameter has one line of cells") {
+  Programs programs;
+  programs.result.parameters.pop_back();
+  programs.cells.resize(3);
+  for (size_t i = 0; i < programs.cells.size(); ++i) {
+    programs.cells[i].theta = {synthetic::Word(std::string(1, static_cast<char>('a' + i)))};
+  }
+  CHECK(ProgramCharts(programs.result, programs.cells)[0].spec["height"] == 46);
+  CHECK(programs.Values(0)[2]["line"] == "all");
+  CHECK(programs.Values(0)[2]["column"] == "c");
+}
+
+TEST_CASE("A cell whose robot never moved or that has no run says so and has no value") {
+  Programs programs;
+  programs.cells[0].measures.moved = 0;
+  programs.cells[3].measures = {};
+  const json values = programs.Values(0);
+  CHECK(values[0]["word"] == "did not move");
+  CHECK(values[0]["value"].is_null());
+  CHECK(values[0]["tip"]["distance (m)"] == "did not move");
+  CHECK(values[3]["word"] == "no run");
+  CHECK(values[3]["value"].is_null());
+  CHECK(programs.Signal(0, "middle").get<double>() == Approx(0.03 + 0.6 * 0.02));
+}
+
+TEST_CASE("Slip is drawn for each wheel in per cent, without what is not known or did not move") {
+  Programs programs;
+  programs.cells[1].measures.slip = {{0.25, 0.1, -0.2}, {0.75, NAN, 0.3}};
+  programs.cells[2].measures.slip = {{0.5, 0.9, 0.9}};
+  programs.cells[2].measures.moved = 0;
+  const auto charts = ProgramCharts(programs.result, programs.cells);
+  REQUIRE(charts.size() == 5);
+  CHECK(charts[3].title == "Slip of the left wheel along the program");
+  CHECK(charts[4].title == "Slip of the right wheel along the program");
+  const json left = programs.Values(3), right = programs.Values(4);
+  REQUIRE(left.size() == 1);
+  CHECK(left[0]["x"] == 0.25);
+  CHECK(left[0]["y"].get<double>() == Approx(10.0));
+  CHECK(left[0]["tip"]["slip"] == "10.0 %");
+  REQUIRE(right.size() == 2);
+  CHECK(right[0]["y"].get<double>() == Approx(-20.0));
+  CHECK(right[1]["y"].get<double>() == Approx(30.0));
+  CHECK(right[1]["x"] == 0.75);
+  CHECK(programs.Signal(4, "y_title") == "slip, right wheel (%)");
+}
+
+}  // namespace
+}  // namespace rift::report
