@@ -277,5 +277,46 @@ TEST_CASE("A template that cannot be filled in says which field and which value"
   }
 }
 
+TEST_CASE("What a person sets on the robot has the step that a hand and a ruler reach") {
+  const std::vector<std::pair<std::string, double>> steps{{"control.distance.p", 0.05},
+                                                          {"control.distance.i", 0.01},
+                                                          {"control.distance.d", 0.005},
+                                                          {"control.heading.p", 0.005},
+                                                          {"control.heading.i", 0.001},
+                                                          {"control.heading.d", 0.0005},
+                                                          {"control.reach_radius_m", 0.005},
+                                                          {"control.v_max", 0.01},
+                                                          {"control.w_min", 0.005},
+                                                          {"control.w_max", 0.05},
+                                                          {"control.cruise_speed", 0.01},
+                                                          {"control.cruise_cap_angle_deg", 1.0},
+                                                          {"control.through_angle_deg", 1.0},
+                                                          {"control.slew_rate_per_s", 0.1},
+                                                          {"control.latency.delay_s", 0.01},
+                                                          {"trial.control_period_s", 0.005},
+                                                          {"program.power", 0.01},
+                                                          {"program.speed_mps", 0.01},
+                                                          {"program.segments[2].power", 0.01},
+                                                          {"waypoints[1].x", 0.005},
+                                                          {"waypoints[12].y", 0.005},
+                                                          {"waypoints[3].heading", 1.0}};
+  for (const auto& [key, step] : steps) {
+    INFO(key);
+    const Parameter parameter{.key = key, .min = 0.0, .max = 7.0};
+    CHECK(IsSettable(parameter));
+    CHECK(StepOf(parameter) == step);
+  }
+  for (const char* word : {"control.derivative_kick", "trial.pace", "simulation.terrain.surface"}) {
+    INFO(word);
+    const Parameter parameter{.key = word, .min = 0.0, .max = 4.0};
+    CHECK(IsSettable(parameter));
+    CHECK(StepOf(parameter) == Approx(0.2));  // of no step of their own: a twentieth
+  }
+  for (const char* key : {"simulation.motor.mismatch", "control.p", "waypoints.x", "program"}) {
+    INFO(key);
+    CHECK_FALSE(IsSettable({.key = key, .max = 1.0}));
+  }
+}
+
 }  // namespace
 }  // namespace rift::experiment

@@ -115,8 +115,10 @@ TEST_CASE("Where a straight path begins tells its sign, unless starts are laid t
   };
   CHECK(Doubt(line(0.3), line(-0.3)).ends_with("mirrored y: turn its sign, as in y=-COLUMN"));
   CHECK(Doubt(line(0.3), line(-0.3), {.align = Align::kStart}) == "");
-  CHECK(Doubt(line(0.03), line(-0.03)) == "");  // nearer than a tenth of the way
-  CHECK(Doubt(line(0.3), line(0.9)) == "");     // nothing mends that
+  // Nearer than a tenth of the way, which is 0.8 m long.
+  CHECK(Doubt(line(0.039), line(-0.039)) == "");
+  CHECK(Doubt(line(0.041), line(-0.041)).ends_with("mirrored y: turn its sign, as in y=-COLUMN"));
+  CHECK(Doubt(line(0.3), line(0.9)) == "");  // nothing mends that
 }
 
 /// Rows [from, to) of the path.

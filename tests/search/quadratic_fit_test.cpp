@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <vector>
 
 #include "rift/statistics/random.hpp"
 
@@ -148,6 +149,30 @@ TEST_CASE("After a quadratic that did not come true the next waits for a quarter
     told.AddAnywhere(1, 1.0);
     CHECK(told.fit.IsDue());
   }
+}
+
+TEST_CASE("A quadratic that promises nothing better than the best point is not asked for") {
+  // A hole of depth 1 in the middle of a square of eight others at 0. By symmetry the model is
+  // -5/9 + r^2 / 3, in steps of the square: less deep than the hole.
+  Told told;
+  for (const int i : {0, -1, 1}) {
+    for (const int j : {0, -1, 1}) {
+      const double loss = i == 0 && j == 0 ? -1.0 : 0.0;
+      told.known.archive.Add({{0.4 * i, 11.0 + 0.2 * j, 0.0}, loss});
+    }
+  }
+  MatrixXd places(2, 9);
+  VectorXd losses = VectorXd::Zero(9);
+  for (Eigen::Index k = 0; k < 9; ++k) {
+    places.col(k) << static_cast<double>(k / 3) - 1.0, static_cast<double>(k % 3) - 1.0;
+  }
+  losses[4] = -1.0;
+  const auto least = MinimumOfQuadratic(places, losses, Eigen::Vector2d(0.4, 0.3));
+  REQUIRE(least);
+  CHECK(least->place.norm() < 1e-6);
+  CHECK(least->loss == Approx(-5.0 / 9.0));
+  CHECK_FALSE(told.fit.IsDue());
+  CHECK(told.fit.Ask(8).empty());
 }
 
 }  // namespace

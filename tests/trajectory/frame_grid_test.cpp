@@ -1,13 +1,18 @@
 #include "rift/trajectory/frame_grid.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
+#include <tuple>
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/random.hpp"
 #include "support/inputs/trials.hpp"
+#include "support/pinned.hpp"
 
 namespace rift::trajectory {
 namespace {
@@ -195,6 +200,29 @@ TEST_CASE("Roughness is the second difference of speeds over the median, of rows
             Approx(i % 2 == static_cast<size_t>(still) % 2 ? 1.5 : 1.0 / 1.5));
     }
   }
+}
+
+TEST_CASE("Frames of logs with noise, late rows and jumps are those that were approved") {
+  std::string text;
+  for (const auto& [loop_s, late_s, jump_m] : {std::tuple{0.058, 0.0, 0.0},
+                                               {0.047, 0.02, 0.0},
+                                               {0.064, -0.012, 0.03},
+                                               {0.075, 0.03, 0.01}}) {
+    Made made = Logged(1.0009 / 30.0, loop_s, static_cast<size_t>(1e4 * loop_s), 4.0);
+    auto& poses = made.log.poses;
+    for (size_t i = 4; i < poses.size(); i += 5) poses[i].t_s += late_s;
+    for (size_t i = poses.size() / 2; i < poses.size(); ++i) poses[i].y_m += jump_m;
+    const OnFrames found = PutOnFrames(made.log, 30.0);
+    text += fmt::format(
+        "every {} s: {} {} period {:.10f} rough {:.8f} then {:.8f} outside {:.6f}\n", loop_s,
+        found.grid.is_found, found.grid.is_best, found.grid.period_s, found.grid.roughness_before,
+        found.grid.roughness_after, found.grid.outside_share);
+    for (size_t i = 0; i < poses.size(); i += 3) {
+      text += fmt::format(" {:.6f}", found.trajectory.poses[i].t_s - poses[i].t_s);
+    }
+    text += "\n";
+  }
+  CHECK(test::DifferenceFromPinned("trajectory/frame_grid.txt", text) == "");
 }
 
 TEST_CASE("A grid is looked for in twelve steps in motion, and within a hundred seconds") {

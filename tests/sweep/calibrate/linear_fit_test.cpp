@@ -427,6 +427,12 @@ TEST_CASE("Every prediction of a log counts its replays and its runs") {
   options.simulated_logs = 8;
   CHECK(FitOf({kA, kB}, FourLogs(), simulator, options).trials_simulated ==
         real + 2 * 4 * 6 * (1 + 2 * 2));
+  // Runs are predicted with the motions, and their slopes by themselves beside one replay.
+  options.runs = 2;
+  const size_t with_runs = FitOf({kA, kB}, FourLogs(), simulator, options).trials_simulated;
+  options.simulated_logs = 0;
+  CHECK(with_runs == FitOf({kA, kB}, FourLogs(), simulator, options).trials_simulated +
+                         2 * 4 * ((6 + 2) + 2 * 2 * 6 + 2 * 2 * (1 + 2)));
 }
 
 TEST_CASE("Fits without parameters, with one log, or that start beyond their range are refused") {

@@ -125,6 +125,34 @@ TEST_CASE("Two lists that act together say with whom, and how much each does alo
       found.parameters[0].sentence.ends_with(", 10 % with it alone and the rest together with b"));
 }
 
+TEST_CASE("A model that leaves nothing says all with certainty") {
+  SweepResult result;
+  result.parameters = {{.key = "word", .levels = {{"a", {}}, {"b", {}}, {"c", {}}}},
+                       {.key = "idle", .levels = {{"x", {}}, {"y", {}}}}};
+  for (size_t level = 0; level < 3; ++level) {
+    for (size_t other = 0; other < 2; ++other) {
+      for (int i = 0; i < 2; ++i) {
+        result.rows.push_back(
+            Row({result.parameters[0].levels[level], result.parameters[1].levels[other]},
+                0.1 * static_cast<double>(level * level)));
+      }
+    }
+  }
+  const Effects found = MeasureEffects(result);
+  CHECK(found.explained == 1.0);
+  CHECK(found.predicted == Approx(1.0));
+  CHECK(found.residual_sd_m == 0.0);
+  REQUIRE(found.parameters.size() == 2);
+  const ParameterEffect &word = found.parameters[0], &idle = found.parameters[1];
+  CHECK(word.name == "word");
+  CHECK(word.share == Approx(1.0));
+  CHECK(word.share_low == word.share);
+  CHECK(word.share_high == word.share);
+  CHECK(word.p == 0.0);
+  CHECK(idle.share == Approx(0.0).margin(1e-9));
+  CHECK(idle.p == 1.0);
+}
+
 /// Evenly over a range, as many trials as asked for.
 template <class Loss>
 SweepResult Ranged(int n, double min, double max, bool is_logarithmic, const Loss& loss) {

@@ -148,5 +148,36 @@ TEST_CASE("A gap at the threshold holds") {
       Contains("nothing to shrink") && Contains("robustness 0 m"));
 }
 
+TEST_CASE("Sets of changes are tried by size, then each value by halves until it is near enough") {
+  std::vector<std::string> tried;
+  const std::vector<experiment::Parameter> words{{.key = "a", .levels = {{"-", {}}, {"A", {}}}},
+                                                 {.key = "b", .levels = {{"-", {}}, {"B", {}}}},
+                                                 {.key = "c", .levels = {{"-", {}}, {"C", {}}}}};
+  const experiment::Theta none{{"-", {}}, {"-", {}}, {"-", {}}};
+  const ShrunkFailure two =
+      Shrink(words, none, {{"A", {}}, {"B", {}}, {"C", {}}}, [&](const experiment::Theta& theta) {
+        tried.push_back(theta[0].text + theta[1].text + theta[2].text);
+        return theta[1].text == "B" && theta[2].text == "C" ? -0.1 : 0.1;
+      });
+  CHECK(tried == std::vector<std::string>{"ABC", "---", "A--", "-B-", "--C", "AB-", "A-C", "-BC"});
+  CHECK(two.changed == std::vector<int>{1, 2});
+  CHECK(two.evaluations == 8);
+  CHECK(two.is_fewest);
+
+  std::vector<double> values;
+  const auto above = [&](const experiment::Theta& theta) {
+    values.push_back(*theta[0].number);
+    return *theta[0].number > 0.42 ? -0.1 : 0.1;
+  };
+  const std::vector<experiment::Parameter> range{{.key = "x", .min = 0.0, .max = 1.0}};
+  const ShrunkFailure near = Shrink(range, {Number(0.0)}, {Number(1.0)}, above, {.tolerance = 0.1});
+  // To a tenth of the change, and to a tenth of what is left of it once more.
+  const double expected[] = {1.0,    0.0,     0.5,      0.25,     0.375,
+                             0.4375, 0.21875, 0.328125, 0.382812, 0.410156};
+  REQUIRE(values.size() == 10);
+  for (size_t i = 0; i < 10; ++i) CHECK(values[i] == Approx(expected[i]).epsilon(1e-5));
+  CHECK(*near.theta[0].number == 0.4375);
+}
+
 }  // namespace
 }  // namespace rift::sweep
