@@ -178,5 +178,96 @@ TEST_CASE("Too few windows are refused with what to do") {
                     Catch::Contains("smaller window_s"));
 }
 
+TEST_CASE("Without noise the planted wheels, track and tag are found, in intervals about them") {
+  const Planted planted;
+  std::vector<RunLog> runs = Squares(planted, 2, 5, {0.0, 0.0});
+  for (RunLog& run : runs) {
+    for (trajectory::StampedPose& pose : run.camera.poses) {
+      pose.x_m += 0.02 * std::cos(pose.yaw_rad);  // the tag sits 2 cm ahead of the axle
+      pose.y_m += 0.02 * std::sin(pose.yaw_rad);
+    }
+  }
+  const OdometryCalibration found = CalibrateOdometry(runs, {});
+  CHECK(found.wheel_radius_m.value == Approx(planted.wheel_radius_m).epsilon(5e-4));
+  CHECK(found.right_over_left.value == Approx(planted.right_over_left).epsilon(5e-4));
+  CHECK(found.track_m.value == Approx(planted.track_m).epsilon(2e-3));
+  CHECK(found.tag_ahead_m.value == Approx(0.02).margin(5e-4));
+  CHECK(found.runs == 4);
+  CHECK(found.noise_m < 5e-4);
+  CHECK(found.noise_yaw_rad < 5e-3);
+  // An interval is as wide as Student's t for its confidence, of a logarithm but for the tag.
+  const OdometryCalibration half = CalibrateOdometry(runs, {}, {.confidence = 0.5});
+  const double degrees = static_cast<double>(found.windows - 6);
+  const double wider =
+      statistics::StudentQuantile(degrees, 0.975) / statistics::StudentQuantile(degrees, 0.75);
+  for (const auto& [all, some] : {std::pair{found.wheel_radius_m, half.wheel_radius_m},
+                                  {found.right_over_left, half.right_over_left},
+                                  {found.track_m, half.track_m}}) {
+    CHECK(all.is_told);
+    CHECK(all.interval.low * all.interval.high == Approx(all.value * all.value));
+    CHECK(std::log(all.interval.high / all.value) ==
+          Approx(wider * std::log(some.interval.high / some.value)));
+  }
+  const Estimate &tag = found.tag_ahead_m, &tag_half = half.tag_ahead_m;
+  CHECK(tag.is_told);
+  CHECK(0.5 * (tag.interval.low + tag.interval.high) == Approx(tag.value));
+  CHECK(tag.interval.high - tag.value == Approx(wider * (tag_half.interval.high - tag_half.value)));
+}
+
+TEST_CASE("The noise of a calibration is the camera's, and poses far off hardly count") {
+  std::vector<RunLog> runs = Squares({}, 2, 8, {0.002, 0.03});
+  const OdometryCalibration found = CalibrateOdometry(runs, {});
+  CHECK(found.noise_m == Approx(0.002).epsilon(0.15));
+  CHECK(found.noise_yaw_rad == Approx(0.03).epsilon(0.15));
+  for (RunLog& run : runs) {
+    for (std::size_t i = 7; i < run.camera.poses.size(); i += 40) run.camera.poses[i].x_m += 0.3;
+  }
+  const OdometryCalibration off = CalibrateOdometry(runs, {});
+  CHECK(off.wheel_radius_m.value == Approx(found.wheel_radius_m.value).epsilon(2e-3));
+  CHECK(off.track_m.value == Approx(found.track_m.value).epsilon(5e-3));
+  CHECK(off.noise_m == Approx(0.002).epsilon(0.2));
+}
+
+/// Both wheels turn by these counts in each eighth of a second, of which there are so many.
+RunLog Straight(int eighths, int left, int right, int every = 1) {
+  RunLog run{.name = "straight"};
+  for (int i = 0; i < eighths; ++i) {
+    const double t_s = 0.125 * i;
+    const int turns = i / every;
+    run.encoders.push_back({t_s, {left * turns, right * turns}});
+    run.camera.poses.push_back({.t_s = t_s, .x_m = 1e-3 * turns, .y_m = 0.0, .yaw_rad = 0.0});
+  }
+  return run;
+}
+
+TEST_CASE("A window is as long as is asked, of four sightings or more, in which a wheel turned") {
+  const auto windows = [](const RunLog& run, double window_s) {
+    std::vector<RunLog> runs{run};
+    try {
+      return static_cast<int>(CalibrateOdometry(runs, {}, {.window_s = window_s}).windows);
+    } catch (const std::invalid_argument& error) {
+      const std::string text = error.what();
+      CHECK_THAT(text, Catch::Contains(" window(s) of ") && Catch::Contains("and 8 are needed"));
+      return -std::stoi(text);
+    }
+  };
+  CHECK(windows(Straight(128, 5, 5), 2.0) == 8);
+  CHECK(windows(Straight(112, 5, 5), 2.0) == -7);
+  CHECK(windows(Straight(128 + 3, 5, 5), 2.0) == 8);
+  CHECK(windows(Straight(128 + 4, 5, 5), 2.0) == 9);
+  CHECK(windows(Straight(128, 5, 5), 0.5) == 32);
+  CHECK(windows(Straight(128, 9, 9), 0.375) == 0);
+  // Fifteen steps of a window: 20 counts of both wheels are standing still, more are not.
+  CHECK(windows(Straight(128, 0, 4, 3), 2.0) == 0);
+  CHECK(windows(Straight(128, 1, 1), 2.0) == 8);
+  CHECK(windows(Straight(128, -1, 1), 2.0) == 8);
+  RunLog no_yaw = Straight(128, 5, 5);
+  for (std::size_t i = 0; i < 16; ++i) no_yaw.camera.poses[i].yaw_rad = NAN;
+  CHECK(windows(no_yaw, 2.0) == -7);
+  RunLog late = Straight(128, 5, 5);
+  late.encoders.erase(late.encoders.begin(), late.encoders.begin() + 16);
+  CHECK(windows(late, 2.0) == -7);
+}
+
 }  // namespace
 }  // namespace rift::odometry
