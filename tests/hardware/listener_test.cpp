@@ -64,7 +64,7 @@ TEST_CASE(
   Listener listener;
   listener.Poll(0, Text("-0.85 -0.90\n"), {});
   CHECK(listener.Motors() == MilliPower{-850, -900});
-  listener.Poll(1, Text("-0.85 -0.9000"), {});
+  listener.Poll(1, Text("-0.85 -0.900"), {});
   CHECK(listener.Rejected() == 1);
   listener.Poll(2, Text("\n0.10 0.20\n"), {});
   CHECK(listener.Motors() == MilliPower{100, 200});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "motion.hpp"
@@ -75,6 +76,28 @@ TEST_CASE("Of pictures that come together one may be 5 mm back while the robot d
     // Below 0.05 m/s over the last tenth of a second it hardly drives.
     CHECK(reason(0.049, 0.001, 0.0051) == kNone);
     CHECK(reason(0.051, 0.001, 0.0051) == StopReason::kPoseDisorder);
+  }
+}
+
+TEST_CASE("After a restart nothing is held against what was seen before it") {
+  // Straight on at 0.125 m/s, carried aside and its counters reset at 2 s, after two pictures from
+  // near back and before one.
+  for (const bool restarts : {true, false}) {
+    MotionCheck check({}, kTrack_m);
+    check.SetLatency(0.0);
+    std::optional<Disagreement> found;
+    for (int i = 0; i < 100 && !found; ++i) {
+      const double t_s = 0.04 * i, way_m = 0.125 * t_s;
+      if (i == 50 && restarts) check.Restart();
+      const bool is_carried = i >= 50;
+      const double rolled_m = is_carried ? way_m - 0.25 : way_m;
+      const double back_m = i == 44 || i == 47 || i == 53 ? 0.005 + 0.0049 : 0.0;
+      check.SeeWheels({t_s, rolled_m, rolled_m}, true);
+      check.SeePose({t_s, {way_m - back_m, is_carried ? 1.0 : 0.0, 0.0}, 0.0, 0.0, 0.0});
+      found = check.Check();
+    }
+    INFO((found ? found->text : ""));
+    CHECK(found.has_value() == !restarts);
   }
 }
 

@@ -132,6 +132,54 @@ TEST_CASE("What the robot did not obey is counted, and so is what was sent and a
   CHECK(robot.Record().answered <= record.answered + 3);
 }
 
+TEST_CASE("A pose that stands is noticed sooner once the latency of the camera is known") {
+  for (const bool is_known : {true, false}) {
+    Bench bench;
+    RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+    Settle(robot, 0.4, bench);
+    robot.Arm();
+    if (is_known) robot.SetCameraLatency(0.0);
+    DriveOn(robot, {0.2, 0.2}, 0.6, bench);
+    REQUIRE(robot.state() == DriveState::kArmed);
+    const geometry::Pose2 frozen = bench.Pose();
+    const double frozen_s = bench.Now_s() - 100.0;
+    bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
+    DriveOn(robot, {0.2, 0.2}, 1.0, bench);
+    REQUIRE(robot.Record().stop);
+    // 0.24 m/s: 0.012 m and 0.1 s take 0.15 s, with 0.25 s more for a latency 0.4 s.
+    CHECK((robot.Record().stop->at_s - frozen_s < 0.3) == is_known);
+  }
+}
+
+TEST_CASE("On a fast line every power goes out at once, on a slow one the first for each picture") {
+  const auto sent_in_a_second = [](int baud) {
+    Bench bench;
+    HardwareOptions hardware;
+    hardware.line.baud = baud;
+    RealRobot robot(bench, bench, bench, {hardware, Protocol::kFramed, false});
+    Settle(robot, 0.4, bench);
+    robot.Arm();
+    const size_t before = robot.Record().sent;
+    for (int i = 0; bench.Now_s() < 101.4; ++i) {
+      robot.Sense();
+      robot.Command({0.2 + 0.001 * (i % 7), 0.2});
+      robot.Advance(kPeriod_s);
+    }
+    return robot.Record().sent - before;
+  };
+  // Thirty pictures a second, and a further step 20 ms after each.
+  CHECK(sent_in_a_second(9600) <= 33);
+  CHECK(sent_in_a_second(115200) >= 50);
+}
+
+TEST_CASE("A robot whose options break a rule is not made") {
+  Bench bench;
+  HardwareOptions hardware;
+  hardware.line.heartbeat_s = hardware.guard.link_lag_s;
+  CHECK_THROWS_AS(RealRobot(bench, bench, bench, {hardware, Protocol::kFramed, false}),
+                  std::invalid_argument);
+}
+
 TEST_CASE("After its port went away a drive is not armed again") {
   Bench bench;
   RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
