@@ -151,7 +151,9 @@ TEST_CASE("Answers are found between a radio's words, after damaged ones and in 
   const Answer first{3, 1, -7, 9, 4800, 2}, second{4, 1, -8, 10, 4790, 2};
   const Answer said{{}, 0, 123, -456, 4700, 0};
   Chunk all;
-  const auto add = [&all](const auto& bytes) { all.insert(all.end(), bytes.begin(), bytes.end()); };
+  const auto add = [&all](const auto& bytes) {
+    for (const auto byte : bytes) all.push_back(static_cast<std::uint8_t>(byte));
+  };
   add(std::string("OK+CONNZ"));
   AnswerBytes damaged = Encode(first);
   damaged[5] ^= 4;

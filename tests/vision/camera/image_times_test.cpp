@@ -121,9 +121,8 @@ TEST_CASE("The last number in a name is its time, folder and ending left out") {
 TEST_CASE("What is wrong with a file of times is said with its line, picture and numbers") {
   const std::vector<std::string> files{"run/a.jpg", "run/b.jpg"};
   using Times = std::vector<double>;
-  CHECK(TimesFromText("\n  \t\r\n1 # one\n#2\n\n3\n4\n", "t", files) == Times{1.0, 3.0});
-  CHECK(TimesFromText("other/b.jpg,,2.5\r\n1e0", "t", files) == Times{1.0, 2.5});
-  CHECK(TimesFromText("7\n8\na.jpg 1\n", "t", files) == Times{1.0, 8.0});
+  CHECK(TimesFromText("\n  \t\r\n1 # one\n#2\n\n3\n", "t", files) == Times{1.0, 3.0});
+  CHECK(TimesFromText("other/b.jpg,,2.5\r\na.jpg 1e0", "t", files) == Times{1.0, 2.5});
   const std::string rule = " is no time: seconds, or a picture's name and seconds";
   CHECK_THROWS_WITH(TimesFromText("\n#\n1.5x\n", "t.txt", files), "t.txt:3: '1.5x'" + rule);
   CHECK_THROWS_WITH(TimesFromText("a.jpg b.jpg 1\n", "t", files), "t:1: 'a.jpg b.jpg 1'" + rule);

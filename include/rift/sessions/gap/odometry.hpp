@@ -33,7 +33,7 @@ struct OdometryJob {
           "the same, and find wheel radii and track from all runs (squares both ways tell them "
           "best)");
     odometry::RunOptions::Fields(self.run_options, field);
-    field("tag_ahead_m", self.tag_ahead_m, -1.0, 1.0,
+    field("tag_ahead_m", self.tag_ahead_m, -1.0, 1.0, "m",
           "the camera's point is this far ahead of the axle: its tag (else what the experiment of "
           "a run says, or 0)");
     field("window_s", self.calibration.window_s, 0.2, 1e4,
