@@ -70,6 +70,7 @@ TEST_CASE("Failures of one kind stay together") {
 TEST_CASE("Robots that fell are a kind of their own and missing logs are none") {
   SweepResult result = TwoKinds(3, 0);
   result.rows[5].status = TrialStatus::kFell;
+  result.rows[5].falsified = true;
   result.rows[6].status = TrialStatus::kMissing;
   const std::vector<FailureCluster> clusters = ClusterFailures(result);
   REQUIRE(clusters.size() == 2);

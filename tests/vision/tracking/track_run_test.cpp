@@ -163,11 +163,11 @@ TEST_CASE("Where the tag was never seen, those of the newest picture with others
 TEST_CASE("Reference tags that lie elsewhere are said once, with the largest distance") {
   CameraModel camera = SmallCamera();
   const auto run_with = [&](double off_px, double limit_m) {
-    camera.world->marks = {{5, {0.2, 0.1, 0.0}, {}}};
     const Eigen::Vector3d p_in_camera =
         camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
-    camera.world->marks[0].seen_px =
+    const Eigen::Vector2d seen_px =
         PixelsFromPoints(camera, {p_in_camera})[0] + Eigen::Vector2d(off_px, 0.0);
+    camera.world->marks = {{5, {0.2, 0.1, 0.0}, seen_px}};
     SmallRecording recording({.tags = {FloorTag(5, 0.2, 0.1)}});
     recording.Add(RobotAt(-0.1, 0.0, 0.0), 3);
     Tracked tracked(recording.Path(), camera);

@@ -139,7 +139,10 @@ TEST_CASE("The scale of a frame is the mean side of the tag over its printed sid
     tag.corners[i] =
         PixelsFromPoints(camera, {camera.world->world_from_camera.inverse() * corners[i]})[0];
   }
-  CHECK(*ScaleByTag(camera, {TagDetection{.id = 3}, tag}, 4, 0.05, 0.03) == Approx(1.5));
+  TagDetection other = tag;
+  other.id = 3;
+  for (Eigen::Vector2d& corner : other.corners) corner *= 2.0;
+  CHECK(*ScaleByTag(camera, {other, tag}, 4, 0.05, 0.03) == Approx(1.5));
   CHECK(*ScaleByTag(camera, {tag}, 4, 0.05, 0.0) == Approx(1.5 * 0.87 / 0.84));
   CHECK_FALSE(ScaleByTag(camera, {tag}, 4, 0.05, 1.0));  // above the camera
 }
