@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "job_status.hpp"
+#include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/trajectory_bytes.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
 

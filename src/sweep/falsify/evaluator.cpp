@@ -9,6 +9,7 @@
 #include "experiment_sides.hpp"
 #include "program_side.hpp"
 #include "rift/experiment/path_template.hpp"
+#include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"

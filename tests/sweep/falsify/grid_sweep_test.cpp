@@ -1,6 +1,7 @@
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
 
+#include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 
 #include <catch2/catch.hpp>

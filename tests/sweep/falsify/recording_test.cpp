@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "rift/sweep/falsify/candidate_runs.hpp"
+#include "rift/sweep/falsify/compare_trial.hpp"
 #include "support/inputs/paths.hpp"
 #include "sweep/falsify/job_status.hpp"
 #include "sweep/falsify/simulated_recording.hpp"

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/falsify.hpp"
 #include "rift/sweep/falsify/settings.hpp"

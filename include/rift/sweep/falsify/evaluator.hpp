@@ -127,8 +127,4 @@ class Evaluator {
   std::map<std::string, double> noise_floors_m_;  ///< by the references' sources
 };
 
-/// One candidate against one reference. Without one of them it is a row with its status.
-TrialRow CompareTrial(const experiment::Experiment& experiment, const TrialRequest& request,
-                      const Recording& candidate, const Recording& reference);
-
 }  // namespace rift::sweep
