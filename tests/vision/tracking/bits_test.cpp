@@ -126,6 +126,28 @@ TEST_CASE("A measurement is believed up to the limits of its bits, its fit and i
   CHECK(shot.Measure(options).miss == Miss::kNoEdges);
 }
 
+TEST_CASE("A wrong cell is counted and put up with as far as is asked") {
+  Shot shot;
+  const TagCorners corners = test::TrueCorners(shot.camera, shot.robot);
+  const TagCells cells = CellsOfTag(0);
+  // The middle of the cell right of and above the tag's middle.
+  const Eigen::Vector2d right = (corners[1] - corners[0]) / 8.0,
+                        up = (corners[3] - corners[0]) / 8.0;
+  const Eigen::Vector2d middle = corners[0] + 4.5 * right + 4.5 * up;
+  const bool is_white = cells.is_white[cells.shape.cells - 1 - 5][5];
+  for (int y = -2; y <= 2; ++y) {
+    for (int x = -2; x <= 2; ++x) {
+      const auto at = static_cast<std::size_t>(std::lround(middle.y()) + y) * 640 +
+                      static_cast<std::size_t>(std::lround(middle.x()) + x);
+      shot.patch.pixels[at] = is_white ? 28 : 215;
+    }
+  }
+  const TrackResult seen = shot.Measure({});
+  REQUIRE(seen.sighting);
+  CHECK(seen.sighting->hamming == 1);
+  CHECK(shot.Measure({.max_hamming = 0}).miss == Miss::kDoubtfulBits);
+}
+
 TEST_CASE("A tag above the floor is left free, unless the picture is too bright to tell its size") {
   // 5 mm of 0.57 m move the corners of 51 px by a quarter of a pixel: far more than is put up with
   // is 3 cm.
@@ -141,6 +163,8 @@ TEST_CASE("A tag above the floor is left free, unless the picture is too bright 
   REQUIRE(seen.sighting);
   CHECK(seen.sighting->is_on_floor);
   CHECK(seen.sighting->map_from_tag.translation().z() == Approx(0.03).margin(1e-3));
+  lenient.max_fit_px = 0.6;  // held there its corners are some pixels off
+  CHECK(high.Measure(lenient).miss == Miss::kNoPose);
   TagOptions free;
   free.ground = Ground::kFree;
   seen = Shot().Measure(free);
