@@ -65,5 +65,75 @@ TEST_CASE("The weight is shared by wheels and caster as the lever says") {
   CHECK(body.WeightOnWheel_n() == Approx(0.1));
 }
 
+TEST_CASE("The mean of both wheels' radii is the one that is told") {
+  BodyOptions body;
+  body.wheel_radius_m = 0.02;
+  body.right_over_left = 1.1;
+  CHECK(0.5 * (body.WheelRadius_m(0) + body.WheelRadius_m(1)) == Approx(0.02));
+  CHECK(body.WheelRadius_m(1) / body.WheelRadius_m(0) == Approx(1.1));
+}
+
+TEST_CASE("A robot stands where its springs carry its weight and its caster touches the plane") {
+  BodyOptions body;
+  body.chassis_mass_kg = 0.2;
+  body.wheel_mass_kg = 0.01;
+  body.com_ahead_m = 0.01;
+  body.com_above_m = 0.02;
+  body.caster_ahead_m = 0.04;
+  body.caster_below_m = 0.008;
+  body.contact_stiffness_n_per_m = 1e4;
+  struct Case {
+    Eigen::Vector3d gravity;
+    double wheel_n, caster_n;
+  };
+  // Levers about the wheels' contact: the chassis at a height of 0.036 m and 0.01 m ahead, the
+  // wheels at 0.016 m, the caster 0.04 m ahead.
+  const Case level{{0.0, 0.0, -10.0}, 0.5 * (2.2 - 0.5), 0.5},
+      down{{6.0, 0.0, -8.0}, 0.5 * (1.76 - 1.528), 1.528}, up{{-6.0, 0.0, -8.0}, 0.88, 0.0};
+  for (const Case& one : {level, down, up}) {
+    const Stance stance = StanceOn(body, one.gravity);
+    CHECK(stance.height_m == Approx(0.016 - one.wheel_n / 1e4));
+    const double ball_m =
+        stance.height_m - 0.008 * std::cos(stance.pitch_rad) - 0.04 * std::sin(stance.pitch_rad);
+    CHECK(ball_m == Approx(body.caster_radius_m - one.caster_n / 1e4).margin(1e-9));
+  }
+  body.caster_ahead_m = -0.04;  // behind: it lifts where the nose goes down
+  CHECK(StanceOn(body, {0.0, 0.0, -10.0}).pitch_rad < 0.0);
+}
+
+TEST_CASE("What is wrong with a body is said with its numbers") {
+  BodyOptions body;
+  body.rim_clearance_m = 0.02;
+  CHECK_THROWS_WITH(body.Check(),
+                    "rim_clearance_m is 0.02, but the rim must lie below the axle, "
+                    "wheel_radius_m 0.016");
+  body = {};
+  body.caster_ahead_m = 0.004;
+  CHECK_THROWS_WITH(body.Check(),
+                    "caster_ahead_m is 0.004, but the caster must be at least 0.005 m "
+                    "from the axle");
+  body = {};
+  body.caster_below_m = 0.03;
+  CHECK_THROWS_WITH(body.Check(),
+                    Contains("caster_below_m 0.03 and caster_radius_m 0.00635 put the "
+                             "ball -0.0203") &&
+                        Contains("within 0.3 of caster_ahead_m"));
+}
+
+TEST_CASE("A robot is called tilted from half a degree on, to either side") {
+  BodyOptions body;
+  body.com_ahead_m = 0.0;
+  body.contact_stiffness_n_per_m = 1e7;
+  for (const double side : {-1.0, 1.0}) {
+    for (const double deg : {0.49, 0.51}) {
+      // So far off the floor when level: the lever times the sine of the angle.
+      body.caster_below_m = body.wheel_radius_m - body.caster_radius_m -
+                            side * std::abs(body.caster_ahead_m) * std::sin(deg * M_PI / 180.0);
+      INFO(side << " " << deg);
+      CHECK(TiltWarning(body).has_value() == (deg > 0.5));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rift::simulation

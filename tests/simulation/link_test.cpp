@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 namespace rift::simulation {
 namespace {
@@ -216,6 +217,77 @@ TEST_CASE("A poll faster than any listener is refused") {
   LinkOptions options;
   options.poll_s = 1e-9;
   CHECK_THROWS_WITH(options.Check(), Catch::Contains("poll_s"));
+}
+
+TEST_CASE("Of what waits a listener keeps as many bytes as its buffer holds, to the byte") {
+  LinkOptions options = Direct();
+  options.poll_s = 0.1;
+  options.poll_phase = 0.5;
+  // Four lines of ten bytes each before the first look, at 0.05 s.
+  const auto held = [&](int bytes) {
+    options.uart_bytes = bytes;
+    Link link(options, 1);
+    for (int i = 1; i <= 4; ++i) link.Send(0.0, {0.1 * i, 0.5});
+    link.Advance(0.06);
+    return std::pair(link, link.Held().left);
+  };
+  CHECK(held(0).second == 0.4);
+  CHECK(held(40).second == 0.4);
+  CHECK(held(39).second == 0.3);
+  CHECK(held(30).second == 0.3);
+  CHECK(held(29).second == 0.2);
+  CHECK(held(9).second == 0.0);
+  // Two bytes of the fourth line, "0.", stand before the next one: "0.0.60 0.70".
+  Link cut = held(32).first;
+  cut.Send(0.1, {0.6, 0.7});
+  cut.Advance(0.16);
+  CHECK(cut.Held() == control::WheelPower{0.0, 0.6});
+  // What is read at once needs no buffer.
+  options.poll_s = 0.0;
+  options.uart_bytes = 1;
+  Link direct(options, 1);
+  direct.Send(0.0, {0.25, 0.5});
+  direct.Advance(0.0);
+  CHECK(direct.Held().right == 0.5);
+}
+
+TEST_CASE("A listener looks at its phase and then each poll, for as long as it runs") {
+  LinkOptions options = Direct();
+  options.poll_s = 0.1;
+  options.poll_phase = 0.25;
+  Link link(options, 1);
+  for (int i = 0; i < 20; ++i) {
+    const double look_s = 0.025 + 0.1 * i, power = 0.01 * (i + 1);
+    link.Send(look_s - 0.002, {power, -power});
+    CHECK(link.Advance(look_s - 0.001).left == Approx(power - 0.01).margin(1e-12));
+    link.Advance(look_s + 0.001);
+    CHECK(link.Held() == control::WheelPower{power, -power});
+  }
+  CHECK(link.Advance(2.0).right == -0.2);
+  CHECK(link.Advance(2.0) == link.Held());  // no time passed
+}
+
+TEST_CASE("A watchdog counts from the last line that was understood") {
+  LinkOptions options = Direct();
+  options.watchdog_s = 0.5;
+  Link link(options, 1);
+  link.Send(0.0, {0.2, 0.4});
+  link.Advance(0.3);
+  link.Send(0.3, {0.2, 0.4});
+  CHECK(link.Advance(0.799).right == 0.4);
+  CHECK(link.Held().right == 0.4);
+  CHECK(link.Advance(0.809).right == Approx(0.04));
+  CHECK(link.Held() == control::WheelPower{});
+}
+
+TEST_CASE("A poll of a tenth of a millisecond is the fastest, and none at all is allowed") {
+  LinkOptions options;
+  for (const double good_s : {0.0, 1e-4, 2.0}) {
+    options.poll_s = good_s;
+    CHECK_NOTHROW(options.Check());
+  }
+  options.poll_s = 0.99e-4;
+  CHECK_THROWS_WITH(options.Check(), "poll_s is 9.9e-05, but it must be 0 or at least 0.0001");
 }
 
 }  // namespace

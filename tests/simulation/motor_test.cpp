@@ -73,6 +73,9 @@ TEST_CASE("A wheel at rest breaks away beyond its static friction, in either dir
   const double held_power = sign * 0.0039 / stall_nm, moving_power = sign * 0.0041 / stall_nm;
   CHECK(motor.Drive(StepPower::Constant(held_power), 0.0, 0.0005, 0.004).friction_nm ==
         Approx(0.0045));
+  CHECK(
+      motor.Drive(StepPower::Constant(sign * 0.0044 / stall_nm), 0.0, 0.0005, 0.004).friction_nm ==
+      Approx(0.0045));
   CHECK(motor.Drive(StepPower::Constant(moving_power), 0.0, 0.0, 0.004).friction_nm ==
         Approx(0.002));
   // Once it turns, running friction is all there is.
@@ -122,6 +125,108 @@ TEST_CASE("Encoders count whole edges in both directions") {
   CHECK(CountsAt(1.01 * edge_rad, 358.3) == 1);
   CHECK(CountsAt(-0.01 * edge_rad, 358.3) == -1);
   CHECK(CountsAt(2.0 * M_PI * 100.0 + 1e-9, 358.3) == 35830);
+}
+
+/// Mean friction over a step in which the power rises in a straight line, by adding up: the wheel
+/// is held by what the motor asks for until that breaks it away.
+double MeanFriction_nm(double before_nm, double after_nm, double breakaway_nm, double running_nm) {
+  constexpr int kParts = 100'000;
+  double sum = 0.0;
+  for (int i = 0; i < kParts; ++i) {
+    const double asked_nm = before_nm + (after_nm - before_nm) * (i + 0.5) / kParts;
+    sum += asked_nm < breakaway_nm ? std::abs(asked_nm) : running_nm;
+  }
+  return sum / kParts;
+}
+
+TEST_CASE("A wheel that a lagging motor breaks away within a step has the mean friction of it") {
+  MotorOptions options;
+  options.dead_band = 0.0;
+  options.lag_s = 1.0;  // over 0.01 s nearly a straight line
+  options.friction_torque_nm = 0.0001;
+  options.breakaway_torque_nm = 0.0006;
+  options.supply_ratio = 1.25;
+  const double stall_nm = 1.25 * options.StallTorque_nm(), sign = GENERATE(1.0, -1.0);
+  Motor motor(options, Side::kLeft);
+  const auto friction_nm = [&] {
+    return motor.Drive(StepPower::Constant(sign * 1.0), 0.0, 0.00002, 0.01).friction_nm;
+  };
+  double before_nm = 0.0;
+  for (int step = 1; step <= 3; ++step) {
+    INFO("step " << step);
+    const double after_nm = stall_nm * -std::expm1(-0.01 * step);
+    // It breaks away in the second step; until then friction stands against all that is asked.
+    CHECK(friction_nm() ==
+          Approx(step == 1 ? 0.00062 : MeanFriction_nm(before_nm, after_nm, 0.00062, 0.00012))
+              .epsilon(0.002));
+    before_nm = after_nm;
+  }
+}
+
+TEST_CASE("A wheel is held until the moment in the step at which its power changes") {
+  MotorOptions options;
+  options.dead_band = 0.1;
+  options.friction_torque_nm = 0.002;
+  options.breakaway_torque_nm = 0.004;
+  const double sign = GENERATE(1.0, -1.0), stall_nm = options.StallTorque_nm();
+  Motor motor(options, Side::kRight);
+  const auto at = [&](double before, double mean, double after) {
+    return motor.Drive({sign * before, sign * mean, sign * after}, 0.0, 0.0, 0.004);
+  };
+  // A quarter of the step at rest, then three quarters at half the power.
+  const WheelDrive from_rest = at(0.0, 0.375, 0.5);
+  CHECK(from_rest.friction_nm == Approx(0.75 * 0.002));
+  CHECK(from_rest.target_rad_s == Approx(sign * 0.375 * options.NoLoad_rad_s()));
+  // 0.12 of the power turns nothing yet, but is what friction then stands against.
+  CHECK(at(0.12, 0.31, 0.5).friction_nm == Approx(0.5 * 0.002 + 0.5 * 0.12 * stall_nm));
+  // Within the dead band is nothing: then 3/4 of the way from 0.05 to 0.45 is 3/4 of 0.45.
+  const WheelDrive from_dead = at(0.05, 0.35, 0.45);
+  CHECK(from_dead.target_rad_s == Approx(sign * 0.75 * 0.45 * options.NoLoad_rad_s()));
+  CHECK(from_dead.friction_nm == Approx(0.75 * 0.002));
+  CHECK(at(0.5, 0.25, 0.0).friction_nm == Approx(0.004));
+}
+
+TEST_CASE("Voltage scales speed and torque, and a servo has the torque it is given") {
+  MotorOptions options;
+  options.supply_ratio = 0.8;
+  options.no_load_rad_s = 50.0;
+  options.stall_torque_nm = 0.04;
+  Motor motor(options, Side::kLeft);
+  const WheelDrive drive = motor.Drive(StepPower::Constant(0.5), 1e-5, 0.0, 0.004);
+  CHECK(drive.target_rad_s == Approx(0.5 * 0.8 * 50.0));
+  CHECK(Torque(drive, 0.0) == Approx(0.5 * 0.8 * 0.04));
+  CHECK(std::isinf(drive.limit_nm));
+  options.model = MotorModel::kServo;
+  options.dead_band = 0.9;  // of the brushed motor alone
+  options.friction_torque_nm = 1.0;
+  WheelDrive servo = Motor(options, Side::kLeft).Drive({0.1, 0.3, 0.5}, 5.0, 2.0, 0.004);
+  CHECK(servo.target_rad_s == Approx(0.3 * 0.8 * 50.0));
+  CHECK((servo.compliance_rad_s_per_nm == 0.0 && servo.friction_nm == 0.0));
+  CHECK(std::isinf(servo.limit_nm));
+  options.servo_torque_nm = 0.7;
+  servo = Motor(options, Side::kLeft).Drive(StepPower::Constant(0.3), 0.0, 0.0, 0.004);
+  CHECK(servo.limit_nm == 0.7);
+}
+
+TEST_CASE("A wheel is at rest below a millionth of a radian a second") {
+  MotorOptions options;
+  options.friction_torque_nm = 0.001;
+  options.breakaway_torque_nm = 0.003;
+  CHECK_NOTHROW(options.Check());
+  Motor motor(options, Side::kLeft);
+  const auto friction_nm = [&](double rate_rad_s) {
+    return motor.Drive(StepPower::Constant(0.0), rate_rad_s, 0.0005, 0.004).friction_nm;
+  };
+  CHECK(friction_nm(0.9e-6) == Approx(0.0035));
+  CHECK(friction_nm(-0.9e-6) == Approx(0.0035));
+  CHECK(friction_nm(1.1e-6) == Approx(0.0015));
+  CHECK(friction_nm(-1.1e-6) == Approx(0.0015));
+  options.breakaway_torque_nm = options.friction_torque_nm;
+  CHECK_NOTHROW(options.Check());
+  options.breakaway_torque_nm = 0.0009;
+  CHECK_THROWS_WITH(options.Check(),
+                    "breakaway_torque_nm is 0.0009, but it must be at least friction_torque_nm, "
+                    "0.001");
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "rift/geometry/pose2.hpp"
@@ -268,6 +270,78 @@ TEST_CASE("Stopping brings the robot to rest and may be repeated") {
   robot.Stop();
   robot.Advance(1.0);
   CHECK(robot.State().velocity_mps.norm() < 1e-4);
+}
+
+TEST_CASE("What a robot is told wrong is refused with its path, its value and its range") {
+  const auto refusal = [](const std::function<void(SimulationOptions&)>& change,
+                          const geometry::Pose2& start = {}) -> std::string {
+    SimulationOptions options;
+    change(options);
+    try {
+      SimulatedRobot(options, start, 1);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK(refusal([](auto& o) { o.step_s = 0.0501; }) ==
+        "step_s is 0.0501, but it must lie in [0.0001, 0.05]");
+  CHECK(refusal([](auto& o) { o.step_s = 0.05; }) == "accepted");
+  CHECK(refusal([](auto& o) { o.step_s = 0.00009; }) ==
+        "step_s is 9e-05, but it must lie in [0.0001, 0.05]");
+  CHECK(refusal([](auto& o) { o.motor.servo_torque_nm = 0.0; }) ==
+        "motor.servo_torque_nm is 0, but it must lie in [0.001, 100]");
+  CHECK(refusal([](auto& o) { o.link.uart_bytes = -1; }) ==
+        "link.uart_bytes is -1, but it must lie in [0, 1e+06]");
+  CHECK(refusal([](auto& o) {
+          o.terrain.patches.resize(2);
+          o.terrain.patches[1].mu = 6.0;
+        }) == "terrain.patches[1].mu is 6, but it must lie in [0, 5]");
+  CHECK(refusal([](auto& o) {
+          o.terrain.patches.resize(1);
+          o.terrain.patches[0].x_max_m = -1.0;
+        }) == "x_min_m is 0, but it must lie below x_max_m, -1");
+  CHECK(refusal([](auto& o) {
+          o.motor.breakaway_torque_nm = 0.0, o.motor.friction_torque_nm = 0.1;
+        }) == "breakaway_torque_nm is 0, but it must be at least friction_torque_nm, 0.1");
+  CHECK(refusal([](auto&) {}, {1.0, std::nan(""), 2.0}) ==
+        "the start pose is (1, nan, 2), but it must be finite");
+}
+
+TEST_CASE(
+    "A power may be as much beyond one as a sum rounds, and a time from none to a million "
+    "seconds") {
+  SimulatedRobot robot(Ideal(), {}, 1);
+  CHECK_NOTHROW(robot.Command({1.0 + 0.9e-9, -1.0 - 0.9e-9}));
+  CHECK_THROWS_WITH(robot.Command({0.0, -1.1}),
+                    "the right power is -1.1, but it must lie in [-1, 1]");
+  CHECK_THROWS(robot.Command({1.0 + 2e-9, 0.0}));
+  CHECK_NOTHROW(robot.Advance(0.0));
+  CHECK_THROWS_WITH(robot.Advance(1e6 + 1.0),
+                    "the robot cannot advance by 1000001 s, only by 0 to 1000000 s");
+  CHECK_THROWS(robot.Advance(std::nan("")));
+  CHECK(robot.Sense().now_s == 0.0);
+}
+
+TEST_CASE("Encoders are reported unless they are not, in counts of their own or of the gearing") {
+  SimulationOptions options = Ideal();
+  options.encoder.reported = false;
+  CHECK_FALSE(SimulatedRobot(options, {}, 1).Sense().encoders);
+  const auto counts = [&] {
+    SimulatedRobot robot(options, {}, 1);
+    robot.Command({0.1, 0.2});
+    robot.Advance(1.0);
+    return std::pair(*robot.Sense().encoders, robot.State().wheel_angle_rad);
+  };
+  options.encoder = {.reported = true, .counts_per_rev = 1000.0};
+  auto [own, angle_rad] = counts();
+  CHECK(own.left == std::lround(std::floor(angle_rad[0] * 1000.0 / (2.0 * geometry::kPi))));
+  CHECK(own.right == std::lround(std::floor(angle_rad[1] * 1000.0 / (2.0 * geometry::kPi))));
+  options.encoder = {};
+  options.motor.gearing = Gearing::k75To1;
+  auto [geared, geared_rad] = counts();
+  CHECK(geared.right ==
+        std::lround(std::floor(geared_rad[1] * 12.0 * 75.81 / (2.0 * geometry::kPi))));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "rift/simulation/terrain.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -171,6 +172,158 @@ TEST_CASE("Away from planes the profile finds the same contact as the plane does
     CHECK((contact->normal - normal).norm() < 1e-3);
     CHECK(contact->depth_m == Approx(sunk_m).margin(2e-5));
   }
+}
+
+TEST_CASE(
+    "The paper's surfaces have the friction, the resistance and the slip that are documented") {
+  struct Row {
+    const char* name;
+    Shape shape;
+    double mu, rolling_resistance, slip;
+  };
+  const auto surfaces = PaperSurfaces();
+  CHECK(surfaces.size() == 7);
+  for (const Row& row : {Row{"ground", Shape::kFlat, 0.8, 0.01, 0.01},
+                         {"cardboard", Shape::kFlat, 0.8, 0.02, 0.01},
+                         {"parchment", Shape::kFlat, 0.4, 0.01, 0.02},
+                         {"wet_parchment", Shape::kFlat, 0.3, 0.02, 0.04},
+                         {"uphill", Shape::kRampUp, 0.7, 0.01, 0.01},
+                         {"downhill", Shape::kRampDown, 0.7, 0.01, 0.01},
+                         {"bump", Shape::kBumps, 0.85, 0.02, 0.01}}) {
+    INFO(row.name);
+    const SurfaceOptions& surface = surfaces.at(row.name);
+    CHECK(surface.shape == row.shape);
+    CHECK(surface.mu == row.mu);
+    CHECK(surface.rolling_resistance == row.rolling_resistance);
+    CHECK(surface.slip == row.slip);
+    CHECK(surface.ramp_edge_x_m == (row.shape == Shape::kRampUp ? 0.31 : 0.05));
+  }
+}
+
+TEST_CASE(
+    "A plane is found wherever no edge, bend or foot of the board is in reach, and nowhere else") {
+  const double bend_m = GENERATE(0.0, 0.2), reach_m = 0.03, foot_m = 0.24 / std::tan(0.255);
+  for (const Shape shape : {Shape::kRampDown, Shape::kRampUp}) {
+    TerrainOptions options;
+    options.surfaces["ground"].shape = shape;
+    options.surfaces["ground"].ramp_bend_m = bend_m;
+    const Terrain terrain(options);
+    const double ahead = shape == Shape::kRampDown ? 1.0 : -1.0;
+    int wrong = 0;
+    for (double past_m = -0.5; past_m < 1.5; past_m += 0.0017) {
+      const bool near_bend = past_m > -0.5 * bend_m - reach_m && past_m < 0.5 * bend_m + reach_m;
+      const bool near_foot = std::abs(past_m - foot_m) < reach_m;
+      const auto plane = terrain.PlaneNear(0.05 + ahead * past_m, 0.3, reach_m);
+      wrong += plane.has_value() == (near_bend || near_foot);
+      if (!plane) continue;
+      const bool on_slope = past_m > 0.0 && past_m < foot_m;
+      wrong += std::abs(plane->normal.x() - (on_slope ? ahead * std::sin(0.255) : 0.0)) > 1e-12;
+      wrong += plane->point.y() != 0.3;
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("A patch holds a wheel in its own way, on ground as uneven as elsewhere") {
+  TerrainOptions options;
+  options.surfaces["ground"].unevenness = 0.07;
+  options.surfaces["ground"].caster_factor = 3.0;
+  options.patches = {{0.0, 0.1, 0.2, 0.4, 0.25, 0.05, 0.125}};
+  const Terrain terrain(options);
+  const Grip on = terrain.GripAt(0.1, 0.4), off = terrain.GripAt(0.1 + 1e-9, 0.3);
+  CHECK((on.mu == 0.25 && on.rolling_resistance == 0.05 && on.slip == 0.125));
+  CHECK((on.caster_factor == 1.0 && on.unevenness == 0.07));
+  CHECK((off.mu == 0.8 && off.rolling_resistance == 0.01 && off.slip == 0.01));
+  CHECK((off.caster_factor == 3.0 && off.unevenness == 0.07));
+  CHECK(terrain.GripAt(-1e-9, 0.3).mu == 0.8);
+  CHECK(terrain.GripAt(0.05, 0.2 - 1e-9).mu == 0.8);
+  CHECK(terrain.GripAt(0.05, 0.4 + 1e-9).mu == 0.8);
+}
+
+TEST_CASE(
+    "The blocks near a point are all of the grid that reach into the square, up to eight in a "
+    "row") {
+  const Terrain terrain = Named("bump");
+  for (const auto& [x_m, y_m, reach_m] :
+       {std::tuple{0.013, -0.207, 0.11}, {-0.4, 0.33, 0.05}, {0.0, 0.0, 0.2}}) {
+    const auto found = terrain.BlocksNear(x_m, y_m, reach_m);
+    REQUIRE(found);
+    std::size_t expected = 0;
+    for (int i = -20; i <= 20; ++i) {
+      for (int j = -20; j <= 20; ++j) {
+        const bool reaches = std::abs(0.06 * i - x_m) <= reach_m + 0.01 &&
+                             std::abs(0.06 * j - y_m) <= reach_m + 0.01;
+        expected += reaches;
+        const bool is_found = std::any_of(found->begin(), found->end(), [&](const Block& block) {
+          return std::abs(block.x_m - 0.06 * i) < 1e-9 && std::abs(block.y_m - 0.06 * j) < 1e-9;
+        });
+        CHECK(is_found == reaches);
+      }
+    }
+    CHECK(found->size() == expected);
+    CHECK((found->front().half_size_m == 0.01 && found->front().height_m == 0.004));
+  }
+  CHECK(terrain.BlocksNear(0.0, 0.0, 0.2299));
+  CHECK_FALSE(terrain.BlocksNear(0.0, 0.0, 0.2301));
+}
+
+TEST_CASE("A heightfield lies about its middle, and around it is the floor") {
+  TerrainOptions options = Heightfield();
+  options.surfaces["ground"].image_x_m = 3.0;
+  options.surfaces["ground"].image_y_m = -1.0;
+  const auto image = std::make_shared<HeightImage>(
+      HeightImage{3, 3, {0.0, 0.1, 0.2, 0.3, 0.5, 0.8, 0.4, 0.7, 1.0}});
+  const Terrain terrain(options, image);  // a pixel is a metre
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      CHECK(terrain.HeightAt(2.0 + column, 0.0 - row) ==
+            Approx(0.1 * image->samples[static_cast<std::size_t>(3 * row + column)]));
+    }
+  }
+  CHECK(terrain.HeightAt(3.25, -1.5) ==
+        Approx(0.1 * (0.5 * (0.5 + 0.25 * 0.3) + 0.5 * (0.7 + 0.25 * 0.3))));
+  for (const auto& [x_m, y_m] : {std::pair{1.99, -1.0}, {4.01, -1.0}, {3.0, 0.01}, {3.0, -2.01}}) {
+    CHECK(terrain.HeightAt(x_m, y_m) == 0.0);
+  }
+  const Eigen::Vector3d normal = terrain.NormalAt(3.5, -1.0);
+  CHECK(-normal.x() / normal.z() == Approx(0.03));
+  CHECK(-normal.y() / normal.z() == Approx(0.5 * (0.1 * (0.15 - 0.65) + 0.1 * (0.65 - 0.85))));
+  for (const auto& [columns, rows] : {std::pair{1, 4}, {4, 1}, {2, 3}}) {
+    CHECK_THROWS_WITH(Terrain(options, std::make_shared<HeightImage>(
+                                           HeightImage{columns, rows, {0.0, 0.0, 0.0, 0.0}})),
+                      "surface 'ground' is a heightfield, but no image of at least 2 x 2 pixels is "
+                      "given");
+  }
+}
+
+TEST_CASE("What is wrong with a surface is said with its rule") {
+  SurfaceOptions surface;
+  surface.bump_size_m = surface.bump_pitch_m;
+  CHECK_NOTHROW(surface.Check());
+  surface.bump_size_m = 0.07;
+  CHECK_THROWS_WITH(surface.Check(),
+                    "bump_size_m is 0.07, but a block must not be wider than bump_pitch_m, 0.06");
+  surface = {};
+  surface.shape = Shape::kHeightfield;
+  CHECK_THROWS_WITH(surface.Check(),
+                    "image is empty, but a surface of shape heightfield needs a PNG");
+  TerrainOptions options;
+  options.surfaces = {{"ice", {}}, {"sand", {}}};
+  options.surface = "mud";
+  CHECK_THROWS_WITH(options.Check(), "surface is 'mud', but it must be one of: ice, sand");
+}
+
+TEST_CASE("At the edge of a table the ground ends and leans no way") {
+  TerrainOptions options;
+  options.surface = "downhill";
+  options.table_half_size_m = 0.5;
+  const Terrain terrain(options);
+  CHECK(std::isfinite(terrain.HeightAt(0.5, -0.5)));
+  CHECK(std::isinf(terrain.HeightAt(0.5 + 1e-9, 0.0)));
+  CHECK(std::isinf(terrain.HeightAt(0.0, -0.5 - 1e-9)));
+  CHECK(terrain.NormalAt(0.49, 0.0).x() == Approx(std::sin(0.255)));
+  CHECK(terrain.NormalAt(0.49985, 0.0).x() == 0.0);
+  CHECK(terrain.NormalAt(0.49975, 0.0).x() == Approx(std::sin(0.255)));
 }
 
 }  // namespace

@@ -106,5 +106,108 @@ TEST_CASE("What cannot be filmed is refused in one line") {
   CHECK_THROWS_WITH(MakeFilm(StraightRun(), odd), Contains("width_px is 1281"));
 }
 
+TEST_CASE("A scene has its lean, height and speed from the poses about it, and no speed of one") {
+  Run run;
+  run.truth.poses = {{.t_s = 3.0,
+                      .x_m = 0.0,
+                      .y_m = 0.0,
+                      .z_m = 0.5,
+                      .roll_rad = 0.1,
+                      .pitch_rad = -0.2,
+                      .yaw_rad = 0.0},
+                     {.t_s = 5.0,
+                      .x_m = 0.3,
+                      .y_m = 0.4,
+                      .z_m = 1.7,
+                      .roll_rad = 0.3,
+                      .pitch_rad = 0.2,
+                      .yaw_rad = 1.0},
+                     {.t_s = 6.0,
+                      .x_m = 0.3,
+                      .y_m = 0.4,
+                      .z_m = 1.7,
+                      .roll_rad = NAN,
+                      .pitch_rad = NAN,
+                      .yaw_rad = 1.0}};
+  const Scene scene = SceneAt(run, 0.5);
+  CHECK(scene.t_s == 0.5);
+  CHECK(scene.z_m == Approx(0.8));
+  CHECK(scene.roll_rad == Approx(0.15));
+  CHECK(scene.pitch_rad == Approx(-0.1));
+  CHECK(scene.speed_mps == Approx(std::hypot(0.5, 1.2) / 2.0));
+  CHECK(SceneAt(run, 2.5).roll_rad == Approx(0.15));  // unknown is level
+  CHECK(SceneAt(run, 2.5).speed_mps == 0.0);
+  CHECK(SceneAt(run, -1.0).world_from_robot.x_m == 0.0);
+  CHECK(SceneAt(run, 9.0).world_from_robot.x_m == 0.3);
+  run.truth.poses.resize(1);
+  CHECK(std::isnan(SceneAt(run, 0.0).speed_mps));
+  CHECK(SceneAt(run, 0.0).z_m == 0.5);
+}
+
+TEST_CASE(
+    "The newest row counts from its very time on, and a place is a target to the micrometre") {
+  Run run = StraightRun();
+  for (std::size_t i = 0; i < run.logged.poses.size(); ++i) {
+    run.logged.poses[i].t_s = 5.0 + 0.25 * static_cast<double>(i);
+    run.logged.channels[0].values[i] = 0.01 * static_cast<double>(i);
+  }
+  CHECK(SceneAt(run, 0.5).power.left == 0.02);
+  CHECK(SceneAt(run, 0.5 - 1e-9).power.left == 0.01);
+  CHECK(SceneAt(run, 0.5).trail_points == 3);
+  run.logged.channels[0].values.resize(2);  // shorter than the log
+  CHECK(std::isnan(SceneAt(run, 0.5).power.left));
+  run.logged.poses[2].target_x_m += 0.9e-6;
+  CHECK(SceneAt(run, 0.5).target == 1);
+  run.logged.poses[2].target_x_m += 0.2e-6;
+  CHECK(SceneAt(run, 0.5).target == -1);
+  run.logged.poses[2].target_x_m = run.logged.poses[2].target_y_m = 0.0;
+  CHECK(SceneAt(run, 0.5).target == 0);
+  for (auto& pose : run.logged.poses) pose.t_s += 1.0;
+  const Scene before = SceneAt(run, 0.5);
+  CHECK((before.target == -1 && before.trail_points == 0 && std::isnan(before.power.right)));
+}
+
+TEST_CASE("The ground reaches by its margin around every point that is shown, in cells of a size") {
+  Run run = StraightRun();
+  run.waypoints.push_back({"aside", {0.1, -0.6}});
+  run.reference_m = {{0.0, 0.7}, {NAN, 5.0}};
+  run.height_at = [](double x_m, double y_m) { return 0.01 * x_m + 0.1 * y_m; };
+  ViewOptions options;
+  options.margin_m = 0.1;
+  options.ground_cell_m = 0.02;
+  const StaticScene fixed = MakeFilm(run, options).fixed;
+  const Ground& ground = fixed.ground;
+  const double margin_m = 0.1 + run.body.chassis_radius_m;
+  CHECK(ground.x_min_m == Approx(-margin_m));
+  CHECK(ground.y_min_m == Approx(-0.6 - margin_m));
+  CHECK(ground.cell_m == 0.02);
+  CHECK(ground.columns == static_cast<int>(std::ceil((0.4 + 2.0 * margin_m) / 0.02)) + 1);
+  CHECK(ground.rows == static_cast<int>(std::ceil((1.3 + 2.0 * margin_m) / 0.02)) + 1);
+  CHECK(ground.At(3, 7) == Approx(0.01 * (ground.x_min_m + 0.06) + 0.1 * (ground.y_min_m + 0.14)));
+  const double highest_m = ground.At(ground.columns - 1, ground.rows - 1);
+  CHECK(fixed.top_m == Approx(highest_m + 0.016 - 0.011 + 0.0266 + 0.0484));
+  run.height_at = {};
+  const StaticScene level = MakeFilm(run, options).fixed;
+  CHECK(level.top_m == Approx(0.016 - 0.011 + 0.0266 + 0.0484));
+  CHECK(level.ground.At(0, 0) == 0.0F);
+  CHECK(level.trail_m.size() == 41);
+  options.height_px = 721;
+  CHECK_THROWS_WITH(MakeFilm(run, options), "height_px is 721, but it must be even");
+}
+
+TEST_CASE("The outline of a robot is its simulation's, member by member") {
+  simulation::BodyOptions body;
+  body.chassis_radius_m = 0.1;
+  body.chassis_height_m = 0.2;
+  body.rim_clearance_m = 0.01;
+  body.wheel_radius_m = 0.03;
+  body.wheel_width_m = 0.04;
+  body.track_m = 0.05;
+  const BodyShape shape = ShapeOf(body);
+  CHECK((shape.chassis_radius_m == 0.1 && shape.chassis_height_m == 0.2));
+  CHECK(shape.chassis_bottom_m == Approx(-0.02));
+  CHECK((shape.wheel_radius_m == 0.03 && shape.wheel_width_m == 0.04 && shape.track_m == 0.05));
+}
+
 }  // namespace
 }  // namespace rift::view

@@ -303,5 +303,68 @@ TEST_CASE(
   }
 }
 
+/// A camera without a picture that goes through these states, one each time it is asked.
+class StatefulCapture : public Capture {
+ public:
+  explicit StatefulCapture(std::vector<CaptureStatus> states) : states_(std::move(states)) {}
+  std::optional<Frame> Next(double) override { return std::nullopt; }
+  CaptureStatus Status() const override { return states_[std::min(asked_++, states_.size() - 1)]; }
+  bool IsRecording() const override { return false; }
+
+ private:
+  std::vector<CaptureStatus> states_;
+  mutable std::size_t asked_ = 0;
+};
+
+TEST_CASE("What becomes of the camera is said as it changes, but for its start and its end") {
+  using State = CameraState;
+  StatefulCapture capture({{.state = State::kOpening},
+                           {.state = State::kRunning},
+                           {.state = State::kBlack, .reason = "no light"},
+                           {.state = State::kBlack, .reason = "no light"},
+                           {.state = State::kRunning},
+                           {.state = State::kReconnecting, .reason = "no route"},
+                           {.state = State::kOpening},
+                           {.state = State::kFrozen},
+                           {.state = State::kEnded}});
+  std::vector<std::string> said;
+  const auto views =
+      ViewsFromCamera(capture, kBoard, {},
+                      {.is_stopped = [] { return false; },
+                       .say = [&](const std::string& line) { said.push_back(line); }});
+  CHECK(views.empty());
+  REQUIRE(said.size() == 5);
+  CHECK_THAT(said[0],
+             Contains("Ctrl-C ends and calibrates; first, hold the board at the upper left"));
+  said.erase(said.begin());
+  CHECK(said == std::vector<std::string>{"camera black: no light", "camera running",
+                                         "camera reconnecting: no route", "camera frozen"});
+}
+
+TEST_CASE(
+    "A camera that ends before there was a view is an error, unless it was a recording's end") {
+  const auto end_in = [](CameraState state) {
+    StatefulCapture capture({{.state = state, .reason = "its reason"}});
+    return ViewsFromCamera(
+        capture, kBoard, {},
+        {.is_stopped = [] { return false; }, .say = [](const std::string&) {}, .give_up_s = 0.0});
+  };
+  CHECK(end_in(CameraState::kEnded).empty());
+  for (const CameraState state : {CameraState::kUnplugged, CameraState::kBlack}) {
+    CHECK_THROWS_WITH(end_in(state), "no view of the board was taken: its reason");
+  }
+}
+
+TEST_CASE("A view that is taken back is said, and the next one has its number") {
+  const Frame left = Picture({-0.06, 0.0, 0.45}), right = Picture({0.08, 0.03, 0.4});
+  const Gathered gathered =
+      Gather({left, left, right, right}, [](int n) { return LiveInput{.undo = n == 1 || n == 2}; });
+  CHECK(Names(gathered.views) == std::vector<std::string>{"frame000003"});
+  REQUIRE(gathered.said.size() == 4);
+  CHECK_THAT(gathered.said[1], Contains("view 1: frame000001; next, hold the board"));
+  CHECK(gathered.said[2] == "view 1 is taken back");
+  CHECK_THAT(gathered.said[3], Contains("view 1: frame000003; next, "));
+}
+
 }  // namespace
 }  // namespace rift::vision

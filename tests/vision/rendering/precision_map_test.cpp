@@ -8,6 +8,7 @@
 #include "rift/vision/tracking/tag_tracker.hpp"
 #include "rift/vision/tracking/tag_visibility.hpp"
 #include "vision/ray_renderer.hpp"
+#include "vision/small_recording.hpp"
 
 namespace rift::vision {
 namespace {
@@ -129,6 +130,35 @@ TEST_CASE("A precision map shows where the picture has no floor, and needs a wor
   camera.world.reset();
   CHECK_THROWS_WITH(PredictPrecision(camera, {}, LookOfRays(), {}),
                     Catch::Contains("no world frame"));
+}
+
+TEST_CASE("Places lie evenly over the picture, each with its floor, its side and its slant") {
+  const CameraModel camera = test::SmallCamera();
+  std::vector<std::pair<int, int>> told;
+  const PrecisionMap map =
+      PredictPrecision(camera, {}, LookOfRays(), {.columns = 2, .rows = 1, .views = 2},
+                       [&](int done, int all) { told.emplace_back(done, all); });
+  CHECK(told == std::vector<std::pair<int, int>>{{1, 2}, {2, 2}});
+  CHECK((map.columns == 2 && map.rows == 1));
+  REQUIRE(map.places.size() == 2);
+  const double side_px = 610.0 * 0.0475 / 0.57;
+  for (int i = 0; i < 2; ++i) {
+    const PrecisionPlace& place = map.places[static_cast<std::size_t>(i)];
+    CHECK(place.at_px == Eigen::Vector2d(160.0 + 320.0 * i, 240.0));
+    REQUIRE(place.floor_m);
+    const Eigen::Vector2d expected((place.at_px.x() - 319.5) / 610.0 * 0.57, -0.5 / 610.0 * 0.57);
+    CHECK((*place.floor_m - expected).norm() < 1e-9);
+    CHECK(place.side_px == Approx(side_px));
+    CHECK(place.shift_by_height == Approx(expected.norm() / 0.57));
+    CHECK((place.views == 2 && place.found == 2));
+    REQUIRE((place.off_m.size() == 2 && place.yaw_off_rad.size() == 2));
+    for (const double off_m : place.off_m) CHECK((off_m > 0.0 && off_m < 3e-4));
+    for (const double off_rad : place.yaw_off_rad) CHECK((off_rad > 0.0 && off_rad < 5e-3));
+    CHECK(*place.least_size_m == Approx(0.0475 * map.least_side_px / side_px));
+  }
+  // Halved from 6 and 48 px until they are within one: by 42 / 64.
+  const double steps = (map.least_side_px - 6.0) * 64.0 / 42.0;
+  CHECK(steps == Approx(std::round(steps)).margin(1e-9));
 }
 
 }  // namespace

@@ -76,5 +76,57 @@ TEST_CASE("The sheets in data are those that this code makes") {
   CHECK(FileText(folder + "chessboard_13x9_25mm.svg") == ChessboardSheet({13, 9, 0.025}));
 }
 
+TEST_CASE("A sheet is A4 as long as that has room above the caption, then A3 on its side") {
+  const auto paper = [](const Board& board) {
+    const std::string svg = ChessboardSheet(board);
+    return svg.substr(svg.find("width="), svg.find(" viewBox") - svg.find("width="));
+  };
+  const std::string a4 = "width=\"210mm\" height=\"297mm\"",
+                    a3 = "width=\"420mm\" height=\"297mm\"";
+  // A4 has 194 by 267 mm for squares, A3 has 404 by 267.
+  CHECK(paper({9, 9, 0.01939}) == a4);
+  CHECK(paper({9, 9, 0.01941}) == a3);
+  CHECK(paper({4, 9, 0.0267}) == a4);
+  CHECK_THROWS_WITH(ChessboardSheet({4, 9, 0.02671}),
+                    Catch::Contains("a chessboard of 133.55 x 267.1 mm"));
+  CHECK(paper({19, 9, 0.0202}) == a3);
+  CHECK_THROWS_WITH(ChessboardSheet({19, 9, 0.02021}), Catch::Contains("does not go on A3"));
+}
+
+TEST_CASE("A board on A4 has its squares in the middle, its ruler and its caption at the foot") {
+  const std::string svg = ChessboardSheet({3, 4, 0.03});
+  // Four by five squares of 30 mm: (210 - 120) / 2 from the left and 8 from the top; ten black.
+  CHECK_THAT(svg, Catch::Contains(
+                      "<rect x=\"45.0000\" y=\"8.0000\" width=\"30.0000\" height=\"30.0000\"/>") &&
+                      Catch::Contains("<rect x=\"135.0000\" y=\"38.0000\"") &&
+                      Catch::Contains("<rect x=\"105.0000\" y=\"128.0000\""));
+  int rectangles = 0;
+  for (std::size_t at = 0; (at = svg.find("<rect", at)) != std::string::npos; ++at) ++rectangles;
+  CHECK(rectangles == 10);
+  CHECK_THAT(svg,
+             Catch::Contains("d=\"M8 289h100M8 287.5v3M108 287.5v3\"") &&
+                 Catch::Contains("x=\"8\" y=\"282\"") && Catch::Contains("x=\"8\" y=\"286\"") &&
+                 Catch::Contains(">chessboard of 3 x 4 inner corners, squares of 30 mm<") &&
+                 Catch::Contains(">This line: 100 mm. Print at 100 %, matt, and glue it flat.<"));
+}
+
+TEST_CASE(
+    "Of a family with a white square the white one has the size, and all that is printed is "
+    "drawn") {
+  const std::string svg = TagSheet(17, 0.05, TagFamily::kStandard41h12);
+  CHECK_THAT(svg, Catch::Contains(">tagStandard41h12 id 17, white square 50 mm; cut along the grey "
+                                  "line; the robot's front is to the right<") &&
+                      Catch::Contains("<path d=\"M60 30h90v90h-90z\" stroke=\"#999\""));
+  const TagCells cells = CellsOfTag(17, TagFamily::kStandard41h12);
+  const cv::Mat sheet = Printed(svg);
+  for (int row = 0; row < 9; ++row) {
+    for (int column = 0; column < 9; ++column) {
+      const cv::Point middle(cvRound((65.0 + 10.0 * column) * kPxPerMm),
+                             cvRound((35.0 + 10.0 * row) * kPxPerMm));
+      CHECK((sheet.at<std::uint8_t>(middle) == 255) == cells.is_white[row][column]);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rift::vision

@@ -9,6 +9,7 @@
 
 #include "rift/vision/camera/picture_reader.hpp"
 #include "vision/rendered_tags.hpp"
+#include "vision/small_recording.hpp"
 #include "vision/tracking/edge_fit.hpp"
 
 namespace rift::vision {
@@ -169,6 +170,88 @@ TEST_CASE("A camera without a place in the world cannot be rendered") {
   CameraModel camera = test::PaperCamera();
   camera.world.reset();
   CHECK_THROWS_WITH(SyntheticCamera(camera, {}), Catch::Contains("camera paper"));
+}
+
+/// The grey values of a picture without anything that is told otherwise.
+cv::Mat1b Greys(const CameraModel& camera, const SyntheticCameraOptions& options,
+                const std::optional<RobotMotion>& robot = {}) {
+  std::mt19937_64 generator(1);
+  Frame frame = SyntheticCamera(camera, options).Render(robot, PixelFormat::kGrey, generator);
+  return cv::Mat1b(frame.height_px, frame.width_px, frame.bytes.data()).clone();
+}
+
+TEST_CASE("Light falls off towards the corners, and the exposure multiplies all of it") {
+  SyntheticCameraOptions options = Clean();
+  options.floor_grey = 120.0;
+  options.falloff = 0.4;
+  options.exposure = 1.5;
+  const cv::Mat1b picture = Greys(test::SmallCamera(), options);
+  CHECK(picture(240, 320) == 180);
+  CHECK(picture(0, 0) == Approx(180.0 * 0.6).margin(1.0));
+  CHECK(picture(479, 639) == Approx(180.0 * 0.6).margin(1.5));
+  // Half of the way to a corner is a quarter of its square.
+  CHECK(picture(120, 160) == Approx(180.0 * 0.9).margin(1.0));
+  CHECK(picture(240, 0) ==
+        Approx(180.0 * (1.0 - 0.4 * 320.0 * 320.0 / (400.0 * 400.0))).margin(1.0));
+}
+
+TEST_CASE("Grain scatters the floor as it is asked to, one and the same in each picture") {
+  SyntheticCameraOptions options = Clean();
+  options.grain_grey = 8.0;
+  options.blur_px = 0.0;
+  const cv::Mat1b picture = Greys(test::SmallCamera(), options);
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(picture, mean, deviation);
+  CHECK(mean[0] == Approx(165.0).margin(2.0));
+  CHECK(deviation[0] == Approx(8.0).epsilon(0.1));
+  CHECK(cv::norm(picture, Greys(test::SmallCamera(), options), cv::NORM_INF) == 0.0);
+}
+
+TEST_CASE("Every format holds the picture, and a frame says which it is") {
+  SyntheticCamera renderer(test::SmallCamera(), Clean());
+  std::mt19937_64 generator(1);
+  const auto robot = test::RobotAt(0.1, -0.05, 1.0);
+  const Frame grey = renderer.Render(robot, PixelFormat::kGrey, generator);
+  const std::size_t pixels = 640 * 480;
+  REQUIRE(grey.bytes.size() == pixels);
+  CHECK((grey.width_px == 640 && grey.height_px == 480 && grey.format == PixelFormat::kGrey));
+  const Frame bgr = renderer.Render(robot, PixelFormat::kBgr, generator);
+  const Frame yuyv = renderer.Render(robot, PixelFormat::kYuyv, generator);
+  REQUIRE((bgr.bytes.size() == 3 * pixels && yuyv.bytes.size() == 2 * pixels));
+  CHECK((bgr.format == PixelFormat::kBgr && yuyv.format == PixelFormat::kYuyv));
+  int wrong = 0;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) wrong += bgr.bytes[3 * i + k] != grey.bytes[i];
+    wrong += yuyv.bytes[2 * i] != grey.bytes[i] || yuyv.bytes[2 * i + 1] != 128;
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("A robot is a dark disc at its tag's height over a darker one at the floor") {
+  const cv::Mat1b picture = Greys(test::SmallCamera(), Clean(), test::RobotAt(0.2, 0.0, 0.0));
+  // 610 px a metre over 0.57 m and 0.6 m: discs about 214 and 203 px right of the middle, of 52 and
+  // 49 px.
+  const auto right_of_middle = [&](int px) { return int{picture(239, 320 + px)}; };
+  CHECK(right_of_middle(150) == 165);
+  CHECK(right_of_middle(158) == Approx(22.5).margin(1.0));
+  CHECK(right_of_middle(172) == 45);
+  CHECK(right_of_middle(262) == 45);
+  CHECK(right_of_middle(270) == 165);
+  SyntheticCameraOptions without = Clean();
+  without.body_radius_m = 0.0;
+  const cv::Mat1b bare = Greys(test::SmallCamera(), without, test::RobotAt(0.2, 0.0, 0.0));
+  CHECK(bare(239, 320 + 172) == 165);
+  // The white border of the tag, from 25 to 32 px from its middle.
+  CHECK(int{bare(239, 320 + 186)} == Approx(215).margin(3.0));
+}
+
+TEST_CASE("A picture of no size is refused with it") {
+  CameraModel camera = test::SmallCamera();
+  camera.width_px = 0;
+  CHECK_THROWS_WITH(SyntheticCamera(camera, {}), "camera small: 0 x 480 is no size of a picture");
+  camera.width_px = 640;
+  camera.height_px = 0;
+  CHECK_THROWS_WITH(SyntheticCamera(camera, {}), Catch::Contains("640 x 0"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "rift/geometry/pose2.hpp"
 #include "vision/rendered_tags.hpp"
+#include "vision/small_recording.hpp"
 
 namespace rift::vision {
 namespace {
@@ -277,6 +278,46 @@ TEST_CASE("An id that the family lacks is refused") {
   TagOptions options;
   options.id = 587;
   CHECK_THROWS_WITH(TagTracker(test::PaperCamera(), options), Catch::Contains("587"));
+}
+
+/// A tag of the robot's id on the floor beside it, for so many pictures and then no more.
+std::vector<int> TagsSeen(const TagOptions& options, int with, int all) {
+  const CameraModel camera = test::SmallCamera();
+  const SyntheticCameraOptions look{.noise_grey = 1.0};
+  Film both(camera, look, {.tags = {test::FloorTag(0, 0.15, 0.1)}}), alone(camera, look);
+  TagTracker tracker(camera, options);
+  std::vector<int> tags;
+  for (int i = 0; i < all; ++i) {
+    const auto robot = test::RobotAt(-0.1, 0.0, 0.0);
+    const Frame beside = both.Next(robot), without = alone.Next(robot);
+    const TrackResult result = tracker.Track(i < with ? beside : without);
+    REQUIRE(result.sighting);
+    tags.push_back(result.sighting->tags_of_this_id);
+  }
+  return tags;
+}
+
+TEST_CASE("The whole picture is searched again as often as is asked, and otherwise in doubt") {
+  const TagOptions doubtful{.recheck_every = 100, .doubt_recheck_every = 4};
+  CHECK(TagsSeen(doubtful, 1, 7) == std::vector<int>{2, 2, 2, 2, 1, 1, 1});
+  const TagOptions never{.recheck_every = 0, .doubt_recheck_every = 1};
+  CHECK(TagsSeen(never, 1, 4) == std::vector<int>{2, 2, 2, 2});
+}
+
+TEST_CASE("A robot that should have left the picture is not looked for in it") {
+  const CameraModel camera = test::SmallCamera();
+  Film film(camera, {.noise_grey = 1.0});
+  TagTracker tracker(camera, {.lost_after_s = 1.0});
+  REQUIRE(tracker.Track(film.Next(test::RobotAt(0.20, 0.0, 0.0))).sighting);
+  REQUIRE(tracker.Track(film.Next(test::RobotAt(0.25, 0.0, 0.0))).sighting);
+  for (int i = 0; i < 3; ++i) film.Next({});
+  const TrackResult gone = tracker.Track(film.Next({}));
+  CHECK_FALSE(gone.sighting);
+  CHECK(gone.miss == Miss::kNoTag);
+  REQUIRE(gone.predicted);
+  CHECK(gone.predicted->Planar().x_m == Approx(0.25 + 4.0 * 0.05).margin(0.01));
+  CHECK(gone.predicted->frame_index == 5);
+  CHECK(gone.State() == TrackState::kPredicted);
 }
 
 }  // namespace

@@ -1,0 +1,184 @@
+// What is read inside of a fitted square, and when a measurement of it is believed.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "rift/vision/camera/picture_reader.hpp"
+#include "vision/small_recording.hpp"
+#include "vision/tracking/edge_fit.hpp"
+#include "vision/tracking/tag_meter.hpp"
+
+namespace rift::vision {
+namespace {
+
+constexpr int kCell_px = 6;
+
+/// A tag as it is printed, its cells six pixels each, in the upper left of a picture.
+GreyPatch Drawn(const TagCells& cells, int black, int white) {
+  const int side_px = cells.shape.cells * kCell_px;
+  GreyPatch patch{{0, 0, side_px, side_px}, {}};
+  for (int y = 0; y < side_px; ++y) {
+    for (int x = 0; x < side_px; ++x) {
+      patch.pixels.push_back(
+          static_cast<std::uint8_t>(cells.is_white[y / kCell_px][x / kCell_px] ? white : black));
+    }
+  }
+  return patch;
+}
+
+/// The square of the tag in that picture, as one that was fitted.
+FittedSquare SquareOf(const CameraModel& camera, const TagShape& shape, int black, int white) {
+  const double low = shape.Around() * kCell_px - 0.5, high = low + shape.square * kCell_px;
+  FittedSquare square{.pixels = {{{low, high}, {high, high}, {high, low}, {low, low}}}};
+  const std::vector<Eigen::Vector2d> rays =
+      RaysFromPixels(camera, {square.pixels.begin(), square.pixels.end()});
+  std::copy(rays.begin(), rays.end(), square.corners.rays.begin());
+  square.black_grey = black;
+  square.white_grey = white;
+  return square;
+}
+
+TEST_CASE("Cells that are wrong are counted, and the margin is that of the bits") {
+  const CameraModel camera = test::SmallCamera();
+  for (const TagFamily family : {TagFamily::k36h11, TagFamily::k16h5, TagFamily::kStandard41h12}) {
+    INFO(NameOf(family));
+    const TagCells cells = CellsOfTag(3, family);
+    const GreyPatch patch = Drawn(cells, 40, 200);
+    const FittedSquare square = SquareOf(camera, cells.shape, 40, 200);
+    ReadBits read = CompareBits(camera, patch, square, cells);
+    CHECK(read.wrong == 0);
+    CHECK(read.margin == Approx(80.0));
+    // Each bit that should be another is one wrong cell; the margin stays.
+    TagCells other = cells;
+    int changed = 0;
+    for (int row = 0; row < cells.shape.cells; ++row) {
+      for (int column = 0; column < cells.shape.cells; ++column) {
+        if (!cells.is_bit[row][column] || (row + column) % 3 != 0) continue;
+        other.is_white[row][column] = !other.is_white[row][column];
+        ++changed;
+      }
+    }
+    read = CompareBits(camera, patch, square, other);
+    CHECK(read.wrong == changed);
+    CHECK(read.margin == Approx(80.0));
+    // A threshold elsewhere brings the bits of one colour nearer.
+    const FittedSquare dim = SquareOf(camera, cells.shape, 40, 120);
+    int white = 0;
+    for (int row = 0; row < cells.shape.cells; ++row) {
+      for (int column = 0; column < cells.shape.cells; ++column) {
+        white += cells.is_bit[row][column] && cells.is_white[row][column];
+      }
+    }
+    const double share = static_cast<double>(white) / cells.shape.bits;
+    CHECK(CompareBits(camera, patch, dim, cells).margin ==
+          Approx(share * 120.0 + (1.0 - share) * 40.0));
+  }
+}
+
+/// A picture of the robot with its tag, without noise.
+struct Shot {
+  explicit Shot(double exposure = 1.0, double z_m = 0.03)
+      : robot(test::RobotAt(0.02, 0.01, 0.3, z_m)),
+        renderer(camera,
+                 {.grain_grey = 0.0, .falloff = 0.0, .exposure = exposure, .noise_grey = 0.0}) {
+    std::mt19937_64 random(1);
+    patch = *PictureReader().Read(renderer.Render(robot, PixelFormat::kGrey, random));
+  }
+  TrackResult Measure(const TagOptions& options, int id = 0) const {
+    return TagMeter(camera, options)
+        .Measure(patch, test::TrueCorners(camera, robot), CellsOfTag(id), TrackMode::kRegion,
+                 std::nullopt);
+  }
+
+  CameraModel camera = test::SmallCamera();
+  RobotMotion robot;
+  SyntheticCamera renderer;
+  GreyPatch patch;
+};
+
+TEST_CASE("A measurement is believed up to the limits of its bits, its fit and its contrast") {
+  const Shot shot;
+  const TrackResult seen = shot.Measure({});
+  REQUIRE(seen.sighting);
+  const Sighting& s = *seen.sighting;
+  CHECK((s.mode == TrackMode::kRegion && s.hamming == 0 && s.in_world && s.is_on_floor));
+  CHECK(s.Planar().x_m == Approx(0.02).margin(2e-4));
+  CHECK(s.map_from_tag.translation().z() == Approx(0.03).margin(1e-4));
+  CHECK(s.decision_margin > 60.0);
+  CHECK(s.other_reprojection_px >= 0.0);
+  TagOptions options;
+  options.min_margin = s.decision_margin;
+  CHECK(shot.Measure(options).sighting);
+  options.min_margin = std::nextafter(s.decision_margin, 1000.0);
+  CHECK(shot.Measure(options).miss == Miss::kDoubtfulBits);
+  options = {};
+  options.max_fit_px = std::max(s.edge_px, s.reprojection_px);
+  CHECK(shot.Measure(options).sighting);
+  options.max_fit_px = 0.99 * s.reprojection_px;
+  CHECK(shot.Measure(options).miss ==
+        (s.edge_px > options.max_fit_px ? Miss::kNoEdges : Miss::kNoPose));
+  options.max_fit_px = 0.99 * s.edge_px;
+  CHECK(shot.Measure(options).miss == Miss::kNoEdges);
+  CHECK(shot.Measure({}, 7).miss == Miss::kDoubtfulBits);
+  options = {};
+  options.least_contrast = 180;  // of 28 and 215
+  CHECK(shot.Measure(options).sighting);
+  options.least_contrast = 190;
+  CHECK(shot.Measure(options).miss == Miss::kNoEdges);
+}
+
+TEST_CASE("A wrong cell is counted and put up with as far as is asked") {
+  Shot shot;
+  const TagCorners corners = test::TrueCorners(shot.camera, shot.robot);
+  const TagCells cells = CellsOfTag(0);
+  // The middle of the cell right of and above the tag's middle.
+  const Eigen::Vector2d right = (corners[1] - corners[0]) / 8.0,
+                        up = (corners[3] - corners[0]) / 8.0;
+  const Eigen::Vector2d middle = corners[0] + 4.5 * right + 4.5 * up;
+  const bool is_white = cells.is_white[cells.shape.cells - 1 - 5][5];
+  for (int y = -2; y <= 2; ++y) {
+    for (int x = -2; x <= 2; ++x) {
+      const auto at = static_cast<std::size_t>(std::lround(middle.y()) + y) * 640 +
+                      static_cast<std::size_t>(std::lround(middle.x()) + x);
+      shot.patch.pixels[at] = is_white ? 28 : 215;
+    }
+  }
+  const TrackResult seen = shot.Measure({});
+  REQUIRE(seen.sighting);
+  CHECK(seen.sighting->hamming == 1);
+  CHECK(shot.Measure({.max_hamming = 0}).miss == Miss::kDoubtfulBits);
+}
+
+TEST_CASE("A tag above the floor is left free, unless the picture is too bright to tell its size") {
+  // 5 mm of 0.57 m move the corners of 51 px by a quarter of a pixel: far more than is put up with
+  // is 3 cm.
+  const Shot high(1.0, 0.06);
+  TrackResult seen = high.Measure({});
+  REQUIRE(seen.sighting);
+  CHECK_FALSE(seen.sighting->is_on_floor);
+  CHECK(seen.sighting->map_from_tag.translation().z() == Approx(0.06).margin(3e-3));
+  TagOptions lenient;
+  lenient.off_floor_share = 0.5;
+  lenient.max_fit_px = 10.0;
+  seen = high.Measure(lenient);
+  REQUIRE(seen.sighting);
+  CHECK(seen.sighting->is_on_floor);
+  CHECK(seen.sighting->map_from_tag.translation().z() == Approx(0.03).margin(1e-3));
+  lenient.max_fit_px = 0.6;  // held there its corners are some pixels off
+  CHECK(high.Measure(lenient).miss == Miss::kNoPose);
+  TagOptions free;
+  free.ground = Ground::kFree;
+  seen = Shot().Measure(free);
+  REQUIRE(seen.sighting);
+  CHECK_FALSE(seen.sighting->is_on_floor);
+  const Shot bright(1.16, 0.045);  // white is 249 grey values
+  seen = bright.Measure({.max_fit_px = 5.0});
+  REQUIRE(seen.sighting);
+  CHECK(seen.sighting->is_on_floor);
+  const Shot dimmer(1.1, 0.045);  // 237
+  seen = dimmer.Measure({.max_fit_px = 5.0});
+  REQUIRE(seen.sighting);
+  CHECK_FALSE(seen.sighting->is_on_floor);
+}
+
+}  // namespace
+}  // namespace rift::vision
