@@ -36,7 +36,7 @@ inline vision::PlacedTag FloorTag(int id, double x_m, double y_m, double size_m 
 /// Pictures of SmallCamera in a folder, 0000.jpg and on.
 class SmallRecording {
  public:
-  explicit SmallRecording(vision::Scene scene = {}, int robot_tag = 0)
+  explicit SmallRecording(const vision::Scene& scene = {}, int robot_tag = 0)
       : camera_(SmallCamera(), {.tag_id = robot_tag, .noise_grey = 1.0}, scene) {}
 
   /// The robot there in so many pictures; none: the floor alone.

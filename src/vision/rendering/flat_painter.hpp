@@ -43,7 +43,7 @@ class DiscPattern : public FlatPattern {
 /// from one beside the pattern.
 class LatticePattern : public FlatPattern {
  public:
-  LatticePattern(double cell_m, Eigen::Vector2d least, int columns, int rows)
+  LatticePattern(double cell_m, const Eigen::Vector2d& least, int columns, int rows)
       : cell_m_(cell_m), least_(least), columns_(columns), rows_(rows) {}
   int Cell(double x_m, double y_m) const override;
   double Grey(int cell) const override;

@@ -69,7 +69,7 @@ Recording Ended(trial::Outcome outcome, int reached, std::optional<Eigen::Vector
 
 TEST_CASE("What is left of a run is the way to the next target and along all the others") {
   using trial::Outcome;
-  const auto left_m = [](int reached, std::optional<Eigen::Vector2d> end) {
+  const auto left_m = [](int reached, const std::optional<Eigen::Vector2d>& end) {
     return Ended(Outcome::kTimedOut, reached, end).left_m;
   };
   CHECK(left_m(0, Eigen::Vector2d(0.0, 0.0)) == Approx(9.0));

@@ -10,7 +10,6 @@
 namespace rift::vision {
 namespace {
 
-using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
 /// Pictures as fast as they are read, then nothing; what it tells beside them may be changed.
