@@ -4,19 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "rift/simulation/mocap.hpp"
+#include "simulation/quiet_mocap.hpp"
 
 namespace rift::simulation {
 namespace {
-
-MocapOptions Silent() {
-  MocapOptions options;
-  options.frame_jitter_s = options.stamp_jitter_s = 0.0;
-  options.noise_across_m = options.noise_along_m = options.noise_yaw_rad = 0.0;
-  options.blur_across_s = options.blur_yaw_rad_per_mps = 0.0;
-  options.noise_z_m = options.noise_tilt_rad = 0.0;
-  return options;
-}
 
 TEST_CASE("Every number has a scatter of its own that tells nothing of the others") {
   MocapOptions options;
@@ -67,7 +58,7 @@ TEST_CASE("Every number has a scatter of its own that tells nothing of the other
 }
 
 TEST_CASE("Between two poses a frame sees the way in a straight line, turns the short way round") {
-  MocapOptions options = Silent();
+  MocapOptions options = Quiet();
   options.rate_hz = 20.0;
   Mocap mocap(options, 3);
   const TruePose before{.t_s = 1.0,
@@ -109,7 +100,7 @@ TEST_CASE("Between two poses a frame sees the way in a straight line, turns the 
 }
 
 TEST_CASE("Frames scatter about their ticks, by half of one at most") {
-  MocapOptions options = Silent();
+  MocapOptions options = Quiet();
   options.rate_hz = 20.0;
   const auto captures_of = [&](double jitter_s) {
     options.frame_jitter_s = jitter_s;
@@ -140,7 +131,7 @@ TEST_CASE("Frames scatter about their ticks, by half of one at most") {
 }
 
 TEST_CASE("A tag that sits off the axle leans sideways with the robot") {
-  MocapOptions options = Silent();
+  MocapOptions options = Quiet();
   options.rate_hz = 0.0;
   options.tag_ahead_m = 0.03;
   options.tag_above_m = 0.02;
@@ -157,7 +148,7 @@ TEST_CASE("A tag that sits off the axle leans sideways with the robot") {
 }
 
 TEST_CASE("A robot stands below a centimetre a second: only then its scatter is the run's") {
-  MocapOptions options = Silent();
+  MocapOptions options = Quiet();
   options.rate_hz = 50.0;
   options.noise_across_m = 0.001;
   options.noise_spread = 3.0;

@@ -7,18 +7,10 @@
 #include <vector>
 
 #include "rift/statistics/descriptive.hpp"
+#include "simulation/quiet_mocap.hpp"
 
 namespace rift::simulation {
 namespace {
-
-MocapOptions Quiet() {
-  MocapOptions options;
-  options.frame_jitter_s = options.stamp_jitter_s = 0.0;
-  options.noise_across_m = options.noise_along_m = options.noise_yaw_rad = 0.0;
-  options.blur_across_s = options.blur_yaw_rad_per_mps = 0.0;
-  options.noise_z_m = options.noise_tilt_rad = 0.0;
-  return options;
-}
 
 constexpr double kSpeed = 0.3, kHeading = 0.5;
 

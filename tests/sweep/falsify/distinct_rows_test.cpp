@@ -4,27 +4,12 @@
 #include <numeric>
 #include <string>
 
+#include "sweep/falsify/rows.hpp"
+
 namespace rift::sweep {
 namespace {
 
 using Rows = std::vector<TrialRow>;
-
-TrialRow Ok(double gap_m, std::uint64_t fingerprint = 0) {
-  TrialRow row;
-  row.comparison.gap_m = gap_m;
-  row.falsified = gap_m > 0.06;
-  row.evidence.fingerprint = fingerprint;
-  return row;
-}
-
-TrialRow Failed(double left_m, std::uint64_t fingerprint = 0) {
-  TrialRow row;
-  row.status = TrialStatus::kTimedOut;
-  row.falsified = true;
-  row.left_m = left_m;
-  row.evidence.fingerprint = fingerprint;
-  return row;
-}
 
 TrialRow At(TrialRow row, const std::vector<int>& values, const std::string& trial = "1",
             std::optional<std::uint64_t> seed = {}) {

@@ -4,27 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "sweep/falsify/rows.hpp"
+
 namespace rift::sweep {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-TrialRow Ok(double gap_m, std::uint64_t fingerprint = 0) {
-  TrialRow row;
-  row.comparison.gap_m = gap_m;
-  row.falsified = gap_m > 0.06;
-  row.evidence.fingerprint = fingerprint;
-  return row;
-}
-
-TrialRow Failed(double left_m, std::uint64_t fingerprint = 0) {
-  TrialRow row;
-  row.status = TrialStatus::kTimedOut;
-  row.falsified = true;
-  row.left_m = left_m;
-  row.evidence.fingerprint = fingerprint;
-  return row;
-}
 
 TEST_CASE("What counts is the smaller of both gaps, or the one there is") {
   TrialRow row = Ok(0.09);
