@@ -432,10 +432,13 @@ void CheckDamaged(test::Cluster& slurm, const LocalRun& local) {
   REQUIRE(journals.size() == 4);
   WriteText(journals[0], "no journal at all");
   std::string bytes = ReadFile(journals[1]);  // in the middle of a row
-  bytes.replace(bytes.size() - 200, 4, "????");
+  const size_t at = bytes.rfind("simulation with seed");
+  REQUIRE(at != std::string::npos);
+  bytes.replace(at, 4, "????");
   WriteText(journals[1], bytes);
   const ProcessResult result = RunRift(sweep.Words());
   CHECK(result.err.find("its shard is run again") != std::string::npos);
+  CHECK(result.err.find("1 of its rows were damaged") != std::string::npos);
   sweep.CheckEnd(result);
 }
 
