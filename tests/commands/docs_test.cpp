@@ -10,6 +10,7 @@
 #include "support/documented.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -80,6 +81,7 @@ TEST_CASE("The output of rift gap is as documented") {
 }
 
 TEST_CASE("The files of a sweep are as documented") {
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   const std::string out = RunInto(
       folder, "sweep",

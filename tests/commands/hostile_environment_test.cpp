@@ -96,6 +96,7 @@ struct Scene {
     CHECK(FilesIn(out) == usual);
   }
 
+  test::QuickGnuplot gnuplot;  // figures of gnuplot itself: the test of locales
   test::TemporaryFolder folder;
   test::Work work;
   std::string out = folder / "disk/out";
@@ -191,21 +192,26 @@ TEST_CASE("A wall clock that jumps changes nothing") {
   CHECK(FilesIn(scene.out) == scene.usual);
 }
 
-/// Makes a locale with a comma in its numbers; false where its sources are not installed.
-bool MakeGermanLocale(const std::string& folder) {
-  const std::string command =
-      "localedef -i de_DE -f UTF-8 '" + folder + "/de_DE.UTF-8' >/dev/null 2>&1";
-  return test::RunShell(command) == 0;
-}
+/// A folder with de_DE, a locale with a comma in its numbers, made once.
+struct GermanLocale {
+  static const GermanLocale& Get() {
+    static const GermanLocale locale;
+    return locale;
+  }
+
+  test::TemporaryFolder folder;
+  /// False where the sources of locales are not installed.
+  bool is_there = test::RunShell("localedef -i de_DE -f UTF-8 '" + (folder / "de_DE.UTF-8") +
+                                 "' >/dev/null 2>&1") == 0;
+};
 
 TEST_CASE("Locale, display, home and width of the environment change no byte") {
   using Value = std::optional<std::string>;
-  const test::QuickGnuplot gnuplot;  // figures: the next test
   const Scene scene(EachWork());
-  const test::TemporaryFolder locales;
+  const GermanLocale& german = GermanLocale::Get();
   std::vector<Value> names{std::nullopt, "C", "C.UTF-8", "xx_XX.UTF-8"};
-  if (MakeGermanLocale(locales.Path())) names.emplace_back("de_DE.UTF-8");
-  const Environment path("LOCPATH", locales.Path().string());
+  if (german.is_there) names.emplace_back("de_DE.UTF-8");
+  const Environment path("LOCPATH", german.folder.Path().string());
   const Environment display("DISPLAY", std::nullopt), home("HOME", std::nullopt);
   const Environment language("LANG", std::nullopt);
   bool is_narrow = false;
@@ -235,9 +241,9 @@ TEST_CASE("Figures are the same bytes in every locale") {
     return test::ReadFile(folder / (name + ".svg"));
   };
   const std::string usual = figure("usual");
-  const Environment path("LOCPATH", folder.Path().string());
-  const bool has_german = MakeGermanLocale(folder.Path());
-  for (const std::string name : {"C", "xx_XX.UTF-8", has_german ? "de_DE.UTF-8" : "POSIX"}) {
+  const GermanLocale& german = GermanLocale::Get();
+  const Environment path("LOCPATH", german.folder.Path().string());
+  for (const std::string name : {"C", "xx_XX.UTF-8", german.is_there ? "de_DE.UTF-8" : "POSIX"}) {
     const Environment locale("LC_ALL", name);
     INFO(name);
     CHECK(figure(name) == usual);

@@ -18,6 +18,7 @@
 #include "support/inputs/trials.hpp"
 #include "support/processes/npm.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/processes/running_rift.hpp"
 #include "support/tree.hpp"
 #include "support/until.hpp"
@@ -81,10 +82,17 @@ std::vector<std::map<std::string, std::string>> Table(const std::string& folder)
 const std::string kSpawned = test::SourceDir() + "/configs/programs/diff_drive.yaml";
 const std::string kPersistent = test::SourceDir() + "/configs/programs/diff_drive_persistent.yaml";
 
+/// A short search with few repeats: each seed costs a nominal run before the first trial.
+std::vector<std::string> SweepWords(const std::string& config, const std::string& jobs,
+                                    const std::string& out) {
+  return {"sweep", config,     "--jobs", jobs,    "--out",
+          out,     "--budget", "12",     "--set", "falsify.most_repeats=4"};
+}
+
 std::string Sweep(const TemporaryFolder& folder, const std::string& name, const std::string& config,
                   const std::string& jobs) {
-  const ProcessResult result =
-      RunRift({"sweep", config, "--jobs", jobs, "--out", folder / name, "--budget", "12"});
+  const test::QuickGnuplot gnuplot;
+  const ProcessResult result = RunRift(SweepWords(config, jobs, folder / name));
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   return folder / name;
@@ -105,8 +113,9 @@ TEST_CASE("A simulator of thirty lines of Python is falsified, shrunk and replay
   CHECK(replay.exit_code == 0);
   CHECK(replay.out.find("to the last bit as in the table") != std::string::npos);
   CHECK(fs::exists(fs::path(out) / "replay" / failing / "trajectory.csv"));
-  const ProcessResult shrunk = RunRift(
-      {"sweep", kSpawned, "--jobs", "2", "--out", out, "--budget", "12", "--shrink", failing});
+  std::vector<std::string> shrink = SweepWords(kSpawned, "2", out);
+  shrink.insert(shrink.end(), {"--shrink", failing});
+  const ProcessResult shrunk = RunRift(shrink);
   INFO(shrunk.err);
   CHECK(shrunk.out.find("still fails with 1 of its 2 changes") != std::string::npos);
   CHECK(shrunk.out.find("mu: ") != std::string::npos);
@@ -130,7 +139,8 @@ TEST_CASE("A row whose program has changed since is said to come out different")
   const std::string script = ReadFile(test::SourceDir() + "/configs/programs/diff_drive.py");
   WriteText(folder / "diff_drive.py", script);
   fs::copy(kSpawned, folder / "sweep.yaml");
-  REQUIRE(RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out", "--budget", "2"})
+  REQUIRE(RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out", "--budget", "2",
+                   "--set", "falsify.most_repeats=2"})
               .exit_code == 0);
   std::string changed = script;
   changed.replace(changed.find("0.2 * error"), 3, "0.3");

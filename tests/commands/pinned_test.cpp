@@ -16,6 +16,7 @@
 #include "support/inputs/trials.hpp"
 #include "support/pinned.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 
 namespace rift {
 namespace {
@@ -225,6 +226,7 @@ void CheckPage(const json& page) {
 }
 
 TEST_CASE("rift sweep over unequal logs says and writes what was approved") {
+  const test::QuickGnuplot gnuplot;
   const Logs logs;
   const std::string out = "out";
   std::string text = Say({"sweep", "./experiment.yaml", "--out", out});

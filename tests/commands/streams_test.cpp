@@ -4,6 +4,7 @@
 #include "support/inputs/trials.hpp"
 #include "support/processes/broken_streams.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 #include "support/works.hpp"
 
@@ -25,6 +26,7 @@ const std::string kShownTitle = R"(\x1b]0;pwned\x07)";
 
 TEST_CASE(
     "With streams that are closed or full every file is written and lost results are exit 3") {
+  const test::QuickGnuplot gnuplot;
   const test::Work work = test::Works()[GENERATE(range(0, 4))];
   const test::TemporaryFolder folder;
   for (const char* name : {"usual", "out"}) std::filesystem::create_directories(folder / name);

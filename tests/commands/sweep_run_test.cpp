@@ -166,7 +166,7 @@ TEST_CASE("A finished sweep runs nothing again and a larger budget goes on with 
 TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes on later") {
   const Sweep sweep(kGrid);
   const std::vector<std::string> command =
-      sweep.Command("out", {"--set", "reference.trials=2000", "--jobs", "1"});
+      sweep.Command("out", {"--set", "reference.trials=200", "--jobs", "1"});
   test::RunningRift first(command);
   first.WaitUntil("its first trials", [&] { return sweep.Committed("out") > 0; });
   REQUIRE(first.Freeze());
@@ -186,7 +186,7 @@ TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes o
       json::parse(RunRift({"sweep", "--status", sweep.folder / "out", "--json"}).out);
   CHECK(after["state"] == "stopped");
   CHECK(after["done"] > 0);
-  CHECK(after["done"] < 12'000);
+  CHECK(after["done"] < 1'200);
 }
 
 TEST_CASE("A worker that stands still or crashes costs its trial and the sweep ends") {
@@ -247,7 +247,7 @@ TEST_CASE("A sweep whose folder is removed, moved or replaced while it runs is e
                                                     }};
   for (const auto& make_trouble : troubles) {
     test::RunningRift running(
-        sweep.Command("out", {"--set", "reference.trials=500", "--jobs", "1"}));
+        sweep.Command("out", {"--set", "reference.trials=100", "--jobs", "1"}));
     running.WaitUntil("its first trials", [&] { return sweep.Committed("out") > 0; });
     REQUIRE(running.Freeze());
     make_trouble();

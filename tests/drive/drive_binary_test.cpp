@@ -68,7 +68,7 @@ TEST_CASE("A drive whose streams are closed or full arrives and its robot hears 
       {"2>&-"}, {">&-", false}, {">/dev/full 2>/dev/full", false}};
   for (const test::Streams& streams : broken) {
     Uninterrupted(kAll, [&streams](Scene& scene) {
-      const test::ProcessResult result = test::RunRift(scene.Arguments(), streams.redirection);
+      const test::ProcessResult result = test::RunRift(scene.ShortArguments(), streams.redirection);
       INFO(streams.redirection << ": " << result.out << result.err << scene.floor.Told());
       CHECK(scene.floor.NoCommands() == "");
       if (WasInterruptedOrLate(scene, result.exit_code)) return false;

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A short way, and limits that a loaded machine keeps as well.
+// A short way, pictures that cost little, and limits that a loaded machine keeps as well.
 constexpr const char* kTask = R"(
 name: table
 waypoints:
@@ -23,7 +23,7 @@ waypoints:
   - {name: end, x: 0.15, y: 0.0}
 space: {simulation.terrain.surface: [ground, cardboard]}
 reference: {trials: 3}
-twin: {fps: 15, still_s: 60}
+twin: {fps: 15, still_s: 60, camera: {grain_grey: 0, jpeg_colour: false}}
 track: {tag: {acquire_decimate: 2, lost_after_s: 5}, capture: {silent_s: 20, same_s: 20, open_timeout_s: 60}}
 trial: {pose_stale_s: 5, lost_after_s: 20, timeout_s: 60}
 hardware:
@@ -31,6 +31,7 @@ hardware:
   guard: {pose_stale_s: 2, control_stale_s: 2, link_lag_s: 2, host_stall_s: 2}
   ping: {duration_s: 0.5, max_p99_s: 10, max_loss: 1, max_burst: 1000}
   start: {countdown_s: 0}
+  turn: {enabled: false}
   evidence: {max_latency_s: 2}
 )";
 

@@ -95,7 +95,7 @@ TEST_CASE("A drive without display, home and locale, with a clock that jumps, ar
     changed.emplace_back("LC_ALL", "xx_XX.UTF-8");
     changed.emplace_back("LD_PRELOAD", test::BuildDir() + "/tests/librift_system_shim.so");
     changed.emplace_back("RIFT_SHIM_CLOCK", "1");
-    const test::ProcessResult result = test::RunRift(scene.Arguments());
+    const test::ProcessResult result = test::RunRift(scene.ShortArguments());
     if (WasInterruptedOrLate(scene, result.exit_code)) return false;
     INFO(result.out << result.err);
     CHECK(result.exit_code == 0);
@@ -107,7 +107,7 @@ TEST_CASE("A drive without display, home and locale, with a clock that jumps, ar
 
 TEST_CASE("A drive in a terminal of 20 columns is started by Enter and its lines fit") {
   Uninterrupted(kAll, [](Scene& scene) {
-    std::vector<std::string> arguments = scene.Arguments();
+    std::vector<std::string> arguments = scene.ShortArguments();
     arguments.pop_back();  // --yes
     bool is_started = false;
     const test::TerminalRun run = test::RunInTerminal(arguments, 20, [&](const std::string& shown) {
@@ -132,7 +132,7 @@ TEST_CASE("A drive whose words nobody reads waits before anything moves, and the
     const test::UnreadPipe pipe(scene.folder / "pipe");
     pipe.Fill();
     const geometry::Pose2 start = scene.floor.Pose();
-    test::RunningRift rift(scene.Arguments(), "2>" + pipe.Path());
+    test::RunningRift rift(scene.ShortArguments(), "2>" + pipe.Path());
     std::this_thread::sleep_for(std::chrono::seconds(3));
     CHECK(rift.IsRunning());
     CHECK(scene.floor.Pose() == start);
@@ -152,7 +152,7 @@ TEST_CASE("A drive whose words nobody reads waits before anything moves, and the
 TEST_CASE("A robot under way is driven on and stopped when nobody reads the words any more") {
   Uninterrupted(kAll, [](Scene& scene) {
     const test::UnreadPipe pipe(scene.folder / "pipe");
-    test::RunningRift rift(scene.Arguments(), "2>" + pipe.Path());
+    test::RunningRift rift(scene.ShortArguments(), "2>" + pipe.Path());
     std::string told;
     test::WaitUntil("the first leg began or the drive is over", [&] {
       told += pipe.Drain();

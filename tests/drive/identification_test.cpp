@@ -58,7 +58,7 @@ TEST_CASE("An identification on the twin leaves a fit that the next command make
   const test::TemporaryFolder folder;
   // Limits that a loaded machine keeps as well.
   test::WriteText(folder / "task.yaml", "include: " + test::SourceDir() + R"(/configs/twin.yaml
-twin: {fps: 8, still_s: 60}
+twin: {fps: 8, still_s: 60, camera: {grain_grey: 0, jpeg_colour: false}}
 track: {tag: {acquire_decimate: 2, lost_after_s: 5}, capture: {silent_s: 20, same_s: 20, open_timeout_s: 60}}
 trial: {pose_stale_s: 5, lost_after_s: 20}
 hardware:
@@ -86,11 +86,11 @@ hardware:
   REQUIRE(result.exit_code == 0);
   CHECK_THAT(result.err, Catch::Contains("fit the simulated robot: rift sweep"));
 
-  const test::ProcessResult fit =
-      test::RunRift({"sweep", folder / "run/sweep.yaml", "--out", folder / "fit", "--write-robot",
-                     folder / "robot.yaml", "--set", "calibrate.judge_runs=2", "--set",
-                     "calibrate.method.iterations=1", "--set", "calibrate.method.horizon.phases=1",
-                     "--set", "calibrate.method.corrections=0"});
+  const test::ProcessResult fit = test::RunRift(
+      {"sweep", folder / "run/sweep.yaml", "--out", folder / "fit", "--write-robot",
+       folder / "robot.yaml", "--set", "calibrate.judge_runs=2", "--set",
+       "calibrate.method.iterations=1", "--set", "calibrate.method.horizon.phases=1", "--set",
+       "calibrate.method.corrections=0", "--set", "calibrate.method.simulated_logs=2"});
   INFO(fit.out << fit.err);
   // A fit that is not better than its start, the robot's own values, is refused in words.
   const bool is_refused = fit.err.find("worse than") != std::string::npos;
