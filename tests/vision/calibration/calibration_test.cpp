@@ -152,11 +152,11 @@ TEST_CASE("The photographs of the paper's camera are not called good and the rea
     WARN("SKIPPED: the photographs are not beside this clone (../shared/calibration)");
     return;
   }
+  const std::vector<std::string> files = ImageFiles(folder.string());
+  REQUIRE(files.size() == 11);
+  // The four left out are like the sixth and the last, and take longer than all others.
   std::vector<BoardView> views;
-  for (const std::string& file : ImageFiles(folder.string())) {
-    views.push_back(FindBoard(file, kBoard));
-  }
-  REQUIRE(views.size() == 11);
+  for (const std::size_t i : {0, 1, 5, 7, 8, 9, 10}) views.push_back(FindBoard(files[i], kBoard));
   const Calibration found = Calibrate(views, kBoard);
   const std::string reasons = All(found.reasons);
   INFO(reasons << "rms " << found.rms_px << " fisheye " << found.equidistant_px << " bent "
