@@ -13,9 +13,9 @@ const std::string kConfigs = test::SourceDir() + "/configs/";
 
 nlohmann::json Sweep(const std::string& config, int seed = 1) {
   test::TemporaryFolder folder;
-  const test::ProcessResult result =
-      test::RunRift({"sweep", kConfigs + config, "--out", folder / "out", "--set",
-                     "seed=" + std::to_string(seed)});
+  const test::ProcessResult result = test::RunRift(
+      {"sweep", kConfigs + config, "--out", folder / "out", "--set", "seed=" + std::to_string(seed),
+       "--set", "likeness.classifier.permutations=0"});
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   return nlohmann::json::parse(test::ReadFile(folder / "out/summary.json"));
@@ -64,7 +64,7 @@ TEST_CASE("The simulated robot drives and answers and weaves like the real one o
   gap.skip_start = 0.1;
   std::mt19937_64 generator(1);
   const sweep::DriveLikeness found = sweep::MeasureDriveLikeness(
-      test::DriveGrid(study, trials, 10), true, gap, {.shuffles = 99}, generator);
+      test::DriveGrid(study, trials, 6), true, gap, {.shuffles = 99}, generator);
   const gap::Likeness& path = found.path;
   INFO("gap " << path.mean_gap_m << " m, mean path " << path.mean_path_gap_m << " m, delay "
               << found.loop_delay_s.sim << " s, missed " << found.failed_runs << ", told apart "
@@ -78,7 +78,7 @@ TEST_CASE("The simulated robot drives and answers and weaves like the real one o
   CHECK(path.spread_m.Ratio() == Approx(1.0).margin(0.1));
   CHECK(found.told_apart.all.accuracy < 0.6);
   CHECK(found.told_apart.all.p > 0.01);
-  CHECK(found.failed_runs < 50);  // of 480
+  CHECK(found.failed_runs < 33);  // of 288: beyond the mean of 23 in two of a hundred
 }
 
 TEST_CASE("Without the delays of link and listener the robot hardly weaves") {

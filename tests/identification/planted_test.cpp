@@ -11,11 +11,11 @@ TEST_CASE("A planted mismatch is found again and a friction that never acts is f
   planted = {planted[1], planted[3]};
   sweep::CalibrationOptions options;
   options.runs = 0;
-  options.iterations = 4;
-  options.horizon.phases = 3;
-  options.simulated_logs = 8;
+  options.iterations = 3;
+  options.horizon.phases = 2;
+  options.simulated_logs = 6;
   const sweep::Calibration found =
-      test::FindPlanted(test::LoadGridStudy(), planted, 3, 8, options, 2);
+      test::FindPlanted(test::LoadGridStudy(), planted, 3, 5, options, 2);
   const sweep::CalibratedParameter &mismatch = found.parameters[0], &unseen = found.parameters[1];
   INFO("mismatch " << mismatch.value << " in [" << mismatch.low << ", " << mismatch.high << "], "
                    << planted[0].truth << " was planted");
@@ -38,7 +38,7 @@ TEST_CASE("A planted radio delay is found from below and from above") {
     options.horizon.phases = 3;
     options.corrections = 0;
     const sweep::Calibration found =
-        test::FindPlanted(test::LoadGridStudy(), planted, 5, 8, options, 2);
+        test::FindPlanted(test::LoadGridStudy(), planted, 5, 5, options, 2);
     const sweep::CalibratedParameter& delay = found.parameters[0];
     INFO("from " << start << ": " << delay.value << " in [" << delay.low << ", " << delay.high
                  << "], " << planted[0].truth << " was planted");
@@ -78,7 +78,7 @@ TEST_CASE("Whole drives tell a tracker's scatter and a pull, and nothing of what
   options.iterations = 1;
   options.corrections = 0;
   options.horizon.phases = 2;
-  options.features = {.rounds = 2, .draws = 120};
+  options.features = {.rounds = 1, .draws = 80};
   const sweep::Calibration found =
       test::FindPlanted(test::LoadGridStudy(), planted, 3, 8, options, 2);
   for (size_t i = 0; i < 3; ++i) {
@@ -108,7 +108,7 @@ TEST_CASE("Threads change no byte of a fit by features") {
   options.iterations = 1;
   options.corrections = 0;
   options.horizon.phases = 1;
-  options.features = {.rounds = 1, .draws = 50};
+  options.features = {.rounds = 1, .draws = 20};
   const sweep::Calibration alone =
       test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 1);
   const sweep::Calibration together =
@@ -120,7 +120,7 @@ TEST_CASE("Threads change no byte of a fit by features") {
   const sweep::Calibration by_motions =
       test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 2);
   CHECK(alone.parameters[0].value != by_motions.parameters[0].value);
-  CHECK(alone.trials_simulated == by_motions.trials_simulated + 3 * (2 + 50 + 2 * 8));
+  CHECK(alone.trials_simulated == by_motions.trials_simulated + 3 * (2 + 20 + 2 * 8));
   options.features = {.rounds = 1, .draws = 5};
   CHECK_THROWS_WITH(test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 2),
                     Catch::Contains("draws is 5, and 1 parameters that act need 6 or more"));

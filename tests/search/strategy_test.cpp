@@ -108,9 +108,9 @@ TEST_CASE("Every proposal lies within the bounds and is new and batches keep the
   for (const Method method : AllMethods()) {
     for (const NamedSpace& space : Spaces()) {
       INFO(NameOf(method) << " in " << space.name);
-      const auto strategy = MakeStrategy(With(method), space.axes, 150, 7);
+      const auto strategy = MakeStrategy(With(method), space.axes, 90, 7);
       std::set<Point> seen;
-      for (const auto& batch : Run(*strategy, 150, Holed)) {
+      for (const auto& batch : Run(*strategy, 90, Holed)) {
         REQUIRE(batch.size() <= 8);
         for (const Evaluation& evaluation : batch) {
           CheckInside(space.axes, evaluation.point);
@@ -125,10 +125,10 @@ TEST_CASE("A search goes on as before when its evaluations are told again") {
   for (const Method method : AllMethods()) {
     for (const NamedSpace& space : Spaces()) {
       INFO(NameOf(method) << " in " << space.name);
-      const auto first = MakeStrategy(With(method), space.axes, 120, 3);
-      const auto batches = Run(*first, 120, Holed);
-      const auto second = MakeStrategy(With(method), space.axes, 120, 3);
-      int left = 120;
+      const auto first = MakeStrategy(With(method), space.axes, 80, 3);
+      const auto batches = Run(*first, 80, Holed);
+      const auto second = MakeStrategy(With(method), space.axes, 80, 3);
+      int left = 80;
       for (const auto& batch : batches) {
         const std::vector<Point> asked = second->Ask(left);
         REQUIRE(asked.size() == batch.size());

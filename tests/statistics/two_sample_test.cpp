@@ -34,7 +34,7 @@ TEST_CASE("Two samples of one distribution are told apart no better than by gues
   int covered = 0, below_a_tenth = 0, below_a_half = 0;
   double sum = 0.0;
   for (int round = 0; round < kRounds; ++round) {
-    const TwoSampleTest test = TestTwoSamples(Drawn(24, 6, 0.0, random), {.permutations = 39},
+    const TwoSampleTest test = TestTwoSamples(Drawn(24, 6, 0.0, random), {.permutations = 19},
                                               {.resamples = 200}, static_cast<size_t>(round));
     covered += test.accuracy_interval.low <= 0.5 && 0.5 <= test.accuracy_interval.high;
     below_a_tenth += test.p <= 0.1;

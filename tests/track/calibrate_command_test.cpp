@@ -53,7 +53,7 @@ void RenderViews(const vision::CameraModel& camera, int count,
 TEST_CASE("A camera is calibrated from a folder of pictures and from a recording of them") {
   const vision::CameraModel truth = CameraToCalibrate();
   const test::TemporaryFolder photos, out;
-  RenderViews(truth, 16, photos);
+  RenderViews(truth, 12, photos);
   for (const bool from_camera : {false, true}) {
     const std::string name = out / (from_camera ? "recording.yaml" : "photos.yaml");
     const std::string images = photos / "*.jpg";

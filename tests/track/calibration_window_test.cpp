@@ -55,6 +55,8 @@ std::vector<std::vector<std::uint8_t>> Views() {
 /// An http camera before which somebody holds the board in one place until told to move on.
 class HeldBoard {
  public:
+  explicit HeldBoard(double fps)
+      : server_([this] { return views_[at_ % views_.size()]; }, {.fps = fps}) {}
   void MoveOn() { ++at_; }
   std::size_t At() const { return at_; }
   std::size_t Count() const { return views_.size(); }
@@ -63,8 +65,7 @@ class HeldBoard {
  private:
   std::vector<std::vector<std::uint8_t>> views_ = Views();
   std::atomic<std::size_t> at_ = 0;
-  vision::synthetic::MjpegServer server_{[this] { return views_[at_ % views_.size()]; },
-                                         {.fps = 20.0}};
+  vision::synthetic::MjpegServer server_;
 };
 
 std::vector<std::string> Calibrating(const HeldBoard& board, const std::string& out) {
@@ -91,7 +92,7 @@ TEST_CASE("A board moved about before a live camera calibrates it, and the windo
   if (!test::CanUseWindows(server)) return;
   const test::TemporaryFolder folder;
   const Environment display("DISPLAY", server.Name());
-  HeldBoard board;
+  HeldBoard board(12.0);
   test::RunningRift rift(Calibrating(board, folder / "cam.yaml"));
   const std::string window =
       test::WindowOf("rift track: calibration") + "windowfocus --sync %1 key ";
@@ -123,7 +124,7 @@ TEST_CASE("A board moved about before a live camera calibrates it, and the windo
 TEST_CASE("Without a display what picture to take next is said instead") {
   const test::TemporaryFolder folder;
   const Environment display("DISPLAY", "");
-  HeldBoard board;
+  HeldBoard board(5.0);  // each picture is searched
   test::RunningRift rift(Calibrating(board, folder / "cam.yaml"));
   const auto says = [&](const std::string& line) {
     rift.WaitUntil(line, [&] { return rift.Err().find(line) != std::string::npos; });

@@ -14,6 +14,7 @@
 #include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
 #include "support/tree.hpp"
+#include "vision/small_recording.hpp"
 
 namespace rift {
 namespace {
@@ -79,7 +80,13 @@ TEST_CASE("The recording is tracked to within half a millimetre of its truth in 
 
 TEST_CASE("What precision to expect is said before anything is driven, as a map and as JSON") {
   const test::TemporaryFolder folder;
-  const ProcessResult result = RunRift({"track", "--check", "--calibration", kCamera, "--out",
+  vision::CameraModel few_pixels = test::SmallCamera();
+  few_pixels.width_px = 480;
+  few_pixels.height_px = 360;
+  few_pixels.k << 457.5, 0.0, 239.5, 0.0, 457.5, 179.5, 0.0, 0.0, 1.0;
+  const std::string calibration = folder / "camera.yaml";
+  test::WriteText(calibration, vision::WriteCamera(few_pixels));
+  const ProcessResult result = RunRift({"track", "--check", "--calibration", calibration, "--out",
                                         folder / "map.json", "--set", "twin.camera.noise_grey=2"});
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
@@ -92,14 +99,14 @@ TEST_CASE("What precision to expect is said before anything is driven, as a map 
   CHECK(map["position_p95_m"].get<double>() < 1e-4);
   CHECK(map["least_side_px"].get<double>() < map["places"][0]["side_px"].get<double>());
   // The same error of a tag that is hardly larger than the smallest one is many times as large.
-  const ProcessResult small = RunRift({"track", "--check", "--calibration", kCamera, "--set",
-                                       "track.tag.size_m=0.017", "--out", folder / "small.json"});
+  const ProcessResult small = RunRift({"track", "--check", "--calibration", calibration, "--set",
+                                       "track.tag.size_m=0.023", "--out", folder / "small.json"});
   REQUIRE(small.exit_code == 0);
   const auto coarse = nlohmann::json::parse(test::ReadFile(folder / "small.json"));
   CHECK(coarse["position_p95_m"].get<double>() > 4.0 * map["position_p95_m"].get<double>());
 
   const ProcessResult camera =
-      RunRift({"track", "--check", "--calibration", kCamera, "--camera", "x"});
+      RunRift({"track", "--check", "--calibration", calibration, "--camera", "x"});
   CHECK(camera.exit_code == 2);
   CHECK_THAT(camera.err, Contains("--check opens no camera"));
   CHECK(RunRift({"track", "--check"}).exit_code == 2);

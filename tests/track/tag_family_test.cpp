@@ -7,11 +7,11 @@
 
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/rendering/synthetic_camera.hpp"
-#include "support/inputs/paper_camera.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
 #include "support/tree.hpp"
 #include "vision/rendered_tags.hpp"
+#include "vision/small_recording.hpp"
 
 namespace rift {
 namespace {
@@ -24,7 +24,7 @@ constexpr int kId = 21, kPictures = 12;
 /// Pictures of a robot with a tag25h9 that drives along x.
 struct Recording {
   Recording() {
-    const vision::CameraModel camera = test::PaperCamera();
+    const vision::CameraModel camera = test::SmallCamera();
     vision::SyntheticCameraOptions look;
     look.tag_family = vision::TagFamily::k25h9;
     look.tag_id = kId;
@@ -95,13 +95,18 @@ TEST_CASE("An id that the family lacks is refused with its range") {
 }
 
 TEST_CASE("What precision to expect of another family is told of its own pictures") {
-  const Recording recording;
-  const auto check = RunRift({"track", "--check", "--calibration", recording.folder / "camera.yaml",
-                              "--set", "track.tag.family=tagStandard41h12", "--set",
-                              "track.tag.id=2114", "--out", recording.folder / "map.json"});
+  const test::TemporaryFolder folder;
+  vision::CameraModel few_pixels = test::SmallCamera();
+  few_pixels.width_px = 320;
+  few_pixels.height_px = 240;
+  few_pixels.k << 305.0, 0.0, 159.5, 0.0, 305.0, 119.5, 0.0, 0.0, 1.0;
+  test::WriteText(folder / "camera.yaml", vision::WriteCamera(few_pixels));
+  const auto check = RunRift({"track", "--check", "--calibration", folder / "camera.yaml", "--set",
+                              "track.tag.family=tagStandard41h12", "--set", "track.tag.id=2114",
+                              "--out", folder / "map.json"});
   INFO(check.err);
   REQUIRE(check.exit_code == 0);
-  const std::string map = test::ReadFile(recording.folder / "map.json");
+  const std::string map = test::ReadFile(folder / "map.json");
   CHECK_THAT(map, Contains("\"tag_family\": \"tagStandard41h12\""));
   CHECK_THAT(map, !Contains("\"found\": 0,"));
 }

@@ -117,7 +117,11 @@ class RayRenderer {
     const Eigen::Vector2d bent((u_px - camera_.k(0, 2)) / camera_.k(0, 0),
                                (v_px - camera_.k(1, 2)) / camera_.k(1, 1));
     Eigen::Vector2d ray = bent;
-    for (int i = 0; i < 12; ++i) ray -= Bend(ray) - bent;
+    for (int i = 0; i < 12; ++i) {
+      const Eigen::Vector2d off = Bend(ray) - bent;
+      ray -= off;
+      if (off.squaredNorm() < 1e-20) break;  // 1e-7 px
+    }
     return ray;
   }
   /// By how much a ray changes from a pixel's middle to its right edge, and to its lower one.
@@ -253,14 +257,16 @@ class RayRenderer {
   cv::Mat1f floor_, noise_;
 };
 
-/// A 1080p camera that hangs `height_m` above the floor and is tilted from looking straight down;
-/// the middle of its picture is the origin of the world.
+/// A camera of half of 1080p that hangs `height_m` above the floor and is tilted from looking
+/// straight down; the middle of its picture is the origin of the world. What it sees from half as
+/// high with half the focal length is as large in pixels as to a 1080p camera, and is searched in a
+/// quarter of the time.
 inline vision::CameraModel HungCamera(double height_m, double tilt_deg, double focal_px) {
   vision::CameraModel camera;
   camera.name = "hung";
-  camera.width_px = 1920;
-  camera.height_px = 1080;
-  camera.k << focal_px, 0.0, 951.3, 0.0, focal_px * 1.002, 545.8, 0.0, 0.0, 1.0;
+  camera.width_px = 960;
+  camera.height_px = 540;
+  camera.k << focal_px, 0.0, 475.4, 0.0, focal_px * 1.002, 272.6, 0.0, 0.0, 1.0;
   camera.distortion = {-0.12, 0.05, 0.0006, -0.0004, 0.0};
   const double tilt_rad = tilt_deg * M_PI / 180.0;
   vision::WorldFrame world;

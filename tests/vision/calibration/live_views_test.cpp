@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <deque>
+#include <thread>
 
 #include "rift/vision/rendering/synthetic_camera.hpp"
 
@@ -77,7 +79,10 @@ class PatientCapture : public ScriptedCapture {
  public:
   using ScriptedCapture::ScriptedCapture;
   std::optional<Frame> Next(double timeout_s) override {
-    if (is_held_) return std::nullopt;
+    if (is_held_) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));  // no turn of the loop for nothing
+      return std::nullopt;
+    }
     std::optional<Frame> frame = ScriptedCapture::Next(timeout_s);
     is_held_ = frame.has_value();
     return frame;
@@ -144,7 +149,6 @@ TEST_CASE("A view is taken, taken back and refused by key") {
   const std::vector<std::string> both{"frame000001", "frame000004"};
   CHECK(views([](int) { return LiveInput{}; }) == both);
   // Not by itself: none, but the one that is asked for, in motion or not.
-  CHECK(views([](int) { return LiveInput{}; }).size() == 2);
   CHECK(views([](int n) { return LiveInput{.toggle = n == 1}; }).empty());
   CHECK(views([](int n) { return LiveInput{.take = n == 3, .toggle = n == 1}; }) ==
         std::vector<std::string>{"frame000003"});
@@ -194,7 +198,10 @@ TEST_CASE("A camera that stays frozen ends the gathering with its reason") {
 class ObedientCapture : public Capture {
  public:
   std::optional<Frame> Next(double) override {
-    if (searched_ < given_) return std::nullopt;  // not before the last one was looked at
+    if (searched_ < given_) {  // not before the last one was looked at
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return std::nullopt;
+    }
     Frame frame = picture_;
     frame.index = ++given_;
     frame.captured_s = 0.1 * given_;

@@ -76,7 +76,7 @@ Squares AtPlaces(const CameraModel& camera, const PrecisionMap& map, double leas
 
 TEST_CASE("The predicted precision is that of another renderer's pictures within 20 percent") {
   const double tilt_deg = GENERATE(0.0, 35.0);
-  const CameraModel camera = HungCamera(1.9, tilt_deg, 1400.0);
+  const CameraModel camera = HungCamera(0.95, tilt_deg, 700.0);
   const PrecisionMap map =
       PredictPrecision(camera, {}, LookOfRays(), {.columns = 6, .rows = 4, .views = 9});
   REQUIRE(map.places.size() == 24);
@@ -91,7 +91,7 @@ TEST_CASE("The predicted precision is that of another renderer's pictures within
 }
 
 TEST_CASE("The smallest tag that a precision map names is found, and one of half its side is not") {
-  const CameraModel camera = HungCamera(1.9, 20.0, 1400.0);
+  const CameraModel camera = HungCamera(0.95, 20.0, 700.0);
   const PrecisionMap map =
       PredictPrecision(camera, {}, LookOfRays(), {.columns = 3, .rows = 3, .views = 2});
   CHECK(map.least_side_px > 8.0);
@@ -121,7 +121,7 @@ TEST_CASE("The smallest tag that a precision map names is found, and one of half
 }
 
 TEST_CASE("A precision map shows where the picture has no floor, and needs a world frame") {
-  CameraModel camera = HungCamera(1.0, 75.0, 1400.0);
+  CameraModel camera = HungCamera(0.5, 75.0, 700.0);
   const PrecisionMap map =
       PredictPrecision(camera, {}, LookOfRays(), {.columns = 1, .rows = 4, .views = 1});
   CHECK_FALSE(map.places.front().floor_m);

