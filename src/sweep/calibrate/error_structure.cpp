@@ -133,7 +133,7 @@ ErrorStructure StructureOfErrors(const std::vector<CalibrationLog>& logs, const 
   std::vector<Wave> waves;
   for (size_t i = 0; i < logs.size(); ++i) {
     const trajectory::Trajectory& log = logs[i].log;
-    const auto errors = ShortHorizonErrors(twin(i, values), log, options);
+    const auto errors = ShortHorizonErrors(twin(i, values), log, options, logs[i].began_s);
     if (errors.empty()) continue;
     rates.push_back(RatesOf(errors, log));
     Wave& wave = waves.emplace_back();

@@ -60,6 +60,7 @@ class Identifier {
   void Load();
   void NoteDoubts(const Recording& real);
   bool IsHeldOut(const std::string& trial) const;
+  std::optional<double> BeganOf(const Recording& real) const;
   std::vector<const Entry*> Side(bool held_out) const;
   SimulatedTrial TwinOf(const Entry& entry, const std::vector<double>& values,
                         std::uint64_t seed) const;
@@ -126,13 +127,20 @@ void Identifier::Load() {
                            .setting = SettingKey(parameters, theta),
                            .log = real.trajectory,
                            .group = MainLevel(parameters, theta),
-                           .drives_grid_fps = experiment_.candidate.grid_fps}});
+                           .drives_grid_fps = experiment_.candidate.grid_fps,
+                           .began_s = BeganOf(real)}});
     }
   }
   if (Side(false).size() >= 2) return;
   throw std::invalid_argument(fmt::format("{}: a fit needs at least 2 logs, and there are {}{}",
                                           evaluator_.experiment_file(), Side(false).size(),
                                           missing_.empty() ? "" : "; " + missing_.front()));
+}
+
+/// A program of powers runs by the clock of its trial; a drive to waypoints by what it sees.
+std::optional<double> Identifier::BeganOf(const Recording& real) const {
+  if (experiment_.program.segments.empty()) return std::nullopt;
+  return evaluator_.TrialBegan_s(real.source);
 }
 
 /// Each kind once: a mistake in units is in every log.

@@ -34,9 +34,10 @@ double StampAge_s(const simulation::MocapOptions& mocap) {
 /// real one reported. Its path has the times at which the log would have stamped it.
 class RobotOfLog : public trial::Robot {
  public:
-  RobotOfLog(const SimulatedTrial& trial, const Trajectory& log)
+  RobotOfLog(const SimulatedTrial& trial, const Trajectory& log, double began_s)
       : robot_(trial.simulation, trial.start, trial.seed, trial.image),
         log_(log),
+        began_s_(began_s),
         arrival_s_(trial.simulation.mocap.host_period_s ? 0.0 : Latency_s(trial.simulation.mocap)),
         stamp_age_s_(StampAge_s(trial.simulation.MocapOfSession())),
         point_from_robot_{trial.simulation.mocap.tag_ahead_m, 0.0, 0.0} {
@@ -65,12 +66,12 @@ class RobotOfLog : public trial::Robot {
   const Trajectory& Path() const { return path_; }
 
  private:
-  double ClockOf(size_t row) const { return log_.poses[row].t_s - log_.poses.front().t_s; }
+  double ClockOf(size_t row) const { return log_.poses[row].t_s - began_s_; }
 
   void RecordTruth() {
     const simulation::TruePose truth = robot_.Truth();
     const Pose2 tag = truth.Planar() * point_from_robot_;
-    path_.poses.push_back({.t_s = log_.poses.front().t_s + truth.t_s + stamp_age_s_,
+    path_.poses.push_back({.t_s = began_s_ + truth.t_s + stamp_age_s_,
                            .x_m = tag.x_m,
                            .y_m = tag.y_m,
                            .yaw_rad = tag.yaw_rad});
@@ -78,6 +79,7 @@ class RobotOfLog : public trial::Robot {
 
   simulation::SimulatedRobot robot_;
   const Trajectory& log_;
+  double began_s_;
   double arrival_s_;
   double stamp_age_s_;
   Pose2 point_from_robot_;
@@ -127,8 +129,9 @@ std::vector<HorizonError> ErrorsOf(const std::vector<Pose2>& replay, const Traje
 
 }  // namespace
 
-Trajectory Replay(const SimulatedTrial& trial, const Trajectory& log) {
-  RobotOfLog robot(trial, log);
+Trajectory Replay(const SimulatedTrial& trial, const Trajectory& log,
+                  std::optional<double> began_s) {
+  RobotOfLog robot(trial, log, began_s.value_or(log.poses.front().t_s));
   trial::TrialOptions options = trial.trial;
   options.timeout_s = std::max(options.timeout_s, log.Duration_s() + 1.0);
   trial::RunTrial(robot, trial.task, trial.control, options);
@@ -136,7 +139,8 @@ Trajectory Replay(const SimulatedTrial& trial, const Trajectory& log) {
 }
 
 std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial, const Trajectory& log,
-                                             const ShortHorizonOptions& options) {
+                                             const ShortHorizonOptions& options,
+                                             std::optional<double> began_s) {
   if (!log.HasYaw()) throw std::invalid_argument("a replay needs the yaw of the log");
   std::vector<HorizonError> mean;
   SimulatedTrial phase = trial;
@@ -146,7 +150,7 @@ std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial, const 
     // Even phases: over drawn ones the mean would change by leaps with a delay. Each log has its
     // own offset, so that many logs see many phases.
     phase.simulation.link.poll_phase = (i + offset) / options.phases;
-    const auto errors = ErrorsOf(PosesAt(Replay(phase, log), log), log, options);
+    const auto errors = ErrorsOf(PosesAt(Replay(phase, log, began_s), log), log, options);
     mean.resize(errors.size());
     for (size_t k = 0; k < mean.size(); ++k) {
       mean[k].from = errors[k].from;

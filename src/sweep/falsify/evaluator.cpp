@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
@@ -13,6 +14,7 @@
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
+#include "rift/trajectory/csv.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 #include "rift/yaml/bind.hpp"
 #include "simulated_recording.hpp"
@@ -41,6 +43,10 @@ Recording WithLimits(Recording log, const experiment::Experiment& experiment,
   if (log.status != TrialStatus::kOk) return log;
   log.limits = RebuildLimits(log.trajectory, ControllerFor(experiment, request), tag_offset_m);
   return log;
+}
+
+std::string Beside(const std::string& log, const char* name) {
+  return std::filesystem::path(log).replace_filename(name).string();
 }
 
 /// How the logs of one side are read; `key` is its block in the experiment.
@@ -160,8 +166,22 @@ CandidateRun Evaluator::RunOf(const TrialRequest& request, const Recording& refe
   return {std::move(simulated), std::move(encoders)};
 }
 
+std::optional<double> Evaluator::TrialBegan_s(const std::string& log) const {
+  const std::string path = Beside(log, "commands.csv");
+  const std::optional<std::string> text = inputs_.read(path);
+  if (!text) return std::nullopt;
+  trajectory::csv::RowReader rows(*text, path, true, ',');
+  if (rows.Columns().front() != "t_s") {
+    throw std::invalid_argument(
+        fmt::format("{}: its first column is '{}', and that of commands.csv is t_s", path,
+                    rows.Columns().front()));
+  }
+  if (!rows.Next() || std::isnan(rows.Cells().front())) return std::nullopt;
+  return rows.Cells().front();
+}
+
 std::vector<odometry::EncoderReading> Evaluator::EncodersBeside(const std::string& log) const {
-  const std::string path = std::filesystem::path(log).replace_filename("encoders.csv").string();
+  const std::string path = Beside(log, "encoders.csv");
   const std::optional<std::string> text = inputs_.read(path);
   if (!text) return {};
   return odometry::ReadEncoders(*text, path);

@@ -106,6 +106,30 @@ TEST_CASE("A replay needs the yaw, has the log's clock, and runs to the log's en
                     "a replay needs the yaw of the log");
 }
 
+TEST_CASE("A program of powers is replayed from when its trial began, not from the first picture") {
+  SimulatedTrial twin = Exact();
+  control::ProgramOptions powers;
+  for (const double to_m : {0.3, -0.3}) powers.segments.push_back({.straight_m = to_m});
+  twin.task = control::Program(powers, {}, {});
+  twin.trial.settle_s = 0.3;  // by when a robot has been seen either way
+  const Trajectory run = Simulate(twin).result.trajectory;
+  const auto mean_off_m = [&](const Trajectory& log, std::optional<double> began_s) {
+    double sum_m = 0.0;
+    const auto errors = ShortHorizonErrors(twin, log, kHorizon, began_s);
+    for (const HorizonError& one : errors) sum_m += std::abs(one.ahead_m);
+    return sum_m / static_cast<double>(errors.size());
+  };
+  const double own_m = mean_off_m(run, 0.0);
+  // A robot under a camera is seen before its trial begins.
+  Trajectory log = run;
+  log.poses.insert(log.poses.begin(), 3, log.poses.front());
+  for (size_t i = 0; i < 3; ++i) log.poses[i].t_s -= 0.05 * static_cast<double>(3 - i);
+  for (auto& pose : log.poses) pose.t_s += 100.0;
+  CHECK(own_m < 1e-3);
+  CHECK(mean_off_m(log, 100.0) == Approx(own_m).margin(1e-5));
+  CHECK(mean_off_m(log, {}) > 3.0 * own_m);
+}
+
 TEST_CASE("The path of a replay is that of the tag, ahead of the axle") {
   SimulatedTrial ahead = Exact();
   ahead.simulation.mocap.tag_ahead_m = 0.04;

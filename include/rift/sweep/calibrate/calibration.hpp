@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct CalibrationLog {
   std::string group{};
   /// Of the frames on which the stamps of its drives are put (trajectory::OnFramesOf); 0: none.
   double drives_grid_fps = 0.0;
+  /// When its trial began, on its clock, where that is known (Replay).
+  std::optional<double> began_s{};
 };
 
 /// The simulated twin of a log, with one value for each free parameter. It starts where the robot

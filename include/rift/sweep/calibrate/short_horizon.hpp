@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "rift/sweep/calibrate/options.hpp"
@@ -22,14 +23,17 @@ struct HorizonError {
 /// sees the logged poses, at the times they arrived, and drives the simulated robot. So the state
 /// of controller, radio and motors is rebuilt at every row, and nothing the simulated robot does
 /// comes back to the controller: no error of the model can grow into chaos. Returns the path of the
-/// tag on the clock of the log (t_s of its first row is that of the log's).
-trajectory::Trajectory Replay(const SimulatedTrial& trial, const trajectory::Trajectory& log);
+/// tag on the clock of the log. `began_s`: when on that clock its trial began, which a program's
+/// powers count from; without it, at the first row.
+trajectory::Trajectory Replay(const SimulatedTrial& trial, const trajectory::Trajectory& log,
+                              std::optional<double> began_s = {});
 
 /// Motions over 1 to most_frames frames from every row while the robot moved, in order of rows,
 /// each the mean over even phases of the robot's listener (seeds trial.seed, trial.seed + 1 and so
 /// on). `trial.start` is where the log stands. Throws std::invalid_argument on a log without yaw.
 std::vector<HorizonError> ShortHorizonErrors(const SimulatedTrial& trial,
                                              const trajectory::Trajectory& log,
-                                             const ShortHorizonOptions& options);
+                                             const ShortHorizonOptions& options,
+                                             std::optional<double> began_s = {});
 
 }  // namespace rift::sweep

@@ -93,6 +93,9 @@ class Evaluator {
   /// Fingerprints of every log that was read, of programs' files, and of pictures of heightfields
   /// that a key was made of.
   std::string InputsText() const;
+  /// When the trial behind a log of a drive or a simulated run began, on the clock of the log: the
+  /// first row of commands.csv beside it; nothing where there is no such file.
+  std::optional<double> TrialBegan_s(const std::string& log) const;
 
   const experiment::Experiment& experiment() const { return experiment_; }
   const std::string& experiment_file() const { return experiment_file_; }
