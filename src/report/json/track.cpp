@@ -137,7 +137,7 @@ std::string TrackText(const vision::TrackRun& run, int rows) {
                     run.status.skipped, run.status.reconnects);
   }
   if (!run.latencies_s.empty()) {
-    text += fmt::format("latency from light to pose: p50 {:.0f} ms, p95 {:.0f} ms\n",
+    text += fmt::format("latency from stamp to pose: p50 {:.0f} ms, p95 {:.0f} ms\n",
                         1e3 * statistics::Quantile(run.latencies_s, 0.5),
                         1e3 * statistics::Quantile(run.latencies_s, 0.95));
   }

@@ -45,7 +45,8 @@ std::vector<Trajectory> RunsOf(SimulatedTrial twin, int runs) {
 LogPrediction PredictionOf(const CalibrationLog& log, const SimulatedTrial& twin,
                            const CalibrationOptions& options) {
   LogPrediction prediction;
-  const std::vector<HorizonError> motions = ShortHorizonErrors(twin, log.log, options.horizon, log.began_s);
+  const std::vector<HorizonError> motions =
+      ShortHorizonErrors(twin, log.log, options.horizon, log.began_s);
   prediction.motions.resize(3 * static_cast<Eigen::Index>(motions.size()));
   for (size_t i = 0; i < motions.size(); ++i) {
     prediction.motions.segment<3>(3 * static_cast<Eigen::Index>(i)) =

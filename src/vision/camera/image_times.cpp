@@ -74,16 +74,24 @@ struct TimeLine {
   double t_s = 0.0;
 };
 
+/// Seconds from any clock's zero: Unix times of thirty thousand years.
+constexpr double kFarthest_s = 1e12;
+
 TimeLine ParseLine(std::string line, const std::string& where) {
+  if (line.find('\0') != std::string::npos) {
+    throw std::invalid_argument(
+        fmt::format("{}: a byte 0 is in the line: a list of times is a text", where));
+  }
   std::replace(line.begin(), line.end(), ',', ' ');
   std::istringstream words(line);
   std::vector<std::string> word;
   for (std::string each; words >> each;) word.push_back(each);
   char* end = nullptr;
   const double t_s = word.empty() ? 0.0 : std::strtod(word.back().c_str(), &end);
-  if (word.empty() || word.size() > 2 || *end != '\0' || !std::isfinite(t_s)) {
+  if (word.empty() || word.size() > 2 || *end != '\0' || !(std::abs(t_s) <= kFarthest_s)) {
     throw std::invalid_argument(
-        fmt::format("{}: '{}' is no time: seconds, or a picture's name and seconds", where, line));
+        fmt::format("{}: '{}' is no time: seconds up to {:g}, or a picture's name and seconds",
+                    where, line, kFarthest_s));
   }
   return {word.size() == 2 ? word[0] : "", t_s};
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "rift/statistics/descriptive.hpp"
 
 namespace rift::vision {
@@ -26,6 +28,12 @@ std::optional<std::string> OffFloorCheck::Add(const Sighting& sighting) {
 std::string OffFloorCheck::Warning() const {
   const double camera_m = camera_.world->world_from_camera.translation().z();
   const double z_m = statistics::Median(z_m_);
+  if (camera_m <= std::max(z_m, tag_.height_m)) {
+    return fmt::format(
+        "the world frame puts the camera at z {:.3f} m, below the tag at {:.3f} m: set the frame "
+        "again (--world), z is up",
+        camera_m, std::max(z_m, tag_.height_m));
+  }
   const double size_m = tag_.size_m * (camera_m - tag_.height_m) / (camera_m - z_m);
   std::string text = fmt::format(
       "the tag is not on the floor in {} of {} pictures (z {:.3f} m, track.tag.height_m {:g}): is "

@@ -123,11 +123,15 @@ TEST_CASE("What is wrong with a file of times is said with its line, picture and
   using Times = std::vector<double>;
   CHECK(TimesFromText("\n  \t\r\n1 # one\n#2\n\n3\n", "t", files) == Times{1.0, 3.0});
   CHECK(TimesFromText("other/b.jpg,,2.5\r\na.jpg 1e0", "t", files) == Times{1.0, 2.5});
-  const std::string rule = " is no time: seconds, or a picture's name and seconds";
+  const std::string rule = " is no time: seconds up to 1e+12, or a picture's name and seconds";
   CHECK_THROWS_WITH(TimesFromText("\n#\n1.5x\n", "t.txt", files), "t.txt:3: '1.5x'" + rule);
   CHECK_THROWS_WITH(TimesFromText("a.jpg b.jpg 1\n", "t", files), "t:1: 'a.jpg b.jpg 1'" + rule);
   CHECK_THROWS_WITH(TimesFromText("a.jpg one\n", "t", files), "t:1: 'a.jpg one'" + rule);
   CHECK_THROWS_WITH(TimesFromText(",\n", "t", files), "t:1: ' '" + rule);
+  CHECK_THROWS_WITH(TimesFromText("1\n-1.1e12\n", "t", files), "t:2: '-1.1e12'" + rule);
+  CHECK(TimesFromText("-1e12\n1e12\n", "t", files) == Times{-1e12, 1e12});
+  CHECK_THROWS_WITH(TimesFromText(std::string("1\n2\0\n", 5), "t", files),
+                    "t:2: a byte 0 is in the line: a list of times is a text");
   CHECK_THROWS_WITH(TimesFromText("1\n", "t", files), "t: no time for the picture run/b.jpg");
   CHECK_THROWS_WITH(TimesFromText("b.jpg 2\n", "t", files), "t: no time for the picture run/a.jpg");
   CHECK_THROWS_WITH(TimesFromText("2\n1.25\n", "t", files),

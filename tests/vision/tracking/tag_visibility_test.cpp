@@ -148,6 +148,17 @@ TEST_CASE("No floor, no word of it: free ground, no world frame, a height that n
   CHECK_FALSE(of_ramps);
   REQUIRE(of_below);
   CHECK_THAT(*of_below, !Contains("--tag-height"));
+  // A frame with z downwards: no side of a tag makes up for it.
+  CameraModel upside_down = camera;
+  upside_down.world->world_from_camera.translation().z() *= -1.0;
+  OffFloorCheck from_below(upside_down, flat);
+  std::optional<std::string> of_frame;
+  for (int i = 0; i < 20; ++i) {
+    if (const auto said = from_below.Add(SeenAt(0.2, false))) of_frame = said;
+  }
+  REQUIRE(of_frame);
+  CHECK_THAT(*of_frame, Contains("the world frame puts the camera at z -2.0") &&
+                            Contains("below the tag at 0.200 m") && !Contains("size_m"));
   camera.world.reset();
   OffFloorCheck no_world(camera, flat);
   for (int i = 0; i < 20; ++i) CHECK_FALSE(no_world.Add(SeenAt(0.2, false)));

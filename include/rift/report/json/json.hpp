@@ -191,7 +191,7 @@ std::string SimulationJson(const experiment::Experiment& experiment,
 std::string SimulationJson(const experiment::Experiment& experiment, const sweep::SimulatedRun& run,
                            const trial::SteeringCheck& check);
 
-/// Columns t_s,power_left,power_right: every command as it was sent.
+/// Columns t_s,power_left,power_right: every command as it was asked for.
 std::string CommandsCsv(const trial::TrialResult& result);
 std::string CommandsRow(const trial::SentCommand& command);
 
