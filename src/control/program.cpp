@@ -115,6 +115,14 @@ WheelPower Program::MeanPower(double from_s, double to_s) const {
   return mean;
 }
 
+double Program::MostPower() const {
+  double most = 0.0;
+  for (const Piece& piece : pieces_) {
+    most = std::max({most, std::abs(piece.power.left), std::abs(piece.power.right)});
+  }
+  return most;
+}
+
 geometry::Pose2 Program::PoseAt(double t_s) const {
   const Piece& piece = pieces_[PieceAt(t_s)];
   const double length_s = piece.end_s - piece.start_s;

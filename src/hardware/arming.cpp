@@ -5,10 +5,13 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "rift/geometry/pose2.hpp"
+#include "rift/hardware/wire.hpp"
 
 namespace rift::hardware {
 
@@ -89,19 +92,48 @@ void RequireBudget(const PingResult& ping, const PingOptions& options) {
       fmt::format("not armed, the link breaks its budget: {}", fmt::join(broken, "; ")));
 }
 
+/// A power beyond the guard's limit ends the drive when it is asked for; a person hears of it
+/// before.
+void WarnOfPowerLimit(const DriveParts& parts, const DriveTask& task) {
+  const std::optional<control::Program>& program = task.task.program;
+  const double most =
+      program ? program->MostPower() : std::min(1.0, task.control.v_max + task.control.w_max);
+  const double limit = task.hardware.guard.max_power;
+  if (most <= limit) return;
+  parts.say(fmt::format(
+      "the {} can ask for the power {:g}, and the limit (hardware.guard.max_power) is {:g}: a "
+      "command above it is not sent and ends the drive",
+      program ? "program" : "controller (control.v_max + control.w_max)", most, limit));
+}
+
+/// Forward alone counts for a controller: what it steers by turns the robot and does not carry it.
+double StrongestForward(const DriveTask& task) {
+  return task.task.program ? task.task.program->MostPower() : task.control.v_max;
+}
+
 double PrintStoppingDistance(const DriveParts& parts, const DriveTask& task,
                              const PingResult& ping) {
   StoppingOptions options = task.hardware.stopping;
   if (ping.IsMeasured()) options.delay_s = ping.OneWay_s();
-  const double distance_m = StoppingDistance_m(options, task.control.v_max);
-  parts.say(fmt::format(
-      "worst stopping distance {:.3f} m: at power {:g}, {:.2f} m/s x ({:.3f} s watchdog + {:.3f} s "
-      "delay) + braking",
-      distance_m, task.control.v_max, options.full_power_speed_mps * task.control.v_max,
-      options.robot_watchdog_s, options.delay_s));
+  // The camera is not measured yet: it may be as late as its budget.
+  const double stale_s = task.hardware.guard.pose_stale_s;
+  const double camera_s = task.hardware.evidence.max_latency_s;
+  const double blind_s = stale_s + camera_s;
+  const double power = StrongestForward(task);
+  const double distance_m = StoppingDistance_m(options, power, blind_s);
+  const std::string until = blind_s > options.robot_watchdog_s
+                                ? fmt::format(
+                                      "{:.3f} s an old pose is driven by + {:.3f} s the "
+                                      "camera may be late",
+                                      stale_s, camera_s)
+                                : fmt::format("{:.3f} s watchdog", options.robot_watchdog_s);
+  parts.say(
+      fmt::format("worst stopping distance {:.3f} m: at power {:g}, {:.2f} m/s x ({} + {:.3f} s "
+                  "delay) + braking",
+                  distance_m, power, options.full_power_speed_mps * power, until, options.delay_s));
   if (!ping.IsMeasured()) {
     parts.say(
-        "the robot speaks plain and does not answer: it cannot be measured, a stop cannot be "
+        "the robot is spoken to in plain lines: its link cannot be measured, a stop cannot be "
         "acknowledged, and without rift's listener the last command holds for ever if the link "
         "breaks");
   }
@@ -190,29 +222,59 @@ std::string PartText(const char* name, const std::optional<double>& part_s) {
                 : fmt::format("{} unknown", name);
 }
 
-/// The turn on the spot, and what follows from it.
-std::optional<LatencyResult> MeasureCamera(RealRobot& robot, const DriveParts& parts,
-                                           const DriveTask& task, const PingResult& ping) {
-  if (!task.hardware.turn.enabled) return std::nullopt;
-  const double one_way_s = ping.IsMeasured() ? ping.OneWay_s() : task.hardware.stopping.delay_s;
-  parts.say("the robot turns a few degrees to and fro, to see how late the camera is");
-  const std::optional<LatencyResult> found =
-      MeasureLatency(robot, task.hardware.odometry, task.hardware.turn, one_way_s);
-  if (!found) return std::nullopt;
-  const LoopDelay& delay = found->delay;
-  parts.say(fmt::format("loop delay {:.0f} ms: {}, {}, {}, {}", 1e3 * delay.total_s.value_or(0.0),
-                        PartText("camera", delay.camera_s), PartText("host", delay.host_s),
-                        PartText("link", delay.link_s), PartText("robot", delay.robot_s)));
-  if (!delay.camera_s) return found;
-  const double budget_s = task.hardware.evidence.max_latency_s;
-  if (std::abs(*delay.camera_s) > budget_s) {
+std::string CameraText(const LoopDelay& delay) {
+  if (!delay.camera_most_s) return PartText("camera", delay.camera_s);
+  return PartText("camera at most", delay.camera_most_s);
+}
+
+/// What a command takes to the motors at least: half of the round trip where one was measured, else
+/// the time of its bytes on the line alone. hardware.stopping.delay_s is no such bound, since it is
+/// a cautious guess upwards.
+double LeastWay_s(const PingResult& ping, const HardwareOptions& options) {
+  constexpr double kBitsPerByte = 10.0;  // 8N1
+  if (ping.IsMeasured()) return ping.OneWay_s();
+  const auto bytes = static_cast<double>(PlainLine({}, options.plain).size());
+  return bytes * kBitsPerByte / options.line.baud;
+}
+
+void RequireCameraInTime(const LoopDelay& delay, double budget_s) {
+  if (delay.camera_s && std::abs(*delay.camera_s) > budget_s) {
     throw std::runtime_error(fmt::format(
         "the camera's pictures are {:.3f} s late, and the budget (hardware.evidence.max_latency_s) "
         "is {:.3f} s: ask it for fewer pixels or a shorter exposure, or read it without a server "
         "between",
         *delay.camera_s, budget_s));
   }
-  robot.SetCameraLatency(std::max(0.0, *delay.camera_s));
+  if (delay.camera_most_s && *delay.camera_most_s > budget_s) {
+    throw std::runtime_error(fmt::format(
+        "the camera's pictures may be {:.3f} s late (the loop delay less what the line takes; this "
+        "robot tells no wheels to know more by), and the budget (hardware.evidence.max_latency_s) "
+        "is {:.3f} s: ask it for fewer pixels or a shorter exposure, read it without a server "
+        "between, copy src/firmware to a 3pi+, or raise the budget by what the robot itself is "
+        "known to take",
+        *delay.camera_most_s, budget_s));
+  }
+}
+
+/// The turn on the spot, and what follows from it.
+std::optional<LatencyResult> MeasureCamera(RealRobot& robot, const DriveParts& parts,
+                                           const DriveTask& task, const PingResult& ping) {
+  if (!task.hardware.turn.enabled) return std::nullopt;
+  const double one_way_s = ping.IsMeasured() ? ping.OneWay_s() : task.hardware.stopping.delay_s;
+  parts.say("the robot turns a few degrees to and fro, to see how late the camera is");
+  std::optional<LatencyResult> found =
+      MeasureLatency(robot, task.hardware.odometry, task.hardware.turn, one_way_s);
+  if (!found) return std::nullopt;
+  LoopDelay& delay = found->delay;
+  if (!delay.camera_s) {
+    delay.camera_most_s = std::max(0.0, *delay.total_s - LeastWay_s(ping, task.hardware));
+  }
+  parts.say(fmt::format("loop delay {:.0f} ms: {}, {}, {}, {}", 1e3 * delay.total_s.value_or(0.0),
+                        CameraText(delay), PartText("host", delay.host_s),
+                        PartText("link", delay.link_s), PartText("robot", delay.robot_s)));
+  RequireCameraInTime(delay, task.hardware.evidence.max_latency_s);
+  // A bound is no time to take from stamps: the guard goes on allowing for the whole budget.
+  if (delay.camera_s) robot.SetCameraLatency(std::max(0.0, *delay.camera_s));
   return found;
 }
 
@@ -273,6 +335,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
                         EnumNames(run.ping.protocol)[static_cast<std::size_t>(run.ping.protocol)]));
   RequireWatchdog(parts, run.ping.protocol, task.hardware);
   RequireBudget(run.ping, task.hardware.ping);
+  WarnOfPowerLimit(parts, task);
   run.stopping_distance_m = PrintStoppingDistance(parts, task, run.ping);
 
   RealRobot robot(parts.line, parts.poses, parts.clock,

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -21,6 +23,9 @@ constexpr double kLeastLag_s = -0.1;  // clocks that do not agree show up here
 constexpr double kMostLag_s = 1.2;
 constexpr size_t kLeastSamples = 8;
 constexpr double kRest_s = 0.5;  // after a pulse, for wheels and link to come to rest
+// On top of it, pulse by pulse: no pair of pulses is like the one before, or a picture that is one
+// pair late would fit as well as one of now.
+constexpr std::array<double, 6> kMoreRest_s{0.0, 0.05, 0.15, 0.0, 0.05, 0.2};
 constexpr int kMostPulses = 14;
 constexpr double kHarder = 1.25;
 
@@ -229,6 +234,18 @@ LoopDelay DelayOf(const std::vector<Angle>& wheels, const std::vector<double>& p
   return delay;
 }
 
+/// A lag at the end of the search is where the search ended, not where the fit is best.
+bool IsBelowMost(const Lag& lag) { return lag.lag_s < kMostLag_s - 0.5 * kLagStep_s; }
+
+std::vector<Angle> From(const std::vector<Angle>& angles, double t_s) {
+  std::vector<Angle> later;
+  std::copy_if(angles.begin(), angles.end(), std::back_inserter(later),
+               [t_s](const Angle& angle) { return angle.t_s >= t_s; });
+  return later;
+}
+
+constexpr double kMostNoise = 0.25;  // of a fit, as a share of the turn
+
 constexpr const char* kTooBusy =
     "this machine is too busy for pictures and encoders to come evenly, or it is another robot's "
     "tag; end what else it does and start again (hardware.turn.enabled=false leaves this check "
@@ -240,7 +257,7 @@ constexpr const char* kTooBusy =
 /// far.
 void RequireSides(std::span<const Angle> seen, std::span<const Angle> wheels,
                   std::span<const Angle> commanded) {
-  constexpr double kMostNoise = 0.25, kByFar = 0.5;
+  constexpr double kByFar = 0.5;
   const auto fit = [&](std::span<const Angle> angles) {
     const std::optional<Lag> lag = EstimateLag(angles, commanded, 0.0, kMostLag_s);
     const bool is_clear = lag && lag->residual_rad < kMostNoise * Range(angles);
@@ -285,10 +302,11 @@ void RequireSeen(bool is_seen, double turned_rad, double seen_rad) {
 /// The lag of the picture behind the wheels; no picture shows a turn before the wheels made it.
 Lag RequireBehindWheels(const std::optional<Lag>& lag, const std::vector<Angle>& wheels,
                         double seen_rad) {
-  constexpr double kMostNoise = 0.25, kLeast_s = 0.02;
+  constexpr double kLeast_s = 0.02;
   const double turned_rad = Range(wheels);
   RequireSeen(lag && IsAsFar(seen_rad, turned_rad), turned_rad, seen_rad);
-  if (!IsAsFar(lag->scale, 1.0) || lag->residual_rad > kMostNoise * seen_rad) {
+  const bool is_clear = IsBelowMost(*lag) && lag->residual_rad <= kMostNoise * seen_rad;
+  if (!IsAsFar(lag->scale, 1.0) || !is_clear) {
     throw std::runtime_error(fmt::format(
         "the picture shows a turn of {:.1f} deg as the wheels made one of {:.1f} deg, but not when "
         "they did: {}",
@@ -304,13 +322,25 @@ Lag RequireBehindWheels(const std::optional<Lag>& lag, const std::vector<Angle>&
       -1e3 * lag->lag_s, 1e3 * spacing_s));
 }
 
-/// Without timed encoders: the lag of the picture behind the commands.
-Lag RequireBehindCommands(const std::optional<Lag>& lag, const std::vector<Angle>& wheels,
-                          double seen_rad) {
-  const double turned_rad = Range(wheels);
+/// Without timed encoders: the lag of the picture behind the commands. Of the last pair of pulses
+/// alone, which began at `pair_s` and was strong enough: weaker ones before it may have moved
+/// nothing, and no line through them fits both.
+Lag RequireBehindCommands(const Turn& turn, const std::vector<Angle>& wheels, double pair_s,
+                          double first_power) {
+  const std::vector<Angle> seen = From(turn.Seen(), pair_s);
+  const std::optional<Lag> lag = EstimateLag(seen, turn.Commanded(), 0.0, kMostLag_s);
+  const double turned_rad = Range(wheels), seen_rad = Range(turn.Seen());
   const bool is_as_far = wheels.empty() || IsAsFar(seen_rad, turned_rad);
-  RequireSeen(lag && lag->scale > 0.0 && is_as_far, turned_rad, seen_rad);
-  return *lag;
+  RequireSeen(lag && is_as_far, turned_rad, seen_rad);
+  const bool is_inside = lag->lag_s > 0.5 * kLagStep_s && IsBelowMost(*lag);
+  if (lag->scale > 0.0 && is_inside && lag->residual_rad <= kMostNoise * Range(seen)) return *lag;
+  throw std::runtime_error(fmt::format(
+      "the picture shows a turn of {:.1f} deg, and not how long after the commands within {:g} s "
+      "(the best fit is {:.3f} s late and {:.1f} deg off): start again, with a stronger turn "
+      "(hardware.turn.power is {:g}), more light, or less else to do for this machine "
+      "(hardware.turn.enabled=false leaves this check out)",
+      geometry::DegFromRad(Range(seen)), kMostLag_s, lag->lag_s,
+      geometry::DegFromRad(lag->residual_rad), first_power));
 }
 
 /// What stopped the turn by itself, such as a picture that does not follow the wheels, may be a
@@ -336,7 +366,8 @@ std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
   for (int pulse = 0; pulse < kMostPulses; ++pulse) {
     const double side = pulse % 2 == 0 ? power : -power;
     pulses_s.push_back(turn.Commanded().back().t_s);
-    if (!turn.Run({-side, side}, options.pulse_s) || !turn.Run({}, kRest_s)) {
+    const double rest_s = kRest_s + kMoreRest_s[static_cast<size_t>(pulse) % kMoreRest_s.size()];
+    if (!turn.Run({-side, side}, options.pulse_s) || !turn.Run({}, rest_s)) {
       RequireNoOtherSide(robot, turn);
       return std::nullopt;
     }
@@ -357,8 +388,8 @@ std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
                        .seen_deg = geometry::DegFromRad(seen_rad)};
   // Without timed encoders the commands lead, and only the sum of all parts is seen.
   if (!AreTimed(wheels)) {
-    const std::optional<Lag> lag = EstimateLag(turn.Seen(), turn.Commanded(), 0.0, kMostLag_s);
-    result.delay.total_s = RequireBehindCommands(lag, wheels, seen_rad).lag_s;
+    const double pair_s = pulses_s[pulses_s.size() - 2];
+    result.delay.total_s = RequireBehindCommands(turn, wheels, pair_s, options.power).lag_s;
     return result;
   }
   const Lag lag = RequireBehindWheels(EstimateLag(turn.Seen(), wheels, kLeastLag_s, kMostLag_s),

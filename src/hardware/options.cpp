@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace rift::hardware {
@@ -14,9 +15,9 @@ void HardwareOptions::Check() const {
   }
 }
 
-double StoppingDistance_m(const StoppingOptions& options, double power) {
+double StoppingDistance_m(const StoppingOptions& options, double power, double blind_s) {
   const double speed_mps = options.full_power_speed_mps * power;
-  return speed_mps * (options.robot_watchdog_s + options.delay_s) +
+  return speed_mps * (std::max(options.robot_watchdog_s, blind_s) + options.delay_s) +
          speed_mps * speed_mps / (2.0 * options.braking_mps2);
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "rift/hardware/robot_link.hpp"
+#include "rift/hardware/wire.hpp"
 #include "rift/statistics/descriptive.hpp"
 
 namespace rift::hardware {
@@ -77,6 +78,13 @@ PingResult Ping(ByteLine& line, Clock& clock, const LineOptions& line_options, P
   result.longest_burst = LongestBurst(is_answered);
   FillTimes(result, round_trips_s);
   return result;
+}
+
+double RadioDelay_s(const PingResult& result, const LineOptions& options) {
+  constexpr double kBitsPerByte = 10.0;  // 8N1
+  if (!result.IsMeasured()) return -1.0;
+  constexpr double kBits = kBitsPerByte * (CommandFrame::kSize + Answer::kSize);
+  return std::max(0.0, result.OneWay_s() - 0.5 * kBits / options.baud);
 }
 
 std::vector<std::string> BrokenBudget(const PingResult& result, const PingOptions& options) {

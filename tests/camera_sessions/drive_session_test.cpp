@@ -28,6 +28,19 @@ namespace {
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 
+TEST_CASE("A drive without port, camera or calibration is refused, and nothing is written") {
+  const test::TemporaryFolder folder;
+  DriveSetup setup{.yes = true};
+  DriveSession session(setup, {});
+  CHECK_THROWS_WITH(session.DriveInto(folder / "run", test::PaperTask()),
+                    Contains("--port, --camera, --calibration are missing, and --before-each told "
+                             "none: name them"));
+  session.MoveTo({.port = "/dev/x", .camera = "/dev/y"});
+  CHECK_THROWS_WITH(session.DriveInto(folder / "run", test::PaperTask()),
+                    Contains("--calibration is missing, and --before-each told none: name it"));
+  CHECK_FALSE(fs::exists(folder / "run"));
+}
+
 TEST_CASE("The segments of an identification are those that its fit was tried with") {
   const std::vector<control::Segment> segments =
       IdentificationDrive(test::PaperTask()).program.segments;

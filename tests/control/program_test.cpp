@@ -42,6 +42,7 @@ TEST_CASE("A segment lasts as long as its wheels need at their power") {
   CHECK(program.MeanPower(back_s + turn_s + 0.1, back_s + turn_s + 0.2) == WheelPower{});
   CHECK(program.PoseAt(back_s).x_m == Approx(-1.0));
   CHECK(program.Length_m() == Approx(1.0));
+  CHECK(program.MostPower() == 0.5);  // backwards counts as well
 }
 
 TEST_CASE("A speed asks for the power that the ideal robot needs, and a segment's own power wins") {

@@ -88,15 +88,65 @@ TEST_CASE(
     REQUIRE(told.size() == 3);
     CHECK(told[0] == "the robot speaks framed");
     // 1.6 m/s at full power; the link's own delay in place of the 0.1 s that are assumed:
-    // 0.8 m/s x 0.334 s + 0.16 m.
-    CHECK_THAT(told[1],
-               Catch::StartsWith("worst stopping distance 0.42") &&
-                   Catch::Contains("m: at power 0.5, 0.80 m/s x (0.300 s watchdog + 0.03") &&
-                   Catch::EndsWith(" s delay) + braking"));
+    // 0.8 m/s x 0.434 s + 0.16 m. A camera that goes blind is noticed later than a broken link.
+    CHECK_THAT(told[1], Catch::StartsWith("worst stopping distance 0.50") &&
+                            Catch::Contains("m: at power 0.5, 0.80 m/s x (0.150 s an old pose is "
+                                            "driven by + 0.250 s the camera may be late + 0.03") &&
+                            Catch::EndsWith(" s delay) + braking"));
     CHECK(told[2] == fmt::format("the robot stands at x -0.282 m, y -0.066 m, {:.3f} m from the "
                                  "first waypoint{}",
                                  std::abs(off_m), says));
   }
+}
+
+TEST_CASE("The stopping distance is that of a slow watchdog where the camera is known sooner") {
+  Bench bench;
+  DriveTask task = PaperTask();
+  task.control.v_max = 0.5;
+  task.hardware.stopping.robot_watchdog_s = 0.5;
+  CHECK_THAT(ToldBefore(bench, task, 0.0)[1],
+             Catch::StartsWith("worst stopping distance 0.58") &&
+                 Catch::Contains("0.80 m/s x (0.500 s watchdog + 0.03"));
+}
+
+TEST_CASE("The stopping distance of a program is that of its strongest segment") {
+  Bench bench;
+  DriveTask task = PaperTask();
+  control::ProgramOptions program;
+  program.segments = {{.straight_m = 0.2}, {.straight_m = -0.2, .power = 0.45}};
+  task.task = control::Program(program, task.hardware.odometry.drive, bench.Pose());
+  task.control.v_max = 0.3;
+  const std::vector<std::string> told = ToldBefore(bench, task, 0.0);
+  REQUIRE(told.size() == 3);
+  CHECK_THAT(told[1], Catch::StartsWith("worst stopping distance 0.44") &&
+                          Catch::Contains("m: at power 0.45, 0.72 m/s x ("));
+}
+
+TEST_CASE("A power that the guard would refuse is told before anything moves") {
+  const auto is_told = [](const DriveTask& task, const std::string& what) {
+    Bench bench;
+    const std::vector<std::string> told = ToldBefore(bench, task, 0.0);
+    return std::any_of(told.begin(), told.end(), [&](const std::string& line) {
+      return line == what + ": a command above it is not sent and ends the drive";
+    });
+  };
+  DriveTask task = PaperTask();
+  task.control.v_max = 0.3;
+  task.control.w_max = 0.25;
+  const std::string by_controller =
+      "the controller (control.v_max + control.w_max) can ask for the power 0.55, and the limit "
+      "(hardware.guard.max_power) is 0.5";
+  task.hardware.guard.max_power = 0.5;
+  CHECK(is_told(task, by_controller));
+  task.hardware.guard.max_power = 0.56;
+  CHECK_FALSE(is_told(task, by_controller));
+  control::ProgramOptions program;
+  program.power = 0.6;
+  program.segments = {{.turn_deg = -90.0}, {.straight_m = 0.2, .power = 0.2}};
+  task.task = control::Program(program, task.hardware.odometry.drive, {});
+  CHECK(is_told(task,
+                "the program can ask for the power 0.6, and the limit (hardware.guard.max_power) "
+                "is 0.56"));
 }
 
 TEST_CASE("What stops a drive before its start is a person's wish, or an error with its cause") {
@@ -138,6 +188,41 @@ TEST_CASE("A camera whose pictures are later than their budget is refused after 
                       Catch::Contains("late, and the budget (hardware.evidence.max_latency_s) is "
                                       "0.250 s"));
     CHECK(bench.listener->Motors().IsZero());
+  }
+}
+
+TEST_CASE("A camera that no wheels time is held to its budget with all that it may be late") {
+  for (const auto& [late_s, is_taken] : {std::pair{0.1, true}, {0.35, false}}) {
+    Bench bench;
+    bench.camera_late_s = late_s;
+    Operator person;
+    DriveTask task = PaperTask();
+    task.trial.timeout_s = 1.0;
+    task.hardware.line.protocol = Protocol::kPlain;
+    task.hardware.plain.watchdog = Watchdog::kRobot;
+    if (!is_taken) {
+      CHECK_THROWS_WITH(
+          Drive(person.PartsOf(bench), task),
+          Catch::Contains("the camera's pictures may be 0.4") &&
+              Catch::Contains("and the budget (hardware.evidence.max_latency_s) is 0.250 s"));
+      CHECK(bench.listener->Motors().IsZero());
+      continue;
+    }
+    const DriveRun run = Drive(person.PartsOf(bench), task);
+    const LoopDelay& delay = run.latency.value().delay;
+    CHECK_FALSE(delay.camera_s);
+    // Of the loop, less the ten bytes of "0.00 0.00" and its end at 9600 baud.
+    CHECK(*delay.camera_most_s == Approx(*delay.total_s - 10 * 10.0 / 9600.0));
+    CHECK(*delay.camera_most_s > late_s);
+    const std::string said = fmt::format(
+        "loop delay {:.0f} ms: camera at most {:.0f} ms, host unknown, link unknown, "
+        "robot unknown",
+        1e3 * *delay.total_s, 1e3 * *delay.camera_most_s);
+    CHECK(std::find(person.told.begin(), person.told.end(), said) != person.told.end());
+    // A bound is not taken from the stamps.
+    for (const PoseStages& pose : run.evidence.poses) {
+      CHECK(pose.arrived_s - pose.captured_s == Approx(0.01).margin(1e-6));
+    }
   }
 }
 

@@ -69,6 +69,55 @@ TEST_CASE("Encoders that answer rarely and late time nothing but the sum of the 
   }
 }
 
+/// Of a robot that tells no wheels, nothing stops the turn before it is judged.
+HardwareOptions Patient() {
+  HardwareOptions hardware;
+  hardware.evidence.blind_m = hardware.evidence.pushed_m = hardware.evidence.agree_m = 10.0;
+  hardware.evidence.pushed_deg = 180.0;
+  hardware.evidence.repeats_s = 3600.0;
+  hardware.evidence.max_latency_s = 2.0;
+  return hardware;
+}
+
+TEST_CASE("Pulses that move nothing before one that does are no lag of the picture") {
+  for (const double late_s : {0.0, 0.1}) {
+    Bench bench;
+    bench.from_robot_is_cut = true;
+    bench.camera_late_s = late_s;
+    // The motors' friction: a weak turn is none.
+    bench.bend = [](trial::PoseMeasurement& pose) {
+      constexpr double kStuck_rad = 0.2;
+      double& yaw_rad = pose.world_from_robot.yaw_rad;
+      yaw_rad = std::copysign(std::max(0.0, std::abs(yaw_rad) - kStuck_rad), yaw_rad);
+    };
+    const std::optional<LatencyResult> found = TurnOn(bench, Patient(), Protocol::kPlain);
+    REQUIRE(found);
+    INFO("late by " << late_s << " s, measured " << *found->delay.total_s);
+    CHECK(*found->delay.total_s == Approx(0.09 + late_s).margin(0.05));
+  }
+}
+
+TEST_CASE("A picture later than the search goes is no delay of 1.2 s") {
+  Bench bench;
+  bench.from_robot_is_cut = true;
+  bench.camera_late_s = 1.3;
+  CHECK_THROWS_WITH(TurnOn(bench, Patient(), Protocol::kPlain),
+                    Catch::Contains("and not how long after the commands within 1.2 s") &&
+                        Catch::Contains("hardware.turn.power is 0.08"));
+}
+
+TEST_CASE("A picture that turns at times of its own has no lag behind the commands") {
+  for (const double period_s : {0.7, 1.1}) {
+    Bench bench;
+    bench.from_robot_is_cut = true;
+    bench.bend = [period_s](trial::PoseMeasurement& pose) {
+      pose.world_from_robot.yaw_rad = 0.1 * std::sin(6.283 * pose.captured_s / period_s);
+    };
+    INFO("period " << period_s << " s");
+    CHECK_THROWS(TurnOn(bench, Patient(), Protocol::kPlain));
+  }
+}
+
 /// Now and then no picture comes for long, and then one that is as old; never an older one than
 /// before.
 void Stall(Bench& bench) {

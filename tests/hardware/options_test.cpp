@@ -15,6 +15,10 @@ TEST_CASE("The stopping distance is the speed's way in watchdog and delay, and t
   CHECK(StoppingDistance_m(options, 0.5) == Approx(0.32 + 0.16));
   CHECK(StoppingDistance_m(options, 1.0) == Approx(0.64 + 0.64));
   CHECK(StoppingDistance_m(options, 0.0) == 0.0);
+  // A camera that is blind for longer than the watchdog waits; one that is not changes nothing.
+  CHECK(StoppingDistance_m(options, 0.5, options.robot_watchdog_s + 0.1) ==
+        Approx(0.32 + 0.16 + 0.08));
+  CHECK(StoppingDistance_m(options, 0.5, options.robot_watchdog_s - 0.1) == Approx(0.32 + 0.16));
 }
 
 TEST_CASE("A heartbeat must be shorter than the lag that stops a drive") {

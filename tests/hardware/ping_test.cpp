@@ -25,6 +25,19 @@ TEST_CASE("Ping measures the round trip of a link whose delay is known") {
   CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
 }
 
+TEST_CASE("The delay for the simulated link is that of the radio, without the bytes of both ways") {
+  for (const double delay_s : {0.02, 0.034}) {
+    Bench bench;
+    bench.line_delay_s = delay_s;
+    const PingResult result = Ping(bench, bench, {}, Protocol::kFramed, {});
+    CHECK(RadioDelay_s(result, {}) == Approx(delay_s).margin(0.0015));
+    // At 1200 baud the bytes alone take longer than the whole round trip did.
+    CHECK(RadioDelay_s(result, {.baud = 1200}) == 0.0);
+    CHECK(RadioDelay_s(result, {.baud = 4'000'000}) == Approx(result.OneWay_s()).margin(1e-4));
+  }
+  CHECK(RadioDelay_s({}, {}) == -1.0);
+}
+
 TEST_CASE("Jitter is the mean change from one round trip to the next") {
   Bench bench;
   bench.line_delay_s = 0.005;

@@ -75,6 +75,8 @@ class Program {
   /// The mean power over [from_s, to_s] of the program, so that a command that is held over the end
   /// of a segment turns the wheels as far as both segments ask for. Zero outside.
   WheelPower MeanPower(double from_s, double to_s) const;
+  /// The largest power of either wheel.
+  double MostPower() const;
   /// world_from_robot of the ideal robot; at the ends outside of the program.
   geometry::Pose2 PoseAt(double t_s) const;
   /// The segment at a time: its index over all laps; the last one from its end on.

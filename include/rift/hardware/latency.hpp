@@ -41,6 +41,8 @@ struct LoopDelay {
   std::optional<double> robot_s;   ///< from the command's arrival to wheels that obey
   /// From a command to its effect in an arriving pose, all parts together: control.latency.delay_s.
   std::optional<double> total_s;
+  /// Where the wheels tell nothing of the camera alone: it is no later than this.
+  std::optional<double> camera_most_s = std::nullopt;
 };
 
 /// What the turn before a drive told.
@@ -59,7 +61,8 @@ bool AreTimed(std::span<const Angle> wheels);
 
 /// Turns an armed robot on the spot, a few degrees to and fro, and finds how late the camera is.
 /// None when somebody stopped it. Throws std::runtime_error, with what was measured, when the
-/// picture does not show the turn, shows it to the other side or before the wheels made it.
+/// picture does not show the turn, shows it to the other side or before the wheels made it, or not
+/// clearly when.
 std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
                                             const odometry::OdometryOptions& odometry,
                                             const TurnOptions& options, double one_way_s);

@@ -247,8 +247,10 @@ struct HardwareOptions {
   void Check() const;
 };
 
-/// Farthest that the robot goes after the host has fallen silent, at `power`: speed times watchdog
-/// and delay, and the braking.
-double StoppingDistance_m(const StoppingOptions& options, double power);
+/// How far the robot goes on after a fault at worst, at `power`: speed times delay and the time
+/// until something stops it, and the braking. That time is the robot's watchdog, when the host
+/// falls silent, or `blind_s`, when the camera does: what the host may still drive by the last
+/// picture.
+double StoppingDistance_m(const StoppingOptions& options, double power, double blind_s = 0.0);
 
 }  // namespace rift::hardware

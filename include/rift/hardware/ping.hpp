@@ -27,6 +27,10 @@ struct PingResult {
   double OneWay_s() const { return IsMeasured() ? 0.5 * p50_s : -1.0; }
 };
 
+/// The part of OneWay_s() that is the radio's, without the bytes of command and answer on the
+/// serial line; 0 where the line alone would take as long, -1 where nothing was measured.
+double RadioDelay_s(const PingResult& result, const LineOptions& options);
+
 /// Sends zeros in frames for options.duration_s and counts. A robot that speaks plain cannot be
 /// measured: nothing is sent to it. Throws LineGone.
 PingResult Ping(ByteLine& line, Clock& clock, const LineOptions& line_options, Protocol protocol,

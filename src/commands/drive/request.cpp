@@ -32,7 +32,8 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
   flags("any_start", request.setup.any_start,
         "start even when the robot stands far off its start (hardware.start)");
   AddAnyWaypointsFlag(app, request.any_waypoints);
-  flags("ping", request.ping, "only measure the link, with the motors at zero");
+  flags("ping", request.ping,
+        "only measure the link, with the motors at zero; flags of a drive are refused beside it");
   flags("dry_run", request.setup.dry_run,
         "all of a drive but motor power: the robot is sent zeros alone, and may be carried along "
         "the waypoints");
@@ -55,6 +56,11 @@ void ExcludeFlags(CLI::App& app) {
   Exclude(app, "--dry-run", {"--repeat", "--grid", "--identify", "--suggested"});
   Exclude(app, "--grid", {"--repeat", "--identify", "--suggested"});
   Exclude(app, "--suggested", {"EXPERIMENT", "--out", "--ping", "--identify", "--repeat"});
+  // A ping is no drive: it sees no camera, moves nothing and leaves nothing.
+  Exclude(app, "--ping",
+          {"--camera", "--calibration", "--moved", "--out", "--view", "--yes", "--countdown",
+           "--any-start", "--any-waypoints", "--dry-run", "--repeat", "--grid", "--identify",
+           "--before-each"});
   // No robot, no camera: what belongs to them is refused beside it.
   Exclude(app, "--replay",
           {"EXPERIMENT", "--set", "--port", "--camera", "--calibration", "--out", "--yes", "--ping",
@@ -84,7 +90,9 @@ void DriveRequest::Check() const {
           {series.identify && series.repeat == 1,
            "--identify with --repeat 1: a fit needs at least 2 drives"}});
   if (ping) return;
-  Refuse({{!series.before_each.empty() && !series.IsSeries(),
+  Refuse({{!series.before_each.empty() && WordsOf(series.before_each).empty(),
+           "--before-each '" + series.before_each + "' is blank: name the program to run"},
+          {!series.before_each.empty() && !series.IsSeries(),
            "--before-each goes with --repeat, --grid, --identify or --suggested"},
           {!has_task, "EXPERIMENT is missing: name a YAML file with waypoints"},
           {setup.address.camera.empty() && !is_told_later,

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "rift/report/json/fields.hpp"
 #include "rift/statistics/descriptive.hpp"
@@ -16,6 +19,15 @@ using nlohmann::ordered_json;
 
 ordered_json TimeOrNull(double time_s) {
   return time_s < 0.0 ? ordered_json(nullptr) : ordered_json(time_s);
+}
+
+/// Keys that an experiment takes from a link that was measured. The simulated link adds the time of
+/// the bytes itself (simulation.link.baud).
+std::vector<std::pair<std::string, double>> KeysOf(const hardware::PingResult& ping,
+                                                   const hardware::HardwareOptions& options) {
+  return {{"hardware.stopping.delay_s", ping.OneWay_s()},
+          {"simulation.link.delay_s", hardware::RadioDelay_s(ping, options.line)},
+          {"simulation.link.line_loss", ping.loss}};
 }
 
 ordered_json PingBlock(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
@@ -32,9 +44,7 @@ ordered_json PingBlock(const hardware::PingResult& ping, const hardware::Hardwar
                     {"battery_v", TimeOrNull(ping.battery_v)}};
   json["broken_budget"] = hardware::BrokenBudget(ping, options.ping);
   if (ping.IsMeasured()) {
-    json["set"] = {{"hardware.stopping.delay_s", ping.OneWay_s()},
-                   {"simulation.link.delay_s", ping.OneWay_s()},
-                   {"simulation.link.line_loss", ping.loss}};
+    for (const auto& [key, value] : KeysOf(ping, options)) json["set"][key] = value;
   }
   return json;
 }
@@ -92,9 +102,15 @@ ordered_json StopJson(const hardware::DriveRecord& evidence) {
 
 /// Where the time between a turn and the command that answers it goes; null where unknown.
 ordered_json LoopDelayJson(const hardware::DriveRun& run) {
-  ordered_json json{{"camera_s", nullptr},   {"host_s", nullptr},  {"link_s", nullptr},
-                    {"robot_s", nullptr},    {"total_s", nullptr}, {"camera_over_drive_s", nullptr},
-                    {"turned_deg", nullptr}, {"seen_deg", nullptr}};
+  ordered_json json{{"camera_s", nullptr},
+                    {"camera_most_s", nullptr},
+                    {"host_s", nullptr},
+                    {"link_s", nullptr},
+                    {"robot_s", nullptr},
+                    {"total_s", nullptr},
+                    {"camera_over_drive_s", nullptr},
+                    {"turned_deg", nullptr},
+                    {"seen_deg", nullptr}};
   const auto set = [&json](const char* key, const std::optional<double>& value) {
     if (value) json[key] = *value;
   };
@@ -105,6 +121,7 @@ ordered_json LoopDelayJson(const hardware::DriveRun& run) {
     set("link_s", delay.link_s);
     set("robot_s", delay.robot_s);
     set("total_s", delay.total_s);
+    set("camera_most_s", delay.camera_most_s);
     set("turned_deg", run.latency->turned_deg);
     set("seen_deg", run.latency->seen_deg);
   }
@@ -112,7 +129,34 @@ ordered_json LoopDelayJson(const hardware::DriveRun& run) {
   return json;
 }
 
+/// Whether a robot was asked at all is told by the protocol that it was to speak.
+std::string PlainPingText(const hardware::LineOptions& options) {
+  if (options.protocol == hardware::Protocol::kPlain) {
+    return "the robot is to be spoken to in plain lines (hardware.line.protocol: plain) and cannot "
+           "be asked, so its link cannot be measured (auto finds out whether it answers)\n";
+  }
+  return fmt::format(
+      "the robot did not answer within {:g} s (hardware.line.hello_s), so it is taken to speak "
+      "plain, and its link cannot be measured (a 3pi+ answers with src/firmware on it)\n",
+      options.hello_s);
+}
+
 std::string Cell(double time_s) { return time_s < 0.0 ? "" : fmt::format("{:.6f}", time_s); }
+
+/// Whether the stamps of a drive's poses are of the light and not of when the camera gave it.
+bool IsCameraTimed(const hardware::DriveRun& run) {
+  return run.latency && run.latency->delay.camera_s;
+}
+
+/// How much older a picture may be than its stamp.
+std::string StampText(const hardware::DriveRun& run) {
+  if (IsCameraTimed(run)) return "";
+  if (!run.latency || !run.latency->delay.camera_most_s) {
+    return "; how late the stamps are was not measured";
+  }
+  return fmt::format("; the stamps may be up to {:.0f} ms late",
+                     1e3 * *run.latency->delay.camera_most_s);
+}
 
 }  // namespace
 
@@ -122,8 +166,7 @@ std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareO
 
 std::string PingText(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
   if (ping.protocol == hardware::Protocol::kPlain) {
-    return "the robot speaks plain and does not answer, so its link cannot be measured (a 3pi+ "
-           "answers with src/firmware on it)\n";
+    return PlainPingText(options.line);
   }
   std::string text = fmt::format("{} of {} commands answered, {:.1f} % lost, {} in a row at most\n",
                                  ping.answered, ping.sent, 100.0 * ping.loss, ping.longest_burst);
@@ -133,10 +176,11 @@ std::string PingText(const hardware::PingResult& ping, const hardware::HardwareO
                     1e3 * ping.p50_s, 1e3 * ping.p95_s, 1e3 * ping.p99_s, 1e3 * ping.max_s,
                     1e3 * ping.jitter_s);
     text += fmt::format("battery {:.2f} V\n", ping.battery_v);
-    text += fmt::format(
-        "for the experiment: --set hardware.stopping.delay_s={0:.3f} --set "
-        "simulation.link.delay_s={0:.3f}\n",
-        ping.OneWay_s());
+    text += "for the experiment:";
+    for (const auto& [key, value] : KeysOf(ping, options)) {
+      text += fmt::format(" --set {}={:.3f}", key, value);
+    }
+    text += "\n";
   }
   for (const std::string& broken : hardware::BrokenBudget(ping, options.ping)) {
     text += fmt::format("over budget: {}\n", broken);
@@ -190,10 +234,11 @@ std::string DriveText(const hardware::DriveRun& run) {
   if (run.dry_run) text += "dry run: the robot was sent zeros alone\n";
   const std::vector<double> latency_s = Times_s(run.evidence.poses, kCaptureToCommand);
   if (!latency_s.empty()) {
-    text += fmt::format("capture to command p50 {:.1f} ms, p95 {:.1f}, p99 {:.1f}\n",
+    text += fmt::format("{} to command p50 {:.1f} ms, p95 {:.1f}, p99 {:.1f}{}\n",
+                        IsCameraTimed(run) ? "capture" : "time stamp",
                         1e3 * statistics::Quantile(latency_s, 0.5),
                         1e3 * statistics::Quantile(latency_s, 0.95),
-                        1e3 * statistics::Quantile(latency_s, 0.99));
+                        1e3 * statistics::Quantile(latency_s, 0.99), StampText(run));
   }
   if (run.latency && run.latency->delay.total_s) {
     text += fmt::format(

@@ -63,6 +63,20 @@ void CheckFirstPicture(const DriveSetup& setup, const Console& console,
   }
 }
 
+/// A program of --before-each may tell them, and may not.
+void RequireAddress(const DriveAddress& address) {
+  std::vector<std::string> missing;
+  DriveAddress::Fields(address, [&](const char* key, const std::string& value, auto&&...) {
+    if (value.empty()) missing.push_back(fmt::format("--{}", key));
+  });
+  if (missing.empty()) return;
+  throw std::invalid_argument(
+      fmt::format("{} {} missing, and --before-each told none: name {}, or let its program print "
+                  "port, camera and calibration as one line of JSON",
+                  fmt::join(missing, ", "), missing.size() == 1 ? "is" : "are",
+                  missing.size() == 1 ? "it" : "them"));
+}
+
 bool HasArrived(const hardware::DriveRun& run) {
   return run.trial.outcome == trial::Outcome::kReached;
 }
@@ -212,6 +226,7 @@ void DriveSession::MoveTo(const DriveAddress& address) {
 
 hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
                                            const experiment::Experiment& experiment) {
+  RequireAddress(setup_.address);
   const ShownLine line(console_);
   hardware::Operator person(setup_.yes);  // first, and last to go: a signal must not end a save
   log_failure_.clear();

@@ -1,0 +1,55 @@
+// What a drive and a ping say of what was measured and what was not.
+
+#include <catch2/catch.hpp>
+
+#include "rift/report/json/json.hpp"
+
+namespace rift::report {
+namespace {
+
+using Catch::Contains;
+
+hardware::DriveRun RunOf(const std::optional<hardware::LoopDelay>& delay) {
+  hardware::DriveRun run;
+  run.evidence.poses.push_back({.captured_s = 1.0, .written_s = 1.004});
+  if (delay) run.latency = hardware::LatencyResult{*delay};
+  return run;
+}
+
+TEST_CASE("A time from capture is claimed only where the camera's own delay was measured") {
+  CHECK_THAT(DriveText(RunOf(hardware::LoopDelay{.camera_s = 0.03, .total_s = 0.1})),
+             Contains("\ncapture to command p50 4.0 ms, p95 4.0, p99 4.0\n"));
+  CHECK_THAT(
+      DriveText(RunOf(hardware::LoopDelay{.total_s = 0.1, .camera_most_s = 0.09})),
+      Contains("\ntime stamp to command p50 4.0 ms, p95 4.0, p99 4.0; the stamps may be up to 90 "
+               "ms late\n"));
+  CHECK_THAT(DriveText(RunOf({})),
+             Contains("\ntime stamp to command p50 4.0 ms, p95 4.0, p99 4.0; how late the stamps "
+                      "are was not measured\n"));
+}
+
+TEST_CASE("A ping sets the simulated link without the bytes that its baud adds, in both outputs") {
+  const hardware::PingResult ping{hardware::Protocol::kFramed, 100, 98, 0.02, 1, 0.068};
+  hardware::HardwareOptions options;
+  // 26 bytes of ten bits there and back at 9600 baud: 27 ms of the 68.
+  CHECK_THAT(PingText(ping, options),
+             Contains("for the experiment: --set hardware.stopping.delay_s=0.034 --set "
+                      "simulation.link.delay_s=0.020 --set simulation.link.line_loss=0.020\n"));
+  const auto set = nlohmann::json::parse(PingJson(ping, options))["set"];
+  CHECK(set.size() == 3);
+  CHECK(set["hardware.stopping.delay_s"] == 0.034);
+  CHECK(set["simulation.link.delay_s"].get<double>() == Approx(0.034 - 130.0 / 9600.0));
+  CHECK(set["simulation.link.line_loss"] == 0.02);
+}
+
+TEST_CASE("Of a robot that was not asked a ping does not say that it did not answer") {
+  const hardware::PingResult ping{.protocol = hardware::Protocol::kPlain};
+  hardware::HardwareOptions options;
+  options.line.hello_s = 3.5;
+  CHECK_THAT(PingText(ping, options), Contains("did not answer within 3.5 s"));
+  options.line.protocol = hardware::Protocol::kPlain;
+  CHECK_THAT(PingText(ping, options), !Contains("answer within") && Contains("cannot be asked"));
+}
+
+}  // namespace
+}  // namespace rift::report
