@@ -113,12 +113,13 @@ class DriveSession::Drivers {
   hardware::DriveRun Drive(const experiment::Experiment& experiment, hardware::Operator& person,
                            DriveLog& log) {
     has_started_ = false;
+    may_start_ = setup_.yes;
     StartGate gate(experiment.hardware.start, experiment::TaskOf(experiment).Start(),
                    setup_.any_start || setup_.dry_run, PersonAtGate(person));
     return hardware::Drive({.line = port_,
                             .poses = *poses_,
                             .clock = clock_,
-                            .stoppers = {person.Stopper(), log.Stopper()},
+                            .stoppers = {person.Stopper(), WindowStopper(), log.Stopper()},
                             .say = console_.say,
                             .may_arm =
                                 [&] {
@@ -140,12 +141,15 @@ class DriveSession::Drivers {
       return Drive(experiment, person, log);
     }
     view::DriveView view(session_.camera(), experiment::TaskOf(experiment));
+    key_in_window_ = false;
     auto drive = std::async(std::launch::async, [&] { return Drive(experiment, person, log); });
     while (drive.wait_for(kRedraw) != std::future_status::ready) {
       const hardware::CameraPoses::View seen = poses_->Seen();
-      const bool goes_on = view.Show(seen.frame.get(), seen.found.sighting, poses_->Status(),
-                                     PlacementNow(experiment));
-      if (!goes_on) person.CloseWindow();
+      const view::DriveWish wish =
+          view.Show(seen.frame.get(), seen.found.sighting, poses_->Status(),
+                    PlacementNow(experiment), may_start_);
+      if (wish == view::DriveWish::kStopByClosing) person.CloseWindow();
+      if (wish == view::DriveWish::kStopByKey) key_in_window_ = true;
     }
     return drive.get();
   }
@@ -154,12 +158,24 @@ class DriveSession::Drivers {
   vision::Ground ground() const { return session_.tag().ground; }
 
  private:
-  StartGate::Person PersonAtGate(hardware::Operator& person) const {
-    StartGate::Person at_gate{.has_agreed = [this, &person] { return person.MayArm(console_.say); },
+  StartGate::Person PersonAtGate(hardware::Operator& person) {
+    StartGate::Person at_gate{.has_agreed =
+                                  [this, &person] {
+                                    may_start_ = person.MayArm(console_.say);
+                                    return may_start_.load();
+                                  },
                               .say = console_.say};
     if (!setup_.yes) at_gate.ask_again = [&person] { person.AskAgain(); };
     if (!setup_.yes) at_gate.show = console_.show;
     return at_gate;
+  }
+
+  hardware::Stopper WindowStopper() const {
+    return [this]() -> std::optional<std::pair<hardware::StopReason, std::string>> {
+      if (!key_in_window_) return std::nullopt;
+      return std::pair(hardware::StopReason::kOperator,
+                       std::string("a key was pressed in the window"));
+    };
   }
 
   /// Throws std::runtime_error: of two tags with the robot's id nobody knows which one to steer.
@@ -187,7 +203,9 @@ class DriveSession::Drivers {
 
   const DriveSetup& setup_;
   const Console& console_;
-  std::atomic<bool> has_started_ = false;  // asked for by the window's thread
+  // For the window's thread: the robot is under way, and whether a person has let it start.
+  std::atomic<bool> has_started_ = false, may_start_ = false;
+  std::atomic<bool> key_in_window_ = false;  // by that thread
   hardware::SteadyClock clock_;
   hardware::SerialPort port_;
   vision::CameraSession session_;
