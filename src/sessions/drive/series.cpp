@@ -91,10 +91,7 @@ SeriesEnd Driver::Drive(const PlannedTrial& trial) {
     console_.say(fmt::format("{}: {}", trial.label, run.trial.reason));
     for (const std::string& line : SteeringLines(trial.experiment, run)) console_.say(line);
     session_.RequireLog();
-    if (!run.has_begun) {
-      fs::remove_all(trial.Unfinished());
-      return SeriesEnd::kQuit;
-    }
+    if (!run.has_begun) return SeriesEnd::kQuit;
     if (run.trial.outcome == trial::Outcome::kReached) {
       fs::rename(trial.Unfinished(), trial.folder);
       return SeriesEnd::kDone;

@@ -124,7 +124,10 @@ class DriveSession::Drivers {
                             .may_arm =
                                 [&] {
                                   RefuseTwoTags();
-                                  has_started_ = gate.MayStart(clock_.Now_s(), SeenNow());
+                                  // Not before the files are there: else a full disk stops a robot
+                                  // that moves. The gate looks again when they are.
+                                  has_started_ =
+                                      gate.MayStart(clock_.Now_s(), SeenNow()) && log.IsReady();
                                   return has_started_.load();
                                 },
                             .observer = &log,
@@ -230,9 +233,11 @@ void DriveSession::MoveTo(const DriveAddress& address) {
 
 hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
                                            const experiment::Experiment& experiment) {
+  RequireNoDrive(folder);
   const ShownLine line(console_);
   hardware::Operator person(setup_.yes);  // first, and last to go: a signal must not end a save
   log_failure_.clear();
+  BegunFolder begun(folder);  // goes after the log, which removes what is its own
   DriveLog log(WriterInto(folder, experiment));
   // The next setting may be on a ramp, where the tag is not held to the floor.
   if (drivers_ && drivers_->ground() != experiment::TagOn(experiment).ground) Close();
@@ -240,10 +245,11 @@ hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
     drivers_ = std::make_unique<Drivers>(setup_, console_, experiment,
                                          ReadCameraWithWorld(setup_.address.calibration));
   }
-  BeginDriveFolder(folder, experiment, drivers_->camera());
+  begun.Write(experiment, drivers_->camera());
   if (setup_.dry_run) console_.say("dry run: nothing moves, the robot is sent zeros alone");
   const hardware::DriveRun run = setup_.view ? drivers_->DriveInView(experiment, person, log)
                                              : drivers_->Drive(experiment, person, log);
+  if (run.has_begun) begun.Keep();
   if (run.has_begun && !HasArrived(run)) console_.ring();
   if (run.has_begun) log_failure_ = CloseDrive(folder, experiment, run, log);
   const bool was_slow =
