@@ -151,7 +151,12 @@ TEST_CASE("A folder that holds any file of a run is refused with its name and le
                            "commands.csv", "stages.csv", "encoders.csv"}) {
     const test::TemporaryFolder folder;
     test::WriteText(folder / name, "mine");
-    DriveSession session({.address = {"/dev/none", "none", folder / name}, .yes = true}, {});
+    const Console quiet{.say = [](const std::string&) {},
+                        .show = [](const std::string&) {},
+                        .hide = [] {},
+                        .ring = [] {},
+                        .ask = [](const std::string&, std::string_view) { return 'q'; }};
+    DriveSession session({.address = {"/dev/none", "none", folder / name}, .yes = true}, quiet);
     CHECK_THROWS_WITH(
         session.DriveInto(folder.Path(), PaperExperiment()),
         Catch::StartsWith(folder.Path().string() + " holds a run already, or part of one: ") &&
