@@ -15,6 +15,12 @@ void Follow(const vision::Sighting& sighting, TrackScene& scene) {
 
 }  // namespace
 
+DriveWish WishOf(const TrackInput& input, bool is_started) {
+  if (input.closed) return DriveWish::kStopByClosing;
+  const bool is_stop = input.quit || (is_started && input.any_key);
+  return is_stop ? DriveWish::kStopByKey : DriveWish::kGoOn;
+}
+
 DriveView::DriveView(const vision::CameraModel& camera, const control::Task& task)
     : start_(task.Start()),
       scene_{.camera = &camera, .robots = {SceneRobot{}}},
@@ -27,8 +33,10 @@ DriveView::DriveView(const vision::CameraModel& camera, const control::Task& tas
   }
 }
 
-bool DriveView::Show(const vision::Frame* frame, const std::optional<vision::Sighting>& sighting,
-                     const vision::CaptureStatus& status, const std::string& placement) {
+DriveWish DriveView::Show(const vision::Frame* frame,
+                          const std::optional<vision::Sighting>& sighting,
+                          const vision::CaptureStatus& status, const std::string& placement,
+                          bool is_started) {
   scene_.frame = frame;
   scene_.robots.front().sighting = sighting;
   scene_.status = status;
@@ -38,9 +46,11 @@ bool DriveView::Show(const vision::Frame* frame, const std::optional<vision::Sig
     scene_.stand_at = start_;
     scene_.prompts.push_back("put the robot into the outline: " + placement);
   }
-  scene_.prompts.emplace_back("close the window or press q in it to stop the robot");
+  scene_.prompts.emplace_back(is_started
+                                  ? "any key in this window, or closing it, stops the robot"
+                                  : "Enter in the terminal starts; q, Escape or closing gives up");
   if (sighting) Follow(*sighting, scene_);
-  return !window_.Show(scene_).quit;
+  return WishOf(window_.Show(scene_), is_started);
 }
 
 }  // namespace rift::view

@@ -14,6 +14,7 @@ constexpr int kEscape = 27;
 /// What a key does, as cv::waitKeyEx reports it; -1 is no key.
 void TakeKey(int key, TrackInput& input) {
   if (key < 0) return;
+  input.any_key = true;
   switch (key & 0xFF) {
     case 'q':
     case kEscape:
@@ -53,7 +54,7 @@ TrackInput TrackWindow::Show(const TrackScene& scene) {
   px_per_shown_ = picture.px_per_shown;
   cv::imshow(title_, picture.bgr);
   TakeKey(cv::waitKeyEx(1), input_);
-  if (!IsOpen()) input_.quit = true;
+  if (!IsOpen()) input_.quit = input_.closed = true;
   return std::exchange(input_, {});
 }
 

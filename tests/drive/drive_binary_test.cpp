@@ -146,8 +146,11 @@ TEST_CASE("A camera that repeats its last picture stops the robot whatever else 
 }
 
 TEST_CASE("A signal to the binary stops the robot and the run is saved with its reason") {
-  for (const auto& [signal, name] :
-       {std::pair{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}) {
+  for (const auto& [signal, name] : {std::pair{SIGINT, "SIGINT"},
+                                     {SIGTERM, "SIGTERM"},
+                                     {SIGHUP, "SIGHUP"},
+                                     {SIGQUIT, "SIGQUIT"},
+                                     {SIGTSTP, "SIGTSTP"}}) {
     Uninterrupted(kAll, [signal = signal, name = name](Scene& scene) {
       test::RunningRift rift(scene.Arguments());
       WaitForMotion(rift, scene);

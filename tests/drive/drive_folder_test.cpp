@@ -30,7 +30,8 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   std::vector<std::string> told;
   const experiment::Experiment experiment = PaperExperiment();
   const test::TemporaryFolder folder;
-  BeginDriveFolder(folder.Path(), experiment, test::PaperCamera());
+  BegunFolder begun(folder.Path());
+  begun.Write(experiment, test::PaperCamera());
   DriveLog log(WriterInto(folder.Path(), experiment));
   const hardware::DriveRun run =
       hardware::Drive({.line = bench,

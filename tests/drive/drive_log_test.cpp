@@ -11,6 +11,7 @@
 #include "rift/sessions/drive/session.hpp"
 #include "rift/trajectory/log.hpp"
 #include "sessions/drive/folder.hpp"
+#include "support/inputs/paper_camera.hpp"
 #include "support/inputs/paper_waypoints.hpp"
 #include "support/processes/file_size_limit.hpp"
 #include "support/processes/process.hpp"
@@ -105,6 +106,66 @@ TEST_CASE("A drive that never began leaves no files of a run") {
   const test::TemporaryFolder folder;
   { const DriveLog log(WriterInto(folder.Path(), PaperExperiment())); }
   CHECK(std::filesystem::is_empty(folder.Path()));
+}
+
+TEST_CASE("The files are made when they are asked for, and go again when no drive follows") {
+  const bool is_driven = GENERATE(false, true);
+  const test::TemporaryFolder folder;
+  {
+    BegunFolder begun(folder.Path() / "run");
+    DriveLog log(WriterInto(folder.Path() / "run", PaperExperiment()));
+    begun.Write(PaperExperiment(), test::PaperCamera());
+    test::WaitUntil("the files are there", [&] { return log.IsReady(); });
+    CHECK_FALSE(log.Stopper()());
+    for (const char* name : {"experiment.yaml", "camera.yaml", "summary.json", "trajectory.csv",
+                             "commands.csv", "stages.csv", "encoders.csv"}) {
+      INFO(name);
+      CHECK(std::filesystem::exists(folder.Path() / "run" / name));
+    }
+    if (is_driven) Record(log, 1.0);
+  }
+  CHECK(std::filesystem::exists(folder.Path() / "run") == is_driven);
+  if (is_driven) CHECK(Lines(folder / "run/trajectory.csv") == 2);
+}
+
+TEST_CASE("A file that cannot be made is told before a robot may move") {
+  const test::TemporaryFolder folder;
+  const std::string mine = "my own notes";
+  test::WriteText(folder / "commands.csv", mine);
+  {
+    DriveLog log(WriterInto(folder.Path(), PaperExperiment()));
+    const hardware::Stopper stopper = log.Stopper();
+    test::WaitUntil("the drive is stopped", [&] {
+      CHECK_FALSE(log.IsReady());
+      return stopper().has_value();
+    });
+    CHECK_THAT(stopper()->second, Catch::Contains("commands.csv"));
+  }
+  CHECK(files::ReadFile(folder / "commands.csv") == mine);
+  CHECK_FALSE(std::filesystem::exists(folder / "trajectory.csv"));
+  CHECK_FALSE(std::filesystem::exists(folder / "summary.json"));
+}
+
+TEST_CASE("A folder that holds any file of a run is refused with its name and left as it is") {
+  for (const char* name : {"experiment.yaml", "camera.yaml", "summary.json", "trajectory.csv",
+                           "commands.csv", "stages.csv", "encoders.csv"}) {
+    const test::TemporaryFolder folder;
+    test::WriteText(folder / name, "mine");
+    const Console quiet{.say = [](const std::string&) {},
+                        .show = [](const std::string&) {},
+                        .hide = [] {},
+                        .ring = [] {},
+                        .ask = [](const std::string&, std::string_view) { return 'q'; }};
+    DriveSession session({.address = {"/dev/none", "none", folder / name}, .yes = true}, quiet);
+    CHECK_THROWS_WITH(
+        session.DriveInto(folder.Path(), PaperExperiment()),
+        Catch::StartsWith(folder.Path().string() + " holds a run already, or part of one: ") &&
+            Catch::Contains(name + std::string(" is there")));
+    CHECK(files::ReadFile(folder / name) == "mine");
+  }
+  const test::TemporaryFolder folder;
+  std::filesystem::create_symlink("nowhere", folder / "camera.yaml");
+  CHECK_THROWS_WITH(RequireNoDrive(folder.Path()), Catch::Contains("camera.yaml is there"));
 }
 
 TEST_CASE("A folder that vanishes during a drive stops it") {

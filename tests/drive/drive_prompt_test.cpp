@@ -40,15 +40,14 @@ TerminalRun DriveOnce(const Scene& scene, const std::string& out,
   });
 }
 
-TEST_CASE("A key stops a drive with a bell and the next ones say what becomes of it") {
+TEST_CASE("A key ends a series with a bell and the next ones say what becomes of the drive") {
   const std::string question =
       "was begun and did not reach the end: Enter: again, k: keep it as it is, s: skip, q: quit";
   Uninterrupted(kAll, [&question](Scene& scene) {
     const std::string out = scene.folder / "run";
     const fs::path drive = out + "/1", unfinished = out + "/1.unfinished";
     const TerminalRun stopped =
-        DriveOnce(scene, out,
-                  {{"put the robot at the start: ", "\n"}, {"loop delay", "x"}, {question, "xs"}});
+        DriveOnce(scene, out, {{"put the robot at the start: ", "\n"}, {"loop delay", "x"}});
     INFO(stopped.shown);
     if (!fs::exists(unfinished / "summary.json")) return false;  // it refused to drive
     const auto summary =
@@ -57,8 +56,14 @@ TEST_CASE("A key stops a drive with a bell and the next ones say what becomes of
     CHECK(stopped.exit_code == 1);
     CHECK_FALSE(scene.floor.Moves());
     CHECK(summary["stop"]["text"] == "a key was pressed");
-    CHECK(stopped.shown.find('\a') < stopped.shown.find(question));
-    CHECK_THAT(stopped.shown, Catch::Contains("1 of 1 drives did not reach the end"));
+    CHECK(stopped.shown.find('\a') != stopped.shown.npos);
+    CHECK(stopped.shown.find(question) == stopped.shown.npos);
+    CHECK_THAT(stopped.shown, Catch::Contains("the same command goes on where it was"));
+
+    const TerminalRun skipped = DriveOnce(scene, out, {{question, "xs"}});
+    INFO(skipped.shown);
+    CHECK(skipped.exit_code == 1);
+    CHECK_THAT(skipped.shown, Catch::Contains("1 of 1 drives did not reach the end"));
 
     const TerminalRun quit = DriveOnce(scene, out, {{question, "q"}});
     INFO(quit.shown);

@@ -1,44 +1,12 @@
 #include "rift/hardware/arming.hpp"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <csignal>
 
-#include "pseudo_terminal.hpp"
-#include "support/until.hpp"
+#include "keyboard.hpp"
 
 namespace rift::hardware {
 namespace {
-
-/// Whatever stdin is by itself, in this scope it is a terminal on which the test types.
-class Keyboard {
- public:
-  Keyboard() : before_(::dup(STDIN_FILENO)) {
-    const int terminal = ::open(terminal_.path().c_str(), O_RDWR | O_NOCTTY);
-    ::dup2(terminal, STDIN_FILENO);
-    ::close(terminal);
-  }
-  ~Keyboard() {
-    ::dup2(before_, STDIN_FILENO);
-    ::close(before_);
-  }
-  Keyboard(const Keyboard&) = delete;
-  Keyboard& operator=(const Keyboard&) = delete;
-
-  /// Returns when the key can be read: the system hands it over in its own time.
-  void Type(char key) {
-    terminal_.Write({static_cast<std::uint8_t>(key)});
-    pollfd wanted{STDIN_FILENO, POLLIN, 0};
-    REQUIRE(::poll(&wanted, 1, static_cast<int>(1000 * test::kGiveUp.count())) == 1);
-  }
-
- private:
-  hardware::PseudoTerminal terminal_;
-  int before_;
-};
 
 struct Listening {
   std::vector<std::string> told;

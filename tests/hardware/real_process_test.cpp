@@ -174,7 +174,8 @@ TEST_CASE("A host that was stopped and continued has been stopped for good") {
 }
 
 TEST_CASE("A signal stops the robot before the program ends and the stop is acknowledged") {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGTTIN, SIGTTOU}) {
+    INFO("SIG" << sigabbrev_np(signal));
     const std::unique_ptr<Moving> moving = StartMoving(0.1);
     RobotEnd& robot = moving->robot;
     Host& host = moving->host;

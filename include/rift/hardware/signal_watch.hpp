@@ -7,10 +7,16 @@
 
 namespace rift::hardware {
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP do not end the process but are noted, so that the
-/// robot can be stopped first. One at a time.
+/// While it lives, the signals of `kSignals` neither end nor suspend the process but are noted, so
+/// that the robot can be stopped first: SIGKILL and SIGSTOP alone leave no time for that. One at a
+/// time.
 class SignalWatch {
  public:
+  /// Besides those that ask for an end: Ctrl-\ (QUIT) and Ctrl-Z (TSTP), and what suspends a
+  /// process in the background that reads from its terminal (TTIN), or sets it or writes to it
+  /// (TTOU).
+  static constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGTTIN, SIGTTOU};
+
   SignalWatch();
   ~SignalWatch();
   SignalWatch(const SignalWatch&) = delete;
@@ -20,8 +26,7 @@ class SignalWatch {
   std::optional<std::string> Seen() const;
 
  private:
-  static constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
-  std::array<struct sigaction, 3> before_;
+  std::array<struct sigaction, kSignals.size()> before_;
 };
 
 }  // namespace rift::hardware

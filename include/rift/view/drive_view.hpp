@@ -9,6 +9,18 @@
 
 namespace rift::view {
 
+/// What the user wants of a robot.
+enum class DriveWish {
+  kGoOn,
+  kStopByKey,  ///< a key in the window
+  kStopByClosing,
+};
+
+/// `is_started`: somebody has let the robot start. From then on every key that the window is told
+/// of stops it, also Shift or Alt alone: a hand that looks for a key must not miss. Before, q and
+/// Escape do; to other keys the robot has done nothing yet.
+DriveWish WishOf(const TrackInput& input, bool is_started);
+
 /// The window of `rift drive`: the camera's picture with tag, trail and waypoints.
 class DriveView {
  public:
@@ -16,11 +28,12 @@ class DriveView {
   /// empty.
   DriveView(const vision::CameraModel& camera, const control::Task& task);
 
-  /// False when the user wants the robot to be stopped. `frame` is none before the first picture.
-  /// `placement`: how far the robot is from its start, in words, while it waits for it; the outline
-  /// of where it has to stand is drawn as well. Empty once it drives.
-  bool Show(const vision::Frame* frame, const std::optional<vision::Sighting>& sighting,
-            const vision::CaptureStatus& status, const std::string& placement);
+  /// `frame` is none before the first picture. `placement`: how far the robot is from its start, in
+  /// words, while it waits for it; the outline of where it has to stand is drawn as well. Empty
+  /// once it drives. `is_started` as in WishOf.
+  DriveWish Show(const vision::Frame* frame, const std::optional<vision::Sighting>& sighting,
+                 const vision::CaptureStatus& status, const std::string& placement,
+                 bool is_started);
 
  private:
   geometry::Pose2 start_;

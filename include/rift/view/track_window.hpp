@@ -8,7 +8,9 @@ namespace rift::view {
 
 /// What the user did since the last picture.
 struct TrackInput {
-  bool quit = false;
+  bool quit = false;         ///< q, Escape, or the window was closed
+  bool closed = false;       ///< the window was closed
+  bool any_key = false;      ///< also one without a meaning of its own
   bool undo = false;         ///< take the last waypoint away
   bool here = false;         ///< a waypoint where the robot is
   bool toggle_stop = false;  ///< the last waypoint: stop there or pass

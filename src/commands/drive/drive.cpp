@@ -64,7 +64,7 @@ int ExitCodeOf(const hardware::DriveRun& run) {
   return is_whole ? terminal::kDone : terminal::kNotReached;
 }
 
-/// Where its runs go: a robot's run cannot be repeated to the byte as a simulated one can.
+/// Where its runs go. What a folder holds of a run already, the drive itself refuses.
 fs::path FolderOf(const DriveRequest& request, const experiment::Experiment& experiment) {
   if (!request.series.suggested.empty()) {
     return sessions::SuggestedFolder(request.series.suggested);
@@ -72,9 +72,10 @@ fs::path FolderOf(const DriveRequest& request, const experiment::Experiment& exp
   fs::path folder =
       request.out.empty() ? OutputOf("", experiment.name + "_drive") : fs::path(request.out);
   RefuseSweepFolder(folder);
+  if (!request.series.IsSeries()) return folder;
   Refuse({{fs::exists(folder / "trajectory.csv"),
-           folder.string() +
-               " holds a run already, and a robot does not repeat itself: choose another --out"}});
+           folder.string() + " holds a run already, and a series is a folder of its own: choose "
+                             "another --out"}});
   return folder;
 }
 

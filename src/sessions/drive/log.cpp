@@ -29,12 +29,24 @@ constexpr double kLongestTurn_s = 0.05;  // of the link; longer ones are a stand
 DriveFiles::DriveFiles(std::filesystem::path folder, std::string interrupted_summary)
     : folder_(std::move(folder)), interrupted_summary_(std::move(interrupted_summary)) {}
 
+DriveFiles::~DriveFiles() {
+  if (is_a_run_) return;
+  try {
+    for (const auto& file : files_) file->RequireInPlace();
+  } catch (const std::runtime_error&) {
+    return;  // what has these names now is somebody else's
+  }
+  std::error_code stays;
+  for (const std::filesystem::path& path : made_) std::filesystem::remove(path, stays);
+}
+
 void DriveFiles::Make() {
   if (!std::filesystem::is_directory(folder_)) {
     throw std::runtime_error(
         fmt::format("{} was removed or moved before the drive began", folder_.string()));
   }
   files::WriteFile(folder_ / "summary.json", interrupted_summary_);
+  made_.push_back(folder_ / "summary.json");
   const std::pair<const char*, std::string> headers[]{
       {"trajectory.csv", trajectory::WriteRift({{}, trial::RecordedChannels()})},
       {"commands.csv", report::CommandsCsv({})},
@@ -42,13 +54,15 @@ void DriveFiles::Make() {
       {"encoders.csv", odometry::EncodersHeader()}};
   for (const auto& [name, header] : headers) {
     files_.push_back(std::make_unique<files::AppendFile>(folder_ / name));
+    made_.push_back(folder_ / name);
     files_.back()->Append(header);
   }
 }
 
 void DriveFiles::Write(const DriveRows& rows, std::atomic<unsigned>& progress) {
   const bool is_empty = rows.trajectory.empty() && rows.commands.empty() && rows.news.poses.empty();
-  if (files_.empty() && is_empty && !rows.is_last) return;
+  if (files_.empty() && is_empty && !rows.is_first && !rows.is_last) return;
+  if (!is_empty || rows.is_last) is_a_run_ = true;
   if (files_.empty()) Make();
   std::string stages;
   for (const hardware::PoseStages& pose : rows.news.poses) stages += report::StagesRow(pose);
@@ -78,6 +92,8 @@ struct DriveLog::Shared {
   std::condition_variable changed;
   DriveRows waiting;
   std::string failure;
+  bool is_wanted = false;  ///< its files are, before there is a row
+  bool is_ready = false;   ///< they are there
   bool is_ending = false;
   bool is_over = false;
 };
@@ -95,12 +111,20 @@ void DriveLog::Run(const std::shared_ptr<Shared>& shared) {
     DriveRows rows;
     {
       std::unique_lock lock(shared->mutex);
-      shared->changed.wait_for(lock, kEvery, [&] { return shared->is_ending; });
+      const auto is_urgent = [&] {
+        return shared->is_ending || (shared->is_wanted && !shared->is_ready);
+      };
+      shared->changed.wait_for(lock, kEvery, is_urgent);
       std::swap(rows, shared->waiting);
+      rows.is_first = shared->is_wanted && !shared->is_ready;
       is_over = shared->is_ending;
     }
     try {
       shared->write(rows, shared->progress);
+      if (rows.is_first) {
+        const std::lock_guard lock(shared->mutex);
+        shared->is_ready = true;
+      }
     } catch (const std::exception& error) {
       shared->failure = error.what();
       shared->has_failed = is_over = true;
@@ -135,6 +159,12 @@ void DriveLog::Recorded(const hardware::DriveNews& news) {
     rows.news.poses.insert(rows.news.poses.end(), news.poses.begin(), news.poses.end());
     rows.news.encoders.insert(rows.news.encoders.end(), news.encoders.begin(), news.encoders.end());
   });
+}
+
+bool DriveLog::IsReady() {
+  const std::lock_guard lock(shared_->mutex);
+  if (!std::exchange(shared_->is_wanted, true)) shared_->changed.notify_all();
+  return shared_->is_ready;
 }
 
 hardware::Stopper DriveLog::Stopper() {

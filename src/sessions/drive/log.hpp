@@ -21,6 +21,7 @@ struct DriveRows {
   std::string trajectory;  ///< rows of trajectory.csv
   std::string commands;    ///< rows of commands.csv
   hardware::DriveNews news;
+  bool is_first = false;  ///< none, before the robot moves: the files are wanted
   bool is_last = false;
 };
 
@@ -29,8 +30,12 @@ struct DriveRows {
 class DriveFiles {
  public:
   DriveFiles(std::filesystem::path folder, std::string interrupted_summary);
+  /// Removes what it made when no row and no end of a drive came.
+  ~DriveFiles();
+  DriveFiles(const DriveFiles&) = delete;
+  DriveFiles& operator=(const DriveFiles&) = delete;
 
-  /// Appends and syncs; makes the files the first time that there is something to write. Counts
+  /// Appends and syncs; makes the files the first time that they are wanted. Counts
   /// `progress` up after each of its steps, any of which may block. Throws std::runtime_error.
   void Write(const DriveRows& rows, std::atomic<unsigned>& progress);
 
@@ -39,6 +44,8 @@ class DriveFiles {
 
   std::filesystem::path folder_;
   std::string interrupted_summary_;
+  bool is_a_run_ = false;
+  std::vector<std::filesystem::path> made_;
   std::vector<std::unique_ptr<files::AppendFile>> files_;
 };
 
@@ -58,6 +65,9 @@ class DriveLog : public hardware::DriveObserver {
   void Sent(const trial::SentCommand& command) override;
   void Recorded(const hardware::DriveNews& news) override;
 
+  /// Whether the files are there, so that a robot may move; to be asked again and again, and does
+  /// not wait. Where they cannot be made the stopper says so.
+  bool IsReady();
   /// Why the drive must stop; to be asked often.
   hardware::Stopper Stopper();
   /// Once, after the drive: writes the rest of `evidence` and ends the thread. Returns why the

@@ -67,6 +67,7 @@ class Driver {
 
  private:
   std::optional<SeriesEnd> AskAboutUnfinished(const PlannedTrial& trial) const;
+  bool EndsSeries(const hardware::DriveRun& run) const;
   bool LayFloor(const PlannedTrial& trial);
   void SetScene(const PlannedTrial& trial);
 
@@ -90,16 +91,29 @@ SeriesEnd Driver::Drive(const PlannedTrial& trial) {
     console_.say(fmt::format("{}: {}", trial.label, run.trial.reason));
     for (const std::string& line : SteeringLines(trial.experiment, run)) console_.say(line);
     session_.RequireLog();
-    if (!run.has_begun) {
-      fs::remove_all(trial.Unfinished());
-      return SeriesEnd::kQuit;
-    }
+    if (!run.has_begun) return SeriesEnd::kQuit;
     if (run.trial.outcome == trial::Outcome::kReached) {
       fs::rename(trial.Unfinished(), trial.folder);
       return SeriesEnd::kDone;
     }
-    if (run.evidence.stop->reason == hardware::StopReason::kSignal) return SeriesEnd::kQuit;
+    if (EndsSeries(run)) return SeriesEnd::kQuit;
   }
+}
+
+// A person who stopped the robot wants it to stand. After a fault somebody has to look at the
+// scene, unless a command puts it back.
+bool Driver::EndsSeries(const hardware::DriveRun& run) const {
+  using hardware::StopReason;
+  const StopReason reason = run.evidence.stop->reason;
+  if (reason == StopReason::kOperator || reason == StopReason::kSignal) return true;
+  const bool is_fault =
+      reason != StopReason::kFinished || run.trial.outcome != trial::Outcome::kTimedOut;
+  if (!is_fault) return false;
+  if (!series_.setup.yes || !series_.before_each.empty()) return false;
+  console_.say(
+      "the series ends with this fault: with --yes nobody looks before the next drive, and no "
+      "--before-each puts the scene back");
+  return true;
 }
 
 std::optional<SeriesEnd> Driver::AskAboutUnfinished(const PlannedTrial& trial) const {

@@ -127,17 +127,21 @@ class DriveSession::Drivers {
   hardware::DriveRun Drive(const experiment::Experiment& experiment, hardware::Operator& person,
                            DriveLog& log) {
     has_started_ = false;
+    may_start_ = setup_.yes;
     StartGate gate(experiment.hardware.start, experiment::TaskOf(experiment).Start(),
                    setup_.any_start || setup_.dry_run, PersonAtGate(person));
     return hardware::Drive({.line = port_,
                             .poses = *poses_,
                             .clock = clock_,
-                            .stoppers = {person.Stopper(), log.Stopper()},
+                            .stoppers = {person.Stopper(), WindowStopper(), log.Stopper()},
                             .say = console_.say,
                             .may_arm =
                                 [&] {
                                   RefuseTwoTags();
-                                  has_started_ = gate.MayStart(clock_.Now_s(), SeenNow());
+                                  // Not before the files are there: else a full disk stops a robot
+                                  // that moves. The gate looks again when they are.
+                                  has_started_ =
+                                      gate.MayStart(clock_.Now_s(), SeenNow()) && log.IsReady();
                                   return has_started_.load();
                                 },
                             .observer = &log,
@@ -154,12 +158,15 @@ class DriveSession::Drivers {
       return Drive(experiment, person, log);
     }
     view::DriveView view(session_.camera(), experiment::TaskOf(experiment));
+    key_in_window_ = false;
     auto drive = std::async(std::launch::async, [&] { return Drive(experiment, person, log); });
     while (drive.wait_for(kRedraw) != std::future_status::ready) {
       const hardware::CameraPoses::View seen = poses_->Seen();
-      const bool goes_on = view.Show(seen.frame.get(), seen.found.sighting, poses_->Status(),
-                                     PlacementNow(experiment));
-      if (!goes_on) person.CloseWindow();
+      const view::DriveWish wish =
+          view.Show(seen.frame.get(), seen.found.sighting, poses_->Status(),
+                    PlacementNow(experiment), may_start_);
+      if (wish == view::DriveWish::kStopByClosing) person.CloseWindow();
+      if (wish == view::DriveWish::kStopByKey) key_in_window_ = true;
     }
     return drive.get();
   }
@@ -168,12 +175,24 @@ class DriveSession::Drivers {
   vision::Ground ground() const { return session_.tag().ground; }
 
  private:
-  StartGate::Person PersonAtGate(hardware::Operator& person) const {
-    StartGate::Person at_gate{.has_agreed = [this, &person] { return person.MayArm(console_.say); },
+  StartGate::Person PersonAtGate(hardware::Operator& person) {
+    StartGate::Person at_gate{.has_agreed =
+                                  [this, &person] {
+                                    may_start_ = person.MayArm(console_.say);
+                                    return may_start_.load();
+                                  },
                               .say = console_.say};
     if (!setup_.yes) at_gate.ask_again = [&person] { person.AskAgain(); };
     if (!setup_.yes) at_gate.show = console_.show;
     return at_gate;
+  }
+
+  hardware::Stopper WindowStopper() const {
+    return [this]() -> std::optional<std::pair<hardware::StopReason, std::string>> {
+      if (!key_in_window_) return std::nullopt;
+      return std::pair(hardware::StopReason::kOperator,
+                       std::string("a key was pressed in the window"));
+    };
   }
 
   /// Throws std::runtime_error: of two tags with the robot's id nobody knows which one to steer.
@@ -201,7 +220,9 @@ class DriveSession::Drivers {
 
   const DriveSetup& setup_;
   const Console& console_;
-  std::atomic<bool> has_started_ = false;  // asked for by the window's thread
+  // For the window's thread: the robot is under way, and whether a person has let it start.
+  std::atomic<bool> has_started_ = false, may_start_ = false;
+  std::atomic<bool> key_in_window_ = false;  // by that thread
   hardware::SteadyClock clock_;
   hardware::SerialPort port_;
   vision::CameraSession session_;
@@ -227,9 +248,11 @@ void DriveSession::MoveTo(const DriveAddress& address) {
 hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
                                            const experiment::Experiment& experiment) {
   RequireAddress(setup_.address);
+  RequireNoDrive(folder);
   const ShownLine line(console_);
   hardware::Operator person(setup_.yes);  // first, and last to go: a signal must not end a save
   log_failure_.clear();
+  BegunFolder begun(folder);  // goes after the log, which removes what is its own
   DriveLog log(WriterInto(folder, experiment));
   // The next setting may be on a ramp, where the tag is not held to the floor.
   if (drivers_ && drivers_->ground() != experiment::TagOn(experiment).ground) Close();
@@ -237,10 +260,11 @@ hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
     drivers_ = std::make_unique<Drivers>(setup_, console_, experiment,
                                          ReadCameraWithWorld(setup_.address.calibration));
   }
-  BeginDriveFolder(folder, experiment, drivers_->camera());
+  begun.Write(experiment, drivers_->camera());
   if (setup_.dry_run) console_.say("dry run: nothing moves, the robot is sent zeros alone");
   const hardware::DriveRun run = setup_.view ? drivers_->DriveInView(experiment, person, log)
                                              : drivers_->Drive(experiment, person, log);
+  if (run.has_begun) begun.Keep();
   if (run.has_begun && !HasArrived(run)) console_.ring();
   if (run.has_begun) log_failure_ = CloseDrive(folder, experiment, run, log);
   const bool was_slow =

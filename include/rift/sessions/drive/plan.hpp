@@ -24,7 +24,9 @@ struct SeriesRequest {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("repeat", self.repeat, 1, 1000, "N",
-          "drive so many times, into DIR/1, DIR/2, ...; the same command goes on after a break");
+          "drive so many times, into DIR/1, DIR/2, ...; the same command goes on after a break. A "
+          "key, a closed window or a signal ends all of them; with --yes a fault as well, unless "
+          "--before-each puts the scene back");
     field("grid", self.grid,
           "drive every setting of the experiment's space, reference.trials times each, and "
           "report on them against the simulator; the same command goes on after a break");

@@ -22,10 +22,12 @@ struct DriveSeries {
 enum class SeriesEnd {
   kDone,
   kLeft,  ///< some did not reach the end and were left so
-  kQuit,  ///< a person ended it before the last one
+  kQuit,  ///< it ended before the last one: by a person, or by a fault where nobody is asked
 };
 
-/// Drives what is not done yet, asks about what was begun and not finished, writes sweep.yaml.
+/// Drives what is not done yet, asks about what was begun and not finished, writes sweep.yaml. A
+/// drive that a key, the window or a signal stopped is the last one, and so is, where nobody is
+/// asked and no command puts the scene back, one that a fault stopped.
 /// After the last drive, with port and camera closed and the folder still locked, `then` is called.
 /// Throws std::invalid_argument when the folder holds the drives of another experiment.
 SeriesEnd DriveAll(const DriveSeries& series, const Console& console,

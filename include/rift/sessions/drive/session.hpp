@@ -29,8 +29,9 @@ class DriveSession {
   /// Where the next drive finds port, camera and calibration; they are opened then.
   void MoveTo(const DriveAddress& address);
   void Close();
-  /// Waits for the person's start, drives, and saves the run. Throws std::runtime_error when the
-  /// drive cannot begin. After anything but a full trial port and camera are opened anew.
+  /// Waits for the person's start, drives, and saves the run. A drive that has not begun leaves
+  /// nothing. Throws std::runtime_error when it cannot begin, std::invalid_argument when the folder
+  /// holds a file of a run. After anything but a full trial port and camera are opened anew.
   hardware::DriveRun DriveInto(const std::filesystem::path& folder,
                                const experiment::Experiment& experiment);
   /// Why the last drive's log is not whole; empty when it is.
