@@ -36,9 +36,12 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   bool tag_is_hidden = false;
   std::optional<std::string> camera_fault;
   double camera_late_s = 0.0;  ///< older than its pictures' stamps say
+  /// It shows the same picture again and again, with stamps that are fresh, since then.
+  std::optional<double> repeats_since_s;
   std::function<void(trial::PoseMeasurement&)> bend = [](trial::PoseMeasurement&) {};
   // The robot.
   double slip_left = 1.0, slip_right = 1.0;  ///< what a wheel turns over what it moves the robot
+  bool counts_are_stuck = false;             ///< at zero
   std::uint16_t battery_mv = 5000;
   bool robot_is_on = true;
   std::unique_ptr<Listener> listener = std::make_unique<Listener>();
@@ -68,6 +71,7 @@ class Bench : public ByteLine, public Clock, public PoseSource {
 
   PoseNews Newest() override {
     news_.fault = camera_fault;
+    news_.repeats_since_s = repeats_since_s;
     return news_;
   }
 
@@ -129,8 +133,9 @@ class Bench : public ByteLine, public Clock, public PoseSource {
 
   void PollListener(const std::vector<std::uint8_t>& received) {
     constexpr double kCountsPerMetre = 358.3 / (2.0 * std::numbers::pi * 0.016);
-    const auto counts = [](double rolled_m) {
-      return static_cast<std::int32_t>(std::floor(rolled_m * kCountsPerMetre));
+    const auto counts = [this](double rolled_m) {
+      return counts_are_stuck ? 0
+                              : static_cast<std::int32_t>(std::floor(rolled_m * kCountsPerMetre));
     };
     const Listener::Senses senses{counts(rolled_left_m_), counts(rolled_right_m_), battery_mv};
     const auto said = listener->Poll(static_cast<std::uint32_t>(now_s_ * 1000.0), received, senses);
@@ -154,6 +159,7 @@ class Bench : public ByteLine, public Clock, public PoseSource {
       news_.looked_s = picture.pose.captured_s;
       if (picture.is_empty) continue;
       bend(picture.pose);
+      if (repeats_since_s) picture.pose.world_from_robot = news_.newest->measured.world_from_robot;
       news_.newest = PoseSample{picture.pose, picture.pose.captured_s + 0.01, now_s_};
     }
   }

@@ -98,6 +98,91 @@ TEST_CASE("Wheels of a robot that does not answer are taken to obey, either one 
   });
 }
 
+TEST_CASE("A robot whose answers end is watched by its commands and driven on no frozen picture") {
+  for (const bool answers_on : {true, false}) {
+    Bench bench;
+    RealRobot robot(bench, bench, bench, {{}, Protocol::kPlain, false});
+    Settle(robot, 0.4, bench);
+    REQUIRE(robot.Sense().encoders);
+    robot.Arm();
+    DriveOn(robot, {0.2, 0.2}, 1.0, bench);
+    REQUIRE(robot.state() == DriveState::kArmed);
+    bench.from_robot_is_cut = !answers_on;
+    DriveOn(robot, {0.2, 0.2}, 1.5, bench);
+    INFO((robot.Record().stop ? robot.Record().stop->text : std::string("drives")));
+    CHECK(robot.state() == DriveState::kArmed);  // pictures go on to show that it moves
+    // What every picture repeats to within its noise, which no corners give away.
+    const geometry::Pose2 frozen = bench.Pose();
+    bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
+    const double frozen_s = bench.Now_s() - 100.0;
+    DriveOn(robot, {0.2, 0.2}, 3.0, bench);
+    REQUIRE(robot.Record().stop);
+    const bool by_counts = robot.Record().stop->reason == StopReason::kPoseDisagrees;
+    CHECK(by_counts == answers_on);
+    // 0.32 m/s: 3 x (0.012 m + 0.35 s x 0.32 m/s) take 1.16 s.
+    CHECK(robot.Record().stop->at_s - frozen_s < 1.3);
+    CHECK(bench.listener->Motors().IsZero());
+  }
+}
+
+TEST_CASE("Answers that come now and then do not take a robot from the watch of its commands") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kPlain, false});
+  Settle(robot, 0.4, bench);
+  robot.Arm();
+  const geometry::Pose2 frozen = bench.Pose();
+  bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
+  bench.counts_are_stuck = true;
+  for (int i = 0; i < 6; ++i) {
+    bench.from_robot_is_cut = true;
+    DriveOn(robot, {0.2, 0.2}, 0.6, bench);
+    bench.from_robot_is_cut = false;
+    DriveOn(robot, {0.2, 0.2}, 0.22, bench);
+  }
+  REQUIRE(robot.Record().stop);
+  CHECK(robot.Record().stop->reason == StopReason::kPoseStands);
+}
+
+TEST_CASE("On one and the same picture no robot is driven, whatever its wheels tell") {
+  struct Line {
+    Protocol protocol;
+    bool is_cut;
+  };
+  for (const Line line :
+       {Line{Protocol::kFramed, false}, {Protocol::kPlain, false}, {Protocol::kPlain, true}}) {
+    Bench bench;
+    bench.counts_are_stuck = true;
+    HardwareOptions hardware;
+    hardware.evidence.pushed_m = 10.0;  // wheels that tell nothing would stop the drive before
+    hardware.evidence.pushed_deg = 180.0;
+    hardware.evidence.agree_m = 10.0;
+    RealRobot robot(bench, bench, bench, {hardware, line.protocol, false});
+    Settle(robot, 0.4, bench);
+    // A robot that stands at zero power may be shown so for long, and also while it sets off.
+    bench.repeats_since_s = bench.Now_s();
+    Settle(robot, 2.0, bench);
+    robot.Arm();
+    bench.from_robot_is_cut = line.is_cut;
+    DriveOn(robot, {0.2, 0.2}, 0.4, bench);
+    CHECK(robot.state() == DriveState::kArmed);
+    bench.repeats_since_s.reset();
+    DriveOn(robot, {0.2, 0.2}, 1.0, bench);
+    DriveOn(robot, {}, 0.3, bench);
+    bench.repeats_since_s = bench.Now_s();
+    DriveOn(robot, {}, 2.0, bench);
+    CHECK(robot.state() == DriveState::kArmed);
+    const double driven_s = bench.Now_s() - 100.0;
+    DriveOn(robot, {0.2, 0.2}, 1.0, bench);
+    REQUIRE(robot.Record().stop);
+    CHECK(robot.Record().stop->reason == StopReason::kPictureRepeats);
+    // Of wheels that tell: the sum of repeats_s, blind_s and max_latency_s, and a picture more.
+    const double after_s = robot.Record().stop->at_s - driven_s;
+    CHECK(after_s < 0.52);
+    if (!line.is_cut) CHECK(after_s > 0.45);
+    CHECK(bench.listener->Motors().IsZero());
+  }
+}
+
 TEST_CASE("A stop is acknowledged by the answer to the zero that goes out with it") {
   Bench bench;
   RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
