@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 
+#include "count_watch.hpp"
 #include "motion_check.hpp"
 
 namespace rift::hardware {
@@ -32,6 +33,7 @@ class RealRobot::Core {
         hardware_(options.hardware),
         guard_(options.hardware.guard, options.dry_run),
         motion_(options.hardware.evidence, options.hardware.odometry.drive.track_m),
+        count_watch_(odometry::MetresPerCount(options.hardware.odometry)),
         link_(line, options.hardware.line, options.protocol, options.hardware.plain) {
     options.hardware.Check();
     if (is_threaded_) thread_ = std::jthread([this](const std::stop_token& stop) { Run(stop); });
@@ -51,7 +53,7 @@ class RealRobot::Core {
     return news_.newest && news_.newest->measured.captured_s != sensed_captured_s_;
   }
   void Wait(double dt_s);
-  bool StopIsAnswered();
+  bool StopIsConfirmed();
   DriveState state() {
     const std::lock_guard lock(mutex_);
     return guard_.state();
@@ -74,6 +76,7 @@ class RealRobot::Core {
   void HandleAnswer(const RobotLink::Heard& heard, double now_s);
   void NoteWritten();
   void CheckMotion(double now_s);
+  bool HasStopped() const { return stop_is_answered_ && count_watch_.Rest(); }
   void NoteReadingsEnd(double now_s);
   void FollowCommands(double now_s);
   void PassToLink(const control::WheelPower& power, bool is_first, double now_s);
@@ -87,6 +90,7 @@ class RealRobot::Core {
   HardwareOptions hardware_;
   DriveGuard guard_;
   MotionCheck motion_;
+  CountWatch count_watch_;
   double camera_latency_s_ = 0.0;
   double commanded_s_ = 0.0;  ///< up to when `commanded_` was followed
   WheelTravel commanded_;     ///< of wheels that obey, where the robot tells nothing of its own
@@ -201,6 +205,7 @@ void RealRobot::Core::NoteWritten() {
   if (!link_.last_sent() || link_.last_sent()->at_s == written_s_) return;
   written_s_ = link_.last_sent()->at_s;
   motion_.SeeCommand(!link_.last_sent()->power.IsZero(), *written_s_);
+  count_watch_.SeeCommand(link_.last_sent()->power, *written_s_);
   if (!waits_for_write_) return;
   record_.poses.back().written_s = *written_s_ - start_s_;
   waits_for_write_ = false;
@@ -218,6 +223,11 @@ void RealRobot::Core::HandleAnswer(const RobotLink::Heard& heard, double now_s) 
     motion_.SeeWheels({read_s, m_per_count * static_cast<double>(counts_->left),
                        m_per_count * static_cast<double>(counts_->right)},
                       true);
+  }
+  const std::optional<std::string> jump =
+      count_watch_.SeeCounts(heard.answer.left, heard.answer.right, read_s);
+  if (jump && guard_.state() == DriveState::kArmed) {
+    guard_.Stop(StopReason::kRobotStopped, *jump, now_s);
   }
   if (!heard.sent) return;  // a plain answer says neither to what nor how often the robot stopped
   record_.rejected_by_robot = heard.answer.rejected;
@@ -305,9 +315,10 @@ void RealRobot::Core::Stop() noexcept {
   }
 }
 
-bool RealRobot::Core::StopIsAnswered() {
+// A robot whose motors are stuck answers as well.
+bool RealRobot::Core::StopIsConfirmed() {
   const std::lock_guard lock(mutex_);
-  return stop_is_answered_;
+  return HasStopped();
 }
 
 DriveRecord RealRobot::Core::Record() {
@@ -316,7 +327,7 @@ DriveRecord RealRobot::Core::Record() {
   record.protocol = link_.protocol();
   record.stop = guard_.stop();
   if (record.stop) record.stop->at_s -= start_s_;
-  if (link_.protocol() == Protocol::kFramed) record.stop_acknowledged = stop_is_answered_;
+  if (link_.protocol() == Protocol::kFramed) record.stop_acknowledged = HasStopped();
   record.sent = link_.sent_count();
   record.answered = link_.answered_count();
   return record;
@@ -345,7 +356,7 @@ RealRobot::RealRobot(ByteLine& line, PoseSource& poses, Clock& clock,
 
 RealRobot::~RealRobot() {
   Stop();
-  if (!core_->StopIsAnswered()) ConfirmStop(kLastZeros_s);
+  if (!core_->StopIsConfirmed()) ConfirmStop(kLastZeros_s);
 }
 
 void RealRobot::AddStopper(Stopper stopper) { core_->AddStopper(std::move(stopper)); }
@@ -368,7 +379,7 @@ void RealRobot::Advance(double dt_s) {
 
 void RealRobot::ConfirmStop(double timeout_s) {
   const double end_s = core_->Now_s() + timeout_s;
-  while (core_->Now_s() < end_s && !core_->StopIsAnswered()) core_->Wait(kTick_s);
+  while (core_->Now_s() < end_s && !core_->StopIsConfirmed()) core_->Wait(kTick_s);
 }
 
 }  // namespace rift::hardware

@@ -185,7 +185,10 @@ TEST_CASE("On one and the same picture no robot is driven, whatever its wheels t
 
 TEST_CASE("A stop is acknowledged by the answer to the zero that goes out with it") {
   Bench bench;
-  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  bench.counts_are_stuck = true;  // so that nothing is to be waited for but the answer
+  HardwareOptions hardware;
+  hardware.evidence.pushed_m = hardware.evidence.agree_m = 10.0;
+  RealRobot robot(bench, bench, bench, {hardware, Protocol::kFramed, false});
   Settle(robot, 0.4, bench);
   robot.Arm();
   DriveOn(robot, {0.2, 0.2}, 0.3, bench);
@@ -196,6 +199,46 @@ TEST_CASE("A stop is acknowledged by the answer to the zero that goes out with i
   CHECK(robot.Record().stop_acknowledged == true);
   // Twice the radio and the bytes of one command and its answer.
   CHECK(bench.Now_s() - stopped_s == Approx(2 * 0.02 + (11 + 15) * 10.0 / 9600.0).margin(0.005));
+}
+
+TEST_CASE("A robot that obeys the stop has acknowledged it once its wheels rest") {
+  for (const bool is_stuck : {false, true}) {
+    Bench bench;
+    RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+    Settle(robot, 0.4, bench);
+    robot.Arm();
+    DriveOn(robot, {0.3, 0.3}, 0.6, bench);
+    bench.motors_are_stuck = is_stuck;
+    const double stopped_s = bench.Now_s();
+    robot.Stop();
+    robot.ConfirmStop(0.15);
+    CHECK(bench.listener->Motors().IsZero());
+    CHECK(robot.Record().stop_acknowledged == false);  // it coasts
+    robot.ConfirmStop(1.0);
+    CHECK(robot.Record().stop_acknowledged == !is_stuck);
+    CHECK((bench.Now_s() - stopped_s < 0.7) == !is_stuck);
+  }
+}
+
+TEST_CASE("A robot whose counts begin anew while it drives has restarted, and is stopped") {
+  OnBothSides("left", "right", [](const Side& side) {
+    for (const double sign : {1.0, -1.0}) {
+      Bench bench;
+      RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+      Settle(robot, 0.4, bench);
+      robot.Arm();
+      DriveOn(robot, side.Of<WheelPower>(sign * 0.2, sign * 0.15), 0.45, bench);
+      REQUIRE(robot.state() == DriveState::kArmed);
+      // No farther than two counts of wheels that agree with the pose may be apart.
+      const control::EncoderCounts before = *robot.Sense().encoders;
+      CHECK(std::max(std::abs(before.left), std::abs(before.right)) < 350);
+      bench.BeginCountsAnew();
+      DriveOn(robot, side.Of<WheelPower>(sign * 0.2, sign * 0.15), 0.2, bench);
+      REQUIRE(robot.Record().stop);
+      CHECK(robot.Record().stop->reason == StopReason::kRobotStopped);
+      CHECK_THAT(robot.Record().stop->text, Catch::Contains("did the robot restart?"));
+    }
+  });
 }
 
 TEST_CASE("What the robot did not obey is counted, and so is what was sent and answered") {
