@@ -78,6 +78,7 @@ void MotionCheck::Restart() {
   wheel_anchor_.reset();
   backward_s_.clear();
   lags_ = 0;
+  driven_blind_s_ = 0.0;
 }
 
 void MotionCheck::SeeWheels(const WheelTravel& wheels, bool is_measured) {
@@ -88,8 +89,19 @@ void MotionCheck::SeeWheels(const WheelTravel& wheels, bool is_measured) {
   while (wheels_.front().t_s < wheels.t_s - kKept_s) wheels_.pop_front();
 }
 
+void MotionCheck::SeeCommand(bool turns, double sent_s) {
+  if (!turns) {
+    turning_since_s_.reset();
+  } else if (!turning_since_s_) {
+    turning_since_s_ = sent_s;
+  }
+}
+
 void MotionCheck::SeePose(const trial::PoseMeasurement& pose,
                           const std::optional<double>& repeats_since_s) {
+  const bool is_blind = repeats_since_s && turning_since_s_;
+  driven_blind_s_ =
+      is_blind ? pose.captured_s - std::max(*repeats_since_s, *turning_since_s_) : 0.0;
   Sample sample{pose.captured_s - latency_s_, pose.world_from_robot, {}, repeats_since_s};
   if (sample.repeats_since_s) *sample.repeats_since_s -= latency_s_;
   waiting_.push_back(sample);
@@ -106,6 +118,7 @@ std::optional<WheelTravel> MotionCheck::WheelsAt(double t_s) const {
 }
 
 std::optional<Disagreement> MotionCheck::Check() {
+  if (auto found = CheckBlindDrive()) return found;
   while (!waiting_.empty()) {
     Sample now = waiting_.front();
     const std::optional<WheelTravel> wheels = WheelsAt(now.t_s);
@@ -132,6 +145,18 @@ std::optional<Disagreement> MotionCheck::CheckSample(const Sample& now) {
   if (auto found = CheckOrder(samples_.back(), now)) return found;
   if (auto found = CheckWindow(now)) return found;
   return CheckLag(now);
+}
+
+// Wheels may tell nothing, or always the same: what was sent is known for certain. A robot that has
+// just been told to go needs a while until it is seen to move.
+std::optional<Disagreement> MotionCheck::CheckBlindDrive() const {
+  const double most_s = options_.repeats_s + options_.blind_s + options_.max_latency_s;
+  if (driven_blind_s_ <= most_s) return std::nullopt;
+  return Disagreement{
+      StopReason::kPictureRepeats,
+      fmt::format("the camera has shown the same picture for {:.3f} s, in which the robot was told "
+                  "to drive: a frozen camera, or a robot that does not move",
+                  driven_blind_s_)};
 }
 
 // Cameras at half their rate repeat a picture now and then, and may repeat all of a robot that

@@ -17,7 +17,7 @@ struct WheelTravel {
   double right_m = 0.0;
 };
 
-/// How pose and wheels contradict each other.
+/// How pose and wheels, or pictures and commands, contradict each other.
 struct Disagreement {
   StopReason reason = StopReason::kPoseStands;
   std::string text;  ///< one line for people
@@ -40,6 +40,9 @@ class MotionCheck {
   void Restart();
   /// Times must rise. `is_measured`: by encoders; else it is what the commands ask for.
   void SeeWheels(const WheelTravel& wheels, bool is_measured);
+  /// Whether the newest command sent asks a wheel to turn, since when: it needs no wheels that
+  /// tell.
+  void SeeCommand(bool turns, double sent_s);
   /// `repeats_since_s`: as PoseNews has it.
   void SeePose(const trial::PoseMeasurement& pose,
                const std::optional<double>& repeats_since_s = std::nullopt);
@@ -59,6 +62,7 @@ class MotionCheck {
   double Speed_mps(const Sample& now) const;
   std::optional<WheelTravel> WheelsAt(double t_s) const;
   std::optional<Disagreement> CheckSample(const Sample& now);
+  std::optional<Disagreement> CheckBlindDrive() const;
   std::optional<Disagreement> CheckRepeats(const Sample& now) const;
   std::optional<Disagreement> CheckPoseStands(const Sample& now);
   std::optional<Disagreement> CheckWheelsStand(const Sample& now);
@@ -73,6 +77,8 @@ class MotionCheck {
   double latency_s_ = 0.0;
   bool is_latency_known_ = false;
   bool is_measured_ = true;
+  std::optional<double> turning_since_s_;  ///< by the commands, without a zero between
+  double driven_blind_s_ = 0.0;            ///< up to the newest pose, on one and the same picture
   std::deque<WheelTravel> wheels_;
   std::deque<Sample> waiting_;  ///< for the wheels at their time
   std::deque<Sample> samples_;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 
+#include "count_watch.hpp"
 #include "motion_check.hpp"
 
 namespace rift::hardware {
@@ -16,6 +17,7 @@ constexpr double kVoltPerMillivolt = 1e-3;
 constexpr double kLastZeros_s = 0.3;
 constexpr double kLongestPeriod_s = 0.1;  // of pictures; a pause is none
 constexpr double kSettled_s = 2.5;        // the guard waits for no answer as long as that
+constexpr double kReadingsEnd_s = 0.5;    // rift's listener answers plain lines each 0.2 s
 
 }  // namespace
 
@@ -31,6 +33,7 @@ class RealRobot::Core {
         hardware_(options.hardware),
         guard_(options.hardware.guard, options.dry_run),
         motion_(options.hardware.evidence, options.hardware.odometry.drive.track_m),
+        count_watch_(odometry::MetresPerCount(options.hardware.odometry)),
         link_(line, options.hardware.line, options.protocol, options.hardware.plain) {
     options.hardware.Check();
     if (is_threaded_) thread_ = std::jthread([this](const std::stop_token& stop) { Run(stop); });
@@ -50,7 +53,7 @@ class RealRobot::Core {
     return news_.newest && news_.newest->measured.captured_s != sensed_captured_s_;
   }
   void Wait(double dt_s);
-  bool StopIsAnswered();
+  bool StopIsConfirmed();
   DriveState state() {
     const std::lock_guard lock(mutex_);
     return guard_.state();
@@ -73,6 +76,8 @@ class RealRobot::Core {
   void HandleAnswer(const RobotLink::Heard& heard, double now_s);
   void NoteWritten();
   void CheckMotion(double now_s);
+  bool HasStopped() const { return stop_is_answered_ && count_watch_.Rest(); }
+  void NoteReadingsEnd(double now_s);
   void FollowCommands(double now_s);
   void PassToLink(const control::WheelPower& power, bool is_first, double now_s);
 
@@ -85,6 +90,7 @@ class RealRobot::Core {
   HardwareOptions hardware_;
   DriveGuard guard_;
   MotionCheck motion_;
+  CountWatch count_watch_;
   double camera_latency_s_ = 0.0;
   double commanded_s_ = 0.0;  ///< up to when `commanded_` was followed
   WheelTravel commanded_;     ///< of wheels that obey, where the robot tells nothing of its own
@@ -95,6 +101,8 @@ class RealRobot::Core {
   std::optional<double> sensed_captured_s_;
   double next_pose_s_ = 0.0;  ///< when it is expected
   std::optional<control::EncoderCounts> counts_;
+  double counted_s_ = 0.0;       ///< when `counts_` was heard
+  bool readings_ended_ = false;  ///< for this drive: wheels that tell now and then tell too little
   std::optional<double> stopped_at_s_;  ///< when zeros began for good
   bool stop_is_answered_ = false;
   bool waits_for_write_ =
@@ -159,6 +167,7 @@ void RealRobot::Core::Exchange(double now_s) {
   }
   NoteWritten();
   for (const RobotLink::Heard& heard : link_.TakeHeard()) HandleAnswer(heard, now_s);
+  NoteReadingsEnd(now_s);
   FollowCommands(now_s);
   CheckMotion(now_s);
 }
@@ -171,10 +180,17 @@ void RealRobot::Core::CheckMotion(double now_s) {
   guard_.Stop(found->reason, found->text, now_s);
 }
 
-// A robot that never answers is taken to obey.
+// Of a plain robot nothing else tells that its answers stopped.
+void RealRobot::Core::NoteReadingsEnd(double now_s) {
+  if (!counts_ || readings_ended_ || now_s - counted_s_ <= kReadingsEnd_s) return;
+  readings_ended_ = true;
+  commanded_s_ = 0.0;
+}
+
+// A robot that never answers, or no more, is taken to obey.
 void RealRobot::Core::FollowCommands(double now_s) {
   constexpr double kEvery_s = 0.02;
-  if (counts_ || now_s - commanded_s_ < kEvery_s) return;
+  if ((counts_ && !readings_ended_) || now_s - commanded_s_ < kEvery_s) return;
   const double elapsed_s = commanded_s_ > 0.0 ? now_s - commanded_s_ : 0.0;
   commanded_s_ = now_s;
   const MilliPower power = link_.last_sent() ? link_.last_sent()->power : MilliPower{};
@@ -188,6 +204,8 @@ void RealRobot::Core::FollowCommands(double now_s) {
 void RealRobot::Core::NoteWritten() {
   if (!link_.last_sent() || link_.last_sent()->at_s == written_s_) return;
   written_s_ = link_.last_sent()->at_s;
+  motion_.SeeCommand(!link_.last_sent()->power.IsZero(), *written_s_);
+  count_watch_.SeeCommand(link_.last_sent()->power, *written_s_);
   if (!waits_for_write_) return;
   record_.poses.back().written_s = *written_s_ - start_s_;
   waits_for_write_ = false;
@@ -195,14 +213,22 @@ void RealRobot::Core::NoteWritten() {
 
 void RealRobot::Core::HandleAnswer(const RobotLink::Heard& heard, double now_s) {
   counts_ = control::EncoderCounts{heard.answer.left, heard.answer.right};
+  counted_s_ = now_s;
   const double battery_v = kVoltPerMillivolt * heard.answer.battery_mv;
   const double sent_s = heard.sent ? heard.sent->at_s : heard.at_s;
   const double read_s = 0.5 * (sent_s + heard.at_s);
   record_.encoders.push_back({read_s - start_s_, *counts_, battery_v});
   const double m_per_count = odometry::MetresPerCount(hardware_.odometry);
-  motion_.SeeWheels({read_s, m_per_count * static_cast<double>(counts_->left),
-                     m_per_count * static_cast<double>(counts_->right)},
-                    true);
+  if (!readings_ended_) {
+    motion_.SeeWheels({read_s, m_per_count * static_cast<double>(counts_->left),
+                       m_per_count * static_cast<double>(counts_->right)},
+                      true);
+  }
+  const std::optional<std::string> jump =
+      count_watch_.SeeCounts(heard.answer.left, heard.answer.right, read_s);
+  if (jump && guard_.state() == DriveState::kArmed) {
+    guard_.Stop(StopReason::kRobotStopped, *jump, now_s);
+  }
   if (!heard.sent) return;  // a plain answer says neither to what nor how often the robot stopped
   record_.rejected_by_robot = heard.answer.rejected;
   record_.round_trips_s.push_back(heard.at_s - sent_s);
@@ -223,6 +249,7 @@ void RealRobot::Core::Arm() {
   if (line_is_lost_) throw std::runtime_error("cannot arm: the serial port went away");
   guard_.Arm(clock_.Now_s());
   motion_.Restart();
+  readings_ended_ = false;
   stop_is_answered_ = false;
   stopped_at_s_.reset();
 }
@@ -288,9 +315,10 @@ void RealRobot::Core::Stop() noexcept {
   }
 }
 
-bool RealRobot::Core::StopIsAnswered() {
+// A robot whose motors are stuck answers as well.
+bool RealRobot::Core::StopIsConfirmed() {
   const std::lock_guard lock(mutex_);
-  return stop_is_answered_;
+  return HasStopped();
 }
 
 DriveRecord RealRobot::Core::Record() {
@@ -299,7 +327,7 @@ DriveRecord RealRobot::Core::Record() {
   record.protocol = link_.protocol();
   record.stop = guard_.stop();
   if (record.stop) record.stop->at_s -= start_s_;
-  if (link_.protocol() == Protocol::kFramed) record.stop_acknowledged = stop_is_answered_;
+  if (link_.protocol() == Protocol::kFramed) record.stop_acknowledged = HasStopped();
   record.sent = link_.sent_count();
   record.answered = link_.answered_count();
   return record;
@@ -328,7 +356,7 @@ RealRobot::RealRobot(ByteLine& line, PoseSource& poses, Clock& clock,
 
 RealRobot::~RealRobot() {
   Stop();
-  if (!core_->StopIsAnswered()) ConfirmStop(kLastZeros_s);
+  if (!core_->StopIsConfirmed()) ConfirmStop(kLastZeros_s);
 }
 
 void RealRobot::AddStopper(Stopper stopper) { core_->AddStopper(std::move(stopper)); }
@@ -351,7 +379,7 @@ void RealRobot::Advance(double dt_s) {
 
 void RealRobot::ConfirmStop(double timeout_s) {
   const double end_s = core_->Now_s() + timeout_s;
-  while (core_->Now_s() < end_s && !core_->StopIsAnswered()) core_->Wait(kTick_s);
+  while (core_->Now_s() < end_s && !core_->StopIsConfirmed()) core_->Wait(kTick_s);
 }
 
 }  // namespace rift::hardware

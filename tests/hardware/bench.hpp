@@ -36,11 +36,15 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   bool tag_is_hidden = false;
   std::optional<std::string> camera_fault;
   double camera_late_s = 0.0;  ///< older than its pictures' stamps say
+  /// It shows the same picture again and again, with stamps that are fresh, since then.
+  std::optional<double> repeats_since_s;
   std::function<void(trial::PoseMeasurement&)> bend = [](trial::PoseMeasurement&) {};
   // The robot.
   double slip_left = 1.0, slip_right = 1.0;  ///< what a wheel turns over what it moves the robot
+  bool counts_are_stuck = false;             ///< at zero
   std::uint16_t battery_mv = 5000;
   bool robot_is_on = true;
+  bool motors_are_stuck = false;  ///< at what they last were
   std::unique_ptr<Listener> listener = std::make_unique<Listener>();
   std::set<std::pair<int, int>> obeyed;
   size_t zeros_heard = 0;
@@ -68,6 +72,7 @@ class Bench : public ByteLine, public Clock, public PoseSource {
 
   PoseNews Newest() override {
     news_.fault = camera_fault;
+    news_.repeats_since_s = repeats_since_s;
     return news_;
   }
 
@@ -80,6 +85,8 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   double SpeedOfWheels() const { return std::abs(left_) + std::abs(right_); }
   double LastMoving_s() const { return moving_s_; }
   double Travelled_m() const { return travelled_m_; }
+  /// As a robot that was switched off and on does.
+  void BeginCountsAnew() { rolled_left_m_ = rolled_right_m_ = 0.0; }
   void Chatter(const std::string& text) {
     for (const char c : text) to_robot_.push_back({now_s_, static_cast<std::uint8_t>(c)});
   }
@@ -116,10 +123,10 @@ class Bench : public ByteLine, public Clock, public PoseSource {
     now_s_ += dt_s;
     const std::vector<std::uint8_t> received = Arrived(to_robot_);
     if (robot_is_on) PollListener(received);
-    const MilliPower motors = robot_is_on ? listener->Motors() : MilliPower{};
-    if (!motors.IsZero()) moving_s_ = now_s_;
-    left_ += (motors.left / 1000.0 - left_) * dt_s / kMotorLag_s;
-    right_ += (motors.right / 1000.0 - right_) * dt_s / kMotorLag_s;
+    if (!motors_are_stuck) motors_ = robot_is_on ? listener->Motors() : MilliPower{};
+    if (!motors_.IsZero()) moving_s_ = now_s_;
+    left_ += (motors_.left / 1000.0 - left_) * dt_s / kMotorLag_s;
+    right_ += (motors_.right / 1000.0 - right_) * dt_s / kMotorLag_s;
     pose_ = drive_.Drive(pose_, {left_, right_}, dt_s);
     travelled_m_ += 1.206 * 0.5 * std::abs(left_ + right_) * dt_s;
     rolled_left_m_ += 1.206 * slip_left * left_ * dt_s;
@@ -129,8 +136,9 @@ class Bench : public ByteLine, public Clock, public PoseSource {
 
   void PollListener(const std::vector<std::uint8_t>& received) {
     constexpr double kCountsPerMetre = 358.3 / (2.0 * std::numbers::pi * 0.016);
-    const auto counts = [](double rolled_m) {
-      return static_cast<std::int32_t>(std::floor(rolled_m * kCountsPerMetre));
+    const auto counts = [this](double rolled_m) {
+      return counts_are_stuck ? 0
+                              : static_cast<std::int32_t>(std::floor(rolled_m * kCountsPerMetre));
     };
     const Listener::Senses senses{counts(rolled_left_m_), counts(rolled_right_m_), battery_mv};
     const auto said = listener->Poll(static_cast<std::uint32_t>(now_s_ * 1000.0), received, senses);
@@ -154,6 +162,7 @@ class Bench : public ByteLine, public Clock, public PoseSource {
       news_.looked_s = picture.pose.captured_s;
       if (picture.is_empty) continue;
       bend(picture.pose);
+      if (repeats_since_s) picture.pose.world_from_robot = news_.newest->measured.world_from_robot;
       news_.newest = PoseSample{picture.pose, picture.pose.captured_s + 0.01, now_s_};
     }
   }
@@ -171,6 +180,7 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   double left_ = 0.0, right_ = 0.0, travelled_m_ = 0.0;
   double rolled_left_m_ = 0.0, rolled_right_m_ = 0.0;
   double moving_s_ = 0.0;
+  MilliPower motors_;
   double next_frame_s_ = 100.0;
   std::deque<Picture> pictures_;
   PoseNews news_;

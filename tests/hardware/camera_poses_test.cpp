@@ -19,9 +19,10 @@ struct Stage {
   vision::CaptureStatus status{.state = vision::CameraState::kRunning};
   int asked = 0;  ///< how often the status was
 
-  void Put(double captured_s) {
+  void Put(double captured_s, std::vector<std::uint8_t> bytes = {}) {
     const std::lock_guard lock(mutex);
-    frame = vision::Frame{.captured_s = captured_s, .arrived_s = captured_s + 0.004};
+    frame = vision::Frame{
+        .captured_s = captured_s, .arrived_s = captured_s + 0.004, .bytes = std::move(bytes)};
     ++status.delivered;
     changed.notify_all();
   }
@@ -148,6 +149,25 @@ TEST_CASE(
     CHECK_FALSE(repeats_since_s(t_s + 5.0, -0.0041));
     CHECK(repeats_since_s(t_s + 6.0, 0.0) == t_s + 5.0);
   }
+}
+
+TEST_CASE("Pictures of the same bytes repeat the first of them whatever is found in them") {
+  std::atomic<double> off_px = 0.0;
+  Scene scene([&](const vision::Frame& frame) {
+    vision::TrackResult found = LeaningTag(frame);
+    for (Eigen::Vector2d& corner : found.sighting->corners) corner = {100.0 + off_px, 200.0};
+    off_px = off_px + 1.0;
+    return found;
+  });
+  const auto repeats_since_s = [&](double at_s, std::vector<std::uint8_t> bytes) {
+    scene.stage->Put(at_s, std::move(bytes));
+    return scene.NewsWhen([&](const PoseNews& n) { return n.looked_s == at_s; }).repeats_since_s;
+  };
+  CHECK_FALSE(repeats_since_s(1.0, {1, 2, 3}));
+  CHECK(repeats_since_s(2.0, {1, 2, 3}) == 1.0);
+  CHECK(repeats_since_s(3.0, {1, 2, 3}) == 1.0);
+  CHECK_FALSE(repeats_since_s(4.0, {1, 2, 4}));
+  CHECK_FALSE(repeats_since_s(5.0, {1, 2}));
 }
 
 TEST_CASE("Only a tag that is surely the robot's is a pose, and its absence repeats nothing") {

@@ -1,7 +1,11 @@
 // Robots that do not answer, with commands in a format of their own.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdio>
+#include <sstream>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "bench.hpp"
 #include "rift/hardware/arming.hpp"
@@ -15,13 +19,48 @@ const PlainOptions kWhole{
 
 TEST_CASE("A command is written in the robot's own format and unit") {
   CHECK(PlainLine({1.0, -1.0}, kWhole) == "M 255,-255\r\n");
-  CHECK(PlainLine({0.0, 0.5}, kWhole) == "M 0,128\r\n");
+  CHECK(PlainLine({0.0, 0.5}, kWhole) == "M 0,127\r\n");
   CHECK(PlainLine({-0.25, 0.0}, {.format = "<{right:+.1f}|{left:+.1f}>\n", .range = {-9.0, 9.0}}) ==
         "<+0.0|-2.2>\n");
   // Servos stand at the middle of their range, and one is mounted the other way round.
   CHECK(PlainLine({0.0, 1.0}, {.format = "{left:.0f} {right:.0f}\n", .range = {180.0, 0.0}}) ==
         "90 0\n");
   CHECK_THROWS_AS(PlainLine({1.01, 0.0}, kWhole), std::invalid_argument);
+  CHECK(PlainLine({0.2, -0.2}, kWhole) == "M 51,-51\r\n");  // 0.2 x 255 is a little off 51
+}
+
+TEST_CASE("No rounding of a command makes it more than was asked for") {
+  const std::vector<PlainOptions> all{
+      {},
+      kWhole,
+      {.format = "{left:.1f}0 {right:+.1f}0\n"},
+      {.format = "{left:.2e} {right:g}\n"},
+      {.format = "{{{left:>8.3f}}} {right:07.2f} {left:.1f}\n", .range = {100.0, -100.0}},
+      {.format = "{left:.0f} {right:.1f}\n", .range = {180.0, 0.0}}};
+  for (const PlainOptions& plain : all) {
+    const double middle = 0.5 * (plain.range[0] + plain.range[1]);
+    const double half = std::abs(0.5 * (plain.range[1] - plain.range[0]));
+    const auto shares = [&](double left, double right) {
+      std::string line = PlainLine({left, right}, plain);
+      std::vector<double> found;
+      for (char& c : line)
+        c = std::string_view("+-.0123456789e").find(c) == std::string::npos ? ' ' : c;
+      std::istringstream words(line);
+      for (double value = 0.0; words >> value;) found.push_back(std::abs(value - middle) / half);
+      return found;
+    };
+    for (int i = -1000; i <= 1000; ++i) {
+      const double power = 0.001 * i;
+      INFO(plain.format << " at " << power);
+      const std::vector<double> written = shares(power, power);
+      REQUIRE(written.size() >= 2);
+      for (const double share : written) {
+        CHECK(share <= std::abs(power) + 1e-9);
+        CHECK(share >= std::abs(power) - 0.1 - 1e-9);
+      }
+    }
+  }
+  CHECK(PlainLine({-0.08, 0.08}, {.format = "{left:.1f}0 {right:.1f}0\n"}) == "-0.00 0.00\n");
 }
 
 TEST_CASE("A format that cannot command both wheels is refused with the rule it breaks") {
@@ -40,6 +79,16 @@ TEST_CASE("A format that cannot command both wheels is refused with the rule it 
   CHECK_THAT(refusal("{left:d} {right:d}\n", {-0.4, 0.4}),
              Catch::Contains("the left power is not"));
   CHECK_THAT(refusal("{left:.2f} {right:.2f}"), Catch::Contains("line ending"));
+  CHECK(refusal("{left:.0f} {right:d}\n", {180, 0}) == "taken");
+  CHECK(refusal("{left:d} {right:d}\n", {-20, 20}) == "taken");
+  CHECK_THAT(refusal("{left:d} {right:d}\n", {-19, 19}),
+             Catch::Contains("for the left wheel at power") && Catch::Contains("0.05 apart"));
+  CHECK_THAT(refusal("{left:.2f} {right:.1f}\n"), Catch::Contains("for the right wheel at power"));
+  CHECK_THAT(refusal("{left:d} {right:d}\n"), Catch::Contains("0.05 apart"));
+  CHECK_THAT(refusal("{left:d} {right:d}\n", {0, 255}),
+             Catch::Contains("128 for the left wheel at zero power") && Catch::Contains("127.5"));
+  CHECK(refusal("{left:d} {right:d}\n", {0, 254}) == "taken");
+  CHECK_THAT(refusal("{left:x} {right:x}\n", {-255, 255}), Catch::Contains("a decimal number"));
   CHECK_THAT(refusal("{links:.2f} {right:.2f}\n"), Catch::Contains("argument not found"));
   CHECK_THAT(refusal("{left:.2f} {right:.2f\n"), Catch::Contains("format is \"{left:.2f}"));
   CHECK_THAT(refusal("{left:.60f} {right:.60f}\n"), Catch::Contains("at most 64"));

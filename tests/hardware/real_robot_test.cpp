@@ -98,9 +98,97 @@ TEST_CASE("Wheels of a robot that does not answer are taken to obey, either one 
   });
 }
 
+TEST_CASE("A robot whose answers end is watched by its commands and driven on no frozen picture") {
+  for (const bool answers_on : {true, false}) {
+    Bench bench;
+    RealRobot robot(bench, bench, bench, {{}, Protocol::kPlain, false});
+    Settle(robot, 0.4, bench);
+    REQUIRE(robot.Sense().encoders);
+    robot.Arm();
+    DriveOn(robot, {0.2, 0.2}, 1.0, bench);
+    REQUIRE(robot.state() == DriveState::kArmed);
+    bench.from_robot_is_cut = !answers_on;
+    DriveOn(robot, {0.2, 0.2}, 1.5, bench);
+    INFO((robot.Record().stop ? robot.Record().stop->text : std::string("drives")));
+    CHECK(robot.state() == DriveState::kArmed);  // pictures go on to show that it moves
+    // What every picture repeats to within its noise, which no corners give away.
+    const geometry::Pose2 frozen = bench.Pose();
+    bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
+    const double frozen_s = bench.Now_s() - 100.0;
+    DriveOn(robot, {0.2, 0.2}, 3.0, bench);
+    REQUIRE(robot.Record().stop);
+    const bool by_counts = robot.Record().stop->reason == StopReason::kPoseDisagrees;
+    CHECK(by_counts == answers_on);
+    // 0.32 m/s: 3 x (0.012 m + 0.35 s x 0.32 m/s) take 1.16 s.
+    CHECK(robot.Record().stop->at_s - frozen_s < 1.3);
+    CHECK(bench.listener->Motors().IsZero());
+  }
+}
+
+TEST_CASE("Answers that come now and then do not take a robot from the watch of its commands") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kPlain, false});
+  Settle(robot, 0.4, bench);
+  robot.Arm();
+  const geometry::Pose2 frozen = bench.Pose();
+  bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
+  bench.counts_are_stuck = true;
+  for (int i = 0; i < 6; ++i) {
+    bench.from_robot_is_cut = true;
+    DriveOn(robot, {0.2, 0.2}, 0.6, bench);
+    bench.from_robot_is_cut = false;
+    DriveOn(robot, {0.2, 0.2}, 0.22, bench);
+  }
+  REQUIRE(robot.Record().stop);
+  CHECK(robot.Record().stop->reason == StopReason::kPoseStands);
+}
+
+TEST_CASE("On one and the same picture no robot is driven, whatever its wheels tell") {
+  struct Line {
+    Protocol protocol;
+    bool is_cut;
+  };
+  for (const Line line :
+       {Line{Protocol::kFramed, false}, {Protocol::kPlain, false}, {Protocol::kPlain, true}}) {
+    Bench bench;
+    bench.counts_are_stuck = true;
+    HardwareOptions hardware;
+    hardware.evidence.pushed_m = 10.0;  // wheels that tell nothing would stop the drive before
+    hardware.evidence.pushed_deg = 180.0;
+    hardware.evidence.agree_m = 10.0;
+    RealRobot robot(bench, bench, bench, {hardware, line.protocol, false});
+    Settle(robot, 0.4, bench);
+    // A robot that stands at zero power may be shown so for long, and also while it sets off.
+    bench.repeats_since_s = bench.Now_s();
+    Settle(robot, 2.0, bench);
+    robot.Arm();
+    bench.from_robot_is_cut = line.is_cut;
+    DriveOn(robot, {0.2, 0.2}, 0.4, bench);
+    CHECK(robot.state() == DriveState::kArmed);
+    bench.repeats_since_s.reset();
+    DriveOn(robot, {0.2, 0.2}, 1.0, bench);
+    DriveOn(robot, {}, 0.3, bench);
+    bench.repeats_since_s = bench.Now_s();
+    DriveOn(robot, {}, 2.0, bench);
+    CHECK(robot.state() == DriveState::kArmed);
+    const double driven_s = bench.Now_s() - 100.0;
+    DriveOn(robot, {0.2, 0.2}, 1.0, bench);
+    REQUIRE(robot.Record().stop);
+    CHECK(robot.Record().stop->reason == StopReason::kPictureRepeats);
+    // Of wheels that tell: the sum of repeats_s, blind_s and max_latency_s, and a picture more.
+    const double after_s = robot.Record().stop->at_s - driven_s;
+    CHECK(after_s < 0.52);
+    if (!line.is_cut) CHECK(after_s > 0.45);
+    CHECK(bench.listener->Motors().IsZero());
+  }
+}
+
 TEST_CASE("A stop is acknowledged by the answer to the zero that goes out with it") {
   Bench bench;
-  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  bench.counts_are_stuck = true;  // so that nothing is to be waited for but the answer
+  HardwareOptions hardware;
+  hardware.evidence.pushed_m = hardware.evidence.agree_m = 10.0;
+  RealRobot robot(bench, bench, bench, {hardware, Protocol::kFramed, false});
   Settle(robot, 0.4, bench);
   robot.Arm();
   DriveOn(robot, {0.2, 0.2}, 0.3, bench);
@@ -111,6 +199,46 @@ TEST_CASE("A stop is acknowledged by the answer to the zero that goes out with i
   CHECK(robot.Record().stop_acknowledged == true);
   // Twice the radio and the bytes of one command and its answer.
   CHECK(bench.Now_s() - stopped_s == Approx(2 * 0.02 + (11 + 15) * 10.0 / 9600.0).margin(0.005));
+}
+
+TEST_CASE("A robot that obeys the stop has acknowledged it once its wheels rest") {
+  for (const bool is_stuck : {false, true}) {
+    Bench bench;
+    RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+    Settle(robot, 0.4, bench);
+    robot.Arm();
+    DriveOn(robot, {0.3, 0.3}, 0.6, bench);
+    bench.motors_are_stuck = is_stuck;
+    const double stopped_s = bench.Now_s();
+    robot.Stop();
+    robot.ConfirmStop(0.15);
+    CHECK(bench.listener->Motors().IsZero());
+    CHECK(robot.Record().stop_acknowledged == false);  // it coasts
+    robot.ConfirmStop(1.0);
+    CHECK(robot.Record().stop_acknowledged == !is_stuck);
+    CHECK((bench.Now_s() - stopped_s < 0.7) == !is_stuck);
+  }
+}
+
+TEST_CASE("A robot whose counts begin anew while it drives has restarted, and is stopped") {
+  OnBothSides("left", "right", [](const Side& side) {
+    for (const double sign : {1.0, -1.0}) {
+      Bench bench;
+      RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+      Settle(robot, 0.4, bench);
+      robot.Arm();
+      DriveOn(robot, side.Of<WheelPower>(sign * 0.2, sign * 0.15), 0.45, bench);
+      REQUIRE(robot.state() == DriveState::kArmed);
+      // No farther than two counts of wheels that agree with the pose may be apart.
+      const control::EncoderCounts before = *robot.Sense().encoders;
+      CHECK(std::max(std::abs(before.left), std::abs(before.right)) < 350);
+      bench.BeginCountsAnew();
+      DriveOn(robot, side.Of<WheelPower>(sign * 0.2, sign * 0.15), 0.2, bench);
+      REQUIRE(robot.Record().stop);
+      CHECK(robot.Record().stop->reason == StopReason::kRobotStopped);
+      CHECK_THAT(robot.Record().stop->text, Catch::Contains("did the robot restart?"));
+    }
+  });
 }
 
 TEST_CASE("What the robot did not obey is counted, and so is what was sent and answered") {

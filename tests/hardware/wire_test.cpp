@@ -15,11 +15,14 @@ void Flip(CommandBytes& bytes, size_t bit) {
 
 constexpr size_t kBits = 8 * CommandFrame::kSize;
 
-TEST_CASE("A plain line is what the authors' format string prints for every hundredth") {
+TEST_CASE("A plain line is what the authors' format string prints of the hundredth towards zero") {
+  const auto hundredth = [](int milli) {
+    return std::copysign(std::abs(milli) / 10 / 100.0, static_cast<double>(milli));
+  };
   for (int left = -1000; left <= 1000; left += 7) {
     for (int right = -1000; right <= 1000; right += 61) {
       char expected[32];
-      std::snprintf(expected, sizeof expected, "%.2f %.2f\n", left / 1000.0, right / 1000.0);
+      std::snprintf(expected, sizeof expected, "%.2f %.2f\n", hundredth(left), hundredth(right));
       REQUIRE(PlainLine({left / 1000.0, right / 1000.0}) == expected);
     }
   }

@@ -56,9 +56,9 @@ struct DriveStop {
   double at_s = 0.0;
 };
 
-/// Allows no power without a recent pose and a recent control step. The first thing that
-/// goes wrong stops the drive for good; only Arm() starts it again. Commands are allowed as they
-/// are or not at all. Knows no clock and no line.
+/// Allows no power without a recent pose, by its time stamp, and a recent control step. The first
+/// thing that goes wrong stops the drive for good; only Arm() starts it again. Commands are allowed
+/// as they are or not at all. Knows no clock and no line.
 class DriveGuard {
  public:
   /// `dry_run`: everything is checked as ever, and Allowed() is zero whatever is commanded.

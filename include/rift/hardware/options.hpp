@@ -81,7 +81,8 @@ struct GuardOptions {
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor&& field) {
     field("pose_stale_s", self.pose_stale_s, 0.02, 2.0,
-          "no power while the newest pose was captured longer ago");
+          "no power while the newest picture's time stamp is older; what the camera's stamps are "
+          "late by themselves, up to evidence.max_latency_s, comes on top");
     field("control_stale_s", self.control_stale_s, 0.02, 2.0,
           "no power while the last control step is longer ago");
     field("link_lag_s", self.link_lag_s, 0.02, 2.0,
@@ -126,7 +127,8 @@ struct EvidenceOptions {
           "and what it rolls in this time on top (plus max_latency_s while the camera's latency is "
           "not measured)");
     field("repeats_s", self.repeats_s, 0.0, 3600.0,
-          "how long all pictures may be the same one while the wheels roll by 5 mm");
+          "how long all pictures may be the same one while the wheels roll by 5 mm; with blind_s "
+          "and max_latency_s on top, while the robot is told to drive, whatever its wheels tell");
     field("pushed_m", self.pushed_m, 1e-3, 10.0,
           "how far the pose may move while the wheels stand");
     field("pushed_deg", self.pushed_deg, 0.1, 180.0, "and turn");

@@ -36,7 +36,7 @@ using odometry::EncoderReading;
 struct DriveRecord {
   Protocol protocol = Protocol::kAuto;
   std::optional<DriveStop> stop;
-  /// Whether the robot said that it stands; none: it speaks plain and cannot say.
+  /// Whether the robot obeyed the stop and its counts rest; none: it speaks plain and cannot say.
   std::optional<bool> stop_acknowledged;
   std::vector<PoseStages> poses;
   std::vector<EncoderReading> encoders;
@@ -93,7 +93,8 @@ class RealRobot : public trial::Robot {
   /// How much earlier pictures were taken than their stamps say: what Sense gives is put right.
   void SetCameraLatency(double latency_s);
 
-  /// After Stop(): sends zeros until the robot says that it stands, `timeout_s` at most.
+  /// After Stop(): sends zeros until the robot has obeyed one and its counts rest, `timeout_s` at
+  /// most.
   void ConfirmStop(double timeout_s);
   DriveState state() const;
   DriveRecord Record() const;

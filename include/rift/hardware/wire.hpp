@@ -25,7 +25,8 @@ namespace rift::hardware {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// A command as text, by default the authors' line, "%.2f %.2f\n", left and right. Throws
+/// A command as text, by default the authors' line, "%.2f %.2f\n", left and right, rounded towards
+/// zero power. Throws
 /// std::invalid_argument unless both powers are in [-1, 1], and for a format that PlainOptions
 /// would refuse.
 std::string PlainLine(const control::WheelPower& power, const PlainOptions& options = {});

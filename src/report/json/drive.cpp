@@ -246,9 +246,10 @@ std::string DriveText(const hardware::DriveRun& run) {
         1e3 * *run.latency->delay.total_s, *run.latency->delay.total_s);
   }
   const std::optional<bool>& acknowledged = run.evidence.stop_acknowledged;
-  text += !acknowledged   ? "the robot cannot say whether it stands: look at it\n"
-          : *acknowledged ? "the robot acknowledged the stop\n"
-                          : "THE ROBOT DID NOT ACKNOWLEDGE THE STOP: switch it off\n";
+  text += !acknowledged ? "the robot cannot say whether it stands: look at it\n"
+          : *acknowledged
+              ? "the robot acknowledged the stop\n"
+              : "THE ROBOT DID NOT ACKNOWLEDGE THE STOP, OR ITS WHEELS TURN ON: switch it off\n";
   return text;
 }
 

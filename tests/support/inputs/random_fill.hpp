@@ -106,7 +106,10 @@ inline void KeepFormat(hardware::PlainOptions& plain, std::mt19937_64& random) {
   constexpr std::array kFormats{"{left:.2f} {right:.2f}\n", "M {left:d},{right:d}\r\n",
                                 "<{right:+.1f}|{left:+.1f}>\r"};
   plain.format = kFormats[random() % kFormats.size()];
-  plain.range = {-RandomNumber({2.0, 1e6}, random), RandomNumber({2.0, 1e6}, random)};
+  // A middle that whole numbers can write, and steps of 0.05 of full power and less.
+  const double middle = std::floor(RandomNumber({-5e5, 5e5}, random));
+  const double half = std::floor(RandomNumber({20.0, 5e5}, random));
+  plain.range = {middle - half, middle + half};
 }
 
 /// Gives every member of a struct of fields a random value that its schema allows: within its

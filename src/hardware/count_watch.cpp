@@ -1,0 +1,76 @@
+#include "count_watch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace rift::hardware {
+namespace {
+
+constexpr double kRest_s = 0.1;      // two readings of a slow link
+constexpr std::int32_t kJitter = 1;  // of a wheel that stands on the edge of a count
+constexpr double kCoasts_s = 0.5;    // against what it is told now
+constexpr double kBack_m = 0.02;     // between two readings; no gear gives way so far
+
+/// Right over the end of the counters' range as well.
+std::int32_t Change(std::int32_t before, std::int32_t now) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(now) -
+                                   static_cast<std::uint32_t>(before));
+}
+
+}  // namespace
+
+void CountWatch::SeePower(Wheel& wheel, int power, double sent_s) {
+  if (wheel.power > 0 || power > 0) wheel.forward_s = sent_s;
+  if (wheel.power < 0 || power < 0) wheel.backward_s = sent_s;
+  wheel.power = power;
+}
+
+void CountWatch::SeeCommand(const MilliPower& power, double sent_s) {
+  SeePower(left_, power.left, sent_s);
+  SeePower(right_, power.right, sent_s);
+}
+
+// Not by how fast a wheel can turn: in the tenth of a second between two readings that is as far as
+// a robot that has just started has come.
+std::optional<std::string> CountWatch::CheckWheel(const Wheel& wheel, std::int32_t counts,
+                                                  double read_s, const char* name) const {
+  const std::int32_t change = Change(wheel.counts, counts);
+  const double against_s = change > 0 ? wheel.backward_s : wheel.forward_s;
+  const double along_s = change > 0 ? wheel.forward_s : wheel.backward_s;
+  const bool is_told_against = read_s - against_s < kCoasts_s;
+  const bool is_told_along = read_s - along_s < kCoasts_s;
+  if (!is_told_against || is_told_along || std::abs(m_per_count_ * change) <= kBack_m) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "the {} wheel's counts jumped by {} within {:.2f} s while it was told to go the other way: "
+      "did the robot restart?",
+      name, change, read_s - *read_s_);
+}
+
+std::optional<std::string> CountWatch::SeeCounts(std::int32_t left, std::int32_t right,
+                                                 double read_s) {
+  std::optional<std::string> fault;
+  if (read_s_) {
+    fault = CheckWheel(left_, left, read_s, "left");
+    if (!fault) fault = CheckWheel(right_, right, read_s, "right");
+  }
+  const bool rests = read_s_ && std::abs(Change(left_.rest_counts, left)) <= kJitter &&
+                     std::abs(Change(right_.rest_counts, right)) <= kJitter;
+  if (!rests) {
+    moved_s_ = read_s;
+    left_.rest_counts = left;
+    right_.rest_counts = right;
+  }
+  left_.counts = left;
+  right_.counts = right;
+  read_s_ = read_s;
+  return fault;
+}
+
+bool CountWatch::Rest() const { return read_s_ && *read_s_ - moved_s_ >= kRest_s; }
+
+}  // namespace rift::hardware
