@@ -89,11 +89,11 @@ void MotionCheck::SeeWheels(const WheelTravel& wheels, bool is_measured) {
   while (wheels_.front().t_s < wheels.t_s - kKept_s) wheels_.pop_front();
 }
 
-void MotionCheck::SeeCommand(bool turns, double sent_s) {
+void MotionCheck::SeeCommand(bool turns, double heard_s) {
   if (!turns) {
     turning_since_s_.reset();
   } else if (!turning_since_s_) {
-    turning_since_s_ = sent_s;
+    turning_since_s_ = heard_s;
   }
 }
 
@@ -147,10 +147,9 @@ std::optional<Disagreement> MotionCheck::CheckSample(const Sample& now) {
   return CheckLag(now);
 }
 
-// Wheels may tell nothing, or always the same: what was sent is known for certain. A robot that has
-// just been told to go needs a while until it is seen to move.
+// Wheels may tell nothing, or always the same: what was sent is known for certain.
 std::optional<Disagreement> MotionCheck::CheckBlindDrive() const {
-  const double most_s = options_.repeats_s + options_.blind_s + options_.max_latency_s;
+  const double most_s = options_.repeats_s + options_.max_latency_s;
   if (driven_blind_s_ <= most_s) return std::nullopt;
   return Disagreement{
       StopReason::kPictureRepeats,

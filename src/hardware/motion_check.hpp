@@ -40,9 +40,9 @@ class MotionCheck {
   void Restart();
   /// Times must rise. `is_measured`: by encoders; else it is what the commands ask for.
   void SeeWheels(const WheelTravel& wheels, bool is_measured);
-  /// Whether the newest command sent asks a wheel to turn, since when: it needs no wheels that
-  /// tell.
-  void SeeCommand(bool turns, double sent_s);
+  /// Whether the newest command asks a wheel to turn, and when the robot has heard it at the
+  /// latest.
+  void SeeCommand(bool turns, double heard_s);
   /// `repeats_since_s`: as PoseNews has it.
   void SeePose(const trial::PoseMeasurement& pose,
                const std::optional<double>& repeats_since_s = std::nullopt);

@@ -182,7 +182,8 @@ void RealRobot::Core::CheckMotion(double now_s) {
 
 // Of a plain robot nothing else tells that its answers stopped.
 void RealRobot::Core::NoteReadingsEnd(double now_s) {
-  if (!counts_ || readings_ended_ || now_s - counted_s_ <= kReadingsEnd_s) return;
+  const double end_s = std::max(kReadingsEnd_s, hardware_.guard.link_lag_s);
+  if (!counts_ || readings_ended_ || now_s - counted_s_ <= end_s) return;
   readings_ended_ = true;
   commanded_s_ = 0.0;
 }
@@ -204,7 +205,7 @@ void RealRobot::Core::FollowCommands(double now_s) {
 void RealRobot::Core::NoteWritten() {
   if (!link_.last_sent() || link_.last_sent()->at_s == written_s_) return;
   written_s_ = link_.last_sent()->at_s;
-  motion_.SeeCommand(!link_.last_sent()->power.IsZero(), *written_s_);
+  motion_.SeeCommand(!link_.last_sent()->power.IsZero(), *written_s_ + hardware_.guard.link_lag_s);
   count_watch_.SeeCommand(link_.last_sent()->power, *written_s_);
   if (!waits_for_write_) return;
   record_.poses.back().written_s = *written_s_ - start_s_;

@@ -127,8 +127,9 @@ struct EvidenceOptions {
           "and what it rolls in this time on top (plus max_latency_s while the camera's latency is "
           "not measured)");
     field("repeats_s", self.repeats_s, 0.0, 3600.0,
-          "how long all pictures may be the same one while the wheels roll by 5 mm; with blind_s "
-          "and max_latency_s on top, while the robot is told to drive, whatever its wheels tell");
+          "how long all pictures may be the same one while the wheels roll by 5 mm; with "
+          "max_latency_s and guard.link_lag_s on top, while the robot is told to drive, whatever "
+          "its wheels tell");
     field("pushed_m", self.pushed_m, 1e-3, 10.0,
           "how far the pose may move while the wheels stand");
     field("pushed_deg", self.pushed_deg, 0.1, 180.0, "and turn");
