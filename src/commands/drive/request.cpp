@@ -22,10 +22,15 @@ void AddDriveFlags(CLI::App& app, DriveRequest& request) {
   vision::SessionOptions::Fields(request.setup.session, [&](std::string_view key, auto&&... field) {
     if (key == "moved_m") flags(key, std::forward<decltype(field)>(field)...);
   });
-  flags("out", request.out, "DIR", "folder of the run; must not hold one [out/NAME_drive]");
+  flags("out", request.out, "DIR",
+        "folder of the run; must not hold a file of one [out/NAME_drive]");
   AddFlags(app, request.copies);
-  flags("view", request.setup.view, "show the camera's picture; closing it stops the robot");
-  flags("yes", request.setup.yes, "answers Enter to every question: starts without a person");
+  flags("view", request.setup.view,
+        "show the camera's picture; any key in it, or closing it, stops the robot");
+  flags("yes", request.setup.yes,
+        "answers Enter to every question: starts without a person; a series ends with its first "
+        "fault "
+        "unless --before-each puts the scene back");
   flags("countdown", request.countdown_s, 0.0, 60.0, "S",
         "time between Enter and the start, in which any key cancels; 0: none "
         "(hardware.start.countdown_s)");
@@ -112,9 +117,10 @@ void AddDrive(CLI::App& app, int& exit_code, const std::function<int(const Drive
   AddKeysFlag(app);
   ExcludeFlags(app);
   app.footer(
-      "Enter starts the robot. Any key, Ctrl-C, SIGTERM or SIGHUP stops it for good, as do a tag "
-      "or\n"
-      "picture that stays away, a pose that jumps, and a radio that falls silent.\n"
+      "Enter starts the robot. Any key from then on (in the window of --view too), Ctrl-C, "
+      "Ctrl-\\,\n"
+      "Ctrl-Z, SIGTERM or SIGHUP stops it, and a series with it, for good, as do a tag or picture\n"
+      "that stays away, a pose that jumps, and a radio that falls silent.\n"
       "Ends with 0 when the last waypoint was reached, 1 when it was not or the robot was stopped\n"
       "(--ping: when the link is over its budget or cannot be measured), 2 for usage and input, 3\n"
       "when it could not begin or broke, or when its log could not be written: that stops the "
