@@ -20,6 +20,9 @@ std::int32_t Change(std::int32_t before, std::int32_t now) {
                                    static_cast<std::uint32_t>(before));
 }
 
+/// Without std::abs, which the least number has none of.
+bool IsJitter(std::int32_t change) { return change >= -kJitter && change <= kJitter; }
+
 }  // namespace
 
 void CountWatch::SeePower(Wheel& wheel, int power, double sent_s) {
@@ -41,7 +44,8 @@ std::optional<std::string> CountWatch::CheckWheel(const Wheel& wheel, std::int32
   const double against_s = change > 0 ? wheel.backward_s : wheel.forward_s;
   const double along_s = change > 0 ? wheel.forward_s : wheel.backward_s;
   const bool is_told_against = read_s - against_s < kCoasts_s;
-  const bool is_told_along = read_s - along_s < kCoasts_s;
+  // At any time since the reading before as well: readings may be far apart.
+  const bool is_told_along = *read_s_ - along_s < kCoasts_s;
   if (!is_told_against || is_told_along || std::abs(m_per_count_ * change) <= kBack_m) {
     return std::nullopt;
   }
@@ -58,8 +62,8 @@ std::optional<std::string> CountWatch::SeeCounts(std::int32_t left, std::int32_t
     fault = CheckWheel(left_, left, read_s, "left");
     if (!fault) fault = CheckWheel(right_, right, read_s, "right");
   }
-  const bool rests = read_s_ && std::abs(Change(left_.rest_counts, left)) <= kJitter &&
-                     std::abs(Change(right_.rest_counts, right)) <= kJitter;
+  const bool rests = read_s_ && IsJitter(Change(left_.rest_counts, left)) &&
+                     IsJitter(Change(right_.rest_counts, right));
   if (!rests) {
     moved_s_ = read_s;
     left_.rest_counts = left;

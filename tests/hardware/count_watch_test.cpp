@@ -48,6 +48,34 @@ TEST_CASE("Counts that jump against all that a wheel was told lately are a resta
   });
 }
 
+TEST_CASE("Counts that are read seldom may have gone either way since the reading before") {
+  for (const double begins_s : {0.02, -0.3}) {
+    CountWatch watch(kMetresPerCount);
+    watch.SeeCommand({-300, 300}, begins_s);
+    watch.SeeCommand({0, 0}, begins_s + 0.04);
+    watch.SeeCounts(0, 0, 0.0);
+    watch.SeeCommand({300, -300}, 0.56);
+    INFO("told to go back from " << begins_s << " s on");
+    CHECK_FALSE(watch.SeeCounts(-100, 100, 0.6));
+  }
+  CountWatch watch(kMetresPerCount);  // told nothing of the kind since long
+  watch.SeeCommand({-300, 300}, -0.8);
+  watch.SeeCommand({0, 0}, -0.7);
+  watch.SeeCounts(0, 0, 0.0);
+  watch.SeeCommand({300, -300}, 0.56);
+  CHECK(watch.SeeCounts(-100, 100, 0.6));
+}
+
+TEST_CASE("Counts that jump by half of their range do not rest") {
+  CountWatch watch(kMetresPerCount);
+  watch.SeeCounts(0, 0, 0.0);
+  for (int i = 1; i <= 3; ++i) {
+    const std::int32_t counts = i % 2 == 0 ? 0 : std::numeric_limits<std::int32_t>::min();
+    watch.SeeCounts(counts, counts, 0.1 * i);
+    CHECK_FALSE(watch.Rest());
+  }
+}
+
 TEST_CASE("The end of the counters' range is no jump") {
   constexpr std::int32_t kLast = std::numeric_limits<std::int32_t>::max();
   constexpr std::int32_t kFirst = std::numeric_limits<std::int32_t>::min();
