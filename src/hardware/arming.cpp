@@ -248,10 +248,10 @@ void RequireCameraInTime(const LoopDelay& delay, double budget_s) {
   if (delay.camera_most_s && *delay.camera_most_s > budget_s) {
     throw std::runtime_error(fmt::format(
         "the camera's pictures may be {:.3f} s late (the loop delay less what the line takes; this "
-        "robot tells no wheels to know more by), and the budget (hardware.evidence.max_latency_s) "
-        "is {:.3f} s: ask it for fewer pixels or a shorter exposure, read it without a server "
-        "between, copy src/firmware to a 3pi+, or raise the budget by what the robot itself is "
-        "known to take",
+        "robot tells its wheels too seldom, or not at all, to know more by), and the budget "
+        "(hardware.evidence.max_latency_s) is {:.3f} s: ask it for fewer pixels or a shorter "
+        "exposure, read it without a server between, have a 3pi+ run src/firmware at its line's "
+        "full speed, or raise the budget by what the robot itself is known to take",
         *delay.camera_most_s, budget_s));
   }
 }
@@ -262,8 +262,11 @@ std::optional<LatencyResult> MeasureCamera(RealRobot& robot, const DriveParts& p
   if (!task.hardware.turn.enabled) return std::nullopt;
   const double one_way_s = ping.IsMeasured() ? ping.OneWay_s() : task.hardware.stopping.delay_s;
   parts.say("the robot turns a few degrees to and fro, to see how late the camera is");
+  TurnOptions turn = task.hardware.turn;  // the guard would stop what is above its limit
+  turn.most_power = std::min(turn.most_power, task.hardware.guard.max_power);
+  turn.power = std::min(turn.power, turn.most_power);
   std::optional<LatencyResult> found =
-      MeasureLatency(robot, task.hardware.odometry, task.hardware.turn, one_way_s);
+      MeasureLatency(robot, task.hardware.odometry, turn, one_way_s);
   if (!found) return std::nullopt;
   LoopDelay& delay = found->delay;
   if (!delay.camera_s) {

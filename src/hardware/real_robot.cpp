@@ -186,6 +186,7 @@ void RealRobot::Core::NoteReadingsEnd(double now_s) {
   if (!counts_ || readings_ended_ || now_s - counted_s_ <= end_s) return;
   readings_ended_ = true;
   commanded_s_ = 0.0;
+  motion_.Restart();  // poses that wait for wheels have none
 }
 
 // A robot that never answers, or no more, is taken to obey.

@@ -8,8 +8,8 @@
 namespace rift::hardware {
 
 /// While it lives, the signals of `kSignals` neither end nor suspend the process but are noted, so
-/// that the robot can be stopped first: SIGKILL and SIGSTOP alone leave no time for that. One at a
-/// time.
+/// that the robot can be stopped first. Others that end a process (SIGKILL, SIGXCPU, SIGUSR1 and so
+/// on) do so, and the robot's own watchdog stops it. One at a time.
 class SignalWatch {
  public:
   /// Besides those that ask for an end: Ctrl-\ (QUIT) and Ctrl-Z (TSTP), and what suspends a
