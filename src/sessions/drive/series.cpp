@@ -59,6 +59,7 @@ class Driver {
 
   /// Drives the trial unless it is done.
   SeriesEnd Drive(const PlannedTrial& trial);
+  bool StopWasAsked() const { return session_.StopWasAsked(); }
   /// Before a sweep takes the processors.
   void Close() {
     session_.Close();
@@ -179,7 +180,10 @@ SeriesEnd DriveAll(const DriveSeries& series, const Console& console,
     const PlannedTrial& trial = plan.trials[i];
     if (is_done(trial)) continue;
     console.say(fmt::format("drive {} of {}: {}", i + 1, count, trial.label));
-    const SeriesEnd end = driver.Drive(trial);
+    SeriesEnd end = driver.Drive(trial);
+    // A stop that came when the robot had arrived is one of what follows.
+    const bool is_last = std::all_of(plan.trials.begin(), plan.trials.end(), is_done);
+    if (driver.StopWasAsked() && !is_last) end = SeriesEnd::kQuit;
     if (end == SeriesEnd::kQuit) {
       console.say("stopped; the same command goes on where it was");
       return end;

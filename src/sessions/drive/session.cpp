@@ -171,6 +171,7 @@ class DriveSession::Drivers {
     return drive.get();
   }
 
+  bool KeyInWindow() const { return key_in_window_; }
   const vision::CameraModel& camera() const { return session_.camera(); }
   vision::Ground ground() const { return session_.tag().ground; }
 
@@ -271,6 +272,7 @@ hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
       run.evidence.stop && run.evidence.stop->reason == hardware::StopReason::kLogFailed;
   // Slow enough to stop the robot, even when it became whole in the end.
   if (was_slow && log_failure_.empty()) log_failure_ = run.evidence.stop->text;
+  stop_was_asked_ = drivers_->KeyInWindow() || person.Stopper()().has_value();
   if (!HasArrived(run)) Close();
   return run;
 }

@@ -34,6 +34,9 @@ class DriveSession {
   /// holds a file of a run. After anything but a full trial port and camera are opened anew.
   hardware::DriveRun DriveInto(const std::filesystem::path& folder,
                                const experiment::Experiment& experiment);
+  /// Whether a key, the window or a signal asked for a stop during the last drive, also when that
+  /// had arrived by then.
+  bool StopWasAsked() const { return stop_was_asked_; }
   /// Why the last drive's log is not whole; empty when it is.
   const std::string& LogFailure() const { return log_failure_; }
   /// Throws std::runtime_error when it is not.
@@ -45,6 +48,7 @@ class DriveSession {
   DriveSetup setup_;
   Console console_;
   std::string log_failure_;
+  bool stop_was_asked_ = false;
   std::unique_ptr<Drivers> drivers_;
 };
 
