@@ -140,7 +140,18 @@ void Identifier::Load() {
 /// A program of powers runs by the clock of its trial; a drive to waypoints by what it sees.
 std::optional<double> Identifier::BeganOf(const Recording& real) const {
   if (experiment_.program.segments.empty()) return std::nullopt;
-  return evaluator_.TrialBegan_s(real.source);
+  const std::optional<double> began_s = evaluator_.TrialBegan_s(real.source);
+  if (!began_s) return std::nullopt;
+  const std::vector<trajectory::StampedPose>& poses = real.trajectory.poses;
+  constexpr double kApart_s = 2.0;  // a robot is seen when its trial begins
+  if (std::abs(*began_s - poses.front().t_s) <= kApart_s && *began_s < poses.back().t_s) {
+    return began_s;
+  }
+  throw std::invalid_argument(
+      fmt::format("{}: its first row is at {:g} s, and commands.csv beside it begins at {:g} s: "
+                  "they are not of "
+                  "one drive",
+                  real.source, poses.front().t_s, *began_s));
 }
 
 /// Each kind once: a mistake in units is in every log.

@@ -131,9 +131,10 @@ std::vector<HorizonError> ErrorsOf(const std::vector<Pose2>& replay, const Traje
 
 Trajectory Replay(const SimulatedTrial& trial, const Trajectory& log,
                   std::optional<double> began_s) {
-  RobotOfLog robot(trial, log, began_s.value_or(log.poses.front().t_s));
+  const double from_s = began_s.value_or(log.poses.front().t_s);
+  RobotOfLog robot(trial, log, from_s);
   trial::TrialOptions options = trial.trial;
-  options.timeout_s = std::max(options.timeout_s, log.Duration_s() + 1.0);
+  options.timeout_s = std::max(options.timeout_s, log.poses.back().t_s - from_s + 1.0);
   trial::RunTrial(robot, trial.task, trial.control, options);
   return robot.Path();
 }

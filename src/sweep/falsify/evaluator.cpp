@@ -171,6 +171,7 @@ std::optional<double> Evaluator::TrialBegan_s(const std::string& log) const {
   const std::optional<std::string> text = inputs_.read(path);
   if (!text) return std::nullopt;
   trajectory::csv::RowReader rows(*text, path, true, ',');
+  if (rows.Columns().empty()) return std::nullopt;  // of a drive that broke off
   if (rows.Columns().front() != "t_s") {
     throw std::invalid_argument(
         fmt::format("{}: its first column is '{}', and that of commands.csv is t_s", path,

@@ -55,6 +55,22 @@ std::string Refusal(const experiment::Experiment& experiment) {
   return "accepted";
 }
 
+TEST_CASE(
+    "When a trial began is the first row of the commands beside its log, where there are any") {
+  const Files files{{"1/commands.csv", "t_s,power_left,power_right\n2.5,0,0\n2.6,0.1,0.1\n"},
+                    {"2/commands.csv", ""},
+                    {"3/commands.csv", "t_s,power_left,power_right\n"},
+                    {"4/commands.csv", "left,t_s\n1,2\n"}};
+  const experiment::Experiment experiment = Simulation();
+  const Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
+  CHECK(evaluator.TrialBegan_s("1/trajectory.csv") == 2.5);
+  for (const char* log : {"2/trajectory.csv", "3/trajectory.csv", "5/trajectory.csv"}) {
+    CHECK_FALSE(evaluator.TrialBegan_s(log));
+  }
+  CHECK_THROWS_WITH(evaluator.TrialBegan_s("4/trajectory.csv"),
+                    "4/commands.csv: its first column is 'left', and that of commands.csv is t_s");
+}
+
 TEST_CASE("Paths of logs that are missing, or name what there is not, are refused with their key") {
   CHECK(Refusal(Logs()) == "accepted");
   experiment::Experiment without = Logs();
