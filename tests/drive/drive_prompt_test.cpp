@@ -46,8 +46,8 @@ TEST_CASE("A key ends a series with a bell and the next ones say what becomes of
   Uninterrupted(kAll, [&question](Scene& scene) {
     const std::string out = scene.folder / "run";
     const fs::path drive = out + "/1", unfinished = out + "/1.unfinished";
-    const TerminalRun stopped =
-        DriveOnce(scene, out, {{"put the robot at the start: ", "\n"}, {"loop delay", "x"}});
+    const TerminalRun stopped = DriveOnce(
+        scene, out, {{"put the robot at the start: ", "\n"}, {"loop delay", "x"}, {question, "q"}});
     INFO(stopped.shown);
     if (!fs::exists(unfinished / "summary.json")) return false;  // it refused to drive
     const auto summary =
