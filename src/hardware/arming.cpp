@@ -231,10 +231,9 @@ std::string CameraText(const LoopDelay& delay) {
 /// the time of its bytes on the line alone. hardware.stopping.delay_s is no such bound, since it is
 /// a cautious guess upwards.
 double LeastWay_s(const PingResult& ping, const HardwareOptions& options) {
-  constexpr double kBitsPerByte = 10.0;  // 8N1
   if (ping.IsMeasured()) return ping.OneWay_s();
   const auto bytes = static_cast<double>(PlainLine({}, options.plain).size());
-  return bytes * kBitsPerByte / options.line.baud;
+  return bytes * ByteTime_s(options.line.baud);
 }
 
 void RequireCameraInTime(const LoopDelay& delay, double budget_s) {

@@ -81,10 +81,9 @@ PingResult Ping(ByteLine& line, Clock& clock, const LineOptions& line_options, P
 }
 
 double RadioDelay_s(const PingResult& result, const LineOptions& options) {
-  constexpr double kBitsPerByte = 10.0;  // 8N1
   if (!result.IsMeasured()) return -1.0;
-  constexpr double kBits = kBitsPerByte * (CommandFrame::kSize + Answer::kSize);
-  return std::max(0.0, result.OneWay_s() - 0.5 * kBits / options.baud);
+  constexpr double kBytes = CommandFrame::kSize + Answer::kSize;
+  return std::max(0.0, result.OneWay_s() - 0.5 * kBytes * ByteTime_s(options.baud));
 }
 
 std::vector<std::string> BrokenBudget(const PingResult& result, const PingOptions& options) {

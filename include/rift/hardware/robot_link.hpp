@@ -30,7 +30,7 @@ class AnswerDecoder {
 /// little late does not make all later ones late.
 class LinkPacer {
  public:
-  LinkPacer(int baud, double share) : byte_s_(10.0 / baud / share) {}
+  LinkPacer(int baud, double share) : byte_s_(ByteTime_s(baud) / share) {}
 
   bool MayWrite(double now_s) const { return now_s >= free_s_; }
   void Wrote(double now_s, size_t command_bytes, size_t answer_bytes) {

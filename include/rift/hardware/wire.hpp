@@ -23,6 +23,9 @@
 /// complements, crc, range).
 namespace rift::hardware {
 
+/// What a byte takes on the serial line, in seconds: ten bits (8N1: start, eight, stop).
+constexpr double ByteTime_s(int baud) { return 10.0 / baud; }
+
 using Bytes = std::span<const std::uint8_t>;
 
 /// A command as text, by default the authors' line, "%.2f %.2f\n", left and right, rounded towards
