@@ -2,6 +2,7 @@
 
 #include "hardware/motion_check.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -86,6 +87,35 @@ TEST_CASE("Pictures that come together stop a drive when they are out of order, 
       CHECK(Stopped({.together = mixed, .is_first = side.IsFirst()}) == StopReason::kPoseDisorder);
     }
   });
+}
+
+/// Why a robot on a stand is stopped, whose wheels turn under a camera that sees it stand; none.
+std::optional<StopReason> StoppedOnAStand(const EvidenceOptions& options) {
+  constexpr double kStep_s = 0.02, kWheels_mps = 0.3, kTurns_s = 20.0;
+  MotionCheck check(options, kTrack_m);
+  for (int i = 0; i * kStep_s < kTurns_s; ++i) {
+    const double t_s = kStep_s * i, rolled_m = std::max(0.0, kWheels_mps * (t_s - 1.0));
+    check.SeeWheels({t_s, rolled_m, rolled_m}, true);
+    if (i % 2 == 0) check.SeePose({t_s, {2e-4 * (i % 4), 0.0, 0.0}, 0.0, 0.0, 0.0});
+    if (const std::optional<Disagreement> found = check.Check()) return found->reason;
+  }
+  return std::nullopt;
+}
+
+// docs/recipes.md, "Before the first drive": wheels up.
+TEST_CASE("A robot on a stand turns its wheels with the evidence of docs, and with no less") {
+  const EvidenceOptions of_docs{
+      .blind_m = 10.0, .repeats_s = 3600.0, .agree_m = 10.0, .max_latency_s = 2.0};
+  CHECK_FALSE(StoppedOnAStand(of_docs));
+  EvidenceOptions less = of_docs;
+  less.blind_m = EvidenceOptions{}.blind_m;
+  CHECK(StoppedOnAStand(less) == StopReason::kPoseStands);
+  less = of_docs;
+  less.agree_m = EvidenceOptions{}.agree_m;
+  CHECK(StoppedOnAStand(less) == StopReason::kPoseDisagrees);
+  less = of_docs;
+  less.max_latency_s = EvidenceOptions{}.max_latency_s;
+  CHECK(StoppedOnAStand(less) == StopReason::kPoseLags);
 }
 
 }  // namespace
