@@ -58,15 +58,17 @@ class Region {
     return (centre_ + scatter_.cwiseProduct(z)).cwiseMax(0.0).cwiseMin(1.0);
   }
   Eigen::VectorXd Least(const FeatureModel& model) const;
-  /// Covariance of the shares about z.
+  /// Covariance of the shares about z (sandwich: White 1982), of what scatters the estimate.
   Eigen::MatrixXd CovarianceAt(const FeatureModel& model, const Eigen::VectorXd& z) const {
-    Eigen::MatrixXd matrix = model.InformationAt(z);
-    matrix.diagonal() += scatter_.cwiseAbs2().cwiseProduct(prior_.weight);
+    Eigen::VectorXd known = scatter_.cwiseAbs2().cwiseProduct(prior_.weight);
     // A parameter that nothing tells is as uncertain as its range is wide.
-    matrix.diagonal() += kUntold * scatter_.cwiseAbs2();
-    const Eigen::MatrixXd inverse =
-        matrix.ldlt().solve(Eigen::MatrixXd::Identity(z.size(), z.size()));
-    const Eigen::MatrixXd covariance = scatter_.asDiagonal() * inverse * scatter_.asDiagonal();
+    known += kUntold * scatter_.cwiseAbs2();
+    Eigen::MatrixXd precision = model.InformationAt(z), score = model.ScoreCovarianceAt(z);
+    precision.diagonal() += known;
+    score.diagonal() += known;
+    const auto solver = precision.ldlt();
+    const Eigen::MatrixXd half = scatter_.asDiagonal() * solver.solve(score);
+    const Eigen::MatrixXd covariance = half * solver.solve(scatter_.asDiagonal().toDenseMatrix());
     return 0.5 * (covariance + covariance.transpose());  // one number on both sides of the diagonal
   }
 

@@ -292,6 +292,24 @@ Eigen::MatrixXd FeatureModel::InformationAt(const Eigen::VectorXd& z) const {
          solver.eigenvectors().transpose();
 }
 
+Eigen::MatrixXd FeatureModel::ScoreCovarianceAt(const Eigen::VectorXd& z) const {
+  const Eigen::VectorXd basis = BasisAt(z);
+  const Eigen::MatrixXd slope_of_basis = SlopeOfBasisAt(z);
+  Eigen::MatrixXd covariance = InformationAt(z);
+  for (const Group& group : groups_) {
+    if (group.told.empty()) continue;
+    const Eigen::MatrixXd slope = slope_of_basis * group.slopes;
+    const Eigen::VectorXd error = group.slopes.transpose() * basis - group.real_off;
+    // Half the gradient is slope * weights * error, and regressed slopes are in both factors. The
+    // drives' mean at a draw scatters as the real logs' does.
+    const Eigen::MatrixXd noise = group.slope_noise / static_cast<double>(group.told.size());
+    covariance += basis.dot(noise * basis) * slope * group.weights * slope.transpose();
+    covariance +=
+        error.dot(group.weights * error) * slope_of_basis * noise * slope_of_basis.transpose();
+  }
+  return covariance;
+}
+
 double FeatureModel::LossOf(const std::vector<FeatureRows>& driven) const {
   double loss = 0.0;
   for (const Group& group : groups_) {

@@ -38,6 +38,9 @@ class FeatureModel {
   Expansion At(const Eigen::VectorXd& z) const;
   /// Half the Hessian without that noise: how surely the logs tell z.
   Eigen::MatrixXd InformationAt(const Eigen::VectorXd& z) const;
+  /// Covariance of half the gradient: InformationAt where slopes are known, more where they are
+  /// regressed from few draws.
+  Eigen::MatrixXd ScoreCovarianceAt(const Eigen::VectorXd& z) const;
 
   /// The same loss of drives at one set of values, several for each log, without the regression. A
   /// feature that no drive of a group tells is as far off as its drives have ever been.

@@ -29,8 +29,8 @@ Frame NextFrame(const WorldSetting& setting) {
   }
 }
 
-/// A time limit by the pictures' clock: a recording gives them out faster than they were taken. To a
-/// microsecond: a recording counts from when it was opened, and how 0.4 s from there are rounded
+/// A time limit by the pictures' clock: a recording gives them out faster than they were taken. To
+/// a microsecond: a recording counts from when it was opened, and how 0.4 s from there are rounded
 /// depends on how long the machine has been up.
 class TimeLimit {
  public:

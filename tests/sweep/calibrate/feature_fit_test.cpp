@@ -139,10 +139,11 @@ class Rounds {
     const FeatureModel& model = model_.back();
     const auto loss = [&](const Vector2d& at) { return model.At(at).loss + PriorLossAt(At(at)); };
     const Vector2d least = LeastOf(loss, low, high);
-    Eigen::Matrix2d precision = model.InformationAt(least);
-    precision.diagonal() += 3.0 * scatter_.cwiseAbs2();  // of a parameter that nothing tells
-    precision(0, 0) += scatter_[0] * scatter_[0] * prior_weight_;
-    const Eigen::Matrix2d inverse = precision.inverse();
+    Eigen::Matrix2d known = 3.0 * scatter_.cwiseAbs2().asDiagonal();  // where nothing tells
+    known(0, 0) += scatter_[0] * scatter_[0] * prior_weight_;
+    const Eigen::Matrix2d by_precision = (model.InformationAt(least) + known).inverse();
+    const Eigen::Matrix2d inverse =
+        by_precision * (model.ScoreCovarianceAt(least) + known) * by_precision;
     Round round{.shares = At(least),
                 .sd = scatter_.cwiseProduct(inverse.diagonal().cwiseSqrt()),
                 .correlation = inverse(0, 1) / std::sqrt(inverse(0, 0) * inverse(1, 1)),

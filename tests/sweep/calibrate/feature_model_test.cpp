@@ -149,46 +149,82 @@ TEST_CASE("Estimates scatter by what the information says, in noise that logs an
   CHECK(told < 2.0 * scatter);
 }
 
+/// Few drives that share noise among `alike` draws, beside features that answer nothing: those add
+/// to the noise, and to nothing else. `real_noise`: of each log.
+FeatureModel OfFewNoisyDraws(const Eigen::Vector2d& truth, std::uint64_t seed, int alike,
+                             double real_noise) {
+  constexpr int kDraws = 60, kIdle = 30;
+  constexpr double kNoise = 0.6;
+  Made made = MakeDrives(truth, 0.0, 0.0, kDraws, seed);
+  statistics::Random random(seed, 8);
+  const auto with_idle = [](const Eigen::MatrixXd& rows) {
+    Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(rows.rows(), rows.cols() + kIdle);
+    wide.leftCols(rows.cols()) = rows;
+    return wide;
+  };
+  made.real = with_idle(made.real);
+  Eigen::MatrixXd noise;
+  for (size_t i = 0; i < made.driven.size(); ++i) {
+    Eigen::MatrixXd& rows = made.driven[i].rows;
+    rows = with_idle(rows);
+    if (i % static_cast<size_t>(alike) == 0) {
+      noise.resize(rows.rows(), rows.cols());
+      for (double& value : noise.reshaped()) value = kNoise * random.Normal();
+    }
+    rows += noise;
+  }
+  for (double& value : made.real.reshaped()) value += real_noise * random.Normal();
+  return {made.groups, made.real, made.draws, made.acts, made.driven, 1.0, alike};
+}
+
+/// The least loss within two scatters of the draws.
+Eigen::Vector2d LeastOf(const FeatureModel& model) {
+  Eigen::Vector2d z = Eigen::Vector2d::Zero();
+  for (int i = 0; i < 100; ++i) {
+    const FeatureModel::Expansion at = model.At(z);
+    z = (z - at.hessian.inverse() * at.gradient).cwiseMax(-2.0).cwiseMin(2.0);
+  }
+  return z;
+}
+
 TEST_CASE(
     "Estimates of few noisy draws lie about the truth, also of draws that share their noise") {
-  constexpr int kFits = 400, kDraws = 60, kIdle = 30;
-  constexpr double kNoise = 0.6;
+  constexpr int kFits = 400;
   const Eigen::Vector2d truth(0.8, -0.6);
   for (const int alike : {1, 2}) {
     std::vector<double> first, second;
     for (int fit = 0; fit < kFits; ++fit) {
-      const auto seed = static_cast<std::uint64_t>(fit + 1);
-      Made made = MakeDrives(truth, 0.0, 0.0, kDraws, seed);
-      statistics::Random random(seed, 8);
-      // Features that answer nothing add to the noise, and to nothing else.
-      const auto with_idle = [](const Eigen::MatrixXd& rows) {
-        Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(rows.rows(), rows.cols() + kIdle);
-        wide.leftCols(rows.cols()) = rows;
-        return wide;
-      };
-      made.real = with_idle(made.real);
-      Eigen::MatrixXd noise;
-      for (size_t i = 0; i < made.driven.size(); ++i) {
-        Eigen::MatrixXd& rows = made.driven[i].rows;
-        rows = with_idle(rows);
-        if (i % static_cast<size_t>(alike) == 0) {
-          noise.resize(rows.rows(), rows.cols());
-          for (double& value : noise.reshaped()) value = kNoise * random.Normal();
-        }
-        rows += noise;
-      }
-      const FeatureModel model(made.groups, made.real, made.draws, made.acts, made.driven, 1.0,
-                               alike);
-      Eigen::Vector2d z = Eigen::Vector2d::Zero();
-      for (int i = 0; i < 100; ++i) {
-        const FeatureModel::Expansion at = model.At(z);
-        z = (z - at.hessian.inverse() * at.gradient).cwiseMax(-2.0).cwiseMin(2.0);
-      }
+      const Eigen::Vector2d z =
+          LeastOf(OfFewNoisyDraws(truth, static_cast<std::uint64_t>(fit + 1), alike, 0.0));
       first.push_back(z[0]), second.push_back(z[1]);
     }
     CAPTURE(alike);
     CHECK(statistics::Median(first) == Approx(truth[0]).margin(0.04));
     CHECK(statistics::Median(second) == Approx(truth[1]).margin(0.04));
+  }
+}
+
+TEST_CASE("Intervals of few noisy draws hold the truth, which the information alone does not") {
+  constexpr int kFits = 400;
+  constexpr double kDeviations = 1.96;
+  const Eigen::Vector2d truth(0.3, -0.2);
+  for (const int alike : {1, 2}) {
+    int held = 0, held_by_information = 0;
+    for (int fit = 0; fit < kFits; ++fit) {
+      const FeatureModel model =
+          OfFewNoisyDraws(truth, static_cast<std::uint64_t>(fit + 1), alike, 0.6);
+      const Eigen::Vector2d z = LeastOf(model);
+      const Eigen::Matrix2d inverse = model.InformationAt(z).inverse();
+      const Eigen::Matrix2d covariance = inverse * model.ScoreCovarianceAt(z) * inverse;
+      for (int k = 0; k < 2; ++k) {
+        const double off = std::abs(z[k] - truth[k]);
+        held += off < kDeviations * std::sqrt(covariance(k, k));
+        held_by_information += off < kDeviations * std::sqrt(inverse(k, k));
+      }
+    }
+    CAPTURE(alike);
+    CHECK(held > 0.90 * 2 * kFits);
+    CHECK(held_by_information < 0.88 * 2 * kFits);
   }
 }
 
