@@ -95,9 +95,10 @@ std::vector<double> Matrix(const yaml::Node::Entry& entry) {
   return values;
 }
 
+/// In the message that ROS sends, as in its file under other names.
 void ReadSize(const yaml::Node& root, CameraModel& camera) {
-  const yaml::Node::Entry* width = root.Find("image_width");
-  const yaml::Node::Entry* height = root.Find("image_height");
+  const yaml::Node::Entry* width = FindAny(root, {"image_width", "width"});
+  const yaml::Node::Entry* height = FindAny(root, {"image_height", "height"});
   const auto read = [](const yaml::Node::Entry& entry) {
     return ReadInt(entry.value, {entry.key, yaml::Range{1, 100'000}, "pixels"});
   };
@@ -110,11 +111,19 @@ void ReadMatrix(const yaml::Node& root, CameraModel& camera) {
   const std::vector<double> values = Matrix(entry);
   if (values.size() != 9) yaml::Fail(entry.value, entry.key, "9 numbers, row by row");
   for (int i = 0; i < 9; ++i) camera.k(i / 3, i % 3) = values[static_cast<std::size_t>(i)];
+  const yaml::Node::Entry* data = entry.value.IsMap() ? entry.value.Find("data") : &entry;
+  const std::string key = data == &entry ? entry.key : entry.key + ".data";
+  // OpenCV's projection passes over a skew, so that the poses would be of another camera.
   const bool is_camera = camera.k(0, 0) > 0.0 && camera.k(1, 1) > 0.0 && camera.k(2, 2) == 1.0 &&
-                         camera.k(1, 0) == 0.0 && camera.k(2, 0) == 0.0 && camera.k(2, 1) == 0.0;
+                         camera.k(0, 1) == 0.0 && camera.k(1, 0) == 0.0 && camera.k(2, 0) == 0.0 &&
+                         camera.k(2, 1) == 0.0;
   if (!is_camera) {
-    yaml::Fail(entry.value, entry.key, "[fx, 0, cx, 0, fy, cy, 0, 0, 1] with fx and fy above 0");
+    yaml::Fail(data->value, key,
+               fmt::format("[fx, 0, cx, 0, fy, cy, 0, 0, 1] with fx and fy above 0 and no skew, "
+                           "not [{}]",
+                           fmt::join(values, ", ")));
   }
+  if (const auto why = WhyNoLens(camera)) yaml::Fail(data->value, key, *why);
 }
 
 Lens ReadLens(const yaml::Node& root) {

@@ -1,5 +1,8 @@
 #include "rift/vision/camera/camera_model.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
@@ -9,6 +12,8 @@ namespace {
 /// cv::undistortPoints stops after five rounds unless told otherwise, 0.1 px short of the truth at
 /// the border of the paper's lens.
 const cv::TermCriteria kExact(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 60, 1e-10);
+
+constexpr double kShortestFocal = 0.1, kLongestFocal = 100.0;  // longer sides of the picture
 
 cv::Mat Intrinsics(const CameraModel& camera) {
   cv::Mat k;
@@ -23,6 +28,26 @@ std::vector<Eigen::Vector2d> ToEigen(const std::vector<cv::Point2d>& points) {
 }
 
 }  // namespace
+
+std::optional<std::string> WhyNoLens(const CameraModel& camera) {
+  if (camera.width_px == 0 || camera.height_px == 0) return std::nullopt;
+  const double longer_px = std::max(camera.width_px, camera.height_px);
+  for (const double focal_px : {camera.k(0, 0), camera.k(1, 1)}) {
+    if (focal_px >= kShortestFocal * longer_px && focal_px <= kLongestFocal * longer_px) continue;
+    return fmt::format(
+        "the focal length {:g} px must be {:g} to {:g} times the longer side of the picture, {:g} "
+        "px: give it in pixels, its millimetres divided by those of a pixel",
+        focal_px, kShortestFocal, kLongestFocal, longer_px);
+  }
+  const double x_px = camera.k(0, 2), y_px = camera.k(1, 2);
+  if (x_px >= 0.0 && x_px <= camera.width_px && y_px >= 0.0 && y_px <= camera.height_px) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "the principal point ({:g}, {:g}) px must be in the picture of {}x{} px: is this the "
+      "calibration of another camera, or of pictures of another size?",
+      x_px, y_px, camera.width_px, camera.height_px);
+}
 
 std::vector<Eigen::Vector2d> PixelsFromPoints(
     const CameraModel& camera, const std::vector<Eigen::Vector3d>& points_in_camera) {

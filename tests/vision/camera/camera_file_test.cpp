@@ -218,9 +218,43 @@ TEST_CASE("A camera matrix is one, and a lens has as many numbers as its model")
   }
   for (const char* wrong :
        {"[0, 0, 320, 0, 910, 240, 0, 0, 1]", "[900, 0, 320, 0, 0, 240, 0, 0, 1]",
-        "[900, 0, 320, 1, 910, 240, 0, 0, 1]", "[900, 0, 320, 0, 910, 240, 1, 0, 1]",
-        "[900, 0, 320, 0, 910, 240, 0, 1, 1]", "[900, 0, 320, 0, 910, 240, 0, 0, 2]"}) {
+        "[900, 1, 320, 0, 910, 240, 0, 0, 1]", "[900, 0, 320, 1, 910, 240, 0, 0, 1]",
+        "[900, 0, 320, 0, 910, 240, 1, 0, 1]", "[900, 0, 320, 0, 910, 240, 0, 1, 1]",
+        "[900, 0, 320, 0, 910, 240, 0, 0, 2]"}) {
     CHECK_THROWS_WITH(ReadWith(wrong, "[1, 2, 3, 4]"), Contains("fx and fy above 0"));
+  }
+}
+
+TEST_CASE("The message that ROS sends of a camera is read with its size") {
+  const CameraModel camera = ReadCamera(
+      "height: 480\nwidth: 640\ndistortion_model: plumb_bob\nD: [-0.36, 0.11, 0.001, 0.0005, 0]\n"
+      "K: [438.8, 0, 305.6, 0, 437.3, 243.7, 0, 0, 1]\nbinning_x: 0\n",
+      "ros.yaml");
+  CHECK(camera.width_px == 640);
+  CHECK(camera.height_px == 480);
+}
+
+TEST_CASE("A camera matrix that no lens has is refused, since its poses would be anywhere") {
+  const std::string size = "image_width: 960\nimage_height: 720\n";
+  const auto refusal = [&](const std::string& matrix) -> std::string {
+    try {
+      ReadWith(matrix, "[0, 0, 0, 0]", size);
+    } catch (const yaml::Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK(refusal("[96, 0, 0, 0, 96000, 720, 0, 0, 1]") == "accepted");
+  CHECK(refusal("[4.2, 0, 477, 0, 4.2, 365, 0, 0, 1]") ==
+        "cam.yaml:1:16: key 'camera_matrix' is a list of 9: the focal length 4.2 px must be 0.1 to "
+        "100 times the longer side of the picture, 960 px: give it in pixels, its millimetres "
+        "divided by those of a pixel");
+  CHECK_THAT(refusal("[1170, 0, 477, 0, 96001, 365, 0, 0, 1]"), Contains("the focal length 96001"));
+  for (const char* outside :
+       {"[1170, 0, -1, 0, 1170, 365, 0, 0, 1]", "[1170, 0, 961, 0, 1170, 365, 0, 0, 1]",
+        "[1170, 0, 477, 0, 1170, -1, 0, 0, 1]", "[1170, 0, 477, 0, 1170, 721, 0, 0, 1]"}) {
+    CHECK_THAT(refusal(outside), Contains("the principal point (") &&
+                                     Contains("must be in the picture of 960x720 px"));
   }
 }
 

@@ -14,7 +14,7 @@ TEST_CASE("A camera is written with every number at its place") {
   camera.name = "a \"b\" c";
   camera.width_px = 1920;
   camera.height_px = 1080;
-  camera.k << 1091.5, 0.25, 908.75, 0.0, 1095.5, 643.0, 0.0, 0.0, 1.0;
+  camera.k << 1091.5, 0, 908.75, 0.0, 1095.5, 643.0, 0.0, 0.0, 1.0;
   camera.distortion = {0.25, -0.5, 0.125, -0.0625, 0.75};
   camera.rms_px = 0.375;
   camera.world.emplace();
@@ -36,7 +36,7 @@ camera_matrix:
   rows: 3
   cols: 3
   dt: d
-  data: [1091.5, 0.25, 908.75, 0, 1095.5, 643, 0, 0, 1]
+  data: [1091.5, 0, 908.75, 0, 1095.5, 643, 0, 0, 1]
 distortion_model: plumb_bob
 distortion_coefficients:
   rows: 1
@@ -52,7 +52,7 @@ projection_matrix:
   rows: 3
   cols: 4
   dt: d
-  data: [1091.5, 0.25, 908.75, 0, 0, 1095.5, 643, 0, 0, 0, 1, 0]
+  data: [1091.5, 0, 908.75, 0, 0, 1095.5, 643, 0, 0, 0, 1, 0]
 calibration:
   rms_px: 0.375
 world_frame:

@@ -10,7 +10,8 @@ namespace rift::vision {
 /// A camera's calibration, in any of these layouts (unknown keys are the business of others):
 ///   ROS       camera_info: image_width, image_height, camera_name, camera_matrix and
 ///             distortion_coefficients as {rows, cols, data}, distortion_model; ours has in
-///             addition `calibration` and `world_frame`, the latter strict
+///             addition `calibration` and `world_frame`, the latter strict; or its message:
+///             width, height, K, D
 ///   OpenCV    FileStorage: the same keys with !!opencv-matrix; fisheye_model
 ///   authors'  camera_matrix and dist_coeff (or dist_coeffs, dist, K, D, mtx) as nested lists;
 ///             without a size: width_px and height_px stay 0

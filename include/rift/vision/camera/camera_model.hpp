@@ -50,6 +50,11 @@ struct CameraModel {
   std::optional<WorldFrame> world;
 };
 
+/// Why no lens is like that: a focal length beyond 0.1 to 100 times the longer side (a fisheye of
+/// 180 degrees has 0.3, one degree of view 57), or a principal point outside of the picture (which
+/// cv::calibrateCamera takes for no camera either). None where the picture's size is not known.
+std::optional<std::string> WhyNoLens(const CameraModel& camera);
+
 /// A pixel with integer coordinates is a pixel's middle, as in OpenCV: the picture begins at
 /// (-0.5, -0.5). A ray is a point on the plane one metre before the camera: (x/z, y/z).
 
