@@ -38,6 +38,13 @@ struct Side {
   double Cell_px() const { return length_px / cells; }
 };
 
+/// A side that is longer than the patch is none: a lens that folds the picture throws corners any
+/// distance away, and so many points have no room in memory. NaN is no length either.
+bool IsMeasurable(const Side& side, const GreyPatch& patch) {
+  return side.Cell_px() >= kLeastCell_px &&
+         side.length_px <= patch.region.width_px + patch.region.height_px;
+}
+
 /// Calls visit(point) at about `step_px` along the side, a cell away from its ends.
 template <class Visit>
 void WalkAlong(const Side& side, double step_px, Visit&& visit) {
@@ -75,7 +82,7 @@ std::optional<TagCorners> Approach(const GreyPatch& patch, const TagCorners& gue
   std::vector<EdgeLine> lines;
   for (int i = 0; i < 4; ++i) {
     const Side side(guess[i], guess[(i + 1) % 4], shape);
-    if (side.Cell_px() < kLeastCell_px) return std::nullopt;
+    if (!IsMeasurable(side, patch)) return std::nullopt;
     std::vector<Eigen::Vector2d> points;
     WalkAlong(side, 3.0, [&](const Eigen::Vector2d& point) {
       if (auto edge =
@@ -212,7 +219,7 @@ std::optional<FittedSquare> FitOnce(const CameraModel& camera, const GreyPatch& 
   std::array<EdgeLine, 4> lines;
   for (int i = 0; i < 4; ++i) {
     const Side side(near[i], near[(i + 1) % 4], shape);
-    if (side.Cell_px() < kLeastCell_px) return std::nullopt;
+    if (!IsMeasurable(side, patch)) return std::nullopt;
     const Profiles profiles = Sample(patch, side);
     // NaN, from outside the patch, fails here too.
     if (!(profiles.white - profiles.black > least_contrast)) return std::nullopt;

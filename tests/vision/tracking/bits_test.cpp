@@ -180,5 +180,22 @@ TEST_CASE("A tag above the floor is left free, unless the picture is too bright 
   CHECK_FALSE(seen.sighting->is_on_floor);
 }
 
+TEST_CASE("A lens that throws corners far out of the picture gives no square, and takes no room") {
+  const Shot shot;
+  CameraModel camera = shot.camera;
+  camera.k(0, 0) = camera.k(1, 1) = 4.2;  // millimetres for pixels
+  camera.distortion = {-0.18, 0.06, 0.0008, -0.0005, 0.0};
+  const TagOptions options;
+  const auto fit = [&](const CameraModel& by, const TagCorners& guess) {
+    return FitSquare(by, shot.patch, guess, CellsOfTag(0).shape, options.least_contrast, {});
+  };
+  const TagCorners corners = test::TrueCorners(shot.camera, shot.robot);
+  CHECK(fit(shot.camera, corners));
+  CHECK_FALSE(fit(camera, corners));
+  TagCorners far = corners;
+  far[2] = {1e15, 1e15};
+  CHECK_FALSE(fit(shot.camera, far));
+}
+
 }  // namespace
 }  // namespace rift::vision
