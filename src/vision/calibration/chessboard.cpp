@@ -182,7 +182,9 @@ BoardView FindBoard(const std::string& path, const Board& board) {
   const std::string name = std::filesystem::path(path).filename().string();
   const std::string problem = JpegProblem(path);
   if (!problem.empty()) return Unusable(name, problem);
-  const cv::Mat picture = cv::imread(path, cv::IMREAD_COLOR);
+  // As the sensor has it: a lens does not turn with the camera, as EXIF data tell, and what is
+  // tracked is not turned either.
+  const cv::Mat picture = cv::imread(path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   return picture.empty() ? Undecodable(name) : FindIn(picture, board, name, BoardSearch::kThorough);
 }
 

@@ -56,6 +56,36 @@ TEST_CASE("A board turned any way is found where it is, from its upper left end 
   }
 }
 
+TEST_CASE("A photograph is not turned as its EXIF data say, since its lens was not") {
+  const test::TemporaryFolder folder;
+  cv::Mat1b aside;  // not in the middle, where half a turn changes nothing
+  cv::copyMakeBorder(Drawn(), aside, 0, 0, 80, 0, cv::BORDER_CONSTANT, 255);
+  std::vector<std::uint8_t> jpeg = WriteJpeg(aside, 95, false);
+  const auto corners_of = [&] {
+    std::ofstream(folder / "board.jpg", std::ios::binary)
+        .write(reinterpret_cast<const char*>(jpeg.data()),
+               static_cast<std::streamsize>(jpeg.size()));
+    return FindBoard(folder / "board.jpg", kBoard);
+  };
+  const BoardView plain = corners_of();
+  REQUIRE(plain.corners.size() == 35);
+  for (const auto orientation :
+       {std::uint8_t{3}, std::uint8_t{6}}) {  // by half a turn, by a quarter
+    // An Exif segment with a folder of one entry (TIFF 6.0): 0x0112, a short, the orientation.
+    const std::vector<std::uint8_t> exif{
+        0xFF, 0xE1, 0,    34,   'E', 'x', 'i', 'f', 0, 0, 'I',         'I', 42, 0, 8, 0, 0, 0,
+        1,    0,    0x12, 0x01, 3,   0,   1,   0,   0, 0, orientation, 0,   0,  0, 0, 0, 0, 0};
+    jpeg = WriteJpeg(aside, 95, false);
+    jpeg.insert(jpeg.begin() + 2, exif.begin(), exif.end());
+    const BoardView turned = corners_of();
+    CHECK((turned.width_px == plain.width_px && turned.height_px == plain.height_px));
+    REQUIRE(turned.corners.size() == 35);
+    for (std::size_t i = 0; i < 35; ++i) {
+      CHECK((turned.corners[i] - plain.corners[i]).norm() == 0.0);
+    }
+  }
+}
+
 Frame FrameOf(const cv::Mat& picture) {
   Frame frame{.width_px = picture.cols, .height_px = picture.rows};
   if (picture.channels() == 3) frame.format = PixelFormat::kBgr;
