@@ -112,7 +112,9 @@ class ImageSource : public CameraSource {
       return true;
     }
     if (frame.bytes.empty() || PngPixels(frame.bytes) > 1e6 * options_.most_mpixel) return false;
-    const cv::Mat picture = cv::imdecode(frame.bytes, cv::IMREAD_GRAYSCALE);
+    // Not turned as its EXIF data say: a JPEG is not either, and the lens is that of the sensor.
+    const cv::Mat picture =
+        cv::imdecode(frame.bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     if (picture.empty()) return false;
     frame.format = PixelFormat::kGrey;
     frame.width_px = picture.cols;
@@ -135,8 +137,12 @@ std::vector<std::string> ImageFiles(const std::string& pattern) {
   std::vector<std::string> files;
   if (fs::is_directory(pattern)) {
     for (const fs::directory_entry& entry : fs::directory_iterator(pattern)) {
-      if (entry.is_regular_file() && NamesPicture(entry.path().string()))
+      // Hidden files are none of the pictures, as in a pattern: other systems leave some by the
+      // pictures' names.
+      const bool is_hidden = entry.path().filename().string().starts_with('.');
+      if (!is_hidden && entry.is_regular_file() && NamesPicture(entry.path().string())) {
         files.push_back(entry.path().string());
+      }
     }
   } else if (fs::exists(pattern)) {
     files = {pattern};
@@ -149,6 +155,17 @@ std::vector<std::string> ImageFiles(const std::string& pattern) {
   }
   std::sort(files.begin(), files.end(), IsBefore);
   return files;
+}
+
+std::optional<std::string> GuessedTimes(const std::string& camera, const CaptureOptions& options) {
+  if (KindOf(camera) != SourceKind::kImages || !options.times.empty()) return std::nullopt;
+  const std::vector<std::string> files = ImageFiles(camera);
+  if (files.size() < 2 || AreCounted(files)) return std::nullopt;
+  return fmt::format(
+      "no number in the names of {} rises from each picture to the next, so that they are taken to "
+      "follow each other in the order of their names at {:g} a second, and none to be missing: "
+      "--times tells when they were taken",
+      camera, options.fps);
 }
 
 std::unique_ptr<CameraSource> OpenImages(const std::string& pattern,

@@ -32,25 +32,45 @@ std::size_t EndOfDigits(const std::string& text, std::size_t at) {
   return at;
 }
 
-/// The last number in the name of a file, its folder and ending left out.
-std::optional<double> NumberIn(const std::string& file) {
+constexpr std::size_t kUnixDigits = 10;  // of seconds since 1970, from 2001 to 2286
+
+/// The numbers in the name of a file, the last one first, its folder and ending left out.
+std::vector<double> NumbersIn(const std::string& file) {
   const std::string stem = std::filesystem::path(file).stem().string();
-  const std::size_t last = stem.find_last_of("0123456789");
-  if (last == std::string::npos) return std::nullopt;
-  std::size_t first = last;
-  while (first > 0 && IsDigit(stem[first - 1])) --first;
-  return std::strtod(stem.substr(first, last - first + 1).c_str(), nullptr);
+  std::vector<double> numbers;
+  for (std::size_t at = 0; at < stem.size();) {
+    std::size_t end = EndOfDigits(stem, at);
+    const bool has_fraction = end - at == kUnixDigits && end + 1 < stem.size() &&
+                              stem[end] == '.' && IsDigit(stem[end + 1]);
+    if (has_fraction) end = EndOfDigits(stem, end + 1);
+    if (end > at) numbers.push_back(std::strtod(stem.substr(at, end - at).c_str(), nullptr));
+    at = std::max(end, at + 1);
+  }
+  std::reverse(numbers.begin(), numbers.end());
+  return numbers;
 }
 
-/// The numbers of all names; none unless they rise.
-std::optional<std::vector<double>> RisingNumbers(const std::vector<std::string>& files) {
+/// Those at one place of all names; none unless they rise.
+std::optional<std::vector<double>> RisingAt(const std::vector<std::vector<double>>& names,
+                                            std::size_t place) {
   std::vector<double> numbers;
-  for (const std::string& file : files) {
-    const std::optional<double> number = NumberIn(file);
-    if (!number || (!numbers.empty() && *number <= numbers.back())) return std::nullopt;
-    numbers.push_back(*number);
+  for (const std::vector<double>& name : names) {
+    if (place >= name.size()) return std::nullopt;
+    if (!numbers.empty() && name[place] <= numbers.back()) return std::nullopt;
+    numbers.push_back(name[place]);
   }
   return numbers;
+}
+
+/// The last numbers of the names that rise throughout; none where none do.
+std::optional<std::vector<double>> RisingNumbers(const std::vector<std::string>& files) {
+  std::vector<std::vector<double>> names;
+  for (const std::string& file : files) names.push_back(NumbersIn(file));
+  const std::size_t places = names.empty() ? 0 : names.front().size();
+  for (std::size_t place = 0; place < places; ++place) {
+    if (auto rising = RisingAt(names, place)) return rising;
+  }
+  return std::nullopt;
 }
 
 /// The smallest step where all are multiples of it (counts, some missing), else the median (clock
@@ -115,6 +135,8 @@ bool IsBefore(const std::string& a, const std::string& b) {
   if (a.size() - i != b.size() - k) return a.size() - i < b.size() - k;
   return a < b;
 }
+
+bool AreCounted(const std::vector<std::string>& files) { return RisingNumbers(files).has_value(); }
 
 std::vector<double> TimesByNames(const std::vector<std::string>& files, double fps) {
   std::vector<double> times_s;

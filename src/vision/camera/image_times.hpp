@@ -9,8 +9,13 @@ namespace rift::vision {
 /// Natural order: digits compare as numbers, so that frame2 comes before frame10.
 bool IsBefore(const std::string& a, const std::string& b);
 
-/// When pictures were taken, seconds after the first, `fps` a second. Where the last numbers in
-/// their names rise throughout, they are the time: the usual step between two of them is 1 / fps,
+/// Whether the names of pictures count them: the numbers at one place of their names, counted from
+/// the end, rise throughout (frame012_cam2.jpg: the first). Unix seconds with a fraction, ten
+/// digits and a point before more, are one number.
+bool AreCounted(const std::vector<std::string>& files);
+
+/// When pictures were taken, seconds after the first, `fps` a second. Where their names count them,
+/// by the last numbers that do, these are the time: the usual step between two of them is 1 / fps,
 /// and pictures that are missing leave their time out. Otherwise they follow each other.
 std::vector<double> TimesByNames(const std::vector<std::string>& files, double fps);
 

@@ -122,5 +122,59 @@ TEST_CASE("A name that matches no picture, and a video that is not there, say wh
   CHECK_THROWS_WITH(OpenCamera(folder / "text.mp4", {}), Contains("is it a video?"));
 }
 
+TEST_CASE("Hidden files are no pictures of a folder, nor of a pattern") {
+  const test::TemporaryFolder folder;
+  WriteGrey(folder / "1.png", 101);
+  WriteGrey(folder / ".1.png", 90);
+  std::ofstream(folder / "._1.png") << "left by another system";
+  CHECK(ImageFiles(folder.Path().string()) == std::vector<std::string>{folder / "1.png"});
+  CHECK(ImageFiles(folder / "*.png") == std::vector<std::string>{folder / "1.png"});
+}
+
+TEST_CASE("Pictures whose times are guessed by their order are said, and no others") {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.png", "b.png"}) WriteGrey(folder / name, 100);
+  const CaptureOptions options{.fps = 12.5};
+  CHECK(GuessedTimes(folder / "*.png", options) ==
+        "no number in the names of " + folder / "*.png" +
+            " rises from each picture to the next, so that they are taken to follow each other in "
+            "the order of their names at 12.5 a second, and none to be missing: --times tells when "
+            "they were taken");
+  CHECK_FALSE(GuessedTimes(folder / "*.png", {.times = "times.txt"}));
+  CHECK_FALSE(GuessedTimes(folder / "a.png", options));
+  CHECK_FALSE(GuessedTimes("/dev/video0", options));
+  const test::TemporaryFolder counted;
+  for (const char* name : {"a1.png", "a2.png"}) WriteGrey(counted / name, 100);
+  CHECK_FALSE(GuessedTimes(counted.Path().string(), options));
+}
+
+/// As ISO 15948 has it, bit by bit.
+std::uint32_t CrcOf(const std::vector<std::uint8_t>& bytes) {
+  std::uint32_t crc = 0xFFFFFFFF;
+  for (const std::uint8_t byte : bytes) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ ((crc & 1) != 0 ? 0xEDB88320 : 0);
+  }
+  return ~crc;
+}
+
+TEST_CASE("A picture is not turned as its EXIF data say, since its lens was not") {
+  const test::TemporaryFolder folder;
+  WriteGrey(folder / "a.png", 101);
+  std::ifstream file(folder / "a.png", std::ios::binary);
+  std::vector<std::uint8_t> png{std::istreambuf_iterator<char>(file), {}};
+  // TIFF 6.0: a folder of one entry, 0x0112, a short: turned by a quarter.
+  std::vector<std::uint8_t> chunk{'e', 'X', 'I', 'f', 'I', 'I', 42, 0, 8, 0, 0, 0, 1, 0, 0x12,
+                                  1,   3,   0,   1,   0,   0,   0,  6, 0, 0, 0, 0, 0, 0, 0};
+  const std::uint32_t crc = CrcOf(chunk);
+  for (const int shift : {24, 16, 8, 0}) chunk.push_back(static_cast<std::uint8_t>(crc >> shift));
+  chunk.insert(chunk.begin(), {0, 0, 0, 26});
+  png.insert(png.begin() + 33, chunk.begin(), chunk.end());  // behind the signature and the head
+  std::ofstream(folder / "b.png", std::ios::binary)
+      .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  const auto source = OpenCamera(folder / "*.png", {});
+  CHECK(GreysOf(*source) == std::vector<int>{101, 101});
+}
+
 }  // namespace
 }  // namespace rift::vision

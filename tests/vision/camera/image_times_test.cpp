@@ -139,5 +139,27 @@ TEST_CASE("What is wrong with a file of times is said with its line, picture and
   CHECK_THROWS_WITH(TimesFromText("2\n2\n", "t", files), Contains("2 s of run/b.jpg is not later"));
 }
 
+TEST_CASE("The numbers that count pictures may stand before others, and may be Unix seconds") {
+  const auto times_s = [](const std::vector<std::string>& files) {
+    return TimesByNames(files, 10.0);
+  };
+  using Times = std::vector<double>;
+  // Of the fourth no picture is there, whatever stands behind its number.
+  const Times with_gap{0.0, 0.1, 0.3};
+  CHECK(times_s({"a1_960x720.jpg", "a2_960x720.jpg", "a4_960x720.jpg"}) == with_gap);
+  CHECK(times_s({"1_cam2.jpg", "2_cam2.jpg", "4_cam2.jpg"}) == with_gap);
+  const Times unix_s = times_s(
+      {"1700000000.900.png", "1700000001.000.png", "1700000001.300.png", "1700000001.400.png"});
+  REQUIRE(unix_s.size() == 4);
+  CHECK(unix_s[1] == Approx(0.1));
+  CHECK(unix_s[2] == Approx(0.4));
+  CHECK(AreCounted({"a1_960x720.jpg", "a2_960x720.jpg"}));
+  CHECK(AreCounted({"1700000000.9.png", "1700000001.1.png"}));
+  CHECK_FALSE(AreCounted({"a.png", "b.png"}));
+  CHECK_FALSE(AreCounted({"10-59-59.900.png", "11-00-00.000.png", "11-00-00.100.png"}));
+  CHECK_FALSE(AreCounted({"1.9.png", "2.1.png", "2.0.png"}));
+  CHECK_FALSE(AreCounted({"a1_1.png", "a1.png"}));
+}
+
 }  // namespace
 }  // namespace rift::vision

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -98,5 +99,9 @@ std::unique_ptr<CameraSource> OpenCamera(const std::string& name, const CaptureO
 /// The pictures of a folder, of a glob (`run/*.jpg`), or one file, in natural order: frame2 before
 /// frame10. Throws std::invalid_argument when there is none.
 std::vector<std::string> ImageFiles(const std::string& pattern);
+
+/// What to tell of pictures whose times are neither given nor counted by their names, one line;
+/// none of any other camera. Throws as ImageFiles does.
+std::optional<std::string> GuessedTimes(const std::string& camera, const CaptureOptions& options);
 
 }  // namespace rift::vision
