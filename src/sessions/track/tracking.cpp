@@ -11,8 +11,10 @@
 #include "rift/report/json/json.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/tracking/tag_family.hpp"
 #include "rift/vision/tracking/tag_visibility.hpp"
+#include "rift/vision/tracking/world_check.hpp"
 #include "window.hpp"
 #include "world.hpp"
 
@@ -32,11 +34,16 @@ void TakeSize(const TrackingJob& job, const Say& say, vision::CameraSession& ses
 
 /// What is wrong with the poses to come, while it can still be changed.
 void SayWhatToExpect(const TrackingJob& job, const Say& say, const vision::CameraSession& session) {
+  const auto guessed = vision::GuessedTimes(job.camera, session.options());
+  if (guessed) say("note: " + *guessed);
   if (!session.camera().world) {
     say(fmt::format(
         "note: {} holds no world frame: the poses are in the camera's own frame (z below 0, no "
         "floor to hold the tag to); rift track --world sets one",
         job.calibration));
+  }
+  if (const auto other = vision::WhyNotOfThisLens(session.camera())) {
+    say(fmt::format("warning: {}: {}", job.calibration, *other));
   }
   const auto small = vision::SmallTagWarning(session.camera(), session.tag());
   if (small) say("warning: " + *small);

@@ -148,6 +148,22 @@ void CheckScale(double scale, double size_m, double tolerance) {
                   scale * size_m, size_m, reason));
 }
 
+std::optional<std::string> WhyNotOfThisLens(const CameraModel& camera) {
+  constexpr double kRounded_m = 1e-3;  // what a person who copies numbers may leave out
+  if (!camera.world || camera.world->marks.empty()) return std::nullopt;
+  double sum_m2 = 0.0;
+  for (const ReferenceMark& mark : camera.world->marks) {
+    const auto p_m = MapFromPixel(camera, mark.seen_px, mark.p_in_world.z());
+    sum_m2 += p_m ? (*p_m - mark.p_in_world.head<2>()).squaredNorm() : HUGE_VAL;
+  }
+  const double off_m = std::sqrt(sum_m2 / static_cast<double>(camera.world->marks.size()));
+  if (off_m <= camera.world->residual_m + kRounded_m) return std::nullopt;
+  return fmt::format(
+      "the world frame is not of this lens: the reference tags that set it lie {:.1f} mm from "
+      "where it puts them, and {:.1f} mm when it was set: set it again (rift track --world)",
+      1e3 * off_m, 1e3 * camera.world->residual_m);
+}
+
 std::optional<std::string> IsWorseThan(const WorldFrame& next, const WorldFrame& present) {
   constexpr double kSame_m = 2e-4;
   const bool from_floor = next.origin != kFirstPoseOrigin;

@@ -122,6 +122,22 @@ const TagDetection* Find(const std::vector<TagDetection>& seen, int id) {
   return found == seen.end() ? nullptr : &*found;
 }
 
+/// Of several tags with the mark's id the one that is nearest to where the mark was seen: another
+/// one may lie about.
+const TagDetection* FindNearest(const CameraModel& camera, const std::vector<TagDetection>& seen,
+                                const ReferenceMark& mark) {
+  const TagDetection* nearest = nullptr;
+  double least_px = HUGE_VAL;
+  for (const TagDetection& tag : seen) {
+    if (tag.id != mark.tag_id) continue;
+    const double off_px = (MiddlePixel(camera, tag.corners) - mark.seen_px).norm();
+    if (off_px >= least_px) continue;
+    nearest = &tag;
+    least_px = off_px;
+  }
+  return nearest;
+}
+
 }  // namespace
 
 WorldFrame WorldFromPoints(const CameraModel& camera, const std::vector<WorldPoint>& points,
@@ -206,7 +222,7 @@ std::optional<double> MovedBy_m(const CameraModel& camera, const std::vector<Tag
   double sum = 0.0;
   int count = 0;
   for (const ReferenceMark& mark : camera.world->marks) {
-    const TagDetection* tag = Find(seen, mark.tag_id);
+    const TagDetection* tag = FindNearest(camera, seen, mark);
     if (tag == nullptr) continue;
     const double z_m = mark.p_in_world.z();
     const auto then = MapFromPixel(camera, mark.seen_px, z_m);

@@ -18,7 +18,8 @@ namespace rift::vision {
 namespace {
 
 constexpr double kTick_s = 0.02;
-constexpr double kStill_px = 0.5;  // some times the noise of a corner's mean
+constexpr double kRounded_s = 1e-6;  // a difference of times that count from the machine's start
+constexpr double kStill_px = 0.5;    // some times the noise of a corner's mean
 
 /// The next picture; throws when there will be none.
 Frame NextFrame(const WorldSetting& setting) {
@@ -38,7 +39,7 @@ class TimeLimit {
   bool IsOver(const Frame& frame) {
     if (!has_begun_) begin_s_ = frame.captured_s;
     has_begun_ = true;
-    return frame.captured_s - begin_s_ >= limit_s_;
+    return frame.captured_s - begin_s_ >= limit_s_ - kRounded_s;
   }
 
  private:
@@ -76,6 +77,29 @@ void RequireStandstill(const std::vector<TagCorners>& seen, int tag_id,
       "tag {} moved by {:.1f} px while its first pose was averaged over {:g} s (at most {:g}): let "
       "the robot stand still, or give --world-average 0 to take a single picture",
       tag_id, farthest_px, options.world_average_s, kStill_px));
+}
+
+/// A frame from another robot's tag, or from one that lies about, is none of this robot's.
+void RequireOneRobot(const Sighting& sighting) {
+  if (sighting.tags_of_this_id < 2) return;
+  throw std::invalid_argument(fmt::format(
+      "{} tags with the robot's id {} are in the picture, and nobody knows which one is the "
+      "robot's: take away all but the robot's; the world frame was not set",
+      sighting.tags_of_this_id, sighting.tag_id));
+}
+
+/// A reference tag has one place, and of two in the picture nobody knows which one was measured.
+void RequireOneOfEach(const std::vector<ReferenceMark>& marks,
+                      const std::vector<TagDetection>& seen) {
+  for (const ReferenceMark& mark : marks) {
+    const auto tags = std::count_if(seen.begin(), seen.end(),
+                                    [&](const TagDetection& tag) { return tag.id == mark.tag_id; });
+    if (tags < 2) continue;
+    throw std::invalid_argument(
+        fmt::format("{} tags with the id {} are in the picture, and the file names one place for "
+                    "it: take away those that lie elsewhere",
+                    tags, mark.tag_id));
+  }
 }
 
 /// Four tags laid out in centimetres fit each other perfectly; only a tag of known size tells.
@@ -168,6 +192,7 @@ WorldFrame WorldFromRobot(const WorldSetting& setting) {
     setting.ThrowIfOver();
     const Frame frame = NextFrame(setting);
     if (const auto sighting = tracker.Track(frame).sighting) {
+      RequireOneRobot(*sighting);
       poses.push_back(sighting->camera_from_tag);
       corners.push_back(sighting->corners);
       if (!averaging) averaging.emplace(setting.options.world_average_s);
@@ -195,6 +220,7 @@ WorldFrame WorldFromFloorTags(const WorldSetting& setting, const std::vector<Flo
     const Frame frame = NextFrame(setting);
     const std::vector<TagDetection> seen =
         FindTags(frame, setting.options.world_decimate, setting.session.tag());
+    RequireOneOfEach(marks, seen);
     std::size_t found = 0;
     for (const ReferenceMark& mark : marks) {
       for (const TagDetection& tag : seen) found += tag.id == mark.tag_id;

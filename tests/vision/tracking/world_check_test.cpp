@@ -4,6 +4,7 @@
 #include <random>
 
 #include "vision/rendered_tags.hpp"
+#include "vision/small_recording.hpp"
 
 namespace rift::vision {
 namespace {
@@ -211,6 +212,32 @@ TEST_CASE(
   CHECK_THROWS_WITH(
       CheckPoints(camera, points, 0.004),
       Contains("do not fit what the camera sees, from no place above the floor (limit"));
+}
+
+TEST_CASE("A world frame that came with another lens is told by its own reference tags") {
+  CameraModel camera = test::SmallCamera();
+  CHECK_FALSE(WhyNotOfThisLens(camera));  // clicked points keep no tags
+  for (int id = 1; id <= 4; ++id) {
+    const Eigen::Vector3d p(id < 3 ? -0.2 : 0.2, id % 2 == 0 ? -0.1 : 0.1, 0.0);
+    const Eigen::Vector2d seen_px =
+        PixelsFromPoints(camera, {camera.world->world_from_camera.inverse() * p})[0];
+    camera.world->marks.push_back({id, p, seen_px});
+  }
+  CHECK_FALSE(WhyNotOfThisLens(camera));
+  // 610 px are 0.6 m there, so that 2 px are 2 mm.
+  CameraModel other = camera;
+  other.k(0, 2) += 2.0;
+  REQUIRE(WhyNotOfThisLens(other));
+  CHECK(*WhyNotOfThisLens(other) ==
+        "the world frame is not of this lens: the reference tags that set it lie 2.0 mm from where "
+        "it puts them, and 0.0 mm when it was set: set it again (rift track --world)");
+  other.world->residual_m = 0.0015;  // tags that were laid by hand
+  CHECK_FALSE(WhyNotOfThisLens(other));
+  CameraModel from_below = camera;
+  from_below.world->world_from_camera.translation().z() = -0.6;
+  CHECK(WhyNotOfThisLens(from_below));
+  camera.world.reset();
+  CHECK_FALSE(WhyNotOfThisLens(camera));
 }
 
 }  // namespace

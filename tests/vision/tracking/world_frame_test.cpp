@@ -175,6 +175,10 @@ TEST_CASE(
   seen.pop_back();
   CHECK(*MovedBy_m(camera, seen) == Approx(std::sqrt((0.0009 + 0.0016) / 2.0)));
   CHECK_FALSE(MovedBy_m(camera, {SquareAt(camera, 9, places[0])}));
+  // Another tag of its id lies about.
+  const std::vector<TagDetection> twice{SquareAt(camera, 0, places[1]),
+                                        SquareAt(camera, 0, places[0] + off[0])};
+  CHECK(*MovedBy_m(camera, twice) == Approx(0.03));
   camera.world.reset();
   CHECK_FALSE(MovedBy_m(camera, seen));
 }

@@ -127,6 +127,15 @@ TEST_CASE("A robot that moves while its pose is averaged is refused with how far
   CHECK_NOTHROW(WorldFromRobot(at_rest.setting));
 }
 
+TEST_CASE("A first pose is that of one robot, and two tags of its id make no world frame") {
+  SmallRecording recording({.tags = {FloorTag(0, -0.2, 0.1)}});
+  recording.Add(RobotAt(0.1, 0.0, 0.5), 30);
+  Setup setup(recording);
+  CHECK_THROWS_WITH(WorldFromRobot(setup.setting),
+                    "2 tags with the robot's id 0 are in the picture, and nobody knows which one "
+                    "is the robot's: take away all but the robot's; the world frame was not set");
+}
+
 /// Four tags on the floor, and where a file says that they lie.
 const std::vector<PlacedTag> kTags{FloorTag(1, -0.22, -0.15), FloorTag(2, 0.22, -0.15),
                                    FloorTag(3, 0.22, 0.15), FloorTag(4, -0.22, 0.15)};
@@ -172,6 +181,17 @@ TEST_CASE("Reference tags set the world frame, whose scale the robot's tag confi
   Setup unknown(recording);
   marks[0].id = 587;
   CHECK_THROWS_WITH(WorldFromFloorTags(unknown.setting, marks), Contains("tag id 587"));
+}
+
+TEST_CASE("A reference tag that is in the picture twice sets no world frame") {
+  std::vector<PlacedTag> tags = kTags;
+  tags.push_back(FloorTag(3, 0.0, 0.1));
+  SmallRecording recording({.tags = tags});
+  recording.Add({});
+  Setup setup(recording);
+  CHECK_THROWS_WITH(WorldFromFloorTags(setup.setting, MarksOf(kTags)),
+                    "2 tags with the id 3 are in the picture, and the file names one place for it: "
+                    "take away those that lie elsewhere");
 }
 
 TEST_CASE("Tags that a recording's first picture lacks are named, and an unseen robot is noted") {

@@ -32,4 +32,9 @@ void CheckScale(double scale, double size_m, double tolerance);
 /// name; none when `next` is as good.
 std::optional<std::string> IsWorseThan(const WorldFrame& next, const WorldFrame& present);
 
+/// Why the world frame of a camera is not one of its lens, one line; none when it is, or when no
+/// tags set it. Its own reference tags were so far off when it was set as it says, and lie
+/// elsewhere when it came from the file of another lens.
+std::optional<std::string> WhyNotOfThisLens(const CameraModel& camera);
+
 }  // namespace rift::vision

@@ -37,7 +37,8 @@ WorldFrame WorldFromFirstPose(const std::vector<Eigen::Isometry3d>& camera_from_
                               double tag_height_m);
 
 /// How far, RMS on the floor, the reference tags lie from where they set the world frame. Nothing
-/// where the frame has no marks or none of them is seen.
+/// where the frame has no marks or none of them is seen. Of several tags of one id the nearest
+/// counts.
 std::optional<double> MovedBy_m(const CameraModel& camera, const std::vector<TagDetection>& seen);
 
 /// Where the ray of a pixel meets the plane z = z_m of the map (MapFromCamera); nothing when it
