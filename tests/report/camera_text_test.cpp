@@ -21,6 +21,26 @@ TEST_CASE("Tags that are in the picture instead are named with the flags that ta
              Catch::Matchers::EndsWith("tag25h9 id 4 (--id 4) and 2 more"));
 }
 
+TEST_CASE("Why a tag that shows was never seen is said with what to do") {
+  vision::TrackRun run;
+  CHECK_FALSE(UnseenText(run));
+  run.is_mirrored = true;
+  CHECK_THAT(*UnseenText(run), Catch::Contains("as in a mirror: switch off"));
+  run.is_unmeasured = true;
+  CHECK_THAT(*UnseenText(run), Catch::Contains("could not be measured") &&
+                                   Catch::Contains("overexposed") &&
+                                   Catch::Contains("track.tag.size_m"));
+}
+
+TEST_CASE("Rows that are not on the floor are said, and none otherwise") {
+  vision::TrackRun run;
+  run.rows = 30;
+  CHECK_THAT(TrackText(run, 30), !Catch::Contains("on the floor"));
+  run.off_floor = 7;
+  CHECK_THAT(TrackText(run, 30),
+             Catch::Contains("\n7 of 30 rows are not on the floor (on_floor 0)"));
+}
+
 vision::Calibration Calibrated() {
   vision::Calibration c;
   c.verdict = vision::CalibrationVerdict::kUsable;

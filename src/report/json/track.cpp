@@ -151,6 +151,13 @@ std::string TrackText(const vision::TrackRun& run, int rows) {
         "{} rows are ambiguous (track_state 2): another tag of this id may be the robot's\n",
         doubtful);
   }
+  if (run.off_floor > 0) {
+    text += fmt::format(
+        "{} of {} rows are not on the floor (on_floor 0): the tag was lifted or leant, or its "
+        "side, "
+        "its height, the lens or the world frame is not as told\n",
+        run.off_floor, rows);
+  }
   if (run.most_tags_of_this_id > 1) {
     text += fmt::format("{} tags of this id were in the picture: take the others away\n",
                         run.most_tags_of_this_id);
@@ -170,6 +177,19 @@ std::string FoundInsteadText(const std::vector<vision::TagInPicture>& found,
     text += fmt::format("{} {} id {} ({})", i == 0 ? "" : ",", vision::NameOf(family), id, flags);
   }
   return text + (found.size() > kMost ? fmt::format(" and {} more", found.size() - kMost) : "");
+}
+
+std::optional<std::string> UnseenText(const vision::TrackRun& run) {
+  if (run.is_unmeasured) {
+    return "the picture shows the tag that was asked for, and it could not be measured: is it "
+           "overexposed, blurred by motion, dim, too small or bent, or is track.tag.size_m or "
+           "track.tag.height_m not its own?";
+  }
+  if (run.is_mirrored) {
+    return "the picture shows the tag that was asked for as in a mirror: switch off whatever "
+           "mirrors the picture, in the camera, its driver or the program between";
+  }
+  return std::nullopt;
 }
 
 std::string CalibrationText(const vision::Calibration& c) {

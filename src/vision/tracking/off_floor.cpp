@@ -1,10 +1,11 @@
-#include "off_floor.hpp"
+#include "rift/vision/tracking/off_floor.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "rift/statistics/descriptive.hpp"
+#include "rift/vision/tracking/tag_pose.hpp"
 
 namespace rift::vision {
 namespace {
@@ -16,7 +17,8 @@ constexpr double kHighest_m = 2.0;  // of track.tag.height_m
 }  // namespace
 
 std::optional<std::string> OffFloorCheck::Add(const Sighting& sighting) {
-  if (is_said_ || !camera_.world || !sighting.in_world || tag_.ground == Ground::kFree) return {};
+  // No tag is held to a floor that is not known, such as that of a frame from a first pose.
+  if (is_said_ || !sighting.in_world || !FloorPriorOf(camera_, tag_)) return {};
   ++sightings_;
   if (!sighting.is_on_floor) z_m_.push_back(sighting.map_from_tag.translation().z());
   if (z_m_.size() < kLeastSightings || 10 * z_m_.size() < kOfTen * sightings_) return {};

@@ -42,6 +42,12 @@ Frame CameraSession::FirstPicture() {
   if (camera_.width_px == 0 || camera_.height_px == 0) {
     camera_.width_px = frame->width_px;
     camera_.height_px = frame->height_px;
+    if (const auto why = WhyNoLens(camera_)) {
+      throw std::invalid_argument(fmt::format(
+          "the camera {} gives {}x{} pixels, for which its calibration does not say whether it was "
+          "made: {}",
+          name_, frame->width_px, frame->height_px, *why));
+    }
   }
   if (frame->width_px == camera_.width_px && frame->height_px == camera_.height_px) {
     return std::move(*frame);
@@ -72,6 +78,14 @@ std::optional<std::string> MovedWarning(const std::optional<double>& moved_m, do
   return fmt::format(
       "the camera was moved: the reference tags lie {:.1f} mm off; set the world frame again",
       1e3 * *moved_m);
+}
+
+std::optional<std::string> UnseenReferences(const CameraModel& camera, const Look& look) {
+  if (!camera.world || camera.world->marks.empty() || look.moved_m) return std::nullopt;
+  return fmt::format(
+      "none of the {} reference tags that set the world frame is in the picture, so that nothing "
+      "tells whether the camera was moved since: lay them where they lay, or set the frame again",
+      camera.world->marks.size());
 }
 
 }  // namespace rift::vision

@@ -7,16 +7,33 @@
 #include <cmath>
 #include <set>
 #include <thread>
+#include <utility>
 
-#include "off_floor.hpp"
 #include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/camera/picture_reader.hpp"
 #include "rift/vision/camera/steady_now.hpp"
+#include "rift/vision/tracking/off_floor.hpp"
+#include "rift/vision/tracking/tag_pose.hpp"
 
 namespace rift::vision {
 namespace {
 
 constexpr double kTick_s = 0.02;
 constexpr double kRedraw_s = 0.1;
+
+/// A picture as it is seen in a mirror; none of one that is damaged.
+std::optional<Frame> Mirrored(const Frame& frame) {
+  std::optional<GreyPatch> grey = PictureReader().Read(frame);
+  if (!grey) return std::nullopt;
+  const std::ptrdiff_t width = grey->region.width_px;
+  for (auto row = grey->pixels.begin(); row != grey->pixels.end(); row += width) {
+    std::reverse(row, row + width);
+  }
+  Frame mirrored{.width_px = frame.width_px, .height_px = frame.height_px};
+  mirrored.format = PixelFormat::kGrey;
+  mirrored.bytes = std::move(grey->pixels);
+  return mirrored;
+}
 
 /// Every tag of every family. Bits are not corrected, since each further one makes chance hits.
 std::vector<TagInPicture> TagsOfAnyFamily(const Frame& frame, TagOptions options) {
@@ -37,6 +54,7 @@ class Tracking {
       : parts_(parts),
         tracker_(parts.session.MakeTracker(parts.further_ids)),
         started_s_(SteadyNow_s()),
+        has_floor_(FloorPriorOf(parts.session.camera(), parts.session.tag())),
         off_floor_(parts.session.camera(), parts.session.tag()) {}
 
   TrackRun Run();
@@ -50,7 +68,12 @@ class Tracking {
   /// bytes.
   void Rebase(Frame& frame);
   void WatchState();
+  /// Of a tag that was never seen: what the picture shows.
+  void LookForOthers(const Frame& frame);
+  bool WasAskedFor(const TagInPicture& tag) const;
   void WatchReferences(const Frame& frame);
+  /// Holds the reference tags of a picture against where they set the frame.
+  void CheckReferences(const Frame& frame);
   void Show();
   void HoldLastPicture();
   bool IsStopped() const;
@@ -65,9 +88,11 @@ class Tracking {
   std::vector<std::optional<Sighting>> seen_;  // of each robot, in frame_
   std::set<int> seen_ids_;
   std::optional<Frame> with_other_tags_;  // while none was seen that was asked for
+  bool has_floor_;
   OffFloorCheck off_floor_;
+  std::optional<std::string> wrong_size_;  // of a picture that came after others
   std::optional<double> failing_since_s_;
-  double checked_s_ = -1e9;
+  std::optional<double> checked_s_;
   std::optional<std::uint64_t> shown_index_;
   double shown_s_ = 0.0;
   bool quit_ = false;
@@ -112,10 +137,20 @@ void Tracking::Keep(const TrackResult& result, int tag_id, const Frame& frame) {
   run_.last_t_s = t_s;
   if (!run_.is_recording) run_.latencies_s.push_back(row.latency_s);
   run_.most_tags_of_this_id = std::max(run_.most_tags_of_this_id, row.tags_of_this_id);
+  run_.off_floor += has_floor_ && !row.is_on_floor;
   if (const auto warning = off_floor_.Add(row)) parts_.say("warning: " + *warning);
 }
 
 void Tracking::Take(Frame frame) {
+  const CameraModel& camera = parts_.session.camera();
+  const bool has_size = frame.width_px == camera.width_px && frame.height_px == camera.height_px;
+  if (run_.frames > 0 && !has_size) {
+    wrong_size_ = fmt::format(
+        "after {} pictures of {}x{} pixels, for which its calibration is, it gives {}x{}: keep its "
+        "size and turn while it tracks",
+        run_.frames, camera.width_px, camera.height_px, frame.width_px, frame.height_px);
+    return;
+  }
   if (run_.frames++ == 0) run_.is_recording = parts_.session.capture().IsRecording();
   Rebase(frame);
   const double begin_s = SteadyNow_s();
@@ -141,20 +176,34 @@ void Tracking::WatchReferences(const Frame& frame) {
   const SessionOptions& options = parts_.options;
   const std::optional<WorldFrame>& world = parts_.session.camera().world;
   const bool has_marks = world && !world->marks.empty();
-  if (!has_marks || frame.captured_s - checked_s_ < options.check_every_s) return;
+  if (!has_marks || (checked_s_ && frame.captured_s - *checked_s_ < options.check_every_s)) return;
+  CheckReferences(frame);
+}
+
+void Tracking::CheckReferences(const Frame& frame) {
+  const SessionOptions& options = parts_.options;
+  Look look = parts_.session.LookAt(frame, options.check_decimate);
+  const bool is_first = !checked_s_;
+  if (is_first && !look.moved_m) look = parts_.session.LookAt(frame, 1);
+  if (is_first) {
+    const auto unseen = UnseenReferences(parts_.session.camera(), look);
+    if (unseen) parts_.say("note: " + *unseen);
+  }
   checked_s_ = frame.captured_s;
-  const std::optional<double> moved_m =
-      parts_.session.LookAt(frame, options.check_decimate).moved_m;
-  if (!moved_m) return;
+  if (!look.moved_m) return;
   const bool is_known = MovedWarning(run_.moved_m, options.moved_m).has_value();
-  const std::optional<std::string> warning = MovedWarning(moved_m, options.moved_m);
+  const std::optional<std::string> warning = MovedWarning(look.moved_m, options.moved_m);
   if (warning && !is_known) parts_.say(*warning);
-  run_.moved_m = std::max(run_.moved_m.value_or(0.0), *moved_m);
+  run_.moved_m = std::max(run_.moved_m.value_or(0.0), *look.moved_m);
 }
 
 void Tracking::WatchState() {
   const CameraState before = run_.status.state;
   run_.status = parts_.session.capture().Status();
+  if (wrong_size_) {
+    run_.status.state = CameraState::kWrongFormat;
+    run_.status.reason = *wrong_size_;
+  }
   const CameraState state = run_.status.state;
   // A camera that is asked again has its own limit (CaptureOptions::reconnect_s).
   const bool fails = state != CameraState::kOpening && state != CameraState::kRunning &&
@@ -203,6 +252,26 @@ void Tracking::HoldLastPicture() {
   }
 }
 
+bool Tracking::WasAskedFor(const TagInPicture& tag) const {
+  const TagOptions& options = parts_.session.tag();
+  const std::vector<int>& more = parts_.further_ids;
+  return tag.family == options.family &&
+         (tag.id == options.id || std::find(more.begin(), more.end(), tag.id) != more.end());
+}
+
+void Tracking::LookForOthers(const Frame& frame) {
+  const TagOptions& tag = parts_.session.tag();
+  run_.found_instead = TagsOfAnyFamily(frame, tag);
+  const auto asked_for = [this](const TagInPicture& found) { return WasAskedFor(found); };
+  run_.is_unmeasured = std::erase_if(run_.found_instead, asked_for) > 0;
+  if (run_.is_unmeasured) return;
+  const std::optional<Frame> mirrored = Mirrored(frame);
+  if (!mirrored) return;
+  const std::vector<TagDetection> seen = FindTags(*mirrored, 1, tag);
+  run_.is_mirrored = std::any_of(seen.begin(), seen.end(),
+                                 [&](const TagDetection& found) { return found.id == tag.id; });
+}
+
 TrackRun Tracking::Run() {
   while (!IsOver()) {
     std::optional<Frame> frame = parts_.session.capture().Next(kTick_s);
@@ -210,10 +279,10 @@ TrackRun Tracking::Run() {
     WatchState();
     Show();
   }
+  // A camera that was moved since the last check moved its rows as well.
+  if (frame_ && checked_s_ && *checked_s_ < frame_->captured_s) CheckReferences(*frame_);
   HoldLastPicture();
-  if (run_.rows == 0 && frame_) {
-    run_.found_instead = TagsOfAnyFamily(with_other_tags_.value_or(*frame_), parts_.session.tag());
-  }
+  if (run_.rows == 0 && frame_) LookForOthers(with_other_tags_.value_or(*frame_));
   run_.state = run_.status.state;
   run_.reason = run_.status.reason;
   run_.has_failed = failing_since_s_.has_value() && !quit_ && !parts_.is_stopped();

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "rift/vision/tracking/off_floor.hpp"
 #include "support/mirror.hpp"
-#include "vision/tracking/off_floor.hpp"
 
 namespace rift::vision {
 namespace {
@@ -159,6 +159,11 @@ TEST_CASE("No floor, no word of it: free ground, no world frame, a height that n
   REQUIRE(of_frame);
   CHECK_THAT(*of_frame, Contains("the world frame puts the camera at z -2.0") &&
                             Contains("below the tag at 0.200 m") && !Contains("size_m"));
+  // A frame from a first pose knows no floor either, and holds no tag to one.
+  CameraModel first_pose = camera;
+  first_pose.world->origin = kFirstPoseOrigin;
+  OffFloorCheck from_robot(first_pose, flat);
+  for (int i = 0; i < 20; ++i) CHECK_FALSE(from_robot.Add(SeenAt(0.03, false)));
   camera.world.reset();
   OffFloorCheck no_world(camera, flat);
   for (int i = 0; i < 20; ++i) CHECK_FALSE(no_world.Add(SeenAt(0.2, false)));

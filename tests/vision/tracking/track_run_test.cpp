@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
+#include <opencv2/core.hpp>
 
+#include "rift/vision/camera/jpeg.hpp"
 #include "rift/vision/camera/steady_now.hpp"
 #include "vision/small_recording.hpp"
 
@@ -109,6 +111,17 @@ TEST_CASE("A row that the log does not take is counted and is none of the run's"
   CHECK(run.last_t_s == 0.1);
 }
 
+TEST_CASE("Rows whose tag was lifted off the floor are counted, where there is a floor") {
+  SmallRecording recording;
+  recording.Add(RobotAt(0.0, 0.0, 0.0), 4);
+  recording.Add(RobotAt(0.0, 0.0, 0.0, 0.08), 2);
+  CHECK(RunTracking(Tracked(recording.Path()).parts).off_floor == 2);
+  CameraModel first_pose = SmallCamera();
+  first_pose.world->origin = kFirstPoseOrigin;
+  const TrackRun run = RunTracking(Tracked(recording.Path(), first_pose).parts);
+  CHECK((run.rows == 6 && run.off_floor == 0));
+}
+
 TEST_CASE("Each robot has its rows, and begins with its own first sighting") {
   SmallRecording recording({.tags = {FloorTag(5, 0.2, 0.1)}});
   recording.Add({});
@@ -160,6 +173,38 @@ TEST_CASE("Where the tag was never seen, those of the newest picture with others
   CHECK(found(without.Path()).empty());
 }
 
+TEST_CASE("A tag that was asked for and shows unfit to be measured, or in a mirror, is told") {
+  SmallRecording plain({.tags = {FloorTag(5, 0.2, 0.1)}});
+  plain.Add(RobotAt(0.05, -0.02, 0.3));
+  std::ifstream file(plain.Path() + "/0000.jpg", std::ios::binary);
+  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+  const cv::Mat1b picture = DecodeJpeg(bytes, false, 8);
+  const auto run_of = [](const cv::Mat1b& shown, std::vector<int> further_ids = {}) {
+    SmallRecording recording;
+    recording.Write(WriteJpeg(shown, 95, false));
+    Tracked tracked(recording.Path());
+    tracked.parts.further_ids = std::move(further_ids);
+    return RunTracking(tracked.parts);
+  };
+  cv::Mat1b changed;
+  cv::flip(picture, changed, 1);
+  const TrackRun mirrored = run_of(changed);
+  CHECK(mirrored.rows == 0);
+  CHECK(mirrored.is_mirrored);
+  CHECK_FALSE(mirrored.is_unmeasured);
+  CHECK(mirrored.found_instead.empty());
+  picture.convertTo(changed, -1, 0.15);  // less contrast than is asked for
+  const TrackRun dim = run_of(changed);
+  CHECK(dim.rows == 0);
+  CHECK(dim.is_unmeasured);
+  CHECK_FALSE(dim.is_mirrored);
+  REQUIRE(dim.found_instead.size() == 1);
+  CHECK(dim.found_instead[0].id == 5);
+  CHECK(run_of(changed, {5}).found_instead.empty());
+  const TrackRun none = run_of(cv::Mat1b(480, 640, std::uint8_t{100}));
+  CHECK_FALSE((none.is_mirrored || none.is_unmeasured));
+}
+
 TEST_CASE("Reference tags that lie elsewhere are said once, with the largest distance") {
   CameraModel camera = SmallCamera();
   const auto run_with = [&](double off_px, double limit_m) {
@@ -184,6 +229,41 @@ TEST_CASE("Reference tags that lie elsewhere are said once, with the largest dis
   const std::vector<std::string> said = run_with(10.0, 0.005);
   REQUIRE(said.size() == 1);
   CHECK_THAT(said[0], Contains("the camera was moved: the reference tags lie 9.8 mm off"));
+}
+
+TEST_CASE("A camera that is moved after the last check is said when the run ends") {
+  CameraModel camera = SmallCamera();
+  const Eigen::Vector3d p_in_camera =
+      camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
+  camera.world->marks = {{5, {0.2, 0.1, 0.0}, PixelsFromPoints(camera, {p_in_camera})[0]}};
+  SmallRecording still({.tags = {FloorTag(5, 0.2, 0.1)}}),
+      moved({.tags = {FloorTag(5, 0.19, 0.1)}});
+  still.Add(RobotAt(-0.1, 0.0, 0.0), 3);
+  moved.Add(RobotAt(-0.11, 0.0, 0.0));
+  std::ifstream file(moved.Path() + "/0000.jpg", std::ios::binary);
+  still.Write({std::istreambuf_iterator<char>(file), {}});
+  Tracked tracked(still.Path(), camera);
+  const TrackRun run = RunTracking(tracked.parts);
+  REQUIRE(run.moved_m);
+  CHECK(*run.moved_m == Approx(0.01).margin(5e-4));
+  REQUIRE(tracked.said.size() == 1);
+  CHECK_THAT(tracked.said[0], Contains("the camera was moved"));
+}
+
+TEST_CASE("A world frame whose reference tags are not to be seen is noted once") {
+  CameraModel camera = SmallCamera();
+  camera.world->marks = {{5, {0.2, 0.1, 0.0}, {500.0, 100.0}}, {6, {}, {300.0, 100.0}}};
+  SmallRecording recording;
+  recording.Add(RobotAt(-0.1, 0.0, 0.0), 4);
+  Tracked tracked(recording.Path(), camera);
+  tracked.options.check_every_s = 0.05;
+  const TrackRun run = RunTracking(tracked.parts);
+  CHECK_FALSE(run.moved_m);
+  CHECK(tracked.said ==
+        std::vector<std::string>{
+            "note: none of the 2 reference tags that set the world frame is in the picture, so "
+            "that nothing tells whether the camera was moved since: lay them where they lay, or "
+            "set the frame again"});
 }
 
 TEST_CASE("A run ends with its time, its user, its window and no sooner") {
@@ -252,6 +332,26 @@ TEST_CASE("A recording in which no picture can be read has failed with its reaso
   CHECK(tracked.said[0] == "camera wrong format: " + run.reason);
 }
 
+TEST_CASE("A camera that changes the size of its pictures has failed, and the run is whole") {
+  SmallRecording recording;
+  recording.Add(RobotAt(0.0, 0.0, 0.0), 3);
+  for (int i = 0; i < 12; ++i) {  // the first nine of them may be damaged
+    recording.Write(WriteJpeg(cv::Mat1b(640, 480, std::uint8_t{100}), 90, false));
+  }
+  Tracked tracked(recording.Path());
+  const TrackRun run = RunTracking(tracked.parts);
+  CHECK((run.rows == 3 && run.frames == 3));
+  CHECK(run.state == CameraState::kWrongFormat);
+  CHECK(run.has_failed);
+  CHECK(run.reason ==
+        "after 3 pictures of 640x480 pixels, for which its calibration is, it gives 480x640: keep "
+        "its size and turn while it tracks");
+  CHECK(tracked.said == std::vector<std::string>{"camera wrong format: " + run.reason});
+  SmallRecording other;
+  other.Write(WriteJpeg(cv::Mat1b(640, 480, std::uint8_t{100}), 90, false));
+  CHECK_THROWS_WITH(RunTracking(Tracked(other.Path()).parts), Contains("480 x 640"));
+}
+
 TEST_CASE("A session asks for the size of its calibration and holds the pictures to it") {
   SmallRecording recording;
   recording.Add(RobotAt(0.0, 0.0, 0.0), 2);
@@ -271,6 +371,13 @@ TEST_CASE("A session asks for the size of its calibration and holds the pictures
   CHECK((sizeless.options().width_px == 1 && sizeless.options().height_px == 2));
   sizeless.FirstPicture();
   CHECK((sizeless.camera().width_px == 640 && sizeless.camera().height_px == 480));
+
+  camera.k(0, 2) = 641.0;
+  CameraSession of_another(recording.Path(), camera, {}, {});
+  CHECK_THROWS_WITH(of_another.FirstPicture(),
+                    Contains("gives 640x480 pixels, for which its calibration does not say whether "
+                             "it was made: the principal point (641, 239.5) px"));
+  camera.k(0, 2) = 319.5;
 
   for (const auto& [width_px, height_px] : {std::pair{640, 360}, {320, 480}}) {
     camera.width_px = width_px;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -153,6 +154,9 @@ std::string TrackText(const vision::TrackRun& run, int rows);
 /// One line: which tags a picture shows without the one that was asked for, and the flags for them.
 std::string FoundInsteadText(const std::vector<vision::TagInPicture>& found,
                              vision::TagFamily asked_for);
+/// One line: why a tag that was asked for was never seen, although the picture or its mirror image
+/// shows it, and what to do; none of a tag that neither shows.
+std::optional<std::string> UnseenText(const vision::TrackRun& run);
 
 /// A log of sightings in the rift dialect: its nine columns (the target empty), then latency,
 /// quality, state and the 6 x 6 covariance's upper triangle in the map's axes. A lost tag's row has

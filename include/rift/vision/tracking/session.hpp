@@ -56,4 +56,7 @@ class CameraSession {
 /// What to tell when the reference tags lie further off than `limit_m`: the camera was moved.
 std::optional<std::string> MovedWarning(const std::optional<double>& moved_m, double limit_m);
 
+/// What to tell when a world frame was set by reference tags and none of them is to be seen.
+std::optional<std::string> UnseenReferences(const CameraModel& camera, const Look& look);
+
 }  // namespace rift::vision

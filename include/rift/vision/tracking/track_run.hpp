@@ -52,18 +52,23 @@ struct TrackRun {
   std::array<int, EnumNames(TrackState{}).size()> states{};  ///< pictures by TrackState
   int repeated = 0;  ///< sightings that were not later than the one before
   int most_tags_of_this_id = 1;
+  int off_floor = 0;  ///< rows whose tag could not be held to a floor that is known
   /// Where no tag that was asked for was ever seen: what of any family the newest picture shows, or
   /// the newest one in which other tags of the family were seen.
   std::vector<TagInPicture> found_instead;
-  double zero_s = 0.0;  ///< of the rows' times, on the steady clock of this machine
+  bool is_unmeasured =
+      false;                 ///< that picture shows a tag that was asked for, unfit to be measured
+  bool is_mirrored = false;  ///< its mirror image shows the session's tag
+  double zero_s = 0.0;       ///< of the rows' times, on the steady clock of this machine
   double first_t_s = 0.0, last_t_s = 0.0;  ///< of the rows
   std::vector<double> latencies_s;         ///< of the rows; none of a recording
   std::vector<double> costs_s;             ///< of finding the tag, each frame
   std::optional<double> moved_m;           ///< the reference tags' largest distance seen
 };
 
-/// Tracks until the user, the time, the recording or the camera ends it. Throws
-/// std::invalid_argument when the stream's size is not the calibration's.
+/// Tracks until the user, the time, the recording or the camera ends it, which a camera does that
+/// changes the size of its pictures (wrong format). Throws std::invalid_argument when its first
+/// picture has another size than the calibration.
 TrackRun RunTracking(const TrackParts& parts);
 
 }  // namespace rift::vision
