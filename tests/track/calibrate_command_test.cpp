@@ -85,5 +85,26 @@ TEST_CASE("A picture without a board is refused with its name and no file") {
   CHECK_FALSE(fs::exists(out / "cam.yaml"));
 }
 
+TEST_CASE("A calibration replaces none of its photographs, with force neither") {
+  const test::TemporaryFolder photos;
+  const std::string photo = photos / "view1.png";
+  fs::copy_file(test::SourceDir() + "/data/readme/demo.png", photo);
+  const std::string before = test::ReadFile(photo);
+  const std::vector<std::string> command{"track",    "--calibrate",    "--board",
+                                         "5x4",      "--square",       "0.03",
+                                         "--images", photos / "*.png", "--force"};
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"--out", photo},
+        std::vector<std::string>{"--out", photos / "cam.yaml", "--picture", photo}}) {
+    std::vector<std::string> words = command;
+    words.insert(words.end(), names.begin(), names.end());
+    const ProcessResult result = RunRift(words);
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 2);
+    CHECK_THAT(result.err, Contains(photo + " is an input or another output"));
+    CHECK(test::ReadFile(photo) == before);
+  }
+}
+
 }  // namespace
 }  // namespace rift

@@ -208,6 +208,7 @@ TEST_CASE("Reference tags set the world frame and it is kept in the calibration"
 
   // The same camera, pushed: its reference tags are no longer where they were.
   for (vision::ReferenceMark& mark : camera.world->marks) mark.seen_px.x() += 20.0;
+  camera.k(0, 2) += 20.0;  // else the frame would be of another lens
   test::WriteText(folder / "cam.yaml", vision::WriteCamera(camera));
   const ProcessResult moved = RunRift(Tracking(folder / "log.csv", folder / "cam.yaml"));
   CHECK_THAT(moved.err, Contains("the camera was moved"));
@@ -438,6 +439,25 @@ TEST_CASE("Help and the gap load no camera library") {
     CHECK_THAT(text, !Contains("opencv") && !Contains("apriltag"));
   }
   CHECK(files == 2);
+}
+
+TEST_CASE("A log replaces no picture of its camera, with force neither, however it is named") {
+  const test::TemporaryFolder folder;
+  std::filesystem::copy(kData + "/frames", folder / "frames");
+  const std::string picture = folder / "frames/000.jpg", before = test::ReadFile(picture);
+  for (const char* camera : {"frames", "frames/", "frames/*", "frames/0??.jpg", "fra*/*.jpg"}) {
+    for (const bool is_log : {true, false}) {
+      std::vector<std::string> words{"track",         "--camera", folder / camera,
+                                     "--calibration", kCamera,    "--force"};
+      const std::string log = is_log ? picture : folder / "log.csv";
+      words.insert(words.end(), {"--out", log});
+      if (!is_log) words.insert(words.end(), {"--tum", picture});
+      const ProcessResult result = RunRift(words);
+      INFO(camera << ": " << result.err);
+      CHECK(result.exit_code == 2);
+      CHECK(test::ReadFile(picture) == before);
+    }
+  }
 }
 
 }  // namespace

@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "request.hpp"
 #include "rift/commands/track/track.hpp"
 #include "rift/experiment/experiment.hpp"
 #include "rift/files/files.hpp"
+#include "rift/files/outputs.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/json/precision.hpp"
 #include "rift/sessions/track/calibration.hpp"
@@ -17,6 +19,7 @@
 #include "rift/terminal/stop_signal.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/vision/camera/camera_file.hpp"
+#include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/rendering/precision_map.hpp"
 #include "rift/vision/rendering/print_sheet.hpp"
 #include "rift/vision/tracking/tag_family.hpp"
@@ -45,6 +48,7 @@ int Report(const TrackRequest& request, const vision::TrackRun& run,
   terminal::PrintText(report::TrackText(run, run.rows));
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
   terminal::Say(fmt::format("{}; run: {}", log, sessions::RunFileOf(request.out).string()));
+  if (const auto unseen = report::UnseenText(run)) terminal::Say(*unseen);
   if (!run.found_instead.empty()) {
     terminal::Say(report::FoundInsteadText(run.found_instead, tag.family));
   }
@@ -61,7 +65,26 @@ void PrintRows(std::string_view rows) {
   }
 }
 
+/// Pictures are not taken again, so that --force replaces none of a folder or a pattern.
+void RefusePictures(const std::string& pictures, const std::vector<fs::path>& outputs) {
+  std::vector<fs::path> inputs;
+  for (const std::string& file : vision::ImageFiles(pictures)) inputs.emplace_back(file);
+  files::CheckOutputs(inputs, {.files = outputs, .force = true});
+}
+
+void RefusePicturesOfCamera(const TrackRequest& request) {
+  const sessions::TrackingJob& job = request.job;
+  if (vision::KindOf(job.camera) != vision::SourceKind::kImages) return;
+  std::vector<fs::path> outputs = request.copies.Files();
+  if (!job.record_waypoints.empty()) outputs.emplace_back(job.record_waypoints);
+  if (!request.out.empty() && !job.IsPiped()) {
+    outputs.insert(outputs.end(), {request.out, sessions::RunFileOf(request.out)});
+  }
+  RefusePictures(job.camera, outputs);
+}
+
 int TrackRobot(const TrackRequest& request) {
+  RefusePicturesOfCamera(request);
   sessions::TrackingJob job = request.job;
   job.options = request.job.OptionsFor(ExperimentOf(request));
   sessions::TrackingInputs inputs = sessions::ReadInputs(job);
@@ -78,6 +101,15 @@ int TrackRobot(const TrackRequest& request) {
 
 vision::Calibration CalibrateFor(const TrackRequest& request) {
   request.board.Check();
+  // The picture beside --out is left out: the same command may have drawn it among them before.
+  std::vector<fs::path> outputs{request.out};
+  if (!request.picture.empty()) outputs.emplace_back(request.picture);
+  const std::string& camera = request.job.camera;
+  if (!request.images.empty()) {
+    RefusePictures(request.images, outputs);
+  } else if (vision::KindOf(camera) == vision::SourceKind::kImages) {
+    RefusePictures(camera, outputs);
+  }
   const sessions::CalibrationJob job{.images = request.images,
                                      .camera = request.job.camera,
                                      .board = request.board,
