@@ -372,6 +372,7 @@ TEST_CASE("How far the reference tags may lie off before a drive is an option of
   const std::string path = scene.folder / "moved.yaml";
   vision::CameraModel camera = vision::ReadCamera(files::ReadFile(path), path);
   for (vision::ReferenceMark& mark : camera.world->marks) mark.seen_px.x() += 20.0;
+  camera.k(0, 2) += 20.0;  // else the frame would be of another lens
   test::WriteText(path, vision::WriteCamera(camera));
   for (const bool is_allowed : {false, true}) {
     std::vector<std::string> arguments{
@@ -391,6 +392,43 @@ TEST_CASE("How far the reference tags may lie off before a drive is an option of
     const bool is_warned = result.err.find("the camera was moved") != std::string::npos;
     CHECK(is_warned == !is_allowed);
   }
+}
+
+TEST_CASE("A camera that is found moved when a drive is over is said") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    // The robot's own tag for a reference tag: it lies elsewhere at the end.
+    vision::CameraModel camera = test::SmallCamera();
+    const geometry::Pose2 start = scene.floor.Pose();
+    const Eigen::Vector3d p(start.x_m, start.y_m, 0.03);
+    const Eigen::Vector3d p_in_camera = camera.world->world_from_camera.inverse() * p;
+    camera.world->marks = {{0, p, vision::PixelsFromPoints(camera, {p_in_camera})[0]}};
+    test::WriteText(scene.folder / "cam.yaml", vision::WriteCamera(camera));
+    const test::ProcessResult result = test::RunRift(scene.ShortArguments());
+    if (WasInterruptedOrLate(scene, result.exit_code)) return false;
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 0);
+    CHECK_THAT(result.err, !Catch::Contains("warning: the camera was moved"));
+    CHECK_THAT(result.err, Catch::Contains("warning: after this drive the camera was moved: the "
+                                           "reference tags lie"));
+    return true;
+  });
+}
+
+TEST_CASE("A tag of another size than told is said before the robot drives by it") {
+  Uninterrupted(kAll, [](Scene& scene) {
+    std::vector<std::string> arguments = scene.ShortArguments();
+    arguments.insert(arguments.end(), {"--any-start", "--set", "track.tag.size_m=0.052", "--set",
+                                       "trial.timeout_s=1"});
+    const test::ProcessResult result = test::RunRift(arguments);
+    INFO(result.out << result.err);
+    const bool is_said =
+        result.err.find("warning: the tag is not on the floor in 10 of 10") != std::string::npos;
+    // By such poses it is stopped as well, sooner or later, so that what was said counts first.
+    if (!is_said && WasInterrupted(scene, result.exit_code)) return false;
+    CHECK(is_said);
+    CHECK(result.err.find("warning: the tag is not") < result.err.find("loop delay"));
+    return true;
+  });
 }
 
 TEST_CASE("Wrong inputs of a drive are answered with one line that says what to do") {

@@ -18,6 +18,8 @@
 #include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/tracking/session.hpp"
+#include "rift/vision/tracking/world_check.hpp"
+#include "standing_check.hpp"
 #include "start_gate.hpp"
 
 namespace rift::sessions {
@@ -28,10 +30,13 @@ constexpr std::chrono::milliseconds kRedraw{100};
 // A robot at rest that was not seen for longer may stand elsewhere by now.
 constexpr double kSeen_s = 0.5;
 
-/// Throws std::invalid_argument, saying what to do, when the calibration has no world frame: the
-/// waypoints would mean nothing.
+/// Throws std::invalid_argument, saying what to do, when the calibration has no world frame, or one
+/// of another lens: the waypoints would mean nothing.
 vision::CameraModel ReadCameraWithWorld(const std::string& calibration) {
   vision::CameraModel camera = vision::ReadCamera(files::ReadFile(calibration), calibration);
+  if (const auto other = vision::WhyNotOfThisLens(camera)) {
+    throw std::invalid_argument(fmt::format("{}: {}", calibration, *other));
+  }
   if (camera.world) return camera;
   throw std::invalid_argument(fmt::format(
       "{}: the calibration has no world frame, so nobody knows where on the floor the waypoints "
@@ -58,6 +63,8 @@ void CheckFirstPicture(const DriveSetup& setup, const Console& console,
   }
   const auto moved = vision::MovedWarning(look.moved_m, setup.session.moved_m);
   if (moved) console.say("warning: " + *moved);
+  const auto unseen = vision::UnseenReferences(session.camera(), look);
+  if (unseen) console.say("note: " + *unseen);
   if (look.robot_tags == 0) {
     console.say("the robot's tag is not in the picture yet: put the robot on its place");
   }
@@ -116,12 +123,18 @@ class DriveSession::Drivers {
         port_(setup.address.port, experiment.hardware.line.baud,
               experiment.hardware.line.write_timeout_s),
         session_(setup.address.camera, camera, experiment.track.capture,
-                 experiment::TagOn(experiment)) {
+                 experiment::TagOn(experiment)),
+        standing_(session_.camera(), session_.tag()) {
     CheckFirstPicture(setup, console, session_);
     const auto tracker = std::make_shared<vision::TagTracker>(session_.MakeTracker());
     poses_ = std::make_unique<hardware::CameraPoses>(
         session_.TakeCapture(),
-        [tracker](const vision::Frame& frame) { return tracker->Track(frame); }, clock_);
+        [this, tracker](const vision::Frame& frame) {
+          vision::TrackResult found = tracker->Track(frame);
+          if (found.sighting) standing_.Add(*found.sighting);
+          return found;
+        },
+        clock_);
   }
 
   hardware::DriveRun Drive(const experiment::Experiment& experiment, hardware::Operator& person,
@@ -130,23 +143,27 @@ class DriveSession::Drivers {
     may_start_ = setup_.yes;
     StartGate gate(experiment.hardware.start, experiment::TaskOf(experiment).Start(),
                    setup_.any_start || setup_.dry_run, PersonAtGate(person));
-    return hardware::Drive({.line = port_,
-                            .poses = *poses_,
-                            .clock = clock_,
-                            .stoppers = {person.Stopper(), WindowStopper(), log.Stopper()},
-                            .say = console_.say,
-                            .may_arm =
-                                [&] {
-                                  RefuseTwoTags();
-                                  // Not before the files are there: else a full disk stops a robot
-                                  // that moves. The gate looks again when they are.
-                                  has_started_ =
-                                      gate.MayStart(clock_.Now_s(), SeenNow()) && log.IsReady();
-                                  return has_started_.load();
-                                },
-                            .observer = &log,
-                            .dry_run = setup_.dry_run},
-                           DriveTaskOf(experiment));
+    hardware::DriveRun run = hardware::Drive(
+        {.line = port_,
+         .poses = *poses_,
+         .clock = clock_,
+         .stoppers = {person.Stopper(), WindowStopper(), log.Stopper()},
+         .say = console_.say,
+         .may_arm =
+             [&] {
+               RefuseTwoTags();
+               SayIfOffFloor();
+               // Not before the files are there: else a full disk stops a robot
+               // that moves. The gate looks again when they are.
+               has_started_ = gate.MayStart(clock_.Now_s(), SeenNow()) && log.IsReady();
+               return has_started_.load();
+             },
+         .observer = &log,
+         .dry_run = setup_.dry_run},
+        DriveTaskOf(experiment));
+    SayIfOffFloor();
+    SayIfMoved();
+    return run;
   }
 
   /// The window needs the main thread, so the robot is driven from another one.
@@ -206,6 +223,20 @@ class DriveSession::Drivers {
         seen->tags_of_this_id, session_.tag().id));
   }
 
+  /// A wrong side or height of the tag puts the robot elsewhere than it is seen to be.
+  void SayIfOffFloor() {
+    if (const auto warning = standing_.Take()) console_.say("warning: " + *warning);
+  }
+
+  /// Of a drive that is over, and before the next one of a series.
+  void SayIfMoved() const {
+    const std::shared_ptr<const vision::Frame> last = poses_->Seen().frame;
+    if (!last) return;
+    const auto moved =
+        vision::MovedWarning(session_.LookAt(*last, 1).moved_m, setup_.session.moved_m);
+    if (moved) console_.say("warning: after this drive " + *moved);
+  }
+
   std::optional<geometry::Pose2> SeenNow() {
     const hardware::PoseNews news = poses_->Newest();
     if (!news.newest || clock_.Now_s() - news.newest->measured.captured_s > kSeen_s) return {};
@@ -227,7 +258,8 @@ class DriveSession::Drivers {
   hardware::SteadyClock clock_;
   hardware::SerialPort port_;
   vision::CameraSession session_;
-  std::unique_ptr<hardware::CameraPoses> poses_;
+  StandingCheck standing_;
+  std::unique_ptr<hardware::CameraPoses> poses_;  // its thread tells standing_
 };
 
 DriveSession::DriveSession(DriveSetup setup, Console console)
