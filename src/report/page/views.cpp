@@ -25,6 +25,7 @@ void TakePart(const sweep::SweepResult& result, PageView* view) {
                          .gap = result.gap,
                          .judged_by = result.judged_by,
                          .judged_settings = result.judged_settings,
+                         .chance_repeats_runs = result.chance_repeats_runs,
                          .tag_offset_m = result.tag_offset_m,
                          .parameters = result.parameters});
   for (const int setting : view->settings) {

@@ -77,7 +77,7 @@ void Describe(const SweepResult& result, Candidate& candidate) {
     if (path != 0) candidate.runs.emplace_back(path, Loss_m(trial, result.gap.threshold_m));
   }
   std::sort(candidate.runs.begin(), candidate.runs.end());
-  candidate.rows = DistinctRows(result.rows, candidate.rows);
+  candidate.rows = DistinctRows(result.rows, candidate.rows, result.chance_repeats_runs);
   double sum_m = 0.0;
   for (const int row : candidate.rows) {
     candidate.failures += result.rows[row].falsified;

@@ -1,5 +1,6 @@
 #include "rift/sweep/falsify/distinct_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -39,6 +40,11 @@ CopyKey EndOf(const TrialRow& row) {
           .gap_m = row.IsOk() ? row.comparison.gap_m : 0.0};
 }
 
+bool AreSameRuns(const TrialRow& a, const TrialRow& b) {
+  const CopyKey of_a = EndOf(a), of_b = EndOf(b);
+  return a.evidence.fingerprint == b.evidence.fingerprint && !(of_a < of_b) && !(of_b < of_a);
+}
+
 /// Which rows are copies of one another, as sets that grow together.
 class CopySets {
  public:
@@ -61,9 +67,20 @@ class CopySets {
 /// Finds the copies among rows of one path.
 class CopyFinder {
  public:
-  CopyFinder(std::span<const TrialRow> rows, const std::vector<int>& indices)
-      : rows_(rows), indices_(indices), sets_(indices.size()) {
-    for (const int index : indices) ++repeats_[rows[index].theta];
+  CopyFinder(std::span<const TrialRow> rows, const std::vector<int>& indices,
+             bool chance_repeats_runs)
+      : rows_(rows),
+        indices_(indices),
+        chance_repeats_runs_(chance_repeats_runs),
+        sets_(indices.size()) {
+    for (size_t place = 0; place < indices.size(); ++place) {
+      const TrialRow& row = At(place);
+      const auto [found, is_new] = setting_of_.try_emplace(row.theta, settings_.size());
+      if (is_new) settings_.emplace_back();
+      Setting& setting = settings_[found->second];
+      ++setting.repeats;
+      setting.places.try_emplace({row.trial, row.seed}, place);
+    }
   }
 
   void Find(const std::vector<size_t>& places) {
@@ -72,11 +89,11 @@ class CopyFinder {
       const TrialRow& row = At(place);
       by_setting[{row.theta, EndOf(row)}].push_back(place);
     }
-    std::map<CopyKey, size_t> seen;
+    Seen seen;
     for (const auto& [setting, repeats] : by_setting) {
-      const bool are_all = static_cast<int>(repeats.size()) == repeats_.at(setting.first);
+      const bool are_all = repeats.size() == SettingOf(repeats.front()).repeats;
       for (const size_t place : repeats) {
-        if (are_all) sets_.Join(repeats.front(), place);
+        if (are_all && !chance_repeats_runs_) sets_.Join(repeats.front(), place);
         JoinByKeys(place, seen);
       }
     }
@@ -85,9 +102,35 @@ class CopyFinder {
   bool IsFirst(size_t place) { return sets_.FirstOf(place) == place; }
 
  private:
-  const TrialRow& At(size_t place) const { return rows_[indices_[place]]; }
+  /// The rows of a setting.
+  struct Setting {
+    size_t repeats = 0;
+    std::map<std::pair<std::string, std::optional<std::uint64_t>>, size_t> places;  ///< by noise
+  };
+  /// Of the rows with one key the first of each set.
+  using Seen = std::map<CopyKey, std::vector<size_t>>;
 
-  void JoinByKeys(size_t place, std::map<CopyKey, size_t>& seen) {
+  const TrialRow& At(size_t place) const { return rows_[indices_[place]]; }
+  const Setting& SettingOf(size_t place) const {
+    return settings_[setting_of_.at(At(place).theta)];
+  }
+
+  /// Whether no trial that the settings of both rows have parts them.
+  bool AreSameSettings(size_t a, size_t b) {
+    const std::pair<size_t, size_t> pair =
+        std::minmax(setting_of_.at(At(a).theta), setting_of_.at(At(b).theta));
+    const auto known = are_same_.find(pair);
+    if (known != are_same_.end()) return known->second;
+    const auto& others = settings_[pair.second].places;
+    bool are_same = true;
+    for (const auto& [noise, place] : settings_[pair.first].places) {
+      const auto other = others.find(noise);
+      are_same = are_same && (other == others.end() || AreSameRuns(At(place), At(other->second)));
+    }
+    return are_same_[pair] = are_same;
+  }
+
+  void JoinByKeys(size_t place, Seen& seen) {
     const TrialRow& row = At(place);
     CopyKey key = EndOf(row);
     key.theta = row.theta;
@@ -102,15 +145,23 @@ class CopyFinder {
     }
   }
 
-  void Join(const CopyKey& key, size_t place, std::map<CopyKey, size_t>& seen) {
-    const auto [found, is_new] = seen.try_emplace(key, place);
-    if (!is_new) sets_.Join(found->second, place);
+  void Join(const CopyKey& key, size_t place, Seen& seen) {
+    std::vector<size_t>& firsts = seen[key];
+    for (const size_t first : firsts) {
+      if (!AreSameSettings(first, place)) continue;
+      sets_.Join(first, place);
+      return;
+    }
+    firsts.push_back(place);
   }
 
   std::span<const TrialRow> rows_;
   const std::vector<int>& indices_;
+  bool chance_repeats_runs_;
   CopySets sets_;
-  std::map<experiment::Theta, int> repeats_;
+  std::map<experiment::Theta, size_t> setting_of_;
+  std::vector<Setting> settings_;
+  std::map<std::pair<size_t, size_t>, bool> are_same_;
 };
 
 /// Places in `indices` of the rows that share their path with another, by path.
@@ -127,10 +178,11 @@ std::unordered_map<std::uint64_t, std::vector<size_t>> SharedPaths(
 
 }  // namespace
 
-std::vector<int> DistinctRows(std::span<const TrialRow> rows, const std::vector<int>& indices) {
+std::vector<int> DistinctRows(std::span<const TrialRow> rows, const std::vector<int>& indices,
+                              bool chance_repeats_runs) {
   const auto shared = SharedPaths(rows, indices);
   if (shared.empty()) return indices;
-  CopyFinder finder(rows, indices);
+  CopyFinder finder(rows, indices, chance_repeats_runs);
   for (const auto& [path, places] : shared) finder.Find(places);
   std::vector<int> distinct;
   for (size_t i = 0; i < indices.size(); ++i) {
@@ -146,7 +198,7 @@ std::vector<int> RowsThatCount(const SweepResult& result) {
       rows.push_back(static_cast<int>(i));
     }
   }
-  return DistinctRows(result.rows, rows);
+  return DistinctRows(result.rows, rows, result.chance_repeats_runs);
 }
 
 }  // namespace rift::sweep

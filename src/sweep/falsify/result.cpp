@@ -11,6 +11,7 @@
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/inference.hpp"
+#include "rift/sweep/falsify/chance_among_runs.hpp"
 #include "rift/sweep/falsify/distinct_rows.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/verdict.hpp"
@@ -121,7 +122,7 @@ std::vector<double> GapsOf(const SweepResult& result, const std::vector<int>& ro
 /// Of the distinct trials that tell.
 std::vector<double> LossesOf(const SweepResult& result, const std::vector<int>& rows) {
   std::vector<double> losses_m;
-  for (const int row : DistinctRows(result.rows, rows)) {
+  for (const int row : DistinctRows(result.rows, rows, result.chance_repeats_runs)) {
     const double loss_m = Loss_m(result.rows[row], result.gap.threshold_m);
     if (std::isfinite(loss_m)) losses_m.push_back(loss_m);
   }
@@ -157,21 +158,37 @@ Anova AnovaOf(const SweepResult& result, int parameter) {
           .omega_squared = analysis.omega_squared};
 }
 
-std::vector<SettingResult> SettingsOf(const SweepResult& result) {
+/// Indices of the rows of each setting.
+std::vector<std::vector<int>> RowsBySetting(const SweepResult& result) {
   std::vector<int> all(result.parameters.size());
   std::iota(all.begin(), all.end(), 0);
+  return GroupBy(result, all).rows;
+}
+
+bool HasChanceAmongRuns(const SweepResult& result) {
+  ChanceAmongRuns chance;
+  for (const std::vector<int>& rows : RowsBySetting(result)) {
+    std::vector<const TrialRow*> trials;
+    for (const int row : rows) trials.push_back(&result.rows[row]);
+    chance.Note(trials);
+  }
+  return chance.IsSeen();
+}
+
+std::vector<SettingResult> SettingsOf(const SweepResult& result) {
   std::vector<SettingResult> settings;
-  for (std::vector<int>& rows : GroupBy(result, all).rows) {
+  for (std::vector<int>& rows : RowsBySetting(result)) {
     const double mean_gap_m = statistics::Mean(GapsOf(result, rows));
     const std::vector<double> losses_m = LossesOf(result, rows);
     std::vector<TrialRow> trials;
     for (const int row : rows) trials.push_back(result.rows[row]);
-    SettingResult setting{.theta = trials.front().theta,
-                          .rows = std::move(rows),
-                          .mean_gap_m = mean_gap_m,
-                          .mean_loss_m = statistics::Mean(losses_m),
-                          .loss_m = statistics::MeanInterval(losses_m, 0.95),
-                          .verdict = CountFailures(trials, result.judged_by)};
+    SettingResult setting{
+        .theta = trials.front().theta,
+        .rows = std::move(rows),
+        .mean_gap_m = mean_gap_m,
+        .mean_loss_m = statistics::Mean(losses_m),
+        .loss_m = statistics::MeanInterval(losses_m, 0.95),
+        .verdict = CountFailures(trials, result.judged_by, result.chance_repeats_runs)};
     settings.push_back(std::move(setting));
   }
   return settings;
@@ -201,6 +218,7 @@ void Summarise(SweepResult& result) {
   std::vector<int> every_row(result.rows.size());
   std::iota(every_row.begin(), every_row.end(), 0);
   result.all = SummariseRows(result, "all", every_row);
+  result.chance_repeats_runs = result.chance_repeats_runs || HasChanceAmongRuns(result);
   result.settings = SettingsOf(result);
   JudgeSettings(result);
   result.anova.clear();

@@ -28,8 +28,8 @@ std::optional<SweepResult> SweepGrid(const experiment::Experiment& experiment,
       experiment::GridPoints(experiment.space.parameters);
   const bool is_repeated =
       experiment.falsify.repeat == Repeat::kEvery && FirstSeed(experiment).has_value();
-  const RepeatPlan plan(experiment.falsify, static_cast<int>(settings.size()),
-                        experiment.gap.threshold_m);
+  RepeatPlan plan(experiment.falsify, static_cast<int>(settings.size()),
+                  experiment.gap.threshold_m);
   const int first = static_cast<int>(experiment.reference.trials.names.size());
   std::vector<std::vector<TrialRow>> rows(settings.size());
   std::vector<int> wanted(settings.size(), first);

@@ -27,10 +27,10 @@ bool HaveDifferentSeeds(std::span<const TrialRow> rows, const std::vector<int>& 
 
 }  // namespace
 
-gap::RepeatVerdict CountFailures(std::span<const TrialRow> rows,
-                                 const gap::VerdictOptions& options) {
+gap::RepeatVerdict CountFailures(std::span<const TrialRow> rows, const gap::VerdictOptions& options,
+                                 bool chance_repeats_runs) {
   const std::vector<int> indices = ThatTell(rows);
-  const std::vector<int> distinct = DistinctRows(rows, indices);
+  const std::vector<int> distinct = DistinctRows(rows, indices, chance_repeats_runs);
   int above = 0;
   for (const int i : distinct) above += rows[i].falsified;
   gap::RepeatVerdict verdict = gap::JudgeCounts(above, static_cast<int>(distinct.size()), options);
@@ -92,11 +92,24 @@ int RepeatPlan::Worth(std::span<const TrialRow> rows, const gap::RepeatVerdict& 
   return 0;
 }
 
-std::vector<int> RepeatPlan::More(const Settings& batch) const {
+void RepeatPlan::LookForChance(const Settings& batch) {
+  for (const std::span<const TrialRow> rows : batch) {
+    std::vector<const TrialRow*> trials;
+    for (const TrialRow& row : rows) trials.push_back(&row);
+    chance_.Note(trials);
+  }
+  if (!chance_.IsSeen()) return;
+  const auto is_without_chance = [](double evidence) { return std::isinf(evidence); };
+  std::erase_if(done_.above, is_without_chance);
+  std::erase_if(done_.below, is_without_chance);
+}
+
+std::vector<int> RepeatPlan::More(const Settings& batch) {
+  LookForChance(batch);
   Evidence evidence = done_;
   std::vector<gap::RepeatVerdict> verdicts;
   for (const std::span<const TrialRow> rows : batch) {
-    verdicts.push_back(CountFailures(rows, options_));
+    verdicts.push_back(CountFailures(rows, options_, chance_.IsSeen()));
     evidence.Note(verdicts.back(), Least());
   }
   const double above = Needed(std::move(evidence.above));
@@ -114,8 +127,9 @@ std::vector<int> RepeatPlan::More(const Settings& batch) const {
 }
 
 void RepeatPlan::Add(const Settings& batch) {
+  LookForChance(batch);
   for (const std::span<const TrialRow> rows : batch) {
-    done_.Note(CountFailures(rows, options_), Least());
+    done_.Note(CountFailures(rows, options_, chance_.IsSeen()), Least());
   }
 }
 

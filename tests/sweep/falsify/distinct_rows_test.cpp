@@ -100,6 +100,34 @@ TEST_CASE("A parameter that does nothing adds no run, whichever it is and whatev
   CHECK(Distinct(rows).size() == 6);
 }
 
+TEST_CASE(
+    "Trials of one noise count once where every trial of the two settings came out the same") {
+  // A parameter that makes a fixed path fail more often: half of the trials come out alike.
+  Rows rows;
+  for (const int share : {0, 5}) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const TrialRow end = share > 0 && seed % 2 == 0 ? Failed(0.5, 7) : Ok(0.02, 7);
+      rows.push_back(At(end, {share}, std::to_string(seed), seed));
+    }
+  }
+  CHECK(Distinct(rows).size() == 7);  // those of the first setting are one run
+  std::vector<int> all(rows.size());
+  std::iota(all.begin(), all.end(), 0);
+  CHECK(DistinctRows(rows, all, true) == all);
+  // A third setting that comes out as the second is no other than it.
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    rows.push_back(
+        At(seed % 2 == 0 ? Failed(0.5, 7) : Ok(0.02, 7), {6}, std::to_string(seed), seed));
+  }
+  CHECK(Distinct(rows).size() == 7);
+}
+
+TEST_CASE("Repeats that are the same are draws where chance picks among a few runs") {
+  const Rows rows{At(Ok(0.02, 7), {1}, "1", 1), At(Ok(0.02, 7), {1}, "2", 2)};
+  CHECK(DistinctRows(rows, {0, 1}, true) == std::vector<int>{0, 1});
+  CHECK(DistinctRows(rows, {0, 1}, false) == std::vector<int>{0});
+}
+
 TEST_CASE("Settings that differ in two parameters may meet by chance, and both count") {
   // 2 a + b over three values each: (1, 3) and (2, 1) drive one path, as do (2, 3) and (3, 1).
   Rows rows;

@@ -150,8 +150,9 @@ struct SweepResult {
   std::string reference_kind;  ///< "logs", "nominal", "path"
   gap::GapOptions gap;
   gap::VerdictOptions judged_by;
-  int judged_settings = 0;    ///< settings that are judged together; 0: those there are
-  double tag_offset_m = 0.0;  ///< how far ahead of the tag the reference logs were taken
+  int judged_settings = 0;           ///< settings that are judged together; 0: those there are
+  bool chance_repeats_runs = false;  ///< see ChanceAmongRuns
+  double tag_offset_m = 0.0;         ///< how far ahead of the tag the reference logs were taken
   std::vector<experiment::Parameter> parameters;
   std::vector<TrialRow> rows;
   std::vector<SettingResult> settings;
@@ -197,7 +198,8 @@ std::vector<LevelSummary> SummariseBy(const SweepResult& result,
 
 /// Fills in everything of a result that follows from its parameters and rows: the settings with
 /// their verdicts, the analyses of variance and the summary of all rows. Settings stand in
-/// the order of their first rows; their noise floor is left alone.
+/// the order of their first rows; their noise floor is left alone, and so is chance that repeats
+/// runs, once it was seen: a part of a sweep keeps it from the whole.
 void Summarise(SweepResult& result);
 
 /// Error rate of the F test that SmallestDetectable plans for.

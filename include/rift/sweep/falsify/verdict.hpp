@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "rift/sweep/falsify/chance_among_runs.hpp"
 #include "rift/sweep/falsify/options.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
@@ -10,9 +11,9 @@ namespace rift::sweep {
 
 /// How many of the distinct trials that tell fail, judged alone. A setting of which several trials
 /// with different seeds are identical does not depend on chance: every further trial would be the
-/// same, and the one there is decides.
-gap::RepeatVerdict CountFailures(std::span<const TrialRow> rows,
-                                 const gap::VerdictOptions& options);
+/// same, and the one there is decides; unless `chance_repeats_runs` (ChanceAmongRuns).
+gap::RepeatVerdict CountFailures(std::span<const TrialRow> rows, const gap::VerdictOptions& options,
+                                 bool chance_repeats_runs = false);
 
 /// How many trials of a setting, all of them failing, it takes to falsify the first of so many
 /// settings.
@@ -33,7 +34,7 @@ class RepeatPlan {
 
   /// Further trials of each setting of a batch: 0 for one that is decided, that has had
   /// most_repeats, or that no number of trials left could decide.
-  std::vector<int> More(const Settings& batch) const;
+  std::vector<int> More(const Settings& batch);
   /// The settings of a batch are done.
   void Add(const Settings& batch);
   bool HasFalsified() const;
@@ -44,6 +45,9 @@ class RepeatPlan {
     std::vector<double> above, below;
     void Note(const gap::RepeatVerdict& verdict, double least);
   };
+  /// Settings that were decided since their repeats are the same are open again once chance among
+  /// a few runs is seen.
+  void LookForChance(const Settings& batch);
   double Least() const;  ///< less decides nothing, however many others are decided
   double Needed(std::vector<double> evidence) const;  ///< by one more decision
   int Worth(std::span<const TrialRow> rows, const gap::RepeatVerdict& verdict, double above,
@@ -53,6 +57,7 @@ class RepeatPlan {
   int settings_;
   double threshold_m_;
   Evidence done_;
+  ChanceAmongRuns chance_;
 };
 
 }  // namespace rift::sweep
