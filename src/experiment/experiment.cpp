@@ -79,6 +79,21 @@ void RequireTaken(const Experiment& experiment, const std::string& path) {
   require(Amount::kGridTrials, trials);
 }
 
+/// Names stand in the lines of tables and sentences.
+void RequireOneLineNames(const Experiment& experiment, const std::string& path) {
+  const auto require = [&path](const char* key, const std::string& name) {
+    if (name.find_first_of("\n\r") == name.npos) return;
+    throw yaml::Error(fmt::format("{}: {} is '{}': names have no line breaks", path, key, name));
+  };
+  require("name", experiment.name);
+  for (const control::Waypoint& waypoint : experiment.waypoints) {
+    require("the name of a waypoint", waypoint.name);
+  }
+  for (const std::string& trial : experiment.reference.trials.names) {
+    require("a trial of reference.trials", trial);
+  }
+}
+
 /// Values to try a parameter with: its levels, or the ends of its range.
 std::vector<ParameterValue> ValuesToTry(const Parameter& parameter) {
   if (!parameter.IsContinuous()) return parameter.levels;
@@ -281,6 +296,7 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   ResolveImages(tree);
   yaml::Bind(tree, experiment);
   RequireTaken(experiment, path);
+  RequireOneLineNames(experiment, path);
   MakeAbsolute(experiment.candidate.path);
   MakeAbsolute(experiment.reference.path);
   if (experiment.candidate.kind == CandidateKind::kSimulation) ResolveSpace(experiment);

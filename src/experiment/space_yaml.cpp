@@ -40,6 +40,12 @@ yaml::KeyValue ValueOfKey(const std::string& key, const ParameterValue& value,
 namespace rift::yaml {
 namespace {
 
+/// Tables and sentences have names and values of parameters in their lines.
+void RequireOneLine(const std::string& text, const Node& node, const std::string& key) {
+  if (text.find_first_of("\n\r") == text.npos) return;
+  Fail(node, key, "names and values of parameters have no line breaks");
+}
+
 void ReadLevels(const Node& node, const std::string& key, experiment::Parameter& parameter) {
   if (node.items.empty()) Fail(node, key, "an axis needs at least one value");
   std::set<std::string> texts;  // two levels are one where SameValue says so
@@ -49,6 +55,7 @@ void ReadLevels(const Node& node, const std::string& key, experiment::Parameter&
     const bool is_new =
         texts.insert(level.text).second && (!level.number || numbers.insert(*level.number).second);
     if (!is_new) Fail(item, key, "an axis has each value once");
+    RequireOneLine(level.text, item, key);
     parameter.levels.push_back(level);
   }
 }
@@ -126,6 +133,7 @@ void ReadAxis(const Node& node, const std::string& key, experiment::Parameter& p
 
 experiment::Parameter ParameterFromEntry(const FlatEntry& entry) {
   const std::string key = Join("space", entry.key);
+  RequireOneLine(entry.key, *entry.value, key);
   experiment::Parameter parameter{.key = entry.key, .origin = entry.origin.Text()};
   if (entry.value->IsList()) {
     ReadLevels(*entry.value, key, parameter);

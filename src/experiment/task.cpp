@@ -60,6 +60,18 @@ void RequireReachableWaypoints(const Experiment& experiment, const std::string& 
       file, path_m, farthest_m, experiment.trial.timeout_s));
 }
 
+std::optional<std::string> IdleHeadingNote(const Experiment& experiment, const std::string& file) {
+  const std::vector<control::Waypoint>& waypoints = experiment.waypoints;
+  for (size_t i = 1; i < waypoints.size(); ++i) {
+    if (!waypoints[i].heading_deg) continue;
+    return fmt::format(
+        "note: {}: {} has heading {:g}, and only that of the first waypoint is driven: it does "
+        "nothing",
+        file, NameOf(waypoints[i], i), *waypoints[i].heading_deg);
+  }
+  return std::nullopt;
+}
+
 vision::TagOptions TagOn(const Experiment& experiment) {
   vision::TagOptions tag = experiment.track.tag;
   const auto& terrain = experiment.simulation.terrain;

@@ -62,6 +62,8 @@ TEST_CASE("An axis that breaks a rule is refused with the rule") {
                      {"[1, 2, 1.0]", "an axis has each value once"},
                      {"[ice, ice]", "an axis has each value once"},
                      {"[[1]]", "must be a number or a text"},
+                     {"[1, \"ice\\nand snow\"]", "have no line breaks"},
+                     {"[\"ice\\r\"]", "have no line breaks"},
                      {"3", "must be a list of values, or {min: a, max: b}"},
                      {"{min: 1}", "a range needs min and max; max is missing"},
                      {"{max: 1}", "a range needs min and max; min is missing"},
@@ -103,6 +105,7 @@ TEST_CASE("A parameter is called like no other and like no column of a table") {
     CHECK_THROWS_WITH(refused("{b: [1], " + std::string(column) + ": [1]}")(),
                       Contains("'" + std::string(column) + "' is a column of table.csv already"));
   }
+  CHECK_THROWS_WITH(refused("{\"a\\nb\": [1]}")(), Contains("have no line breaks"));
   CHECK_NOTHROW(refused("{a: [1], b: [1]}")());
 }
 

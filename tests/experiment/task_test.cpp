@@ -36,6 +36,28 @@ TEST_CASE("A task is a program or waypoints, and one of them is needed") {
   CHECK_THROWS_WITH(RequireTask(nowhere, "a.yaml"), Catch::StartsWith("a.yaml: "));
 }
 
+TEST_CASE("Names of an experiment, its waypoints and trials with a line break are refused") {
+  const std::string way = "waypoints: [{x: 0, y: 0}, {name: b, x: 1, y: 0}]\n";
+  CHECK_NOTHROW(Load("name: a\n" + way + "reference: {trials: [c]}\n"));
+  CHECK_THROWS_WITH(Load("name: \"a\\nb\"\n" + way),
+                    "task.yaml: name is 'a\\nb': names have no line breaks");
+  CHECK_THROWS_WITH(Load("waypoints: [{x: 0, y: 0}, {name: \"b\\rc\", x: 1, y: 0}]\n"),
+                    Contains("the name of a waypoint is 'b\\x0dc'"));
+  CHECK_THROWS_WITH(Load(way + "reference: {trials: [\"c\\n\"]}\n"),
+                    Contains("a trial of reference.trials is 'c\\n'"));
+}
+
+TEST_CASE("Headings of later waypoints, which no controller turns to, are told") {
+  Experiment experiment = Way(1, 0);
+  experiment.waypoints[0].heading_deg = 90.0;
+  CHECK_FALSE(IdleHeadingNote(experiment, "a.yaml"));
+  experiment.waypoints[1].heading_deg = 45.0;
+  CHECK(IdleHeadingNote(experiment, "a.yaml") ==
+        "note: a.yaml: waypoints[1] (end) at x 1 m, y 0 m has heading 45, and only that of the "
+        "first waypoint is driven: it does nothing");
+  CHECK_FALSE(IdleHeadingNote({}, "a.yaml"));
+}
+
 TEST_CASE("A program starts at the one waypoint there may be, turned by its heading") {
   Experiment experiment;
   experiment.program.segments = {{.straight_m = 1.0, .power = 0.3}};

@@ -43,6 +43,13 @@ TEST_CASE("A simulated sweep without a space is the paper's, and only that") {
   CHECK(NotesOf(SmallGrid()).empty());
 }
 
+TEST_CASE("A heading that no controller turns to is noted") {
+  const std::vector<std::string> lines = NotesOf(
+      LoadText("waypoints: [{x: 0, y: 0, heading: 5}, {x: 0.2, y: 0, heading: 30}]\n" + kLogs));
+  REQUIRE(lines.size() == 1);
+  CHECK_THAT(lines[0], StartsWith("note: task.yaml: waypoints[1]") && Contains("has heading 30"));
+}
+
 TEST_CASE("A simulated robot that stands tilted is warned of, and one of logs is none") {
   const std::vector<std::string> tilted{"simulation.body.caster_below_m=0.005"};
   const std::vector<std::string> lines = NotesOf(SmallGrid(tilted));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "rift/experiment/experiment.hpp"
@@ -16,6 +17,10 @@ void RequireTask(const Experiment& experiment, const std::string& file);
 /// outside trial.arena, and for a path so long and so far out that its metres must be millimetres
 /// or centimetres.
 void RequireReachableWaypoints(const Experiment& experiment, const std::string& file);
+
+/// A line about the first of the later waypoints that has a heading: the navigator turns to none of
+/// them, and only the first waypoint's says where the robot looks. Nothing where none has.
+std::optional<std::string> IdleHeadingNote(const Experiment& experiment, const std::string& file);
 
 /// The experiment's tag. Where its surface is bumps, a ramp or a heightfield the tag is not held to
 /// a flat floor (TagOptions::ground): `flat` becomes what the surface allows.

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "rift/experiment/task.hpp"
 #include "rift/files/files.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/trajectory/log.hpp"
@@ -40,6 +41,10 @@ experiment::Experiment ReadExperiment(const fs::path& file,
                                       const std::vector<std::string>& overrides) {
   return experiment::LoadExperiment(file.string(), overrides,
                                     [](const std::string& path) { return files::ReadFile(path); });
+}
+
+void SayIdleHeading(const experiment::Experiment& experiment, const std::string& file) {
+  if (const auto note = experiment::IdleHeadingNote(experiment, file)) terminal::Say(*note);
 }
 
 void WarnOfTilt(const experiment::Experiment& experiment) {

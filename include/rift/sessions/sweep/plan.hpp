@@ -12,7 +12,8 @@ namespace rift::sessions {
 experiment::Experiment PlanSweep(experiment::Experiment loaded);
 
 /// Tells `say` what a person should know of the plan before it is run, one line each: the space
-/// that `file` does not name, a robot that does not stand level, too few repeats to falsify.
+/// that `file` does not name, headings that do nothing, a robot that does not stand level, too few
+/// repeats to falsify.
 void NotePlan(const experiment::Experiment& loaded, const std::string& file,
               const std::function<void(const std::string&)>& say);
 
