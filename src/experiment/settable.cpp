@@ -55,6 +55,19 @@ std::string PatternOf(std::string_view key) {
   return pattern;
 }
 
+/// A name that several keys end in ("p" of two loops), or an entry of a list ("x" of a waypoint),
+/// is as likely one of somebody else's: it names no key.
+const SettableKey* FindByLastName(std::string_view name) {
+  const std::string end = "." + std::string(name);
+  const SettableKey* found = nullptr;
+  for (const SettableKey& known : kSettable) {
+    if (!known.key.ends_with(end)) continue;
+    if (found != nullptr || known.key.find('[') != known.key.npos) return nullptr;
+    found = &known;
+  }
+  return found;
+}
+
 double NiceStep(double least) {
   constexpr double kRounded = 1.0 - 1e-9;  // (5.4 - 5) / 20 is a little more than 0.02
   const double power = std::pow(10.0, std::floor(std::log10(least)));
@@ -67,12 +80,13 @@ double NiceStep(double least) {
 }  // namespace
 
 std::optional<Settable> FindSettable(std::string_view key) {
+  if (key.find('.') == key.npos) {
+    const SettableKey* const known = FindByLastName(key);
+    return known != nullptr ? std::optional(Settable{known->step}) : std::nullopt;
+  }
   const std::string pattern = PatternOf(key);
-  const bool is_column = key.find('.') == key.npos;
-  const auto found =
-      std::find_if(kSettable.begin(), kSettable.end(), [&](const SettableKey& known) {
-        return known.key == pattern || (is_column && known.key.ends_with("." + pattern));
-      });
+  const auto found = std::find_if(kSettable.begin(), kSettable.end(),
+                                  [&](const SettableKey& known) { return known.key == pattern; });
   if (found == kSettable.end()) return std::nullopt;
   return Settable{found->step};
 }

@@ -149,6 +149,11 @@ TEST_CASE("A person can set what the host's controller takes, waypoints and the 
   CHECK(FindSettable("v_min")->step == 0.01);  // the column of a table
   CHECK(FindSettable("surface"));
   CHECK_FALSE(FindSettable("min"));
+  // A program's own names: two loops have a p, and a waypoint an x.
+  for (const char* name : {"p", "i", "d", "power", "x", "y", "heading"}) {
+    INFO(name);
+    CHECK_FALSE(FindSettable(name));
+  }
 }
 
 TEST_CASE("The space says whether a parameter can be set, else its key") {

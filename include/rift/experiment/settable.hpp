@@ -14,7 +14,8 @@ struct Settable {
 };
 
 /// Nothing for keys that only a simulator has: a motor's mismatch, a radio's delay. A column of
-/// recorded logs ("v_min") is known by the last part of the key that it is named after.
+/// recorded logs or a parameter of a program ("v_min") is known by the last part of the key that it
+/// is named after, unless several keys end in it ("p") or it is of a list ("x").
 std::optional<Settable> FindSettable(std::string_view key);
 
 /// The schema's answer, unless the space says otherwise (settable: true or false).
