@@ -18,13 +18,17 @@ using trajectory::Trajectory;
 constexpr int kPoints = 160;
 constexpr size_t kFewestRows = 10;
 
-/// A path as points at equal arc length, the first of them at the origin.
 template <int N>
-PointsIn<N> FromStart(const ArcPathIn<N>& path) {
-  PointsIn<N> points = Resample(path, kPoints);
+PointsIn<N> FromFirst(PointsIn<N> points) {
   const Point<N> start_m = points.front();
   for (Point<N>& point : points) point -= start_m;
   return points;
+}
+
+/// A path as points at equal arc length, the first of them at the origin.
+template <int N>
+PointsIn<N> FromStart(const ArcPathIn<N>& path) {
+  return FromFirst<N>(Resample(path, kPoints));
 }
 
 template <int N>
@@ -130,6 +134,28 @@ void DoubtPlace(const PointsIn<N>& sim, const PointsIn<N>& real, double far_m,
                 std::vector<std::string>& doubts) {
   if ((sim.front() - real.front()).norm() < far_m) return;
   DoubtAxes<N>(sim, real, far_m, doubts);
+}
+
+/// A robot that was driven from the end of the other's path to its start. A straight way back is a
+/// mirror image as well, and told as one.
+template <int N>
+void DoubtDirection(const PointsIn<N>& sim, const PointsIn<N>& real, double far_m,
+                    std::vector<std::string>& doubts) {
+  constexpr double kClearer = 0.5;  // than what mends the axes
+  const double distance_m = MeanDistance_m<N>(sim, real, Matrix<N>::Identity());
+  if (distance_m < far_m) return;
+  const PointsIn<N> back(real.rbegin(), real.rend());
+  const double back_m = MeanDistance_m<N>(sim, back, Matrix<N>::Identity());
+  double mended_m = distance_m;
+  for (const AxesMistake<N>& mistake : AxesMistakes<N>()) {
+    mended_m = std::min(mended_m,
+                        MeanDistance_m<N>(FromFirst<N>(sim), FromFirst<N>(real), mistake.mended));
+  }
+  if (back_m > kMends * distance_m || back_m > kClearer * mended_m) return;
+  doubts.push_back(
+      fmt::format("REAL lies {:.3g} m from SIM on average and {:.2g} m when it is taken from its "
+                  "end to its start: was one of them driven the other way?",
+                  distance_m, back_m));
 }
 
 /// Heights are small beside the way, and so is what a wrong sign of them does to the distance.
@@ -288,13 +314,15 @@ std::vector<std::string> DoubtsIn(const Trajectory& sim, const Trajectory& real,
   if (doubts.empty()) {
     constexpr double kFar = 0.1, kFarHeights = 0.03;  // of the path's extent
     const double extent_m = std::max(Extent_m<N>(sim_m), Extent_m<N>(real_m));
-    DoubtAxes<N>(sim_m, real_m, kFar * extent_m, doubts);
+    const bool tells_places = options.align == Align::kNone;
+    const PointsIn<N> sim_at = Resample(sim_path, kPoints), real_at = Resample(real_path, kPoints);
+    if (tells_places) DoubtDirection<N>(sim_at, real_at, kFar * extent_m, doubts);
+    if (doubts.empty()) DoubtAxes<N>(sim_m, real_m, kFar * extent_m, doubts);
     if constexpr (N == 3) {
       if (doubts.empty()) DoubtHeights(sim_m, real_m, kFarHeights * extent_m, doubts);
     }
-    if (doubts.empty() && options.align == Align::kNone) {
-      DoubtPlace<N>(Resample(sim_path, kPoints), Resample(real_path, kPoints), kFar * extent_m,
-                    doubts);
+    if (doubts.empty() && tells_places) {
+      DoubtPlace<N>(sim_at, real_at, kFar * extent_m, doubts);
     }
     DoubtPart(real, real_path, sim_path, "REAL", "SIM", doubts);
     DoubtPart(sim, sim_path, real_path, "SIM", "REAL", doubts);

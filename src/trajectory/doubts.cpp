@@ -172,6 +172,59 @@ void DoubtRepeats(const Trajectory& trajectory, bool in_space, std::vector<std::
                                pairs, pairs + others));
 }
 
+/// A piece of the way, so long that noise alone makes none.
+struct Stride {
+  double way_m;  ///< along the positions
+  double net_m;  ///< from its first to its last
+  double time_s;
+};
+
+/// From where the robot left its place to where it came to rest.
+std::vector<Stride> StridesOf(const Trajectory& trajectory, double stride_m, bool in_space) {
+  const auto& poses = trajectory.poses;
+  size_t last = poses.size() - 1;
+  while (last > 0 && Distance_m(poses[last - 1], poses.back(), in_space) <= stride_m) --last;
+  std::vector<Stride> strides;
+  double way_m = 0.0;
+  for (size_t begin = 0, i = 1; i <= last; ++i) {
+    way_m += Distance_m(poses[i - 1], poses[i], in_space);
+    const double net_m = Distance_m(poses[begin], poses[i], in_space);
+    if (net_m <= stride_m) continue;
+    strides.push_back({way_m, net_m, poses[i].t_s - poses[begin].t_s});
+    begin = i;
+    way_m = 0.0;
+  }
+  if (!strides.empty()) strides.erase(strides.begin());  // it may have stood before
+  return strides;
+}
+
+/// Where a robot stands the noise of its positions is no way, but a path over its arc length takes
+/// it for one and lays what comes later beside other points of the other path.
+void DoubtStanding(const Trajectory& trajectory, bool in_space, std::vector<std::string>& doubts) {
+  constexpr double kStride_m = 0.01, kLeast_s = 1.0, kSlow = 0.2, kLeastShare = 0.05;
+  if (trajectory.poses.size() < kFewestPieces) return;
+  const std::vector<Stride> strides = StridesOf(trajectory, kStride_m, in_space);
+  if (strides.size() < kFewestPieces) return;
+  std::vector<double> speeds_m_s;
+  double length_m = 0.0;
+  for (const Stride& stride : strides) {
+    speeds_m_s.push_back(stride.net_m / stride.time_s);
+    length_m += stride.way_m;
+  }
+  const double slow_m_s = kSlow * statistics::Median(speeds_m_s);
+  double noise_m = 0.0, stood_s = 0.0;
+  for (const Stride& stride : strides) {
+    if (stride.time_s < kLeast_s || stride.net_m > slow_m_s * stride.time_s) continue;
+    noise_m += stride.way_m - stride.net_m;
+    stood_s += stride.time_s;
+  }
+  if (noise_m < kLeastShare * length_m) return;
+  doubts.push_back(fmt::format(
+      "it stands on its way for {:.3g} s, and the noise of its positions there makes {:.0f} % of "
+      "its arc length, so that the gap compares other points: leave those rows out",
+      stood_s, 100.0 * noise_m / length_m));
+}
+
 /// A coordinate that stands still and jumps while the other one moves is no robot's.
 void DoubtTarget(const Trajectory& trajectory, std::vector<std::string>& doubts) {
   constexpr size_t kMost = 12, kRowsForEach = 5;
@@ -231,6 +284,7 @@ std::vector<std::string> Doubts(const Trajectory& trajectory, bool in_space) {
   DoubtUnits(trajectory, in_space, doubts);
   if (!in_space) DoubtYaw(trajectory, doubts);
   DoubtRepeats(trajectory, in_space, doubts);
+  DoubtStanding(trajectory, in_space, doubts);
   DoubtTarget(trajectory, doubts);
   if (!in_space) DoubtTilt(trajectory, doubts);
   return doubts;

@@ -1,6 +1,7 @@
 // What makes two logs doubtful beside each other, on either side of each rule.
 #include "rift/gap/doubts.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -205,6 +206,26 @@ TEST_CASE("Sides look swapped when the real one is even and smooth and the simul
   CHECK_FALSE(LookSwapped(recorded, Texture(0.0, 0.1e-3 / 8.0 * 1.05)));
   CHECK(LookSwapped(Texture(0.06, 0.001), computed));
   CHECK_FALSE(LookSwapped(Texture(0.04, 0.001), computed));
+}
+
+TEST_CASE("A path that was driven the other way is told, and one that comes back is not") {
+  Trajectory back = Beside(Bend());
+  std::reverse(back.poses.begin(), back.poses.end());
+  for (size_t i = 0; i < back.poses.size(); ++i) back.poses[i].t_s = 0.05 * static_cast<double>(i);
+  CHECK(Doubt(Bend(), back)
+            .find("when it is taken from its end to its start: was one of them "
+                  "driven the other way?") != std::string::npos);
+  CHECK(Doubt(back, Bend()) == Doubt(Bend(), back));
+  // Straight on, the way back is a mirror image as well.
+  const auto straight = [](StampedPose& pose) { pose.y_m = 0.2; };
+  CHECK(Doubt(Changed(Bend(), straight), Changed(back, straight)).find("once it is mended") !=
+        std::string::npos);
+  // From where it ended a robot may well drive on, or another way back.
+  const Trajectory other = Changed(back, [](StampedPose& pose) { pose.y_m = 0.2; });
+  CHECK(Doubt(Bend(), other).find("driven the other way") == std::string::npos);
+  GapOptions aligned;
+  aligned.align = Align::kStart;
+  CHECK(Doubt(Bend(), back, aligned).find("driven the other way") == std::string::npos);
 }
 
 }  // namespace

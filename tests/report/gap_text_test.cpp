@@ -36,6 +36,16 @@ TEST_CASE("Standing still is told from one per cent of the real way on, unless i
   }
 }
 
+TEST_CASE(
+    "A way that a robot may have driven within the standstill radius is not told as standing") {
+  gap::GapResult result = Trials(1);
+  result.trials[0].comparison.real_length_m = 0.5;
+  result.trials[0].comparison.real_standstill_share = 0.04;  // 20 mm, 10 at either end
+  CHECK_THAT(GapText(result), !Contains("standing still"));
+  result.trials[0].comparison.real_standstill_share = 0.05;
+  CHECK_THAT(GapText(result), Contains("standing still makes 5.0 % of the real arc length"));
+}
+
 TEST_CASE("Yaw errors are the mean and the largest of the trials that tell their yaw") {
   gap::GapResult result = Trials(3);
   CHECK_THAT(GapText(result), !Contains("yaw error"));

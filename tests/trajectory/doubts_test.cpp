@@ -189,6 +189,48 @@ TEST_CASE("Rows that are each there twice are doubted from ten on, if four of fi
   CHECK(DoubtsOfRepeated(100, 2, 21).empty());
 }
 
+/// The curve with a stop after so many rows, its positions off by so much there, to and fro.
+Trajectory WithStop(size_t after, int rows, double noise_m) {
+  const Trajectory curve = Curve();
+  Trajectory log;
+  double t_s = 0.0;
+  const auto add = [&](StampedPose pose) {
+    pose.t_s = t_s += 0.05;
+    log.poses.push_back(pose);
+  };
+  for (size_t i = 0; i < curve.poses.size(); ++i) {
+    add(curve.poses[i]);
+    for (int k = 0; i == after && k < rows; ++k) {
+      StampedPose pose = curve.poses[i];
+      pose.x_m += k % 2 == 0 ? noise_m : -noise_m;
+      add(pose);
+    }
+  }
+  return log;
+}
+
+TEST_CASE("A robot that stands on its way is told when noise makes 5 % of its arc length") {
+  const std::vector<std::string> doubts = Doubts(WithStop(60, 199, 0.001));
+  REQUIRE(doubts.size() == 1);
+  CHECK(doubts[0] ==
+        "it stands on its way for 10 s, and the noise of its positions there makes 17 % of its "
+        "arc length, so that the gap compares other points: leave those rows out");
+  CHECK(Doubts(WithStop(60, 200, 0.0002)).empty());
+  CHECK(Doubts(WithStop(60, 10, 0.004)).empty());  // half a second is a turn
+  // Before and after the way --trim-standstill takes it out.
+  CHECK(Doubts(WithStop(0, 200, 0.001)).empty());
+  CHECK(Doubts(WithStop(133, 200, 0.001)).empty());
+}
+
+TEST_CASE("A robot that is slow all the way does not stand on it") {
+  Trajectory slow;
+  for (int i = 0; i < 4000; ++i) {
+    slow.poses.push_back(
+        {.t_s = 0.05 * i, .x_m = 0.00025 * i + (i % 2 == 0 ? 0.001 : -0.001), .y_m = 0.0});
+  }
+  CHECK(Doubts(slow).empty());
+}
+
 TEST_CASE("A coordinate that jumps between few values is that of a target, x or y") {
   const bool is_x = GENERATE(true, false);
   const auto log_with = [&](int values, double jump_m) {

@@ -10,9 +10,9 @@ namespace rift::gap {
 
 /// What makes a comparison of two logs doubtful though each log looks sound, one line each, in
 /// which the logs are called SIM and REAL: one is in another unit of length, mirrored, or has its
-/// axes swapped; one covers only a part of the other's path and begins or ends in motion; their
-/// clocks differ (of what options.trim_standstill leaves); they are the same log. In space z counts
-/// as well.
+/// axes swapped; one was driven the other way; one covers only a part of the other's path and
+/// begins or ends in motion; their clocks differ (of what options.trim_standstill leaves); they are
+/// the same log. In space z counts as well.
 std::vector<std::string> Doubts(const trajectory::Trajectory& sim,
                                 const trajectory::Trajectory& real, const GapOptions& options = {});
 

@@ -93,9 +93,13 @@ std::string YawText(const gap::GapResult& result) {
                      largest_rad);
 }
 
+/// Of a robot that drives off and arrives without standing the first and the last way within the
+/// radius is logged as standing too.
 std::string StandstillText(const gap::GapResult& result) {
   const double share = MeanOf(result, &Comparison::real_standstill_share);
-  if (result.options.trim_standstill || share < 0.01) return "";
+  const double standing_m = share * MeanOf(result, &Comparison::real_length_m);
+  const bool may_have_moved = standing_m <= 2.0 * result.options.standstill_radius_m;
+  if (result.options.trim_standstill || share < 0.01 || may_have_moved) return "";
   return fmt::format(
       "standing still makes {:.1f} % of the real arc length; --trim-standstill takes it out\n",
       100.0 * share);
