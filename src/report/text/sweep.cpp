@@ -10,6 +10,7 @@
 #include "rift/files/shell_word.hpp"
 #include "rift/report/figures/figures.hpp"
 #include "rift/report/text/findings.hpp"
+#include "rift/sweep/explain/worst_trial.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/enum_name.hpp"
 
@@ -40,13 +41,24 @@ std::string LevelTable(const std::string& head, std::vector<sweep::LevelSummary>
   return text + '\n';
 }
 
+std::string RowText(const sweep::SweepResult& result, size_t index) {
+  const sweep::TrialRow& row = result.rows[index];
+  const std::string end =
+      row.IsOk() ? fmt::format("{:.4f} m at u = {:.2f}", row.comparison.gap_m, row.comparison.gap_u)
+                 : std::string(yaml::NameOf(row.status));
+  return fmt::format("row {}, {} ({}, trial {})\n", index + 1, end,
+                     sweep::SettingText(result.parameters, row.theta), row.trial);
+}
+
+/// The row that `worst` names for --shrink and --replay, and the largest gap where that is another:
+/// of a sweep that fails by runs without a gap, or above the threshold at the goal alone.
 std::string WorstText(const sweep::SweepResult& result) {
-  const std::optional<int> index = WorstRow(result);
-  if (!index) return "";
-  const sweep::TrialRow& worst = result.rows[*index];
-  return fmt::format("worst: row {}, {:.4f} m at u = {:.2f} ({}, trial {})\n", *index + 1,
-                     worst.comparison.gap_m, worst.comparison.gap_u,
-                     sweep::SettingText(result.parameters, worst.theta), worst.trial);
+  const std::optional<size_t> worst = WorstTrialOf(result);
+  if (!worst) return "";
+  const std::string text = "worst: " + RowText(result, *worst);
+  const std::optional<int> largest = WorstRow(result);
+  if (!largest || static_cast<size_t>(*largest) == *worst) return text;
+  return text + "largest gap: " + RowText(result, static_cast<size_t>(*largest));
 }
 
 std::string NotOkText(const sweep::SweepResult& result) {

@@ -208,12 +208,7 @@ ShrunkFailure Shrink(const std::vector<experiment::Parameter>& parameters,
 namespace {
 
 int WorstIndex(const SweepResult& result) {
-  std::vector<TrialFailure> trials;
-  for (const TrialRow& row : result.rows) {
-    trials.push_back({.falsified = row.falsified});
-    if (row.IsOk()) trials.back().gap_m = row.comparison.gap_m;
-  }
-  const std::optional<size_t> worst = WorstTrial(trials);
+  const std::optional<size_t> worst = WorstTrialOf(result);
   if (!worst) throw std::invalid_argument("--shrink worst: no trial has a gap");
   return static_cast<int>(*worst);
 }

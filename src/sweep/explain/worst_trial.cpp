@@ -17,4 +17,13 @@ std::optional<std::size_t> WorstTrial(const std::vector<TrialFailure>& trials) {
   return static_cast<std::size_t>(failed - trials.begin());
 }
 
+std::optional<std::size_t> WorstTrialOf(const SweepResult& result) {
+  std::vector<TrialFailure> trials;
+  for (const TrialRow& row : result.rows) {
+    trials.push_back({.falsified = row.falsified});
+    if (row.IsOk()) trials.back().gap_m = row.comparison.gap_m;
+  }
+  return WorstTrial(trials);
+}
+
 }  // namespace rift::sweep

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "sweep/falsify/rows.hpp"
+
 namespace rift::sweep {
 namespace {
 
@@ -22,6 +24,15 @@ TEST_CASE("Where the largest gap does not fail, the worst trial is the first tha
 TEST_CASE("Without a gap and without a failure no trial is the worst") {
   CHECK_FALSE(WorstTrial({}).has_value());
   CHECK_FALSE(WorstTrial({{kNoGap, false}}).has_value());
+}
+
+TEST_CASE("The worst row of a sweep fails where any does, though it has no gap") {
+  SweepResult result;
+  result.rows = {Ok(0.02), Failed(0.5), Ok(0.01)};
+  CHECK(WorstTrialOf(result) == 1u);
+  result.rows[2] = Ok(0.07);
+  CHECK(WorstTrialOf(result) == 2u);
+  CHECK_FALSE(WorstTrialOf({}).has_value());
 }
 
 }  // namespace

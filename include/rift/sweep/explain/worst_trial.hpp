@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "rift/sweep/falsify/result.hpp"
+
 namespace rift::sweep {
 
 /// What decides which trial of a sweep is the worst.
@@ -15,5 +17,7 @@ struct TrialFailure {
 /// Index of the trial with the largest gap; where that does not fail, of the first that fails.
 /// Nothing when no trial has a gap or fails. The one meaning of "worst" on the command line.
 std::optional<std::size_t> WorstTrial(const std::vector<TrialFailure>& trials);
+/// The same of the rows of a sweep.
+std::optional<std::size_t> WorstTrialOf(const SweepResult& result);
 
 }  // namespace rift::sweep
