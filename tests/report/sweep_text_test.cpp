@@ -38,6 +38,35 @@ sweep::SweepResult Settings(const std::vector<std::vector<double>>& gaps_m) {
 }
 
 TEST_CASE(
+    "The worst row is the one that --shrink and --replay take, and a larger gap is told beside") {
+  sweep::SweepResult result = Settings({{0.02, 0.07}, {0.04}});
+  CHECK_THAT(SweepText(result),
+             Contains("\nworst: row 2, 0.0700 m at u = ") && !Contains("largest gap:"));
+  for (const size_t i : {size_t{0}, size_t{1}}) {
+    result.rows[i].status = sweep::TrialStatus::kTimedOut;
+    result.rows[i].falsified = true;
+    result.rows[i].comparison = {};
+  }
+  sweep::Summarise(result);
+  CHECK_THAT(SweepText(result), Contains("\nworst: row 1, timed_out (surface s0, trial 1)\n"
+                                         "largest gap: row 3, 0.0400 m at u = "));
+  result.rows.resize(2);
+  sweep::Summarise(result);
+  CHECK_THAT(SweepText(result), Contains("\nworst: row 1, timed_out (surface s0, trial 1)\n") &&
+                                    !Contains("largest gap:"));
+}
+
+TEST_CASE("Chance that picks among a few fixed runs is told where it is asked how sure all is") {
+  sweep::SweepResult result = Settings({{0.02, 0.07}, {0.04}});
+  const std::string told =
+      "- Chance picks among a few fixed runs here: repeats that are the same are draws, and each "
+      "counts.\n";
+  CHECK_THAT(ExplanationText(result, sweep::Explain(result), false), !Contains(told));
+  result.chance_repeats_runs = true;
+  CHECK_THAT(ExplanationText(result, sweep::Explain(result), false), Contains(told));
+}
+
+TEST_CASE(
     "A table of more than forty values holds those with the largest means, unknown ones last") {
   std::vector<std::vector<double>> gaps_m;
   for (int i = 0; i < 40; ++i) gaps_m.push_back({0.01 + 0.001 * i});

@@ -159,6 +159,11 @@ Finding HowSure(const sweep::SweepResult& result, const sweep::Explanation& expl
   Finding finding{"How sure is that?", {}};
   finding.sentences.push_back(VerdictCounts(result).Say("."));
   SayUndecided(result, &finding);
+  if (result.chance_repeats_runs) {
+    finding.sentences.push_back(Sentence(
+        "Chance picks among a few fixed runs here: repeats that are the same are draws, and "
+        "each counts."));
+  }
   finding.sentences.push_back(explanation.probability.sentence + ".");
   return finding;
 }

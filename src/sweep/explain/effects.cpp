@@ -55,14 +55,16 @@ Share ShareOf(const Model& model, const Regression::Fit& larger, const Regressio
   const double f = gain / share.df / model.mse;
   share.p = statistics::FUpperTail(share.df, model.residual_df, f);
   share.value = std::clamp((gain - share.df * model.mse) / (total + model.mse), 0.0, 1.0);
-  const auto share_at = [&](double tail) {
+  const auto share_at = [&](double tail, double f_there) {
     const double lambda = LargestNoncentrality([&](double l) {
-      return statistics::NoncentralFCdf(share.df, model.residual_df, l, f) > tail;
+      return statistics::NoncentralFCdf(share.df, model.residual_df, l, f_there) > tail;
     });
     return std::min(1.0, lambda * model.mse / total);
   };
-  share.low = std::min(share.value, share_at(0.975));
-  share.high = std::max(share.value, share_at(0.025));
+  share.low = std::min(share.value, share_at(0.975, f));
+  // Means that lie closer together than chance lays them are luck, and bound nothing: without the 1
+  // a handful of trials would now and then say that a parameter has next to no effect.
+  share.high = std::max(share.value, share_at(0.025, std::max(f, 1.0)));
   return share;
 }
 
@@ -131,11 +133,11 @@ ParameterEffect EffectOf(const SweepResult& result, const Observations& data, co
   return effect;
 }
 
-/// What the model explains and no parameter alone accounts for: a search goes where several change
-/// together.
-std::string SharedText(const Effects& effects) {
+/// What the model explains, less what chance alone would, and no parameter alone accounts for: a
+/// search goes where several change together.
+std::string SharedText(const Effects& effects, double beyond_chance) {
   constexpr double kWorthSaying = 0.1;
-  double shared = effects.explained;
+  double shared = beyond_chance;
   for (const ParameterEffect& effect : effects.parameters) {
     if (std::isfinite(effect.share)) shared -= effect.share;
   }
@@ -145,16 +147,30 @@ std::string SharedText(const Effects& effects) {
       Percent(shared));
 }
 
-std::string NoteOn(const Effects& effects) {
+std::string NoteOn(const Effects& effects, int most_of_setting, double beyond_chance) {
+  const std::string first = most_of_setting == 0 ? ""
+                            : most_of_setting == 1
+                                ? " (the first of each setting)"
+                                : fmt::format(" (of each setting the first {})", most_of_setting);
   return fmt::format(
-      "from a model of degree {} through {} trials, which explains {} of the variance and predicts "
-      "{} of that of a trial left out{}{}",
-      effects.degree, effects.trials, Percent(std::max(0.0, effects.explained)),
+      "from a model of degree {} through {} trials{}, which explains {} of the variance and "
+      "predicts {} of that of a trial left out{}{}",
+      effects.degree, effects.trials, first, Percent(std::max(0.0, effects.explained)),
       Percent(std::max(0.0, effects.predicted)),
       effects.predicted < kTrustedPrediction
           ? "; with so little, the shares say what it saw and not what is"
           : "",
-      SharedText(effects));
+      SharedText(effects, beyond_chance));
+}
+
+/// Of a list FindInert tells it; no two settings of a search share the value of a range.
+std::string SameRunsText(const SweepResult& result, const Observations& data) {
+  const bool has_range =
+      std::any_of(result.parameters.begin(), result.parameters.end(),
+                  [](const auto& parameter) { return parameter.IsContinuous(); });
+  if (!data.are_same_runs || !has_range) return "";
+  return "no parameter that was varied did anything: trials with the same random numbers are the "
+         "same to the last bit at every setting that was tried";
 }
 
 }  // namespace
@@ -170,7 +186,10 @@ Effects MeasureEffects(const SweepResult& result, const EffectOptions& options) 
   Effects effects;
   const Observations data = Observe(result, options.most_trials);
   effects.trials = static_cast<int>(data.rows.size());
-  if (data.parameters.empty()) return effects;
+  if (data.parameters.empty()) {
+    effects.note = SameRunsText(result, data);
+    return effects;
+  }
   const Expansion expansion =
       BestExpansion(result, data, {options.most_terms, options.most_degree});
   if (expansion.degree == 0) {
@@ -193,7 +212,8 @@ Effects MeasureEffects(const SweepResult& result, const EffectOptions& options) 
   for (int axis = 0; axis < static_cast<int>(data.parameters.size()); ++axis) {
     effects.parameters.push_back(EffectOf(result, data, model, axis));
   }
-  effects.note = NoteOn(effects);
+  const auto constant = regression.With([](const Orders&) { return false; });
+  effects.note = NoteOn(effects, data.most_of_setting, ShareOf(model, model.all, constant).value);
   std::stable_sort(effects.parameters.begin(), effects.parameters.end(),
                    [](const auto& a, const auto& b) {
                      const auto rank = [](double s) { return std::isnan(s) ? -1.0 : s; };

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "rift/sweep/falsify/distinct_rows.hpp"
@@ -120,10 +121,46 @@ double LeaveOneOut(const Eigen::MatrixXd& design, const Eigen::VectorXd& y) {
 
 }  // namespace
 
+namespace {
+
+std::map<experiment::Theta, int> CountBySetting(const std::vector<const TrialRow*>& rows) {
+  std::map<experiment::Theta, int> counts;
+  for (const TrialRow* row : rows) ++counts[row->theta];
+  return counts;
+}
+
+/// The number of trials that at least half of the settings have.
+int UsualCount(const std::map<experiment::Theta, int>& of_setting) {
+  std::vector<int> counts;
+  for (const auto& [theta, count] : of_setting) counts.push_back(count);
+  const auto middle = counts.begin() + static_cast<std::ptrdiff_t>((counts.size() - 1) / 2);
+  std::nth_element(counts.begin(), middle, counts.end());
+  return *middle;
+}
+
+/// Leaves of each setting the first trials alone.
+void LeaveOutFurther(const SweepResult& result, std::vector<const TrialRow*>& rows,
+                     Observations& data) {
+  if (rows.empty()) return;
+  const int most = (result.falsification ? 1 : 2) * UsualCount(CountBySetting(rows));
+  const size_t all = rows.size();
+  std::map<experiment::Theta, int> seen;
+  std::erase_if(rows, [&](const TrialRow* row) { return ++seen[row->theta] > most; });
+  if (rows.size() < all) data.most_of_setting = most;
+}
+
+bool SeveralSettingsTell(const SweepResult& result) {
+  return std::count_if(result.settings.begin(), result.settings.end(),
+                       [](const auto& setting) { return setting.verdict.repeats > 0; }) > 1;
+}
+
+}  // namespace
+
 Observations Observe(const SweepResult& result, int most) {
   std::vector<const TrialRow*> all;
   for (const int row : RowsThatCount(result)) all.push_back(&result.rows[row]);
   Observations data;
+  LeaveOutFurther(result, all, data);
   const size_t step = 1 + all.size() / static_cast<size_t>(most + 1);
   for (size_t i = 0; i < all.size(); i += step) data.rows.push_back(all[i]);
   data.losses_m.resize(static_cast<Eigen::Index>(data.rows.size()));
@@ -136,6 +173,7 @@ Observations Observe(const SweepResult& result, int most) {
     });
     if (is_varied) data.parameters.push_back(i);
   }
+  data.are_same_runs = !data.rows.empty() && data.parameters.empty() && SeveralSettingsTell(result);
   return data;
 }
 

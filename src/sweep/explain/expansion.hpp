@@ -16,9 +16,14 @@ struct Observations {
   std::vector<const TrialRow*> rows;
   std::vector<int> parameters;  ///< those that have more than one value in the rows
   Eigen::VectorXd losses_m;     ///< one a row
+  int most_of_setting = 0;      ///< first trials of a setting that are looked at; 0: all of them
+  bool are_same_runs = false;   ///< several settings tell, and all of them by the same runs
 };
 
-/// The distinct trials that tell, evenly picked when there are more than `most`.
+/// The distinct trials that tell, evenly picked when there are more than `most`. A search repeats a
+/// setting that it cannot decide, and a hundred trials of one would outweigh the rest of the space:
+/// of each setting the first ones, as many as half of the settings have. In a grid twice as many,
+/// so that missing trials cost none.
 Observations Observe(const SweepResult& result, int most);
 
 /// A linear model of the loss. Columns are products of orthonormal functions of the axes, one axis

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "expansion.hpp"
 #include "rift/sweep/falsify/result.hpp"
 
 namespace rift::sweep {
@@ -198,22 +199,24 @@ void SayEffect(Inertness& inert, double range_m) {
       inert.smallest_detectable_m, inert.parameter, 100.0 * kPower));
 }
 
-std::vector<int> CountsOf(const SweepResult& result, int parameter) {
+/// Of the trials that effects come from: copies of a trial show no smaller difference.
+std::vector<int> CountsOf(const Observations& data, int parameter) {
+  std::map<experiment::ParameterValue, int> count_of;
+  for (const TrialRow* row : data.rows) ++count_of[row->theta[parameter]];
   std::vector<int> counts;
-  for (const LevelSummary& level : SummariseBy(result, {parameter})) {
-    if (level.n > 0) counts.push_back(level.n);
-  }
+  for (const auto& [value, count] : count_of) counts.push_back(count);
   return counts;
 }
 
-Inertness Look(const SweepResult& result, int parameter, const Effects& effects) {
+Inertness Look(const SweepResult& result, int parameter, const Effects& effects,
+               const Observations& data) {
   Inertness inert{.parameter = result.parameters[parameter].Name()};
   ComparePaths(result, parameter, inert);
   if (const ParameterEffect* effect = effects.Of(parameter)) {
     inert.p = effect->p;
     inert.is_detected = effect->IsSeen();
     inert.smallest_detectable_m = SmallestDetectable(
-        CountsOf(result, parameter), effects.residual_sd_m, effects.residual_df, kPower);
+        CountsOf(data, parameter), effects.residual_sd_m, effects.residual_df, kPower);
   }
   SayPaths(inert);
   if (const UpperLimit* limit = LimitOf(result.parameters[parameter])) {
@@ -229,9 +232,10 @@ Inertness Look(const SweepResult& result, int parameter, const Effects& effects)
 }  // namespace
 
 std::vector<Inertness> FindInert(const SweepResult& result, const Effects& effects) {
+  const Observations data = Observe(result, EffectOptions{}.most_trials);
   std::vector<Inertness> all;
   for (int i = 0; i < static_cast<int>(result.parameters.size()); ++i) {
-    if (result.parameters[i].levels.size() > 1) all.push_back(Look(result, i, effects));
+    if (result.parameters[i].levels.size() > 1) all.push_back(Look(result, i, effects, data));
   }
   return all;
 }

@@ -266,5 +266,102 @@ TEST_CASE("Parameters that were changed together are not told apart, and it is s
   }
 }
 
+TEST_CASE("Means closer together than chance lays them bound an effect no better than chance") {
+  // Equal means of forty trials each: an F of 0, at which the interval would be nothing.
+  SweepResult result = OneWay(0.2, 0.2, 0.2);
+  const std::vector<TrialRow> rows = result.rows;
+  for (int i = 1; i < 10; ++i) result.rows.insert(result.rows.end(), rows.begin(), rows.end());
+  const Effects equal = MeasureEffects(result);
+  REQUIRE(equal.Of(0) != nullptr);
+  CHECK(equal.Of(0)->share == 0.0);
+  CHECK(equal.Of(0)->share_low == 0.0);
+  // At a noncentrality of 9.848738 a noncentral F(2, 117) lies below 1 with 2.5 %, by its series.
+  CHECK(equal.Of(0)->share_high == Approx(9.848738 / 117.0).epsilon(1e-5));
+}
+
+TEST_CASE("Repeats that a search spent on one setting do not outweigh the others") {
+  SweepResult result;
+  result.parameters = {{.key = "a", .min = 0.0, .max = 1.0}, {.key = "b", .min = 0.0, .max = 1.0}};
+  for (int i = 0; i < 40; ++i) {
+    const double a = (i + 0.5) / 40.0, b = std::fmod(7.3 * a, 1.0);
+    for (int repeat = 0; repeat < (i == 25 ? 100 : 1); ++repeat) {
+      result.rows.push_back(Row({{std::to_string(a), a}, {std::to_string(b), b}},
+                                0.1 * a + 0.002 * std::sin(12.9 * i + 78.2 * repeat)));
+    }
+  }
+  result.falsification = Falsification{};
+  const Effects found = MeasureEffects(result);
+  REQUIRE(found.Of(0) != nullptr);
+  CHECK(found.Of(0)->share > 0.9);
+  CHECK(found.trials == 40);
+  CHECK(found.note.find("through 40 trials (the first of each setting), which") !=
+        std::string::npos);
+  CHECK(found.note.find("changed together") == std::string::npos);
+  result.falsification.reset();
+  CHECK(MeasureEffects(result).note.find(
+            "through 41 trials (of each setting the first 2), which") != std::string::npos);
+}
+
+TEST_CASE("Of a grid's setting twice as many trials are looked at as half of its settings have") {
+  SweepResult result;
+  result.parameters = {{.key = "a", .levels = {{"1", 1.0}, {"2", 2.0}, {"3", 3.0}, {"4", 4.0}}}};
+  const auto add = [&result](size_t level, int repeats) {
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+      result.rows.push_back(Row({result.parameters[0].levels[level]}, 0.01 + 0.001 * repeat));
+    }
+  };
+  add(0, 1);
+  add(1, 2);
+  add(2, 4);
+  CHECK(Observe(result, 100).rows.size() == 7);
+  CHECK(Observe(result, 100).most_of_setting == 0);
+  add(3, 9);
+  const Observations data = Observe(result, 100);
+  CHECK(data.rows.size() == 11);
+  CHECK(data.most_of_setting == 4);
+  CHECK(data.rows.back() == &result.rows[10]);
+}
+
+TEST_CASE("What chance explains is not said of parameters that were changed together") {
+  // Two lists over an even grid of two repeats each, and one trial that went astray: its rows and
+  // columns explain 27 %, which is what three columns explain of such noise.
+  SweepResult result;
+  result.parameters = {{.key = "a", .levels = {{"1", 1.0}, {"2", 2.0}, {"3", 3.0}}},
+                       {.key = "b", .levels = {{"1", 1.0}, {"2", 2.0}}}};
+  for (const experiment::ParameterValue& a : result.parameters[0].levels) {
+    for (const experiment::ParameterValue& b : result.parameters[1].levels) {
+      for (int repeat = 0; repeat < 2; ++repeat) result.rows.push_back(Row({a, b}, 0.04));
+    }
+  }
+  result.rows.back().comparison.gap_m = 0.32;
+  const Effects found = MeasureEffects(result);
+  CHECK(found.explained == Approx(3.0 / 11.0));
+  CHECK(found.note.find("changed together") == std::string::npos);
+}
+
+TEST_CASE("Settings that all drove the same runs tell that no parameter did anything") {
+  SweepResult result;
+  result.parameters = {{.key = "a", .min = 0.0, .max = 1.0}};
+  for (const double a : {0.1, 0.4, 0.9}) {
+    TrialRow row = Row({{std::to_string(a), a}}, 0.02);
+    row.trial = "1";
+    row.seed = 1;
+    row.evidence.fingerprint = 7;
+    result.rows.push_back(row);
+  }
+  const auto note = [&result] {
+    Summarise(result);
+    return MeasureEffects(result).note;
+  };
+  const std::string same =
+      "no parameter that was varied did anything: trials with the same random numbers are the same "
+      "to the last bit at every setting that was tried";
+  CHECK(note() == same);
+  result.rows[1].evidence.fingerprint = 8;
+  CHECK(note() == "too few trials that tell to say what matters");
+  result.rows.resize(1);
+  CHECK(note().empty());
+}
+
 }  // namespace
 }  // namespace rift::sweep

@@ -1,6 +1,7 @@
 #include "rift/sweep/explain/inert.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
 #include <string>
 
@@ -94,6 +95,34 @@ TEST_CASE("Values with the same paths are told in one sentence, and none of a si
   CHECK(v_max.sentences[0] ==
         "with v_max 0.4, 0.5, 0.6 and 0.7 the candidate drove the same path to the last bit in all "
         "24 pairs of trials");
+}
+
+TEST_CASE("Copies of trials make no smaller difference detectable") {
+  SweepResult once;
+  once.parameters = {
+      {.key = "surface", .levels = {{"ice", {}}, {"rock", {}}}},
+      {.key = "control.v_max", .levels = {{"0.3", 0.3}, {"0.4", 0.4}, {"0.5", 0.5}}}};
+  SweepResult copied = once;
+  std::uint64_t path = 0;
+  for (const experiment::ParameterValue& surface : once.parameters[0].levels) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      TrialRow row;
+      row.trial = std::to_string(seed);
+      row.seed = seed;
+      row.comparison.gap_m = 0.03 + 0.004 * std::sin(12.9 * static_cast<double>(++path));
+      row.evidence.fingerprint = path;
+      for (const experiment::ParameterValue& v_max : once.parameters[1].levels) {
+        row.theta = {surface, v_max};
+        if (v_max.text == "0.3") once.rows.push_back(row);
+        copied.rows.push_back(row);
+      }
+    }
+  }
+  Summarise(once);
+  Summarise(copied);
+  const double of_once_m = FindInert(once, MeasureEffects(once))[0].smallest_detectable_m;
+  CHECK(of_once_m > 0.0);
+  CHECK(FindInert(copied, MeasureEffects(copied))[0].smallest_detectable_m == Approx(of_once_m));
 }
 
 TEST_CASE("A difference beyond all gaps is said to be out of reach of the trials") {

@@ -17,7 +17,8 @@ struct ParameterEffect {
   /// Sudret 2008, less up to columns / trials of it). What two parameters do together counts in
   /// both, what the trials cannot tell apart in neither. 0 to 1; NaN where it cannot be estimated.
   double share = gap::kNotComputed;
-  double share_low = gap::kNotComputed;  ///< 95 % interval, noncentral F (Steiger 2004)
+  /// 95 % interval, noncentral F (Steiger 2004); its upper end is that of an F of 1 or more.
+  double share_low = gap::kNotComputed;
   double share_high = gap::kNotComputed;
   double alone = gap::kNotComputed;   ///< of it by the parameter itself
   double df = 0.0;                    ///< columns of the model that involve it
