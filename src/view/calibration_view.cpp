@@ -13,8 +13,9 @@ constexpr int kEscape = 27;
 
 bool IsOpen() { return cv::getWindowProperty(kTitle, cv::WND_PROP_VISIBLE) > 0.0; }
 
-/// What a key does, as cv::waitKeyEx reports it; -1 is no key.
-vision::LiveInput InputOf(int key) {
+}  // namespace
+
+vision::LiveInput LiveInputOf(int key) {
   vision::LiveInput input;
   if (key < 0) return input;
   const int letter = key & 0xFF;
@@ -24,8 +25,6 @@ vision::LiveInput InputOf(int key) {
   input.finish = letter == 'q' || letter == kEscape;
   return input;
 }
-
-}  // namespace
 
 CalibrationView::CalibrationView() {
   RequireDisplay();
@@ -38,7 +37,7 @@ CalibrationView::~CalibrationView() {
 
 vision::LiveInput CalibrationView::Show(const vision::LiveScene& scene) {
   cv::imshow(kTitle, DrawCalibrating(scene));
-  vision::LiveInput input = InputOf(cv::waitKeyEx(1));
+  vision::LiveInput input = LiveInputOf(cv::waitKeyEx(1));
   input.finish = input.finish || !IsOpen();
   return input;
 }

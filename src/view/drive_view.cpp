@@ -1,5 +1,7 @@
 #include "rift/view/drive_view.hpp"
 
+#include <utility>
+
 namespace rift::view {
 namespace {
 
@@ -21,10 +23,10 @@ DriveWish WishOf(const TrackInput& input, bool is_started) {
   return is_stop ? DriveWish::kStopByKey : DriveWish::kGoOn;
 }
 
-DriveView::DriveView(const vision::CameraModel& camera, const control::Task& task)
+DriveView::DriveView(const vision::CameraModel& camera, const control::Task& task, ShowScene show)
     : start_(task.Start()),
       scene_{.camera = &camera, .robots = {SceneRobot{}}},
-      window_("rift drive") {
+      show_(std::move(show)) {
   for (const control::TimedPose& at : task.IdealPath()) {
     scene_.path_m.push_back(at.world_from_robot.Position());
   }
@@ -50,7 +52,7 @@ DriveWish DriveView::Show(const vision::Frame* frame,
                                   ? "any key in this window, or closing it, stops the robot"
                                   : "Enter in the terminal starts; q, Escape or closing gives up");
   if (sighting) Follow(*sighting, scene_);
-  return WishOf(window_.Show(scene_), is_started);
+  return WishOf(show_(scene_), is_started);
 }
 
 }  // namespace rift::view

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "rift/vision/tracking/world_frame.hpp"
 
@@ -17,8 +18,8 @@ constexpr double kLifted_m = 0.15;  // no robot drives that far between pictures
 }  // namespace
 
 TrackView::TrackView(const vision::CameraModel& camera, const std::vector<int>& tag_ids,
-                     Content content)
-    : camera_(camera), content_(std::move(content)), window_("rift track") {
+                     Content content, ShowScene show)
+    : camera_(camera), content_(std::move(content)), show_(std::move(show)) {
   for (const int tag_id : tag_ids) robots_.push_back({.tag_id = tag_id});
   if (camera.world) plane_z_m_ = 0.0;
 }
@@ -71,7 +72,7 @@ bool TrackView::Show(const std::optional<vision::Frame>& frame,
                    .status = status,
                    .latency_s = sighting ? sighting->latency_s : status.latency_s,
                    .prompts = Prompts(moved_m)};
-  const TrackInput input = window_.Show(scene);
+  const TrackInput input = show_(scene);
   Apply(input, sighting);
   return !input.quit;
 }

@@ -1,5 +1,6 @@
 #include "rift/view/track_window.hpp"
 
+#include <memory>
 #include <opencv2/highgui.hpp>
 #include <utility>
 
@@ -11,7 +12,8 @@ namespace {
 
 constexpr int kEscape = 27;
 
-/// What a key does, as cv::waitKeyEx reports it; -1 is no key.
+}  // namespace
+
 void TakeKey(int key, TrackInput& input) {
   if (key < 0) return;
   input.any_key = true;
@@ -37,7 +39,10 @@ void TakeKey(int key, TrackInput& input) {
   }
 }
 
-}  // namespace
+ShowScene InWindow(const std::string& title) {
+  const auto window = std::make_shared<TrackWindow>(title);
+  return [window](const TrackScene& scene) { return window->Show(scene); };
+}
 
 TrackWindow::TrackWindow(std::string title) : title_(std::move(title)) {
   RequireDisplay();

@@ -1,6 +1,10 @@
 #include "rift/view/drive_view.hpp"
 
 #include <catch2/catch.hpp>
+#include <utility>
+
+#include "support/inputs/paper_camera.hpp"
+#include "support/inputs/paper_waypoints.hpp"
 
 namespace rift::view {
 namespace {
@@ -16,6 +20,65 @@ TEST_CASE("Any key in the window stops a robot under way, before that the keys t
     CHECK(WishOf(quit, is_started) == DriveWish::kStopByKey);
     CHECK(WishOf(closed, is_started) == DriveWish::kStopByClosing);
   }
+}
+
+vision::Sighting SeenAt(double x_m) {
+  vision::Sighting sighting;
+  sighting.map_from_tag.translation() = Eigen::Vector3d(x_m, 0.1, 0.03);
+  sighting.latency_s = 0.02;
+  return sighting;
+}
+
+TEST_CASE("The window of a drive says what its keys do, and outlines the start while it waits") {
+  const vision::CameraModel camera = test::PaperCamera();
+  const control::Task task(test::PaperWaypoints());
+  TrackScene shown;
+  TrackInput next;
+  DriveView view(camera, task, [&](const TrackScene& scene) {
+    shown = scene;
+    return std::exchange(next, {});
+  });
+  using Words = std::vector<std::string>;
+  const vision::CaptureStatus status{.rate_hz = 30.0};
+  CHECK(view.Show(nullptr, std::nullopt, status, "3.1 cm, 2 deg off", false) == DriveWish::kGoOn);
+  CHECK(shown.prompts == Words{"put the robot into the outline: 3.1 cm, 2 deg off",
+                               "Enter in the terminal starts; q, Escape or closing gives up"});
+  REQUIRE(shown.stand_at);
+  CHECK(*shown.stand_at == task.Start());
+  CHECK(shown.status.rate_hz == 30.0);
+  CHECK(shown.frame == nullptr);
+  CHECK(shown.path_m.size() == task.IdealPath().size());
+  CHECK(shown.waypoints.size() == task.waypoints.size());
+  CHECK(shown.waypoints[1].p_in_world_m == task.waypoints[1].Position());
+
+  const vision::Frame frame;
+  next.any_key = true;
+  CHECK(view.Show(&frame, SeenAt(0.0), status, "", true) == DriveWish::kStopByKey);
+  CHECK(shown.prompts == Words{"any key in this window, or closing it, stops the robot"});
+  CHECK_FALSE(shown.stand_at);
+  CHECK(shown.frame == &frame);
+  CHECK(shown.plane_z_m == 0.03);
+  CHECK(shown.latency_s == 0.02);
+  CHECK(shown.robots.front().sighting);
+}
+
+TEST_CASE("The trail of a drive has a point each two millimetres, and none where nothing is seen") {
+  const vision::CameraModel camera = test::PaperCamera();
+  TrackScene shown;
+  DriveView view(camera, control::Task(test::PaperWaypoints()), [&](const TrackScene& scene) {
+    shown = scene;
+    return TrackInput{};
+  });
+  const auto trail_after = [&](const std::optional<vision::Sighting>& seen) {
+    view.Show(nullptr, seen, {}, "", true);
+    return shown.robots.front().trail_m.size();
+  };
+  CHECK(trail_after(std::nullopt) == 0);
+  CHECK(trail_after(SeenAt(0.0)) == 1);
+  CHECK(trail_after(SeenAt(0.0019)) == 1);
+  CHECK(trail_after(std::nullopt) == 1);
+  CHECK(trail_after(SeenAt(0.0021)) == 2);
+  CHECK(shown.robots.front().trail_m[1] == Eigen::Vector2d(0.0021, 0.1));
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 
 namespace rift::view {
 
+/// What a key does, as cv::waitKeyEx reports it; negative: there was none.
+vision::LiveInput LiveInputOf(int key);
+
 /// The window in which a board is held before a camera: the picture with the corners that were
 /// found, where to hold the board next, and what is covered. For one thread.
 class CalibrationView {

@@ -24,9 +24,9 @@ DriveWish WishOf(const TrackInput& input, bool is_started);
 /// The window of `rift drive`: the camera's picture with tag, trail and waypoints.
 class DriveView {
  public:
-  /// `camera` must outlive it. Throws std::runtime_error with MissingDisplay() where that is not
-  /// empty.
-  DriveView(const vision::CameraModel& camera, const control::Task& task);
+  /// `camera` must outlive it.
+  DriveView(const vision::CameraModel& camera, const control::Task& task,
+            ShowScene show = InWindow("rift drive"));
 
   /// `frame` is none before the first picture. `placement`: how far the robot is from its start, in
   /// words, while it waits for it; the outline of where it has to stand is drawn as well. Empty
@@ -38,7 +38,7 @@ class DriveView {
  private:
   geometry::Pose2 start_;
   TrackScene scene_;
-  TrackWindow window_;
+  ShowScene show_;
 };
 
 }  // namespace rift::view

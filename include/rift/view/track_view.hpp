@@ -23,8 +23,8 @@ class TrackView {
   };
 
   /// `camera` must outlive it; path and waypoints are those of the first of the robots' tags.
-  /// Throws std::runtime_error with MissingDisplay() where that is not empty.
-  TrackView(const vision::CameraModel& camera, const std::vector<int>& tag_ids, Content content);
+  TrackView(const vision::CameraModel& camera, const std::vector<int>& tag_ids, Content content,
+            ShowScene show = InWindow("rift track"));
 
   /// False when the user has asked to end. `seen`: of each robot in the order of `tag_ids`, which
   /// the picture shows or not.
@@ -41,7 +41,7 @@ class TrackView {
 
   const vision::CameraModel& camera_;
   Content content_;
-  TrackWindow window_;
+  ShowScene show_;
   std::vector<control::Waypoint> recorded_;
   std::vector<SceneRobot> robots_;
   std::optional<double> plane_z_m_;

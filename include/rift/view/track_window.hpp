@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "rift/view/track_scene.hpp"
@@ -17,6 +18,16 @@ struct TrackInput {
   bool clear_trail = false;
   std::vector<Eigen::Vector2d> clicks_px;  ///< in the camera's picture
 };
+
+/// What a key does, as cv::waitKeyEx reports it: adds it to `input`. Negative: there was none.
+void TakeKey(int key, TrackInput& input);
+
+/// Shows a scene and tells what the user did since the last one; for one thread.
+using ShowScene = std::function<TrackInput(const TrackScene&)>;
+
+/// In a TrackWindow that stays open as long as what is returned, and its copies. Throws
+/// std::runtime_error with MissingDisplay() where that is not empty.
+ShowScene InWindow(const std::string& title);
 
 /// A window with the camera's picture, for one thread.
 class TrackWindow {
