@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "console.hpp"
+#include "exit_code.hpp"
 #include "request.hpp"
 #include "rift/commands/sweep/sweep.hpp"
 #include "rift/hardware/ping.hpp"
@@ -53,16 +54,6 @@ experiment::Experiment LoadTask(const DriveRequest& request) {
   if (!request.any_waypoints) RequireReachableWaypoints(experiment, file.string());
   SayIdleHeading(experiment, file.string());
   return experiment;
-}
-
-/// A dry run has nowhere to arrive: it is well when only time or a person ended it.
-int ExitCodeOf(const hardware::DriveRun& run) {
-  if (run.trial.outcome == trial::Outcome::kReached) return terminal::kDone;
-  const bool is_whole = run.dry_run && run.has_begun && run.evidence.stop &&
-                        (run.trial.outcome == trial::Outcome::kTimedOut ||
-                         run.evidence.stop->reason == hardware::StopReason::kOperator ||
-                         run.evidence.stop->reason == hardware::StopReason::kSignal);
-  return is_whole ? terminal::kDone : terminal::kNotReached;
 }
 
 /// Where its runs go. What a folder holds of a run already, the drive itself refuses.

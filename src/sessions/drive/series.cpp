@@ -104,12 +104,8 @@ SeriesEnd Driver::Drive(const PlannedTrial& trial) {
 // A person who stopped the robot wants it to stand. After a fault somebody has to look at the
 // scene, unless a command puts it back.
 bool Driver::EndsSeries(const hardware::DriveRun& run) const {
-  using hardware::StopReason;
-  const StopReason reason = run.evidence.stop->reason;
-  if (reason == StopReason::kOperator || reason == StopReason::kSignal) return true;
-  const bool is_fault =
-      reason != StopReason::kFinished || run.trial.outcome != trial::Outcome::kTimedOut;
-  if (!is_fault) return false;
+  if (WasEndedByPerson(run)) return true;
+  if (!WasEndedByFault(run)) return false;
   if (!series_.setup.yes || !series_.before_each.empty()) return false;
   console_.say(
       "the series ends with this fault: with --yes nobody looks before the next drive, and no "

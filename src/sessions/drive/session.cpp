@@ -112,6 +112,19 @@ std::vector<std::string> SteeringLines(const experiment::Experiment& experiment,
   return report::SteeringLines(report::SteeringOf(experiment, run), run.trial.limits);
 }
 
+bool WasEndedByPerson(const hardware::DriveRun& run) {
+  using hardware::StopReason;
+  const auto& stop = run.evidence.stop;
+  return stop && (stop->reason == StopReason::kOperator || stop->reason == StopReason::kSignal);
+}
+
+bool WasEndedByFault(const hardware::DriveRun& run) {
+  if (HasArrived(run) || WasEndedByPerson(run)) return false;
+  const auto& stop = run.evidence.stop;
+  const bool is_whole = !stop || stop->reason == hardware::StopReason::kFinished;
+  return !is_whole || run.trial.outcome != trial::Outcome::kTimedOut;
+}
+
 /// All that a drive is made of, opened in the order in which it is cheap to fail.
 class DriveSession::Drivers {
  public:

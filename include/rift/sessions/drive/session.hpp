@@ -18,6 +18,13 @@ hardware::DriveTask DriveTaskOf(const experiment::Experiment& experiment);
 std::vector<std::string> SteeringLines(const experiment::Experiment& experiment,
                                        const hardware::DriveRun& run);
 
+/// A person ended it: by a key, in the window or by a signal.
+bool WasEndedByPerson(const hardware::DriveRun& run);
+
+/// Something ended it that was neither a person, nor its end, nor its time: somebody has to look at
+/// the scene.
+bool WasEndedByFault(const hardware::DriveRun& run);
+
 /// Port and camera of a robot, open from its first drive to its last.
 class DriveSession {
  public:

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "rift/hardware/arming.hpp"
+
+namespace rift::commands {
+
+/// What `rift drive` ends with after a drive: 0 when the last waypoint was reached, else 1. A dry
+/// run has nowhere to arrive: 0 when it began and only its time or a person ended it.
+int ExitCodeOf(const hardware::DriveRun& run);
+
+}  // namespace rift::commands
