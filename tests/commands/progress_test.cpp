@@ -115,6 +115,54 @@ TEST_CASE("Progress is not said again before its period is over, and tells the t
   CHECK(said.back() == '\n');  // the bar was cut short
 }
 
+TEST_CASE(
+    "The time left is that of what is to be done, at the rate of what was run and not found") {
+  const std::string said = Said([] {
+    SweepProgress trials(ProgressStyle::kJson, {.most = 1000});
+    SweepProgress settings(ProgressStyle::kJson, {30, true});
+    for (int i = 0; i < 10; ++i) trials.Seen(Row("a", 0.01, false), i < 4);
+    settings.Seen(Row("a", 0.01, false), true);
+    for (const char* theta : {"b", "b", "b", "c"}) settings.Seen(Row(theta, 0.01, false), false);
+    ::usleep(510'000);
+    trials.Tick();
+    settings.Tick();
+    settings.Tick();  // too soon
+  });
+  REQUIRE(std::count(said.begin(), said.end(), '\n') == 2);
+  const json trials = json::parse(said.substr(0, said.find('\n')));
+  const json settings = json::parse(said.substr(said.find('\n')));
+  CHECK(trials["state"] == "running");
+  // Both have the same time in them, however long that was.
+  const auto left_at_rate = [](const json& told) {
+    return told["left_s"].get<double>() * told["trials_per_s"].get<double>();
+  };
+  CHECK(left_at_rate(trials) == Approx((1000 - 10) * 6.0 / 6.0));
+  CHECK(left_at_rate(settings) == Approx((30 - 3) * 4.0 / 2.0));
+  CHECK(trials["trials_per_s"].get<double>() <= 6.0 / 0.5);
+}
+
+TEST_CASE("A warning is a line of its own in every style, and takes the place of a bar") {
+  const auto warned = [](ProgressStyle style) {
+    return Said([style] { SweepProgress(style, {.most = 8}).Warn("two runs are alike"); });
+  };
+  CHECK(warned(ProgressStyle::kBar) == "\r\x1b[Ktwo runs are alike\n");
+  for (const ProgressStyle style :
+       {ProgressStyle::kQuiet, ProgressStyle::kLines, ProgressStyle::kJson}) {
+    CHECK(warned(style) == "two runs are alike\n");
+  }
+}
+
+TEST_CASE("Nominal runs are counted before the trials, until all have arrived") {
+  const std::string said = Said([] {
+    SweepProgress progress(ProgressStyle::kBar, {.most = 8});
+    ::usleep(110'000);
+    progress.Tick(sweep::ReferenceProgress{.arrived = 4, .seeds = 4});
+    progress.Tick(sweep::ReferenceProgress{.arrived = 3, .seeds = 4});
+    progress.Tick(sweep::ReferenceProgress{.arrived = 2, .seeds = 4});  // too soon
+  });
+  CHECK_THAT(said, Contains("references: 3 of 4 nominal runs") && !Contains("4 of 4"));
+}
+
 TEST_CASE("Progress is a bar where stderr is a terminal, whatever stdout is") {
   int terminal = -1, shown = -1;
   REQUIRE(::openpty(&terminal, &shown, nullptr, nullptr, nullptr) == 0);
