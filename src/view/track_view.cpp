@@ -96,8 +96,8 @@ void TrackView::Apply(const TrackInput& input, const std::optional<vision::Sight
   if (input.clear_trail) {
     for (SceneRobot& robot : robots_) robot.trail_m.clear();
   }
-  const bool changed = recorded_.size() != before || input.toggle_stop || !input.clicks_px.empty();
-  if (changed && content_.save && !recorded_.empty()) content_.save(recorded_);
+  const bool has_changed = recorded_.size() != before || (input.toggle_stop && !recorded_.empty());
+  if (has_changed && content_.save) content_.save(recorded_);
 }
 
 /// Only the first waypoint has a heading: where the robot looks at the start.

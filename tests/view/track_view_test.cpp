@@ -95,6 +95,9 @@ TEST_CASE("A waypoint is taken back, or passed, the last one first, and each cha
   watched.Show(std::nullopt);
   watched.Show(std::nullopt, {.here = true});  // no robot is seen
   CHECK(watched.saved.size() == 5);
+  watched.Show(std::nullopt, {.undo = true});
+  REQUIRE(watched.saved.size() == 6);
+  CHECK(watched.saved[5].empty());  // or the file would keep what was taken back
 }
 
 TEST_CASE(
