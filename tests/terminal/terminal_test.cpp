@@ -1,5 +1,7 @@
+#include <pty.h>
 #include <unistd.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdio>
@@ -89,6 +91,45 @@ TEST_CASE("A line in place clears what stands there and has no end") {
   Caught err(stderr);
   SayInPlace("half");
   CHECK(err.Text() == "\r\x1b[Khalf");
+}
+
+/// What a terminal of so many columns, or of a number it does not tell, is sent on stderr.
+std::string Shown(unsigned short columns, const std::function<void()>& show) {
+  winsize size{};
+  size.ws_col = columns;
+  int terminal = -1, stream = -1;
+  REQUIRE(::openpty(&terminal, &stream, nullptr, nullptr, &size) == 0);
+  const int before = ::dup(STDERR_FILENO);
+  ::dup2(stream, STDERR_FILENO);
+  show();
+  ::dup2(before, STDERR_FILENO);
+  ::close(before);
+  ::close(stream);  // the last to write to it: what was sent has an end
+  std::string sent;
+  std::array<char, 256> chunk{};
+  for (ssize_t got = 0; (got = ::read(terminal, chunk.data(), chunk.size())) > 0;) {
+    sent.append(chunk.data(), static_cast<std::size_t>(got));
+  }
+  ::close(terminal);
+  return sent;
+}
+
+TEST_CASE("On a terminal a live line is cut to its width, and a note takes its place") {
+  const std::string clear = "\r\x1b[K";
+  const auto all = [] {
+    LiveLine::Show("0123456789");
+    LiveLine::Show("new");
+    Say("a note");
+    Say("another");
+    LiveLine::Show("last");
+    LiveLine::Hide();
+    LiveLine::Hide();  // nothing is there any more
+    Say("the end");
+  };
+  CHECK(Shown(8, all) == clear + "0123456" + clear + "new" + clear + "a note\r\nanother\r\n" +
+                             clear + "last" + clear + "the end\r\n");
+  CHECK_THAT(Shown(0, all), Catch::StartsWith(clear + "0123456789" + clear));
+  CHECK(Shown(8, RingBell) == "\a");
 }
 
 TEST_CASE("A text holds nothing that a terminal obeys or hides") {
