@@ -197,15 +197,21 @@ TEST_CASE("The robot starts at zero and whatever ends its program stops the moto
   const Run unplugged = RunFirmware(fmt::format("0 -\n10 {}\n", Hex(Text("0.50 0.50\n"))));
   CHECK(unplugged.end.at("end") == "over");
   CHECK(unplugged.end.at("speeds") == "0 0");
+  CHECK(unplugged.end.at("told") == "2");  // the motors, of what changes alone
 }
 
 TEST_CASE("The robot shows what it does while it stands") {
   if (!test::HasNpm("MicroPython")) return;
-  CHECK(RunFirmware("0 -\n").end.at("screen") == "rift waiting|L 0 R 0|stops 0|rejected 0|4000 mV");
+  // Drawing takes time: it is done each half second.
+  const std::string rejected = fmt::format("0 -\n10 {}\n499 -\n", Hex(Text("85 0.90\n")));
+  CHECK(RunFirmware(rejected).end.at("screen") ==
+        "rift waiting|L 0 R 0|stops 0|rejected 0|4000 mV");
+  const Run later = RunFirmware(rejected + "500 -\n");
+  CHECK(later.end.at("screen") == "rift waiting|L 0 R 0|stops 0|rejected 1|4003 mV");
+  CHECK(later.end.at("uart") == "0 9600 28 29 512");
   const std::string script =
       fmt::format("0 -\n10 {}\n400 -\n600 -\n", Hex(Text("0.50 0.50\n85 0.90\n")));
   CHECK(RunFirmware(script).end.at("screen") == "rift STOPPED|L 0 R 0|stops 1|rejected 1|4003 mV");
-  CHECK(RunFirmware("0 -\n").end.at("uart") == "0 9600 28 29");
 }
 
 }  // namespace

@@ -47,6 +47,7 @@ for line in bench.trace:
 print('end', end)
 print('speeds', *bench.speeds)
 print('off', bench.motors_off)
+print('told', bench.motors_told)
 print('screen', '|'.join(bench.screen))
 print('uart', *bench.uart)
 `);

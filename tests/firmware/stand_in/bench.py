@@ -3,6 +3,7 @@ the serial line. After each turn the trace tells what came of it."""
 
 speeds = None
 motors_off = 0
+motors_told = 0
 counts = (0, 0)
 battery_mv = 5000
 screen = []

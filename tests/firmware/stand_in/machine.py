@@ -10,7 +10,7 @@ class Pin:
 
 class UART:
     def __init__(self, number, baudrate, tx, rx, rxbuf):
-        bench.uart = (number, baudrate, tx.number, rx.number)
+        bench.uart = (number, baudrate, tx.number, rx.number, rxbuf)
         self._data = b""
 
     def any(self):

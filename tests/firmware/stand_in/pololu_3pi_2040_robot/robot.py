@@ -9,6 +9,7 @@ class Motors:
     def set_speeds(self, left, right):
         assert abs(left) <= self.MAX_SPEED and abs(right) <= self.MAX_SPEED
         bench.speeds = (left, right)
+        bench.motors_told += 1
 
     def off(self):
         bench.speeds = (0, 0)
@@ -33,7 +34,7 @@ class Display:
         self._lines = []
 
     def text(self, text, x, y, color=1):
-        assert 0 <= y <= 56
+        assert x == 0 and 8 * len(self._lines) <= y <= 56  # letters are 8 px high
         self._lines.append(text)
 
     def show(self):
