@@ -1,12 +1,8 @@
 #include "twin/mjpeg_server.hpp"
 
-#include <arpa/inet.h>
-#include <poll.h>
 #include <sys/resource.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
-#include <array>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <ctime>
@@ -14,53 +10,11 @@
 #include <string>
 #include <thread>
 
+#include "mjpeg_client.hpp"
 #include "support/sanitizer.hpp"
-#include "support/until.hpp"
 
 namespace rift::twin {
 namespace {
-
-int PortOf(const std::string& url) { return std::stoi(url.substr(url.rfind(':') + 1)); }
-
-/// A client in plain sockets.
-class Client {
- public:
-  explicit Client(int port, int receive_buffer = 0) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-    if (receive_buffer > 0) {
-      ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
-    }
-    sockaddr_in there{};
-    there.sin_family = AF_INET;
-    there.sin_port = htons(static_cast<std::uint16_t>(port));
-    there.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    REQUIRE(::connect(socket_, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0);
-  }
-  ~Client() { ::close(socket_); }
-  Client(const Client&) = delete;
-  Client& operator=(const Client&) = delete;
-
-  void Ask(const std::string& path) {
-    const std::string request = "GET " + path + " HTTP/1.1\r\nHost: here\r\n\r\n";
-    REQUIRE(::send(socket_, request.data(), request.size(), MSG_NOSIGNAL) ==
-            static_cast<ssize_t>(request.size()));
-  }
-  /// Everything until `text` was seen or nothing came for kGiveUp.
-  std::string Until(const std::string& text) {
-    std::string got;
-    std::array<char, 65536> chunk;
-    while (got.find(text) == std::string::npos) {
-      pollfd wanted{socket_, POLLIN, 0};
-      if (::poll(&wanted, 1, static_cast<int>(1000 * test::kGiveUp.count())) <= 0) return got;
-      const ssize_t n = ::recv(socket_, chunk.data(), chunk.size(), 0);
-      if (n <= 0) return got;
-      got.append(chunk.data(), static_cast<size_t>(n));
-    }
-    return got;
-  }
-
- private:
-  int socket_;
-};
 
 std::vector<std::uint8_t> Picture(const std::string& name, size_t size = 0) {
   std::string bytes(size, 'x');
@@ -68,18 +22,14 @@ std::vector<std::uint8_t> Picture(const std::string& name, size_t size = 0) {
   return {bytes.begin(), bytes.end()};
 }
 
-void WaitForClients(const MjpegServer& server, int count) {
-  test::WaitUntil(std::to_string(count) + " clients", [&] { return server.Clients() == count; });
-}
-
 TEST_CASE("Every client of the stream is given the picture") {
   MjpegServer server(0);
-  Client one(PortOf(server.Url())), other(PortOf(server.Url()));
+  MjpegClient one(PortOf(server.Url())), other(PortOf(server.Url()));
   one.Ask("/stream.mjpg");
   other.Ask("/stream.mjpg");
   WaitForClients(server, 2);
   server.Publish(Picture("[first]"));
-  for (Client* client : {&one, &other}) {
+  for (MjpegClient* client : {&one, &other}) {
     const std::string got = client->Until("[first]");
     CHECK(got.starts_with("HTTP/1.1 200 OK\r\n"));
     CHECK(got.find("multipart/x-mixed-replace; boundary=frame") != std::string::npos);
@@ -89,7 +39,7 @@ TEST_CASE("Every client of the stream is given the picture") {
 
 TEST_CASE("A client that does not read holds up no other and then sees the newest picture") {
   MjpegServer server(0);
-  Client slow(PortOf(server.Url()), 4096), quick(PortOf(server.Url()));
+  MjpegClient slow(PortOf(server.Url()), 4096), quick(PortOf(server.Url()));
   slow.Ask("/stream.mjpg");
   quick.Ask("/stream.mjpg");
   WaitForClients(server, 2);
@@ -110,13 +60,13 @@ TEST_CASE("A client that does not read holds up no other and then sees the newes
 TEST_CASE("Clients that go away are forgotten and do not end the server") {
   MjpegServer server(0);
   for (int i = 0; i < 3; ++i) {
-    Client client(PortOf(server.Url()));
+    MjpegClient client(PortOf(server.Url()));
     client.Ask("/stream.mjpg");
     WaitForClients(server, 1);
     server.Publish(Picture("half", 8 << 20));  // more than is taken before it goes
   }
   WaitForClients(server, 0);
-  Client client(PortOf(server.Url()));
+  MjpegClient client(PortOf(server.Url()));
   client.Ask("/other");
   CHECK(client.Until("/stream.mjpg").starts_with("HTTP/1.1 404"));
 }
@@ -143,7 +93,7 @@ TEST_CASE("A server out of descriptors waits for one instead of spinning, and th
   SKIP_UNDER_SANITIZER();
   using Clock = std::chrono::steady_clock;
   MjpegServer server(0);
-  std::optional<Client> client;
+  std::optional<MjpegClient> client;
   {
     const FewDescriptors one(1);
     client.emplace(PortOf(server.Url()));
