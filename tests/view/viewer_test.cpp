@@ -102,6 +102,20 @@ TEST_CASE("Without a display there is a reason in one line and no window and no 
   CHECK_THROWS_WITH(PlayInWindow(MakeFilm(StraightRun()), {}), missing);
 }
 
+TEST_CASE("Without a display a film is written all the same, and what shows nothing is told") {
+  const TemporaryFolder folder;
+  const Environment display("DISPLAY", "");
+  Run run = StraightRun();
+  run.truth.poses.resize(2);
+  std::vector<std::string> told;
+  const auto say = [&told](const std::string& line) { told.push_back(line); };
+  ShowFilm(MakeFilm(run), folder / "run.mp4", true, say);
+  CHECK(FilesIn(folder.Path()) == 1);
+  CHECK(told == std::vector<std::string>{"note: --view shows nothing: " + MissingDisplay()});
+  ShowFilm(MakeFilm(run), "", false, say);
+  CHECK(told.size() == 1);
+}
+
 // Set in the process that opens the window: one of its own, since Qt takes its process along when
 // the display ends.
 constexpr const char* kShows = "RIFT_TEST_SHOWS_WINDOW";
