@@ -181,6 +181,12 @@ TEST_CASE("Wrong input: rift simulate") {
       {"simulate --replay @swept worst", "has no row with a gap"},
       {"simulate --replay @damaged 1", "its header does not name the column trial once"},
       {"simulate --replay @swept 1 --seed 3", "leave EXPERIMENT, --set, --start, --seed out"},
+      {"simulate --replay @swept 1 --start 0,0,0", "leave EXPERIMENT, --set, --start"},
+      {"simulate --replay @swept 1 --set seed=3", "leave EXPERIMENT, --set"},
+      {"simulate" + kTask + "--replay @swept 1", "leave EXPERIMENT"},
+      {"simulate" + kTask + "--twin --out @swept", "holds a sweep"},
+      {"simulate" + kTask + "--twin --out @twin.csv", "a twin's run is a folder of files"},
+      {"simulate" + kTask + "--set name=../a", "'../a', is no folder name: say --out DIR"},
   });
 }
 
@@ -229,6 +235,11 @@ TEST_CASE("Wrong input: rift gap") {
       {"gap" + kLogs + "--sim-repeats @gone.csv", "cannot read"},
       {"gap" + kLogs + "--odometry", "has neither encoders"},
       {"gap" + kLogs + "--odometry --figure @x.svg", "leave them out with --odometry"},
+      {"gap" + kLogs + "--odometry --profile @x.csv", "leave them out with --odometry"},
+      {"gap" + kLogs + "--slip-bins 5", "--slip-bins is for runs held together"},
+      {"gap" + kLogs + "--moved-share 0.5", "--moved-share is for runs held together"},
+      {"gap" + kLogs + "--tag-ahead 0.1", "--tag-ahead is for runs held together"},
+      {"gap" + kLogs + "--sim-repeats @cell.csv --json @cell.csv --force", "is an input"},
       {"gap" + kLogs + "--program @gone.yaml", "cannot read"},
   });
 }
