@@ -10,6 +10,7 @@
 #include "rift/trajectory/log.hpp"
 #include "sessions/track/log.hpp"
 #include "sessions/track/window.hpp"
+#include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
 
 namespace rift::sessions {
@@ -243,6 +244,24 @@ TEST_CASE("The window shows the path of a log or of waypoints, and keeps recorde
   REQUIRE(recorded.save);
   recorded.save(of_way.planned);
   CHECK(files::ReadFile(folder / "new.yaml") == report::WaypointsYaml(of_way.planned));
+}
+
+TEST_CASE("Without a display tracking goes on, and waypoints that cannot be made are told") {
+  const test::Environment display("DISPLAY", "");
+  std::vector<std::string> told;
+  const TrackingListener listener{.say = [&](const std::string& line) { told.push_back(line); }};
+  const auto window = [&](const TrackingJob& job) {
+    told.clear();
+    return WindowFor(job, listener, {}, {0}, {});
+  };
+  CHECK_FALSE(window({}));
+  CHECK(told.empty());
+  CHECK_FALSE(window({.view = true}));
+  REQUIRE(told.size() == 1);
+  CHECK_THAT(told[0], Catch::EndsWith("; tracking goes on without"));
+  CHECK_FALSE(window({.record_waypoints = "way.yaml"}));
+  REQUIRE(told.size() == 1);
+  CHECK_THAT(told[0], Catch::EndsWith("; tracking goes on without, no waypoints can be recorded"));
 }
 
 }  // namespace
