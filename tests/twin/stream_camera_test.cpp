@@ -4,6 +4,7 @@
 #include <chrono>
 #include <ctime>
 #include <thread>
+#include <utility>
 
 #include "mjpeg_client.hpp"
 #include "rift/vision/camera/steady_now.hpp"
@@ -12,12 +13,12 @@
 namespace rift::twin {
 namespace {
 
-/// A twentieth of the pixels each way: what is in a picture does not matter here.
+/// An eighth of the pixels each way: what is in a picture does not matter here.
 vision::CameraModel TinyCamera() {
   vision::CameraModel camera = test::PaperCamera();
-  camera.width_px /= 20;
-  camera.height_px /= 20;
-  camera.k.topRows<2>() /= 20.0;
+  camera.width_px /= 8;
+  camera.height_px /= 8;
+  camera.k.topRows<2>() /= 8.0;
   return camera;
 }
 
@@ -38,13 +39,14 @@ TEST_CASE("Each picture is of its very moment and held back until it is due, how
   // A busy machine takes fewer in that time.
   test::WaitUntil("six pictures were taken before they were due", [&] {
     run = {};
-    const std::clock_t before = std::clock();
     MjpegServer server(0);
     MjpegClient client(PortOf(server.Url()));
     client.Ask("/stream.mjpg");
     WaitForClients(server, 1);
+    vision::SyntheticCamera pictures(TinyCamera(), {});
+    const std::clock_t before = std::clock();
     std::atomic<double> epoch_s = vision::SteadyNow_s() + 60.0;
-    StreamCamera camera(setup, vision::SyntheticCamera(TinyCamera(), {}), path, server, epoch_s);
+    StreamCamera camera(setup, std::move(pictures), path, server, epoch_s);
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     epoch_s = vision::SteadyNow_s() - 6.0;
     CHECK_THAT(client.Until("Content-Length"), Catch::Contains("Content-Length"));
