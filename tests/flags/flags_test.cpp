@@ -96,6 +96,8 @@ TEST_CASE("What is wrong with a value is told with what the flag takes") {
         "--seed is given 2 times: give it once" + help);
   CHECK(Said({"drive", "--compare", "a"}) ==
         "--compare takes 2 values, a value, and 1 is given" + help);
+  CHECK(Said({"drive", "--compare", "a", "b", "--compare", "c", "d"}) ==
+        "--compare takes 2 values, a value, and 4 are given" + help);
   CHECK(Said({"drive", "--view=yes"}) == "--view takes no value: leave out what follows =" + help);
 }
 
