@@ -76,8 +76,9 @@ Refused RefusedDrive(const sessions::DriveAddress& address, const fs::path& task
                      const std::function<void(const std::string&)>& hear = {}) {
   Refused refused;
   const test::TemporaryFolder folder;
-  const auto experiment =
-      experiment::LoadExperiment(task.string(), {"hardware.start.countdown_s=60"}, files::ReadFile);
+  const auto experiment = experiment::LoadExperiment(
+      task.string(), {"hardware.start.countdown_s=60", "track.tag.recheck_every=5"},
+      files::ReadFile);
   sessions::DriveSession session(
       {.address = address, .yes = true, .any_start = true},
       {.say =
