@@ -219,7 +219,8 @@ TEST_CASE("A killed drive leaves its rows, which rift gap and a replay read") {
         {"drive", "--replay", scene.folder / "run", "--video", scene.folder / "run.mp4"});
     INFO(shown.err);
     CHECK(shown.exit_code == 0);
-    CHECK_THAT(shown.out, Catch::StartsWith("interrupted: "));
+    CHECK_THAT(shown.out, Catch::StartsWith("interrupted: ") &&
+                              Catch::Contains("\n" + std::to_string(rows.size()) + " poses over "));
     CHECK(std::filesystem::file_size(scene.folder / "run.mp4") > 1000);
     return true;
   });
