@@ -121,6 +121,14 @@ TEST_CASE(
   CHECK(swapped_by("smooth.csv", "rough.csv").empty());
   CHECK(swapped_by("smooth.csv", "truth.csv").empty());
   CHECK(swapped_by("rough.csv", "truth.csv").empty());
+  // Of several repeats the one that the warning names tells.
+  test::WriteText(folder / "rough2.csv", Log(0.002, 0.01, 0.01));
+  const auto first_of = [&](const std::string& first, const std::string& second) {
+    return SwappedBy(
+        TellOf({.sim = folder / "rough.csv", .reals = {folder / first, folder / second}}));
+  };
+  CHECK(first_of("smooth.csv", "rough2.csv") == "noise");
+  CHECK(first_of("rough2.csv", "smooth.csv").empty());
 }
 
 TEST_CASE("A pair that is doubtful is named, with the threshold where its gap is above it") {
