@@ -66,6 +66,10 @@ TEST_CASE("A grid on a cluster is dealt out as asked for, and no trial of it is 
   CHECK(cluster.counts[0] == sweep::ShardCounts{.total = 3});
   CHECK(cluster.counts[1] == sweep::ShardCounts{.total = 3, .done = 3});
   CHECK_FALSE(fs::exists(cluster.out / "shards"));
+  OnCluster whole(SmallGrid());
+  whole.options.shards = 1;
+  CHECK(whole.Table() == LocalTable(SmallGrid()));
+  CHECK(whole.nodes.sizes == std::vector<size_t>{4});
 }
 
 TEST_CASE("Where nobody says how many shards, eight trials here tell it within its bounds") {
