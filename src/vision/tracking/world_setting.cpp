@@ -35,7 +35,7 @@ Frame NextFrame(const WorldSetting& setting) {
 /// depends on how long the machine has been up.
 class TimeLimit {
  public:
-  explicit TimeLimit(double limit_s) : limit_s_(limit_s - 1e-6) {}
+  explicit TimeLimit(double limit_s) : limit_s_(limit_s) {}
   bool IsOver(const Frame& frame) {
     if (!has_begun_) begin_s_ = frame.captured_s;
     has_begun_ = true;
