@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "rift/statistics/descriptive.hpp"
 #include "rift/sweep/falsify/distinct_rows.hpp"
 
 namespace rift::sweep {
@@ -129,13 +130,11 @@ std::map<experiment::Theta, int> CountBySetting(const std::vector<const TrialRow
   return counts;
 }
 
-/// The number of trials that at least half of the settings have.
+/// The median number of trials of a setting.
 int UsualCount(const std::map<experiment::Theta, int>& of_setting) {
-  std::vector<int> counts;
+  std::vector<double> counts;
   for (const auto& [theta, count] : of_setting) counts.push_back(count);
-  const auto middle = counts.begin() + static_cast<std::ptrdiff_t>((counts.size() - 1) / 2);
-  std::nth_element(counts.begin(), middle, counts.end());
-  return *middle;
+  return static_cast<int>(statistics::Median(counts));
 }
 
 /// Leaves of each setting the first trials alone.

@@ -22,8 +22,8 @@ struct Observations {
 
 /// The distinct trials that tell, evenly picked when there are more than `most`. A search repeats a
 /// setting that it cannot decide, and a hundred trials of one would outweigh the rest of the space:
-/// of each setting the first ones, as many as half of the settings have. In a grid twice as many,
-/// so that missing trials cost none.
+/// of each setting the first ones, as many as the median one has. In a grid twice as many, so that
+/// missing trials cost none.
 Observations Observe(const SweepResult& result, int most);
 
 /// A linear model of the loss. Columns are products of orthonormal functions of the axes, one axis
