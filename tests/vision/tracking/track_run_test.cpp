@@ -252,7 +252,8 @@ TEST_CASE("A camera that is moved after the last check is said when the run ends
 
 TEST_CASE("A world frame whose reference tags are not to be seen is noted once") {
   CameraModel camera = SmallCamera();
-  camera.world->marks = {{5, {0.2, 0.1, 0.0}, {500.0, 100.0}}, {6, {}, {300.0, 100.0}}};
+  camera.world->marks = {{5, {0.2, 0.1, 0.0}, {500.0, 100.0}},
+                         {6, {0.0, 0.1, 0.0}, {300.0, 100.0}}};
   SmallRecording recording;
   recording.Add(RobotAt(-0.1, 0.0, 0.0), 4);
   Tracked tracked(recording.Path(), camera);
