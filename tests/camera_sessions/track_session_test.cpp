@@ -250,16 +250,20 @@ TEST_CASE("Without a display tracking goes on, and waypoints that cannot be made
   const test::Environment display("DISPLAY", "");
   std::vector<std::string> told;
   const TrackingListener listener{.say = [&](const std::string& line) { told.push_back(line); }};
-  const auto window = [&](const TrackingJob& job) {
+  const auto window = [&](const TrackingJob& tracking) {
     told.clear();
-    return WindowFor(job, listener, {}, {0}, {});
+    return WindowFor(tracking, listener, {}, {0}, {});
   };
-  CHECK_FALSE(window({}));
+  TrackingJob job;
+  CHECK_FALSE(window(job));
   CHECK(told.empty());
-  CHECK_FALSE(window({.view = true}));
+  job.view = true;
+  CHECK_FALSE(window(job));
   REQUIRE(told.size() == 1);
   CHECK_THAT(told[0], Catch::EndsWith("; tracking goes on without"));
-  CHECK_FALSE(window({.record_waypoints = "way.yaml"}));
+  job = {};
+  job.record_waypoints = "way.yaml";
+  CHECK_FALSE(window(job));
   REQUIRE(told.size() == 1);
   CHECK_THAT(told[0], Catch::EndsWith("; tracking goes on without, no waypoints can be recorded"));
 }
