@@ -415,7 +415,8 @@ TEST_CASE("A camera that is found moved when a drive is over is said") {
   });
 }
 
-TEST_CASE("A tag of another size than told is said before the robot drives by it") {
+// Before it drives where ten pictures show it at rest by then, which a loaded machine may not have.
+TEST_CASE("A tag of another size than told is said by a drive") {
   Uninterrupted(kAll, [](Scene& scene) {
     std::vector<std::string> arguments = scene.ShortArguments();
     arguments.insert(arguments.end(), {"--any-start", "--set", "track.tag.size_m=0.052", "--set",
@@ -427,7 +428,6 @@ TEST_CASE("A tag of another size than told is said before the robot drives by it
     // By such poses it is stopped as well, sooner or later, so that what was said counts first.
     if (!is_said && WasInterrupted(scene, result.exit_code)) return false;
     CHECK(is_said);
-    CHECK(result.err.find("warning: the tag is not") < result.err.find("loop delay"));
     return true;
   });
 }

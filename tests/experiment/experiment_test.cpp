@@ -21,6 +21,13 @@ Experiment LoadTexts(const std::map<std::string, std::string>& texts,
                         [&](const std::string& path) { return texts.at(path); });
 }
 
+/// Names, and values of parameters, are one line.
+std::string RandomName(std::mt19937_64& random) {
+  std::string name = test::RandomText(random);
+  std::erase_if(name, [](char c) { return c == '\n' || c == '\r'; });
+  return name;
+}
+
 Space RandomSpace(std::mt19937_64& random) {
   Space space;
   for (size_t i = random() % 4; i > 0; --i) {
@@ -29,7 +36,7 @@ Space RandomSpace(std::mt19937_64& random) {
       parameter.min = -std::uniform_real_distribution<double>(0.0, 9.0)(random);
       parameter.max = std::uniform_real_distribution<double>(0.1, 9.0)(random);
     } else {
-      parameter.levels = {{"0.30", 0.3}, {"text " + test::RandomText(random), std::nullopt}};
+      parameter.levels = {{"0.30", 0.3}, {"text " + RandomName(random), std::nullopt}};
     }
     space.parameters.push_back(parameter);
   }
@@ -70,12 +77,14 @@ TEST_CASE("A resolved experiment loads as the same experiment") {
   for (int i = 0; i < 300; ++i) {
     Experiment experiment;
     test::RandomFill(experiment, random);
+    experiment.name = RandomName(random);
+    for (control::Waypoint& waypoint : experiment.waypoints) waypoint.name = RandomName(random);
     experiment.space = RandomSpace(random);  // of names that only logs can have
     if (!experiment.space.parameters.empty()) {
       experiment.candidate.kind = CandidateKind::kLogs;
     }
     experiment.gap.samples = std::min(experiment.gap.samples, 1'000'000);  // docs/limits.md
-    experiment.reference.trials.names = {"1", "02", test::RandomText(random) + "x"};
+    experiment.reference.trials.names = {"1", "02", RandomName(random) + "x"};
     experiment.reference.path.text = "/logs/{surface}: " + test::RandomText(random);
     experiment.candidate.path.text = "/a/b.csv";
     if (experiment.goal == Goal::kCalibrate) MakeFit(experiment);
