@@ -171,7 +171,7 @@ TEST_CASE("Suggested experiments are driven on twins and the sweep says what the
       test::RunUntilDone({"drive", "--suggested", sweep, "--yes", "--before-each",
                           test::BuildDir() + "/rift simulate " + (bench.folder / "task.yaml") +
                               " --twin --force --seed {trial} --set control.v_min={v_min} --set "
-                              "simulation.motor.mismatch=-0.3 --out " +
+                              "simulation.motor.mismatch=-0.5 --out " +
                               (bench.folder / "twins/{v_min}_{trial}")});
   INFO(driven.out << driven.err);
   REQUIRE(driven.exit_code == 0);
