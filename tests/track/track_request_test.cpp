@@ -2,7 +2,6 @@
 #include "commands/track/request.hpp"
 
 #include <catch2/catch.hpp>
-#include <filesystem>
 #include <functional>
 
 #include "support/processes/process.hpp"
@@ -10,7 +9,6 @@
 namespace rift::commands {
 namespace {
 
-namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 using Change = std::function<void(TrackRequest&)>;
 
