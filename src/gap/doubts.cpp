@@ -18,17 +18,12 @@ using trajectory::Trajectory;
 constexpr int kPoints = 160;
 constexpr size_t kFewestRows = 10;
 
+/// The first of the points becomes the origin.
 template <int N>
-PointsIn<N> FromFirst(PointsIn<N> points) {
+PointsIn<N> FromStart(PointsIn<N> points) {
   const Point<N> start_m = points.front();
   for (Point<N>& point : points) point -= start_m;
   return points;
-}
-
-/// A path as points at equal arc length, the first of them at the origin.
-template <int N>
-PointsIn<N> FromStart(const ArcPathIn<N>& path) {
-  return FromFirst<N>(Resample(path, kPoints));
 }
 
 template <int N>
@@ -137,7 +132,7 @@ void DoubtPlace(const PointsIn<N>& sim, const PointsIn<N>& real, double far_m,
 }
 
 /// A robot that was driven from the end of the other's path to its start. A straight way back is a
-/// mirror image as well, and told as one.
+/// mirror image as well, and told as one. `sim`, `real`: where they lie.
 template <int N>
 void DoubtDirection(const PointsIn<N>& sim, const PointsIn<N>& real, double far_m,
                     std::vector<std::string>& doubts) {
@@ -146,10 +141,10 @@ void DoubtDirection(const PointsIn<N>& sim, const PointsIn<N>& real, double far_
   if (distance_m < far_m) return;
   const PointsIn<N> back(real.rbegin(), real.rend());
   const double back_m = MeanDistance_m<N>(sim, back, Matrix<N>::Identity());
+  const PointsIn<N> sim_m = FromStart<N>(sim), real_m = FromStart<N>(real);
   double mended_m = distance_m;
   for (const AxesMistake<N>& mistake : AxesMistakes<N>()) {
-    mended_m = std::min(mended_m,
-                        MeanDistance_m<N>(FromFirst<N>(sim), FromFirst<N>(real), mistake.mended));
+    mended_m = std::min(mended_m, MeanDistance_m<N>(sim_m, real_m, mistake.mended));
   }
   if (back_m > kMends * distance_m || back_m > kClearer * mended_m) return;
   doubts.push_back(
@@ -309,13 +304,14 @@ std::vector<std::string> DoubtsIn(const Trajectory& sim, const Trajectory& real,
     return doubts;
   }
   const ArcPathIn<N> sim_path = MakeArcPathIn<N>(sim, {}), real_path = MakeArcPathIn<N>(real, {});
-  const PointsIn<N> sim_m = FromStart(sim_path), real_m = FromStart(real_path);
+  // At equal arc length: where they lie, and from their starts.
+  const PointsIn<N> sim_at = Resample(sim_path, kPoints), real_at = Resample(real_path, kPoints);
+  const PointsIn<N> sim_m = FromStart<N>(sim_at), real_m = FromStart<N>(real_at);
   DoubtScale<N>(sim_m, real_m, doubts);
   if (doubts.empty()) {
     constexpr double kFar = 0.1, kFarHeights = 0.03;  // of the path's extent
     const double extent_m = std::max(Extent_m<N>(sim_m), Extent_m<N>(real_m));
     const bool tells_places = options.align == Align::kNone;
-    const PointsIn<N> sim_at = Resample(sim_path, kPoints), real_at = Resample(real_path, kPoints);
     if (tells_places) DoubtDirection<N>(sim_at, real_at, kFar * extent_m, doubts);
     if (doubts.empty()) DoubtAxes<N>(sim_m, real_m, kFar * extent_m, doubts);
     if constexpr (N == 3) {
