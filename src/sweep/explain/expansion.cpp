@@ -120,10 +120,6 @@ double LeaveOneOut(const Eigen::MatrixXd& design, const Eigen::VectorXd& y) {
   return total > 0.0 ? 1.0 - press / total : -1.0;
 }
 
-}  // namespace
-
-namespace {
-
 std::map<experiment::Theta, int> CountBySetting(const std::vector<const TrialRow*>& rows) {
   std::map<experiment::Theta, int> counts;
   for (const TrialRow* row : rows) ++counts[row->theta];

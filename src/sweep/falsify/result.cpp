@@ -165,9 +165,10 @@ std::vector<std::vector<int>> RowsBySetting(const SweepResult& result) {
   return GroupBy(result, all).rows;
 }
 
-bool HasChanceAmongRuns(const SweepResult& result) {
+bool HasChanceAmongRuns(const SweepResult& result,
+                        const std::vector<std::vector<int>>& by_setting) {
   ChanceAmongRuns chance;
-  for (const std::vector<int>& rows : RowsBySetting(result)) {
+  for (const std::vector<int>& rows : by_setting) {
     std::vector<const TrialRow*> trials;
     for (const int row : rows) trials.push_back(&result.rows[row]);
     chance.Note(trials);
@@ -175,9 +176,10 @@ bool HasChanceAmongRuns(const SweepResult& result) {
   return chance.IsSeen();
 }
 
-std::vector<SettingResult> SettingsOf(const SweepResult& result) {
+std::vector<SettingResult> SettingsOf(const SweepResult& result,
+                                      std::vector<std::vector<int>> by_setting) {
   std::vector<SettingResult> settings;
-  for (std::vector<int>& rows : RowsBySetting(result)) {
+  for (std::vector<int>& rows : by_setting) {
     const double mean_gap_m = statistics::Mean(GapsOf(result, rows));
     const std::vector<double> losses_m = LossesOf(result, rows);
     std::vector<TrialRow> trials;
@@ -218,8 +220,9 @@ void Summarise(SweepResult& result) {
   std::vector<int> every_row(result.rows.size());
   std::iota(every_row.begin(), every_row.end(), 0);
   result.all = SummariseRows(result, "all", every_row);
-  result.chance_repeats_runs = result.chance_repeats_runs || HasChanceAmongRuns(result);
-  result.settings = SettingsOf(result);
+  std::vector<std::vector<int>> by_setting = RowsBySetting(result);
+  result.chance_repeats_runs = result.chance_repeats_runs || HasChanceAmongRuns(result, by_setting);
+  result.settings = SettingsOf(result, std::move(by_setting));
   JudgeSettings(result);
   result.anova.clear();
   for (size_t i = 0; i < result.parameters.size(); ++i) {
