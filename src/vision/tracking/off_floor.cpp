@@ -16,9 +16,11 @@ constexpr double kHighest_m = 2.0;  // of track.tag.height_m
 
 }  // namespace
 
+OffFloorCheck::OffFloorCheck(const CameraModel& camera, const TagOptions& tag)
+    : camera_(camera), tag_(tag), has_floor_(FloorPriorOf(camera, tag)) {}
+
 std::optional<std::string> OffFloorCheck::Add(const Sighting& sighting) {
-  // No tag is held to a floor that is not known, such as that of a frame from a first pose.
-  if (is_said_ || !sighting.in_world || !FloorPriorOf(camera_, tag_)) return {};
+  if (is_said_ || !sighting.in_world || !has_floor_) return {};
   ++sightings_;
   if (!sighting.is_on_floor) z_m_.push_back(sighting.map_from_tag.translation().z());
   if (z_m_.size() < kLeastSightings || 10 * z_m_.size() < kOfTen * sightings_) return {};

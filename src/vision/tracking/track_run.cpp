@@ -13,7 +13,6 @@
 #include "rift/vision/camera/picture_reader.hpp"
 #include "rift/vision/camera/steady_now.hpp"
 #include "rift/vision/tracking/off_floor.hpp"
-#include "rift/vision/tracking/tag_pose.hpp"
 
 namespace rift::vision {
 namespace {
@@ -54,7 +53,6 @@ class Tracking {
       : parts_(parts),
         tracker_(parts.session.MakeTracker(parts.further_ids)),
         started_s_(SteadyNow_s()),
-        has_floor_(FloorPriorOf(parts.session.camera(), parts.session.tag())),
         off_floor_(parts.session.camera(), parts.session.tag()) {}
 
   TrackRun Run();
@@ -88,7 +86,6 @@ class Tracking {
   std::vector<std::optional<Sighting>> seen_;  // of each robot, in frame_
   std::set<int> seen_ids_;
   std::optional<Frame> with_other_tags_;  // while none was seen that was asked for
-  bool has_floor_;
   OffFloorCheck off_floor_;
   std::optional<std::string> wrong_size_;  // of a picture that came after others
   std::optional<double> failing_since_s_;
@@ -137,7 +134,7 @@ void Tracking::Keep(const TrackResult& result, int tag_id, const Frame& frame) {
   run_.last_t_s = t_s;
   if (!run_.is_recording) run_.latencies_s.push_back(row.latency_s);
   run_.most_tags_of_this_id = std::max(run_.most_tags_of_this_id, row.tags_of_this_id);
-  run_.off_floor += has_floor_ && !row.is_on_floor;
+  run_.off_floor += off_floor_.HasFloor() && !row.is_on_floor;
   if (const auto warning = off_floor_.Add(row)) parts_.say("warning: " + *warning);
 }
 

@@ -15,7 +15,11 @@ namespace rift::vision {
 /// camera was moved since the world frame was set.
 class OffFloorCheck {
  public:
-  OffFloorCheck(const CameraModel& camera, const TagOptions& tag) : camera_(camera), tag_(tag) {}
+  /// Both must outlive it.
+  OffFloorCheck(const CameraModel& camera, const TagOptions& tag);
+
+  /// Whether a floor is known to which the tag is held: not that of a frame from a first pose.
+  bool HasFloor() const { return has_floor_; }
 
   /// One line, once, when almost all sightings were off the floor.
   std::optional<std::string> Add(const Sighting& sighting);
@@ -25,6 +29,7 @@ class OffFloorCheck {
 
   const CameraModel& camera_;
   const TagOptions& tag_;
+  bool has_floor_;
   std::size_t sightings_ = 0;
   std::vector<double> z_m_;  ///< of those off the floor
   bool is_said_ = false;
