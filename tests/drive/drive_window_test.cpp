@@ -1,10 +1,14 @@
 // What a person does in the window of rift drive --view.
 #include <xcb/xcb.h>
 
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstdlib>
-#include <mutex>
+#include <functional>
+#include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -23,45 +27,68 @@ const test::VirtualDisplay& Server() {
   return server;
 }
 
+/// A drive under --view, at whose keyboard and window a person is.
+class DriveInWindow {
+ public:
+  explicit DriveInWindow(test::Scene& scene)
+      : scene_(scene),
+        session_({.address = {scene.floor.Port(), scene.floor.Camera(), scene.folder / "cam.yaml"},
+                  .view = true},
+                 {.say = [this](const std::string& line) { Hear(line); },
+                  .show = [](const std::string&) {},
+                  .hide = [] {},
+                  .ring = [] {},
+                  .ask = [](const std::string&, std::string_view keys) { return keys.front(); }}) {}
+
+  bool IsAsked() const { return is_asked_; }
+  void Press(char key) { keyboard_.Press(key); }
+
+  /// `hand`: what the person does until it is over. None where a busy machine did not let it begin.
+  std::optional<hardware::DriveRun> By(const std::function<void(const std::stop_token&)>& hand) {
+    const auto experiment =
+        experiment::LoadExperiment(scene_.folder / "task.yaml", {}, files::ReadFile);
+    const std::jthread person(hand);
+    try {
+      return session_.DriveInto(scene_.folder.Path() / "run", experiment);
+    } catch (const std::runtime_error& busy) {
+      return std::nullopt;
+    }
+  }
+
+ private:
+  void Hear(const std::string& line) { is_asked_ = is_asked_ || line.starts_with("hands"); }
+
+  test::Scene& scene_;
+  hardware::Keyboard keyboard_;
+  std::atomic<bool> is_asked_ = false;
+  sessions::DriveSession session_;
+};
+
+/// Looks again and again; until the drive is over at most.
+void WaitFor(const std::stop_token& over, const std::function<bool()>& is_so) {
+  while (!over.stop_requested() && !is_so()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
 TEST_CASE("A key in the window stops a robot that drives and none that waits for Enter") {
   if (!test::CanUseWindows(Server())) return;
   const test::Environment display("DISPLAY", Server().Name());
   const std::string press = test::WindowOf("rift drive") + "windowfocus --sync %1 key ";
   test::Uninterrupted(test::kAll, [&press](test::Scene& scene) {
-    hardware::Keyboard keyboard;
-    const auto experiment =
-        experiment::LoadExperiment(scene.folder / "task.yaml", {}, files::ReadFile);
-    std::atomic<bool> is_asked = false, has_waited = false;
-    sessions::DriveSession session(
-        {.address = {scene.floor.Port(), scene.floor.Camera(), scene.folder / "cam.yaml"},
-         .view = true},
-        {.say = [&](const std::string& line) { is_asked = is_asked || line.starts_with("hands"); },
-         .show = [](const std::string&) {},
-         .hide = [] {},
-         .ring = [] {},
-         .ask = [](const std::string&, std::string_view keys) { return keys.front(); }});
-    std::optional<hardware::DriveRun> run;
-    {
-      const std::jthread hands([&](const std::stop_token& over) {
-        const auto wait_for = [&](const auto& is_so) {
-          while (!over.stop_requested() && !is_so()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-          }
-        };
-        wait_for([&] { return is_asked.load(); });
-        wait_for([&] { return test::Succeeds(press + "space"); });
-        std::this_thread::sleep_for(std::chrono::milliseconds(500));  // some pictures
-        has_waited = !over.stop_requested();
-        keyboard.Press('\n');
-        wait_for([&] { return scene.floor.Moves(); });
-        wait_for([&] { return test::Succeeds(press + "space"); });
-      });
-      try {
-        run = session.DriveInto(scene.folder.Path() / "run", experiment);
-      } catch (const std::runtime_error& busy) {
-        return false;
-      }
-    }
+    DriveInWindow drive(scene);
+    std::atomic<bool> has_waited = false;
+    const auto run = drive.By([&](const std::stop_token& over) {
+      const auto press_space = [&] { return test::Succeeds(press + "space"); };
+      WaitFor(over, [&] { return drive.IsAsked(); });
+      WaitFor(over, press_space);
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));  // some pictures
+      has_waited = !over.stop_requested();
+      drive.Press('\n');
+      WaitFor(over, [&] { return scene.floor.Moves(); });
+      WaitFor(over, press_space);
+    });
+    if (!run) return false;
     CHECK(has_waited);
     const auto& stop = run->evidence.stop;
     if (!run->has_begun || stop->reason > hardware::StopReason::kSignal) return false;  // busy
@@ -98,42 +125,20 @@ TEST_CASE("Closing the window gives up a drive that waits for Enter") {
   if (!test::CanUseWindows(Server())) return;
   const test::Environment display("DISPLAY", Server().Name());
   test::Uninterrupted(test::kAll, [](test::Scene& scene) {
-    hardware::Keyboard keyboard;
-    const auto experiment =
-        experiment::LoadExperiment(scene.folder / "task.yaml", {}, files::ReadFile);
-    std::atomic<bool> is_asked = false, is_closed = false;
-    sessions::DriveSession session(
-        {.address = {scene.floor.Port(), scene.floor.Camera(), scene.folder / "cam.yaml"},
-         .view = true},
-        {.say = [&](const std::string& line) { is_asked = is_asked || line.starts_with("hands"); },
-         .show = [](const std::string&) {},
-         .hide = [] {},
-         .ring = [] {},
-         .ask = [](const std::string&, std::string_view keys) { return keys.front(); }});
-    std::optional<hardware::DriveRun> run;
-    {
-      const std::jthread hand([&](const std::stop_token& over) {
-        const std::string id = scene.folder / "window";
-        const std::string find = test::WindowOf("rift drive") + " > " + id + " 2>/dev/null";
-        while (!over.stop_requested() && !(is_asked && test::RunShell(find) == 0)) {
-          std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        }
-        if (over.stop_requested()) return;
-        AskToClose(Server().Name(), static_cast<xcb_window_t>(std::stoul(files::ReadFile(id))));
-        is_closed = true;
-        const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-        while (!over.stop_requested() && std::chrono::steady_clock::now() < late) {
-          std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        }
-        keyboard.Press('q');  // or nothing would end it
-      });
-      try {
-        run = session.DriveInto(scene.folder.Path() / "run", experiment);
-      } catch (const std::runtime_error& busy) {
-        return false;
-      }
-    }
-    if (!is_closed) return false;  // a busy machine came first
+    DriveInWindow drive(scene);
+    std::atomic<bool> is_closed = false;
+    const auto run = drive.By([&](const std::stop_token& over) {
+      const std::string id = scene.folder / "window";
+      const std::string find = test::WindowOf("rift drive") + " > " + id + " 2>/dev/null";
+      WaitFor(over, [&] { return drive.IsAsked() && test::RunShell(find) == 0; });
+      if (over.stop_requested()) return;
+      AskToClose(Server().Name(), static_cast<xcb_window_t>(std::stoul(files::ReadFile(id))));
+      is_closed = true;
+      const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+      WaitFor(over, [&] { return std::chrono::steady_clock::now() >= late; });
+      drive.Press('q');  // or nothing would end it
+    });
+    if (!run || !is_closed) return false;  // a busy machine came first
     CHECK_FALSE(run->has_begun);
     REQUIRE(run->evidence.stop);
     CHECK(run->evidence.stop->text == "the window was closed");
