@@ -154,8 +154,7 @@ std::string TrackText(const vision::TrackRun& run, int rows) {
   if (run.off_floor > 0) {
     text += fmt::format(
         "{} of {} rows are not on the floor (on_floor 0): the tag was lifted or leant, or its "
-        "side, "
-        "its height, the lens or the world frame is not as told\n",
+        "side, its height, the lens or the world frame is not as told\n",
         run.off_floor, rows);
   }
   if (run.most_tags_of_this_id > 1) {

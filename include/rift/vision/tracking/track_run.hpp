@@ -56,8 +56,8 @@ struct TrackRun {
   /// Where no tag that was asked for was ever seen: what of any family the newest picture shows, or
   /// the newest one in which other tags of the family were seen.
   std::vector<TagInPicture> found_instead;
-  bool is_unmeasured =
-      false;                 ///< that picture shows a tag that was asked for, unfit to be measured
+  /// That picture shows a tag that was asked for, unfit to be measured.
+  bool is_unmeasured = false;
   bool is_mirrored = false;  ///< its mirror image shows the session's tag
   double zero_s = 0.0;       ///< of the rows' times, on the steady clock of this machine
   double first_t_s = 0.0, last_t_s = 0.0;  ///< of the rows
