@@ -176,15 +176,15 @@ bool WaitUntil(RealRobot& robot, const std::function<bool()>& is_so) {
   return true;
 }
 
-bool WaitForFirstPose(RealRobot& robot) {
+bool WaitForFirstPose(const DriveParts& parts, RealRobot& robot) {
   const double start_s = robot.Sense().now_s;
   return WaitUntil(robot, [&] {
     const trial::Sensed sensed = robot.Sense();
     if (!sensed.pose && sensed.now_s - start_s > kFirstPose_s) {
-      throw std::runtime_error(fmt::format(
-          "the robot was not seen within {} s: is its tag in the picture, flat and well "
-          "lit?",
-          kFirstPose_s));
+      const std::string why = parts.why_unseen ? parts.why_unseen() : "";
+      throw std::runtime_error(
+          fmt::format("the robot was not seen within {} s: {}", kFirstPose_s,
+                      why.empty() ? "is its tag in the picture, flat and well lit?" : why));
     }
     return sensed.pose.has_value();
   });
@@ -343,7 +343,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   RealRobot robot(parts.line, parts.poses, parts.clock,
                   {task.hardware, run.ping.protocol, parts.threads, parts.dry_run});
   for (const Stopper& stopper : parts.stoppers) robot.AddStopper(stopper);
-  if (WaitForFirstPose(robot)) {
+  if (WaitForFirstPose(parts, robot)) {
     SayWhereItStands(parts, robot, task);
     run.has_begun = WaitUntil(robot, parts.may_arm);
   }

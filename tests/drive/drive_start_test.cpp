@@ -114,6 +114,21 @@ TEST_CASE("Two tags of the robot's id, and a recording, are refused with the fir
              Catch::StartsWith(data + "/frames/*.jpg is a recording"));
 }
 
+TEST_CASE("Another tag that the picture shows in place of the robot's is named with its key") {
+  const test::Scene scene;
+  vision::Scene floor;
+  floor.tags.push_back({.id = 3, .world_from_tag = test::RobotAt(0.0, 0.0, 0.0).world_from_tag});
+  vision::SyntheticCamera lens(test::SmallCamera(), {}, floor);
+  std::mt19937_64 generator(1);
+  vision::synthetic::MjpegServer camera(
+      lens.Render({}, vision::PixelFormat::kJpeg, generator).bytes, {.fps = 4.0});
+  const Refused refused = RefusedDrive(
+      {scene.floor.Port(), camera.Url(), scene.folder / "cam.yaml"}, scene.folder / "task.yaml");
+  CHECK(refused.why ==
+        "the robot was not seen within 10 s: the picture shows tag36h11 id 3 "
+        "(--set track.tag.id=3)");
+}
+
 TEST_CASE("A second tag of the robot's id that comes while it waits for its start is refused") {
   const std::vector<std::uint8_t> alone = PictureOf(false), two = PictureOf(true);
   std::atomic<bool> is_second = false;

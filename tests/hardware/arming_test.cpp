@@ -308,11 +308,19 @@ TEST_CASE("A guard in a dry run allows no power and still stops what it would st
 }
 
 TEST_CASE("A robot that no camera sees is not driven") {
-  Bench bench;
-  bench.tag_is_hidden = true;
-  Operator person;
-  CHECK_THROWS_WITH(Drive(person.PartsOf(bench), PaperTask()),
-                    Catch::Contains("was not seen within 10 s"));
+  const auto drive = [](std::function<std::string()> why_unseen) {
+    Bench bench;
+    bench.tag_is_hidden = true;
+    Operator person;
+    DriveParts parts = person.PartsOf(bench);
+    parts.why_unseen = std::move(why_unseen);
+    Drive(parts, PaperTask());
+  };
+  const std::string unseen = "the robot was not seen within 10 s: ";
+  const std::string in_doubt = unseen + "is its tag in the picture, flat and well lit?";
+  CHECK_THROWS_WITH(drive({}), in_doubt);
+  CHECK_THROWS_WITH(drive([] { return ""; }), in_doubt);
+  CHECK_THROWS_WITH(drive([] { return "it is mirrored"; }), unseen + "it is mirrored");
 }
 
 TEST_CASE("The delay of the camera that the turn finds is taken from the stamps of the drive") {

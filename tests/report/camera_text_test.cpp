@@ -9,27 +9,35 @@ namespace {
 
 TEST_CASE("Tags that are in the picture instead are named with the flags that take them") {
   using vision::TagFamily;
-  std::vector<vision::TagInPicture> found{{TagFamily::k36h11, 7}};
-  CHECK(FoundInsteadText(found, TagFamily::k36h11) == "the picture shows tag36h11 id 7 (--id 7)");
-  found = {
+  using Lines = std::vector<std::string>;
+  vision::InsteadOfTag instead{.others = {{TagFamily::k36h11, 7}}};
+  CHECK(UnseenLines(instead, TagFamily::k36h11) ==
+        Lines{"the picture shows tag36h11 id 7 (--set track.tag.id=7)"});
+  instead.others = {
       {TagFamily::k36h11, 7}, {TagFamily::k25h9, 3}, {TagFamily::k16h5, 1}, {TagFamily::k25h9, 4}};
-  CHECK(FoundInsteadText(found, TagFamily::k25h9) ==
-        "the picture shows tag36h11 id 7 (--set track.tag.family=tag36h11 --id 7), tag25h9 id 3 "
-        "(--id 3), tag16h5 id 1 (--set track.tag.family=tag16h5 --id 1), tag25h9 id 4 (--id 4)");
-  found.resize(6);
-  CHECK_THAT(FoundInsteadText(found, TagFamily::k25h9),
-             Catch::Matchers::EndsWith("tag25h9 id 4 (--id 4) and 2 more"));
+  CHECK(UnseenLines(instead, TagFamily::k25h9) ==
+        Lines{"the picture shows tag36h11 id 7 (--set track.tag.id=7 --set "
+              "track.tag.family=tag36h11), tag25h9 id 3 (--set track.tag.id=3), tag16h5 id 1 "
+              "(--set track.tag.id=1 --set track.tag.family=tag16h5), tag25h9 id 4 "
+              "(--set track.tag.id=4)"});
+  instead.others.resize(6);
+  CHECK_THAT(UnseenLines(instead, TagFamily::k25h9).at(0),
+             Catch::Matchers::EndsWith("id 4 (--set track.tag.id=4) and 2 more"));
 }
 
-TEST_CASE("Why a tag that shows was never seen is said with what to do") {
-  vision::TrackRun run;
-  CHECK_FALSE(UnseenText(run));
-  run.is_mirrored = true;
-  CHECK_THAT(*UnseenText(run), Catch::Contains("as in a mirror: switch off"));
-  run.is_unmeasured = true;
-  CHECK_THAT(*UnseenText(run), Catch::Contains("could not be measured") &&
-                                   Catch::Contains("overexposed") &&
-                                   Catch::Contains("track.tag.size_m"));
+TEST_CASE("Why a tag that shows was never seen is said with what to do, before other tags") {
+  vision::InsteadOfTag instead;
+  CHECK(UnseenLines(instead, vision::TagFamily::k36h11).empty());
+  instead.is_mirrored = true;
+  instead.others = {{vision::TagFamily::k36h11, 7}};
+  std::vector<std::string> lines = UnseenLines(instead, vision::TagFamily::k36h11);
+  REQUIRE(lines.size() == 2);
+  CHECK_THAT(lines[0], Catch::Contains("as in a mirror: switch off"));
+  CHECK_THAT(lines[1], Catch::Contains("id 7"));
+  lines = UnseenLines({.is_unmeasured = true}, vision::TagFamily::k36h11);
+  REQUIRE(lines.size() == 1);
+  CHECK_THAT(lines[0], Catch::Contains("could not be measured") && Catch::Contains("overexposed") &&
+                           Catch::Contains("track.tag.size_m"));
 }
 
 TEST_CASE("Rows that are not on the floor are said, and none otherwise") {

@@ -89,6 +89,8 @@ struct DriveParts {
   std::function<bool()> may_arm;
   /// Of the trial; may be none.
   DriveObserver* observer = nullptr;
+  /// What is said of a robot that is not seen; asked once, may be none.
+  std::function<std::string()> why_unseen;
   bool threads = true;   ///< false where `clock` is no real one
   bool dry_run = false;  ///< all of a drive but power: the robot is sent zeros alone
 };

@@ -48,10 +48,7 @@ int Report(const TrackRequest& request, const vision::TrackRun& run,
   terminal::PrintText(report::TrackText(run, run.rows));
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
   terminal::Say(fmt::format("{}; run: {}", log, sessions::RunFileOf(request.out).string()));
-  if (const auto unseen = report::UnseenText(run)) terminal::Say(*unseen);
-  if (!run.found_instead.empty()) {
-    terminal::Say(report::FoundInsteadText(run.found_instead, tag.family));
-  }
+  for (const std::string& line : report::UnseenLines(run.instead, tag.family)) terminal::Say(line);
   if (run.rows > 0 && !request.copies.Files().empty()) {
     request.copies.Write(trajectory::ReadLog(files::ReadFile(request.out), request.out).trajectory);
   }

@@ -86,6 +86,20 @@ std::string NextText(const vision::Calibration& c) {
   return fmt::format("next picture: {}\n", c.next.text);
 }
 
+/// Which tags a picture shows without the one that was asked for, and the flags for them.
+std::string OthersText(const std::vector<vision::TagInPicture>& found,
+                       vision::TagFamily asked_for) {
+  constexpr std::size_t kMost = 4;
+  std::string text = "the picture shows";
+  for (std::size_t i = 0; i < std::min(found.size(), kMost); ++i) {
+    const auto& [family, id] = found[i];
+    std::string flags = fmt::format("--set track.tag.id={}", id);
+    if (family != asked_for) flags += fmt::format(" --set track.tag.family={}", NameOf(family));
+    text += fmt::format("{} {} id {} ({})", i == 0 ? "" : ",", NameOf(family), id, flags);
+  }
+  return text + (found.size() > kMost ? fmt::format(" and {} more", found.size() - kMost) : "");
+}
+
 }  // namespace
 
 std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& camera,
@@ -164,31 +178,22 @@ std::string TrackText(const vision::TrackRun& run, int rows) {
   return text;
 }
 
-std::string FoundInsteadText(const std::vector<vision::TagInPicture>& found,
-                             vision::TagFamily asked_for) {
-  constexpr std::size_t kMost = 4;
-  std::string text = "the picture shows";
-  for (std::size_t i = 0; i < std::min(found.size(), kMost); ++i) {
-    const auto& [family, id] = found[i];
-    const std::string flags = family == asked_for ? fmt::format("--id {}", id)
-                                                  : fmt::format("--set track.tag.family={} --id {}",
-                                                                vision::NameOf(family), id);
-    text += fmt::format("{} {} id {} ({})", i == 0 ? "" : ",", vision::NameOf(family), id, flags);
+std::vector<std::string> UnseenLines(const vision::InsteadOfTag& instead,
+                                     vision::TagFamily asked_for) {
+  std::vector<std::string> lines;
+  if (instead.is_unmeasured) {
+    lines.emplace_back(
+        "the picture shows the tag that was asked for, and it could not be measured: is it "
+        "overexposed, blurred by motion, dim, too small or bent, or is track.tag.size_m or "
+        "track.tag.height_m not its own?");
   }
-  return text + (found.size() > kMost ? fmt::format(" and {} more", found.size() - kMost) : "");
-}
-
-std::optional<std::string> UnseenText(const vision::TrackRun& run) {
-  if (run.is_unmeasured) {
-    return "the picture shows the tag that was asked for, and it could not be measured: is it "
-           "overexposed, blurred by motion, dim, too small or bent, or is track.tag.size_m or "
-           "track.tag.height_m not its own?";
+  if (instead.is_mirrored) {
+    lines.emplace_back(
+        "the picture shows the tag that was asked for as in a mirror: switch off whatever "
+        "mirrors the picture, in the camera, its driver or the program between");
   }
-  if (run.is_mirrored) {
-    return "the picture shows the tag that was asked for as in a mirror: switch off whatever "
-           "mirrors the picture, in the camera, its driver or the program between";
-  }
-  return std::nullopt;
+  if (!instead.others.empty()) lines.push_back(OthersText(instead.others, asked_for));
+  return lines;
 }
 
 std::string CalibrationText(const vision::Calibration& c) {

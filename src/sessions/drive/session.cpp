@@ -18,6 +18,7 @@
 #include "rift/view/window.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "rift/vision/tracking/session.hpp"
+#include "rift/vision/tracking/unseen_tag.hpp"
 #include "rift/vision/tracking/world_check.hpp"
 #include "standing_check.hpp"
 #include "start_gate.hpp"
@@ -172,6 +173,7 @@ class DriveSession::Drivers {
                return has_started_.load();
              },
          .observer = &log,
+         .why_unseen = [this] { return WhyUnseen(); },
          .dry_run = setup_.dry_run},
         DriveTaskOf(experiment));
     SayIfOffFloor();
@@ -234,6 +236,16 @@ class DriveSession::Drivers {
         "not armed: {} tags with the robot's id {} are in the picture: take away all but the "
         "robot's",
         seen->tags_of_this_id, session_.tag().id));
+  }
+
+  /// Empty where the newest picture shows no tag.
+  std::string WhyUnseen() const {
+    const std::shared_ptr<const vision::Frame> newest = poses_->Seen().frame;
+    if (!newest) return "";
+    const vision::TagOptions& tag = session_.tag();
+    const std::vector<std::string> lines =
+        report::UnseenLines(vision::LookForOthers(*newest, tag), tag.family);
+    return fmt::format("{}", fmt::join(lines, "; "));
   }
 
   /// A wrong side or height of the tag puts the robot elsewhere than it is seen to be.

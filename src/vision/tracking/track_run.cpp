@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "rift/vision/camera/camera_source.hpp"
-#include "rift/vision/camera/picture_reader.hpp"
 #include "rift/vision/camera/steady_now.hpp"
 #include "rift/vision/tracking/off_floor.hpp"
 
@@ -19,33 +18,6 @@ namespace {
 
 constexpr double kTick_s = 0.02;
 constexpr double kRedraw_s = 0.1;
-
-/// A picture as it is seen in a mirror; none of one that is damaged.
-std::optional<Frame> Mirrored(const Frame& frame) {
-  std::optional<GreyPatch> grey = PictureReader().Read(frame);
-  if (!grey) return std::nullopt;
-  const std::ptrdiff_t width = grey->region.width_px;
-  for (auto row = grey->pixels.begin(); row != grey->pixels.end(); row += width) {
-    std::reverse(row, row + width);
-  }
-  Frame mirrored{.width_px = frame.width_px, .height_px = frame.height_px};
-  mirrored.format = PixelFormat::kGrey;
-  mirrored.bytes = std::move(grey->pixels);
-  return mirrored;
-}
-
-/// Every tag of every family. Bits are not corrected, since each further one makes chance hits.
-std::vector<TagInPicture> TagsOfAnyFamily(const Frame& frame, TagOptions options) {
-  std::vector<TagInPicture> found;
-  options.max_hamming = 0;
-  for (std::size_t i = 0; i < EnumNames(TagFamily{}).size(); ++i) {
-    options.family = static_cast<TagFamily>(i);
-    for (const TagDetection& tag : FindTags(frame, 1, options)) {
-      found.push_back({options.family, tag.id});
-    }
-  }
-  return found;
-}
 
 class Tracking {
  public:
@@ -66,9 +38,6 @@ class Tracking {
   /// bytes.
   void Rebase(Frame& frame);
   void WatchState();
-  /// Of a tag that was never seen: what the picture shows.
-  void LookForOthers(const Frame& frame);
-  bool WasAskedFor(const TagInPicture& tag) const;
   void WatchReferences(const Frame& frame);
   /// Holds the reference tags of a picture against where they set the frame.
   void CheckReferences(const Frame& frame);
@@ -249,26 +218,6 @@ void Tracking::HoldLastPicture() {
   }
 }
 
-bool Tracking::WasAskedFor(const TagInPicture& tag) const {
-  const TagOptions& options = parts_.session.tag();
-  const std::vector<int>& more = parts_.further_ids;
-  return tag.family == options.family &&
-         (tag.id == options.id || std::find(more.begin(), more.end(), tag.id) != more.end());
-}
-
-void Tracking::LookForOthers(const Frame& frame) {
-  const TagOptions& tag = parts_.session.tag();
-  run_.found_instead = TagsOfAnyFamily(frame, tag);
-  const auto asked_for = [this](const TagInPicture& found) { return WasAskedFor(found); };
-  run_.is_unmeasured = std::erase_if(run_.found_instead, asked_for) > 0;
-  if (run_.is_unmeasured) return;
-  const std::optional<Frame> mirrored = Mirrored(frame);
-  if (!mirrored) return;
-  const std::vector<TagDetection> seen = FindTags(*mirrored, 1, tag);
-  run_.is_mirrored = std::any_of(seen.begin(), seen.end(),
-                                 [&](const TagDetection& found) { return found.id == tag.id; });
-}
-
 TrackRun Tracking::Run() {
   while (!IsOver()) {
     std::optional<Frame> frame = parts_.session.capture().Next(kTick_s);
@@ -279,7 +228,10 @@ TrackRun Tracking::Run() {
   // A camera that was moved since the last check moved its rows as well.
   if (frame_ && checked_s_ && *checked_s_ < frame_->captured_s) CheckReferences(*frame_);
   HoldLastPicture();
-  if (run_.rows == 0 && frame_) LookForOthers(with_other_tags_.value_or(*frame_));
+  if (run_.rows == 0 && frame_) {
+    run_.instead =
+        LookForOthers(with_other_tags_.value_or(*frame_), parts_.session.tag(), parts_.further_ids);
+  }
   run_.state = run_.status.state;
   run_.reason = run_.status.reason;
   run_.has_failed = failing_since_s_.has_value() && !quit_ && !parts_.is_stopped();

@@ -94,7 +94,7 @@ TEST_CASE("A recording is logged from the first sighting on: seen, predicted and
   CHECK_FALSE(run.has_failed);
   CHECK(run.most_tags_of_this_id == 1);
   CHECK_FALSE(run.moved_m);
-  CHECK(run.found_instead.empty());
+  CHECK(run.instead.others.empty());
   CHECK(tracked.said.empty());
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("Each robot has its rows, and begins with its own first sighting") {
   CHECK(ids == std::vector<int>{5, 0, 5, 0, 5});
   CHECK(run.rows == 5);
   CHECK(run.misses[static_cast<std::size_t>(Miss::kOtherTag)] == 4);  // of 0 once, of 6 always
-  CHECK(run.found_instead.empty());
+  CHECK(run.instead.others.empty());
 }
 
 TEST_CASE("Two tags of the robot's id are the most that were seen at once") {
@@ -155,7 +155,7 @@ TEST_CASE("Where the tag was never seen, those of the newest picture with others
     std::vector<std::string> texts;
     const TrackRun run = RunTracking(Tracked(path).parts);
     CHECK(run.rows == 0);
-    for (const TagInPicture& tag : run.found_instead) {
+    for (const TagInPicture& tag : run.instead.others) {
       texts.push_back(fmt::format("{} {}", NameOf(tag.family), tag.id));
     }
     std::sort(texts.begin(), texts.end());
@@ -190,19 +190,19 @@ TEST_CASE("A tag that was asked for and shows unfit to be measured, or in a mirr
   cv::flip(picture, changed, 1);
   const TrackRun mirrored = run_of(changed);
   CHECK(mirrored.rows == 0);
-  CHECK(mirrored.is_mirrored);
-  CHECK_FALSE(mirrored.is_unmeasured);
-  CHECK(mirrored.found_instead.empty());
+  CHECK(mirrored.instead.is_mirrored);
+  CHECK_FALSE(mirrored.instead.is_unmeasured);
+  CHECK(mirrored.instead.others.empty());
   picture.convertTo(changed, -1, 0.15);  // less contrast than is asked for
   const TrackRun dim = run_of(changed);
   CHECK(dim.rows == 0);
-  CHECK(dim.is_unmeasured);
-  CHECK_FALSE(dim.is_mirrored);
-  REQUIRE(dim.found_instead.size() == 1);
-  CHECK(dim.found_instead[0].id == 5);
-  CHECK(run_of(changed, {5}).found_instead.empty());
+  CHECK(dim.instead.is_unmeasured);
+  CHECK_FALSE(dim.instead.is_mirrored);
+  REQUIRE(dim.instead.others.size() == 1);
+  CHECK(dim.instead.others[0].id == 5);
+  CHECK(run_of(changed, {5}).instead.others.empty());
   const TrackRun none = run_of(cv::Mat1b(480, 640, std::uint8_t{100}));
-  CHECK_FALSE((none.is_mirrored || none.is_unmeasured));
+  CHECK_FALSE((none.instead.is_mirrored || none.instead.is_unmeasured));
 }
 
 TEST_CASE("Reference tags that lie elsewhere are said once, with the largest distance") {

@@ -151,12 +151,11 @@ std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& came
                       const experiment::TrackOptions& options, const vision::TrackRun& run,
                       int rows);
 std::string TrackText(const vision::TrackRun& run, int rows);
-/// One line: which tags a picture shows without the one that was asked for, and the flags for them.
-std::string FoundInsteadText(const std::vector<vision::TagInPicture>& found,
-                             vision::TagFamily asked_for);
-/// One line: why a tag that was asked for was never seen, although the picture or its mirror image
-/// shows it, and what to do; none of a tag that neither shows.
-std::optional<std::string> UnseenText(const vision::TrackRun& run);
+/// Sentences without full stops: why a tag of the family `asked_for` was never seen, although the
+/// picture or its mirror image shows it, and what to do; which other tags the picture shows, with
+/// the flags for them. None of a picture that shows no tag.
+std::vector<std::string> UnseenLines(const vision::InsteadOfTag& instead,
+                                     vision::TagFamily asked_for);
 
 /// A log of sightings in the rift dialect: its nine columns (the target empty), then latency,
 /// quality, state and the 6 x 6 covariance's upper triangle in the map's axes. A lost tag's row has

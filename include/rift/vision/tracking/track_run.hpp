@@ -8,6 +8,7 @@
 
 #include "rift/vision/tracking/session.hpp"
 #include "rift/vision/tracking/session_options.hpp"
+#include "rift/vision/tracking/unseen_tag.hpp"
 
 namespace rift::vision {
 
@@ -33,12 +34,6 @@ struct TrackParts {
   std::function<void(const std::string&)> say;
 };
 
-/// A tag in a picture, whoever's.
-struct TagInPicture {
-  TagFamily family = TagFamily::k36h11;
-  int id = 0;
-};
-
 /// What became of it.
 struct TrackRun {
   CameraState state = CameraState::kOpening;  ///< at the end
@@ -53,13 +48,10 @@ struct TrackRun {
   int repeated = 0;  ///< sightings that were not later than the one before
   int most_tags_of_this_id = 1;
   int off_floor = 0;  ///< rows whose tag could not be held to a floor that is known
-  /// Where no tag that was asked for was ever seen: what of any family the newest picture shows, or
-  /// the newest one in which other tags of the family were seen.
-  std::vector<TagInPicture> found_instead;
-  /// That picture shows a tag that was asked for, unfit to be measured.
-  bool is_unmeasured = false;
-  bool is_mirrored = false;  ///< its mirror image shows the session's tag
-  double zero_s = 0.0;       ///< of the rows' times, on the steady clock of this machine
+  /// Where no tag that was asked for was ever seen: what the newest picture shows, or the newest
+  /// one in which other tags of the family were seen.
+  InsteadOfTag instead;
+  double zero_s = 0.0;  ///< of the rows' times, on the steady clock of this machine
   double first_t_s = 0.0, last_t_s = 0.0;  ///< of the rows
   std::vector<double> latencies_s;         ///< of the rows; none of a recording
   std::vector<double> costs_s;             ///< of finding the tag, each frame
