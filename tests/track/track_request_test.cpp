@@ -115,6 +115,8 @@ TEST_CASE("A check of precision is of one camera that is not opened, and replace
   asked.Refuses(opens, [](TrackRequest& r) { r.job.camera = "/dev/video0"; });
   asked.Refuses(opens, [](TrackRequest& r) { r.job.world = "first"; });
   asked.Refuses(opens, [](TrackRequest& r) { r.job.view = true; });
+  asked.Refuses("belong to --calibrate", [](TrackRequest& r) { r.images = "@photos"; });
+  asked.Refuses("belong to --calibrate", [](TrackRequest& r) { r.picture = "@p.png"; });
   asked.Refuses("is an input", [](TrackRequest& r) { r.out = "@camera.yaml"; });
   asked.Refuses("is an input", [](TrackRequest& r) { r.out = "@task.yaml"; });
   test::WriteText(asked.folder / "map.json", "x");

@@ -33,6 +33,11 @@ void CheckCopies(const TrackRequest& request) {
           {request.job.ids.size() > 1, "--tum and --mcap hold one robot: give --id a single tag"}});
 }
 
+void RefusePicturesOfBoard(const TrackRequest& request) {
+  Refuse({{!request.images.empty() || !request.picture.empty(),
+           "--images and --picture belong to --calibrate"}});
+}
+
 void CheckTracking(const TrackRequest& request) {
   const sessions::TrackingJob& job = request.job;
   Refuse({{job.camera.empty(),
@@ -44,8 +49,7 @@ void CheckTracking(const TrackRequest& request) {
           {request.out.empty() && job.world.empty(),
            "--out LOG.csv is missing: where shall the poses go?"}});
   if (!request.out.empty()) CheckLogName(request);
-  Refuse({{!request.images.empty() || !request.picture.empty(),
-           "--images and --picture belong to --calibrate"}});
+  RefusePicturesOfBoard(request);
 }
 
 void CheckPrecisionCheck(const TrackRequest& request) {
@@ -54,6 +58,7 @@ void CheckPrecisionCheck(const TrackRequest& request) {
           {job.calibration.empty(), "--calibration is missing: --check is about one camera"},
           {!job.camera.empty() || !job.world.empty() || job.view,
            "--check opens no camera: --camera, --world and --view do not belong to it"}});
+  RefusePicturesOfBoard(request);
   if (request.out.empty()) return;
   std::vector<fs::path> inputs{job.calibration};
   if (!request.experiment.empty()) inputs.emplace_back(request.experiment);
