@@ -24,6 +24,7 @@ constexpr double kLargestSwing_deg = 45.0, kWantedSwing_deg = 15.0;
 constexpr double kMany = 0.2;  // of the decisions, or of the poses
 constexpr double kLargestHold_rad = pi / 4.0;
 constexpr double kLongest_s = 3600.0;  // of trial.timeout_s
+constexpr double kFullPower = 1.0;
 
 /// The yaw that turned on one leg, in turns.
 double MostTurns(const trajectory::Trajectory& log) {
@@ -129,6 +130,10 @@ double DelayOf(const SteeringModel& model, const NavigatorOptions& navigator) {
 /// Keys of the navigator that differ.
 void ProposeChanges(SteeringCheck& check, const NavigatorOptions& now,
                     const NavigatorOptions& wanted) {
+  if (now.cruise_speed) {  // no experiment has it outside of v_min and v_max
+    Propose(check, "control.cruise_speed", *now.cruise_speed,
+            std::clamp(*now.cruise_speed, wanted.v_min, wanted.v_max));
+  }
   Propose(check, "control.heading.p", now.heading.p, wanted.heading.p);
   Propose(check, "control.heading.i", now.heading.i, wanted.heading.i);
   Propose(check, "control.heading.d", now.heading.d, wanted.heading.d);
@@ -295,14 +300,18 @@ void ExplainStanding(SteeringCheck& check, const Case& run, const Progress& prog
     return;
   }
   check.causes.push_back(stood + ", and its wheels turn from " + MovingText(prior));
+  if (prior.LeastPower() > kFullPower) {
+    check.causes.back() +=
+        fmt::format(", evenly from {:.2g}: full power, 1, is too little for this motor and load",
+                    prior.LeastPower());
+    return;
+  }
   NavigatorOptions wanted = run.navigator;
   // Both wheels turn, the slower one of the least steering too.
-  wanted.v_min = std::max({wanted.v_min, prior.LeastPower(), prior.MovingPower() + wanted.w_min});
+  const double least_v = std::max(prior.LeastPower(), prior.MovingPower() + wanted.w_min);
+  wanted.v_min = std::max(wanted.v_min, std::min(least_v, kFullPower));
   wanted.v_max = std::max(wanted.v_max, wanted.v_min);
-  const double least = wanted.v_min, pose_age_s = check.model.pose_age_s;
-  if (run.navigator.cruise_speed && *run.navigator.cruise_speed < least) {
-    Propose(check, "control.cruise_speed", *run.navigator.cruise_speed, least);
-  }
+  const double pose_age_s = check.model.pose_age_s;
   check.model = prior.model;  // a robot that stands shows nothing of its own
   check.model.pose_age_s = pose_age_s;
   check.is_identified = false;

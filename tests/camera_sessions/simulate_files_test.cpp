@@ -157,6 +157,26 @@ Simulated MakeLoaded(const std::vector<std::string>& overrides) {
   return MakeRun(experiment);
 }
 
+TEST_CASE("A speed proposed below the cruise speed brings that down with it") {
+  const Simulated made =
+      MakeLoaded({"simulation.motor.mismatch=0.3", "control.heading.p=0.01", "control.heading.d=0",
+                  "control.cruise_speed=0.28", "control.w_max=0.05"});
+  const trial::SteeringCheck check = CheckOf(made);
+  CHECK_FALSE(check.has_arrived);
+  CHECK_THAT(check.causes.at(0), Contains("it pulls to the"));
+  CHECK((check.tried_s || check.failed_tries > 0));
+}
+
+TEST_CASE("Values that no experiment may have are not driven, and the run keeps its check") {
+  Simulated made = MakeLoaded({"control.v_max=0.11", "control.v_min=0.05"});
+  // As if a rule between keys were broken by whatever is proposed.
+  made.experiment.control.w_min = 0.9;
+  const trial::SteeringCheck check = CheckOf(made);
+  CHECK_FALSE(check.causes.empty());
+  CHECK(check.proposals.empty());
+  CHECK(check.failed_tries == 1);
+}
+
 TEST_CASE("What is proposed for a robot that does not arrive is the same trial with other keys") {
   const std::string mistake =
       GENERATE(as<std::string>{}, "control.v_max=0.11", "control.pose_gate.max_speed_mps=0.1");

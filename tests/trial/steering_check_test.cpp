@@ -378,6 +378,29 @@ TEST_CASE("A robot that stands at powers that should move it is told of motors a
   CHECK(check.proposals.empty());
 }
 
+TEST_CASE("A robot that full power does not move is told so and given no power beyond it") {
+  WornBench bench;
+  bench.dead_band = 1.0;
+  bench.prior.breakaway_power = GENERATE(0.9, 1.2);
+  const SteeringCheck check = bench.Check(bench.Run());
+  INFO(Joined(check));
+  REQUIRE(check.causes.size() == 1);
+  CHECK_THAT(check.causes[0], Catch::Contains("it does not move") &&
+                                  Catch::Contains("full power, 1, is too little"));
+  CHECK(check.proposals.empty());
+}
+
+TEST_CASE("A power that must move the wheels and steer is proposed up to full power") {
+  WornBench bench;
+  bench.dead_band = 1.0;
+  bench.prior.breakaway_power = 0.8;
+  bench.navigator.w_min = bench.navigator.w_max = 0.3;
+  bench.navigator.reach_radius_m = 0.4;  // no circle is too wide
+  const SteeringCheck check = bench.Check(bench.Run());
+  INFO(Joined(check));
+  CHECK(ProposedFor(check, "control.v_min") == 1.0);
+}
+
 TEST_CASE("No speed is proposed at which the wheels do not turn") {
   WornBench bench;
   bench.prior.dead_band = 0.05;

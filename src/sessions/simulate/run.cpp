@@ -54,7 +54,11 @@ trial::SteeringCheck CheckOf(const Simulated& made) {
       value.origin.source = "proposal";
       values.push_back({proposal.key, value});
     }
-    yaml::SetValues(experiment, values);
+    try {
+      yaml::SetValues(experiment, values);
+    } catch (const yaml::Error&) {  // a key or a rule between keys allows no such values
+      return trial::TriedRun{{.outcome = trial::Outcome::kTimedOut}, {}};
+    }
     sweep::SimulatedTrial trial = made.trial;
     trial.control = experiment.control;
     trial.trial = experiment.trial;
