@@ -67,7 +67,25 @@ Stance StanceOn(const BodyOptions& body, const Eigen::Vector3d& gravity_in_plane
   return {height_m, pitch_rad};
 }
 
+namespace {
+
+/// Of a robot that gravity turns off its caster, or over it.
+std::optional<std::string> TippingWarning(const BodyOptions& body) {
+  const double share = body.com_ahead_m / body.caster_ahead_m;
+  if (share >= 0.0 && share <= 1.0) return std::nullopt;
+  return fmt::format(
+      "the simulated robot does not stand on its wheels and its caster but tips {}: its centre of "
+      "mass is {:g} m ahead of the axle (simulation.body.com_ahead_m) and its caster {:g} m "
+      "(caster_ahead_m, negative: behind); a robot that stands has the first between 0 and the "
+      "second",
+      share < 0.0 ? "off its caster, onto the edge of its body" : "over its caster",
+      body.com_ahead_m, body.caster_ahead_m);
+}
+
+}  // namespace
+
 std::optional<std::string> TiltWarning(const BodyOptions& body) {
+  if (auto warning = TippingWarning(body)) return warning;
   constexpr double kLevel_deg = 0.5;  // a caster ball 0.3 mm off on the 3pi+
   const double pitch_deg =
       geometry::DegFromRad(StanceOn(body, Eigen::Vector3d(0.0, 0.0, -body.gravity_mps2)).pitch_rad);

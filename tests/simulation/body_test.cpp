@@ -135,5 +135,27 @@ TEST_CASE("A robot is called tilted from half a degree on, to either side") {
   }
 }
 
+TEST_CASE("A robot whose weight is not between axle and caster is told that it tips") {
+  BodyOptions body;
+  for (const double caster_m : {-0.04, 0.04}) {
+    body.caster_ahead_m = caster_m;
+    for (const double share : {0.0, 0.2, 1.0}) {
+      body.com_ahead_m = share * caster_m;
+      INFO(caster_m << " " << share);
+      CHECK_FALSE(TiltWarning(body));
+    }
+    body.com_ahead_m = -0.01 * caster_m;
+    CHECK_THAT(TiltWarning(body).value_or(""), Contains("tips off its caster, onto the edge") &&
+                                                   Contains("com_ahead_m") &&
+                                                   Contains("caster_ahead_m"));
+    body.com_ahead_m = 1.01 * caster_m;
+    CHECK_THAT(TiltWarning(body).value_or(""), Contains("tips over its caster"));
+  }
+  body = {};
+  body.caster_ahead_m = 0.0404;  // another side than that of the default weight
+  CHECK_THAT(TiltWarning(body).value_or(""),
+             Contains("mass is -0.008 m ahead of the axle") && Contains("and its caster 0.0404 m"));
+}
+
 }  // namespace
 }  // namespace rift::simulation

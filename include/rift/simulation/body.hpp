@@ -86,8 +86,9 @@ struct Stance {
 /// caster carries nothing where it would have to pull.
 Stance StanceOn(const BodyOptions& body, const Eigen::Vector3d& gravity_in_plane);
 
-/// Of a robot that does not stand level on a floor: its angle, and the caster's height that would
-/// make it level. None for one that does, within 0.5 degrees.
+/// Of a robot that does not stand level on a floor: where its centre of mass must be, if it tips
+/// off its caster or over it; else its angle, and the caster's height that would make it level.
+/// None for one that stands level within 0.5 degrees.
 std::optional<std::string> TiltWarning(const BodyOptions& body);
 
 }  // namespace rift::simulation
