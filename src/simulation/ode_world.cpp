@@ -24,6 +24,9 @@ using Eigen::Vector3d;
 constexpr double kWorldErp = 0.8;
 constexpr double kMaxCorrection_mps = 0.5;
 constexpr double kSettle_s = 0.4;
+constexpr int kMostDrops = 6;
+constexpr double kStartOff_m = 1e-4;    // from where the robot is asked to start
+constexpr double kStartOff_rad = 1e-3;  // and turned from its heading
 /// Both wheels hold the same sideways freedom; this much give keeps the two solvable, and lets the
 /// robot creep by less than a micrometre a second on a slope.
 constexpr double kLeastSlip_mps_per_n = 1e-6;
@@ -104,7 +107,9 @@ struct OdeWorld::Bodies {
 
   void AddBodies();
   void Place(const geometry::Pose2& start);
+  void PlaceByDropping(const geometry::Pose2& start);
   void PlaceOn(const Plane& plane, double yaw_rad);
+  Plane PlaneUnder(const geometry::Pose2& robot) const;
   void Settle();
 
   void Step(const std::array<WheelDrive, 2>& drives, const std::array<double, 2>& uneven = {});
@@ -191,8 +196,44 @@ void OdeWorld::Bodies::Place(const geometry::Pose2& start) {
         fmt::format("the robot cannot start at ({:.3f}, {:.3f}) m, beyond the edge of the table",
                     ground.x(), ground.y()));
   }
-  PlaceOn(plane.value_or(Plane{ground, Vector3d::UnitZ()}), start.yaw_rad);
-  if (!plane) Settle();
+  if (plane) {
+    PlaceOn(*plane, start.yaw_rad);
+  } else {
+    PlaceByDropping(start);
+  }
+}
+
+/// On ground that is no plane. Where it is smooth, a robot that slid as it came to rest is put so
+/// much to the other side and dropped again. On blocks it stays where it slid off an edge.
+void OdeWorld::Bodies::PlaceByDropping(const geometry::Pose2& start) {
+  geometry::Pose2 aim = start;
+  for (int drop = 0; drop < kMostDrops; ++drop) {
+    PlaceOn(PlaneUnder(aim), aim.yaw_rad);
+    Settle();
+    const Matrix3d& turned = state.world_from_robot;
+    const Eigen::Vector2d off_m = start.Position() - state.position_m.head<2>();
+    const double off_rad =
+        geometry::WrapToPi(start.yaw_rad - std::atan2(turned(1, 0), turned(0, 0)));
+    const bool is_there = off_m.norm() < kStartOff_m && std::abs(off_rad) < kStartOff_rad;
+    if (is_there || fault || terrain.IsStepped()) return;
+    aim = {aim.x_m + off_m.x(), aim.y_m + off_m.y(), aim.yaw_rad + off_rad};
+    if (!std::isfinite(terrain.HeightAt(aim.x_m, aim.y_m))) return;
+  }
+}
+
+/// Through the ground under both wheels and the caster; level on blocks, and where a table ends.
+Plane OdeWorld::Bodies::PlaneUnder(const geometry::Pose2& robot) const {
+  const auto ground = [&](double ahead_m, double left_m) {
+    const geometry::Pose2 at = robot * geometry::Pose2{ahead_m, left_m, 0.0};
+    return Vector3d(at.x_m, at.y_m, terrain.HeightAt(at.x_m, at.y_m));
+  };
+  const Vector3d left = ground(0.0, 0.5 * body.track_m), right = ground(0.0, -0.5 * body.track_m),
+                 caster = ground(body.caster_ahead_m, 0.0);
+  if (terrain.IsStepped() || !std::isfinite(left.z() + right.z() + caster.z())) {
+    return {ground(0.0, 0.0), Vector3d::UnitZ()};
+  }
+  const Vector3d normal = (right - left).cross(caster - left).normalized();
+  return {0.5 * (left + right), std::copysign(1.0, normal.z()) * normal};
 }
 
 /// Yaw is that of the forward axis seen from above, whatever the slope.

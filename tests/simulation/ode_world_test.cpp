@@ -67,6 +67,44 @@ TEST_CASE("A robot put down on flat ground rests there to the micrometre") {
   CHECK(Yaw(world.State()) == Approx(0.7).margin(1e-6));
 }
 
+/// A picture of 2 x 2 m about the origin that climbs evenly towards +x.
+Terrain Slope(double angle_rad) {
+  TerrainOptions options;
+  SurfaceOptions& slope = options.surfaces["ground"];
+  slope = SurfaceOptions{};
+  slope.shape = Shape::kHeightfield;
+  slope.image = "slope.png";
+  slope.image_width_m = 2.0;
+  slope.image_height_m = 2.0 * std::tan(angle_rad);
+  return Terrain(options, std::make_shared<HeightImage>(HeightImage{2, 2, {0.0, 1.0, 0.0, 1.0}}));
+}
+
+Terrain Bend() {
+  TerrainOptions options;
+  SurfaceOptions& board = options.surfaces["ground"];
+  board = SurfaceOptions{};
+  board.shape = Shape::kRampDown;
+  board.ramp_edge_x_m = 0.0;
+  board.ramp_bend_m = 0.3;
+  return Terrain(options);
+}
+
+TEST_CASE("On ground that is no plane a robot starts where and as it is asked to") {
+  const BodyOptions body;
+  const double heading_rad = GENERATE(0.0, 1.2, 1.5708, -2.3, 3.0);
+  for (const Terrain& terrain : {Slope(0.1), Slope(0.3), Slope(0.4), Bend()}) {
+    const OdeWorld world(body, terrain, {0.03, -0.02, heading_rad}, 0.004);
+    const Eigen::Vector3d at = world.State().position_m;
+    INFO(heading_rad << " " << at.transpose());
+    CHECK((at.head<2>() - Eigen::Vector2d(0.03, -0.02)).norm() < 2e-4);
+    CHECK(std::abs(Yaw(world.State()) - heading_rad) < 2e-3);
+    // The axle stands a radius off the ground, along the ground's normal.
+    const Eigen::Vector3d foot(at.x(), at.y(), terrain.HeightAt(at.x(), at.y()));
+    CHECK(terrain.NormalAt(at.x(), at.y()).dot(at - foot) ==
+          Approx(body.wheel_radius_m).margin(6e-4));
+  }
+}
+
 TEST_CASE("A coasting robot stops after v squared over twice its deceleration") {
   const BodyOptions body;
   const double speed_mps = 0.3, drag_nm = 2e-4, step_s = 0.001;
