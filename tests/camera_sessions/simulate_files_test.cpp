@@ -197,6 +197,25 @@ TEST_CASE("What is proposed for a robot that does not arrive is the same trial w
   CHECK(again.run.result.Duration_s() == *check.tried_s);
 }
 
+TEST_CASE("The ground in the figure of a run is that under its path, not beside it") {
+  experiment::Experiment experiment = ShortTask();
+  experiment.simulation.terrain.surface = "bump";  // a block every 0.06 m, 0.02 m wide
+  Simulated made = MakeRun(experiment);
+  const double between_m = 0.03, on_block_m = 0.06;
+  made.run.truth.poses = {
+      {.t_s = 0.0, .x_m = 0.0, .y_m = between_m, .z_m = 0.016, .yaw_rad = 0.0},
+      {.t_s = 1.0, .x_m = 0.06, .y_m = on_block_m, .z_m = 0.02, .yaw_rad = 0.0}};
+  const auto ground = [&] {
+    const std::string plot = FigureOf(made).plot;
+    const size_t from = plot.find("$ground");
+    REQUIRE(from != std::string::npos);
+    return plot.substr(from, plot.find("EOD", plot.find('\n', from)) - from);
+  };
+  CHECK_THAT(ground(), Contains("0.06 0.004 \n"));
+  made.run.truth.poses[1].y_m = between_m;
+  CHECK_THAT(ground(), Contains("0.06 0 \n") && !Contains(" 0.004 \n"));
+}
+
 TEST_CASE(
     "The figure of a run shows its name, its waypoints, its patches and the ground below it") {
   experiment::Experiment experiment = ShortTask();

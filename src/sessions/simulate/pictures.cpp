@@ -2,26 +2,40 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "rift/geometry/pose2.hpp"
 #include "rift/report/figures/figures.hpp"
 
 namespace rift::sessions {
 namespace {
 
 constexpr double kGroundStep_m = 0.002;  // the edge of a bump shows
+constexpr double kBeyond_m = 0.1;
 
-/// The ground under the robot's path, from end to end.
+/// On the way on which the robot looks.
+Eigen::Vector2d PointAhead(const trajectory::StampedPose& pose, double ahead_m) {
+  return geometry::Pose2{pose.x_m, pose.y_m, pose.yaw_rad} * Eigen::Vector2d(ahead_m, 0.0);
+}
+
+/// The ground under the robot's path in the order in which it was driven, and a little beyond both
+/// ends: as a robot drives to and fro, a place in x has more than one height.
 std::vector<Eigen::Vector2d> GroundProfile(const simulation::Terrain& terrain,
                                            const trajectory::Trajectory& truth) {
-  const auto by_x = [](const auto& a, const auto& b) { return a.x_m < b.x_m; };
-  const auto [left, right] = std::minmax_element(truth.poses.begin(), truth.poses.end(), by_x);
+  std::vector<Eigen::Vector2d> path_m{PointAhead(truth.poses.front(), -kBeyond_m)};
+  for (const trajectory::StampedPose& pose : truth.poses) path_m.push_back(PointAhead(pose, 0.0));
+  path_m.push_back(PointAhead(truth.poses.back(), kBeyond_m));
   std::vector<Eigen::Vector2d> profile;
-  for (double x_m = left->x_m - 0.1; x_m <= right->x_m + 0.1; x_m += kGroundStep_m) {
-    const double z_m = terrain.HeightAt(x_m, left->y_m);
-    if (std::isfinite(z_m)) profile.emplace_back(x_m, z_m);
+  const auto add = [&](const Eigen::Vector2d& at_m) {
+    const double z_m = terrain.HeightAt(at_m.x(), at_m.y());
+    if (std::isfinite(z_m)) profile.emplace_back(at_m.x(), z_m);
+  };
+  add(path_m.front());
+  for (size_t i = 1; i < path_m.size(); ++i) {
+    const Eigen::Vector2d way_m = path_m[i] - path_m[i - 1];
+    const double steps = std::ceil(way_m.norm() / kGroundStep_m);  // none where it stands
+    for (double k = 1.0; k <= steps; k += 1.0) add(path_m[i - 1] + k / steps * way_m);
   }
   return profile;
 }
