@@ -195,6 +195,11 @@ TEST_CASE("A calibration is told and drawn as it was approved") {
                     "/somewhere/fit.yaml");
   CHECK(DifferenceFromPinned("report/calibration.txt", text) == "");
 
+  sweep::CalibratedParameter& untold = report.calibration.parameters[2];
+  untold.value = untold.parameter.start;
+  CHECK_THAT(RobotYaml(experiment, report, "", "fit.yaml"),
+             Catch::Contains("lag_s: 0.17  # kept: the logs do not depend on it\n"));
+
   experiment.calibrate.method.features = {.rounds = 3, .draws = 250};
   const std::string by_features = RobotYaml(experiment, report, "", "fit.yaml");
   CHECK_THAT(by_features,

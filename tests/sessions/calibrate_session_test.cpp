@@ -84,6 +84,25 @@ TEST_CASE("A fit made here finds what the logs were made with, and is saved with
   CHECK_FALSE(fs::exists(fitted.folder / "none"));
 }
 
+TEST_CASE("A fit tells of logs that do not fit their task, apart from its progress") {
+  const Fitted fitted;
+  fitted.WriteLog(1, 0.05);
+  const std::string log = fitted.folder / "log1.csv";
+  test::WriteText(fitted.folder / "log3.csv", files::ReadFile(log));
+  experiment::Experiment experiment = fitted.Load();
+  experiment.waypoints[1].y_m = -0.2;
+  sweep::Evaluator evaluator(experiment, "fit.yaml", FileInputs());
+  SweepTold told;
+  std::vector<std::string> notes;
+  Fit(evaluator, {.out = fitted.folder / "out"}, ObserverOf(told), [&](const std::string& line) {
+    if (IsNote(line)) notes.push_back(line);
+  });
+  REQUIRE(notes.size() == 2);
+  CHECK_THAT(notes[0], Catch::StartsWith("warning: " + log + " (and 2 more logs): it comes no ") &&
+                           Contains("x 0.4 m, y -0.2 m"));
+  CHECK_THAT(notes[1], Contains("log3.csv: it has the rows of " + log));
+}
+
 TEST_CASE("A fit comes back from the journal that keeps it, with its notes but not its progress") {
   const Fitted fitted;
   const experiment::Experiment experiment = fitted.Load();

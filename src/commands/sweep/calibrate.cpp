@@ -32,7 +32,7 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
   }
   const files::FolderLock lock(out);
   const auto say = [&request](const std::string& line) {
-    if (!request.quiet) terminal::Say(line);
+    if (!request.quiet || sessions::IsNote(line)) terminal::Say(line);
   };
   sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
   const sessions::SweepObserver observer =

@@ -18,7 +18,13 @@ using yaml::Node;
 
 std::string CommentOf(const CalibratedParameter& p, double confidence) {
   const std::string flag = FlagOf(p);
-  if (!p.has_effect && !p.is_from_prior) return "kept: the logs do not depend on it";
+  if (!p.has_effect && !p.is_from_prior) {
+    // A fit may have come here by a step that the logs answered, to where they answer none.
+    return p.value == p.parameter.start
+               ? "kept: the logs do not depend on it"
+               : fmt::format("from {:.4g}; not told: here the logs do not depend on it",
+                             p.parameter.start);
+  }
   return fmt::format("fitted, {:.0f} % interval {:.4g} to {:.4g}, from {:.4g}{}{}",
                      100.0 * confidence, p.low, p.high, p.parameter.start, flag.empty() ? "" : "; ",
                      flag);
@@ -61,7 +67,7 @@ std::string LastPartText(const sweep::CalibrationOptions& method) {
 }
 
 std::string Head(const experiment::Experiment& experiment, const sweep::CalibrationReport& report,
-                 const std::string& inputs, const std::string& experiment_file) {
+                 const std::string& inputs, const std::string& experiment_file, bool has_ensemble) {
   const sweep::Calibration& fit = report.calibration;
   size_t held = 0;
   for (const sweep::CalibrationTrial& trial : report.trials) held += trial.is_held_out;
@@ -81,6 +87,15 @@ std::string Head(const experiment::Experiment& experiment, const sweep::Calibrat
         "# {}: mean simulated path {:.1f} mm from the real ones before, {:.1f} mm after.\n",
         group.side, 1e3 * group.before.path.mean_path_gap_m,
         1e3 * group.after.path.mean_path_gap_m);
+  }
+  text +=
+      "# Keys of trial and simulation alone: include it after the robot's own file, whose control\n"
+      "# and hardware stay in force.\n";
+  if (has_ensemble) {
+    text +=
+        "# Each run takes a draw of the ensemble in place of the values of its keys: a value that "
+        "is\n"
+        "# changed in this file counts once its key is no longer in ensemble.\n";
   }
   text += "# Logs (hash, file; those held out are among them):\n";
   std::string names;
@@ -115,7 +130,8 @@ std::string RobotYaml(const experiment::Experiment& experiment,
     if (!kept.entries.empty()) robot.Add(block, kept);
   }
   if (!at.ensemble.IsEmpty()) robot.Add("ensemble", tree.Find("ensemble")->value);
-  return Head(experiment, report, inputs, experiment_file) + yaml::Emit(robot);
+  return Head(experiment, report, inputs, experiment_file, !at.ensemble.IsEmpty()) +
+         yaml::Emit(robot);
 }
 
 }  // namespace rift::report

@@ -60,6 +60,10 @@ std::optional<sweep::CalibrationReport> Fit(sweep::Evaluator& evaluator, const F
   return sweep::Identify(evaluator, request.jobs, say);
 }
 
+bool IsNote(const std::string& line) {
+  return line.starts_with("note: ") || line.starts_with("warning: ");
+}
+
 void SaveCalibration(const fs::path& folder, const sweep::Evaluator& evaluator,
                      const sweep::CalibrationReport& found) {
   const experiment::Experiment& experiment = evaluator.experiment();

@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "rift/sessions/sweep/calibrate.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/sweep/calibrate/report_bytes.hpp"
 #include "rift/sweep/run/beside_table.hpp"
@@ -20,7 +21,7 @@ sweep::JournalEntry KeptCalibration::Fit(int jobs, const sweep::Say& say) {
   std::vector<std::string> notes;
   const sweep::CalibrationReport found =
       sweep::Identify(evaluator_, jobs, [&](const std::string& line) {
-        if (line.starts_with("note: ") || line.starts_with("warning: ")) notes.push_back(line);
+        if (IsNote(line)) notes.push_back(line);
         say(line);
       });
   sweep::ByteWriter write;

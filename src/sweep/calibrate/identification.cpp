@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 
+#include "log_doubts.hpp"
 #include "program_twins.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/program_parameters.hpp"
@@ -59,6 +60,7 @@ class Identifier {
   std::vector<double> StartValues() const;
   void Load();
   void NoteDoubts(const Recording& real);
+  void SayDoubtsOfLogs() const;
   bool IsHeldOut(const std::string& trial) const;
   std::optional<double> BeganOf(const Recording& real) const;
   std::vector<const Entry*> Side(bool held_out) const;
@@ -131,6 +133,7 @@ void Identifier::Load() {
                            .began_s = BeganOf(real)}});
     }
   }
+  SayDoubtsOfLogs();
   if (Side(false).size() >= 2) return;
   throw std::invalid_argument(fmt::format("{}: a fit needs at least 2 logs, and there are {}{}",
                                           evaluator_.experiment_file(), Side(false).size(),
@@ -162,6 +165,19 @@ void Identifier::NoteDoubts(const Recording& real) {
       say_(fmt::format("warning: {}: {}", real.source, doubt));
     }
   }
+}
+
+/// How near a program comes to its waypoints is its own.
+void Identifier::SayDoubtsOfLogs() const {
+  std::vector<LogOfTask> logs;
+  for (const Entry& entry : entries_) {
+    LogOfTask& one = logs.emplace_back(LogOfTask{entry.log.name, &entry.log.log, {}, 0.0});
+    if (IsProgram()) continue;
+    const experiment::Experiment at = experiment::ExperimentAt(experiment_, entry.theta);
+    one.waypoints = at.waypoints;
+    one.reach_radius_m = at.control.reach_radius_m;
+  }
+  for (const std::string& doubt : DoubtsOfLogs(logs)) say_("warning: " + doubt);
 }
 
 std::vector<const Entry*> Identifier::Side(bool held_out) const {

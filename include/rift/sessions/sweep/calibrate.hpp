@@ -24,6 +24,9 @@ struct FitRequest {
 std::optional<sweep::CalibrationReport> Fit(sweep::Evaluator& evaluator, const FitRequest& request,
                                             const SweepObserver& observer, const sweep::Say& say);
 
+/// Whether a line that was told is a note or a warning about what was fitted, and no progress.
+bool IsNote(const std::string& line);
+
 /// Writes experiment.yaml, inputs.txt and calibration.json.
 void SaveCalibration(const std::filesystem::path& folder, const sweep::Evaluator& evaluator,
                      const sweep::CalibrationReport& found);

@@ -1,0 +1,72 @@
+#include "log_doubts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace rift::sweep {
+namespace {
+
+using trajectory::StampedPose;
+
+constexpr double kBetweenRows = 2.0;  // of the reach radius: a robot is nearest between two rows
+
+double Nearest_m(const trajectory::Trajectory& log, const control::Waypoint& waypoint) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const StampedPose& pose : log.poses) {
+    nearest_m = std::min(nearest_m, std::hypot(pose.x_m - waypoint.x_m, pose.y_m - waypoint.y_m));
+  }
+  return nearest_m;
+}
+
+/// About the first waypoint that the log misses; the start is where somebody put the robot down.
+std::optional<std::string> MissText(const LogOfTask& one) {
+  for (size_t i = 1; i < one.waypoints.size(); ++i) {
+    const control::Waypoint& waypoint = one.waypoints[i];
+    const double nearest_m = Nearest_m(*one.log, waypoint);
+    if (nearest_m <= kBetweenRows * one.reach_radius_m) continue;
+    return fmt::format(
+        "it comes no nearer than {:.3f} m to the waypoint at x {:g} m, y {:g} m, which counts as "
+        "reached within {:g} m (control.reach_radius_m): a log of another task, in another frame "
+        "or cut short, and the fit drives this task",
+        nearest_m, waypoint.x_m, waypoint.y_m, one.reach_radius_m);
+  }
+  return std::nullopt;
+}
+
+bool AreCopies(const LogOfTask& a, const LogOfTask& b) {
+  return std::equal(a.log->poses.begin(), a.log->poses.end(), b.log->poses.begin(),
+                    b.log->poses.end(), [](const StampedPose& p, const StampedPose& q) {
+                      return p.t_s == q.t_s && p.x_m == q.x_m && p.y_m == q.y_m;
+                    });
+}
+
+}  // namespace
+
+std::vector<std::string> DoubtsOfLogs(const std::vector<LogOfTask>& logs) {
+  std::vector<std::string> doubts;
+  std::string source, text;
+  size_t missing = 0;
+  for (const LogOfTask& one : logs) {
+    const std::optional<std::string> miss = MissText(one);
+    if (miss && missing++ == 0) source = one.source, text = *miss;
+  }
+  if (missing > 0) {
+    const std::string more = missing > 1 ? fmt::format(" (and {} more logs)", missing - 1) : "";
+    doubts.push_back(source + more + ": " + text);
+  }
+  for (auto one = logs.begin(); one != logs.end(); ++one) {
+    const auto first = std::find_if(
+        logs.begin(), one, [&](const LogOfTask& other) { return AreCopies(other, *one); });
+    if (first == one) continue;
+    doubts.push_back(fmt::format("{}: it has the rows of {}: one drive that counts as two makes "
+                                 "the intervals too narrow",
+                                 one->source, first->source));
+  }
+  return doubts;
+}
+
+}  // namespace rift::sweep

@@ -1,0 +1,61 @@
+#include "sweep/calibrate/log_doubts.hpp"
+
+#include <Eigen/Core>
+#include <catch2/catch.hpp>
+
+namespace rift::sweep {
+namespace {
+
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+const std::vector<control::Waypoint> kWaypoints{
+    {"start", 0.0, 0.0, 0.0, false}, {"middle", 0.3, 0.1, {}, true}, {"end", 0.6, 0.1, {}, true}};
+
+trajectory::Trajectory LogOf(const std::vector<Eigen::Vector2d>& positions_m) {
+  trajectory::Trajectory log;
+  for (const Eigen::Vector2d& p : positions_m) {
+    const double t_s = 0.1 * static_cast<double>(log.poses.size());
+    log.poses.push_back({.t_s = t_s, .x_m = p.x(), .y_m = p.y()});
+  }
+  return log;
+}
+
+LogOfTask Of(const std::string& source, const trajectory::Trajectory& log) {
+  return {source, &log, kWaypoints, 0.05};
+}
+
+TEST_CASE("Logs that pass every waypoint within twice the reach radius are not doubted") {
+  const trajectory::Trajectory one = LogOf({{0.0, 0.0}, {0.3, 0.199}, {0.501, 0.1}}),
+                               far_start = LogOf({{5.0, 5.0}, {0.3, 0.1}, {0.6, 0.1}});
+  CHECK(DoubtsOfLogs({Of("a", one), Of("b", far_start)}).empty());
+  LogOfTask program = Of("p", far_start);
+  program.waypoints.clear();
+  CHECK(DoubtsOfLogs({program}).empty());
+}
+
+TEST_CASE("The first log that misses a waypoint is named with it, and how many more do") {
+  const trajectory::Trajectory good = LogOf({{0.0, 0.0}, {0.3, 0.1}, {0.6, 0.1}}),
+                               cut = LogOf({{0.0, 0.0}, {0.3, 0.1}, {0.4, 0.1}}),
+                               mirrored = LogOf({{0.0, 0.0}, {0.3, -0.1}, {0.6, -0.1}});
+  const auto one = DoubtsOfLogs({Of("good.csv", good), Of("cut.csv", cut)});
+  REQUIRE(one.size() == 1);
+  CHECK_THAT(one[0], StartsWith("cut.csv: it comes no nearer than 0.200 m to the waypoint at x "
+                                "0.6 m, y 0.1 m, which counts as reached within 0.05 m"));
+  const auto two = DoubtsOfLogs({Of("mirror.csv", mirrored), Of("cut.csv", cut)});
+  REQUIRE(two.size() == 1);
+  CHECK_THAT(two[0], StartsWith("mirror.csv (and 1 more logs): ") && Contains("x 0.3 m, y 0.1 m"));
+}
+
+TEST_CASE("A log with the rows of another one is named with it") {
+  const trajectory::Trajectory log = LogOf({{0.0, 0.0}, {0.3, 0.1}, {0.6, 0.1}}), same = log;
+  trajectory::Trajectory later = log;
+  later.poses.back().t_s += 0.01;
+  CHECK(DoubtsOfLogs({Of("a.csv", log), Of("b.csv", later)}).empty());
+  const auto doubts = DoubtsOfLogs({Of("a.csv", log), Of("b.csv", later), Of("c.csv", same)});
+  REQUIRE(doubts.size() == 1);
+  CHECK_THAT(doubts[0], StartsWith("c.csv: it has the rows of a.csv"));
+}
+
+}  // namespace
+}  // namespace rift::sweep
