@@ -33,7 +33,7 @@ RunToSave SimulateFile(const SimulateRequest& request) {
   sweep::SimulatedTrial trial =
       sweep::SimulatedTrialOf(experiment, {}, experiment.seed, request.experiment, FileInputs());
   trial.start = trial.task.Start();
-  SayIdleHeading(experiment, request.experiment);
+  SayTaskNotes(experiment, request.experiment);
   WarnOfTilt(experiment);
   return {out, {experiment, trial, sweep::Simulate(trial)}};
 }

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 sessions::PreparedTwin Prepare(const SimulateRequest& request) {
   std::vector<fs::path> inputs;
   const experiment::Experiment experiment = LoadFor(request, inputs);
-  SayIdleHeading(experiment, request.experiment);
+  SayTaskNotes(experiment, request.experiment);
   WarnOfTilt(experiment);
   const fs::path folder = OutputOf(request.out, experiment.name);
   RefuseSweepFolder(folder);

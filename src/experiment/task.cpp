@@ -60,16 +60,37 @@ void RequireReachableWaypoints(const Experiment& experiment, const std::string& 
       file, path_m, farthest_m, experiment.trial.timeout_s));
 }
 
-std::optional<std::string> IdleHeadingNote(const Experiment& experiment, const std::string& file) {
+std::vector<std::string> TaskNotes(const Experiment& experiment, const std::string& file) {
   const std::vector<control::Waypoint>& waypoints = experiment.waypoints;
+  const double reach_m = experiment.control.reach_radius_m;
+  std::optional<std::string> idle, passed, never;
   for (size_t i = 1; i < waypoints.size(); ++i) {
-    if (!waypoints[i].heading_deg) continue;
-    return fmt::format(
-        "note: {}: {} has heading {:g}, and only that of the first waypoint is driven: it does "
-        "nothing",
-        file, NameOf(waypoints[i], i), *waypoints[i].heading_deg);
+    const control::Waypoint& waypoint = waypoints[i];
+    const double leg_m = (waypoint.Position() - waypoints[i - 1].Position()).norm();
+    if (waypoint.heading_deg && !idle) {
+      idle = fmt::format(
+          "note: {}: {} has heading {:g}, and only that of the first waypoint is driven: it does "
+          "nothing",
+          file, NameOf(waypoint, i), *waypoint.heading_deg);
+    }
+    if (leg_m < reach_m && !passed) {
+      passed = fmt::format(
+          "note: {}: {} lies {:g} m from the waypoint before it, within control.reach_radius_m, "
+          "{:g} m: it counts as reached without a move",
+          file, NameOf(waypoint, i), leg_m, reach_m);
+    }
   }
-  return std::nullopt;
+  if (experiment.trial.settle_s >= experiment.trial.timeout_s) {
+    never = fmt::format(
+        "note: {}: trial.settle_s, {:g} s, is not below trial.timeout_s, {:g} s: the power is zero "
+        "until the trial ends",
+        file, experiment.trial.settle_s, experiment.trial.timeout_s);
+  }
+  std::vector<std::string> notes;
+  for (const std::optional<std::string>& note : {idle, passed, never}) {
+    if (note) notes.push_back(*note);
+  }
+  return notes;
 }
 
 vision::TagOptions TagOn(const Experiment& experiment) {

@@ -50,12 +50,36 @@ TEST_CASE("Names of an experiment, its waypoints and trials with a line break ar
 TEST_CASE("Headings of later waypoints, which no controller turns to, are told") {
   Experiment experiment = Way(1, 0);
   experiment.waypoints[0].heading_deg = 90.0;
-  CHECK_FALSE(IdleHeadingNote(experiment, "a.yaml"));
+  CHECK(TaskNotes(experiment, "a.yaml").empty());
   experiment.waypoints[1].heading_deg = 45.0;
-  CHECK(IdleHeadingNote(experiment, "a.yaml") ==
-        "note: a.yaml: waypoints[1] (end) at x 1 m, y 0 m has heading 45, and only that of the "
-        "first waypoint is driven: it does nothing");
-  CHECK_FALSE(IdleHeadingNote({}, "a.yaml"));
+  CHECK(TaskNotes(experiment, "a.yaml") ==
+        std::vector<std::string>{
+            "note: a.yaml: waypoints[1] (end) at x 1 m, y 0 m has heading 45, and only that of the "
+            "first waypoint is driven: it does nothing"});
+  CHECK(TaskNotes({}, "a.yaml").empty());
+}
+
+TEST_CASE("A waypoint within the reach radius of the one before it is told, the first of them") {
+  Experiment experiment = Way(1, 0);
+  experiment.control.reach_radius_m = 1.0;
+  CHECK(TaskNotes(experiment, "a.yaml").empty());
+  experiment.control.reach_radius_m = 1.01;
+  experiment.waypoints.push_back(experiment.waypoints.back());
+  CHECK(TaskNotes(experiment, "a.yaml") ==
+        std::vector<std::string>{"note: a.yaml: waypoints[1] (end) at x 1 m, y 0 m lies 1 m from "
+                                 "the waypoint before it, within control.reach_radius_m, 1.01 m: "
+                                 "it counts as reached without a move"});
+}
+
+TEST_CASE("A trial that ends before its first power is told") {
+  Experiment experiment = Way(1, 0);
+  experiment.trial.settle_s = 19.9;
+  experiment.trial.timeout_s = 20.0;
+  CHECK(TaskNotes(experiment, "a.yaml").empty());
+  experiment.trial.settle_s = 20.0;
+  CHECK(TaskNotes(experiment, "a.yaml") ==
+        std::vector<std::string>{"note: a.yaml: trial.settle_s, 20 s, is not below "
+                                 "trial.timeout_s, 20 s: the power is zero until the trial ends"});
 }
 
 TEST_CASE("A program starts at the one waypoint there may be, turned by its heading") {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "rift/experiment/experiment.hpp"
 
@@ -18,9 +18,11 @@ void RequireTask(const Experiment& experiment, const std::string& file);
 /// or centimetres.
 void RequireReachableWaypoints(const Experiment& experiment, const std::string& file);
 
-/// A line about the first of the later waypoints that has a heading: the navigator turns to none of
-/// them, and only the first waypoint's says where the robot looks. Nothing where none has.
-std::optional<std::string> IdleHeadingNote(const Experiment& experiment, const std::string& file);
+/// What of the task is not driven, at most a line of each kind: a heading of a later waypoint,
+/// since only the first one's says where the robot looks; a waypoint that counts as reached while
+/// the robot is at the one before it; everything, where the trial ends before its first power.
+/// Nothing where all of it is driven.
+std::vector<std::string> TaskNotes(const Experiment& experiment, const std::string& file);
 
 /// The experiment's tag. Where its surface is bumps, a ramp or a heightfield the tag is not held to
 /// a flat floor (TagOptions::ground): `flat` becomes what the surface allows.

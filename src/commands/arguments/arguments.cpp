@@ -43,8 +43,8 @@ experiment::Experiment ReadExperiment(const fs::path& file,
                                     [](const std::string& path) { return files::ReadFile(path); });
 }
 
-void SayIdleHeading(const experiment::Experiment& experiment, const std::string& file) {
-  if (const auto note = experiment::IdleHeadingNote(experiment, file)) terminal::Say(*note);
+void SayTaskNotes(const experiment::Experiment& experiment, const std::string& file) {
+  for (const std::string& note : experiment::TaskNotes(experiment, file)) terminal::Say(note);
 }
 
 void WarnOfTilt(const experiment::Experiment& experiment) {

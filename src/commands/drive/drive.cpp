@@ -52,7 +52,7 @@ experiment::Experiment LoadTask(const DriveRequest& request) {
   if (request.seconds) experiment.trial.timeout_s = *request.seconds;
   RequireTask(experiment, file.string());
   if (!request.any_waypoints) RequireReachableWaypoints(experiment, file.string());
-  SayIdleHeading(experiment, file.string());
+  SayTaskNotes(experiment, file.string());
   return experiment;
 }
 

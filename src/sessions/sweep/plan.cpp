@@ -25,7 +25,7 @@ void NotePlan(const experiment::Experiment& loaded, const std::string& file,
   if (LacksSpace(loaded)) {
     say(fmt::format("note: {} names no space: the paper's grid of surface, v_min and v_max", file));
   }
-  if (const auto heading = experiment::IdleHeadingNote(loaded, file)) say(*heading);
+  for (const std::string& note : experiment::TaskNotes(loaded, file)) say(note);
   if (loaded.candidate.kind == experiment::CandidateKind::kSimulation) {
     const auto warning = simulation::TiltWarning(loaded.simulation.body);
     if (warning) say("warning: " + *warning);

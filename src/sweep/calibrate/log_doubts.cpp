@@ -59,12 +59,13 @@ std::vector<std::string> DoubtsOfLogs(const std::vector<LogOfTask>& logs) {
     doubts.push_back(source + more + ": " + text);
   }
   for (auto one = logs.begin(); one != logs.end(); ++one) {
-    const auto first = std::find_if(
-        logs.begin(), one, [&](const LogOfTask& other) { return AreCopies(other, *one); });
+    const auto first = std::find_if(logs.begin(), one,
+                                    [&](const LogOfTask& other) { return AreCopies(other, *one); });
     if (first == one) continue;
-    doubts.push_back(fmt::format("{}: it has the rows of {}: one drive that counts as two makes "
-                                 "the intervals too narrow",
-                                 one->source, first->source));
+    doubts.push_back(
+        fmt::format("{}: it has the rows of {}: one drive that counts as two makes "
+                    "the intervals too narrow",
+                    one->source, first->source));
   }
   return doubts;
 }

@@ -37,8 +37,8 @@ void AddForceFlag(CLI::App& app, bool& force);
 experiment::Experiment ReadExperiment(const std::filesystem::path& file,
                                       const std::vector<std::string>& overrides = {});
 
-/// Says it where a heading of the task does nothing (experiment::IdleHeadingNote).
-void SayIdleHeading(const experiment::Experiment& experiment, const std::string& file);
+/// Says what of the task does nothing (experiment::TaskNotes).
+void SayTaskNotes(const experiment::Experiment& experiment, const std::string& file);
 
 /// Says once that the simulated robot does not stand level, and what would make it.
 void WarnOfTilt(const experiment::Experiment& experiment);
