@@ -35,6 +35,7 @@ RunToSave SimulateFile(const SimulateRequest& request) {
   trial.start = trial.task.Start();
   SayTaskNotes(experiment, request.experiment);
   WarnOfTilt(experiment);
+  if (const auto note = sweep::UncrossedNote(trial)) terminal::Say(*note);
   return {out, {experiment, trial, sweep::Simulate(trial)}};
 }
 

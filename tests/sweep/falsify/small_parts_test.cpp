@@ -131,6 +131,34 @@ TEST_CASE("A simulated trial is made of its experiment, start and seed, and need
   CHECK_THROWS_WITH(make(), Catch::StartsWith("e.yaml: "));
 }
 
+TEST_CASE("A heightfield that the task crosses nowhere is told with where it lies") {
+  SimulatedTrial trial{.task = Way().waypoints};  // from x 0 to 0.3 m, y 0
+  CHECK_FALSE(UncrossedNote(trial));
+  simulation::SurfaceOptions& hills = trial.simulation.terrain.surfaces["ground"];
+  hills.shape = simulation::Shape::kHeightfield;
+  hills.image = "hills.png";
+  hills.image_width_m = 0.1;
+  trial.image = std::make_shared<simulation::HeightImage>(
+      simulation::HeightImage{5, 3, std::vector<double>(15, 1.0)});  // 0.1 m by 0.05 m
+  for (const auto& [x_m, y_m, is_crossed] : {std::tuple{0.15, 0.0, true},
+                                             {0.349, 0.0, true},
+                                             {0.351, 0.0, false},
+                                             {-0.051, 0.0, false},
+                                             {0.15, 0.0249, true},
+                                             {0.15, 0.0251, false},
+                                             {0.15, -0.0251, false}}) {
+    INFO(x_m << " " << y_m);
+    hills.image_x_m = x_m;
+    hills.image_y_m = y_m;
+    CHECK(UncrossedNote(trial).has_value() == !is_crossed);
+  }
+  hills.image_x_m = 150.0;
+  hills.image_y_m = 0.0;
+  CHECK_THAT(UncrossedNote(trial).value_or(""),
+             Catch::StartsWith("note: the path of the task crosses hills.png nowhere, which covers "
+                               "x from 149.95 to 150.05 m and y from -0.025 to 0.025 m"));
+}
+
 TEST_CASE("A simulated run has its true path and its wheels on one clock, each moment once") {
   SimulatedTrial trial{.task = Way().waypoints, .seed = 3};
   const SimulatedRun run = Simulate(trial);
