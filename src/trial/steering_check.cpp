@@ -291,12 +291,13 @@ void ExplainStanding(SteeringCheck& check, const Case& run, const Progress& prog
                   progress.moved_m, progress.last_s, largest);
   if (!(largest < prior.LeastPower())) {
     check.causes.push_back(
-        prior.MovingPower() > 0.0
-            ? stood +
-                  fmt::format(", and its wheels should turn from {}: motors, battery, or a link "
-                              "that loses the commands",
-                              MovingText(prior))
-            : stood + ": motors, battery, dead band, or a link that loses the commands");
+        stood +
+        (prior.MovingPower() > 0.0
+             ? fmt::format(", and its wheels should turn from {}: motors, battery",
+                           MovingText(prior))
+             : std::string(": motors, battery, dead band")) +
+        ", a link that loses the commands, or a floor that holds it (slope, obstacle, no grip, a "
+        "caster that drags)");
     return;
   }
   check.causes.push_back(stood + ", and its wheels turn from " + MovingText(prior));

@@ -157,6 +157,15 @@ Simulated MakeLoaded(const std::vector<std::string>& overrides) {
   return MakeRun(experiment);
 }
 
+TEST_CASE("A run is explained by the draw of the ensemble that it took") {
+  const Simulated made =
+      MakeLoaded({"ensemble.keys=[simulation.motor.dead_band]", "ensemble.draws=[[0.6]]"});
+  CHECK(made.experiment.simulation.motor.dead_band == 0.1);
+  const trial::SteeringCheck check = CheckOf(made);
+  REQUIRE_FALSE(check.causes.empty());
+  CHECK_THAT(check.causes[0], Contains("its wheels turn from 0.6 (simulation.motor.dead_band)"));
+}
+
 TEST_CASE("A speed proposed below the cruise speed brings that down with it") {
   const Simulated made =
       MakeLoaded({"simulation.motor.mismatch=0.3", "control.heading.p=0.01", "control.heading.d=0",

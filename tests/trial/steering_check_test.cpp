@@ -367,14 +367,15 @@ TEST_CASE("A robot whose powers are too small to move it is given powers that do
   CHECK(bench.Run().outcome == Outcome::kReached);
 }
 
-TEST_CASE("A robot that stands at powers that should move it is told of motors and link") {
+TEST_CASE("A robot that stands at powers that should move it is told of motors, link and floor") {
   WornBench bench;
   bench.dead_band = 1.0;
   const SteeringCheck check = bench.Check(bench.Run());
   INFO(Joined(check));
   REQUIRE(check.causes.size() == 1);
   CHECK_THAT(check.causes[0], Catch::Contains("it does not move") &&
-                                  Catch::Contains("a link that loses the commands"));
+                                  Catch::Contains("a link that loses the commands") &&
+                                  Catch::Contains("a floor that holds it"));
   CHECK(check.proposals.empty());
 }
 

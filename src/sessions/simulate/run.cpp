@@ -45,9 +45,10 @@ void PutStart(const std::string& text, experiment::Experiment& experiment) {
 }
 
 trial::SteeringCheck CheckOf(const Simulated& made) {
-  trial::SteeringCheck check = report::SteeringOf(made.experiment, made.run);
-  trial::TryProposals(check, [&made](const std::vector<trial::KeyProposal>& proposals) {
-    experiment::Experiment experiment = made.experiment;
+  const experiment::Experiment drawn = experiment::DrawnAt(made.experiment, made.trial.seed);
+  trial::SteeringCheck check = report::SteeringOf(drawn, made.run);
+  trial::TryProposals(check, [&](const std::vector<trial::KeyProposal>& proposals) {
+    experiment::Experiment experiment = drawn;
     std::vector<yaml::KeyValue> values;
     for (const trial::KeyProposal& proposal : proposals) {
       yaml::Node value = yaml::Node::Scalar(fmt::format("{:g}", proposal.value));
