@@ -35,7 +35,9 @@ RunToSave SimulateFile(const SimulateRequest& request) {
   trial.start = trial.task.Start();
   SayTaskNotes(experiment, request.experiment);
   WarnOfTilt(experiment);
-  if (const auto note = sweep::UncrossedNote(trial)) terminal::Say(*note);
+  for (const auto& note : {sweep::UncrossedNote(trial), experiment::FullLineNote(experiment)}) {
+    if (note) terminal::Say(*note);
+  }
   return {out, {experiment, trial, sweep::Simulate(trial)}};
 }
 

@@ -93,6 +93,18 @@ std::vector<std::string> TaskNotes(const Experiment& experiment, const std::stri
   return notes;
 }
 
+std::optional<std::string> FullLineNote(const Experiment& experiment) {
+  constexpr double kBitsPerLine = 100.0;  // ten bytes, "0.30 0.30" and its end, by ten bits each
+  const double baud = experiment.simulation.link.baud;
+  const double period_s = experiment.trial.control_period_s;
+  if (baud == 0.0 || period_s * baud >= kBitsPerLine) return std::nullopt;
+  return fmt::format(
+      "note: trial.control_period_s, {:g} s, sends {:.4g} commands a second, and "
+      "simulation.link.baud "
+      "{:g} takes {:.4g}: they queue up and come later and later; from {:.4g} s on they do not",
+      period_s, 1.0 / period_s, baud, baud / kBitsPerLine, kBitsPerLine / baud);
+}
+
 vision::TagOptions TagOn(const Experiment& experiment) {
   vision::TagOptions tag = experiment.track.tag;
   const auto& terrain = experiment.simulation.terrain;

@@ -71,6 +71,20 @@ TEST_CASE("A waypoint within the reach radius of the one before it is told, the 
                                  "it counts as reached without a move"});
 }
 
+TEST_CASE("A control period too short for the serial line is told with the one that is not") {
+  Experiment experiment = Way(1, 0);
+  experiment.simulation.link.baud = 10000.0;
+  experiment.trial.control_period_s = 0.01;
+  CHECK_FALSE(FullLineNote(experiment));
+  experiment.trial.control_period_s = 0.008;
+  CHECK(FullLineNote(experiment) ==
+        "note: trial.control_period_s, 0.008 s, sends 125 commands a second, and "
+        "simulation.link.baud 10000 takes 100: they queue up and come later and later; from 0.01 s "
+        "on they do not");
+  experiment.simulation.link.baud = 0.0;  // no line time
+  CHECK_FALSE(FullLineNote(experiment));
+}
+
 TEST_CASE("A trial that ends before its first power is told") {
   Experiment experiment = Way(1, 0);
   experiment.trial.settle_s = 19.9;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ void RequireReachableWaypoints(const Experiment& experiment, const std::string& 
 /// the robot is at the one before it; everything, where the trial ends before its first power.
 /// Nothing where all of it is driven.
 std::vector<std::string> TaskNotes(const Experiment& experiment, const std::string& file);
+
+/// A line about commands that the simulated serial line cannot take as fast as they are decided, so
+/// that each waits longer for its turn than the one before. Nothing for a line that takes them.
+std::optional<std::string> FullLineNote(const Experiment& experiment);
 
 /// The experiment's tag. Where its surface is bumps, a ramp or a heightfield the tag is not held to
 /// a flat floor (TagOptions::ground): `flat` becomes what the surface allows.

@@ -29,6 +29,7 @@ void NotePlan(const experiment::Experiment& loaded, const std::string& file,
   if (loaded.candidate.kind == experiment::CandidateKind::kSimulation) {
     const auto warning = simulation::TiltWarning(loaded.simulation.body);
     if (warning) say("warning: " + *warning);
+    if (const auto line = experiment::FullLineNote(loaded)) say(*line);
   }
   if (loaded.goal != experiment::Goal::kFalsify) return;
   const int needed = sweep::TrialsToFalsify(loaded.falsify, loaded.search.budget);
