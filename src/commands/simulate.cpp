@@ -35,9 +35,8 @@ RunToSave SimulateFile(const SimulateRequest& request) {
   trial.start = trial.task.Start();
   SayTaskNotes(experiment, request.experiment);
   WarnOfTilt(experiment);
-  for (const auto& note : {sweep::UncrossedNote(trial), experiment::FullLineNote(experiment)}) {
-    if (note) terminal::Say(*note);
-  }
+  if (const auto note = sweep::UncrossedNote(trial)) terminal::Say(*note);
+  SayFullLine(experiment);
   return {out, {experiment, trial, sweep::Simulate(trial)}};
 }
 

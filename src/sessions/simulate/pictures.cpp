@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "rift/geometry/pose2.hpp"
 #include "rift/report/figures/figures.hpp"
 
 namespace rift::sessions {
@@ -16,7 +15,7 @@ constexpr double kBeyond_m = 0.1;
 
 /// On the way on which the robot looks.
 Eigen::Vector2d PointAhead(const trajectory::StampedPose& pose, double ahead_m) {
-  return geometry::Pose2{pose.x_m, pose.y_m, pose.yaw_rad} * Eigen::Vector2d(ahead_m, 0.0);
+  return {pose.x_m + ahead_m * std::cos(pose.yaw_rad), pose.y_m + ahead_m * std::sin(pose.yaw_rad)};
 }
 
 /// The ground under the robot's path in the order in which it was driven, and a little beyond both
