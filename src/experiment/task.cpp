@@ -100,8 +100,8 @@ std::optional<std::string> FullLineNote(const Experiment& experiment) {
   if (baud == 0.0 || period_s * baud >= kBitsPerLine) return std::nullopt;
   return fmt::format(
       "note: trial.control_period_s, {:g} s, sends {:.4g} commands a second, and "
-      "simulation.link.baud "
-      "{:g} takes {:.4g}: they queue up and come later and later; from {:.4g} s on they do not",
+      "simulation.link.baud {:g} takes {:.4g}: they queue up and come later and later; from "
+      "{:.4g} s on they do not",
       period_s, 1.0 / period_s, baud, baud / kBitsPerLine, kBitsPerLine / baud);
 }
 

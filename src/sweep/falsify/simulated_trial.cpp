@@ -132,10 +132,9 @@ std::optional<std::string> UncrossedNote(const SimulatedTrial& trial) {
   }
   const Eigen::Vector2d low_m = centre_m - half_m, high_m = centre_m + half_m;
   return fmt::format(
-      "note: the path of the task crosses {} nowhere, which covers x from {:g} to {:g} m and y "
-      "from "
-      "{:g} to {:g} m (image_width_m, image_x_m, image_y_m): the robot drives on the floor beside "
-      "it",
+      "note: the path of the task crosses {} nowhere, which covers x from {:g} to {:g} m and "
+      "y from {:g} to {:g} m (image_width_m, image_x_m, image_y_m): the robot drives on the floor "
+      "beside it",
       surface.image, low_m.x(), high_m.x(), low_m.y(), high_m.y());
 }
 
