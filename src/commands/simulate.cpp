@@ -10,6 +10,7 @@
 #include "rift/sessions/simulate/pictures.hpp"
 #include "rift/sessions/sweep/replay.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/sweep/falsify/uncrossed_note.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
 #include "rift/trajectory/log.hpp"

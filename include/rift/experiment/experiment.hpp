@@ -70,8 +70,7 @@ struct Experiment {
     field("calibrate", self.calibrate, "what is fitted to which logs");
     field("run", self.run, "what a trial may cost; no part of what it computes");
     field("candidate", self.candidate, "the simulator: what is put to the test");
-    field("start", self.start,
-          "where a simulated trial begins: its axle on the first waypoint, or as its log");
+    field("start", self.start, "where a simulated trial begins: first waypoint, or as its log");
     field("reference", self.reference, "the robot: what it is compared with");
     field("gap", self.gap, "how the gap is measured");
     field("likeness", self.likeness,

@@ -86,9 +86,8 @@ struct Stance {
 /// caster carries nothing where it would have to pull.
 Stance StanceOn(const BodyOptions& body, const Eigen::Vector3d& gravity_in_plane);
 
-/// Of a robot that does not stand level on a floor: where its centre of mass must be, if it tips
-/// off its caster or over it; else its angle, and the caster's height that would make it level.
-/// None for one that stands level within 0.5 degrees.
+/// Of a robot that does not stand level within 0.5 degrees: its angle and the caster's height that
+/// would make it level, or where its centre of mass must be lest it tips off its caster.
 std::optional<std::string> TiltWarning(const BodyOptions& body);
 
 }  // namespace rift::simulation

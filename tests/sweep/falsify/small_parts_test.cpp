@@ -10,6 +10,7 @@
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
+#include "rift/sweep/falsify/uncrossed_note.hpp"
 #include "support/inputs/paths.hpp"
 #include "support/inputs/png_bytes.hpp"
 

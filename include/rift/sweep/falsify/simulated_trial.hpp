@@ -2,8 +2,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -39,11 +37,6 @@ struct SimulatedRun {
 SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
                                 const geometry::Pose2& start, std::uint64_t seed,
                                 const std::string& experiment_file, const Inputs& inputs);
-
-/// A line about a heightfield that the ideal path of the task crosses nowhere, as when its width is
-/// in another unit or its centre elsewhere: the robot drives on the floor around it. Nothing for
-/// one that is crossed, and for other surfaces.
-std::optional<std::string> UncrossedNote(const SimulatedTrial& trial);
 
 /// What a robot would do that keeps to its task exactly: Task::IdealPath as a trajectory.
 trajectory::Trajectory IdealPath(const control::Task& task);
