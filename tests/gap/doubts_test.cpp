@@ -107,6 +107,47 @@ TEST_CASE("A wrong sign or order of axes is told with what mends it") {
   }
 }
 
+/// Straight from the origin in this direction, in rows of a hundredth of its length. Two of one
+/// length are sin(half of the angle between them) of it apart on average.
+Trajectory Ray(double angle_rad, double length_m = 1.0) {
+  Trajectory path;
+  for (int i = 0; i <= 100; ++i) {
+    const double way_m = 0.01 * i * length_m;
+    path.poses.push_back(
+        {.t_s = 0.05 * i, .x_m = way_m * std::cos(angle_rad), .y_m = way_m * std::sin(angle_rad)});
+  }
+  return path;
+}
+
+TEST_CASE("A unit explains a size within 15 percent of its factor and a shape within a tenth") {
+  const auto is_told = [](double angle_rad, double length_m) {
+    const bool of_real = Doubt(Ray(0.1), Ray(0.1 + angle_rad, length_m)).ends_with("--units mm");
+    CHECK(Doubt(Ray(0.1 + angle_rad, length_m), Ray(0.1)).ends_with("--units mm") == of_real);
+    return of_real;
+  };
+  CHECK(is_told(0.0, 1140.0));
+  CHECK_FALSE(is_told(0.0, 1160.0));
+  CHECK(is_told(0.0, 860.0));
+  CHECK_FALSE(is_told(0.0, 840.0));
+  for (const double sign : {1.0, -1.0}) {
+    CHECK(is_told(sign * 2.0 * std::asin(0.099), 1000.0));
+    CHECK_FALSE(is_told(sign * 2.0 * std::asin(0.101), 1000.0));
+  }
+}
+
+TEST_CASE("Axes are doubted from a tenth of the path's extent on, when 0.3 of it is left mended") {
+  const std::string mirrored = "mirrored y: turn its sign, as in y=-COLUMN";
+  CHECK(Doubt(Ray(std::asin(0.099)), Ray(-std::asin(0.099))) == "");
+  CHECK(Doubt(Ray(std::asin(0.101)), Ray(-std::asin(0.101))).ends_with(mirrored));
+  // 0.6 rad less `off` apart, and `off` once it is mended: sin(off / 2) = left sin(0.3 - off / 2).
+  const auto doubt = [](double left) {
+    const double off_rad = 2.0 * std::atan(left * std::sin(0.3) / (1.0 + left * std::cos(0.3)));
+    return Doubt(Ray(0.3), Ray(-0.3 + off_rad));
+  };
+  CHECK(doubt(0.29).ends_with(mirrored));
+  CHECK(doubt(0.31) == "");
+}
+
 TEST_CASE("Where a straight path begins tells its sign, unless starts are laid together") {
   const auto line = [](double y_m) {
     Trajectory path;
@@ -147,6 +188,66 @@ TEST_CASE("A log that was cut in motion is told with what it covers, whichever i
     stopped.poses.back().t_s += 0.05;
   }
   CHECK(Doubt(whole, stopped) == "");
+}
+
+/// Along x from `from_m` to `to_m` in rows of a centimetre and 0.05 s, its last steps so much
+/// slower.
+Trajectory Piece(double from_m, double to_m, double y_m = 0.0, double slower = 1.0) {
+  Trajectory path;
+  double t_s = 0.0;
+  const auto rows = std::lround(100.0 * (to_m - from_m));
+  for (int i = 0; i <= rows; ++i) {
+    path.poses.push_back({.t_s = t_s, .x_m = from_m + 0.01 * i, .y_m = y_m});
+    t_s += 0.05 / (i + 4 >= rows ? slower : 1.0);
+  }
+  return path;
+}
+
+/// The same driven from its end to its start, and seen from there.
+Trajectory Backward(Trajectory path) {
+  const double end_s = path.poses.back().t_s;
+  std::reverse(path.poses.begin(), path.poses.end());
+  for (StampedPose& pose : path.poses) {
+    pose.t_s = end_s - pose.t_s;
+    pose.x_m = 1.0 - pose.x_m;
+  }
+  return path;
+}
+
+TEST_CASE("A part is cut off a whole up to 85 percent of it, at more than half its mean speed") {
+  const Trajectory whole = Piece(0.0, 1.0);
+  const auto is_told = [&](const Trajectory& part) {
+    const std::string end = Doubt(whole, part), begin = Doubt(whole, Backward(part));
+    CHECK((end.empty() || end.find(" and ends in motion") != std::string::npos));
+    CHECK((begin.empty() || begin.find(" and begins in motion") != std::string::npos));
+    CHECK(end.empty() == begin.empty());
+    return !end.empty();
+  };
+  CHECK(is_told(Piece(0.0, 0.84)));
+  CHECK_FALSE(is_told(Piece(0.0, 0.86)));
+  // The last 0.04 m of 0.6 m at this share of the speed have (0.56 share + 0.04) / 0.6 of the mean
+  // of all, which is a half at 0.464.
+  CHECK(is_told(Piece(0.0, 0.6, 0.0, 0.48)));
+  CHECK_FALSE(is_told(Piece(0.0, 0.6, 0.0, 0.45)));
+  // Beside the whole by 6 % of its length on average is another path.
+  CHECK(is_told(Piece(0.0, 0.6, 0.058)));
+  CHECK_FALSE(is_told(Piece(0.0, 0.6, 0.062)));
+  // And so is one whose end is 10 % off, however near the rest of it lies.
+  for (const double off_m : {0.09, 0.11}) {
+    Trajectory part = Piece(0.0, 0.6);
+    for (int i = 0; i < 10; ++i) part.poses[static_cast<size_t>(i)].y_m = off_m * (1.0 - 0.1 * i);
+    INFO(off_m);
+    CHECK(is_told(part) == (off_m < 0.1));
+  }
+  // Nine rows tell of no speed.
+  for (const size_t rows : {9, 10}) {
+    Trajectory part;
+    for (size_t i = 0; i < rows; ++i) {
+      const double share = static_cast<double>(i);
+      part.poses.push_back({.t_s = 0.3 * share, .x_m = 0.06 * share});
+    }
+    CHECK(is_told(part) == (rows == 10));
+  }
 }
 
 TEST_CASE("Clocks differ from ten times as long on, or when one begins a million seconds later") {

@@ -39,5 +39,30 @@ TEST_CASE("A path that ends outside the radius or beyond the goal is left as it 
   }
 }
 
+TEST_CASE(
+    "The direction of an end is that of its last three centimetres, or of all where it is less") {
+  const trajectory::Trajectory whole = test::StraightPath(0.7, 71);
+  // A centimetre and a half aside at the end of 0.66 m: three centimetres back are 0.03 m along x.
+  trajectory::Trajectory hook = test::StraightPath(0.66, 67);
+  for (const double y_m : {0.005, 0.010, 0.015}) {
+    hook.poses.push_back(hook.poses.back());
+    hook.poses.back().t_s += 0.1;
+    hook.poses.back().y_m = y_m;
+  }
+  trajectory::Trajectory longer = hook;
+  const double ahead_x = 2.0 / std::sqrt(5.0), ahead_y = 1.0 / std::sqrt(5.0);
+  const double short_m = 0.04 * ahead_x - 0.015 * ahead_y;
+  longer.poses.push_back(longer.poses.back());
+  longer.poses.back().t_s += 0.1;
+  longer.poses.back().x_m += short_m * ahead_x;
+  longer.poses.back().y_m += short_m * ahead_y;
+  CHECK(WayGap_m(hook, whole, kGoal, {}) == Approx(Gap(longer, whole, {})));
+  CHECK(WayGap_m(whole, hook, kGoal, {}) == Approx(Gap(whole, longer, {})));
+
+  const Goal near{{0.04, 0.0}, 0.05};
+  CHECK(WayGap_m(test::StraightPath(0.02, 3), test::StraightPath(0.04, 5), near, {}) ==
+        Approx(0.0).margin(1e-12));
+}
+
 }  // namespace
 }  // namespace rift::gap

@@ -260,5 +260,25 @@ TEST_CASE("Small heights of the wrong sign are doubted beside a larger error in 
   CHECK(doubts[0].find("mirrored z") != std::string::npos);
 }
 
+TEST_CASE(
+    "Heights of the wrong sign are doubted from 3 percent of the path on, and 0.3 left of it") {
+  // A metre along x that climbs by as much: half of it above its middle on average.
+  const auto slope = [](double climb_m) {
+    return PathOf([=](double share) { return Eigen::Vector3d(share, 0.0, climb_m * share); }, 101);
+  };
+  const auto is_told = [&](double sim_m, double real_m) {
+    const auto doubts = Doubts(slope(sim_m), slope(real_m), InSpace());
+    if (!doubts.empty()) CHECK(doubts[0].find("mirrored z") != std::string::npos);
+    return !doubts.empty();
+  };
+  CHECK_FALSE(is_told(0.0299, -0.0299));
+  CHECK(is_told(0.0301, -0.0301));
+  CHECK_FALSE(is_told(-0.0299, 0.0299));
+  CHECK(is_told(-0.0301, 0.0301));
+  // 0.1 + b apart and 0.1 - b once it is mended.
+  CHECK(is_told(0.1, -0.1 * (1.0 - 0.29) / 1.29));
+  CHECK_FALSE(is_told(0.1, -0.1 * (1.0 - 0.31) / 1.31));
+}
+
 }  // namespace
 }  // namespace rift::gap

@@ -20,6 +20,25 @@ TEST_CASE("A setting is falsified or passed once its share of failures is shown"
   CHECK(JudgeCounts(3, 3, {.share = 0.5}).verdict == Verdict::kUndecided);
 }
 
+TEST_CASE("A verdict holds at the confidence that is asked for, alone and among others") {
+  // One failure of one trial speaks 3.94 times for a share above 0.1: enough for 1 / (1 - 0.746).
+  for (const double confidence : {0.74, 0.75}) {
+    INFO(confidence);
+    const VerdictOptions options{.confidence = confidence};
+    const RepeatVerdict alone = JudgeCounts(1, 1, options);
+    const bool is_enough = confidence < 0.746;
+    CHECK((alone.verdict == Verdict::kFalsified) == is_enough);
+    CHECK((alone.share_low > 0.1) == is_enough);
+    std::vector<RepeatVerdict> together{alone};
+    JudgeTogether(together, 1, options);
+    CHECK(together[0].verdict == alone.verdict);
+    JudgeTogether(together, 500, options);
+    CHECK(VerdictText(together[0]) ==
+          (is_enough ? "undecided (1 of 1 trial fails, too few among so many settings)"
+                     : "undecided (1 of 1 trial fails)"));
+  }
+}
+
 TEST_CASE("The words of a verdict say how many trials or why") {
   CHECK(VerdictText(JudgeCounts(3, 3, {})) == "falsified");
   CHECK(VerdictText(JudgeCounts(0, 100, {})) == "passed");
