@@ -122,6 +122,38 @@ TEST_CASE("A wide wheel counts the highest ground under its width") {
   CHECK(depth_m(0.004, 0.0) == Approx(0.0008).epsilon(0.02));
 }
 
+TEST_CASE("A wheel whose middle lies on the ground is pushed upwards by all of its radius") {
+  const Terrain terrain = Slanted();
+  const Vector3d ground(0.1, -0.2, terrain.HeightAt(0.1, -0.2));
+  const auto contact = WheelContactPoint(terrain, ground, Vector3d::UnitY(), kRadius_m, 0.0);
+  REQUIRE(contact);
+  CHECK(contact->depth_m == Approx(kRadius_m));
+  CHECK(contact->normal.norm() == Approx(1.0));
+  CHECK(contact->normal.z() > 0.99);
+}
+
+TEST_CASE("A tyre among blocks is round by half its width, and by half its radius at most") {
+  TerrainOptions options;
+  options.surface = "bump";
+  const Terrain terrain(options);
+  const double lean_rad = 0.3;
+  WorldState state;
+  state.world_from_robot = Eigen::AngleAxisd(lean_rad, Vector3d::UnitX()).toRotationMatrix();
+  for (const auto& [width_m, round_m] : {std::pair{0.0068, 0.0034}, {0.05, 0.008}}) {
+    BodyOptions body;
+    body.wheel_width_m = width_m;
+    const ContactScene scene{body, terrain, state, {}, 0.0};
+    // On the floor between four blocks, leaning on the round of its edge.
+    const double hub_m = (kRadius_m - round_m) * std::cos(lean_rad) + round_m;
+    std::vector<GroundContact> contacts;
+    AddWheelContacts(scene, 0, {0.03, 0.03, hub_m + 1e-6}, contacts);
+    CHECK(contacts.empty());
+    AddWheelContacts(scene, 0, {0.03, 0.03, hub_m - 1e-5}, contacts);
+    REQUIRE(contacts.size() == 1);
+    CHECK(contacts[0].at.depth_m == Approx(1e-5).epsilon(1e-6));
+  }
+}
+
 /// A robot that moves, turns and spins its wheels.
 WorldState Moving() {
   WorldState state;
@@ -211,6 +243,24 @@ TEST_CASE("Caster and rim slide against their own motion in the ground") {
   REQUIRE(contacts.size() == 1);
   CHECK((contacts[0].direction - state.world_from_robot.col(0)).norm() < 1e-9);
   CHECK(contacts[0].creep_across_mps == 0.0);
+}
+
+TEST_CASE("The rim of the chassis runs into the side of a block at the chassis' own radius") {
+  TerrainOptions options;
+  options.surface = "bump";  // blocks of 0.02 m, 0.06 m apart, 0.004 m high
+  const Terrain terrain(options);
+  BodyOptions body;
+  body.rim_clearance_m = 0.002;
+  for (const double sunk_m : {1e-5, -1e-6}) {
+    WorldState state;
+    state.position_m = {0.05 - body.chassis_radius_m + sunk_m, 0.0, body.wheel_radius_m};
+    std::vector<GroundContact> contacts;
+    AddRimContacts({body, terrain, state, {}, 0.0}, contacts);
+    REQUIRE(contacts.size() == (sunk_m > 0.0 ? 1u : 0u));
+    if (contacts.empty()) continue;
+    CHECK(contacts[0].at.depth_m == Approx(sunk_m).epsilon(1e-6));
+    CHECK((contacts[0].at.normal + Vector3d::UnitX()).norm() < 1e-9);
+  }
 }
 
 TEST_CASE(
