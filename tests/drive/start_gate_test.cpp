@@ -95,6 +95,52 @@ TEST_CASE("A robot that is pushed away during the countdown does not start") {
   CHECK_FALSE(person.has_agreed);
 }
 
+TEST_CASE("A robot that is not seen does not start, wherever it may start") {
+  for (const bool any_place : {false, true}) {
+    Person person{.has_agreed = true};
+    StartGate gate({.countdown_s = 0.0}, kStart, any_place, person.AtTerminal());
+    CHECK_FALSE(gate.MayStart(0.0, std::nullopt));
+    CHECK_FALSE(gate.MayStart(9.9, std::nullopt));
+    CHECK_THAT(person.shown.back(), Catch::Contains("not seen"));
+    CHECK(person.has_agreed);
+    CHECK(gate.MayStart(9.95, kNear));
+  }
+}
+
+TEST_CASE("A robot that is covered during the countdown has all of it again") {
+  Person person{.has_agreed = true};
+  StartGate gate({}, kStart, false, person.AtTerminal());
+  CHECK_FALSE(gate.MayStart(0.0, kNear));
+  CHECK_FALSE(gate.MayStart(2.0, std::nullopt));
+  CHECK_FALSE(gate.MayStart(4.0, kNear));
+  CHECK_FALSE(gate.MayStart(6.9, kNear));
+  CHECK(gate.MayStart(7.1, kNear));
+}
+
+TEST_CASE("A robot that is not seen for ten seconds has to be agreed to anew, or ends the drive") {
+  Person person{.has_agreed = true};
+  StartGate gate({.countdown_s = 0.0}, kStart, false, person.AtTerminal());
+  const auto sees_nothing_until = [](StartGate& one, double end_s) {
+    for (double t_s = 0.0; t_s < end_s; t_s += 1.0) one.MayStart(t_s, std::nullopt);
+  };
+  sees_nothing_until(gate, 10.5);
+  CHECK(person.has_agreed);
+  gate.MayStart(11.0, std::nullopt);
+  CHECK_FALSE(person.has_agreed);
+  REQUIRE(person.told.size() == 1);
+  CHECK_THAT(person.told[0], Catch::Contains("not been seen for 10 s") && Catch::Contains("tag") &&
+                                 Catch::EndsWith("; then Enter"));
+  person.has_agreed = true;
+  gate.MayStart(12.0, std::nullopt);  // counts from the new Enter
+  CHECK(person.has_agreed);
+  CHECK(gate.MayStart(13.0, kNear));
+
+  Person nobody{.has_agreed = true};
+  StartGate alone({.countdown_s = 0.0}, kStart, false, nobody.Absent());
+  CHECK_THROWS_WITH(sees_nothing_until(alone, 12.0),
+                    Catch::StartsWith("not started: the robot has not been seen for 10 s"));
+}
+
 TEST_CASE("Where nobody can be asked a robot that is far off ends the drive with what to do") {
   Person person{.has_agreed = true};
   StartGate gate({}, kStart, false, person.Absent());

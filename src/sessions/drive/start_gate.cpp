@@ -9,6 +9,7 @@ namespace rift::sessions {
 namespace {
 
 constexpr double kShowPeriod_s = 0.1;
+constexpr double kUnseen_s = 10.0;  // as hardware::Drive waits for the first pose
 
 }  // namespace
 
@@ -22,9 +23,8 @@ std::string PlacementText(const Placement& placement) {
   return fmt::format("{:.1f} cm, {:.0f} deg off", 100.0 * placement.off_m, placement.off_deg);
 }
 
-std::optional<std::string> StartGate::WhyNot(const std::optional<geometry::Pose2>& seen) const {
-  if (!seen) return std::nullopt;  // whoever arms the robot asks for a fresh pose
-  const Placement placement = PlacementOf(*seen, start_);
+std::optional<std::string> StartGate::WhyNot(const geometry::Pose2& seen) const {
+  const Placement placement = PlacementOf(seen, start_);
   if (placement.off_m <= options_.within_m && placement.off_deg <= options_.within_deg) {
     return std::nullopt;
   }
@@ -40,7 +40,7 @@ bool StartGate::MayStart(double now_s, const std::optional<geometry::Pose2>& see
     ShowPlacement(now_s, seen);
     return false;
   }
-  if (!MayGoOn(seen)) {
+  if (!IsSeen(now_s, seen) || !MayGoOn(*seen)) {
     agreed_s_.reset();
     return false;
   }
@@ -59,7 +59,24 @@ bool StartGate::MayStart(double now_s, const std::optional<geometry::Pose2>& see
   return false;
 }
 
-bool StartGate::MayGoOn(const std::optional<geometry::Pose2>& seen) {
+bool StartGate::IsSeen(double now_s, const std::optional<geometry::Pose2>& seen) {
+  if (seen) {
+    unseen_since_s_.reset();
+    return true;
+  }
+  ShowPlacement(now_s, seen);
+  if (!unseen_since_s_) unseen_since_s_ = now_s;
+  if (now_s - *unseen_since_s_ > kUnseen_s) {
+    unseen_since_s_.reset();
+    Refuse(
+        fmt::format("the robot has not been seen for {:g} s: see to it that its tag is in the "
+                    "picture, flat and well lit",
+                    kUnseen_s));
+  }
+  return false;
+}
+
+bool StartGate::MayGoOn(const geometry::Pose2& seen) {
   const std::optional<std::string> why_not = WhyNot(seen);
   if (!why_not) return true;
   if (any_place_) {
@@ -67,10 +84,14 @@ bool StartGate::MayGoOn(const std::optional<geometry::Pose2>& seen) {
     is_warned_ = true;
     return true;
   }
-  if (!person_.ask_again) throw std::runtime_error("not started: " + *why_not);
-  person_.say("not started: " + *why_not + "; then Enter");
-  person_.ask_again();
+  Refuse(*why_not);
   return false;
+}
+
+void StartGate::Refuse(const std::string& why) {
+  if (!person_.ask_again) throw std::runtime_error("not started: " + why);
+  person_.say("not started: " + why + "; then Enter");
+  person_.ask_again();
 }
 
 void StartGate::ShowPlacement(double now_s, const std::optional<geometry::Pose2>& seen) {

@@ -19,8 +19,8 @@ Placement PlacementOf(const geometry::Pose2& world_from_robot, const geometry::P
 /// "3.1 cm, 2 deg off"
 std::string PlacementText(const Placement& placement);
 
-/// Between a person's Enter and the first power: refuses a robot that stands too far off its start,
-/// and counts down. Knows no clock and no terminal.
+/// Between a person's Enter and the first power: waits for a robot that is not seen, refuses one
+/// that stands too far off its start, and counts down. Knows no clock and no terminal.
 class StartGate {
  public:
   struct Person {
@@ -40,12 +40,14 @@ class StartGate {
 
   /// To be called many times a second until it is true; `seen`: where the robot stands now, none
   /// while it is not seen. Throws std::runtime_error, with the distance and what to do, when the
-  /// robot is too far off and nobody can be asked.
+  /// robot is too far off, or was not seen for 10 s, and nobody can be asked.
   bool MayStart(double now_s, const std::optional<geometry::Pose2>& seen);
 
  private:
-  std::optional<std::string> WhyNot(const std::optional<geometry::Pose2>& seen) const;
-  bool MayGoOn(const std::optional<geometry::Pose2>& seen);
+  std::optional<std::string> WhyNot(const geometry::Pose2& seen) const;
+  bool IsSeen(double now_s, const std::optional<geometry::Pose2>& seen);
+  bool MayGoOn(const geometry::Pose2& seen);
+  void Refuse(const std::string& why);
   void ShowPlacement(double now_s, const std::optional<geometry::Pose2>& seen);
   void CountDown(double now_s);
 
@@ -56,6 +58,7 @@ class StartGate {
   bool is_warned_ = false;
   double shown_s_ = -1e9;
   std::optional<double> agreed_s_;
+  std::optional<double> unseen_since_s_;
   int seconds_shown_ = 0;
 };
 
