@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "rift/experiment/task.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
@@ -33,7 +34,7 @@ RunToSave SimulateFile(const SimulateRequest& request) {
   CheckNames(request, out, experiment, inputs);
   sweep::SimulatedTrial trial =
       sweep::SimulatedTrialOf(experiment, {}, experiment.seed, request.experiment, FileInputs());
-  trial.start = trial.task.Start();
+  trial.start = experiment::AxleAtStart(experiment);
   SayTaskNotes(experiment, request.experiment);
   WarnOfTilt(experiment);
   if (const auto note = sweep::UncrossedNote(trial)) terminal::Say(*note);

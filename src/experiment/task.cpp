@@ -105,6 +105,11 @@ std::optional<std::string> FullLineNote(const Experiment& experiment) {
       period_s, 1.0 / period_s, baud, baud / kBitsPerLine, kBitsPerLine / baud);
 }
 
+geometry::Pose2 AxleAtStart(const Experiment& experiment) {
+  return TaskOf(experiment).Start() *
+         geometry::Pose2{-experiment.simulation.mocap.tag_ahead_m, 0.0, 0.0};
+}
+
 vision::TagOptions TagOn(const Experiment& experiment) {
   vision::TagOptions tag = experiment.track.tag;
   const auto& terrain = experiment.simulation.terrain;

@@ -1,5 +1,6 @@
 // The twin before it is served: its folder, its simulation, its camera, and what is said of it.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -41,17 +42,18 @@ TEST_CASE("Every file of a twin's folder keeps another twin out, and none is an 
   }
 }
 
-TEST_CASE("A twin begins at the first waypoint with the seed, and its two files say so") {
+TEST_CASE("A twin begins with its tag on the first waypoint and the seed, and its files say so") {
   const test::TemporaryFolder folder;
   experiment::Experiment experiment = SeededTask();
   experiment.track.tag.family = vision::TagFamily::k25h9;
   experiment.simulation.mocap.exposure_s = 0.004;
+  experiment.simulation.mocap.tag_ahead_m = -0.03;
   experiment.twin.fps = 20.0;
   const PreparedTwin prepared = Prepare(experiment, folder.Path());
   CHECK(prepared.folder == folder.Path());
   CHECK(prepared.setup.seed == 9);
-  CHECK(prepared.setup.start.x_m == -0.2822);
-  CHECK(prepared.setup.start.y_m == -0.0655);
+  CHECK(prepared.setup.start.x_m == Approx(-0.2822 + 0.03 * std::cos(geometry::RadFromDeg(0.9))));
+  CHECK(prepared.setup.start.y_m == Approx(-0.0655 - 0.03 * std::sin(geometry::RadFromDeg(0.9))));
   CHECK(prepared.setup.start.yaw_rad == Approx(geometry::RadFromDeg(-0.9)));
   CHECK(prepared.setup.look.tag_family == vision::TagFamily::k25h9);
   CHECK(prepared.setup.look.shutter_s == 0.004);

@@ -109,6 +109,18 @@ TEST_CASE("A program starts at the one waypoint there may be, turned by its head
   CHECK_THROWS_WITH(TaskOf(experiment), Contains("2 waypoints beside a program"));
 }
 
+TEST_CASE("A simulated robot is put down with its tag on the start, its axle behind or ahead") {
+  Experiment experiment;
+  experiment.waypoints = {{"start", 0.5, -0.25, 90.0, true}, {"end", 0.5, 0.25, {}, true}};
+  for (const double tag_ahead_m : {-0.028, 0.0, 0.05}) {
+    experiment.simulation.mocap.tag_ahead_m = tag_ahead_m;
+    const geometry::Pose2 axle = AxleAtStart(experiment);
+    CHECK(axle.x_m == Approx(0.5));
+    CHECK(axle.y_m == Approx(-0.25 - tag_ahead_m));
+    CHECK(axle.yaw_rad == Approx(geometry::kPi / 2.0));
+  }
+}
+
 TEST_CASE("A program has to end before its trial does, with settling and rest") {
   Experiment experiment;
   experiment.program.segments = {{.straight_m = 0.1, .power = 0.3}, {.hold_s = 10.0}};

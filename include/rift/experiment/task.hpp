@@ -29,6 +29,10 @@ std::vector<std::string> TaskNotes(const Experiment& experiment, const std::stri
 /// that each waits longer for its turn than the one before. Nothing for a line that takes them.
 std::optional<std::string> FullLineNote(const Experiment& experiment);
 
+/// world_from_robot, of the middle of the axle, of a simulated robot that is put down as a real one
+/// is: its tag (simulation.mocap.tag_ahead_m) on the start of the task, which has a first waypoint.
+geometry::Pose2 AxleAtStart(const Experiment& experiment);
+
 /// The experiment's tag. Where its surface is bumps, a ramp or a heightfield the tag is not held to
 /// a flat floor (TagOptions::ground): `flat` becomes what the surface allows.
 vision::TagOptions TagOn(const Experiment& experiment);

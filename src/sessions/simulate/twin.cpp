@@ -1,5 +1,6 @@
 #include "rift/sessions/simulate/twin.hpp"
 
+#include "rift/experiment/task.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/outputs.hpp"
 #include "rift/report/json/fields.hpp"
@@ -63,10 +64,11 @@ PreparedTwin PrepareTwin(const experiment::Experiment& experiment,
   look.tag_family = experiment.track.tag.family;
   look.shutter_s = as_twin.simulation.mocap.exposure_s;
   const control::Task task = experiment::TaskOf(experiment);
-  const PreparedTwin prepared{as_twin,
-                              {as_twin.simulation, experiment.twin, task.Start(), experiment.seed,
-                               trial.image, twin::OverheadCamera(task, experiment.twin), look},
-                              folder};
+  const PreparedTwin prepared{
+      as_twin,
+      {as_twin.simulation, experiment.twin, experiment::AxleAtStart(experiment), experiment.seed,
+       trial.image, twin::OverheadCamera(task, experiment.twin), look},
+      folder};
   SaveSetup(prepared);
   return prepared;
 }

@@ -10,6 +10,7 @@
 #include "experiment_sides.hpp"
 #include "program_side.hpp"
 #include "rift/experiment/path_template.hpp"
+#include "rift/experiment/task.hpp"
 #include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/result.hpp"
@@ -127,7 +128,7 @@ SimulatedTrial Evaluator::TrialFor(const TrialRequest& request, const Recording&
   const geometry::Pose2 start =
       starts_as_reference ? StartFromLog(reference.trajectory, experiment_.reference.tag_offset_m,
                                          at.simulation.mocap)
-                          : experiment::TaskOf(at).Start();
+                          : experiment::AxleAtStart(at);
   return TrialOf(at, start, *request.seed);
 }
 

@@ -11,6 +11,7 @@
 
 #include "job_status.hpp"
 #include "program_side.hpp"
+#include "rift/experiment/task.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
@@ -45,8 +46,7 @@ const Recording& Evaluator::Nominal(std::uint64_t seed) {
   if (candidate_program_) {
     return nominal_runs_[seed] = candidate_program_->Run(NominalRequest(experiment_, seed));
   }
-  const geometry::Pose2 start = experiment::TaskOf(experiment_).Start();
-  const SimulatedTrial trial = TrialOf(experiment_, start, seed);
+  const SimulatedTrial trial = TrialOf(experiment_, experiment::AxleAtStart(experiment_), seed);
   return nominal_runs_[seed] = RecordingOf(Simulate(trial), trial);
 }
 

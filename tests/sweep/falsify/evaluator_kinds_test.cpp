@@ -382,6 +382,26 @@ TEST_CASE("A robot that starts at its reference stands where the tag was, behind
   CHECK(start.y_m == Approx(stood.y_m - 0.07 * std::sin(stood.yaw_rad)));
 }
 
+TEST_CASE("Candidate and nominal run begin with the tag on the first waypoint") {
+  for (const double tag_ahead_m : {-0.03, 0.04}) {
+    experiment::Experiment experiment = Simulation();
+    experiment.waypoints = {{.name = "s", .x_m = 0.1, .y_m = -0.2, .heading_deg = 30.0},
+                            {.name = "e", .x_m = 0.5}};
+    experiment.simulation.mocap.tag_ahead_m = tag_ahead_m;
+    experiment.reference.kind = ReferenceKind::kNominal;
+    const Files none;
+    Evaluator evaluator(experiment, "e.yaml", InputsOf(none));
+    const TrialRequest request{.trial = "1", .seed = 1};
+    const Recording nominal = evaluator.Reference(request);
+    for (const Recording& run : {nominal, evaluator.Candidate(request, nominal)}) {
+      REQUIRE(!run.trajectory.poses.empty());
+      const trajectory::StampedPose& first = run.trajectory.poses.front();
+      INFO(tag_ahead_m << ": " << first.x_m << " " << first.y_m);
+      CHECK(std::hypot(first.x_m - 0.1, first.y_m + 0.2) < 0.005);  // the camera's noise
+    }
+  }
+}
+
 TEST_CASE("A log is moved along its yaw by the tag's offset, and refused where it has none") {
   const std::string text =
       trajectory::WriteRift(test::Moved(test::StraightPath(0.4, 5), {0, 0, 1}));
