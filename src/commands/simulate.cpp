@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "rift/experiment/task.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
@@ -32,9 +31,8 @@ RunToSave SimulateFile(const SimulateRequest& request) {
   const experiment::Experiment experiment = LoadFor(request, inputs);
   const fs::path out = OutputOf(request.out, experiment.name);
   CheckNames(request, out, experiment, inputs);
-  sweep::SimulatedTrial trial =
-      sweep::SimulatedTrialOf(experiment, {}, experiment.seed, request.experiment, FileInputs());
-  trial.start = experiment::AxleAtStart(experiment);
+  const sweep::SimulatedTrial trial =
+      sessions::TrialAlone(experiment, request.experiment, FileInputs());
   SayTaskNotes(experiment, request.experiment);
   WarnOfTilt(experiment);
   if (const auto note = sweep::UncrossedNote(trial)) terminal::Say(*note);

@@ -11,30 +11,31 @@ TEST_CASE("Tags that are in the picture instead are named with the flags that ta
   using vision::TagFamily;
   using Lines = std::vector<std::string>;
   vision::InsteadOfTag instead{.others = {{TagFamily::k36h11, 7}}};
-  CHECK(UnseenLines(instead, TagFamily::k36h11) ==
+  CHECK(UnseenLines(instead, TagFamily::k36h11, "--id ") ==
+        Lines{"the picture shows tag36h11 id 7 (--id 7)"});
+  CHECK(UnseenLines(instead, TagFamily::k36h11, "--set track.tag.id=") ==
         Lines{"the picture shows tag36h11 id 7 (--set track.tag.id=7)"});
   instead.others = {
       {TagFamily::k36h11, 7}, {TagFamily::k25h9, 3}, {TagFamily::k16h5, 1}, {TagFamily::k25h9, 4}};
-  CHECK(UnseenLines(instead, TagFamily::k25h9) ==
-        Lines{"the picture shows tag36h11 id 7 (--set track.tag.id=7 --set "
-              "track.tag.family=tag36h11), tag25h9 id 3 (--set track.tag.id=3), tag16h5 id 1 "
-              "(--set track.tag.id=1 --set track.tag.family=tag16h5), tag25h9 id 4 "
-              "(--set track.tag.id=4)"});
+  CHECK(UnseenLines(instead, TagFamily::k25h9, "--id ") ==
+        Lines{"the picture shows tag36h11 id 7 (--set track.tag.family=tag36h11 --id 7), tag25h9 "
+              "id 3 (--id 3), tag16h5 id 1 (--set track.tag.family=tag16h5 --id 1), tag25h9 id 4 "
+              "(--id 4)"});
   instead.others.resize(6);
-  CHECK_THAT(UnseenLines(instead, TagFamily::k25h9).at(0),
-             Catch::Matchers::EndsWith("id 4 (--set track.tag.id=4) and 2 more"));
+  CHECK_THAT(UnseenLines(instead, TagFamily::k25h9, "--id ").at(0),
+             Catch::Matchers::EndsWith("id 4 (--id 4) and 2 more"));
 }
 
 TEST_CASE("Why a tag that shows was never seen is said with what to do, before other tags") {
   vision::InsteadOfTag instead;
-  CHECK(UnseenLines(instead, vision::TagFamily::k36h11).empty());
+  CHECK(UnseenLines(instead, vision::TagFamily::k36h11, "--id ").empty());
   instead.is_mirrored = true;
   instead.others = {{vision::TagFamily::k36h11, 7}};
-  std::vector<std::string> lines = UnseenLines(instead, vision::TagFamily::k36h11);
+  std::vector<std::string> lines = UnseenLines(instead, vision::TagFamily::k36h11, "--id ");
   REQUIRE(lines.size() == 2);
   CHECK_THAT(lines[0], Catch::Contains("as in a mirror: switch off"));
   CHECK_THAT(lines[1], Catch::Contains("id 7"));
-  lines = UnseenLines({.is_unmeasured = true}, vision::TagFamily::k36h11);
+  lines = UnseenLines({.is_unmeasured = true}, vision::TagFamily::k36h11, "--id ");
   REQUIRE(lines.size() == 1);
   CHECK_THAT(lines[0], Catch::Contains("could not be measured") && Catch::Contains("overexposed") &&
                            Catch::Contains("track.tag.size_m"));

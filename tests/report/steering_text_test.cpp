@@ -106,7 +106,8 @@ TEST_CASE("The power that turns a wheel is that of its friction on its surface, 
   simulation.motor.dead_band = 0.3;
   CHECK_THAT(WhyItStood(simulation), Contains("turn from 0.3 (simulation.motor.dead_band)"));
   simulation.motor.model = simulation::MotorModel::kServo;
-  CHECK_THAT(WhyItStood(simulation), Contains("motors, battery, dead band, or a link"));
+  CHECK_THAT(WhyItStood(simulation), Contains("motors, battery, dead band, a link that loses") &&
+                                         Contains("or a floor that holds it"));
 }
 
 trial::SteeringCheck Check() {

@@ -87,15 +87,16 @@ std::string NextText(const vision::Calibration& c) {
 }
 
 /// Which tags a picture shows without the one that was asked for, and the flags for them.
-std::string OthersText(const std::vector<vision::TagInPicture>& found,
-                       vision::TagFamily asked_for) {
+std::string OthersText(const std::vector<vision::TagInPicture>& found, vision::TagFamily asked_for,
+                       const std::string& id_flag) {
   constexpr std::size_t kMost = 4;
   std::string text = "the picture shows";
   for (std::size_t i = 0; i < std::min(found.size(), kMost); ++i) {
     const auto& [family, id] = found[i];
-    std::string flags = fmt::format("--set track.tag.id={}", id);
-    if (family != asked_for) flags += fmt::format(" --set track.tag.family={}", NameOf(family));
-    text += fmt::format("{} {} id {} ({})", i == 0 ? "" : ",", NameOf(family), id, flags);
+    std::string flags;
+    if (family != asked_for) flags = fmt::format("--set track.tag.family={} ", NameOf(family));
+    text += fmt::format("{} {} id {} ({}{}{})", i == 0 ? "" : ",", NameOf(family), id, flags,
+                        id_flag, id);
   }
   return text + (found.size() > kMost ? fmt::format(" and {} more", found.size() - kMost) : "");
 }
@@ -179,7 +180,7 @@ std::string TrackText(const vision::TrackRun& run, int rows) {
 }
 
 std::vector<std::string> UnseenLines(const vision::InsteadOfTag& instead,
-                                     vision::TagFamily asked_for) {
+                                     vision::TagFamily asked_for, const std::string& id_flag) {
   std::vector<std::string> lines;
   if (instead.is_unmeasured) {
     lines.emplace_back(
@@ -192,7 +193,7 @@ std::vector<std::string> UnseenLines(const vision::InsteadOfTag& instead,
         "the picture shows the tag that was asked for as in a mirror: switch off whatever "
         "mirrors the picture, in the camera, its driver or the program between");
   }
-  if (!instead.others.empty()) lines.push_back(OthersText(instead.others, asked_for));
+  if (!instead.others.empty()) lines.push_back(OthersText(instead.others, asked_for, id_flag));
   return lines;
 }
 

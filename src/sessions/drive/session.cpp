@@ -244,7 +244,7 @@ class DriveSession::Drivers {
     if (!newest) return "";
     const vision::TagOptions& tag = session_.tag();
     const std::vector<std::string> lines =
-        report::UnseenLines(vision::LookForOthers(*newest, tag), tag.family);
+        report::UnseenLines(vision::LookForOthers(*newest, tag), tag.family, "--set track.tag.id=");
     return fmt::format("{}", fmt::join(lines, "; "));
   }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "rift/experiment/task.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/outputs.hpp"
 #include "rift/odometry/odometry.hpp"
@@ -42,6 +43,14 @@ void PutStart(const std::string& text, experiment::Experiment& experiment) {
     values.push_back({fmt::format("waypoints[0].{}", kKeys[i]), value});
   }
   yaml::SetValues(experiment, values);
+}
+
+sweep::SimulatedTrial TrialAlone(const experiment::Experiment& experiment,
+                                 const std::string& experiment_file, const sweep::Inputs& inputs) {
+  sweep::SimulatedTrial trial =
+      sweep::SimulatedTrialOf(experiment, {}, experiment.seed, experiment_file, inputs);
+  trial.start = experiment::AxleAtStart(experiment);
+  return trial;
 }
 
 trial::SteeringCheck CheckOf(const Simulated& made) {

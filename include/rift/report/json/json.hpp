@@ -153,9 +153,9 @@ std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& came
 std::string TrackText(const vision::TrackRun& run, int rows);
 /// Sentences without full stops: why a tag of the family `asked_for` was never seen, although the
 /// picture or its mirror image shows it, and what to do; which other tags the picture shows, with
-/// the flags for them. None of a picture that shows no tag.
+/// the flags for them (`id_flag` and the id). None of a picture that shows no tag.
 std::vector<std::string> UnseenLines(const vision::InsteadOfTag& instead,
-                                     vision::TagFamily asked_for);
+                                     vision::TagFamily asked_for, const std::string& id_flag);
 
 /// A log of sightings in the rift dialect: its nine columns (the target empty), then latency,
 /// quality, state and the 6 x 6 covariance's upper triangle in the map's axes. A lost tag's row has

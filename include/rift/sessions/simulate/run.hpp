@@ -21,6 +21,11 @@ struct Simulated {
 /// std::invalid_argument for other words, and yaml::Error for a place that no waypoint may have.
 void PutStart(const std::string& text, experiment::Experiment& experiment);
 
+/// The trial of an experiment alone, begun as a drive is: its tag on the first waypoint. Throws
+/// like sweep::SimulatedTrialOf.
+sweep::SimulatedTrial TrialAlone(const experiment::Experiment& experiment,
+                                 const std::string& experiment_file, const sweep::Inputs& inputs);
+
 /// Why the run circled or did not arrive, with those proposals alone with which the same trial
 /// arrives.
 trial::SteeringCheck CheckOf(const Simulated& made);
