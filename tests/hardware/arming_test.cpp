@@ -149,6 +149,28 @@ TEST_CASE("A power that the guard would refuse is told before anything moves") {
                 "is 0.56"));
 }
 
+TEST_CASE("The turn before a drive is never stronger than the guard allows") {
+  for (const double most : {0.12, 0.06}) {  // below the power of its last pulse, and of its first
+    Bench bench;
+    DriveTask task = PaperTask();
+    control::ProgramOptions program;
+    program.power = 0.05;
+    program.segments = {{.straight_m = 0.02}};
+    task.task = control::Program(program, task.hardware.odometry.drive, bench.Pose());
+    task.hardware.guard.max_power = most;
+    task.hardware.turn.enough_deg = 30.0;  // more than it turns by that
+    Operator person;
+    const DriveRun run = Drive(person.PartsOf(bench), task);
+    INFO(most << ": " << (run.evidence.stop ? run.evidence.stop->text : std::string("no stop")));
+    CHECK(run.latency);
+    int largest = 0;
+    for (const auto& [left, right] : bench.written) {
+      largest = std::max({largest, std::abs(left), std::abs(right)});
+    }
+    CHECK(largest == std::lround(1000.0 * most));
+  }
+}
+
 TEST_CASE("What stops a drive before its start is a person's wish, or an error with its cause") {
   for (const StopReason reason :
        {StopReason::kOperator, StopReason::kSignal, StopReason::kCameraGone}) {

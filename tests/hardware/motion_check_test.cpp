@@ -89,6 +89,19 @@ TEST_CASE("Pictures that come together stop a drive when they are out of order, 
   });
 }
 
+TEST_CASE("A reading of the wheels that comes after a newer one is passed over") {
+  MotionCheck check({}, kTrack_m);
+  check.SetLatency(0.0);
+  for (int i = 0; i < 100; ++i) {
+    const double t_s = 0.02 * i;
+    check.SeeWheels({t_s, 0.0, 0.0}, true);
+    check.SeeWheels({t_s - 0.03, 5.0, 5.0}, true);
+    check.SeeWheels({t_s, 5.0, 5.0}, true);
+    check.SeePose({t_s - 0.01, {}, 0.0, 0.0, 0.0});
+    CHECK_FALSE(check.Check());
+  }
+}
+
 /// Why a robot on a stand is stopped, whose wheels turn under a camera that sees it stand; none.
 std::optional<StopReason> StoppedOnAStand(const EvidenceOptions& options) {
   constexpr double kStep_s = 0.02, kWheels_mps = 0.3, kTurns_s = 20.0;

@@ -52,6 +52,29 @@ TEST_CASE("Jitter is the mean change from one round trip to the next") {
   CHECK(result.max_s == Approx(2 * 0.013 + (11 + 15) * 10.0 / 9600.0).margin(0.003));
 }
 
+TEST_CASE("The quantiles of a ping are the round trips that 50, 95 and 99 of 100 do not exceed") {
+  const auto ping = [](int every) {
+    Bench bench;
+    bench.line_delay_s = 0.005;
+    int commands = 0;
+    bench.lose_command = [&] { return ++commands < 0; };
+    // One round trip of `every` takes 16 ms longer: 8 ms there and 8 ms back.
+    bench.extra_delay_s = [&, every] { return commands % every == 0 ? 0.008 : 0.0; };
+    const PingResult result = Ping(bench, bench, {}, Protocol::kFramed, {});
+    CHECK(result.sent == Approx(96).margin(2));
+    return result;
+  };
+  const double usual_s = 2 * 0.005 + (11 + 15) * 10.0 / 9600.0, slow_s = usual_s + 0.016;
+  const PingResult some = ping(14);  // six of 96
+  CHECK(some.p50_s == Approx(usual_s).margin(0.002));
+  CHECK(some.p95_s == Approx(slow_s).margin(0.002));
+  CHECK(some.p99_s == Approx(slow_s).margin(0.002));
+  const PingResult few = ping(40);  // two
+  CHECK(few.p50_s == Approx(usual_s).margin(0.002));
+  CHECK(few.p95_s == Approx(usual_s).margin(0.002));
+  CHECK(few.p99_s == Approx(slow_s).margin(0.002));
+}
+
 TEST_CASE("Ping counts what was lost and for how long in a row") {
   Bench lossy;
   int commands = 0;

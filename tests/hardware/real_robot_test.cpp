@@ -129,6 +129,37 @@ TEST_CASE("A robot whose answers end is watched by its commands and driven on no
   }
 }
 
+TEST_CASE(
+    "A robot whose answers had ended before it was armed is watched by them once they are back") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kPlain, false});
+  Settle(robot, 0.4, bench);
+  bench.from_robot_is_cut = true;
+  Settle(robot, 1.0, bench);
+  bench.from_robot_is_cut = false;
+  Settle(robot, 0.4, bench);
+  robot.Arm();
+  DriveOn(robot, {0.2, 0.2}, 1.0, bench);
+  REQUIRE(robot.state() == DriveState::kArmed);
+  const geometry::Pose2 frozen = bench.Pose();
+  bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
+  DriveOn(robot, {0.2, 0.2}, 3.0, bench);
+  REQUIRE(robot.Record().stop);
+  CHECK(robot.Record().stop->reason == StopReason::kPoseDisagrees);
+}
+
+TEST_CASE("What carried the robot to its start, before it was armed, is not held against it") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  Settle(robot, 1.0, bench);
+  bench.bend = [](trial::PoseMeasurement& pose) { pose.world_from_robot.x_m += 0.5; };
+  Settle(robot, 0.3, bench);
+  robot.Arm();
+  DriveOn(robot, {0.2, 0.2}, 0.5, bench);
+  INFO((robot.Record().stop ? robot.Record().stop->text : std::string("drives")));
+  CHECK(robot.state() == DriveState::kArmed);
+}
+
 TEST_CASE("Answers that come now and then do not take a robot from the watch of its commands") {
   Bench bench;
   RealRobot robot(bench, bench, bench, {{}, Protocol::kPlain, false});
