@@ -55,7 +55,8 @@ TEST_CASE("Bytes that are no PNG or end too early are refused") {
   const std::vector<png_byte> pixels(64 * 64, 77);
   const std::string bytes = Encode(64, 64, PNG_FORMAT_GRAY, pixels.data());
   for (const size_t kept : {size_t{8}, size_t{20}, bytes.size() / 2}) {
-    CHECK_THROWS_AS(DecodeHeightImage(bytes.substr(0, kept)), std::runtime_error);
+    CHECK_THROWS_WITH(DecodeHeightImage(bytes.substr(0, kept)),
+                      "not a PNG height image: it ends too early");
   }
 }
 

@@ -132,17 +132,24 @@ TEST_CASE("A small receive buffer keeps the oldest lines and so ages the command
 TEST_CASE("A line that lost its point arrives as another number and is limited to full power") {
   LinkOptions options = Direct();
   options.byte_loss = 0.1;
-  bool saw_full_power = false, saw_wrong = false;
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    Link link(options, seed);
-    link.Send(0.0, {0.85, 0.85});
-    link.Advance(0.1);
-    CHECK(std::abs(link.Held().left) <= 1.0);
-    saw_full_power = saw_full_power || link.Held().left == 1.0;
-    saw_wrong = saw_wrong || (link.Held().left != 0.85 && link.Held().left != 0.0);
+  for (const double sign : {1.0, -1.0}) {
+    INFO(sign);
+    bool saw_full_left = false, saw_full_right = false, saw_wrong = false;
+    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+      Link link(options, seed);
+      link.Send(0.0, {sign * 0.85, sign * 0.85});
+      link.Advance(0.1);
+      const control::WheelPower held = link.Held();
+      CHECK(std::abs(held.left) <= 1.0);
+      CHECK(std::abs(held.right) <= 1.0);
+      saw_full_left = saw_full_left || held.left == sign;
+      saw_full_right = saw_full_right || held.right == sign;
+      saw_wrong = saw_wrong || (held.left != sign * 0.85 && held.left != 0.0);
+    }
+    CHECK(saw_full_left);
+    CHECK(saw_full_right);
+    CHECK(saw_wrong);
   }
-  CHECK(saw_full_power);
-  CHECK(saw_wrong);
 }
 
 TEST_CASE("Lines get lost as often as asked") {

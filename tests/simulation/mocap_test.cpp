@@ -70,6 +70,7 @@ TEST_CASE("Noise has the size asked for across along and in yaw") {
   options.blur_across_s = 0.002;
   options.noise_along_m = 0.001;
   options.noise_yaw_rad = 0.01;
+  options.blur_yaw_rad_per_mps = 0.04;
   const auto seen = Watch(options, 2000.0, 0.01);
   double across = 0.0, along = 0.0, yaw = 0.0;
   for (const trial::PoseMeasurement& m : seen) {
@@ -82,7 +83,7 @@ TEST_CASE("Noise has the size asked for across along and in yaw") {
   const double n = static_cast<double>(seen.size());
   CHECK(std::sqrt(across / n) == Approx(std::hypot(0.0003, 0.002 * kSpeed)).epsilon(0.03));
   CHECK(std::sqrt(along / n) == Approx(0.001).epsilon(0.03));
-  CHECK(std::sqrt(yaw / n) == Approx(0.01).epsilon(0.04));
+  CHECK(std::sqrt(yaw / n) == Approx(std::hypot(0.01, 0.04 * kSpeed)).epsilon(0.04));
 }
 
 TEST_CASE("Time stamp jitter becomes an error along the motion and leaves stamps in order") {
@@ -316,25 +317,84 @@ TEST_CASE("A late turn of a host is longer, in another share of them in each run
 TEST_CASE("A run draws its own scatter at rest and none while that has no spread") {
   MocapOptions options = Quiet();
   options.noise_across_m = 0.0002;
-  const auto scatter_m = [&](std::uint64_t seed) {
+  options.noise_along_m = 0.0003;
+  options.noise_yaw_rad = 0.002;
+  options.yaw_tail_dof = 1e6;
+  // Across, along and of the yaw, over what is asked for.
+  const auto scatter = [&](std::uint64_t seed) {
     Mocap mocap(options, seed);
-    std::vector<double> y_m;
+    std::vector<double> across, along, yaw;
     for (int i = 1; i <= 400; ++i) {
       mocap.Observe({.t_s = 0.1 * (i - 1)}, {.t_s = 0.1 * i});
-      y_m.push_back(mocap.Newest(0.1 * i + 1.0)->world_from_robot.y_m);
+      const geometry::Pose2 seen = mocap.Newest(0.1 * i + 1.0)->world_from_robot;
+      across.push_back(seen.y_m / 0.0002);
+      along.push_back(seen.x_m / 0.0003);
+      yaw.push_back(seen.yaw_rad / 0.002);
     }
-    return statistics::StandardDeviation(y_m);
+    return std::array{statistics::StandardDeviation(across), statistics::StandardDeviation(along),
+                      statistics::StandardDeviation(yaw)};
   };
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    CHECK(scatter_m(seed) == Approx(0.0002).epsilon(0.2));
+    for (const double one : scatter(seed)) CHECK(one == Approx(1.0).epsilon(0.2));
   }
   options.noise_spread = 1.2;
   std::vector<double> logarithms;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    logarithms.push_back(std::log(scatter_m(seed) / 0.0002));
+    const auto [across, along, yaw] = scatter(seed);
+    logarithms.push_back(std::log(across));
+    CHECK(along / across == Approx(1.0).epsilon(0.3));  // all three by one factor
+    CHECK(yaw / across == Approx(1.0).epsilon(0.3));
   }
   CHECK(statistics::Mean(logarithms) == Approx(0.0).margin(0.3));
   CHECK(statistics::StandardDeviation(logarithms) == Approx(1.2).margin(0.2));
+}
+
+TEST_CASE("No stamp lies after its pose arrived, or before the stamp of the picture before it") {
+  MocapOptions options = Quiet();
+  options.stamp_jitter_s = 0.1;  // more than the 0.075 s to the pose
+  Mocap mocap(options, 4);
+  double last_s = -1.0;
+  int poses = 0;
+  for (int i = 1; i <= 2000; ++i) {
+    mocap.Observe(Moving(0.004 * (i - 1)), Moving(0.004 * i));
+    const auto newest = mocap.Newest(0.004 * i);
+    if (!newest || newest->captured_s == last_s) continue;
+    CHECK(newest->captured_s <= 0.004 * i);
+    CHECK(newest->captured_s > last_s);
+    last_s = newest->captured_s;
+    ++poses;
+  }
+  CHECK(poses > 140);
+}
+
+TEST_CASE("A host's period is 5 ms at least, and each of its turns half of its period") {
+  MocapOptions options = Quiet();
+  options.rate_hz = 1000.0;
+  const auto shortest_s = [&](std::uint64_t seed) {
+    Mocap mocap(options, seed);
+    double last_s = 0.0, least_s = 1.0;
+    for (int i = 1; i <= 1000; ++i) {
+      mocap.Observe({.t_s = 0.0005 * (i - 1)}, {.t_s = 0.0005 * i});
+      const auto newest = mocap.Newest(0.0005 * i);
+      if (!newest || newest->captured_s == last_s) continue;
+      if (last_s > 0.0) least_s = std::min(least_s, newest->captured_s - last_s);
+      last_s = newest->captured_s;
+    }
+    return least_s;
+  };
+  options.host_period_s = 0.006;
+  options.host_period_spread_s = 0.01;  // a run in two would be faster
+  options.host_jitter_s = 0.0;
+  int at_least = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CHECK(shortest_s(seed) > 0.005 - 1e-9);
+    at_least += shortest_s(seed) < 0.005 + 1e-9;
+  }
+  CHECK(at_least > 3);
+  options.host_period_s = 0.02;
+  options.host_period_spread_s = 0.0;
+  options.host_jitter_s = 0.05;
+  CHECK(shortest_s(1) == Approx(0.01).margin(1e-9));
 }
 
 }  // namespace

@@ -394,6 +394,26 @@ TEST_CASE("The robot climbs over blocks of four millimetres and stays upright") 
   CHECK(highest_m < 0.016 + 0.006);
 }
 
+TEST_CASE("A robot put down on blocks has come to rest with its wheels' angles at zero") {
+  TerrainOptions options;
+  options.surface = "bump";
+  // The left wheel on a block, the right one and the caster on the floor.
+  OdeWorld world(BodyOptions{}, Terrain(options), {0.0, 0.06 - 0.0415, 0.0}, 0.004);
+  REQUIRE_FALSE(world.Fault());
+  const WorldState start = world.State();
+  CHECK(start.velocity_mps.norm() == 0.0);
+  CHECK(start.spin_rad_s.norm() == 0.0);
+  for (const int side : {0, 1}) {
+    CHECK(start.wheel_angle_rad[side] == 0.0);
+    CHECK(start.wheel_rate_rad_s[side] == 0.0);
+  }
+  CHECK(start.position_m.z() == Approx(0.016 + 0.002).margin(0.001));
+  const double roll_rad = std::atan2(start.world_from_robot(2, 1), start.world_from_robot(2, 2));
+  CHECK(roll_rad == Approx(0.004 / 0.083).margin(0.01));
+  Run(world, 0.4, 0.004, {Servo(0.0), Servo(0.0)});
+  CHECK((world.State().position_m - start.position_m).norm() < 2e-4);
+}
+
 TEST_CASE("The robot drives up and down the ramp board and over its edge") {
   const bool up = GENERATE(true, false);
   TerrainOptions options;

@@ -1,6 +1,7 @@
 // What no robot does twice: the ground's unevenness, and a pull to one side that differs from run
 // to run.
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -64,20 +65,22 @@ TEST_CASE("Uneven ground turns the robot as a random walk over its way") {
 TEST_CASE("What a session on a surface has of its own stands beside what the robot has") {
   SimulationOptions options;
   options.mocap.host_period_s = 0.05;
-  options.mocap.noise_across_m = 0.001;
-  options.mocap.blur_yaw_rad_per_mps = 0.02;
+  constexpr std::array kScatters{&MocapOptions::noise_across_m,       &MocapOptions::blur_across_s,
+                                 &MocapOptions::noise_along_m,        &MocapOptions::noise_yaw_rad,
+                                 &MocapOptions::blur_yaw_rad_per_mps, &MocapOptions::noise_z_m,
+                                 &MocapOptions::noise_tilt_rad};
+  for (const auto scatter : kScatters) options.mocap.*scatter = 0.002;
   options.motor.mismatch = 0.03;
   SurfaceOptions& surface = options.terrain.surfaces["cardboard"];
   surface.host_period_s = 0.06;
   surface.tracker_noise = 1.5;
   surface.session_mismatch = -0.01;
   CHECK(*options.MocapOfSession().host_period_s == 0.05);
-  CHECK(options.MocapOfSession().noise_across_m == 0.001);
+  for (const auto scatter : kScatters) CHECK(options.MocapOfSession().*scatter == 0.002);
   CHECK(options.MotorOfSession().mismatch == 0.03);
   options.terrain.surface = "cardboard";
   CHECK(*options.MocapOfSession().host_period_s == 0.06);
-  CHECK(options.MocapOfSession().noise_across_m == Approx(0.0015));
-  CHECK(options.MocapOfSession().blur_yaw_rad_per_mps == Approx(0.03));
+  for (const auto scatter : kScatters) CHECK(options.MocapOfSession().*scatter == Approx(0.003));
   CHECK(options.MocapOfSession().stamp_jitter_s == options.mocap.stamp_jitter_s);
   CHECK(options.MotorOfSession().mismatch == Approx(0.02));
   options.mocap.host_period_s.reset();

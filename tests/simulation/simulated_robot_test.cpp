@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rift/geometry/pose2.hpp"
+#include "support/mirror.hpp"
 
 namespace rift::simulation {
 namespace {
@@ -115,6 +116,40 @@ TEST_CASE("A brushed motor settles where its torque meets friction and rolling r
   const double stall_nm = options.motor.StallTorque_nm();
   const double expected_rad_s = (0.2 - drag_nm / stall_nm) * options.motor.NoLoad_rad_s();
   CHECK(robot.State().wheel_rate_rad_s[0] == Approx(expected_rad_s).epsilon(0.001));
+}
+
+TEST_CASE("Each motor has the rolling resistance of what is under its own wheel") {
+  test::OnBothSides("left", "right", [](const test::Side& side) {
+    SimulationOptions options = Ideal();
+    options.motor.model = MotorModel::kDc;
+    options.terrain.surfaces["ground"].rolling_resistance = 0.0;
+    options.terrain.surfaces["ground"].slip = 0.0;
+    PatchOptions patch{.x_min_m = -1.0, .x_max_m = 1.0, .mu = 0.8, .rolling_resistance = 0.02};
+    patch.y_min_m = side.IsFirst() ? 0.02 : -0.1;
+    patch.y_max_m = side.IsFirst() ? 0.1 : -0.02;
+    options.terrain.patches = {patch};
+    SimulatedRobot robot(options, {}, 1);
+    robot.Command({0.2, 0.2});
+    robot.Advance(0.6);  // twelve time constants
+    const double free_rad_s = 0.2 * options.motor.NoLoad_rad_s();
+    const double drag_nm = 0.02 * options.body.WeightOnWheel_n() * 0.016;
+    const double slower_rad_s =
+        drag_nm / options.motor.StallTorque_nm() * options.motor.NoLoad_rad_s();
+    const auto& rate_rad_s = robot.State().wheel_rate_rad_s;
+    CHECK(rate_rad_s[side.IsFirst() ? 0 : 1] ==
+          Approx(free_rad_s - slower_rad_s).margin(0.1 * slower_rad_s));
+    CHECK(rate_rad_s[side.IsFirst() ? 1 : 0] == Approx(free_rad_s).margin(0.1 * slower_rad_s));
+  });
+}
+
+TEST_CASE("A camera without a rate shows where the robot stands before it was ever advanced") {
+  const geometry::Pose2 start{0.1, -0.2, 0.7};
+  const trial::Sensed sensed = SimulatedRobot(Ideal(), start, 1).Sense();
+  REQUIRE(sensed.pose);
+  CHECK(sensed.pose->captured_s == 0.0);
+  CHECK(sensed.pose->world_from_robot.x_m == Approx(0.1));
+  CHECK(sensed.pose->world_from_robot.y_m == Approx(-0.2));
+  CHECK(sensed.pose->world_from_robot.yaw_rad == Approx(0.7));
 }
 
 TEST_CASE("A brushed robot speeds up with the time constant of its mass and torque line") {
