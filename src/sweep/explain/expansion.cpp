@@ -83,7 +83,6 @@ void AddOrders(const std::vector<Axis>& axes, int left, size_t most, Orders& ord
     orders[axis] = order;
     AddOrders(axes, left - degree, most, orders, axis + 1, terms);
   }
-  orders[axis] = 0;
 }
 
 Eigen::MatrixXd DesignOf(const Observations& data, const std::vector<Axis>& axes,
