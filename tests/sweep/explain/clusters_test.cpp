@@ -112,9 +112,10 @@ TEST_CASE("A value stands out with 60 % of the failures, and a quarter more than
   };
   const std::string none = "at no particular value of a parameter";
   CHECK(where_of(6, 4, 0, 10) == "mostly at surface a (6 of 10)");  // twice as often
-  CHECK(where_of(5, 5, 0, 10) == none);                             // 50 %
-  CHECK(where_of(4, 0, 12, 4) == "mostly at surface a (4 of 4)");   // 100 % of usually 80 %
-  CHECK(where_of(4, 0, 13, 4) == none);                             // of usually 81 %
+  CHECK(where_of(12, 8, 0, 20) == "mostly at surface a (12 of 20)");
+  CHECK(where_of(11, 9, 0, 20) == none);                           // 55 %
+  CHECK(where_of(4, 0, 12, 4) == "mostly at surface a (4 of 4)");  // 100 % of usually 80 %
+  CHECK(where_of(4, 0, 13, 4) == none);                            // of usually 81 %
 }
 
 TEST_CASE("Values of a range are no place, and failures without errors are left out") {
