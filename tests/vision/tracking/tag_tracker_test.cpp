@@ -87,6 +87,21 @@ Errors Acquire(const CameraModel& camera, const std::vector<RobotMotion>& robots
   return errors;
 }
 
+TEST_CASE(
+    "A picture of another size than its camera was calibrated at is refused with both sizes") {
+  TagTracker tracker(test::SmallCamera(), {});
+  for (const auto& [width_px, height_px] : {std::pair{641, 480}, {640, 479}}) {
+    Frame frame;
+    frame.width_px = width_px;
+    frame.height_px = height_px;
+    CHECK_THROWS_WITH(
+        tracker.Track(frame),
+        fmt::format("frames are {} x {} but camera small was calibrated at 640 x 480: "
+                    "set the stream to that size or calibrate again",
+                    width_px, height_px));
+  }
+}
+
 TEST_CASE("A 75 px tag is found wherever it is and its corners to a twentieth of a pixel") {
   const CameraModel camera = test::PaperCamera(0.72);
   const Errors errors = Acquire(camera, test::RandomRobots(camera, 200), PixelFormat::kJpeg);
