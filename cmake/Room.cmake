@@ -31,22 +31,45 @@ function(rift_room name)
   rift_compile_options(${target})
 endfunction()
 
-# rift_room_test(NAME [LIBRARIES target...]): every tests/NAME/*_test.cpp, and those of the folders in
-# it, in one Catch2 program, each test case known to CTest by its sentence.
+# A Catch2 program of a room's tests, each test case known to CTest by its sentence.
+function(rift_test_program program room sources libraries)
+  add_executable(${program} ${sources})
+  set_target_properties(${program} PROPERTIES
+                        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  target_link_libraries(${program} PRIVATE rift_test_support ${libraries})
+  rift_compile_options(${program})
+  catch_discover_tests(${program} TEST_PREFIX "${room}: "
+                       PROPERTIES TIMEOUT 1200 SKIP_REGULAR_EXPRESSION "SKIPPED:")
+endfunction()
+
+# rift_room_test(NAME [LIBRARIES target...] [SLOW_START test...]): every tests/NAME/*_test.cpp, and
+# those of the folders in it, in the program rift_NAME_test; those of SLOW_START (without _test.cpp)
+# in rift_NAME_slow_start_test. They are the ones that link OpenCV's libraries for picture files,
+# videos and devices, which bring 220 others: 0.13 s of computing in the start of each test case.
 function(rift_room_test name)
-  cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LIBRARIES;SLOW_START" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp"
     "${PROJECT_SOURCE_DIR}/tests/${name}/*/*_test.cpp")
   if(NOT sources)
     return()
   endif()
-  add_executable(rift_${name}_test ${sources})
-  set_target_properties(rift_${name}_test PROPERTIES
-                        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
-  target_link_libraries(rift_${name}_test PRIVATE rift_test_support ${ARG_LIBRARIES})
-  rift_compile_options(rift_${name}_test)
-  catch_discover_tests(rift_${name}_test TEST_PREFIX "${name}: "
-                       PROPERTIES TIMEOUT 1200 SKIP_REGULAR_EXPRESSION "SKIPPED:")
+  if(ARG_SLOW_START)
+    list(TRANSFORM ARG_SLOW_START REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/tests/${name}/\\1_test.cpp")
+    list(REMOVE_ITEM sources ${ARG_SLOW_START})
+    rift_test_program(rift_${name}_slow_start_test ${name} "${ARG_SLOW_START}" "${ARG_LIBRARIES}")
+  endif()
+  rift_test_program(rift_${name}_test ${name} "${sources}" "${ARG_LIBRARIES}")
+endfunction()
+
+# rift_tests_need(TARGET room...): what the tests of these rooms run is built before them.
+function(rift_tests_need target)
+  foreach(room IN LISTS ARGN)
+    foreach(program rift_${room}_test rift_${room}_slow_start_test)
+      if(TARGET ${program})
+        add_dependencies(${program} ${target})
+      endif()
+    endforeach()
+  endforeach()
 endfunction()
 
 # rift_benchmark(NAME target...): tests/benchmarks/NAME_benchmark.cpp with Google Benchmark.
