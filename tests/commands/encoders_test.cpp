@@ -5,6 +5,7 @@
 #include "support/documented.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -26,6 +27,7 @@ std::string Lap(const test::TemporaryFolder& folder, const std::string& name,
 }
 
 TEST_CASE("The tables of figure 14 come from one command and respond to surface and speed") {
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   const test::ProcessResult swept =
       RunRift({"sweep", kEncoders, "--out", folder / "out", "--quiet"});
@@ -138,6 +140,7 @@ TEST_CASE("What cannot be held together is refused with what to do") {
 }
 
 TEST_CASE("A search for where dead reckoning fails is judged by odometry") {
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   test::WriteText(folder / "slip.yaml", "include: " + kEncoders + R"(
 name: slip

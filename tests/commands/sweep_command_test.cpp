@@ -5,6 +5,7 @@
 #include "support/inputs/paths.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -74,6 +75,7 @@ TEST_CASE("rift sweep over logs writes table and summary and figures and report"
 }
 
 TEST_CASE("A resolved experiment gives the same bytes again") {
+  const test::QuickGnuplot gnuplot;
   const LogFolder logs;
   REQUIRE(RunRift({"sweep", logs.experiment, "--out", logs.out, "--set", "gap.skip_start=0.1"})
               .exit_code == 0);
@@ -88,6 +90,7 @@ TEST_CASE("A resolved experiment gives the same bytes again") {
 }
 
 TEST_CASE("A missing log is a row with its status and a bad one too") {
+  const test::QuickGnuplot gnuplot;
   const LogFolder logs;
   fs::remove(logs.folder / "ice/v0.15_real2.csv");
   WriteText(logs.folder / "ice/v0.20_real1.csv", "t_s,x_m,y_m\n0,0,0\n1,nan,0\n");
@@ -154,6 +157,7 @@ TEST_CASE("A sweep in which nothing could be compared still leaves its rows") {
 }
 
 TEST_CASE("A sweep in which nothing could be compared leaves no report of an earlier one") {
+  const test::QuickGnuplot gnuplot;
   const LogFolder logs;
   REQUIRE(RunRift({"sweep", logs.experiment, "--out", logs.out}).exit_code == 0);
   fs::remove_all(logs.folder / "ground");
@@ -178,6 +182,7 @@ TEST_CASE("Robots that never arrive are failures and end with 1") {
 }
 
 TEST_CASE("A key that is true or false can be an axis") {
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   WriteText(folder / "bool.yaml",
             "waypoints: [{x: 0, y: 0}, {x: 0.4, y: 0}]\n"
@@ -189,6 +194,7 @@ TEST_CASE("A key that is true or false can be an axis") {
 }
 
 TEST_CASE("Settings whose labels would read alike stay apart") {
+  const test::QuickGnuplot gnuplot;
   const LogFolder logs;
   for (const std::string name : {"x|y, z", "x, y|z", "x|z", "x, y|y, z"}) {
     const trajectory::Trajectory path = test::StraightPath(0.7, 40);
@@ -207,6 +213,7 @@ reference: {kind: logs, path: "{a}|{b}_{trial}.csv", trials: 2}
 }
 
 TEST_CASE("A waypoint file alone is swept on the simulator over the paper's grid") {
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   const ProcessResult result =
       RunRift({"sweep", test::SourceDir() + "/configs/waypoints/paper.yaml", "--out",
@@ -221,6 +228,7 @@ TEST_CASE("A waypoint file alone is swept on the simulator over the paper's grid
 }
 
 TEST_CASE("A simulation against its own nominal run has no gap at the nominal setting") {
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   const ProcessResult result = RunRift(
       {"sweep", test::SourceDir() + "/configs/waypoints/paper.yaml", "--out", folder / "out",
@@ -235,6 +243,7 @@ TEST_CASE("A simulation against its own nominal run has no gap at the nominal se
 
 TEST_CASE("The paper's table comes out of the authors' logs") {
   RIFT_SKIP_WITHOUT_TRIALS();
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   const ProcessResult result = RunRift({"sweep", test::SourceDir() + "/configs/paper_webots.yaml",
                                         "--out", folder / "out", "--json"});

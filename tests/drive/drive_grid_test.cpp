@@ -5,6 +5,7 @@
 
 #include "rift/files/files.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/processes/running_rift.hpp"
 #include "support/processes/until_done.hpp"
 #include "support/tree.hpp"
@@ -121,10 +122,12 @@ bool GridGoesOnAfterKill() {
 }
 
 TEST_CASE("A grid driven on twins and killed in the middle goes on and ends with its report") {
+  const test::QuickGnuplot gnuplot;
   test::WaitUntil("a grid that was killed has gone on to its end", GridGoesOnAfterKill);
 }
 
 TEST_CASE("Repeats are driven into numbered folders and a sweep reads them") {
+  const test::QuickGnuplot gnuplot;
   const Bench bench;
   const test::ProcessResult result = test::RunUntilDone(
       bench.Command({"--repeat", "2"}, "--out " + (bench.folder / "twins/{trial}")));
@@ -148,6 +151,7 @@ TEST_CASE("Repeats are driven into numbered folders and a sweep reads them") {
 }
 
 TEST_CASE("Suggested experiments are driven on twins and the sweep says what they confirmed") {
+  const test::QuickGnuplot gnuplot;
   // The twin's left motor is weaker than the simulator of the sweep believes: it leaves its way.
   const Bench bench;
   const std::string sweep = bench.folder / "sweep";
