@@ -81,9 +81,9 @@ TEST_CASE("Every chart is drawn with marks for its data") {
   CHECK_THAT(Chart(visit.dom, 0), Contains(">sand_fine<"));
 }
 
-/// The text between PROBE and END that a script put into the document.
-std::string Probe(const BrowserVisit& visit) {
-  const std::size_t at = visit.dom.rfind("PROBE ");
+/// The text from `begin` to END that a script put into the document.
+std::string Probe(const BrowserVisit& visit, const std::string& begin = "PROBE ") {
+  const std::size_t at = visit.dom.rfind(begin);
   if (at == std::string::npos) return "no probe: " + visit.console;
   return visit.dom.substr(at, visit.dom.find(" END", at) - at);
 }
@@ -311,13 +311,23 @@ std::string ForAttribute(const std::string& html) {
   return text;
 }
 
-/// The page in a frame of that width, whose style and script see nothing wider; Chromium has no
-/// window below 500 px. What the page sends to its parent ends up in the document.
-std::string Framed(const std::string& page, int width_px) {
-  return "<!DOCTYPE html><body style='margin:0'><iframe style='border:0' height=844 width=" +
-         std::to_string(width_px) + " srcdoc=\"" + ForAttribute(page) +
-         "\"></iframe><script>onmessage = e => document.body.append('PROBE ' + e.data + ' END');"
-         "</script></body>";
+struct PageAtWidth {
+  std::string page;
+  int width_px = 0;
+};
+
+/// Each page in a frame of its width, whose style and script see nothing wider; Chromium has no
+/// window below 500 px. What a page sends to its parent ends up in the document, with its index.
+std::string Framed(const std::vector<PageAtWidth>& pages) {
+  std::string html = "<!DOCTYPE html><body style='margin:0'>";
+  for (const auto& [page, width_px] : pages) {
+    html += "<iframe style='border:0' height=844 width=" + std::to_string(width_px) + " srcdoc=\"" +
+            ForAttribute(page) + "\"></iframe>";
+  }
+  return html +
+         "<script>onmessage = e => document.body.append('PROBE ' +"
+         "[...document.querySelectorAll('iframe')].findIndex(f => f.contentWindow === e.source)"
+         " + ': ' + e.data + ' END');</script></body>";
 }
 
 /// Everything in which a page is no pleasure to read: elements that reach beyond the window, small
@@ -369,27 +379,30 @@ constexpr const char* kReading = R"(
 TEST_CASE("A page is pleasant to read on a laptop and on a phone") {
   sweep::SweepResult continuous = synthetic::Continuous(300);
   continuous.rows[0].evidence.path_m = sweep::EvenPath(synthetic::Path(0.05), {});
+  std::vector<PageAtWidth> pages;
   for (const auto& result : {GridWithPaths(), continuous}) {
     const PageEvidence evidence{
         .references = {{"robot, trial 1", sweep::EvenPath(synthetic::Path(0.0), {})}},
         .reference_of_row = std::vector<int>(result.rows.size(), 0)};
     const std::string page =
         WithScript(RenderPage(result, sweep::Explain(result), evidence), kReading);
-    for (const int width_px : {390, 1366}) {
-      const BrowserVisit visit = Visit(Framed(page, width_px));
-      SKIP_WITHOUT_BROWSER(visit);
-      INFO(result.name << " at " << width_px << " px");
-      CHECK(Probe(visit) == "PROBE 0 faults: ");
-      CHECK(visit.console == "");
-      CHECK(visit.requests == "");
-    }
+    for (const int width_px : {390, 1366}) pages.push_back({page, width_px});
   }
+  const BrowserVisit visit = Visit(Framed(pages));
+  SKIP_WITHOUT_BROWSER(visit);
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    INFO((i < 2 ? "grid" : "continuous") << " at " << pages[i].width_px << " px");
+    const std::string begin = "PROBE " + std::to_string(i) + ": ";
+    CHECK(Probe(visit, begin) == begin + "0 faults: ");
+  }
+  CHECK(visit.console == "");
+  CHECK(visit.requests == "");
 }
 
 TEST_CASE("The reading test sees what is wrong with a page") {
   std::string page = WithScript(RenderPage(synthetic::Grid()), kReading);
   page.insert(page.find("</style>"), "figcaption{font-size:9px} h1{width:2000px}");
-  const BrowserVisit visit = Visit(Framed(page, 390));
+  const BrowserVisit visit = Visit(Framed({{page, 390}}));
   SKIP_WITHOUT_BROWSER(visit);
   CHECK_THAT(visit.dom, Contains("the page scrolls sideways") && Contains("small: "));
 }
