@@ -11,6 +11,7 @@
 
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -387,6 +388,7 @@ TEST_CASE("Columns that are not there, or no quantity, or no unit, are refused b
 }
 
 TEST_CASE("A sweep reads logs by reference.columns and candidate.columns") {
+  const test::QuickGnuplot gnuplot;
   const TemporaryFolder folder;
   WriteText(folder / "sim.csv", Csv(Path(0.0), "time,east,north,heading"));
   WriteText(folder / "real_1.csv", Csv(Path(0.02), "time,east,north,heading"));

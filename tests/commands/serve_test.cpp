@@ -11,6 +11,7 @@
 #include "support/http.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/processes/running_rift.hpp"
 #include "support/until.hpp"
 
@@ -82,6 +83,7 @@ TEST_CASE("A sweep shows its report growing at an address of this machine alone"
 }
 
 TEST_CASE("A sweep that was watched serves its finished report before it ends") {
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   test::WriteText(folder / "short.yaml",
                   "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]\n"

@@ -9,6 +9,7 @@
 
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -455,6 +456,7 @@ TEST_CASE("Files that are there are replaced with --force, and by the same run a
 }
 
 TEST_CASE("A brief sweep answers five questions in five lines, from the run's own counts") {
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   const test::ProcessResult sweep = test::RunRift(
       {"sweep", test::SourceDir() + "/data/example/demo.yaml", "--set", "reference.trials=6",
@@ -472,6 +474,7 @@ TEST_CASE("A brief sweep answers five questions in five lines, from the run's ow
 }
 
 TEST_CASE("The worst row of a sweep is driven again by its name") {
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   const std::string out = folder / "sweep";
   const test::ProcessResult sweep =

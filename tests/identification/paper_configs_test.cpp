@@ -4,6 +4,7 @@
 
 #include "identification/trial_grid.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
 
 namespace rift {
@@ -12,6 +13,7 @@ namespace {
 const std::string kConfigs = test::SourceDir() + "/configs/";
 
 nlohmann::json Sweep(const std::string& config, int seed = 1) {
+  const test::QuickGnuplot gnuplot;
   test::TemporaryFolder folder;
   const test::ProcessResult result = test::RunRift(
       {"sweep", kConfigs + config, "--out", folder / "out", "--set", "seed=" + std::to_string(seed),
