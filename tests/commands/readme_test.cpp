@@ -1,6 +1,7 @@
 // The recipes of README and docs, as they are printed, in the order they are printed.
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -76,16 +77,29 @@ std::string WithoutWindow(std::string command) {
   return at == command.npos ? command : command.erase(at, flag.size());
 }
 
-/// Runs what can be run here, and tells how many commands that were.
-int RunRecipesOf(const std::string& document, const test::TemporaryFolder& folder) {
-  int run = 0;
-  for (const std::string& command : CommandsOf(document)) {
-    if (!WhyNotRun(command).empty()) continue;
-    RunAsPrinted(folder, WithoutWindow(command));
-    ++run;
+/// Documents that are read one after the other, in one folder.
+class Reader {
+ public:
+  Reader() { LinkTree(folder); }
+
+  /// Runs what can be run here, and tells how many commands that were. What is printed again, to
+  /// the letter, is run once: a sweep of which nothing is left to compute draws all its figures
+  /// again.
+  int RunRecipesOf(const std::string& document) {
+    int run = 0;
+    for (const std::string& command : CommandsOf(document)) {
+      if (!WhyNotRun(command).empty()) continue;
+      if (done_.insert(command).second) RunAsPrinted(folder, WithoutWindow(command));
+      ++run;
+    }
+    return run;
   }
-  return run;
-}
+
+  test::TemporaryFolder folder;
+
+ private:
+  std::set<std::string> done_;
+};
 
 std::string OnlyFile(const std::filesystem::path& folder, const std::string& start,
                      const std::string& end) {
@@ -105,23 +119,21 @@ TEST_CASE("The README is short") {
 
 // In one folder, as of a reader of both: a sweep of the README goes on in docs.
 TEST_CASE("The recipes of the README, and of docs after it, work as they are printed") {
-  const test::TemporaryFolder folder;
-  LinkTree(folder);
-  CHECK(RunRecipesOf("README.md", folder) >= 9);
-  CHECK(RunRecipesOf("docs/recipes.md", folder) >= 18);
-  CHECK(std::filesystem::exists(folder / "out/watched/report.html"));
-  CHECK(test::ReadFile(folder / "out/change.html").find("simulation.link.delay_s") !=
+  Reader reader;
+  CHECK(reader.RunRecipesOf("README.md") >= 9);
+  CHECK(reader.RunRecipesOf("docs/recipes.md") >= 18);
+  CHECK(std::filesystem::exists(reader.folder / "out/watched/report.html"));
+  CHECK(test::ReadFile(reader.folder / "out/change.html").find("simulation.link.delay_s") !=
         std::string::npos);
   INFO("data/readme/make draws the README's picture anew");
-  CHECK((test::ReadFile(OnlyFile(folder / "out/watched/figures", "fig07", ".png")) ==
+  CHECK((test::ReadFile(OnlyFile(reader.folder / "out/watched/figures", "fig07", ".png")) ==
          test::ReadFile(test::SourceDir() + "/data/readme/demo.png")));
 }
 
 TEST_CASE("The recipes for programs work as they are printed, and those for tags") {
-  const test::TemporaryFolder folder;
-  LinkTree(folder);
-  CHECK(RunRecipesOf("docs/programs.md", folder) >= 4);
-  CHECK(RunRecipesOf("docs/tags.md", folder) == 2);
+  Reader reader;
+  CHECK(reader.RunRecipesOf("docs/programs.md") >= 4);
+  CHECK(reader.RunRecipesOf("docs/tags.md") == 2);
 }
 
 }  // namespace
