@@ -205,7 +205,9 @@ std::vector<Parameter> EveryAxis(const Experiment& experiment) {
 
 TEST_CASE("An experiment at its own values is the experiment") {
   std::mt19937_64 random(11);
-  for (int i = 0; i < 100; ++i) {
+  // More than 50 values of each of 30 experiments: one value in 300 that is not set as it was is
+  // missed in one of a hundred.
+  for (int i = 0; i < 30; ++i) {
     Experiment experiment;
     test::RandomFill(experiment, random);
     experiment.space.parameters = EveryAxis(experiment);
