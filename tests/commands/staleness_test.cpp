@@ -182,6 +182,7 @@ TEST_CASE("A sweep of the simulator computes the trials anew whose inputs have c
   const std::string sweep =
       "include: robot.yaml\nname: first\nseed: 3\n" + kWaypoints + kHill +
       "gap: {threshold_m: 0.03}\n"
+      "likeness: {classifier: {permutations: 9}}\n"
       "reference: {kind: logs, path: '{surface}_{trial}.csv', trials: [1, 2]}\n"
       "space: {surface: [ground, hill], v_min: [0.14, 0.16]}\n";
   folder.Write("sweep.yaml", sweep);

@@ -245,8 +245,9 @@ TEST_CASE("The paper's table comes out of the authors' logs") {
   RIFT_SKIP_WITHOUT_TRIALS();
   const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
-  const ProcessResult result = RunRift({"sweep", test::SourceDir() + "/configs/paper_webots.yaml",
-                                        "--out", folder / "out", "--json"});
+  const ProcessResult result =
+      RunRift({"sweep", test::SourceDir() + "/configs/paper_webots.yaml", "--out", folder / "out",
+               "--json", "--set", "likeness.classifier.permutations=0"});
   REQUIRE(result.exit_code == 0);
   const json summary = json::parse(result.out);
   CHECK(summary["n"] == 48);

@@ -309,10 +309,12 @@ TEST_CASE("Further trials need a simulator and a space") {
 /// trials).
 TEST_CASE("The paper's grid says that v_max is inert and why and what matters") {
   RIFT_SKIP_WITHOUT_TRIALS()
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   const std::string out = folder / "out";
   const ProcessResult result =
-      RunRift({"sweep", test::SourceDir() + "/configs/paper_webots.yaml", "--out", out, "--quiet"});
+      RunRift({"sweep", test::SourceDir() + "/configs/paper_webots.yaml", "--out", out, "--quiet",
+               "--set", "likeness.classifier.permutations=0"});
   REQUIRE(result.exit_code == 0);
   const json explanation = json::parse(ReadFile(out + "/explanation.json"));
   const json& v_max = explanation["parameters"]["v_max"];
