@@ -318,6 +318,47 @@ TEST_CASE("A pose that stands is noticed sooner once the latency of the camera i
   }
 }
 
+TEST_CASE("The latency of the camera may be set while the robot drives") {
+  Bench bench;
+  bench.camera_late_s = 0.15;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  Settle(robot, 0.6, bench);
+  robot.Arm();
+  DriveOn(robot, {0.2, 0.2}, 0.8, bench);
+  REQUIRE(robot.state() == DriveState::kArmed);
+  robot.SetCameraLatency(0.15);
+  DriveOn(robot, {0.2, 0.2}, 0.8, bench);
+  INFO((robot.Record().stop ? robot.Record().stop->text : std::string("drives")));
+  CHECK(robot.state() == DriveState::kArmed);
+}
+
+TEST_CASE(
+    "A command that is written late counts for the pose that it was decided on, or for none") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  Settle(robot, 0.4, bench);
+  robot.Arm();
+  DriveOn(robot, {0.2, 0.2}, 0.2, bench);
+  bench.line_is_blocked = true;
+  const size_t before = robot.Record().poses.size();
+  while (robot.Record().poses.size() == before) {
+    robot.Advance(0.04);
+    robot.Sense();
+  }
+  robot.Command({0.21, 0.2});
+  while (robot.Record().poses.size() == before + 1) {
+    robot.Advance(0.04);
+    robot.Sense();
+  }
+  const size_t sent = robot.Record().sent;
+  bench.line_is_blocked = false;
+  for (int i = 0; i < 5; ++i) robot.Advance(0.001);
+  CHECK(robot.Record().sent == sent + 1);
+  CHECK(bench.written.count({210, 200}) == 1);
+  CHECK(robot.Record().poses.back().commanded_s < 0.0);
+  CHECK(robot.Record().poses.back().written_s < 0.0);
+}
+
 TEST_CASE("On a fast line every power goes out at once, on a slow one the first for each picture") {
   const auto sent_in_a_second = [](int baud) {
     Bench bench;

@@ -48,6 +48,21 @@ TEST_CASE("Two samples of one distribution are told apart no better than by gues
   CHECK(below_a_half == Approx(100).margin(28));
 }
 
+TEST_CASE("Labels of groups of two are shuffled as well: samples that lie apart are told by them") {
+  // One of each sample in each of ten groups: of 1024 ways to name them two tell all.
+  std::vector<Observation> observations;
+  for (size_t group = 0; group < 10; ++group) {
+    for (const bool is_first : {true, false}) {
+      const double place = 0.01 * static_cast<double>(group) + (is_first ? 1.0 : 0.0);
+      observations.push_back({.features = {place}, .is_first = is_first, .group = group});
+    }
+  }
+  const TwoSampleTest test =
+      TestTwoSamples(observations, {.permutations = 99}, {.resamples = 50}, 1);
+  CHECK(test.accuracy == 1.0);
+  CHECK(test.p <= 0.03);
+}
+
 TEST_CASE("A difference in one feature is found and that feature is named") {
   Random random(2, 1);
   const TwoSampleTest test =

@@ -49,17 +49,19 @@ TEST_CASE("A log without a yaw is none of a fit's, and one log alone is too few"
   CHECK(Refusal({{"1/trajectory.csv", Log(10.0)}}) == kOneIsLeft);
 }
 
-TEST_CASE("Commands beside a log are its own when they begin within 2 s of it, and before its end") {
+TEST_CASE(
+    "Commands beside a log are its own when they begin within 2 s of it, and before its end") {
   const auto refusal = [](double duration_s, const std::string& began_s) {
     return Refusal({{"1/trajectory.csv", Log(duration_s)},
                     {"1/commands.csv", "t_s,power_left,power_right\n" + began_s + ",0,0\n"}});
   };
   for (const char* began_s : {"-1.9", "0", "1.9"}) CHECK(refusal(10.0, began_s) == kOneIsLeft);
   for (const char* began_s : {"-2.1", "2.1"}) {
-    CHECK(refusal(10.0, began_s) ==
-          std::string("1/trajectory.csv: its first row is at 0 s, and commands.csv beside it begins "
-                      "at ") +
-              began_s + " s: they are not of one drive");
+    CHECK(
+        refusal(10.0, began_s) ==
+        std::string("1/trajectory.csv: its first row is at 0 s, and commands.csv beside it begins "
+                    "at ") +
+            began_s + " s: they are not of one drive");
   }
   CHECK(refusal(1.6, "1.5") == kOneIsLeft);
   CHECK(refusal(1.4, "1.5").ends_with("they are not of one drive"));
