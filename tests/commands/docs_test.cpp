@@ -129,6 +129,7 @@ likeness: {runs: 3, shuffles: 19, bootstrap: {resamples: 20}, classifier: {permu
 }
 
 TEST_CASE("The summary of a grid lacks only what a search adds") {
+  const test::QuickGnuplot gnuplot;
   const test::TemporaryFolder folder;
   const std::string out =
       RunInto(folder, "grid",

@@ -343,6 +343,7 @@ TEST_CASE("The end of a persistent program is seen though its child holds its ou
 }
 
 TEST_CASE("A sweep of a program that is killed goes on and leaves no process") {
+  const test::QuickGnuplot gnuplot;
   const TemporaryFolder folder;
   const std::string script = folder / "diff_drive.py";
   fs::copy(test::SourceDir() + "/configs/programs/diff_drive.py", script);

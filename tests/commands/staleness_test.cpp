@@ -321,6 +321,7 @@ std::string OtherProgram() {
 }
 
 TEST_CASE("A sweep of a program computes the trials anew whose inputs have changed") {
+  const test::QuickGnuplot gnuplot;
   const Folder folder;
   WriteProgram(folder);
   for (const int gain : {1, 2, 3}) folder.Write(fmt::format("{}.csv", gain), folder.Log(gain));

@@ -134,6 +134,7 @@ TEST_CASE("What few runs of a program show is no doubt of the sweep, but one cut
 }
 
 TEST_CASE("Logs in the wrong unit are doubted once in a sweep of rift's own simulator") {
+  const test::QuickGnuplot gnuplot;
   const TemporaryFolder folder;
   const std::string task = "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.4, y: 0.05, stop: true}]\n";
   WriteText(folder / "task.yaml", task);
