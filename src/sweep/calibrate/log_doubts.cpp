@@ -44,29 +44,36 @@ bool AreCopies(const LogOfTask& a, const LogOfTask& b) {
                     });
 }
 
+/// One kind of doubt: its first log, and how many there are.
+struct Kind {
+  std::string source, text;
+  size_t logs = 0;
+
+  void Add(const std::string& of, const std::string& doubt) {
+    if (logs++ == 0) source = of, text = doubt;
+  }
+  void SayTo(std::vector<std::string>& doubts) const {
+    if (logs == 0) return;
+    const std::string more = fmt::format(" (and {} more log{})", logs - 1, logs == 2 ? "" : "s");
+    doubts.push_back(source + (logs > 1 ? more : "") + ": " + text);
+  }
+};
+
 }  // namespace
 
 std::vector<std::string> DoubtsOfLogs(const std::vector<LogOfTask>& logs) {
-  std::vector<std::string> doubts;
-  std::string source, text;
-  size_t missing = 0;
-  for (const LogOfTask& one : logs) {
-    const std::optional<std::string> miss = MissText(one);
-    if (miss && missing++ == 0) source = one.source, text = *miss;
-  }
-  if (missing > 0) {
-    const std::string more = missing > 1 ? fmt::format(" (and {} more logs)", missing - 1) : "";
-    doubts.push_back(source + more + ": " + text);
-  }
+  Kind misses, copies;
   for (auto one = logs.begin(); one != logs.end(); ++one) {
+    if (const auto miss = MissText(*one)) misses.Add(one->source, *miss);
     const auto first = std::find_if(logs.begin(), one,
                                     [&](const LogOfTask& other) { return AreCopies(other, *one); });
     if (first == one) continue;
-    doubts.push_back(
-        fmt::format("{}: it has the rows of {}: one drive that counts as two makes "
-                    "the intervals too narrow",
-                    one->source, first->source));
+    copies.Add(one->source, fmt::format("it has the rows of {}: one drive that counts as two "
+                                        "makes the intervals too narrow",
+                                        first->source));
   }
+  std::vector<std::string> doubts;
+  for (const Kind& kind : {misses, copies}) kind.SayTo(doubts);
   return doubts;
 }
 

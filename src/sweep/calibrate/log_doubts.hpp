@@ -18,7 +18,7 @@ struct LogOfTask {
 
 /// What makes logs doubtful for a fit though each looks sound, a line each that names its log: one
 /// that does not come near to a waypoint, which its controller must have passed within the reach
-/// radius (said of the first, with how many more there are), and one that is a copy of another.
+/// radius, and one that is a copy of another; said of the first, with how many more there are.
 std::vector<std::string> DoubtsOfLogs(const std::vector<LogOfTask>& logs);
 
 }  // namespace rift::sweep

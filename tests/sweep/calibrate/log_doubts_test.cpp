@@ -44,7 +44,7 @@ TEST_CASE("The first log that misses a waypoint is named with it, and how many m
                                 "0.6 m, y 0.1 m, which counts as reached within 0.05 m"));
   const auto two = DoubtsOfLogs({Of("mirror.csv", mirrored), Of("cut.csv", cut)});
   REQUIRE(two.size() == 1);
-  CHECK_THAT(two[0], StartsWith("mirror.csv (and 1 more logs): ") && Contains("x 0.3 m, y 0.1 m"));
+  CHECK_THAT(two[0], StartsWith("mirror.csv (and 1 more log): ") && Contains("x 0.3 m, y 0.1 m"));
 }
 
 TEST_CASE("A log with the rows of another one is named with it") {
@@ -55,6 +55,10 @@ TEST_CASE("A log with the rows of another one is named with it") {
   const auto doubts = DoubtsOfLogs({Of("a.csv", log), Of("b.csv", later), Of("c.csv", same)});
   REQUIRE(doubts.size() == 1);
   CHECK_THAT(doubts[0], StartsWith("c.csv: it has the rows of a.csv"));
+  const auto more =
+      DoubtsOfLogs({Of("a.csv", log), Of("b.csv", same), Of("c.csv", same), Of("d.csv", same)});
+  REQUIRE(more.size() == 1);
+  CHECK_THAT(more[0], StartsWith("b.csv (and 2 more logs): it has the rows of a.csv"));
 }
 
 }  // namespace

@@ -92,12 +92,11 @@ TEST_CASE("A program's parameter is found from whole runs, and judged by others"
     CHECK(trial.gap_after_m < 0.1 * trial.gap_before_m);
     CHECK(trial.gap_before_m == Approx(0.4).margin(0.01));
   }
-  REQUIRE(said.size() >= 4);
+  REQUIRE(said.size() >= 3);
   // A program without noise repeats itself.
-  CHECK(said[0].starts_with("warning: a_2.csv: it has the rows of a_1.csv"));
-  CHECK(said[1].starts_with("warning: b_2.csv: it has the rows of b_1.csv"));
-  CHECK(said[2] == "fitting 1 parameters to 4 logs; 0 held out");
-  CHECK(said[3].starts_with("note: a program is fitted and judged by whole runs"));
+  CHECK(said[0].starts_with("warning: a_2.csv (and 2 more logs): it has the rows of a_1.csv"));
+  CHECK(said[1] == "fitting 1 parameters to 4 logs; 0 held out");
+  CHECK(said[2].starts_with("note: a program is fitted and judged by whole runs"));
   // Each log has seeds of its own, and those that judge are none that were fitted with.
   const std::vector<std::string> asked = bench.Asked();
   const auto has = [&](const std::string& end) {

@@ -190,7 +190,7 @@ TEST_CASE("A fit to logs finds their mismatch, holds the rest out, and judges be
   CHECK(report.shown_after.size() == 2);
   REQUIRE(said.size() >= 3);
   // A timeout of the test's keeps two of its runs from the last waypoint.
-  CHECK(said[0].starts_with("warning: 0.2_2.csv (and 1 more logs): it comes no nearer than"));
+  CHECK(said[0].starts_with("warning: 0.2_2.csv (and 1 more log): it comes no nearer than"));
   CHECK(said[1] == "fitting 1 parameters to 4 logs; 2 held out");
   const auto has = [&](const std::string& text) {
     return std::any_of(said.begin(), said.end(),
