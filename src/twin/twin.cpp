@@ -69,7 +69,7 @@ simulation::SimulationOptions AsTwin(simulation::SimulationOptions simulation,
   }
   // A log may be of the robot's point on the floor; a picture shows the tag where it is.
   if (simulation.mocap.tag_above_m == 0.0) {
-    simulation.mocap.tag_above_m = options.camera.body_height_m;
+    simulation.mocap.tag_above_m = options.camera.body_height_m - simulation.body.wheel_radius_m;
   }
   simulation.encoder.reported = true;
   return simulation;
