@@ -160,6 +160,30 @@ TEST_CASE("What carried the robot to its start, before it was armed, is not held
   CHECK(robot.state() == DriveState::kArmed);
 }
 
+TEST_CASE("Answers may stay away for as long as the guard waits for them before they have ended") {
+  for (const double away_s : {0.7, 1.3}) {
+    Bench bench;
+    HardwareOptions hardware;
+    hardware.guard.link_lag_s = 1.0;
+    RealRobot robot(bench, bench, bench, {hardware, Protocol::kPlain, false});
+    Settle(robot, 0.4, bench);
+    robot.Arm();
+    DriveOn(robot, {0.2, 0.2}, 0.5, bench);
+    bench.from_robot_is_cut = true;
+    DriveOn(robot, {0.2, 0.2}, away_s, bench);
+    bench.from_robot_is_cut = false;
+    DriveOn(robot, {0.2, 0.2}, 0.4, bench);
+    REQUIRE(robot.state() == DriveState::kArmed);
+    const geometry::Pose2 frozen = bench.Pose();
+    bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
+    DriveOn(robot, {0.2, 0.2}, 3.0, bench);
+    REQUIRE(robot.Record().stop);
+    INFO(away_s << ": " << robot.Record().stop->text);
+    const bool by_counts = robot.Record().stop->reason == StopReason::kPoseDisagrees;
+    CHECK(by_counts == (away_s < 1.0));
+  }
+}
+
 TEST_CASE("Answers that come now and then do not take a robot from the watch of its commands") {
   Bench bench;
   RealRobot robot(bench, bench, bench, {{}, Protocol::kPlain, false});
@@ -320,13 +344,13 @@ TEST_CASE("A pose that stands is noticed sooner once the latency of the camera i
 
 TEST_CASE("The latency of the camera may be set while the robot drives") {
   Bench bench;
-  bench.camera_late_s = 0.15;
+  bench.camera_late_s = 0.05;
   RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
   Settle(robot, 0.6, bench);
   robot.Arm();
   DriveOn(robot, {0.2, 0.2}, 0.8, bench);
   REQUIRE(robot.state() == DriveState::kArmed);
-  robot.SetCameraLatency(0.15);
+  robot.SetCameraLatency(0.05);
   DriveOn(robot, {0.2, 0.2}, 0.8, bench);
   INFO((robot.Record().stop ? robot.Record().stop->text : std::string("drives")));
   CHECK(robot.state() == DriveState::kArmed);
