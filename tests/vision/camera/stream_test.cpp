@@ -147,7 +147,6 @@ TEST_CASE("What a server answers is said in words and ends the session at once")
       {"408 Request Timeout", "it refuses the request (http 408)", CameraState::kUnplugged},
       {"429 Too Many", "it refuses the request (http 429)", CameraState::kUnplugged},
       {"499 Closed", "it refuses the request (http 499)", CameraState::kRefused},
-      {"499 Closed", "it refuses the request (http 499)", CameraState::kRefused},
       {"500 Oops", "it has an error of its own (http 500)", CameraState::kUnplugged},
       {"503 Busy", "it is busy, often with too many viewers (http 503)", CameraState::kUnplugged}};
   for (const Answer& answer : answers) {
