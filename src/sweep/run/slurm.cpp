@@ -16,9 +16,11 @@ namespace {
 
 /// What Slurm says when the same question may be answered later.
 bool IsTemporary(const std::string& words) {
-  constexpr std::array<std::string_view, 9> kTemporary{
-      "temporarily",  "try again", "timed out",    "Unable to contact", "Connection refused",
-      "submit limit", "job limit", "QOSMaxSubmit", "AssocMaxSubmit"};
+  constexpr std::array<std::string_view, 11> kTemporary{
+      "temporarily",       "try again",          "timed out",
+      "Unable to contact", "Connection refused", "missing socket error",
+      "Zero Bytes",        "submit limit",       "job limit",
+      "QOSMaxSubmit",      "AssocMaxSubmit"};
   return std::any_of(kTemporary.begin(), kTemporary.end(),
                      [&](std::string_view part) { return words.find(part) != words.npos; });
 }

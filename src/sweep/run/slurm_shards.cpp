@@ -202,9 +202,12 @@ void SlurmShards::LookAt(Group& group, ShardCounts& counts) {
   std::optional<std::map<int, SlurmTask>> queue;
   try {
     queue = QueuedTasks(group.job_name);
-    group.is_known = true;
+    group.is_known = queue_was_read_ = true;
   } catch (const SlurmBusy& busy) {
     Complain(busy.what());
+  } catch (const std::runtime_error& error) {
+    if (!queue_was_read_) throw;
+    Complain(error.what());  // the arrays run on, and their files tell what is done
   }
   TakeIn(group);
   for (size_t i = 0; i < group.tasks.size(); ++i) {

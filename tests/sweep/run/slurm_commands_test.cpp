@@ -130,7 +130,8 @@ TEST_CASE("What Slurm cannot answer now is told apart from what it refuses") {
   const Stand stand;
   for (const char* busy :
        {"sbatch: error: Resource temporarily unavailable", "please try again", "Socket timed out",
-        "Unable to contact slurm controller", "Connection refused", "submit limit reached",
+        "Unable to contact slurm controller", "Connection refused",
+        "Unexpected missing socket error", "Zero Bytes were transmitted", "submit limit reached",
         "over the job limit", "QOSMaxSubmitJobPerUserLimit", "AssocMaxSubmitJobLimit"}) {
     INFO(busy);
     stand.Fails("sbatch", std::string("a line before\n") + busy + "\n");
@@ -346,6 +347,38 @@ TEST_CASE("A task that Slurm holds for good is cancelled, and told") {
                        "submitted anew");
   CHECK(cluster.Arguments("scancel").starts_with("41_0\n"));
   CHECK(test::ReadFile(cluster.Out() / "slurm/1/jobs") == "41 0\n41 0\n");
+}
+
+TEST_CASE("A queue that was read once may fail in any way later, and at first in none") {
+  for (const int failing : {1, 3}) {
+    const Cluster cluster;
+    fs::create_directories(cluster.Out());
+    Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+    const Shard shard = ShardOf("a");
+    cluster.Finishes(shard, "a");
+    cluster.Does("sbatch", "");
+    cluster.Answers("squeue", "41_0|RUNNING|None\n");
+    // Done only after the call that fails without a word.
+    cluster.Does("squeue",
+                 "echo x >> \"$D/asked\"; N=$(wc -l < \"$D/asked\")\n"
+                 "[ $N -ne " +
+                     std::to_string(failing) +
+                     " ] || exit 1\n"
+                     "[ $N -lt 5 ] || for F in \"$D\"/ready/*; do\n"
+                     "  cp \"$F\" \"$D/out/shards/${F##*/}.sqlite\"\ndone\n");
+    const SlurmOptions options = Quick();
+    std::vector<std::string> said;
+    SlurmShards::Watch watch;
+    watch.say = [&](const std::string& line) { said.push_back(line); };
+    SlurmShards slurm(cluster.Out(), options, "", journal, watch);
+    if (failing == 1) {
+      CHECK_THROWS_WITH(slurm.Run({shard}), "squeue: failed without a word");
+      continue;
+    }
+    CHECK(slurm.Run({shard}));
+    CHECK(journal.Find("a") == std::string("row of a"));
+    CHECK(said == std::vector<std::string>{"note: squeue: failed without a word; trying again"});
+  }
 }
 
 TEST_CASE("A busy cluster is asked again with half of the tasks, and complained of once") {

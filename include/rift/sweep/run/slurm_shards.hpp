@@ -101,6 +101,7 @@ class SlurmShards {
   Watch watch_;
   int most_at_once_ = 1'000'000;  ///< tasks in one submission: halved by each refusal
   double back_off_s_ = 0.0;
+  bool queue_was_read_ = false;     ///< so that Slurm is there, and a failure passes
   Clock::time_point not_before_{};  ///< of the next submission, after a refusal
   std::string complaint_;           ///< the last, so that it is said once
 };
