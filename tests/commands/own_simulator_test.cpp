@@ -456,12 +456,16 @@ TEST_CASE("A program that always fails is named with its reason after one nomina
 TEST_CASE(
     "Only a nominal run that did not arrive is tried with other seeds, each on its own time") {
   const TemporaryFolder folder;
-  // Ten runs of 0.8 s: together they take longer than one may.
+  // Ten nominal runs of 2.2 s: together they take longer than one may. A busy machine takes some
+  // seconds to start Python.
+  const std::string runs = folder / "runs";
   WriteText(folder / "line.py",
-            LineSimulator("time.sleep(0.8)\n"
+            LineSimulator("if os.path.getsize('" + runs + "') < 10:\n  open('" + runs +
+                          "', 'a').write('x')\n  time.sleep(2.2)\n"
                           "if seed in (1, 3): print('too slow', file=sys.stderr); sys.exit(10)"));
+  WriteText(runs, "");
   WriteText(folder / "line.yaml",
-            AgainstNominal("falsify: {most_repeats: 8}\nrun: {timeout_s: 7, retries: 0}\n"));
+            AgainstNominal("falsify: {most_repeats: 8}\nrun: {timeout_s: 21, retries: 0}\n"));
   const ProcessResult result =
       RunRift({"sweep", folder / "line.yaml", "--out", folder / "out", "--jobs", "1"});
   INFO(result.err);
