@@ -25,6 +25,11 @@ bool IsTemporary(const std::string& words) {
                      [&](std::string_view part) { return words.find(part) != words.npos; });
 }
 
+std::string EndOf(const ExternalProgram::Exit& exit) {
+  return exit.signal != 0 ? fmt::format("was ended by signal {}", exit.signal)
+                          : fmt::format("ended with exit code {}", exit.code);
+}
+
 /// What a command of Slurm prints. Throws as the header says.
 std::string Answer(const std::vector<std::string>& arguments) {
   ExternalProgram program({.arguments = arguments, .talks = true}, ExternalProgram::MakeFolder());
@@ -41,12 +46,13 @@ std::string Answer(const std::vector<std::string>& arguments) {
   const bool is_named = words.starts_with(arguments[0] + ":");
   const std::string text =
       fmt::format("{}{}{}", is_named ? "" : arguments[0] + ": ",
-                  words.empty() ? "failed without a word" : words,
+                  words.empty() ? EndOf(exit) + " without a word" : words,
                   words.find("configuration source") == words.npos
                       ? ""
                       : "; --engine slurm works where Slurm answers, as on its login node: use "
                         "--engine local here");
-  if (IsTemporary(words)) throw SlurmBusy(text);
+  // Who killed it did not mean the sweep.
+  if (exit.signal != 0 || IsTemporary(words)) throw SlurmBusy(text);
   throw std::runtime_error(text);
 }
 

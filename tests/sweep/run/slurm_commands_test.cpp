@@ -137,6 +137,10 @@ TEST_CASE("What Slurm cannot answer now is told apart from what it refuses") {
     stand.Fails("sbatch", std::string("a line before\n") + busy + "\n");
     CHECK_THROWS_AS(SubmitArray(kArray, {}), SlurmBusy);
   }
+  stand.Does("sbatch", "kill -9 $$\n");
+  CHECK_THROWS_WITH(SubmitArray(kArray, {}), "sbatch: was ended by signal 9 without a word");
+  CHECK_THROWS_AS(SubmitArray(kArray, {}), SlurmBusy);
+  stand.Does("sbatch", "");
   const auto refusal = [&](const std::string& words, const std::string& code = "1") {
     stand.Fails("sbatch", words, code);
     try {
@@ -150,7 +154,7 @@ TEST_CASE("What Slurm cannot answer now is told apart from what it refuses") {
   };
   CHECK(refusal("sbatch: error: Invalid account\n") == "sbatch: error: Invalid account");
   CHECK(refusal("Invalid partition\n") == "sbatch: Invalid partition");
-  CHECK(refusal("", "3") == "sbatch: failed without a word");
+  CHECK(refusal("", "3") == "sbatch: ended with exit code 3 without a word");
   CHECK(refusal("cannot resolve configuration source\n") ==
         "sbatch: cannot resolve configuration source; --engine slurm works where Slurm answers, as "
         "on its login node: use --engine local here");
@@ -372,12 +376,13 @@ TEST_CASE("A queue that was read once may fail in any way later, and at first in
     watch.say = [&](const std::string& line) { said.push_back(line); };
     SlurmShards slurm(cluster.Out(), options, "", journal, watch);
     if (failing == 1) {
-      CHECK_THROWS_WITH(slurm.Run({shard}), "squeue: failed without a word");
+      CHECK_THROWS_WITH(slurm.Run({shard}), "squeue: ended with exit code 1 without a word");
       continue;
     }
     CHECK(slurm.Run({shard}));
     CHECK(journal.Find("a") == std::string("row of a"));
-    CHECK(said == std::vector<std::string>{"note: squeue: failed without a word; trying again"});
+    CHECK(said == std::vector<std::string>{
+                      "note: squeue: ended with exit code 1 without a word; trying again"});
   }
 }
 
