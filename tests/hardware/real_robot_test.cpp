@@ -26,6 +26,22 @@ void DriveOn(RealRobot& robot, const WheelPower& power, double duration_s, Bench
   }
 }
 
+/// From now on every picture repeats the pose of now to within its noise, which no corners give
+/// away.
+void FreezePoses(Bench& bench) {
+  bench.bend = [frozen = bench.Pose()](trial::PoseMeasurement& pose) {
+    pose.world_from_robot = frozen;
+  };
+}
+
+/// Drives on with poses that stand; what stops it.
+DriveStop StopOfFrozenPoses(RealRobot& robot, double duration_s, Bench& bench) {
+  FreezePoses(bench);
+  DriveOn(robot, {0.2, 0.2}, duration_s, bench);
+  REQUIRE(robot.Record().stop);
+  return *robot.Record().stop;
+}
+
 /// So long that the robot is seen and has answered.
 void Settle(RealRobot& robot, double duration_s, Bench& bench) {
   for (const double end_s = bench.Now_s() + duration_s; bench.Now_s() < end_s;) {
@@ -115,16 +131,12 @@ TEST_CASE("A robot whose answers end is watched by its commands and driven on no
     DriveOn(robot, {0.2, 0.2}, 1.5, bench);
     INFO((robot.Record().stop ? robot.Record().stop->text : std::string("drives")));
     CHECK(robot.state() == DriveState::kArmed);  // pictures go on to show that it moves
-    // What every picture repeats to within its noise, which no corners give away.
-    const geometry::Pose2 frozen = bench.Pose();
-    bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
     const double frozen_s = bench.Now_s() - 100.0;
-    DriveOn(robot, {0.2, 0.2}, 3.0, bench);
-    REQUIRE(robot.Record().stop);
-    const bool by_counts = robot.Record().stop->reason == StopReason::kPoseDisagrees;
+    const DriveStop stop = StopOfFrozenPoses(robot, 3.0, bench);
+    const bool by_counts = stop.reason == StopReason::kPoseDisagrees;
     CHECK(by_counts == answers_on);
     // 0.32 m/s: 3 x (0.012 m + 0.35 s x 0.32 m/s) take 1.16 s.
-    CHECK(robot.Record().stop->at_s - frozen_s < 1.3);
+    CHECK(stop.at_s - frozen_s < 1.3);
     CHECK(bench.listener->Motors().IsZero());
   }
 }
@@ -141,11 +153,7 @@ TEST_CASE(
   robot.Arm();
   DriveOn(robot, {0.2, 0.2}, 1.0, bench);
   REQUIRE(robot.state() == DriveState::kArmed);
-  const geometry::Pose2 frozen = bench.Pose();
-  bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
-  DriveOn(robot, {0.2, 0.2}, 3.0, bench);
-  REQUIRE(robot.Record().stop);
-  CHECK(robot.Record().stop->reason == StopReason::kPoseDisagrees);
+  CHECK(StopOfFrozenPoses(robot, 3.0, bench).reason == StopReason::kPoseDisagrees);
 }
 
 TEST_CASE("What carried the robot to its start, before it was armed, is not held against it") {
@@ -174,12 +182,9 @@ TEST_CASE("Answers may stay away for as long as the guard waits for them before 
     bench.from_robot_is_cut = false;
     DriveOn(robot, {0.2, 0.2}, 0.4, bench);
     REQUIRE(robot.state() == DriveState::kArmed);
-    const geometry::Pose2 frozen = bench.Pose();
-    bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
-    DriveOn(robot, {0.2, 0.2}, 3.0, bench);
-    REQUIRE(robot.Record().stop);
-    INFO(away_s << ": " << robot.Record().stop->text);
-    const bool by_counts = robot.Record().stop->reason == StopReason::kPoseDisagrees;
+    const DriveStop stop = StopOfFrozenPoses(robot, 3.0, bench);
+    INFO(away_s << ": " << stop.text);
+    const bool by_counts = stop.reason == StopReason::kPoseDisagrees;
     CHECK(by_counts == (away_s < 1.0));
   }
 }
@@ -189,8 +194,7 @@ TEST_CASE("Answers that come now and then do not take a robot from the watch of 
   RealRobot robot(bench, bench, bench, {{}, Protocol::kPlain, false});
   Settle(robot, 0.4, bench);
   robot.Arm();
-  const geometry::Pose2 frozen = bench.Pose();
-  bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
+  FreezePoses(bench);
   bench.counts_are_stuck = true;
   for (int i = 0; i < 6; ++i) {
     bench.from_robot_is_cut = true;
@@ -332,13 +336,10 @@ TEST_CASE("A pose that stands is noticed sooner once the latency of the camera i
     if (is_known) robot.SetCameraLatency(0.0);
     DriveOn(robot, {0.2, 0.2}, 0.6, bench);
     REQUIRE(robot.state() == DriveState::kArmed);
-    const geometry::Pose2 frozen = bench.Pose();
     const double frozen_s = bench.Now_s() - 100.0;
-    bench.bend = [&](trial::PoseMeasurement& pose) { pose.world_from_robot = frozen; };
-    DriveOn(robot, {0.2, 0.2}, 1.0, bench);
-    REQUIRE(robot.Record().stop);
+    const DriveStop stop = StopOfFrozenPoses(robot, 1.0, bench);
     // 0.24 m/s: 0.012 m and 0.1 s take 0.15 s, with 0.25 s more for a latency 0.4 s.
-    CHECK((robot.Record().stop->at_s - frozen_s < 0.3) == is_known);
+    CHECK((stop.at_s - frozen_s < 0.3) == is_known);
   }
 }
 
