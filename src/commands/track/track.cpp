@@ -48,8 +48,9 @@ int Report(const TrackRequest& request, const vision::TrackRun& run,
   terminal::PrintText(report::TrackText(run, run.rows));
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
   terminal::Say(fmt::format("{}; run: {}", log, sessions::RunFileOf(request.out).string()));
-  for (const std::string& line : report::UnseenLines(run.instead, tag.family, "--id "))
+  for (const std::string& line : report::UnseenLines(run.instead, tag.family, "--id ")) {
     terminal::Say(line);
+  }
   if (run.rows > 0 && !request.copies.Files().empty()) {
     request.copies.Write(trajectory::ReadLog(files::ReadFile(request.out), request.out).trajectory);
   }

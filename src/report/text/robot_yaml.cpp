@@ -93,8 +93,8 @@ std::string Head(const experiment::Experiment& experiment, const sweep::Calibrat
       "# and hardware stay in force.\n";
   if (has_ensemble) {
     text +=
-        "# Each run takes a draw of the ensemble in place of the values of its keys: a value that "
-        "is\n"
+        "# Each run takes a draw of the ensemble in place of the values of its keys: a value "
+        "that is\n"
         "# changed in this file counts once its key is no longer in ensemble.\n";
   }
   text += "# Logs (hash, file; those held out are among them):\n";
