@@ -1,4 +1,4 @@
-#include "feature_rows.hpp"
+#include "feature_model.hpp"
 
 #include <algorithm>
 #include <cmath>

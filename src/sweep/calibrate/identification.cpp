@@ -8,8 +8,8 @@
 #include <memory>
 #include <set>
 
+#include "fitted_simulator.hpp"
 #include "log_doubts.hpp"
-#include "program_twins.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/program_parameters.hpp"
 #include "rift/statistics/random.hpp"

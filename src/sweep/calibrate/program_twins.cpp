@@ -1,4 +1,4 @@
-#include "program_twins.hpp"
+#include "fitted_simulator.hpp"
 
 #include <fmt/format.h>
 

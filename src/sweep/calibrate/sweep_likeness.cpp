@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "program_twins.hpp"
+#include "fitted_simulator.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"

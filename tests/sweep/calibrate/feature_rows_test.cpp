@@ -1,5 +1,5 @@
 // A row of features: those of the drive, how it steers, and on which side each waypoint was passed.
-#include "sweep/calibrate/feature_rows.hpp"
+#include "sweep/calibrate/feature_model.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -13,7 +13,7 @@
 #include "support/inputs/paths.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
-#include "sweep/calibrate/program_twins.hpp"
+#include "sweep/calibrate/fitted_simulator.hpp"
 
 namespace rift::sweep {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "rift/trajectory/log.hpp"
-#include "sweep/calibrate/program_twins.hpp"
+#include "sweep/calibrate/fitted_simulator.hpp"
 
 namespace rift::sweep {
 namespace {
