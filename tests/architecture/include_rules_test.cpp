@@ -213,6 +213,20 @@ TEST_CASE("docs/rooms.md says of every source file what is done in it") {
   CHECK(files > 300);
 }
 
+TEST_CASE("No folder of the code holds more than 30 files of its own") {
+  std::map<fs::path, int> files;
+  for (const char* top : {"src", "include", "tests"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(test::SourceDir()) / top)) {
+      if (entry.is_regular_file()) ++files[entry.path().parent_path()];
+    }
+  }
+  for (const auto& [folder, count] : files) {
+    INFO(folder.string() << ": a listing that fits on one screen");
+    CHECK(count <= 30);
+  }
+  CHECK(files.size() > 60);
+}
+
 TEST_CASE("The table keeps simulator, hardware and computation apart") {
   const std::map<std::string, Allowed> table = ReadTable();
   const auto never = [&](const std::string& room, const std::string& other) {
