@@ -1,6 +1,8 @@
 #include "robot_choice.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace rift::vision {
 namespace {
@@ -26,27 +28,29 @@ void RobotChoice::Doubt(double t_s, const Eigen::Vector3d& robot_in_map) {
   doubt_since_s_ = t_s;
 }
 
-void RobotChoice::AddRival(double t_s, const Eigen::Vector3d& p_in_map) {
-  Rival* nearest = nullptr;
-  for (Rival& rival : rivals_) {
-    const double off_m = (rival.p_in_map - p_in_map).norm();
-    if (off_m > Reach_m(t_s - rival.seen_s)) continue;
-    if (nearest && off_m > (nearest->p_in_map - p_in_map).norm()) continue;
-    nearest = &rival;
+/// Each is the rival in reach that is nearest, the nearest pair first: a tag that comes into sight
+/// beside a rival has not driven there from its place.
+void RobotChoice::NoteRivals(double t_s, std::vector<Eigen::Vector3d> seen_in_map) {
+  std::vector<Rival> seen;
+  for (;;) {
+    double least_m = HUGE_VAL;
+    std::size_t rival = 0, tag = 0;
+    for (std::size_t i = 0; i < rivals_.size(); ++i) {
+      for (std::size_t k = 0; k < seen_in_map.size(); ++k) {
+        const double off_m = (rivals_[i].p_in_map - seen_in_map[k]).norm();
+        if (off_m > Reach_m(t_s - rivals_[i].seen_s) || off_m >= least_m) continue;
+        least_m = off_m;
+        rival = i;
+        tag = k;
+      }
+    }
+    if (!std::isfinite(least_m)) break;
+    seen.push_back({rivals_[rival].first_in_map, seen_in_map[tag], t_s});
+    rivals_.erase(rivals_.begin() + static_cast<std::ptrdiff_t>(rival));
+    seen_in_map.erase(seen_in_map.begin() + static_cast<std::ptrdiff_t>(tag));
   }
-  if (nearest) {
-    nearest->p_in_map = p_in_map;
-    nearest->seen_s = t_s;
-  } else {
-    rivals_.push_back({p_in_map, p_in_map, t_s});
-  }
-}
-
-void RobotChoice::NoteRivals(double t_s, const std::vector<Eigen::Vector3d>& p_in_map,
-                             std::size_t robot) {
-  for (std::size_t i = 0; i < p_in_map.size(); ++i) {
-    if (i != robot) AddRival(t_s, p_in_map[i]);
-  }
+  for (const Eigen::Vector3d& p : seen_in_map) seen.push_back({p, p, t_s});
+  rivals_.insert(rivals_.end(), seen.begin(), seen.end());
 }
 
 /// The candidate in reach that is nearest; several in reach, and one out of reach, are in doubt.
@@ -115,10 +119,12 @@ RobotChoice::Verdict RobotChoice::Choose(double t_s, const std::vector<Eigen::Ve
   if (p_in_map.empty()) return {};
   const std::optional<std::size_t> robot = Best(t_s, p_in_map);
   if (!robot) {
-    for (const Eigen::Vector3d& p : p_in_map) AddRival(t_s, p);
+    NoteRivals(t_s, p_in_map);
     return {};
   }
-  NoteRivals(t_s, p_in_map, *robot);
+  std::vector<Eigen::Vector3d> others = p_in_map;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(*robot));
+  NoteRivals(t_s, std::move(others));
   robot_in_map_ = p_in_map[*robot];
   robot_s_ = t_s;
   if (!is_whole) return {robot, IsInDoubt()};

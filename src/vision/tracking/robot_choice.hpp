@@ -40,8 +40,7 @@ class RobotChoice {
   double Reach_m(double since_s) const;
   bool IsRival(const Eigen::Vector3d& p_in_map) const;
   std::optional<std::size_t> Best(double t_s, const std::vector<Eigen::Vector3d>& p_in_map);
-  void NoteRivals(double t_s, const std::vector<Eigen::Vector3d>& p_in_map, std::size_t robot);
-  void AddRival(double t_s, const Eigen::Vector3d& p_in_map);
+  void NoteRivals(double t_s, std::vector<Eigen::Vector3d> seen_in_map);
   void Doubt(double t_s, const Eigen::Vector3d& robot_in_map);
   std::optional<std::size_t> Mover(double t_s, const std::vector<Eigen::Vector3d>& p_in_map);
   void Resolve(double t_s);

@@ -204,5 +204,21 @@ TEST_CASE("What is left of the robot may be a rival's place once it was away for
   }
 }
 
+TEST_CASE("A rival that is seen first beside another one has not driven there from its place") {
+  // The third tag comes into sight 12 cm from a rival at rest, in its reach, in either order.
+  for (const bool is_first : {true, false}) {
+    RobotChoice choice({});
+    choice.Choose(0.0, {At(0.0), At(0.7)}, true);
+    choice.Choose(0.3, {At(0.0), At(0.7)}, true);
+    Places seen{At(0.0), At(0.7), At(0.82)};
+    if (is_first) std::swap(seen[1], seen[2]);
+    for (const double t_s : {0.6, 0.9}) {
+      const auto verdict = choice.Choose(t_s, seen, true);
+      CHECK(verdict.robot == 0U);
+      CHECK(verdict.is_ambiguous);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rift::vision
