@@ -164,13 +164,13 @@ TrackResult TagTracker::FollowedTag::TrackInRegion(const Frame& frame, const Tag
 }
 
 void TagTracker::FollowedTag::AddFromPicture(PictureSearch& picture, Seen& seen) {
-  since_picture_ = 0;
-  seen.is_whole = true;
   const GreyPatch* patch = picture.Patch();
   if (patch == nullptr) {
     seen.miss = Miss::kDamagedFrame;
     return;
   }
+  since_picture_ = 0;
+  seen.is_whole = true;
   Add(picture.Find(NextDecimate()), *patch, TrackMode::kPicture, seen);
   if (!seen.sightings.empty()) searches_ = 0;
 }

@@ -335,5 +335,27 @@ TEST_CASE("A robot that should have left the picture is not looked for in it") {
   CHECK(gone.State() == TrackState::kPredicted);
 }
 
+TEST_CASE("A picture whose foot is damaged is none in which a second tag was looked for") {
+  const CameraModel camera = test::SmallCamera();
+  const SyntheticCameraOptions look{.noise_grey = 1.0};
+  Film both(camera, look, {.tags = {test::FloorTag(0, 0.15, -0.15)}}), alone(camera, look);
+  TagTracker tracker(camera, {.recheck_every = 100, .doubt_recheck_every = 3});
+  std::vector<int> tags;
+  for (int i = 0; i < 6; ++i) {
+    const auto robot = test::RobotAt(-0.1, 0.15, 0.0);
+    Frame frame = both.Next(robot, PixelFormat::kJpeg);
+    const Frame without = alone.Next(robot, PixelFormat::kJpeg);
+    // The robot is in the part that can be read; what is around it can not be searched.
+    if (i == 3) frame.bytes.resize(frame.bytes.size() * 3 / 4);
+    const TrackResult result = tracker.Track(i < 4 ? frame : without);
+    REQUIRE(result.sighting);
+    CHECK(result.sighting->mode == (i == 0 ? TrackMode::kPicture : TrackMode::kEdges));
+    CHECK(result.State() == TrackState::kAmbiguous);
+    tags.push_back(result.sighting->tags_of_this_id);
+  }
+  // It is made up for in the next one.
+  CHECK(tags == std::vector<int>{2, 2, 2, 2, 1, 1});
+}
+
 }  // namespace
 }  // namespace rift::vision
