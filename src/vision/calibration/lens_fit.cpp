@@ -125,11 +125,9 @@ LensFit FitEquidistant(const FitInput& input) {
   return fit;
 }
 
+/// A lens of which a camera file would be refused is none.
 bool IsPlausible(const LensFit& fit) {
-  const Eigen::Matrix3d& k = fit.camera.k;
-  const double longest_px = std::max(fit.camera.width_px, fit.camera.height_px);
-  return k.allFinite() && k(0, 0) > 0.1 * longest_px && k(0, 0) < 100.0 * longest_px &&
-         k(1, 1) > 0.1 * longest_px && std::isfinite(fit.camera.rms_px);
+  return fit.camera.k.allFinite() && std::isfinite(fit.camera.rms_px) && !WhyNoLens(fit.camera);
 }
 
 /// Every corner of a bent board is an unknown: all of them and 24 views take a minute, these do

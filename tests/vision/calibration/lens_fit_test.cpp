@@ -167,6 +167,41 @@ TEST_CASE("The numbers of a lens are named and known as well as the corners' sca
   }
 }
 
+TEST_CASE("Of few corners the scatter is told from what the unknowns have left of it") {
+  const Lens lens = GENERATE(Lens::kPlumbBob, Lens::kEquidistant);
+  Experiment truth{.camera = WideCamera(), .board = {.columns = 5, .rows = 4, .square_m = 0.06}};
+  truth.camera.lens = lens;
+  if (lens == Lens::kEquidistant) truth.camera.distortion = {0.02, -0.01, 0.004, -0.001};
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (int i = 0; i < 5; ++i) {
+    truth.poses.push_back({{0.6 * u(random), 0.6 * u(random), 0.4 * u(random), 0.1 * u(random),
+                            0.05 * u(random), 0.3 + 0.05 * u(random)}});
+  }
+  std::normal_distribution<double> scatter(0.0, 0.01);
+  std::vector<BoardView> views;
+  for (const Posed& pose : truth.poses) {
+    BoardView& view = views.emplace_back(BoardView{.width_px = 1920, .height_px = 1080});
+    view.corners = PixelsFromPoints(truth.camera, pose.Points(truth.board));
+    for (Eigen::Vector2d& p : view.corners) p += Eigen::Vector2d(scatter(random), scatter(random));
+  }
+  const auto fit = FitLens(InputOf(views, truth.board), lens);
+  REQUIRE(fit);
+  double squares = 0.0;
+  for (const auto& of_view : fit->residuals_px) {
+    for (const Eigen::Vector2d& residual : of_view) squares += residual.squaredNorm();
+  }
+  // Of 100 corners; OpenCV takes each for one number, cv::fisheye's scatter is ours.
+  const double numbers = lens == Lens::kPlumbBob ? 100.0 : 200.0;
+  const double unknowns = 5.0 * 6.0 + static_cast<double>(fit->parameters.size());
+  const std::vector<double> of_one_px = truth.Deviations(1.0);
+  for (std::size_t i = 0; i < fit->parameters.size(); ++i) {
+    INFO(fit->parameters[i].name);
+    CHECK(fit->parameters[i].deviation ==
+          Approx(std::sqrt(squares / (numbers - unknowns)) * of_one_px[i]).epsilon(0.015));
+  }
+}
+
 TEST_CASE("Views that no camera sees are no fit") {
   const Board board{.columns = 5, .rows = 4, .square_m = 0.04};
   std::vector<BoardView> views(4, BoardView{.width_px = 640, .height_px = 480});
@@ -175,6 +210,31 @@ TEST_CASE("Views that no camera sees are no fit") {
   }
   CHECK_FALSE(FitLens(InputOf(views, board), Lens::kPlumbBob));
   CHECK_FALSE(FitLens(InputOf(views, board), Lens::kEquidistant));
+}
+
+TEST_CASE("A lens whose file would be refused for either focal length is no fit") {
+  const Board board{.columns = 6, .rows = 5, .square_m = 0.04};
+  const auto is_fit = [&](double fx, double fy) {
+    CameraModel truth{.width_px = 640, .height_px = 480};
+    truth.k << fx, 0.0, 320.0, 0.0, fy, 240.0, 0.0, 0.0, 1.0;
+    truth.distortion.assign(4, 0.0);
+    std::vector<BoardView> views;
+    for (const auto& [tilt, lean] : {std::pair{0.5, 0.1}, {-0.5, 0.2}, {0.1, 0.5}, {-0.2, -0.5}}) {
+      // About its middle some 300 px wide.
+      const Posed pose{{tilt, lean, 0.1, 0.0, 0.0, 0.2 * fx / 300.0}};
+      BoardView& view = views.emplace_back(BoardView{.width_px = 640, .height_px = 480});
+      view.corners = PixelsFromPoints(truth, pose.Points(board));
+    }
+    const bool is_found = FitLens(InputOf(views, board), Lens::kPlumbBob).has_value();
+    CHECK(is_found == !WhyNoLens(truth));
+    return is_found;
+  };
+  CHECK(is_fit(66.0, 66.0));
+  CHECK_FALSE(is_fit(62.0, 66.0));
+  CHECK_FALSE(is_fit(66.0, 62.0));
+  CHECK(is_fit(60e3, 60e3));
+  CHECK_FALSE(is_fit(70e3, 60e3));
+  CHECK_FALSE(is_fit(60e3, 70e3));
 }
 
 TEST_CASE("A board that bends is measured with how far its corners leave their plane") {
@@ -188,6 +248,14 @@ TEST_CASE("A board that bends is measured with how far its corners leave their p
   REQUIRE(flat);
   CHECK(flat->camera.rms_px > 0.1);
   CHECK(fit.flat_px == Approx(flat->camera.rms_px).epsilon(0.01));
+}
+
+TEST_CASE("A board of few columns bends as far as one of many") {
+  const Board board{.columns = 5, .rows = 4, .square_m = 0.06};
+  const auto views = Views(WideCamera(), board, 8, 6, {.corner_px = 0.0, .bend_m = 0.004});
+  const BentFit fit = FitBentBoard(InputOf(views, board));
+  CHECK(fit.bend_m == Approx(0.004).epsilon(0.01));
+  CHECK(fit.rms_px < 0.01);
 }
 
 TEST_CASE("Of many views and corners every part is still looked at, their ends among them") {
@@ -244,6 +312,13 @@ TEST_CASE("Two lenses differ on the floor by what no other height takes away") {
   }
   CHECK(FloorDifference_m(a, b, 0.8) == Approx(0.8 * std::sqrt(squares)).epsilon(1e-3));
   CHECK(FloorDifference_m(a, b, 0.4) == Approx(0.4 * std::sqrt(squares)).epsilon(1e-3));
+  // Turned by a hundredth of a radian one sees the floor elsewhere; another pose takes that away.
+  b = a;
+  for (const auto& [x_px, y_px] : {std::pair{5.0, 0.0}, {-5.0, 0.0}, {0.0, 5.0}, {4.0, -3.0}}) {
+    b.k(0, 2) = a.k(0, 2) + x_px;
+    b.k(1, 2) = a.k(1, 2) + y_px;
+    CHECK(FloorDifference_m(a, b, 0.8) < 0.2 * 0.01 * 0.8);
+  }
   b.k(0, 0) = std::nan("");
   CHECK(std::isnan(FloorDifference_m(a, b, 0.8)));
 }
