@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "rift/vision/tracking/tag_detector.hpp"
@@ -70,7 +71,8 @@ std::string TagSheet(int id, double size_m, TagFamily family) {
   const double cell_mm = 1e3 * size_m / tag.shape.square;
   const double side_mm = count * cell_mm;
   const Paper paper = PaperFor(side_mm, side_mm, "a tag with its border");
-  const double left_mm = 0.5 * (paper.width_mm - side_mm), top_mm = 30.0;
+  const double left_mm = 0.5 * (paper.width_mm - side_mm);
+  const double top_mm = std::min(30.0, paper.height_mm - kMargin_mm - kCaption_mm - side_mm);
   std::string svg;
   for (int row = 0; row < count; ++row) {
     for (int column = 0; column < count;) {

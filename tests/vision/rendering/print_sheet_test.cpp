@@ -128,5 +128,23 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("A tag that fills its sheet ends above the caption") {
+  // Ten cells for eight: A4 has 194 mm for them, A3 on its side 267 mm.
+  const auto foot_mm = [](double size_m, const std::string& paper) {
+    const std::string svg = TagSheet(0, size_m);
+    CHECK_THAT(svg, Catch::Contains(paper));
+    std::smatch outline;
+    REQUIRE(std::regex_search(
+        svg, outline, std::regex("M([0-9.]+) ([0-9.]+)h([0-9.]+)v[^\"]*\" stroke=\"#999\"")));
+    CHECK(std::stod(outline[3]) == Approx(1250.0 * size_m));
+    CHECK(std::stod(outline[2]) >= 8.0);
+    return std::stod(outline[2]) + std::stod(outline[3]);
+  };
+  CHECK(foot_mm(0.155, "width=\"210mm\"") == Approx(30.0 + 193.75));
+  CHECK(foot_mm(0.18, "width=\"420mm\"") == Approx(30.0 + 225.0));
+  for (const double size_m : {0.2, 0.2136})
+    CHECK(foot_mm(size_m, "width=\"420mm\"") <= 297.0 - 8.0 - 14.0);
+}
+
 }  // namespace
 }  // namespace rift::vision
