@@ -100,6 +100,7 @@ ErrorModel ErrorModel::OfSimulatedLogs(const Eigen::VectorXd& shares, int repeat
       simulator_.LogsAt(logs_, ValuesAt(parameters_, shares), repeat);
   for (size_t i = 0; i < logs_.size(); ++i) {
     logs.push_back({logs_[i].name, logs_[i].setting, std::move(runs[i])});
+    if (logs_[i].began_s) logs.back().began_s = 0.0;  // a simulated clock begins with the trial
   }
   ErrorModel model(parameters_, std::move(logs), simulator_, options_, shares);
   model.traits_.scatter = traits_.scatter;

@@ -1,0 +1,163 @@
+// rift's own simulator as a fit sees it: traits of whole runs, logs that it makes itself, and when
+// the trials of both began.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "rift/gap/likeness.hpp"
+#include "rift/sweep/calibrate/error_structure.hpp"
+#include "rift/trial/loop_delay.hpp"
+#include "sweep/calibrate/fitted_simulator.hpp"
+#include "sweep/calibrate/model.hpp"
+
+namespace rift::sweep {
+namespace {
+
+using trajectory::Trajectory;
+
+/// A way with a turn.
+SimulatedTrial Turn() {
+  return {.task =
+              std::vector<control::Waypoint>{
+                  {.name = "a"}, {.name = "b", .x_m = 0.4}, {.name = "c", .x_m = 0.5, .y_m = 0.3}},
+          .seed = 11};
+}
+
+TEST_CASE("Traits are the mean weave, speed, lag and gain of the runs that arrive, and of a log") {
+  SimulatedTrial twin = Turn();
+  const TwinAt twin_at = [&twin](size_t log, const std::vector<double>&) {
+    SimulatedTrial one = twin;
+    if (log == 1) one.control.heading.p *= 0.5;
+    return one;
+  };
+  SimulatedTwins simulator(twin_at, 1);
+  const auto expected = [](const Trajectory& path, const SimulatedTrial& of) {
+    const gap::PathTraits shape = gap::TraitsOf(path, {});
+    const trial::LoopDelay delay = trial::EstimateLoopDelay(path, of.task.waypoints, of.control);
+    return Eigen::Vector4d(std::log(shape.weave_m), std::log(shape.speed_mps), delay.lag_s,
+                           delay.gain_rad_s);
+  };
+  const Trajectory log = Simulate(twin).result.trajectory;
+  Eigen::Vector4d mean = Eigen::Vector4d::Zero();
+  for (const std::uint64_t run : {0, 1, 2}) {
+    SimulatedTrial one = twin;
+    one.seed += run;
+    mean += expected(Simulate(one).result.trajectory, one) / 3.0;
+  }
+  const std::vector<CalibrationLog> logs{{.name = "1", .log = log}};
+  CalibrationOptions options;
+  options.horizon.phases = 1;
+  options.runs = 3;
+  const LogPrediction predicted = simulator.Predict(logs, {}, options)[0];
+  REQUIRE(predicted.mean_traits);
+  for (const Trait k : {kLogWeave, kLogSpeed, kLoopDelay_s, kSteeringGain}) {
+    CHECK((*predicted.mean_traits)[k] == Approx(mean[k]));
+  }
+  for (const size_t of_log : {0, 1}) {
+    const Traits traits = simulator.TraitsOf(log, of_log, {});
+    REQUIRE(traits);
+    const Eigen::Vector4d its_own = expected(log, twin_at(of_log, {}));
+    for (const Trait k : {kLogWeave, kLogSpeed, kLoopDelay_s, kSteeringGain}) {
+      CHECK((*traits)[k] == Approx(its_own[k]));
+    }
+  }
+
+  twin.trial.timeout_s = 1.0;  // none of them arrives
+  const LogPrediction none = simulator.Predict(logs, {}, options)[0];
+  CHECK(none.runs.empty());
+  CHECK_FALSE(none.mean_traits);
+  CHECK(none.motions.size() == predicted.motions.size());  // a replay goes on to the log's end
+}
+
+TEST_CASE("A simulated log that would be longer than its own may be is driven again") {
+  const TwinAt twin = [](size_t log, const std::vector<double>&) {
+    SimulatedTrial one = Turn();
+    one.seed += log;
+    return one;
+  };
+  SimulatedTwins simulator(twin, 1);
+  std::vector<CalibrationLog> logs(2);
+  logs[1].longest_m = 0.1;  // no run is: the last of ten stands
+  const std::vector<Trajectory> made = simulator.LogsAt(logs, {}, 0);
+  for (const size_t log : {0, 1}) {
+    SimulatedTrial expected = twin(log, {});
+    expected.seed += log == 0 ? 20'000 : 20'000 + 9 * 1'000'000;
+    const Trajectory path = Simulate(expected).result.trajectory;
+    REQUIRE(made[log].poses.size() == path.poses.size());
+    CHECK(made[log].poses.back().x_m == path.poses.back().x_m);
+    CHECK(made[log].poses.back().t_s == path.poses.back().t_s);
+  }
+}
+
+/// Ahead and back by powers, by the clock of the trial, seen exactly by a camera without delay.
+SimulatedTrial Powers(size_t log) {
+  control::ProgramOptions powers;
+  for (const double to_m : {0.3, -0.3}) powers.segments.push_back({.straight_m = to_m});
+  SimulatedTrial trial{.task = control::Program(powers, {}, {}), .seed = 5 + log};
+  trial.trial.settle_s = 0.3;
+  simulation::MocapOptions& mocap = trial.simulation.mocap;
+  mocap.noise_across_m = mocap.noise_along_m = mocap.noise_yaw_rad = 0.0;
+  mocap.blur_across_s = mocap.stamp_jitter_s = mocap.blur_yaw_rad_per_mps = 0.0;
+  trial.simulation.link.poll_s = 0.0;  // a listener whose phase nobody knows
+  return trial;
+}
+
+/// Three drives by powers on a clock whose trial began at 100 s, `is_known` or not.
+std::vector<CalibrationLog> PowerLogs(bool is_known) {
+  std::vector<CalibrationLog> logs;
+  for (const size_t i : {0, 1, 2}) {
+    CalibrationLog& one = logs.emplace_back();
+    one.name = one.setting = std::to_string(i);
+    one.log = Simulate(Powers(i)).result.trajectory;
+    for (auto& pose : one.log.poses) pose.t_s += 100.0;
+    if (is_known) one.began_s = 100.0;
+  }
+  return logs;
+}
+
+constexpr ShortHorizonOptions kHorizon{.most_frames = 3, .phases = 1, .moved_m = 0.02};
+
+TEST_CASE("Powers are replayed from when their trial began, where that is known") {
+  const TwinAt twin = [](size_t log, const std::vector<double>&) { return Powers(log); };
+  SimulatedTwins simulator(twin, 1);
+  CalibrationOptions options;
+  options.horizon = kHorizon;
+  options.runs = 0;
+  const auto predicted = [&](bool is_known) {
+    return simulator.Predict(PowerLogs(is_known), {}, options);
+  };
+  const std::vector<LogPrediction> known = predicted(true), unknown = predicted(false);
+  for (const size_t i : {0, 1, 2}) {
+    CHECK(known[i].motions.cwiseAbs().maxCoeff() < 1e-3);
+    CHECK(unknown[i].motions.norm() > 3.0 * known[i].motions.norm());
+  }
+  const auto ahead_m = [&](bool is_known) {
+    return StructureOfErrors(PowerLogs(is_known), twin, {}, kHorizon).ahead_m;
+  };
+  CHECK(ahead_m(true) < 5e-4);
+  CHECK(ahead_m(false) > 3.0 * ahead_m(true));
+}
+
+TEST_CASE("Simulated logs of powers have begun when their own trial did") {
+  const TwinAt twin = [](size_t log, const std::vector<double>&) { return Powers(log); };
+  SimulatedTwins simulator(twin, 1);
+  CalibrationOptions options;
+  options.horizon = kHorizon;
+  options.runs = 0;
+  const std::vector<experiment::FreeParameter> parameters{{.key = "a", .max = 1.0}};
+  const Eigen::VectorXd shares = Eigen::VectorXd::Constant(1, 0.5);
+  const auto errors = [&](bool is_known) {
+    const ErrorModel real(parameters, PowerLogs(is_known), simulator, options, shares);
+    double sum = 0.0;
+    for (const LogErrors& one : real.OfSimulatedLogs(shares, 0).RawErrorsAt(shares)) {
+      sum += one.motions.norm();
+    }
+    return sum;
+  };
+  // Of logs whose beginning nobody knows the simulated ones count from their first picture as well.
+  CHECK(errors(false) > 3.0 * errors(true));
+}
+
+}  // namespace
+}  // namespace rift::sweep
