@@ -111,6 +111,32 @@ TEST_CASE("The corners of a large picture are found to a tenth of its own pixels
   }
 }
 
+TEST_CASE("The corners of small squares are not drawn to those beside them") {
+  // Squares of 10 px, seen obliquely, so that the corners around one are not alike on all sides.
+  const cv::Mat1b sheet = Drawn();
+  const std::vector<cv::Point2f> from{{0.F, 0.F}, {399.F, 0.F}, {399.F, 319.F}, {0.F, 319.F}},
+      to{{20.F, 30.F}, {118.F, 20.F}, {124.F, 104.F}, {30.F, 96.F}};
+  const cv::Mat turn = cv::getPerspectiveTransform(from, to);
+  cv::Mat large, picture;
+  const cv::Mat four = (cv::Mat_<double>(3, 3) << 4.0, 0.0, 1.5, 0.0, 4.0, 1.5, 0.0, 0.0, 1.0);
+  cv::warpPerspective(sheet, large, four * turn, {640, 480}, cv::INTER_LINEAR, cv::BORDER_CONSTANT,
+                      255);
+  cv::resize(large, picture, {160, 120}, 0.0, 0.0, cv::INTER_AREA);
+  const BoardView view = FindBoard(FrameOf(picture), kBoard, "it");
+  REQUIRE(view.corners.size() == 35);
+  std::vector<cv::Point2f> corners, expected;
+  for (int i = 0; i < 35; ++i) {
+    corners.emplace_back(static_cast<float>((2 + i % 7) * kSquare_px) - 0.5F,
+                         static_cast<float>((2 + i / 7) * kSquare_px) - 0.5F);
+  }
+  cv::perspectiveTransform(corners, expected, turn);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < 35; ++i) {
+    squares += (view.corners[i] - Eigen::Vector2d(expected[i].x, expected[i].y)).squaredNorm() / 35;
+  }
+  CHECK(std::sqrt(squares) < 0.3);
+}
+
 TEST_CASE("What is drawn over a board in colour is its share of the board's pixels") {
   cv::Mat picture;
   cv::cvtColor(Drawn(), picture, cv::COLOR_GRAY2BGR);
@@ -207,6 +233,8 @@ TEST_CASE("A board has 3 to 100 inner corners both ways and squares of up to ten
   CHECK_THROWS_WITH((Board{9, 6, 0.0}.Check()), Contains("above 0"));
   CHECK_THROWS_WITH((Board{9, 6, -1.0}.Check()), Contains("squares of -1 m"));
   CHECK_THROWS((Board{9, 6, std::nan("")}.Check()));
+  CHECK_THROWS_WITH(FindBoard(FrameOf(Drawn()), {2, 9, 0.025}, "it"), Contains("3 to 100"));
+  CHECK_THROWS_WITH(FindBoard(FrameOf(Drawn()), {7, 5, 0.0}, "it"), Contains("squares of 0 m"));
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
 #include "rift/vision/calibration/live_views.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <deque>
+#include <opencv2/imgproc.hpp>
 #include <thread>
 
 #include "rift/vision/rendering/synthetic_camera.hpp"
@@ -194,6 +197,69 @@ TEST_CASE("A camera that stays frozen ends the gathering with its reason") {
   CHECK(said.back() == "camera frozen: no picture for 3.0 s");
 }
 
+using Corners = std::array<Eigen::Vector2d, 4>;
+
+/// The board as it is printed, its outermost inner corners there in the picture.
+Frame Drawn(const Corners& outline) {
+  constexpr int kSquare_px = 15;
+  cv::Mat1b sheet(8 * kSquare_px, 10 * kSquare_px, std::uint8_t{255});
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row % 2; column < 8; column += 2) {
+      sheet(cv::Rect((column + 1) * kSquare_px, (row + 1) * kSquare_px, kSquare_px, kSquare_px))
+          .setTo(0);
+    }
+  }
+  std::vector<cv::Point2f> from, to;
+  for (int i = 0; i < 4; ++i) {
+    const int column = i == 1 || i == 2 ? 8 : 2, row = i >= 2 ? 6 : 2;
+    from.emplace_back(kSquare_px * static_cast<float>(column) - 0.5F,
+                      kSquare_px * static_cast<float>(row) - 0.5F);
+    to.emplace_back(outline[i].cast<float>().x(), outline[i].cast<float>().y());
+  }
+  cv::Mat picture;
+  cv::warpPerspective(sheet, picture, cv::getPerspectiveTransform(from, to), {320, 240},
+                      cv::INTER_LINEAR, cv::BORDER_CONSTANT, 255);
+  Frame frame{.width_px = 320, .height_px = 240, .format = PixelFormat::kGrey};
+  frame.bytes.assign(picture.datastart, picture.dataend);
+  return frame;
+}
+
+TEST_CASE("A view is unlike another by its place in x and y, its size and its skew together") {
+  // Of the last two places one is like the first.
+  const std::vector<ViewPlace> places{
+      {0.5, 0.5, 0.3, 0.0}, {0.77, 0.5, 0.3, 0.0},  {0.5, 0.77, 0.3, 0.0}, {0.5, 0.5, 0.53, 0.0},
+      {0.5, 0.5, 0.3, 0.6}, {0.43, 0.57, 0.3, 0.0}, {0.37, 0.37, 0.3, 0.0}};
+  std::vector<Frame> pictures;
+  for (const ViewPlace& place : places) {
+    pictures.push_back(Drawn(OutlineAt(place, kBoard, 320, 240)));
+  }
+  // Of a recording each picture is searched, and none has to be held still.
+  ScriptedCapture capture(pictures, true);
+  const auto views = ViewsFromCamera(
+      capture, kBoard, {}, {.is_stopped = [] { return false; }, .say = [](const std::string&) {}});
+  CHECK(Names(views) == std::vector<std::string>{"frame000000", "frame000001", "frame000002",
+                                                 "frame000003", "frame000004", "frame000006"});
+}
+
+TEST_CASE("A board is held still that moves by less than 4 px in a tenth of a second, anywhere") {
+  Corners outline = OutlineAt({0.5, 0.5, 0.4, 0.0}, kBoard, 320, 240);
+  std::vector<Frame> pictures{Drawn(outline)};
+  const auto move = [&](double x_px, double y_px, double turn_rad) {
+    const Eigen::Vector2d middle = 0.5 * (outline[0] + outline[2]);
+    for (Eigen::Vector2d& corner : outline) {
+      corner =
+          middle + Eigen::Rotation2Dd(turn_rad) * (corner - middle) + Eigen::Vector2d(x_px, y_px);
+    }
+    pictures.push_back(Drawn(outline));
+  };
+  move(-3.2, 3.2, 0.0);
+  move(0.0, 0.0, 0.06);  // its middle rests, and its corners, 82 px from there, move by 4.9 px
+  move(2.5, -2.5, 0.0);
+  const Gathered gathered = Gather(pictures);
+  CHECK(gathered.advised == std::vector<std::string>{"hold the board still", "hold the board still",
+                                                     "hold the board still", "view 1 is taken"});
+}
+
 /// A camera before which the board is held where it was asked for last, and still.
 class ObedientCapture : public Capture {
  public:
@@ -246,7 +312,9 @@ TEST_CASE("Who follows the advice alone covers everything in a few views and cal
   ObedientCapture capture;
   std::string searched;
   int asked = 0;
-  LiveListener listener{.is_stopped = [&] { return asked > 100; }, .say = [](const auto&) {}};
+  std::vector<std::string> said;
+  LiveListener listener{.is_stopped = [&] { return asked > 100; },
+                        .say = [&](const std::string& line) { said.push_back(line); }};
   listener.show = [&](const LiveScene& scene) {
     if (scene.searched == nullptr || scene.searched->name == searched) return LiveInput{};
     searched = scene.searched->name;
@@ -260,6 +328,16 @@ TEST_CASE("Who follows the advice alone covers everything in a few views and cal
              << (calibration.reasons.empty() ? "" : calibration.reasons.front()));
   CHECK(views.size() == 10);
   CHECK(asked < 60);
+  // Once all is covered the number is counted down that is missing to ten.
+  int counted = 0;
+  for (std::size_t view = 1; view < 10; ++view) {
+    if (!Contains("; everything is covered").match(said[view])) continue;
+    CHECK_THAT(said[view], Contains(fmt::format("view {}: ", view)) &&
+                               Contains(fmt::format("; {} more, unlike the others", 10 - view)));
+    ++counted;
+  }
+  CHECK(counted > 0);
+  CHECK_THAT(said.back(), Catch::Matchers::EndsWith("; everything is covered"));
   CHECK(calibration.next.text.empty());
   CHECK(calibration.verdict == CalibrationVerdict::kGood);
   CHECK(calibration.camera.k(0, 0) == Approx(610.0).epsilon(0.01));

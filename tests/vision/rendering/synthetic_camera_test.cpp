@@ -254,5 +254,93 @@ TEST_CASE("A picture of no size is refused with it") {
   CHECK_THROWS_WITH(SyntheticCamera(camera, {}), Catch::Contains("640 x 0"));
 }
 
+/// The robot's heading as its corners in the picture say.
+double SeenHeading_rad(const CameraModel& camera, const SyntheticCameraOptions& options,
+                       const RobotMotion& robot, double at_s) {
+  std::mt19937_64 generator(1);
+  SyntheticCamera renderer(camera, options);
+  const auto picture = PictureReader().Read(renderer.Render(robot, PixelFormat::kGrey, generator));
+  RobotMotion then = robot;
+  then.world_from_tag.linear() =
+      Eigen::AngleAxisd(robot.yaw_rate_radps * at_s, Eigen::Vector3d::UnitZ()) *
+      robot.world_from_tag.linear();
+  then.world_from_tag.translation() += robot.velocity_mps * at_s;
+  const auto square = FitSquare(camera, *picture, test::TrueCorners(camera, then),
+                                ShapeOf(TagFamily::k36h11), 30.0, {});
+  REQUIRE(square);
+  const Eigen::Vector2d along =
+      square->pixels[1] - square->pixels[0] + square->pixels[2] - square->pixels[3];
+  return std::atan2(-along.y(), along.x());
+}
+
+TEST_CASE(
+    "A rolling shutter sees a turning robot later in the lower half and sooner in the upper") {
+  const CameraModel camera = test::SmallCamera();
+  SyntheticCameraOptions rolling = Clean();
+  rolling.readout_s = 0.04;
+  for (const double yaw_rate_radps : {3.0, -3.0}) {
+    for (const double y_m : {-0.15, 0.0, 0.15}) {
+      RobotMotion robot = test::RobotAt(0.0, y_m, 0.2);
+      robot.yaw_rate_radps = yaw_rate_radps;
+      // In row 239.5 - 610 y / 0.57 of 480.
+      const double at_s = 0.04 * ((240.0 - 610.0 * y_m / 0.57) / 480.0 - 0.5);
+      CHECK(SeenHeading_rad(camera, rolling, robot, at_s) ==
+            Approx(0.2 + yaw_rate_radps * at_s).margin(0.004));
+    }
+  }
+}
+
+TEST_CASE("A robot that drives through the middle of a rolling picture is where its pose says") {
+  const CameraModel camera = test::SmallCamera();
+  SyntheticCameraOptions rolling = Clean();
+  rolling.readout_s = 0.03;
+  RobotMotion robot = test::RobotAt(0.0, 0.0, 0.0);
+  robot.velocity_mps = {1.0, 0.0, 0.0};
+  const std::array<double, 2> moved = EdgeColumns(camera, rolling, robot);
+  CHECK(0.5 * (moved[0] + moved[1]) == Approx(319.5).margin(0.2));
+}
+
+TEST_CASE("A robot that was elsewhere when its rows were read is drawn whole") {
+  // At 2 m/s it is 6 cm from its place at either end of a readout of 60 ms.
+  const CameraModel camera = test::SmallCamera();
+  SyntheticCameraOptions rolling = Clean();
+  rolling.readout_s = 0.06;
+  for (const double sign : {-1.0, 1.0}) {
+    RobotMotion robot = test::RobotAt(0.0, sign * 0.17, 0.0);
+    robot.velocity_mps = {2.0, 0.0, 0.0};
+    const cv::Mat1b picture = Greys(camera, rolling, robot);
+    const int row = static_cast<int>(std::lround(239.5 - sign * 610.0 * 0.17 / 0.57));
+    // About 320 + 610 / 0.57 * 2 * 0.06 * (row / 480 - 0.5) px its disc reaches 52 px to each side.
+    const double middle_px = 319.5 + 610.0 / 0.57 * 0.12 * ((row + 0.5) / 480.0 - 0.5);
+    for (const double off_px : {-46.0, 46.0}) {
+      CHECK(picture(row, static_cast<int>(std::lround(middle_px + off_px))) < 100);
+    }
+    for (const double off_px : {-58.0, 58.0}) {
+      CHECK(picture(row, static_cast<int>(std::lround(middle_px + off_px))) > 140);
+    }
+  }
+}
+
+TEST_CASE("An open shutter smears a robot that turns in its place") {
+  const CameraModel camera = test::SmallCamera();
+  RobotMotion robot = test::RobotAt(0.0, 0.0, 0.3);
+  robot.yaw_rate_radps = 10.0;
+  SyntheticCameraOptions open = Clean();
+  open.shutter_s = 0.02;
+  const cv::Mat1b sharp = Greys(camera, Clean(), robot), smeared = Greys(camera, open, robot);
+  // The corners of the square go 0.1 rad to each side of where they are in its middle: 3.6 px.
+  cv::Mat1b at_begin, at_end;
+  robot.world_from_tag.linear() = test::RobotAt(0.0, 0.0, 0.2).world_from_tag.linear();
+  at_begin = Greys(camera, Clean(), robot);
+  robot.world_from_tag.linear() = test::RobotAt(0.0, 0.0, 0.4).world_from_tag.linear();
+  at_end = Greys(camera, Clean(), robot);
+  const double to_begin = cv::norm(smeared, at_begin, cv::NORM_L1),
+               to_end = cv::norm(smeared, at_end, cv::NORM_L1),
+               to_middle = cv::norm(smeared, sharp, cv::NORM_L1);
+  CHECK(to_middle > 0.08 * cv::norm(at_begin, at_end, cv::NORM_L1));
+  CHECK(to_middle < 0.8 * to_begin);
+  CHECK(to_begin == Approx(to_end).epsilon(0.2));
+}
+
 }  // namespace
 }  // namespace rift::vision

@@ -197,5 +197,120 @@ TEST_CASE("A lens that throws corners far out of the picture gives no square, an
   CHECK_FALSE(fit(shot.camera, far));
 }
 
+/// A tag of so many pixels below the camera, without noise, and where its corners are.
+struct Small {
+  explicit Small(double side_px, double yaw_rad = 0.3, double lean_rad = 0.0)
+      : robot(test::RobotAt(0.021, 0.013, yaw_rad)) {
+    robot.world_from_tag.linear() *=
+        Eigen::AngleAxisd(lean_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    SyntheticCameraOptions look{.grain_grey = 0.0, .falloff = 0.0, .noise_grey = 0.0};
+    size_m = look.tag_size_m = side_px * 0.57 / 610.0;
+    std::mt19937_64 random(1);
+    patch = *PictureReader().Read(
+        SyntheticCamera(camera, look).Render(robot, PixelFormat::kGrey, random));
+    corners = test::TrueCorners(camera, robot, size_m);
+  }
+  std::optional<FittedSquare> Fit(const Eigen::Vector2d& off_px = {0.0, 0.0}) const {
+    TagCorners guess = corners;
+    for (Eigen::Vector2d& corner : guess) corner += off_px;
+    return FitSquare(camera, patch, guess, ShapeOf(TagFamily::k36h11), 30.0, {});
+  }
+
+  CameraModel camera = test::SmallCamera();
+  RobotMotion robot;
+  double size_m = 0.0;
+  GreyPatch patch;
+  TagCorners corners;
+};
+
+TEST_CASE("A square whose cells have fewer than two pixels is not measured") {
+  CHECK(Small(17.5).Fit());
+  CHECK_FALSE(Small(15.7).Fit());
+}
+
+TEST_CASE("A guess that is off by less than half a cell to any side leads to the corners") {
+  const Small tag(48.0);  // cells of 6 px
+  for (const Eigen::Vector2d& off_px :
+       {Eigen::Vector2d(2.8, 0.0), {-2.8, 0.0}, {0.0, 2.8}, {0.0, -2.8}, {2.0, -2.0}}) {
+    INFO(off_px.transpose());
+    const auto square = tag.Fit(off_px);
+    REQUIRE(square);
+    for (int i = 0; i < 4; ++i) CHECK((square->pixels[i] - tag.corners[i]).norm() < 0.03);
+    CHECK(square->black_grey == Approx(28.0).margin(2.0));
+    CHECK(square->white_grey == Approx(215.0).margin(2.0));
+  }
+}
+
+TEST_CASE("The corners of a small tag are not all off together by where they were looked for") {
+  for (const double yaw_rad : {0.0, 0.3, 0.7}) {
+    const Small tag(27.0, yaw_rad);
+    const auto there = tag.Fit();
+    REQUIRE(there);
+    for (const Eigen::Vector2d& off_px : {Eigen::Vector2d(1.2, 0.0), {-1.2, 0.0}, {0.0, 1.2}}) {
+      const auto square = tag.Fit(off_px);
+      REQUIRE(square);
+      Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+      for (int i = 0; i < 4; ++i) mean += 0.25 * (square->pixels[i] - there->pixels[i]);
+      INFO(yaw_rad << " " << off_px.transpose() << ": " << mean.transpose());
+      CHECK(mean.norm() < 0.05);
+    }
+  }
+}
+
+TEST_CASE("The error of a square is the RMS distance of the points from its edges") {
+  // Edges that go to and fro by 0.3 px every six pixels.
+  constexpr double kLow = 20.0, kHigh = 100.0, kOff = 0.3;
+  const auto wave = [&](int at) { return at / 6 % 2 == 0 ? kOff : -kOff; };
+  const auto within = [](double pixel, double low, double high) {
+    return std::clamp(pixel + 0.5 - low, 0.0, 1.0) * std::clamp(high - pixel + 0.5, 0.0, 1.0);
+  };
+  GreyPatch patch{{0, 0, 120, 120}, {}};
+  for (int y = 0; y < 120; ++y) {
+    for (int x = 0; x < 120; ++x) {
+      const double black =
+          within(x, kLow + wave(y), kHigh + wave(y)) * within(y, kLow + wave(x), kHigh + wave(x));
+      patch.pixels.push_back(static_cast<std::uint8_t>(std::lround(220.0 - 200.0 * black)));
+    }
+  }
+  const TagCorners corners{{{kLow, kHigh}, {kHigh, kHigh}, {kHigh, kLow}, {kLow, kLow}}};
+  const auto square =
+      FitSquare(test::SmallCamera(), patch, corners, ShapeOf(TagFamily::k36h11), 30.0, {});
+  REQUIRE(square);
+  // Where it turns, a point lies between.
+  CHECK(square->rms_px > 0.8 * kOff);
+  CHECK(square->rms_px <= 1.01 * kOff);
+}
+
+TEST_CASE("The covariance of a pose is in the axes of the map, however the camera looks") {
+  Small tag(48.0);
+  // The world turned about the camera: what is seen stays the same.
+  const auto seen_with = [&](const Eigen::Matrix3d& turn) {
+    CameraModel camera = tag.camera;
+    camera.world->origin = kFirstPoseOrigin;  // no floor that it is held to
+    camera.world->world_from_camera =
+        Eigen::Isometry3d(Eigen::Matrix4d(Eigen::Affine3d(turn).matrix())) *
+        tag.camera.world->world_from_camera;
+    const auto seen = TagMeter(camera, {.size_m = tag.size_m})
+                          .Measure(tag.patch, tag.corners, CellsOfTag(0), TrackMode::kEdges, {});
+    REQUIRE(seen.sighting);
+    return *seen.sighting;
+  };
+  const Sighting plain = seen_with(Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()) *
+                                Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()))
+                                   .toRotationMatrix();
+  const Sighting turned = seen_with(turn);
+  for (const int first : {0, 3}) {
+    for (const int second : {0, 3}) {
+      const Eigen::Matrix3d expected =
+          turn * plain.covariance.block<3, 3>(first, second) * turn.transpose();
+      CHECK((turned.covariance.block<3, 3>(first, second) - expected).norm() <
+            1e-6 * expected.norm());
+    }
+  }
+  CHECK((turned.map_from_tag.translation() - turn * plain.map_from_tag.translation()).norm() <
+        1e-9);
+}
+
 }  // namespace
 }  // namespace rift::vision

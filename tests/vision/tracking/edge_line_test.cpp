@@ -55,6 +55,31 @@ TEST_CASE("Points beyond three sigma are left out, and those within are not") {
   CHECK((line->rms > 0.01) == (off_px < 0.3));
 }
 
+TEST_CASE("A point that is far off does not hide another one from being left out") {
+  Points points = Along({0.0, 0.0}, {20.0, 0.0}, 21, 0.05);
+  points[10].y() = 0.5;
+  points[20].y() = 3.0;  // the line through all leans towards it
+  const auto line = FitLine(points, 0.05);
+  REQUIRE(line);
+  CHECK(line->count == 19);
+  CHECK(line->rms < 0.06);
+}
+
+TEST_CASE("However much its points scatter, half of them at least are kept") {
+  // Four points of each size, to either side of the line at both ends: 4 px, 2.7 px and so on.
+  Points points{{0.0, 0.0}};
+  double off_px = 4.0;
+  for (int i = 1; i <= 20; ++i, off_px /= 1.5) {
+    for (const double x : {-1.0 * i, 1.0 * i}) {
+      for (const double y : {-off_px, off_px}) points.emplace_back(x, y);
+    }
+  }
+  const auto line = FitLine(points, 1e-6);
+  REQUIRE(line);
+  CHECK(line->count >= 41);
+  CHECK(line->count < 61);
+}
+
 TEST_CASE("A line wants four points") {
   CHECK_FALSE(FitLine(Along({0.0, 0.0}, {9.0, 0.0}, 3, 0.0), 0.1));
   CHECK(FitLine(Along({0.0, 0.0}, {9.0, 0.0}, 4, 0.0), 0.1));
@@ -126,6 +151,38 @@ TEST_CASE("The covariance of the corners is their scatter over many noisy edges"
       CHECK(std::abs(said(i, k) - expected(i, k)) < 0.1 * size);
     }
   }
+}
+
+TEST_CASE(
+    "A corner is known as well as the two lines that meet in it, from what their points say") {
+  // A square of 20 by 20 px with (0, 20) first, each side with its own number of points.
+  const std::array<Eigen::Vector2d, 4> corners{
+      {{0.0, 20.0}, {20.0, 20.0}, {20.0, 0.0}, {0.0, 0.0}}};
+  const std::array<int, 4> counts{5, 6, 7, 8};
+  std::array<EdgeLine, 4> sides;
+  for (int i = 0; i < 4; ++i) {
+    sides[i].normal = i % 2 == 0 ? Eigen::Vector2d(0.0, 1.0) : Eigen::Vector2d(1.0, 0.0);
+    sides[i].middle = 0.5 * (corners[i] + corners[(i + 1) % 4]);
+    sides[i].count = counts[i];
+    sides[i].length2 = 100.0 + 50.0 * i;
+    sides[i].rms = 0.1 * (i + 1);
+  }
+  const CornerCovariance said = CovarianceOf(sides, corners, {.cells = 8});
+  // One scatter of all points: each line takes two from what they could show.
+  const double point = (5 * 0.01 + 6 * 0.04 + 7 * 0.09 + 8 * 0.16) / (5 + 6 + 7 + 8 - 8);
+  for (int i = 0; i < 4; ++i) {
+    const int before = (i + 3) % 4;
+    const auto variance = [&](int side) {
+      return 1.5 * point * (1.0 / counts[side] + 100.0 / sides[side].length2);
+    };
+    const int level = i % 2 == 0 ? i : before, upright = i % 2 == 0 ? before : i;
+    CHECK(said(2 * i, 2 * i) == Approx(variance(upright)));
+    CHECK(said(2 * i + 1, 2 * i + 1) == Approx(variance(level)));
+    CHECK(said(2 * i, 2 * i + 1) == Approx(0.0).margin(1e-15));
+  }
+  // The ends of one side share its offset, and its turn takes them to opposite sides.
+  CHECK(said(1, 3) == Approx(1.5 * point * (1.0 / 5 - 100.0 / sides[0].length2)));
+  CHECK(said(0, 4) == Approx(0.0).margin(1e-15));
 }
 
 TEST_CASE("What does not scatter is added to each corner, and to all of them together") {

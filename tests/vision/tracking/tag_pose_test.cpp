@@ -167,6 +167,73 @@ TEST_CASE(
   }
 }
 
+/// Root of the mean squared distance in pixels between rays and the corners of that pose.
+double Misfit_px(const CameraModel& camera, const Eigen::Isometry3d& pose,
+                 const std::array<Eigen::Vector2d, 4>& rays) {
+  const auto at = TrueRays(pose);
+  double squares = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector2d off = at[i] - rays[i];
+    squares += std::pow(camera.k(0, 0) * off.x(), 2) + std::pow(camera.k(1, 1) * off.y(), 2);
+  }
+  return std::sqrt(squares / 4.0);
+}
+
+TEST_CASE("The error of a pose is the RMS distance of its corners, and no pose nearby has less") {
+  const CameraModel camera = test::PaperCamera();
+  const Eigen::Isometry3d truth = Leaning(0.5);
+  auto rays = TrueRays(truth);
+  rays[2] += Eigen::Vector2d(2.0 / camera.k(0, 0), -1.0 / camera.k(1, 1));
+  const auto poses = SolveTagPoses(camera, Measured(rays), 0.0475);
+  REQUIRE(poses);
+  const Eigen::Isometry3d& best = poses->best.camera_from_tag;
+  CHECK(poses->best.reprojection_px == Approx(Misfit_px(camera, best, rays)));
+  CHECK(poses->best.reprojection_px > 0.1);
+  if (poses->other) {
+    CHECK(poses->other->reprojection_px ==
+          Approx(Misfit_px(camera, poses->other->camera_from_tag, rays)));
+    CHECK(poses->other->reprojection_px >= poses->best.reprojection_px);
+  }
+  for (int i = 0; i < 6; ++i) {
+    for (const double step : {-1e-4, 1e-4}) {
+      Eigen::Isometry3d moved = best;
+      if (i < 3) moved.translation()[i] += step;
+      if (i >= 3)
+        moved.linear() = Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(i - 3)) * best.linear();
+      CHECK(Misfit_px(camera, moved, rays) > poses->best.reprojection_px);
+    }
+  }
+  CameraModel with_floor = camera;
+  const auto floor = FloorPriorOf(with_floor, {.height_m = 0.03});
+  const auto on_floor = PoseOnFloor(camera, Measured(rays), 0.0475, *floor, 0.1, best);
+  CHECK(on_floor.reprojection_px == Approx(Misfit_px(camera, on_floor.camera_from_tag, rays)));
+}
+
+TEST_CASE("Of two poses the first is the one that fits better, however little they differ") {
+  const CameraModel camera = test::PaperCamera();
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.3);
+  int pairs = 0;
+  for (int i = 0; i < 300; ++i) {
+    auto rays = TrueRays(Leaning(0.1 + 0.001 * i));
+    for (Eigen::Vector2d& ray : rays) {
+      ray += Eigen::Vector2d(noise(random) / camera.k(0, 0), noise(random) / camera.k(1, 1));
+    }
+    const auto poses = SolveTagPoses(camera, Measured(rays), 0.0475);
+    if (!poses || !poses->other) continue;
+    ++pairs;
+    CHECK(poses->best.reprojection_px <= poses->other->reprojection_px);
+  }
+  CHECK(pairs > 100);
+}
+
+TEST_CASE("Corners that run the other way round are a tag's back, which has no pose") {
+  const auto rays = TrueRays(Leaning(0.4));
+  CHECK(SolveTagPoses(test::PaperCamera(), Measured(rays), 0.0475));
+  const std::array<Eigen::Vector2d, 4> back{rays[1], rays[0], rays[3], rays[2]};
+  CHECK_FALSE(SolveTagPoses(test::PaperCamera(), Measured(back), 0.0475));
+}
+
 TEST_CASE("Of two poses the likelier weighs corners in lens errors against tilt in its own") {
   TagPoses poses;
   poses.best.reprojection_px = 0.1;

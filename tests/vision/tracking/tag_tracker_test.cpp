@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "rift/geometry/pose2.hpp"
+#include "support/mirror.hpp"
 #include "vision/rendered_tags.hpp"
 #include "vision/small_recording.hpp"
 
@@ -355,6 +356,67 @@ TEST_CASE("A picture whose foot is damaged is none in which a second tag was loo
   }
   // It is made up for in the next one.
   CHECK(tags == std::vector<int>{2, 2, 2, 2, 1, 1});
+}
+
+/// A tag of 32 px, which is not found where every eighth pixel is looked at, but in every fourth.
+const TagOptions kCoarse{.size_m = 0.03, .acquire_decimate = 8, .search_px = 4.0};
+const SyntheticCameraOptions kSmallTag{.tag_size_m = 0.03, .noise_grey = 1.0};
+
+TEST_CASE("Around its last place a tag is searched at full size, as far as it can have got") {
+  const CameraModel camera = test::SmallCamera();
+  Film film(camera, kSmallTag);
+  // Within a thirtieth of a second 0.05 m and 1.5 m/s make 0.1 m.
+  for (const auto& [x_m, y_m, is_in_reach] : {std::tuple{0.08, 0.0, true},
+                                              {-0.08, 0.0, true},
+                                              {0.0, 0.08, true},
+                                              {0.0, -0.08, true},
+                                              {0.16, 0.0, false},
+                                              {0.0, -0.16, false}}) {
+    INFO(x_m << " " << y_m);
+    TagTracker tracker(camera, kCoarse);
+    for (int i = 0; i < 2; ++i) {
+      CHECK(tracker.Track(film.Next(test::RobotAt(0.02, 0.01, 0.0))).sighting.has_value() ==
+            (i == 1));
+    }
+    const TrackResult moved = tracker.Track(film.Next(test::RobotAt(0.02 + x_m, 0.01 + y_m, 0.0)));
+    REQUIRE(moved.sighting.has_value() == is_in_reach);
+    if (!is_in_reach) continue;
+    CHECK(moved.sighting->mode == TrackMode::kRegion);
+    CHECK(moved.sighting->Planar().x_m == Approx(0.02 + x_m).margin(5e-4));
+    CHECK(moved.sighting->Planar().y_m == Approx(0.01 + y_m).margin(5e-4));
+  }
+  // After a third of a second it can have got farther.
+  TagTracker tracker(camera, kCoarse);
+  for (int i = 0; i < 2; ++i) tracker.Track(film.Next(test::RobotAt(-0.08, 0.0, 0.0)));
+  for (int i = 0; i < 9; ++i) CHECK_FALSE(tracker.Track(film.Next({})).sighting);
+  const TrackResult back = tracker.Track(film.Next(test::RobotAt(0.08, 0.0, 0.0)));
+  REQUIRE(back.sighting);
+  CHECK(back.sighting->mode == TrackMode::kRegion);
+}
+
+TEST_CASE(
+    "Of two tags near where one is expected the nearer is taken, of two at first the clearer") {
+  const CameraModel camera = test::SmallCamera();
+  test::OnBothSides("left", "right", [&](const test::Side& side) {
+    const double sign = side.IsFirst() ? -1.0 : 1.0;
+    const SyntheticCameraOptions look{.noise_grey = 1.0};
+    Film alone(camera, look), beside(camera, look, {.tags = {test::FloorTag(0, 0.09 * sign, 0.0)}});
+    TagTracker tracker(camera, {.region_margin = 2.0});
+    REQUIRE(tracker.Track(alone.Next(test::RobotAt(0.0, 0.0, 0.0))).sighting);
+    beside.Next({});
+    // Moved by more than half a cell of 6 mm its edges are not found.
+    const TrackResult moved = tracker.Track(beside.Next(test::RobotAt(0.0, 0.008, 0.3)));
+    REQUIRE(moved.sighting);
+    CHECK(moved.sighting->mode == TrackMode::kRegion);
+    CHECK(moved.sighting->Planar().x_m == Approx(0.0).margin(1e-3));
+
+    Film two(camera, look, {.tags = {test::FloorTag(0, 0.1 * sign, 0.0, 0.02)}});
+    TagTracker at_first(camera, {.acquire_decimate = 1});
+    const TrackResult clearer = at_first.Track(two.Next(test::RobotAt(-0.1 * sign, 0.0, 0.0)));
+    REQUIRE(clearer.sighting);
+    CHECK(clearer.sighting->tags_of_this_id == 2);
+    CHECK(clearer.sighting->Planar().x_m == Approx(-0.1 * sign).margin(1e-3));
+  });
 }
 
 }  // namespace

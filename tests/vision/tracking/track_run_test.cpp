@@ -26,8 +26,8 @@ struct Row {
 /// A run over a recording, with its log and what was said.
 struct Tracked {
   explicit Tracked(const std::string& path, const CameraModel& camera = SmallCamera(),
-                   const CaptureOptions& capture = {.fps = 20.0})
-      : session(path, camera, capture, {}), parts{.session = session, .options = options} {
+                   const CaptureOptions& capture = {.fps = 20.0}, const TagOptions& tag = {})
+      : session(path, camera, capture, tag), parts{.session = session, .options = options} {
     parts.log = [this](double t_s, const Sighting& sighting) {
       rows.push_back({t_s, sighting});
       return true;
@@ -395,6 +395,45 @@ TEST_CASE("A session asks for the size of its calibration and holds the pictures
   CHECK_THROWS_WITH(
       failing.FirstPicture(),
       Contains("the camera " + none.Path() + " is wrong format: ") && Contains("can be decoded"));
+}
+
+TEST_CASE("The most that a camera was moved and that tags were seen are told when both are over") {
+  CameraModel camera = SmallCamera();
+  const Eigen::Vector3d p_in_camera =
+      camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
+  camera.world->marks = {{5, {0.2, 0.1, 0.0}, PixelsFromPoints(camera, {p_in_camera})[0]}};
+  SmallRecording moved({.tags = {FloorTag(5, 0.19, 0.1), FloorTag(0, 0.1, -0.15)}}),
+      still({.tags = {FloorTag(5, 0.2, 0.1)}});
+  moved.Add(RobotAt(-0.1, 0.0, 0.0));
+  still.Add(RobotAt(-0.1, 0.0, 0.0));
+  std::ifstream file(still.Path() + "/0000.jpg", std::ios::binary);
+  moved.Write({std::istreambuf_iterator<char>(file), {}});
+  Tracked tracked(moved.Path(), camera, {.fps = 20.0},
+                  {.recheck_every = 1, .doubt_recheck_every = 1});
+  tracked.options.check_every_s = 0.05;
+  tracked.options.check_decimate = 1;
+  const TrackRun run = RunTracking(tracked.parts);
+  REQUIRE(tracked.rows.size() == 2);
+  CHECK(tracked.rows[0].sighting.tags_of_this_id == 2);
+  CHECK(tracked.rows[1].sighting.tags_of_this_id == 1);
+  CHECK(run.most_tags_of_this_id == 2);
+  REQUIRE(run.moved_m);
+  CHECK(*run.moved_m == Approx(0.01).margin(5e-4));
+}
+
+TEST_CASE("Reference tags too small for the checks are looked for once in every pixel") {
+  CameraModel camera = SmallCamera();
+  const Eigen::Vector3d p_in_camera =
+      camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
+  camera.world->marks = {{5, {0.2, 0.1, 0.0}, PixelsFromPoints(camera, {p_in_camera})[0]}};
+  SmallRecording recording({.tags = {FloorTag(5, 0.2, 0.1, 0.018)}});  // 18 px
+  recording.Add(RobotAt(-0.1, 0.0, 0.0), 2);
+  Tracked tracked(recording.Path(), camera);
+  tracked.options.check_decimate = 4;
+  const TrackRun run = RunTracking(tracked.parts);
+  REQUIRE(run.moved_m);
+  CHECK(*run.moved_m < 1e-3);
+  CHECK(tracked.said.empty());
 }
 
 }  // namespace

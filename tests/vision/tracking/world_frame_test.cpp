@@ -107,6 +107,42 @@ TEST_CASE("The residual of a frame is the root mean square on the floor") {
   CHECK(WorldFromPoints(camera, points, "").residual_m == Approx(0.003).epsilon(1e-3));
 }
 
+TEST_CASE("Of points that do not fit exactly no camera nearby would see them better") {
+  const CameraModel camera = test::PaperCamera();
+  const bool flat = GENERATE(true, false);
+  std::vector<WorldPoint> points;
+  for (const auto& [x, y, z, off] : {std::tuple{-0.5, -0.3, 0.02, 1.5},
+                                     {0.6, -0.25, 0.1, -1.0},
+                                     {0.5, 0.35, 0.3, 2.0},
+                                     {-0.45, 0.3, 0.15, -0.5},
+                                     {0.1, 0.05, 0.2, 1.0}}) {
+    const Eigen::Vector3d p(x, y, flat ? 0.05 : z);
+    points.push_back({p, PixelOf(camera, p) + Eigen::Vector2d(off, -0.7 * off), ""});
+  }
+  std::vector<Eigen::Vector2d> pixels;
+  for (const WorldPoint& point : points) pixels.push_back(point.pixel);
+  const auto rays = RaysFromPixels(camera, pixels);
+  const auto off = [&](const Eigen::Isometry3d& camera_from_world) {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      squares += ((camera_from_world * points[i].p_in_world).hnormalized() - rays[i]).squaredNorm();
+    }
+    return squares;
+  };
+  const Eigen::Isometry3d found = WorldFromPoints(camera, points, "").world_from_camera.inverse();
+  for (int i = 0; i < 6; ++i) {
+    for (const double step : {-1e-4, 1e-4}) {
+      Eigen::Isometry3d moved = found;
+      if (i < 3) moved.translation()[i] += step;
+      if (i >= 3) {
+        moved = Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(i - 3)) * found;
+      }
+      INFO(i << " " << step);
+      CHECK(off(moved) > off(found));
+    }
+  }
+}
+
 TEST_CASE("Points that make no frame are refused with what to do") {
   const CameraModel camera = Overhead();
   std::vector<WorldPoint> points;

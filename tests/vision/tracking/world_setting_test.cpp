@@ -41,8 +41,9 @@ TEST_CASE("Marks on the floor are read with their names, ids and places") {
 
 /// What a world frame is set with, over a recording at 20 pictures a second.
 struct Setup {
-  explicit Setup(const SmallRecording& recording, TagOptions tag = {})
-      : session(recording.Path(), WithoutWorld(), {.fps = 20.0}, tag),
+  explicit Setup(const SmallRecording& recording, TagOptions tag = {},
+                 const CameraModel& camera = WithoutWorld())
+      : session(recording.Path(), camera, {.fps = 20.0}, tag),
         setting{.session = session,
                 .options = options,
                 .is_stopped = [] { return false; },
@@ -75,6 +76,14 @@ TEST_CASE("A robot that stands still sets the origin below its tag, whenever it 
                                          RobotAt(0.1, -0.05, 0.5).world_from_tag;
   CHECK((tag_in_world.translation() - Eigen::Vector3d(0.0, 0.0, 0.03)).norm() < 3e-3);
   CHECK(tag_in_world.linear()(0, 0) > 0.999);
+
+  // A frame that was set before, for a floor 1 cm below, has no part in it.
+  CameraModel lower = SmallCamera();
+  lower.world->world_from_camera.translation().z() += 0.01;
+  Setup again(recording, {}, lower);
+  again.options.world_average_s = 0.35;
+  CHECK(WorldFromRobot(again.setting).world_from_camera.matrix() ==
+        world.world_from_camera.matrix());
 
   Setup impatient(recording);
   impatient.options.world_patience_s = 0.4;
@@ -118,6 +127,12 @@ TEST_CASE("A robot that moves while its pose is averaged is refused with how far
   Setup three(short_one);
   three.options.world_average_s = 0.09;
   CHECK_THROWS_WITH(WorldFromRobot(three.setting), Contains("tag 0 moved by"));
+  // One that creeps by 0.8 px is 0.55 px on from its first third to its last.
+  SmallRecording creeping;
+  for (int i = 0; i < 13; ++i) creeping.Add(RobotAt(0.1, 0.0008 * i / 11.0 * 0.57 / 0.61, 0.5));
+  Setup crept(creeping);
+  crept.options.world_average_s = 0.55;
+  CHECK_THROWS_WITH(WorldFromRobot(crept.setting), Contains("tag 0 moved by 0."));
   // 0.4 px are the noise of a corner.
   SmallRecording still;
   still.Add(RobotAt(0.1, 0.0, 0.5), 6);
