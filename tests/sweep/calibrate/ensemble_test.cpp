@@ -1,6 +1,7 @@
 #include "rift/sweep/calibrate/ensemble.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "rift/statistics/descriptive.hpp"
 
@@ -59,6 +60,15 @@ TEST_CASE("No draw lies beyond the range of its parameter") {
   const experiment::Ensemble ensemble = EnsembleOf(fit, kConfidence, 500, 1);
   for (const double a : Column(ensemble, 0)) CHECK((a >= 2.0 && a <= 3.02));
   for (const double b : Column(ensemble, 1)) CHECK((b >= -2.0 && b <= -1.0));
+
+  // What lies beyond is folded back, as a path between mirrors.
+  const experiment::Ensemble free = EnsembleOf(Fit(), kConfidence, 500, 1);
+  const std::vector<double> a = Column(ensemble, 0), b = Column(ensemble, 1),
+                            free_a = Column(free, 0), free_b = Column(free, 1);
+  for (size_t i = 0; i < a.size(); ++i) {
+    CHECK(a[i] == Approx(3.02 - std::abs(3.02 - free_a[i])));
+    CHECK(b[i] == Approx(-2.0 + std::abs(free_b[i] + 2.0)));
+  }
 }
 
 TEST_CASE("A parameter that logs and prior leave open stays out of the ensemble") {

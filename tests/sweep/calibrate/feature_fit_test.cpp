@@ -258,22 +258,49 @@ TEST_CASE("A fit by features needs twice as many draws as it regresses numbers o
   CHECK_THROWS_WITH(Fitted(Before(), Options(1, 9)),
                     "calibrate.method.features.draws is 9, and 2 parameters that act need 10 or "
                     "more");
-  CHECK(Fitted(Before(), Options(1, 10)).trials_simulated == 2 * (1 + 3 + 10 + 16));
+  // A prior far beyond the range takes the value to its bound ...
+  Calibration beyond = Before(0.0005);
+  beyond.parameters[0].parameter.prior_mean = 9.0;
+  beyond.parameters[0].value = 0.08;
+  const Calibration at_bound = Fitted(beyond, Options(1, 10));
+  CHECK(at_bound.trials_simulated == 2 * (1 + 3 + 10 + 16));
+  CHECK(at_bound.parameters[0].is_at_bound);
+  CHECK(at_bound.parameters[0].high == 0.1);
+  CHECK(at_bound.has_converged);
   CalibrationOptions options = Options(1, 10);
   options.features.last_draws = 9;  // fewer are none the less
-  CHECK(Fitted(Before(), options).trials_simulated == 2 * (1 + 3 + 10 + 16));
+  // ... or as far as a round goes, two scatters of the draws.
+  beyond.parameters[0].parameter.prior_mean = -9.0;
+  beyond.parameters[0].value = 0.0;
+  const Calibration on_the_way = Fitted(beyond, options);
+  CHECK(on_the_way.trials_simulated == 2 * (1 + 3 + 10 + 16));
+  CHECK(on_the_way.parameters[0].value == Approx(-0.1 + 0.2 * (0.5 - 2.0 * 0.15)).margin(1e-3));
+  CHECK_FALSE(on_the_way.parameters[0].is_at_bound);
+  CHECK_FALSE(on_the_way.has_converged);
 }
 
 TEST_CASE("A fit by features of what nothing depends on is what it was") {
   Calibration found = Before();
   found.parameters = {found.parameters[1]};
-  const TwinAt twin = [](size_t log, const std::vector<double>&) {
+  std::vector<double> asked;
+  const TwinAt twin = [&asked](size_t log, const std::vector<double>& values) {
+    asked.push_back(values[0]);
     return Twin(log, {0.0, 0.0, 0.001});
   };
-  FitFeatures(Logs(), twin, Options(1, 12), kSeed, 1, {}, found);
-  CHECK(found.parameters[0].value == 0.3);
-  CHECK_FALSE(found.parameters[0].has_effect);
-  CHECK(found.trials_simulated == 2 * 2);
+  for (const auto& [value, tried] : {std::pair(0.1, 0.3), {1.9, 1.7}}) {  // a tenth of the range
+    asked.clear();
+    found.trials_simulated = 0;
+    found.parameters[0].value = value;
+    FitFeatures(Logs(), twin, Options(1, 12), kSeed, 1, {}, found);
+    CHECK(found.parameters[0].value == value);
+    CHECK_FALSE(found.parameters[0].has_effect);
+    CHECK(found.trials_simulated == 2 * 2);
+    REQUIRE(asked.size() == 4);
+    for (const size_t log : {0, 2}) {
+      CHECK(asked[log] == value);
+      CHECK(asked[log + 1] == Approx(tried));
+    }
+  }
 }
 
 }  // namespace

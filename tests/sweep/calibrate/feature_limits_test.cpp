@@ -85,6 +85,12 @@ TEST_CASE("A feature counts that two drives tell, or that four logs tell differe
     return made.Model().FeatureCount();
   };
   CHECK(count_of_known(1) == 0);
+  Made silent;
+  silent.real.setConstant(kNone);
+  const FeatureModel of_none = silent.Model();
+  CHECK(of_none.FeatureCount() == 0);
+  CHECK(of_none.InformationAt(VectorXd::Constant(1, 0.7))(0, 0) == 0.0);
+  CHECK(of_none.ScoreCovarianceAt(VectorXd::Constant(1, 0.7))(0, 0) == 0.0);
   CHECK(count_of_known(2) == 1);
 
   // A second feature that each log drives in its own way, and always so: only the logs scatter.

@@ -184,6 +184,14 @@ TEST_CASE("Loss, slope, curvature and information of features are those of their
         CHECK(at.gradient[a] == Approx(slope).epsilon(1e-5).margin(1e-5));
         for (Index b = 0; b < z.size(); ++b) CHECK(at.hessian(a, b) == Approx(2.0 * half(a, b)));
       }
+      // Regressed slopes are in both factors of the score: slope and error.
+      const VectorXd basis = BasisAt(z),
+                     error = definition.coefficients.transpose() * basis - definition.real_off;
+      const MatrixXd noise = definition.noise / 2.0;  // of two features
+      const MatrixXd score =
+          model.InformationAt(z) + basis.dot(noise * basis) * half +
+          error.dot(definition.weights * error) * slopes * noise * slopes.transpose();
+      CHECK((model.ScoreCovarianceAt(z) - score).norm() < 1e-6 * score.norm());
       if (one.parameters == 1) {
         CHECK(model.InformationAt(z)(0, 0) == Approx(std::max(0.0, information(0, 0))));
       } else if (information.determinant() > 0.0 && information.trace() > 0.0 &&

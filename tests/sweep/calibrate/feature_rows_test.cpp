@@ -67,6 +67,14 @@ TEST_CASE("A place that is driven to twice is passed twice, each time from where
   CHECK(sides[2] == Approx(-0.03));
 }
 
+TEST_CASE("Waypoints close to each other are two places") {
+  Drive drive({{.name = "a"}, {.name = "b", .x_m = 1.0}, {.name = "c", .x_m = 1.01}});
+  drive.Pass(1, 0.01);
+  drive.Pass(2, 0.02);
+  CHECK(drive.Sides()[0] == Approx(0.01));
+  CHECK(drive.Sides()[1] == Approx(0.02));
+}
+
 /// A way with a turn for the simulated robot.
 SimulatedTrial Turn(double mismatch) {
   SimulatedTrial twin{.task = std::vector<Waypoint>{{.name = "a"},
@@ -130,7 +138,12 @@ TEST_CASE("Sets of values that are driven alike share their noise, which no othe
     CHECK(driven[0].has_failed[log] == 0.0);
   }
   CHECK_FALSE(IsSame(row(driven, 0, 0), row(driven, 0, 1)));
-  CHECK_FALSE(IsSame(row(DriveAt(values, logs, twin, 2, 2, 1), 0, 0), row(driven, 0, 0)));
+  const std::vector<FeatureRows> next = DriveAt(values, logs, twin, 2, 2, 1);
+  for (const size_t set : {0, 2, 4}) {
+    for (const size_t of_next : {0, 2, 4}) {
+      CHECK_FALSE(IsSame(row(next, of_next, 0), row(driven, set, 0)));
+    }
+  }
   const std::vector<FeatureRows> again = DriveAt(values, logs, twin, 1, 2, 3);
   for (size_t i = 0; i < 5; ++i) CHECK(IsSame(row(again, i, 1), row(driven, i, 1)));
   // The values are those of the set.

@@ -7,6 +7,7 @@
 #include "support/inputs/paths.hpp"
 #include "sweep/calibrate/errors.hpp"
 #include "sweep/calibrate/fitted_simulator.hpp"
+#include "sweep/calibrate/model.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -29,12 +30,17 @@ class Told : public FittedSimulator {
   }
   std::vector<Trajectory> LogsAt(const std::vector<CalibrationLog>&, const std::vector<double>&,
                                  int) override {
-    return {};
+    return made;
   }
-  Traits TraitsOf(const Trajectory&, size_t, const std::vector<double>&) const override {
-    return {};
+  /// Where a path lies, for a speed.
+  Traits TraitsOf(const Trajectory& path, size_t, const std::vector<double>&) const override {
+    if (!has_traits) return {};
+    return Eigen::Vector4d(0.0, path.poses.front().y_m, 0.0, 0.0);
   }
   bool HasWholeRunsOnly() const override { return true; }
+
+  std::vector<Trajectory> made;
+  bool has_traits = false;
 
  private:
   std::vector<LogPrediction> predictions_;
@@ -77,6 +83,61 @@ TEST_CASE("Simulated repeats that are further apart than the logs are an error o
   CHECK(spread(1) == 0.0);
   CHECK(spread(2) == Approx(0.0).margin(1e-9));
   CHECK(spread(3) == Approx(std::log(4.0) / scatter));
+}
+
+TEST_CASE("Repeats with unequally many runs are compared as long as both have one") {
+  const std::vector<CalibrationLog> logs{Log("a", 0.0), Log("a", 0.04)};
+  const auto spread = [&logs](const std::vector<double>& first, const std::vector<double>& second) {
+    Told simulator({Runs(first), Runs(second)});
+    const LoggedTraits traits = TraitsOfLogs(logs, simulator, {});
+    return ErrorsAt(logs, traits, simulator, {}, {})[1].traits[kTraits];
+  };
+  CHECK(spread({0.0, 1.0, 7.0}, {0.08}) == Approx(std::log(2.0)));
+  CHECK(spread({0.0}, {0.08, 1.0, 7.0}) == Approx(std::log(2.0)));
+  CHECK(spread({}, {0.08}) == 0.0);
+}
+
+TEST_CASE("A trait that the log or that the runs do not tell is no error") {
+  const std::vector<CalibrationLog> logs{Log("a", 0.0), Log("b", 0.04)};
+  const auto errors = [&logs](bool of_logs, bool of_runs) {
+    std::vector<LogPrediction> predictions(2);
+    if (of_runs) {
+      for (LogPrediction& one : predictions) one.mean_traits = Eigen::Vector4d(3.0, 0.1, 3.0, 3.0);
+    }
+    Told simulator(predictions);
+    simulator.has_traits = of_logs;
+    const LoggedTraits traits = TraitsOfLogs(logs, simulator, {});
+    return ErrorsAt(logs, traits, simulator, {}, {})[0].traits;
+  };
+  CHECK(errors(true, false).isZero(0.0));
+  CHECK(errors(false, true).isZero(0.0));
+  // In scatters of 0.04 / sqrt(2); those that do not scatter count in their units.
+  CHECK(errors(true, true)[kLogSpeed] == Approx(0.1 / 0.04 * std::sqrt(2.0)));
+  CHECK(errors(true, true)[kLogWeave] == 3.0);
+}
+
+TEST_CASE("Simulated logs are told in the scatter of the real ones, each beside its own repeat") {
+  const std::vector<CalibrationLog> logs{Log("a", 0.0), Log("b", 0.5), Log("a", 0.04),
+                                         Log("b", 0.52)};
+  std::vector<LogPrediction> predictions{Runs({0.0}), Runs({0.3}), Runs({0.08}), Runs({0.38})};
+  for (LogPrediction& one : predictions) one.mean_traits = Eigen::Vector4d(0.0, 1.0, 0.0, 0.0);
+  Told simulator(predictions);
+  simulator.has_traits = true;
+  // Made ones scatter by other amounts: 0.01 and 0.32 apart.
+  simulator.made = {Lane(0.2), Lane(0.9), Lane(0.21), Lane(1.22)};
+  const std::vector<experiment::FreeParameter> parameters{{.key = "p", .max = 1.0}};
+  const CalibrationOptions options;
+  const Eigen::VectorXd shares = Eigen::VectorXd::Constant(1, 0.5);
+  const ErrorModel real(parameters, logs, simulator, options, shares);
+  const std::vector<LogErrors> errors = real.OfSimulatedLogs(shares, 0).RawErrorsAt(shares);
+  REQUIRE(errors.size() == 4);
+  const double spread_scatter = std::log(2.0) / std::sqrt(2.0);
+  CHECK(errors[0].traits[kTraits] == 0.0);
+  CHECK(errors[2].traits[kTraits] == Approx(std::log(0.08 / 0.01) / spread_scatter));
+  CHECK(errors[3].traits[kTraits] == Approx(std::log(0.08 / 0.32) / spread_scatter));
+  const double scatter = TraitsOfLogs(logs, simulator, {}).scatter[kLogSpeed];  // of 0 to 0.52
+  CHECK(errors[0].traits[kLogSpeed] == Approx((1.0 - 0.2) / scatter));
+  CHECK(errors[3].traits[kLogSpeed] == Approx((1.0 - 1.22) / scatter));
 }
 
 TEST_CASE("How far repeats are apart leaves the first tenth of their paths out") {

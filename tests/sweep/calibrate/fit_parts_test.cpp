@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rift/statistics/descriptive.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/sweep/calibrate/prediction.hpp"
 #include "rift/sweep/calibrate/repeated_trial.hpp"
@@ -189,6 +190,12 @@ TEST_CASE("A simulator predicts by its mean path, beside what the other real tri
   CHECK(found.difference_interval_m.low <= found.difference_m);
   CHECK(found.difference_interval_m.high >= found.difference_m);
   CHECK(std::isnan(MeasurePrediction({trials[3]}, {}, options, 1).simulated_m));
+  // Settings are drawn anew: a quarter of the draws hold one of two alone.
+  trials[2].runs = {Lane(0.2)};
+  const PathPrediction unlike =
+      MeasurePrediction({trials[0], trials[1], trials[2]}, {}, options, 1);
+  CHECK(unlike.difference_interval_m.low == Approx(-0.03));
+  CHECK(unlike.difference_interval_m.high == Approx(0.1 - 0.04));
   CHECK(MeasurePrediction({trials[3]}, {}, options, 1).reals == 0);
 }
 
@@ -208,6 +215,8 @@ TEST_CASE("Settings are ranked by how far their last real trial, its runs, and t
   CHECK(ranks.settings == 4);
   CHECK(ranks.simulated == Approx(1.0));
   CHECK(ranks.real == Approx(-1.0));
+  CHECK(ranks.simulated_interval.low == Approx(1.0));
+  CHECK(ranks.real_interval.high == Approx(-1.0));
   trials.back().real = Lane(0.0);  // d now is the least
   ranks = MeasureRanks(trials, {}, options, 1);
   CHECK(ranks.simulated == Approx(-0.2));  // ranks 2 3 4 1 and 1 2 3 4
@@ -242,6 +251,61 @@ TEST_CASE("Likeness counts every run, those that failed and those that circled")
   CHECK(likeness.prediction.other_real_m == Approx(0.01));
   CHECK(likeness.told_apart.features.size() == DriveFeatures().size());
   CHECK(std::isnan(likeness.loop_delay_s.sim));  // straight ways tell none
+}
+
+TEST_CASE(
+    "Runs are matched to the real trial that they set out as, or belong to all of a setting") {
+  gap::LikenessOptions options;
+  options.bootstrap.resamples = 50;
+  options.shuffles = 19;
+  const std::vector<RepeatedTrial> trials{Lanes("a", 0.0, {0.001}), Lanes("a", 0.1, {0.101})};
+  const auto gap_m = [&](bool is_matched) {
+    std::mt19937_64 generator(1);
+    return MeasureDriveLikeness(trials, is_matched, {}, options, generator).path.mean_path_gap_m;
+  };
+  CHECK(gap_m(true) == Approx(0.001));
+  CHECK(gap_m(false) == Approx(0.05));  // all runs lie in the middle, as a mean
+}
+
+TEST_CASE("Loop delay, its share and the steering gain are medians of each side by itself") {
+  std::vector<RepeatedTrial> trials(3);
+  std::vector<double> lags_s[2], r2[2], gains[2];
+  for (size_t i = 0; i < trials.size(); ++i) {
+    for (const bool is_real : {false, true}) {
+      SimulatedTrial one{
+          .task =
+              std::vector<control::Waypoint>{
+                  {.name = "a"}, {.name = "b", .x_m = 0.4}, {.name = "c", .x_m = 0.4, .y_m = 0.3}},
+          .seed = 20 + i};
+      one.simulation.link.delay_s = is_real ? 0.02 : 0.12;
+      const Trajectory path = Simulate(one).result.trajectory;
+      const trial::LoopDelay delay =
+          trial::EstimateLoopDelay(path, one.task.waypoints, one.control);
+      lags_s[is_real].push_back(delay.lag_s);
+      r2[is_real].push_back(delay.r2);
+      gains[is_real].push_back(delay.gain_rad_s);
+      trials[i].waypoints = one.task.waypoints;
+      trials[i].control = one.control;
+      if (is_real) {
+        trials[i].real = path;
+      } else {
+        trials[i].runs = {path};
+      }
+    }
+  }
+  gap::LikenessOptions options;
+  options.bootstrap.resamples = 50;
+  options.shuffles = 19;
+  options.classifier.permutations = 19;
+  std::mt19937_64 generator(1);
+  const DriveLikeness likeness = MeasureDriveLikeness(trials, true, {}, options, generator);
+  CHECK(likeness.loop_delay_s.sim > likeness.loop_delay_s.real + 0.05);
+  CHECK(likeness.loop_delay_s.sim == Approx(statistics::Median(lags_s[0])));
+  CHECK(likeness.loop_delay_s.real == Approx(statistics::Median(lags_s[1])));
+  CHECK(likeness.loop_r2.sim == Approx(statistics::Median(r2[0])));
+  CHECK(likeness.loop_r2.real == Approx(statistics::Median(r2[1])));
+  CHECK(likeness.steering_gain_rad_s.sim == Approx(statistics::Median(gains[0])));
+  CHECK(likeness.steering_gain_rad_s.real == Approx(statistics::Median(gains[1])));
 }
 
 }  // namespace

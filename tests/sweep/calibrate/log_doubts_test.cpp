@@ -52,6 +52,16 @@ TEST_CASE("A log with the rows of another one is named with it") {
   trajectory::Trajectory later = log;
   later.poses.back().t_s += 0.01;
   CHECK(DoubtsOfLogs({Of("a.csv", log), Of("b.csv", later)}).empty());
+  for (double trajectory::StampedPose::*of :
+       {&trajectory::StampedPose::x_m, &trajectory::StampedPose::y_m}) {
+    trajectory::Trajectory beside = log;
+    beside.poses.back().*of += 0.01;
+    CHECK(DoubtsOfLogs({Of("a.csv", log), Of("b.csv", beside)}).empty());
+  }
+  trajectory::Trajectory longer = log;  // whose first rows are those of the other
+  longer.poses.push_back({.t_s = 0.3, .x_m = 0.65, .y_m = 0.1});
+  CHECK(DoubtsOfLogs({Of("a.csv", log), Of("b.csv", longer)}).empty());
+  CHECK(DoubtsOfLogs({Of("a.csv", longer), Of("b.csv", log)}).empty());
   const auto doubts = DoubtsOfLogs({Of("a.csv", log), Of("b.csv", later), Of("c.csv", log)});
   REQUIRE(doubts.size() == 1);
   CHECK_THAT(doubts[0], StartsWith("c.csv: it has the rows of a.csv"));
@@ -59,6 +69,11 @@ TEST_CASE("A log with the rows of another one is named with it") {
       DoubtsOfLogs({Of("a.csv", log), Of("b.csv", log), Of("c.csv", log), Of("d.csv", log)});
   REQUIRE(more.size() == 1);
   CHECK_THAT(more[0], StartsWith("b.csv (and 2 more logs): it has the rows of a.csv"));
+  const trajectory::Trajectory cut = LogOf({{0.0, 0.0}, {0.3, 0.1}});
+  const auto both = DoubtsOfLogs({Of("a.csv", log), Of("b.csv", log), Of("c.csv", cut)});
+  REQUIRE(both.size() == 2);
+  CHECK_THAT(both[0], StartsWith("c.csv: it comes no nearer than"));
+  CHECK_THAT(both[1], StartsWith("b.csv: it has the rows of a.csv"));
 }
 
 }  // namespace

@@ -22,6 +22,10 @@ TEST_CASE("A simulated log that makes a detour is driven again, and the last try
   CHECK(LengthByStrides_m(Simulate(twin).result.trajectory) == first_m);
   const double last_m = LengthWithin_m(0.0, twin);
   CHECK(last_m != first_m);
+  SimulatedTrial tenth = twin;
+  tenth.seed += 9'000'000;
+  CHECK(LengthByStrides_m(Simulate(tenth).result.trajectory) == last_m);
+  CHECK(LengthWithin_m(first_m, twin) == first_m);  // as long as it may be
 
   const double limit_m = std::nextafter(first_m, 0.0);
   const double again_m = LengthWithin_m(limit_m, twin);
