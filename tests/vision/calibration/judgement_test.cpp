@@ -10,7 +10,6 @@
 namespace rift::vision {
 namespace {
 
-using Catch::Matchers::Contains;
 using synthetic::Views;
 using synthetic::WideCamera;
 
