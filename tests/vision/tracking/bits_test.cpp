@@ -281,6 +281,31 @@ TEST_CASE("The error of a square is the RMS distance of the points from its edge
   CHECK(square->rms_px <= 1.01 * kOff);
 }
 
+TEST_CASE("Without a world frame the normal that was seen last tells which way a tag leans") {
+  CameraModel camera = test::SmallCamera();
+  const Small tag(40.0, 0.3, 0.2);
+  camera.world.reset();
+  // A lens so bad that corners do not tell.
+  const TagOptions options{.size_m = tag.size_m, .lens_sigma_px = 2.0};
+  const auto square = tag.Fit();
+  REQUIRE(square);
+  const auto poses = SolveTagPoses(camera, square->corners, tag.size_m);
+  REQUIRE((poses && poses->other));
+  REQUIRE(
+      (poses->best.camera_from_tag.linear().col(2) - poses->other->camera_from_tag.linear().col(2))
+          .norm() > 0.1);
+  const TagMeter meter(camera, options);
+  for (const TagPose& pose : {poses->best, *poses->other}) {
+    const Eigen::Vector3d normal = pose.camera_from_tag.linear().col(2);
+    const auto seen =
+        meter.Measure(tag.patch, tag.corners, CellsOfTag(0), TrackMode::kEdges, normal).sighting;
+    REQUIRE(seen);
+    CHECK((seen->camera_from_tag.linear().col(2) - normal).norm() < 1e-6);
+    CHECK(seen->reprojection_px == Approx(pose.reprojection_px));
+    CHECK(seen->other_reprojection_px == Approx(poses->other->reprojection_px));
+  }
+}
+
 TEST_CASE("The covariance of a pose is in the axes of the map, however the camera looks") {
   Small tag(48.0);
   // The world turned about the camera: what is seen stays the same.
