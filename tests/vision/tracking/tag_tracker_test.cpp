@@ -394,6 +394,19 @@ TEST_CASE("Around its last place a tag is searched at full size, as far as it ca
   CHECK(back.sighting->mode == TrackMode::kRegion);
 }
 
+TEST_CASE("A tag that was forgotten is searched coarsely first, as at the start") {
+  const CameraModel camera = test::SmallCamera();
+  Film film(camera, kSmallTag);
+  TagTracker tracker(camera, kCoarse);
+  const auto robot = test::RobotAt(0.02, 0.01, 0.0);
+  for (int round = 0; round < 2; ++round) {
+    CHECK_FALSE(tracker.Track(film.Next(robot)).sighting);
+    tracker.Forget();
+  }
+  CHECK_FALSE(tracker.Track(film.Next(robot)).sighting);
+  CHECK(tracker.Track(film.Next(robot)).sighting);
+}
+
 TEST_CASE(
     "Of two tags near where one is expected the nearer is taken, of two at first the clearer") {
   const CameraModel camera = test::SmallCamera();
