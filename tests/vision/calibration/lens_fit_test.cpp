@@ -94,6 +94,19 @@ struct Experiment {
     }
     return all;
   }
+  /// Its views, each corner scattered by `sigma_px` along x and y.
+  std::vector<BoardView> Seen(double sigma_px, std::mt19937_64& random) const {
+    std::normal_distribution<double> scatter(0.0, sigma_px);
+    std::vector<BoardView> views;
+    for (const Posed& pose : poses) {
+      BoardView& view = views.emplace_back(BoardView{.width_px = 1920, .height_px = 1080});
+      view.corners = PixelsFromPoints(camera, pose.Points(board));
+      for (Eigen::Vector2d& p : view.corners) {
+        p += Eigen::Vector2d(scatter(random), scatter(random));
+      }
+    }
+    return views;
+  }
   Eigen::VectorXd Pixels() const {
     Eigen::VectorXd all(2 * board.Corners() * static_cast<Eigen::Index>(poses.size()));
     Eigen::Index at = 0;
@@ -139,13 +152,7 @@ TEST_CASE("The numbers of a lens are named and known as well as the corners' sca
     truth.poses.push_back({{0.6 * u(random), 0.6 * u(random), 0.4 * u(random), 0.2 * u(random),
                             0.1 * u(random), 0.3 + 0.05 * u(random)}});
   }
-  std::normal_distribution<double> scatter(0.0, kSigma_px);
-  std::vector<BoardView> views;
-  for (const Posed& pose : truth.poses) {
-    BoardView& view = views.emplace_back(BoardView{.width_px = 1920, .height_px = 1080});
-    view.corners = PixelsFromPoints(truth.camera, pose.Points(truth.board));
-    for (Eigen::Vector2d& p : view.corners) p += Eigen::Vector2d(scatter(random), scatter(random));
-  }
+  const std::vector<BoardView> views = truth.Seen(kSigma_px, random);
   const auto fit = FitLens(InputOf(views, truth.board), lens);
   REQUIRE(fit);
   const std::vector<double> expected = truth.Deviations(kSigma_px);
@@ -178,13 +185,7 @@ TEST_CASE("Of few corners the scatter is told from what the unknowns have left o
     truth.poses.push_back({{0.6 * u(random), 0.6 * u(random), 0.4 * u(random), 0.1 * u(random),
                             0.05 * u(random), 0.3 + 0.05 * u(random)}});
   }
-  std::normal_distribution<double> scatter(0.0, 0.01);
-  std::vector<BoardView> views;
-  for (const Posed& pose : truth.poses) {
-    BoardView& view = views.emplace_back(BoardView{.width_px = 1920, .height_px = 1080});
-    view.corners = PixelsFromPoints(truth.camera, pose.Points(truth.board));
-    for (Eigen::Vector2d& p : view.corners) p += Eigen::Vector2d(scatter(random), scatter(random));
-  }
+  const std::vector<BoardView> views = truth.Seen(0.01, random);
   const auto fit = FitLens(InputOf(views, truth.board), lens);
   REQUIRE(fit);
   double squares = 0.0;
