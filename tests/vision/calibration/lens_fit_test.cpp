@@ -320,6 +320,19 @@ TEST_CASE("Two lenses differ on the floor by what no other height takes away") {
     b.k(1, 2) = a.k(1, 2) + y_px;
     CHECK(FloorDifference_m(a, b, 0.8) < 0.2 * 0.01 * 0.8);
   }
+  // A decentred lens bends squares as a camera does that leans: another pose takes more than two
+  // thirds of it away, in the longer direction of the picture five sixths.
+  for (const auto& [p1, p2, left] :
+       {std::tuple{0.02, 0.0, 0.33}, {-0.02, 0.0, 0.33}, {0.0, 0.02, 0.17}, {0.0, -0.02, 0.17}}) {
+    b = a;
+    b.distortion = {0.0, 0.0, p1, p2};
+    double plain = 0.0;
+    for (std::size_t i = 0; i < rays_a.size(); ++i) {
+      const Eigen::Vector2d pixel = 500.0 * rays_a[i] + Eigen::Vector2d(299.5, 199.5);
+      plain += (RaysFromPixels(b, {pixel}).front() - rays_a[i]).squaredNorm() / 96.0;
+    }
+    CHECK(FloorDifference_m(a, b, 0.8) < left * 0.8 * std::sqrt(plain));
+  }
   b.k(0, 0) = std::nan("");
   CHECK(std::isnan(FloorDifference_m(a, b, 0.8)));
 }
