@@ -39,6 +39,10 @@ experiment::Experiment Plan() {
   plan.likeness.shuffles = 19;
   plan.likeness.bootstrap.resamples = 20;
   plan.likeness.classifier.permutations = 19;
+  CalibrationOptions& method = plan.calibrate.method;
+  method.horizon.phases = 1;
+  method.runs = 0;
+  method.iterations = 1;
   return plan;
 }
 
@@ -79,9 +83,6 @@ TEST_CASE("An identification is the fit of its logs, each with its group, and it
       {.key = "simulation.motor.mismatch", .min = -0.2, .max = 0.2, .start = 0.0}};
   plan.calibrate.judge_runs = 2;
   CalibrationOptions& method = plan.calibrate.method;
-  method.horizon.phases = 1;
-  method.runs = 0;
-  method.iterations = 1;
   method.corrections = 1;
   method.simulated_logs = 1;
   method.resamples = 50;
@@ -171,9 +172,6 @@ TEST_CASE("The first four parameters are told with their values, and that there 
   plan.goal = experiment::Goal::kCalibrate;
   plan.calibrate.judge_runs = 1;
   CalibrationOptions& method = plan.calibrate.method;
-  method.horizon.phases = 1;
-  method.runs = 0;
-  method.iterations = 1;
   method.corrections = 0;
   method.resamples = 20;
   const test::Files files = Logs(plan);
