@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -201,6 +202,48 @@ TEST_CASE("A stop behind a waypoint has its lowest speed and its time below 0.6 
   });
   CHECK(Feature(later, "speed_after_stop") == Approx(1.0));
   CHECK(Feature(later, "slow_after_stop_s") == 0.0);
+}
+
+TEST_CASE("Too few rows tell no stops and no changes of side, one more does") {
+  std::set<size_t> rates;
+  for (const int rows : {7, 8, 9, 10, 11}) {
+    const Trajectory log = Drive(rows);
+    const gap::LikenessOptions options;
+    const size_t count = DriveMeasures(log, options).yaw_rates_rad_s.size();
+    rates.insert(count);
+    CHECK(std::isnan(Feature(log, "reversals_per_s")) == (count < 8));
+  }
+  CHECK(rates.count(7) == 1);
+  CHECK(rates.count(8) == 1);
+  for (const int left : {3, 4}) {  // rows from the waypoint on, the last of which has no speed
+    const Trajectory log = Changed([&](StampedPose& pose, int i) {
+      if (i < 80 - left) pose.target_x_m = 1.45;
+    });
+    CHECK(std::isnan(Feature(log, "speed_after_stop")) == (left == 3));
+    CHECK(std::isnan(Feature(log, "slow_after_stop_s")) == (left == 3));
+  }
+}
+
+TEST_CASE("A waypoint is missed by the nearest row until seven rows after the next one's first") {
+  for (const int nearest : {57, 58}) {
+    const Trajectory log = Changed([&](StampedPose& pose, int i) {
+      if (i < 50) pose.target_x_m = 1.0 + 0.015 * (nearest - 19);
+    });
+    CHECK(Feature(log, "miss_m") == Approx(nearest == 57 ? 0.0 : 0.5 * 0.015).margin(1e-9));
+  }
+}
+
+TEST_CASE("Targets a little apart are two, and a robot that shifts by two centimetres stands") {
+  const gap::LikenessOptions options;
+  const Trajectory near = Changed([](StampedPose& pose, int i) {
+    if (i < 50) pose.target_x_m -= 0.01;
+  });
+  CHECK(DriveMeasures(near, options).passed == std::vector<size_t>{50});
+  Trajectory still = Drive(20);
+  for (size_t i = 20; i < still.poses.size(); ++i) still.poses[i].x_m = i < 30 ? 1.0 : 1.02;
+  const DriveMeasures measures(still, options);
+  CHECK(measures.first == still.poses.size());
+  CHECK_FALSE(measures.IsMoving());
 }
 
 TEST_CASE("Features that look at time stamps are marked, and these alone") {

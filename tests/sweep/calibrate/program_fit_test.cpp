@@ -97,6 +97,9 @@ TEST_CASE("A program's parameter is found from whole runs, and judged by others"
   CHECK(said[0].starts_with("warning: a_2.csv (and 2 more logs): it has the rows of a_1.csv"));
   CHECK(said[1] == "fitting 1 parameters to 4 logs; 0 held out");
   CHECK(said[2].starts_with("note: a program is fitted and judged by whole runs"));
+  CHECK(std::any_of(said.begin(), said.end(), [](const std::string& line) {
+    return line.find(" descent by motions, step 1 of at most 3: k 1.") != line.npos;
+  }));
   // Each log has seeds of its own, and those that judge are none that were fitted with.
   const std::vector<std::string> asked = bench.Asked();
   const auto has = [&](const std::string& end) {
