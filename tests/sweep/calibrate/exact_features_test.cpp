@@ -65,8 +65,9 @@ TEST_CASE("Intervals have their median, their scatter, their rate and their fram
   // Within 5 ms of a frame, and not beyond.
   for (const auto& [off_s, is_near] : {std::pair{0.0049, true}, {0.0051, false}}) {
     for (const double sign : {1.0, -1.0}) {
-      const Trajectory even =
-          Changed([&](StampedPose& pose, int i) { pose.t_s = i * (1.0 / 30.0 + sign * off_s); });
+      const Trajectory even = Changed([&, off_s = off_s](StampedPose& pose, int i) {
+        pose.t_s = i * (1.0 / 30.0 + sign * off_s);
+      });
       CHECK(Feature(even, "interval_near_33ms") == (is_near ? 1.0 : 0.0));
     }
   }
