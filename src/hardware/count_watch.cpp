@@ -13,6 +13,8 @@ constexpr double kRest_s = 0.1;      // two readings of a slow link
 constexpr std::int32_t kJitter = 1;  // of a wheel that stands on the edge of a count
 constexpr double kCoasts_s = 0.5;    // against what it is told now
 constexpr double kBack_m = 0.02;     // between two readings; no gear gives way so far
+constexpr double kStops_s =
+    1.0;  // from a zero that is sent: the longest lag of a link and to roll out
 
 /// Right over the end of the counters' range as well.
 std::int32_t Change(std::int32_t before, std::int32_t now) {
@@ -29,6 +31,12 @@ void CountWatch::SeePower(Wheel& wheel, int power, double sent_s) {
   if (wheel.power > 0 || power > 0) wheel.forward_s = sent_s;
   if (wheel.power < 0 || power < 0) wheel.backward_s = sent_s;
   wheel.power = power;
+  if (power != 0) {
+    wheel.stands_since_s.reset();
+    wheel.standing_counts.reset();
+  } else if (!wheel.stands_since_s) {
+    wheel.stands_since_s = sent_s;
+  }
 }
 
 void CountWatch::SeeCommand(const MilliPower& power, double sent_s) {
@@ -55,6 +63,35 @@ std::optional<std::string> CountWatch::CheckWheel(const Wheel& wheel, std::int32
       name, change, read_s - *read_s_);
 }
 
+std::optional<std::string> CountWatch::CheckStandingWheel(const Wheel& wheel,
+                                                          const char* name) const {
+  if (!wheel.standing_counts) return std::nullopt;
+  const double turned_m = m_per_count_ * Change(*wheel.standing_counts, wheel.counts);
+  if (std::abs(turned_m) <= kBack_m) return std::nullopt;
+  return fmt::format(
+      "the {} wheel turned by {:.3f} m while it was told to stand, for {:.1f} s now: a robot that "
+      "does not obey, or one that is pushed",
+      name, turned_m, *read_s_ - *wheel.stands_since_s);
+}
+
+std::optional<std::string> CountWatch::CheckStanding() const {
+  std::optional<std::string> fault = CheckStandingWheel(left_, "left");
+  return fault ? fault : CheckStandingWheel(right_, "right");
+}
+
+void CountWatch::Restart(double now_s) {
+  for (Wheel* wheel : {&left_, &right_}) {
+    if (wheel->stands_since_s) wheel->stands_since_s = now_s;
+    wheel->standing_counts.reset();
+  }
+}
+
+void CountWatch::SeeWheel(Wheel& wheel, std::int32_t counts, double read_s) {
+  wheel.counts = counts;
+  const bool has_stopped = wheel.stands_since_s && read_s - *wheel.stands_since_s >= kStops_s;
+  if (has_stopped && !wheel.standing_counts) wheel.standing_counts = counts;
+}
+
 std::optional<std::string> CountWatch::SeeCounts(std::int32_t left, std::int32_t right,
                                                  double read_s) {
   std::optional<std::string> fault;
@@ -69,8 +106,8 @@ std::optional<std::string> CountWatch::SeeCounts(std::int32_t left, std::int32_t
     left_.rest_counts = left;
     right_.rest_counts = right;
   }
-  left_.counts = left;
-  right_.counts = right;
+  SeeWheel(left_, left, read_s);
+  SeeWheel(right_, right, read_s);
   read_s_ = read_s;
   return fault;
 }

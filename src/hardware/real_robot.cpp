@@ -231,6 +231,11 @@ void RealRobot::Core::HandleAnswer(const RobotLink::Heard& heard, double now_s) 
   if (jump && guard_.state() == DriveState::kArmed) {
     guard_.Stop(StopReason::kRobotStopped, *jump, now_s);
   }
+  // In a dry run it is carried along the waypoints.
+  const std::optional<std::string> disobeys = count_watch_.CheckStanding();
+  if (disobeys && !is_dry_run_ && guard_.state() == DriveState::kArmed) {
+    guard_.Stop(StopReason::kRobotDisobeys, *disobeys, now_s);
+  }
   if (!heard.sent) return;  // a plain answer says neither to what nor how often the robot stopped
   record_.rejected_by_robot = heard.answer.rejected;
   record_.round_trips_s.push_back(heard.at_s - sent_s);
@@ -251,6 +256,7 @@ void RealRobot::Core::Arm() {
   if (line_is_lost_) throw std::runtime_error("cannot arm: the serial port went away");
   guard_.Arm(clock_.Now_s());
   motion_.Restart();
+  count_watch_.Restart(clock_.Now_s());
   readings_ended_ = false;
   stop_is_answered_ = false;
   stopped_at_s_.reset();

@@ -87,6 +87,11 @@ class Bench : public ByteLine, public Clock, public PoseSource {
   double Travelled_m() const { return travelled_m_; }
   /// As a robot that was switched off and on does.
   void BeginCountsAnew() { rolled_left_m_ = rolled_right_m_ = 0.0; }
+  /// Both at once, by a hand, where the camera sees no motion of the robot.
+  void PushWheels(double rolled_m) {
+    rolled_left_m_ += rolled_m;
+    rolled_right_m_ += rolled_m;
+  }
   void Chatter(const std::string& text) {
     for (const char c : text) to_robot_.push_back({now_s_, static_cast<std::uint8_t>(c)});
   }

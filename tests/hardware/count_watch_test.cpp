@@ -1,6 +1,8 @@
 #include "hardware/count_watch.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 
 #include "support/mirror.hpp"
@@ -64,6 +66,67 @@ TEST_CASE("Counts that are read seldom may have gone either way since the readin
   watch.SeeCounts(0, 0, 0.0);
   watch.SeeCommand({300, -300}, 0.56);
   CHECK(watch.SeeCounts(-100, 100, 0.6));
+}
+
+/// A robot told to drive until 1 s and then to stand, whose wheel turns by `counts` from `from_s`
+/// to `until_s` after that; readings each 0.05 s. What is said of it, at first.
+std::optional<std::string> TurnsWhileStanding(const Side& side, int power, int counts,
+                                              double from_s, double until_s,
+                                              const std::optional<double>& restart_s = {}) {
+  CountWatch watch(kMetresPerCount);
+  for (int i = 0; i <= 100; ++i) {
+    const double t_s = 0.05 * i, stands_s = t_s - 1.0;
+    watch.SeeCommand(stands_s < 0.0 ? MilliPower{power, power} : MilliPower{}, t_s);
+    if (restart_s && std::abs(stands_s - *restart_s) < 0.01) watch.Restart(t_s);
+    const double share = std::clamp((stands_s - from_s) / (until_s - from_s), 0.0, 1.0);
+    const auto turned = static_cast<std::int32_t>(std::lround(share * counts));
+    if (side.IsFirst()) watch.SeeCounts(turned, 0, t_s + 0.01);
+    if (!side.IsFirst()) watch.SeeCounts(0, turned, t_s + 0.01);
+    const bool is_armed = !restart_s || stands_s >= *restart_s;
+    if (auto said = watch.CheckStanding(); said && is_armed) return said;
+  }
+  return std::nullopt;
+}
+
+TEST_CASE("A wheel that turns although it has long been told to stand does not obey") {
+  OnBothSides("left", "right", [](const Side& side) {
+    for (const int way : {1, -1}) {
+      // 0.02 m are 71.4 counts.
+      CHECK(TurnsWhileStanding(side, 300, 72 * way, 1.2, 3.0));
+      CHECK_FALSE(TurnsWhileStanding(side, 300, 71 * way, 1.2, 3.0));
+      CHECK(TurnsWhileStanding(side, 0, 72 * way, 1.2, 3.0));  // never told to drive
+      // It may take a second to hear of it and to roll out.
+      CHECK_FALSE(TurnsWhileStanding(side, 300, 2000 * way, -1.0, 0.95));
+      CHECK(TurnsWhileStanding(side, 300, 2000 * way, -1.0, 1.2));
+      // Before it is armed it may be carried, and is given a second from then on.
+      CHECK_FALSE(TurnsWhileStanding(side, 300, 2000 * way, 1.2, 2.5, 2.0));
+      CHECK(TurnsWhileStanding(side, 300, 2000 * way, 1.2, 3.5, 2.0));
+    }
+    const std::string text = TurnsWhileStanding(side, 300, -200, 2.0, 2.04).value();
+    CHECK_THAT(text, Catch::Contains(side.IsFirst() ? "the left wheel" : "the right wheel"));
+    CHECK_THAT(text, Catch::Contains("by -0.056 m"));
+    CHECK_THAT(text, Catch::Contains("for 2.1 s"));
+  });
+}
+
+TEST_CASE("A wheel that is told to drive obeys however far it turns") {
+  CountWatch watch(kMetresPerCount);
+  for (int i = 0; i < 200; ++i) {
+    watch.SeeCommand({300, i % 10 == 0 ? 0 : 300}, 0.05 * i);  // a zero now and then
+    watch.SeeCounts(50 * i, 50 * i, 0.05 * i + 0.01);
+    CHECK_FALSE(watch.CheckStanding());
+  }
+}
+
+TEST_CASE("What a wheel did between readings that are far apart is not held against it") {
+  CountWatch watch(kMetresPerCount);
+  watch.SeeCommand({300, 300}, 0.0);
+  watch.SeeCounts(0, 0, 0.0);
+  watch.SeeCommand({}, 0.5);
+  watch.SeeCounts(500, 500, 4.0);
+  CHECK_FALSE(watch.CheckStanding());
+  watch.SeeCounts(600, 500, 4.1);
+  CHECK(watch.CheckStanding());
 }
 
 TEST_CASE("Counts that jump by half of their range do not rest") {

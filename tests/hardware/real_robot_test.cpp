@@ -308,6 +308,45 @@ TEST_CASE("A robot whose counts begin anew while it drives has restarted, and is
   });
 }
 
+TEST_CASE("A robot whose motors go on while it is told to stand ends its drive") {
+  for (const bool is_dry_run : {false, true}) {
+    Bench bench;
+    RealRobotOptions options{{}, Protocol::kFramed, false};
+    options.dry_run = is_dry_run;
+    RealRobot robot(bench, bench, bench, options);
+    Settle(robot, 0.4, bench);
+    robot.Arm();
+    DriveOn(robot, {0.2, 0.2}, 0.6, bench);
+    DriveOn(robot, {}, 3.0, bench);
+    REQUIRE(robot.state() == DriveState::kArmed);
+    DriveOn(robot, {0.2, 0.2}, 0.6, bench);
+    bench.motors_are_stuck = true;
+    DriveOn(robot, {}, 0.9, bench);
+    CHECK(robot.state() == DriveState::kArmed);
+    if (is_dry_run) bench.PushWheels(0.1);  // as it is carried along the waypoints
+    DriveOn(robot, {}, 0.6, bench);
+    CHECK((robot.state() == DriveState::kStopped) == !is_dry_run);
+    if (is_dry_run) continue;
+    CHECK(robot.Record().stop->reason == StopReason::kRobotDisobeys);
+    CHECK_THAT(robot.Record().stop->text, Catch::Contains("while it was told to stand"));
+  }
+}
+
+TEST_CASE("A robot that is carried before it is armed may be driven") {
+  Bench bench;
+  RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+  Settle(robot, 2.0, bench);
+  bench.PushWheels(0.1);
+  Settle(robot, 0.4, bench);
+  robot.Arm();
+  DriveOn(robot, {}, 3.0, bench);
+  CHECK(robot.state() == DriveState::kArmed);
+  bench.PushWheels(0.1);
+  DriveOn(robot, {}, 0.2, bench);
+  REQUIRE(robot.Record().stop);
+  CHECK(robot.Record().stop->reason == StopReason::kRobotDisobeys);
+}
+
 TEST_CASE("What the robot did not obey is counted, and so is what was sent and answered") {
   Bench bench;
   RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});

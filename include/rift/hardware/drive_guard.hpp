@@ -39,15 +39,17 @@ enum class StopReason {
   kPowerRefused,
   kNotArmed,
   kRobotStopped,
+  kRobotDisobeys,
   kBatteryLow,
   kLogFailed,
 };
-constexpr std::array<std::string_view, 25> EnumNames(StopReason) {
+constexpr std::array<std::string_view, 26> EnumNames(StopReason) {
   return {"finished",        "operator",     "signal",          "exception",      "pose_stale",
           "picture_repeats", "tag_lost",     "pose_not_finite", "pose_jump",      "time_backwards",
           "pose_stands",     "wheels_stand", "pose_disorder",   "pose_disagrees", "pose_lags",
           "camera_gone",     "port_gone",    "link_lagging",    "control_stale",  "host_stalled",
-          "power_refused",   "not_armed",    "robot_stopped",   "battery_low",    "log_failed"};
+          "power_refused",   "not_armed",    "robot_stopped",   "robot_disobeys", "battery_low",
+          "log_failed"};
 }
 
 struct DriveStop {
