@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fitted_simulator.hpp"
+#include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
 
 namespace rift::sweep {
@@ -12,16 +13,23 @@ namespace {
 // Whole runs of a delayed bang-bang loop are chaotic: over a small step the scatter of their traits
 // is many times their slope.
 constexpr double kStepOfRuns = 0.2;
-constexpr std::uint64_t kSeedsOfTry = 1'000'000;
+constexpr std::uint64_t kPlaceStream = 92;
 
 }  // namespace
 
-trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin) {
-  constexpr int kMostTries = 10;
-  trajectory::Trajectory run = Simulate(twin).result.trajectory;
-  for (int i = 1; i < kMostTries && LengthByStrides_m(run) > longest_m; ++i) {
-    twin.seed += kSeedsOfTry;
+std::uint64_t SeedInPlace(std::uint64_t first, int repeat, int attempt) {
+  std::uint64_t seed = statistics::SeedOfStream(first, kPlaceStream);
+  seed = statistics::SeedOfStream(seed, static_cast<std::uint64_t>(repeat));
+  return statistics::SeedOfStream(seed, static_cast<std::uint64_t>(attempt)) >> 33;
+}
+
+trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin, int repeat) {
+  const std::uint64_t first = twin.seed;
+  trajectory::Trajectory run;
+  for (int i = 0; i < kMostTries; ++i) {
+    twin.seed = SeedInPlace(first, repeat, i);
     run = Simulate(twin).result.trajectory;
+    if (LengthByStrides_m(run) <= longest_m) break;
   }
   return run;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "errors.hpp"
@@ -12,9 +13,15 @@ namespace rift::sweep {
 std::vector<double> ValuesAt(const std::vector<experiment::FreeParameter>& parameters,
                              const Eigen::VectorXd& shares);
 
-/// A run of the twin that is no longer than that by strides: with its own seed, else with one of
-/// the next nine; without any such run the last of them.
-trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin);
+/// Of a run that stands for a real log, whose own runs count up from `first`: another one for each
+/// repeat and try, both from 0, and of no other log's. Below 2^31, which any program takes.
+std::uint64_t SeedInPlace(std::uint64_t first, int repeat, int attempt);
+
+constexpr int kMostTries = 10;  ///< of a run in the place of a log, to be no longer than it may
+
+/// A run of the twin in the place of a log that is no longer than that by strides: that of the
+/// first try, else of one of the next nine; without any such run the last of them.
+trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin, int repeat);
 
 /// What is known of the parameters beside the logs: independent normal distributions, in shares of
 /// the ranges.

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "model.hpp"
 #include "rift/experiment/program_parameters.hpp"
 #include "rift/gap/likeness.hpp"
 #include "rift/sweep/calibrate/repeated_trial.hpp"
@@ -19,9 +20,6 @@ namespace {
 using trajectory::Trajectory;
 
 constexpr size_t kPoints = 16;
-// Runs that stand for real logs are none of those that predict.
-constexpr std::uint64_t kSeedsOfRepeat = 20'000;
-constexpr std::uint64_t kSeedsOfTry = 1'000'000;
 
 /// x, y and time since the first point at u = 1/n, 2/n, ... 1, where u is the share of the path's
 /// length, as it is for the gap.
@@ -162,16 +160,16 @@ std::vector<LogPrediction> ProgramTwins::Predict(const std::vector<CalibrationLo
 
 std::vector<Trajectory> ProgramTwins::LogsAt(const std::vector<CalibrationLog>& logs,
                                              const std::vector<double>& values, int repeat) {
-  constexpr int kMostTries = 10;
   std::vector<Trajectory> paths(logs.size());
   std::vector<size_t> open;
   for (size_t i = 0; i < logs.size(); ++i) open.push_back(i);
   std::string reason;
   for (int i = 0; i < kMostTries && !open.empty(); ++i) {
     std::vector<TrialRequest> requests;
-    const auto seed = static_cast<std::uint64_t>(repeat + 1) * kSeedsOfRepeat +
-                      static_cast<std::uint64_t>(i) * kSeedsOfTry;
-    for (const size_t log : open) requests.push_back(RequestOf(log, values, seed));
+    for (const size_t log : open) {
+      requests.push_back(RequestOf(log, values, 0));
+      requests.back().seed = SeedInPlace(*requests_[log].seed, repeat, i);
+    }
     std::vector<Recording> runs = runs_.Run(requests);
     std::vector<size_t> still_open;
     for (size_t k = 0; k < open.size(); ++k) {

@@ -13,9 +13,6 @@ namespace {
 
 using trajectory::Trajectory;
 
-// Runs that stand for real logs are none of those that predict.
-constexpr std::uint64_t kSeedsOfRepeat = 20'000;
-
 Traits TraitsOfPath(const Trajectory& path, const SimulatedTrial& twin) {
   try {
     const gap::PathTraits shape = gap::TraitsOf(path, {});
@@ -76,9 +73,7 @@ std::vector<Trajectory> SimulatedTwins::LogsAt(const std::vector<CalibrationLog>
                                                const std::vector<double>& values, int repeat) {
   std::vector<Trajectory> runs;
   for (size_t i = 0; i < logs.size(); ++i) {
-    SimulatedTrial twin = twin_(i, values);
-    twin.seed += static_cast<std::uint64_t>(repeat + 1) * kSeedsOfRepeat;
-    runs.push_back(RunWithin(logs[i].longest_m, twin));
+    runs.push_back(RunWithin(logs[i].longest_m, twin_(i, values), repeat));
   }
   return runs;
 }

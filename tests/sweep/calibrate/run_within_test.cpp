@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <set>
 
 #include "rift/sweep/calibrate/likeness.hpp"
 #include "sweep/calibrate/model.hpp"
@@ -10,7 +12,7 @@ namespace rift::sweep {
 namespace {
 
 double LengthWithin_m(double longest_m, const SimulatedTrial& twin) {
-  return LengthByStrides_m(RunWithin(longest_m, twin));
+  return LengthByStrides_m(RunWithin(longest_m, twin, 0));
 }
 
 TEST_CASE("A simulated log that makes a detour is driven again, and the last try stands") {
@@ -19,12 +21,15 @@ TEST_CASE("A simulated log that makes a detour is driven again, and the last try
                                                          {.name = "b", .x_m = 0.4, .y_m = 0.0},
                                                          {.name = "c", .x_m = 0.4, .y_m = 0.4}}};
   const double first_m = LengthWithin_m(std::numeric_limits<double>::infinity(), twin);
-  CHECK(LengthByStrides_m(Simulate(twin).result.trajectory) == first_m);
+  const auto try_m = [&twin](int attempt) {
+    SimulatedTrial one = twin;
+    one.seed = SeedInPlace(twin.seed, 0, attempt);
+    return LengthByStrides_m(Simulate(one).result.trajectory);
+  };
+  CHECK(try_m(0) == first_m);
   const double last_m = LengthWithin_m(0.0, twin);
   CHECK(last_m != first_m);
-  SimulatedTrial tenth = twin;
-  tenth.seed += 9'000'000;
-  CHECK(LengthByStrides_m(Simulate(tenth).result.trajectory) == last_m);
+  CHECK(try_m(9) == last_m);
   CHECK(LengthWithin_m(first_m, twin) == first_m);  // as long as it may be
 
   const double limit_m = std::nextafter(first_m, 0.0);
@@ -32,6 +37,24 @@ TEST_CASE("A simulated log that makes a detour is driven again, and the last try
   CHECK(again_m != first_m);
   CHECK((again_m <= limit_m || again_m == last_m));
   CHECK(LengthWithin_m(again_m, twin) <= again_m);
+}
+
+TEST_CASE("No run in the place of a log has the seed of another, nor of one that predicts") {
+  constexpr std::uint64_t kApart = 100'000;  // the logs' own seeds
+  std::set<std::uint64_t> seeds;
+  size_t count = 0;
+  for (std::uint64_t log = 0; log < 12; ++log) {
+    const std::uint64_t first = 7 + log * kApart;
+    for (std::uint64_t run = 0; run < 20; ++run, ++count) seeds.insert(first + run);
+    for (int repeat = 0; repeat < 30; ++repeat) {
+      for (int attempt = 0; attempt < kMostTries; ++attempt, ++count) {
+        const std::uint64_t seed = SeedInPlace(first, repeat, attempt);
+        seeds.insert(seed);
+        CHECK(seed < (std::uint64_t{1} << 31));
+      }
+    }
+  }
+  CHECK(seeds.size() == count);
 }
 
 }  // namespace
