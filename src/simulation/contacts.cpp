@@ -122,6 +122,10 @@ constexpr double kTippedOver_rad = 1.05;
 constexpr double kThroughFloor_m = 0.012;
 constexpr double kFallen_m = 0.5;
 
+std::string At(const char* what, const Vector3d& place_m) {
+  return fmt::format("{} at ({:.3f}, {:.3f}) m", what, place_m.x(), place_m.y());
+}
+
 /// The unit vector in the ground nearest to `axis`.
 Vector3d Across(const Vector3d& normal, const Vector3d& axis) {
   const Vector3d across = axis - axis.dot(normal) * normal;
@@ -262,15 +266,17 @@ void AddRimContacts(const ContactScene& scene, std::vector<GroundContact>& conta
 
 std::optional<std::string> FaultOf(const WorldState& state, const Terrain& terrain) {
   if (!IsFinite(state)) return "the simulated motion is no longer finite";
-  const Eigen::Vector3d& p = state.position_m;
-  const auto at = [&p](const char* what) {
-    return fmt::format("{} at ({:.3f}, {:.3f}) m", what, p.x(), p.y());
-  };
+  const Vector3d& p = state.position_m;
   const double ground_m = terrain.HeightAt(p.x(), p.y());
-  const bool is_on_table = std::isfinite(ground_m);
-  if (!is_on_table && p.z() < -kFallen_m) return at("fell off the table");
-  if (is_on_table && p.z() < ground_m - kThroughFloor_m) return at("sank through the floor");
-  if (state.world_from_robot(2, 2) < std::cos(kTippedOver_rad)) return at("tipped over");
+  if (!std::isfinite(ground_m) || p.z() >= ground_m - kThroughFloor_m) return std::nullopt;
+  return At("sank through the floor", p);
+}
+
+std::optional<std::string> FallOf(const WorldState& state, const Terrain& terrain) {
+  const Vector3d& p = state.position_m;
+  const bool is_on_table = std::isfinite(terrain.HeightAt(p.x(), p.y()));
+  if (!is_on_table && p.z() < -kFallen_m) return At("fell off the table", p);
+  if (state.world_from_robot(2, 2) < std::cos(kTippedOver_rad)) return At("tipped over", p);
   return std::nullopt;
 }
 

@@ -67,8 +67,10 @@ void AddCasterContacts(const ContactScene& scene, std::vector<GroundContact>& co
 /// The lower edge of the chassis, which touches where the robot pitches or an obstacle lies.
 void AddRimContacts(const ContactScene& scene, std::vector<GroundContact>& contacts);
 
-/// Why the motion cannot go on from this state: a number that is not finite, a robot that tipped
-/// over, sank through the floor or fell off the table. Nothing when it can.
+/// Why the motion cannot be computed from this state on: a number that is not finite, a robot that
+/// sank through the floor. Nothing when it can.
 std::optional<std::string> FaultOf(const WorldState& state, const Terrain& terrain);
+/// How and where a robot in this state ended its drive: it tipped over or fell off the table.
+std::optional<std::string> FallOf(const WorldState& state, const Terrain& terrain);
 
 }  // namespace rift::simulation

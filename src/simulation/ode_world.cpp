@@ -136,7 +136,7 @@ struct OdeWorld::Bodies {
   PartContacts caster_contacts, rim_contacts;
   bool settling = false;
   WorldState state;
-  std::optional<std::string> fault;
+  std::optional<std::string> fault, fall;
 };
 
 OdeWorld::Bodies::Bodies(const BodyOptions& body_options, const Terrain& ground, double step)
@@ -289,7 +289,7 @@ void OdeWorld::Bodies::Abandon() {
 
 void OdeWorld::Bodies::Step(const std::array<WheelDrive, 2>& drives,
                             const std::array<double, 2>& uneven) {
-  if (fault) return;
+  if (fault || fall) return;
   for (const WheelDrive& drive : drives) {
     if (!std::isfinite(drive.target_rad_s + drive.compliance_rad_s_per_nm + drive.friction_nm) ||
         std::isnan(drive.limit_nm)) {
@@ -312,6 +312,7 @@ void OdeWorld::Bodies::Step(const std::array<WheelDrive, 2>& drives,
   }
   ReadState();
   fault = FaultOf(state, terrain);
+  if (!fault) fall = FallOf(state, terrain);
 }
 
 /// ODE's hinge motor solves rate + cfm x torque = target [ODE manual, "CFM"], which is the drive's
@@ -458,5 +459,6 @@ double OdeWorld::Energy_j() const {
 }
 
 const std::optional<std::string>& OdeWorld::Fault() const { return bodies_->fault; }
+const std::optional<std::string>& OdeWorld::Fall() const { return bodies_->fall; }
 
 }  // namespace rift::simulation

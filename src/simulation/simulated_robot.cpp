@@ -137,6 +137,7 @@ trial::Sensed SimulatedRobot::Sense() {
                                              CountsAt(angle_rad[1], counts_per_rev_)};
   }
   sensed.fault = world_.Fault();
+  sensed.fall = world_.Fall();
   return sensed;
 }
 

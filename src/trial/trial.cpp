@@ -228,6 +228,7 @@ void Loop::NoteRefused(const PoseMeasurement& pose) {
 
 bool Loop::IsOver(const Sensed& sensed) {
   if (sensed.fault) return End(Outcome::kFault, *sensed.fault);
+  if (sensed.fall) return End(Outcome::kFell, *sensed.fall);
   if (!ClockRuns(sensed.now_s)) {
     return End(Outcome::kFault, "the robot's clock stands still or runs backwards");
   }

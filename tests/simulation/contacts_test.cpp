@@ -273,7 +273,7 @@ TEST_CASE(
     state.position_m = p;
     state.world_from_robot =
         Eigen::AngleAxisd(lean_rad, Vector3d(0.6, 0.8, 0.0)).toRotationMatrix();
-    return FaultOf(state, terrain).value_or("");
+    return FaultOf(state, terrain).value_or(FallOf(state, terrain).value_or(""));
   };
   CHECK(fault({0.0, 0.0, 0.016}, 1.04).empty());
   CHECK(fault({0.1, -0.25, 0.016}, 1.06) == "tipped over at (0.100, -0.250) m");

@@ -238,6 +238,17 @@ TEST_CASE("A fault ends the trial with the robot's own words") {
   CHECK(robot.stops == 1);
 }
 
+TEST_CASE("A robot that has fallen ends the trial as such, with the robot's own words") {
+  test::FakeRobot robot = RobotAtStart();
+  robot.spoil = [](Sensed& sensed) {
+    if (sensed.now_s > 1.0) sensed.fall = "tipped over at (0.1, 0.2) m";
+  };
+  const TrialResult result = Run(robot);
+  CHECK(result.outcome == Outcome::kFell);
+  CHECK(result.reason == "tipped over at (0.1, 0.2) m");
+  CHECK(robot.stops == 1);
+}
+
 TEST_CASE("A clock that stands still or runs back is a fault and no endless loop") {
   for (const double clock_s : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     test::FakeRobot robot = RobotAtStart();

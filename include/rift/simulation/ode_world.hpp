@@ -49,6 +49,8 @@ class OdeWorld {
   /// Kinetic and potential energy of chassis and wheels; heights count from z = 0.
   double Energy_j() const;
   const std::optional<std::string>& Fault() const;
+  /// That the robot tipped over or fell off the table, and where; it stays there.
+  const std::optional<std::string>& Fall() const;
 
  private:
   struct Bodies;

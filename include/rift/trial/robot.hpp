@@ -23,6 +23,7 @@ struct Sensed {
   std::optional<PoseMeasurement> pose;  ///< the newest that has arrived; none before the first
   std::optional<control::EncoderCounts> encoders;  ///< none where the robot sends none
   std::optional<std::string> fault;  ///< why this robot can no longer go on, in one line
+  std::optional<std::string> fall;   ///< that it tipped over or fell, and where; simulated alone
 };
 
 /// A robot that a trial can drive; the simulated and the real one look the same from here.

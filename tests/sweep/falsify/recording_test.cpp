@@ -94,6 +94,16 @@ TEST_CASE("A simulated run names its seed, and has a reason and a way left unles
   CHECK(std::isnan(arrived.left_m));
 }
 
+TEST_CASE("A simulated robot that drives off the table has fallen, with a way left") {
+  SimulatedTrial trial{
+      .task = std::vector<control::Waypoint>{{.name = "s"}, {.name = "a", .x_m = 0.4}}, .seed = 3};
+  trial.simulation.terrain.table_half_size_m = 0.1;
+  const Recording fallen = RecordingOf(Simulate(trial), trial);
+  CHECK(fallen.status == TrialStatus::kFell);
+  CHECK_THAT(fallen.reason, Catch::Contains(" at (0.1"));
+  CHECK(fallen.left_m == Approx(0.28).margin(0.05));
+}
+
 TEST_CASE("A recording comes back from its bytes, and other bytes are refused") {
   Recording recording{.status = TrialStatus::kFell,
                       .reason = "it fell",
