@@ -19,11 +19,11 @@
 namespace rift::gap {
 namespace {
 
-/// Frechet and DTW cost points squared; 160 stand 4 mm apart on the paper's path.
-constexpr int kMeasurePoints = 160;
+/// DTW and Frechet cost points squared; 160 stand 4 mm apart on the paper's path.
+constexpr int kEvenPoints = 160;
 
-/// Hausdorff costs the product of the rows; up to this many pairs every vertex is looked at.
-constexpr size_t kMostHausdorffPairs = 65536;
+/// So do Hausdorff and Frechet: of a longer path not every vertex is looked at.
+constexpr int kMostVertices = 1000;
 
 template <int N>
 struct Paths {
@@ -146,23 +146,40 @@ void MeasureEnds(const Paths<N>& paths, Comparison& result) {
       (paths.sim.Vertex(paths.sim.Size() - 1) - paths.real.Vertex(paths.real.Size() - 1)).norm();
 }
 
+/// Of a path with too many of them as many evenly spaced points.
 template <int N>
 PointsIn<N> Vertices(const ArcPathIn<N>& path) {
+  if (path.Size() > kMostVertices) return Resample(path, kMostVertices);
   PointsIn<N> points;
   points.reserve(path.Size());
   for (size_t i = 0; i < path.Size(); ++i) points.push_back(path.Vertex(i));
   return points;
 }
 
+/// The same points, and others on the edges between them, so that none is longer than it is
+/// between the evenly spaced ones.
+template <int N>
+PointsIn<N> WithPointsBetween(const PointsIn<N>& vertices, double length_m) {
+  const double longest_m = length_m / (kEvenPoints - 1);
+  PointsIn<N> points{vertices.front()};
+  for (size_t i = 1; i < vertices.size(); ++i) {
+    const Point<N> edge = vertices[i] - vertices[i - 1];
+    const double parts = std::max(1.0, std::ceil(edge.norm() / longest_m));
+    for (double k = 1.0; k < parts; ++k) points.push_back(vertices[i - 1] + k / parts * edge);
+    points.push_back(vertices[i]);
+  }
+  return points;
+}
+
+// The points of Frechet are those of Hausdorff and more, so that it is never the smaller one.
 template <int N>
 void MeasureShape(const Paths<N>& paths, Comparison& result) {
-  const PointsIn<N> sim_m = Resample(paths.sim, kMeasurePoints);
-  const PointsIn<N> real_m = Resample(paths.real, kMeasurePoints);
-  const bool all_vertices = paths.sim.Size() * paths.real.Size() <= kMostHausdorffPairs;
-  result.hausdorff_m = all_vertices ? HausdorffIn_m<N>(Vertices(paths.sim), Vertices(paths.real))
-                                    : HausdorffIn_m<N>(sim_m, real_m);
-  result.frechet_m = DiscreteFrechetIn_m<N>(sim_m, real_m);
-  result.dtw_m = DynamicTimeWarpingIn_m<N>(sim_m, real_m);
+  const PointsIn<N> sim_m = Vertices(paths.sim), real_m = Vertices(paths.real);
+  result.hausdorff_m = HausdorffIn_m<N>(sim_m, real_m);
+  result.frechet_m = DiscreteFrechetIn_m<N>(WithPointsBetween<N>(sim_m, paths.sim.length_m),
+                                            WithPointsBetween<N>(real_m, paths.real.length_m));
+  result.dtw_m = DynamicTimeWarpingIn_m<N>(Resample(paths.sim, kEvenPoints),
+                                           Resample(paths.real, kEvenPoints));
 }
 
 template <int N>

@@ -50,11 +50,15 @@ struct Comparison {
   double sim_standstill_share = kNotComputed;  ///< of the arc length, logged while standing
   double real_standstill_share = kNotComputed;
 
-  /// Largest distance of a vertex to the closest point of the other path; of 160 evenly spaced
-  /// points instead of the vertices when the product of the rows exceeds 65536.
+  /// Largest distance of a vertex to the closest point of the other path. A path of more than 1000
+  /// vertices is looked at in 1000 evenly spaced points instead.
   double hausdorff_m = kNotComputed;
-  double frechet_m = kNotComputed;     ///< discrete Frechet distance of 160 evenly spaced points
-  double dtw_m = kNotComputed;         ///< mean distance of them along the best time warping
+  /// Discrete Frechet distance (Eiter and Mannila 1994) of the same points and others between
+  /// them, at most 1/159 of the path apart: never below hausdorff_m, and above the distance of the
+  /// continuous paths by that spacing at most.
+  double frechet_m = kNotComputed;
+  /// Mean distance of 160 evenly spaced points along the best time warping.
+  double dtw_m = kNotComputed;
   double equal_time_m = kNotComputed;  ///< largest distance at equal time since the first row
 };
 

@@ -99,6 +99,16 @@ def frechet(a, b):
     return table[-1][-1]
 
 
+def finely(points, length):
+    """The points, and others between two that are more than 1/159 of the length apart."""
+    out = points[:1]
+    for p, q in zip(points, points[1:]):
+        parts = max(1, math.ceil(distance(p, q) / (length / 159)))
+        out += [(p[0] + k / parts * (q[0] - p[0]), p[1] + k / parts * (q[1] - p[1]))
+                for k in range(1, parts)] + [q]
+    return out
+
+
 def warping(a, b):
     table = [[None] * len(b) for _ in a]
     for i, p in enumerate(a):
@@ -170,8 +180,9 @@ def compare(sim_rows, real_rows, n, skip, align, radius=0.01):
     out["sim_standstill_share"] = standing(sim_rows, radius) / sim.length
     out["real_standstill_share"] = standing(real_rows, radius) / real.length
     out["hausdorff_m"] = hausdorff(a, b)
+    out["frechet_m"] = frechet(finely(a, sim.length), finely(b, real.length))
     even = lambda path: [path.at(k / 159) for k in range(160)]
-    out["frechet_m"], out["dtw_m"] = frechet(even(sim), even(real)), warping(even(sim), even(real))
+    out["dtw_m"] = warping(even(sim), even(real))
     out["equal_time_m"] = equal_time(sim, real)
     return out
 
