@@ -89,6 +89,7 @@ int MeasureOdometry(const GapRequest& request) {
   CheckOutputs(inputs, {.files = outputs, .force = request.force});
   sessions::OdometryJob job = request.odometry;
   job.calibration.confidence = request.job.verdict.confidence;
+  sessions::LeaveOutCopies(runs, terminal::Say);
   const odometry::OdometryResult result = sessions::MeasureOdometry(runs, job);
   const bool has_text =
       request.json.empty() || SaveJson(request.json, report::OdometryJson(result));

@@ -13,6 +13,9 @@ namespace rift::gap {
 
 namespace {
 
+// Logs are written to a micrometre or finer, and no two drives are that much alike.
+constexpr double kCopy_m = 1e-5;
+
 Verdict Decide(const RepeatVerdict& repeats, double needed_above, double needed_below) {
   if (repeats.evidence.above >= needed_above) return Verdict::kFalsified;
   if (repeats.evidence.below >= needed_below) return Verdict::kPassed;
@@ -94,7 +97,8 @@ std::vector<std::optional<size_t>> CopiesAmong(std::span<const trajectory::Traje
     return std::equal(a.poses.begin(), a.poses.end(), b.poses.begin(), b.poses.end(),
                       [](const trajectory::StampedPose& p, const trajectory::StampedPose& q) {
                         const bool no_height = std::isnan(p.z_m) && std::isnan(q.z_m);
-                        return p.Position() == q.Position() && (no_height || p.z_m == q.z_m);
+                        return (p.Position() - q.Position()).norm() <= kCopy_m &&
+                               (no_height || std::abs(p.z_m - q.z_m) <= kCopy_m);
                       });
   };
   std::vector<std::optional<size_t>> copy_of(reals.size());

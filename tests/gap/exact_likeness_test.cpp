@@ -177,6 +177,13 @@ TEST_CASE("A real log that was copied is one repeat, whatever its clock says") {
   CHECK(result.verdict.above == 1);
   CHECK(result.noise_floor_m == Approx(0.06));
   CHECK(result.mean_gap_m == Approx(0.065));  // of all that stand in the table
+  for (auto& pose : result.reals[2].poses) pose.x_m += 0.9e-5;  // written anew with fewer digits
+  for (auto& pose : result.reals[3].poses) pose.y_m -= 0.9e-5;
+  Judge(result);
+  CHECK(result.verdict.repeats == 2);
+  result.reals[2].poses.back().x_m += 0.2e-5;
+  Judge(result);
+  CHECK(result.verdict.repeats == 3);
   result.reals[2].poses.back().z_m = 0.001;
   result.reals[3].poses.pop_back();
   Judge(result);

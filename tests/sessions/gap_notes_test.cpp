@@ -162,6 +162,27 @@ TEST_CASE("A pair that is doubtful is named, with the threshold where its gap is
              Contains("and REAL " + (folder / "far.csv") + ": their clocks differ"));
 }
 
+TEST_CASE("A simulated run that repeats another, or a real one, is said to") {
+  const test::TemporaryFolder folder;
+  const auto write = [&](const char* name, double off_m) {
+    test::WriteText(folder / name, Log(0.0, 0.0, off_m));
+    return folder / name;
+  };
+  const std::string sim = write("one.csv", 0.0), near = write("near.csv", 0.05),
+                    far = write("far.csv", 0.02), again = write("again.csv", 2e-6),
+                    near_again = write("near_again.csv", 0.05 + 2e-6);
+  GapJob job{.sim = sim, .reals = {near}, .sim_repeats = {far}};
+  CHECK(TellOf(job).empty());
+  job.sim_repeats = {far, again};
+  CHECK(TellOf(job) ==
+        std::vector<std::string>{"warning: " + again + " has the positions of " + sim +
+                                 ": a file that was copied, or a simulator without chance"});
+  job.sim_repeats = {far, near_again};
+  CHECK(TellOf(job) ==
+        std::vector<std::string>{"warning: --sim-repeats " + near_again +
+                                 " has the positions of REAL " + near + ": no simulated run"});
+}
+
 TEST_CASE("What was mended in a log of either side is a note with its path and what to set") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "authors.csv", AuthorsLog());

@@ -34,6 +34,24 @@ std::string Encoders(int left_per_s) {
   return odometry::EncodersCsv(readings);
 }
 
+TEST_CASE("Runs with the positions of one before them are left out, and that is said") {
+  std::vector<LoadedRun> runs(4);
+  for (size_t i = 0; i < runs.size(); ++i) {
+    runs[i].run.log.name = std::string(1, static_cast<char>('a' + i));
+    const double y_m = i == 1 ? 0.01 : 0.0;
+    runs[i].run.log.camera.poses = {{.t_s = 0.0, .x_m = 0.0, .y_m = y_m},
+                                    {.t_s = 1.0, .x_m = 1.0, .y_m = y_m}};
+  }
+  runs[3].run.log.camera.poses.back().x_m += 1e-4;  // a drive of its own
+  std::vector<std::string> said;
+  LeaveOutCopies(runs, [&said](const std::string& line) { said.push_back(line); });
+  CHECK(said == std::vector<std::string>{"warning: c has the positions of a: it is left out"});
+  REQUIRE(runs.size() == 3);
+  CHECK(runs[0].run.log.name == "a");
+  CHECK(runs[1].run.log.name == "b");
+  CHECK(runs[2].run.log.name == "d");
+}
+
 TEST_CASE("A folder of a run is read from the three files in it") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "trajectory.csv", Log());

@@ -83,8 +83,8 @@ struct GapResult {
   std::optional<Likeness> likeness;  ///< only with repeats of the simulator
 };
 
-/// For each of the real trajectories the first before it with the same positions, if there is one:
-/// a log that was copied is no repeat of its own.
+/// For each of the real trajectories the first before it with the same positions, if there is one,
+/// to 10 um, as of a log that was written anew: a log that was copied is no repeat of its own.
 std::vector<std::optional<size_t>> CopiesAmong(std::span<const trajectory::Trajectory> reals);
 
 /// Fills in the mean from the trials, and the noise floor and the verdict from those of them that

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <random>
@@ -86,6 +87,27 @@ void SayDoubts(const gap::GapResult& result, const Say& say) {
   }
 }
 
+/// A simulator without chance repeats itself, and its spread is none: that counts as it is.
+void SayCopiesOfRuns(const GapJob& job, const gap::GapResult& result,
+                     const std::vector<trajectory::Trajectory>& sims, const Say& say) {
+  std::vector<std::string> paths{result.sim_path};
+  paths.insert(paths.end(), job.sim_repeats.begin(), job.sim_repeats.end());
+  const std::vector<std::optional<size_t>> copy_of = gap::CopiesAmong(sims);
+  for (size_t i = 0; i < sims.size(); ++i) {
+    if (copy_of[i]) {
+      say(
+          fmt::format("warning: {} has the positions of {}: a file that was copied, or a simulator "
+                      "without chance",
+                      paths[i], paths[*copy_of[i]]));
+    }
+    for (size_t k = 0; i > 0 && k < result.reals.size(); ++k) {  // SIM itself is doubted already
+      if (!gap::CopiesAmong(std::array{result.reals[k], sims[i]})[1]) continue;
+      say(fmt::format("warning: --sim-repeats {} has the positions of REAL {}: no simulated run",
+                      paths[i], result.trials[k].path));
+    }
+  }
+}
+
 /// Every simulated run is held against every real one: nothing says that they belong together.
 gap::Likeness MeasureRepeats(const GapJob& job, const gap::GapResult& result, const Say& say) {
   gap::RepeatedSetting setting{.reals = result.reals, .sims = {{result.sim}}};
@@ -94,6 +116,7 @@ gap::Likeness MeasureRepeats(const GapJob& job, const gap::GapResult& result, co
     SayNotes(sim, path, "--sim-format", say);
     setting.sims.front().push_back(std::move(sim.trajectory));
   }
+  SayCopiesOfRuns(job, result, setting.sims.front(), say);
   std::mt19937_64 generator(job.seed);
   return gap::MeasureLikeness({&setting, 1}, job.options, job.likeness, generator);
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rift/files/files.hpp"
+#include "rift/gap/result.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/trajectory/log.hpp"
 
@@ -73,6 +74,24 @@ LoadedRun LoadRun(const std::string& name, const std::string& program) {
                     name, files.encoders.string()));
   }
   return loaded;
+}
+
+void LeaveOutCopies(std::vector<LoadedRun>& runs,
+                    const std::function<void(const std::string&)>& say) {
+  std::vector<trajectory::Trajectory> paths;
+  for (const LoadedRun& run : runs) paths.push_back(run.run.log.camera);
+  const std::vector<std::optional<size_t>> copy_of = gap::CopiesAmong(paths);
+  std::vector<LoadedRun> kept;
+  for (size_t i = 0; i < runs.size(); ++i) {
+    const std::string& name = runs[i].run.log.name;
+    if (copy_of[i]) {
+      say(fmt::format("warning: {} has the positions of {}: it is left out", name,
+                      runs[*copy_of[i]].run.log.name));
+      continue;
+    }
+    kept.push_back(runs[i]);
+  }
+  runs = std::move(kept);
 }
 
 odometry::OdometryResult MeasureOdometry(const std::vector<LoadedRun>& runs,

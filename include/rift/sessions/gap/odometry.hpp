@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,6 +54,11 @@ struct LoadedRun {
 /// was of; empty: the one in its folder. Throws std::invalid_argument when there is nothing to hold
 /// the log against.
 LoadedRun LoadRun(const std::string& name, const std::string& program);
+
+/// Leaves out those with the positions of one before them, and says so: a run that was copied, or
+/// that a simulator without chance repeats, is no run of its own.
+void LeaveOutCopies(std::vector<LoadedRun>& runs,
+                    const std::function<void(const std::string&)>& say);
 
 /// Holds camera, encoders and program of runs (at least one) together, each with the wheels and the
 /// tag of its experiment; finds wheel radii and track as well where the job says so. Throws
