@@ -78,6 +78,14 @@ TEST_CASE("Flags of options have their values, ranges and defaults") {
   CHECK_THAT(Said({"drive", "--length", "2.01"}), Contains("'2.01' must be a number in [-1.5, 2]"));
   CHECK_THAT(Said({"drive", "--length=-1.51"}), Contains("must be a number in [-1.5, 2]"));
   CHECK_THAT(Said({"drive", "--length", "nan"}), Contains("'nan' must be a number in [-1.5, 2]"));
+  for (const char* text : {"0x1", "1e-400", "1e999", "1,5", "0.5m", "+", "0x1p-1", "1e"}) {
+    CHECK_THAT(Said({"drive", "--length", text}), Contains("must be a number in [-1.5, 2]"));
+  }
+  for (const char* text : {"+1.5", "15e-1", ".5", "1.", "1e0", "0"}) {
+    INFO(text);
+    CHECK(Said({"drive", "--length", text}).empty());
+  }
+  CHECK_THAT(Said({"drive", "--count", "0x4"}), Contains("'0x4' must be a whole number in [1, 9]"));
   CHECK_THAT(Said({"drive", "--count", "0"}), Contains("'0' must be a whole number in [1, 9]"));
   CHECK_THAT(Said({"drive", "--count", "10"}), Contains("must be a whole number in [1, 9]"));
   CHECK_THAT(Said({"drive", "--count", "2.5"}), Contains("must be a whole number in [1, 9]"));
