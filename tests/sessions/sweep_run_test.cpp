@@ -114,7 +114,11 @@ TEST_CASE("A damaged row is said with its file and run again") {
   const size_t at = bytes.find("waypoint path");
   REQUIRE(at != bytes.npos);
   bytes[at] = 'W';
+  CHECK(ReadStatus(folder.Path()).state == "done");
   test::WriteText(file, bytes);
+  const SweepStatus status = ReadStatus(folder.Path());
+  CHECK(status.state == "stopped");  // a trial is to be run again
+  CHECK(status.summary.damaged > 0);
   const auto after = SweepInto(folder.Path(), SmallGrid(), again);
   REQUIRE(after);
   CHECK_THAT(again.Text(), Contains("note: " + file + ": ") &&

@@ -17,11 +17,13 @@ bool IsFree(const std::string& key) {
   return false;
 }
 
-/// A journal that says "running" while nobody holds the folder was left by a killed sweep.
+/// A journal that says "running" while nobody holds the folder was left by a killed sweep, and one
+/// with damaged rows lacks trials, whatever it says.
 std::string StateOf(const std::filesystem::path& folder, const sweep::JournalSummary& summary) {
   if (files::FolderLock::IsHeld(folder)) return "running";
   const auto noted = summary.notes.find("state");
-  const bool is_done = noted != summary.notes.end() && noted->second == "done";
+  const bool is_noted = noted != summary.notes.end() && noted->second == "done";
+  const bool is_done = is_noted && summary.damaged == 0;
   return is_done ? "done" : "stopped";
 }
 
