@@ -114,7 +114,8 @@ Gathered Gather(
   std::string searched;
   int count = 0;
   LiveListener listener{.is_stopped = [] { return false; },
-                        .say = [&](const std::string& line) { gathered.said.push_back(line); }};
+                        .say = [&](const std::string& line) { gathered.said.push_back(line); },
+                        .hint_s = 1e9};  // however long a busy machine takes
   listener.show = [&](const LiveScene& scene) {
     if (scene.searched == nullptr || scene.searched->name == searched) return LiveInput{};
     searched = scene.searched->name;
@@ -315,6 +316,7 @@ TEST_CASE("Who follows the advice alone covers everything in a few views and cal
   std::vector<std::string> said;
   LiveListener listener{.is_stopped = [&] { return asked > 100; },
                         .say = [&](const std::string& line) { said.push_back(line); }};
+  listener.hint_s = 1e9;  // however long a busy machine takes
   listener.show = [&](const LiveScene& scene) {
     if (scene.searched == nullptr || scene.searched->name == searched) return LiveInput{};
     searched = scene.searched->name;
