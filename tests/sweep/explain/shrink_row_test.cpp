@@ -179,5 +179,62 @@ TEST_CASE("Sets of changes are tried by size, then each value by halves until it
   CHECK(*near.theta[0].number == 0.4375);
 }
 
+TEST_CASE("A change that a smaller one makes needless is taken back") {
+  const std::vector<experiment::Parameter> space{{.key = "x", .min = 0.0, .max = 1.0},
+                                                 {.key = "y", .levels = {{"off", {}}, {"on", {}}}}};
+  const Robustness robustness = [](const experiment::Theta& theta) {
+    const double x = *theta[0].number;
+    return (x > 0.9 && theta[1].text == "on") || (x > 0.3 && x < 0.6) ? -0.1 : 0.1;
+  };
+  const ShrunkFailure shrunk =
+      Shrink(space, {Number(0.0), {"off", {}}}, {Number(1.0), {"on", {}}}, robustness);
+  CHECK(shrunk.changed == std::vector<int>{0});
+  CHECK(shrunk.theta[1].text == "off");
+  CHECK(*shrunk.theta[0].number == Approx(0.3).margin(0.02));
+  CHECK(robustness(shrunk.theta) < 0.0);
+  CHECK(shrunk.is_minimal);
+}
+
+TEST_CASE("Of a list the values between one's own and the failing one are tried, and no others") {
+  const std::vector<experiment::Parameter> space{
+      {.key = "n", .levels = {{"4", 4.0}, {"5", 5.0}, {"9", 9.0}, {"7", 7.0}, {"10", 10.0}}}};
+  std::vector<std::string> tried;
+  const ShrunkFailure shrunk =
+      Shrink(space, {{"5", 5.0}}, {{"9", 9.0}}, [&](const experiment::Theta& theta) {
+        tried.push_back(theta[0].text);
+        return *theta[0].number == 5.0 ? 0.1 : -0.1;
+      });
+  CHECK(shrunk.theta[0].text == "7");
+  CHECK(tried == std::vector<std::string>{"9", "5", "7"});
+}
+
+TEST_CASE("No more trials are spent than may be, and what is claimed of the rest was tried") {
+  const std::vector<experiment::Parameter> space{
+      {.key = "x", .min = 0.0, .max = 1.0},
+      {.key = "n", .levels = {{"1", 1.0}, {"2", 2.0}, {"3", 3.0}, {"4", 4.0}}},
+      {.key = "w", .levels = {{"a", {}}, {"b", {}}}}};
+  const experiment::Theta nominal{Number(0.0), {"1", 1.0}, {"a", {}}};
+  const auto fails = [](const experiment::Theta& theta) {
+    return *theta[0].number > 0.42 && *theta[1].number >= 3.0;
+  };
+  int minimal = 0;
+  for (int budget = 1; budget <= 40; ++budget) {
+    INFO(budget);
+    int runs = 0;
+    const ShrunkFailure shrunk = Shrink(space, nominal, {Number(1.0), {"4", 4.0}, {"b", {}}},
+                                        [&](const experiment::Theta& theta) {
+                                          ++runs;
+                                          return fails(theta) ? -0.1 : 0.1;
+                                        },
+                                        {.max_evaluations = budget});
+    CHECK(runs <= budget);
+    CHECK(shrunk.evaluations == runs);
+    CHECK(fails(shrunk.theta));
+    minimal += shrunk.is_minimal;
+    if (shrunk.is_minimal) CHECK(shrunk.changed == std::vector<int>{0, 1});
+  }
+  CHECK(minimal > 0);
+}
+
 }  // namespace
 }  // namespace rift::sweep
