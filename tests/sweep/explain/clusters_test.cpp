@@ -128,5 +128,30 @@ TEST_CASE("Values of a range are no place, and failures without errors are left 
   CHECK(ClusterFailures(result).empty());
 }
 
+TEST_CASE("Kinds are told apart above a mean silhouette, in which a failure alone counts nothing") {
+  const auto kinds = [](const std::vector<double>& ends_m, double least) {
+    std::vector<TrialRow> rows;
+    for (const double end_m : ends_m) rows.push_back(Failure(end_m, 0.0));
+    return ClusterFailures(Of(rows), {.least_silhouette = least}).size();
+  };
+  // By hand, of each failure: (way to the others - way within its kind) / way to the others.
+  const double of_pairs = (10.0 / 11.0 + 9.0 / 10.0 + 7.5 / 9.5 + 9.5 / 11.5) / 4.0;
+  CHECK(kinds({0.0, 0.01, 0.1, 0.12}, of_pairs - 1e-9) == 2);
+  CHECK(kinds({0.0, 0.01, 0.1, 0.12}, of_pairs + 1e-9) == 1);
+  const double of_one_alone = (9.0 / 10.0 + 8.0 / 9.0 + 0.0) / 3.0;
+  CHECK(kinds({0.0, 0.01, 0.1}, of_one_alone - 1e-9) == 2);
+  CHECK(kinds({0.0, 0.01, 0.1}, of_one_alone + 1e-9) == 1);
+}
+
+TEST_CASE("Kinds are those whose centres have come to rest") {
+  // Halves of the way from 0 to 1 first; the bound between them moves past 0.44, then past 0.37.
+  std::vector<TrialRow> rows(10, Failure(0.0, 0.0));
+  for (const double end_m : {0.37, 0.44, 0.6, 1.0}) rows.push_back(Failure(end_m, 0.0));
+  const std::vector<FailureCluster> clusters = ClusterFailures(Of(rows), {.most_clusters = 2});
+  REQUIRE(clusters.size() == 2);
+  CHECK(clusters[0].rows.size() == 10);
+  CHECK(clusters[1].rows.size() == 4);
+}
+
 }  // namespace
 }  // namespace rift::sweep
