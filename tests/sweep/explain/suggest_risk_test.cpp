@@ -155,5 +155,33 @@ TEST_CASE("What the robot did at a setting itself counts beside the prediction")
   }
 }
 
+TEST_CASE("Runs are the same by their path and their loss, and without a path never") {
+  SweepResult result = Of({{"ice", 2, 2}, {"rock", 2, 2}}, "nominal");
+  const auto with_paths = [&](std::uint64_t first, std::uint64_t second) {
+    for (size_t i = 0; i < 4; ++i) {
+      result.rows[i].evidence.fingerprint = i % 2 == 0 ? first : second;
+    }
+    return All(result);
+  };
+  CHECK(with_paths(0, 0).list.size() == 2);
+  const Suggestions same = with_paths(7, 8);
+  CHECK(same.list.size() == 1);
+  CHECK_THAT(same.note, Catch::Contains("1 left out as the same runs to the last bit"));
+  result.rows[3].comparison.gap_m = 0.09;  // against another reference
+  CHECK(with_paths(7, 8).list.size() == 2);
+}
+
+TEST_CASE("A sweep without parameters suggests its only setting") {
+  SweepResult result = Of({{"ice", 1, 2}}, "nominal");
+  result.parameters.clear();
+  for (TrialRow& row : result.rows) row.theta.clear();
+  Summarise(result);
+  const Suggestions suggestions = All(result);
+  REQUIRE(suggestions.list.size() == 1);
+  CHECK(suggestions.list[0].values.empty());
+  CHECK(suggestions.list[0].failures == 1);
+  CHECK(suggestions.list[0].sentence.starts_with("3 trials of the only setting: 1 of 2 "));
+}
+
 }  // namespace
 }  // namespace rift::sweep
