@@ -13,6 +13,7 @@
 #include "rift/statistics/inference.hpp"
 #include "rift/sweep/explain/failure_probability.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "support/pinned.hpp"
 
 namespace rift::sweep {
@@ -93,6 +94,7 @@ TEST_CASE(
   double below_ten = 0.0, least = 9.0, most = -9.0;
   for (size_t i = 0; i < asked.size(); ++i) {
     seeds.insert(*asked[i].seed);
+    CHECK(asked[i].seed == FreshSeed(5, i + 1));
     CHECK(asked[i].trial == (i % 2 == 0 ? "p" : "q"));
     least = std::min(least, *asked[i].theta[0].number);
     most = std::max(most, *asked[i].theta[0].number);
@@ -108,6 +110,45 @@ TEST_CASE(
   CHECK(words["a"] == Approx(1000).margin(100));
   CHECK(words["b"] == Approx(1000).margin(100));
   CHECK(below_ten == Approx(1000).margin(100));
+}
+
+TEST_CASE("The points of a rare event are those of the experiment's seed") {
+  const auto points = [](std::uint64_t seed) {
+    experiment::Experiment plan = Plan();
+    plan.seed = seed;
+    std::vector<experiment::Theta> asked;
+    EstimateRareEvent(plan,
+                      [&](const std::vector<TrialRequest>& requests) {
+                        std::vector<TrialRow> rows;
+                        for (const TrialRequest& request : requests) {
+                          asked.push_back(request.theta);
+                          rows.push_back(RowFor(request));
+                          rows.back().comparison.gap_m = 0.04;
+                        }
+                        return rows;
+                      },
+                      {.replicas = 4, .samples_per_level = 20, .most_levels = 1});
+    return asked;
+  };
+  CHECK(points(5) == points(5));
+  CHECK(points(5) != points(6));
+}
+
+TEST_CASE("Where half of the first draws fail they alone are counted, and with one less all") {
+  const auto evaluations = [](size_t failures) {
+    return EstimateRareEvent(1,
+                             [&](const auto& points) {
+                               std::vector<double> values;
+                               for (size_t i = 0; i < points.size(); ++i) {
+                                 values.push_back(i % 20 < failures ? -1.0 : 1.0);
+                               }
+                               return values;
+                             },
+                             1, {.replicas = 4, .samples_per_level = 20})
+        .evaluations;
+  };
+  CHECK(evaluations(10) == 20);
+  CHECK(evaluations(9) == 80);
 }
 
 std::vector<double> Each(const std::vector<std::vector<double>>& points, double share) {
