@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "rift/control/navigator.hpp"
+#include "rift/trial/trial.hpp"
 #include "support/inputs/paths.hpp"
 
 namespace rift::sweep {
@@ -156,6 +158,49 @@ TEST_CASE("The controller saw the tag, behind the point that a moved log names")
   const auto moved = RebuildLimits(trajectory::OffsetAlongHeading(log, 0.1), {}, 0.1);
   CHECK(moved->decisions == RebuildLimits(log, {})->decisions);
   CHECK(RebuildLimits(log, {}, 0.1)->decisions != moved->decisions);
+}
+
+/// Counts of each limit, then decisions.
+std::vector<size_t> CountsOf(const trial::LimitCounts& limits) {
+  std::vector<size_t> counts;
+  trial::LimitCounts::Fields(limits,
+                             [&](std::string_view, size_t count) { counts.push_back(count); });
+  counts.push_back(limits.decisions);
+  return counts;
+}
+
+TEST_CASE("What is rebuilt from a log is what the controller asked for when it was driven") {
+  control::NavigatorOptions options;
+  options.slew_rate_per_s = 1.5;
+  const std::vector<control::Waypoint> task{
+      {.name = "s"}, {.name = "a", .x_m = 0.5}, {.name = "b", .x_m = 0.4, .y_m = 0.4}};
+  control::Navigator navigator(options, task);
+  trial::Recorder recorder(task, 0.0);
+  Trajectory log;
+  geometry::Pose2 pose;
+  for (int i = 0; i < 200; ++i) {  // a robot of 0.6 m/s at full power, which does what it is told
+    const double t_s = 3.0 + 0.0625 * i;
+    const control::Decision decision = navigator.Step({t_s, 0.0625, t_s, pose});
+    if (decision.finished) break;
+    navigator.NoteSent(t_s, decision.power);
+    recorder.Decided(t_s, decision, navigator.active());
+    log.poses.push_back({.t_s = t_s,
+                         .x_m = pose.x_m,
+                         .y_m = pose.y_m,
+                         .yaw_rad = pose.yaw_rad,
+                         .target_x_m = navigator.Target_m().x(),
+                         .target_y_m = navigator.Target_m().y()});
+    const auto [left, right] = decision.power;
+    pose = pose * geometry::Pose2{0.015 * (left + right), 0.0, 0.1 * (right - left)};
+  }
+  REQUIRE(navigator.active() == 2);  // it stopped at the first target
+  const trial::LimitCounts& driven = recorder.result().limits;
+  const auto rebuilt = RebuildLimits(log, options);
+  REQUIRE(rebuilt);
+  CHECK(CountsOf(*rebuilt) == CountsOf(driven));
+  CHECK(driven.slew > 0);
+  CHECK(rebuilt->largest_raw_v == Approx(driven.largest_raw_v));
+  CHECK(rebuilt->largest_raw_w == Approx(driven.largest_raw_w));
 }
 
 }  // namespace
