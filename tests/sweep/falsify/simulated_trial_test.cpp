@@ -1,0 +1,57 @@
+// What a simulated trial is made of, and its true path.
+#include "rift/sweep/falsify/simulated_trial.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "rift/simulation/simulated_robot.hpp"
+#include "support/inputs/memory_files.hpp"
+
+namespace rift::sweep {
+namespace {
+
+TEST_CASE("The true path of a run begins as the robot stands, on a slope with roll and pitch") {
+  SimulatedTrial trial{
+      .task = std::vector<control::Waypoint>{{.name = "s"}, {.name = "e", .x_m = 0.3}},
+      .start = {0.1, -0.2, 0.6},
+      .seed = 3};
+  trial.simulation.terrain.surface = "uphill";
+  trial.trial.timeout_s = 1.0;
+  const simulation::TruePose stood =
+      simulation::SimulatedRobot(trial.simulation, trial.start, trial.seed).Truth();
+  const SimulatedRun run = Simulate(trial);
+  REQUIRE_FALSE(run.truth.poses.empty());
+  const trajectory::StampedPose& first = run.truth.poses.front();
+  REQUIRE(std::abs(stood.pitch_rad) > 0.1);
+  REQUIRE(std::abs(stood.roll_rad) > 0.05);
+  REQUIRE(std::abs(stood.roll_rad - stood.pitch_rad) > 0.05);
+  CHECK(first.x_m == stood.x_m);
+  CHECK(first.y_m == stood.y_m);
+  CHECK(first.z_m == stood.z_m);
+  CHECK(first.roll_rad == stood.roll_rad);
+  CHECK(first.pitch_rad == stood.pitch_rad);
+  CHECK(first.yaw_rad == stood.yaw_rad);
+  CHECK(first.yaw_rad == Approx(0.6).margin(0.05));
+}
+
+TEST_CASE("A run has the values of the draw of its seed") {
+  experiment::Experiment experiment;
+  experiment.waypoints = {{.name = "s"}, {.name = "e", .x_m = 0.3}};
+  experiment.ensemble.keys = {"simulation.motor.mismatch"};
+  experiment.ensemble.draws = {{0.01}, {0.02}, {0.03}};
+  const test::Files none;
+  std::set<double> seen;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const SimulatedTrial trial =
+        SimulatedTrialOf(experiment, {}, seed, "e.yaml", test::InputsOf(none));
+    CHECK(trial.seed == seed);
+    CHECK(trial.simulation.motor.mismatch ==
+          experiment::DrawnAt(experiment, seed).simulation.motor.mismatch);
+    seen.insert(trial.simulation.motor.mismatch);
+  }
+  CHECK(seen == std::set<double>{0.01, 0.02, 0.03});
+}
+
+}  // namespace
+}  // namespace rift::sweep
