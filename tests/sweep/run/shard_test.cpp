@@ -54,6 +54,10 @@ TEST_CASE("Items are dealt out to shards evenly, each once, and no shard is empt
   }
 }
 
+TEST_CASE("Neighbours are dealt out to different shards") {
+  CHECK(DealOut(7, 3) == std::vector<std::vector<size_t>>{{0, 3, 6}, {1, 4}, {2, 5}});
+}
+
 TEST_CASE("A shard comes back from its bytes, and its name is that of its content") {
   Shard shard{.facts = "f", .experiment = "e", .kind = ShardKind::kShrink, .keys = "k", .paths = 2};
   shard.requests = {"one", std::string("t\0wo", 4), ""};
@@ -94,6 +98,11 @@ TEST_CASE("A published file takes the place of an older one whole, and leaves no
   CHECK(std::distance(fs::directory_iterator(folder / "shards"), {}) == 1);
   CHECK_THROWS_AS(PublishFile(folder / "new", folder / "gone/a.sqlite"), std::runtime_error);
   CHECK_FALSE(fs::exists(folder / "gone"));
+  // What cannot take the place of its target leaves nothing beside it.
+  fs::create_directories(folder / "taken/b.sqlite/full");
+  CHECK_THROWS_WITH(PublishFile(folder / "new", folder / "taken/b.sqlite"),
+                    Catch::StartsWith("cannot write " + (folder / "taken/b.sqlite") + ": "));
+  CHECK(std::distance(fs::directory_iterator(folder / "taken"), {}) == 1);
 }
 
 TEST_CASE("Journals of shards merge into one with the rows of all, whichever comes twice") {
