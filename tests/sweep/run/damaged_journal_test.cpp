@@ -163,6 +163,35 @@ TEST_CASE("Rows of a journal made from other facts are not believed") {
   CHECK_FALSE(journal.Find("x=1"));
 }
 
+TEST_CASE("Damaged notes and rows are counted when a journal is opened, and gone the next time") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  {
+    Journal journal(file, kFacts);
+    for (const char* key : {"x=1", "x=2"}) journal.Add(key, {"ok", 0.01, false, "row"});
+    journal.SetNote("elapsed_s", "12.5");
+    journal.SetNote("name", "night");
+    journal.Close();
+  }
+  const auto change = [&](const char* command) {
+    SQLite::Database(file, SQLite::OPEN_READWRITE).exec(command);
+  };
+  const auto damaged = [&] {
+    Journal journal(file, kFacts);
+    CHECK_FALSE(journal.Note("elapsed_s"));
+    CHECK(journal.Note("name") == "night");
+    CHECK(journal.Has("x=2"));
+    return journal.Damaged();
+  };
+  change("UPDATE note SET value = '1e9' WHERE name = 'elapsed_s'");
+  CHECK(damaged() == 1);
+  CHECK(damaged() == 0);
+  change("UPDATE trial SET row = 'other' WHERE key = 'x=1'");
+  change("INSERT INTO note VALUES ('elapsed_s', '1e9', NULL), ('total', '3', '')");
+  CHECK(damaged() == 3);
+  CHECK(damaged() == 0);
+}
+
 TEST_CASE("A journal that was removed or replaced while it is written says so") {
   const test::TemporaryFolder folder;
   const fs::path file = folder / "out/journal.sqlite";

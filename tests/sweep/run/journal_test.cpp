@@ -266,8 +266,7 @@ TEST_CASE("A merge takes over every value of a row, and how long the other took"
   CHECK(journal.Merge(folder / "other").trials == 2);
   CHECK(journal.Note("elapsed_s") == "12.5");
   CHECK_FALSE(journal.Note("state"));
-  journal.Close();
-  const JournalSummary summary = ReadJournal(folder / "all");
+  const JournalSummary summary = ReadJournal(folder / "all");  // by another, at once
   CHECK(summary.falsified == 2);
   CHECK(summary.trials_by_status.at("fell") == 1);
   CHECK(summary.largest_key == "ok");
