@@ -223,6 +223,8 @@ TEST_CASE("The rows of all shards are in the journal, and what only their jobs n
   cluster.Finishes(shards[0], "a");
   cluster.Finishes(shards[1], "b");
   cluster.Finishes(shards[2], "c");
+  cluster.Does("sbatch", test::ReadFile(cluster / "sbatch.also") +
+                             "echo words > \"$F/0.log\"; : > \"$F/1.log\"\n");
   std::vector<ShardCounts> seen;
   SlurmShards::Watch watch;
   watch.seen = [&](const ShardCounts& counts) {
@@ -248,7 +250,9 @@ TEST_CASE("The rows of all shards are in the journal, and what only their jobs n
     CHECK_FALSE(fs::exists(array / "shards"));
     CHECK_FALSE(fs::exists(array / "0.shard"));
     CHECK_FALSE(fs::exists(array / "experiment.yaml"));
+    CHECK(test::ReadFile(array / "0.log") == "words\n");
   }
+  CHECK_FALSE(fs::exists(first / "1.log"));  // an empty one
   CHECK_FALSE(fs::exists(cluster.Out() / "shards"));
   CHECK(test::ReadFile(first / "array.sh") ==
         "#!/bin/bash\n# A task of the job array of a sweep: one shard.\n"
@@ -272,16 +276,23 @@ TEST_CASE("A shard that leaves no journal is run three times, and told with its 
   cluster.Finishes(shards[0], "a");
   cluster.Does("sbatch", test::ReadFile(cluster / "sbatch.also") +
                              "printf 'first\\nthe last words\\n\\n' > \"$F/1.log\"\n");
+  cluster.Answers("squeue", "41_7|RUNNING|None\n");  // whatever is left under the name
   const SlurmOptions options = Quick();
-  SlurmShards slurm(cluster.Out(), options, "", journal, {});
+  int looks = 0;
+  SlurmShards::Watch watch;
+  watch.seen = [&](const ShardCounts&) { ++looks; };
+  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
   CHECK_THROWS_WITH(slurm.Run(shards),
                     Catch::StartsWith("shard 1 of " + (cluster.Out() / "slurm/1").string() +
                                       " was run 3 times and left no journal; the last line of ") &&
                         Catch::EndsWith("1.log: the last words"));
   CHECK(test::ReadFile(cluster.Out() / "slurm/1/jobs") == "41 0-1\n41 1\n41 1\n");
+  CHECK(looks == 1 + 3 + 3 + 3);  // it has to be absent three times in a row
+  CHECK(cluster.Arguments("scancel") == "41\n");
   CHECK(journal.Find("a"));
   CHECK(SlurmShards::AreOpen(cluster.Out()));
   SlurmShards::Forget(cluster.Out());
+  CHECK(cluster.Arguments("scancel") == "41\n");
   CHECK_FALSE(fs::exists(cluster.Out() / "slurm"));
   CHECK_FALSE(fs::exists(cluster.Out() / "shards"));
 }
@@ -317,10 +328,24 @@ TEST_CASE("Whoever is told to stop cancels the jobs, and the next takes in what 
   cluster.Answers("squeue", "");
   cluster.Finishes(shard, "a");
   cluster.Arguments("sbatch");
-  SlurmShards next(cluster.Out(), options, "", journal, {});
+  {
+    Journal part(UnfinishedShardJournal(cluster.Out(), ShardName(EncodeShard(shard))), kFacts);
+    part.Add("of a part", {"ok", 0.01, false, "its row"});
+    part.Close();
+  }
+  SlurmOptions others = options;
+  others.prologue = {"module load y"};
+  int later_looks = 0;
+  SlurmShards::Watch later;
+  later.seen = [&](const ShardCounts&) { ++later_looks; };
+  SlurmShards next(cluster.Out(), others, "", journal, later);
   CHECK(next.Resume());
+  CHECK(later_looks == 2);  // at once, since whoever submitted it is gone
+  CHECK_THAT(test::ReadFile(cluster.Out() / "slurm/1/array.sh"),
+             Catch::Contains("\nmodule load y\n"));
   CHECK(cluster.Arguments("sbatch").ends_with("array.sh\n"));  // once more
   CHECK(journal.Find("a") == "row of a");
+  CHECK(journal.Find("of a part") == "its row");
   CHECK_FALSE(ReadShardCounts(cluster.Out()));
   CHECK(next.Resume());  // nothing is open
 }
@@ -412,6 +437,93 @@ TEST_CASE("A busy cluster is asked again with half of the tasks, and complained 
   CHECK(arguments.find("--array=0-4\n") != std::string::npos);  // all
   CHECK(arguments.find("--array=0-1\n") != std::string::npos);  // then half of five
   CHECK(arguments.find("--array=0\n") != std::string::npos);    // then half of two
+}
+
+TEST_CASE("A shard that was seen in the queue between two looks without it is not run twice") {
+  const Cluster cluster;
+  fs::create_directories(cluster.Out());
+  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  const Shard shard = ShardOf("a");
+  const SlurmOptions options = Quick();
+  int looks = 0;
+  SlurmShards::Watch watch;
+  watch.seen = [&](const ShardCounts&) {
+    ++looks;
+    cluster.Answers("squeue", looks == 3 ? "41_0|RUNNING|None\n" : "");
+    if (looks != 6) return;
+    cluster.Finishes(shard, "a");
+    const std::string name = ShardName(EncodeShard(shard));
+    fs::copy_file(cluster / ("ready/" + name), ShardJournal(cluster.Out(), name));
+  };
+  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
+  CHECK(slurm.Run({shard}));
+  CHECK(looks == 7);
+  CHECK(test::ReadFile(cluster.Out() / "slurm/1/jobs") == "41 0\n");
+}
+
+TEST_CASE("Shards are counted as done, running or waiting, with why the first of them waits") {
+  const Cluster cluster;
+  fs::create_directories(cluster.Out());
+  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  std::vector<Shard> shards;
+  for (const char* key : {"a", "b", "c", "d", "e"}) shards.push_back(ShardOf(key));
+  cluster.Finishes(shards[1], "b");
+  cluster.Answers("squeue",
+                  "41_1|RUNNING|None\n41_2|RUNNING|None\n41_3|PENDING|Priority\n"
+                  "41_4|PENDING|Resources\n");
+  const ShardCounts expected{
+      .total = 5, .done = 1, .running = 1, .pending = 2, .reason = "Priority"};
+  ShardCounts seen;
+  int looks = 0;
+  SlurmShards::Watch watch;
+  watch.seen = [&](const ShardCounts& counts) {
+    seen = counts;
+    if (++looks == 2) CHECK(ReadShardCounts(cluster.Out()) == expected);
+  };
+  watch.go_on = [&] { return looks < 2; };
+  const SlurmOptions options = Quick();
+  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
+  CHECK_FALSE(slurm.Run(shards));
+  CHECK(seen == expected);
+}
+
+TEST_CASE("An array has the number behind the largest, and no job of it is left at its end") {
+  const Cluster cluster;
+  for (const char* name : {"2", "10", "7", "1", "3", "12x", "x", "1234567890"}) {
+    fs::create_directories(cluster.Out() / "slurm" / name);
+  }
+  test::WriteText(cluster.Out() / "slurm/99", "no folder");
+  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  const Shard shard = ShardOf("a");
+  cluster.Finishes(shard, "a");
+  cluster.Answers("squeue", "41_7|RUNNING|None\n");  // whatever is left under the name
+  const SlurmOptions options = Quick();
+  SlurmShards slurm(cluster.Out(), options, "", journal, {});
+  CHECK(slurm.Run({shard}));
+  CHECK(fs::exists(cluster.Out() / "slurm/11/jobs"));
+  CHECK(cluster.Arguments("scancel") == "41\n");
+}
+
+TEST_CASE("A complaint is told again once a submission came between") {
+  const Cluster cluster;
+  fs::create_directories(cluster.Out());
+  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  cluster.Does(
+      "sbatch",
+      "echo x >> \"$D/tried\"\n"
+      "case $(wc -l < \"$D/tried\") in 1|3) echo 'over the job limit' >&2; exit 1;; esac\n" +
+          test::ReadFile(cluster / "sbatch.also"));
+  std::vector<std::string> said;
+  SlurmShards::Watch watch;
+  watch.say = [&](const std::string& line) { said.push_back(line); };
+  const SlurmOptions options = Quick();
+  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
+  for (const char* key : {"a", "b"}) {
+    cluster.Finishes(ShardOf(key), key);
+    CHECK(slurm.Run({ShardOf(key)}));
+  }
+  const std::string busy = "note: sbatch: over the job limit; trying again";
+  CHECK(said == std::vector<std::string>{busy, busy});
 }
 
 }  // namespace
