@@ -1,5 +1,8 @@
 #include "rift/sweep/run/worker_pool.hpp"
 
+#include <fcntl.h>
+#include <sched.h>
+#include <sys/mman.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -145,6 +148,97 @@ TEST_CASE("A long answer comes through whole") {
   for (const auto& [index, result] : RunAll(pool, 3)) {
     CHECK(result.bytes == std::string(3'000'000, static_cast<char>('0' + index)));
   }
+}
+
+TEST_CASE("A worker has its next job before it asks, and the last jobs wait for who is free") {
+  // How many jobs of a batch were handed out before the first was done.
+  const auto handed_out = [](int workers, int count) {
+    WorkerPool pool([](const std::string& job) { return job; }, workers, {});
+    int handed = 0, at_first = 0;
+    pool.Run({count,
+              [&](int i) {
+                ++handed;
+                return std::to_string(i);
+              },
+              [&](int, const JobResult&) { at_first = at_first > 0 ? at_first : handed; },
+              [] { return true; }});
+    CHECK(handed == count);
+    return at_first;
+  };
+  CHECK(handed_out(1, 5) == 2);
+  CHECK(handed_out(1, 2) == 1);
+  CHECK(handed_out(2, 6) == 4);
+  CHECK(handed_out(2, 5) == 3);
+  CHECK(handed_out(2, 4) == 2);
+}
+
+TEST_CASE("A job that was to be tried again is forgotten with its batch") {
+  WorkerPool pool(
+      [](const std::string& job) {
+        if (job == "crash") ::_exit(7);
+        return job;
+      },
+      1, {.retries = 3});
+  int asked = 0;
+  CHECK_FALSE(pool.Run({1, [](int) { return std::string("crash"); },
+                        [](int, const JobResult&) { FAIL("it was to be tried again"); },
+                        [&] { return ++asked < 3; }}));
+  for (const auto& [index, result] : RunAll(pool, 2)) CHECK(result.bytes == std::to_string(index));
+}
+
+/// Whether a process may have so many MiB more. They are never touched.
+std::string Take(const std::string& mib) {
+  const size_t size = std::stoul(mib) << 20;
+  void* const taken =
+      ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (taken == MAP_FAILED) return "refused";
+  ::munmap(taken, size);
+  return "taken";
+}
+
+TEST_CASE("A worker may take its memory on top of what the sweep itself holds, and no more") {
+  SKIP_UNDER_SANITIZER();
+  constexpr size_t kHeld = size_t{200} << 20;
+  void* const held =
+      ::mmap(nullptr, kHeld, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  REQUIRE(held != MAP_FAILED);
+  WorkerPool pool([](const std::string& job) { return Take(job == "0" ? "48" : "80"); }, 1,
+                  {.memory_mb = 64});
+  const std::map<int, JobResult> results = RunAll(pool, 2);
+  ::munmap(held, kHeld);
+  CHECK(results.at(0).bytes == "taken");
+  CHECK(results.at(1).bytes == "refused");
+}
+
+TEST_CASE("A worker has no open file of the sweep") {
+  const int low = ::open("/dev/null", O_RDONLY), high = ::fcntl(low, F_DUPFD, 500);
+  REQUIRE(low >= 0);
+  REQUIRE(high >= 500);
+  WorkerPool pool(
+      [&](const std::string& job) {
+        return std::string(::fcntl(job == "0" ? low : high, F_GETFD) < 0 ? "closed" : "open");
+      },
+      1, {});
+  for (const auto& [index, result] : RunAll(pool, 2)) CHECK(result.bytes == "closed");
+  ::close(low);
+  ::close(high);
+}
+
+TEST_CASE("The cores to use are those that this process may run on") {
+  cpu_set_t before;
+  CPU_ZERO(&before);
+  REQUIRE(::sched_getaffinity(0, sizeof before, &before) == 0);
+  int allowed = 0;
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  for (int core = 0; core < CPU_SETSIZE; ++core) {
+    if (!CPU_ISSET(core, &before)) continue;
+    if (++allowed == 1) CPU_SET(core, &one);
+  }
+  CHECK(CoresToUse() == allowed);
+  REQUIRE(::sched_setaffinity(0, sizeof one, &one) == 0);
+  CHECK(CoresToUse() == 1);
+  ::sched_setaffinity(0, sizeof before, &before);
 }
 
 }  // namespace
