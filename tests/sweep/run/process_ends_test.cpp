@@ -1,26 +1,24 @@
-// How jobs of workers and programs of others end, and what is told of it.
+// How jobs of workers end, and what is told of it.
 #include <signal.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
-#include <filesystem>
+#include <cstring>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "rift/sweep/run/byte_codec.hpp"
-#include "rift/sweep/run/external_program.hpp"
 #include "rift/sweep/run/worker_pool.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
 #include "support/sanitizer.hpp"
-#include "support/until.hpp"
 
 namespace rift::sweep {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// The result of one job.
 JobResult ResultOf(const WorkerPool::Work& work, const RunOptions& options = {}) {
@@ -47,14 +45,18 @@ TEST_CASE("A job that ends its worker with a code, or is killed for ever, is a c
       ResultOf([](const std::string&) -> std::string { ::_exit(7); }, {.retries = 0});
   CHECK(ended.end == JobEnd::kCrashed);
   CHECK(ended.bytes.find("7") != std::string::npos);
+  const test::TemporaryFolder folder;
+  const std::string kills = folder / "kills";
   const JobResult killed = ResultOf(
-      [](const std::string&) -> std::string {
+      [&](const std::string&) -> std::string {
+        std::ofstream(kills, std::ios::app) << 'x';
         ::kill(::getpid(), SIGKILL);
         return "";
       },
       {.retries = 0});
   CHECK(killed.end == JobEnd::kCrashed);
   CHECK(killed.bytes.starts_with("ended by signal 9"));
+  CHECK(test::ReadFile(kills) == "xxxxx");
 }
 
 TEST_CASE(
@@ -72,6 +74,66 @@ TEST_CASE(
   CHECK(words("one\ntwo\n") == "ended by signal 6 (Aborted): one");
   CHECK(words(std::string(300, 'x')) == "ended by signal 6 (Aborted): " + std::string(200, 'x'));
   CHECK(words("").ends_with("(Aborted)"));
+  WorkerPool pool(
+      [](const std::string& job) -> std::string {
+        const std::string text = job == "0" ? "of the first job" : "second";
+        [[maybe_unused]] const auto n = ::write(2, text.data(), text.size());
+        if (job == "1") std::abort();
+        return "";
+      },
+      1, {.retries = 0});
+  std::vector<std::string> reasons(2);
+  pool.Run({2, [](int i) { return std::to_string(i); },
+            [&](int i, const JobResult& result) { reasons[static_cast<size_t>(i)] = result.bytes; },
+            [] { return true; }});
+  CHECK(reasons == std::vector<std::string>{"", "ended by signal 6 (Aborted): second"});
+}
+
+/// A job that touches so many MiB and says so, and aborts.
+JobResult Aborted(int touched_mib, const std::string& words, int memory_mb) {
+  return ResultOf(
+      [=](const std::string&) -> std::string {
+        const size_t size = static_cast<size_t>(touched_mib) << 20;
+        void* const taken =
+            ::mmap(nullptr, size + 1, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        if (taken == MAP_FAILED) return "refused";
+        std::memset(taken, 'x', size);
+        [[maybe_unused]] const auto n = ::write(2, words.data(), words.size());
+        std::abort();
+      },
+      {.memory_mb = memory_mb, .retries = 0});
+}
+
+TEST_CASE("A worker that aborts with its memory full, or says so, ran out of it") {
+  SKIP_UNDER_SANITIZER();
+  CHECK(Aborted(62, "", 64).end == JobEnd::kOutOfMemory);
+  CHECK(Aborted(30, "", 64).end == JobEnd::kCrashed);
+  const JobResult said = Aborted(0, "terminate called: what(): std::bad_alloc\n", 1024);
+  CHECK(said.end == JobEnd::kOutOfMemory);
+  CHECK(said.bytes == "wanted more than 1024 MB of memory");
+}
+
+TEST_CASE("A worker leaves Ctrl-C to the sweep, and other signals of the sweep end it") {
+  SKIP_UNDER_SANITIZER();
+  const auto at = [](int signal) {
+    return ResultOf(
+               [=](const std::string&) {
+                 ::raise(signal);
+                 return std::string("goes on");
+               },
+               {.retries = 0})
+        .bytes;
+  };
+  CHECK(at(SIGINT) == "goes on");
+  for (const int signal : {SIGTERM, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) {
+    using Action = struct sigaction;
+    Action ignored{}, before{};
+    ignored.sa_handler = SIG_IGN;
+    REQUIRE(::sigaction(signal, &ignored, &before) == 0);
+    const std::string told = at(signal);
+    ::sigaction(signal, &before, nullptr);
+    CHECK_THAT(told, Catch::StartsWith("ended by signal " + std::to_string(signal) + " "));
+  }
 }
 
 TEST_CASE("What a job throws is its reason, and the worker goes on") {
@@ -97,88 +159,6 @@ TEST_CASE("A pool has a worker at least, and a batch without jobs is done") {
   CHECK(pool.Run({0, {}, {}, [] { return true; }}));
   CHECK(CoresToUse() >= 1);
   CHECK(ResultOf([](const std::string&) { return std::string(); }).bytes.empty());
-}
-
-/// `sh -c lines` in a folder of its own.
-struct Shell {
-  explicit Shell(const std::string& lines, bool talks = false)
-      : program({.arguments = {"sh", "-c", lines},
-                 .environment = {{"RIFT_WORD", "from outside"}},
-                 .files = {{"told.txt", "in a file"}},
-                 .memory_mb = 512,
-                 .talks = talks},
-                ExternalProgram::MakeFolder()) {}
-  ExternalProgram program;
-};
-
-TEST_CASE("A program has its folder, its files and its environment, and ends with its code") {
-  Shell shell(
-      "pwd >&2; [ \"$(cat told.txt)\" = 'in a file' ] || exit 1; "
-      "[ \"$RIFT_WORD\" = 'from outside' ] || exit 2; exit 42");
-  const ExternalProgram::Exit exit = shell.program.Wait();
-  CHECK(exit.code == 42);
-  CHECK(exit.signal == 0);
-  CHECK(shell.program.LastWords() == "{folder}");
-  CHECK(shell.program.Owner() == ::getpid());
-  CHECK(fs::exists(fs::path(shell.program.Folder()) / "told.txt"));
-  CHECK(Shell("kill -TERM $$").program.Wait().signal == SIGTERM);
-  CHECK(Shell("exit 0").program.Wait().code == 0);
-}
-
-TEST_CASE("The folder of a program is gone with it") {
-  std::string folder;
-  {
-    Shell shell("sleep 1000 & exit 0");
-    shell.program.Wait();
-    folder = shell.program.Folder();
-    CHECK(fs::exists(folder));
-  }
-  CHECK_FALSE(fs::exists(folder));
-}
-
-TEST_CASE("Last words are the last line that is one, to 200 bytes, until they are forgotten") {
-  const auto words = [](const std::string& lines) {
-    Shell shell(lines);
-    shell.program.Wait();
-    return shell.program.LastWords();
-  };
-  CHECK(words("printf 'one\\ntwo\\n \\n\\t\\n' >&2") == "two");
-  CHECK(words("printf 'only' >&2") == "only");
-  CHECK(words(":").empty());
-  CHECK(words("printf '%0300d' 0 >&2").size() == 200);
-  CHECK(words("echo \"$PWD/a and $PWD/b\" >&2") == "{folder}/a and {folder}/b");
-  Shell shell("echo first >&2; read -r LINE; echo second >&2", true);
-  test::WaitUntil("its first word", [&] { return shell.program.LastWords() == "first"; });
-  shell.program.ForgetWords();
-  CHECK(shell.program.LastWords().empty());
-  CHECK(shell.program.SendLine("go"));
-  shell.program.Wait();
-  CHECK(shell.program.LastWords() == "second");
-}
-
-TEST_CASE("Lines go to a program and come back one by one, and none after its end") {
-  Shell shell(
-      "while read -r LINE; do [ \"$LINE\" != end ] || exit 3; "
-      "printf '%s\\n%s again\\n' \"$LINE\" \"$LINE\"; done",
-      true);
-  CHECK(shell.program.SendLine("a b"));
-  CHECK(shell.program.ReceiveLine() == "a b");
-  CHECK(shell.program.SendLine("c"));
-  CHECK(shell.program.ReceiveLine() == "a b again");
-  CHECK(shell.program.ReceiveLine() == "c");
-  CHECK(shell.program.ReceiveLine() == "c again");
-  CHECK(shell.program.SendLine("end"));
-  CHECK_FALSE(shell.program.ReceiveLine());
-  CHECK(shell.program.Wait().code == 3);
-}
-
-TEST_CASE(
-    "A program that is not there ends with 127 and the reason, and one without a name throws") {
-  ExternalProgram program({.arguments = {"no-such-program-of-rift"}},
-                          ExternalProgram::MakeFolder());
-  CHECK(program.Wait().code == 127);
-  CHECK(program.LastWords() == "cannot run no-such-program-of-rift: No such file or directory");
-  CHECK_THROWS_WITH(ExternalProgram({}, ExternalProgram::MakeFolder()), "a program has no name");
 }
 
 TEST_CASE("Values come back from their bytes, and too few bytes, or none of a kind, are refused") {

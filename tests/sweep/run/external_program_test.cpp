@@ -1,0 +1,157 @@
+// How programs of others are started, talked to, and end with all that they start.
+#include "rift/sweep/run/external_program.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "support/processes/environment.hpp"
+#include "support/processes/process.hpp"
+#include "support/until.hpp"
+
+namespace rift::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `sh -c lines` in a folder of its own.
+struct Shell {
+  explicit Shell(const std::string& lines, bool talks = false)
+      : program({.arguments = {"sh", "-c", lines},
+                 .environment = {{"RIFT_WORD", "from outside"}},
+                 .files = {{"told.txt", "in a file"}},
+                 .memory_mb = 512,
+                 .talks = talks},
+                ExternalProgram::MakeFolder()) {}
+  ExternalProgram program;
+};
+
+TEST_CASE("A program has its folder, its files and its environment, and ends with its code") {
+  Shell shell(
+      "pwd >&2; [ \"$(cat told.txt)\" = 'in a file' ] || exit 1; "
+      "[ \"$RIFT_WORD\" = 'from outside' ] || exit 2; exit 42");
+  const ExternalProgram::Exit exit = shell.program.Wait();
+  CHECK(exit.code == 42);
+  CHECK(exit.signal == 0);
+  CHECK(shell.program.LastWords() == "{folder}");
+  CHECK(shell.program.Owner() == ::getpid());
+  CHECK(fs::exists(fs::path(shell.program.Folder()) / "told.txt"));
+  CHECK(Shell("kill -TERM $$").program.Wait().signal == SIGTERM);
+  CHECK(Shell("exit 0").program.Wait().code == 0);
+}
+
+std::string WordsOf(const std::string& lines) {
+  Shell shell(lines);
+  shell.program.Wait();
+  return shell.program.LastWords();
+}
+
+TEST_CASE("A program has its memory and as much in files, no core, and no way to raise them") {
+  // In kB, and in blocks of 512 bytes.
+  CHECK(WordsOf("echo $(ulimit -S -d) $(ulimit -S -f) $(ulimit -S -c) >&2") == "524288 1048576 0");
+  CHECK(WordsOf("echo $(ulimit -H -d) $(ulimit -H -f) $(ulimit -H -c) >&2") == "524288 1048576 0");
+}
+
+TEST_CASE("A program that does not talk reads nothing and its output goes nowhere") {
+  CHECK(WordsOf("WORD=$(readlink /proc/$$/fd/0); echo $WORD >&2") == "/dev/null");
+  CHECK(WordsOf("WORD=$(readlink /proc/$$/fd/1); echo $WORD >&2") == "/dev/null");
+  const test::Environment outside("RIFT_WORD", "of the caller");
+  CHECK(WordsOf("echo \"$RIFT_WORD\" >&2") == "from outside");
+}
+
+TEST_CASE("A program is ended by each signal, blocks none, and its group is its own") {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
+    CHECK(Shell("kill -" + std::to_string(signal) + " $$").program.Wait().signal == signal);
+  }
+  CHECK(WordsOf("while read -r K V; do [ $K != SigBlk: ] || echo $V >&2; done < /proc/$$/status") ==
+        "0000000000000000");
+  std::string folder;
+  {
+    Shell shell("kill -KILL 0");
+    folder = shell.program.Folder();
+    CHECK(shell.program.Wait().signal == SIGKILL);
+  }
+  CHECK_FALSE(fs::exists(folder));  // who keeps it was not in the group
+  const std::string session = WordsOf(
+      "read -r PID NAME STATE PARENT GROUP SESSION REST < /proc/$$/stat; echo $SESSION >&2");
+  CHECK(session != std::to_string(::getsid(0)));
+}
+
+TEST_CASE("A program whose keeper is killed is killed with it") {
+  std::string folder;
+  {
+    Shell shell("echo $$ $PPID >&2; exec sleep 1000");
+    folder = shell.program.Folder();
+    test::WaitUntil("it has started", [&] { return !shell.program.LastWords().empty(); });
+    const std::string words = shell.program.LastWords();
+    const pid_t program = std::stoi(words), keeper = std::stoi(words.substr(words.find(' ')));
+    REQUIRE(keeper != ::getpid());
+    ::kill(keeper, SIGKILL);
+    CHECK(shell.program.Wait().signal == SIGKILL);
+    // It may stay a zombie, whose command line is empty.
+    const std::string line = "/proc/" + std::to_string(program) + "/cmdline";
+    test::WaitUntil("it is gone", [&] { return std::ifstream(line).peek() == EOF; });
+  }
+  fs::remove_all(folder);
+}
+
+TEST_CASE("The folder of a program is gone with it") {
+  std::string folder;
+  {
+    Shell shell("sleep 1000 & exit 0");
+    shell.program.Wait();
+    folder = shell.program.Folder();
+    CHECK(fs::exists(folder));
+  }
+  CHECK_FALSE(fs::exists(folder));
+}
+
+TEST_CASE("Last words are the last line that is one, to 200 bytes, until they are forgotten") {
+  const auto words = WordsOf;
+  CHECK(words("printf 'one\\ntwo\\n \\n\\t\\n' >&2") == "two");
+  CHECK(words("printf 'only' >&2") == "only");
+  CHECK(words(":").empty());
+  CHECK(words("printf '%0300d' 0 >&2").size() == 200);
+  CHECK(words("echo \"$PWD/a and $PWD/b\" >&2") == "{folder}/a and {folder}/b");
+  Shell shell("echo first >&2; read -r LINE; echo second >&2", true);
+  test::WaitUntil("its first word", [&] { return shell.program.LastWords() == "first"; });
+  shell.program.ForgetWords();
+  CHECK(shell.program.LastWords().empty());
+  CHECK(shell.program.SendLine("go"));
+  shell.program.Wait();
+  CHECK(shell.program.LastWords() == "second");
+}
+
+TEST_CASE("Lines go to a program and come back one by one, and none after its end") {
+  Shell shell(
+      "while read -r LINE; do [ \"$LINE\" != end ] || exit 3; "
+      "printf '%s\\n%s again\\n' \"$LINE\" \"$LINE\"; done",
+      true);
+  CHECK(shell.program.SendLine("a b"));
+  CHECK(shell.program.ReceiveLine() == "a b");
+  CHECK(shell.program.SendLine("c"));
+  CHECK(shell.program.ReceiveLine() == "a b again");
+  CHECK(shell.program.ReceiveLine() == "c");
+  CHECK(shell.program.ReceiveLine() == "c again");
+  CHECK(shell.program.SendLine("end"));
+  CHECK_FALSE(shell.program.ReceiveLine());
+  CHECK(shell.program.Wait().code == 3);
+  CHECK_FALSE(shell.program.SendLine("nobody reads this"));
+}
+
+TEST_CASE(
+    "A program that is not there ends with 127 and the reason, and one without a name throws") {
+  ExternalProgram program({.arguments = {"no-such-program-of-rift"}},
+                          ExternalProgram::MakeFolder());
+  CHECK(program.Wait().code == 127);
+  CHECK(program.LastWords() == "cannot run no-such-program-of-rift: No such file or directory");
+  CHECK_THROWS_WITH(ExternalProgram({}, ExternalProgram::MakeFolder()), "a program has no name");
+}
+
+}  // namespace
+}  // namespace rift::sweep
