@@ -63,15 +63,18 @@ std::string OneLine(std::string text, size_t longest) {
   return text;
 }
 
-/// What the process holds already of what RLIMIT_DATA counts (proc(5), statm).
-rlim_t DataHeld() {
+// Of /proc/self/statm, in pages (proc(5)).
+enum MemoryField { kResident = 2, kShared = 3, kData = 6 };
+
+/// What the process holds already, in bytes.
+rlim_t Held(MemoryField what) {
   std::array<char, 256> text{};
   const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   const ssize_t n = file < 0 ? -1 : ::read(file, text.data(), text.size() - 1);
   if (file >= 0) ::close(file);
   unsigned long long field = 0;
   const char* at = text.data();
-  for (int i = 0; n > 0 && i < 6; ++i) {
+  for (int i = 0; n > 0 && i < what; ++i) {
     char* end = nullptr;
     field = std::strtoull(at, &end, 10);
     at = end;
@@ -80,7 +83,7 @@ rlim_t DataHeld() {
 }
 
 void SetLimits(const RunOptions& options) {
-  const rlim_t data = DataHeld() + (static_cast<rlim_t>(options.memory_mb) << 20);
+  const rlim_t data = Held(kData) + (static_cast<rlim_t>(options.memory_mb) << 20);
   const rlimit data_limit{data, data}, no_core{0, 0};
   ::setrlimit(RLIMIT_DATA, &data_limit);
   ::setrlimit(RLIMIT_CORE, &no_core);
@@ -204,7 +207,9 @@ Worker::ExitStatus Worker::Reap() {
   }
   pid_ = -1;
   const std::string words = StartOfOutput();
-  const bool is_full = usage.ru_maxrss > 9L * options_.memory_mb * 1024 / 10;
+  // It began with a copy of what is held here, which is no part of what it took.
+  const auto began_kb = static_cast<long>((Held(kResident) - Held(kShared)) / 1024);
+  const bool is_full = usage.ru_maxrss - began_kb > 9L * options_.memory_mb * 1024 / 10;
   if (is_full || words.find("bad_alloc") != words.npos) {
     return {JobEnd::kOutOfMemory,
             fmt::format("wanted more than {} MB of memory", options_.memory_mb)};

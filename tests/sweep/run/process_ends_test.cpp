@@ -113,6 +113,13 @@ TEST_CASE("A worker that aborts with its memory full, or says so, ran out of it"
   CHECK(said.bytes == "wanted more than 1024 MB of memory");
 }
 
+TEST_CASE("What the sweep itself holds is no memory that a worker ran out of") {
+  SKIP_UNDER_SANITIZER();
+  const std::vector<char> held(size_t{64} << 20, 'x');
+  CHECK(Aborted(0, "", 32).end == JobEnd::kCrashed);
+  CHECK(Aborted(30, "", 32).end == JobEnd::kOutOfMemory);
+}
+
 TEST_CASE("A worker leaves Ctrl-C to the sweep, and other signals of the sweep end it") {
   SKIP_UNDER_SANITIZER();
   const auto at = [](int signal) {
