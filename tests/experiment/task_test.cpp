@@ -56,6 +56,9 @@ TEST_CASE("Headings of later waypoints, which no controller turns to, are told")
         std::vector<std::string>{
             "note: a.yaml: waypoints[1] (end) at x 1 m, y 0 m has heading 45, and only that of the "
             "first waypoint is driven: it does nothing"});
+  experiment.waypoints.push_back({"last", 2.0, 0.0, 30.0, true});
+  REQUIRE(TaskNotes(experiment, "a.yaml").size() == 1);
+  CHECK_THAT(TaskNotes(experiment, "a.yaml")[0], Contains("waypoints[1]"));
   CHECK(TaskNotes({}, "a.yaml").empty());
 }
 
@@ -68,6 +71,11 @@ TEST_CASE("A waypoint within the reach radius of the one before it is told, the 
   CHECK(TaskNotes(experiment, "a.yaml") ==
         std::vector<std::string>{"note: a.yaml: waypoints[1] (end) at x 1 m, y 0 m lies 1 m from "
                                  "the waypoint before it, within control.reach_radius_m, 1.01 m: "
+                                 "it counts as reached without a move"});
+  experiment.control.reach_radius_m = 0.01;
+  CHECK(TaskNotes(experiment, "a.yaml") ==
+        std::vector<std::string>{"note: a.yaml: waypoints[2] (end) at x 1 m, y 0 m lies 0 m from "
+                                 "the waypoint before it, within control.reach_radius_m, 0.01 m: "
                                  "it counts as reached without a move"});
 }
 
@@ -149,8 +157,13 @@ TEST_CASE("A waypoint outside of the arena is named by its number and place") {
 }
 
 TEST_CASE("Waypoints that no robot reaches in time are taken for millimetres, near ones never") {
-  const auto check = [](double x_m, double y_m, double timeout_s) {
+  const auto check = [](double x_m, double y_m, double timeout_s, int times = 1) {
     Experiment experiment = Way(x_m, y_m);
+    const std::vector<control::Waypoint> there_and_back = experiment.waypoints;
+    for (int i = 1; i < times; ++i) {
+      experiment.waypoints.insert(experiment.waypoints.end(), there_and_back.begin(),
+                                  there_and_back.end());
+    }
     experiment.trial.timeout_s = timeout_s;
     auto& arena = experiment.trial.arena;
     arena.x_min_m = arena.y_min_m = -1000.0;
@@ -165,6 +178,9 @@ TEST_CASE("Waypoints that no robot reaches in time are taken for millimetres, ne
   CHECK_THROWS(check(-101.0, 0.0, 20.0));
   CHECK_NOTHROW(check(19.9, 0.0, 1.0));  // slow, but below a camera
   CHECK_THROWS(check(20.0, 0.0, 1.0));
+  // Along all legs: there, back and there again.
+  CHECK_NOTHROW(check(33.0, 0.0, 20.0, 2));
+  CHECK_THROWS_WITH(check(34.0, 0.0, 20.0, 2), Contains("102 m apart in all, as far as 34 m out"));
 }
 
 TEST_CASE("The tag is held to the floor that the surface's shape allows") {
