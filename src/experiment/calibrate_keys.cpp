@@ -106,6 +106,15 @@ void CheckIsNotInSpace(const FreeParameter& free, const Space& space) {
   }
 }
 
+/// A short name, a full one and one with braces may be the same key.
+void CheckIsNamedOnce(const FreeParameter& free, const std::vector<FreeParameter>& others) {
+  for (const FreeParameter& other : others) {
+    if (other.key != free.key) continue;
+    throw yaml::Error(fmt::format("{}: calibrate.fit: {} stands there twice: it is at {} already",
+                                  free.origin, free.key, other.origin));
+  }
+}
+
 /// Names that the arguments of a program have for something else.
 constexpr std::array<std::string_view, 5> kNamesOfTrial{"seed", "trial", "out", "theta", "folder"};
 
@@ -191,6 +200,7 @@ void ResolveCalibrate(Experiment& experiment, const std::string& path) {
                         free.origin, free.key));
       }
       CheckIsNotInSpace(free, experiment.space);
+      CheckIsNamedOnce(free, resolved);
       free.start = StartOf(free, experiment);
       resolved.push_back(free);
     }

@@ -346,6 +346,17 @@ TEST_CASE("What cannot be fitted is refused with its place and the reason") {
       Contains("is a parameter of space as well"));
 }
 
+TEST_CASE("A key is fitted once, however it is named") {
+  const std::string range = ": {min: 0.1, max: 1.2}";
+  for (const std::string other : {"surfaces.ground.mu", "simulation.terrain.surfaces.ground.mu"}) {
+    INFO(other);
+    CHECK_THROWS_WITH(LoadFit("{" + other + range + ", \"surfaces.{surface}.mu\"" + range + "}"),
+                      Contains("simulation.terrain.surfaces.ground.mu stands there twice: it is "
+                               "at task.yaml:4:"));
+  }
+  CHECK_NOTHROW(LoadFit("{surfaces.bump.mu" + range + ", \"surfaces.{surface}.mu\"" + range + "}"));
+}
+
 TEST_CASE("Trials are held out by their names, and some are left to fit") {
   const std::string mismatch = "{motor.mismatch: {min: -0.1, max: 0.1}}";
   const auto held = [&](const std::string& names) {
