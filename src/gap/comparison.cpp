@@ -171,13 +171,16 @@ PointsIn<N> WithPointsBetween(const PointsIn<N>& vertices, double length_m) {
   return points;
 }
 
-// The points of Frechet are those of Hausdorff and more, so that it is never the smaller one.
+// The points of Frechet are those of Hausdorff and more, so that it is the smaller one by rounding
+// at most.
 template <int N>
 void MeasureShape(const Paths<N>& paths, Comparison& result) {
   const PointsIn<N> sim_m = Vertices(paths.sim), real_m = Vertices(paths.real);
   result.hausdorff_m = HausdorffIn_m<N>(sim_m, real_m);
-  result.frechet_m = DiscreteFrechetIn_m<N>(WithPointsBetween<N>(sim_m, paths.sim.length_m),
-                                            WithPointsBetween<N>(real_m, paths.real.length_m));
+  result.frechet_m =
+      std::max(result.hausdorff_m,
+               DiscreteFrechetIn_m<N>(WithPointsBetween<N>(sim_m, paths.sim.length_m),
+                                      WithPointsBetween<N>(real_m, paths.real.length_m)));
   result.dtw_m = DynamicTimeWarpingIn_m<N>(Resample(paths.sim, kEvenPoints),
                                            Resample(paths.real, kEvenPoints));
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "fitted_simulator.hpp"
-#include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
 
 namespace rift::sweep {
@@ -13,14 +12,20 @@ namespace {
 // Whole runs of a delayed bang-bang loop are chaotic: over a small step the scatter of their traits
 // is many times their slope.
 constexpr double kStepOfRuns = 0.2;
-constexpr std::uint64_t kPlaceStream = 92;
+// The logs of a fit are 100,000 seeds apart, in which their own runs are the first ones and those
+// that judge the ones from 50,000 on.
+constexpr std::uint64_t kSeedsOfTry = 1'000;
+constexpr std::uint64_t kSeedsOfRepeat = 20'000;
+constexpr int kRepeatsBetweenLogs = 4;
+constexpr std::uint64_t kSeedsOfFurtherRepeats = 200'000'000;  // beyond those of 2000 logs
 
 }  // namespace
 
 std::uint64_t SeedInPlace(std::uint64_t first, int repeat, int attempt) {
-  std::uint64_t seed = statistics::SeedOfStream(first, kPlaceStream);
-  seed = statistics::SeedOfStream(seed, static_cast<std::uint64_t>(repeat));
-  return statistics::SeedOfStream(seed, static_cast<std::uint64_t>(attempt)) >> 33;
+  const auto place = static_cast<std::uint64_t>(repeat % kRepeatsBetweenLogs + 1);
+  const auto block = static_cast<std::uint64_t>(repeat / kRepeatsBetweenLogs);
+  return first + place * kSeedsOfRepeat + block * kSeedsOfFurtherRepeats +
+         static_cast<std::uint64_t>(attempt) * kSeedsOfTry;
 }
 
 trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin, int repeat) {

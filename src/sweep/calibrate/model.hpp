@@ -14,7 +14,8 @@ std::vector<double> ValuesAt(const std::vector<experiment::FreeParameter>& param
                              const Eigen::VectorXd& shares);
 
 /// Of a run that stands for a real log, whose own runs count up from `first`: another one for each
-/// repeat and try, both from 0, and of no other log's. Below 2^31, which any program takes.
+/// repeat and try, both from 0, and of no other log's, of up to 2000. Below 2^31, which any program
+/// takes, up to repeat 39.
 std::uint64_t SeedInPlace(std::uint64_t first, int repeat, int attempt);
 
 constexpr int kMostTries = 10;  ///< of a run in the place of a log, to be no longer than it may
