@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "arc_path.hpp"
@@ -24,6 +26,12 @@ constexpr int kEvenPoints = 160;
 
 /// So do Hausdorff and Frechet: of a longer path not every vertex is looked at.
 constexpr int kMostVertices = 1000;
+
+std::vector<double> EvenShares(int count) {
+  std::vector<double> shares;
+  for (int k = 0; k < count; ++k) shares.push_back(static_cast<double>(k) / (count - 1));
+  return shares;
+}
 
 template <int N>
 struct Paths {
@@ -146,43 +154,47 @@ void MeasureEnds(const Paths<N>& paths, Comparison& result) {
       (paths.sim.Vertex(paths.sim.Size() - 1) - paths.real.Vertex(paths.real.Size() - 1)).norm();
 }
 
-/// Of a path with too many of them as many evenly spaced points.
+/// Of the vertices; of a path with too many of them as many evenly spaced ones.
 template <int N>
-PointsIn<N> Vertices(const ArcPathIn<N>& path) {
-  if (path.Size() > kMostVertices) return Resample(path, kMostVertices);
-  PointsIn<N> points;
-  points.reserve(path.Size());
-  for (size_t i = 0; i < path.Size(); ++i) points.push_back(path.Vertex(i));
-  return points;
+std::vector<double> VertexShares(const ArcPathIn<N>& path) {
+  return path.Size() > kMostVertices ? EvenShares(kMostVertices) : path.u;
 }
 
-/// The same points, and others on the edges between them, so that none is longer than it is
-/// between the evenly spaced ones.
+/// Those of either path, and the evenly spaced ones where these are few.
 template <int N>
-PointsIn<N> WithPointsBetween(const PointsIn<N>& vertices, double length_m) {
-  const double longest_m = length_m / (kEvenPoints - 1);
-  PointsIn<N> points{vertices.front()};
-  for (size_t i = 1; i < vertices.size(); ++i) {
-    const Point<N> edge = vertices[i] - vertices[i - 1];
-    const double parts = std::max(1.0, std::ceil(edge.norm() / longest_m));
-    for (double k = 1.0; k < parts; ++k) points.push_back(vertices[i - 1] + k / parts * edge);
-    points.push_back(vertices[i]);
+std::vector<double> SharesOfBoth(const Paths<N>& paths) {
+  const std::vector<double> sim = VertexShares(paths.sim), real = VertexShares(paths.real);
+  std::vector<double> both;
+  std::set_union(sim.begin(), sim.end(), real.begin(), real.end(), std::back_inserter(both));
+  if (both.size() >= kEvenPoints) return both;
+  const std::vector<double> few = std::exchange(both, {}), even = EvenShares(kEvenPoints);
+  std::set_union(few.begin(), few.end(), even.begin(), even.end(), std::back_inserter(both));
+  return both;
+}
+
+template <int N>
+PointsIn<N> PointsAt(const ArcPathIn<N>& path, const std::vector<double>& shares) {
+  PointsIn<N> points;
+  points.reserve(shares.size());
+  size_t i = 0;
+  for (const double u : shares) {
+    const double share = ShareAt(path, u, i);
+    points.push_back(path.Vertex(i) + share * (path.Vertex(i + 1) - path.Vertex(i)));
   }
   return points;
 }
 
-// The points of Frechet are those of Hausdorff and more, so that it is the smaller one by rounding
-// at most.
+// The points of Frechet are those of Hausdorff and more, and stand in pairs at equal u: it is below
+// Hausdorff by rounding at most, and never above the exact gap of the whole paths.
 template <int N>
 void MeasureShape(const Paths<N>& paths, Comparison& result) {
-  const PointsIn<N> sim_m = Vertices(paths.sim), real_m = Vertices(paths.real);
-  result.hausdorff_m = HausdorffIn_m<N>(sim_m, real_m);
-  result.frechet_m =
-      std::max(result.hausdorff_m,
-               DiscreteFrechetIn_m<N>(WithPointsBetween<N>(sim_m, paths.sim.length_m),
-                                      WithPointsBetween<N>(real_m, paths.real.length_m)));
-  result.dtw_m = DynamicTimeWarpingIn_m<N>(Resample(paths.sim, kEvenPoints),
-                                           Resample(paths.real, kEvenPoints));
+  const auto& [sim, real] = paths;
+  result.hausdorff_m =
+      HausdorffIn_m<N>(PointsAt(sim, VertexShares(sim)), PointsAt(real, VertexShares(real)));
+  const std::vector<double> shares = SharesOfBoth(paths);
+  result.frechet_m = std::max(
+      result.hausdorff_m, DiscreteFrechetIn_m<N>(PointsAt(sim, shares), PointsAt(real, shares)));
+  result.dtw_m = DynamicTimeWarpingIn_m<N>(Resample(sim, kEvenPoints), Resample(real, kEvenPoints));
 }
 
 template <int N>

@@ -53,9 +53,9 @@ struct Comparison {
   /// Largest distance of a vertex to the closest point of the other path. A path of more than 1000
   /// vertices is looked at in 1000 evenly spaced points instead.
   double hausdorff_m = kNotComputed;
-  /// Discrete Frechet distance (Eiter and Mannila 1994) of the same points and others between
-  /// them, at most 1/159 of the path apart: never below hausdorff_m, and above the distance of the
-  /// continuous paths by that spacing at most.
+  /// Discrete Frechet distance (Eiter and Mannila 1994) of the points of both paths at each u at
+  /// which one of them has such a vertex, and at 160 even ones where these are fewer. Never below
+  /// hausdorff_m, nor above the exact gap of the whole paths.
   double frechet_m = kNotComputed;
   /// Mean distance of 160 evenly spaced points along the best time warping.
   double dtw_m = kNotComputed;

@@ -99,14 +99,12 @@ def frechet(a, b):
     return table[-1][-1]
 
 
-def finely(points, length):
-    """The points, and others between two that are more than 1/159 of the length apart."""
-    out = points[:1]
-    for p, q in zip(points, points[1:]):
-        parts = max(1, math.ceil(distance(p, q) / (length / 159)))
-        out += [(p[0] + k / parts * (q[0] - p[0]), p[1] + k / parts * (q[1] - p[1]))
-                for k in range(1, parts)] + [q]
-    return out
+def at_vertices_of_both(sim, real):
+    """At every u at which one of them has a vertex, and at 160 even ones where those are fewer."""
+    shares = set(sim.u) | set(real.u)
+    if len(shares) < 160:
+        shares |= {k / 159 for k in range(160)}
+    return [[path.at(u) for u in sorted(shares)] for path in (sim, real)]
 
 
 def warping(a, b):
@@ -180,7 +178,7 @@ def compare(sim_rows, real_rows, n, skip, align, radius=0.01):
     out["sim_standstill_share"] = standing(sim_rows, radius) / sim.length
     out["real_standstill_share"] = standing(real_rows, radius) / real.length
     out["hausdorff_m"] = hausdorff(a, b)
-    out["frechet_m"] = frechet(finely(a, sim.length), finely(b, real.length))
+    out["frechet_m"] = frechet(*at_vertices_of_both(sim, real))
     even = lambda path: [path.at(k / 159) for k in range(160)]
     out["dtw_m"] = warping(even(sim), even(real))
     out["equal_time_m"] = equal_time(sim, real)
