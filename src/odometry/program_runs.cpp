@@ -52,6 +52,16 @@ bool DidMove(const Trajectory& camera, const Trajectory& program, double share) 
                             : Turned_rad(camera) >= share * Turned_rad(program);
 }
 
+/// A program is the axle's, and a trial begins with the robot's tag on the first waypoint.
+Trajectory OfAxle(Trajectory program, double tag_ahead_m) {
+  const Eigen::Vector2d back_m = -tag_ahead_m * program.poses.front().Planar().Forward();
+  for (trajectory::StampedPose& pose : program.poses) {
+    pose.x_m += back_m.x();
+    pose.y_m += back_m.y();
+  }
+  return program;
+}
+
 /// The robot in step with the camera: pose of the axle, and what the wheels have rolled by then.
 struct Moment {
   double t_s;
@@ -180,10 +190,11 @@ RunMeasures MeasureRun(const RunLog& run, const std::optional<Trajectory>& progr
   if (options.tag_ahead_m != 0.0) axle = trajectory::OffsetAlongHeading(axle, -options.tag_ahead_m);
   measures.length_m = axle.ArcLength_m();
   if (program) {
-    const gap::Comparison compared = gap::Compare(axle, *program, AlongMoving());
+    const Trajectory ideal = OfAxle(*program, options.tag_ahead_m);
+    const gap::Comparison compared = gap::Compare(axle, ideal, AlongMoving());
     measures.deviation_m = compared.mean_error_m;
     measures.largest_deviation_m = compared.gap_m;
-    measures.end_error_m = (axle.poses.back().Position() - program->poses.back().Position()).norm();
+    measures.end_error_m = (axle.poses.back().Position() - ideal.poses.back().Position()).norm();
     measures.length_m = compared.sim_length_m;
   }
   if (!run.encoders.empty()) MeasureOdometry(run, odometry, options, measures);

@@ -146,9 +146,9 @@ TEST_CASE("Runs of one program are a cell, and runs of two are not, whichever di
 TEST_CASE("The tag's place is that of each run's own experiment unless it was said") {
   const test::TemporaryFolder folder;
   LoadedRun run = RunOf(folder, "a", 1.0);
+  run.run.log.camera.poses.back().yaw_rad = 1.2;  // at its end the axle lies beside the program's
   const LoadedRun other = run;
   run.experiment->simulation.mocap.tag_ahead_m = 0.25;
-  // The camera saw a point ahead of the axle: its end is that far beyond the program's.
   OdometryJob job;
   const auto end_error_m = [&job](const std::vector<LoadedRun>& runs, size_t of) {
     return MeasureOdometry(runs, job).runs[of].measures.end_error_m;

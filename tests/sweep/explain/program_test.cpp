@@ -154,6 +154,23 @@ TEST_CASE("The cells of a grid over a program tell its repeats apart from a robo
   CHECK(MeasurePrograms(evaluator).empty());
 }
 
+TEST_CASE("Of a simulated robot the axle is held against its program, wherever its tag is") {
+  experiment::Experiment experiment = Lap(0.3);
+  experiment.program.laps = 1;
+  experiment.program.segments = {{.straight_m = 0.2}, {.turn_deg = 90.0, .radius_m = 0.16}};
+  experiment.reference.trials.names = {"1"};
+  MakeExact(experiment.simulation);
+  const auto end_error_m = [&](double tag_ahead_m) {
+    experiment.simulation.mocap.tag_ahead_m = tag_ahead_m;
+    Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
+    const std::vector<ProgramCell> cells = MeasurePrograms(evaluator);
+    REQUIRE(cells.size() == 1);
+    REQUIRE(cells[0].runs.size() == 1);
+    return cells[0].runs[0].end_error_m;
+  };
+  CHECK(end_error_m(0.08) == Approx(end_error_m(0.0)).margin(0.005));
+}
+
 TEST_CASE("A program and waypoints after its start exclude each other") {
   experiment::Experiment experiment = Lap(0.2);
   experiment.waypoints = {{.name = "a", .x_m = 0.3, .y_m = 0.1, .heading_deg = 90.0}};
