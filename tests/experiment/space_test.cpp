@@ -183,6 +183,28 @@ TEST_CASE("Only keys that change a simulated trial are an axis, and whole keys t
         "simulation.motor.mismatch");
   CHECK_THROWS_WITH(load("no_such_key: {min: 0, max: 0.1}"),
                     Contains("task.yaml:2:9: space: ") && Contains("no_such_key"));
+  CHECK(load("uart_bytes: {min: 8, max: 64}").space.parameters[0].is_integer);
+  CHECK_FALSE(load("mismatch: {min: 0, max: 1e-1}").space.parameters[0].is_integer);
+  for (const char* range :
+       {"{min: 8.5, max: 64}", "{min: 8, max: 64.5}", "{min: 8, max: 64, scale: log}"}) {
+    INFO(range);
+    CHECK_THROWS_WITH(load("uart_bytes: " + std::string(range)),
+                      Contains("simulation.link.uart_bytes holds whole numbers: its range needs "
+                               "whole bounds and a linear scale"));
+  }
+}
+
+TEST_CASE("Every setting of a grid of two thousand is tried at once, of a larger one each value") {
+  // v_min 0.45 beside v_max 0.3 breaks a rule that other settings keep.
+  const auto load = [](int phases) {
+    std::string levels;
+    for (int i = 0; i < phases; ++i) levels += (i > 0 ? ", 0." : "0.") + std::to_string(10 + i);
+    return Load("space: {v_min: [0.45, 0.15], v_max: [0.3, 0.5], mismatch: [" + levels +
+                "], reach_radius_m: [0.01, 0.02, 0.03, 0.04, 0.05], w_min: [0.01, 0.02, 0.03, "
+                "0.04, 0.05], link.delay_s: [0.1, 0.2]}\n");
+  };
+  CHECK_THROWS_WITH(load(10), Contains("v_max"));  // 2 x 2 x 10 x 5 x 5 x 2
+  CHECK_NOTHROW(load(11));
 }
 
 TEST_CASE("A value that its key may not have is refused at once, in a grid and in a search") {
@@ -326,13 +348,16 @@ TEST_CASE("What cannot be fitted is refused with its place and the reason") {
   CHECK_NOTHROW(LoadFit("{motor.mismatch: {min: 0, max: 0.1}}"));
   CHECK_NOTHROW(LoadFit("{motor.mismatch: {min: -0.1, max: 0}}"));
   CHECK_THROWS_WITH(LoadFit("{trial.pace: {min: 0, max: 1}}"),
-                    Contains("only a number can be fitted"));
+                    Contains("only a number can be fitted") && !Contains("give it a value"));
+  CHECK_THROWS_WITH(LoadFit("{motor.no_load_rad_s: {min: 10, max: 100}}"),
+                    Contains("only a number can be fitted; give it a value to start from"));
   CHECK_THROWS_WITH(LoadFit("{control.v_min: {min: 0.1, max: 0.2}}"),
                     Contains("is no parameter of the simulator"));
   CHECK_THROWS_WITH(LoadFit("{no_such_key: {min: 0.1, max: 0.2}}"), Contains("no_such_key"));
   CHECK_THROWS_WITH(LoadFit("{motor.mismatch: {min: -100, max: 0.1}}"), Contains("mismatch"));
   CHECK_THROWS_WITH(LoadFit("{motor.mismatch: {min: -0.1, max: 100}}"), Contains("mismatch"));
-  CHECK_THROWS_WITH(LoadFit("{}"), Contains("calibrate.fit is empty"));
+  CHECK_THROWS_WITH(LoadFit("{}"), Contains("calibrate.fit is empty: name parameters, such as "
+                                            "{motor.mismatch: {min: -0.1, max: 0.1}}"));
   CHECK_THROWS_WITH(LoadFit(mismatch, {"reference.tag_offset_m=0.03"}),
                     Contains("reference.tag_offset_m is 0.03"));
   CHECK_THROWS_WITH(LoadFit(mismatch, {"gap.dimension=xyz"}), Contains("gap.dimension is xyz"));
@@ -427,11 +452,14 @@ TEST_CASE("A program's fit takes no name that its trials have already, and whole
   CHECK_THROWS_WITH(LoadProgramFit(mu, {"calibrate.method.features.rounds=2"}),
                     Contains("calibrate.method.features.rounds is 2"));
   CHECK_NOTHROW(LoadProgramFit(mu, {"reference.tag_offset_m=0.03"}));
+  CHECK_THROWS_WITH(LoadProgramFit("{}"), Contains("such as {mu: {min: 0.1, max: 1}}"));
 }
 
 TEST_CASE("An experiment at calibrated values has them in place of its own, and no ensemble") {
   const Experiment fit =
-      LoadFit("{motor.mismatch: {min: -0.1, max: 0.2}, link.delay_s: {min: 0, max: 0.3}}");
+      LoadFit("{motor.mismatch: {min: -0.1, max: 0.2}, link.delay_s: {min: 0, max: 0.3}}",
+              {"ensemble.keys=[simulation.link.delay_s]", "ensemble.draws=[[0.1], [0.2]]"});
+  REQUIRE_FALSE(fit.ensemble.IsEmpty());
   const Experiment at = CalibratedAt(fit, {0.125, 0.25});
   CHECK(at.simulation.motor.mismatch == 0.125);
   CHECK(at.simulation.link.delay_s == 0.25);

@@ -114,6 +114,8 @@ TEST_CASE("A key that makes rows incomparable is refused with its two values in 
   const Other other =
       GENERATE(values<Other>({{"gap.samples=500", "gap.samples is 2000"},
                               {"reference.kind=nominal", "reference.kind is path"},
+                              {"program.power=0.5", "program.power is 0.25"},
+                              {"objective=odometry", "objective is gap"},
                               {"falsify.count.fell=false", "falsify.count.fell is true"}}));
   SaveRows(folder / "b", gaps_m, {other.setting});
   INFO(other.setting);

@@ -139,6 +139,44 @@ TEST_CASE(
   CHECK_THAT(files::ReadFile(out / "report.html"), Contains("robot, trial 2"));
 }
 
+/// The path of a row on a page: x and y of its points, in 0.2 mm.
+std::vector<long> DrawnPath(const fs::path& page, const std::string& id) {
+  const std::string text = files::ReadFile(page);
+  const std::string open = R"(<script type="application/json" id="page-data">)";
+  const size_t begin = text.find(open) + open.size();
+  const auto data =
+      nlohmann::json::parse(text.substr(begin, text.find("</script>", begin) - begin));
+  const auto& rows = data.at("paths").at("rows");
+  std::vector<long> points;
+  if (!rows.contains(id)) return points;
+  for (const auto& step : rows.at(id).at("d")) {
+    const long before = points.size() < 2 ? 0 : points[points.size() - 2];
+    points.push_back(before + step.get<long>());
+  }
+  return points;
+}
+
+TEST_CASE("The worst trial is drawn where no row has kept its path, and the others are not") {
+  const test::QuickGnuplot quick;
+  const test::TemporaryFolder logs;
+  Swept swept(LogsIn(logs));
+  const fs::path out = swept.folder.Path(), page = out / "report.html";
+  REQUIRE(sweep::WorstRow(swept.result) == 3);
+  const SweepFindings findings = ExplainSweep(out, swept.evaluator, swept.result, 0, 1);
+  SaveReport(out, swept.evaluator, swept.result, findings, ObserverOf(swept.told));
+  const std::vector<long> kept = DrawnPath(page, "4");
+  for (sweep::TrialRow& row : swept.result.rows) row.evidence.ForgetPath();
+  SaveReport(out, swept.evaluator, swept.result, findings, ObserverOf(swept.told));
+  const std::vector<long> made = DrawnPath(page, "4");
+  REQUIRE(kept.size() == 2 * 65);
+  REQUIRE(made.size() == kept.size());
+  for (size_t i = 0; i < kept.size(); ++i) {
+    INFO(i);
+    CHECK(std::abs(made[i] - kept[i]) <= 4);  // the compared points are half a millimetre apart
+  }
+  CHECK(DrawnPath(page, "3").empty());
+}
+
 TEST_CASE("A page draws the references of a hundred rows and of no more") {
   const test::TemporaryFolder logs;
   for (int trial = 1; trial <= 102; ++trial) {
@@ -198,6 +236,16 @@ TEST_CASE("A reference that has to be run is the worst trial's, and only where i
   REQUIRE(pair);
   CHECK(pair->real == "undisturbed run");
   CHECK(pair->sim == "simulator");
+}
+
+TEST_CASE("The path that a program should drive is called so, and has no times") {
+  Swept driven(
+      LoadText("program: {segments: [{straight_m: 0.1}]}\ngap: {threshold_m: 0.01}\n"
+               "reference: {kind: path, trials: 1}\nspace: {mismatch: [0]}\n"));
+  const report::PageEvidence path = EvidenceFor(driven.result, driven.evaluator, false);
+  REQUIRE(path.references.size() == 1);
+  CHECK(path.references[0].name == "program path");
+  CHECK(path.references[0].times_s.empty());
 }
 
 TEST_CASE("Without a gap there is no worst pair") {

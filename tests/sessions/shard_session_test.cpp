@@ -138,6 +138,31 @@ TEST_CASE("A shard that is told to stop leaves what it has, and the next job goe
   CHECK(summary.largest_gap_m == 0.125);
 }
 
+TEST_CASE("A shard is copied back while it runs as often as is asked for, whatever it runs") {
+  using sweep::ShardKind;
+  for (const ShardKind kind : {ShardKind::kTrials, ShardKind::kSweep, ShardKind::kShrink}) {
+    for (const double every_s : {0.0, 1e6}) {
+      Submitted submitted(kind);
+      if (kind == ShardKind::kShrink) submitted.shard.requests.resize(1);
+      const ShardFile shard = submitted.Read();
+      const fs::path copy = sweep::UnfinishedShardJournal(submitted.out, shard.name);
+      int copies = 0;
+      SweepTold told;
+      SweepObserver observer = ObserverOf(told);
+      observer.watch_for_stop = [&] {
+        return [&] {
+          copies += fs::exists(copy);
+          return false;
+        };
+      };
+      CHECK_FALSE(RunShard(shard, submitted.experiment, "sweep.yaml", FileInputs(),
+                           {.out = submitted.out, .copy_every_s = every_s}, observer));
+      INFO(static_cast<int>(kind) << " every " << every_s << " s");
+      CHECK((copies > 0) == (every_s == 0.0));
+    }
+  }
+}
+
 TEST_CASE("A shard whose logs or trials are others here than where it was submitted is refused") {
   Submitted submitted;
   submitted.shard.keys = "0123";

@@ -165,6 +165,30 @@ TEST_CASE("Drives of suggestions are counted by what their gaps say, each with i
   CHECK(taken[1].trials == 1);
 }
 
+TEST_CASE("A drive is judged at the setting that it was suggested for, whatever that leaves out") {
+  const experiment::Experiment experiment =
+      LoadText(kShortWay +
+               "gap: {threshold_m: 0.01}\nreference: {kind: path, trials: 1}\ngoal: falsify\n"
+               "space:\n  surface: [ground, parchment]\n  waypoints[1].y: {min: 0, max: 0.2}\n");
+  const Suggested suggested;
+  test::WriteText(suggested.folder / "suggested.yaml",
+                  "experiments:\n"
+                  "  - {set: {\"waypoints[1].y\": 0.07}, repeats: 2, predicted: holds}\n"
+                  "  - {set: {simulation.terrain.surface: parchment}, repeats: 2, predicted: "
+                  "holds}\n");
+  for (const int number : {1, 2}) {
+    SaveDrive(suggested.Drive(number, 1), 0.0, kReached);   // to y 0.02
+    SaveDrive(suggested.Drive(number, 2), 0.05, kReached);  // to y 0.07
+  }
+  SaveDrive(suggested.Drive(1, 3), 0.05, kReached);
+  const auto taken = suggested.Take(experiment);
+  REQUIRE(taken.size() == 2);
+  CHECK(taken[0].trials == 3);
+  CHECK(taken[0].failures == 1);
+  CHECK(taken[1].trials == 2);
+  CHECK(taken[1].failures == 1);
+}
+
 TEST_CASE("A drive that did not arrive is a failure where its end counts, else it tells nothing") {
   const Suggested suggested;
   SaveDrive(suggested.Drive(1, 1), 0.0, "{\"outcome\": \"timed_out\"}");

@@ -58,6 +58,14 @@ TEST_CASE("A simulated robot that stands tilted is warned of, and one of logs is
   CHECK(NotesOf(LoadText(kLogs, tilted)).empty());
 }
 
+TEST_CASE("A serial line that takes less than it is sent is noted of a simulated robot alone") {
+  const std::vector<std::string> full{"simulation.link.baud=1000", "trial.control_period_s=0.02"};
+  const std::vector<std::string> lines = NotesOf(SmallGrid(full));
+  REQUIRE(lines.size() == 1);
+  CHECK_THAT(lines[0], StartsWith("note: trial.control_period_s, 0.02 s, sends 50 commands"));
+  CHECK(NotesOf(LoadText(kLogs, full)).empty());
+}
+
 TEST_CASE("Too few repeats to falsify are noted of a search, with the number that it takes") {
   const std::string search =
       kShortWay +

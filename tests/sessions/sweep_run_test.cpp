@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "rift/files/folder_lock.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/sessions/sweep/further_questions.hpp"
 #include "rift/sessions/sweep/journal.hpp"
@@ -69,6 +70,24 @@ TEST_CASE("A search without time left tries its first settings and no others") {
   SweepTold late;
   CHECK(SweepInto(folder.Path(), limited("0.000001"), late)->settings.size() == 30);
   CHECK(late.from_journal == 30);
+}
+
+TEST_CASE("The time that a sweep took before counts against its limit, and is added up") {
+  const test::TemporaryFolder folder;
+  SweepTold told, again;
+  REQUIRE(SweepInto(folder.Path(), Search({"search.max_s=0.000001", "search.budget=30"}), told));
+  const int first = told.trials;
+  REQUIRE(first < 30);
+  const experiment::Experiment more = Search({"search.max_s=5000", "search.budget=30"});
+  {
+    sweep::Journal journal(folder / kJournalName, FactsOf(more));
+    journal.SetNote("elapsed_s", "7000.5");
+    journal.Close();
+  }
+  REQUIRE(SweepInto(folder.Path(), more, again));
+  CHECK(again.trials == first);
+  const double elapsed_s = std::stod(ReadStatus(folder.Path()).summary.notes.at("elapsed_s"));
+  CHECK(elapsed_s >= 7000.5);
 }
 
 TEST_CASE("A sweep goes on with its journal unless it is to be fresh, and ticks meanwhile") {
@@ -165,6 +184,8 @@ TEST_CASE("The state of a folder is what its journal notes, and running while it
     journal.Close();
   }
   CHECK(ReadStatus(folder.Path()).state == "stopped");
+  const files::FolderLock lock(folder.Path());
+  CHECK(ReadStatus(folder.Path()).state == "running");
 }
 
 TEST_CASE("A rare event announces the most trials it may take and can be stopped") {

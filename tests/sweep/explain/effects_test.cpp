@@ -206,5 +206,41 @@ TEST_CASE("The failing region is where the failures are") {
   CHECK(MapFailures(result, {-1, -1}).cells.empty());
 }
 
+/// Lists a and b that always change together, and c: how much each of the two makes out, within
+/// a millimetre.
+SweepResult Entangled(double by_both_m, double by_c_m) {
+  SweepResult result;
+  for (const char* name : {"a", "b", "c"}) {
+    result.parameters.push_back({.key = name, .levels = {{"0", 0.0}, {"1", 1.0}}});
+  }
+  for (const size_t both : {0, 1}) {
+    for (const size_t c : {0, 1}) {
+      for (const double off_m : {-0.001, 0.001}) {
+        TrialRow row;
+        row.theta = {result.parameters[0].levels[both], result.parameters[1].levels[both],
+                     result.parameters[2].levels[c]};
+        row.comparison.gap_m =
+            0.1 + by_both_m * static_cast<double>(both) + by_c_m * static_cast<double>(c) + off_m;
+        result.rows.push_back(row);
+      }
+    }
+  }
+  Summarise(result);
+  return result;
+}
+
+TEST_CASE("What cannot be told apart is said from a tenth of the variance on, and stands last") {
+  const auto by_both_m = [](double share) { return 0.1 * std::sqrt(share / (1.0 - share)); };
+  const Effects little = MeasureEffects(Entangled(by_both_m(0.098), 0.1));
+  CHECK(little.note.find("changed together") == std::string::npos);
+  const Effects much = MeasureEffects(Entangled(by_both_m(0.102), 0.1));
+  CHECK_THAT(much.note, Catch::Contains("; 10 % goes with parameters that were changed together"));
+  REQUIRE(much.parameters.size() == 3);
+  CHECK(much.parameters[0].name == "c");
+  CHECK(much.parameters[0].IsSeen());
+  CHECK(std::isnan(much.parameters[1].share));
+  CHECK(std::isnan(much.parameters[2].share));
+}
+
 }  // namespace
 }  // namespace rift::sweep

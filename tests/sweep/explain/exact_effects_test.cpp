@@ -88,6 +88,12 @@ TEST_CASE("What is seen and what is not is said with its interval, and of which 
         "from a model of degree 1 through 12 trials, which explains 0 % of the variance and "
         "predicts 0 % of that of a trial left out; with so little, the shares say what it saw and "
         "not what is");
+  const auto is_little = [](double step_m) {
+    return MeasureEffects(OneWay(0.2 - step_m, 0.2, 0.2 + step_m)).note.find("with so little") !=
+           std::string::npos;
+  };
+  CHECK(is_little(0.0301));  // predicts 48 %
+  CHECK_FALSE(is_little(0.0318));
 }
 
 TEST_CASE("Two lists that act together say with whom, and how much each does alone") {
@@ -241,6 +247,7 @@ TEST_CASE("The least detectable difference shrinks with trials, and grows with p
   CHECK(SmallestDetectable({10, 10}, 1.0, 18.0, 0.9) > base);
   CHECK(SmallestDetectable({5, 20}, 1.0, 23.0, 0.8) > SmallestDetectable({12, 13}, 1.0, 23.0, 0.8));
   CHECK(std::isnan(SmallestDetectable({10, 10}, 1.0, 0.5, 0.8)));
+  CHECK(std::isfinite(SmallestDetectable({2, 2}, 1.0, 1.0, 0.8)));
   CHECK(std::isnan(SmallestDetectable({10, 0}, 1.0, 8.0, 0.8)));
   CHECK(std::isnan(SmallestDetectable({}, 1.0, 8.0, 0.8)));
 }
@@ -360,6 +367,15 @@ TEST_CASE("Settings that all drove the same runs tell that no parameter did anyt
   result.rows[1].evidence.fingerprint = 8;
   CHECK(note() == "too few trials that tell to say what matters");
   result.rows.resize(1);
+  CHECK(note().empty());
+  TrialRow other = result.rows[0];
+  other.theta = {{"0.9", 0.9}};
+  other.status = TrialStatus::kCrashed;  // of that setting no trial tells
+  result.rows.push_back(other);
+  CHECK(note().empty());
+  result.rows[1].status = TrialStatus::kOk;
+  CHECK(note() == same);
+  result.parameters[0].levels = {{"0.1", 0.1}, {"0.9", 0.9}};  // said where lists are looked at
   CHECK(note().empty());
 }
 

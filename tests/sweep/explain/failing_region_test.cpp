@@ -114,5 +114,19 @@ TEST_CASE("The most influential parameters have the largest shares and vary") {
   CHECK(MostInfluential(result, {}) == std::array<int, 2>{-1, -1});
 }
 
+TEST_CASE("Of more than 4000 trials every second one is counted") {
+  SweepResult result;
+  result.parameters = {kSurface, kSpeed};
+  result.rows.assign(4000, Row({kSurface.levels[0], kSpeed.levels[0]}, false));
+  for (size_t i = 1; i < 4000; i += 2) result.rows[i].falsified = true;
+  const RegionCell all = MapFailures(result, {0, 1}).cells[0];
+  CHECK(all.trials == 4000);
+  CHECK(all.share == 0.5);
+  result.rows.push_back(result.rows[0]);
+  const RegionCell half = MapFailures(result, {0, 1}).cells[0];
+  CHECK(half.trials == 2001);
+  CHECK(half.share == 0.0);
+}
+
 }  // namespace
 }  // namespace rift::sweep

@@ -341,6 +341,10 @@ TEST_CASE("Groups of equal values are told apart, and two equal paths alone are 
         "with x 1 and 2, and with 4 and 5 the candidate drove the same path to the last bit in all "
         "8 pairs of trials");
   CHECK(paths({1, 2, 3, 4, 5}).empty());
+  std::erase_if(result.rows, [](const TrialRow& row) { return row.trial == "2'"; });
+  CHECK(paths({1, 1, 2, 3, 4}).at(0) ==
+        "with x 1 and 2 the candidate drove the same path to the last bit in all 3 pairs of "
+        "trials");
   std::erase_if(result.rows, [](const TrialRow& row) { return row.trial.size() > 1; });
   CHECK(paths({1, 1, 2, 3, 4}).empty());  // two pairs
 }

@@ -178,5 +178,18 @@ TEST_CASE("Trials that do not tell change nothing, and without a gap they are no
   CHECK(change.all.after.mean_gap_m == Approx(0.09));
 }
 
+TEST_CASE("A setting without a pair takes no part in the mean change over settings") {
+  Two two;
+  const SweepChange without = CompareSweeps(two.before, two.after, {});
+  two.before.trials.push_back(Lost("f", "1"));
+  two.after.trials.push_back(Trial("f", "1", 0.05, false));
+  const SweepChange with = CompareSweeps(two.before, two.after, {});
+  CHECK(with.settings.size() == 3);
+  CHECK(with.is_over_settings);
+  CHECK(with.all.gap_change_m == Approx(without.all.gap_change_m));
+  CHECK(with.all.gap_change_95_m.low == Approx(without.all.gap_change_95_m.low));
+  CHECK(with.all.gap_change_95_m.high == Approx(without.all.gap_change_95_m.high));
+}
+
 }  // namespace
 }  // namespace rift::sweep

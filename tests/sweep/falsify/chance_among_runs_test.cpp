@@ -99,5 +99,25 @@ TEST_CASE("Settings of a sweep with chance among a few runs are judged by each o
   CHECK(result.settings[0].verdict.verdict == gap::Verdict::kNotSeenToFail);
 }
 
+TEST_CASE("Settings that passed by runs that chance brings again make no other need less") {
+  const FalsifyOptions every{.repeat = Repeat::kEvery};
+  const Rows part{Driven(Ok(0.02, 6), 1, 1), Driven(Failed(0.5, 7), 2, 1)};
+  RepeatPlan fresh(every, 100, 0.06), later(every, 100, 0.06);
+  for (int setting = 2; setting < 22; ++setting) {
+    const Rows passed{Driven(Ok(0.02, 6), 1, setting), Driven(Ok(0.02, 6), 2, setting)};
+    later.Add({passed});
+  }
+  fresh.Add({part});
+  later.Add({part});
+  Rows open;
+  std::vector<int> of_fresh, of_later;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    open.push_back(Driven(Ok(0.02, 100 + seed), seed, 50));
+    of_fresh.push_back(fresh.More({open}).front());
+    of_later.push_back(later.More({open}).front());
+  }
+  CHECK(of_later == of_fresh);
+}
+
 }  // namespace
 }  // namespace rift::sweep

@@ -60,11 +60,13 @@ TEST_CASE(
   const Files files{{"1/commands.csv", "t_s,power_left,power_right\n2.5,0,0\n2.6,0.1,0.1\n"},
                     {"2/commands.csv", ""},
                     {"3/commands.csv", "t_s,power_left,power_right\n"},
-                    {"4/commands.csv", "left,t_s\n1,2\n"}};
+                    {"4/commands.csv", "left,t_s\n1,2\n"},
+                    {"6/commands.csv", "t_s,power_left,power_right\n,0,0\n"}};
   const experiment::Experiment experiment = Simulation();
   const Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
   CHECK(evaluator.TrialBegan_s("1/trajectory.csv") == 2.5);
-  for (const char* log : {"2/trajectory.csv", "3/trajectory.csv", "5/trajectory.csv"}) {
+  for (const char* log :
+       {"2/trajectory.csv", "3/trajectory.csv", "5/trajectory.csv", "6/trajectory.csv"}) {
     CHECK_FALSE(evaluator.TrialBegan_s(log));
   }
   CHECK_THROWS_WITH(evaluator.TrialBegan_s("4/trajectory.csv"),
@@ -412,6 +414,18 @@ TEST_CASE("A log is moved along its yaw by the tag's offset, and refused where i
   CHECK_THROWS_WITH(
       ReadMovedLog("t_s,x_m,y_m\n0,0,0\n1,1,0\n", "x.csv", {.tag_offset_m = -0.02}),
       "x.csv: a tag offset of -0.02 m needs the yaw, and it logs none: leave the tag offset at 0");
+  CHECK_THROWS_WITH(
+      ReadMovedLog("t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,1,0,\n", "x.csv", {.tag_offset_m = 0.02}),
+      "x.csv: a tag offset of 0.02 m needs the yaw, and line 3 has none");
+  LogOptions of_reference;
+  of_reference.tag_offset_m = 0.02;
+  of_reference.format_key = "reference.format";
+  CHECK_THROWS_WITH(
+      ReadMovedLog("t,x,y,z,roll,pitch,yaw,desired_x,desired_y\n0,1,2,0.8,0,-33,1,5,6\n"
+                   "1,2,2,0.8,0,0,3,5,6\n",
+                   "x.csv", of_reference),
+      Catch::StartsWith("x.csv: a tag offset of 0.02 m needs the yaw, and ") &&
+          Catch::EndsWith(": set reference.format"));
 }
 
 }  // namespace

@@ -265,5 +265,37 @@ TEST_CASE("A search over logs or over nothing is refused") {
   CHECK(refusal().find("no parameters") != std::string::npos);
 }
 
+TEST_CASE("A search has passed where every setting has, and is open where one is not decided") {
+  experiment::Experiment plan = Plan(Budget(12, search::Method::kRandom));
+  plan.falsify.repeat = Repeat::kNone;
+  plan.reference.trials.names = {"1", "2"};
+  const auto verdict = [&](double chance_from) {
+    const SweepResult result =
+        *Falsify(plan,
+                 RunHere(
+                     [&](const TrialRequest& request) {
+                       TrialRow row = RowFor(request);
+                       row.comparison.gap_m = 0.02;
+                       const bool is_by_chance = *request.theta[0].number >= chance_from;
+                       row.evidence.fingerprint = is_by_chance ? *request.seed + 100 : 7;
+                       return row;
+                     },
+                     {}),
+                 [](const auto&) { return true; });
+    return result.falsification->verdict;
+  };
+  CHECK(verdict(2.0) == gap::Verdict::kPassed);
+  CHECK(verdict(0.5) == gap::Verdict::kNotSeenToFail);
+}
+
+TEST_CASE("Another seed of the experiment is another search") {
+  experiment::Experiment plan = Plan(Budget(8, search::Method::kRandom));
+  const auto first = [&](std::uint64_t seed) {
+    plan.seed = seed;
+    return Falsify(plan, RunHere(Simulated, {}), [](const auto&) { return true; })->rows[0].theta;
+  };
+  CHECK(first(1) != first(2));
+}
+
 }  // namespace
 }  // namespace rift::sweep

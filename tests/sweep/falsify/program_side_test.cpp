@@ -7,6 +7,7 @@
 #include "rift/files/files.hpp"
 #include "rift/sweep/falsify/candidate_runs.hpp"
 #include "rift/sweep/falsify/program_files.hpp"
+#include "rift/sweep/falsify/sweep.hpp"
 #include "support/inputs/paths.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/environment.hpp"
@@ -152,6 +153,9 @@ TEST_CASE("Memory and files beyond the limit are told apart from other ends") {
   CHECK(run("write: File too large").status == TrialStatus::kOutOfMemory);
   CHECK(run("no friction").status == TrialStatus::kFault);
   CHECK(Shell("kill -XFSZ $$").Run().status == TrialStatus::kOutOfMemory);
+  Shell again("echo MemoryError >&2; exit 1");
+  again.experiment.run.retries = 1;
+  CHECK_THAT(again.Run().reason, Catch::EndsWith(": MemoryError, twice"));
 }
 
 TEST_CASE("A run that says it is well and leaves no log, or a bad one, is told so") {
@@ -226,6 +230,23 @@ TEST_CASE(
   CHECK(end.status == TrialStatus::kCrashed);
   CHECK(end.reason.starts_with("ended in the middle of a trial: "));
   CHECK_THAT(end.reason, Contains("out of ideas"));
+  const Recording full = Persistent("echo MemoryError >&2; exit 1").Run();
+  CHECK(full.status == TrialStatus::kOutOfMemory);
+  CHECK(full.reason.starts_with("ended in the middle of a trial: wanted memory of more than "));
+}
+
+TEST_CASE("The log and the words of a trial are no part of the next one of a persistent program") {
+  const Persistent shell(
+      "N=$((N + 1))\ncase $N in\n"
+      "1) cp \"$HERE/good.csv\" \"$1/trajectory.csv\"; echo old >&2; "
+      "echo '{\"status\": \"ok\"}';;\n"
+      "2) echo '{\"status\": \"ok\"}';;\n"
+      "*) echo '{\"status\": \"fault\"}';;\nesac");
+  const auto program = CandidateProgram(shell.experiment, {}, kFiles);
+  const TrialRequest request{.theta = {{"0.25", 0.25}, {"ice", {}}}, .trial = "1", .seed = 7};
+  CHECK(program->Run(request).status == TrialStatus::kOk);
+  CHECK(program->Run(request).reason == "ended well and wrote no trajectory to {out}");
+  CHECK(program->Run(request).reason == "the program says so");
 }
 
 TEST_CASE("What a program lacks is said when it is made") {
@@ -386,7 +407,7 @@ TEST_CASE("Runs for whoever wants their paths come in order, with how each of th
 }
 
 TEST_CASE("Where the nominal run of a seed fails by noise another seed takes its place") {
-  Shell shell("case $2 in 10|11) exit 10;; esac\ncp \"$HERE/good.csv\" \"$1\"",
+  Shell shell("case $2 in 10) exit 11;; 11) exit 12;; esac\ncp \"$HERE/good.csv\" \"$1\"",
               {"{out}", "{seed}"});
   shell.experiment.reference.kind = experiment::ReferenceKind::kNominal;
   shell.experiment.reference.trials.names = {"1", "2", "3", "4"};
@@ -406,6 +427,10 @@ TEST_CASE("Where the nominal run of a seed fails by noise another seed takes its
   }
   REQUIRE_FALSE(told.empty());
   CHECK(told.front().seeds == 4);
+  CHECK(told.front().others_tried == 0);
+  CHECK(told.back().others_tried == 1);
+  CHECK(told.back().arrived >= 2);
+  CHECK_THAT(told.back().last_failure, Contains("exit"));
   TrialRow row{.theta = {{"0.5", 0.5}, {"ice", {}}}, .trial = "2", .seed = 10};
   evaluator.NameSides(row);
   const std::string used = "program with seed " + std::to_string((*replaced)[0].used);
@@ -435,6 +460,25 @@ TEST_CASE("A nominal run that no seed mends, or that never arrives, is told once
   CHECK(shell.Read("runs").size() == 2 * (1 + 51));
   shell.experiment.reference.kind = experiment::ReferenceKind::kPath;
   CHECK(Evaluator(shell.experiment, "e.yaml", kFiles).CheckReferences()->empty());
+}
+
+TEST_CASE("A sweep tells which of its references were replaced, and may stop at its noise floors") {
+  Shell shell("[ $2 != 9 ] || exit 10\ncp \"$HERE/good.csv\" \"$1\"", {"{out}", "{seed}"});
+  shell.experiment.reference.kind = experiment::ReferenceKind::kNominal;
+  shell.experiment.reference.trials.names = {"1", "2"};
+  shell.experiment.space.parameters = {{.key = "mu", .levels = {{"0.5", 0.5}}, .nominal = 0.5}};
+  const RunTrials run = RunHere([](const TrialRequest& request) { return RowFor(request); }, {});
+  const auto sweep = [&](const ReferenceWatch& watch) {
+    Evaluator evaluator(shell.experiment, "e.yaml", kFiles);
+    return Sweep(
+        evaluator, run, [](const auto&) { return true; }, watch);
+  };
+  const auto result = sweep({});
+  REQUIRE(result);
+  REQUIRE(result->replaced.size() == 1);
+  CHECK(result->replaced[0].seed == 9);
+  CHECK(result->settings.at(0).noise_floor_m == 0.0);  // the program copies one log
+  CHECK_FALSE(sweep({1, [](const ReferenceProgress& known) { return known.seeds > 0; }}));
 }
 
 }  // namespace

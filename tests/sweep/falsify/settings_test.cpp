@@ -53,6 +53,9 @@ TEST_CASE("Random draws have numbers of their own, counted up within a setting")
   CHECK(*written[0].seed == *draws[0].seed);
   const auto more = FurtherTrials(plan, kTheta, TrialKind::kRandomDraw, 3, 1);
   CHECK(*more[0].seed == *draws[0].seed + 3);
+  experiment::Experiment another = plan;
+  another.seed = 41;
+  CHECK(*TrialsAt(another, kTheta, TrialKind::kRandomDraw)[0].seed != *draws[0].seed);
 }
 
 TEST_CASE("Logs have no seed, simulations and programs that of the experiment") {

@@ -153,6 +153,19 @@ TEST_CASE("A heightfield that the task crosses nowhere is told with where it lie
     hills.image_y_m = y_m;
     CHECK(UncrossedNote(trial).has_value() == !is_crossed);
   }
+  // A narrow one is not stepped over, on whichever leg it lies.
+  trial.task = std::vector<control::Waypoint>{
+      {.name = "s"}, {.name = "a", .x_m = 0.3}, {.name = "b", .x_m = 0.3, .y_m = 0.3}};
+  hills.image_width_m = 0.01;
+  hills.image_y_m = 0.0;
+  for (const double x_m : {0.07, 0.22}) {
+    hills.image_x_m = x_m;
+    CHECK_FALSE(UncrossedNote(trial));
+  }
+  hills.image_x_m = 0.3;
+  hills.image_y_m = 0.17;
+  CHECK_FALSE(UncrossedNote(trial));
+  hills.image_width_m = 0.1;
   hills.image_x_m = 150.0;
   hills.image_y_m = 0.0;
   CHECK_THAT(UncrossedNote(trial).value_or(""),
@@ -202,6 +215,7 @@ TEST_CASE("A run of a program that left no path is lost with its reason, and the
   experiment.program.laps = 1;
   experiment.program.segments = {{.straight_m = 0.7}};
   experiment.trial.timeout_s = 60.0;
+  experiment.simulation.mocap.tag_ahead_m = 0.1;  // on no robot that left a log
   experiment.candidate.kind = experiment::CandidateKind::kLogs;
   experiment.candidate.path.text = "{trial}/run.csv";
   experiment.reference.kind = experiment::ReferenceKind::kPath;

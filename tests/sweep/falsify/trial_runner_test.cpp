@@ -1,5 +1,6 @@
 #include "rift/sweep/falsify/trial_runner.hpp"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -97,6 +98,7 @@ TEST_CASE("A sweep with planted trouble ends and each trouble is a row with its 
   CHECK(row(0).comparison.gap_m == Approx(0.007));
   CHECK(result.rows[1].comparison.gap_m == Approx(0.008));
   CHECK(row(1).status == TrialStatus::kHung);
+  CHECK(row(1).candidate == "simulation");  // as the watch names it
   CHECK(row(1).reason == "had not ended after 3 s (run.timeout_s), twice");
   CHECK(row(2).status == TrialStatus::kCrashed);
   CHECK(row(2).reason == "ended by signal 11 (Segmentation fault), twice");
@@ -284,6 +286,24 @@ TEST_CASE("A runner knows what its journal lacks, and keeps the first paths alon
   CHECK_FALSE(without.HasAll({}));
   CHECK(without.Missing(requests).size() == 5);
   CHECK(without.PathsLeft() == 5000);
+}
+
+TEST_CASE("A journal tells people how a trial ended, its gap and whether it fails") {
+  const test::TemporaryFolder folder;
+  {
+    Journal journal(folder / "journal.sqlite", {{"version", "1"}});
+    TrialRunner runner([](const TrialRequest&) { return FullRow(); }, KeyOf, &journal, 1, {}, {});
+    REQUIRE(runner.Run({{.theta = {{"fine", {}}}, .trial = "1", .seed = 7}}));
+    journal.Close();
+  }
+  SQLite::Database database(folder / "journal.sqlite");
+  SQLite::Statement rows(database, "SELECT key, status, gap_m, falsified FROM trial");
+  REQUIRE(rows.executeStep());
+  CHECK(rows.getColumn(0).getString() == "fine 1 7");
+  CHECK(rows.getColumn(1).getString() == "timed_out");
+  CHECK(rows.getColumn(2).getDouble() == 0.1);
+  CHECK(rows.getColumn(3).getInt() == 1);
+  CHECK_FALSE(rows.executeStep());
 }
 
 }  // namespace

@@ -1,0 +1,94 @@
+// What a tracking run says of its calibration and its world frame, over a few pictures.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "rift/files/files.hpp"
+#include "rift/sessions/track/tracking.hpp"
+#include "rift/vision/camera/camera_file.hpp"
+#include "support/processes/process.hpp"
+#include "support/tree.hpp"
+
+namespace rift::sessions {
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+
+const std::string kData = test::SourceDir() + "/data/camera";
+
+/// Two pictures of the recording, and the calibration as a text that may be changed.
+struct Recorded {
+  Recorded() {
+    fs::create_directories(folder / "frames");
+    for (const char* name : {"000.jpg", "001.jpg"}) {
+      fs::copy_file(kData + "/frames/" + name, folder / ("frames/" + std::string(name)));
+    }
+  }
+  /// What is said.
+  std::string Run(const std::string& calibration, const std::string& world, bool has_log) {
+    TrackingJob job;
+    job.camera = folder / "frames/*.jpg";
+    job.calibration = folder / "cam.yaml";
+    test::WriteText(job.calibration, calibration);
+    job.world = world;
+    job.fps = 15.0;
+    job.options = job.OptionsFor({});
+    if (has_log) job.log = folder / "log.csv";
+    job.force = true;
+    std::string said;
+    const TrackingListener listener{.is_stopped = [] { return false; },
+                                    .say = [&](const std::string& line) { said += line + "\n"; },
+                                    .print = [](std::string_view) {}};
+    reports = 0;
+    Track(job, ReadInputs(job), listener, [&](const auto&...) { ++reports; });
+    return said;
+  }
+  std::string Calibration() const { return files::ReadFile(folder / "cam.yaml"); }
+
+  test::TemporaryFolder folder;
+  std::string whole = files::ReadFile(kData + "/camera.yaml");
+  int reports = 0;
+};
+
+TEST_CASE(
+    "A new world frame is told with its origin and how far it is off in mm, and no log made") {
+  Recorded recorded;
+  vision::CameraModel camera = vision::ReadCamera(recorded.whole, "camera.yaml");
+  camera.world.reset();
+  const std::string said =
+      recorded.Run(vision::WriteCamera(camera, ""), kData + "/tags.yaml", false);
+  const auto world = vision::ReadCamera(recorded.Calibration(), "cam.yaml").world;
+  REQUIRE(world);
+  CHECK_THAT(said, Contains(fmt::format(
+                       "world frame from {}, {:.2f} mm off at its points, is now in {}\n",
+                       world->origin, 1e3 * world->residual_m, recorded.folder / "cam.yaml")));
+  CHECK(recorded.reports == 0);
+  CHECK_FALSE(fs::exists(recorded.folder / "log.csv"));
+}
+
+TEST_CASE(
+    "A calibration without a size or a world frame is told so, with the size of the pictures") {
+  Recorded recorded;
+  const std::string size = "does not say for which size it was made; 960x720 is taken as given";
+  const std::string frame = "holds no world frame";
+  CHECK_THAT(recorded.Run(recorded.whole, "", true), !Contains(size) && !Contains(frame));
+  CHECK(recorded.reports == 1);
+  std::string sizeless = recorded.whole;
+  for (const std::string line : {"image_width: 960\n", "image_height: 720\n"}) {
+    REQUIRE(sizeless.find(line) != sizeless.npos);
+    sizeless.erase(sizeless.find(line), line.size());
+  }
+  CHECK_THAT(recorded.Run(sizeless, "", true),
+             Contains("note: " + (recorded.folder / "cam.yaml") + " " + size) && !Contains(frame));
+  vision::CameraModel camera = vision::ReadCamera(recorded.whole, "camera.yaml");
+  camera.world.reset();
+  CHECK_THAT(recorded.Run(vision::WriteCamera(camera, ""), "", true),
+             !Contains(size) && Contains("note: " + (recorded.folder / "cam.yaml") + " " + frame));
+}
+
+}  // namespace
+}  // namespace rift::sessions
