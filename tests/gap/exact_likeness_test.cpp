@@ -176,7 +176,7 @@ TEST_CASE("A real log that was copied is one repeat, whatever its clock says") {
   CHECK(result.verdict.repeats == 2);
   CHECK(result.verdict.above == 1);
   CHECK(result.noise_floor_m == Approx(0.06));
-  CHECK(result.mean_gap_m == Approx(0.065));  // of all that stand in the table
+  CHECK(result.mean_gap_m == Approx(0.065));                    // of all that stand in the table
   for (auto& pose : result.reals[2].poses) pose.x_m += 0.9e-5;  // written anew with fewer digits
   for (auto& pose : result.reals[3].poses) pose.y_m -= 0.9e-5;
   Judge(result);
