@@ -25,7 +25,7 @@ namespace {
 constexpr int kEvenPoints = 160;
 
 /// So do Hausdorff and Frechet: of a longer path not every vertex is looked at.
-constexpr int kMostVertices = 1000;
+constexpr int kMostVertices = 500;
 
 std::vector<double> EvenShares(int count) {
   std::vector<double> shares;

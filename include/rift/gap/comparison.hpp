@@ -50,8 +50,8 @@ struct Comparison {
   double sim_standstill_share = kNotComputed;  ///< of the arc length, logged while standing
   double real_standstill_share = kNotComputed;
 
-  /// Largest distance of a vertex to the closest point of the other path. A path of more than 1000
-  /// vertices is looked at in 1000 evenly spaced points instead.
+  /// Largest distance of a vertex to the closest point of the other path. A path of more than 500
+  /// vertices is looked at in 500 evenly spaced points instead.
   double hausdorff_m = kNotComputed;
   /// Discrete Frechet distance (Eiter and Mannila 1994) of the points of both paths at each u at
   /// which one of them has such a vertex, and at 160 even ones where these are fewer. Never below
