@@ -357,6 +357,12 @@ TEST_CASE("Stamps of a simulated run go back to the frames that the candidate is
   for (size_t i = 0; i < expected.poses.size(); ++i) {
     CHECK(on_frames.poses[i].t_s == expected.poses[i].t_s);
   }
+  // And those of the nominal run beside it.
+  experiment.reference.kind = experiment::ReferenceKind::kNominal;
+  Evaluator evaluator(experiment, "e.yaml", files.AsInputs());
+  const TrialRow row = evaluator.Evaluate({.theta = {}, .trial = "1", .seed = 3});
+  REQUIRE(row.IsOk());
+  CHECK(row.comparison.equal_time_m == 0.0);
 }
 
 }  // namespace
