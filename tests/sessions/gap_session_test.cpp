@@ -84,6 +84,28 @@ TEST_CASE("Each repeat is compared and further runs of the simulator add the lik
   CHECK(repeated.likeness->reals == 2);
 }
 
+TEST_CASE("A robot that stands throughout is refused where standstill is trimmed, on both sides") {
+  const test::TemporaryFolder folder;
+  trajectory::Trajectory stands;
+  for (int i = 0; i < 60; ++i) {
+    stands.poses.push_back({.t_s = 0.05 * i, .x_m = i % 2 == 0 ? 0.0005 : 0.0, .y_m = 0.0});
+  }
+  test::WriteText(folder / "stands.csv", trajectory::WriteRift(stands));
+  test::WriteText(folder / "drives.csv", Log(0.02));
+  Told told;
+  GapJob job{.sim = folder / "drives.csv", .reals = {folder / "stands.csv"}};
+  CHECK_NOTHROW(Measure(job, told));
+  job.options.trim_standstill = true;
+  const std::string refusal = (folder / "stands.csv") +
+                              ": never leaves --standstill-radius, 0.01 m, so that all of it is "
+                              "standstill: leave --trim-standstill out, or name a smaller radius";
+  CHECK_THROWS_WITH(Measure(job, told), refusal);
+  std::swap(job.sim, job.reals.front());
+  CHECK_THROWS_WITH(Measure(job, told), refusal);
+  job.options.standstill_radius_m = 0.0004;
+  CHECK_NOTHROW(Measure(job, told));
+}
+
 TEST_CASE("A log that is named twice is refused under whatever name") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "a.csv", Log(0.0));

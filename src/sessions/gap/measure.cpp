@@ -36,6 +36,23 @@ void SayNotes(const trajectory::Log& log, const std::string& path, const std::st
   say(fmt::format("note: {}: yaw errors are left out: {}: set {}", path, log.unknown_angles, flag));
 }
 
+/// Of a robot that stood nothing is left to compare.
+void RefuseStanding(const trajectory::Trajectory& log, const std::string& path,
+                    const gap::GapOptions& options) {
+  if (!options.trim_standstill) return;
+  const auto is_near = [&](const trajectory::StampedPose& pose) {
+    const double off_m = options.IsInSpace()
+                             ? (pose.PositionInSpace() - log.poses.front().PositionInSpace()).norm()
+                             : (pose.Position() - log.poses.front().Position()).norm();
+    return off_m <= options.standstill_radius_m;
+  };
+  if (!std::all_of(log.poses.begin(), log.poses.end(), is_near)) return;
+  throw std::invalid_argument(fmt::format(
+      "{}: never leaves --standstill-radius, {:g} m, so that all of it is standstill: leave "
+      "--trim-standstill out, or name a smaller radius",
+      path, options.standstill_radius_m));
+}
+
 bool IsNamed(const std::string& path, std::initializer_list<std::string_view> words) {
   const std::string name = std::filesystem::path(path).filename().string();
   return std::any_of(words.begin(), words.end(),
@@ -188,11 +205,13 @@ gap::GapResult MeasureGap(const GapJob& job, const Say& say) {
                         .judged_by = job.verdict};
   trajectory::Log sim = trajectory::ReadLog(files::ReadFile(job.sim), job.sim, job.SimLogs());
   SayNotes(sim, job.sim, "--sim-format", say);
+  RefuseStanding(sim.trajectory, job.sim, job.options);
   result.sim = std::move(sim.trajectory);
   const sweep::LogOptions real_logs{job.RealLogs(), job.tag_offset_m, "--real-format"};
   for (const std::string& path : job.reals) {
     trajectory::Log real = sweep::ReadMovedLog(files::ReadFile(path), path, real_logs);
     SayNotes(real, path, "--real-format", say);
+    RefuseStanding(real.trajectory, path, job.options);
     result.trials.push_back({path, gap::Compare(result.sim, real.trajectory, job.options)});
     result.reals.push_back(std::move(real.trajectory));
   }
