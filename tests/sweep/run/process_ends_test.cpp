@@ -44,7 +44,7 @@ TEST_CASE("A job that ends its worker with a code, or is killed for ever, is a c
   const JobResult ended =
       ResultOf([](const std::string&) -> std::string { ::_exit(7); }, {.retries = 0});
   CHECK(ended.end == JobEnd::kCrashed);
-  CHECK(ended.bytes.find("7") != std::string::npos);
+  CHECK(ended.bytes.find('7') != std::string::npos);
   const test::TemporaryFolder folder;
   const std::string kills = folder / "kills";
   const JobResult killed = ResultOf(
