@@ -92,16 +92,28 @@ ArcPathIn<N> MakeArcPathIn(const trajectory::Trajectory& trajectory, const GapOp
   return path;
 }
 
+std::vector<double> EvenShares(int count) {
+  std::vector<double> shares;
+  shares.reserve(count);
+  for (int k = 0; k < count; ++k) shares.push_back(static_cast<double>(k) / (count - 1));
+  return shares;
+}
+
 template <int N>
-PointsIn<N> Resample(const ArcPathIn<N>& path, int count) {
+PointsIn<N> PointsAt(const ArcPathIn<N>& path, const std::vector<double>& shares) {
   PointsIn<N> points;
-  points.reserve(count);
+  points.reserve(shares.size());
   size_t i = 0;
-  for (int k = 0; k < count; ++k) {
-    const double share = ShareAt(path, static_cast<double>(k) / (count - 1), i);
+  for (const double u : shares) {
+    const double share = ShareAt(path, u, i);
     points.push_back(path.Vertex(i) + share * (path.Vertex(i + 1) - path.Vertex(i)));
   }
   return points;
+}
+
+template <int N>
+PointsIn<N> Resample(const ArcPathIn<N>& path, int count) {
+  return PointsAt(path, EvenShares(count));
 }
 
 void Transform(ArcPathIn<2>& path, const geometry::Pose2& b_from_a) {
@@ -182,6 +194,7 @@ PoseIn<N> AligningMotion(const ArcPathIn<N>& sim, const ArcPathIn<N>& real, Alig
 template MovingRange FindMoving<2>(std::span<const trajectory::StampedPose>, double);
 template double StandingLength_m<2>(std::span<const trajectory::StampedPose>, double);
 template ArcPathIn<2> MakeArcPathIn<2>(const trajectory::Trajectory&, const GapOptions&);
+template PointsIn<2> PointsAt<2>(const ArcPathIn<2>&, const std::vector<double>&);
 template PointsIn<2> Resample<2>(const ArcPathIn<2>&, int);
 template PoseIn<2> StartMotion<2>(const ArcPathIn<2>&, const ArcPathIn<2>&);
 template PoseIn<2> BestRigidMotion<2>(const ArcPathIn<2>&, const ArcPathIn<2>&, int);
@@ -189,6 +202,7 @@ template PoseIn<2> AligningMotion<2>(const ArcPathIn<2>&, const ArcPathIn<2>&, A
 template MovingRange FindMoving<3>(std::span<const trajectory::StampedPose>, double);
 template double StandingLength_m<3>(std::span<const trajectory::StampedPose>, double);
 template ArcPathIn<3> MakeArcPathIn<3>(const trajectory::Trajectory&, const GapOptions&);
+template PointsIn<3> PointsAt<3>(const ArcPathIn<3>&, const std::vector<double>&);
 template PointsIn<3> Resample<3>(const ArcPathIn<3>&, int);
 template PoseIn<3> StartMotion<3>(const ArcPathIn<3>&, const ArcPathIn<3>&);
 template PoseIn<3> BestRigidMotion<3>(const ArcPathIn<3>&, const ArcPathIn<3>&, int);

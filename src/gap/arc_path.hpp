@@ -87,6 +87,13 @@ double ShareAt(const ArcPathIn<N>& path, double u, size_t& i) {
   return span > 0.0 ? (u - path.u[i]) / span : 0.0;
 }
 
+/// `count` evenly spaced u from 0 to 1.
+std::vector<double> EvenShares(int count);
+
+/// The points at these u, which must not fall.
+template <int N>
+PointsIn<N> PointsAt(const ArcPathIn<N>& path, const std::vector<double>& shares);
+
 /// The points at `count` evenly spaced u from 0 to 1.
 template <int N>
 PointsIn<N> Resample(const ArcPathIn<N>& path, int count);

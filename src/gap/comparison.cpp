@@ -9,7 +9,6 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "arc_path.hpp"
@@ -26,12 +25,6 @@ constexpr int kEvenPoints = 160;
 
 /// So do Hausdorff and Frechet: of a longer path not every vertex is looked at.
 constexpr int kMostVertices = 500;
-
-std::vector<double> EvenShares(int count) {
-  std::vector<double> shares;
-  for (int k = 0; k < count; ++k) shares.push_back(static_cast<double>(k) / (count - 1));
-  return shares;
-}
 
 template <int N>
 struct Paths {
@@ -160,28 +153,11 @@ std::vector<double> VertexShares(const ArcPathIn<N>& path) {
   return path.Size() > kMostVertices ? EvenShares(kMostVertices) : path.u;
 }
 
-/// Those of either path, and the evenly spaced ones where these are few.
-template <int N>
-std::vector<double> SharesOfBoth(const Paths<N>& paths) {
-  const std::vector<double> sim = VertexShares(paths.sim), real = VertexShares(paths.real);
+/// Of two that rise, what is in both once.
+std::vector<double> Union(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> both;
-  std::set_union(sim.begin(), sim.end(), real.begin(), real.end(), std::back_inserter(both));
-  if (both.size() >= kEvenPoints) return both;
-  const std::vector<double> few = std::exchange(both, {}), even = EvenShares(kEvenPoints);
-  std::set_union(few.begin(), few.end(), even.begin(), even.end(), std::back_inserter(both));
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
   return both;
-}
-
-template <int N>
-PointsIn<N> PointsAt(const ArcPathIn<N>& path, const std::vector<double>& shares) {
-  PointsIn<N> points;
-  points.reserve(shares.size());
-  size_t i = 0;
-  for (const double u : shares) {
-    const double share = ShareAt(path, u, i);
-    points.push_back(path.Vertex(i) + share * (path.Vertex(i + 1) - path.Vertex(i)));
-  }
-  return points;
 }
 
 // The points of Frechet are those of Hausdorff and more, and stand in pairs at equal u: it is below
@@ -189,9 +165,10 @@ PointsIn<N> PointsAt(const ArcPathIn<N>& path, const std::vector<double>& shares
 template <int N>
 void MeasureShape(const Paths<N>& paths, Comparison& result) {
   const auto& [sim, real] = paths;
-  result.hausdorff_m =
-      HausdorffIn_m<N>(PointsAt(sim, VertexShares(sim)), PointsAt(real, VertexShares(real)));
-  const std::vector<double> shares = SharesOfBoth(paths);
+  const std::vector<double> of_sim = VertexShares(sim), of_real = VertexShares(real);
+  result.hausdorff_m = HausdorffIn_m<N>(PointsAt(sim, of_sim), PointsAt(real, of_real));
+  std::vector<double> shares = Union(of_sim, of_real);
+  if (shares.size() < kEvenPoints) shares = Union(shares, EvenShares(kEvenPoints));
   result.frechet_m = std::max(
       result.hausdorff_m, DiscreteFrechetIn_m<N>(PointsAt(sim, shares), PointsAt(real, shares)));
   result.dtw_m = DynamicTimeWarpingIn_m<N>(Resample(sim, kEvenPoints), Resample(real, kEvenPoints));
