@@ -274,8 +274,9 @@ std::optional<std::string> FaultOf(const WorldState& state, const Terrain& terra
 
 std::optional<std::string> FallOf(const WorldState& state, const Terrain& terrain) {
   const Vector3d& p = state.position_m;
-  const bool is_on_table = std::isfinite(terrain.HeightAt(p.x(), p.y()));
-  if (!is_on_table && p.z() < -kFallen_m) return At("fell off the table", p);
+  if (p.z() < -kFallen_m && !std::isfinite(terrain.HeightAt(p.x(), p.y()))) {
+    return At("fell off the table", p);
+  }
   if (state.world_from_robot(2, 2) < std::cos(kTippedOver_rad)) return At("tipped over", p);
   return std::nullopt;
 }
