@@ -16,7 +16,6 @@
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/csv.hpp"
-#include "rift/trajectory/frame_grid.hpp"
 #include "rift/yaml/bind.hpp"
 #include "simulated_recording.hpp"
 
@@ -154,12 +153,10 @@ CandidateRun Evaluator::RunOf(const TrialRequest& request, const Recording& refe
   const SimulatedTrial trial = TrialFor(request, reference);
   SimulatedRun run = Simulate(trial);
   std::vector<odometry::EncoderReading> encoders = std::move(run.encoders);
-  Recording simulated = RecordingOf(std::move(run), trial);
+  Recording simulated = RecordingOf(std::move(run), trial, experiment_.candidate.grid_fps);
   const bool is_moved =
       experiment_.reference.kind == ReferenceKind::kLogs && simulated.status == TrialStatus::kOk;
   // The same point of the body on both sides.
-  simulated.trajectory =
-      trajectory::OnFramesOf(std::move(simulated.trajectory), experiment_.candidate.grid_fps);
   if (is_moved) {
     simulated.trajectory =
         trajectory::OffsetAlongHeading(simulated.trajectory, experiment_.reference.tag_offset_m);

@@ -8,7 +8,6 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
-#include <utility>
 
 #include "job_status.hpp"
 #include "program_side.hpp"
@@ -17,7 +16,6 @@
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
 #include "rift/sweep/run/worker_pool.hpp"
-#include "rift/trajectory/frame_grid.hpp"
 #include "rift/yaml/enum_name.hpp"
 #include "simulated_recording.hpp"
 
@@ -49,10 +47,7 @@ const Recording& Evaluator::Nominal(std::uint64_t seed) {
     return nominal_runs_[seed] = candidate_program_->Run(NominalRequest(experiment_, seed));
   }
   const SimulatedTrial trial = TrialOf(experiment_, experiment::AxleAtStart(experiment_), seed);
-  Recording& nominal = nominal_runs_[seed] = RecordingOf(Simulate(trial), trial);
-  nominal.trajectory =
-      trajectory::OnFramesOf(std::move(nominal.trajectory), experiment_.candidate.grid_fps);
-  return nominal;
+  return nominal_runs_[seed] = RecordingOf(Simulate(trial), trial, experiment_.candidate.grid_fps);
 }
 
 std::uint64_t Evaluator::SeedWithReference(std::uint64_t seed) {

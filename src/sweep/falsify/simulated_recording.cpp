@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "rift/trajectory/frame_grid.hpp"
+
 namespace rift::sweep {
 
 TrialStatus StatusOf(trial::Outcome outcome) {
@@ -40,7 +42,7 @@ double DistanceLeft_m(const SimulatedRun& run, const std::vector<control::Waypoi
 
 }  // namespace
 
-Recording RecordingOf(SimulatedRun run, const SimulatedTrial& trial) {
+Recording RecordingOf(SimulatedRun run, const SimulatedTrial& trial, double grid_fps) {
   Recording recording{.status = StatusOf(run.result.outcome),
                       .source = fmt::format("simulation with seed {}", trial.seed),
                       .limits = run.result.limits};
@@ -48,7 +50,7 @@ Recording RecordingOf(SimulatedRun run, const SimulatedTrial& trial) {
     recording.reason = run.result.reason;
     recording.left_m = DistanceLeft_m(run, trial.task.waypoints);
   }
-  recording.trajectory = std::move(run.result.trajectory);
+  recording.trajectory = trajectory::OnFramesOf(std::move(run.result.trajectory), grid_fps);
   return recording;
 }
 
