@@ -1,11 +1,11 @@
 #include "rift/yaml/scalar.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
+#include "rift/yaml/decimal.hpp"
 #include "rift/yaml/suggest.hpp"
 
 namespace rift::yaml {
@@ -17,11 +17,6 @@ constexpr double kExactWhole = 9007199254740992.0;  // 2^53
 [[noreturn]] void Refuse(const Node& node, const Place& place, const std::string& rule) {
   const std::string meaning = place.help.empty() ? "" : "; meaning: " + place.help;
   Fail(node, place.key, "must be " + rule + meaning);
-}
-
-std::string_view WithoutPlus(std::string_view text) {
-  const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+';
-  return plus ? text.substr(1) : text;
 }
 
 bool SpellsNotFinite(std::string_view text) {
@@ -42,11 +37,8 @@ struct Spelled {
 };
 
 Spelled Spell(std::string_view text) {
-  text = WithoutPlus(text);
   Spelled spelled;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), spelled.value);
-  const bool is_whole_text = end == text.data() + text.size();
-  spelled.fault = is_whole_text ? fault : std::errc::invalid_argument;
+  spelled.fault = ReadDecimal(text, spelled.value);
   return spelled;
 }
 
@@ -65,9 +57,7 @@ double ParseNumber(const Node& node, const Place& place, const std::string& expe
 
 /// The whole text as digits; false when it is not that, or does not fit.
 bool ParseDigits(std::string_view text, std::uint64_t& value) {
-  text = WithoutPlus(text);
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return fault == std::errc() && !text.empty() && end == text.data() + text.size();
+  return ReadDecimal(text, value) == std::errc();
 }
 
 double ParseWhole(const Node& node, const Place& place) {

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,19 +11,10 @@
 #include <type_traits>
 #include <vector>
 
+#include "rift/yaml/decimal.hpp"
 #include "rift/yaml/flag_name.hpp"
 
 namespace rift::flags {
-
-/// Whether all of the text is one decimal number that the type can hold, as in a file: CLI11 takes
-/// 0x1 for 1, and 1e-400 for 0.
-template <class Number>
-bool IsNumber(std::string_view text, Number& value) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  const char* end = text.data() + text.size();
-  const auto [read, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && read == end && read != text.data();
-}
 
 /// CLI::Range lets a NaN through, and what it says of a word, or of 2.5 where whole numbers are
 /// meant, is not what is wrong.
@@ -40,7 +30,9 @@ CLI::Validator InRange(Number min, Number max) {
   return CLI::Validator(
       [min, max, range](const std::string& text) -> std::string {
         Number value = 0;
-        if (IsNumber(text, value) && value >= min && value <= max) return "";
+        // CLI11 takes 0x1 for 1, and 1e-400 for 0.
+        const bool is_number = yaml::ReadDecimal(text, value) == std::errc();
+        if (is_number && value >= min && value <= max) return "";
         return fmt::format("'{}' must be a {}number in {}", text, kIsWhole ? "whole " : "", range);
       },
       "in " + range);
