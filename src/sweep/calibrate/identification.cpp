@@ -10,6 +10,7 @@
 
 #include "fitted_simulator.hpp"
 #include "log_doubts.hpp"
+#include "model.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/program_parameters.hpp"
 #include "rift/statistics/random.hpp"
@@ -25,7 +26,6 @@ using trajectory::Trajectory;
 
 constexpr int kRunsShown = 3;
 // Runs that judge are none of those that were fitted with.
-constexpr std::uint64_t kSeedsOfLog = 100'000;
 constexpr std::uint64_t kJudgeSeeds = 50'000;
 constexpr std::uint64_t kSeedsOfStart = 100;  // the phases of a replay count up from there
 constexpr std::uint64_t kStartStream = 80;

@@ -12,12 +12,12 @@ namespace {
 // Whole runs of a delayed bang-bang loop are chaotic: over a small step the scatter of their traits
 // is many times their slope.
 constexpr double kStepOfRuns = 0.2;
-// The logs of a fit are 100,000 seeds apart, in which their own runs are the first ones and those
-// that judge the ones from 50,000 on.
+// Of the seeds of a log its own runs are the first ones, and those that judge the ones from 50,000
+// on.
 constexpr std::uint64_t kSeedsOfTry = 1'000;
 constexpr std::uint64_t kSeedsOfRepeat = 20'000;
-constexpr int kRepeatsBetweenLogs = 4;
-constexpr std::uint64_t kSeedsOfFurtherRepeats = 200'000'000;  // beyond those of 2000 logs
+constexpr auto kRepeatsBetweenLogs = static_cast<int>(kSeedsOfLog / kSeedsOfRepeat) - 1;
+constexpr std::uint64_t kSeedsOfFurtherRepeats = 2000 * kSeedsOfLog;  // beyond those of all logs
 
 }  // namespace
 

@@ -13,6 +13,8 @@ namespace rift::sweep {
 std::vector<double> ValuesAt(const std::vector<experiment::FreeParameter>& parameters,
                              const Eigen::VectorXd& shares);
 
+constexpr std::uint64_t kSeedsOfLog = 100'000;  ///< between the first seeds of two logs of a fit
+
 /// Of a run that stands for a real log, whose own runs count up from `first`: another one for each
 /// repeat and try, both from 0, and of no other log's, of up to 2000. Below 2^31, which any program
 /// takes, up to repeat 39.

@@ -40,11 +40,10 @@ TEST_CASE("A simulated log that makes a detour is driven again, and the last try
 }
 
 TEST_CASE("No run in the place of a log has the seed of another, nor of one that predicts") {
-  constexpr std::uint64_t kApart = 100'000;  // the logs' own seeds
   std::set<std::uint64_t> seeds;
   size_t count = 0;
   for (std::uint64_t log = 0; log < 12; ++log) {
-    const std::uint64_t first = 7 + log * kApart;
+    const std::uint64_t first = 7 + log * kSeedsOfLog;
     for (std::uint64_t run = 0; run < 20; ++run, ++count) seeds.insert(first + run);
     for (int repeat = 0; repeat < 30; ++repeat) {
       for (int attempt = 0; attempt < kMostTries; ++attempt, ++count) {
