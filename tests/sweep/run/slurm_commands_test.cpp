@@ -202,6 +202,10 @@ class Cluster : public Stand {
     journal.Close();
   }
   fs::path Out() const { return *this / "out"; }
+  Journal NewJournal() const {
+    fs::create_directories(Out());
+    return Journal(Out() / "journal.sqlite", kFacts);
+  }
 };
 
 SlurmOptions Quick(int most = 1000) {
@@ -217,8 +221,7 @@ SlurmOptions Quick(int most = 1000) {
 
 TEST_CASE("The rows of all shards are in the journal, and what only their jobs need is gone") {
   const Cluster cluster;
-  fs::create_directories(cluster.Out());
-  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  Journal journal = cluster.NewJournal();
   const std::vector<Shard> shards{ShardOf("a"), ShardOf("b"), ShardOf("c")};
   cluster.Finishes(shards[0], "a");
   cluster.Finishes(shards[1], "b");
@@ -270,8 +273,7 @@ TEST_CASE("The rows of all shards are in the journal, and what only their jobs n
 
 TEST_CASE("A shard that leaves no journal is run three times, and told with its last words") {
   const Cluster cluster;
-  fs::create_directories(cluster.Out());
-  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  Journal journal = cluster.NewJournal();
   const std::vector<Shard> shards{ShardOf("a"), ShardOf("b")};
   cluster.Finishes(shards[0], "a");
   cluster.Does("sbatch", test::ReadFile(cluster / "sbatch.also") +
@@ -299,8 +301,7 @@ TEST_CASE("A shard that leaves no journal is run three times, and told with its 
 
 TEST_CASE("Whoever is told to stop cancels the jobs, and the next takes in what they left") {
   const Cluster cluster;
-  fs::create_directories(cluster.Out());
-  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  Journal journal = cluster.NewJournal();
   const Shard shard = ShardOf("a");
   const SlurmOptions options = Quick();
   int looks = 0;
@@ -352,8 +353,7 @@ TEST_CASE("Whoever is told to stop cancels the jobs, and the next takes in what 
 
 TEST_CASE("A task that Slurm holds for good is cancelled, and told") {
   const Cluster cluster;
-  fs::create_directories(cluster.Out());
-  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  Journal journal = cluster.NewJournal();
   const Shard shard = ShardOf("a");
   const SlurmOptions options = Quick();
   std::vector<std::string> said;
@@ -381,8 +381,7 @@ TEST_CASE("A task that Slurm holds for good is cancelled, and told") {
 TEST_CASE("A queue that was read once may fail in any way later, and at first in none") {
   for (const int failing : {1, 3}) {
     const Cluster cluster;
-    fs::create_directories(cluster.Out());
-    Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+    Journal journal = cluster.NewJournal();
     const Shard shard = ShardOf("a");
     cluster.Finishes(shard, "a");
     cluster.Does("sbatch", "");
@@ -413,8 +412,7 @@ TEST_CASE("A queue that was read once may fail in any way later, and at first in
 
 TEST_CASE("A busy cluster is asked again with half of the tasks, and complained of once") {
   const Cluster cluster;
-  fs::create_directories(cluster.Out());
-  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  Journal journal = cluster.NewJournal();
   std::vector<Shard> shards;
   for (const char* key : {"a", "b", "c", "d", "e"}) {
     shards.push_back(ShardOf(key));
@@ -441,8 +439,7 @@ TEST_CASE("A busy cluster is asked again with half of the tasks, and complained 
 
 TEST_CASE("A shard that was seen in the queue between two looks without it is not run twice") {
   const Cluster cluster;
-  fs::create_directories(cluster.Out());
-  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  Journal journal = cluster.NewJournal();
   const Shard shard = ShardOf("a");
   const SlurmOptions options = Quick();
   int looks = 0;
@@ -463,8 +460,7 @@ TEST_CASE("A shard that was seen in the queue between two looks without it is no
 
 TEST_CASE("Shards are counted as done, running or waiting, with why the first of them waits") {
   const Cluster cluster;
-  fs::create_directories(cluster.Out());
-  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  Journal journal = cluster.NewJournal();
   std::vector<Shard> shards;
   for (const char* key : {"a", "b", "c", "d", "e"}) shards.push_back(ShardOf(key));
   cluster.Finishes(shards[1], "b");
@@ -493,7 +489,7 @@ TEST_CASE("An array has the number behind the largest, and no job of it is left 
     fs::create_directories(cluster.Out() / "slurm" / name);
   }
   test::WriteText(cluster.Out() / "slurm/99", "no folder");
-  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  Journal journal = cluster.NewJournal();
   const Shard shard = ShardOf("a");
   cluster.Finishes(shard, "a");
   cluster.Answers("squeue", "41_7|RUNNING|None\n");  // whatever is left under the name
@@ -506,8 +502,7 @@ TEST_CASE("An array has the number behind the largest, and no job of it is left 
 
 TEST_CASE("A complaint is told again once a submission came between") {
   const Cluster cluster;
-  fs::create_directories(cluster.Out());
-  Journal journal(cluster.Out() / "journal.sqlite", kFacts);
+  Journal journal = cluster.NewJournal();
   cluster.Does(
       "sbatch",
       "echo x >> \"$D/tried\"\n"
