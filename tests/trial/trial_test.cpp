@@ -227,26 +227,24 @@ TEST_CASE("A pose from the future is not believed") {
   CHECK(result.driving_s == -1.0);
 }
 
-TEST_CASE("A fault ends the trial with the robot's own words") {
+/// After a second the robot says so, as its fault or its fall.
+void CheckEndsBy(std::optional<std::string> Sensed::*what, const char* words, Outcome outcome) {
   test::FakeRobot robot = RobotAtStart();
-  robot.spoil = [](Sensed& sensed) {
-    if (sensed.now_s > 1.0) sensed.fault = "the battery is empty";
+  robot.spoil = [&](Sensed& sensed) {
+    if (sensed.now_s > 1.0) sensed.*what = words;
   };
   const TrialResult result = Run(robot);
-  CHECK(result.outcome == Outcome::kFault);
-  CHECK(result.reason == "the battery is empty");
+  CHECK(result.outcome == outcome);
+  CHECK(result.reason == words);
   CHECK(robot.stops == 1);
 }
 
+TEST_CASE("A fault ends the trial with the robot's own words") {
+  CheckEndsBy(&Sensed::fault, "the battery is empty", Outcome::kFault);
+}
+
 TEST_CASE("A robot that has fallen ends the trial as such, with the robot's own words") {
-  test::FakeRobot robot = RobotAtStart();
-  robot.spoil = [](Sensed& sensed) {
-    if (sensed.now_s > 1.0) sensed.fall = "tipped over at (0.1, 0.2) m";
-  };
-  const TrialResult result = Run(robot);
-  CHECK(result.outcome == Outcome::kFell);
-  CHECK(result.reason == "tipped over at (0.1, 0.2) m");
-  CHECK(robot.stops == 1);
+  CheckEndsBy(&Sensed::fall, "tipped over at (0.1, 0.2) m", Outcome::kFell);
 }
 
 TEST_CASE("A clock that stands still or runs back is a fault and no endless loop") {
