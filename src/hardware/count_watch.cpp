@@ -13,8 +13,7 @@ constexpr double kRest_s = 0.1;      // two readings of a slow link
 constexpr std::int32_t kJitter = 1;  // of a wheel that stands on the edge of a count
 constexpr double kCoasts_s = 0.5;    // against what it is told now
 constexpr double kBack_m = 0.02;     // between two readings; no gear gives way so far
-constexpr double kStops_s =
-    1.0;  // from a zero that is sent: the longest lag of a link and to roll out
+constexpr double kStops_s = 1.0;     // from a zero on: the longest lag of a link, and to roll out
 
 /// Right over the end of the counters' range as well.
 std::int32_t Change(std::int32_t before, std::int32_t now) {
