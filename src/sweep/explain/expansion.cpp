@@ -7,6 +7,7 @@
 #include <set>
 
 #include "rift/statistics/descriptive.hpp"
+#include "rift/statistics/sample.hpp"
 #include "rift/sweep/falsify/distinct_rows.hpp"
 
 namespace rift::sweep {
@@ -155,8 +156,9 @@ Observations Observe(const SweepResult& result, int most) {
   for (const int row : RowsThatCount(result)) all.push_back(&result.rows[row]);
   Observations data;
   LeaveOutFurther(result, all, data);
-  const size_t step = 1 + all.size() / static_cast<size_t>(most + 1);
-  for (size_t i = 0; i < all.size(); i += step) data.rows.push_back(all[i]);
+  for (const size_t i : statistics::SampleInOrder(all.size(), static_cast<size_t>(most))) {
+    data.rows.push_back(all[i]);
+  }
   data.losses_m.resize(static_cast<Eigen::Index>(data.rows.size()));
   for (size_t i = 0; i < data.rows.size(); ++i) {
     data.losses_m[static_cast<Eigen::Index>(i)] = Loss_m(*data.rows[i], result.gap.threshold_m);

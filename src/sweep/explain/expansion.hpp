@@ -20,7 +20,7 @@ struct Observations {
   bool are_same_runs = false;   ///< several settings tell, and all of them by the same runs
 };
 
-/// The distinct trials that tell, evenly picked when there are more than `most`. A search repeats a
+/// The distinct trials that tell, a sample when there are more than `most`. A search repeats a
 /// setting that it cannot decide, and a hundred trials of one would outweigh the rest of the space:
 /// of each setting the first ones, as many as the median one has. In a grid twice as many, so that
 /// missing trials cost none.

@@ -205,15 +205,34 @@ TEST_CASE("Columns of a range are orthonormal polynomials, and of a list orthono
   CHECK((squares - Eigen::MatrixXd::Identity(3, 3)).cwiseAbs().maxCoeff() < 1e-9);
 }
 
-TEST_CASE("Of too many trials evenly picked ones are looked at, and identical ones once") {
+TEST_CASE("A sample of a grid that is too large holds every level of its parameters") {
+  SweepResult result;
+  result.parameters = {{.key = "slow"}, {.key = "fast"}};
+  for (int slow = 0; slow < 50; ++slow) {
+    for (const double fast : {0.3, 0.5}) {  // every second row has the same one
+      result.parameters[0].levels.push_back(experiment::NumberValue(slow));
+      TrialRow row{.theta = {experiment::NumberValue(slow), experiment::NumberValue(fast)}};
+      row.comparison.gap_m = 0.1 * fast;
+      result.rows.push_back(row);
+    }
+  }
+  result.parameters[1].levels = {experiment::NumberValue(0.3), experiment::NumberValue(0.5)};
+  for (const int most : {99, 60, 50, 34}) {
+    const Observations data = Observe(result, most);
+    CHECK(data.rows.size() == static_cast<size_t>(most));
+    CHECK(data.parameters == std::vector<int>{0, 1});
+  }
+}
+
+TEST_CASE("Of too many trials a sample is looked at, and identical ones once") {
   SweepResult result = Ranged(100, 0.0, 1.0, false, [](double x) { return x; });
   CHECK(Observe(result, 100).rows.size() == 100);
   CHECK(Observe(result, 200).rows.size() == 100);
   const Observations half = Observe(result, 50);
   CHECK(half.rows.size() == 50);
-  CHECK(half.rows[1] == &result.rows[2]);
-  CHECK(Observe(result, 99).rows.size() == 50);
-  CHECK(Observe(result, 33).rows.size() == 34);  // every third
+  CHECK(std::is_sorted(half.rows.begin(), half.rows.end()));
+  CHECK(std::adjacent_find(half.rows.begin(), half.rows.end()) == half.rows.end());
+  CHECK(Observe(result, 99).rows.size() == 99);
   result.rows[3].status = TrialStatus::kCrashed;
   result.rows[4].evidence.fingerprint = result.rows[5].evidence.fingerprint = 9;
   result.rows[5].comparison.gap_m = result.rows[4].comparison.gap_m;
