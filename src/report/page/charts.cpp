@@ -8,6 +8,7 @@
 #include "rift/experiment/words.hpp"
 #include "rift/report/figures/gnuplot_text.hpp"
 #include "rift/report/text/trial_query.hpp"
+#include "rift/statistics/sample.hpp"
 
 namespace rift::report {
 
@@ -169,8 +170,7 @@ PageChart HeatMap(const sweep::SweepResult& result, const sweep::FailingRegion& 
 
 json TrialDots(const sweep::SweepResult& result, const sweep::FailingRegion& region) {
   json dots = json::array();
-  const std::size_t step = 1 + result.rows.size() / (kMostDots + 1);
-  for (std::size_t i = 0; i < result.rows.size(); i += step) {
+  for (const std::size_t i : statistics::SampleInOrder(result.rows.size(), kMostDots)) {
     const sweep::TrialRow& row = result.rows[i];
     if (!row.Tells()) continue;
     const std::string number = std::to_string(i + 1);
@@ -224,8 +224,8 @@ PageChart FailureMap(const sweep::SweepResult& result, const sweep::FailingRegio
   if (!is_line) chart.title += " and " + NameOf(result, region.y_parameter);
   chart.sentence =
       region.is_smoothed
-          ? "Share of failing runs in per cent among the 12 nearest to each patch, the other "
-            "parameters being what those trials had."
+          ? "Share of failing runs in per cent, the mean of the 12 settings nearest to each patch, "
+            "the other parameters being what those settings had."
           : "Share of runs that fail in per cent, over all values of the other parameters; crosses "
             "were not tried.";
   chart.fields = {"value", "trials"};

@@ -4,14 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <numeric>
+
+#include "rift/statistics/sample.hpp"
 
 namespace rift::sweep {
 namespace {
 
 constexpr int kPatches = 24;          ///< of a range
-constexpr size_t kMostTrials = 4000;  ///< that patches look for their nearest ones among
+constexpr size_t kMostTrials = 4000;  ///< that are looked at
 constexpr size_t kNearest = 12;
+constexpr double kSamePlace = 1e-9;  ///< of the side of the plane
 
 /// An axis as places 0..1, with the names of its patches.
 class Side {
@@ -25,9 +30,13 @@ class Side {
   double High(int patch) const { return At(patch + 1); }
   std::string Name(int patch) const {
     if (!parameter_.IsContinuous()) return parameter_.levels[patch].text;
-    return fmt::format("{:.3g} to {:.3g}", Low(patch), High(patch));
+    return fmt::format("{0:.{2}g} to {1:.{2}g}", Low(patch), High(patch), Digits());
   }
   double Middle(int patch) const { return (patch + 0.5) / Patches(); }
+  /// Whether a trial there may count for a patch: levels of a list are no distance apart.
+  bool Reaches(double place, double middle) const {
+    return parameter_.IsContinuous() || std::abs(place - middle) < kSamePlace;
+  }
   double Place(const experiment::ParameterValue& value) const {
     if (parameter_.IsContinuous()) {
       return (*value.number - parameter_.min) / (parameter_.max - parameter_.min);
@@ -41,42 +50,58 @@ class Side {
     if (!parameter_.IsContinuous()) return edge;
     return parameter_.min + (parameter_.max - parameter_.min) * edge / Patches();
   }
+  /// Significant ones that tell the edges apart.
+  int Digits() const {
+    const double width = (parameter_.max - parameter_.min) / Patches();
+    const double largest = std::max(std::abs(parameter_.min), std::abs(parameter_.max));
+    return std::max(3, 1 + static_cast<int>(std::ceil(std::log10(largest / width))));
+  }
   const experiment::Parameter& parameter_;
 };
 
+/// The trials of a setting.
 struct Dot {
   double x, y;
-  bool falsified;
+  int trials = 0, failing = 0;
 };
 
-/// The trials that count for a place: on a list those of its level, in a range the nearest.
-void Count(const std::vector<Dot>& dots, double x, double y, bool nearest_only, RegionCell& cell) {
-  std::vector<std::pair<double, bool>> near;
-  for (const Dot& dot : dots) {
-    near.emplace_back(std::hypot(dot.x - x, dot.y - y), dot.falsified);
-  }
-  if (nearest_only) {
-    const size_t k = std::min(kNearest, near.size());
-    std::partial_sort(near.begin(), near.begin() + static_cast<long>(k), near.end());
-    near.resize(k);
-  } else {
-    std::erase_if(near, [](const auto& dot) { return dot.first > 1e-9; });
-  }
-  cell.trials = static_cast<int>(near.size());
-  if (near.empty()) return;
-  const auto failing =
-      std::count_if(near.begin(), near.end(), [](const auto& d) { return d.second; });
-  cell.share = static_cast<double>(failing) / static_cast<double>(near.size());
+/// Leaves those nearest to the place, and all that are as near as the last of them.
+void LeaveNearest(double x, double y, std::vector<Dot>& dots) {
+  if (dots.size() <= kNearest) return;
+  const auto distance = [x, y](const Dot& dot) { return std::hypot(dot.x - x, dot.y - y); };
+  const auto last = dots.begin() + (kNearest - 1);
+  std::nth_element(dots.begin(), last, dots.end(),
+                   [&](const Dot& a, const Dot& b) { return distance(a) < distance(b); });
+  const double reach = distance(*last) + kSamePlace;
+  std::erase_if(dots, [&](const Dot& dot) { return distance(dot) > reach; });
 }
 
-std::vector<Dot> DotsOf(const SweepResult& result, const Side& x, int xp, const Side& y, int yp) {
-  std::vector<Dot> dots;
-  const size_t step = 1 + result.rows.size() / (kMostTrials + 1);
-  for (size_t i = 0; i < result.rows.size(); i += step) {
-    const TrialRow& row = result.rows[i];
-    if (row.Tells())
-      dots.push_back({x.Place(row.theta[xp]), y.Place(row.theta[yp]), row.falsified});
+void Count(const std::vector<Dot>& dots, bool by_setting, RegionCell& cell) {
+  double failing = 0.0, shares = 0.0;
+  for (const Dot& dot : dots) {
+    cell.trials += dot.trials;
+    failing += dot.failing;
+    shares += static_cast<double>(dot.failing) / dot.trials;
   }
+  if (dots.empty()) return;
+  cell.share = by_setting ? shares / static_cast<double>(dots.size()) : failing / cell.trials;
+}
+
+/// One for each setting: a search repeats a setting until it is decided, and those on the border
+/// most.
+std::vector<Dot> DotsOf(const SweepResult& result, const Side& x, int xp, const Side& y, int yp) {
+  std::map<experiment::Theta, Dot> by_setting;
+  for (const size_t i : statistics::SampleInOrder(result.rows.size(), kMostTrials)) {
+    const TrialRow& row = result.rows[i];
+    if (!row.Tells()) continue;
+    const auto [found, is_new] = by_setting.try_emplace(row.theta);
+    Dot& dot = found->second;
+    if (is_new) dot = {x.Place(row.theta[xp]), y.Place(row.theta[yp])};
+    ++dot.trials;
+    dot.failing += row.falsified;
+  }
+  std::vector<Dot> dots;
+  for (const auto& [theta, dot] : by_setting) dots.push_back(dot);
   return dots;
 }
 
@@ -114,7 +139,12 @@ FailingRegion MapFailures(const SweepResult& result, std::array<int, 2> paramete
       RegionCell cell{.x = x.Name(i), .y = y.Name(j)};
       cell.x_low = x.Low(i), cell.x_high = x.High(i);
       cell.y_low = y.Low(j), cell.y_high = y.High(j);
-      Count(dots, x.Middle(i), y.Middle(j), region.is_smoothed, cell);
+      std::vector<Dot> near;
+      std::copy_if(dots.begin(), dots.end(), std::back_inserter(near), [&](const Dot& dot) {
+        return x.Reaches(dot.x, x.Middle(i)) && y.Reaches(dot.y, y.Middle(j));
+      });
+      if (region.is_smoothed) LeaveNearest(x.Middle(i), y.Middle(j), near);
+      Count(near, region.is_smoothed, cell);
       region.cells.push_back(std::move(cell));
     }
   }

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
 
 namespace rift::sweep {
 namespace {
@@ -55,7 +56,7 @@ TEST_CASE("Over two lists each pair of values is a cell with the share of its ow
   }
 }
 
-TEST_CASE("A range is cut into 24 patches that count the twelve nearest trials") {
+TEST_CASE("A range is cut into 24 patches that count the twelve nearest settings") {
   SweepResult result;
   result.parameters = {kRange, kSurface};
   for (int i = 0; i < 48; ++i) {
@@ -79,12 +80,42 @@ TEST_CASE("A range is cut into 24 patches that count the twelve nearest trials")
   CHECK(region.cells[2].share == 0.0);
   CHECK(region.cells[21].share == 1.0);
   CHECK(region.cells[45].share == 0.0);  // on rock nothing fails
-  // Between 21 and 22 three of the six trials within a range of three are above 22: by symmetry
-  // the patches beside the bound mirror each other.
+  // By symmetry the patches beside the bound mirror each other.
   CHECK(region.cells[11].share + region.cells[12].share == Approx(1.0));
   CHECK(region.cells[11].share < 0.5);
   result.rows.resize(5);
-  for (const RegionCell& cell : MapFailures(result, {0, 1}).cells) CHECK(cell.trials == 5);
+  const FailingRegion few = MapFailures(result, {0, 1});
+  for (int i = 0; i < 24; ++i) {
+    CHECK(few.cells[i].trials == 3);
+    CHECK(few.cells[24 + i].trials == 2);  // on rock, where the third is missing
+  }
+}
+
+TEST_CASE("Another value of a list is never counted for a patch, on either side") {
+  SweepResult result;
+  result.parameters = {kRange, kSurface};
+  for (int i = 0; i < 20; ++i) {
+    result.rows.push_back(Row({{"22", 22.0 + 0.1 * i}, kSurface.levels[1]}, true));
+  }
+  const FailingRegion across = MapFailures(result, {0, 1}), down = MapFailures(result, {1, 0});
+  for (int i = 0; i < 24; ++i) {
+    CHECK(across.cells[i].trials == 0);
+    CHECK(std::isnan(across.cells[i].share));
+    CHECK(across.cells[24 + i].share == 1.0);
+    CHECK(down.cells[2 * i].trials == 0);
+    CHECK(down.cells[2 * i + 1].share == 1.0);
+  }
+}
+
+TEST_CASE("Patches of a narrow range have names that differ") {
+  SweepResult result;
+  result.parameters = {{.key = "ratio", .min = 0.99, .max = 1.01}, kSurface};
+  const std::vector<RegionCell> cells = MapFailures(result, {0, 1}).cells;
+  std::set<std::string> names;
+  for (int i = 0; i < 24; ++i) names.insert(cells[i].x);
+  CHECK(names.size() == 24);
+  CHECK(cells[0].x == "0.99 to 0.99083");
+  CHECK(cells[23].x == "1.0092 to 1.01");
 }
 
 TEST_CASE("Either side may be the range, and either may be missing") {
@@ -114,7 +145,42 @@ TEST_CASE("The most influential parameters have the largest shares and vary") {
   CHECK(MostInfluential(result, {}) == std::array<int, 2>{-1, -1});
 }
 
-TEST_CASE("Of more than 4000 trials every second one is counted") {
+TEST_CASE("Repeats of one setting near a range are one place, whatever came out of them") {
+  SweepResult result;
+  result.parameters = {kRange, kSurface};
+  const auto add = [&](double value, int trials, int failing) {
+    for (int i = 0; i < trials; ++i) {
+      result.rows.push_back(Row({{std::to_string(value), value}, kSurface.levels[0]}, i < failing));
+    }
+  };
+  add(22.0, 100, 30);
+  for (int i = 0; i < 12; ++i) add(10.0 + 0.1 * i, 1, 0);
+  const FailingRegion region = MapFailures(result, {0, 1});
+  CHECK(region.cells[0].trials == 12);
+  CHECK(region.cells[0].share == 0.0);
+  CHECK(region.cells[12].trials == 111);  // with the eleven nearest of the others
+  CHECK(region.cells[12].share == Approx(0.3 / 12));
+}
+
+TEST_CASE("Settings that are as near as the twelfth count, on both sides") {
+  SweepResult result;
+  result.parameters = {kRange, kSurface};
+  for (int i = -1; i <= 1; i += 2) {  // seven below and seven above the patch in the middle
+    for (int k = 0; k < 7; ++k) {
+      const double value = 22.5 + i * (1.0 + k);
+      result.rows.push_back(Row({{std::to_string(value), value}, kSurface.levels[0]}, i > 0));
+    }
+  }
+  // Six pairs are twelve; one that stands in the middle makes the sixth pair the twelfth and
+  // thirteenth.
+  CHECK(MapFailures(result, {0, 1}).cells[12].trials == 12);
+  CHECK(MapFailures(result, {0, 1}).cells[12].share == Approx(0.5));
+  result.rows.push_back(Row({{"22.5", 22.5}, kSurface.levels[0]}, true));
+  CHECK(MapFailures(result, {0, 1}).cells[12].trials == 13);
+  CHECK(MapFailures(result, {0, 1}).cells[12].share == Approx(7.0 / 13.0));
+}
+
+TEST_CASE("Of more than 4000 trials a sample is counted, of whatever order") {
   SweepResult result;
   result.parameters = {kSurface, kSpeed};
   result.rows.assign(4000, Row({kSurface.levels[0], kSpeed.levels[0]}, false));
@@ -122,10 +188,10 @@ TEST_CASE("Of more than 4000 trials every second one is counted") {
   const RegionCell all = MapFailures(result, {0, 1}).cells[0];
   CHECK(all.trials == 4000);
   CHECK(all.share == 0.5);
-  result.rows.push_back(result.rows[0]);
+  for (int i = 0; i < 4000; ++i) result.rows.push_back(result.rows[i]);
   const RegionCell half = MapFailures(result, {0, 1}).cells[0];
-  CHECK(half.trials == 2001);
-  CHECK(half.share == 0.0);
+  CHECK(half.trials == 4000);
+  CHECK(half.share == Approx(0.5).margin(0.04));  // every second one of these fails
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ struct RegionCell {
   std::string x, y;                  ///< the value, or the range
   double x_low = 0.0, x_high = 1.0;  ///< place on the axis; the level's number for a list
   double y_low = 0.0, y_high = 1.0;
-  double share = gap::kNotComputed;  ///< of failing trials; of the nearest ones in a range
+  double share = gap::kNotComputed;  ///< of failing trials; in a range the nearest settings' mean
   int trials = 0;                    ///< counted for it
 };
 
@@ -22,15 +22,16 @@ struct FailingRegion {
   int x_parameter = -1;  ///< -1: there are no two parameters to show
   int y_parameter = -1;
   std::vector<RegionCell> cells;
-  bool is_smoothed = false;  ///< shares are of the nearest trials, wherever they are
+  bool is_smoothed = false;  ///< shares are of the nearest settings, wherever they are
 };
 
 /// The two parameters that matter most, by their shares.
 std::array<int, 2> MostInfluential(const SweepResult& result, const Effects& effects);
 
 /// The failing region over two parameters, all others being what the trials had. Lists of values
-/// give a cell for each pair; with a range, the plane is cut into patches that count their nearest
-/// trials.
+/// give a cell for each pair; a range is cut into patches that count the 12 settings nearest to
+/// them (of a list only those of the patch's own value), and all that are as near as the twelfth.
+/// Of more than 4000 trials a sample is looked at.
 FailingRegion MapFailures(const SweepResult& result, std::array<int, 2> parameters);
 
 }  // namespace rift::sweep
