@@ -39,9 +39,9 @@ using test::WriteText;
 int ProcessesWith(const std::string& text) {
   int count = 0;
   for (const auto& entry : fs::directory_iterator("/proc")) {
-    std::ifstream file(entry.path() / "cmdline", std::ios::binary);
-    const std::string arguments{std::istreambuf_iterator<char>(file), {}};
-    count += arguments.find(text) != arguments.npos;
+    std::ostringstream arguments;  // not by an iterator, which throws when a process has just ended
+    arguments << std::ifstream(entry.path() / "cmdline", std::ios::binary).rdbuf();
+    count += arguments.str().find(text) != std::string::npos;
   }
   return count;
 }

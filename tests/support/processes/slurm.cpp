@@ -85,9 +85,9 @@ std::vector<pid_t> ProcessesWith(const std::string& one, const std::string& othe
   for (const auto& entry : fs::directory_iterator("/proc")) {
     const int pid = std::atoi(entry.path().filename().c_str());
     if (pid <= 0 || pid == ::getpid()) continue;
-    std::ifstream file(entry.path() / "environ");
-    const std::string set =
-        '\0' + std::string((std::istreambuf_iterator<char>(file)), {});  // each with a 0 behind it
+    std::ostringstream entries;  // not by an iterator, which throws when a process has just ended
+    entries << std::ifstream(entry.path() / "environ").rdbuf();
+    const std::string set = '\0' + entries.str();  // each with a 0 behind it
     const auto has = [&](const std::string& text) {
       return set.find('\0' + text + '\0') != set.npos;
     };
