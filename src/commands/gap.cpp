@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "rift/commands/arguments/arguments.hpp"
@@ -106,6 +108,20 @@ void RefuseOdometryFlags(const CLI::App& app) {
   }
 }
 
+/// The other way about: what two logs are compared by.
+void RefuseGapFlags(const CLI::App& app) {
+  const std::set<std::string> taken{
+      "--odometry",  "--program", "--calibrate-odometry", "--slip-bins", "--moved-share",
+      "--tag-ahead", "--window",  "--confidence",         "--json",      "--force",
+      "--profile",   "--figure",  "--large-inputs"};
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string flag = option->get_name();
+    Refuse({{option->count() > 0 && flag.starts_with("--") && !taken.contains(flag),
+             flag + " is for the gap of two logs, and runs are held together with their encoders "
+                    "here: leave it out, or --odometry, --program and --calibrate-odometry"}});
+  }
+}
+
 }  // namespace
 
 void AddGap(CLI::App& app, int& exit_code) {
@@ -131,6 +147,7 @@ void AddGap(CLI::App& app, int& exit_code) {
       "--real-units mm,ms");
   app.callback([request, &app, &exit_code] {
     if (request->odometry.IsAsked()) {
+      RefuseGapFlags(app);
       exit_code = MeasureOdometry(*request);
       return;
     }

@@ -130,6 +130,10 @@ TEST_CASE("What cannot be held together is refused with what to do") {
   refused({"gap", lap, lap, "--odometry"}, "are one log");
   refused({"gap", lap, "--program", task}, "has no program");
   refused({"gap", lap, "--odometry", "--figure", "f.svg"}, "leave them out with --odometry");
+  for (const std::string flag : {"--threshold", "--tag-offset", "--skip-start"}) {
+    refused({"gap", lap, "--odometry", flag, "0.05"}, flag + " is for the gap of two logs");
+  }
+  refused({"gap", lap, "--program", kEncoders, "--exit-code"}, "--exit-code is for the gap");
   refused({"gap", lap, "--calibrate-odometry", "--window", "1000"}, "smaller window_s");
   test::WriteText(folder / "bare/trajectory.csv", test::ReadFile(lap + "/trajectory.csv"));
   refused({"gap", folder / "bare", "--odometry"}, "neither encoders");
