@@ -180,13 +180,20 @@ TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes o
   first.Thaw();
   const ProcessResult stopped = first.Wait();
   CHECK(stopped.exit_code == 130);
-  CHECK(stopped.err.find("the same command goes on") != std::string::npos);
+  CHECK(stopped.err.find("the same command goes on where it was") != std::string::npos);
   CHECK_FALSE(fs::exists(sweep.folder / "out/table.csv"));
   const json after =
       json::parse(RunRift({"sweep", "--status", sweep.folder / "out", "--json"}).out);
   CHECK(after["state"] == "stopped");
   CHECK(after["done"] > 0);
   CHECK(after["done"] < 1'200);
+  std::vector<std::string> afresh = command;
+  afresh.push_back("--force");
+  test::RunningRift anew(afresh);
+  anew.WaitUntil("its first trials", [&] { return sweep.Committed("out") > 0; });
+  anew.Signal(SIGINT);
+  CHECK(anew.Wait().err.find("the same command without --force (or --fresh) goes on where") !=
+        std::string::npos);
 }
 
 TEST_CASE("A worker that stands still or crashes costs its trial and the sweep ends") {

@@ -41,7 +41,7 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
       evaluator, {.out = out, .jobs = request.jobs, .fresh = request.fresh, .cluster = cluster},
       observer, say);
   if (!found) {
-    terminal::Say("stopped; the same command goes on");
+    SayGoesOn(request, "");
     return terminal::kStopped;
   }
   lock.RequireInPlace();

@@ -15,15 +15,20 @@ namespace rift::commands {
 
 namespace fs = std::filesystem;
 
-int SayStopped(const experiment::Experiment& experiment, const fs::path& out) {
+void SayGoesOn(const SweepRequest& request, const std::string& how) {
+  terminal::Say(fmt::format("stopped; the same command {}goes on{}",
+                            request.fresh ? "without --force (or --fresh) " : "", how));
+}
+
+int SayStopped(const SweepRequest& request, const experiment::Experiment& experiment,
+               const fs::path& out) {
   // Logs are compared in seconds and keep no journal.
   if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
     terminal::Say("stopped; nothing was written, and the same command starts over");
     return terminal::kStopped;
   }
-  terminal::Say(
-      fmt::format("stopped; the same command goes on where it was (rift sweep --status {})",
-                  files::ShellWord(out.string())));
+  SayGoesOn(request,
+            fmt::format(" where it was (rift sweep --status {})", files::ShellWord(out.string())));
   return terminal::kStopped;
 }
 

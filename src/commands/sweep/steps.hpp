@@ -25,8 +25,12 @@ std::filesystem::path FolderFor(const SweepRequest& request,
 int Calibrate(const SweepRequest& request, const experiment::Experiment& experiment,
               const sweep::SlurmOptions* cluster);
 
+/// That what was stopped goes on: one that was begun afresh by the command without that flag.
+void SayGoesOn(const SweepRequest& request, const std::string& how);
+
 /// How to go on with a sweep that was stopped; returns the exit code.
-int SayStopped(const experiment::Experiment& experiment, const std::filesystem::path& out);
+int SayStopped(const SweepRequest& request, const experiment::Experiment& experiment,
+               const std::filesystem::path& out);
 
 /// What the process ends with when there is nothing to report on: logs that are not there are bad
 /// input (throws std::invalid_argument), a robot that never arrives is a result.

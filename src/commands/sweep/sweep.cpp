@@ -73,7 +73,7 @@ int Sweep(const SweepRequest& request) {
   const std::unique_ptr<sessions::LivePage> live = Serve(request, out, evaluator);
   const std::optional<sweep::SweepResult> judged = sessions::RunSweep(
       evaluator, {out, request.jobs, request.fresh, live.get(), engine}, observer);
-  if (!judged) return SayStopped(experiment, out);
+  if (!judged) return SayStopped(request, experiment, out);
   lock.RequireInPlace();
   sessions::SaveResult(out, evaluator, *judged);
   if (judged->all.told == 0) {
@@ -88,7 +88,7 @@ int Sweep(const SweepRequest& request) {
   PrintFindings(request, *judged, findings);
   const std::optional<sessions::FurtherAnswers> answers =
       sessions::Answer(request.further, out, *judged, evaluator, {request.jobs, engine}, observer);
-  if (!answers) return terminal::kStopped;
+  if (!answers) return SayStopped(request, experiment, out);
   PrintAnswers(request, out, *judged, *answers);
   lock.RequireInPlace();
   SayWhere(request, experiment, out);
