@@ -281,6 +281,18 @@ TEST_CASE("What a cluster wants of its jobs stands in the arguments and the scri
   CHECK(sweep.Read("cluster/slurm/1/jobs") == "1 0-1\n");
 }
 
+TEST_CASE("On a cluster waypoints may be anywhere where the command says so") {
+  const FakeSlurm slurm;
+  const Sweep sweep(kGrid +
+                    "trial: {arena: {x_min_m: -1, x_max_m: 0.2, y_min_m: -1, y_max_m: 1}}\n");
+  CHECK(RunRift(sweep.OnCluster({"--shards", "2"})).err.find("--any-waypoints") !=
+        std::string::npos);
+  const ProcessResult result = RunRift(sweep.OnCluster({"--shards", "2", "--any-waypoints"}));
+  INFO(result.err);
+  CHECK(result.exit_code == 1);  // each robot leaves the arena
+  CHECK(sweep.Read("cluster/table.csv").find("left_arena") != std::string::npos);
+}
+
 TEST_CASE("On a cluster a sweep may write into a folder of any name") {
   const FakeSlurm slurm;
   const Sweep sweep(kGrid);

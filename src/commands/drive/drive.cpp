@@ -97,7 +97,9 @@ int DriveSeries(const DriveRequest& request, const experiment::Experiment& exper
                                      .before_each = WordsOf(request.series.before_each),
                                      .setup = request.setup};
   int reported = terminal::kDone;
-  const auto sweep = [&] { return SweepFile(out / "sweep.yaml", out / "sweep", request.json); };
+  const auto sweep = [&] {
+    return SweepFile(out / "sweep.yaml", out / "sweep", request.any_waypoints, request.json);
+  };
   const sessions::SeriesEnd end =
       sessions::DriveAll(series, TerminalConsole(request.setup.yes), [&] {
         if (request.series.grid) reported = terminal::ReportErrors(sweep);

@@ -34,7 +34,9 @@ experiment::Experiment LoadFor(const SweepRequest& request) {
   RequireFolderName(request.out, "a sweep");
   if (experiment.candidate.kind == experiment::CandidateKind::kSimulation) {
     RequireWaypoints(experiment, request.experiment);
-    if (!request.any_waypoints) RequireReachableWaypoints(experiment, request.experiment);
+    // Of a shard whoever submitted it has asked.
+    const bool may_be_anywhere = request.any_waypoints || !request.engine.shard.empty();
+    if (!may_be_anywhere) RequireReachableWaypoints(experiment, request.experiment);
   }
   return experiment;
 }

@@ -116,8 +116,11 @@ void Compare(const SweepRequest& request) {
 
 }  // namespace
 
-int SweepFile(const fs::path& file, const fs::path& out, bool json) {
-  return Sweep({.experiment = file.string(), .out = out.string(), .json = json});
+int SweepFile(const fs::path& file, const fs::path& out, bool any_waypoints, bool json) {
+  return Sweep({.experiment = file.string(),
+                .out = out.string(),
+                .any_waypoints = any_waypoints,
+                .json = json});
 }
 
 void AddSweep(CLI::App& app, int& exit_code) {
