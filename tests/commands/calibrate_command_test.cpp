@@ -129,6 +129,26 @@ TEST_CASE(
   CHECK(mismatch["is_from_prior"] == true);
 }
 
+TEST_CASE("Flags of a sweep are refused by a fit, which would do nothing with them") {
+  Bench bench;
+  for (const std::vector<std::string>& flags :
+       std::vector<std::vector<std::string>>{{"--budget", "5"},
+                                             {"--seconds", "5"},
+                                             {"--suggest", "2"},
+                                             {"--shrink", "worst"},
+                                             {"--rare-event"},
+                                             {"--brief"},
+                                             {"--exit-code"},
+                                             {"--serve"}}) {
+    const ProcessResult run = bench.Run(kCalibrate, flags);
+    INFO(flags[0]);
+    CHECK(run.exit_code == 2);
+    CHECK(run.err.find("goal is calibrate, a fit, and " + flags[0] + " is of a sweep") !=
+          std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(bench.folder / "out"));
+  }
+}
+
 TEST_CASE("Fits from several starts stand beside each other, and the first one counts") {
   Bench bench;
   const std::string one = Replaced(kCalibrate, ", surfaces.bump.mu: {min: 0.5, max: 1.2}", "");

@@ -21,10 +21,6 @@ namespace fs = std::filesystem;
 
 int Calibrate(const SweepRequest& request, const experiment::Experiment& experiment,
               const sweep::SlurmOptions* cluster) {
-  Refuse({{request.serve,
-           request.experiment +
-               ": --serve shows the trials of a sweep as they come in, and goal: calibrate has no "
-               "such page"}});
   const fs::path out = FolderFor(request, experiment);
   if (!request.write_robot.empty()) {
     CheckOutputs({request.experiment},

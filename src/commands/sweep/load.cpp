@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <initializer_list>
+#include <string>
+#include <utility>
+
 #include "rift/commands/arguments/arguments.hpp"
 #include "rift/sessions/sweep/folder.hpp"
 #include "steps.hpp"
@@ -11,6 +15,19 @@ void CheckFlags(const SweepRequest& request, const experiment::Experiment& exper
   const bool has_limits = !request.budget.empty() || !request.seconds.empty();
   const bool has_robot = !request.write_robot.empty();
   const std::string& file = request.experiment;
+  if (experiment.goal == experiment::Goal::kCalibrate) {
+    for (const auto& [is_given, flag] : std::initializer_list<std::pair<bool, std::string>>{
+             {!request.budget.empty(), "--budget"},
+             {!request.seconds.empty(), "--seconds"},
+             {request.suggest.has_value(), "--suggest"},
+             {!request.further.shrink.empty(), "--shrink"},
+             {request.further.rare_event, "--rare-event"},
+             {request.brief, "--brief"},
+             {request.exit_code, "--exit-code"},
+             {request.serve, "--serve"}}) {
+      Refuse({{is_given, file + ": goal is calibrate, a fit, and " + flag + " is of a sweep"}});
+    }
+  }
   Refuse(
       {{experiment.goal == experiment::Goal::kGrid && has_limits,
         file + ": goal is grid, which visits every setting: --budget and --seconds limit a search "
