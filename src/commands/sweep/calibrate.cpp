@@ -58,7 +58,7 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
   }
   lock.RequireInPlace();
   say(fmt::format("written: {}", (out / "calibration.json").string()));
-  if (request.write_robot.empty() || is_written) return terminal::kDone;
+  if (refusal.empty()) return terminal::kDone;
   return terminal::Fail(refusal, terminal::kWorseThanStart);
 }
 

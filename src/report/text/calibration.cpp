@@ -130,9 +130,9 @@ std::string FlagOf(const CalibratedParameter& parameter) {
 std::string WhyNotWritten(const sweep::Calibration& fit, const std::string& file) {
   if (!fit.IsWorseThanStart()) return "";
   return fmt::format(
-      "{} is not written: the fit is worse than its start, with a loss of {:.4f} after {:.4f}: "
-      "raise iterations or features.rounds of calibrate.method, or set its corrections to 0",
-      file, fit.loss_after, fit.loss_before);
+      "{}the fit is worse than its start, with a loss of {:.4f} after {:.4f}: raise iterations or "
+      "features.rounds of calibrate.method, or set its corrections to 0",
+      file.empty() ? "" : file + " is not written: ", fit.loss_after, fit.loss_before);
 }
 
 std::string CalibrationText(const sweep::CalibrationReport& report) {
