@@ -15,13 +15,14 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> kReport{"report.html", "explanation.json", "likeness.json",
                                        "programs.json", "figures/fig.svg"};
-const std::vector<std::string> kFurther{"shrunk/table.csv", "shrunk.json", "rare_event.json"};
-const std::vector<std::string> kKept{"table.csv",       "summary.json",
-                                     "experiment.yaml", "journal.sqlite",
-                                     "suggested.yaml",  "suggested/1_1/trajectory.csv"};
+const std::vector<std::string> kFound{"table.csv",        "summary.json", "inputs.txt",
+                                      "calibration.json", "shrunk.json",  "shrunk/table.csv",
+                                      "rare_event.json"};
+const std::vector<std::string> kKept{"experiment.yaml", "journal.sqlite", "suggested.yaml",
+                                     "suggested/1_1/trajectory.csv"};
 
 void Fill(const fs::path& folder) {
-  for (const auto* names : {&kReport, &kFurther, &kKept}) {
+  for (const auto* names : {&kReport, &kFound, &kKept}) {
     for (const std::string& name : *names) {
       fs::create_directories((folder / name).parent_path());
       test::WriteText(folder / name, "x");
@@ -41,14 +42,44 @@ TEST_CASE("An earlier report is removed without the answers to further questions
   RemoveReport(folder.Path());
   are_there(kReport, false);
   CHECK_FALSE(fs::exists(folder / "figures"));
-  are_there(kFurther, true);
+  are_there(kFound, true);
   are_there(kKept, true);
   Fill(folder.Path());
   RemoveFindings(folder.Path());
   are_there(kReport, false);
-  are_there(kFurther, false);
+  are_there(kFound, false);
   CHECK_FALSE(fs::exists(folder / "shrunk"));
   are_there(kKept, true);
+}
+
+TEST_CASE("Figures of somebody else stay when those of a sweep go") {
+  const test::TemporaryFolder folder;
+  Fill(folder.Path());
+  test::WriteText(folder / "figures/mine.svg", "x");
+  test::WriteText(folder / "figures/fig1_paths.png", "x");
+  RemoveReport(folder.Path());
+  CHECK(fs::exists(folder / "figures/mine.svg"));
+  CHECK_FALSE(fs::exists(folder / "figures/fig.svg"));
+  CHECK_FALSE(fs::exists(folder / "figures/fig1_paths.png"));
+}
+
+TEST_CASE("Files with a sweep's names are others' where no experiment and no journal is") {
+  const test::TemporaryFolder folder;
+  CHECK_FALSE(HoldsOthersFiles(folder.Path()));
+  test::WriteText(folder / "notes.txt", "x");
+  CHECK_FALSE(HoldsOthersFiles(folder.Path()));
+  for (const std::string name :
+       {"table.csv", "summary.json", "inputs.txt", "report.html", "calibration.json"}) {
+    INFO(name);
+    test::WriteText(folder / name, "x");
+    CHECK(HoldsOthersFiles(folder.Path()));
+    for (const std::string own : {"experiment.yaml", "journal.sqlite"}) {
+      test::WriteText(folder / own, "x");
+      CHECK_FALSE(HoldsOthersFiles(folder.Path()));
+      fs::remove(folder / own);
+    }
+    fs::remove(folder / name);
+  }
 }
 
 TEST_CASE("A saved sweep is its experiment, what it read, its table and its summary") {

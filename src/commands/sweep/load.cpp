@@ -65,7 +65,11 @@ std::filesystem::path FolderFor(const SweepRequest& request,
   Refuse({{!request.fresh && sessions::HoldsOtherExperiment(out, experiment),
            fmt::format("{} holds another experiment ({}): name another folder with --out, or give "
                        "--force to replace it",
-                       out.string(), (out / "experiment.yaml").string())}});
+                       out.string(), (out / "experiment.yaml").string())},
+          {!request.fresh && sessions::HoldsOthersFiles(out),
+           out.string() + " holds files that a sweep would replace and did not write (table.csv, "
+                          "summary.json, report.html ...): name another folder with --out, or give "
+                          "--force to replace them"}});
   return out;
 }
 

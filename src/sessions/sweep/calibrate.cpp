@@ -24,10 +24,6 @@ std::optional<sweep::CalibrationReport> FitOnCluster(sweep::Evaluator& evaluator
                                                      const sweep::Say& say) {
   const GoOn go_on = observer.watch_for_stop();
   const fs::path file = request.out / kJournalName;
-  if (request.fresh) {
-    sweep::SlurmShards::Forget(request.out);
-    sweep::Journal::Remove(file);
-  }
   const sweep::Facts facts = FactsOf(evaluator.experiment());
   sweep::Journal journal(file, facts);
   journal.SetNote("name", evaluator.experiment().name);
@@ -56,6 +52,11 @@ std::optional<sweep::CalibrationReport> FitOnCluster(sweep::Evaluator& evaluator
 
 std::optional<sweep::CalibrationReport> Fit(sweep::Evaluator& evaluator, const FitRequest& request,
                                             const SweepObserver& observer, const sweep::Say& say) {
+  if (request.fresh) {
+    RemoveFindings(request.out);
+    sweep::SlurmShards::Forget(request.out);
+    sweep::Journal::Remove(request.out / kJournalName);
+  }
   if (request.cluster != nullptr) return FitOnCluster(evaluator, request, observer, say);
   return sweep::Identify(evaluator, request.jobs, say);
 }

@@ -19,17 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Figures of an earlier sweep into the same folder, which this one may not draw again.
-void RemoveFigures(const fs::path& folder) {
-  std::error_code no_folder;
-  for (const auto& entry : fs::directory_iterator(folder, no_folder)) {
-    const std::string extension = entry.path().extension().string();
-    const bool is_ours = entry.path().filename().string().starts_with("fig") &&
-                         (extension == ".svg" || extension == ".png");
-    if (is_ours) fs::remove(entry.path());
-  }
-}
-
 /// The path of the worst trial for its picture, whose row may have none.
 std::vector<Eigen::Vector2f> PathOf(const report::ComparedPair& worst) {
   const std::vector<Eigen::Vector2d>& samples_m = worst.profile.sim_m;
@@ -49,7 +38,7 @@ void SavePage(const fs::path& folder, sweep::Evaluator& evaluator, const sweep::
   report::PageEvidence evidence = EvidenceFor(result, evaluator, true);
   evidence.programs = findings.programs;
   if (worst) evidence.worst_path_m = PathOf(*worst);
-  RemoveFigures(folder / "figures");
+  RemoveFigures(folder);
   for (const report::Figure& figure : set.figures) {
     report::WriteFigureFiles(folder / "figures", figure);
     evidence.figures.push_back(

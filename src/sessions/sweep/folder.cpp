@@ -1,5 +1,8 @@
 #include "rift/sessions/sweep/folder.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/sessions/sweep/journal.hpp"
@@ -7,6 +10,14 @@
 namespace rift::sessions {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Beside experiment.yaml, which is the first that is there.
+constexpr std::array<const char*, 5> kWritten{"table.csv", "summary.json", "inputs.txt",
+                                              "report.html", "calibration.json"};
+
+}  // namespace
 
 experiment::Experiment SavedExperiment(const fs::path& folder) {
   return experiment::LoadExperiment((folder / "experiment.yaml").string(), {},
@@ -21,16 +32,35 @@ bool HoldsOtherExperiment(const fs::path& folder, const experiment::Experiment& 
   return files::ReadFile(saved) != experiment::WriteExperiment(experiment);
 }
 
-void RemoveReport(const fs::path& folder) {
-  for (const char* name :
-       {"report.html", "explanation.json", "likeness.json", "programs.json", "figures"}) {
-    fs::remove_all(folder / name);
+bool HoldsOthersFiles(const fs::path& folder) {
+  if (fs::exists(folder / "experiment.yaml") || fs::exists(folder / kJournalName)) return false;
+  return std::any_of(kWritten.begin(), kWritten.end(),
+                     [&](const char* name) { return fs::exists(folder / name); });
+}
+
+void RemoveFigures(const fs::path& folder) {
+  const fs::path figures = folder / "figures";
+  std::error_code no_folder;
+  for (const auto& entry : fs::directory_iterator(figures, no_folder)) {
+    const std::string extension = entry.path().extension().string();
+    const bool is_ours = entry.path().filename().string().starts_with("fig") &&
+                         (extension == ".svg" || extension == ".png");
+    if (is_ours) fs::remove(entry.path());
   }
+  fs::remove(figures, no_folder);  // unless it holds files of others
+}
+
+void RemoveReport(const fs::path& folder) {
+  for (const char* name : {"report.html", "explanation.json", "likeness.json", "programs.json"}) {
+    fs::remove(folder / name);
+  }
+  RemoveFigures(folder);
 }
 
 void RemoveFindings(const fs::path& folder) {
   RemoveReport(folder);
-  for (const char* name : {"shrunk", "shrunk.json", "rare_event.json"}) {
+  for (const char* name : {"table.csv", "summary.json", "calibration.json", "inputs.txt", "shrunk",
+                           "shrunk.json", "rare_event.json"}) {
     fs::remove_all(folder / name);
   }
 }

@@ -16,11 +16,19 @@ experiment::Experiment SavedExperiment(const std::filesystem::path& folder);
 bool HoldsOtherExperiment(const std::filesystem::path& folder,
                           const experiment::Experiment& experiment);
 
+/// True for a folder without an experiment or a journal that holds files of the names that a sweep
+/// or a fit would write, such as table.csv: they are somebody else's.
+bool HoldsOthersFiles(const std::filesystem::path& folder);
+
+/// Figures of an earlier sweep or fit, and their folder where nothing else is in it.
+void RemoveFigures(const std::filesystem::path& folder);
+
 /// An earlier run's report beside a table without a gap would tell of other trials.
 void RemoveReport(const std::filesystem::path& folder);
 
-/// Of a sweep that starts over. Drives of the robot, and the suggestions that they were made from,
-/// are left alone.
+/// All that a sweep or a fit found, for one that starts over: until it ends nothing tells of
+/// another experiment. Drives of the robot, and the suggestions that they were made from, are left
+/// alone.
 void RemoveFindings(const std::filesystem::path& folder);
 
 /// What was run, what it read, table and summary.
