@@ -66,18 +66,30 @@ int SaveProgram(const SimulateRequest& request, const ReplayedRow& row,
       {{request.json || !request.figure.empty() || !request.video.empty() || request.window,
         "--json, --figure, --video and --view are of rift's own simulator, and candidate.kind is "
         "program"}});
+  RequireRunName(row.out);
   const fs::path log = row.out.extension() == ".csv" ? row.out : row.out / "trajectory.csv";
-  // The same row gives the same bytes, in the place that is its own.
-  CheckOutputs(
-      row.files,
-      {.files = {log}, .folder = log.parent_path(), .force = request.force || request.out.empty()});
+  if (!request.IsStdout()) {
+    // The same row gives the same bytes, in the place that is its own.
+    CheckOutputs(row.files, {.files = {log},
+                             .folder = log.parent_path(),
+                             .force = request.force || request.out.empty()});
+  }
   CheckOutputs({log}, {.files = request.copies.Files(), .force = request.force});
   if (!replay.trajectory.poses.empty()) {
-    files::WriteFile(log, trajectory::WriteRift(replay.trajectory));
     request.copies.Write(replay.trajectory);
-    terminal::Say("log: " + log.string());
+    const std::string text = trajectory::WriteRift(replay.trajectory);
+    if (request.IsStdout()) {
+      terminal::PrintData(text);
+    } else {
+      files::WriteFile(log, text);
+      terminal::Say("log: " + log.string());
+    }
   }
-  terminal::PrintText(replay.verdict + "\n");
+  if (request.IsStdout()) {
+    terminal::Say(replay.verdict);
+  } else {
+    terminal::PrintText(replay.verdict + "\n");
+  }
   return replay.has_arrived ? terminal::kDone : terminal::kNotReached;
 }
 

@@ -29,17 +29,21 @@ experiment::Experiment LoadFor(const SimulateRequest& request, std::vector<fs::p
   return experiment;
 }
 
+void RequireRunName(const fs::path& out) {
+  RefuseSweepFolder(out);
+  if (out != "-" && out.extension() != ".csv") {
+    RequireFolderName(out.string(), "what has no name ending in .csv");
+  }
+}
+
 void CheckNames(const SimulateRequest& request, const fs::path& out,
                 const experiment::Experiment& experiment, const std::vector<fs::path>& inputs) {
   if (!request.figure.empty()) report::RequireFigureName(request.figure);
   Refuse({{!request.video.empty() && !request.video.ends_with(".mp4"),
            "--video " + request.video + ": the name must end in .mp4"}});
-  RefuseSweepFolder(out);
+  RequireRunName(out);
   Refuse({{request.IsStdout() && request.json,
            "--out - and --json are both stdout: name a file for the log"}});
-  if (!request.IsStdout() && out.extension() != ".csv") {
-    RequireFolderName(out.string(), "what has no name ending in .csv");
-  }
   std::vector<fs::path> others = request.copies.Files();
   for (const std::string& name : {request.figure, request.video}) {
     if (!name.empty()) others.emplace_back(name);

@@ -164,6 +164,21 @@ TEST_CASE("Replaying a program's row runs the program once") {
   const std::string before = ReadFile(fs::path(folder / "runs"));
   CHECK(RunRift({"simulate", "--replay", folder / "out", "1"}).exit_code == 0);
   CHECK(ReadFile(fs::path(folder / "runs")) == before + "x");
+  const std::string log = ReadFile(fs::path(folder / "out/replay/1/trajectory.csv"));
+  const ProcessResult piped = RunRift({"simulate", "--replay", folder / "out", "1", "--out", "-"});
+  CHECK(piped.exit_code == 0);
+  CHECK(piped.out == log);
+  CHECK(piped.err.find("to the last bit") != std::string::npos);
+  const auto refusal = [&](const std::string& out) {
+    const ProcessResult result =
+        RunRift({"simulate", "--replay", folder / "out", "1", "--out", out});
+    CHECK(result.exit_code == 2);
+    return result.err;
+  };
+  CHECK(refusal(folder / "out").find("holds a sweep") != std::string::npos);
+  CHECK(refusal(folder / "run.json").find("run.json") != std::string::npos);
+  CHECK_FALSE(fs::exists(folder / "run.json"));
+  CHECK_FALSE(fs::exists(folder / "out/trajectory.csv"));
 }
 
 TEST_CASE("A row whose program hung is replayed as such and ends") {
