@@ -155,6 +155,17 @@ TEST_CASE("The same seed gives the same bytes and another seed another log") {
   CHECK(test::ReadFile(folder / "a/trajectory.csv") != test::ReadFile(folder / "c/trajectory.csv"));
 }
 
+TEST_CASE("Encoders of an earlier run do not stay beside a robot that reports none") {
+  const test::TemporaryFolder folder;
+  const std::vector<std::string> command{"simulate", kTask, "--out", folder / "run", "--force"};
+  std::vector<std::string> silent = command;
+  silent.insert(silent.end(), {"--set", "simulation.encoder.reported=false"});
+  REQUIRE(RunRift(command).exit_code == 0);
+  CHECK(fs::exists(folder / "run/encoders.csv"));
+  REQUIRE(RunRift(silent).exit_code == 0);
+  CHECK_FALSE(fs::exists(folder / "run/encoders.csv"));
+}
+
 TEST_CASE("A saved experiment repeats its run with start and seed and overrides") {
   const test::TemporaryFolder folder;
   REQUIRE(RunRift({"simulate", kTask, "--seed", "7", "--start", "-0.25,-0.05,12", "--set",

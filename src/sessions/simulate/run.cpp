@@ -115,7 +115,9 @@ void SaveRun(const RunFiles& files, const Simulated& made, const trial::Steering
   files::WriteFile(files.experiment, experiment::WriteExperiment(experiment));
   files::WriteFile(files.truth, trajectory::WriteRift(run.truth));
   files::WriteFile(files.commands, report::CommandsCsv(run.result));
-  if (!run.encoders.empty()) {
+  if (run.encoders.empty()) {
+    fs::remove(files.encoders);  // of an earlier run, which this one replaces
+  } else {
     files::WriteFile(files.encoders, odometry::EncodersCsv(run.encoders));
   }
   files::WriteFile(files.summary, report::SimulationJson(experiment, run, check));
