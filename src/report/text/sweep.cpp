@@ -255,10 +255,11 @@ std::string ShrunkText(const sweep::SweepResult& result, const sweep::ShrunkRow&
   const size_t changes = CountChanges(failing.theta, found.nominal);
   std::string text = fmt::format(
       "\nshrunk: row {} ({}; {}) still fails with {} of its {} {} from the experiment's own values "
-      "({}, above {:g} m; {} trials)\n",
+      "({}{}; {} trials)\n",
       found.id, sweep::SettingText(parameters, failing.theta), OutcomeText(failing),
       found.shrunk.changed.size(), changes, changes == 1 ? "change" : "changes", OutcomeText(least),
-      result.gap.threshold_m, found.shrunk.evaluations);
+      least.IsOk() ? fmt::format(", above {:g} m", result.gap.threshold_m) : "",
+      found.shrunk.evaluations);
   if (found.shrunk.changed.empty()) {
     text += "  it fails with none of them: the experiment's own values do\n";
   }
