@@ -86,7 +86,8 @@ std::string AddressJson(const PreparedTwin& prepared, const twin::TwinAddress& a
   const nlohmann::ordered_json json{{"port", address.port},
                                     {"camera", address.camera},
                                     {"calibration", fs::absolute(prepared.Calibration()).string()}};
-  return json.dump() + '\n';
+  // A folder may have a name that is no text.
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
 std::string EndingOf(const twin::TwinRun& run) {
