@@ -1,7 +1,13 @@
 // The server of the page of a sweep that runs.
 #include "sessions/sweep/page_server.hpp"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <regex>
@@ -71,6 +77,31 @@ TEST_CASE("Other paths, other methods and files that are gone are not found, and
   fs::remove(folder / "live");
   CHECK_THAT(test::AskServer(at.port, "GET " + at.path), Contains("404 Not Found"));
   CHECK_FALSE(server.IsWatched());
+}
+
+/// A connection to a port of this machine that says nothing.
+class SilentClient {
+ public:
+  explicit SilentClient(int port) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    REQUIRE(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+  }
+  ~SilentClient() { ::close(socket_); }
+
+ private:
+  int socket_ = ::socket(AF_INET, SOCK_STREAM, 0);
+};
+
+TEST_CASE("A client that says nothing does not keep the page from others") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "live", "it runs");
+  const PageServer server({folder / "live"});
+  const Address at(server.Url());
+  const SilentClient silent(at.port);
+  CHECK_THAT(test::AskServer(at.port, "GET " + at.path), Catch::EndsWith("\r\n\r\nit runs"));
 }
 
 TEST_CASE("Two page servers have addresses of their own, and one that is gone answers nobody") {

@@ -51,6 +51,7 @@ LivePage::~LivePage() {
 const std::string& LivePage::Url() const { return server_->Url(); }
 
 void LivePage::Tick() {
+  server_->NoteRequests();
   if (rows_.size() == drawn_ || rows_.size() > kMostRows || Clock::now() < next_) return;
   const Clock::time_point begun = Clock::now();
   sweep::SweepResult result = sweep::EmptyResult(evaluator_.experiment());

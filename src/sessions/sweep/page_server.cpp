@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
-#include <sys/socket.h>
-#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -51,11 +49,18 @@ double Now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// A client that says nothing may not keep the next one waiting.
-void LimitWaiting(tcp::socket& socket) {
-  const timeval limit{2, 0};
-  ::setsockopt(socket.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-  ::setsockopt(socket.native_handle(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+/// A client that says nothing, or takes nothing, may not keep the next one waiting for longer.
+constexpr std::chrono::seconds kMostRequest{2}, kMostResponse{10};
+
+/// What `start` begins on the connection, or its time limit; only asynchronous calls have one.
+beast::error_code Await(asio::io_context& context, beast::tcp_stream& connection,
+                        std::chrono::seconds limit, const auto& start) {
+  beast::error_code result;
+  connection.expires_after(limit);
+  start([&result](beast::error_code failed, size_t) { result = failed; });
+  context.restart();
+  context.run();
+  return result;
 }
 
 struct Page {
@@ -72,14 +77,13 @@ std::optional<Page> PageOf(const std::vector<std::filesystem::path>& files) {
   return std::nullopt;
 }
 
-void Answer(tcp::socket socket, const std::string& path,
+void Answer(asio::io_context& context, tcp::socket socket, const std::string& path,
             const std::vector<std::filesystem::path>& files, int requests) {
-  LimitWaiting(socket);
-  beast::error_code failed;
+  beast::tcp_stream connection(std::move(socket));
   beast::flat_buffer buffer;
   http::request<http::empty_body> request;
-  http::read(socket, buffer, request, failed);
-  if (failed) return;
+  const auto read = [&](auto done) { http::async_read(connection, buffer, request, done); };
+  if (Await(context, connection, kMostRequest, read)) return;
   const bool is_asked = request.method() == http::verb::get && request.target() == path;
   const std::optional<Page> page = is_asked ? PageOf(files) : std::nullopt;
   http::response<http::string_body> response{page ? http::status::ok : http::status::not_found,
@@ -89,9 +93,12 @@ void Answer(tcp::socket socket, const std::string& path,
   if (page) response.body() = page->text;
   response.keep_alive(false);
   response.prepare_payload();
-  http::write(socket, response, failed);
-  socket.shutdown(tcp::socket::shutdown_both, failed);
-  if (page && ::write(requests, &page->mark, 1) != 1) ::_exit(0);  // nobody is there any more
+  const auto write = [&](auto done) { http::async_write(connection, response, done); };
+  if (Await(context, connection, kMostResponse, write)) return;
+  beast::error_code ignored;
+  connection.socket().shutdown(tcp::socket::shutdown_both, ignored);
+  const bool is_told = !page || ::write(requests, &page->mark, 1) == 1 || errno == EAGAIN;
+  if (!is_told) ::_exit(0);  // nobody is there any more
 }
 
 [[noreturn]] void Serve(tcp::acceptor& acceptor, const std::string& path,
@@ -99,13 +106,13 @@ void Answer(tcp::socket socket, const std::string& path,
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the sweep, which ends this process as well
   std::signal(SIGPIPE, SIG_IGN);
+  asio::io_context context;
   while (true) {
     beast::error_code failed;
-    tcp::socket socket(acceptor.get_executor());
-    acceptor.accept(socket, failed);
+    tcp::socket socket = acceptor.accept(context, failed);
     if (failed) continue;
     try {
-      Answer(std::move(socket), path, files, requests);
+      Answer(context, std::move(socket), path, files, requests);
     } catch (const std::exception&) {  // a page that cannot be read now is there the next time
     }
   }
@@ -125,7 +132,7 @@ PageServer::PageServer(const std::vector<std::filesystem::path>& files) {
   const std::string path = fmt::format("/{}/", Token());
   url_ = fmt::format("http://127.0.0.1:{}{}", acceptor.local_endpoint().port(), path);
   std::array<int, 2> pipe{};
-  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
+  if (::pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) != 0) {
     throw std::runtime_error(fmt::format("--serve: no pipe: {}", std::strerror(errno)));
   }
   process_ = ::fork();
@@ -135,7 +142,6 @@ PageServer::PageServer(const std::vector<std::filesystem::path>& files) {
   }
   ::close(pipe[1]);
   requests_ = pipe[0];
-  ::fcntl(requests_, F_SETFL, O_NONBLOCK);
   if (process_ < 0) {
     const std::string reason = std::strerror(errno);
     ::close(requests_);

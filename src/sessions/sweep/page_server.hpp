@@ -26,10 +26,10 @@ class PageServer {
   bool WaitForLast(int timeout_ms);
   /// True when the page was asked for within the last seconds: somebody watches it.
   bool IsWatched();
-
- private:
+  /// To be called now and then: a request counts as made when this is next called.
   void NoteRequests();
 
+ private:
   std::string url_;
   pid_t process_ = -1;
   int requests_ = -1;  ///< the end of a pipe: a byte for each, kLast or kOther
