@@ -119,12 +119,13 @@ void RobotLink::Listen(double now_s) {
 }
 
 void RobotLink::Match(Heard& heard) {
-  const auto found = std::find_if(unanswered_.begin(), unanswered_.end(), [&](const Sent& sent) {
+  // The newest of that number, which each 256th command has.
+  const auto found = std::find_if(unanswered_.rbegin(), unanswered_.rend(), [&](const Sent& sent) {
     return sent.sequence == *heard.answer.sequence;
   });
-  if (found == unanswered_.end()) return;
+  if (found == unanswered_.rend()) return;
   heard.sent = *found;
-  unanswered_.erase(unanswered_.begin(), found + 1);  // older ones are lost
+  unanswered_.erase(unanswered_.begin(), found.base());  // older ones are lost
   ++answered_count_;
 }
 

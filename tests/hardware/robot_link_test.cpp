@@ -132,6 +132,23 @@ TEST_CASE("An answer counts once, for the command it names, and gives up all bef
   CHECK(link.Lag_s(2.0) == 1.0 - 2 * kStep_s);  // the third waits
 }
 
+TEST_CASE("After more silence than there are numbers an answer is that of the newest command") {
+  FakeLine line;
+  RobotLink link(line, Fast(), Protocol::kFramed);
+  for (int i = 0; i < 300; ++i) {
+    link.Put({}, true);
+    link.Tick(kStep_s * i);
+  }
+  const double now_s = kStep_s * 299;
+  CHECK(link.Lag_s(now_s) == now_s);
+  line.Answers(300 % 256);
+  link.Listen(now_s);
+  const std::vector<RobotLink::Heard> heard = link.TakeHeard();
+  REQUIRE(heard.size() == 1);
+  CHECK(heard[0].sent->at_s == now_s);
+  CHECK(link.Lag_s(now_s) == 0.0);
+}
+
 TEST_CASE("Commands keep the line for their own bytes and those of the answers") {
   // Half of 960 bytes a second: frames of 11 and answers of 15, plain lines of up to 12.
   for (const auto& [protocol, bytes] : {std::pair{Protocol::kFramed, 15}, {Protocol::kPlain, 12}}) {
