@@ -219,7 +219,10 @@ void RealRobot::Core::HandleAnswer(const RobotLink::Heard& heard, double now_s) 
   const double battery_v = kVoltPerMillivolt * heard.answer.battery_mv;
   const double sent_s = heard.sent ? heard.sent->at_s : heard.at_s;
   const double read_s = 0.5 * (sent_s + heard.at_s);
-  record_.encoders.push_back({read_s - start_s_, *counts_, battery_v});
+  // Two plain answers may come at once, and times of readings rise.
+  if (record_.encoders.empty() || read_s - start_s_ > record_.encoders.back().t_s) {
+    record_.encoders.push_back({read_s - start_s_, *counts_, battery_v});
+  }
   const double m_per_count = odometry::MetresPerCount(hardware_.odometry);
   if (!readings_ended_) {
     motion_.SeeWheels({read_s, m_per_count * static_cast<double>(counts_->left),

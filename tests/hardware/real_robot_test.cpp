@@ -246,6 +246,44 @@ TEST_CASE("On one and the same picture no robot is driven, whatever its wheels t
   }
 }
 
+/// Gives each line of a plain robot twice, as one that comes late and with the next does.
+class Twice : public Bench {
+ public:
+  std::vector<std::uint8_t> Read() override {
+    std::vector<std::uint8_t> whole;
+    for (const std::uint8_t byte : Bench::Read()) {
+      line_.push_back(byte);
+      if (byte != '\n') continue;
+      for (int i = 0; i < 2; ++i) whole.insert(whole.end(), line_.begin(), line_.end());
+      line_.clear();
+    }
+    return whole;
+  }
+
+ private:
+  std::vector<std::uint8_t> line_;
+};
+
+TEST_CASE("Plain answers that come at once are one reading, and what is saved can be read") {
+  size_t readings = 0;
+  const auto drive = [&readings](Bench& bench) {
+    RealRobot robot(bench, bench, bench, {{}, Protocol::kPlain, false});
+    Settle(robot, 0.4, bench);
+    robot.Arm();
+    DriveOn(robot, {0.2, 0.2}, 1.0, bench);
+    readings = robot.Record().encoders.size();
+    CHECK(readings > 3);
+    CHECK(odometry::ReadEncoders(odometry::EncodersCsv(robot.Record().encoders), "e").size() ==
+          readings);
+  };
+  Bench once;
+  drive(once);
+  const size_t alone = readings;
+  Twice twice;
+  drive(twice);
+  CHECK(readings == alone);
+}
+
 TEST_CASE("A stop is acknowledged by the answer to the zero that goes out with it") {
   Bench bench;
   bench.counts_are_stuck = true;  // so that nothing is to be waited for but the answer
