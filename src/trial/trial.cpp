@@ -100,8 +100,10 @@ void Recorder::Decided(double now_s, const control::Decision& decision, size_t a
 
 namespace {
 
-// Turns of the loop may take less time than asked, down to one part in this.
+// Turns of the loop may take less time than asked, down to one part in this; of long ones than
+// this, which a new picture ends early on the real robot.
 constexpr double kSlowestClock = 20.0;
+constexpr double kLongestTurn_s = 0.1;
 
 // Whatever happens in between, the robot stands at the end.
 class StopGuard {
@@ -186,7 +188,8 @@ bool Loop::ClockRuns(double now_s) {
   const bool forward = now_s >= last_look_s_;
   last_look_s_ = now_s;
   turns_ += 1.0;
-  return forward && turns_ * options_.control_period_s <= kSlowestClock * options_.timeout_s + 1.0;
+  const double turn_s = std::min(options_.control_period_s, kLongestTurn_s);
+  return forward && turns_ * turn_s <= kSlowestClock * options_.timeout_s + 1.0;
 }
 
 // True when a pose came in that had not been seen before and is believed. One from the future

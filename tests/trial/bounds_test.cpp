@@ -168,6 +168,19 @@ TEST_CASE("A clock may run twenty times slower than asked, and then is a fault")
   CHECK(Run(back).outcome == Outcome::kFault);
 }
 
+TEST_CASE("Turns that new pictures end early are no clock that stands still") {
+  class Early : public Scripted {
+   public:
+    void Advance(double) override { now_s += 1.0 / 32.0; }
+  };
+  Early robot;
+  TrialOptions options = Options();
+  options.control_period_s = 1.0;
+  const TrialResult result = Run(robot, options);
+  CHECK(result.outcome == Outcome::kTimedOut);
+  CHECK(result.Duration_s() == 4.0);
+}
+
 TEST_CASE("Options that would never end a trial, or contradict each other, are refused") {
   Scripted robot;
   TrialOptions options = Options();
