@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "rift/geometry/pose2.hpp"
+#include "rift/odometry/readings_during.hpp"
 
 namespace rift::odometry {
 namespace {
@@ -321,7 +322,8 @@ std::optional<Umbmark> UmbmarkOf(std::span<const RunLog> runs, const OdometryOpt
   const Pose2 tag_from_axle{-tag_ahead_m, 0.0, 0.0};
   Umbmark found;
   for (const RunLog& run : runs) {
-    const trajectory::Trajectory path = OdometryPath(run.encoders, options, {});
+    const trajectory::Trajectory path =
+        OdometryPath(ReadingsDuring(run.camera, run.encoders), options, {});
     double turned_rad = 0.0;
     for (std::size_t i = 1; i < path.poses.size(); ++i) {
       turned_rad += geometry::WrapToPi(path.poses[i].yaw_rad - path.poses[i - 1].yaw_rad);

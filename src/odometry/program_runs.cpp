@@ -8,6 +8,7 @@
 
 #include "rift/gap/comparison.hpp"
 #include "rift/geometry/pose2.hpp"
+#include "rift/odometry/readings_during.hpp"
 #include "rift/statistics/descriptive.hpp"
 
 namespace rift::odometry {
@@ -143,7 +144,7 @@ void MeasureOdometry(const RunLog& run, const OdometryOptions& odometry, const R
   const std::vector<Moment> moments = MomentsOf(run, odometry, options.tag_ahead_m);
   // It begins at the first moment that both saw, at the pose that the camera's standing poses give.
   const Pose2 stood = OdometryStart(run) * Pose2{-options.tag_ahead_m, 0.0, 0.0};
-  const Trajectory path = OdometryPath(run.encoders, odometry, stood);
+  const Trajectory path = OdometryPath(ReadingsDuring(run.camera, run.encoders), odometry, stood);
   measures.odometry_gap_m = 0.0;
   std::size_t at = 0;
   Pose2 odometry_end = stood;

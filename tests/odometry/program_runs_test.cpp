@@ -1,8 +1,11 @@
 #include "rift/odometry/program_runs.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
+
+#include "rift/odometry/readings_during.hpp"
 
 namespace rift::odometry {
 namespace {
@@ -153,6 +156,64 @@ TEST_CASE("A cell is the mean of its runs that moved") {
   CHECK(cell.deviation_m == Approx(0.5 * (runs[0].deviation_m + runs[2].deviation_m)));
   CHECK(cell.spread_m == Approx(Spread_m(std::vector{a.camera, b.camera})));
   CHECK(cell.deviation_interval_m.low < cell.deviation_m);
+}
+
+/// The same run, before whose log a hand pushed the robot and turned it: the wheels rolled, and the
+/// camera logged nothing.
+RunLog PushedBefore(RunLog run, std::int64_t left, std::int64_t right) {
+  std::vector<EncoderReading> all;
+  for (int i = 20; i > 0; --i) {
+    all.push_back({run.encoders.front().t_s - 0.05 * i, {-left * i / 20, -right * i / 20}});
+  }
+  all.insert(all.end(), run.encoders.begin(), run.encoders.end());
+  // Both go on after the log.
+  const EncoderReading last = all.back();
+  all.push_back({last.t_s + 1.0, {last.counts.left + left, last.counts.right + right}});
+  run.encoders = all;
+  return run;
+}
+
+TEST_CASE("What the wheels did before and after the log is none of the run's odometry") {
+  const auto [left, right] = GENERATE(table<int, int>({{-400, 400}, {600, 600}, {0, 300}}));
+  INFO(left << " and " << right << " counts");
+  const RunLog run = Drive({.right_mps = 0.33, .right_grip = 0.9});
+  const RunMeasures alone = MeasureRun(run, std::nullopt, {}, {});
+  const RunMeasures pushed = MeasureRun(PushedBefore(run, left, right), std::nullopt, {}, {});
+  CHECK(pushed.odometry_gap_m == Approx(alone.odometry_gap_m).margin(1e-9));
+  CHECK(pushed.drift_per_m == Approx(alone.drift_per_m).margin(1e-9));
+  CHECK(pushed.yaw_drift_rad == Approx(alone.yaw_drift_rad).margin(1e-9));
+
+  const std::vector<RunLog> both{Drive({.left_mps = -0.05, .right_mps = 0.15}),
+                                 Drive({.left_mps = 0.15, .right_mps = -0.05})};
+  const std::optional<Umbmark> told = UmbmarkOf(both, {});
+  const std::optional<Umbmark> told_pushed = UmbmarkOf(
+      std::vector{PushedBefore(both[0], left, right), PushedBefore(both[1], left, right)}, {});
+  REQUIRE((told && told_pushed));
+  CHECK((told_pushed->ccw_m - told->ccw_m).norm() < 1e-9);
+  CHECK((told_pushed->cw_m - told->cw_m).norm() < 1e-9);
+}
+
+TEST_CASE("Readings are cut where the log begins and ends, with the counts of those moments") {
+  const std::vector<EncoderReading> readings{
+      {1.0, {0, 100}}, {2.0, {10, 80}}, {3.0, {20, 60}}, {4.0, {40, 60}}};
+  const auto during = [&](double from_s, double to_s) {
+    Trajectory log;
+    log.poses = {{.t_s = from_s}, {.t_s = to_s}};
+    std::vector<std::array<double, 3>> found;
+    for (const EncoderReading& reading : ReadingsDuring(log, readings)) {
+      found.push_back({reading.t_s, static_cast<double>(reading.counts.left),
+                       static_cast<double>(reading.counts.right)});
+    }
+    return found;
+  };
+  using Rows = std::vector<std::array<double, 3>>;
+  CHECK(during(1.5, 3.5) == Rows{{1.5, 5, 90}, {2, 10, 80}, {3, 20, 60}, {3.5, 30, 60}});
+  CHECK(during(2.0, 3.0) == Rows{{2, 10, 80}, {3, 20, 60}});
+  CHECK(during(0.0, 9.0) == Rows{{1, 0, 100}, {2, 10, 80}, {3, 20, 60}, {4, 40, 60}});
+  CHECK(during(3.25, 3.5) == Rows{{3.25, 25, 60}, {3.5, 30, 60}});
+  CHECK(during(4.0, 5.0).size() < 2);
+  CHECK(during(0.0, 1.0).size() < 2);
+  CHECK(during(5.0, 6.0).size() < 2);
 }
 
 TEST_CASE("Encoders of another time than the camera are refused") {

@@ -11,6 +11,7 @@
 #include "program_side.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/experiment/task.hpp"
+#include "rift/odometry/readings_during.hpp"
 #include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/result.hpp"
@@ -246,15 +247,23 @@ TrialRow Evaluator::EvaluateOdometry(const TrialRequest& request) {
   Recording wheels = run.camera;
   wheels.source += ", its encoders";
   if (run.camera.status == TrialStatus::kOk) {
-    if (run.encoders.size() < 2 || !run.camera.trajectory.HasYaw()) {
+    const std::vector<odometry::EncoderReading> during =
+        odometry::ReadingsDuring(run.camera.trajectory, run.encoders);
+    const char* missing = nullptr;
+    if (run.encoders.size() < 2) {
+      missing = "objective: odometry needs encoders (encoders.csv beside the log)";
+    } else if (!run.camera.trajectory.HasYaw()) {
+      missing = "objective: odometry needs the yaw of the log";
+    } else if (during.size() < 2) {
+      missing =
+          "objective: odometry needs encoders on the clock of the log, and they share no time";
+    }
+    if (missing != nullptr) {
       wheels.status = TrialStatus::kUnreadable;
-      wheels.reason = run.encoders.size() < 2
-                          ? "objective: odometry needs encoders (encoders.csv beside the log)"
-                          : "objective: odometry needs the yaw of the log";
+      wheels.reason = missing;
     } else {
       const geometry::Pose2 start = trajectory::StandingPose(run.camera.trajectory);
-      wheels.trajectory =
-          odometry::OdometryPath(run.encoders, experiment_.hardware.odometry, start);
+      wheels.trajectory = odometry::OdometryPath(during, experiment_.hardware.odometry, start);
     }
   }
   return CompareTrial(experiment_, request, wheels, run.camera);

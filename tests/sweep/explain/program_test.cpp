@@ -1,5 +1,6 @@
 #include "rift/sweep/explain/program_cells.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -127,6 +128,17 @@ TEST_CASE("A recorded run is judged by the encoders beside its log, from where i
   CHECK(told.comparison.gap_m == Approx(0.1 * told.comparison.gap_u).margin(0.01));
   CHECK(told.comparison.gap_u > 0.9);
   CHECK(told.candidate == "1/run.csv, its encoders");
+  // Before its log the robot turned on the spot and was pushed.
+  std::vector<odometry::EncoderReading> earlier;
+  for (int i = 1; i <= 20; ++i) earlier.push_back({log.poses.front().t_s - 0.1 * i, {500, -900}});
+  std::reverse(earlier.begin(), earlier.end());
+  std::vector<odometry::EncoderReading> all = earlier;
+  all.insert(all.end(), wheels.begin(), wheels.end());
+  files["1/encoders.csv"] = odometry::EncodersCsv(all);
+  CHECK(row().comparison.gap_m == told.comparison.gap_m);
+  files["1/encoders.csv"] = odometry::EncodersCsv(earlier);
+  CHECK(row().status == TrialStatus::kUnreadable);
+  CHECK_THAT(row().reason, Catch::Contains("they share no time"));
   CHECK(told.reference == "1/run.csv");
   for (trajectory::StampedPose& pose : log.poses) pose.yaw_rad = NAN;
   files["1/run.csv"] = trajectory::WriteRift(log);
