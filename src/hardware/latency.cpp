@@ -155,6 +155,7 @@ class Turn {
   /// False when the drive was stopped.
   bool Run(const control::WheelPower& power, double duration_s) {
     double now_s = Look();
+    began_s_ = now_s;
     for (const double end_s = now_s + duration_s; now_s < end_s - kTick_s; now_s = Look()) {
       if (robot_.state() == DriveState::kStopped) return false;
       if (commanded_.empty() || commanded_.back().t_s < now_s) {
@@ -174,6 +175,8 @@ class Turn {
   }
   const std::vector<Angle>& Seen() const { return seen_; }
   const std::vector<Angle>& Commanded() const { return commanded_; }
+  /// When the last Run() did.
+  double Began_s() const { return began_s_; }
 
  private:
   double Look() {
@@ -188,6 +191,7 @@ class Turn {
   double yaw_per_count_rad_ = 0.0;
   std::vector<Angle> seen_, commanded_;
   control::WheelPower last_;
+  double began_s_ = 0.0;
 };
 
 std::optional<double> HostTime_s(const std::vector<PoseStages>& poses) {
@@ -365,9 +369,10 @@ std::optional<LatencyResult> MeasureLatency(RealRobot& robot,
   std::vector<double> pulses_s;
   for (int pulse = 0; pulse < kMostPulses; ++pulse) {
     const double side = pulse % 2 == 0 ? power : -power;
-    pulses_s.push_back(turn.Commanded().back().t_s);
     const double rest_s = kRest_s + kMoreRest_s[static_cast<size_t>(pulse) % kMoreRest_s.size()];
-    if (!turn.Run({-side, side}, options.pulse_s) || !turn.Run({}, rest_s)) {
+    const bool has_pulsed = turn.Run({-side, side}, options.pulse_s);
+    pulses_s.push_back(turn.Began_s());
+    if (!has_pulsed || !turn.Run({}, rest_s)) {
       RequireNoOtherSide(robot, turn);
       return std::nullopt;
     }

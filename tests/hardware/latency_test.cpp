@@ -35,6 +35,28 @@ std::optional<LatencyResult> TurnOn(Bench& bench, const HardwareOptions& hardwar
   return MeasureLatency(robot, hardware.odometry, hardware.turn, 0.04);
 }
 
+TEST_CASE("What the robot takes is told from when a pulse begins, and not from a turn before") {
+  Bench bench;
+  HardwareOptions hardware;
+  hardware.line.baud = 115200;  // no command waits for the line; that of the bench is of 9600
+  constexpr double kByte_s = 10.0 / 9600.0;
+  const double radio_s = bench.line_delay_s + 11 * kByte_s, one_way_s = 0.03;
+  // A reading is taken to be of the middle of its round trip, whose way back has more bytes.
+  const double late_s = 0.5 * (15 - 11) * kByte_s;
+  RealRobot robot(bench, bench, bench, {hardware, Protocol::kFramed, false});
+  for (int i = 0; i < 100; ++i) robot.Advance(0.02);
+  robot.Arm();
+  const auto found = MeasureLatency(robot, hardware.odometry, hardware.turn, one_way_s);
+  REQUIRE(found);
+  REQUIRE(found->delay.robot_s);
+  // From the middle of a pulse to that of the turn of wheels that follow it as the bench's do.
+  constexpr double kMotorLag_s = 0.05;
+  const double pulse_s = hardware.turn.pulse_s;
+  const double coasts_s = kMotorLag_s * (1.0 - std::exp(-pulse_s / kMotorLag_s));
+  const double wheels_s = 0.5 * pulse_s + kMotorLag_s * std::log(coasts_s / (0.5 * pulse_s));
+  CHECK(*found->delay.robot_s == Approx(wheels_s + radio_s + late_s - one_way_s).margin(0.006));
+}
+
 TEST_CASE("A turn to the other side than commanded is refused with what to swap") {
   for (const double late_s : {0.0, 0.1, 0.5}) {
     Bench bench;
