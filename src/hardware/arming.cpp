@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drive_lag.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/hardware/wire.hpp"
 
@@ -203,18 +204,15 @@ void SayWhereItStands(const DriveParts& parts, RealRobot& robot, const DriveTask
 
 /// By how much the poses of a drive lag its encoders, on top of what was subtracted already.
 std::optional<double> LatencyOver(const DriveRun& run, const odometry::OdometryOptions& odometry) {
-  constexpr double kLeastScale = 0.4, kMost_s = 1.0;
   std::vector<Angle> seen;
   for (const trajectory::StampedPose& pose : run.trial.trajectory.poses) {
     AddAngle(seen, pose.t_s, pose.yaw_rad);
   }
-  const std::vector<Angle> wheels =
-      WheelTurns(run.evidence.encoders, odometry::YawPerCount_rad(odometry));
-  if (seen.empty() || !AreTimed(wheels)) return std::nullopt;
-  const std::optional<Lag> lag = EstimateLag(seen, wheels, -kMost_s, kMost_s);
-  if (!lag || lag->scale < kLeastScale) return std::nullopt;
+  const std::optional<double> lag_s =
+      LagOverDrive(seen, WheelTurns(run.evidence.encoders, odometry::YawPerCount_rad(odometry)));
+  if (!lag_s) return std::nullopt;
   const bool was_measured = run.latency && run.latency->delay.camera_s;
-  return lag->lag_s + (was_measured ? std::max(0.0, *run.latency->delay.camera_s) : 0.0);
+  return *lag_s + (was_measured ? std::max(0.0, *run.latency->delay.camera_s) : 0.0);
 }
 
 std::string PartText(const char* name, const std::optional<double>& part_s) {

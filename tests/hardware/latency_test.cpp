@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bench.hpp"
+#include "hardware/drive_lag.hpp"
 
 namespace rift::hardware {
 namespace {
@@ -201,6 +202,50 @@ TEST_CASE("A lag is found with its scale, between its steps and at both ends of 
         Approx(-1.0).margin(0.02));
   CHECK_FALSE(EstimateLag(Swing(0.0, 0.0, 0.5, 0.033), leader, -0.2, 0.4));
   CHECK_FALSE(EstimateLag(leader, Swing(0.0, 0.0, 0.5, 0.033), -0.2, 0.4));
+}
+
+TEST_CASE("The lag over a drive is told where it is clear, and else none is") {
+  const std::vector<Angle> wheels = Swing(0.0, 1.0, 0.0, 0.01);
+  const auto over = [&wheels](double late_s, double scale) {
+    return LagOverDrive(Swing(late_s, scale, 0.5, 0.033), wheels);
+  };
+  for (const double late_s : {-0.05, 0.0, 0.12, 0.6}) {
+    REQUIRE(over(late_s, 0.9));
+    CHECK(*over(late_s, 0.9) == Approx(late_s).margin(0.005));
+  }
+  CHECK(over(0.1, 0.45));
+  CHECK_FALSE(over(0.1, 0.35));
+  CHECK(over(0.1, 2.4));
+  CHECK_FALSE(over(0.1, 2.6));
+  CHECK_FALSE(over(1.1, 1.0));  // the search ends at 1 s
+  CHECK_FALSE(over(-1.1, 1.0));
+}
+
+TEST_CASE("A drive with hardly a turn, or whose turns are not the wheels', tells no lag") {
+  const auto swing = [](double rad, double late_s, double every_s) {
+    std::vector<Angle> angles = Swing(late_s, 1.0, 0.0, every_s);
+    double low = 0.0, high = 0.0;
+    for (const Angle& angle : angles) {
+      low = std::min(low, angle.rad);
+      high = std::max(high, angle.rad);
+    }
+    for (Angle& angle : angles) angle.rad *= rad / (high - low);
+    return angles;
+  };
+  const double least_rad = geometry::RadFromDeg(5.0);
+  for (const double share : {0.9, 1.1}) {
+    const std::vector<Angle> turns = swing(share * least_rad, 0.0, 0.01);
+    CHECK(LagOverDrive(swing(share * least_rad, 0.1, 0.033), turns).has_value() == (share > 1.0));
+  }
+  // The camera sees the turn, and another one on top of it.
+  const std::vector<Angle> wheels = swing(0.6, 0.0, 0.01);
+  for (const double other_rad : {0.05, 2.0}) {
+    std::vector<Angle> seen = swing(0.6, 0.1, 0.033);
+    for (Angle& angle : seen) angle.rad += other_rad * std::sin(11.0 * angle.t_s);
+    CHECK(LagOverDrive(seen, wheels).has_value() == (other_rad < 0.1));
+  }
+  CHECK_FALSE(LagOverDrive({}, wheels));
+  CHECK_FALSE(LagOverDrive(wheels, {}));
 }
 
 TEST_CASE("An angle runs on through half a turn in both directions") {
