@@ -13,6 +13,7 @@
 #include "drive_lag.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/hardware/wire.hpp"
+#include "suspend_watch.hpp"
 
 namespace rift::hardware {
 
@@ -347,6 +348,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   }
   if (run.has_begun) {
     robot.Arm();
+    robot.AddStopper(SuspendStopper(task.hardware.guard.host_stall_s));
     if (!parts.dry_run) run.latency = MeasureCamera(robot, parts, task, run.ping);
     Forward forward(robot, parts.observer);
     run.trial = trial::RunTrial(robot, task.task, task.control, task.trial, &forward);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bench.hpp"
+#include "hardware/suspend_watch.hpp"
 #include "support/mirror.hpp"
 
 namespace rift::hardware {
@@ -282,6 +283,29 @@ TEST_CASE("Plain answers that come at once are one reading, and what is saved ca
   Twice twice;
   drive(twice);
   CHECK(readings == alone);
+}
+
+TEST_CASE("A machine that was suspended while the robot drove has stopped it") {
+  for (const bool is_long : {false, true}) {
+    Bench bench;
+    RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+    Settle(robot, 0.4, bench);
+    robot.Arm();
+    double suspended_s = 1000.0;
+    robot.AddStopper(SuspendStopper(0.25, [&suspended_s] { return suspended_s; }));
+    DriveOn(robot, {0.2, 0.2}, 0.3, bench);
+    REQUIRE(robot.state() == DriveState::kArmed);
+    for (int i = 0; i < 3; ++i) {  // each for itself
+      suspended_s += is_long ? 0.26 : 0.24;
+      DriveOn(robot, {0.2, 0.2}, 0.1, bench);
+    }
+    REQUIRE((robot.state() == DriveState::kStopped) == is_long);
+    if (!is_long) continue;
+    CHECK(robot.Record().stop->reason == StopReason::kHostStalled);
+    CHECK(robot.Record().stop->text == "the machine was suspended for 0.3 s");
+    CHECK(bench.listener->Motors().IsZero());
+  }
+  CHECK_FALSE(SuspendStopper(0.25)());  // a test does not outlast a suspend
 }
 
 TEST_CASE("A stop is acknowledged by the answer to the zero that goes out with it") {
