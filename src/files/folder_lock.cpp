@@ -33,7 +33,15 @@ bool LockWithin(int descriptor, std::chrono::milliseconds patience) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder) : folder_(folder) {
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : FolderLock(
+          folder,
+          fmt::format("another sweep is at work in {}: wait for it (rift sweep --status {}), "
+                      "or choose another folder with --out",
+                      folder.string(), folder.string())) {}
+
+FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& at_work)
+    : folder_(folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
@@ -47,10 +55,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) : folder_(folder) {
   }
   if (LockWithin(descriptor_, std::chrono::seconds(1))) return;
   ::close(descriptor_);
-  throw std::runtime_error(fmt::format(
-      "another sweep is at work in {}: wait for it (rift sweep --status {}), or choose another "
-      "folder with --out",
-      folder.string(), folder.string()));
+  throw std::runtime_error(at_work);
 }
 
 FolderLock::~FolderLock() { ::close(descriptor_); }

@@ -183,6 +183,17 @@ TEST_CASE("The drives of one experiment are not mixed with those of another") {
   CHECK_THROWS_WITH(drive(), Catch::Contains("is the table of other drives: control.v_max was"));
 }
 
+TEST_CASE("A second series in a folder is told of drives and not of a sweep's status") {
+  const test::TemporaryFolder folder;
+  const files::FolderLock first(folder.Path());
+  Answering person{'q'};
+  CHECK_THROWS_WITH(
+      DriveAll({folder.Path(), PlanRepeats(TwoFloors(), 1, folder.Path())}, person.AtConsole(),
+               [] {}),
+      Catch::Equals("another rift drive or sweep is at work in " + folder.Path().string() +
+                    ": wait for it, or choose another folder with --out"));
+}
+
 TEST_CASE("A chosen setting is driven as often as it has folders, named by who chose it") {
   const experiment::Experiment experiment = TwoFloors();
   const SeriesPlan plan = PlanChosen(experiment, {{"experiment 3",

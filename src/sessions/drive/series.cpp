@@ -161,7 +161,11 @@ SeriesEnd DriveAll(const DriveSeries& series, const Console& console,
                    const std::function<void()>& then) {
   const fs::path& out = series.out;
   const SeriesPlan& plan = series.plan;
-  const files::FolderLock lock(out);
+  const files::FolderLock lock(
+      out,
+      fmt::format("another rift drive or sweep is at work in {}: wait for it, or choose another "
+                  "folder with --out",
+                  out.string()));
   CheckSameSeries(out / "sweep.yaml", plan.sweep);
   files::WriteFile(out / "sweep.yaml", experiment::WriteExperiment(plan.sweep));
 
