@@ -183,6 +183,44 @@ TEST_CASE("The drives of one experiment are not mixed with those of another") {
   CHECK_THROWS_WITH(drive(), Catch::Contains("is the table of other drives: control.v_max was"));
 }
 
+TEST_CASE("Drives of another program, or of other wheels that a program is made for, are others") {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder.Path() / "1");
+  Answering person{'q'};
+  const auto drive = [&](const experiment::Experiment& experiment) {
+    return DriveAll({folder.Path(), PlanRepeats(experiment, 1, folder.Path())}, person.AtConsole(),
+                    [] {});
+  };
+  experiment::Experiment square = TwoFloors();
+  square.waypoints.resize(1);
+  square.program.segments = {{.straight_m = 0.5}, {.turn_deg = 90.0}};
+  square.program.speed_mps = 0.2;
+  CHECK(drive(square) == SeriesEnd::kDone);
+  CHECK(drive(square) == SeriesEnd::kDone);
+  experiment::Experiment line = square, power = square, wheels = square, battery = square;
+  line.program.segments.pop_back();
+  CHECK_THROWS_WITH(drive(line), Catch::Contains("other drives: program.segments was"));
+  power.program.speed_mps.reset();
+  CHECK_THROWS_WITH(drive(power), Catch::Contains("other drives: program.speed_mps was"));
+  wheels.hardware.odometry.drive.track_m *= 1.01;
+  CHECK_THROWS_WITH(drive(wheels),
+                    Catch::Contains("other drives: hardware.odometry.drive.track_m was"));
+  battery.hardware.guard.battery_min_v = 3.6;
+  CHECK(drive(battery) == SeriesEnd::kDone);
+}
+
+TEST_CASE("Wheels that were measured anew leave drives to waypoints as they were") {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder.Path() / "1");
+  Answering person{'q'};
+  experiment::Experiment experiment = TwoFloors();
+  for (const double track_m : {0.0848, 0.0852}) {
+    experiment.hardware.odometry.drive.track_m = track_m;
+    CHECK(DriveAll({folder.Path(), PlanRepeats(experiment, 1, folder.Path())}, person.AtConsole(),
+                   [] {}) == SeriesEnd::kDone);
+  }
+}
+
 TEST_CASE("A second series in a folder is told of drives and not of a sweep's status") {
   const test::TemporaryFolder folder;
   const files::FolderLock first(folder.Path());

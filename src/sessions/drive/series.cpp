@@ -20,12 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using experiment::Experiment;
 
-/// What a drive depends on; limits of the line or the camera may change from day to day.
-bool ChangesDrives(const std::string& key) {
-  for (const char* block : {"control.", "trial.", "space", "waypoints", "reference.path"}) {
+/// What a drive depends on; limits of the line or the camera may change from day to day. The wheels
+/// are what a program takes its powers and times from.
+bool ChangesDrives(const std::string& key, bool is_program) {
+  for (const char* block :
+       {"control.", "trial.", "space", "waypoints", "program.", "reference.path"}) {
     if (key.starts_with(block)) return true;
   }
-  return false;
+  return is_program && key.starts_with("hardware.odometry.drive.");
 }
 
 /// Drives of two experiments must not end up in one table. --repeat may be given a larger number.
@@ -33,8 +35,9 @@ void CheckSameSeries(const fs::path& file, const Experiment& sweep) {
   if (!fs::exists(file)) return;
   const Experiment before = experiment::LoadExperiment(file.string(), {}, files::ReadFile);
   std::map<std::string, std::string> old_values = experiment::FlatValues(before);
+  const bool is_program = !sweep.program.segments.empty();
   for (const auto& [key, value] : experiment::FlatValues(sweep)) {
-    if (!ChangesDrives(key) || old_values[key] == value) continue;
+    if (!ChangesDrives(key, is_program) || old_values[key] == value) continue;
     throw std::invalid_argument(fmt::format(
         "{} is the table of other drives: {} was {} and is {} now; choose another --out",
         file.string(), key, old_values[key].empty() ? "not there" : old_values[key], value));
