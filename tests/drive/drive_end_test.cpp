@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "commands/drive/exit_code.hpp"
+#include "rift/report/json/stop_text.hpp"
 #include "rift/sessions/drive/session.hpp"
 
 namespace rift {
@@ -35,6 +36,17 @@ TEST_CASE("A drive ends with 0 where it arrived, a dry run where its time or a p
     CHECK(ExitCodeOf(early) == 1);
   }
   CHECK(ExitCodeOf({}) == 1);
+}
+
+TEST_CASE("A drive whose stop the robot did not acknowledge never ends with 0") {
+  for (const bool dry_run : {false, true}) {
+    for (const std::optional<bool> acknowledged : {std::optional<bool>{}, {true}, {false}}) {
+      hardware::DriveRun run = Ended(Outcome::kReached, StopReason::kFinished, dry_run);
+      run.evidence.stop_acknowledged = acknowledged;
+      INFO(report::StopText(acknowledged));
+      CHECK(commands::ExitCodeOf(run) == (acknowledged == false ? 1 : 0));
+    }
+  }
 }
 
 TEST_CASE("Whoever stops a robot is a person, and all else that does is a fault but its time") {

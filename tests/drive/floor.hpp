@@ -75,6 +75,11 @@ class Floor {
     const std::lock_guard lock(mutex_);
     repeat_ = repeat;
   }
+  /// From its first motion on it obeys as ever and answers nothing.
+  void FallSilentOnceItMoves() {
+    const std::lock_guard lock(mutex_);
+    is_silent_once_it_moves_ = true;
+  }
   bool Moves() {
     const std::lock_guard lock(mutex_);
     return !listener_.Motors().IsZero();
@@ -93,8 +98,10 @@ class Floor {
       return static_cast<std::int32_t>(std::floor(3564.0 * rolled_m));
     };
     const auto now_ms = static_cast<std::uint32_t>(1000.0 * kClockSpeed * clock_.Now_s());
-    terminal_.Write(
-        listener_.Poll(now_ms, heard, {counts(rolled_left_m_), counts(rolled_right_m_), 4800}));
+    const std::vector<std::uint8_t> said =
+        listener_.Poll(now_ms, heard, {counts(rolled_left_m_), counts(rolled_right_m_), 4800});
+    is_silent_ = is_silent_ || (is_silent_once_it_moves_ && !listener_.Motors().IsZero());
+    if (!is_silent_) terminal_.Write(said);
   }
 
   std::vector<std::uint8_t> NextPicture() {
@@ -136,6 +143,7 @@ class Floor {
   std::vector<std::uint8_t> last_;
   double rolled_left_m_ = 0.0, rolled_right_m_ = 0.0;
   std::vector<std::uint8_t> heard_;
+  bool is_silent_once_it_moves_ = false, is_silent_ = false;
   control::DiffDrive drive_;
   hardware::Listener listener_;
   hardware::SteadyClock clock_;

@@ -56,16 +56,20 @@ class TwoDrives {
   }
   /// Why the first drive was stopped; empty when it never began or arrived.
   std::string FirstStop() const {
-    const auto text = files::ReadIfThere(out_ / "1.unfinished/summary.json");
-    if (!text) return "";
-    const auto summary = nlohmann::json::parse(*text);
-    return summary.contains("stop") ? summary["stop"]["reason"].get<std::string>() : "";
+    const nlohmann::json stop = FirstStopJson();
+    return stop.is_null() ? "" : stop["reason"].get<std::string>();
   }
+  bool FirstWasAcknowledged() const { return FirstStopJson()["acknowledged"] == true; }
 
   std::optional<SeriesEnd> end;
   std::string error;
 
  private:
+  nlohmann::json FirstStopJson() const {
+    const auto text = files::ReadIfThere(out_ / "1.unfinished/summary.json");
+    const auto summary = text ? nlohmann::json::parse(*text) : nlohmann::json();
+    return summary.contains("stop") ? summary["stop"] : nlohmann::json();
+  }
   void Say(const std::string& line) {
     const std::lock_guard lock(mutex_);
     told_.push_back(line);
@@ -107,7 +111,8 @@ TEST_CASE("A fault ends a series that asks nobody unless a command puts the scen
     Uninterrupted(kMovingPictures, [&](Scene& scene) {
       TwoDrives drives(scene, is_reset ? reset : none);
       drives.Drive();
-      if (drives.FirstStop().empty()) return false;  // refused on a busy machine
+      // Refused, or answered late, on a busy machine.
+      if (drives.FirstStop().empty() || !drives.FirstWasAcknowledged()) return false;
       INFO(drives.FirstStop() << ": " << drives.error);
       CHECK((drives.end == SeriesEnd::kQuit) == !is_reset);
       CHECK(drives.WasTold("drive 2 of 2") == is_reset);
@@ -116,6 +121,22 @@ TEST_CASE("A fault ends a series that asks nobody unless a command puts the scen
       return true;
     });
   }
+}
+
+TEST_CASE("No drive follows one whose stop the robot did not acknowledge, and that is said") {
+  constexpr int kMovingPictures = 5;
+  Uninterrupted(kMovingPictures, [](Scene& scene) {
+    scene.floor.FallSilentOnceItMoves();
+    TwoDrives drives(scene, {"true"});  // which puts the scene back
+    drives.Drive();
+    if (drives.FirstStop().empty() || drives.FirstWasAcknowledged())
+      return false;  // before it moved
+    INFO(drives.FirstStop() << ": " << drives.error);
+    CHECK(drives.end == SeriesEnd::kQuit);
+    CHECK(drives.WasTold("THE ROBOT DID NOT ACKNOWLEDGE THE STOP"));
+    CHECK_FALSE(drives.WasTold("drive 2 of 2"));
+    return true;
+  });
 }
 
 }  // namespace

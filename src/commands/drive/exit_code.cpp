@@ -6,6 +6,7 @@
 namespace rift::commands {
 
 int ExitCodeOf(const hardware::DriveRun& run) {
+  if (run.evidence.stop_acknowledged == false) return terminal::kNotReached;
   if (run.trial.outcome == trial::Outcome::kReached) return terminal::kDone;
   const bool is_over =
       run.trial.outcome == trial::Outcome::kTimedOut || sessions::WasEndedByPerson(run);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rift/report/json/fields.hpp"
+#include "rift/report/json/stop_text.hpp"
 #include "rift/statistics/descriptive.hpp"
 #include "rift/yaml/enum_name.hpp"
 
@@ -245,12 +246,7 @@ std::string DriveText(const hardware::DriveRun& run) {
         "loop delay {:.0f} ms; to make up for it: --set control.latency.delay_s={:.3f}\n",
         1e3 * *run.latency->delay.total_s, *run.latency->delay.total_s);
   }
-  const std::optional<bool>& acknowledged = run.evidence.stop_acknowledged;
-  text += !acknowledged ? "the robot cannot say whether it stands: look at it\n"
-          : *acknowledged
-              ? "the robot acknowledged the stop\n"
-              : "THE ROBOT DID NOT ACKNOWLEDGE THE STOP, OR ITS WHEELS TURN ON: switch it off\n";
-  return text;
+  return text + StopText(run.evidence.stop_acknowledged) + "\n";
 }
 
 std::string StagesCsv(const hardware::DriveRecord& evidence) {

@@ -12,6 +12,7 @@
 #include "rift/experiment/path_template.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
+#include "rift/report/json/stop_text.hpp"
 #include "rift/sessions/drive/session.hpp"
 
 namespace rift::sessions {
@@ -94,13 +95,15 @@ SeriesEnd Driver::Drive(const PlannedTrial& trial) {
     if (scene_) Close();
     console_.say(fmt::format("{}: {}", trial.label, run.trial.reason));
     for (const std::string& line : SteeringLines(trial.experiment, run)) console_.say(line);
+    const bool may_drive_on = run.evidence.stop_acknowledged == false;
+    if (may_drive_on) console_.say(report::StopText(false));
     session_.RequireLog();
     if (!run.has_begun) return SeriesEnd::kQuit;
     if (run.trial.outcome == trial::Outcome::kReached) {
       fs::rename(trial.Unfinished(), trial.folder);
-      return SeriesEnd::kDone;
+      return may_drive_on ? SeriesEnd::kQuit : SeriesEnd::kDone;
     }
-    if (EndsSeries(run)) return SeriesEnd::kQuit;
+    if (may_drive_on || EndsSeries(run)) return SeriesEnd::kQuit;
   }
 }
 
