@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <future>
 #include <stdexcept>
 #include <utility>
 
@@ -22,6 +21,7 @@
 #include "rift/vision/tracking/world_check.hpp"
 #include "standing_check.hpp"
 #include "start_gate.hpp"
+#include "view_loop.hpp"
 
 namespace rift::sessions {
 namespace {
@@ -191,16 +191,20 @@ class DriveSession::Drivers {
     }
     view::DriveView view(session_.camera(), experiment::TaskOf(experiment));
     key_in_window_ = false;
-    auto drive = std::async(std::launch::async, [&] { return Drive(experiment, person, log); });
-    while (drive.wait_for(kRedraw) != std::future_status::ready) {
-      const hardware::CameraPoses::View seen = poses_->Seen();
-      const view::DriveWish wish =
-          view.Show(seen.frame.get(), seen.found.sighting, poses_->Status(),
-                    PlacementNow(experiment), may_start_);
-      if (wish == view::DriveWish::kStopByClosing) person.CloseWindow();
-      if (wish == view::DriveWish::kStopByKey) key_in_window_ = true;
-    }
-    return drive.get();
+    return sessions::DriveInView({.drive = [&] { return Drive(experiment, person, log); },
+                                  .look =
+                                      [&] {
+                                        const hardware::CameraPoses::View seen = poses_->Seen();
+                                        const view::DriveWish wish = view.Show(
+                                            seen.frame.get(), seen.found.sighting, poses_->Status(),
+                                            PlacementNow(experiment), may_start_);
+                                        if (wish == view::DriveWish::kStopByClosing)
+                                          person.CloseWindow();
+                                        if (wish == view::DriveWish::kStopByKey)
+                                          key_in_window_ = true;
+                                      },
+                                  .stop = [&person] { person.CloseWindow(); },
+                                  .redraw = kRedraw});
   }
 
   bool KeyInWindow() const { return key_in_window_; }
