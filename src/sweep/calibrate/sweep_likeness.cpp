@@ -105,10 +105,10 @@ void Gathering::Plan(const TrialRequest& request, const Recording& real, size_t 
     ++trials_[trial].trial.failed_runs;
     return;
   }
-  SimulatedTrial run = evaluator_.TrialFor(request, real);
+  TrialRequest run = request;
   for (int i = 0; i < experiment_.likeness.runs; ++i) {
     if (i > 0) run.seed = SeedOfRun(experiment_.seed, trial, i);
-    planned_.push_back({trial, run});
+    planned_.push_back({trial, evaluator_.TrialFor(run, real)});  // the seed draws its ensemble too
   }
 }
 

@@ -152,6 +152,22 @@ experiment::Experiment Calibration(int starts = 1) {
   return plan;
 }
 
+TEST_CASE("Each simulated run beside a real one takes a draw of the ensemble of its own") {
+  experiment::Experiment plan = Calibration();
+  plan.goal = experiment::Goal::kGrid;
+  plan.waypoints = {{.name = "s"}, {.name = "e", .x_m = 0.3}};
+  plan.likeness.runs = 10;
+  plan.ensemble.keys = {"trial.timeout_s"};  // every second draw lets no run arrive
+  plan.ensemble.draws = {{plan.trial.timeout_s}, {1.0}};
+  Files files = SimulatedLogs(plan, 0.0);
+  Evaluator evaluator(plan, "e.yaml", InputsOf(files));
+  const DriveLikeness all = MeasureSweepLikeness(evaluator).back().likeness;
+  CHECK(all.runs == 60);
+  CHECK(all.failed_runs > 15);
+  CHECK(all.failed_runs < 45);
+  CHECK(all.failed_runs % 10 != 0);  // with one draw for the runs of a trial all ten fail, or none
+}
+
 TEST_CASE("A fit to logs finds their mismatch, holds the rest out, and judges before and after") {
   const experiment::Experiment plan = Calibration(2);
   Files files = SimulatedLogs(plan, 0.1);
