@@ -294,9 +294,11 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
         "{}: objective is odometry, and suggested drives are judged by the gap of their poses",
         experiment_file_));
   }
+  const bool is_reference = experiment_.reference.kind == ReferenceKind::kLogs;
   LogOptions of_drive;
   of_drive.read.format = trajectory::Format::kRift;
   of_drive.format_key = "the format of rift drive";
+  if (is_reference) of_drive.tag_offset_m = experiment_.reference.tag_offset_m;
   RecordedLogs logs(inputs_, of_drive);
   Recording driven = logs.At(path);
   if (driven.status == TrialStatus::kOk && outcome != trial::Outcome::kReached) {
@@ -305,10 +307,14 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
   }
   TrialRequest request = asked;
   if (request.seed) request.seed = SeedWithReference(*request.seed);
-  if (experiment_.reference.kind != ReferenceKind::kLogs) {
-    return CompareTrial(experiment_, request, driven, Reference(request));
+  const TrialRow row = is_reference
+                           ? CompareTrial(experiment_, request, Candidate(request, driven), driven)
+                           : CompareTrial(experiment_, request, driven, Reference(request));
+  if (!row.Tells()) {
+    inputs_.note(fmt::format("{}{}: this drive does not count",
+                             row.reason.starts_with(path) ? "" : path + ": ", row.reason));
   }
-  return CompareTrial(experiment_, request, Candidate(request, driven), driven);
+  return row;
 }
 
 double Evaluator::NoiseFloor_m(const experiment::Theta& theta, const std::function<bool()>& go_on) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "rift/experiment/task.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/log.hpp"
@@ -343,6 +344,49 @@ TEST_CASE("Where references are logs, a drive takes their place beside a simulat
   CHECK(row.candidate == "simulation with seed 3");
   CHECK(row.reference == "drive.csv");
   CHECK(row.comparison.gap_m < 1e-6);
+}
+
+TEST_CASE("A drive in the place of reference logs is moved by the tag's offset as they are") {
+  experiment::Experiment experiment = Simulation();
+  experiment.reference.kind = ReferenceKind::kLogs;
+  experiment.reference.path.text = "x.csv";
+  experiment.reference.tag_offset_m = 0.03;
+  Files files;
+  for (const Start start : {Start::kWaypoint, Start::kReference}) {
+    experiment.start = start;
+    Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
+    const TrialRequest request{.trial = "1", .seed = 3};
+    const SimulatedTrial driven =
+        evaluator.TrialOf(experiment, experiment::AxleAtStart(experiment), 3);
+    files["drive.csv"] = trajectory::WriteRift(Simulate(driven).result.trajectory);
+    const TrialRow row = evaluator.EvaluateDriven(request, "drive.csv", trial::Outcome::kReached);
+    INFO((start == Start::kReference ? "from where it stood" : "from the waypoint"));
+    CHECK(row.IsOk());
+    CHECK(row.comparison.gap_m < 0.005);
+  }
+}
+
+TEST_CASE("A drive that tells nothing is noted with what came of it") {
+  experiment::Experiment experiment = Simulation();
+  experiment.reference.kind = ReferenceKind::kLogs;
+  experiment.reference.path.text = "x.csv";
+  const Files files{{"drive.csv", trajectory::WriteRift(test::StraightPath(0.4, 40))}};
+  std::vector<std::string> notes;
+  Evaluator evaluator(experiment, "e.yaml", {InputsOf(files).read, [&](const std::string& line) {
+                                               notes.push_back(line);
+                                             }});
+  const TrialRequest request{.trial = "1", .seed = 3};
+  CHECK(evaluator.EvaluateDriven(request, "drive.csv", trial::Outcome::kReached).IsOk());
+  CHECK(notes.empty());
+  CHECK_FALSE(evaluator.EvaluateDriven(request, "drive.csv", trial::Outcome::kFell).Tells());
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0] == "drive.csv: the robot did not reach the end: this drive does not count");
+  experiment.trial.timeout_s = 1.0;  // no simulated run arrives, and that is no failure
+  experiment.falsify.count.timed_out = false;
+  CHECK_FALSE(evaluator.EvaluateDriven(request, "drive.csv", trial::Outcome::kReached).Tells());
+  REQUIRE(notes.size() == 2);
+  CHECK_THAT(notes[1], Catch::StartsWith("drive.csv: simulation with seed 3: ") &&
+                           Catch::EndsWith(": this drive does not count"));
 }
 
 TEST_CASE("A setting that breaks a rule, and a start without a yaw, are rows that say so") {
