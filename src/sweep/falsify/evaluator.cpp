@@ -319,9 +319,10 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
 
 double Evaluator::NoiseFloor_m(const experiment::Theta& theta, const std::function<bool()>& go_on) {
   const std::vector<std::string>& trials = experiment_.reference.trials.names;
-  const bool has_repeats = trials.size() > 1 && !reference_program_ &&
-                           experiment_.reference.kind != ReferenceKind::kPath;
-  if (!has_repeats) return gap::kNotComputed;
+  const bool is_one_run = experiment_.reference.kind == ReferenceKind::kPath ||
+                          (experiment_.reference.kind == ReferenceKind::kNominal &&
+                           experiment_.candidate.kind == CandidateKind::kLogs);  // without seeds
+  if (trials.size() < 2 || reference_program_ || is_one_run) return gap::kNotComputed;
   std::set<std::string> sources;  // one path twice is no repeat
   if (experiment_.reference.kind == ReferenceKind::kLogs) {
     for (const std::string& trial : trials) sources.insert(ReferencePath({theta, trial}));
@@ -337,7 +338,12 @@ double Evaluator::NoiseFloor_m(const experiment::Theta& theta, const std::functi
     const Recording& log = reference_logs_.At(source);
     if (log.status == TrialStatus::kOk) references.push_back(log.trajectory);
   }
-  return found->second = gap::NoiseFloor_m(references, experiment_.gap);
+  const std::vector<std::optional<size_t>> copy_of = gap::CopiesAmong(references);
+  std::vector<trajectory::Trajectory> distinct;
+  for (size_t i = 0; i < references.size(); ++i) {
+    if (!copy_of[i]) distinct.push_back(std::move(references[i]));
+  }
+  return found->second = gap::NoiseFloor_m(distinct, experiment_.gap);
 }
 
 }  // namespace rift::sweep

@@ -239,6 +239,21 @@ TEST_CASE(
         Approx(0.5 * (floor_m + gap::Gap(runs[1], runs[0], experiment.gap))));
 }
 
+TEST_CASE("Copies of a log give no noise floor, and none is known of one nominal run") {
+  // To the last bit, and as one that was written anew with fewer digits.
+  const Files files{{"a_1.csv", LogAside(0.0)},   {"a_2.csv", LogAside(0.0)},
+                    {"a_3.csv", LogAside(4e-6)},  {"b_1.csv", LogAside(0.0)},
+                    {"b_2.csv", LogAside(-4e-6)}, {"b_3.csv", LogAside(0.03)}};
+  experiment::Experiment experiment = Logs();
+  Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
+  CHECK(std::isnan(evaluator.NoiseFloor_m({{"a", {}}})));
+  CHECK(evaluator.NoiseFloor_m({{"b", {}}}) == Approx(0.03));
+  // Recorded candidates have no seeds, so that all of them have the same nominal run.
+  experiment.waypoints = Simulation().waypoints;
+  experiment.reference.kind = ReferenceKind::kNominal;
+  CHECK(std::isnan(Evaluator(experiment, "e.yaml", InputsOf(files)).NoiseFloor_m({{"a", {}}})));
+}
+
 TEST_CASE("Logs of a range are refused, and others read once, before the first trial") {
   experiment::Experiment experiment = Logs();
   experiment.candidate.kind = CandidateKind::kSimulation;
