@@ -56,7 +56,7 @@ using Run = std::pair<std::uint64_t, double>;
 /// The rows of a sweep that one experiment on the robot stands for.
 struct Candidate {
   Theta values;
-  std::vector<int> rows;  ///< distinct ones that tell
+  std::vector<int> rows;  ///< distinct ones that tell, of each setting the first
   std::vector<Run> runs;  ///< of all its paths, sorted
   int failures = 0;
   double mean_loss_m = gap::kNotComputed;
@@ -70,6 +70,19 @@ std::vector<int> SettableParameters(const SweepResult& result) {
   return settable;
 }
 
+/// Of each setting its first rows, as many as the median one has (of a grid, whose settings are all
+/// tried alike, twice as many): what is repeated because it failed outweighs no setting beside it.
+std::vector<int> FirstOfEachSetting(const SweepResult& result, std::vector<int> rows) {
+  std::map<Theta, int> count_of, seen;
+  for (const int row : rows) ++count_of[result.rows[row].theta];
+  std::vector<int> counts;
+  for (const auto& [theta, count] : count_of) counts.push_back(count);
+  std::sort(counts.begin(), counts.end());
+  const int most = (result.falsification ? 1 : 2) * counts[(counts.size() - 1) / 2];
+  std::erase_if(rows, [&](int row) { return ++seen[result.rows[row].theta] > most; });
+  return rows;
+}
+
 void Describe(const SweepResult& result, Candidate& candidate) {
   for (const int row : candidate.rows) {
     const TrialRow& trial = result.rows[row];
@@ -77,7 +90,8 @@ void Describe(const SweepResult& result, Candidate& candidate) {
     if (path != 0) candidate.runs.emplace_back(path, Loss_m(trial, result.gap.threshold_m));
   }
   std::sort(candidate.runs.begin(), candidate.runs.end());
-  candidate.rows = DistinctRows(result.rows, candidate.rows, result.chance_repeats_runs);
+  candidate.rows = FirstOfEachSetting(
+      result, DistinctRows(result.rows, candidate.rows, result.chance_repeats_runs));
   double sum_m = 0.0;
   for (const int row : candidate.rows) {
     candidate.failures += result.rows[row].falsified;

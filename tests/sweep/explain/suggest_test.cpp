@@ -92,6 +92,43 @@ TEST_CASE("Trials that take too little from the risk are not suggested") {
   }
 }
 
+TEST_CASE("Repeats of one setting outweigh none of those that a person sets alike") {
+  SweepResult result;
+  result.reference_kind = "logs";
+  result.parameters = {{.key = "control.v_min", .min = 0.1, .max = 0.2},
+                       {.key = "simulation.motor.mismatch", .min = -0.1, .max = 0.1}};
+  std::uint64_t path = 1;
+  // About 0.15 m/s 20 settings, of which one fails and was repeated; about 0.18 m/s one alone.
+  for (int i = 0; i < 20; ++i) {
+    const bool fails = i == 7;
+    result.rows.push_back(Row({Numeric(0.15), Numeric(0.001 * i)}, fails, path++));
+  }
+  for (int i = 0; i < 4; ++i) {
+    result.rows.push_back(Row({Numeric(0.15), Numeric(0.007)}, true, path++));
+    result.rows.push_back(Row({Numeric(0.18), Numeric(0.0)}, i > 1, path++));
+  }
+  Summarise(result);
+  result.falsification.emplace();
+  const SuggestOptions options{.experiments = 9, .repeats = 20, .least_gain = 0.0};
+  const Suggestions all = SuggestExperiments(result, options);
+  REQUIRE(all.list.size() == 2);
+  const Suggestion &alone = all.list[0], &many = all.list[1];  // those predicted to fail first
+  CHECK(many.values[0].text == "0.15");
+  CHECK(many.rows.size() == 20);
+  CHECK(many.failures == 1);
+  CHECK_FALSE(many.is_predicted_to_fail);
+  CHECK(many.mean_loss_m == Approx((19 * 0.04 + 0.08) / 20.0));
+  CHECK(alone.rows.size() == 4);
+  CHECK(alone.failures == 2);
+  CHECK(alone.is_predicted_to_fail);
+  // Of a grid a setting with one trial more or less is nothing that was repeated.
+  result.falsification.reset();
+  const Suggestions of_grid = SuggestExperiments(result, options);
+  REQUIRE(of_grid.list.size() == 2);
+  CHECK(of_grid.list[1].rows.size() == 21);
+  CHECK(of_grid.list[1].failures == 2);
+}
+
 TEST_CASE("Runs that are the same to the last bit are proposed once") {
   SweepResult result = Sampled();
   result.parameters[0].levels.push_back({"ice again", {}});
