@@ -117,6 +117,7 @@ bool Fit::Improve() {
 /// The loss has leaps, as a command that just misses one look of the listener waits for the next:
 /// slopes over long steps see past them, shorter ones tell the place.
 void Fit::Descend(Calibration& result, const CalibrationStep& on_step, Part part) {
+  result.has_converged = false;  // an earlier part may have
   const int first_step = result.steps;
   const int most_steps = result.steps + options_.iterations;
   while (result.steps < most_steps) {

@@ -243,6 +243,20 @@ TEST_CASE("Whole runs go to their motions first, then to traits as well, with st
   CHECK(fitted.told[1].values[0] == Approx(by_motions + (target - by_motions) / 1.01).margin(1e-4));
 }
 
+TEST_CASE("A fit whose motions come to rest and whose traits run out of steps has not converged") {
+  OneLaw simulator(Itself);
+  simulator.whole_runs_only = true;
+  simulator.trait = Itself;
+  CalibrationOptions options = Options();
+  options.runs = 2;
+  options.first_step = options.step = 0.1;
+  options.iterations = 1;
+  const Fitted fitted = FitFrom(0.5, simulator, TwoLogs(0.5, 0.2, 0.8), options);
+  REQUIRE(fitted.told.size() == 1);
+  CHECK(fitted.told[0].part == CalibrationProgress::Part::kDescent);
+  CHECK_FALSE(fitted.fit.has_converged);
+}
+
 TEST_CASE("Losses are means over all errors, in standard deviations, and priors belong to them") {
   OneLaw simulator(Itself);
   CalibrationOptions options = Options();
