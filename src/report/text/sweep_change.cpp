@@ -47,9 +47,10 @@ std::string ChangeSentence(const sweep::SweepChange& change) {
   if (change.now_hold + change.now_fail == 0) word = "no trial changed sides";
   if (better.low > 0.5) word = "better";
   if (better.high < 0.5) word = "worse";
-  return fmt::format("{} trials failed before and {} fail after: {} ({} now hold, {} now fail)",
-                     Failed(change.all.before), Failed(change.all.after), word, change.now_hold,
-                     change.now_fail);
+  return fmt::format(
+      "{} trials failed before and {} fail after: {} ({} now hold, {} now fail{})",
+      Failed(change.all.before), Failed(change.all.after), word, change.now_hold, change.now_fail,
+      change.copies > 0 ? fmt::format(", {} more are copies of these", change.copies) : "");
 }
 
 std::string ChangeText(const sweep::SweepChange& change) {

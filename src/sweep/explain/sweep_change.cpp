@@ -58,18 +58,54 @@ std::string VerdictOf(const TabledSweep& sweep, const std::string& key) {
   return found == sweep.verdicts.end() ? "" : found->second;
 }
 
-/// Differences of the trials of one name, and how many of them fail in one sweep only.
-std::vector<double> Pair(const Trials& before, const Trials& after, SweepChange* change) {
-  std::vector<double> differences_m;
+/// One trial in both sweeps.
+struct Pair {
+  const TabledTrial* before;
+  const TabledTrial* after;
+};
+
+/// Those of one setting, by their names.
+std::vector<Pair> PairsOf(const Trials& before, const Trials& after) {
+  std::vector<Pair> pairs;
   for (const auto& [name, earlier] : before) {
     const auto found = after.find(name);
-    if (found == after.end()) continue;
-    const TabledTrial& later = *found->second;
-    const double difference_m = later.gap_m - earlier->gap_m;
+    if (found != after.end()) pairs.push_back({earlier, found->second});
+  }
+  return pairs;
+}
+
+/// Whether all repeats of a setting are one run in both sweeps: nothing is left to chance there.
+bool AreCopies(const std::vector<Pair>& pairs) {
+  const auto are_same = [](const TabledTrial& a, const TabledTrial& b) {
+    const bool have_same_gap = a.gap_m == b.gap_m || (std::isnan(a.gap_m) && std::isnan(b.gap_m));
+    return have_same_gap && a.is_told == b.is_told && a.falsified == b.falsified;
+  };
+  return std::all_of(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+    return are_same(*pair.before, *pairs.front().before) &&
+           are_same(*pair.after, *pairs.front().after);
+  });
+}
+
+/// How many of the trials fail in one sweep only, copies once.
+void CountChanges(const std::vector<Pair>& pairs, SweepChange* change) {
+  const bool are_copies = AreCopies(pairs);
+  for (const auto& [before, after] : pairs) {
+    const bool has_changed =
+        before->is_told && after->is_told && before->falsified != after->falsified;
+    if (!has_changed) continue;
+    if (are_copies && before != pairs.front().before) {
+      ++change->copies;
+    } else {
+      ++(before->falsified ? change->now_hold : change->now_fail);
+    }
+  }
+}
+
+std::vector<double> DifferencesOf(const std::vector<Pair>& pairs) {
+  std::vector<double> differences_m;
+  for (const auto& [before, after] : pairs) {
+    const double difference_m = after->gap_m - before->gap_m;
     if (std::isfinite(difference_m)) differences_m.push_back(difference_m);
-    if (!earlier->is_told || !later.is_told) continue;
-    change->now_hold += earlier->falsified && !later.falsified;
-    change->now_fail += !earlier->falsified && later.falsified;
   }
   return differences_m;
 }
@@ -108,7 +144,9 @@ SweepChange CompareSweeps(const TabledSweep& before, const TabledSweep& after,
     all_after.Add(found->second.trials);
     one.before = side_before.Result(VerdictOf(before, key));
     one.after = side_after.Result(VerdictOf(after, key));
-    const std::vector<double> differences_m = Pair(setting.trials, found->second.trials, &change);
+    const std::vector<Pair> pairs = PairsOf(setting.trials, found->second.trials);
+    CountChanges(pairs, &change);
+    const std::vector<double> differences_m = DifferencesOf(pairs);
     one.pairs = static_cast<int>(differences_m.size());
     SetChange(differences_m, &one);
     if (one.pairs > 0) by_setting_m.push_back(one.gap_change_m);

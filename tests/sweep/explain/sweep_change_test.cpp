@@ -115,6 +115,30 @@ TEST_CASE("Repeats of one name count each, and are paired in their order") {
   CHECK(change.now_fail == 0);
 }
 
+TEST_CASE("Repeats that are one run in both sweeps change sides once") {
+  // Without chance "a" and "b" hold after, "c" fails; of "d" the repeats of one sweep alone agree.
+  const auto sweep = [](bool is_after) {
+    TabledSweep made{.folder = is_after ? "after" : "before"};
+    for (const std::string trial : {"1", "2", "3", "4", "5"}) {
+      const double own_m = 0.0001 * std::stoi(trial);
+      made.trials.push_back(Trial("a", trial, is_after ? 0.02 : 0.08, !is_after));
+      made.trials.push_back(Trial("b", trial, is_after ? 0.03 : kNotKnown, !is_after));  // it fell
+      made.trials.push_back(Trial("c", trial, is_after ? 0.09 : 0.01, is_after));
+      made.trials.push_back(Trial("d", trial, is_after ? 0.04 : 0.07 + own_m, !is_after));
+    }
+    return made;
+  };
+  const SweepChange change = CompareSweeps(sweep(false), sweep(true), {});
+  CHECK(change.all.before.failures == 15);
+  CHECK(change.all.after.failures == 5);
+  CHECK(change.now_hold == 1 + 1 + 5);
+  CHECK(change.now_fail == 1);
+  CHECK(change.copies == 3 * 4);
+  // Clopper-Pearson of 7 in 8: with this share 7 or more hold with 2.5 %.
+  const double low = change.better_share_95.low;
+  CHECK(8.0 * std::pow(low, 7) - 7.0 * std::pow(low, 8) == Approx(0.025));
+}
+
 TEST_CASE("Back again everything is the other way round, and one setting counts by its trials") {
   Two two;
   const SweepChange there = CompareSweeps(two.before, two.after, {});
@@ -139,8 +163,8 @@ TEST_CASE("Settings stand by how much their share of failures changed, equal one
     TabledSweep made{.folder = is_after ? "after" : "before"};
     const auto add = [&](const char* key, int failures_before, int failures_after) {
       for (int i = 0; i < 4; ++i) {
-        made.trials.push_back(
-            Trial(key, std::to_string(i), 0.05, i < (is_after ? failures_after : failures_before)));
+        made.trials.push_back(Trial(key, std::to_string(i), 0.05 + 0.001 * i,
+                                    i < (is_after ? failures_after : failures_before)));
       }
     };
     add("d", 2, 1);  // by a quarter

@@ -60,8 +60,11 @@ struct SweepChange {
   /// several have pairs, else over trials (Student).
   SettingChange all;
   bool is_over_settings = false;
-  int now_hold = 0;  ///< trials that failed before and hold after
+  /// Trials that failed before and hold after; of a setting whose repeats are one run in both
+  /// sweeps one.
+  int now_hold = 0;
   int now_fail = 0;
+  int copies = 0;  ///< that changed and are in neither of these
   /// 95 % (Clopper-Pearson) for the share of now_hold in the trials that changed: above a half, it
   /// became better, below worse.
   statistics::Interval better_share_95;
