@@ -8,14 +8,17 @@
 #include <stdexcept>
 
 #include "experiment_sides.hpp"
+#include "job_status.hpp"
 #include "program_side.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/experiment/task.hpp"
 #include "rift/odometry/readings_during.hpp"
+#include "rift/sweep/falsify/candidate_runs.hpp"
 #include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
+#include "rift/sweep/run/worker_pool.hpp"
 #include "rift/trajectory/csv.hpp"
 #include "rift/yaml/bind.hpp"
 #include "simulated_recording.hpp"
@@ -287,6 +290,30 @@ TrialRow Evaluator::Evaluate(const TrialRequest& asked) {
   }
 }
 
+namespace {
+
+/// In a process that is given up when its program hangs, as the trials of the sweep were.
+Recording ProgramReference(Evaluator& evaluator, const TrialRequest& request) {
+  Recording run{.source = fmt::format("program with seed {}", request.seed.value_or(0))};
+  const auto work = [&evaluator](const std::string& job) {
+    return EncodeRecording(evaluator.Reference(DecodeRequest(job)));
+  };
+  const auto done = [&](int, const JobResult& result) {
+    if (result.end == JobEnd::kDone) {
+      run = DecodeRecording(result.bytes);
+      return;
+    }
+    const TrialRow ended = EndedRow(request, result);
+    run.status = ended.status;
+    run.reason = ended.reason;
+  };
+  WorkerPool(work, 1, evaluator.experiment().run)
+      .Run({1, [&](int) { return EncodeRequest(request); }, done, [] { return true; }});
+  return run;
+}
+
+}  // namespace
+
 TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string& path,
                                    trial::Outcome outcome) {
   if (experiment_.objective == experiment::Objective::kOdometry) {
@@ -307,9 +334,11 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
   }
   TrialRequest request = asked;
   if (request.seed) request.seed = SeedWithReference(*request.seed);
-  const TrialRow row = is_reference
-                           ? CompareTrial(experiment_, request, Candidate(request, driven), driven)
-                           : CompareTrial(experiment_, request, driven, Reference(request));
+  const Recording reference = is_reference         ? driven
+                              : reference_program_ ? ProgramReference(*this, request)
+                                                   : Reference(request);
+  const TrialRow row = CompareTrial(experiment_, request,
+                                    is_reference ? Candidate(request, driven) : driven, reference);
   if (!row.Tells()) {
     inputs_.note(fmt::format("{}{}: this drive does not count",
                              row.reason.starts_with(path) ? "" : path + ": ", row.reason));

@@ -443,6 +443,30 @@ TEST_CASE("Where the nominal run of a seed fails by noise another seed takes its
                   .CheckReferences({1, [](const ReferenceProgress&) { return false; }}));
 }
 
+TEST_CASE("A drive of the robot is held against a program that is given up when it hangs") {
+  Shell shell("cp \"$HERE/good.csv\" \"$1\"");
+  shell.experiment.reference.kind = experiment::ReferenceKind::kProgram;
+  shell.experiment.reference.run = shell.experiment.candidate.run;
+  shell.experiment.candidate.kind = experiment::CandidateKind::kSimulation;
+  shell.experiment.space.parameters.clear();
+  shell.experiment.run.timeout_s = 0.2;
+  std::vector<std::string> notes;
+  const Inputs inputs{kFiles.read, [&](const std::string& line) { notes.push_back(line); }};
+  Evaluator evaluator(shell.experiment, "e.yaml", inputs);
+  const std::string drive = shell / "good.csv";
+  const TrialRequest request{.trial = "1", .seed = 3};
+  const TrialRow row = evaluator.EvaluateDriven(request, drive, trial::Outcome::kReached);
+  CHECK(row.IsOk());
+  CHECK(row.reference == "program with seed 3");
+  CHECK(row.comparison.gap_m < 1e-9);
+  CHECK(notes.empty());
+  test::WriteText(shell / "sim.sh", "sleep 3");
+  CHECK(evaluator.EvaluateDriven(request, drive, trial::Outcome::kReached).status ==
+        TrialStatus::kHung);
+  REQUIRE(notes.size() == 1);
+  CHECK_THAT(notes[0], Catch::StartsWith(drive + ": program with seed 3: "));
+}
+
 TEST_CASE("A nominal run that no seed mends, or that never arrives, is told once and at once") {
   Shell shell("echo x >> \"$HERE/runs\"; exit 1", {"{out}"});
   shell.experiment.reference.kind = experiment::ReferenceKind::kNominal;
