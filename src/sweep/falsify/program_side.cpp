@@ -7,6 +7,7 @@
 #include <array>
 #include <csignal>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -47,6 +48,19 @@ ordered_json TrialJson(const experiment::Experiment& experiment,
           {"seed", request.seed.value_or(experiment.seed)},
           {"trial", request.trial},
           {"out", (fs::path(folder) / kLogName).string()}};
+}
+
+/// A code that says two things of a run says none.
+void RefuseEqualCodes(const ProgramOptions& options) {
+  std::map<int, std::string_view> key_of;
+  experiment::ExitCodes::Fields(
+      options.exit_codes, [&](std::string_view key, int code, int, int, std::string_view) {
+        const auto [other, is_new] = key_of.emplace(code, key);
+        if (is_new) return;
+        throw std::invalid_argument(
+            fmt::format("{}.exit_codes: {} and {} are both {}: each needs a code of its own",
+                        options.key, other->second, key, code));
+      });
 }
 
 /// What arguments may name of a trial beside its parameters; seed and trial are none anywhere.
@@ -110,6 +124,7 @@ ProgramSide::ProgramSide(const experiment::Experiment& experiment, ProgramOption
                     "\"{{out}}\"]",
                     options_.key, options_.key));
   }
+  RefuseEqualCodes(options_);
   RefuseNamesOfOurs(parameters_);
   const TrialRequest nominal = NominalRequest(experiment);
   for (const std::string& word : options_.run.words) {

@@ -113,8 +113,19 @@ TEST_CASE("Exit codes are ends of a run as the side says, with what is left to t
   shell.experiment.candidate.exit_codes = {20, 21, 22, 23};
   CHECK(shell.Run().status == TrialStatus::kFell);
   CHECK(std::isnan(shell.Run().left_m));  // no log tells how far it came
-  shell.experiment.candidate.exit_codes.fell = 22;
+  shell.experiment.candidate.exit_codes.fell = 24;
   CHECK(shell.Run().status == TrialStatus::kFault);
+}
+
+TEST_CASE("An exit code that would say two things of a run is refused with both its keys") {
+  Shell shell("exit 10");
+  CHECK(shell.Refusal() == "accepted");
+  shell.experiment.candidate.exit_codes.fell = 10;  // timed_out as it is by itself
+  CHECK(shell.Refusal() ==
+        "candidate.exit_codes: timed_out and fell are both 10: each needs a code of its own");
+  shell.experiment.candidate.exit_codes = {20, 21, 22, 21};
+  CHECK(shell.Refusal() ==
+        "candidate.exit_codes: fell and lost are both 21: each needs a code of its own");
 }
 
 TEST_CASE("A crash is tried again as often as is allowed, and anything else once") {
