@@ -147,9 +147,13 @@ void RequireWhole(Parameter& parameter) {
   parameter.is_integer = true;
   const bool is_whole = parameter.min == std::floor(parameter.min) &&
                         parameter.max == std::floor(parameter.max) && !parameter.is_logarithmic;
-  if (is_whole) return;
-  throw yaml::Error(fmt::format(
-      "{} holds whole numbers: its range needs whole bounds and a linear scale", parameter.key));
+  if (!is_whole) {
+    throw yaml::Error(fmt::format(
+        "{} holds whole numbers: its range needs whole bounds and a linear scale", parameter.key));
+  }
+  if (!parameter.step || *parameter.step == std::floor(*parameter.step)) return;
+  throw yaml::Error(fmt::format("{} holds whole numbers: its step is {:g}, and it must be whole",
+                                parameter.key, *parameter.step));
 }
 
 /// A simulated parameter is any key of the experiment, by its full name or a short one that is

@@ -60,8 +60,9 @@ void ReadLevels(const Node& node, const std::string& key, experiment::Parameter&
   }
 }
 
+bool IsWhole(double value) { return value == std::floor(value); }
+
 void ReadRangeKind(const Node& node, const std::string& key, experiment::Parameter& parameter) {
-  const auto is_whole = [](double value) { return value == std::floor(value); };
   if (const Node::Entry* entry = node.Find("integer")) {
     parameter.is_integer = ReadBool(entry->value, {Join(key, "integer"), {}, ""});
   }
@@ -74,7 +75,7 @@ void ReadRangeKind(const Node& node, const std::string& key, experiment::Paramet
         node, key,
         fmt::format("scale: log needs min above 0, which is {:g}, and no integers", parameter.min));
   }
-  if (parameter.is_integer && !(is_whole(parameter.min) && is_whole(parameter.max))) {
+  if (parameter.is_integer && !(IsWhole(parameter.min) && IsWhole(parameter.max))) {
     Fail(node, key, "min and max of integers must be whole");
   }
 }
@@ -104,6 +105,9 @@ void ReadSettable(const Node& node, const std::string& key, experiment::Paramete
                           *parameter.nominal >= parameter.min &&
                           *parameter.nominal <= parameter.max;
     if (!is_value) Fail(entry->value, Join(key, "nominal"), "must be a number in its range");
+    if (parameter.is_integer && !IsWhole(*parameter.nominal)) {
+      Fail(entry->value, Join(key, "nominal"), "must be whole, as the integers of its range");
+    }
   }
   if (const Node::Entry* entry = node.Find("settable")) {
     parameter.settable = ReadBool(entry->value, {Join(key, "settable"), {}, ""});
@@ -113,6 +117,9 @@ void ReadSettable(const Node& node, const std::string& key, experiment::Paramete
   parameter.step = NumberOf(entry->value);
   const bool is_step = parameter.step && *parameter.step > 0.0;
   if (!is_step) Fail(entry->value, Join(key, "step"), "must be a number above 0");
+  if (parameter.is_integer && !IsWhole(*parameter.step)) {
+    Fail(entry->value, Join(key, "step"), "must be whole, as the integers of its range");
+  }
   if (!parameter.IsContinuous()) {
     Fail(entry->value, Join(key, "step"), "belongs to a range: a list is set as it is written");
   }

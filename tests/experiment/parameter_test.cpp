@@ -181,8 +181,8 @@ TEST_CASE("The step of a range is its own, its key's, or a round twentieth of it
   CHECK(StepOf(whole) == 1.0);
   whole.max = 55;
   CHECK(StepOf(whole) == 5.0);
-  whole.step = 2.6;
-  CHECK(StepOf(whole) == 2.6);
+  whole.step = 3.0;
+  CHECK(StepOf(whole) == 3.0);
 }
 
 TEST_CASE("A value is set to the nearest step within its range, and a level as it is") {

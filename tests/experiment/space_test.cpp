@@ -83,6 +83,11 @@ TEST_CASE("An axis that breaks a rule is refused with the rule") {
                      {"{values: [1, 2], nominal: 1}", "must be a number in its range"},
                      {"{min: 0, max: 1, step: 0}", "must be a number above 0"},
                      {"{min: 0, max: 1, step: -1}", "must be a number above 0"},
+                     {"{min: 0, max: 10, integer: true, step: 2.6}",
+                      "space.mu.step' is 2.6: must be whole, as the integers of its range"},
+                     {"{min: 0, max: 10, integer: true, step: 0.5}", "must be whole"},
+                     {"{min: 0, max: 10, integer: true, nominal: 2.5}",
+                      "space.mu.nominal' is 2.5: must be whole, as the integers of its range"},
                      {"{values: [1, 2], step: 1}", "belongs to a range"},
                      {"{values: [1, 2], min: 1}", "has values, or min and max: not both"},
                      {"{values: [1, 2], max: 1}", "has values, or min and max: not both"},
@@ -192,6 +197,11 @@ TEST_CASE("Only keys that change a simulated trial are an axis, and whole keys t
                       Contains("simulation.link.uart_bytes holds whole numbers: its range needs "
                                "whole bounds and a linear scale"));
   }
+  CHECK(load("uart_bytes: {min: 8, max: 64, step: 8}").space.parameters[0].step == 8.0);
+  CHECK_THROWS_WITH(load("uart_bytes: {min: 8, max: 64, step: 2.5}"),
+                    Contains("task.yaml:2:9: space: simulation.link.uart_bytes holds whole "
+                             "numbers: its step is 2.5, and it must be whole"));
+  CHECK(load("mismatch: {min: 0, max: 0.1, step: 0.03}").space.parameters[0].step == 0.03);
 }
 
 TEST_CASE("Every setting of a grid of two thousand is tried at once, of a larger one each value") {
