@@ -13,6 +13,7 @@
 #include "sessions/idle_slurm.hpp"
 #include "sessions/sweep/kept_calibration.hpp"
 #include "sessions/sweep_folder.hpp"
+#include "support/inputs/png_bytes.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/quick_gnuplot.hpp"
 
@@ -134,6 +135,45 @@ TEST_CASE("A fit comes back from the journal that keeps it, with its notes but n
   fitted.WriteLog(2, 0.06);
   sweep::Evaluator changed(experiment, "fit.yaml", FileInputs());
   CHECK(KeptCalibration(changed).key() != kept.key());
+}
+
+TEST_CASE("A fit is another one when a picture that it drives on has changed") {
+  const Fitted fitted;
+  experiment::Experiment experiment = fitted.Load();
+  const std::string picture = fitted.folder / "hill.png";
+  experiment.simulation.terrain.surface = "hill";
+  experiment.simulation.terrain.surfaces["hill"] = {};
+  experiment.simulation.terrain.surfaces["hill"].shape = simulation::Shape::kHeightfield;
+  experiment.simulation.terrain.surfaces["hill"].image = picture;
+  const auto key = [&] {
+    sweep::Evaluator evaluator(experiment, "fit.yaml", FileInputs());
+    const std::string text = KeptCalibration(evaluator).key();
+    CHECK_THAT(evaluator.InputsText(), Catch::EndsWith("  " + picture + "\n"));
+    return text;
+  };
+  test::WriteText(picture, test::RampPng(100));
+  const std::string before = key();
+  CHECK(key() == before);
+  test::WriteText(picture, test::RampPng(101));
+  CHECK(key() != before);
+}
+
+TEST_CASE("A fit to drives of powers is another one when their trials began at another time") {
+  const Fitted fitted;
+  experiment::Experiment experiment = fitted.Load();
+  const auto key = [&](const std::string& commands) {
+    test::WriteText(fitted.folder / "commands.csv", commands);
+    sweep::Evaluator evaluator(experiment, "fit.yaml", FileInputs());
+    return KeptCalibration(evaluator).key();
+  };
+  const std::string first = "t_s,power_left,power_right\n0.1,0,0\n";
+  const std::string later = "t_s,power_left,power_right\n0.2,0,0\n";
+  CHECK(key(first) == key(later));  // of waypoints nobody asks
+  experiment.waypoints.resize(1);
+  experiment.program.segments = {{.straight_m = 0.3}};
+  experiment.program.power = 0.3;
+  CHECK(key(first) == key(first));
+  CHECK(key(first) != key(later));
 }
 
 TEST_CASE("A fit on a cluster is one job with the bytes of one made here, and is kept") {

@@ -58,6 +58,7 @@ std::optional<sweep::CalibrationReport> Fit(sweep::Evaluator& evaluator, const F
     sweep::Journal::Remove(request.out / kJournalName);
   }
   if (request.cluster != nullptr) return FitOnCluster(evaluator, request, observer, say);
+  ReadPictures(evaluator);
   return sweep::Identify(evaluator, request.jobs, say);
 }
 

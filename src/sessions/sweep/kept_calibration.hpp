@@ -9,10 +9,13 @@
 
 namespace rift::sessions {
 
+/// Reads the pictures of heightfields that a fit drives on, so that InputsText names them.
+void ReadPictures(sweep::Evaluator& evaluator);
+
 /// What a fit found, as the journal keeps it.
 class KeptCalibration {
  public:
-  /// Reads the logs. The evaluator must outlive this.
+  /// Reads the logs and what else the fit reads. The evaluator must outlive this.
   explicit KeptCalibration(sweep::Evaluator& evaluator);
 
   /// Of everything that the fit depends on beside the facts of the journal.
