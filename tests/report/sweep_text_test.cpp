@@ -17,6 +17,7 @@ namespace rift::report {
 namespace {
 
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
 using Catch::Matchers::StartsWith;
 using nlohmann::json;
 
@@ -233,6 +234,15 @@ TEST_CASE("What the robot said of predictions is counted by its verdicts, of bot
         "seen to fail, 1 undecided; of 5 predicted to hold: 1 falsified, 1 passed, 2 not seen to "
         "fail, 1 undecided; 318 drives in all; a prediction of the sweep holds with 83 % "
         "probability");
+}
+
+TEST_CASE("Changes between two sweeps say how many are copies") {
+  sweep::SweepChange change;
+  change.now_hold = 4;
+  CHECK_THAT(ChangeSentence(change), EndsWith("(4 now hold, 0 now fail)"));
+  change.copies = 16;
+  CHECK_THAT(ChangeSentence(change),
+             EndsWith("(4 now hold, 0 now fail, 16 more are copies of these)"));
 }
 
 TEST_CASE("A link names a hundred rows at most, and its words are those of a URL") {
