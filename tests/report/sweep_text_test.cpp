@@ -236,6 +236,23 @@ TEST_CASE("What the robot said of predictions is counted by its verdicts, of bot
         "probability");
 }
 
+TEST_CASE("A rare event says how many of its runs do not tell, and what they are taken for") {
+  sweep::RareEvent event{.probability = 0.3, .low = 0.2, .high = 0.4, .levels = 1};
+  event.evaluations = 300;
+  event.untold = 12;
+  event.is_reached = true;
+  CHECK_THAT(RareEventSentence(event),
+             EndsWith("(288 runs in 1 level: it is not rare; 12 more do not tell)"));
+  event.levels = 3;
+  CHECK_THAT(RareEventSentence(event), EndsWith("(300 runs in 3 levels of subset simulation; 12 of "
+                                                "them do not tell and are taken to hold)"));
+  event.is_reached = false;
+  CHECK_THAT(RareEventSentence(event),
+             EndsWith("about 0.4 at most (12 of 300 runs do not tell and are taken to hold)"));
+  event.untold = 0;
+  CHECK_THAT(RareEventSentence(event), EndsWith("about 0.4 at most"));
+}
+
 TEST_CASE("Changes between two sweeps say how many are copies") {
   sweep::SweepChange change;
   change.now_hold = 4;

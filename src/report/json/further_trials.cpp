@@ -57,6 +57,7 @@ std::string RareEventJson(const sweep::RareEvent& event, const sweep::RareEventO
       {"is_reached", event.is_reached},
       {"levels", event.levels},
       {"runs", event.evaluations},
+      {"untold", event.untold},
       {"options", FieldsToJson(options)},
       {"sentence", RareEventSentence(event)}};
   return Dump(json);

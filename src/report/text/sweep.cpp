@@ -277,20 +277,27 @@ std::string ShrunkText(const sweep::SweepResult& result, const sweep::ShrunkRow&
 }
 
 std::string RareEventSentence(const sweep::RareEvent& event) {
+  constexpr const char* kUntold = "do not tell and are taken to hold";
   if (!event.is_reached) {
     return fmt::format(
         "no failure was reached in {} levels: a run at a setting drawn at random fails with a "
-        "probability "
-        "of about {:.2g} at most",
-        event.levels, event.high);
+        "probability of about {:.2g} at most{}",
+        event.levels, event.high,
+        event.untold > 0
+            ? fmt::format(" ({} of {} runs {})", event.untold, event.evaluations, kUntold)
+            : "");
+  }
+  std::string runs =
+      fmt::format("{} runs in {} levels of subset simulation", event.evaluations, event.levels);
+  if (event.untold > 0) runs += fmt::format("; {} of them {}", event.untold, kUntold);
+  if (event.levels == 1) {
+    runs = fmt::format("{} runs in 1 level: it is not rare", event.evaluations - event.untold);
+    if (event.untold > 0) runs += fmt::format("; {} more do not tell", event.untold);
   }
   return fmt::format(
       "a run at a setting drawn at random fails with a probability of {:.2g}, between {:.2g} and "
-      "{:.2g} "
-      "with 95 % confidence ({} runs in {})",
-      event.probability, event.low, event.high, event.evaluations,
-      event.levels == 1 ? std::string("1 level: it is not rare")
-                        : fmt::format("{} levels of subset simulation", event.levels));
+      "{:.2g} with 95 % confidence ({})",
+      event.probability, event.low, event.high, runs);
 }
 
 }  // namespace rift::report

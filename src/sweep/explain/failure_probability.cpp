@@ -93,9 +93,10 @@ class Replica {
   void Take(std::span<const double> robustness) {
     std::vector<Sample> samples;
     for (size_t i = 0; i < asked_.size(); ++i) {
-      samples.push_back({std::move(asked_[i]), std::isnan(robustness[i])
-                                                   ? std::numeric_limits<double>::infinity()
-                                                   : robustness[i]});
+      const bool is_told = !std::isnan(robustness[i]);
+      samples.push_back({std::move(asked_[i]),
+                         is_told ? robustness[i] : std::numeric_limits<double>::infinity()});
+      untold_ += !is_told;
     }
     evaluations_ += static_cast<int>(samples.size());
     asked_.clear();
@@ -107,6 +108,7 @@ class Replica {
   double Bound() const { return bound_; }
   int Levels() const { return levels_; }
   int Evaluations() const { return evaluations_; }
+  int Untold() const { return untold_; }
   bool IsReached() const { return is_reached_; }
 
  private:
@@ -218,6 +220,7 @@ class Replica {
   double bound_ = 1.0;
   int levels_ = 0;
   int evaluations_ = 0;
+  int untold_ = 0;
   bool is_reached_ = false;
   bool is_done_ = false;
 };
@@ -249,8 +252,10 @@ bool IsCommon(const Replica& first) {
 void CountDraws(const std::vector<Replica>& replicas, RareEvent& event) {
   double failures = 0.0;
   for (const Replica& replica : replicas) failures += replica.Bound() * replica.Evaluations();
-  const statistics::Interval share = statistics::ClopperPearson(
-      static_cast<int>(std::lround(failures)), event.evaluations, kConfidence);
+  const int told = event.evaluations - event.untold;
+  const statistics::Interval share =
+      statistics::ClopperPearson(static_cast<int>(std::lround(failures)), told, kConfidence);
+  event.probability = std::round(failures) / told;
   event.low = share.low;
   event.high = share.high;
 }
@@ -275,6 +280,7 @@ RareEvent Conclude(const std::vector<Replica>& replicas) {
     bounds.push_back(replica.Bound());
     event.levels = std::max(event.levels, replica.Levels());
     event.evaluations += replica.Evaluations();
+    event.untold += replica.Untold();
     event.is_reached = event.is_reached || replica.IsReached();
   }
   if (!event.is_reached) {

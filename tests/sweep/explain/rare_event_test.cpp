@@ -157,6 +157,47 @@ std::vector<double> Each(const std::vector<std::vector<double>>& points, double 
   return values;
 }
 
+TEST_CASE("Runs that do not tell are no part of draws that are counted, and are told") {
+  // Of every 20 draws two do not tell.
+  const auto counted = [](int failures) {
+    return EstimateRareEvent(
+        1,
+        [&](const auto& points) {
+          std::vector<double> values;
+          for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+            values.push_back(i % 20 < failures ? -1.0 : i % 20 < 18 ? 1.0 : NAN);
+          }
+          return values;
+        },
+        1, {.replicas = 4, .samples_per_level = 20});
+  };
+  const RareEvent some = counted(6), most = counted(18);
+  CHECK(some.levels == 1);
+  CHECK(some.evaluations == 80);
+  CHECK(some.untold == 8);
+  CHECK(some.probability == Approx(24.0 / 72.0));
+  const statistics::Interval share = statistics::ClopperPearson(24, 72, 0.95);
+  CHECK(some.low == share.low);
+  CHECK(some.high == share.high);
+  CHECK(most.evaluations == 20);
+  CHECK(most.untold == 2);
+  CHECK(most.probability == 1.0);
+  CHECK(most.high == 1.0);
+  // In levels they lie beyond each of them.
+  const RareEvent rare = EstimateRareEvent(1,
+                                           [](const auto& points) {
+                                             std::vector<double> values = Each(points, 1e-3);
+                                             for (double& value : values)
+                                               value = value > 0.8 ? NAN : value;
+                                             return values;
+                                           },
+                                           11, {});
+  CHECK(rare.levels > 1);
+  CHECK(rare.untold > 0.15 * 8 * 300);  // a fifth of the draws, and few of what is asked later
+  CHECK(rare.untold < 0.25 * 8 * 300);
+  CHECK(std::log10(rare.probability) == Approx(-3.0).margin(0.2));
+}
+
 TEST_CASE("A probability of a thousandth takes three levels of a tenth") {
   const RareEvent event = EstimateRareEvent(
       1, [](const auto& points) { return Each(points, 1e-3); }, 11, {.replicas = 12});

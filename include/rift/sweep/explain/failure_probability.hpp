@@ -56,10 +56,11 @@ struct RareEvent {
   int levels = 0;  ///< of the replica with the most
   int evaluations = 0;
   bool is_reached = false;  ///< failures were found; else the probability is below `high`
+  int untold = 0;  ///< of the evaluations; left out where draws are counted, else taken to hold
 };
 
-/// Robustness at each of some points of the unit cube: below or at zero it fails; NaN: it does not.
-/// It may depend on chance, drawn anew for each point.
+/// Robustness at each of some points of the unit cube: below or at zero it fails; NaN: nothing
+/// tells. It may depend on chance, drawn anew for each point.
 using UnitRobustness = std::function<std::vector<double>(const std::vector<std::vector<double>>&)>;
 
 /// Subset simulation (Au and Beck 2001) over the unit cube: a chain of levels of falling
