@@ -32,6 +32,13 @@ std::size_t EndOfDigits(const std::string& text, std::size_t at) {
   return at;
 }
 
+/// Those from `at` on as they count behind a point: zeros at the end left out.
+std::string_view FractionAt(const std::string& text, std::size_t at) {
+  std::size_t end = EndOfDigits(text, at);
+  while (end > at && text[end - 1] == '0') --end;
+  return std::string_view(text).substr(at, end - at);
+}
+
 constexpr std::size_t kUnixDigits = 10;  // of seconds since 1970, from 2001 to 2286
 
 /// The numbers in the name of a file, the last one first, its folder and ending left out.
@@ -129,6 +136,12 @@ bool IsBefore(const std::string& a, const std::string& b) {
     const std::string_view x = DigitsAt(a, i), y = DigitsAt(b, k);
     if (x.size() != y.size()) return x.size() < y.size();
     if (x != y) return x < y;
+    i = EndOfDigits(a, i);
+    k = EndOfDigits(b, k);
+    // Programs leave zeros at the end of a time out: .5 comes after .25.
+    if (x.size() != kUnixDigits || a[i] != '.' || b[k] != '.') continue;
+    const std::string_view x_fraction = FractionAt(a, ++i), y_fraction = FractionAt(b, ++k);
+    if (x_fraction != y_fraction) return x_fraction < y_fraction;
     i = EndOfDigits(a, i);
     k = EndOfDigits(b, k);
   }

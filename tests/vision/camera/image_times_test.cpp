@@ -161,5 +161,21 @@ TEST_CASE("The numbers that count pictures may stand before others, and may be U
   CHECK_FALSE(AreCounted({"a1_1.png", "a1.png"}));
 }
 
+TEST_CASE("Behind the point of Unix seconds digits are a fraction, however many there are") {
+  const std::vector<std::string> in_order{
+      "c_1699999999.9.jpg",  "c_1700000000.jpg",   "c_1700000000.05.jpg", "c_1700000000.1.jpg",
+      "c_1700000000.25.jpg", "c_1700000000.5.jpg", "c_1700000000.75.jpg", "c_1700000001.0.jpg"};
+  std::vector<std::string> files(in_order.rbegin(), in_order.rend());
+  std::sort(files.begin(), files.end(), IsBefore);
+  CHECK(files == in_order);
+  CHECK(AreCounted(files));
+  CHECK(IsBefore("1700000000.5a.jpg", "1700000000.50b.jpg"));
+  CHECK(IsBefore("1700000000.50.jpg", "1700000000.5.jpg") !=
+        IsBefore("1700000000.5.jpg", "1700000000.50.jpg"));
+  // Numbers of other lengths are counts.
+  CHECK(IsBefore("170000000.5.jpg", "170000000.25.jpg"));
+  CHECK(IsBefore("17000000000.5.jpg", "17000000000.25.jpg"));
+}
+
 }  // namespace
 }  // namespace rift::vision
