@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "arc_path.hpp"
 #include "path_shape.hpp"
 #include "rift/gap/result.hpp"
 #include "rift/statistics/bootstrap.hpp"
@@ -206,6 +207,23 @@ void Check(std::span<const RepeatedSetting> settings) {
   }
 }
 
+/// The rows of a path that gaps are measured from.
+Trajectory Measured(const Trajectory& path, const GapOptions& gap) {
+  return {gap.IsInSpace() ? MakeArcPathIn<3>(path, gap).poses : MakeArcPath(path, gap).poses, {}};
+}
+
+std::vector<RepeatedSetting> Measured(std::span<const RepeatedSetting> settings,
+                                      const GapOptions& gap) {
+  std::vector<RepeatedSetting> measured(settings.begin(), settings.end());
+  for (RepeatedSetting& setting : measured) {
+    for (Trajectory& path : setting.reals) path = Measured(path, gap);
+    for (std::vector<Trajectory>& sims : setting.sims) {
+      for (Trajectory& path : sims) path = Measured(path, gap);
+    }
+  }
+  return measured;
+}
+
 }  // namespace
 
 PathTraits TraitsOf(const Trajectory& path, const LikenessOptions& options) {
@@ -242,6 +260,13 @@ double DominantWavelength_m(std::span<const Trajectory> paths, const LikenessOpt
 Likeness MeasureLikeness(std::span<const RepeatedSetting> settings, const GapOptions& gap,
                          const LikenessOptions& options, std::mt19937_64& generator) {
   Check(settings);
+  if (gap.trim_standstill) {
+    // Once, of every path: the jitter of a standing robot is no part of its weave or shape either,
+    // and a mean path is made of what is left.
+    GapOptions of_trimmed = gap;
+    of_trimmed.trim_standstill = false;
+    return MeasureLikeness(Measured(settings, gap), of_trimmed, options, generator);
+  }
   const AllPaths all = Gather(settings);
   Likeness likeness{.reals = all.reals.size(), .sims = all.sims.size()};
   likeness.wavelength_m = {DominantWavelength_m(all.sims, options),

@@ -1,6 +1,7 @@
 // Likeness, judgements and definitions, each worked out by hand.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "gap/path_shape.hpp"
 #include "rift/gap/comparison.hpp"
@@ -74,6 +75,48 @@ TEST_CASE("Numbers are means over the settings, and one alone has no interval") 
   CHECK(found.spread_m.ratio_interval.high == Approx(2.0));
   const Likeness one = MeasureLikeness({settings.data(), 1}, {}, Few(), generator);
   CHECK(std::isnan(one.spread_m.ratio_interval.low));
+}
+
+/// A lane that begins and ends with a robot that stands and jitters by 2 mm.
+Trajectory WithStandstill(const Trajectory& lane) {
+  Trajectory path;
+  const auto stand = [&](const trajectory::StampedPose& pose) {
+    for (int i = 0; i < 400; ++i) {
+      trajectory::StampedPose at = pose;
+      at.y_m += i % 2 == 0 ? 0.002 : -0.002;
+      path.poses.push_back(at);
+    }
+  };
+  stand(lane.poses.front());
+  path.poses.insert(path.poses.end(), lane.poses.begin(), lane.poses.end());
+  stand(lane.poses.back());
+  for (size_t i = 0; i < path.poses.size(); ++i) path.poses[i].t_s = 0.01 * static_cast<double>(i);
+  return path;
+}
+
+TEST_CASE("With the standstill trimmed, likeness is that of the paths that were driven") {
+  const auto weaving = [](double left_m) {
+    Trajectory path = Lane(left_m);
+    for (auto& pose : path.poses) pose.y_m += 0.01 * std::sin(8.0 * std::numbers::pi * pose.x_m);
+    return path;
+  };
+  const auto likeness = [&](bool stands, bool trims) {
+    RepeatedSetting setting{{weaving(0.0), weaving(0.012)}, {{weaving(0.02), weaving(0.04)}}};
+    for (auto* paths : {&setting.reals, &setting.sims.front()}) {
+      for (Trajectory& path : *paths) path = stands ? WithStandstill(path) : path;
+    }
+    std::mt19937_64 generator(3);
+    return MeasureLikeness({&setting, 1}, {.trim_standstill = trims}, Few(), generator);
+  };
+  const Likeness driven = likeness(false, false), trimmed = likeness(true, true);
+  CHECK(trimmed.weave_m.sim == Approx(driven.weave_m.sim).epsilon(0.03));
+  CHECK(trimmed.weave_m.real == Approx(driven.weave_m.real).epsilon(0.03));
+  CHECK(trimmed.wavelength_m.real == Approx(0.25).epsilon(0.08));
+  CHECK(trimmed.energy_m == Approx(driven.energy_m).epsilon(0.03));
+  CHECK(trimmed.mean_path_gap_m == Approx(driven.mean_path_gap_m).epsilon(0.03));
+  CHECK(trimmed.inside_share == driven.inside_share);
+  // Jitter of 2 x 400 x 4 mm is three times as long as the lane, and weaves less.
+  CHECK(likeness(true, false).weave_m.real < 0.7 * driven.weave_m.real);
 }
 
 TEST_CASE("A setting needs one list of runs, or one for each real path") {
