@@ -90,5 +90,23 @@ TEST_CASE(
              !Contains(size) && Contains("note: " + (recorded.folder / "cam.yaml") + " " + frame));
 }
 
+TEST_CASE("The run file of a network camera names it without its user and password") {
+  const test::TemporaryFolder folder;
+  TrackingJob job;
+  job.camera = "http://me:secret@127.0.0.1:9/video";  // nobody answers there
+  job.calibration = kData + "/camera.yaml";
+  job.options = job.OptionsFor({});
+  job.log = folder / "log.csv";
+  std::string said;
+  Track(job, ReadInputs(job),
+        {.is_stopped = [] { return false; },
+         .say = [&](const std::string& line) { said += line + "\n"; },
+         .print = [](std::string_view) {}},
+        [](const auto&...) {});
+  const std::string run = files::ReadFile(RunFileOf(job.log));
+  CHECK_THAT(run, Contains("\"camera\": \"http://***@127.0.0.1:9/video\"") && !Contains("secret"));
+  CHECK_THAT(said, Contains("http://***@127.0.0.1:9/video: ") && !Contains("secret"));
+}
+
 }  // namespace
 }  // namespace rift::sessions

@@ -64,7 +64,7 @@ void WriteRunFile(const TrackingJob& job, const vision::CameraModel& camera,
                   const experiment::TrackOptions& options, const vision::TrackRun& run) {
   files::WriteFile(
       RunFileOf(job.log),
-      report::TrackJson({job.camera, job.calibration,
+      report::TrackJson({vision::WithoutPassword(job.camera), job.calibration,
                          statistics::Hash128Text(files::ReadFile(job.calibration)), job.session},
                         camera, options, run, run.rows));
 }

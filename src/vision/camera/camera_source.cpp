@@ -38,6 +38,16 @@ SourceKind KindOf(std::string_view name) {
   return SourceKind::kVideo;
 }
 
+std::string WithoutPassword(const std::string& name) {
+  const std::size_t scheme = name.find("://");
+  if (scheme == std::string::npos) return name;
+  const std::size_t begin = scheme + 3;
+  // A password may hold an @ of its own (RFC 3986 wants %40); a path that has one is none.
+  const std::string host = name.substr(begin, name.find_first_of("/?#", begin) - begin);
+  const std::size_t at = host.rfind('@');
+  return at == std::string::npos ? name : name.substr(0, begin) + "***" + name.substr(begin + at);
+}
+
 std::unique_ptr<CameraSource> OpenCamera(const std::string& name, const CaptureOptions& options) {
   switch (KindOf(name)) {
     case SourceKind::kDevice:

@@ -116,8 +116,9 @@ void RequireAddress(const std::string& url) {
   const CURLUcode code = curl_url_set(parts, CURLUPART_URL, url.c_str(), 0);
   curl_url_cleanup(parts);
   if (code == CURLUE_OK) return;
-  throw std::invalid_argument(fmt::format(
-      "{}: it is no address of a camera, http://HOST:PORT/PATH with a port up to 65535", url));
+  throw std::invalid_argument(
+      fmt::format("{}: it is no address of a camera, http://HOST:PORT/PATH with a port up to 65535",
+                  WithoutPassword(url)));
 }
 
 /// An MJPEG stream over http with its JPEGs as they were sent. OpenCV's readers decode each and
@@ -174,7 +175,7 @@ class StreamSource : public CameraSource {
   }
 
   void Break(const std::string& reason) {
-    const std::string text = fmt::format("{}: {}", url_, reason);
+    const std::string text = fmt::format("{}: {}", WithoutPassword(url_), reason);
     if (IsRefusal(connection_->Status())) throw CameraError(CameraState::kRefused, text);
     connection_.reset();
     if (parts_) before_ += parts_->Skipped();
@@ -203,7 +204,8 @@ class StreamSource : public CameraSource {
       }
       return false;
     } catch (const std::exception& error) {
-      throw CameraError(CameraState::kWrongFormat, fmt::format("{}: {}", url_, error.what()));
+      throw CameraError(CameraState::kWrongFormat,
+                        fmt::format("{}: {}", WithoutPassword(url_), error.what()));
     }
   }
 

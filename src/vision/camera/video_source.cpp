@@ -133,7 +133,7 @@ class NetworkSource : public CameraSource {
     return false;
   }
   void Break(const std::string& reason) {
-    again_.Broke(fmt::format("{}: {}", url_, reason), SteadyNow_s());
+    again_.Broke(fmt::format("{}: {}", WithoutPassword(url_), reason), SteadyNow_s());
   }
 
   std::string url_;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "rift/vision/camera/camera_source.hpp"
 #include "rift/vision/camera/steady_now.hpp"
 #include "rift/vision/tracking/world_frame.hpp"
 
@@ -31,12 +32,13 @@ CameraSession::CameraSession(std::string name, CameraModel camera, CaptureOption
       capture_(OpenCapture(name_, options_)) {}
 
 Frame CameraSession::FirstPicture() {
+  const std::string name = WithoutPassword(name_);
   std::optional<Frame> frame;
   while (!(frame = capture_->Next(kPictureWait_s))) {
     const CaptureStatus status = capture_->Status();
     if (!IsFinal(status.state) && status.state != CameraState::kFrozen) continue;
     throw std::runtime_error(fmt::format(
-        "the camera {} is {}: {}", name_,
+        "the camera {} is {}: {}", name,
         EnumNames(status.state)[static_cast<std::size_t>(status.state)], status.reason));
   }
   if (camera_.width_px == 0 || camera_.height_px == 0) {
@@ -46,7 +48,7 @@ Frame CameraSession::FirstPicture() {
       throw std::invalid_argument(fmt::format(
           "the camera {} gives {}x{} pixels, for which its calibration does not say whether it was "
           "made: {}",
-          name_, frame->width_px, frame->height_px, *why));
+          name, frame->width_px, frame->height_px, *why));
     }
   }
   if (frame->width_px == camera_.width_px && frame->height_px == camera_.height_px) {
@@ -55,7 +57,7 @@ Frame CameraSession::FirstPicture() {
   throw std::invalid_argument(
       fmt::format("the camera {} gives {}x{} pixels and its calibration is for {}x{}: set the "
                   "camera to that size, or calibrate anew",
-                  name_, frame->width_px, frame->height_px, camera_.width_px, camera_.height_px));
+                  name, frame->width_px, frame->height_px, camera_.width_px, camera_.height_px));
 }
 
 Look CameraSession::LookAt(const Frame& frame, int decimate) const {

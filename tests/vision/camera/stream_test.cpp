@@ -159,6 +159,29 @@ TEST_CASE("What a server answers is said in words and ends the session at once")
   }
 }
 
+TEST_CASE("A camera's user and password are in no text") {
+  CHECK(WithoutPassword("http://me:secret@host:80/video?a@b") == "http://***@host:80/video?a@b");
+  CHECK(WithoutPassword("rtsp://me@host") == "rtsp://***@host");
+  CHECK(WithoutPassword("rtsp://me:se@cret@host/1") == "rtsp://***@host/1");
+  for (const char* name : {"http://host/@live", "http://host?user=me@host", "/dev/video0",
+                           "a@b/*.jpg", "rtsp://host/a://b@c"}) {
+    CHECK(WithoutPassword(name) == name);
+  }
+  const auto with_user = [](std::string url) { return url.insert(7, "me:secret@"); };
+  synthetic::ScriptedServer refusing({"HTTP/1.0 403 Forbidden\r\nContent-Length: 0\r\n\r\n", ""});
+  MjpegServer no_video(LargeJpeg(), {.content_type = "text/html"});
+  for (const auto& [url, state] : {std::pair(refusing.Url(), CameraState::kRefused),
+                                   {no_video.Url(), CameraState::kWrongFormat},
+                                   {"rtsp://127.0.0.1:9/", CameraState::kUnplugged}}) {
+    CaptureThread capture = Capturing(with_user(url));
+    WaitForState(capture, state);
+    CHECK_THAT(capture.Status().reason,
+               Catch::Matchers::StartsWith(url.substr(0, 7) + "***@" + url.substr(7) + ": "));
+  }
+  CHECK_THROWS_WITH(OpenCamera("http://me:secret@host:99999/", {}),
+                    Catch::Matchers::StartsWith("http://***@host:99999/: it is no address"));
+}
+
 TEST_CASE("A stream of parts that are no JPEGs is a wrong format after eleven of them") {
   const auto state_after = [](int parts, bool has_picture) {
     std::string answer(kOk);

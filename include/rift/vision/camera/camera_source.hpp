@@ -92,6 +92,10 @@ enum class SourceKind {
 };
 SourceKind KindOf(std::string_view name);
 
+/// A camera's name as it is said and written: user and password of an address are left out,
+/// `http://***@camera/video`.
+std::string WithoutPassword(const std::string& name);
+
 /// Opens a camera. Throws CameraError (busy, wrong format, unplugged: with the name, what was tried
 /// and what to do), std::invalid_argument for a file or pattern that matches nothing.
 std::unique_ptr<CameraSource> OpenCamera(const std::string& name, const CaptureOptions& options);
