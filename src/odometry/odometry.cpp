@@ -101,7 +101,7 @@ std::string EncodersCsv(const std::vector<EncoderReading>& readings) {
 }
 
 std::vector<EncoderReading> ReadEncoders(std::string_view text, const std::string& name) {
-  trajectory::csv::RowReader rows(text, name, true, ',');
+  trajectory::csv::RowReader rows(trajectory::csv::WithoutTornRow(text), name, true, ',');
   const std::vector<std::string>& columns = rows.Columns();
   const auto column = [&](const char* wanted, bool is_needed) {
     const auto at = std::find(columns.begin(), columns.end(), wanted);

@@ -47,7 +47,33 @@ std::string_view WithoutPlus(std::string_view cell) {
   return plus ? cell.substr(1) : cell;
 }
 
+/// The last row where it has no line end; empty where it has, and where it is the only line.
+std::string_view UnendedRow(std::string_view text) {
+  const size_t begin = text.rfind('\n') + 1;
+  const std::string_view last = text.substr(begin);
+  return begin == 0 || last.find_first_not_of(" \t\r") == last.npos ? "" : last;
+}
+
 }  // namespace
+
+std::string_view WithoutTornRow(std::string_view text) {
+  const std::string_view last = UnendedRow(text);
+  if (last.empty()) return text;
+  const size_t header = text.find_first_not_of("\r\n");
+  const std::string_view columns = text.substr(header, text.find('\n', header) - header);
+  const bool lacks_cells =
+      std::count(last.begin(), last.end(), ',') < std::count(columns.begin(), columns.end(), ',');
+  const bool is_torn =
+      lacks_cells || std::string_view("+-.eE").find(last.back()) != std::string_view::npos;
+  return is_torn ? text.substr(0, text.size() - last.size()) : text;
+}
+
+std::optional<std::string> NoteOfEnd(std::string_view text) {
+  if (UnendedRow(text).empty()) return std::nullopt;
+  return WithoutTornRow(text).size() < text.size()
+             ? "the last row was cut short while it was written: it is left out"
+             : "the last row has no line end: its last number may be cut";
+}
 
 void RefuseRepeatedColumns(const std::vector<std::string>& columns, const std::string& where) {
   for (auto column = columns.begin(); column != columns.end(); ++column) {

@@ -129,23 +129,6 @@ void NoteLeftOut(size_t rows, std::string_view why, Log& log) {
   log.notes.push_back(fmt::format("{} left out: {}", number, why));
 }
 
-/// rift ends each row with a line end, so one that lacks it and cells too was cut short when its
-/// writer was killed or the disk was full.
-std::string_view WithoutTornRow(std::string_view text, Log& log) {
-  const size_t begin = text.rfind('\n') + 1;
-  const std::string_view last = text.substr(begin);
-  if (begin == 0 || last.find_first_not_of(" \t\r") == last.npos) return text;
-  const size_t header = text.find_first_not_of("\r\n");
-  const std::string_view columns = text.substr(header, text.find('\n', header) - header);
-  const bool lacks_cells =
-      std::count(last.begin(), last.end(), ',') < std::count(columns.begin(), columns.end(), ',');
-  if (!lacks_cells && std::string_view("+-.eE").find(last.back()) == std::string_view::npos) {
-    return text;
-  }
-  log.notes.emplace_back("the last row was cut short while it was written: it is left out");
-  return text.substr(0, begin);
-}
-
 }  // namespace
 
 Log ReadLog(std::string_view text, const std::string& name, Format format) {
@@ -166,7 +149,10 @@ Log ReadLog(std::string_view text, const std::string& name, const ReadOptions& o
     log.format = options.format == Format::kAuto
                      ? FormatFromHeader(text, name, options.columns_flag)
                      : options.format;
-    if (log.format == Format::kRift) text = WithoutTornRow(text, log);
+    if (log.format == Format::kRift) {
+      if (const auto note = csv::NoteOfEnd(text)) log.notes.push_back(*note);
+      text = csv::WithoutTornRow(text);
+    }
     rows = ReadRows(text, name, log.format);
   }
   log.trajectory = std::move(rows.trajectory);

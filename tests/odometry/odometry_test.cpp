@@ -78,6 +78,23 @@ TEST_CASE("Encoder readings come back from their file as they were") {
   CHECK(read[1].battery_v == 5.25);
 }
 
+TEST_CASE("A last reading that was cut short is left out as that of a log is") {
+  const std::string whole = "t_s,left,right,battery_v\n0,1,1,\n1,2,3,4.5\n";
+  const auto readings_of = [](const std::string& text) {
+    INFO(text);
+    const std::vector<EncoderReading> read = ReadEncoders(text, "e.csv");
+    CHECK(read[1].counts == control::EncoderCounts{2, 3});
+    return read.size();
+  };
+  for (const char* torn : {"2", "2,", "2,-", "2,3,4", "2,3,4,4."}) {
+    CHECK(readings_of(whole + torn) == 2);
+  }
+  CHECK(readings_of(whole + std::string(30, '\0')) == 2);
+  CHECK(readings_of(whole + "2,3,4,") == 3);
+  CHECK(readings_of(whole + "2,3,4,5") == 3);
+  CHECK_THROWS_WITH(ReadEncoders(whole + "2,3\n", "e.csv"), Catch::Contains("e.csv:4"));
+}
+
 TEST_CASE("A file that is no encoder log is refused with its place") {
   const auto refused = [](const char* text, const char* words) {
     CHECK_THROWS_WITH(ReadEncoders(text, "e.csv"), Catch::Contains(words));

@@ -27,6 +27,15 @@ std::optional<double> NumberOf(std::string_view cell);
 /// Throws std::invalid_argument `where: ...` for two columns of one name.
 void RefuseRepeatedColumns(const std::vector<std::string>& columns, const std::string& where);
 
+/// A table with commas and a header, each row of which was written with its line end: without a
+/// last row that lacks it and cells too, or ends within a number. Its writer was killed, or the
+/// disk full.
+std::string_view WithoutTornRow(std::string_view text);
+
+/// What to tell of the last row of such a table: left out, or perhaps short of digits; else
+/// nothing.
+std::optional<std::string> NoteOfEnd(std::string_view text);
+
 /// The numbers of a text table, one row after the other, separated by `separator` (a blank stands
 /// for any run of blanks and tabs). No two columns of a header may share a name. Blank lines are
 /// skipped, and in a table without header lines that begin with # too. Everything throws
