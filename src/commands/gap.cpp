@@ -91,6 +91,9 @@ int MeasureOdometry(const GapRequest& request) {
   CheckOutputs(inputs, {.files = outputs, .force = request.force});
   sessions::OdometryJob job = request.odometry;
   job.calibration.confidence = request.job.verdict.confidence;
+  for (const sessions::LoadedRun& run : runs) {
+    for (const std::string& note : run.notes) terminal::Say(note);
+  }
   sessions::LeaveOutCopies(runs, terminal::Say);
   const odometry::OdometryResult result = sessions::MeasureOdometry(runs, job);
   const bool has_text =

@@ -69,6 +69,26 @@ TEST_CASE("A folder of a run is read from the three files in it") {
   REQUIRE(run.run.program);
 }
 
+TEST_CASE("What is noted and doubted of a run's files is told with their names") {
+  const test::TemporaryFolder folder;
+  const auto notes = [&] { return LoadRun(folder.Path(), "").notes; };
+  test::WriteText(folder / "trajectory.csv", Log());
+  test::WriteText(folder / "encoders.csv", Encoders(1000));
+  CHECK(notes().empty());
+  test::WriteText(folder / "trajectory.csv", Log() + "6,2");
+  test::WriteText(folder / "encoders.csv", Encoders(1000) + "6,2");
+  const std::string left_out = ": the last row was cut short while it was written: it is left out";
+  CHECK(notes() == std::vector<std::string>{"note: " + (folder / "trajectory.csv") + left_out,
+                                            "note: " + (folder / "encoders.csv") + left_out});
+  trajectory::Trajectory fast = trajectory::ReadLog(Log(), "log").trajectory;
+  for (auto& pose : fast.poses) pose.x_m *= 100.0;  // centimetres
+  test::WriteText(folder / "trajectory.csv", trajectory::WriteRift(fast));
+  test::WriteText(folder / "encoders.csv", Encoders(1000));
+  REQUIRE(notes().size() == 1);
+  CHECK_THAT(notes()[0],
+             Catch::Matchers::StartsWith("warning: " + (folder / "trajectory.csv") + ": "));
+}
+
 TEST_CASE("Beside a log its own files come first, then those that any run has") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "sim.csv", Log());

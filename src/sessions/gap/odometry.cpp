@@ -8,6 +8,7 @@
 #include "rift/files/files.hpp"
 #include "rift/gap/result.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/trajectory/csv.hpp"
 #include "rift/trajectory/log.hpp"
 
 namespace rift::sessions {
@@ -53,7 +54,14 @@ LoadedRun LoadRun(const std::string& name, const std::string& program) {
       trajectory::ReadLog(files::ReadFile(files.trajectory), files.trajectory.string());
   LoadedRun loaded{.run = {.log = {.name = name, .camera = std::move(log.trajectory)}},
                    .files = {files.trajectory, files.encoders, files.experiment}};
+  const auto tell = [&loaded](const char* kind, const fs::path& file, const std::string& text) {
+    loaded.notes.push_back(fmt::format("{}: {}: {}", kind, file.string(), text));
+  };
+  for (const std::string& note : log.notes) tell("note", files.trajectory, note);
+  for (const std::string& doubt : log.doubts) tell("warning", files.trajectory, doubt);
   if (const auto encoders = files::ReadIfThere(files.encoders)) {
+    const auto note = trajectory::csv::NoteOfEnd(*encoders);
+    if (note) tell("note", files.encoders, *note);
     loaded.run.log.encoders = odometry::ReadEncoders(*encoders, files.encoders.string());
   }
   const bool is_told = !program.empty();

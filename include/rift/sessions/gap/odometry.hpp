@@ -48,6 +48,7 @@ struct LoadedRun {
   odometry::ProgramRun run;
   std::optional<experiment::Experiment> experiment;
   std::vector<std::filesystem::path> files;  ///< what it was read from, there or not
+  std::vector<std::string> notes;            ///< what to tell of these, one line each
 };
 
 /// `name`: a run folder, or a log with encoders.csv beside it. `program`: the experiment that it
