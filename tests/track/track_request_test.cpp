@@ -102,6 +102,23 @@ TEST_CASE("Each of several robots has a tag of its own") {
   asked.Refuses("--id: 3 is named twice", [](TrackRequest& r) { r.job.ids = {3, 4, 3}; });
 }
 
+TEST_CASE("The picture of a calibration is a PNG or JPEG before any is taken") {
+  Asked asked([](TrackRequest& r) {
+    r.calibrate = true;
+    r.images = "@photos";
+    r.out = "@cam.yaml";
+  });
+  for (const char* name : {"@seen.pdf", "@seen", "@seen.pngg", "@png"}) {
+    asked.Refuses("give it a name that ends in .png or .jpg",
+                  [name](TrackRequest& r) { r.picture = name; });
+  }
+  for (const char* name : {"@seen.png", "@seen.JPG", "@seen.jpeg"}) {
+    asked.request.picture = name;
+    asked.InFolder();
+    CHECK_NOTHROW(asked.request.Check());
+  }
+}
+
 TEST_CASE("A check of precision is of one camera that is not opened, and replaces no input") {
   Asked asked([](TrackRequest& r) {
     r.check = true;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <memory>
 #include <set>
@@ -88,6 +90,12 @@ void CheckCalibrating(const TrackRequest& request) {
            "--view shows a camera: --images are not taken in a window"},
           {request.out.empty(), "--out CAM.yaml is missing: where shall the calibration go?"}});
   CheckOutputs({}, {.files = {request.out, PictureOf(request)}, .force = job.force});
+  std::string ending = PictureOf(request).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  Refuse({{ending != ".png" && ending != ".jpg" && ending != ".jpeg",
+           request.picture + ": a picture is a PNG or JPEG: give it a name that ends in .png or "
+                             ".jpg"}});
 }
 
 void CheckIds(const std::vector<int>& ids) {

@@ -123,18 +123,19 @@ vision::Calibration CalibrateFor(const TrackRequest& request) {
 int CalibrateAndSave(const TrackRequest& request) {
   vision::Calibration calibration = CalibrateFor(request);
   terminal::PrintText(report::CalibrationText(calibration));
+  const bool is_refused = calibration.verdict == vision::CalibrationVerdict::kRefuse;
+  if (!is_refused) {  // first: whether its picture can be drawn or not
+    calibration.camera.name = fs::path(request.out).stem().string();
+    files::WriteFile(request.out, vision::WriteCamera(calibration.camera,
+                                                      report::CalibrationComment(calibration)));
+    terminal::Say(fmt::format("calibration: {}", request.out));
+  }
   const fs::path picture = PictureOf(request);
   vision::DrawCalibration(calibration, picture);
   terminal::Say(fmt::format("picture: {}", picture.string()));
-  if (calibration.verdict == vision::CalibrationVerdict::kRefuse) {
-    terminal::Say(fmt::format("{} is not written: the verdict is refuse", request.out));
-    return terminal::kNotReached;
-  }
-  calibration.camera.name = fs::path(request.out).stem().string();
-  files::WriteFile(request.out, vision::WriteCamera(calibration.camera,
-                                                    report::CalibrationComment(calibration)));
-  terminal::Say(fmt::format("calibration: {}", request.out));
-  return terminal::kDone;
+  if (!is_refused) return terminal::kDone;
+  terminal::Say(fmt::format("{} is not written: the verdict is refuse", request.out));
+  return terminal::kNotReached;
 }
 
 /// What tracking will be worth, before anything is driven. No camera is opened.
