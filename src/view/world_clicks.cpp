@@ -24,6 +24,11 @@ std::string Prompt(const std::vector<vision::FloorMark>& points, std::size_t nex
 
 vision::WorldFrame WorldFromClicks(const vision::WorldSetting& setting,
                                    const std::vector<vision::FloorMark>& points) {
+  std::vector<vision::WorldPoint> places;
+  for (const vision::FloorMark& point : points) {
+    places.push_back({.p_in_world = {point.x_m, point.y_m, point.z_m}});
+  }
+  vision::RequireFramePoints(places);
   if (const std::string missing = MissingDisplay(); !missing.empty()) {
     throw std::runtime_error(fmt::format("{}: points cannot be clicked, use tags", missing));
   }
@@ -45,8 +50,8 @@ vision::WorldFrame WorldFromClicks(const vision::WorldSetting& setting,
     if (input.undo && !clicked.empty()) clicked.pop_back();
     for (const Eigen::Vector2d& pixel : input.clicks_px) {
       if (clicked.size() == points.size()) break;
-      const vision::FloorMark& point = points[clicked.size()];
-      clicked.push_back({{point.x_m, point.y_m, point.z_m}, pixel, point.name});
+      const std::size_t next = clicked.size();
+      clicked.push_back({places[next].p_in_world, pixel, points[next].name});
     }
   }
   vision::CheckPoints(camera, clicked, setting.options.world_limit_m);

@@ -90,6 +90,20 @@ TEST_CASE(
              !Contains(size) && Contains("note: " + (recorded.folder / "cam.yaml") + " " + frame));
 }
 
+TEST_CASE("Points that make no frame are refused before anybody is asked to click them") {
+  Recorded recorded;
+  const std::string world = recorded.folder / "points.yaml";
+  const auto refuses = [&](const std::string& points, const std::string& why) {
+    test::WriteText(world, "points:\n" + points);
+    CHECK_THROWS_WITH(recorded.Run(recorded.whole, world, false), Contains(why));
+  };
+  const std::string three =
+      "  - {name: a, x_m: 0, y_m: 0}\n  - {name: b, x_m: 1, y_m: 0}\n"
+      "  - {name: c, x_m: 2, y_m: 0}\n";
+  refuses(three, "needs 4 points that are seen, there are 3");
+  refuses(three + "  - {name: d, x_m: 3, y_m: 0}\n", "these lie on a line");
+}
+
 TEST_CASE("The run file of a network camera names it without its user and password") {
   const test::TemporaryFolder folder;
   TrackingJob job;

@@ -105,6 +105,7 @@ std::vector<double> LeaveOneOut_m(const CameraModel& camera,
 }
 
 void CheckPoints(const CameraModel& camera, const std::vector<WorldPoint>& points, double limit_m) {
+  RequireFramePoints(points);
   const std::vector<double> off_m = LeaveOneOut_m(camera, points);
   const double worst_m = *std::max_element(off_m.begin(), off_m.end());
   const double residual_m = Residual_m(camera, points);

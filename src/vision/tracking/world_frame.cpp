@@ -47,17 +47,6 @@ bool AreOnLine(const std::vector<WorldPoint>& points) {
   return spread(0) < kThinnest * spread(1) || spread(1) <= 0.0;
 }
 
-void Check(const std::vector<WorldPoint>& points) {
-  if (points.size() < kLeastPoints) {
-    throw std::invalid_argument(fmt::format(
-        "a world frame needs {} points that are seen, there are {}", kLeastPoints, points.size()));
-  }
-  if (AreOnLine(points)) {
-    throw std::invalid_argument(
-        "a world frame needs points in both directions of the floor, these lie on a line");
-  }
-}
-
 /// camera_from_world, by OpenCV's solver for points that lie on no plane.
 std::vector<Eigen::Isometry3d> SpatialPoses(const std::vector<cv::Point3d>& places,
                                             const std::vector<cv::Point2d>& rays) {
@@ -140,9 +129,20 @@ const TagDetection* FindNearest(const CameraModel& camera, const std::vector<Tag
 
 }  // namespace
 
+void RequireFramePoints(const std::vector<WorldPoint>& points) {
+  if (points.size() < kLeastPoints) {
+    throw std::invalid_argument(fmt::format(
+        "a world frame needs {} points that are seen, there are {}", kLeastPoints, points.size()));
+  }
+  if (AreOnLine(points)) {
+    throw std::invalid_argument(
+        "a world frame needs points in both directions of the floor, these lie on a line");
+  }
+}
+
 WorldFrame WorldFromPoints(const CameraModel& camera, const std::vector<WorldPoint>& points,
                            const std::string& origin) {
-  Check(points);
+  RequireFramePoints(points);
   std::vector<Eigen::Vector2d> pixels;
   for (const WorldPoint& point : points) pixels.push_back(point.pixel);
   const std::vector<Eigen::Vector2d> rays = RaysFromPixels(camera, pixels);

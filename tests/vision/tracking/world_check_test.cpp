@@ -72,6 +72,18 @@ TEST_CASE("A tag that lies elsewhere, two that are swapped and a stretched axis 
   }
 }
 
+TEST_CASE("Points that make no frame are refused as that, wherever they were seen") {
+  const CameraModel camera = test::PaperCamera();
+  std::vector<WorldPoint> points = SixTags(camera);
+  for (const std::size_t count : {0U, 1U, 3U}) {
+    CHECK_THROWS_WITH(
+        CheckPoints(camera, {points.begin(), points.begin() + static_cast<long>(count)}, kLimit_m),
+        "a world frame needs 4 points that are seen, there are " + std::to_string(count));
+  }
+  for (WorldPoint& point : points) point.p_in_world.y() = 0.5 * point.p_in_world.x();
+  CHECK_THROWS_WITH(CheckPoints(camera, points, kLimit_m), Contains("these lie on a line"));
+}
+
 TEST_CASE("The robot's own tag tells centimetres from metres") {
   CameraModel camera = test::PaperCamera();
   TagDetection tag{.id = 0};

@@ -15,8 +15,8 @@ namespace rift::vision {
 std::vector<double> LeaveOneOut_m(const CameraModel& camera, const std::vector<WorldPoint>& points);
 
 /// The points when they fit; throws std::invalid_argument, saying which point is wrong or which two
-/// are swapped and what to do, when one lies further than `limit_m` off where the others put it.
-/// Names are the points'.
+/// are swapped and what to do, when one lies further than `limit_m` off where the others put it,
+/// and as RequireFramePoints does. Names are the points'.
 void CheckPoints(const CameraModel& camera, const std::vector<WorldPoint>& points, double limit_m);
 
 /// The side of the robot's tag as this world frame measures it at `height_m`, over its printed

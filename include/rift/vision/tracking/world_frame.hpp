@@ -17,6 +17,10 @@ struct WorldPoint {
   std::string name;  ///< for messages: "tag 3"
 };
 
+/// Throws std::invalid_argument for fewer than four points, and for points on a line, which make no
+/// frame wherever they are seen.
+void RequireFramePoints(const std::vector<WorldPoint>& points);
+
 /// Poses the camera by four or more points (both planar solutions [Collins and Bartoli 2014], the
 /// one above the floor, refined). Throws std::invalid_argument, saying what to do, for fewer
 /// points, points on a line, or points that only a camera below the floor could see so, which is
