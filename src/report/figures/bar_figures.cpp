@@ -186,7 +186,7 @@ Figure MeanByLevelFigure(std::string name, const std::string& factor,
 }
 
 Figure FailuresByLevelFigure(std::string name, const std::string& factor,
-                             const std::vector<sweep::LevelSummary>& levels, double threshold_m,
+                             const std::vector<sweep::LevelSummary>& levels,
                              const ReportOptions& options) {
   DataBlock bars("bars"), missing("missing");
   std::vector<std::vector<std::string>> labels;
@@ -194,7 +194,7 @@ Figure FailuresByLevelFigure(std::string name, const std::string& factor,
   int most = 1;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const sweep::LevelSummary& level = levels[i];
-    labels.push_back({LevelName(level), fmt::format("of {}", level.n)});
+    labels.push_back({LevelName(level), fmt::format("of {}", level.told)});
     if (level.not_ok > 0) missing.Add({static_cast<double>(i)});
     bars.Add({static_cast<double>(i), static_cast<double>(level.failures), 0.7});
     if (levels.size() <= 40) {
@@ -212,17 +212,15 @@ Figure FailuresByLevelFigure(std::string name, const std::string& factor,
   }
   const int width_px = BarChartWidth_px(levels.size(), options);
   const TicLabels tics = Categories(labels, width_px);
-  Figure figure{std::move(name),
-                fmt::format("Trials with a gap above {} m by {}", Number(threshold_m), factor),
-                width_px, options.width_px * 3 / 5 + LabelRoom_px(tics, levels)};
+  Figure figure{std::move(name), fmt::format("Trials that fail by {}", factor), width_px,
+                options.width_px * 3 / 5 + LabelRoom_px(tics, levels)};
   figure.plot = fmt::format(
-      "{}{}{}set grid noxtics ytics\nset xlabel {} offset 0,-0.8\nset ylabel {}\nset xrange "
+      "{}{}{}set grid noxtics ytics\nset xlabel {} offset 0,-0.8\nset ylabel 'trials that "
+      "fail'\nset xrange "
       "[-0.6:{:.9g}]\n"
       "set yrange [0:{:.9g}]\nset ytics {}\n{}",
-      data, tics.command, counts, Quoted(factor),
-      Quoted(fmt::format("trials with gap > {} m", Number(threshold_m))),
-      static_cast<double>(levels.size()) - 0.4, 1.15 * most, std::max(1, (most + 4) / 5),
-      plot.Text());
+      data, tics.command, counts, Quoted(factor), static_cast<double>(levels.size()) - 0.4,
+      1.15 * most, std::max(1, (most + 4) / 5), plot.Text());
   return figure;
 }
 

@@ -82,9 +82,8 @@ class FigureMaker {
       Omit(mean, reason);
       return Omit(failures, reason);
     }
-    const double threshold_m = result_.gap.threshold_m;
-    Keep(MeanByLevelFigure(mean, grid_.main_name, grid_.mains, threshold_m, options_));
-    Keep(FailuresByLevelFigure(failures, grid_.main_name, grid_.mains, threshold_m, options_));
+    Keep(MeanByLevelFigure(mean, grid_.main_name, grid_.mains, result_.gap.threshold_m, options_));
+    Keep(FailuresByLevelFigure(failures, grid_.main_name, grid_.mains, options_));
   }
 
   void ByOtherFactors() {
@@ -94,8 +93,7 @@ class FigureMaker {
     }
     const std::string reason = WhyNoBars(grid_.others, !no_grid_.empty());
     if (!reason.empty()) return Omit(name, reason);
-    Keep(FailuresByLevelFigure(name, grid_.others_name, grid_.others, result_.gap.threshold_m,
-                               options_));
+    Keep(FailuresByLevelFigure(name, grid_.others_name, grid_.others, options_));
   }
 
   void OverContinuousAxes() {

@@ -24,9 +24,9 @@ Figure MeanByLevelFigure(std::string name, const std::string& factor,
                          const std::vector<sweep::LevelSummary>& levels, double threshold_m,
                          const ReportOptions& options);
 
-/// Figures 12 and 13: trials above the threshold by level.
+/// Figures 12 and 13: trials that fail by level, of those that fail or do not.
 Figure FailuresByLevelFigure(std::string name, const std::string& factor,
-                             const std::vector<sweep::LevelSummary>& levels, double threshold_m,
+                             const std::vector<sweep::LevelSummary>& levels,
                              const ReportOptions& options);
 
 /// The gap of every trial over a continuous parameter.

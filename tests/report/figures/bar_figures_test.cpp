@@ -17,7 +17,7 @@ using sweep::LevelSummary;
 
 std::vector<LevelSummary> Levels(size_t count, size_t letters) {
   const LevelSummary level{
-      .level = std::string(letters, 'a'), .n = 5, .mean_gap_m = 0.02, .sd_gap_m = 0.004};
+      .level = std::string(letters, 'a'), .n = 5, .told = 7, .mean_gap_m = 0.02, .sd_gap_m = 0.004};
   return std::vector<LevelSummary>(count, level);
 }
 
@@ -40,8 +40,8 @@ TEST_CASE("Labels of bars lie flat while they fit, slant up to twenty and stand 
   // A label has at most 34 letters.
   CHECK(mean(21, 34).height_px == 326 + 221);
   CHECK(mean(21, 35).height_px == 326 + 221);
-  const Figure failures = FailuresByLevelFigure("name", "surface", Levels(10, 6), 0.06, kWide);
-  CHECK_THAT(failures.plot, Contains("rotate by 40 right ('aaaaaa, of 5' 0,"));
+  const Figure failures = FailuresByLevelFigure("name", "surface", Levels(10, 6), kWide);
+  CHECK_THAT(failures.plot, Contains("rotate by 40 right ('aaaaaa, of 7' 0,"));
   CHECK(failures.height_px == 294 + 50);
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("A bar chart grows by 16 px a bar up to twice the width of a figure") 
     INFO(bars);
     const auto levels = Levels(static_cast<size_t>(bars), 1);
     CHECK(MeanByLevelFigure("name", "a", levels, 0.06, kWide).width_px == width_px);
-    CHECK(FailuresByLevelFigure("name", "a", levels, 0.06, kWide).width_px == width_px);
+    CHECK(FailuresByLevelFigure("name", "a", levels, kWide).width_px == width_px);
   }
 }
 
@@ -82,6 +82,15 @@ TEST_CASE("Means of levels are bars, whiskers and crosses at their level's place
   CHECK_THAT(MeanByLevelFigure("n", "a", Levels(13, 1), 0.06, {}).plot, !Contains("sprintf"));
 }
 
+TEST_CASE("Failures are of the trials that fail or do not, some of them without a gap") {
+  // Of seven trials two arrived within the threshold, one beyond it, three fell and one was lost.
+  const LevelSummary level{.level = "a", .n = 3, .failures = 4, .told = 6, .not_ok = 4};
+  const Figure figure = FailuresByLevelFigure("name", "surface", {level}, {});
+  CHECK(figure.title == "Trials that fail by surface");
+  CHECK_THAT(figure.plot, Contains("$bars << EOD\n0 4 0.7 \nEOD\n") && Contains(".'of 6' 0)") &&
+                              Contains("set ylabel 'trials that fail'\n"));
+}
+
 TEST_CASE("Failures of levels are counted on an axis of about five steps") {
   for (const auto& [most, end, step] : {std::tuple{0, "1.15", 1},
                                         {1, "1.15", 1},
@@ -92,7 +101,7 @@ TEST_CASE("Failures of levels are counted on an axis of about five steps") {
     std::vector<LevelSummary> levels = Levels(3, 1);
     levels[1].failures = most;
     levels[2].not_ok = 1;
-    const Figure figure = FailuresByLevelFigure("name", "surface", levels, 0.06, {});
+    const Figure figure = FailuresByLevelFigure("name", "surface", levels, {});
     INFO(most);
     CHECK_THAT(figure.plot,
                Contains(fmt::format("$bars << EOD\n0 0 0.7 \n1 {} 0.7 \n2 0 0.7 \nEOD\n"
@@ -104,10 +113,9 @@ TEST_CASE("Failures of levels are counted on an axis of about five steps") {
     CHECK_THAT(figure.plot,
                Contains(fmt::format("set label '{0}' at 1,{0} center offset 0,0.6\n", most)));
     CHECK_THAT(figure.plot, Contains(fmt::format("using 1:(0.03 * {}) with", end)));
-    CHECK_THAT(figure.plot, Contains("set ylabel 'trials with gap > 0.06 m'\n"));
   }
-  CHECK_THAT(FailuresByLevelFigure("n", "a", Levels(40, 1), 0.06, {}).plot, Contains("set label"));
-  CHECK_THAT(FailuresByLevelFigure("n", "a", Levels(41, 1), 0.06, {}).plot, !Contains("set label"));
+  CHECK_THAT(FailuresByLevelFigure("n", "a", Levels(40, 1), {}).plot, Contains("set label"));
+  CHECK_THAT(FailuresByLevelFigure("n", "a", Levels(41, 1), {}).plot, !Contains("set label"));
 }
 
 TEST_CASE("A series without a single gap keeps its name, its colour and its crosses") {
