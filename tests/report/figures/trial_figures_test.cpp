@@ -148,6 +148,17 @@ TEST_CASE("More trials than can be told apart are fifty bins of their quantiles"
         5000);
 }
 
+TEST_CASE("A trial is drawn at its gap and told to fail by what it counts with") {
+  sweep::SweepResult result = synthetic::Continuous(2);
+  for (sweep::TrialRow& row : result.rows) row.comparison.gap_m = 0.07;  // above the 0.06 m
+  result.rows[0].falsified = true;
+  result.rows[1].falsified = false;  // its gap on the way is smaller
+  const std::string plot = GapOverParameterFigure("name", result, 0, {}).plot;
+  REQUIRE(Rows(plot, "pass").size() == 1);
+  CHECK(Rows(plot, "pass").front()[1] == 0.07);
+  CHECK_THAT(plot, Contains("title 'holds'") && Contains("title 'fails'") && !Contains("gap up"));
+}
+
 TEST_CASE("A value at the end of its range is in the last bin and a trial without a gap in none") {
   sweep::SweepResult result = synthetic::Continuous(60);
   ReportOptions options;
