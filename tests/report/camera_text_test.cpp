@@ -91,11 +91,19 @@ TEST_CASE("A camera's calibration is told with its errors, its coverage and what
         "verdict: usable\n  few views\n  little tilt\n" + numbers + "next picture: to the left\n");
   CHECK(CalibrationComment(c) ==
         "# rift track --calibrate, board 11x7 of 0.03 m squares: usable.\n"
-        "# 0.12 px RMS, 1.2 mm on the floor; odd views against even ones 2.3 mm.\n"
+        "# 0.12 px RMS, on the floor 1.2 mm; odd views against even ones 2.3 mm.\n"
         "# - few views\n# - little tilt\n");
   c.verdict = vision::CalibrationVerdict::kGood;
   c.reasons.clear();
   CHECK(CalibrationText(c) == "verdict: good\n" + numbers);
+  vision::Calibration few = c;  // of four or five views
+  few.floor_error_m = few.cross_check_m = std::nan("");
+  CHECK_THAT(
+      CalibrationText(few),
+      Catch::Contains("\non the floor: not known; odd views against even ones: not known\n"));
+  CHECK_THAT(
+      CalibrationComment(few),
+      Catch::Contains("RMS, on the floor not known; odd views against even ones not known.\n"));
   c.verdict = vision::CalibrationVerdict::kRefuse;
   c.camera.width_px = 0;
   CHECK(CalibrationText(c) == "verdict: refuse\nnext picture: to the left\n");

@@ -101,6 +101,11 @@ std::string OthersText(const std::vector<vision::TagInPicture>& found, vision::T
   return text + (found.size() > kMost ? fmt::format(" and {} more", found.size() - kMost) : "");
 }
 
+/// NaN where there were too few views for it.
+std::string Millimetres(double value_m, int decimals) {
+  return std::isnan(value_m) ? "not known" : fmt::format("{:.{}f} mm", 1e3 * value_m, decimals);
+}
+
 }  // namespace
 
 std::string TrackJson(const TrackInputs& inputs, const vision::CameraModel& camera,
@@ -204,8 +209,8 @@ std::string CalibrationText(const vision::Calibration& c) {
   text += fmt::format("{} {}x{}, error {:.3f} px RMS (plumb_bob {:.3f}, equidistant {:.3f})\n",
                       yaml::NameOf(c.camera.lens), c.camera.width_px, c.camera.height_px, c.rms_px,
                       c.plumb_bob_px, c.equidistant_px);
-  text += fmt::format("on the floor: {:.2f} mm; odd views against even ones: {:.2f} mm\n",
-                      1e3 * c.floor_error_m, 1e3 * c.cross_check_m);
+  text += fmt::format("on the floor: {}; odd views against even ones: {}\n",
+                      Millimetres(c.floor_error_m, 2), Millimetres(c.cross_check_m, 2));
   text += fmt::format("coverage: x {:.0f} %, y {:.0f} %, size {:.0f} %, skew {:.0f} %\n",
                       100 * c.coverage.x, 100 * c.coverage.y, 100 * c.coverage.size,
                       100 * c.coverage.skew);
@@ -222,9 +227,9 @@ std::string CalibrationText(const vision::Calibration& c) {
 std::string CalibrationComment(const vision::Calibration& c) {
   std::string text = fmt::format(
       "# rift track --calibrate, board {}x{} of {:g} m squares: {}.\n"
-      "# {:.2f} px RMS, {:.1f} mm on the floor; odd views against even ones {:.1f} mm.\n",
+      "# {:.2f} px RMS, on the floor {}; odd views against even ones {}.\n",
       c.board.columns, c.board.rows, c.board.square_m, yaml::NameOf(c.verdict), c.rms_px,
-      1e3 * c.floor_error_m, 1e3 * c.cross_check_m);
+      Millimetres(c.floor_error_m, 1), Millimetres(c.cross_check_m, 1));
   for (const std::string& reason : c.reasons) text += fmt::format("# - {}\n", reason);
   return text;
 }

@@ -142,9 +142,13 @@ void DrawCalibration(const Calibration& calibration, const std::filesystem::path
   Text(picture, {kMargin_px, 55},
        std::isnan(calibration.rms_px)
            ? "no lens was fitted"
-           : fmt::format("{} lens, {:.2f} px RMS, {:.2f} mm on the floor",
-                         EnumNames(Lens{})[static_cast<std::size_t>(calibration.camera.lens)],
-                         calibration.rms_px, 1e3 * calibration.floor_error_m),
+           : fmt::format(
+                 "{} lens, {:.2f} px RMS, {}",
+                 EnumNames(Lens{})[static_cast<std::size_t>(calibration.camera.lens)],
+                 calibration.rms_px,
+                 std::isnan(calibration.floor_error_m)
+                     ? "error on the floor not known"
+                     : fmt::format("{:.2f} mm on the floor", 1e3 * calibration.floor_error_m)),
        kInk);
   CornerMap(picture, calibration).Draw();
   DrawErrors(picture, calibration, DrawCoverage(picture, calibration.coverage));
