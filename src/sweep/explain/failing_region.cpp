@@ -69,10 +69,10 @@ struct Dot {
 void LeaveNearest(double x, double y, std::vector<Dot>& dots) {
   if (dots.size() <= kNearest) return;
   const auto distance = [x, y](const Dot& dot) { return std::hypot(dot.x - x, dot.y - y); };
-  const auto last = dots.begin() + (kNearest - 1);
-  std::nth_element(dots.begin(), last, dots.end(),
-                   [&](const Dot& a, const Dot& b) { return distance(a) < distance(b); });
-  const double reach = distance(*last) + kSamePlace;
+  const auto nearest_end = dots.begin() + kNearest;
+  std::partial_sort(dots.begin(), nearest_end, dots.end(),
+                    [&](const Dot& a, const Dot& b) { return distance(a) < distance(b); });
+  const double reach = distance(dots[kNearest - 1]) + kSamePlace;
   std::erase_if(dots, [&](const Dot& dot) { return distance(dot) > reach; });
 }
 
