@@ -283,8 +283,8 @@ TEST_CASE("What a cluster wants of its jobs stands in the arguments and the scri
 
 TEST_CASE("On a cluster waypoints may be anywhere where the command says so") {
   const FakeSlurm slurm;
-  const Sweep sweep(kGrid +
-                    "trial: {arena: {x_min_m: -1, x_max_m: 0.2, y_min_m: -1, y_max_m: 1}}\n");
+  const Sweep sweep(Replaced(kGrid, "kind: nominal", "kind: path") +
+                    "trial: {arena: {x_max_m: 0.2}}\n");
   CHECK(RunRift(sweep.OnCluster({"--shards", "2"})).err.find("--any-waypoints") !=
         std::string::npos);
   const ProcessResult result = RunRift(sweep.OnCluster({"--shards", "2", "--any-waypoints"}));

@@ -187,10 +187,9 @@ TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes o
   CHECK(after["state"] == "stopped");
   CHECK(after["done"] > 0);
   CHECK(after["done"] < 1'200);
-  std::vector<std::string> afresh = command;
-  afresh.push_back("--force");
-  test::RunningRift anew(afresh);
-  anew.WaitUntil("its first trials", [&] { return sweep.Committed("out") > 0; });
+  test::RunningRift anew(
+      sweep.Command("anew", {"--set", "reference.trials=200", "--jobs", "1", "--force"}));
+  anew.WaitUntil("its first trials", [&] { return sweep.Committed("anew") > 0; });
   anew.Signal(SIGINT);
   CHECK(anew.Wait().err.find("the same command without --force (or --fresh) goes on where") !=
         std::string::npos);
