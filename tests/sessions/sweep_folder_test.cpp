@@ -55,12 +55,21 @@ TEST_CASE("An earlier report is removed without the answers to further questions
 TEST_CASE("Figures of somebody else stay when those of a sweep go") {
   const test::TemporaryFolder folder;
   Fill(folder.Path());
-  test::WriteText(folder / "figures/mine.svg", "x");
-  test::WriteText(folder / "figures/fig1_paths.png", "x");
+  const std::vector<std::string> ours{"fig.svg", "fig08_gap_by_trial.png", "gap_over_v_min.svg",
+                                      "calibration.png"};
+  const std::vector<std::string> others{"mine.svg", "fig08.txt", "gap.png", "calibration.csv"};
+  for (const auto* names : {&ours, &others}) {
+    for (const std::string& name : *names) test::WriteText(folder / ("figures/" + name), "x");
+  }
   RemoveReport(folder.Path());
-  CHECK(fs::exists(folder / "figures/mine.svg"));
-  CHECK_FALSE(fs::exists(folder / "figures/fig.svg"));
-  CHECK_FALSE(fs::exists(folder / "figures/fig1_paths.png"));
+  for (const std::string& name : ours) {
+    INFO(name);
+    CHECK_FALSE(fs::exists(folder / ("figures/" + name)));
+  }
+  for (const std::string& name : others) {
+    INFO(name);
+    CHECK(fs::exists(folder / ("figures/" + name)));
+  }
 }
 
 TEST_CASE("Files with a sweep's names are others' where no experiment and no journal is") {

@@ -42,10 +42,11 @@ void RemoveFigures(const fs::path& folder) {
   const fs::path figures = folder / "figures";
   std::error_code no_folder;
   for (const auto& entry : fs::directory_iterator(figures, no_folder)) {
+    const std::string stem = entry.path().stem().string();
     const std::string extension = entry.path().extension().string();
-    const bool is_ours = entry.path().filename().string().starts_with("fig") &&
-                         (extension == ".svg" || extension == ".png");
-    if (is_ours) fs::remove(entry.path());
+    const bool is_named =
+        stem.starts_with("fig") || stem.starts_with("gap_over_") || stem == "calibration";
+    if (is_named && (extension == ".svg" || extension == ".png")) fs::remove(entry.path());
   }
   fs::remove(figures, no_folder);  // unless it holds files of others
 }
