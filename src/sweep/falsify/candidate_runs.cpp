@@ -46,26 +46,19 @@ ProgramTrial RunProgramTrial(Evaluator& evaluator, const TrialRequest& request) 
     write(EncodeRecording(candidate));
     return write.Take();
   };
-  ProgramTrial trial;
-  WorkerPool::Batch batch;
-  batch.count = 1;
-  batch.job = [&](int) { return EncodeRequest(request); };
-  batch.done = [&](int, const JobResult& result) {
-    trial.row = EndedRow(request, result);
-    if (result.end != JobEnd::kDone) {
-      evaluator.NameSides(trial.row);
-      trial.candidate = {.status = trial.row.status, .reason = trial.row.reason};
-      return;
-    }
-    ByteReader read(result.bytes);
-    std::string findings, recording;
-    read(findings);
-    read(recording);
-    DecodeFindings(findings, trial.row);
-    trial.candidate = DecodeRecording(recording);
-  };
-  batch.go_on = [] { return true; };
-  WorkerPool(work, 1, evaluator.experiment().run).Run(batch);
+  const JobResult result = RunApart(work, request, evaluator.experiment().run);
+  ProgramTrial trial{.row = EndedRow(request, result)};
+  if (result.end != JobEnd::kDone) {
+    evaluator.NameSides(trial.row);
+    trial.candidate = {.status = trial.row.status, .reason = trial.row.reason};
+    return trial;
+  }
+  ByteReader read(result.bytes);
+  std::string findings, recording;
+  read(findings);
+  read(recording);
+  DecodeFindings(findings, trial.row);
+  trial.candidate = DecodeRecording(recording);
   return trial;
 }
 

@@ -18,7 +18,6 @@
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
-#include "rift/sweep/run/worker_pool.hpp"
 #include "rift/trajectory/csv.hpp"
 #include "rift/yaml/bind.hpp"
 #include "simulated_recording.hpp"
@@ -294,22 +293,15 @@ namespace {
 
 /// In a process that is given up when its program hangs, as the trials of the sweep were.
 Recording ProgramReference(Evaluator& evaluator, const TrialRequest& request) {
-  Recording run{.source = fmt::format("program with seed {}", request.seed.value_or(0))};
   const auto work = [&evaluator](const std::string& job) {
     return EncodeRecording(evaluator.Reference(DecodeRequest(job)));
   };
-  const auto done = [&](int, const JobResult& result) {
-    if (result.end == JobEnd::kDone) {
-      run = DecodeRecording(result.bytes);
-      return;
-    }
-    const TrialRow ended = EndedRow(request, result);
-    run.status = ended.status;
-    run.reason = ended.reason;
-  };
-  WorkerPool(work, 1, evaluator.experiment().run)
-      .Run({1, [&](int) { return EncodeRequest(request); }, done, [] { return true; }});
-  return run;
+  const JobResult result = RunApart(work, request, evaluator.experiment().run);
+  if (result.end == JobEnd::kDone) return DecodeRecording(result.bytes);
+  const TrialRow ended = EndedRow(request, result);
+  return {.status = ended.status,
+          .reason = ended.reason,
+          .source = fmt::format("program with seed {}", request.seed.value_or(0))};
 }
 
 }  // namespace

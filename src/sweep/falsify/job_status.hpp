@@ -12,4 +12,9 @@ TrialStatus StatusOf(JobEnd end);
 /// to be decoded into it.
 TrialRow EndedRow(TrialRequest request, const JobResult& result);
 
+/// What `work` makes of one encoded request, in a process of its own that is given up as those of
+/// a sweep are.
+JobResult RunApart(const WorkerPool::Work& work, const TrialRequest& request,
+                   const RunOptions& options);
+
 }  // namespace rift::sweep

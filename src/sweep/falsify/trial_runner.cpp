@@ -61,6 +61,15 @@ TrialRow EndedRow(TrialRequest request, const JobResult& result) {
   return row;
 }
 
+JobResult RunApart(const WorkerPool::Work& work, const TrialRequest& request,
+                   const RunOptions& options) {
+  JobResult ended;
+  WorkerPool(work, 1, options)
+      .Run({1, [&](int) { return EncodeRequest(request); },
+            [&](int, const JobResult& result) { ended = result; }, [] { return true; }});
+  return ended;
+}
+
 RunTrials RunHere(Evaluate evaluate, Watch watch) {
   return [evaluate = std::move(evaluate), watch = std::move(watch)](
              const std::vector<TrialRequest>& requests) -> std::optional<std::vector<TrialRow>> {
