@@ -191,20 +191,17 @@ class DriveSession::Drivers {
     }
     view::DriveView view(session_.camera(), experiment::TaskOf(experiment));
     key_in_window_ = false;
-    return sessions::DriveInView({.drive = [&] { return Drive(experiment, person, log); },
-                                  .look =
-                                      [&] {
-                                        const hardware::CameraPoses::View seen = poses_->Seen();
-                                        const view::DriveWish wish = view.Show(
-                                            seen.frame.get(), seen.found.sighting, poses_->Status(),
-                                            PlacementNow(experiment), may_start_);
-                                        if (wish == view::DriveWish::kStopByClosing)
-                                          person.CloseWindow();
-                                        if (wish == view::DriveWish::kStopByKey)
-                                          key_in_window_ = true;
-                                      },
-                                  .stop = [&person] { person.CloseWindow(); },
-                                  .redraw = kRedraw});
+    const auto drive = [&] { return Drive(experiment, person, log); };
+    const auto stop = [&person] { person.CloseWindow(); };
+    const auto look = [&] {
+      const hardware::CameraPoses::View seen = poses_->Seen();
+      const view::DriveWish wish =
+          view.Show(seen.frame.get(), seen.found.sighting, poses_->Status(),
+                    PlacementNow(experiment), may_start_);
+      if (wish == view::DriveWish::kStopByClosing) stop();
+      if (wish == view::DriveWish::kStopByKey) key_in_window_ = true;
+    };
+    return sessions::DriveInView({.drive = drive, .look = look, .stop = stop, .redraw = kRedraw});
   }
 
   bool KeyInWindow() const { return key_in_window_; }
