@@ -36,12 +36,12 @@ struct SimulateRequest {
 experiment::Experiment LoadFor(const SimulateRequest& request,
                                std::vector<std::filesystem::path>& inputs);
 
-/// Throws std::invalid_argument for names of outputs that say no format, that are an input or
-/// another output, or that are there already. `out`: where the run goes.
 /// Throws std::invalid_argument for the folder of a sweep, and for a folder with the name of a
 /// file.
 void RequireRunName(const std::filesystem::path& out);
 
+/// Throws std::invalid_argument for names of outputs that say no format, that are an input or
+/// another output, or that are there already. `out`: where the run goes.
 void CheckNames(const SimulateRequest& request, const std::filesystem::path& out,
                 const experiment::Experiment& experiment,
                 const std::vector<std::filesystem::path>& inputs);
