@@ -16,6 +16,7 @@
 
 #include "support/documented.hpp"
 #include "support/inputs/trials.hpp"
+#include "support/processes/environment.hpp"
 #include "support/processes/npm.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/quick_gnuplot.hpp"
@@ -192,6 +193,59 @@ TEST_CASE("A row whose program hung is replayed as such and ends") {
   const ProcessResult replay = RunRift({"simulate", "--replay", folder / "out", "1"});
   CHECK(replay.exit_code == 1);
   CHECK(replay.out.find("status hung") != std::string::npos);
+}
+
+TEST_CASE("A trial given up for its time is run again where run.timeout_s is another") {
+  const TemporaryFolder folder;
+  // Hangs where mu is 1 until there is a file by the name of mended.
+  WriteText(folder / "sim.sh",
+            "echo \"$1\" >> '" + (folder / "runs") + "'\n[ \"$1\" = 0 ] || [ -e '" +
+                (folder / "mended") + "' ] || exec sleep 7357\n" +
+                "printf 't_s,x_m,y_m\\n0,0,0\\n1,0.35,0\\n2,0.7,0\\n' > \"$2\"\n");
+  WriteText(folder / "sweep.yaml",
+            "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
+            "candidate: {kind: program, run: [sh, sim.sh, '{mu}', '{out}']}\n"
+            "reference: {kind: path}\nspace: {mu: [0, 1]}\n");
+  const test::QuickGnuplot gnuplot;
+  const auto sweep = [&](const std::string& timeout_s) {
+    return RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out", "--set",
+                    "run.retries=0", "--set", "run.timeout_s=" + timeout_s});
+  };
+  const std::string note =
+      ": 1 trial that hung, crashed or ran out of memory under other limits "
+      "(timeout_s=2 memory_mb=1024 retries=0) is run again";
+  CHECK(sweep("2").err.find("note: ") == std::string::npos);
+  CHECK(Table(folder / "out").at(1).at("status") == "hung");
+  WriteText(folder / "mended", "");
+  sweep("2");
+  CHECK(Table(folder / "out").at(1).at("status") == "hung");  // the same limits: it is kept
+  CHECK(ReadFile(folder / "runs") == "0\n1\n");
+  CHECK_THAT(sweep("60").err, Contains(note));
+  CHECK(Table(folder / "out").at(1).at("status") == "ok");
+  CHECK(ReadFile(folder / "runs") == "0\n1\n1\n");  // the other is not run again
+}
+
+TEST_CASE("A sweep without a temporary folder ends with 3, keeps no trial, and goes on later") {
+  const TemporaryFolder folder;
+  WriteText(folder / "sim.sh", "printf 't_s,x_m,y_m\\n0,0,0\\n1,0.35,0\\n2,0.7,0\\n' > \"$1\"\n");
+  WriteText(folder / "sweep.yaml",
+            "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
+            "candidate: {kind: program, run: [sh, sim.sh, '{out}']}\n"
+            "reference: {kind: path}\nspace: {mu: [0, 1]}\n");
+  const test::QuickGnuplot gnuplot;
+  const auto sweep = [&] {
+    return RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out"});
+  };
+  {
+    const test::Environment nowhere("TMPDIR", folder / "gone");
+    const ProcessResult result = sweep();
+    CHECK(result.exit_code == 3);
+    CHECK_THAT(result.err,
+               Contains("rift: cannot make a temporary folder in " + (folder / "gone")));
+  }
+  CHECK_FALSE(fs::exists(folder / "out/table.csv"));
+  CHECK(sweep().exit_code == 0);
+  for (const auto& row : Table(folder / "out")) CHECK(row.at("status") == "ok");
 }
 
 /// A simulator with every fault that the issue of foreign programs has; its rows are by mode.

@@ -74,6 +74,27 @@ void NoteDamage(const Journal& journal, const std::filesystem::path& file,
       file.string(), journal.Damaged()));
 }
 
+/// What a trial may cost is no fact of the journal. One that was given up for it is run again where
+/// the limit is another: it says nothing of the experiment.
+void ForgetOtherLimits(Journal& journal, const sweep::RunOptions& now,
+                       const std::filesystem::path& file, const SweepObserver& observer) {
+  const std::string limits = fmt::format("timeout_s={:g} memory_mb={} retries={}", now.timeout_s,
+                                         now.memory_mb, now.retries);
+  const std::string before = journal.Note("limits").value_or(limits);
+  journal.SetNote("limits", limits);
+  if (before == limits) return;
+  int count = 0;
+  for (const sweep::TrialStatus status : {sweep::TrialStatus::kHung, sweep::TrialStatus::kCrashed,
+                                          sweep::TrialStatus::kOutOfMemory}) {
+    count += journal.Forget(std::string(EnumNames(status)[static_cast<size_t>(status)]));
+  }
+  if (count == 0) return;
+  observer.say(fmt::format(
+      "note: {}: {} that hung, crashed or ran out of memory under other limits ({}) {} run again",
+      file.string(), count == 1 ? "1 trial" : fmt::format("{} trials", count), before,
+      count == 1 ? "is" : "are"));
+}
+
 void NoteOpenShards(const std::filesystem::path& out, const SweepObserver& observer) {
   if (!sweep::SlurmShards::AreOpen(out)) return;
   observer.say(fmt::format(
@@ -144,6 +165,7 @@ std::optional<sweep::SweepResult> RunComputed(sweep::Evaluator& evaluator,
   } else {
     NoteOpenShards(request.out, observer);
   }
+  ForgetOtherLimits(journal, evaluator.experiment().run, file, observer);
   Stopwatch watch(journal);
   sweep::TrialRunner runner(
       [&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },

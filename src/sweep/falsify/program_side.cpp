@@ -18,6 +18,7 @@
 #include "rift/statistics/hash.hpp"
 #include "rift/sweep/falsify/program_files.hpp"
 #include "rift/sweep/falsify/settings.hpp"
+#include "rift/sweep/run/machine_trouble.hpp"
 #include "rift/trajectory/csv.hpp"
 
 namespace rift::sweep {
@@ -104,6 +105,24 @@ void RefuseMended(const trajectory::Log& log) {
           "its trajectory: time runs backwards in it: write rows in the order of their time");
     }
   }
+}
+
+/// What fails where the disk is full is no finding of the trial. Asked before its folder is
+/// removed.
+void RefuseFullDisk(const std::string& folder, const Recording& recording) {
+  constexpr std::uintmax_t kPage_bytes = 4096;
+  const TrialStatus status = recording.status;
+  if (status != TrialStatus::kFault && status != TrialStatus::kCrashed &&
+      status != TrialStatus::kUnreadable) {
+    return;
+  }
+  std::error_code error;
+  const bool has_room = fs::space(folder, error).available >= kPage_bytes || error;
+  if (has_room && recording.reason.find("No space left on device") == std::string::npos) return;
+  throw MachineTrouble(fmt::format(
+      "the disk of {} is full, and a program failed there ({}): make room, or set TMPDIR to a "
+      "folder on another disk, and run the same command again",
+      fs::path(folder).parent_path().string(), recording.reason));
 }
 
 bool IsCrash(TrialStatus status) {
@@ -197,6 +216,7 @@ Recording ProgramSide::RunSpawned(const TrialRequest& request) {
   const ExternalProgram::Exit exit = program.Wait();  // before its last words are read
   TakeExit(exit, program.LastWords(), recording);
   ReadLogFile(folder, recording);
+  RefuseFullDisk(folder, recording);
   return recording;
 }
 
@@ -220,6 +240,7 @@ Recording ProgramSide::RunPersistent(const TrialRequest& request) {
     TakeExit(exit, program_->LastWords(), recording);
     recording.reason = Joined("ended in the middle of a trial", recording.reason);
     if (recording.status != TrialStatus::kOutOfMemory) recording.status = TrialStatus::kCrashed;
+    RefuseFullDisk(program_->Folder(), recording);
     program_.reset();
     return recording;
   }
@@ -254,6 +275,7 @@ Recording ProgramSide::RunPersistent(const TrialRequest& request) {
   } else {
     ReadLogFile(program_->Folder(), recording);
   }
+  RefuseFullDisk(program_->Folder(), recording);
   return recording;
 }
 

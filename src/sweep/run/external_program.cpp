@@ -22,14 +22,15 @@
 #include <utility>
 
 #include "rift/files/files.hpp"
+#include "rift/sweep/run/machine_trouble.hpp"
 
 namespace rift::sweep {
 namespace {
 
 constexpr const char* kErrors = "stderr.txt";
 
-[[noreturn]] void CannotStart() {
-  throw std::runtime_error(fmt::format("cannot start a program: {}", strerror(errno)));
+[[noreturn]] void CannotStart(int error) {
+  throw MachineTrouble(fmt::format("cannot start a program: {}", strerror(error)));
 }
 
 /// The two ends of a pipe or a socket, closed unless they are taken.
@@ -39,7 +40,7 @@ struct Ends {
 
 Ends SocketPair() {
   std::array<int, 2> ends{};
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) CannotStart();
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) CannotStart(errno);
   return {ends[0], ends[1]};
 }
 
@@ -74,22 +75,26 @@ void SetLimits(int memory_mb) {
   lower(RLIMIT_CORE, 0);
 }
 
-void Write(int file, const std::string& text) {
+/// False where errno says why.
+bool Write(int file, const std::string& text) {
   for (size_t written = 0; written < text.size();) {
     const ssize_t n = ::write(file, text.data() + written, text.size() - written);
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) CannotStart();
+    if (n <= 0) return false;
     written += static_cast<size_t>(n);
   }
+  return true;
 }
 
 /// Not made durable: the folder is gone after the trial.
 void WriteInto(const std::string& folder, const std::string& name, const std::string& text) {
   const std::string path = (std::filesystem::path(folder) / name).string();
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
-  if (file < 0) CannotStart();
-  Write(file, text);
-  ::close(file);
+  const bool is_written = file >= 0 && Write(file, text);
+  const int error = errno;
+  CloseIfOpen(file);
+  if (is_written) return;
+  throw MachineTrouble(fmt::format("cannot write {}: {}", path, strerror(error)));
 }
 
 /// What becomes the program.
@@ -119,7 +124,7 @@ void WriteInto(const std::string& folder, const std::string& name, const std::st
   SetLimits(start.memory_mb);
   if (is_there) ::execvp(arguments[0], arguments.data());
   const std::string reason = fmt::format("cannot run {}: {}\n", arguments[0], strerror(errno));
-  Write(2, reason);
+  static_cast<void>(Write(2, reason));
   ::_exit(127);
 }
 
@@ -177,6 +182,10 @@ void KillDescendants() {
   const int ends = ::signalfd(-1, &child_signal, SFD_CLOEXEC | SFD_NONBLOCK);
   const pid_t program = ::fork();
   if (program == 0) Become(start, folder, in, out);
+  if (program < 0) {
+    const int no_process = -errno;  // below every status of a process
+    static_cast<void>(::send(control, &no_process, sizeof no_process, MSG_NOSIGNAL));
+  }
   CloseIfOpen(in);
   CloseIfOpen(out);
   bool is_wanted = program > 0;
@@ -206,7 +215,7 @@ std::string ExternalProgram::MakeFolder() {
   std::string path = (temporary / "rift-XXXXXX").string();
   if (!error && ::mkdtemp(path.data()) != nullptr) return path;
   const char* named = std::getenv("TMPDIR");
-  throw std::runtime_error(fmt::format(
+  throw MachineTrouble(fmt::format(
       "cannot make a temporary folder in {}: {}; set TMPDIR to a folder that can be written",
       named != nullptr ? named : "/tmp", error ? error.message() : strerror(errno)));
 }
@@ -214,20 +223,30 @@ std::string ExternalProgram::MakeFolder() {
 ExternalProgram::ExternalProgram(const ProgramStart& start, std::string folder)
     : folder_(std::move(folder)), owner_(::getpid()) {
   if (start.arguments.empty()) throw std::runtime_error("a program has no name");
-  for (const auto& [name, text] : start.files) WriteInto(folder_, name, text);
-  const Ends control = SocketPair();
-  Ends in, out;
-  if (start.talks) {
-    in = SocketPair();
-    out = SocketPair();
+  Ends control, in, out;
+  try {
+    for (const auto& [name, text] : start.files) WriteInto(folder_, name, text);
+    control = SocketPair();
+    if (start.talks) {
+      in = SocketPair();
+      out = SocketPair();
+    }
+    keeper_ = ::fork();
+    if (keeper_ < 0) CannotStart(errno);
+  } catch (const MachineTrouble&) {
+    for (const Ends& ends : {control, in, out}) {
+      CloseIfOpen(ends.ours);
+      CloseIfOpen(ends.theirs);
+    }
+    std::error_code none;
+    std::filesystem::remove_all(folder_, none);
+    throw;
   }
-  keeper_ = ::fork();
   if (keeper_ == 0) Keep(start, folder_, control.theirs, in.theirs, out.theirs);
   for (const int theirs : {control.theirs, in.theirs, out.theirs}) CloseIfOpen(theirs);
   control_ = control.ours;
   to_program_ = in.ours;
   from_program_ = out.ours;
-  if (keeper_ < 0) CannotStart();
 }
 
 ExternalProgram::~ExternalProgram() {
@@ -243,6 +262,7 @@ ExternalProgram::Exit ExternalProgram::Wait() {
     n = ::recv(control_, &status, sizeof status, MSG_WAITALL);
   } while (n < 0 && errno == EINTR);
   if (n != sizeof status) return {0, SIGKILL};  // somebody killed the keeper
+  if (status < 0) CannotStart(-status);
   if (WIFSIGNALED(status)) return {0, WTERMSIG(status)};
   return {WEXITSTATUS(status), 0};
 }

@@ -195,6 +195,15 @@ void Journal::Add(const std::string& key, const JournalEntry& entry) {
   Tick();
 }
 
+int Journal::Forget(const std::string& status) {
+  return Told(store_->file, [&] {
+    store_->Begin();
+    SQLite::Statement forget(store_->database, "DELETE FROM trial WHERE status = ?");
+    forget.bind(1, status);
+    return forget.exec();
+  });
+}
+
 void Journal::Tick() {
   if (!store_->transaction) return;
   const std::chrono::duration<double> since = Clock::now() - store_->begun;

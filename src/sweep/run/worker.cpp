@@ -19,12 +19,15 @@
 #include <stdexcept>
 
 #include "rift/files/process_end.hpp"
+#include "rift/sweep/run/machine_trouble.hpp"
 
 namespace rift::sweep {
 namespace {
 
-// A message is its length in four bytes, then itself; of an answer the first byte is a JobEnd.
+// A message is its length in four bytes, then itself; of an answer the first byte is a JobEnd, or
+// says that there is none.
 using Length = std::uint32_t;
+constexpr char kMachineTrouble = 127;
 
 std::string Framed(const std::string& message) {
   const auto length = static_cast<Length>(message.size());
@@ -99,6 +102,8 @@ std::string Do(const WorkerPool::Work& work, const std::string& job) {
     return Answer(JobEnd::kDone, work(job));
   } catch (const std::bad_alloc&) {
     return Answer(JobEnd::kOutOfMemory, "");
+  } catch (const MachineTrouble& trouble) {
+    return kMachineTrouble + std::string(trouble.what());
   } catch (const std::exception& error) {
     return Answer(JobEnd::kThrew, error.what());
   }
@@ -136,7 +141,7 @@ std::string Do(const WorkerPool::Work& work, const std::string& job) {
 }
 
 [[noreturn]] void CannotStart() {
-  throw std::runtime_error(fmt::format("cannot start a worker process: {}", strerror(errno)));
+  throw MachineTrouble(fmt::format("cannot start a worker process: {}", strerror(errno)));
 }
 
 }  // namespace
@@ -186,6 +191,7 @@ std::optional<JobResult> Worker::NextResult() {
   JobResult result{static_cast<JobEnd>(arrived_[sizeof length]),
                    arrived_.substr(sizeof length + 1, length - 1)};
   arrived_.erase(0, sizeof length + length);
+  if (result.end == static_cast<JobEnd>(kMachineTrouble)) throw MachineTrouble(result.bytes);
   if (result.end == JobEnd::kOutOfMemory) {
     result.bytes = fmt::format("wanted more than {} MB of memory", options_.memory_mb);
   }

@@ -15,7 +15,7 @@ namespace rift::sweep {
 /// One forked process that does jobs one after the other.
 class Worker {
  public:
-  /// Throws std::runtime_error when no process can be made.
+  /// Throws MachineTrouble when no process can be made.
   Worker(const WorkerPool::Work& work, const RunOptions& options);
   /// Kills and reaps it.
   ~Worker();
@@ -27,7 +27,7 @@ class Worker {
   void Send(const std::string& job);
   /// Takes in what has arrived. False when the worker has exited.
   bool Receive();
-  /// The next finished job among what arrived.
+  /// The next finished job among what arrived. Throws MachineTrouble where the work did.
   std::optional<JobResult> NextResult();
 
   struct ExitStatus {

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "rift/sweep/run/machine_trouble.hpp"
 #include "worker.hpp"
 
 namespace rift::sweep {
@@ -58,9 +59,14 @@ bool WorkerPool::Run(const Batch& batch) {
       KillAll();
       return false;
     }
-    Feed(batch);
-    Wait();
-    for (Slot& slot : slots_) Collect(slot, batch);
+    try {
+      Feed(batch);
+      Wait();
+      for (Slot& slot : slots_) Collect(slot, batch);
+    } catch (const MachineTrouble&) {
+      KillAll();
+      throw;
+    }
   }
   return true;
 }

@@ -8,10 +8,12 @@
 #include "rift/sweep/falsify/candidate_runs.hpp"
 #include "rift/sweep/falsify/program_files.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
+#include "rift/sweep/run/machine_trouble.hpp"
 #include "support/inputs/paths.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/small_disk.hpp"
 #include "sweep/falsify/program_side.hpp"
 
 namespace rift::sweep {
@@ -126,6 +128,24 @@ TEST_CASE("An exit code that would say two things of a run is refused with both 
   shell.experiment.candidate.exit_codes = {20, 21, 22, 21};
   CHECK(shell.Refusal() ==
         "candidate.exit_codes: fell and lost are both 21: each needs a code of its own");
+}
+
+TEST_CASE("What a program fails at on a full disk is no result of its trial") {
+  const test::TemporaryFolder folder;
+  test::SmallDisk disk(folder / "disk");
+  RIFT_SKIP_WITHOUT(disk)
+  const test::Environment there("TMPDIR", folder / "disk");
+  const std::string fill = "dd if=/dev/zero of=fill bs=64k 2> /dev/null; ";
+  const std::string says = "the disk of " + (folder / "disk") + " is full, and a program failed";
+  disk.Resize(512);
+  for (const std::string end : {"exit 1", "cp \"$HERE/good.csv\" \"$1\"", "kill -SEGV $$"}) {
+    INFO(end);
+    CHECK_THROWS_WITH(Shell(fill + end).Run(), Catch::StartsWith(says));
+    CHECK(fs::is_empty(folder / "disk"));
+  }
+  CHECK(Shell(fill + "exit 10").Run().status == TrialStatus::kTimedOut);  // as it says
+  CHECK(Shell("exit 1").Run().status == TrialStatus::kFault);
+  CHECK_THROWS_AS(Shell("echo 'a.log: No space left on device' >&2; exit 1").Run(), MachineTrouble);
 }
 
 TEST_CASE("A crash is tried again as often as is allowed, and anything else once") {

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <string>
 
+#include "rift/sweep/run/machine_trouble.hpp"
 #include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
 #include "support/until.hpp"
@@ -43,6 +44,16 @@ TEST_CASE("A program has its folder, its files and its environment, and ends wit
   CHECK(fs::exists(fs::path(shell.program.Folder()) / "told.txt"));
   CHECK(Shell("kill -TERM $$").program.Wait().signal == SIGTERM);
   CHECK(Shell("exit 0").program.Wait().code == 0);
+}
+
+TEST_CASE("A program that cannot be given its files is trouble of the machine") {
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "of_its_own");
+  const ProgramStart start{.arguments = {"true"}, .files = {{"no/such.txt", "text"}}};
+  CHECK_THROWS_AS(ExternalProgram(start, folder / "of_its_own"), MachineTrouble);
+  CHECK_FALSE(fs::exists(folder / "of_its_own"));
+  CHECK_THROWS_WITH(ExternalProgram(start, folder / "gone"),
+                    Catch::EndsWith("gone/no/such.txt: No such file or directory"));
 }
 
 std::string WordsOf(const std::string& lines) {

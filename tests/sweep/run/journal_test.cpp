@@ -84,6 +84,24 @@ TEST_CASE("A journal gives back what was added to it when it is opened again") {
   CHECK(journal.Note("state") == "running");
 }
 
+TEST_CASE("A journal forgets the trials that ended in one way, and those alone, for good") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  {
+    Journal journal(file, kFacts);
+    journal.Add("a", {"hung", std::nan(""), false, "a"});
+    journal.Add("b", {"ok", 0.01, false, "b"});
+    journal.Add("c", {"hung", std::nan(""), false, "c"});
+    CHECK(journal.Forget("hung") == 2);
+    CHECK(journal.Forget("crashed") == 0);
+    CHECK_FALSE(journal.Find("a"));
+    journal.Close();
+  }
+  Journal journal(file, kFacts);
+  CHECK_FALSE(journal.Find("c"));
+  CHECK(journal.Find("b") == "b");
+}
+
 TEST_CASE("What was committed survives a kill of the process") {
   const test::TemporaryFolder folder;
   const std::string file = folder / "journal.sqlite";

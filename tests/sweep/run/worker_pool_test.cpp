@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "rift/sweep/run/external_program.hpp"
+#include "rift/sweep/run/machine_trouble.hpp"
 #include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
 #include "support/sanitizer.hpp"
@@ -100,6 +102,32 @@ TEST_CASE("A job that hangs or crashes or eats memory is a result with its reaso
     CHECK(results.at(5).bytes == "ended by signal 6 (Aborted): ODE INTERNAL ERROR 1, twice");
     CHECK(results.at(6).bytes == "answer to 6");
     CHECK(results.at(7).bytes == "answer to 7");
+  }
+}
+
+TEST_CASE("Trouble of the machine ends a batch, is no result of a job, and the pool goes on") {
+  const test::TemporaryFolder folder;
+  const std::string mended = folder / "mended";
+  for (const int workers : {1, 2}) {
+    WorkerPool pool(
+        [&mended](const std::string& job) {
+          if (job == "3" && !std::ifstream(mended)) throw MachineTrouble("no room for " + job);
+          return job;
+        },
+        workers, {});
+    const auto run = [&] {
+      pool.Run({8, [](int i) { return std::to_string(i); },
+                [](int i, const JobResult& result) {
+                  CHECK(i != 3);
+                  CHECK(result.end == JobEnd::kDone);
+                },
+                [] { return true; }});
+    };
+    CHECK_THROWS_WITH(run(), "no room for 3");
+    CHECK_THROWS_AS(run(), MachineTrouble);
+    test::WriteText(mended, "");
+    CHECK(RunAll(pool, 8).at(3).bytes == "3");
+    std::filesystem::remove(mended);
   }
 }
 

@@ -27,7 +27,8 @@ struct TrialRequest {
 TrialRequest RequestOf(const TrialRow& row);
 TrialRow RowFor(TrialRequest request);
 
-/// Computes one trial. What it throws as std::exception makes the row a fault.
+/// Computes one trial. What it throws as std::exception makes the row a fault, but for
+/// MachineTrouble, which ends the batch.
 using Evaluate = std::function<TrialRow(const TrialRequest&)>;
 
 /// Rows in the order of the requests; nothing when the sweep was told to stop.

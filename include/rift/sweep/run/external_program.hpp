@@ -27,10 +27,11 @@ struct ProgramStart {
 /// with the program, or dies in whatever way, the keeper kills them all and removes the folder.
 class ExternalProgram {
  public:
-  /// A new empty folder. Throws std::runtime_error when none can be made.
+  /// A new empty folder. Throws MachineTrouble when none can be made.
   static std::string MakeFolder();
 
-  /// Takes the folder over. Throws std::runtime_error when no process can be made.
+  /// Takes the folder over. Throws MachineTrouble when its files cannot be written or no process
+  /// can be made.
   ExternalProgram(const ProgramStart& start, std::string folder);
   /// Returns when no process of it is left and the folder is gone.
   ~ExternalProgram();
@@ -41,7 +42,7 @@ class ExternalProgram {
     int code = 0;    ///< 127 when it could not be started, as its stderr says
     int signal = 0;  ///< that ended it; 0: none
   };
-  /// Waits for the program itself.
+  /// Waits for the program itself. Throws MachineTrouble when there was no process for it.
   Exit Wait();
 
   /// Sends a line to one that talks; false when it does not listen.

@@ -62,6 +62,8 @@ class Journal {
   int Damaged() const;
   /// Adding a key again replaces it.
   void Add(const std::string& key, const JournalEntry& entry);
+  /// Forgets the trials that ended so, and says how many they were.
+  int Forget(const std::string& status);
   /// Commits when the last commit was long ago.
   void Tick();
   void Commit();

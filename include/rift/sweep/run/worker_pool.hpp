@@ -54,7 +54,8 @@ class WorkerPool {
 
   /// Runs all jobs of a batch. A job that hangs, crashes or runs out of memory is tried again
   /// `retries` times. True when all ended; false when go_on said no: what was under way is killed.
-  /// Throws std::runtime_error when no process can be made.
+  /// Throws MachineTrouble when no process can be made and where the work did, after killing what
+  /// was under way.
   bool Run(const Batch& batch);
 
  private:
