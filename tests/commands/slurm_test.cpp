@@ -389,6 +389,15 @@ struct HitSweep : Sweep {
     CheckSameBytes();
     CheckTidy(*this);
   }
+  /// What the tasks of the first array had to say; those that said nothing have no log.
+  std::string TaskLogs() const {
+    std::string logs;
+    for (const auto& entry : fs::directory_iterator(folder / "cluster/slurm/1")) {
+      if (entry.path().extension() != ".log") continue;
+      logs += entry.path().filename().string() + ": " + ReadFile(entry.path()) + "\n";
+    }
+    return logs;
+  }
   /// Kills the submitter (`kill -9`) once it has submitted.
   void SubmitAndDie() const {
     RunningRift running(Words());
@@ -417,6 +426,7 @@ void CheckSubmitterKilled(const LocalRun& local) {
   CHECK(text.find("shards on the cluster: ") != std::string::npos);
   const ProcessResult result = RunRift(sweep.Words());
   const std::string jobs = sweep.Read("cluster/slurm/1/jobs");
+  INFO(jobs << result.err << sweep.TaskLogs());
   CHECK(std::count(jobs.begin(), jobs.end(), '\n') == 1);
   sweep.CheckEnd(result);
 }
