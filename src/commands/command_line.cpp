@@ -79,8 +79,8 @@ int Run(int argc, char** argv, const CameraUses& camera) {
   app.footer(
       Examples(commands) +
       "\nrift help COMMAND tells the flags of one, rift sweep --keys every key of an experiment.\n"
-      "Exit codes: 0 done, 1 falsified (with --exit-code) or not reached, 2 usage or input, 3 "
-      "failure, also to write the results.");
+      "Exit codes: 0 done, 1 falsified (with --exit-code), not reached or a drive stopped, 2 "
+      "usage or input, 3 failure, also to write the results, 130 a sweep stopped.");
   for (const Command& command : commands) {
     CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
     // A word that is not there chooses no subcommand, and options take time to make.

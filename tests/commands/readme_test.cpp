@@ -60,7 +60,6 @@ std::string WhyNotRun(const std::string& command) {
            Need{"configs/twin.yaml", "two processes in real time: the tests of drive do it"},
            Need{"out/twin/", "the same"},
            Need{"out/sim", "a drive before it"},
-           Need{"out/ccw1", "squares that somebody drove"},
            Need{"out/identify/", "drives of a robot"},
            Need{"my_task.yaml", "a file that the reader writes"},
            Need{"--real-columns", "a log in columns of its own: the tests of gap do it"},

@@ -201,9 +201,8 @@ void AddTrack(CLI::App& app, int& exit_code, const std::function<int(const Track
   AddCalibrationFlags(app, *request);
   AddKeysFlag(app);
   app.footer(
-      "Ctrl-C ends it. Ends with 1 when the tag was never seen or the calibration is refused, with "
-      "3\n"
-      "when the camera fails (unplugged, frozen, black, busy, wrong format).\n"
+      "Ctrl-C ends it. Ends with 1 when the tag was never seen in a log or the calibration is\n"
+      "refused, with 3 when the camera fails (unplugged, frozen, black, busy, wrong format).\n"
       "Example: rift track --calibrate --board 13x9 --square 0.025 --images photos --out cam.yaml\n"
       "         rift track --camera /dev/video0 --calibration cam.yaml --world first --out "
       "log.csv\n"
