@@ -72,6 +72,22 @@ LogOptions ReferenceLogs(const experiment::Experiment& experiment) {
                       experiment.gap);
 }
 
+/// How far the tag is ahead of the axle of a simulated robot; of others nobody says it.
+double TagAhead_m(const experiment::Experiment& experiment, const TrialRequest& request) {
+  if (experiment.candidate.kind != CandidateKind::kSimulation) return 0.0;
+  return ExperimentFor(experiment, request).simulation.mocap.tag_ahead_m;
+}
+
+/// A program is the axle's, and a trial begins with the tag on its start: the way of that tag.
+trajectory::Trajectory OfTag(trajectory::Trajectory program, double tag_ahead_m) {
+  const Eigen::Vector2d back_m = -tag_ahead_m * program.poses.front().Planar().Forward();
+  for (trajectory::StampedPose& pose : program.poses) {
+    pose.x_m += back_m.x();
+    pose.y_m += back_m.y();
+  }
+  return trajectory::OffsetAlongHeading(std::move(program), tag_ahead_m);
+}
+
 }  // namespace
 
 Evaluator::Evaluator(const experiment::Experiment& experiment, std::string experiment_file,
@@ -230,7 +246,10 @@ Recording Evaluator::Reference(const TrialRequest& request) {
     case ReferenceKind::kPath:
       break;
   }
-  return {.source = PathName(), .trajectory = IdealPathAt(request.theta)};
+  trajectory::Trajectory path = IdealPathAt(request.theta);
+  const bool is_program = !experiment_.program.segments.empty();
+  if (is_program) path = OfTag(std::move(path), TagAhead_m(experiment_, request));
+  return {.source = PathName(), .trajectory = std::move(path)};
 }
 
 trajectory::Trajectory Evaluator::IdealPathAt(const experiment::Theta& theta) const {

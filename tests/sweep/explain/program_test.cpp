@@ -183,6 +183,30 @@ TEST_CASE("Of a simulated robot the axle is held against its program, wherever i
   CHECK(end_error_m(0.08) == Approx(end_error_m(0.0)).margin(0.005));
 }
 
+TEST_CASE("The gap to a program is the robot's alone, wherever its tag is") {
+  experiment::Experiment experiment = Lap(0.3);
+  experiment.program.laps = 1;
+  experiment.program.segments = {{.straight_m = 0.2}, {.turn_deg = 180.0, .radius_m = 0.16}};
+  experiment.gap.trim_standstill = true;
+  MakeExact(experiment.simulation);
+  const auto gap_m = [&](double tag_ahead_m) {
+    experiment.simulation.mocap.tag_ahead_m = tag_ahead_m;
+    Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
+    const TrialRow row = evaluator.Evaluate(TrialsAt(experiment, {}).front());
+    REQUIRE(row.IsOk());
+    return row.comparison.gap_m;
+  };
+  CHECK(gap_m(0.08) == Approx(gap_m(0.0)).margin(0.005));
+  CHECK(gap_m(-0.08) == Approx(gap_m(0.0)).margin(0.005));
+  experiment.space.parameters = {
+      {.key = "simulation.mocap.tag_ahead_m", .levels = {experiment::NumberValue(0.08)}}};
+  experiment.simulation.mocap.tag_ahead_m = 0.0;
+  Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
+  const TrialRow row =
+      evaluator.Evaluate(TrialsAt(experiment, {experiment::NumberValue(0.08)}).front());
+  CHECK(row.comparison.gap_m == Approx(gap_m(0.08)).margin(1e-9));
+}
+
 TEST_CASE("A program and waypoints after its start exclude each other") {
   experiment::Experiment experiment = Lap(0.2);
   experiment.waypoints = {{.name = "a", .x_m = 0.3, .y_m = 0.1, .heading_deg = 90.0}};
