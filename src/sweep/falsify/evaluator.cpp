@@ -283,8 +283,12 @@ TrialRow Evaluator::EvaluateOdometry(const TrialRequest& request) {
       wheels.status = TrialStatus::kUnreadable;
       wheels.reason = missing;
     } else {
-      const geometry::Pose2 start = trajectory::StandingPose(run.camera.trajectory);
-      wheels.trajectory = odometry::OdometryPath(during, experiment_.hardware.odometry, start);
+      // The wheels move the axle, and the camera sees the tag.
+      const double tag_ahead_m = TagAhead_m(experiment_, request);
+      const geometry::Pose2 start =
+          trajectory::StandingPose(run.camera.trajectory) * geometry::Pose2{-tag_ahead_m, 0.0, 0.0};
+      wheels.trajectory = trajectory::OffsetAlongHeading(
+          odometry::OdometryPath(during, experiment_.hardware.odometry, start), tag_ahead_m);
     }
   }
   return CompareTrial(experiment_, request, wheels, run.camera);

@@ -91,6 +91,24 @@ TEST_CASE("Judged by odometry a slippery floor is worse and the gap is that of w
   CHECK(slips_m > 2.0 * grips_m);
 }
 
+TEST_CASE("Odometry of exact wheels is the camera's path, wherever the tag is") {
+  experiment::Experiment experiment = Lap(0.2);
+  experiment.objective = experiment::Objective::kOdometry;
+  experiment.program.laps = 1;
+  experiment.trial.control_period_s = 0.004;  // between readings the wheels turn evenly
+  experiment.simulation.link.baud = 0.0;      // takes so many commands
+  experiment.hardware.odometry.counts_per_wheel_turn = 100'000.0;
+  MakeExact(experiment.simulation);
+  const double tag_ahead_m = GENERATE(0.0, 0.08, -0.08);
+  INFO(tag_ahead_m);
+  experiment.simulation.mocap.tag_ahead_m = tag_ahead_m;
+  Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
+  const TrialRow row = evaluator.Evaluate(TrialsAt(experiment, {}).front());
+  REQUIRE(row.IsOk());
+  CHECK(row.comparison.sim_length_m > 0.9);
+  CHECK(row.comparison.gap_m < 0.005);
+}
+
 TEST_CASE("Odometry as the objective needs encoders, and logs of its own") {
   experiment::Experiment experiment = Lap(0.2);
   experiment.objective = experiment::Objective::kOdometry;
