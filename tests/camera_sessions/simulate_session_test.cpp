@@ -46,5 +46,16 @@ TEST_CASE("What is written beside a run is no file of it, and a run for a pipe h
                     Contains("is an input"));
 }
 
+TEST_CASE("A run alone begins with its tag on the first waypoint, wherever its draw has the tag") {
+  experiment::Experiment experiment = test::PaperTask();
+  experiment.simulation.mocap.tag_ahead_m = 0.0;
+  experiment.ensemble.keys = {"simulation.mocap.tag_ahead_m"};
+  experiment.ensemble.draws = {{0.08}};
+  const sweep::SimulatedTrial trial =
+      TrialAlone(experiment, "e.yaml", {[](const std::string&) { return std::nullopt; }, {}});
+  const geometry::Pose2 tag = trial.start * geometry::Pose2{0.08, 0.0, 0.0};
+  CHECK((tag.Position() - experiment.waypoints[0].Position()).norm() < 1e-12);
+}
+
 }  // namespace
 }  // namespace rift::sessions

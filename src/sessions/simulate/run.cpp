@@ -49,7 +49,7 @@ sweep::SimulatedTrial TrialAlone(const experiment::Experiment& experiment,
                                  const std::string& experiment_file, const sweep::Inputs& inputs) {
   sweep::SimulatedTrial trial =
       sweep::SimulatedTrialOf(experiment, {}, experiment.seed, experiment_file, inputs);
-  trial.start = experiment::AxleAtStart(experiment);
+  trial.start = experiment::AxleAtStart(experiment::DrawnAt(experiment, experiment.seed));
   return trial;
 }
 

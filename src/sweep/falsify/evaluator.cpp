@@ -75,7 +75,8 @@ LogOptions ReferenceLogs(const experiment::Experiment& experiment) {
 /// How far the tag is ahead of the axle of a simulated robot; of others nobody says it.
 double TagAhead_m(const experiment::Experiment& experiment, const TrialRequest& request) {
   if (experiment.candidate.kind != CandidateKind::kSimulation) return 0.0;
-  return ExperimentFor(experiment, request).simulation.mocap.tag_ahead_m;
+  const experiment::Experiment at = ExperimentFor(experiment, request);
+  return experiment::DrawnAt(at, request.seed.value_or(at.seed)).simulation.mocap.tag_ahead_m;
 }
 
 /// A program is the axle's, and a trial begins with the tag on its start: the way of that tag.
@@ -141,7 +142,8 @@ SimulatedTrial Evaluator::TrialOf(const experiment::Experiment& experiment,
 }
 
 SimulatedTrial Evaluator::TrialFor(const TrialRequest& request, const Recording& reference) const {
-  const experiment::Experiment at = ExperimentFor(experiment_, request);
+  const experiment::Experiment at =
+      experiment::DrawnAt(ExperimentFor(experiment_, request), *request.seed);
   const bool starts_as_reference = experiment_.start == experiment::Start::kReference;
   const geometry::Pose2 start =
       starts_as_reference ? StartFromLog(reference.trajectory, experiment_.reference.tag_offset_m,

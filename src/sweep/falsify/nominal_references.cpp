@@ -46,7 +46,8 @@ const Recording& Evaluator::Nominal(std::uint64_t seed) {
   if (candidate_program_) {
     return nominal_runs_[seed] = candidate_program_->Run(NominalRequest(experiment_, seed));
   }
-  const SimulatedTrial trial = TrialOf(experiment_, experiment::AxleAtStart(experiment_), seed);
+  const experiment::Experiment at = experiment::DrawnAt(experiment_, seed);
+  const SimulatedTrial trial = TrialOf(at, experiment::AxleAtStart(at), seed);
   return nominal_runs_[seed] = RecordingOf(Simulate(trial), trial, experiment_.candidate.grid_fps);
 }
 

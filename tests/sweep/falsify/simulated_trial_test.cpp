@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "rift/geometry/pose2.hpp"
 #include "rift/simulation/simulated_robot.hpp"
 #include "support/inputs/memory_files.hpp"
 
@@ -51,6 +52,46 @@ TEST_CASE("A run has the values of the draw of its seed") {
     seen.insert(trial.simulation.motor.mismatch);
   }
   CHECK(seen == std::set<double>{0.01, 0.02, 0.03});
+}
+
+TEST_CASE("A run begins where its tag is to be, wherever the draw of its seed has the tag") {
+  experiment::Experiment experiment;
+  experiment.waypoints = {{.name = "s", .x_m = 0.1, .y_m = 0.2, .heading_deg = 90.0},
+                          {.name = "e", .x_m = 0.1, .y_m = 0.5}};
+  experiment.ensemble.keys = {"simulation.mocap.tag_ahead_m"};
+  experiment.ensemble.draws = {{0.08}, {-0.06}};
+  experiment.reference.kind = experiment::ReferenceKind::kNominal;
+  const test::Files none;
+  Evaluator evaluator(experiment, "e.yaml", test::InputsOf(none));
+  std::set<double> seen;
+  const auto begins_m = [&](const TrialRequest& request) {
+    const SimulatedTrial trial = evaluator.TrialFor(request, {});
+    seen.insert(trial.simulation.mocap.tag_ahead_m);
+    return (trial.start * geometry::Pose2{trial.simulation.mocap.tag_ahead_m, 0.0, 0.0}).Position();
+  };
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    INFO(seed);
+    CHECK((begins_m({.seed = seed}) - Eigen::Vector2d(0.1, 0.2)).norm() < 1e-12);
+    const Recording nominal = evaluator.Reference({.seed = seed});
+    REQUIRE_FALSE(nominal.trajectory.poses.empty());
+    CHECK((nominal.trajectory.poses.front().Position() - Eigen::Vector2d(0.1, 0.2)).norm() < 0.02);
+  }
+  CHECK(seen == std::set<double>{-0.06, 0.08});
+
+  experiment.start = experiment::Start::kReference;
+  experiment.reference.kind = experiment::ReferenceKind::kLogs;
+  experiment.reference.path.text = "log.csv";
+  const Evaluator of_logs(experiment, "e.yaml", test::InputsOf(none));
+  Recording log;
+  log.trajectory.poses = {{.t_s = 0.0, .x_m = 0.3, .y_m = 0.4, .yaw_rad = 1.0},
+                          {.t_s = 1.0, .x_m = 0.5, .y_m = 0.4, .yaw_rad = 1.0}};
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    INFO(seed);
+    const SimulatedTrial trial = of_logs.TrialFor({.seed = seed}, log);
+    const geometry::Pose2 tag =
+        trial.start * geometry::Pose2{trial.simulation.mocap.tag_ahead_m, 0.0, 0.0};
+    CHECK((tag.Position() - Eigen::Vector2d(0.3, 0.4)).norm() < 1e-12);
+  }
 }
 
 }  // namespace
