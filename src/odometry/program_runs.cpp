@@ -35,22 +35,31 @@ double Reach_m(const Trajectory& path) {
   return reach_m;
 }
 
-/// Sum of all turning, either way.
-double Turned_rad(const Trajectory& path) {
-  double turned_rad = 0.0;
-  for (std::size_t i = 1; i < path.poses.size(); ++i) {
-    const double by = geometry::WrapToPi(path.poses[i].yaw_rad - path.poses[i - 1].yaw_rad);
-    if (std::isfinite(by)) turned_rad += by;
+/// Between the furthest turns to the left and to the right. A turn that is taken back counts, and
+/// the noise of a yaw does not add up.
+double Swept_rad(const Trajectory& path) {
+  double at_rad = 0.0, least_rad = 0.0, most_rad = 0.0;
+  std::optional<double> last_rad;
+  for (const trajectory::StampedPose& pose : path.poses) {
+    if (!std::isfinite(pose.yaw_rad)) continue;
+    at_rad += geometry::WrapToPi(pose.yaw_rad - last_rad.value_or(pose.yaw_rad));
+    last_rad = pose.yaw_rad;
+    least_rad = std::min(least_rad, at_rad);
+    most_rad = std::max(most_rad, at_rad);
   }
-  return std::abs(turned_rad);
+  return most_rad - least_rad;
+}
+
+/// A program that only turns on the spot has no way to be held against.
+bool HasWay(const Trajectory& program) {
+  constexpr double kNoWay_m = 0.01;
+  return Reach_m(program) > kNoWay_m;
 }
 
 /// A program that only turns on the spot is judged by its turn.
 bool DidMove(const Trajectory& camera, const Trajectory& program, double share) {
-  constexpr double kNoWay_m = 0.01;
-  const double reach_m = Reach_m(program);
-  return reach_m > kNoWay_m ? Reach_m(camera) >= share * reach_m
-                            : Turned_rad(camera) >= share * Turned_rad(program);
+  return HasWay(program) ? Reach_m(camera) >= share * Reach_m(program)
+                         : Swept_rad(camera) >= share * Swept_rad(program);
 }
 
 /// A program is the axle's, and a trial begins with the robot's tag on the first waypoint.
@@ -140,7 +149,7 @@ void MeasureSlip(const std::vector<Moment>& moments, double track_m, int bins,
 }
 
 void MeasureOdometry(const RunLog& run, const OdometryOptions& odometry, const RunOptions& options,
-                     RunMeasures& measures) {
+                     bool has_way, RunMeasures& measures) {
   const std::vector<Moment> moments = MomentsOf(run, odometry, options.tag_ahead_m);
   // It begins at the first moment that both saw, at the pose that the camera's standing poses give.
   const Pose2 stood = OdometryStart(run) * Pose2{-options.tag_ahead_m, 0.0, 0.0};
@@ -163,10 +172,19 @@ void MeasureOdometry(const RunLog& run, const OdometryOptions& odometry, const R
         measures.odometry_gap_m, (here.Position() - moment.world_from_robot.Position()).norm());
   }
   const Pose2& camera_end = moments.back().world_from_robot;
-  measures.drift_per_m =
-      (odometry_end.Position() - camera_end.Position()).norm() / measures.length_m;
+  if (has_way) {
+    measures.drift_per_m =
+        (odometry_end.Position() - camera_end.Position()).norm() / measures.length_m;
+  }
   measures.yaw_drift_rad = geometry::WrapToPi(odometry_end.yaw_rad - camera_end.yaw_rad);
   MeasureSlip(moments, odometry.drive.track_m, options.slip_bins, measures);
+}
+
+void MeasureDeviation(const Trajectory& axle, const Trajectory& ideal, RunMeasures& measures) {
+  const gap::Comparison compared = gap::Compare(axle, ideal, AlongMoving());
+  measures.deviation_m = compared.mean_error_m;
+  measures.largest_deviation_m = compared.gap_m;
+  measures.length_m = compared.sim_length_m;
 }
 
 template <class Number>
@@ -190,15 +208,13 @@ RunMeasures MeasureRun(const RunLog& run, const std::optional<Trajectory>& progr
   Trajectory axle = run.camera;
   if (options.tag_ahead_m != 0.0) axle = trajectory::OffsetAlongHeading(axle, -options.tag_ahead_m);
   measures.length_m = axle.ArcLength_m();
+  const bool has_way = !program || HasWay(*program);
   if (program) {
     const Trajectory ideal = OfAxle(*program, options.tag_ahead_m);
-    const gap::Comparison compared = gap::Compare(axle, ideal, AlongMoving());
-    measures.deviation_m = compared.mean_error_m;
-    measures.largest_deviation_m = compared.gap_m;
     measures.end_error_m = (axle.poses.back().Position() - ideal.poses.back().Position()).norm();
-    measures.length_m = compared.sim_length_m;
+    if (has_way) MeasureDeviation(axle, ideal, measures);
   }
-  if (!run.encoders.empty()) MeasureOdometry(run, odometry, options, measures);
+  if (!run.encoders.empty()) MeasureOdometry(run, odometry, options, has_way, measures);
   return measures;
 }
 
@@ -237,13 +253,13 @@ CellMeasures MeasureCell(std::span<const RunMeasures> runs, std::span<const Traj
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!runs[i].did_move) continue;
     moved.push_back(paths[i]);
-    deviations_m.push_back(runs[i].deviation_m);
+    if (!std::isnan(runs[i].deviation_m)) deviations_m.push_back(runs[i].deviation_m);
   }
   cell.moved = moved.size();
   if (moved.empty()) return cell;
   cell.deviation_m = statistics::Mean(deviations_m);
   cell.deviation_interval_m = statistics::MeanInterval(deviations_m, 0.95);
-  cell.spread_m = Spread_m(moved);
+  if (!deviations_m.empty()) cell.spread_m = Spread_m(moved);  // along a way
   cell.drift_per_m = MeanOver(runs, &RunMeasures::drift_per_m);
   cell.odometry_gap_m = MeanOver(runs, &RunMeasures::odometry_gap_m);
   cell.slip_left = MeanOver(runs, &RunMeasures::slip_left);

@@ -1,5 +1,6 @@
 #include "rift/odometry/program_runs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -131,6 +132,84 @@ TEST_CASE("A program that only turns is judged by its turn") {
   RunLog still = run;
   for (trajectory::StampedPose& pose : still.camera.poses) pose.yaw_rad = 0.3;
   CHECK_FALSE(MeasureRun(still, turn, {}, {}).did_move);
+}
+
+/// Two turns on the spot, the second of which takes the first one back, of `degrees` each.
+Trajectory ThereAndBack(double degrees) {
+  Trajectory program;
+  for (int i = 0; i <= 200; ++i) {
+    const double share = 1.0 - std::abs(i - 100) / 100.0;
+    const double turn_rad = geometry::RadFromDeg(share * degrees);
+    program.poses.push_back(
+        {.t_s = 0.05 * i, .x_m = 0.1, .y_m = 0.2, .yaw_rad = geometry::WrapToPi(0.3 + turn_rad)});
+  }
+  return program;
+}
+
+/// The camera of a robot that stands and then turns so, and its wheels.
+RunLog TurnOnTheSpot(double degrees, double tag_ahead_m = 0.0) {
+  const OdometryOptions wheels;
+  RunLog run{.name = "turn"};
+  Trajectory way = ThereAndBack(degrees);
+  const trajectory::StampedPose stands = way.poses.front();
+  way.poses.insert(way.poses.begin(), 40, stands);
+  for (std::size_t i = 0; i < 40; ++i) way.poses[i].t_s = 0.05 * (static_cast<double>(i) - 40.0);
+  for (const trajectory::StampedPose& pose : way.poses) {
+    const double share = std::max(0.0, 1.0 - std::abs(pose.t_s - 5.0) / 5.0);
+    const double turn_rad = geometry::RadFromDeg(share * degrees);
+    const auto right = static_cast<std::int64_t>(
+        std::lround(0.5 * turn_rad * wheels.drive.track_m / MetresPerCount(wheels)));
+    run.encoders.push_back({pose.t_s, {-right, right}});
+    const geometry::Pose2 tag = pose.Planar() * geometry::Pose2{tag_ahead_m, 0.0, 0.0};
+    run.camera.poses.push_back(
+        {.t_s = pose.t_s, .x_m = tag.x_m, .y_m = tag.y_m, .yaw_rad = tag.yaw_rad});
+  }
+  return run;
+}
+
+TEST_CASE("A program that only turns has no way, and what its runs tell without one") {
+  const double tag_ahead_m = GENERATE(0.0, 0.05);
+  INFO(tag_ahead_m);
+  Trajectory program = ThereAndBack(360.0);
+  for (trajectory::StampedPose& pose : program.poses) {  // the tag begins on it
+    const Eigen::Vector2d ahead_m = tag_ahead_m * program.poses.front().Planar().Forward();
+    pose.x_m += ahead_m.x();
+    pose.y_m += ahead_m.y();
+  }
+  const RunLog log = TurnOnTheSpot(360.0, tag_ahead_m);
+  const RunMeasures run = MeasureRun(log, program, {}, {.tag_ahead_m = tag_ahead_m});
+  CHECK(run.did_move);
+  CHECK(run.end_error_m < 1e-9);
+  CHECK(run.odometry_gap_m < 0.002);
+  CHECK(std::abs(run.yaw_drift_rad) < 0.02);
+  CHECK(run.slip_left == Approx(0.0).margin(0.01));
+  CHECK(std::isnan(run.deviation_m));
+  CHECK(std::isnan(run.largest_deviation_m));
+  CHECK(std::isnan(run.drift_per_m));
+  RunLog pushed = log;
+  for (trajectory::StampedPose& pose : pushed.camera.poses) pose.x_m += 0.02 * pose.t_s / 10.0;
+  CHECK(MeasureRun(pushed, program, {}, {.tag_ahead_m = tag_ahead_m}).end_error_m == Approx(0.02));
+  const CellMeasures cell = MeasureCell(std::vector{run, run}, std::vector{log.camera, log.camera});
+  CHECK(cell.moved == 2);
+  CHECK(std::isnan(cell.deviation_m));
+  CHECK(std::isnan(cell.spread_m));
+  CHECK(cell.odometry_gap_m == Approx(run.odometry_gap_m));
+}
+
+TEST_CASE("A robot that is stuck in turns that take each other back did not move") {
+  const auto did_move = [](double degrees, double noise_rad) {
+    RunLog run = TurnOnTheSpot(degrees);
+    double sign = 1.0;
+    for (trajectory::StampedPose& pose : run.camera.poses) {
+      pose.yaw_rad = geometry::WrapToPi(pose.yaw_rad + noise_rad * (sign = -sign));
+    }
+    return MeasureRun(run, ThereAndBack(360.0), {}, {}).did_move;
+  };
+  CHECK(did_move(360.0, 0.0));
+  CHECK(did_move(37.0, 0.0));
+  CHECK_FALSE(did_move(35.0, 0.0));
+  CHECK_FALSE(did_move(0.0, 0.0));
+  CHECK_FALSE(did_move(0.0, 0.02));  // the noise of 200 poses is more than a turn when added up
 }
 
 TEST_CASE("The spread is the root of both variances at equal u") {

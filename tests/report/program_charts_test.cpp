@@ -1,10 +1,12 @@
-// Charts of a program's runs beside values that are chosen.
+// Charts and text of a program's runs beside values that are chosen.
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "report/page/parts.hpp"
 #include "report/synthetic_sweep.hpp"
+#include "rift/geometry/pose2.hpp"
+#include "rift/report/text/text.hpp"
 
 namespace rift::report {
 namespace {
@@ -112,6 +114,24 @@ TEST_CASE("Slip is drawn for each wheel in per cent, without what is not known o
   CHECK(right[1]["y"].get<double>() == Approx(30.0));
   CHECK(right[1]["x"] == 0.75);
   CHECK(programs.Signal(4, "y_title") == "slip, right wheel (%)");
+}
+
+TEST_CASE("Of a run that only turns no way is told, and what odometry and camera say is") {
+  odometry::OdometryResult result;
+  result.runs = {{"spin",
+                  {.length_m = 0.001,
+                   .end_error_m = 0.002,
+                   .odometry_gap_m = 0.003,
+                   .yaw_drift_rad = geometry::RadFromDeg(1.5)}}};
+  result.cell = odometry::CellMeasures{.runs = 2, .moved = 2};
+  const std::string text = OdometryText(result);
+  INFO(text);
+  CHECK(text.find("camera from program   end 0.0020 m\n") != std::string::npos);
+  CHECK(text.find("odometry from camera  largest 0.0030 m, turned +1.50 deg more\n") !=
+        std::string::npos);
+  CHECK(text.find("2 of 2 runs of one program moved\n") != std::string::npos);
+  CHECK(text.find("nan") == std::string::npos);
+  CHECK(text.find("distance from it") == std::string::npos);
 }
 
 }  // namespace

@@ -88,12 +88,17 @@ std::string RunText(const odometry::OdometryResult::Run& run) {
     text +=
         fmt::format("  camera from program   mean {}, largest {}, end {}\n", Metres(m.deviation_m),
                     Metres(m.largest_deviation_m), Metres(m.end_error_m));
+  } else if (std::isfinite(m.end_error_m)) {  // of a program that only turns
+    text += fmt::format("  camera from program   end {}\n", Metres(m.end_error_m));
   }
-  if (std::isfinite(m.drift_per_m)) {
-    text += fmt::format(
-        "  odometry from camera  end {} ({} of the way), largest {}, turned {:+.2f} deg more\n",
-        Metres(m.drift_per_m * m.length_m), Percent(m.drift_per_m), Metres(m.odometry_gap_m),
-        geometry::DegFromRad(m.yaw_drift_rad));
+  if (std::isfinite(m.odometry_gap_m)) {
+    const std::string end =
+        std::isfinite(m.drift_per_m)
+            ? fmt::format("end {} ({} of the way), ", Metres(m.drift_per_m * m.length_m),
+                          Percent(m.drift_per_m))
+            : "";
+    text += fmt::format("  odometry from camera  {}largest {}, turned {:+.2f} deg more\n", end,
+                        Metres(m.odometry_gap_m), geometry::DegFromRad(m.yaw_drift_rad));
     text += fmt::format("  slip of the wheels    left {}, right {}\n", Percent(m.slip_left),
                         Percent(m.slip_right));
   }
@@ -128,7 +133,7 @@ std::string OdometryText(const odometry::OdometryResult& result) {
   if (result.cell) {
     const CellMeasures& cell = *result.cell;
     text += fmt::format("{} of {} runs of one program moved\n", cell.moved, cell.runs);
-    if (cell.moved > 0) {
+    if (cell.moved > 0 && std::isfinite(cell.deviation_m)) {
       text += fmt::format("  distance from it      mean {} [{:.4f}, {:.4f}]\n",
                           Metres(cell.deviation_m), cell.deviation_interval_m.low,
                           cell.deviation_interval_m.high);
