@@ -43,6 +43,26 @@ Trajectory OffsetAlongHeading(Trajectory trajectory, double offset_m) {
   return trajectory;
 }
 
+namespace {
+
+/// How many of the turns from the first row are those of a standing robot: up to the first two rows
+/// after one another that are turned away, since one alone is the tracker's.
+size_t StandingRows(const std::vector<double>& turn_rad) {
+  constexpr size_t kFirst = 5;  // of which some may jump
+  constexpr double kTurned_rad = 0.1;
+  if (turn_rad.size() <= kFirst) return turn_rad.size();
+  const double stands_rad = statistics::Median({turn_rad.begin(), turn_rad.begin() + kFirst});
+  const auto is_turned = [&](size_t row) {
+    return std::abs(geometry::WrapToPi(turn_rad[row] - stands_rad)) > kTurned_rad;
+  };
+  for (size_t row = kFirst; row + 1 < turn_rad.size(); ++row) {
+    if (is_turned(row) && is_turned(row + 1)) return row;
+  }
+  return turn_rad.size();
+}
+
+}  // namespace
+
 geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m) {
   if (!trajectory.HasYaw()) {
     throw std::invalid_argument("the pose of the standing robot needs the yaw, which is not known");
@@ -55,6 +75,9 @@ geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m) {
     y_m.push_back(pose.y_m);
     turn_rad.push_back(geometry::WrapToPi(pose.yaw_rad - first.yaw_rad));
   }
+  // The tag over the axle stays where it is while the robot turns on the spot.
+  const size_t rows = StandingRows(turn_rad);
+  for (std::vector<double>* values : {&x_m, &y_m, &turn_rad}) values->resize(rows);
   return {statistics::Median(x_m), statistics::Median(y_m),
           geometry::WrapToPi(first.yaw_rad + statistics::Median(turn_rad))};
 }

@@ -196,6 +196,37 @@ TEST_CASE("A program that only turns has no way, and what its runs tell without 
   CHECK(cell.odometry_gap_m == Approx(run.odometry_gap_m));
 }
 
+TEST_CASE("Odometry begins as the robot stood also where it first turned under its tag and held") {
+  const OdometryOptions wheels = [] {
+    OdometryOptions fine;
+    fine.counts_per_wheel_turn = 1e6;
+    return fine;
+  }();
+  RunLog run{.name = "spin"};
+  geometry::Pose2 at{0.1, 0.2, 0.3};
+  double left_m = 0.0, right_m = 0.0;
+  const auto add = [&](int steps, double length_m, double turn_rad) {
+    for (int i = 0; i < steps; ++i) {
+      left_m += (length_m - 0.5 * turn_rad * wheels.drive.track_m) / steps;
+      right_m += (length_m + 0.5 * turn_rad * wheels.drive.track_m) / steps;
+      at = at * control::ArcMotion(length_m / steps, turn_rad / steps);
+      const double t_s = 0.05 * static_cast<double>(run.encoders.size());
+      const double metres = MetresPerCount(wheels);
+      run.encoders.push_back(
+          {t_s, {std::llround(left_m / metres), std::llround(right_m / metres)}});
+      run.camera.poses.push_back({.t_s = t_s, .x_m = at.x_m, .y_m = at.y_m, .yaw_rad = at.yaw_rad});
+    }
+  };
+  add(10, 0.0, 0.0);
+  add(20, 0.0, 0.5 * geometry::kPi);
+  add(40, 0.0, 0.0);
+  add(40, 0.5, 0.0);
+  const RunMeasures measured = MeasureRun(run, std::nullopt, wheels, {});
+  CHECK(measured.drift_per_m < 1e-3);
+  CHECK(std::abs(measured.yaw_drift_rad) < 1e-3);
+  CHECK(measured.odometry_gap_m < 1e-3);
+}
+
 TEST_CASE("A robot that is stuck in turns that take each other back did not move") {
   const auto did_move = [](double degrees, double noise_rad) {
     RunLog run = TurnOnTheSpot(degrees);

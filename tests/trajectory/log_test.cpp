@@ -394,5 +394,31 @@ TEST_CASE("The standing pose is the median of the first rows and shrugs off a ju
   CHECK_THROWS_AS(StandingPose(trajectory), std::invalid_argument);
 }
 
+TEST_CASE("A robot that turns on the spot under its tag does not stand any more") {
+  const auto yaw_rad = [](const std::vector<double>& turns_rad, double standing_rad) {
+    Trajectory log;
+    const auto add = [&](double turned_rad) {
+      log.poses.push_back({.t_s = 0.05 * static_cast<double>(log.poses.size()),
+                           .x_m = 0.5,
+                           .y_m = -0.5,
+                           .yaw_rad = geometry::WrapToPi(standing_rad + turned_rad)});
+    };
+    for (const double turned_rad : turns_rad) add(turned_rad);
+    for (int i = 1; i <= 20; ++i) add(kPi / 40.0 * i);  // a quarter of a turn, and it holds there
+    for (int i = 0; i < 60; ++i) add(kPi / 2.0);
+    return StandingPose(log).yaw_rad;
+  };
+  for (const double standing_rad : {0.3, kPi - 0.01, -kPi + 0.01}) {
+    INFO(standing_rad);
+    const auto off_rad = [&](const std::vector<double>& turns_rad) {
+      return std::abs(geometry::WrapToPi(yaw_rad(turns_rad, standing_rad) - standing_rad));
+    };
+    CHECK(off_rad(std::vector<double>(20, 0.0)) < 1e-9);
+    CHECK(off_rad({1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}) < 1e-9);  // first two jump
+    CHECK(off_rad({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01}) ==
+          Approx(0.01));  // and one of the others does
+  }
+}
+
 }  // namespace
 }  // namespace rift::trajectory
