@@ -1,9 +1,11 @@
 #include "rift/sessions/drive/identification.hpp"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "rift/files/files.hpp"
+#include "rift/sessions/drive/plan.hpp"
 #include "support/inputs/paper_task.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/until_done.hpp"
@@ -52,6 +54,82 @@ TEST_CASE("The fit of an identification is to all its logs and keeps what an exp
   }
   logs.calibrate.fit.list = {{.key = "simulation.motor.lag_s"}};
   REQUIRE(IdentificationFit(logs).calibrate.fit.list.size() == 1);
+}
+
+/// The sweep that an identification of this robot leaves, as `rift sweep` reads it.
+experiment::Experiment SweptAfter(const experiment::Experiment& robot) {
+  const experiment::Experiment sweep =
+      PlanSeries({.identify = true}, IdentificationDrive(robot), "/out").sweep;
+  return experiment::LoadExperiment("/out/sweep.yaml", {}, [&](const std::string&) {
+    return experiment::WriteExperiment(sweep);
+  });
+}
+
+experiment::FreeParameter FrictionFitted(const experiment::Experiment& robot) {
+  for (const experiment::FreeParameter& free : SweptAfter(robot).calibrate.fit.list) {
+    if (free.key == "simulation.motor.friction_torque_nm") return free;
+  }
+  return {};
+}
+
+TEST_CASE("The fit of an identification can be made for every robot file") {
+  int robots = 0;
+  for (const auto& file :
+       std::filesystem::directory_iterator(test::SourceDir() + "/configs/robots")) {
+    INFO(file.path());
+    ++robots;
+    const experiment::Experiment robot =
+        experiment::LoadExperiment(file.path().string(), {}, files::ReadFile);
+    experiment::Experiment fit;
+    REQUIRE_NOTHROW(fit = SweptAfter(robot));
+    REQUIRE(fit.calibrate.fit.list.size() == 5);
+    const experiment::FreeParameter& friction = fit.calibrate.fit.list[2];
+    CHECK(friction.start == robot.simulation.motor.friction_torque_nm);
+    CHECK(friction.start < friction.max);  // it may turn out to be more
+  }
+  CHECK(robots >= 4);
+}
+
+TEST_CASE("The friction that an identification fits is that of the motor and ends at breakaway") {
+  experiment::Experiment robot = test::PaperTask();
+  simulation::MotorOptions& motor = robot.simulation.motor;
+  motor.stall_torque_nm = 10.0 * motor.StallTorque_nm();  // of the 3pi+
+  CHECK(FrictionFitted(robot).max == Approx(0.03));
+  CHECK(FrictionFitted(robot).prior_mean == Approx(0.019));
+  CHECK(FrictionFitted(robot).prior_sd == Approx(0.008));
+  motor.friction_torque_nm = 0.04;
+  CHECK(FrictionFitted(robot).max == Approx(0.06));
+  motor.breakaway_torque_nm = 0.05;
+  CHECK(FrictionFitted(robot).max == 0.05);
+  motor.friction_torque_nm = 0.01;
+  motor.breakaway_torque_nm = 0.01;
+  CHECK(FrictionFitted(robot).max == 0.01);
+  CHECK(FrictionFitted(robot).prior_mean == 0.01);  // what is known must lie in the range
+  motor.friction_torque_nm = 0.0;
+  motor.breakaway_torque_nm = 0.0;  // none at all
+  CHECK(FrictionFitted(robot).key.empty());
+}
+
+TEST_CASE("The ranges of an identification hold the values that the robot has already") {
+  experiment::Experiment robot = test::PaperTask();
+  robot.simulation.link.delay_s = 0.3;
+  robot.simulation.motor.supply_ratio = 0.5;
+  robot.simulation.motor.mismatch = -0.12;
+  robot.simulation.body.caster_mu = 0.7;
+  const auto fit = SweptAfter(robot).calibrate.fit.list;
+  REQUIRE(fit.size() == 5);
+  CHECK(fit[0].max == 0.3);
+  CHECK(fit[1].min == 0.5);
+  CHECK(fit[3].min == -0.12);
+  CHECK(fit[4].max == 0.7);
+}
+
+TEST_CASE("An identification whose fit could not be made is refused before its first drive") {
+  experiment::Experiment robot = test::PaperTask();
+  robot.calibrate.fit.list = {{.key = "simulation.motor.mismatch", .min = 0.01, .max = 0.1}};
+  CHECK_THROWS_WITH(PlanSeries({.identify = true}, robot, "/out"),
+                    Catch::Contains("simulation.motor.mismatch starts at 0"));
+  CHECK_NOTHROW(PlanSeries({.repeat = 2}, robot, "/out"));
 }
 
 TEST_CASE("An identification on the twin leaves a fit that the next command makes") {

@@ -34,17 +34,38 @@ std::vector<control::Segment> Excitation() {
           Arc(-90, 0.20), Hold(), Arc(90, 0.30), Hold(), Straight(-0.20, 0.20)};
 }
 
-/// Ranges and what is known beside the logs: configs/calibrate.yaml gives the reasons.
-std::vector<experiment::FreeParameter> WhatIsFitted() {
-  const auto free = [](const char* key, double min, double max, double mean, double sd) {
-    return experiment::FreeParameter{
-        .key = key, .min = min, .max = max, .prior_mean = mean, .prior_sd = sd};
+/// Friction of gear and bearing grows with the motor: the figures are of the 3pi+, the default. A
+/// wheel at rest is held by no less.
+experiment::FreeParameter FrictionOf(const simulation::MotorOptions& motor) {
+  const double scale = motor.StallTorque_nm() / simulation::MotorOptions{}.StallTorque_nm();
+  double max_nm = std::max(0.003 * scale, 1.5 * motor.friction_torque_nm);
+  max_nm = std::min(max_nm, motor.breakaway_torque_nm.value_or(max_nm));
+  return {.key = "simulation.motor.friction_torque_nm",
+          .min = 0.0,
+          .max = max_nm,
+          .prior_mean = std::min(0.0019 * scale, max_nm),
+          .prior_sd = 0.0008 * scale};
+}
+
+/// Ranges and what is known beside the logs: configs/calibrate.yaml gives the reasons. Each range
+/// holds the robot's own value, where the fit starts.
+std::vector<experiment::FreeParameter> WhatIsFitted(const simulation::SimulationOptions& robot) {
+  const auto free = [](const char* key, double start, double min, double max, double mean,
+                       double sd) {
+    return experiment::FreeParameter{.key = key,
+                                     .min = std::min(min, start),
+                                     .max = std::max(max, start),
+                                     .prior_mean = mean,
+                                     .prior_sd = sd};
   };
-  return {free("simulation.link.delay_s", 0.0, 0.20, 0.05, 0.05),
-          free("simulation.motor.supply_ratio", 0.6, 1.7, 1.2, 0.25),
-          free("simulation.motor.friction_torque_nm", 0.0, 0.003, 0.0019, 0.0008),
-          free("simulation.motor.mismatch", -0.10, 0.10, 0.0, 0.04),
-          free("simulation.body.caster_mu", 0.0, 0.5, 0.15, 0.1)};
+  const simulation::MotorOptions& motor = robot.motor;
+  std::vector<experiment::FreeParameter> fit{
+      free("simulation.link.delay_s", robot.link.delay_s, 0.0, 0.20, 0.05, 0.05),
+      free("simulation.motor.supply_ratio", motor.supply_ratio, 0.6, 1.7, 1.2, 0.25),
+      FrictionOf(motor), free("simulation.motor.mismatch", motor.mismatch, -0.10, 0.10, 0.0, 0.04),
+      free("simulation.body.caster_mu", robot.body.caster_mu, 0.0, 0.5, 0.15, 0.1)};
+  std::erase_if(fit, [](const auto& one) { return !(one.min < one.max); });  // no friction at all
+  return fit;
 }
 
 }  // namespace
@@ -65,7 +86,7 @@ experiment::Experiment IdentificationFit(experiment::Experiment logs) {
   // The motions are compared, step by step; a program has no task whose traits could be.
   logs.calibrate.method.runs = 0;
   std::vector<experiment::FreeParameter>& fit = logs.calibrate.fit.list;
-  if (fit.empty()) fit = WhatIsFitted();
+  if (fit.empty()) fit = WhatIsFitted(logs.simulation);
   return logs;
 }
 

@@ -166,6 +166,12 @@ SeriesPlan PlanSuggested(const Experiment& experiment, const fs::path& folder) {
       SuggestedFile(folder).string(), (folder / "experiment.yaml").string(), folder.string()));
 }
 
+/// Read as `rift sweep` will read it: what it would refuse after the drives is refused before them.
+void RequireSweepable(const Experiment& sweep, const fs::path& file) {
+  experiment::LoadExperiment(
+      file.string(), {}, [&](const std::string&) { return experiment::WriteExperiment(sweep); });
+}
+
 }  // namespace
 
 SeriesPlan PlanSeries(const SeriesRequest& request, const Experiment& experiment,
@@ -184,6 +190,7 @@ SeriesPlan PlanSeries(const SeriesRequest& request, const Experiment& experiment
   plan.next = "against the simulator: " + sweep;
   if (!request.identify) return plan;
   plan.sweep = IdentificationFit(std::move(plan.sweep));
+  RequireSweepable(plan.sweep, out / "sweep.yaml");
   plan.next = fmt::format("fit the simulated robot: {} --write-robot {}", sweep,
                           (out / "robot.yaml").string());
   return plan;

@@ -13,7 +13,8 @@ constexpr int kIdentificationRuns = 5;
 experiment::Experiment IdentificationDrive(experiment::Experiment experiment);
 
 /// `logs`, a sweep over the logs of such drives, as a fit of the simulated robot to them. What the
-/// experiment fits already stays; without, it is what these drives identify.
+/// experiment fits already stays; without, it is what these drives identify, in ranges about its
+/// robot's values.
 experiment::Experiment IdentificationFit(experiment::Experiment logs);
 
 }  // namespace rift::sessions

@@ -86,7 +86,8 @@ SeriesPlan PlanChosen(const experiment::Experiment& experiment,
                       const std::vector<ChosenSetting>& settings);
 
 /// The drives that were asked for, below `out` unless they are suggested ones. Throws
-/// std::invalid_argument where there is nothing to drive.
+/// std::invalid_argument where there is nothing to drive, or no fit could be made of the drives of
+/// an identification.
 SeriesPlan PlanSeries(const SeriesRequest& request, const experiment::Experiment& experiment,
                       const std::filesystem::path& out);
 
