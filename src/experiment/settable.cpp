@@ -105,10 +105,11 @@ double StepOf(const Parameter& parameter) {
 
 ParameterValue NearestSettable(const Parameter& parameter, const ParameterValue& value) {
   if (!parameter.IsContinuous() || !value.number) return value;
+  constexpr double kSlack = 1e-9;  // of a step: 0.3 / 0.1 is a little less than 3
   const double step = StepOf(parameter);
-  double steps = std::round(*value.number / step);
-  if (steps * step > parameter.max) steps = std::floor(parameter.max / step);
-  if (steps * step < parameter.min) steps = std::ceil(parameter.min / step);
+  const double most = std::floor(parameter.max / step + kSlack);
+  const double least = std::ceil(parameter.min / step - kSlack);
+  const double steps = std::max(least, std::min(most, std::round(*value.number / step)));
   // Divided where the step is one over a whole number, so that 3 steps of 0.1 are 0.3.
   const double inverse = std::round(1.0 / step);
   const bool is_inverse = step < 1.0 && std::abs(inverse * step - 1.0) < 1e-9;

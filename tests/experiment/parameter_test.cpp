@@ -203,6 +203,20 @@ TEST_CASE("A value is set to the nearest step within its range, and a level as i
   CHECK(NearestSettable(Range(0, 1, 0.1), {"word", {}}).text == "word");
 }
 
+TEST_CASE("A bound that is a whole number of steps can be set, at either end") {
+  const auto nearest = [](const Parameter& parameter, double value) {
+    return NearestSettable(parameter, NumberValue(value)).text;
+  };
+  CHECK(nearest(Range(0, 0.3, 0.1), 0.3) == "0.3");  // 3 * 0.1 is more, and 0.3 / 0.1 less than 3
+  CHECK(nearest(Range(0.1, 0.3, 0.05), 0.29) == "0.3");
+  CHECK(nearest(Range(0.1, 0.3, 0.05), 0.27) == "0.25");
+  CHECK(nearest(Range(-0.3, 0.3, 0.1), -0.3) == "-0.3");
+  CHECK(nearest(Range(-0.3, -0.1, 0.1), -0.1) == "-0.1");
+  CHECK(nearest(Range(0.3, 1, 0.1), 0.3) == "0.3");
+  CHECK(nearest(Range(0, 0.2999, 0.1), 0.2999) == "0.2");  // truly below a step
+  CHECK(nearest(Range(-0.2999, 0, 0.1), -0.2999) == "-0.2");
+}
+
 TEST_CASE("A name's unit is its ending, and the word before it its label") {
   const std::vector<std::pair<std::string, std::string>> units{{"a_rad_per_mps", "rad/(m/s)"},
                                                                {"a_ns_per_m", "N s/m"},
