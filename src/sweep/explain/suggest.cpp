@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -206,11 +207,15 @@ std::vector<Suggestion> Choose(std::vector<Suggestion> all, int most) {
     if (Gain(a) != Gain(b)) return Gain(a) > Gain(b);
     return a.mean_loss_m > b.mean_loss_m;
   });
-  std::stable_partition(all.begin(), all.end(), [left = (most + 1) / 2](const auto& one) mutable {
-    return one.is_predicted_to_fail && left-- > 0;
-  });
-  if (static_cast<int>(all.size()) > most) all.resize(static_cast<size_t>(most));
-  return all;
+  std::vector<Suggestion> chosen, others;
+  int reserved = (most + 1) / 2;
+  for (Suggestion& one : all) {
+    const bool is_reserved = one.is_predicted_to_fail && reserved-- > 0;
+    (is_reserved ? chosen : others).push_back(std::move(one));
+  }
+  std::move(others.begin(), others.end(), std::back_inserter(chosen));
+  if (static_cast<int>(chosen.size()) > most) chosen.resize(static_cast<size_t>(most));
+  return chosen;
 }
 
 std::string NoteOn(const SweepResult& result, const std::vector<int>& settable, size_t considered,

@@ -116,6 +116,31 @@ TEST_CASE("Half of the places, rounded up, are for predicted failures, whatever 
   CHECK(chosen(9) == chosen(4));
 }
 
+TEST_CASE("Reserved places go to the best predicted failures, and the others to the best of all") {
+  const auto chosen = [](const std::vector<Setting>& settings, int experiments) {
+    std::string names;
+    for (const Suggestion& one : SuggestExperiments(Of(settings, "nominal"),
+                                                    {.experiments = experiments, .least_gain = 0.0})
+                                     .list) {
+      names += one.values[0].text + " ";
+    }
+    return names;
+  };
+  // Of equal gain: the loss decides.
+  const std::vector<Setting> failing{{"d", 1, 1, 0.07},
+                                     {"b", 1, 1, 0.09},
+                                     {"e", 1, 1, 0.065},
+                                     {"a", 1, 1, 0.1},
+                                     {"c", 1, 1, 0.08}};
+  CHECK(chosen(failing, 3) == "a b c ");
+  CHECK(chosen(failing, 4) == "a b c d ");
+  // Gains of three trials: 0.321, 0.310, 0.251, 0.210, 0.186, 0.122.
+  const std::vector<Setting> mixed{{"1st", 1, 5},   {"2nd", 1, 4}, {"3rd", 1, 3},
+                                   {"holds", 0, 2}, {"4th", 1, 2}, {"5th", 1, 1}};
+  CHECK(chosen(mixed, 5) == "1st 2nd 3rd holds 4th ");
+  CHECK(chosen(mixed, 3) == "1st 2nd 3rd ");
+}
+
 TEST_CASE("A setting is predicted to fail above the share that is asked about, not at it") {
   const auto is_predicted = [](int failures, int runs, double share) {
     SweepResult result = Of({{"s", failures, runs}}, "nominal");
