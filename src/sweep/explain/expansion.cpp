@@ -3,10 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
-#include "rift/statistics/descriptive.hpp"
+#include "first_rows.hpp"
 #include "rift/statistics/sample.hpp"
 #include "rift/sweep/falsify/distinct_rows.hpp"
 
@@ -120,30 +119,6 @@ double LeaveOneOut(const Eigen::MatrixXd& design, const Eigen::VectorXd& y) {
   return total > 0.0 ? 1.0 - press / total : -1.0;
 }
 
-std::map<experiment::Theta, int> CountBySetting(const std::vector<const TrialRow*>& rows) {
-  std::map<experiment::Theta, int> counts;
-  for (const TrialRow* row : rows) ++counts[row->theta];
-  return counts;
-}
-
-/// The median number of trials of a setting.
-int UsualCount(const std::map<experiment::Theta, int>& of_setting) {
-  std::vector<double> counts;
-  for (const auto& [theta, count] : of_setting) counts.push_back(count);
-  return static_cast<int>(statistics::Median(counts));
-}
-
-/// Leaves of each setting the first trials alone.
-void LeaveOutFurther(const SweepResult& result, std::vector<const TrialRow*>& rows,
-                     Observations& data) {
-  if (rows.empty()) return;
-  const int most = (result.falsification ? 1 : 2) * UsualCount(CountBySetting(rows));
-  const size_t all = rows.size();
-  std::map<experiment::Theta, int> seen;
-  std::erase_if(rows, [&](const TrialRow* row) { return ++seen[row->theta] > most; });
-  if (rows.size() < all) data.most_of_setting = most;
-}
-
 bool SeveralSettingsTell(const SweepResult& result) {
   return std::count_if(result.settings.begin(), result.settings.end(),
                        [](const auto& setting) { return setting.verdict.repeats > 0; }) > 1;
@@ -152,12 +127,10 @@ bool SeveralSettingsTell(const SweepResult& result) {
 }  // namespace
 
 Observations Observe(const SweepResult& result, int most) {
-  std::vector<const TrialRow*> all;
-  for (const int row : RowsThatCount(result)) all.push_back(&result.rows[row]);
-  Observations data;
-  LeaveOutFurther(result, all, data);
-  for (const size_t i : statistics::SampleInOrder(all.size(), static_cast<size_t>(most))) {
-    data.rows.push_back(all[i]);
+  const FirstRows first = FirstOfEachSetting(result, RowsThatCount(result));
+  Observations data{.most_of_setting = first.most_of_setting};
+  for (const size_t i : statistics::SampleInOrder(first.rows.size(), static_cast<size_t>(most))) {
+    data.rows.push_back(&result.rows[first.rows[i]]);
   }
   data.losses_m.resize(static_cast<Eigen::Index>(data.rows.size()));
   for (size_t i = 0; i < data.rows.size(); ++i) {

@@ -20,10 +20,8 @@ struct Observations {
   bool are_same_runs = false;   ///< several settings tell, and all of them by the same runs
 };
 
-/// The distinct trials that tell, a sample when there are more than `most`. A search repeats a
-/// setting that it cannot decide, and a hundred trials of one would outweigh the rest of the space:
-/// of each setting the first ones, as many as the median one has. In a grid twice as many, so that
-/// missing trials cost none.
+/// Of the distinct trials that tell the first of each setting (FirstOfEachSetting), a sample when
+/// there are more than `most`.
 Observations Observe(const SweepResult& result, int most);
 
 /// A linear model of the loss. Columns are products of orthonormal functions of the axes, one axis

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "first_rows.hpp"
 #include "rift/experiment/settable.hpp"
 #include "rift/statistics/inference.hpp"
 #include "rift/sweep/falsify/distinct_rows.hpp"
@@ -71,19 +72,6 @@ std::vector<int> SettableParameters(const SweepResult& result) {
   return settable;
 }
 
-/// Of each setting its first rows, as many as the median one has (of a grid, whose settings are all
-/// tried alike, twice as many): what is repeated because it failed outweighs no setting beside it.
-std::vector<int> FirstOfEachSetting(const SweepResult& result, std::vector<int> rows) {
-  std::map<Theta, int> count_of, seen;
-  for (const int row : rows) ++count_of[result.rows[row].theta];
-  std::vector<int> counts;
-  for (const auto& [theta, count] : count_of) counts.push_back(count);
-  std::sort(counts.begin(), counts.end());
-  const int most = (result.falsification ? 1 : 2) * counts[(counts.size() - 1) / 2];
-  std::erase_if(rows, [&](int row) { return ++seen[result.rows[row].theta] > most; });
-  return rows;
-}
-
 void Describe(const SweepResult& result, Candidate& candidate) {
   for (const int row : candidate.rows) {
     const TrialRow& trial = result.rows[row];
@@ -91,8 +79,9 @@ void Describe(const SweepResult& result, Candidate& candidate) {
     if (path != 0) candidate.runs.emplace_back(path, Loss_m(trial, result.gap.threshold_m));
   }
   std::sort(candidate.runs.begin(), candidate.runs.end());
-  candidate.rows = FirstOfEachSetting(
-      result, DistinctRows(result.rows, candidate.rows, result.chance_repeats_runs));
+  candidate.rows = FirstOfEachSetting(result, DistinctRows(result.rows, candidate.rows,
+                                                           result.chance_repeats_runs))
+                       .rows;
   double sum_m = 0.0;
   for (const int row : candidate.rows) {
     candidate.failures += result.rows[row].falsified;

@@ -1,4 +1,5 @@
 // Effects of small tables, each number and sentence worked out by hand.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -343,9 +344,33 @@ TEST_CASE("Of a grid's setting twice as many trials are looked at as the median 
   CHECK(Observe(result, 100).most_of_setting == 0);
   add(3, 9);
   const Observations data = Observe(result, 100);
-  CHECK(data.rows.size() == 13);  // 1, 2, 4 and 6
-  CHECK(data.most_of_setting == 6);
-  CHECK(data.rows.back() == &result.rows[12]);
+  CHECK(data.rows.size() == 11);  // 1, 2, 4 and 4: the median one has 2
+  CHECK(data.most_of_setting == 4);
+  CHECK(data.rows.back() == &result.rows[10]);
+}
+
+TEST_CASE("Of a search with two settings both weigh alike, however often one was repeated") {
+  SweepResult result;
+  result.parameters = {{.key = "a", .levels = {{"1", 1.0}, {"2", 2.0}}}};
+  const bool is_first_repeated = GENERATE(true, false);
+  for (size_t level = 0; level < 2; ++level) {
+    for (int repeat = 0; repeat < ((level == 0) == is_first_repeated ? 100 : 1); ++repeat) {
+      result.rows.push_back(Row({result.parameters[0].levels[level]}, 0.01 + 0.001 * repeat));
+    }
+  }
+  const auto trials_of = [](const Observations& data, const std::string& level) {
+    return std::count_if(data.rows.begin(), data.rows.end(),
+                         [&](const TrialRow* row) { return row->theta[0].text == level; });
+  };
+  result.falsification = Falsification{};
+  const Observations data = Observe(result, 1000);
+  CHECK(data.most_of_setting == 1);
+  CHECK(trials_of(data, "1") == 1);
+  CHECK(trials_of(data, "2") == 1);
+  result.falsification.reset();
+  const Observations of_grid = Observe(result, 1000);
+  CHECK(trials_of(of_grid, is_first_repeated ? "1" : "2") == 2);
+  CHECK(trials_of(of_grid, is_first_repeated ? "2" : "1") == 1);
 }
 
 TEST_CASE("What chance explains is not said of parameters that were changed together") {
