@@ -6,6 +6,7 @@
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/inference.hpp"
+#include "rift/sweep/falsify/distinct_rows.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -17,38 +18,64 @@ Estimate EstimateOf(const std::vector<double>& values) {
   return {statistics::Mean(values), interval.low, interval.high, static_cast<int>(values.size())};
 }
 
-std::vector<double> ValuesIn(const SweepResult& result, const SettingResult& setting,
-                             const OfTrial& of_trial) {
-  std::vector<double> values;
-  for (const int row : setting.rows) {
-    if (!result.rows[row].IsOk()) continue;
-    const double value = of_trial(result.rows[row]);
-    if (std::isfinite(value)) values.push_back(value);
+/// The settings with the rows that count (RowsThatCount), without those that have none: copies of
+/// others.
+std::vector<SettingResult> CountedSettings(const SweepResult& result) {
+  std::vector<bool> counts(result.rows.size(), false);
+  for (const int row : RowsThatCount(result)) counts[row] = true;
+  std::vector<SettingResult> settings = result.settings;
+  for (SettingResult& setting : settings) {
+    std::erase_if(setting.rows, [&](int row) { return !counts[row]; });
   }
-  return values;
+  std::erase_if(settings, [](const SettingResult& setting) { return setting.rows.empty(); });
+  return settings;
 }
 
-/// Repeats of a setting share its candidate, so it is settings that are independent.
-Estimate Over(const SweepResult& result, const OfTrial& of_trial) {
-  std::vector<double> means, all;
-  for (const SettingResult& setting : result.settings) {
-    const std::vector<double> values = ValuesIn(result, setting, of_trial);
-    if (values.empty()) continue;
-    means.push_back(EstimateOf(values).mean);
-    all.insert(all.end(), values.begin(), values.end());
-  }
-  return EstimateOf(means.size() >= 3 ? means : all);
-}
+class Averages {
+ public:
+  explicit Averages(const SweepResult& result)
+      : result_(result), settings_(CountedSettings(result)) {}
 
-Estimate OverSettings(const SweepResult& result,
-                      const std::function<double(const SettingResult&)>& of_setting) {
-  std::vector<double> values;
-  for (const SettingResult& setting : result.settings) {
-    const double value = of_setting(setting);
-    if (std::isfinite(value)) values.push_back(value);
+  /// Repeats of a setting share its candidate, so it is settings that are independent.
+  Estimate Over(const OfTrial& of_trial) const {
+    std::vector<double> means, all;
+    for (const SettingResult& setting : settings_) {
+      const std::vector<double> values = ValuesIn(setting, of_trial);
+      if (values.empty()) continue;
+      means.push_back(statistics::Mean(values));
+      all.insert(all.end(), values.begin(), values.end());
+    }
+    return EstimateOf(means.size() >= 3 ? means : all);
   }
-  return EstimateOf(values);
-}
+
+  Estimate OverSettings(const std::function<double(const SettingResult&)>& of_setting) const {
+    std::vector<double> values;
+    for (const SettingResult& setting : settings_) {
+      const double value = of_setting(setting);
+      if (std::isfinite(value)) values.push_back(value);
+    }
+    return EstimateOf(values);
+  }
+
+  double MeanGap_m(const SettingResult& setting) const {
+    return statistics::Mean(
+        ValuesIn(setting, [](const TrialRow& row) { return row.comparison.gap_m; }));
+  }
+
+ private:
+  std::vector<double> ValuesIn(const SettingResult& setting, const OfTrial& of_trial) const {
+    std::vector<double> values;
+    for (const int row : setting.rows) {
+      if (!result_.rows[row].IsOk()) continue;
+      const double value = of_trial(result_.rows[row]);
+      if (std::isfinite(value)) values.push_back(value);
+    }
+    return values;
+  }
+
+  const SweepResult& result_;
+  std::vector<SettingResult> settings_;
+};
 
 std::vector<GapPart> PartsOf(const SweepResult& result, const Anatomy& anatomy) {
   const bool is_robot = result.reference_kind == "logs";
@@ -68,8 +95,9 @@ std::vector<GapPart> PartsOf(const SweepResult& result, const Anatomy& anatomy) 
 
 Anatomy Dissect(const SweepResult& result) {
   using gap::Comparison;
+  const Averages averages(result);
   const auto over = [&](const std::function<double(const Comparison&)>& of_paths) {
-    return Over(result, [&](const TrialRow& row) { return of_paths(row.comparison); });
+    return averages.Over([&](const TrialRow& row) { return of_paths(row.comparison); });
   };
   Anatomy anatomy;
   anatomy.gap_m = over([](const Comparison& c) { return c.gap_m; });
@@ -79,15 +107,15 @@ Anatomy Dissect(const SweepResult& result) {
   anatomy.pace_m = over([](const Comparison& c) { return c.gap_m - c.frechet_m; });
   anatomy.timing_m = over([](const Comparison& c) { return c.equal_time_m - c.gap_m; });
   anatomy.goal_m =
-      Over(result, [](const TrialRow& row) { return row.comparison.gap_m - row.way_gap_m; });
+      averages.Over([](const TrialRow& row) { return row.comparison.gap_m - row.way_gap_m; });
   anatomy.only_at_goal = static_cast<int>(
       std::count_if(result.rows.begin(), result.rows.end(), [&](const TrialRow& row) {
         return row.IsOk() && !row.falsified && row.comparison.gap_m > result.gap.threshold_m;
       }));
   anatomy.noise_m =
-      OverSettings(result, [](const SettingResult& setting) { return setting.noise_floor_m; });
-  anatomy.removable_m = OverSettings(result, [](const SettingResult& setting) {
-    return setting.mean_gap_m - setting.noise_floor_m;
+      averages.OverSettings([](const SettingResult& setting) { return setting.noise_floor_m; });
+  anatomy.removable_m = averages.OverSettings([&](const SettingResult& setting) {
+    return averages.MeanGap_m(setting) - setting.noise_floor_m;
   });
   anatomy.parts = PartsOf(result, anatomy);
   return anatomy;

@@ -106,6 +106,71 @@ TEST_CASE("Noise and what can be removed are over the settings that have a noise
   CHECK(anatomy.removable_m.mean == Approx(0.5 * (0.02 + 0.07)));
 }
 
+/// Ten repeats of each setting, at "a" path 1 and at the others path 2 with its gap, where those
+/// of `apart` differ by their repeat.
+SweepResult Repeated(const std::vector<std::string>& settings, const std::string& apart = "") {
+  SweepResult result;
+  result.parameters = {{.key = "s"}};
+  for (const std::string& setting : settings) {
+    result.parameters[0].levels.push_back({setting, {}});
+    for (std::uint64_t repeat = 0; repeat < 10; ++repeat) {
+      const double own_m = setting == apart ? 0.001 * static_cast<double>(repeat) : 0.0;
+      TrialRow row = Row(setting.c_str(), (setting == "a" ? 0.03 : 0.05) + own_m);
+      row.trial = std::to_string(repeat + 1);
+      row.seed = repeat + 1;
+      row.evidence.fingerprint = setting == apart ? 100 + repeat : setting == "a" ? 1 : 2;
+      result.rows.push_back(row);
+    }
+  }
+  Summarise(result);
+  for (SettingResult& setting : result.settings) {
+    setting.noise_floor_m = setting.theta[0].text == "a" ? 0.01 : 0.02;
+  }
+  return result;
+}
+
+TEST_CASE("Repeats that are one run are one value, and where chance acts each is one") {
+  const Anatomy same = Dissect(Repeated({"a", "b"}));
+  CHECK(same.gap_m.n == 2);
+  CHECK(same.gap_m.mean == Approx(0.04));
+  // Student's 97.5 % quantile with one degree; the standard error of 0.03 and 0.05 is 0.01.
+  CHECK(same.gap_m.high == Approx(0.04 + 12.7062047 * 0.01));
+  CHECK(same.start_m.n == 2);
+  CHECK(same.goal_m.n == 2);
+  const Anatomy apart = Dissect(Repeated({"a", "b"}, "b"));
+  CHECK(apart.gap_m.n == 11);
+  CHECK(apart.gap_m.mean == Approx((0.03 + 10 * 0.0545) / 11.0));
+  CHECK(apart.removable_m.n == 2);
+  CHECK(apart.removable_m.mean == Approx(0.5 * (0.02 + 0.0345)));
+}
+
+TEST_CASE("Settings that are copies of one another are one") {
+  const Anatomy copied = Dissect(Repeated({"a", "b", "c", "d"}));
+  CHECK(copied.gap_m.n == 2);
+  CHECK(copied.gap_m.mean == Approx(0.04));
+  CHECK(copied.noise_m.n == 2);
+  CHECK(copied.noise_m.mean == Approx(0.015));
+  CHECK(copied.removable_m.n == 2);
+  CHECK(copied.removable_m.mean == Approx(0.025));
+  const Anatomy apart = Dissect(Repeated({"a", "b", "c", "d"}, "d"));
+  CHECK(apart.gap_m.n == 3);
+  CHECK(apart.noise_m.n == 3);
+  CHECK(apart.gap_m.mean == Approx((0.03 + 0.05 + 0.0545) / 3.0));
+}
+
+TEST_CASE("The mean gap of a setting is that of its distinct runs, also against its noise") {
+  SweepResult result = Repeated({"a", "b"}, "b");
+  for (size_t i = 0; i < 19; ++i) {  // a log copied nine times over
+    TrialRow copy = result.rows[10];
+    result.rows.push_back(copy);
+  }
+  Summarise(result);
+  for (SettingResult& setting : result.settings) setting.noise_floor_m = 0.01;
+  const Anatomy anatomy = Dissect(result);
+  CHECK(anatomy.gap_m.n == 11);
+  CHECK(anatomy.removable_m.mean == Approx(0.5 * (0.02 + 0.0445)));
+}
+
 TEST_CASE("An estimate is clear when its interval lies on one side of zero") {
   CHECK(IsClear({0.2, 0.1, 0.3, 5}));
   CHECK(IsClear({-0.2, -0.3, -0.1, 5}));
