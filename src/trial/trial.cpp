@@ -126,6 +126,7 @@ class Loop {
         speeds_(task.program ? ""
                              : fmt::format("; control.v_min is {}, control.v_max {}",
                                            navigator.v_min, navigator.v_max)),
+        end_(task.program ? "the program is over" : "the last waypoint was reached"),
         gate_(navigator.pose_gate),
         controller_(control::MakeController(task, navigator)),
         recorder_(controller_->waypoints(), options.log_period_s, observer) {}
@@ -147,6 +148,7 @@ class Loop {
   Robot& robot_;
   const TrialOptions& options_;
   const std::string speeds_;  ///< the limits of the speed, for who looks for a longer time
+  const char* const end_;     ///< a program is over wherever the robot is
   const control::PoseGateOptions gate_;
   std::unique_ptr<control::Controller> controller_;
   Recorder recorder_;
@@ -168,7 +170,7 @@ TrialResult Loop::Run() {
     if (IsOver(sensed)) break;
     Act(sensed.now_s, is_new_pose);
     if (decision_.finished) {
-      End(Outcome::kReached, "the last waypoint was reached");
+      End(Outcome::kReached, end_);
       break;
     }
     robot_.Advance(options_.control_period_s);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "rift/report/json/json.hpp"
+#include "rift/report/text/text.hpp"
 
 namespace rift::report {
 namespace {
@@ -49,6 +50,17 @@ TEST_CASE("Of a robot that was not asked a ping does not say that it did not ans
   CHECK_THAT(PingText(ping, options), Contains("did not answer within 3.5 s"));
   options.line.protocol = hardware::Protocol::kPlain;
   CHECK_THAT(PingText(ping, options), !Contains("answer within") && Contains("cannot be asked"));
+}
+
+TEST_CASE("A run that nothing held back names v_max, and that of a program does not") {
+  experiment::Experiment experiment;
+  experiment.control.v_max = 0.3;
+  sweep::SimulatedRun run;
+  run.result.limits.largest_raw_v = 0.25;
+  CHECK_THAT(SimulationText(experiment, run),
+             Contains("v_max (0.3) never bound: the largest speed asked for was 0.250"));
+  experiment.program.segments = {{.straight_m = 0.5}};
+  CHECK_THAT(SimulationText(experiment, run), !Contains("v_max"));
 }
 
 }  // namespace

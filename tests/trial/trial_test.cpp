@@ -345,6 +345,22 @@ TEST_CASE("Bad options are refused before the robot moves") {
   CHECK(robot.commands.empty());
 }
 
+TEST_CASE("A program that is over says so, and waypoints that were reached say that") {
+  control::ProgramOptions options;
+  options.power = 0.3;
+  options.segments = {{.straight_m = 0.1}};
+  const control::Task task = control::Program(options, {}, {});
+  test::FakeRobot robot(test::FakeRobotOptions{});
+  robot.spoil = [](Sensed& sensed) {  // it is stuck
+    if (sensed.pose) sensed.pose->world_from_robot = {};
+  };
+  const TrialResult blind = RunTrial(robot, task, {}, {});
+  CHECK(blind.outcome == Outcome::kReached);
+  CHECK(blind.reason == "the program is over");
+  test::FakeRobot seeing = RobotAtStart();
+  CHECK(Run(seeing).reason == "the last waypoint was reached");
+}
+
 TEST_CASE("The result tells which limits mattered") {
   test::FakeRobot robot = RobotAtStart();
   const TrialResult result = Run(robot);

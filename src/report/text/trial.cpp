@@ -17,7 +17,8 @@ std::string SimulationText(const experiment::Experiment& experiment,
     if (visit.reached_s)
       text += fmt::format("{} reached at {:.2f} s\n", visit.name, *visit.reached_s);
   }
-  if (result.limits.v_max == 0) {
+  const bool has_limits = experiment.program.segments.empty();  // a program keeps to none
+  if (has_limits && result.limits.v_max == 0) {
     text += fmt::format("v_max ({:g}) never bound: the largest speed asked for was {:.3f}\n",
                         experiment.control.v_max, result.limits.largest_raw_v);
   }
