@@ -6,6 +6,7 @@
 
 #include "rift/files/files.hpp"
 #include "rift/sessions/simulate/twin.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/vision/camera/camera_file.hpp"
 #include "support/inputs/paper_task.hpp"
 #include "support/processes/process.hpp"
@@ -70,6 +71,31 @@ TEST_CASE("A twin begins with its tag on the first waypoint and the seed, and it
       vision::ReadCamera(files::ReadFile(prepared.Calibration()), "camera.yaml");
   REQUIRE(camera.world);
   CHECK(camera.width_px == prepared.setup.camera.width_px);
+}
+
+TEST_CASE("A twin is the robot of its seed's draw, and its saved experiment is that robot alone") {
+  const test::TemporaryFolder folder;
+  experiment::Experiment experiment = SeededTask();
+  experiment.simulation.motor.mismatch = 0.5;
+  experiment.ensemble = {.keys = {"simulation.motor.mismatch"}, .draws = {{0.01}, {-0.02}}};
+  bool is_first = false, is_second = false;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+    INFO("seed " << seed);
+    experiment.seed = seed;
+    const PreparedTwin prepared = Prepare(experiment, folder.Path());
+    // As `rift simulate` drives it with this seed.
+    const double drawn =
+        sweep::SimulatedTrialOf(experiment, {}, seed, "paper.yaml", {}).simulation.motor.mismatch;
+    CHECK(prepared.setup.simulation.motor.mismatch == drawn);
+    is_first = is_first || drawn == 0.01;
+    is_second = is_second || drawn == -0.02;
+    const experiment::Experiment saved =
+        experiment::LoadExperiment(folder / "experiment.yaml", {}, files::ReadFile);
+    CHECK(saved.simulation.motor.mismatch == drawn);
+    CHECK(saved.ensemble.IsEmpty());
+  }
+  CHECK(is_first);
+  CHECK(is_second);
 }
 
 TEST_CASE("A twin's address is one line of JSON with an absolute calibration") {

@@ -53,9 +53,9 @@ void CheckTwinNames(const fs::path& folder, const std::vector<fs::path>& inputs,
   files::CheckOutputs(inputs, outputs);
 }
 
-PreparedTwin PrepareTwin(const experiment::Experiment& experiment,
-                         const std::string& experiment_file, const fs::path& folder,
-                         const sweep::Inputs& inputs) {
+PreparedTwin PrepareTwin(const experiment::Experiment& loaded, const std::string& experiment_file,
+                         const fs::path& folder, const sweep::Inputs& inputs) {
+  const experiment::Experiment experiment = experiment::DrawnAt(loaded, loaded.seed);
   experiment::Experiment as_twin = experiment;
   as_twin.simulation = twin::AsTwin(experiment.simulation, experiment.twin);
   const sweep::SimulatedTrial trial =
