@@ -60,6 +60,7 @@ simulation::SimulationOptions AsTwin(simulation::SimulationOptions simulation,
   simulation.link.poll_s = 0.0;
   simulation.link.uart_bytes = kReceiveBuffer;
   simulation.link.watchdog_s = 1e-3 * hardware::Listener::kWatchdog_ms;
+  simulation.link.late_share = 0.0;  // its line stands from the start
   simulation.mocap.rate_hz = options.fps;
   simulation.mocap.frame_jitter_s = 0.0;
   if (simulation.mocap.host_period_s) {

@@ -16,6 +16,7 @@ namespace {
 
 TEST_CASE("A simulation as the twin runs it has its line, its camera and its encoders") {
   simulation::SimulationOptions options;
+  options.link.late_share = 0.25;
   options.mocap.frame_jitter_s = 0.01;
   options.mocap.host_period_s = 0.05;
   options.mocap.tag_above_m = 0.0;
@@ -26,6 +27,7 @@ TEST_CASE("A simulation as the twin runs it has its line, its camera and its enc
   const simulation::SimulationOptions as = AsTwin(options, twin);
   CHECK(as.link.uart_bytes == 512);
   CHECK(as.link.poll_s == 0.0);
+  CHECK(as.link.late_share == 0.0);
   CHECK(as.mocap.rate_hz == 25.0);
   CHECK(as.mocap.frame_jitter_s == 0.0);
   CHECK_FALSE(as.mocap.host_period_s);
