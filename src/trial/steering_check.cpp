@@ -98,21 +98,32 @@ std::string MarginCause(const SteeringCheck& check, const NavigatorOptions& navi
       1e3 * margins.longest_delay_s);
 }
 
+/// Why the steering that drives straight comes late or never.
+std::string HoldText(const NavigatorOptions& navigator, double hold_w) {
+  if (hold_w > navigator.w_max) return fmt::format("control.w_max allows {:g}", navigator.w_max);
+  const control::PidGains& heading = navigator.heading;
+  const std::string integral =
+      heading.i > 0.0 ? fmt::format(" and control.heading.i {:g}", heading.i) : "";
+  const double error_rad = HoldError_rad(navigator, hold_w);
+  if (std::isfinite(error_rad)) {
+    return fmt::format(
+        "control.heading.p {:g}{} ask{} for that only at a heading error of {:.0f} deg", heading.p,
+        integral, heading.i > 0.0 ? "" : "s", DegFromRad(error_rad));
+  }
+  return fmt::format("control.heading.p {:g}{} ask{} for {:.2g} at any heading error", heading.p,
+                     integral, heading.i > 0.0 ? "" : "s", SteeringAt(navigator, 0.0));
+}
+
 std::string PullCause(const SteeringCheck& check, const NavigatorOptions& navigator) {
   const SteeringModel& model = check.model;
   const double hold_w = HoldSteering(model, navigator.v_max);
-  const double error_rad = HoldError_rad(navigator, hold_w);
   return fmt::format(
       "it pulls to the {} by {:.2g} rad/s at v {:g} without steering (a motor or wheel that "
       "differs from the other, or drags{}): driving straight takes w {:.2g}, and {}",
       model.pull_rad_s > 0.0 ? "left" : "right", std::abs(model.pull_rad_s) * navigator.v_max,
       navigator.v_max,
       check.is_pull_told ? "" : "; or it answers to w otherwise than the robot's file says", hold_w,
-      std::isfinite(error_rad)
-          ? fmt::format(
-                "control.heading.p {:g} asks for that only at a heading error of {:.0f} deg",
-                navigator.heading.p, DegFromRad(error_rad))
-          : fmt::format("control.w_max allows {:g}", navigator.w_max));
+      HoldText(navigator, hold_w));
 }
 
 void ProposeTimeout(SteeringCheck& check, const TrialOptions& options, double needed_s) {

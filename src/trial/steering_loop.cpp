@@ -35,7 +35,9 @@ double HoldSteering(const SteeringModel& model, double v) {
 
 double HoldError_rad(const NavigatorOptions& navigator, double hold_w) {
   if (hold_w > navigator.w_max) return std::numeric_limits<double>::infinity();
-  return hold_w > navigator.w_min ? hold_w / navigator.heading.p : 0.0;
+  const double beside_integral = hold_w - SteeringAt(navigator, 0.0);
+  return hold_w > navigator.w_min && beside_integral > 0.0 ? beside_integral / navigator.heading.p
+                                                           : 0.0;
 }
 
 SteeringMargins MarginsOf(const control::PidGains& heading, double yaw_rate_rad_s, double delay_s) {

@@ -498,6 +498,30 @@ TEST_CASE("A pull to one side is named, with its side, and the proposal arrives 
   CHECK(bench.Run().outcome == Outcome::kReached);
 }
 
+TEST_CASE("Of a pull that is not held the gains that ask for too little are named") {
+  WornBench bench;
+  bench.robot = {.command_delay_s = 0.1, .sensing_delay_s = 0.07, .frame_period_s = 0.05};
+  bench.right_share = 0.6;
+  bench.options.timeout_s = 10.0;
+  const TrialResult result = bench.Run();
+  REQUIRE(result.outcome == Outcome::kTimedOut);
+  // The same run, held against other gains.
+  const auto why = [&](const control::PidGains& heading) {
+    bench.navigator.heading = heading;
+    return Joined(bench.Check(result));
+  };
+  const std::string none = why({0.0, 0.0, 0.0});
+  CHECK_THAT(none, Catch::Contains("control.heading.p 0 asks for 0 at any heading error"));
+  CHECK_THAT(none, !Catch::Contains("control.w_max allows"));
+  CHECK_THAT(why({0.0, 0.01, 0.0}),
+             Catch::Contains("control.heading.p 0 and control.heading.i 0.01 ask for 0.02 at any"));
+  CHECK_THAT(
+      why({0.02, 0.01, 0.0}),
+      Catch::Contains("control.heading.p 0.02 and control.heading.i 0.01 ask for that only"));
+  // Its integral holds more than the wheels differ by: 2 x 0.1.
+  CHECK_THAT(why({0.02, 0.1, 0.0}), !Catch::Contains("it pulls"));
+}
+
 TEST_CASE("A steering that w_min raises is told so") {
   Bench bench;
   bench.navigator.heading = {0.005, 0.0, 0.0};

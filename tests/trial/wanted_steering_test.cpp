@@ -60,12 +60,20 @@ TEST_CASE("The circle is to the side against which the robot pulls, whichever th
   }
 }
 
-TEST_CASE("A pull is held by an error, by w_min alone, or never") {
-  const control::NavigatorOptions navigator = Navigator();
+TEST_CASE("A pull is held by an error, by w_min or the integral alone, or never") {
+  control::NavigatorOptions navigator = Navigator();
   CHECK(HoldError_rad(navigator, 0.05) == Approx(0.5));
   CHECK(HoldError_rad(navigator, 0.02) == 0.0);
   CHECK(HoldError_rad(navigator, 0.2) == Approx(2.0));
   CHECK(std::isinf(HoldError_rad(navigator, 0.201)));
+  navigator.heading.i = 0.1;  // 0.05 at its limit
+  CHECK(HoldError_rad(navigator, 0.15) == Approx(1.0));
+  CHECK(HoldError_rad(navigator, 0.05) == 0.0);
+  CHECK(HoldError_rad(navigator, 0.04) == 0.0);
+  CHECK(std::isinf(HoldError_rad(navigator, 0.201)));
+  navigator.heading.p = 0.0;
+  CHECK(HoldError_rad(navigator, 0.05) == 0.0);
+  CHECK(std::isinf(HoldError_rad(navigator, 0.06)));
 }
 
 TEST_CASE("The least steering swings heading and path with the delay and its square") {

@@ -47,7 +47,8 @@ double TurnAgainstPull_rad_s(const SteeringModel& model, double v, double w);
 /// w that drives straight against the robot's pull.
 double HoldSteering(const SteeringModel& model, double v);
 
-/// The heading error that makes the controller steer so; infinite when it never does.
+/// The heading error that makes the controller steer so, beside the integral at its limit; infinite
+/// when it never does.
 double HoldError_rad(const control::NavigatorOptions& navigator, double hold_w);
 
 /// Stability of the heading loop far from its waypoint: gain (p + i / s + d s) / s with a delay.
