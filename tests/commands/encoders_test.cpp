@@ -102,6 +102,19 @@ TEST_CASE("Runs both ways round tell a planted asymmetry of the wheels") {
   CHECK(calibration["right_over_left"]["interval"][0] > 1.0);
 }
 
+TEST_CASE("Most of what the odometry turns too far in a lap is the track of the data sheet") {
+  const test::TemporaryFolder folder;
+  const std::string sheet = Lap(folder, "sheet", {}),
+                    body = Lap(folder, "body", {"--set", "hardware.odometry.drive.track_m=0.086"});
+  const test::ProcessResult result = RunRift({"gap", sheet, body, "--odometry", "--json", "-"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  const json runs = json::parse(result.out)["runs"];
+  // 360 deg x (0.086 / 0.083 - 1) are 13 deg, beside what slips.
+  CHECK(runs[0]["yaw_drift_rad"].get<double>() == Approx(0.227).margin(0.06));
+  CHECK(runs[1]["yaw_drift_rad"].get<double>() == Approx(0.0).margin(0.06));
+}
+
 TEST_CASE("Repeats of a program are a cell and its words say what was measured") {
   const test::TemporaryFolder folder;
   const std::string a = Lap(folder, "a", {"--seed", "1"}), b = Lap(folder, "b", {"--seed", "2"});
