@@ -34,6 +34,16 @@ std::optional<experiment::ParameterValue> MiddleOf(double a, double b, int digit
   return experiment::NumberValue(rounded);
 }
 
+/// How many sets of fewer than `size` things can be taken from `n`.
+double SetsBelow(size_t n, size_t size) {
+  double sets = 0.0, of_size = 1.0;
+  for (size_t k = 0; k < size; ++k) {
+    sets += of_size;
+    of_size *= static_cast<double>(n - k) / static_cast<double>(k + 1);
+  }
+  return sets;
+}
+
 class Shrinker {
  public:
   Shrinker(const std::vector<experiment::Parameter>& parameters, const experiment::Theta& nominal,
@@ -51,7 +61,16 @@ class Shrinker {
           fmt::format("there is nothing to shrink: the setting does not fail (robustness {:.4g} m)",
                       Of(theta_)));
     }
-    TakeFewest();
+    const experiment::Theta failing = theta_;
+    const size_t changes = Changed(failing).size();
+    const bool may_try_all = SetsBelow(changes, changes) < options_.max_evaluations;
+    // Taken back one by one, changes leave few enough sets to be tried. Half of what is left is for
+    // their values.
+    if (!may_try_all) DropOneByOne();
+    const double most =
+        may_try_all ? options_.max_evaluations : 0.5 * (options_.max_evaluations - evaluations_);
+    is_fewest_ = TakeFewest(failing, most);
+    if (!is_fewest_) TakeFewest(experiment::Theta(theta_), most);
     bool is_smaller = true;
     while (is_smaller) {  // a smaller change may make another one needless
       DropOneByOne();
@@ -81,26 +100,28 @@ class Shrinker {
     return changed;
   }
 
-  /// Sets of changes by rising size; the first that fails is taken.
-  void TakeFewest() {
-    const std::vector<int> changed = Changed(theta_);
-    const size_t n = changed.size();
-    for (size_t size = 0; size < n; ++size) {
+  /// Sets of the changes of a setting by rising size, while they are smaller than that which is
+  /// left; the first that fails is taken. Not all tried, and false, where they are more than
+  /// `most`.
+  bool TakeFewest(const experiment::Theta& failing, double most) {
+    const std::vector<int> changed = Changed(failing);
+    const size_t n = changed.size(), left = Changed(theta_).size();
+    if (SetsBelow(n, left) > most) return false;
+    for (size_t size = 0; size < left; ++size) {
       std::vector<bool> is_kept(n, false);
       std::fill(is_kept.begin(), is_kept.begin() + static_cast<long>(size), true);
       do {
-        if (!HasBudget()) return;
+        if (!HasBudget()) return false;
         experiment::Theta theta = nominal_;
         for (size_t i = 0; i < n; ++i) {
-          if (is_kept[i]) theta[changed[i]] = theta_[changed[i]];
+          if (is_kept[i]) theta[changed[i]] = failing[changed[i]];
         }
         if (!Fails(theta)) continue;
         theta_ = theta;
-        is_fewest_ = true;
-        return;
+        return true;
       } while (std::prev_permutation(is_kept.begin(), is_kept.end()));
     }
-    is_fewest_ = true;
+    return true;
   }
 
   void DropOneByOne() {

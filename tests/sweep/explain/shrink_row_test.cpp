@@ -179,6 +179,42 @@ TEST_CASE("Sets of changes are tried by size, then each value by halves until it
   CHECK(*near.theta[0].number == 0.4375);
 }
 
+TEST_CASE(
+    "Of many changes, those that are needless by themselves leave few enough sets to be tried") {
+  std::vector<experiment::Parameter> space;
+  experiment::Theta nominal, failing;
+  for (int i = 0; i < 12; ++i) {
+    space.push_back({.key = std::string(1, static_cast<char>('a' + i)), .min = 0.0, .max = 1.0});
+    nominal.push_back(Number(0.0));
+    failing.push_back(Number(1.0));
+  }
+  const auto far = [](const experiment::Theta& theta, size_t i) { return *theta[i].number > 0.5; };
+  const ShrunkFailure four = Shrink(space, nominal, failing, [&](const experiment::Theta& theta) {
+    return far(theta, 8) && far(theta, 9) && far(theta, 10) && far(theta, 11) ? -0.1 : 0.1;
+  });
+  CHECK(four.changed == std::vector<int>{8, 9, 10, 11});
+  CHECK(four.is_minimal);
+  CHECK_FALSE(four.is_fewest);  // 299 sets of three and fewer
+  CHECK(four.evaluations < 400);
+  for (const int i : four.changed) CHECK(*four.theta[i].number == Approx(0.5).margin(0.02));
+  // Taken back one by one the changes end at b and c; a alone is fewer, and found.
+  const ShrunkFailure one = Shrink(space, nominal, failing, [&](const experiment::Theta& theta) {
+    return far(theta, 0) || (far(theta, 1) && far(theta, 2)) ? -0.1 : 0.1;
+  });
+  CHECK(one.changed == std::vector<int>{0});
+  CHECK(one.is_fewest);
+  CHECK(one.is_minimal);
+  // Two of four changes fail where three do not: only sets of what is left find it.
+  const ShrunkFailure two = Shrink(space, nominal, failing, [&](const experiment::Theta& theta) {
+    int of_four = 0;
+    for (size_t i = 8; i < 12; ++i) of_four += far(theta, i);
+    return of_four == 4 || (of_four == 2 && far(theta, 8) && far(theta, 11)) ? -0.1 : 0.1;
+  });
+  CHECK(two.changed == std::vector<int>{8, 11});
+  CHECK(two.is_minimal);
+  CHECK_FALSE(two.is_fewest);
+}
+
 TEST_CASE("A change that a smaller one makes needless is taken back") {
   const std::vector<experiment::Parameter> space{{.key = "x", .min = 0.0, .max = 1.0},
                                                  {.key = "y", .levels = {{"off", {}}, {"on", {}}}}};

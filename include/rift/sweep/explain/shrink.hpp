@@ -43,8 +43,9 @@ struct ShrunkRow {
 };
 
 /// The fewest and smallest changes from `nominal` that still fail: first sets of changes, the small
-/// ones first; then each change towards nominal, through the values of a list or by halving. A
-/// word is changed or not. Every claim in the result was tried, never inferred.
+/// ones first, where they are too many after changes were taken back one by one; then each change
+/// towards nominal, through the values of a list or by halving. A word is changed or not. Every
+/// claim in the result was tried, never inferred.
 /// Throws std::invalid_argument when `failing` does not fail.
 ShrunkFailure Shrink(const std::vector<experiment::Parameter>& parameters,
                      const experiment::Theta& nominal, const experiment::Theta& failing,
