@@ -20,6 +20,7 @@
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/run/machine_trouble.hpp"
 #include "rift/trajectory/csv.hpp"
+#include "simulated_recording.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -343,7 +344,7 @@ void ProgramSide::ReadLog(const std::string& text, Recording& recording) const {
 
 double ProgramSide::DistanceLeft_m(const trajectory::Trajectory& path) const {
   if (experiment_.waypoints.size() < 2 || path.poses.empty()) return gap::kNotComputed;
-  return (experiment_.waypoints.back().Position() - path.poses.back().Position()).norm();
+  return WayLeft_m(path, experiment_.waypoints, experiment_.control.reach_radius_m);
 }
 
 std::unique_ptr<ProgramSide> CandidateProgram(const experiment::Experiment& experiment,

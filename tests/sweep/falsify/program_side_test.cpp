@@ -119,6 +119,31 @@ TEST_CASE("Exit codes are ends of a run as the side says, with what is left to t
   CHECK(shell.Run().status == TrialStatus::kFault);
 }
 
+TEST_CASE("What a program's run has left is the way through the waypoints that it did not reach") {
+  Shell shell("cp \"$HERE/run.csv\" \"$1\"; exit 10");
+  shell.experiment.control.reach_radius_m = 0.05;
+  shell.experiment.waypoints = {{.name = "A"},
+                                {.name = "B", .x_m = 1.0},
+                                {.name = "C", .x_m = 1.0, .y_m = 1.0},
+                                {.name = "D", .y_m = 1.0},
+                                {.name = "A2"}};
+  const auto left_m = [&](const std::vector<Eigen::Vector2d>& points_m) {
+    std::string log = "t_s,x_m,y_m\n";
+    for (size_t i = 0; i < points_m.size(); ++i) {
+      log += fmt::format("{},{},{}\n", i, points_m[i].x(), points_m[i].y());
+    }
+    test::WriteText(shell / "run.csv", log);
+    return shell.Run().left_m;
+  };
+  CHECK(left_m({{0.0, 0.0}, {0.0, 0.001}}) == Approx(4.0).margin(0.01));  // never left
+  CHECK(left_m({{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}) == Approx(2.0));
+  CHECK(left_m({{0.0, 0.0}, {1.0, 0.0}, {1.1, 0.5}, {1.1, 1.1}, {0.5, 1.1}}) ==
+        Approx(2.0 + std::hypot(0.5, 0.1)));                            // round C, too far from it
+  CHECK(left_m({{0.0, 0.0}, {1.2, 0.02}, {1.0, 0.5}}) == Approx(2.5));  // past B between two rows
+  CHECK(left_m({{0.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {1.0, 0.0}}) == Approx(3.0));  // the other way
+  CHECK(left_m({{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}, {0.0, 0.02}}) == 0.0);
+}
+
 TEST_CASE("An exit code that would say two things of a run is refused with both its keys") {
   Shell shell("exit 10");
   CHECK(shell.Refusal() == "accepted");
