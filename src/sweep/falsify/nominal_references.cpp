@@ -153,8 +153,11 @@ class ReferenceSearch {
 
 int Evaluator::NominalSeeds() const {
   const int seeds = static_cast<int>(experiment_.reference.trials.names.size());
+  const bool is_search = experiment_.goal == experiment::Goal::kFalsify;
+  // Draws have seeds of their own: the first alone tells whether there is a run to compare with.
+  if (is_search && experiment_.search.strategy == search::Method::kRandom) return 1;
   const bool is_repeated = experiment_.falsify.repeat == Repeat::kEvery ||
-                           experiment_.goal == experiment::Goal::kFalsify;
+                           (is_search && experiment_.falsify.repeat == Repeat::kDoubtful);
   return is_repeated ? std::max(seeds, std::min(experiment_.falsify.most_repeats, 100)) : seeds;
 }
 

@@ -1,7 +1,10 @@
 #include "rift/sweep/falsify/sweep.hpp"
 
+#include <cstdint>
 #include <iterator>
+#include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace rift::sweep {
@@ -18,6 +21,18 @@ std::optional<SweepResult> RunGoal(const experiment::Experiment& experiment, con
       break;
   }
   throw std::logic_error("goal: calibrate is no search over a space");
+}
+
+/// Those that a row was held against, or would have been. The check looks further than most
+/// settings are repeated.
+std::vector<ReplacedReference> UsedIn(const std::vector<TrialRow>& rows,
+                                      std::vector<ReplacedReference> replaced) {
+  std::set<std::uint64_t> seeds;
+  for (const TrialRow& row : rows) seeds.insert(row.seed.value_or(0));
+  std::erase_if(replaced, [&](const ReplacedReference& one) {
+    return !seeds.contains(one.used) && !seeds.contains(one.seed);
+  });
+  return replaced;
 }
 
 }  // namespace
@@ -73,7 +88,7 @@ std::optional<SweepResult> Sweep(Evaluator& evaluator, const RunTrials& run,
     setting.noise_floor_m = evaluator.NoiseFloor_m(setting.theta, go_on);
     if (is_stopped) return std::nullopt;
   }
-  result->replaced = std::move(*replaced);
+  result->replaced = UsedIn(result->rows, std::move(*replaced));
   return result;
 }
 

@@ -328,6 +328,14 @@ TEST_CASE("As many nominal runs are asked for as a setting may get trials, 100 w
   CHECK(seeds(Repeat::kEvery, 500) == 100);
   experiment.goal = experiment::Goal::kFalsify;
   CHECK(seeds(Repeat::kDoubtful, 7) == 7);
+  CHECK(seeds(Repeat::kEvery, 7) == 7);
+  CHECK(seeds(Repeat::kNone, 7) == 4);
+  experiment.search.strategy = search::Method::kRandom;  // its draws have seeds of their own
+  for (const Repeat repeat : {Repeat::kNone, Repeat::kDoubtful, Repeat::kEvery}) {
+    CHECK(seeds(repeat, 7) == 1);
+  }
+  experiment.goal = experiment::Goal::kGrid;
+  CHECK(seeds(Repeat::kDoubtful, 7) == 4);
   experiment.candidate = {experiment::CandidateKind::kLogs, {"{trial}.csv"}};
   Evaluator of_logs(experiment, "e.yaml", files.AsInputs());
   const auto replaced = of_logs.CheckReferences({1, [](const auto&) { return false; }});

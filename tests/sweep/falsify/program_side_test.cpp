@@ -542,6 +542,28 @@ TEST_CASE("A nominal run that no seed mends, or that never arrives, is told once
   CHECK(Evaluator(shell.experiment, "e.yaml", kFiles).CheckReferences()->empty());
 }
 
+TEST_CASE("A replaced reference that no trial of the sweep came to is not told") {
+  Shell shell("case $2 in 9|12) exit 10;; esac\ncp \"$HERE/good.csv\" \"$1\"", {"{out}", "{seed}"});
+  shell.experiment.reference.kind = experiment::ReferenceKind::kNominal;
+  shell.experiment.reference.trials.names = {"1", "2"};
+  shell.experiment.space.parameters = {{.key = "mu", .levels = {{"0.5", 0.5}}, .nominal = 0.5}};
+  shell.experiment.goal = experiment::Goal::kFalsify;
+  shell.experiment.search.budget = 1;
+  shell.experiment.falsify.most_repeats = 4;  // the check looks at seeds 9 to 12
+  Evaluator evaluator(shell.experiment, "e.yaml", kFiles);
+  CHECK(evaluator.CheckReferences()->size() == 2);
+  const auto seeds = [&] {
+    const auto evaluate = [&](const TrialRequest& request) { return evaluator.Evaluate(request); };
+    const auto result = Sweep(evaluator, RunHere(evaluate, {}), [](const auto&) { return true; });
+    std::vector<std::uint64_t> told;
+    for (const ReplacedReference& one : result->replaced) told.push_back(one.seed);
+    return told;
+  };
+  CHECK(seeds() == std::vector<std::uint64_t>{9});
+  shell.experiment.search.strategy = search::Method::kRandom;
+  CHECK(seeds().empty());  // draws have seeds of their own
+}
+
 TEST_CASE("A sweep tells which of its references were replaced, and may stop at its noise floors") {
   Shell shell("[ $2 != 9 ] || exit 10\ncp \"$HERE/good.csv\" \"$1\"", {"{out}", "{seed}"});
   shell.experiment.reference.kind = experiment::ReferenceKind::kNominal;
