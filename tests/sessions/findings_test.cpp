@@ -248,6 +248,23 @@ TEST_CASE("The path that a program should drive is called so, and has no times")
   CHECK(path.references[0].times_s.empty());
 }
 
+TEST_CASE("A sweep is explained beside a setting whose program no robot can drive") {
+  Swept swept(
+      LoadText("program: {segments: [{straight_m: 0.05}]}\ngap: {threshold_m: 0.01}\n"
+               "reference: {kind: path, trials: 1}\nspace: {program.speed_mps: [5, 0.1]}\n"));
+  REQUIRE(swept.result.rows.size() == 2);
+  REQUIRE(swept.result.rows[0].status == sweep::TrialStatus::kFault);
+  REQUIRE(swept.result.rows[1].IsOk());
+  const SweepFindings findings =
+      ExplainSweep(swept.folder.Path(), swept.evaluator, swept.result, 0, 1);
+  REQUIRE(findings.programs.size() == 2);
+  CHECK(findings.programs[0].lost.size() == 1);
+  CHECK(findings.programs[1].runs.size() == 1);
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
+  CHECK(evidence.references.size() == 1);
+  CHECK(evidence.reference_of_row == std::vector<int>{-1, 0});
+}
+
 TEST_CASE("Without a gap there is no worst pair") {
   Swept swept(SmallGrid({"trial.timeout_s=0.5"}));
   CHECK_FALSE(WorstPair(swept.result, swept.evaluator));

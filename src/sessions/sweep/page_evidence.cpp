@@ -8,6 +8,7 @@
 
 #include "rift/report/text/gap_flags.hpp"
 #include "rift/sweep/falsify/evidence.hpp"
+#include "rift/yaml/node.hpp"
 
 namespace rift::sessions {
 namespace {
@@ -51,11 +52,18 @@ class References {
     evidence.reference_of_row.assign(result.rows.size(), -1);
   }
 
-  /// Takes that of the row. False when there is none.
+  /// Takes that of the row. False when there is none: at its setting no task may be possible.
   bool Take(int index) {
     const sweep::TrialRow& row = result_.rows[index];
     if (row.status == sweep::TrialStatus::kInvalid) return false;
-    const sweep::Recording reference = evaluator_.Reference(sweep::RequestOf(row));
+    sweep::Recording reference;
+    try {
+      reference = evaluator_.Reference(sweep::RequestOf(row));
+    } catch (const std::invalid_argument&) {
+      return false;
+    } catch (const yaml::Error&) {
+      return false;
+    }
     if (reference.status != sweep::TrialStatus::kOk) return false;
     const auto [found, is_new] = known_.try_emplace(sweep::Fingerprint(reference.trajectory),
                                                     static_cast<int>(evidence_.references.size()));

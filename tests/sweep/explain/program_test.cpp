@@ -184,6 +184,64 @@ TEST_CASE("The cells of a grid over a program tell its repeats apart from a robo
   CHECK(MeasurePrograms(evaluator).empty());
 }
 
+TEST_CASE("A setting whose program cannot be driven is a cell whose repeats are all lost") {
+  experiment::Experiment experiment = Lap(0.25);
+  experiment.reference.trials.names = {"1", "2"};
+  experiment.space.parameters = {
+      {.key = "program.power",
+       .levels = {experiment::NumberValue(0.25), experiment::NumberValue(0.001)}}};
+  Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
+  const std::vector<ProgramCell> cells = MeasurePrograms(evaluator);
+  REQUIRE(cells.size() == 2);
+  CHECK(cells[0].runs.size() == 2);
+  CHECK(cells[0].lost.empty());
+  CHECK(cells[1].runs.empty());
+  CHECK(cells[1].measures.runs == 0);
+  REQUIRE(cells[1].lost.size() == 2);
+  CHECK_THAT(cells[1].lost[0], Catch::StartsWith("trial 1: "));
+  CHECK_THAT(cells[1].lost[1],
+             Catch::StartsWith("trial 2: ") && Catch::Contains("timeout_s is 60"));
+}
+
+TEST_CASE("A log beside encoders of another clock is a lost repeat, and the others are measured") {
+  experiment::Experiment experiment = Lap(0.2);
+  experiment.candidate.kind = experiment::CandidateKind::kLogs;
+  experiment.candidate.path.text = "{trial}/run.csv";
+  const std::string log = trajectory::WriteRift(test::StraightPath(0.5, 51));
+  const double from_s = test::StraightPath(0.5, 51).poses.front().t_s;
+  test::Files files;
+  for (const std::string trial : {"1", "2", "3"}) {
+    files[trial + "/run.csv"] = log;
+    const double late_s = trial == "2" ? 1e6 : 0.0;
+    files[trial + "/encoders.csv"] =
+        odometry::EncodersCsv({{from_s + late_s, {0, 0}}, {from_s + late_s + 100.0, {500, 500}}});
+  }
+  files["3/encoders.csv"] = "nothing\n";
+  Evaluator evaluator(experiment, "lap.yaml", test::InputsOf(files));
+  const std::vector<ProgramCell> cells = MeasurePrograms(evaluator);
+  REQUIRE(cells.size() == 1);
+  CHECK(cells[0].runs.size() == 1);
+  REQUIRE(cells[0].lost.size() == 2);
+  CHECK_THAT(cells[0].lost[0],
+             Catch::StartsWith("trial 2: 2/run.csv: ") && Catch::Contains("on one clock"));
+  CHECK_THAT(cells[0].lost[1], Catch::StartsWith("trial 3: 3/encoders.csv"));
+}
+
+TEST_CASE("A run of somebody else's program that hangs again is given up again, and lost") {
+  experiment::Experiment experiment = Lap(0.2);
+  experiment.candidate.kind = experiment::CandidateKind::kProgram;
+  experiment.candidate.run.words = {"sh", "-c", "sleep 2"};
+  experiment.reference.kind = experiment::ReferenceKind::kPath;
+  experiment.reference.trials.names = {"1"};
+  experiment.run.timeout_s = 0.1;
+  experiment.run.retries = 0;
+  Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
+  const std::vector<ProgramCell> cells = MeasurePrograms(evaluator);
+  REQUIRE(cells.size() == 1);
+  REQUIRE(cells[0].lost.size() == 1);
+  CHECK_THAT(cells[0].lost[0], Catch::Contains("0.1 s"));
+}
+
 TEST_CASE("Of a simulated robot the axle is held against its program, wherever its tag is") {
   experiment::Experiment experiment = Lap(0.3);
   experiment.program.laps = 1;
