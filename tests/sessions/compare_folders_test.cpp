@@ -70,6 +70,17 @@ TEST_CASE("Gaps, failures and verdicts of both folders stand side by side, the f
   CHECK(parchment.before.verdict != change.settings[1].before.verdict);
 }
 
+TEST_CASE("Settings of two folders that are copies of one another change sides once") {
+  const test::TemporaryFolder folder;
+  SaveRows(folder / "a", {0.020, 0.030, 0.020, 0.030});
+  SaveRows(folder / "b", {0.008, 0.009, 0.008, 0.009});
+  const sweep::SweepChange change = CompareFolders(folder / "a", folder / "b");
+  CHECK(change.now_hold == 2);
+  CHECK(change.copies == 2);
+  CHECK(change.all.before.failures == 4);
+  CHECK(change.all.pairs == 4);
+}
+
 TEST_CASE("A failure without a gap is told and one without an end that counts is not") {
   const test::TemporaryFolder folder;
   SaveRows(folder / "a", {0.004, 0.006, -1.0, 0.030});

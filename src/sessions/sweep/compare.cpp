@@ -89,7 +89,8 @@ Loaded Load(const fs::path& folder) {
          .trial = row.at("trial"),
          .is_told = is_ok || falsified,
          .falsified = falsified,
-         .gap_m = is_ok ? std::strtod(row.at("gap_m").c_str(), nullptr) : sweep::kNotKnown});
+         .gap_m = is_ok ? std::strtod(row.at("gap_m").c_str(), nullptr) : sweep::kNotKnown,
+         .theta = theta});
     const auto verdict = verdicts.find(report::ThetaJson(parameters, theta).dump());
     if (verdict != verdicts.end()) loaded.sweep.verdicts[key] = verdict->second;
   }

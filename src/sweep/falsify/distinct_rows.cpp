@@ -4,11 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <tuple>
 #include <unordered_map>
+
+#include "rift/sweep/falsify/copy_sets.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -45,25 +46,6 @@ bool AreSameRuns(const TrialRow& a, const TrialRow& b) {
   return a.evidence.fingerprint == b.evidence.fingerprint && !(of_a < of_b) && !(of_b < of_a);
 }
 
-/// Which rows are copies of one another, as sets that grow together.
-class CopySets {
- public:
-  explicit CopySets(size_t rows) : first_(rows) { std::iota(first_.begin(), first_.end(), 0); }
-
-  size_t FirstOf(size_t row) {
-    while (first_[row] != row) row = first_[row] = first_[first_[row]];
-    return row;
-  }
-  void Join(size_t a, size_t b) {
-    a = FirstOf(a);
-    b = FirstOf(b);
-    first_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<size_t> first_;
-};
-
 /// Finds the copies among rows of one path.
 class CopyFinder {
  public:
@@ -99,7 +81,7 @@ class CopyFinder {
     }
   }
 
-  bool IsFirst(size_t place) { return sets_.FirstOf(place) == place; }
+  bool IsFirst(size_t place) { return sets_.IsFirst(place); }
 
  private:
   /// The rows of a setting.

@@ -139,6 +139,56 @@ TEST_CASE("Repeats that are one run in both sweeps change sides once") {
   CHECK(8.0 * std::pow(low, 7) - 7.0 * std::pow(low, 8) == Approx(0.025));
 }
 
+/// A trial of two parameters.
+TabledTrial At(const std::string& a, const std::string& b, const std::string& trial, double gap_m) {
+  TabledTrial made = Trial(a + b, trial, gap_m, gap_m > 0.06);
+  made.theta = {{a, {}}, {b, {}}};
+  return made;
+}
+
+TEST_CASE("Settings that differ in a parameter that does nothing change sides once") {
+  TabledSweep before{.folder = "b"}, after{.folder = "a"};
+  for (const std::string b : {"1", "2", "3", "4", "5", "6"}) {
+    before.trials.push_back(At("x", b, "1", 0.08));
+    after.trials.push_back(At("x", b, "1", 0.04));
+  }
+  const SweepChange change = CompareSweeps(before, after, {});
+  CHECK(change.now_hold == 1);
+  CHECK(change.now_fail == 0);
+  CHECK(change.copies == 5);
+  CHECK(change.better_share_95.low == Approx(0.025));  // of 1 in 1: it cannot be told
+  CHECK(change.settings.size() == 6);
+  CHECK(change.all.before.failures == 6);
+  CHECK(change.all.pairs == 6);
+  CHECK_FALSE(change.is_over_settings);
+  CHECK(change.all.gap_change_m == Approx(-0.04));
+  CHECK(std::isnan(change.all.gap_change_95_m.low));
+}
+
+TEST_CASE("Settings that a trial of either sweep parts count each, and those apart in two too") {
+  TabledSweep before{.folder = "b"}, after{.folder = "a"};
+  const auto add = [&](const std::string& a, const std::string& b, double second_before_m,
+                       double second_after_m) {
+    before.trials.push_back(At(a, b, "1", 0.08));
+    before.trials.push_back(At(a, b, "2", second_before_m));
+    after.trials.push_back(At(a, b, "1", 0.04));
+    after.trials.push_back(At(a, b, "2", second_after_m));
+  };
+  add("x", "1", 0.07, 0.05);
+  add("y", "2", 0.07, 0.05);  // another in both parameters
+  CHECK(CompareSweeps(before, after, {}).now_hold == 4);
+  add("z", "1", 0.0701, 0.05);
+  add("w", "2", 0.07, 0.0501);
+  const SweepChange parted = CompareSweeps(before, after, {});
+  CHECK(parted.now_hold == 8);
+  CHECK(parted.copies == 0);
+  CHECK(parted.is_over_settings);
+  add("y", "1", 0.07, 0.05);  // between the first two, which are one with it
+  const SweepChange joined = CompareSweeps(before, after, {});
+  CHECK(joined.now_hold == 6);
+  CHECK(joined.copies == 4);
+}
+
 TEST_CASE("Back again everything is the other way round, and one setting counts by its trials") {
   Two two;
   const SweepChange there = CompareSweeps(two.before, two.after, {});

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "rift/experiment/parameter.hpp"
 #include "rift/statistics/inference.hpp"
 
 namespace rift::sweep {
@@ -19,6 +20,7 @@ struct TabledTrial {
   bool is_told = false;  ///< it fails or it does not
   bool falsified = false;
   double gap_m = kNotKnown;
+  experiment::Theta theta{};
 };
 
 /// A finished sweep as its folder tells of it.
@@ -57,11 +59,12 @@ struct SweepChange {
   int only_before = 0;                  ///< settings that the other does not have
   int only_after = 0;
   /// Over the settings of both; the interval of the change of the mean gap is over settings where
-  /// several have pairs, else over trials (Student).
+  /// several have pairs, else over trials (Student). Settings that differ in one parameter and
+  /// whose trials agree to the last bit in both sweeps are one there: it does nothing.
   SettingChange all;
   bool is_over_settings = false;
   /// Trials that failed before and hold after; of a setting whose repeats are one run in both
-  /// sweeps one.
+  /// sweeps one, and of settings that are copies those of the first.
   int now_hold = 0;
   int now_fail = 0;
   int copies = 0;  ///< that changed and are in neither of these
