@@ -255,5 +255,22 @@ TEST_CASE("New suggestions follow those that were driven, and the others make ro
   CHECK(saved[1].parameters[1].key == "control.v_min");
 }
 
+TEST_CASE("An edited number is the suggestion that it was, however it is written") {
+  const Suggested suggested;
+  test::WriteText(suggested.folder / "suggested.yaml",
+                  "experiments:\n"
+                  "  - {set: {simulation.terrain.surface: parchment, control.v_min: 0.160}, "
+                  "repeats: 2, predicted: fails}\n");
+  const experiment::Experiment experiment = Search();
+  SaveDrive(suggested.Drive(1, 1), 0.0, kReached);
+  sweep::Suggestions suggestions{.settable = {0, 1}};
+  suggestions.list.push_back(
+      {.values = {{"parchment", {}}, experiment::NumberValue(0.16)}, .repeats = 2});
+  SaveSuggested(suggested.folder.Path(), experiment, sweep::EmptyResult(experiment), suggestions);
+  const auto saved = ReadSuggested(suggested.folder.Path(), experiment);
+  REQUIRE(saved.size() == 1);
+  CHECK(saved[0].repeats == 3);
+}
+
 }  // namespace
 }  // namespace rift::sessions

@@ -180,6 +180,22 @@ TEST_CASE("What the robot did at a setting itself counts beside the prediction")
   }
 }
 
+TEST_CASE("What the robot did counts for its setting however its numbers are written") {
+  SweepResult result;
+  result.reference_kind = "nominal";
+  result.parameters = {{.key = "control.v_min", .min = 0.1, .max = 0.3}};
+  result.rows = {TrialRow{.theta = {experiment::NumberValue(0.2)}, .seed = 1}};
+  result.rows[0].comparison.gap_m = 0.04;
+  Summarise(result);
+  const auto fails_now = [&](const experiment::ParameterValue& driven) {
+    return All(result, {{{driven}, false, 1, 0}}).list.at(0).fails_now;
+  };
+  const double there = fails_now({"0.2", 0.2}), elsewhere = fails_now({"0.21", 0.21});
+  CHECK(there < elsewhere - 0.1);
+  CHECK(fails_now({"0.20", 0.2}) == there);
+  CHECK(fails_now({"2e-1", 0.2}) == there);
+}
+
 TEST_CASE("Runs are the same by their path and their loss, and without a path never") {
   SweepResult result = Of({{"ice", 2, 2}, {"rock", 2, 2}}, "nominal");
   const auto with_paths = [&](std::uint64_t first, std::uint64_t second) {
