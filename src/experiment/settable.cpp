@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace rift::experiment {
 namespace {
@@ -77,6 +78,38 @@ double NiceStep(double least) {
   return 10.0 * power;
 }
 
+/// The step that the space or the schema gives a parameter.
+std::optional<double> OwnStep(const Parameter& parameter) {
+  if (parameter.step) return parameter.step;
+  const std::optional<Settable> known = FindSettable(parameter.key);
+  return known && known->step > 0.0 ? std::optional(known->step) : std::nullopt;
+}
+
+/// No one step suits both ends of a range over decades that is even in its logarithm.
+bool IsOverDecades(const Parameter& parameter) {
+  constexpr double kSlack = 1e-9;
+  return parameter.is_logarithmic && parameter.max >= (10.0 - kSlack) * parameter.min;
+}
+
+/// The nearest of 1, 2 and 5 times a power of ten within the range, by the logarithm.
+double NearestOfDecade(const Parameter& parameter, double value) {
+  value = std::clamp(value, parameter.min, parameter.max);
+  const double decade = std::floor(std::log10(value));
+  double nearest = value, least = std::numeric_limits<double>::infinity();
+  for (const double power : {decade - 1.0, decade, decade + 1.0}) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      // Divided below one, so that 5e-4 is the number nearest to it.
+      const double tens = std::pow(10.0, std::abs(power));
+      const double round = power < 0.0 ? factor / tens : factor * tens;
+      const double distance = std::abs(std::log(round / value));
+      if (round < parameter.min || round > parameter.max || distance >= least) continue;
+      nearest = round;
+      least = distance;
+    }
+  }
+  return nearest;
+}
+
 }  // namespace
 
 std::optional<Settable> FindSettable(std::string_view key) {
@@ -97,14 +130,15 @@ bool IsSettable(const Parameter& parameter) {
 
 double StepOf(const Parameter& parameter) {
   if (parameter.step) return *parameter.step;
-  const std::optional<Settable> known = FindSettable(parameter.key);
-  double step = known ? known->step : 0.0;
-  if (!(step > 0.0)) step = NiceStep((parameter.max - parameter.min) / 20.0);
+  const double step = OwnStep(parameter).value_or(NiceStep((parameter.max - parameter.min) / 20.0));
   return parameter.is_integer ? std::max(1.0, std::round(step)) : step;
 }
 
 ParameterValue NearestSettable(const Parameter& parameter, const ParameterValue& value) {
   if (!parameter.IsContinuous() || !value.number) return value;
+  if (IsOverDecades(parameter) && !OwnStep(parameter)) {
+    return NumberValue(NearestOfDecade(parameter, *value.number));
+  }
   constexpr double kSlack = 1e-9;  // of a step: 0.3 / 0.1 is a little less than 3
   const double step = StepOf(parameter);
   const double most = std::floor(parameter.max / step + kSlack);

@@ -217,6 +217,43 @@ TEST_CASE("A bound that is a whole number of steps can be set, at either end") {
   CHECK(nearest(Range(-0.2999, 0, 0.1), -0.2999) == "-0.2");
 }
 
+TEST_CASE("A range over decades without a step of its own is set to 1, 2 or 5 in each of them") {
+  Parameter range = Range(1e-4, 1);
+  range.is_logarithmic = true;
+  const auto nearest = [&](double value) {
+    return NearestSettable(range, NumberValue(value)).text;
+  };
+  CHECK(nearest(1e-3) == "0.001");
+  CHECK(nearest(1e-4) == "0.0001");
+  CHECK(nearest(1.3e-4) == "0.0001");  // below the root of 2, and above it
+  CHECK(nearest(1.5e-4) == "0.0002");
+  CHECK(nearest(3.1e-4) == "0.0002");  // about the root of 10
+  CHECK(nearest(3.2e-4) == "0.0005");
+  CHECK(nearest(0.069) == "0.05");  // about the root of 50
+  CHECK(nearest(0.072) == "0.1");
+  CHECK(nearest(1.0) == "1");
+  range.max = 0.9;  // no value above the range, nor below it
+  CHECK(nearest(0.9) == "0.5");
+  range.min = 3e-4;
+  CHECK(nearest(3e-4) == "0.0005");
+  range.max = 4e5;
+  CHECK(nearest(3e5) == "200000");
+  range.min = 0.07, range.max = 0.7;  // a decade to the last bit
+  CHECK(nearest(0.07) == "0.1");
+  range.max = 0.6;  // less than a decade: a twentieth, 0.05
+  CHECK(nearest(0.44) == "0.45");
+  range.max = 1000.0;
+  range.step = 0.25;
+  CHECK(nearest(0.3) == "0.25");
+  range.step.reset();
+  range.key = "control.v_min";  // in steps of 0.01
+  CHECK(nearest(0.134) == "0.13");
+  range.key = "block.unknown";
+  range.is_logarithmic = false;
+  CHECK(nearest(70.0) == "50");
+  CHECK(StepOf(range) == 50.0);
+}
+
 TEST_CASE("A name's unit is its ending, and the word before it its label") {
   const std::vector<std::pair<std::string, std::string>> units{{"a_rad_per_mps", "rad/(m/s)"},
                                                                {"a_ns_per_m", "N s/m"},

@@ -26,7 +26,8 @@ bool IsSettable(const Parameter& parameter);
 double StepOf(const Parameter& parameter);
 
 /// The value nearest to this one that a person can set: a whole number of steps within the range;
-/// of a list the value itself.
+/// of a list the value itself. Of a range that is even in its logarithm, goes over a decade or
+/// more, and has a step neither in the space nor in the schema: 1, 2 or 5 times a power of ten.
 ParameterValue NearestSettable(const Parameter& parameter, const ParameterValue& value);
 
 }  // namespace rift::experiment
