@@ -142,6 +142,20 @@ TEST_CASE("A plane shows up to fifteen hundred trials, and of more a sample in t
   }
 }
 
+TEST_CASE("A side of the plane that is even in the logarithm is drawn so") {
+  sweep::SweepResult result = synthetic::Continuous(3);
+  const sweep::FailingRegion region{.x_parameter = 0, .y_parameter = 1, .cells = {{}}};
+  const auto kinds = [&] {
+    const json scales = FailureMap(result, region, {}).spec["scales"];
+    return scales[0]["type"].get<std::string>() + " " + scales[1]["type"].get<std::string>();
+  };
+  CHECK(kinds() == "linear linear");
+  result.parameters[1].is_logarithmic = true;
+  CHECK(kinds() == "linear log");
+  std::swap(result.parameters[0].is_logarithmic, result.parameters[1].is_logarithmic);
+  CHECK(kinds() == "log linear");
+}
+
 TEST_CASE("The bins of the histogram count every gap once and part at the threshold") {
   std::mt19937_64 random(5);
   for (const double threshold_m : {0.06, 0.045, 0.0013, 0.3}) {

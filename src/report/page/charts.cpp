@@ -200,6 +200,10 @@ PageChart Plane(const sweep::SweepResult& result, const sweep::FailingRegion& re
   chart.spec["height"] = 230;
   SetSignal(chart.spec, "x_title", experiment::LabelOf(NameOf(result, region.x_parameter)));
   SetSignal(chart.spec, "y_title", experiment::LabelOf(NameOf(result, region.y_parameter)));
+  const int sides[] = {region.x_parameter, region.y_parameter};
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (result.parameters[sides[side]].is_logarithmic) chart.spec["scales"][side]["type"] = "log";
+  }
   chart.spec["data"][0]["values"] = std::move(patches);
   chart.spec["data"][1]["values"] = TrialDots(result, region);
   return chart;

@@ -38,6 +38,9 @@ class Side {
     return parameter_.IsContinuous() || std::abs(place - middle) < kSamePlace;
   }
   double Place(const experiment::ParameterValue& value) const {
+    if (parameter_.is_logarithmic) {
+      return std::log(*value.number / parameter_.min) / std::log(parameter_.max / parameter_.min);
+    }
     if (parameter_.IsContinuous()) {
       return (*value.number - parameter_.min) / (parameter_.max - parameter_.min);
     }
@@ -48,12 +51,20 @@ class Side {
  private:
   double At(int edge) const {
     if (!parameter_.IsContinuous()) return edge;
+    if (parameter_.is_logarithmic) {
+      return parameter_.min *
+             std::pow(parameter_.max / parameter_.min, static_cast<double>(edge) / Patches());
+    }
     return parameter_.min + (parameter_.max - parameter_.min) * edge / Patches();
   }
   /// Significant ones that tell the edges apart.
   int Digits() const {
-    const double width = (parameter_.max - parameter_.min) / Patches();
-    const double largest = std::max(std::abs(parameter_.min), std::abs(parameter_.max));
+    const bool is_logarithmic = parameter_.is_logarithmic;
+    const double width =
+        is_logarithmic ? At(1) - parameter_.min : (parameter_.max - parameter_.min) / Patches();
+    const double largest = is_logarithmic
+                               ? parameter_.min
+                               : std::max(std::abs(parameter_.min), std::abs(parameter_.max));
     return std::max(3, 1 + static_cast<int>(std::ceil(std::log10(largest / width))));
   }
   const experiment::Parameter& parameter_;

@@ -118,6 +118,37 @@ TEST_CASE("Patches of a narrow range have names that differ") {
   CHECK(cells[23].x == "1.0092 to 1.01");
 }
 
+TEST_CASE("A range that is even in its logarithm is cut so, and settings are as near as by it") {
+  SweepResult result;
+  result.parameters = {{.key = "gain", .min = 1e-4, .max = 1.0, .is_logarithmic = true}, kSurface};
+  for (int i = 0; i < 48; ++i) {
+    const double value = std::pow(10.0, -4.0 + 4.0 * (i + 0.5) / 48.0);
+    for (const experiment::ParameterValue& surface : kSurface.levels) {
+      result.rows.push_back(Row({{std::to_string(value), value}, surface}, value < 0.01));
+    }
+  }
+  const std::vector<RegionCell> cells = MapFailures(result, {0, 1}).cells;
+  REQUIRE(cells.size() == 48);
+  CHECK(cells[0].x_low == 1e-4);
+  CHECK(cells[0].x_high == Approx(1e-4 * std::pow(1e4, 1.0 / 24.0)));
+  CHECK(cells[0].x == "0.0001 to 0.000147");
+  CHECK(cells[12].x_low == Approx(0.01));
+  CHECK(cells[23].x_high == Approx(1.0));
+  CHECK(cells[23].x == "0.681 to 1");
+  CHECK(cells[2].share == 1.0);
+  CHECK(cells[8].share == 1.0);
+  CHECK(cells[15].share == 0.0);
+  CHECK(cells[11].share + cells[12].share == Approx(1.0));
+  const std::vector<RegionCell> down = MapFailures(result, {1, 0}).cells;
+  CHECK(down[0].y_high == cells[0].x_high);
+  // A narrow one: names that differ.
+  result.parameters[0].min = 0.99;
+  result.parameters[0].max = 1.01;
+  std::set<std::string> names;
+  for (const RegionCell& cell : MapFailures(result, {0, 1}).cells) names.insert(cell.x);
+  CHECK(names.size() == 24);
+}
+
 TEST_CASE("Either side may be the range, and either may be missing") {
   SweepResult result;
   result.parameters = {kRange, kSurface};

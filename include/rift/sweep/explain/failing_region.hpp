@@ -29,9 +29,9 @@ struct FailingRegion {
 std::array<int, 2> MostInfluential(const SweepResult& result, const Effects& effects);
 
 /// The failing region over two parameters, all others being what the trials had. Lists of values
-/// give a cell for each pair; a range is cut into patches that count the 12 settings nearest to
-/// them (of a list only those of the patch's own value), and all that are as near as the twelfth.
-/// Of more than 4000 trials a sample is looked at.
+/// give a cell for each pair; a range is cut into patches (even in the logarithm, where it is) that
+/// count the 12 settings nearest to them (of a list only those of the patch's own value), and all
+/// that are as near as the twelfth. Of more than 4000 trials a sample is looked at.
 FailingRegion MapFailures(const SweepResult& result, std::array<int, 2> parameters);
 
 }  // namespace rift::sweep
