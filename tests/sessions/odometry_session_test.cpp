@@ -147,7 +147,8 @@ TEST_CASE("Runs of one program are a cell, and runs of two are not, whichever di
   const test::TemporaryFolder folder;
   const LoadedRun a = RunOf(folder, "a", 1.0), b = RunOf(folder, "b", 1.0);
   const LoadedRun other = RunOf(folder, "c", 0.8);
-  LoadedRun turned = b, late = b, none = b;
+  LoadedRun turned = b, late = b, none = b, spun = b;
+  spun.run.program->poses.back().yaw_rad += 0.1;  // as of two programs that turn on the spot
   turned.run.program->poses.back().y_m += 0.1;
   late.run.program->poses.back().t_s += 1.0;
   none.run.program.reset();
@@ -159,6 +160,7 @@ TEST_CASE("Runs of one program are a cell, and runs of two are not, whichever di
   CHECK_FALSE(has_cell(a, other));
   CHECK_FALSE(has_cell(a, turned));
   CHECK_FALSE(has_cell(a, late));
+  CHECK_FALSE(has_cell(a, spun));
   CHECK_FALSE(has_cell(a, none));
   CHECK_FALSE(has_cell(none, a));
 }

@@ -40,7 +40,7 @@ bool AreRepeats(const std::vector<LoadedRun>& runs) {
     const auto& b = runs.front().run.program->poses;
     if (a.size() != b.size()) return false;
     for (size_t i = 0; i < a.size(); ++i) {
-      if (a[i].t_s != b[i].t_s || a[i].Position() != b[i].Position()) return false;
+      if (a[i].t_s != b[i].t_s || !(a[i].Planar() == b[i].Planar())) return false;
     }
   }
   return true;
