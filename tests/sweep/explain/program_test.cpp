@@ -257,6 +257,14 @@ TEST_CASE("Of a simulated robot the axle is held against its program, wherever i
     return cells[0].runs[0].end_error_m;
   };
   CHECK(end_error_m(0.08) == Approx(end_error_m(0.0)).margin(0.005));
+  const double known_m = end_error_m(0.0);
+  experiment.space.parameters = {
+      {.key = "simulation.mocap.tag_ahead_m", .levels = {experiment::NumberValue(0.08)}}};
+  CHECK(end_error_m(0.0) == Approx(known_m).margin(0.005));
+  experiment.space.parameters.clear();
+  experiment.ensemble.keys = {"simulation.mocap.tag_ahead_m"};
+  experiment.ensemble.draws = {{0.08}};
+  CHECK(end_error_m(0.0) == Approx(known_m).margin(0.005));
 }
 
 TEST_CASE("The gap to a program is the robot's alone, wherever its tag is") {
