@@ -62,6 +62,11 @@ TEST_CASE("Every robot file says the same to the simulator and to rift drive") {
     CHECK(experiment.hardware.stopping.full_power_speed_mps ==
           Approx(full_rad_s * body.wheel_radius_m).epsilon(0.02));
     REQUIRE(experiment.simulation.encoder.counts_per_rev);
+    // What makes up for the loop delay predicts this robot, and no other.
+    const auto& predicted = experiment.control.latency.drive;
+    CHECK(predicted.wheel_radius_m == odometry.drive.wheel_radius_m);
+    CHECK(predicted.track_m == odometry.drive.track_m);
+    CHECK(predicted.full_power_speed_rad_s == odometry.drive.full_power_speed_rad_s);
     CHECK(odometry.counts_per_wheel_turn == Approx(*experiment.simulation.encoder.counts_per_rev));
     // Level on the floor: the ball reaches down as far as the wheels.
     CHECK(body.caster_below_m + body.caster_radius_m == Approx(body.wheel_radius_m).margin(1e-4));
