@@ -47,7 +47,7 @@ TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   CHECK(run.ping.protocol == hardware::Protocol::kFramed);
   REQUIRE(told.size() == 5);
   CHECK_THAT(told[1], Catch::StartsWith("worst stopping distance 0.2"));
-  CHECK_THAT(report::DriveText(run), Catch::Contains("acknowledged the stop"));
+  CHECK_THAT(report::DriveText(experiment, run), Catch::Contains("acknowledged the stop"));
 
   CHECK(CloseDrive(folder.Path(), experiment, run, log).empty());
   const auto summary = nlohmann::json::parse(files::ReadFile(folder / "summary.json"));

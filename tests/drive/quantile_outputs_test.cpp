@@ -35,7 +35,7 @@ TEST_CASE("Quantiles of one list are the same number in gap and track and drive"
     stages.written_s = 100.0 + latency_s;
     drive.evidence.poses.push_back(stages);
   }
-  CHECK_THAT(report::DriveText(drive), Catch::Contains("p50 5500.0 ms, p95 9550.0"));
+  CHECK_THAT(report::DriveText({}, drive), Catch::Contains("p50 5500.0 ms, p95 9550.0"));
   const auto json = nlohmann::json::parse(report::DriveJson({}, drive));
   CHECK(json["latency"]["capture_to_command"]["p95_s"] == Approx(kP95));
 

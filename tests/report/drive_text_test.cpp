@@ -18,15 +18,31 @@ hardware::DriveRun RunOf(const std::optional<hardware::LoopDelay>& delay) {
 }
 
 TEST_CASE("A time from capture is claimed only where the camera's own delay was measured") {
-  CHECK_THAT(DriveText(RunOf(hardware::LoopDelay{.camera_s = 0.03, .total_s = 0.1})),
+  CHECK_THAT(DriveText({}, RunOf(hardware::LoopDelay{.camera_s = 0.03, .total_s = 0.1})),
              Contains("\ncapture to command p50 4.0 ms, p95 4.0, p99 4.0\n"));
   CHECK_THAT(
-      DriveText(RunOf(hardware::LoopDelay{.total_s = 0.1, .camera_most_s = 0.09})),
+      DriveText({}, RunOf(hardware::LoopDelay{.total_s = 0.1, .camera_most_s = 0.09})),
       Contains("\ntime stamp to command p50 4.0 ms, p95 4.0, p99 4.0; the stamps may be up to 90 "
                "ms late\n"));
-  CHECK_THAT(DriveText(RunOf({})),
+  CHECK_THAT(DriveText({}, RunOf({})),
              Contains("\ntime stamp to command p50 4.0 ms, p95 4.0, p99 4.0; how late the stamps "
                       "are was not measured\n"));
+}
+
+TEST_CASE("What makes up for a loop delay is told with the robot that it has to predict") {
+  const hardware::DriveRun run = RunOf(hardware::LoopDelay{.total_s = 0.1});
+  experiment::Experiment experiment;
+  experiment.hardware.odometry.drive = {0.035, 0.141, 25.1};
+  CHECK_THAT(DriveText(experiment, run),
+             Contains("to make up for it: --set control.latency.delay_s=0.100 --set "
+                      "control.latency.drive.wheel_radius_m=0.035 --set "
+                      "control.latency.drive.track_m=0.141 --set "
+                      "control.latency.drive.full_power_speed_rad_s=25.1\n"));
+  experiment.control.latency.drive = {0.035, 0.083, 25.1};
+  CHECK_THAT(DriveText(experiment, run), Contains("control.latency.delay_s=0.100 --set "
+                                                  "control.latency.drive.track_m=0.141\n"));
+  experiment.control.latency.drive.track_m = 0.141;
+  CHECK_THAT(DriveText(experiment, run), Contains("control.latency.delay_s=0.100\n"));
 }
 
 TEST_CASE("A ping sets the simulated link without the bytes that its baud adds, in both outputs") {

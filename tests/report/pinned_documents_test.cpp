@@ -391,7 +391,7 @@ TEST_CASE("Drives and pings are told field by field as they were approved") {
   for (const std::optional<bool>& acknowledged : {std::optional<bool>(), {true}, {false}}) {
     run.evidence.stop_acknowledged = acknowledged;
     run.dry_run = acknowledged.has_value();
-    text += DriveText(run);
+    text += DriveText(experiment, run);
   }
   text += PingText(run.ping, experiment.hardware) + PingJson(run.ping, experiment.hardware);
   run.ping = {.protocol = hardware::Protocol::kPlain};
@@ -404,7 +404,7 @@ TEST_CASE("Drives and pings are told field by field as they were approved") {
   run.evidence = {};
   run.latency.reset();
   run.camera_latency_s.reset();
-  text += DriveJson(experiment, run, RunState::kInterrupted) + DriveText(run);
+  text += DriveJson(experiment, run, RunState::kInterrupted) + DriveText(experiment, run);
   sweep::SimulatedRun unlimited = simulated;
   unlimited.result.limits.v_max = 0;
   text += SimulationText(experiment, unlimited);

@@ -82,7 +82,7 @@ int DriveOnce(const DriveRequest& request, const experiment::Experiment& experim
   }
   const auto state = is_whole ? report::RunState::kFinished : report::RunState::kInterrupted;
   request.json ? terminal::PrintData(report::DriveJson(experiment, run, state))
-               : terminal::PrintText(report::DriveText(run));
+               : terminal::PrintText(report::DriveText(experiment, run));
   for (const std::string& line : sessions::SteeringLines(experiment, run)) terminal::Say(line);
   session.RequireLog();
   return ExitCodeOf(run);

@@ -159,6 +159,20 @@ std::string StampText(const hardware::DriveRun& run) {
                      1e3 * *run.latency->delay.camera_most_s);
 }
 
+/// What the prediction that makes up for a delay lacks of the robot's wheels and speed.
+std::string PredictedRobotText(const experiment::Experiment& experiment) {
+  const control::DiffDriveOptions &predicted = experiment.control.latency.drive,
+                                  &robot = experiment.hardware.odometry.drive;
+  std::string text;
+  const auto set = [&text](const char* key, double now, double wanted) {
+    if (now != wanted) text += fmt::format(" --set control.latency.drive.{}={:g}", key, wanted);
+  };
+  set("wheel_radius_m", predicted.wheel_radius_m, robot.wheel_radius_m);
+  set("track_m", predicted.track_m, robot.track_m);
+  set("full_power_speed_rad_s", predicted.full_power_speed_rad_s, robot.full_power_speed_rad_s);
+  return text;
+}
+
 }  // namespace
 
 std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
@@ -227,7 +241,7 @@ std::string DriveJson(const experiment::Experiment& experiment, const hardware::
   return Dump(json);
 }
 
-std::string DriveText(const hardware::DriveRun& run) {
+std::string DriveText(const experiment::Experiment& experiment, const hardware::DriveRun& run) {
   const trial::TrialResult& result = run.trial;
   std::string text =
       fmt::format("{}: {}\n{:.2f} s, {} poses logged\n", yaml::NameOf(result.outcome),
@@ -242,9 +256,10 @@ std::string DriveText(const hardware::DriveRun& run) {
                         1e3 * statistics::Quantile(latency_s, 0.99), StampText(run));
   }
   if (run.latency && run.latency->delay.total_s) {
+    const double delay_s = *run.latency->delay.total_s;
     text += fmt::format(
-        "loop delay {:.0f} ms; to make up for it: --set control.latency.delay_s={:.3f}\n",
-        1e3 * *run.latency->delay.total_s, *run.latency->delay.total_s);
+        "loop delay {:.0f} ms; to make up for it: --set control.latency.delay_s={:.3f}{}\n",
+        1e3 * delay_s, delay_s, PredictedRobotText(experiment));
   }
   return text + StopText(run.evidence.stop_acknowledged) + "\n";
 }

@@ -57,7 +57,7 @@ std::string DriveJson(const experiment::Experiment& experiment, const hardware::
                       RunState state = RunState::kFinished);
 /// What stands in its place until the drive was closed, thus for ever when rift is killed.
 std::string InterruptedDriveJson(const experiment::Experiment& experiment);
-std::string DriveText(const hardware::DriveRun& run);
+std::string DriveText(const experiment::Experiment& experiment, const hardware::DriveRun& run);
 /// How a drive ended, in one line for people, of its summary.json.
 std::string DriveEnding(const std::string& summary_json);
 
