@@ -152,7 +152,7 @@ TEST_CASE("What explanation.json says of rows, parts and cells follows from the 
     Numbers means;
     for (const auto& [label, rows] : settings) {
       Numbers values;
-      for (const auto* row : rows) {
+      for (const auto* row : Distinct(rows)) {
         if (IsOk(*row)) values.push_back(of_row(*row));
       }
       if (!values.empty()) means.push_back(MeanOf(values));
@@ -177,7 +177,7 @@ TEST_CASE("What explanation.json says of rows, parts and cells follows from the 
   Numbers floors_m, removable_m;
   for (size_t i = 0; i < settings.size(); ++i) {
     floors_m.push_back(0.01 + 0.0011 * static_cast<double>(i));
-    const double mean_m = MeanOf(GapsOf(settings[i].second));
+    const double mean_m = MeanOf(GapsOf(Distinct(settings[i].second)));
     if (!std::isnan(mean_m)) removable_m.push_back(mean_m - floors_m.back());
   }
   for (const auto& [key, values] :
