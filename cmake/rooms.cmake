@@ -55,7 +55,7 @@ rift_room(sweep/falsify ROOMS control experiment files gap odometry search simul
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(sweep/explain ROOMS experiment odometry search statistics sweep/falsify yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen)
-rift_room(sweep/calibrate ROOMS control experiment gap geometry statistics sweep/falsify sweep/run trajectory trial
+rift_room(sweep/calibrate ROOMS control experiment gap geometry statistics sweep/falsify sweep/run trajectory trial yaml
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES Eigen3::Eigen Threads::Threads)
 rift_room(report/figures ROOMS experiment files gap geometry statistics sweep/calibrate sweep/falsify trajectory
   LIBRARIES fmt::fmt)

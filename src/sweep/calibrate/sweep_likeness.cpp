@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/run/for_each.hpp"
 #include "rift/trajectory/frame_grid.hpp"
+#include "rift/yaml/node.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -22,9 +24,11 @@ struct Labelled {
   RepeatedTrial trial;
 };
 
-bool HasRepeatedLogs(const experiment::Experiment& experiment) {
+/// A search tried no more than a part of the settings that its lists can make.
+bool IsGridOverRepeatedLogs(const experiment::Experiment& experiment) {
   const auto& parameters = experiment.space.parameters;
-  return experiment.reference.kind == experiment::ReferenceKind::kLogs &&
+  return experiment.goal == experiment::Goal::kGrid &&
+         experiment.reference.kind == experiment::ReferenceKind::kLogs &&
          experiment.reference.trials.names.size() > 1 &&
          std::none_of(parameters.begin(), parameters.end(),
                       [](const experiment::Parameter& axis) { return axis.IsContinuous(); });
@@ -49,6 +53,7 @@ class Gathering {
   explicit Gathering(Evaluator& evaluator)
       : evaluator_(evaluator), experiment_(evaluator.experiment()) {}
 
+  /// Nothing of a setting at which no trial can be made: its rows are `invalid` or `fault`.
   void Add(const experiment::Theta& theta);
   std::vector<Labelled> Drive(int threads);
 
@@ -56,6 +61,7 @@ class Gathering {
   bool IsSimulated() const {
     return experiment_.candidate.kind == experiment::CandidateKind::kSimulation;
   }
+  void AddTrials(const experiment::Theta& theta);
   void Plan(const TrialRequest& request, const Recording& real, size_t trial);
   void AddLog(const TrialRequest& request, const Recording& real, std::set<std::string>& seen);
   void RunPrograms(int workers);
@@ -68,6 +74,22 @@ class Gathering {
 };
 
 void Gathering::Add(const experiment::Theta& theta) {
+  const size_t trials = trials_.size(), planned = planned_.size(), programs = program_runs_.size();
+  const auto forget = [&] {
+    trials_.resize(trials);
+    planned_.resize(planned);
+    program_runs_.resize(programs);
+  };
+  try {
+    AddTrials(theta);
+  } catch (const yaml::Error&) {
+    forget();
+  } catch (const std::invalid_argument&) {
+    forget();
+  }
+}
+
+void Gathering::AddTrials(const experiment::Theta& theta) {
   const experiment::Experiment at = ExperimentFor(experiment_, {.theta = theta});
   std::set<std::string> logs;
   for (const TrialRequest& request : TrialsAt(experiment_, theta)) {
@@ -148,7 +170,7 @@ std::vector<Labelled> Gathering::Drive(int threads) {
 std::vector<GroupLikeness> MeasureSweepLikeness(Evaluator& evaluator, int threads) {
   const experiment::Experiment& experiment = evaluator.experiment();
   const bool is_planar = !experiment.gap.IsInSpace();  // weave and steering are
-  if (!is_planar || !HasRepeatedLogs(experiment)) return {};
+  if (!is_planar || !IsGridOverRepeatedLogs(experiment)) return {};
   Gathering gathering(evaluator);
   for (const experiment::Theta& theta : experiment::GridPoints(experiment.space.parameters)) {
     gathering.Add(theta);

@@ -5,8 +5,10 @@
 #include <map>
 #include <memory>
 
+#include "rift/experiment/path_template.hpp"
 #include "rift/sweep/calibrate/identification.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/inputs/memory_files.hpp"
 #include "support/inputs/paths.hpp"
@@ -104,6 +106,56 @@ TEST_CASE("Without repeated logs, or in space, there is nothing to be like") {
   experiment.reference.kind = ReferenceKind::kPath;
   CHECK(
       MeasureSweepLikeness(*std::make_unique<Evaluator>(experiment, "e", InputsOf(files))).empty());
+}
+
+TEST_CASE("A search has no likeness, whose lists can make more settings than were tried") {
+  Files files = AllLogs();
+  experiment::Experiment experiment = Logs();
+  experiment.goal = experiment::Goal::kFalsify;
+  CHECK(
+      MeasureSweepLikeness(*std::make_unique<Evaluator>(experiment, "e", InputsOf(files))).empty());
+  experiment.candidate.kind = CandidateKind::kSimulation;
+  experiment.reference.path.text = "a_1_{trial}.csv";
+  for (const std::string key : {"p", "q", "r"}) {  // no grid: more than a million settings
+    experiment.space.parameters.push_back({.key = key});
+    for (int i = 0; i < 200; ++i) {
+      experiment.space.parameters.back().levels.push_back(experiment::NumberValue(i));
+    }
+  }
+  CHECK(
+      MeasureSweepLikeness(*std::make_unique<Evaluator>(experiment, "e", InputsOf(files))).empty());
+}
+
+TEST_CASE("A setting of a grid that no trial can be made at is no part of the likeness") {
+  Files files;
+  experiment::Experiment experiment = Logs();
+  experiment.likeness.runs = 1;
+  const auto runs = [&](const std::vector<experiment::Parameter>& space) {
+    std::string name;
+    for (const experiment::Parameter& parameter : space) name += "{" + parameter.Name() + "}_";
+    experiment.candidate.path.text = "sim_" + name + "{trial}.csv";
+    experiment.reference.path.text = name + "{trial}.csv";
+    experiment.space.parameters = space;
+    for (const TrialRequest& at : GridTrials(space, experiment.reference.trials.names)) {
+      for (const auto& path : {experiment.candidate.path.text, experiment.reference.path.text}) {
+        files[experiment::FillTemplate(path, space, at.theta, at.trial)] =
+            Aside(at.trial == "1" ? 0.0 : 0.01);
+      }
+    }
+    Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
+    return MeasureSweepLikeness(evaluator).back().likeness.runs;
+  };
+  const experiment::Theta v_min{{"0.15", 0.15}, {"0.45", 0.45}}, v_max{{"0.3", 0.3}, {"0.5", 0.5}};
+  // 0.45 beside 0.3 is refused: three of the four settings are left, two trials of each.
+  CHECK(runs({{.key = "v_min", .levels = v_min}, {.key = "v_max", .levels = v_max}}) == 6);
+  experiment.candidate.kind = CandidateKind::kSimulation;
+  experiment.waypoints.back().x_m = 0.2;
+  CHECK(runs({{.key = "control.v_min", .levels = v_min},
+              {.key = "control.v_max", .levels = v_max}}) == 6);
+  // A program that is too fast for the motors is refused where it is made.
+  experiment.waypoints.clear();
+  experiment.program.segments = {{.straight_m = 0.1}};
+  CHECK(runs({{.key = "program.speed_mps", .levels = {{"5", 5.0}, {"0.1", 0.1}}}}) == 2);
 }
 
 /// Logs that the simulator made itself with this mismatch, two settings of three trials.
