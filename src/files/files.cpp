@@ -168,7 +168,10 @@ std::error_code RemoveAll(const std::filesystem::path& path) {
   std::error_code error;
   do {
     std::filesystem::remove_all(path, error);
-    if (error != std::errc::directory_not_empty) return error;
+    // Or renamed between its listing and its removal.
+    const bool is_written_to =
+        error == std::errc::directory_not_empty || error == std::errc::no_such_file_or_directory;
+    if (!is_written_to) return error;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   } while (std::chrono::steady_clock::now() < end);
   return error;

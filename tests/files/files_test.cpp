@@ -35,14 +35,18 @@ std::size_t FilesIn(const fs::path& folder) {
   return count;
 }
 
-TEST_CASE("A folder that another still writes in is removed whole") {
+TEST_CASE("A folder that another still writes and renames in is removed whole") {
   const test::TemporaryFolder folder;
   for (int round = 0; round < 10; ++round) {
     fs::create_directories(folder / "shards");
     std::atomic<bool> has_begun = false;
     std::thread writer([&] {
       for (int i = 0; i < 200; ++i) {
-        std::ofstream(folder / ("shards/" + std::to_string(i))) << i;
+        // As a task of a cluster publishes its journal.
+        const std::string file = folder / ("shards/" + std::to_string(i));
+        std::ofstream(file + ".new") << i;
+        std::error_code removed;
+        fs::rename(file + ".new", file, removed);
         has_begun = true;
       }
     });
