@@ -84,6 +84,11 @@ std::vector<std::map<std::string, std::string>> Table(const std::string& folder)
 const std::string kSpawned = test::SourceDir() + "/configs/programs/diff_drive.yaml";
 const std::string kPersistent = test::SourceDir() + "/configs/programs/diff_drive_persistent.yaml";
 
+/// A task that three poses of a program fulfil.
+const std::string kStraight =
+    "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n";
+const std::string kStraightLog = R"('t_s,x_m,y_m\n0,0,0\n1,0.35,0\n2,0.7,0\n')";
+
 /// A short search with few repeats: each seed costs a nominal run before the first trial.
 std::vector<std::string> SweepWords(const std::string& config, const std::string& jobs,
                                     const std::string& out) {
@@ -159,8 +164,7 @@ TEST_CASE("Replaying a program's row runs the program once") {
             "open(sys.argv[2], 'a').write('x')\n"
             "open(sys.argv[1], 'w').write('t_s,x_m,y_m\\n0,0,0\\n1,0.5,0.1\\n')\n");
   WriteText(folder / "sweep.yaml",
-            "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
-            "candidate: {kind: program, run: [python3, counting.py, '{out}', '" +
+            kStraight + "candidate: {kind: program, run: [python3, counting.py, '{out}', '" +
                 (folder / "runs") + "']}\nreference: {kind: path}\n");
   REQUIRE(RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out"}).exit_code == 0);
   const std::string before = ReadFile(fs::path(folder / "runs"));
@@ -187,9 +191,9 @@ TEST_CASE("A row whose program hung is replayed as such and ends") {
   const TemporaryFolder folder;
   WriteText(folder / "hanging.py", "import time; time.sleep(7357)\n");
   WriteText(folder / "sweep.yaml",
-            "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
-            "candidate: {kind: program, run: [python3, hanging.py, '{mu}']}\n"
-            "reference: {kind: path}\nspace: {mu: [1]}\nrun: {timeout_s: 0.5, retries: 0}\n");
+            kStraight +
+                "candidate: {kind: program, run: [python3, hanging.py, '{mu}']}\n"
+                "reference: {kind: path}\nspace: {mu: [1]}\nrun: {timeout_s: 0.5, retries: 0}\n");
   CHECK(RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out"}).exit_code == 1);
   const ProcessResult replay = RunRift({"simulate", "--replay", folder / "out", "1"});
   CHECK(replay.exit_code == 1);
@@ -199,14 +203,14 @@ TEST_CASE("A row whose program hung is replayed as such and ends") {
 TEST_CASE("A trial given up for its time is run again where run.timeout_s is another") {
   const TemporaryFolder folder;
   // Hangs where mu is 1 until there is a file by the name of mended.
-  WriteText(folder / "sim.sh",
-            "echo \"$1\" >> '" + (folder / "runs") + "'\n[ \"$1\" = 0 ] || [ -e '" +
-                (folder / "mended") + "' ] || exec sleep 7357\n" +
-                "printf 't_s,x_m,y_m\\n0,0,0\\n1,0.35,0\\n2,0.7,0\\n' > \"$2\"\n");
+  WriteText(folder / "sim.sh", "echo \"$1\" >> '" + (folder / "runs") +
+                                   "'\n[ \"$1\" = 0 ] || [ -e '" + (folder / "mended") +
+                                   "' ] || exec sleep 7357\n" + "printf " + kStraightLog +
+                                   " > \"$2\"\n");
   WriteText(folder / "sweep.yaml",
-            "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
-            "candidate: {kind: program, run: [sh, sim.sh, '{mu}', '{out}']}\n"
-            "reference: {kind: path}\nspace: {mu: [0, 1]}\n");
+            kStraight +
+                "candidate: {kind: program, run: [sh, sim.sh, '{mu}', '{out}']}\n"
+                "reference: {kind: path}\nspace: {mu: [0, 1]}\n");
   const test::QuickGnuplot gnuplot;
   const auto sweep = [&](const std::string& timeout_s) {
     return RunRift({"sweep", folder / "sweep.yaml", "--out", folder / "out", "--set",
@@ -232,11 +236,10 @@ TEST_CASE("A trial given up for its time is run again where run.timeout_s is ano
 
 TEST_CASE("A sweep without a temporary folder ends with 3, keeps no trial, and goes on later") {
   const TemporaryFolder folder;
-  WriteText(folder / "sim.sh", "printf 't_s,x_m,y_m\\n0,0,0\\n1,0.35,0\\n2,0.7,0\\n' > \"$1\"\n");
-  WriteText(folder / "sweep.yaml",
-            "waypoints: [{name: a, x: 0, y: 0, heading: 0}, {name: b, x: 0.7, y: 0, stop: true}]\n"
-            "candidate: {kind: program, run: [sh, sim.sh, '{out}']}\n"
-            "reference: {kind: path}\nspace: {mu: [0, 1]}\n");
+  WriteText(folder / "sim.sh", "printf " + kStraightLog + " > \"$1\"\n");
+  WriteText(folder / "sweep.yaml", kStraight +
+                                       "candidate: {kind: program, run: [sh, sim.sh, '{out}']}\n"
+                                       "reference: {kind: path}\nspace: {mu: [0, 1]}\n");
   const test::QuickGnuplot gnuplot;
   const auto sweep = [&](const std::string& settings) {
     return test::RunShell(fmt::format("{} '{}' sweep '{}' --out '{}' 2> '{}'", settings,
