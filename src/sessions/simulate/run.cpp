@@ -47,9 +47,10 @@ void PutStart(const std::string& text, experiment::Experiment& experiment) {
 
 sweep::SimulatedTrial TrialAlone(const experiment::Experiment& experiment,
                                  const std::string& experiment_file, const sweep::Inputs& inputs) {
+  const experiment::Experiment drawn = experiment::DrawnAt(experiment, experiment.seed);
   sweep::SimulatedTrial trial =
-      sweep::SimulatedTrialOf(experiment, {}, experiment.seed, experiment_file, inputs);
-  trial.start = experiment::AxleAtStart(experiment::DrawnAt(experiment, experiment.seed));
+      sweep::SimulatedTrialOf(drawn, {}, experiment.seed, experiment_file, inputs);
+  trial.start = experiment::AxleAtStart(drawn);
   return trial;
 }
 
