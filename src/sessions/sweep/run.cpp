@@ -13,6 +13,7 @@
 #include "rift/files/network_file_system.hpp"
 #include "rift/sessions/sweep/journal.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sessions {
 
@@ -78,15 +79,17 @@ void NoteDamage(const Journal& journal, const std::filesystem::path& file,
 /// the limit is another: it says nothing of the experiment.
 void ForgetOtherLimits(Journal& journal, const sweep::RunOptions& now,
                        const std::filesystem::path& file, const SweepObserver& observer) {
-  const std::string limits = fmt::format("timeout_s={:g} memory_mb={} retries={}", now.timeout_s,
-                                         now.memory_mb, now.retries);
+  std::string limits;
+  sweep::RunOptions::Fields(now, [&limits](const char* key, auto value, const auto&...) {
+    limits += fmt::format("{}{}={}", limits.empty() ? "" : " ", key, value);
+  });
   const std::string before = journal.Note("limits").value_or(limits);
   journal.SetNote("limits", limits);
   if (before == limits) return;
   int count = 0;
   for (const sweep::TrialStatus status : {sweep::TrialStatus::kHung, sweep::TrialStatus::kCrashed,
                                           sweep::TrialStatus::kOutOfMemory}) {
-    count += journal.Forget(std::string(EnumNames(status)[static_cast<size_t>(status)]));
+    count += journal.Forget(std::string(yaml::NameOf(status)));
   }
   if (count == 0) return;
   observer.say(fmt::format(

@@ -5,6 +5,7 @@
 
 #include "job_status.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sweep {
 
@@ -27,8 +28,8 @@ TrialStatus StatusOf(JobEnd end) {
 namespace {
 
 JournalEntry EntryOf(const TrialRow& row) {
-  const auto status = EnumNames(row.status)[static_cast<size_t>(row.status)];
-  return {std::string(status), row.comparison.gap_m, row.falsified, EncodeFindings(row)};
+  return {std::string(yaml::NameOf(row.status)), row.comparison.gap_m, row.falsified,
+          EncodeFindings(row)};
 }
 
 WorkerPool::Work WorkOf(Evaluate evaluate) {
