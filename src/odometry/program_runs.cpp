@@ -62,16 +62,6 @@ bool DidMove(const Trajectory& camera, const Trajectory& program, double share) 
                          : Swept_rad(camera) >= share * Swept_rad(program);
 }
 
-/// A program is the axle's, and a trial begins with the robot's tag on the first waypoint.
-Trajectory OfAxle(Trajectory program, double tag_ahead_m) {
-  const Eigen::Vector2d back_m = -tag_ahead_m * program.poses.front().Planar().Forward();
-  for (trajectory::StampedPose& pose : program.poses) {
-    pose.x_m += back_m.x();
-    pose.y_m += back_m.y();
-  }
-  return program;
-}
-
 /// The robot in step with the camera: pose of the axle, and what the wheels have rolled by then.
 struct Moment {
   double t_s;
@@ -197,6 +187,15 @@ double MeanOver(std::span<const RunMeasures> runs, Number RunMeasures::*number) 
 }
 
 }  // namespace
+
+Trajectory OfAxle(Trajectory program, double tag_ahead_m) {
+  const Eigen::Vector2d back_m = -tag_ahead_m * program.poses.front().Planar().Forward();
+  for (trajectory::StampedPose& pose : program.poses) {
+    pose.x_m += back_m.x();
+    pose.y_m += back_m.y();
+  }
+  return program;
+}
 
 RunMeasures MeasureRun(const RunLog& run, const std::optional<Trajectory>& program,
                        const OdometryOptions& odometry, const RunOptions& options) {

@@ -58,6 +58,10 @@ struct RunMeasures {
   std::vector<Slip> slip;
 };
 
+/// The way of the axle in a trial, which begins with the robot's tag, and not its axle, at the
+/// start of the program.
+trajectory::Trajectory OfAxle(trajectory::Trajectory program, double tag_ahead_m);
+
 /// Throws std::invalid_argument for a run whose camera path lacks the yaw where encoders are given,
 /// or does not share a moment with them.
 RunMeasures MeasureRun(const RunLog& run, const std::optional<trajectory::Trajectory>& program,

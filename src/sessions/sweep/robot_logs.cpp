@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "rift/files/files.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 
 namespace rift::sessions {
 namespace {
@@ -84,8 +85,7 @@ void SaveSuggested(const fs::path& folder, const experiment::Experiment& experim
   while (!all.empty() && CountDrives(folder, all.back().number) == 0) all.pop_back();
   for (const sweep::Suggestion& suggestion : suggestions.list) {
     const auto known = std::find_if(all.begin(), all.end(), [&](const auto& before) {
-      return std::equal(before.values.begin(), before.values.end(), suggestion.values.begin(),
-                        suggestion.values.end(), experiment::SameValue);
+      return sweep::IsSameSetting(before.values, suggestion.values);
     });
     if (known != all.end()) {
       known->repeats = CountDrives(folder, known->number) + suggestion.repeats;

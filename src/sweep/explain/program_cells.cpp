@@ -29,8 +29,6 @@ class RunsOfCells {
     if (programs_) return {programs_->Run({request}).front(), {}};
     return evaluator_.RunOf(request, {});
   }
-  /// Where the tag of that trial's simulated robot is.
-  odometry::RunOptions OptionsOf(const TrialRequest& request) const;
   /// Throws what the task of the setting, the run and its files throw.
   void Add(const TrialRequest& request, ProgramCell& cell);
 
@@ -39,14 +37,6 @@ class RunsOfCells {
   std::vector<trajectory::Trajectory> paths_;  ///< of the cell
 };
 
-odometry::RunOptions RunsOfCells::OptionsOf(const TrialRequest& request) const {
-  const experiment::Experiment& experiment = evaluator_.experiment();
-  if (experiment.candidate.kind != experiment::CandidateKind::kSimulation) return {};
-  const experiment::Experiment at = ExperimentFor(experiment, request);
-  const experiment::Experiment drawn = experiment::DrawnAt(at, request.seed.value_or(at.seed));
-  return {.tag_ahead_m = drawn.simulation.mocap.tag_ahead_m};
-}
-
 void RunsOfCells::Add(const TrialRequest& request, ProgramCell& cell) {
   const trajectory::Trajectory program = evaluator_.IdealPathAt(request.theta);
   CandidateRun run = RunOf(request);
@@ -54,8 +44,9 @@ void RunsOfCells::Add(const TrialRequest& request, ProgramCell& cell) {
   // A robot that was too weak for the program ran out of time or road, and its log shows it.
   if (camera.trajectory.poses.size() < 2) throw std::invalid_argument(camera.reason);
   const odometry::RunLog log{camera.source, camera.trajectory, std::move(run.encoders)};
-  cell.runs.push_back(odometry::MeasureRun(log, program, evaluator_.experiment().hardware.odometry,
-                                           OptionsOf(request)));
+  const experiment::Experiment& experiment = evaluator_.experiment();
+  const odometry::RunOptions options{.tag_ahead_m = TagAhead_m(experiment, request)};
+  cell.runs.push_back(odometry::MeasureRun(log, program, experiment.hardware.odometry, options));
   paths_.push_back(camera.trajectory);
 }
 

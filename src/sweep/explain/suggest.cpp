@@ -13,6 +13,7 @@
 #include "rift/statistics/inference.hpp"
 #include "rift/sweep/falsify/distinct_rows.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/sweep/falsify/settings.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -144,9 +145,7 @@ class Judge {
         Belief{0.5, q_}.After(candidate.failures, static_cast<int>(candidate.rows.size()));
     if (!is_robot_) belief.fails = trusted_ * belief.fails + (1.0 - trusted_) * 0.5;
     for (const RobotTrials& driven : robot_) {
-      const bool is_here =  // however a person wrote its numbers
-          std::equal(driven.values.begin(), driven.values.end(), candidate.values.begin(),
-                     candidate.values.end(), experiment::SameValue);
+      const bool is_here = IsSameSetting(driven.values, candidate.values);
       if (is_here) belief = belief.After(driven.failures, driven.trials);
     }
     return belief;

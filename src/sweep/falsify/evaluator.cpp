@@ -12,6 +12,7 @@
 #include "program_side.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/experiment/task.hpp"
+#include "rift/odometry/program_runs.hpp"
 #include "rift/odometry/readings_during.hpp"
 #include "rift/sweep/falsify/candidate_runs.hpp"
 #include "rift/sweep/falsify/compare_trial.hpp"
@@ -72,21 +73,10 @@ LogOptions ReferenceLogs(const experiment::Experiment& experiment) {
                       experiment.gap);
 }
 
-/// How far the tag is ahead of the axle of a simulated robot; of others nobody says it.
-double TagAhead_m(const experiment::Experiment& experiment, const TrialRequest& request) {
-  if (experiment.candidate.kind != CandidateKind::kSimulation) return 0.0;
-  const experiment::Experiment at = ExperimentFor(experiment, request);
-  return experiment::DrawnAt(at, request.seed.value_or(at.seed)).simulation.mocap.tag_ahead_m;
-}
-
-/// A program is the axle's, and a trial begins with the tag on its start: the way of that tag.
+/// The way of the tag of a robot that keeps to a program.
 trajectory::Trajectory OfTag(trajectory::Trajectory program, double tag_ahead_m) {
-  const Eigen::Vector2d back_m = -tag_ahead_m * program.poses.front().Planar().Forward();
-  for (trajectory::StampedPose& pose : program.poses) {
-    pose.x_m += back_m.x();
-    pose.y_m += back_m.y();
-  }
-  return trajectory::OffsetAlongHeading(std::move(program), tag_ahead_m);
+  return trajectory::OffsetAlongHeading(odometry::OfAxle(std::move(program), tag_ahead_m),
+                                        tag_ahead_m);
 }
 
 }  // namespace

@@ -99,9 +99,19 @@ nlohmann::ordered_json ValueJson(const experiment::ParameterValue& value) {
   return value.number ? nlohmann::ordered_json(*value.number) : nlohmann::ordered_json(value.text);
 }
 
+bool IsSameSetting(const experiment::Theta& a, const experiment::Theta& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), experiment::SameValue);
+}
+
 Experiment ExperimentFor(const Experiment& experiment, const TrialRequest& request) {
   const bool is_simulated = experiment.candidate.kind == experiment::CandidateKind::kSimulation;
   return is_simulated ? experiment::ExperimentAt(experiment, request.theta) : experiment;
+}
+
+double TagAhead_m(const Experiment& experiment, const TrialRequest& request) {
+  if (experiment.candidate.kind != experiment::CandidateKind::kSimulation) return 0.0;
+  const Experiment at = ExperimentFor(experiment, request);
+  return experiment::DrawnAt(at, request.seed.value_or(at.seed)).simulation.mocap.tag_ahead_m;
 }
 
 control::NavigatorOptions ControllerFor(const Experiment& experiment, const TrialRequest& request) {

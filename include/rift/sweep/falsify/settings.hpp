@@ -34,6 +34,9 @@ std::string SettingKey(const std::vector<experiment::Parameter>& parameters,
 std::string TrialKey(const std::vector<experiment::Parameter>& parameters,
                      const TrialRequest& request);
 
+/// The same values, however their numbers are written.
+bool IsSameSetting(const experiment::Theta& a, const experiment::Theta& b);
+
 /// A value in JSON: a number where it is one, else its text.
 nlohmann::ordered_json ValueJson(const experiment::ParameterValue& value);
 
@@ -41,6 +44,10 @@ nlohmann::ordered_json ValueJson(const experiment::ParameterValue& value);
 /// whose parameters are names. Throws as experiment::ExperimentAt does.
 experiment::Experiment ExperimentFor(const experiment::Experiment& experiment,
                                      const TrialRequest& request);
+
+/// How far the tag of a trial's simulated robot is ahead of its axle, at its setting and in the
+/// draw of its seed; 0 of other candidates, of which nobody says it. Throws as ExperimentFor does.
+double TagAhead_m(const experiment::Experiment& experiment, const TrialRequest& request);
 
 /// The controller of a log: the experiment's, with those parameters of the trial's setting that
 /// name its keys ("v_max"). Parameters of a sweep over logs name columns and parts of file names;
