@@ -58,6 +58,40 @@ TEST_CASE("A command's delay, gain and bias are found as they are") {
   }
 }
 
+TEST_CASE(
+    "Between the lags that are tried the delay is where a parabola through three is highest") {
+  for (const double lag_s : {0.107, 0.113, 0.129}) {
+    const Made made = Answering(lag_s, 5.0, 0.2);
+    const LoopDelay found =
+        EstimateCommandDelay(made.log, made.sent, {.max_lag_s = 0.3, .lag_step_s = 0.02});
+    size_t best = 0;
+    for (size_t i = 0; i < found.r2_at_lag.size(); ++i) {
+      if (found.r2_at_lag[i] > found.r2_at_lag[best]) best = i;
+    }
+    REQUIRE((best > 0 && best + 1 < found.r2_at_lag.size()));
+    // Through any three points (Numerical Recipes, 10.3.1).
+    const double a = found.lags_s[best - 1], b = found.lags_s[best], c = found.lags_s[best + 1];
+    const double of_a = found.r2_at_lag[best - 1], of_b = found.r2_at_lag[best],
+                 of_c = found.r2_at_lag[best + 1];
+    const double top_s =
+        b - 0.5 * ((b - a) * (b - a) * (of_b - of_c) - (b - c) * (b - c) * (of_b - of_a)) /
+                ((b - a) * (of_b - of_c) - (b - c) * (of_b - of_a));
+    CHECK(found.lag_s == Approx(top_s).margin(1e-9));
+    CHECK(std::abs(found.lag_s - b) > 1e-3);
+  }
+}
+
+TEST_CASE("What a robot does after its last waypoint tells no loop delay") {
+  trajectory::Trajectory log;  // 10 mm a row; the last waypoint counts as reached in row 95
+  for (int i = 0; i <= 150; ++i) {
+    log.poses.push_back({.t_s = 0.05 * i, .x_m = 0.001 + 0.01 * i, .yaw_rad = 0.0});
+  }
+  const std::vector<control::Waypoint> way{{.name = "a"}, {.name = "b", .x_m = 1.0}};
+  control::NavigatorOptions navigator;
+  navigator.reach_radius_m = 0.05;
+  CHECK(EstimateLoopDelay(log, way, navigator, {.moved_m = 0.0}).intervals == 95);
+}
+
 TEST_CASE("Steering that turns the robot the other way explains nothing at its delay") {
   const Made made = Answering(0.12, -5.0, 0.0);
   const LoopDelay found =
