@@ -237,5 +237,41 @@ TEST_CASE("A pose that turns to and fro behind the wheels is stopped beyond the 
   }
 }
 
+TEST_CASE("A lag that was found once before a restart counts for nothing after it") {
+  // To and fro in place, by turns of 0.12 s with a rest behind each, seen 0.06 s late where 0.04 s
+  // are budgeted; looked for every 0.2 s.
+  const auto yaw_rad = [](double t_s) {
+    const double turns = std::max(0.0, (t_s - 0.02) / 0.2), done = std::floor(turns);
+    const double share = std::min(1.0, (turns - done) * 0.2 / 0.12);
+    const double turned = share * share * (3.0 - 2.0 * share);
+    return 0.5 * (static_cast<int>(done) % 2 == 0 ? turned : 1.0 - turned);
+  };
+  const auto stop_s = [&](std::optional<double> restart_s) {
+    EvidenceOptions options;
+    options.max_latency_s = 0.04;
+    options.blind_m = options.agree_m = options.pushed_m = 10.0;
+    options.pushed_deg = 360.0;
+    MotionCheck check(options, kTrack_m);
+    check.SetLatency(0.0);
+    for (int i = 0; i < 200; ++i) {
+      const double t_s = 0.01 * i, rolled_m = 0.5 * kTrack_m * yaw_rad(t_s);
+      if (restart_s && std::abs(t_s - *restart_s) < 0.005) check.Restart();
+      check.SeeWheels({t_s, -rolled_m, rolled_m}, true);
+      check.SeePose({t_s, Pose2{0.0, 0.0, yaw_rad(t_s - 0.06)}, 0.0, 0.0, 0.0});
+      if (const auto found = check.Check()) {
+        CHECK(found->reason == StopReason::kPoseLags);
+        return t_s;
+      }
+    }
+    return 99.0;
+  };
+  const double without_s = stop_s({});
+  CHECK(without_s < 1.0);
+  // At rest after the first look: the one at which it would have been stopped is the next.
+  const double with_s = stop_s(without_s - 0.19);
+  CHECK(with_s > without_s + 0.15);
+  CHECK(with_s < 2.0);
+}
+
 }  // namespace
 }  // namespace rift::hardware
