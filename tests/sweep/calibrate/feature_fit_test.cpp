@@ -267,6 +267,13 @@ TEST_CASE("A fit by features needs twice as many draws as it regresses numbers o
   CHECK(at_bound.parameters[0].is_at_bound);
   CHECK(at_bound.parameters[0].high == 0.1);
   CHECK(at_bound.has_converged);
+  Calibration below = beyond;
+  below.parameters[0].parameter.prior_mean = -9.0;
+  below.parameters[0].value = -0.08;
+  const Calibration at_lower = Fitted(below, Options(1, 10));
+  CHECK(at_lower.parameters[0].is_at_bound);
+  CHECK(at_lower.parameters[0].low == -0.1);
+  CHECK(at_lower.parameters[0].high < 0.1);
   CalibrationOptions options = Options(1, 10);
   options.features.last_draws = 9;  // fewer are none the less
   // ... or as far as a round goes, two scatters of the draws.
@@ -301,6 +308,51 @@ TEST_CASE("A fit by features of what nothing depends on is what it was") {
       CHECK(asked[log + 1] == Approx(tried));
     }
   }
+}
+
+TEST_CASE("A parameter acts by the times of a drive, by its places, or by how long it is alone") {
+  const auto acts = [](const std::function<void(SimulatedTrial&, double)>& change) {
+    const TwinAt twin = [&](size_t log, const std::vector<double>& values) {
+      control::ProgramOptions ahead;  // by powers, whatever is seen
+      ahead.segments.push_back({.straight_m = 0.1});
+      SimulatedTrial one{.task = control::Program(ahead, {}, {}), .seed = 100 + log};
+      change(one, values[0]);
+      return one;
+    };
+    Calibration found = Before();
+    found.parameters = {found.parameters[1]};
+    found.parameters[0].parameter.max = 1.0;
+    try {
+      FitFeatures(Logs(), twin, Options(1, 1), kSeed, 1, {}, found);
+    } catch (const std::invalid_argument&) {
+      // One draw is too few for any parameter that acts.
+    }
+    return found.parameters[0].has_effect;
+  };
+  CHECK_FALSE(acts([](SimulatedTrial&, double) {}));
+  CHECK(acts([](SimulatedTrial& one, double value) {
+    one.simulation.mocap.stamp_jitter_s = 0.001 * value;
+  }));
+  CHECK(acts([](SimulatedTrial& one, double value) {
+    one.simulation.mocap.noise_across_m = 0.001 * value;
+  }));
+  // The rows of the shorter one are those of the longer one.
+  CHECK(acts([](SimulatedTrial& one, double value) { one.trial.timeout_s = 0.5 + value; }));
+}
+
+TEST_CASE("A value is the prior's where the prior is more than half of what is known of it") {
+  std::vector<double> shares;
+  for (const double prior_sd : {0.01, 0.02}) {
+    const CalibratedParameter one = Fitted(Before(prior_sd), Options(1, 10)).parameters[0];
+    REQUIRE(one.low > one.parameter.min);  // none is cut off
+    REQUIRE(one.high < one.parameter.max);
+    const double sd = 0.5 * (one.high - one.low) / 1.2815515655;
+    shares.push_back(std::pow(sd / prior_sd, 2));  // 1 / sd^2 of the prior over that of all
+    CAPTURE(prior_sd, shares.back());
+    CHECK(one.is_from_prior == (shares.back() > 0.5));
+  }
+  CHECK((shares[0] > 0.5 && shares[0] < 0.9));
+  CHECK((shares[1] > 0.1 && shares[1] < 0.5));
 }
 
 }  // namespace
