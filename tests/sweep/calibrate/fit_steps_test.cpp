@@ -309,5 +309,19 @@ TEST_CASE("An interval is told by the slopes at the end, also of a fit that take
   CHECK(0.5 * (one.high - one.low) == Approx(half / (2.0 * end)).epsilon(0.02));
 }
 
+TEST_CASE("A step that takes the value further from its prior than the logs ask for is shortened") {
+  // Rising to 0.31 and flat behind: whatever lies beyond tells no more, and costs by the prior.
+  OneLaw flat_behind([](double v) { return 0.1 * std::min(v, 0.31); });
+  CalibrationOptions options = Options();
+  options.first_step = options.step = 0.005;
+  options.iterations = 1;
+  const double weight = 8.0 / std::pow(1.4826 * 0.12, 2);  // of eight rows, 0.12 off each
+  const experiment::FreeParameter a{.prior_mean = 0.3, .prior_sd = 1.0 / std::sqrt(0.01 * weight)};
+  const Fitted fitted = FitFrom(0.3, flat_behind, TwoLogs(0.15, 0.0), options, a);
+  REQUIRE(fitted.told.size() == 1);
+  // Undamped it would go by 0.6, and half of it is too far as well.
+  CHECK(fitted.told[0].values[0] == Approx(0.3 + 0.6 / 11.0).margin(1e-3));
+}
+
 }  // namespace
 }  // namespace rift::sweep
