@@ -90,5 +90,20 @@ TEST_CASE("The same seed gives the same ensemble, another seed another one, none
   CHECK(EnsembleOf(Fit(), kConfidence, 0, 1).IsEmpty());
 }
 
+TEST_CASE("Draws of parameters that do not go together tell nothing of each other") {
+  Calibration fit = Fit();
+  fit.parameters.pop_back();
+  fit.correlation = Eigen::MatrixXd::Identity(2, 2);
+  const experiment::Ensemble ensemble = EnsembleOf(fit, kConfidence, 40'000, 1);
+  double products = 0.0, squares = 0.0;
+  for (const std::vector<double>& draw : ensemble.draws) {
+    const double a = (draw[0] - 3.0) / 0.1, b = (draw[1] + 2.0) / 0.05;
+    products += a * b / 40'000.0;
+    squares += a * a * b * b / 40'000.0;
+  }
+  CHECK(products == Approx(0.0).margin(0.02));
+  CHECK(squares == Approx(1.0).margin(0.06));  // nor by how far they are off
+}
+
 }  // namespace
 }  // namespace rift::sweep
