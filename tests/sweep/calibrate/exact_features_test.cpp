@@ -205,6 +205,23 @@ TEST_CASE("A stop behind a waypoint has its lowest speed and its time below 0.6 
   CHECK(Feature(later, "slow_after_stop_s") == 0.0);
 }
 
+TEST_CASE("A slow row counts up to 0.6 s or 0.8 s behind a waypoint, below 0.6 of cruise") {
+  const auto drive = [](int rows_behind, double share) {
+    double x_m = 1.0;
+    return Changed([=](StampedPose& pose, int i) mutable {
+      if (i > 19) x_m += (i == 51 + rows_behind ? share : 1.0) * 0.015;
+      pose.x_m = x_m;
+      pose.target_x_m = i < 50 ? 1.45 : 1.9;
+    });
+  };
+  CHECK(Feature(drive(11, 0.5), "speed_after_stop") == Approx(0.5));
+  CHECK(Feature(drive(13, 0.5), "speed_after_stop") == Approx(1.0));
+  CHECK(Feature(drive(15, 0.5), "slow_after_stop_s") == Approx(0.05));
+  CHECK(Feature(drive(17, 0.5), "slow_after_stop_s") == 0.0);
+  CHECK(Feature(drive(15, 0.58), "slow_after_stop_s") == Approx(0.05));
+  CHECK(Feature(drive(15, 0.62), "slow_after_stop_s") == 0.0);
+}
+
 TEST_CASE("Too few rows tell no stops and no changes of side, one more does") {
   std::set<size_t> rates;
   for (const int rows : {7, 8, 9, 10, 11}) {
