@@ -241,6 +241,24 @@ TEST_CASE("A guess that is off by less than half a cell to any side leads to the
   }
 }
 
+TEST_CASE("Edges are found 0.85 of a cell from where they are guessed, to either side, and not at 1.2") {
+  const Small tag(48.0);
+  const Eigen::Vector2d along = (tag.corners[1] - tag.corners[0]).normalized();
+  const double cell_px = (tag.corners[1] - tag.corners[0]).norm() / 8.0;
+  const auto is_found = [&](double cells) {
+    const auto square = tag.Fit(cells * cell_px * along);
+    bool is_there = square.has_value();
+    for (int i = 0; i < 4 && is_there; ++i) {
+      is_there = (square->pixels[i] - tag.corners[i]).norm() < 0.05;
+    }
+    return is_there;
+  };
+  for (const double side : {1.0, -1.0}) {
+    CHECK(is_found(side * 0.85));
+    CHECK_FALSE(is_found(side * 1.2));
+  }
+}
+
 TEST_CASE("The corners of a small tag are not all off together by where they were looked for") {
   for (const double yaw_rad : {0.0, 0.3, 0.7}) {
     const Small tag(27.0, yaw_rad);
