@@ -340,6 +340,33 @@ TEST_CASE("On one axis CMA-ES is Hansen's, generation by generation") {
   CHECK(by_hand.mean == Approx(0.5).margin(0.02));
 }
 
+TEST_CASE("No spread of CMA-ES is wider than an axis") {
+  const Space space({{"a", AxisKind::kContinuous, 0.0, 1.0}});
+  statistics::Random random(8, 1), same(8, 1);
+  CmaEs search(space, Unit({0.5}), 2.0, ScalarCma::kPopulation);
+  ScalarCma by_hand(0.5, 2.0);
+  std::vector<double> drawn, losses;
+  for (const Eigen::VectorXd& unit : search.Sample(random)) {
+    same.Normal();
+    drawn.push_back(unit[0]);
+    losses.push_back(std::abs(unit[0] - 0.5));
+  }
+  search.Learn(losses);
+  std::stable_sort(drawn.begin(), drawn.end(),
+                   [](double a, double b) { return std::abs(a - 0.5) < std::abs(b - 0.5); });
+  by_hand.Learn(drawn);
+  int inside = 0;
+  for (int generation = 0; generation < 4; ++generation) {  // more draws of the same spread
+    for (const Eigen::VectorXd& unit : search.Sample(random)) {
+      const double step = std::abs(same.Normal());
+      if (unit[0] <= 0.0 || unit[0] >= 1.0) continue;
+      CHECK(std::abs(unit[0] - by_hand.mean) == Approx(step).margin(1e-9));
+      ++inside;
+    }
+  }
+  CHECK(inside > 3);
+}
+
 TEST_CASE("Samples beyond a bound are moved onto it, at either end") {
   const Space space(std::vector<Axis>(2, {"a", AxisKind::kContinuous, 0.0, 1.0}));
   statistics::Random random(8, 1);
