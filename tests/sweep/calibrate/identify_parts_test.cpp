@@ -171,6 +171,7 @@ TEST_CASE("The first four parameters are told with their values, and that there 
   experiment::Experiment plan = Plan();
   plan.goal = experiment::Goal::kCalibrate;
   plan.calibrate.judge_runs = 1;
+  plan.likeness.longest_run = 0.5;
   CalibrationOptions& method = plan.calibrate.method;
   method.corrections = 0;
   method.resamples = 20;
@@ -180,12 +181,20 @@ TEST_CASE("The first four parameters are told with their values, and that there 
         "simulation.mocap.processing_s", "simulation.mocap.exposure_s"}) {
     plan.calibrate.fit.list.push_back({.key = key, .min = 0.0, .max = 0.1, .start = 0.02});
   }
-  Evaluator evaluator(plan, "e.yaml", test::InputsOf(files));
   std::vector<std::string> told;
-  Identify(evaluator, 1, [&told](const std::string& line) {
-    if (line.find(" descent, step 1 of at most 1: ") != line.npos) told.push_back(line);
-  });
+  const auto report_of = [&] {
+    Evaluator evaluator(plan, "e.yaml", test::InputsOf(files));
+    told.clear();
+    return Identify(evaluator, 1, [&told](const std::string& line) {
+      if (line.find(" descent, step 1 of at most 1: ") != line.npos) told.push_back(line);
+    });
+  };
+  const CalibrationReport report = report_of();
+  // Runs of more than half of the way are detours here.
+  CHECK(report.judged.back().before.circled_runs == 2);
+  CHECK(report.judged.back().before.failed_runs == 2);
   REQUIRE(told.size() == 1);
+  CHECK(told[0].starts_with("0:"));  // less than a minute
   std::vector<std::string> parts{""};
   for (const char c : told[0].substr(told[0].find(": mismatch") + 2)) {
     if (c == ',') {
@@ -200,6 +209,11 @@ TEST_CASE("The first four parameters are told with their values, and that there 
   CHECK(parts[2].starts_with(" poll_s 0"));
   CHECK(parts[3].starts_with(" processing_s 0"));
   CHECK(parts[4] == " ...");
+  plan.calibrate.fit.list.pop_back();
+  report_of();
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].find("processing_s 0") != told[0].npos);
+  CHECK(told[0].find("...") == told[0].npos);
 }
 
 /// What the runs of a sweep without parameters are like, by hand.
