@@ -153,5 +153,15 @@ TEST_CASE("Kinds are those whose centres have come to rest") {
   CHECK(clusters[1].rows.size() == 4);
 }
 
+TEST_CASE("As many failures as may be compared are all compared, of one more every second") {
+  // In turns of two kinds.
+  std::vector<TrialRow> rows{Failure(0.0, 0.0), Failure(0.1, 0.0), Failure(0.0, 0.0),
+                             Failure(0.1, 0.0)};
+  CHECK(ClusterFailures(Of(rows), {.most_compared = 4}).size() == 2);
+  rows.push_back(Failure(0.0, 0.0));
+  CHECK(ClusterFailures(Of(rows), {.most_compared = 4}).size() == 1);
+  CHECK(ClusterFailures(Of(rows), {.most_compared = 5}).size() == 2);
+}
+
 }  // namespace
 }  // namespace rift::sweep
