@@ -56,7 +56,9 @@ TEST_CASE(
     return Refusal({{"1/trajectory.csv", Log(duration_s)},
                     {"1/commands.csv", "t_s,power_left,power_right\n" + began_s + ",0,0\n"}});
   };
-  for (const char* began_s : {"-1.9", "0", "1.9"}) CHECK(refusal(10.0, began_s) == kOneIsLeft);
+  for (const char* began_s : {"-2", "-1.9", "0", "1.9", "2"}) {
+    CHECK(refusal(10.0, began_s) == kOneIsLeft);
+  }
   for (const char* began_s : {"-2.1", "2.1"}) {
     CHECK(
         refusal(10.0, began_s) ==
@@ -66,6 +68,7 @@ TEST_CASE(
   }
   CHECK(refusal(1.6, "1.5") == kOneIsLeft);
   CHECK(refusal(1.4, "1.5").ends_with("they are not of one drive"));
+  CHECK(refusal(1.5, "1.5").ends_with("they are not of one drive"));
 }
 
 /// A fit of two logs that are held out, so that it ends once it has read them: what it said until
