@@ -4,82 +4,19 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
-#include <map>
-#include <sstream>
 
-#include "rift/files/files.hpp"
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/identification.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/inputs/paths.hpp"
-#include "support/inputs/trials.hpp"
-#include "support/processes/process.hpp"
 #include "sweep/calibrate/fitted_simulator.hpp"
 #include "sweep/calibrate/model.hpp"
+#include "sweep/calibrate/program_bench.hpp"
 
 namespace rift::sweep {
 namespace {
 
-namespace fs = std::filesystem;
 using trajectory::Trajectory;
-
-/// A way of `k` metres that ends a little to the left by the seed's last digit.
-class Bench {
- public:
-  explicit Bench(const std::string& before = "") {
-    test::WriteText(folder_ / "sim.sh",
-                    "echo \"$2 $3\" >> '" + folder_ / "asked" + "'\n" + before +
-                        "\nawk -v k=\"$2\" -v s=\"$3\" 'BEGIN { print \"t_s,x_m,y_m,yaw_rad\"; "
-                        "for (i = 0; i <= 40; ++i) print i / 20 \",\" k * i / 40 \",\" "
-                        "0.001 * (s % 10) * i / 40 \",0\" }' > \"$1\"\n");
-    experiment.goal = experiment::Goal::kCalibrate;
-    experiment.seed = 30;
-    experiment.candidate.kind = experiment::CandidateKind::kProgram;
-    experiment.candidate.run.words = {"sh", folder_ / "sim.sh", "{out}", "{k}", "{seed}"};
-    experiment.reference.kind = experiment::ReferenceKind::kLogs;
-    experiment.reference.path.text = "{s}_{trial}.csv";
-    experiment.reference.trials.names = {"1", "2"};
-    experiment.space.parameters = {{.key = "s", .levels = {{"a", {}}, {"b", {}}}}};
-    experiment.calibrate.fit.list = {{.key = "k", .min = 0.5, .max = 2.0, .start = 0.8}};
-    experiment.calibrate.judge_runs = 2;
-    experiment.calibrate.method.runs = 1;
-    experiment.calibrate.method.iterations = 3;
-    experiment.calibrate.method.corrections = 0;
-    experiment.calibrate.method.resamples = 50;
-    experiment.likeness.shuffles = 19;
-    experiment.likeness.bootstrap.resamples = 50;
-    for (const char* name : {"a_1.csv", "a_2.csv", "b_1.csv", "b_2.csv"}) {
-      logs[name] = trajectory::WriteRift(test::Moved(test::StraightPath(1.2, 41), {0, 0, 0.001}));
-    }
-  }
-
-  Inputs AsInputs() const {
-    return {[this](const std::string& path) -> std::optional<std::string> {
-              const auto found = logs.find(path);
-              return found != logs.end() ? std::optional(found->second) : files::ReadIfThere(path);
-            },
-            [](const std::string&) {}};
-  }
-  /// What it was asked for since the last call, sorted: "k seed" a line.
-  std::vector<std::string> Asked() const {
-    std::vector<std::string> lines;
-    if (!fs::exists(folder_ / "asked")) return lines;
-    std::istringstream text(test::ReadFile(folder_ / "asked"));
-    for (std::string line; std::getline(text, line);) lines.push_back(line);
-    fs::remove(folder_ / "asked");
-    std::sort(lines.begin(), lines.end());
-    return lines;
-  }
-
-  experiment::Experiment experiment;
-  std::map<std::string, std::string> logs;
-
- private:
-  test::TemporaryFolder folder_;
-};
-
-const Say kSilent = [](const std::string&) {};
 
 TEST_CASE("A program's parameter is found from whole runs, and judged by others") {
   const Bench bench;
@@ -125,6 +62,10 @@ TEST_CASE("Further starts of a fit are drawn off the ends of the ranges, with se
   const CalibrationReport report = Identify(evaluator, 1, kSilent);
   REQUIRE(report.agreement.size() == 1);
   CHECK(report.agreement[0].values.size() == 3);
+  // That of the experiment's own start stands.
+  CHECK(report.agreement[0].values[0] != report.agreement[0].values[2]);
+  CHECK(report.values[0] == report.agreement[0].values[0]);
+  CHECK(report.calibration.parameters[0].value == report.values[0]);
   const std::vector<std::string> asked = bench.Asked();
   for (const std::uint64_t start : {0, 1, 2}) {
     const double share = 0.1 + 0.8 * statistics::Random(30, 80 + start).Uniform();
@@ -186,30 +127,24 @@ TEST_CASE("Logs are judged by level and side, those held out beside what the oth
   CHECK(held.shown_before.size() == 3);
   CHECK(held.shown_after.size() == 3);
 
+  // Of b one log alone, which is held out.
+  Bench few;
+  few.experiment.calibrate.method.iterations = 1;
+  few.experiment.reference.trials.names = {"1", "3", "2"};
+  few.experiment.calibrate.holdout.names = {"2"};
+  few.logs["a_3.csv"] = few.logs["a_1.csv"];
+  few.logs.erase("b_1.csv");
+  Evaluator of_few(few.experiment, "e.yaml", few.AsInputs());
+  CHECK(GroupsOf(Identify(of_few, 1, kSilent)) ==
+        std::vector<std::string>{"a fitted", "a held out", "a both", "b held out", "b both",
+                                 "all fitted", "all held out", "all both"});
+
   bench.experiment.calibrate.holdout.names.clear();
   bench.experiment.space.parameters[0].levels.resize(1);
   CHECK(GroupsOf(report()) == std::vector<std::string>{"a fitted"});
   bench.experiment.space.parameters.clear();
   bench.experiment.reference.path.text = "a_{trial}.csv";
   CHECK(GroupsOf(report()) == std::vector<std::string>{"all fitted"});
-}
-
-std::vector<CalibrationLog> Logs(const Bench& bench, double longest_m) {
-  std::vector<CalibrationLog> logs;
-  for (const char* name : {"a_1.csv", "b_1.csv"}) {
-    logs.push_back(
-        {.name = name,
-         .setting = name,
-         .log =
-             trajectory::ReadLog(bench.logs.at(name), name, trajectory::Format::kRift).trajectory,
-         .longest_m = longest_m});
-  }
-  return logs;
-}
-
-std::vector<TrialRequest> Requests() {
-  return {{.theta = {{"a", {}}}, .trial = "1", .seed = 7},
-          {.theta = {{"b", {}}}, .trial = "1", .seed = 500}};
 }
 
 TEST_CASE("Runs that predict have seeds that count up from those of their log") {
@@ -271,7 +206,8 @@ TEST_CASE("A program that gives no path at all where the fit starts, or none for
                         Catch::Contains("no such friction"));
   CHECK_THROWS_WITH(twins.LogsAt(Logs(bench, 9.0), {1.5}, 0),
                     Catch::StartsWith("e.yaml: none of 10 runs of the program in the place of "
-                                      "a_1.csv gives a path: "));
+                                      "a_1.csv gives a path: ") &&
+                        Catch::Contains("no such friction"));
 }
 
 TEST_CASE("A path is one of two poses that moves and whose length is a number") {
