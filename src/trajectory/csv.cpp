@@ -15,15 +15,18 @@ namespace {
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
 
-std::string_view Trim(std::string_view cell) {
-  while (!cell.empty() && IsBlank(cell.front())) cell.remove_prefix(1);
-  while (!cell.empty() && IsBlank(cell.back())) cell.remove_suffix(1);
+/// A tab that stands between cells is no blank around one.
+std::string_view Trim(std::string_view cell, char separator = ' ') {
+  const auto is_around = [separator](char c) {
+    return IsBlank(c) && !(c == '\t' && separator == '\t');
+  };
+  while (!cell.empty() && is_around(cell.front())) cell.remove_prefix(1);
+  while (!cell.empty() && is_around(cell.back())) cell.remove_suffix(1);
   return cell;
 }
 
 size_t CellEnd(std::string_view line, char separator) {
-  return std::min(IsBlank(separator) ? line.find_first_of(" \t") : line.find(separator),
-                  line.size());
+  return std::min(separator == ' ' ? line.find_first_of(" \t") : line.find(separator), line.size());
 }
 
 /// Takes a cell in double quotes off the line, in which two of them stand for one. A quote that is
@@ -110,11 +113,11 @@ std::string Shown(std::string_view text, size_t most) {
 std::vector<std::string> SplitHeader(std::string_view line, char separator) {
   std::vector<std::string> cells;
   while (true) {
-    line = Trim(line);
+    line = Trim(line, separator);
     std::string quoted;
     if (line.starts_with('"')) quoted = TakeQuoted(line);
     const size_t end = CellEnd(line, separator);
-    cells.push_back(quoted + std::string(Trim(line.substr(0, end))));
+    cells.push_back(quoted + std::string(Trim(line.substr(0, end), separator)));
     if (end == line.size()) return cells;
     line.remove_prefix(end + 1);
   }

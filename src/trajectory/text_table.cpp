@@ -11,6 +11,10 @@ namespace {
 
 bool IsBlankLine(std::string_view line) { return line.find_first_not_of(" \t") == line.npos; }
 
+bool IsBlankOrComment(std::string_view line) {
+  return IsBlankLine(line) || line[line.find_first_not_of(" \t")] == '#';
+}
+
 /// What stands between the cells of a line.
 char SeparatorOf(std::string_view line) {
   char most = ' ';
@@ -21,6 +25,15 @@ char SeparatorOf(std::string_view line) {
     count = std::max(count, found);
   }
   return most;
+}
+
+/// Tabs part the cells of the first line: whether they do so in the first row below it, where a
+/// name may hold blanks and a cell be empty, or any run of blanks does.
+bool ArePartedByTabs(std::string_view line, std::string_view rest) {
+  std::string_view row;
+  while (!rest.empty() && IsBlankOrComment(row)) row = csv::TakeLine(rest);
+  return IsBlankOrComment(row) ||
+         csv::SplitHeader(row, '\t').size() == csv::SplitHeader(line, '\t').size();
 }
 
 /// `0,25` where commas do not separate cells.
@@ -61,6 +74,7 @@ TextTable::TextTable(std::string_view text, const std::string& name)
       continue;
     }
     separator_ = SeparatorOf(line);
+    if (separator_ == '\t' && !ArePartedByTabs(line, rest_)) separator_ = ' ';
     columns_ = csv::SplitHeader(line, separator_);
     if (AreNumbers(columns_, separator_)) {
       const bool is_named = comment.size() == columns_.size();

@@ -190,6 +190,24 @@ TEST_CASE("Cells stand between commas, semicolons, tabs or blanks, whichever the
   CHECK_THROWS_WITH(y_of("t,x,x\n0,1,2\n"), Contains("two columns 'x'"));
 }
 
+TEST_CASE("Between tabs names hold blanks and cells are empty, where the first row has them too") {
+  const auto y_of = [](const std::string& text, const std::string& columns) {
+    return Read(text, columns).poses.at(1).y_m;
+  };
+  const std::string named = "t=Time [s],x=X [m],y=Y [m]";
+  CHECK(y_of("Time [s]\tX [m]\tY [m]\n0\t1\t2.5\n1\t2\t3.5\n", named) == 3.5);
+  CHECK(y_of("# Time [s]\tX [m]\tY [m]\n0\t1\t2.5\n1 \t 2\t3.5\n", named) == 3.5);
+  CHECK(y_of("Time [s]\tX [m]\tnote\tY [m]\t\n\n# a\n0\t1\t\t2.5\t\n1\t2\tno tag\t3.5\t\n",
+             named) == 3.5);
+  const std::string plain = "t=t,x=x,y=y";
+  CHECK(y_of("t\tx\ty\n0 1  2.5\n1 2 3.5\n", plain) == 3.5);
+  CHECK(y_of("t\tx\ty\n0\t\t1\t2.5\n1\t2\t3.5\n", plain) == 3.5);
+  CHECK_THROWS_WITH(y_of("t\tx\ty\n0\t1\t2.5\n1\t2\n", plain),
+                    "log.csv:3: the row has 2 cells where 3 are expected");
+  const std::string name = "log";
+  CHECK(TextTable("a b\tc\n", name).Columns() == std::vector<std::string>{"a b", "c"});
+}
+
 TEST_CASE("A table tells its lines, and columns without names are numbers from 1") {
   const std::string name = "log";
   TextTable table("0 1\n\n2 3\n", name);
