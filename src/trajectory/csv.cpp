@@ -64,8 +64,8 @@ std::string_view WithoutTornRow(std::string_view text) {
   if (last.empty()) return text;
   const size_t header = text.find_first_not_of("\r\n");
   const std::string_view columns = text.substr(header, text.find('\n', header) - header);
-  const bool lacks_cells =
-      std::count(last.begin(), last.end(), ',') < std::count(columns.begin(), columns.end(), ',');
+  const auto cells = static_cast<size_t>(std::count(last.begin(), last.end(), ',')) + 1;
+  const bool lacks_cells = cells < SplitHeader(columns).size();
   const bool is_torn =
       lacks_cells || std::string_view("+-.eE").find(last.back()) != std::string_view::npos;
   return is_torn ? text.substr(0, text.size() - last.size()) : text;

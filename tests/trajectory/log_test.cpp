@@ -300,6 +300,7 @@ TEST_CASE("A last row that was cut short is left out, or kept where it may be wh
         std::vector<std::string>{"the last row has no line end: its last number may be cut"});
   CHECK(poses_of(whole + row + "\n", 0) == 3);
   CHECK(poses_of(whole + "  ", 0) == 2);
+  CHECK(poses_of("t_s,x_m,y_m,\"a,b\"\n0,0,0,1\n1,1,-1,2", 1) == 2);
   CHECK_THROWS_WITH(ReadLog(whole + "2,-2e-05\n", "log.csv"), Catch::Contains("2 cells"));
   CHECK_THROWS_WITH(ReadLog("t,x,y\n0,0,0\n1,1,1\n2,2", "log.csv"), Catch::Contains("2 cells"));
 }
