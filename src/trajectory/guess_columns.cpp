@@ -266,18 +266,24 @@ void YawByTravel(const Numbers& numbers, const Trajectory& path, Guess& guess,
   }
 }
 
-std::string Written(const Guess& guess, const std::map<std::string, std::string>& units) {
+std::string Written(const Guess& guess, const std::map<std::string, std::string>& units,
+                    const std::vector<std::string>& header) {
+  // A comma ends a source: a name with one is given by its number, as one that is empty.
+  const auto source = [&](const std::string& name) {
+    if (!name.empty() && name.find(',') == name.npos) return name;
+    return fmt::format("{}", std::find(header.begin(), header.end(), name) - header.begin() + 1);
+  };
   std::string text;
   for (const std::string_view quantity : kQuantities) {
     const auto found = guess.find(std::string(quantity));
     if (found == guess.end()) continue;
-    text += fmt::format("{}{}={}", text.empty() ? "" : ",", quantity, found->second);
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", quantity, source(found->second));
     const auto unit = units.find(found->first);
     const bool is_standard =
         unit == units.end() || unit->second.empty() || IsOneOf(unit->second, {"m", "s", "rad"});
     if (!is_standard) text += ":" + unit->second;
     if (quantity == "t" && guess.contains("nanosec")) {
-      text += fmt::format("+{}:ns", guess.at("nanosec"));
+      text += fmt::format("+{}:ns", source(guess.at("nanosec")));
     }
   }
   return text;
@@ -311,7 +317,7 @@ std::string GuessColumns(std::string_view text, const std::string& name, const s
       if (unit_of[angle].empty()) unit_of[angle] = unit_of["yaw"];
     }
   }
-  return Written(guess, unit_of);
+  return Written(guess, unit_of, numbers.names);
 }
 
 }  // namespace rift::trajectory

@@ -70,6 +70,19 @@ TEST_CASE("Units at the end of a name are believed") {
   CHECK(guess == "t=time_ms:ms,x=x_cm:cm,y=y_cm:cm,yaw=yaw_deg:deg");
 }
 
+TEST_CASE("A column whose name holds a comma or is empty is offered by its number") {
+  const auto row = [](const Moment& m) {
+    return fmt::format("{};7;{};{};{}", m.t_s, m.x_m, m.y_m, m.yaw_rad);
+  };
+  CHECK(GuessFor("t, s;a;x, cm;y;yaw, deg", row) == "t=1,x=3:cm,y=y,yaw=5:deg");
+  CHECK(GuessFor(";a;x;y;yaw", row) == "t=1,x=x,y=y,yaw=yaw");
+  const std::string guess = GuessFor("sec;nsec, ns;x;y;yaw", [](const Moment& m) {
+    return fmt::format("{};{};{};{};{}", std::floor(m.t_s),
+                       std::lround(1e9 * m.t_s) % 1'000'000'000, m.x_m, m.y_m, m.yaw_rad);
+  });
+  CHECK(guess == "t=sec+2:ns,x=x,y=y,yaw=yaw");
+}
+
 TEST_CASE("Columns without names are told apart by rising, varying and following the path") {
   const std::string header = "5,0.0,20.0,-71.0,7,0.0";
   const auto row = [](double per_rad) {
