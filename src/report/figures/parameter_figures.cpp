@@ -145,8 +145,9 @@ Figure HeatMapFigure(const SettingGrid& grid, const ReportOptions& options) {
   const bool numbers = (width_px - 190) / columns >= 40;
   const bool slanted = 7.0 * static_cast<double>(longest + 1) > (width_px - 190.0) / columns;
   PlotCommand plot;
-  // pixels: an SVG would hold a tiny bitmap otherwise, which viewers blur.
-  plot.Add(cells.filled.Name() + " using 1:2:3 with image pixels notitle");
+  // An image would have to be a whole grid of two by two cells at least, and be blurred in an SVG.
+  plot.Add(cells.filled.Name() +
+           " using 1:2:(0.5):(0.5):3 with boxxyerror lc palette fs solid 1 noborder notitle");
   std::string data = cells.filled.Text();
   for (const auto& [block, colour] :
        {std::pair{&cells.on_dark, "#FFFFFF"}, std::pair{&cells.on_light, "#000000"}}) {

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <regex>
 
 #include "report/synthetic_sweep.hpp"
 
@@ -194,6 +195,43 @@ TEST_CASE("A heat map's cells have the colours of its range and numbers that can
                        Contains("set xlabel 'others'\nset ylabel 'main'\n") &&
                        Contains("set xrange [-0.5:2.5]\nset yrange [1.5:-0.5]\n"));
   CHECK_THAT(MapOf(2, 1, 1).plot, Contains("set cbrange [0.05:0.050001]\n"));
+}
+
+/// What gnuplot paints in full colour, in the order of the cells.
+struct Painted {
+  std::string colour;
+  double left_px;
+};
+using Rows = std::vector<std::vector<double>>;
+std::vector<Painted> CellsOf(const Rows& means_m) {
+  const Map map(means_m);
+  const std::string svg = Render(HeatMapFigure(map.grid, {}), FigureFormat::kSvg);
+  const std::regex polygon(R"(<polygon fill = 'rgb\(([^)]*)\)' points = '([0-9.]+),)");
+  std::vector<Painted> cells;
+  for (std::sregex_iterator found(svg.begin(), svg.end(), polygon), end; found != end; ++found) {
+    const bool is_hole = (*found)[1] == "230, 230, 230";
+    if (!is_hole) cells.push_back({(*found)[1], std::stod((*found)[2])});
+  }
+  return cells;
+}
+
+TEST_CASE("A heat map paints each of its cells in its place, whichever others there are") {
+  const std::vector<Painted> cells = CellsOf(Rows{{0.02, 0.0, 0.08}, {NAN, 0.05, 0.12}});
+  REQUIRE(cells.size() == 4);
+  CHECK(cells[0].colour == " 68,   1,  84");
+  CHECK(cells[3].colour == "253, 231,  37");
+  CHECK(cells[1].left_px == cells[3].left_px);
+  CHECK(cells[1].left_px - cells[0].left_px ==
+        Approx(2.0 * (cells[2].left_px - cells[0].left_px)).margin(0.1));
+  // Two cells in either line look like a grid, of other columns.
+  const std::vector<Painted> odd = CellsOf(Rows{{0.02, 0.05, 0.0}, {0.03, NAN, 0.12}});
+  REQUIRE(odd.size() == 4);
+  CHECK(odd[0].left_px == odd[2].left_px);
+  CHECK(odd[3].left_px - odd[0].left_px ==
+        Approx(2.0 * (odd[1].left_px - odd[0].left_px)).margin(0.1));
+  CHECK(CellsOf(Rows{{0.02, 0.05, 0.08}}).size() == 3);
+  CHECK(CellsOf(Rows{{0.02}, {0.05}}).size() == 2);
+  CHECK(CellsOf(Rows{{0.05}}).size() == 1);
 }
 
 TEST_CASE("A heat map is as large as its cells need, and slants names that do not fit") {
