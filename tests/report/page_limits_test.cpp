@@ -15,6 +15,7 @@ namespace rift::report {
 namespace {
 
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
 using nlohmann::json;
 using Levels = std::vector<experiment::ParameterValue>;
 
@@ -197,6 +198,27 @@ TEST_CASE("The bins of the histogram count every gap once and part at the thresh
       CHECK(bins.back()["to"].get<double>() >= std::max(largest_m, threshold_m));
       CHECK(bins.size() >= 15);
     }
+  }
+}
+
+TEST_CASE("One gap that is far beyond the others makes no bins without end") {
+  sweep::SweepResult result = synthetic::Continuous(60);
+  result.rows[7].comparison.gap_m = 59.9;  // the thousandth bin ends at 60 m
+  sweep::Summarise(result);
+  CHECK_THAT(GapHistogram(result, PageViews(result)).sentence, !Contains("last bar"));
+  for (const double gap_m : {60.1, 600.0}) {
+    result.rows[8].comparison.gap_m = gap_m;
+    sweep::Summarise(result);
+    const PageChart chart = GapHistogram(result, PageViews(result));
+    const json& bins = chart.spec["data"][0]["values"];
+    INFO(gap_m);
+    REQUIRE(bins.size() == 1000);
+    CHECK(bins.back()["count"] == 1);
+    CHECK(bins[998]["count"] == 1);
+    CHECK(chart.views[0].back()[0] == 1);
+    CHECK(bins.back()["tip"]["gap"] == "above 59.9400 m");
+    CHECK(bins[998]["tip"]["gap"] == "59.8800 to 59.9400 m");
+    CHECK_THAT(chart.sentence, EndsWith("The last bar is of all gaps above 59.94 m."));
   }
 }
 

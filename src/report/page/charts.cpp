@@ -29,6 +29,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kHistogramBins = 30;
+constexpr double kMostBins = 1000;  ///< the last one of them holds all larger gaps
 constexpr std::size_t kMostDots = 1500;
 constexpr std::size_t kMostCells = 1600;
 
@@ -45,7 +46,9 @@ class Bins {
     width_m_ = AxisEnd(largest_m) / kHistogramBins;
     if (threshold_m > 0.0)
       width_m_ = threshold_m / std::max(1.0, std::round(threshold_m / width_m_));
-    count_ = static_cast<std::size_t>(largest_m / width_m_) + 2;
+    const double wanted = std::floor(largest_m / width_m_) + 2.0;
+    count_ = static_cast<std::size_t>(std::min(wanted, kMostBins));
+    is_cut_ = wanted > kMostBins;
   }
 
   std::vector<long> Count(const sweep::SweepResult& result) const {
@@ -53,16 +56,26 @@ class Bins {
     for (const sweep::TrialRow& row : result.rows) {
       if (!row.IsOk()) continue;
       const double place = std::ceil(row.comparison.gap_m / width_m_ - 1e-12) - 1.0;
-      ++counts[std::min(static_cast<std::size_t>(std::max(0.0, place)), count_ - 1)];
+      ++counts[static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(count_ - 1)))];
     }
     return counts;
   }
   double From_m(std::size_t bin) const { return static_cast<double>(bin) * width_m_; }
   double Width_m() const { return width_m_; }
+  std::string Text(std::size_t bin) const {
+    if (is_cut_ && bin + 1 == count_) return fmt::format("above {:.4f} m", From_m(bin));
+    return fmt::format("{:.4f} to {:.4f} m", From_m(bin), From_m(bin + 1));
+  }
+  /// Of the last bin where it holds more than its width.
+  std::string Note() const {
+    if (!is_cut_) return "";
+    return fmt::format(" The last bar is of all gaps above {} m.", Number(From_m(count_ - 1)));
+  }
 
  private:
   double width_m_ = 0.0;
   std::size_t count_ = 0;
+  bool is_cut_ = false;
 };
 
 }  // namespace
@@ -79,11 +92,12 @@ PageChart GapHistogram(const sweep::SweepResult& result, const std::vector<PageV
                       {"to", to_m},
                       {"count", counts[i]},
                       {"colour", is_above ? kFailColour : kPassColour},
-                      {"tip", {{"gap", fmt::format("{:.4f} to {:.4f} m", from_m, to_m)}}}});
+                      {"tip", {{"gap", bins.Text(i)}}}});
   }
-  PageChart chart{"How large the gaps are",
-                  "Number of trials by gap in metres; orange is above the threshold (dashed).",
-                  Template("histogram.json")};
+  PageChart chart{
+      "How large the gaps are",
+      "Number of trials by gap in metres; orange is above the threshold (dashed)." + bins.Note(),
+      Template("histogram.json")};
   SetSignal(chart.spec, "threshold", threshold_m);
   SetSignal(chart.spec, "x_title", "gap (m)");
   chart.spec["data"][0]["values"] = std::move(values);
