@@ -50,6 +50,39 @@ TEST_CASE("Runs that never arrive fail somewhere, though none has a gap") {
   CHECK(Where(Sweep(false, [](int, int) { return false; })) == "Not known: no trial has a gap.\n");
 }
 
+/// The first sentence that answers the question.
+std::string Answer(const sweep::SweepResult& result, const std::string& question) {
+  for (const Finding& finding : Findings(result, sweep::Explain(result))) {
+    if (finding.question == question) return finding.sentences.at(0).Text();
+  }
+  return "";
+}
+
+TEST_CASE("The robot's own scatter is told without a gap, and without a ratio where it has none") {
+  const std::string question = "How much is the robot's own scatter?";
+  sweep::SweepResult result = Sweep(false, [](int, int) { return true; });
+  result.settings[0].noise_floor_m = 0.02;
+  CHECK(Answer(result, question) ==
+        "Repeats of one setting are 0.0200 m apart from each other (noise floor, mean of 1 "
+        "setting); no trial has a gap to hold against that.");
+  result = Sweep(true, [](int, int) { return true; });
+  REQUIRE(result.all.mean_gap_m > 0.0);
+  result.settings[0].noise_floor_m = 0.0;
+  CHECK_THAT(Answer(result, question),
+             Catch::Contains("setting); the mean gap to the candidate") && Catch::EndsWith(" m."));
+}
+
+TEST_CASE("A gap of nothing is made of nothing, and no share of it goes") {
+  sweep::SweepResult result = Sweep(true, [](int, int) { return false; });
+  for (sweep::TrialRow& row : result.rows) {
+    row.comparison.gap_m = row.comparison.start_aligned_gap_m = row.comparison.shape_gap_m = 0.0;
+  }
+  sweep::Summarise(result);
+  CHECK(Answer(result, "What is the gap made of?") ==
+        "Mean gap 0.0000 m; with the first points laid together 0.0000 m; 0.0000 m is shape, left "
+        "after the best rigid motion.");
+}
+
 TEST_CASE("Most and least are said of values that fail unequally often alone") {
   CHECK_THAT(Where(Sweep(true, [](int a, int b) { return a == 1 && b == 0; })),
              Catch::Contains("Most often at 1 (2 of 4 trials), least often at 0 (0 of 4 trials)") ||

@@ -149,12 +149,13 @@ Finding MadeOf(const sweep::SweepResult& result, const sweep::Explanation& expla
     finding.sentences.push_back(Sentence("Not known: no trial has a gap."));
     return finding;
   }
-  const double change = (aligned_m - gap_m) / gap_m;
+  const std::string change =
+      gap_m > 0.0 ? fmt::format(" ({:+.0f} %)", 100.0 * (aligned_m - gap_m) / gap_m) : "";
   finding.sentences.push_back(
-      fmt::format("Mean gap {:.4f} m; with the first points laid together {:.4f} m ({:+.0f} %); "
+      fmt::format("Mean gap {:.4f} m; with the first points laid together {:.4f} m{}; "
                   "{:.4f} m is shape, left after "
                   "the best rigid motion.",
-                  gap_m, aligned_m, 100.0 * change, shape_m));
+                  gap_m, aligned_m, change, shape_m));
   SayParts(explanation, &finding);
   return finding;
 }

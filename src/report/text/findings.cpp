@@ -205,12 +205,17 @@ Finding BesideNoise(const sweep::SweepResult& result) {
         Sentence("Not known: no setting has two references to compare with each other."));
     return finding;
   }
-  const double floor_m = sum_m / static_cast<double>(n);
-  finding.sentences.push_back(fmt::format(
-      "Repeats of one setting are {} apart from each other (noise floor, mean of {}); the mean gap "
-      "to the candidate is {}, {:.2f} times that.",
-      Metres(floor_m), Count(n, "setting"), Metres(result.all.mean_gap_m),
-      result.all.mean_gap_m / floor_m));
+  const double floor_m = sum_m / static_cast<double>(n), gap_m = result.all.mean_gap_m;
+  std::string text =
+      fmt::format("Repeats of one setting are {} apart from each other (noise floor, mean of {}); ",
+                  Metres(floor_m), Count(n, "setting"));
+  if (std::isnan(gap_m)) {
+    text += "no trial has a gap to hold against that";
+  } else {
+    text += fmt::format("the mean gap to the candidate is {}", Metres(gap_m));
+    if (floor_m > 0.0) text += fmt::format(", {:.2f} times that", gap_m / floor_m);
+  }
+  finding.sentences.push_back(text + ".");
   return finding;
 }
 
