@@ -33,6 +33,13 @@ TEST_CASE("Flags of rift gap say how each side's logs are read, and what is no d
         " --skip-start 0.1");
 }
 
+TEST_CASE("A column's name with a quote stays one word of the command") {
+  experiment::Experiment experiment = OfLogs();
+  experiment.candidate.columns = "t=a,x=b,y=c'; rm -r d";
+  CHECK(GapFlags(experiment) ==
+        R"( --sim-format auto --real-format auto --sim-columns 't=a,x=b,y=c'\''; rm -r d')");
+}
+
 TEST_CASE("Where either side is no log there is no command that measures it") {
   experiment::Experiment experiment = OfLogs();
   experiment.candidate.kind = experiment::CandidateKind::kSimulation;

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "rift/files/shell_word.hpp"
 #include "rift/yaml/enum_name.hpp"
 #include "rift/yaml/flag_name.hpp"
 
@@ -65,7 +66,7 @@ std::string GapFlags(const experiment::Experiment& experiment) {
   add("--sim-format", std::string(yaml::NameOf(experiment.candidate.format)));
   add("--real-format", std::string(yaml::NameOf(experiment.reference.format)));
   const auto add_text = [&](const std::string& flag, const std::string& value) {
-    if (!value.empty()) add(flag, "'" + value + "'");
+    if (!value.empty()) add(flag, files::ShellQuoted(value));
   };
   add_text("--sim-columns", experiment.candidate.columns);
   add_text("--sim-units", experiment.candidate.units);
