@@ -95,6 +95,16 @@ TEST_CASE("A cell whose robot never moved or that has no run says so and has no 
   CHECK(programs.Signal(0, "middle").get<double>() == Approx(0.03 + 0.6 * 0.02));
 }
 
+TEST_CASE("A cell whose measure is not known says so where it moved") {
+  Programs programs;
+  programs.cells[1].measures.drift_per_m = NAN;
+  const json values = programs.Values(2);
+  CHECK(values[1]["value"].is_null());
+  CHECK(values[1]["word"] == "");
+  CHECK(values[1]["tip"]["drift (%)"] == "not known");
+  CHECK(values[3]["tip"]["drift (%)"] == "6");
+}
+
 TEST_CASE("Slip is drawn for each wheel in per cent, without what is not known or did not move") {
   Programs programs;
   programs.cells[1].measures.slip = {{0.25, 0.1, -0.2}, {0.75, NAN, 0.3}};

@@ -37,7 +37,9 @@ PageChart HeatChart(const sweep::SweepResult& result,
     const double value = word.empty() ? measure.value(cell.measures) : NAN;
     const json tip = {
         {"setting", SettingLabel(result, cell.theta)},
-        {measure.legend, word.empty() ? fmt::format("{:.4g}", value) : word},
+        {measure.legend, !word.empty()          ? word
+                         : std::isfinite(value) ? fmt::format("{:.4g}", value)
+                                                : "not known"},
         {"runs that moved", fmt::format("{} of {}", cell.measures.moved, cell.measures.runs)}};
     const std::string column = sweep::CombinationLabel(cell.theta, {split.main_factor});
     if (std::find(columns.begin(), columns.end(), column) == columns.end())
