@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "rift/report/json/json.hpp"
+#include "rift/report/json/precision.hpp"
 
 namespace rift::report {
 namespace {
@@ -76,6 +77,16 @@ vision::Calibration Calibrated() {
   c.views = {used, copy, dropped};
   c.next.text = "to the left";
   return c;
+}
+
+TEST_CASE("Of a tag that is found nowhere no error is told") {
+  vision::PrecisionPlace place;
+  place.floor_m = Eigen::Vector2d(0.1, 0.2);
+  place.views = 8;
+  const vision::PrecisionMap map{.columns = 1, .rows = 1, .places = {place}};
+  const std::string text = PrecisionText(map, {});
+  CHECK_THAT(text, Catch::Contains("\nfound in 0 of 8 views\n") && !Catch::Contains("nan"));
+  CHECK_THAT(text, Catch::Contains("at 1 of 1 places the tag is missed in some views"));
 }
 
 TEST_CASE("A camera's calibration is told with its errors, its coverage and what would help") {

@@ -105,10 +105,11 @@ std::string PrecisionText(const PrecisionMap& map, const vision::TagOptions& tag
   text += Laid(map, "smallest tag that is found, in mm", 0, [](const PrecisionPlace& place) {
     return place.least_size_m ? 1e3 * *place.least_size_m : std::nan("");
   });
-  text += fmt::format(
-      "position: p95 {:.2f} mm, heading: p95 {:.2f} deg, over all places; found in {} of {} "
-      "views\n",
-      1e3 * P95(all.off_m), geometry::DegFromRad(P95(all.yaw_off_rad)), all.found, all.views);
+  if (all.found > 0) {
+    text += fmt::format("position: p95 {:.2f} mm, heading: p95 {:.2f} deg, over all places; ",
+                        1e3 * P95(all.off_m), geometry::DegFromRad(P95(all.yaw_off_rad)));
+  }
+  text += fmt::format("found in {} of {} views\n", all.found, all.views);
   double most_shift = 0.0;
   for (const PrecisionPlace& place : map.places) {
     if (place.floor_m) most_shift = std::max(most_shift, place.shift_by_height);
