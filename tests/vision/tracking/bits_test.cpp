@@ -241,7 +241,7 @@ TEST_CASE("A guess that is off by less than half a cell to any side leads to the
   }
 }
 
-TEST_CASE("Edges are found 0.85 of a cell from where they are guessed, to either side, and not at 1.2") {
+TEST_CASE("Edges are found 0.85 of a cell from the guess, on either side, and not at 1.2") {
   const Small tag(48.0);
   const Eigen::Vector2d along = (tag.corners[1] - tag.corners[0]).normalized();
   const double cell_px = (tag.corners[1] - tag.corners[0]).norm() / 8.0;
