@@ -100,6 +100,10 @@ std::string_view TakeLine(std::string_view& rest) {
   return line;
 }
 
+bool IsBlankLine(std::string_view line) { return line.find_first_not_of(" \t") == line.npos; }
+
+bool IsComment(std::string_view line) { return Trim(line).starts_with('#'); }
+
 std::string Shown(std::string_view text, size_t most) {
   std::string shown;
   for (const char c : text.substr(0, most)) {

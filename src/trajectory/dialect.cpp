@@ -28,12 +28,6 @@ bool Has(const std::vector<std::string>& header, std::string_view name) {
   return std::find(header.begin(), header.end(), name) != header.end();
 }
 
-bool IsBlankLine(std::string_view line) { return line.find_first_not_of(" \t") == line.npos; }
-
-bool IsComment(std::string_view line) {
-  return !IsBlankLine(line) && line[line.find_first_not_of(" \t")] == '#';
-}
-
 /// Cells between blanks.
 int CellsOf(std::string_view line) {
   int cells = 0;
@@ -49,11 +43,11 @@ int CellsOf(std::string_view line) {
 /// only.
 bool LooksLikeTum(std::string_view line, std::string_view rest) {
   bool commented = false;
-  while (IsComment(line) || (IsBlankLine(line) && !rest.empty())) {
-    commented = commented || IsComment(line);
+  while (csv::IsComment(line) || (csv::IsBlankLine(line) && !rest.empty())) {
+    commented = commented || csv::IsComment(line);
     line = csv::TakeLine(rest);
   }
-  if (IsBlankLine(line)) return commented;
+  if (csv::IsBlankLine(line)) return commented;
   return line.find_first_not_of("0123456789+-.eE \t") == line.npos && CellsOf(line) == 8;
 }
 
@@ -233,7 +227,7 @@ Format FormatFromHeader(std::string_view text, const std::string& name,
   std::string_view rest = csv::WithoutMark(text);
   std::string_view line;
   int number = 0;
-  for (; !rest.empty() && IsBlankLine(line); ++number) line = csv::TakeLine(rest);
+  for (; !rest.empty() && csv::IsBlankLine(line); ++number) line = csv::TakeLine(rest);
   const std::vector<std::string> header = csv::SplitHeader(line);
   if (Has(header, "t_s") && Has(header, "x_m") && Has(header, "y_m")) return Format::kRift;
   if (Has(header, "t") && Has(header, "x") && Has(header, "y")) return Format::kAuto;

@@ -9,10 +9,8 @@
 namespace rift::trajectory {
 namespace {
 
-bool IsBlankLine(std::string_view line) { return line.find_first_not_of(" \t") == line.npos; }
-
 bool IsBlankOrComment(std::string_view line) {
-  return IsBlankLine(line) || line[line.find_first_not_of(" \t")] == '#';
+  return csv::IsBlankLine(line) || csv::IsComment(line);
 }
 
 /// What stands between the cells of a line.
@@ -55,7 +53,7 @@ bool TextTable::NextLine(std::string_view& line) {
   while (!rest_.empty()) {
     line = csv::TakeLine(rest_);
     ++line_number_;
-    if (!IsBlankLine(line)) return true;
+    if (!csv::IsBlankLine(line)) return true;
   }
   return false;
 }
@@ -68,7 +66,7 @@ TextTable::TextTable(std::string_view text, const std::string& name)
     const std::string_view before = rest_;
     const int line_before = line_number_;
     if (!NextLine(line)) return;
-    if (line[line.find_first_not_of(" \t")] == '#') {  // the last one may name the columns
+    if (csv::IsComment(line)) {  // the last one may name the columns
       line.remove_prefix(std::min(line.find_first_not_of("# \t"), line.size()));
       comment = csv::SplitHeader(line, SeparatorOf(line));
       continue;
@@ -92,7 +90,7 @@ TextTable::TextTable(std::string_view text, const std::string& name)
 bool TextTable::Next() {
   std::string_view line;
   while (NextLine(line)) {
-    if (line[line.find_first_not_of(" \t")] == '#') continue;
+    if (csv::IsComment(line)) continue;
     cells_ = csv::SplitHeader(line, separator_);
     if (cells_.size() == columns_.size()) return true;
     throw std::invalid_argument(fmt::format("{}:{}: the row has {} cells where {} are expected",

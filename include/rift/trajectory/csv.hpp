@@ -14,6 +14,11 @@ std::string_view WithoutMark(std::string_view text);
 /// Takes the next line off `rest`, without its CR LF or LF.
 std::string_view TakeLine(std::string_view& rest);
 
+bool IsBlankLine(std::string_view line);
+
+/// Whether the first of a line that is no blank is #.
+bool IsComment(std::string_view line);
+
 /// At most so many bytes of it for a message, those that no terminal shows written as \xNN.
 std::string Shown(std::string_view text, size_t most = 60);
 
