@@ -22,14 +22,16 @@ std::string Standing(const std::string& seeds) {
   return "case \"$3\" in " + seeds + ") set -- \"$1\" 0 0;; esac";
 }
 
-TEST_CASE("Of the runs in the place of a log, one that fell is compared and no run of the log") {
-  const Bench bench(Falling("8"));
-  Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
-  CandidateRuns runs(evaluator, 1);
-  ProgramTwins twins(runs, Requests(), bench.experiment, "e.yaml", kSilent);
+/// At k = 1.5, for each log.
+std::vector<LogPrediction> PredictedByThree(const Bench& bench) {
   CalibrationOptions options = OfWholeRuns({});
   options.runs = 3;
-  const auto predictions = twins.Predict(Logs(bench, 9.0), {1.5}, options);
+  return BenchTwins(bench).twins.Predict(Logs(bench, 9.0), {1.5}, options);
+}
+
+TEST_CASE("Of the runs in the place of a log, one that fell is compared and no run of the log") {
+  const Bench bench(Falling("8"));
+  const auto predictions = PredictedByThree(bench);
   CHECK(predictions[0].runs.size() == 2);
   CHECK(predictions[1].runs.size() == 3);
   CHECK(predictions[0].motions[46] == Approx(0.008 - 0.0012).margin(1e-4));  // of all three
@@ -39,12 +41,7 @@ TEST_CASE("Of the runs in the place of a log, one that fell is compared and no r
 TEST_CASE("A run that stood still is passed over, whichever it is") {
   for (const std::string seed : {"7", "8"}) {
     const Bench bench(Standing(seed));
-    Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
-    CandidateRuns runs(evaluator, 1);
-    ProgramTwins twins(runs, Requests(), bench.experiment, "e.yaml", kSilent);
-    CalibrationOptions options = OfWholeRuns({});
-    options.runs = 3;
-    const auto predictions = twins.Predict(Logs(bench, 9.0), {1.5}, options);
+    const auto predictions = PredictedByThree(bench);
     CHECK(predictions[0].runs.size() == 2);
     CHECK(predictions[0].motions[45] == Approx(0.3).margin(1e-4));
     const double mean_m = seed == "7" ? 0.0085 : 0.008;  // of 8 and 9, or of 7 and 9
@@ -56,10 +53,8 @@ TEST_CASE("A run in the place of a log that fell is tried again, and stands wher
   const std::uint64_t first = SeedInPlace(7, 0, 0);
   for (const bool always : {false, true}) {
     const Bench bench(Falling(always ? "*" : std::to_string(first)));
-    Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
-    CandidateRuns runs(evaluator, 1);
-    ProgramTwins twins(runs, Requests(), bench.experiment, "e.yaml", kSilent);
-    const std::vector<Trajectory> made = twins.LogsAt(Logs(bench, 9.0), {1.5}, 0);
+    BenchTwins beside(bench);
+    const std::vector<Trajectory> made = beside.twins.LogsAt(Logs(bench, 9.0), {1.5}, 0);
     CHECK(bench.Asked().size() == (always ? 20 : 3));
     CHECK(made[0].poses.back().x_m == Approx(1.5));
   }
@@ -67,10 +62,8 @@ TEST_CASE("A run in the place of a log that fell is tried again, and stands wher
 
 TEST_CASE("A log that no run of the program gives a path in the place of is named") {
   const Bench bench("case \"$3\" in *500) exit 1;; esac");
-  Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
-  CandidateRuns runs(evaluator, 1);
-  ProgramTwins twins(runs, Requests(), bench.experiment, "e.yaml", kSilent);
-  CHECK_THROWS_WITH(twins.LogsAt(Logs(bench, 9.0), {1.5}, 0),
+  BenchTwins beside(bench);
+  CHECK_THROWS_WITH(beside.twins.LogsAt(Logs(bench, 9.0), {1.5}, 0),
                     Catch::Contains("in the place of b_1.csv gives a path: "));
 }
 

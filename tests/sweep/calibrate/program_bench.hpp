@@ -10,9 +10,12 @@
 
 #include "rift/files/files.hpp"
 #include "rift/sweep/calibrate/identification.hpp"
+#include "rift/sweep/falsify/candidate_runs.hpp"
+#include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/inputs/paths.hpp"
 #include "support/processes/process.hpp"
+#include "sweep/calibrate/fitted_simulator.hpp"
 
 namespace rift::sweep {
 
@@ -91,5 +94,17 @@ inline std::vector<TrialRequest> Requests() {
   return {{.theta = {{"a", {}}}, .trial = "1", .seed = 7},
           {.theta = {{"b", {}}}, .trial = "1", .seed = 500}};
 }
+
+/// Runs of the program beside those logs, as a fit asks for them.
+struct BenchTwins {
+  explicit BenchTwins(const Bench& bench)
+      : evaluator(bench.experiment, "e.yaml", bench.AsInputs()),
+        runs(evaluator, 1),
+        twins(runs, Requests(), bench.experiment, "e.yaml", kSilent) {}
+
+  Evaluator evaluator;
+  CandidateRuns runs;
+  ProgramTwins twins;
+};
 
 }  // namespace rift::sweep

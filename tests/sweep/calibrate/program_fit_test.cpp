@@ -149,16 +149,14 @@ TEST_CASE("Logs are judged by level and side, those held out beside what the oth
 
 TEST_CASE("Runs that predict have seeds that count up from those of their log") {
   const Bench bench;
-  Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
-  CandidateRuns runs(evaluator, 1);
-  ProgramTwins twins(runs, Requests(), bench.experiment, "e.yaml", kSilent);
-  CHECK(twins.HasWholeRunsOnly());
+  BenchTwins beside(bench);
+  CHECK(beside.twins.HasWholeRunsOnly());
   CalibrationOptions options = OfWholeRuns({});
   CHECK(options.horizon.most_frames == 1);
   CHECK(options.horizon.phases == 0);
   CHECK(options.step == Approx(0.03));
   options.runs = 3;
-  const auto predictions = twins.Predict(Logs(bench, 9.0), {1.5}, options);
+  const auto predictions = beside.twins.Predict(Logs(bench, 9.0), {1.5}, options);
   CHECK(bench.Asked() ==
         std::vector<std::string>{"1.5 500", "1.5 501", "1.5 502", "1.5 7", "1.5 8", "1.5 9"});
   REQUIRE(predictions.size() == 2);
@@ -174,19 +172,17 @@ TEST_CASE("Runs that predict have seeds that count up from those of their log") 
 
 TEST_CASE("Runs in the place of logs are tried again with other seeds while they are too long") {
   const Bench bench;
-  Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
-  CandidateRuns runs(evaluator, 1);
-  ProgramTwins twins(runs, Requests(), bench.experiment, "e.yaml", kSilent);
+  BenchTwins beside(bench);
   const auto asked_for = [](std::uint64_t first, int repeat, int attempt) {
     return fmt::format("1.5 {}", SeedInPlace(first, repeat, attempt));
   };
   for (const int repeat : {0, 2}) {
-    CHECK(twins.LogsAt(Logs(bench, 9.0), {1.5}, repeat).size() == 2);
+    CHECK(beside.twins.LogsAt(Logs(bench, 9.0), {1.5}, repeat).size() == 2);
     std::vector<std::string> expected{asked_for(7, repeat, 0), asked_for(500, repeat, 0)};
     std::sort(expected.begin(), expected.end());
     CHECK(bench.Asked() == expected);
   }
-  const std::vector<Trajectory> last = twins.LogsAt(Logs(bench, 1.0), {1.5}, 0);
+  const std::vector<Trajectory> last = beside.twins.LogsAt(Logs(bench, 1.0), {1.5}, 0);
   const std::vector<std::string> asked = bench.Asked();
   CHECK(asked.size() == 20);  // ten tries each
   CHECK(std::count(asked.begin(), asked.end(), asked_for(7, 0, 9)) == 1);
@@ -195,16 +191,14 @@ TEST_CASE("Runs in the place of logs are tried again with other seeds while they
 
 TEST_CASE("A program that gives no path at all where the fit starts, or none for a log, is told") {
   const Bench bench("echo 'no such friction' >&2; exit 1");
-  Evaluator evaluator(bench.experiment, "e.yaml", bench.AsInputs());
-  CandidateRuns runs(evaluator, 1);
-  ProgramTwins twins(runs, Requests(), bench.experiment, "e.yaml", kSilent);
+  BenchTwins beside(bench);
   CalibrationOptions options = OfWholeRuns({});
   options.runs = 1;
-  CHECK_THROWS_WITH(twins.Predict(Logs(bench, 9.0), {1.5}, options),
+  CHECK_THROWS_WITH(beside.twins.Predict(Logs(bench, 9.0), {1.5}, options),
                     Catch::StartsWith("e.yaml: not one of 2 runs of the program where the fit "
                                       "starts gives a path; the first: ") &&
                         Catch::Contains("no such friction"));
-  CHECK_THROWS_WITH(twins.LogsAt(Logs(bench, 9.0), {1.5}, 0),
+  CHECK_THROWS_WITH(beside.twins.LogsAt(Logs(bench, 9.0), {1.5}, 0),
                     Catch::StartsWith("e.yaml: none of 10 runs of the program in the place of "
                                       "a_1.csv gives a path: ") &&
                         Catch::Contains("no such friction"));
