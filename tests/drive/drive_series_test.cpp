@@ -6,6 +6,7 @@
 #include <set>
 
 #include "commands/drive/request.hpp"
+#include "rift/experiment/path_template.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
 #include "rift/sessions/drive/series.hpp"
@@ -243,6 +244,35 @@ TEST_CASE("A chosen setting is driven as often as it has folders, named by who c
   CHECK(plan.trials[1].label == "experiment 3 (v_max 0.4), trial 2");
   CHECK(plan.trials[1].experiment.control.v_max == 0.4);
   CHECK_FALSE(plan.has_floors);
+}
+
+TEST_CASE("Chosen settings that name other parameters each have the experiment's own of the rest") {
+  experiment::Experiment experiment = TwoFloors();
+  experiment.control.v_max = 0.35;
+  const auto& all = experiment.space.parameters;  // v_max, surface
+  const ChosenSetting speed{
+      "experiment 1", {all[0]}, {experiment::NumberValue(0.4)}, {"/out/speed"}};
+  const ChosenSetting floor{"experiment 2", {all[1]}, {Word("parchment")}, {"/out/floor"}};
+  const ChosenSetting both{"experiment 3",
+                           {all[1], all[0]},
+                           {Word("parchment"), experiment::NumberValue(0.3)},
+                           {"/out/both"}};
+  for (const auto& settings : {std::vector{speed, floor, both}, std::vector{both, floor, speed}}) {
+    const SeriesPlan plan = PlanChosen(experiment, settings);
+    REQUIRE(plan.has_floors);
+    REQUIRE(plan.parameters.size() == 2);
+    REQUIRE(plan.trials.size() == 3);
+    CHECK(plan.trials[2].folder == "/out/speed");  // on ground, the last floor of the space
+    for (const PlannedTrial& trial : plan.trials) {
+      const std::string said = experiment::FillTemplate("{surface} at {v_max}", plan.parameters,
+                                                        trial.theta, trial.trial);
+      CHECK(said == (trial.folder == "/out/speed"   ? "ground at 0.4"
+                     : trial.folder == "/out/floor" ? "parchment at 0.35"
+                                                    : "parchment at 0.3"));
+      CHECK(said == trial.experiment.simulation.terrain.surface + " at " +
+                        experiment::NumberValue(trial.experiment.control.v_max).text);
+    }
+  }
 }
 
 TEST_CASE("A command is parted into words at its blanks and no shell reads them") {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "rift/experiment/path_template.hpp"
@@ -20,9 +21,9 @@ using experiment::Parameter;
 
 constexpr const char* kSurface = "simulation.terrain.surface";
 
-std::size_t IndexOfSurface(const std::vector<Parameter>& parameters) {
-  const auto is_surface = [](const Parameter& parameter) { return parameter.key == kSurface; };
-  return static_cast<std::size_t>(std::find_if(parameters.begin(), parameters.end(), is_surface) -
+std::size_t IndexOf(const std::vector<Parameter>& parameters, std::string_view key) {
+  const auto is_meant = [key](const Parameter& parameter) { return parameter.key == key; };
+  return static_cast<std::size_t>(std::find_if(parameters.begin(), parameters.end(), is_meant) -
                                   parameters.begin());
 }
 
@@ -95,7 +96,7 @@ SeriesPlan PlanOf(const Experiment& experiment, const fs::path& out,
 
 /// Floors take longest to change.
 void PutFloorsFirst(SeriesPlan& plan, const std::vector<Parameter>& parameters) {
-  const std::size_t surface = IndexOfSurface(parameters);
+  const std::size_t surface = IndexOf(parameters, kSurface);
   if (surface == parameters.size() || plan.trials.empty()) return;
   plan.has_floors = true;
   const std::vector<experiment::ParameterValue>& levels = parameters[surface].levels;
@@ -118,16 +119,34 @@ SeriesPlan PlanGrid(const Experiment& loaded, const fs::path& out) {
   return plan;
 }
 
+// What one setting leaves out is as the experiment has it: the floor is laid for it all the same,
+// and a scene command is told.
 SeriesPlan PlanChosen(const Experiment& experiment, const std::vector<ChosenSetting>& settings) {
-  SeriesPlan plan{.parameters = settings.front().parameters, .sweep = experiment};
+  SeriesPlan plan{.sweep = experiment};
+  const experiment::Theta nominal = experiment::NominalTheta(experiment);
+  experiment::Theta own;
+  for (std::size_t i = 0; i < experiment.space.parameters.size(); ++i) {
+    const Parameter& parameter = experiment.space.parameters[i];
+    const bool is_named =
+        std::any_of(settings.begin(), settings.end(), [&](const ChosenSetting& one) {
+          return IndexOf(one.parameters, parameter.key) < one.parameters.size();
+        });
+    if (!is_named) continue;
+    plan.parameters.push_back(parameter);
+    own.push_back(nominal[i]);
+  }
   for (const ChosenSetting& one : settings) {
+    experiment::Theta theta = own;
+    for (std::size_t i = 0; i < one.values.size(); ++i) {
+      theta[IndexOf(plan.parameters, one.parameters[i].key)] = one.values[i];
+    }
     Experiment varied = experiment;
     varied.space.parameters = one.parameters;
     const Experiment at = experiment::ExperimentAt(varied, one.values);
     const std::string setting = sweep::SettingText(one.parameters, one.values);
     for (std::size_t i = 0; i < one.folders.size(); ++i) {
       const std::string trial = std::to_string(i + 1);
-      plan.trials.push_back({one.values, trial, at, one.folders[i],
+      plan.trials.push_back({theta, trial, at, one.folders[i],
                              fmt::format("{} ({}), trial {}", one.name, setting, trial)});
     }
   }

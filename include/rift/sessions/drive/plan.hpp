@@ -74,10 +74,10 @@ SeriesPlan PlanGrid(const experiment::Experiment& experiment, const std::filesys
 
 /// A setting that somebody chose.
 struct ChosenSetting {
-  std::string name;  ///< "experiment 3"
-  std::vector<experiment::Parameter> parameters;
-  experiment::Theta values;                      ///< of these
-  std::vector<std::filesystem::path> folders{};  ///< one for each drive
+  std::string name;                               ///< "experiment 3"
+  std::vector<experiment::Parameter> parameters;  ///< of the experiment's space, some of them
+  experiment::Theta values;                       ///< of these
+  std::vector<std::filesystem::path> folders{};   ///< one for each drive
 };
 
 /// Settings of an experiment, at least one, each as often as it says. The plan's sweep is the
