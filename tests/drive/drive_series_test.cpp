@@ -56,6 +56,20 @@ TEST_CASE("A grid is driven floor by floor and every trial has a folder of its o
   CHECK(plan.trials[7].label == "v_max 0.4, surface ground, trial 2");
 }
 
+TEST_CASE("A grid of which two drives would go into one folder is refused") {
+  experiment::Experiment experiment = TwoFloors();
+  auto& surfaces = experiment.simulation.terrain.surfaces;
+  surfaces["ground_wet"] = surfaces.at("ground");
+  experiment.space.parameters[1].levels = {Word("ground"), Word("ground_wet")};
+  experiment.reference.trials.names = {"1", "2"};
+  CHECK(PlanGrid(experiment, "/out").trials.size() == 8);
+  experiment.reference.trials.names = {"1", "wet_1"};
+  CHECK_THROWS_WITH(PlanGrid(experiment, "/out"),
+                    Catch::StartsWith("/out/v_max0.3_ground_wet_1 would hold two drives, of v_max "
+                                      "0.3, surface ground, trial wet_1 and of v_max 0.3, surface "
+                                      "ground_wet, trial 1"));
+}
+
 TEST_CASE("The sweep of a grid holds the simulator, started as its log, against the drives") {
   const experiment::Experiment sweep = PlanGrid(TwoFloors(), "/out").sweep;
   CHECK(sweep.candidate.kind == experiment::CandidateKind::kSimulation);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -79,16 +80,28 @@ Experiment SweepOf(Experiment experiment, const fs::path& out, const std::string
   return experiment;
 }
 
+/// One drive under two settings would be counted twice, and the other never driven.
+void RequireOwnFolder(const PlannedTrial& trial, std::map<fs::path, std::string>& label_of) {
+  const auto [first, is_new] = label_of.emplace(trial.folder, trial.label);
+  if (is_new) return;
+  throw std::invalid_argument(
+      fmt::format("{} would hold two drives, of {} and of {}: name levels or trials so that their "
+                  "folders differ",
+                  trial.folder.string(), first->second, trial.label));
+}
+
 SeriesPlan PlanOf(const Experiment& experiment, const fs::path& out,
                   const std::string& folder_template) {
   const std::vector<Parameter>& parameters = experiment.space.parameters;
   SeriesPlan plan{.parameters = parameters, .sweep = SweepOf(experiment, out, folder_template)};
+  std::map<fs::path, std::string> label_of;
   for (const experiment::Theta& theta : experiment::GridPoints(parameters)) {
     const std::string setting = sweep::SettingText(parameters, theta);
     for (const std::string& trial : experiment.reference.trials.names) {
       plan.trials.push_back({theta, trial, experiment::ExperimentAt(experiment, theta),
                              FolderOf(out, folder_template, parameters, theta, trial),
                              fmt::format("{}, trial {}", setting, trial)});
+      RequireOwnFolder(plan.trials.back(), label_of);
     }
   }
   return plan;
