@@ -272,5 +272,26 @@ TEST_CASE("An edited number is the suggestion that it was, however it is written
   CHECK(saved[0].repeats == 3);
 }
 
+TEST_CASE("A suggestion is the same in whichever order its keys are written") {
+  const Suggested suggested;
+  test::WriteText(suggested.folder / "suggested.yaml",
+                  "experiments:\n"
+                  "  - {set: {control.v_min: 0.16, simulation.terrain.surface: parchment}, "
+                  "repeats: 2, predicted: fails}\n");
+  const experiment::Experiment experiment = Search();
+  SaveDrive(suggested.Drive(1, 1), 0.05, kReached);
+  const experiment::Theta driven{{"parchment", {}}, experiment::NumberValue(0.16)};
+  const auto taken = suggested.Take(experiment);
+  REQUIRE(taken.size() == 1);
+  CHECK(sweep::IsSameSetting(taken[0].values, driven));
+  CHECK(taken[0].failures == 1);
+  sweep::Suggestions suggestions{.settable = {0, 1}};
+  suggestions.list.push_back({.values = driven, .repeats = 2});
+  SaveSuggested(suggested.folder.Path(), experiment, sweep::EmptyResult(experiment), suggestions);
+  const auto saved = ReadSuggested(suggested.folder.Path(), experiment);
+  REQUIRE(saved.size() == 1);
+  CHECK(saved[0].repeats == 3);
+}
+
 }  // namespace
 }  // namespace rift::sessions

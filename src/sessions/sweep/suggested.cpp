@@ -40,19 +40,24 @@ const Node& Required(const Node& node, const std::string& key) {
   return entry->value;
 }
 
+/// In the order of the space, however the file has it: settings are compared value by value.
 void ReadSet(const Node& node, const experiment::Experiment& experiment,
              SuggestedExperiment& suggested) {
-  for (const yaml::FlatEntry& entry : yaml::Flatten(node)) {
-    const auto& parameters = experiment.space.parameters;
-    const auto found =
-        std::find_if(parameters.begin(), parameters.end(),
-                     [&](const auto& parameter) { return parameter.key == entry.key; });
-    if (found == parameters.end()) {
-      yaml::Fail(*entry.value, entry.key, "is no parameter of the sweep's space");
-    }
-    suggested.parameters.push_back(*found);
-    const experiment::ParameterValue value = experiment::ValueFromNode(*entry.value, entry.key);
-    suggested.values.push_back(experiment::ParseValue(*found, value.text));
+  const std::vector<experiment::Parameter>& parameters = experiment.space.parameters;
+  const std::vector<yaml::FlatEntry> set = yaml::Flatten(node);
+  for (const yaml::FlatEntry& entry : set) {
+    const bool is_varied = std::any_of(parameters.begin(), parameters.end(),
+                                       [&](const auto& one) { return one.key == entry.key; });
+    if (!is_varied) yaml::Fail(*entry.value, entry.key, "is no parameter of the sweep's space");
+  }
+  for (const experiment::Parameter& parameter : parameters) {
+    const auto entry = std::find_if(set.begin(), set.end(), [&](const yaml::FlatEntry& one) {
+      return one.key == parameter.key;
+    });
+    if (entry == set.end()) continue;
+    suggested.parameters.push_back(parameter);
+    const experiment::ParameterValue value = experiment::ValueFromNode(*entry->value, entry->key);
+    suggested.values.push_back(experiment::ParseValue(parameter, value.text));
   }
 }
 
