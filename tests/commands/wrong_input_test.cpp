@@ -298,6 +298,12 @@ TEST_CASE("Wrong input: rift sweep") {
       {"sweep" + kTask + "--out @other", "holds another experiment"},
       {"sweep" + kTask + "--status", "--status needs its value, DIR"},
       {"sweep --status @dir", "no such file; a sweep of simulated trials"},
+      {"sweep --status @dir --exit-code", "--exit-code does not go with --status"},
+      {"sweep --status @dir --page @x.html", "--page does not go with --status"},
+      {"sweep" + kTask + "--status @dir", "EXPERIMENT does not go with --status"},
+      {"sweep --compare @dir @dir --exit-code", "--exit-code does not go with --compare"},
+      {"sweep --compare @dir @dir --set seed=2", "--set does not go with --compare"},
+      {"sweep --compare @dir @dir --force --page @x.html", "is not the folder of a finished sweep"},
   });
 }
 

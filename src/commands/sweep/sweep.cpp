@@ -1,9 +1,14 @@
 #include "rift/commands/sweep/sweep.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "progress.hpp"
 #include "rift/commands/arguments/arguments.hpp"
@@ -95,6 +100,18 @@ int Sweep(const SweepRequest& request) {
   return ExitCodeOf(request, *judged);
 }
 
+/// --status and --compare only read folders: a flag of a sweep would do nothing beside them, and
+/// --exit-code tell of every change that all is well.
+void RefuseFlagsOfSweep(const CLI::App& app, const std::string& asked, std::set<std::string> own) {
+  own.insert({asked, "--json", "--large-inputs"});
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    Refuse({{option->count() > 0 && !own.contains(name),
+             fmt::format("{} does not go with {}, which only reads folders: leave it out", name,
+                         asked)}});
+  }
+}
+
 /// With --status.
 void PrintStatus(const SweepRequest& request) {
   const auto [summary, state, shards] = sessions::ReadStatus(request.status);
@@ -126,9 +143,15 @@ int SweepFile(const fs::path& file, const fs::path& out, bool any_waypoints, boo
 void AddSweep(CLI::App& app, int& exit_code) {
   const auto request = std::make_shared<SweepRequest>();
   AddSweepFlags(app, *request);
-  app.callback([request, &exit_code] {
-    if (!request->status.empty()) return PrintStatus(*request);
-    if (!request->compare.empty()) return Compare(*request);
+  app.callback([request, &app, &exit_code] {
+    if (!request->status.empty()) {
+      RefuseFlagsOfSweep(app, "--status", {});
+      return PrintStatus(*request);
+    }
+    if (!request->compare.empty()) {
+      RefuseFlagsOfSweep(app, "--compare", {"--page", "--fresh"});
+      return Compare(*request);
+    }
     Refuse({{!request->page.empty(),
              "--page " + request->page + ": it is the page of --compare DIR DIR"},
             {request->experiment.empty(),
