@@ -405,6 +405,9 @@ TEST_CASE("Wrong input: rift drive") {
       {"drive --replay @run --video @x.avi", "must end in .mp4"},
       {"drive --replay @run --video @gone/x.mp4", "there is no folder"},
       {"drive --replay @run --json", "--json excludes --replay"},
+      {"drive --replay @run --dry-run", "--dry-run excludes --replay"},
+      {"drive --replay @run --repeat 2", "--repeat excludes --replay"},
+      {"drive --replay @run --any-start", "--any-start excludes --replay"},
       {"drive --video @x.mp4", "--video requires --replay"},
   });
 }

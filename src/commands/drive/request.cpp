@@ -68,8 +68,9 @@ void ExcludeFlags(CLI::App& app) {
            "--before-each"});
   // No robot, no camera: what belongs to them is refused beside it.
   Exclude(app, "--replay",
-          {"EXPERIMENT", "--set", "--port", "--camera", "--calibration", "--out", "--yes", "--ping",
-           "--json", "--suggested", "--identify"});
+          {"EXPERIMENT", "--set", "--port", "--camera", "--calibration", "--moved", "--out",
+           "--yes", "--countdown", "--any-start", "--any-waypoints", "--ping", "--dry-run",
+           "--json", "--suggested", "--identify", "--repeat", "--grid", "--before-each"});
 }
 
 }  // namespace
