@@ -270,6 +270,11 @@ TEST_CASE("Wrong input: rift sweep") {
       {"sweep" + kTask + out + "--copy-every 0.9", "must be a number in [1, 86400]"},
       {"sweep" + kTask + out + "--shrink first", "must be the id of a row"},
       {"sweep" + kTask + out + "--write-robot @r.yaml", "needs goal: calibrate"},
+      {"sweep" + kTask + out +
+           "--set goal=calibrate --set reference.kind=logs --set reference.path=x.csv --set "
+           "calibrate.fit={\"motor.mismatch\":{\"min\":-0.1,\"max\":0.1}} --write-robot "
+           "@new/calibration.json",
+       "new/calibration.json is an input or another output"},
       {"sweep" + kTask + out + "--set space.v_mi=[1,2]", "did you mean 'control.v_min'?"},
       {"sweep" + kTask + out + "--set space.v_min=[]", "an axis needs at least one value"},
       {"sweep" + kTask + out + "--set goal=find", "must be one of grid, falsify, calibrate"},

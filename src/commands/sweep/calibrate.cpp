@@ -10,6 +10,7 @@
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
 #include "rift/sessions/sweep/calibrate.hpp"
+#include "rift/sessions/sweep/journal.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
@@ -23,7 +24,9 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
               const sweep::SlurmOptions* cluster) {
   const fs::path out = FolderFor(request, experiment);
   if (!request.write_robot.empty()) {
-    CheckOutputs({request.experiment},
+    // It is written after these, and would take the place of one.
+    CheckOutputs({request.experiment, out / "calibration.json", out / "experiment.yaml",
+                  out / "inputs.txt", out / sessions::kJournalName},
                  {.files = {request.write_robot}, .folder = out, .force = request.fresh});
   }
   const files::FolderLock lock(out);
