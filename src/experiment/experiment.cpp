@@ -66,6 +66,28 @@ void ResolveImages(yaml::Node& tree) {
   }
 }
 
+bool IsImage(const std::string& key) {
+  return key.starts_with("simulation.terrain.surfaces.") && key.ends_with(".image");
+}
+
+/// The same of the pictures that a space varies. `tree` is what the space was read from.
+void ResolveImages(const yaml::Node& tree, Space& space) {
+  const yaml::Node::Entry* block = tree.Find("space");
+  if (block == nullptr) return;
+  const std::vector<yaml::FlatEntry> axes = yaml::Flatten(block->value);
+  for (size_t i = 0; i < axes.size(); ++i) {
+    Parameter& parameter = space.parameters[i];
+    if (!IsImage(parameter.key)) continue;
+    const yaml::Node::Entry* values = axes[i].value->Find("values");
+    const std::vector<yaml::Node>& items = (values ? values->value : *axes[i].value).items;
+    for (size_t j = 0; j < items.size(); ++j) {
+      PathTemplate path = yaml::Hook<PathTemplate>::FromNode(items[j]);
+      MakeAbsolute(path);
+      parameter.levels[j] = {path.text, std::nullopt};
+    }
+  }
+}
+
 void RequireTaken(const Experiment& experiment, const std::string& path) {
   using limits::Amount;
   const auto require = [&](Amount amount, double count) { limits::Require(amount, count, path); };
@@ -303,7 +325,10 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   RequireOneLineNames(experiment, path);
   MakeAbsolute(experiment.candidate.path);
   MakeAbsolute(experiment.reference.path);
-  if (experiment.candidate.kind == CandidateKind::kSimulation) ResolveSpace(experiment);
+  if (experiment.candidate.kind == CandidateKind::kSimulation) {
+    ResolveSpace(experiment);
+    ResolveImages(tree, experiment.space);
+  }
   if (experiment.candidate.kind == CandidateKind::kProgram) CheckProgramSpace(experiment);
   if (experiment.candidate.kind != CandidateKind::kProgram) RefuseNominal(experiment);
   if (experiment.goal == Goal::kCalibrate) ResolveCalibrate(experiment, path);

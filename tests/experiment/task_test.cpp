@@ -239,6 +239,30 @@ TEST_CASE(
   CHECK(Load("waypoints: []\n").candidate.path.text.empty());
 }
 
+TEST_CASE("Pictures that a space varies lie beside the file that names them") {
+  const auto pictures = [](const std::string& space, const std::vector<std::string>& overrides) {
+    const std::string text =
+        "simulation: {terrain: {surfaces: {hill: {shape: heightfield, image: a.png}}}}\n" + space;
+    const Experiment experiment =
+        LoadExperiment("maps/task.yaml", overrides, [&](const std::string&) { return text; });
+    std::vector<std::string> paths;
+    for (const ParameterValue& level : experiment.space.parameters.at(0).levels) {
+      paths.push_back(level.text);
+    }
+    return paths;
+  };
+  using Paths = std::vector<std::string>;
+  const std::string here = std::filesystem::current_path().string();
+  CHECK(pictures("space: {surfaces.hill.image: [a.png, ../b.png, /c.png]}\n", {}) ==
+        Paths{here + "/maps/a.png", here + "/b.png", "/c.png"});
+  CHECK(pictures("space: {surfaces.hill.image: {values: [a.png], settable: true}}\n", {}) ==
+        Paths{here + "/maps/a.png"});
+  CHECK(pictures("space: {surfaces.hill.image: [a.png]}\n",
+                 {"space.surfaces.hill.image=[d.png]"}) == Paths{here + "/d.png"});
+  CHECK(pictures("candidate: {kind: program, run: [x]}\nspace: {image: [a.png]}\n", {}) ==
+        Paths{"a.png"});
+}
+
 TEST_CASE("More than may be taken is refused before anything is computed") {
   CHECK_THROWS_WITH(Load("gap: {samples: 10000000}\n"), Contains("task.yaml"));
   const auto grid = [](int trials, const std::string& goal) {
