@@ -328,6 +328,17 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
         "{}: objective is odometry, and suggested drives are judged by the gap of their poses",
         experiment_file_));
   }
+  const std::string saved = Beside(path, "experiment.yaml");
+  if (const std::optional<std::string> text = inputs_.read(saved)) {
+    const auto other = WhyOtherDrive(saved, *text, ExperimentFor(experiment_, asked));
+    if (other) {
+      inputs_.note(*other + ": this drive does not count");
+      TrialRow row = RowFor(asked);
+      row.status = TrialStatus::kInvalid;
+      row.reason = *other;
+      return row;
+    }
+  }
   const bool is_reference = experiment_.reference.kind == ReferenceKind::kLogs;
   LogOptions of_drive;
   of_drive.read.format = trajectory::Format::kRift;

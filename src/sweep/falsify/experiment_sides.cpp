@@ -14,6 +14,7 @@
 #include "rift/experiment/path_template.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/yaml/enum_name.hpp"
+#include "rift/yaml/node.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -157,6 +158,24 @@ void CheckPaths(const experiment::Experiment& experiment) {
         "reference.trials asks for repeats, and no path names {trial} to tell them apart");
   }
   RefuseSharedLogs(experiment);
+}
+
+std::optional<std::string> WhyOtherDrive(const std::string& file, const std::string& text,
+                                         const experiment::Experiment& asked) {
+  std::map<std::string, std::string> driven;
+  try {
+    driven = experiment::FlatValues(
+        experiment::LoadExperiment(file, {}, [&text](const std::string&) { return text; }));
+  } catch (const yaml::Error& unreadable) {
+    return unreadable.what();
+  }
+  for (const auto& [key, value] : experiment::FlatValues(asked)) {
+    const bool is_of_drive = key.starts_with("waypoints") || key.starts_with("program.") ||
+                             key.starts_with("control.") || key.starts_with("trial.");
+    if (!is_of_drive || driven[key] == value) continue;
+    return fmt::format("{}: {} is {}, and {} in this sweep", file, key, driven[key], value);
+  }
+  return std::nullopt;
 }
 
 }  // namespace rift::sweep

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "rift/experiment/experiment.hpp"
 
 namespace rift::sweep {
@@ -13,5 +16,11 @@ void CheckSides(const experiment::Experiment& experiment);
 /// names no parameter, or a parameter or the trials are named by no path: the same rows would stand
 /// there under several labels.
 void CheckPaths(const experiment::Experiment& experiment);
+
+/// Why a drive of the robot, whose experiment `text` is from `file`, is no trial of what is asked:
+/// the first key of its task, controller or trial that is another. What its line, its camera and
+/// the simulator were says nothing.
+std::optional<std::string> WhyOtherDrive(const std::string& file, const std::string& text,
+                                         const experiment::Experiment& asked);
 
 }  // namespace rift::sweep

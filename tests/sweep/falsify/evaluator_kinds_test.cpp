@@ -1,6 +1,7 @@
 // Which kinds of sides go together, how they are named, and what the evaluator says of logs.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -379,6 +380,43 @@ TEST_CASE("A drive in the place of reference logs is moved by the tag's offset a
     CHECK(row.IsOk());
     CHECK(row.comparison.gap_m < 0.005);
   }
+}
+
+TEST_CASE("A drive of another task or controller than the setting's is noted and does not count") {
+  experiment::Experiment experiment = Simulation();
+  experiment.space.parameters = {
+      {.key = "control.v_max",
+       .levels = {experiment::NumberValue(0.3), experiment::NumberValue(0.4)}}};
+  const TrialRequest request{.theta = {experiment::NumberValue(0.4)}, .trial = "1", .seed = 3};
+  experiment::Experiment driven = experiment;
+  driven.control.v_max = 0.4;
+  std::vector<std::string> notes;
+  const auto tells = [&](const std::function<void(experiment::Experiment&)>& change) {
+    experiment::Experiment changed = driven;
+    change(changed);
+    const Files files{{"drive.csv", trajectory::WriteRift(test::StraightPath(0.4, 40))},
+                      {"experiment.yaml", experiment::WriteExperiment(changed)}};
+    notes.clear();
+    Evaluator evaluator(experiment, "e.yaml", {InputsOf(files).read, [&](const std::string& line) {
+                                                 notes.push_back(line);
+                                               }});
+    const TrialRow row = evaluator.EvaluateDriven(request, "drive.csv", trial::Outcome::kReached);
+    CHECK(notes.empty() == row.Tells());
+    return row.Tells();
+  };
+  CHECK(tells([](experiment::Experiment&) {}));
+  CHECK(tells([](experiment::Experiment& drive) {
+    drive.hardware.line.baud = 115200;
+    drive.simulation.motor.mismatch = 0.1;
+    drive.gap.threshold_m = 0.5;
+  }));
+  CHECK_FALSE(tells([](experiment::Experiment& drive) { drive.control.v_max = 0.3; }));
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0] ==
+        "experiment.yaml: control.v_max is 0.3, and 0.4 in this sweep: this drive does not count");
+  CHECK_FALSE(tells([](experiment::Experiment& drive) { drive.waypoints.back().y_m = 0.1; }));
+  CHECK_FALSE(
+      tells([](experiment::Experiment& drive) { drive.trial.pace = trial::Pace::kNewPose; }));
 }
 
 TEST_CASE("A drive that tells nothing is noted with what came of it") {
