@@ -239,7 +239,10 @@ void RealRobot::Core::HandleAnswer(const RobotLink::Heard& heard, double now_s) 
   if (disobeys && !is_dry_run_ && guard_.state() == DriveState::kArmed) {
     guard_.Stop(StopReason::kRobotDisobeys, *disobeys, now_s);
   }
-  if (!heard.sent) return;  // a plain answer says neither to what nor how often the robot stopped
+  if (!heard.sent) {  // a plain answer says neither to what nor how often the robot stopped
+    if (link_.protocol() == Protocol::kPlain) guard_.HearRobot(0, battery_v, now_s);
+    return;
+  }
   record_.rejected_by_robot = heard.answer.rejected;
   record_.round_trips_s.push_back(heard.at_s - sent_s);
   for (auto pose = record_.poses.rbegin(); pose != record_.poses.rend(); ++pose) {

@@ -98,6 +98,28 @@ TEST_CASE("Each wheel's counts, battery and time are those of the robot when it 
   });
 }
 
+TEST_CASE(
+    "A battery below its limit ends a drive, in frames and in plain lines that are answered") {
+  for (const Protocol protocol : {Protocol::kFramed, Protocol::kPlain}) {
+    CAPTURE(protocol);
+    Bench bench;
+    bench.battery_mv = 3600;
+    HardwareOptions hardware;
+    hardware.guard.battery_min_v = 3.6;
+    RealRobot robot(bench, bench, bench, {hardware, protocol, false});
+    Settle(robot, 0.4, bench);
+    robot.Arm();
+    DriveOn(robot, {0.2, 0.2}, 0.5, bench);
+    REQUIRE(robot.state() == DriveState::kArmed);
+    bench.battery_mv = 3599;
+    DriveOn(robot, {0.2, 0.2}, 0.5, bench);
+    const std::optional<DriveStop> stop = robot.Record().stop;
+    REQUIRE(stop);
+    CHECK(stop->reason == StopReason::kBatteryLow);
+    CHECK(bench.listener->Motors().IsZero());
+  }
+}
+
 TEST_CASE("Wheels of a robot that does not answer are taken to obey, either one and either way") {
   OnBothSides("left", "right", [](const Side& side) {
     for (const double sign : {1.0, -1.0}) {
