@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace rift::experiment {
@@ -14,6 +17,20 @@ std::string NameOf(const control::Waypoint& waypoint, size_t index) {
   const std::string name = waypoint.name.empty() ? "" : fmt::format(" ({})", waypoint.name);
   return fmt::format("waypoints[{}]{} at x {:g} m, y {:g} m", index, name, waypoint.x_m,
                      waypoint.y_m);
+}
+
+/// Paths that pass a place again may name it again.
+std::optional<std::string> TwiceNote(const std::vector<control::Waypoint>& waypoints,
+                                     const std::string& file) {
+  std::map<std::string_view, size_t> first;
+  for (size_t i = 0; i < waypoints.size(); ++i) {
+    if (waypoints[i].name.empty()) continue;
+    const size_t k = first.try_emplace(waypoints[i].name, i).first->second;
+    if (waypoints[k].Position() == waypoints[i].Position()) continue;
+    return fmt::format("note: {}: {} has the name of {}: results name both alike", file,
+                       NameOf(waypoints[i], i), NameOf(waypoints[k], k));
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -87,7 +104,7 @@ std::vector<std::string> TaskNotes(const Experiment& experiment, const std::stri
         file, experiment.trial.settle_s, experiment.trial.timeout_s);
   }
   std::vector<std::string> notes;
-  for (const std::optional<std::string>& note : {idle, passed, never}) {
+  for (const std::optional<std::string>& note : {idle, passed, TwiceNote(waypoints, file), never}) {
     if (note) notes.push_back(*note);
   }
   return notes;

@@ -79,6 +79,21 @@ TEST_CASE("A waypoint within the reach radius of the one before it is told, the 
                                  "it counts as reached without a move"});
 }
 
+TEST_CASE("Two waypoints of one name are told where they are two places") {
+  Experiment experiment = Way(1, 0);
+  const std::string name = experiment.waypoints[0].name;
+  REQUIRE_FALSE(name.empty());
+  experiment.waypoints.push_back({name, 0.0, 0.0, {}, true});  // back to the start
+  CHECK(TaskNotes(experiment, "a.yaml").empty());
+  experiment.waypoints.push_back({name, 0.0, 2.0, {}, true});
+  CHECK(TaskNotes(experiment, "a.yaml") ==
+        std::vector<std::string>{"note: a.yaml: waypoints[3] (" + name +
+                                 ") at x 0 m, y 2 m has the name of waypoints[0] (" + name +
+                                 ") at x 0 m, y 0 m: results name both alike"});
+  for (control::Waypoint& waypoint : experiment.waypoints) waypoint.name.clear();
+  CHECK(TaskNotes(experiment, "a.yaml").empty());
+}
+
 TEST_CASE("A control period too short for the serial line is told with the one that is not") {
   Experiment experiment = Way(1, 0);
   experiment.simulation.link.baud = 10000.0;
