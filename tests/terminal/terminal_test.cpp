@@ -1,4 +1,5 @@
 #include <pty.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -12,6 +13,7 @@
 #include "rift/terminal/print.hpp"
 #include "rift/terminal/stop_signal.hpp"
 #include "rift/yaml/node.hpp"
+#include "support/processes/child_end.hpp"
 #include "support/processes/process.hpp"
 #include "support/tree.hpp"
 #include "terminal/text.hpp"
@@ -180,6 +182,29 @@ TEST_CASE("The first Ctrl-C or SIGTERM asks for an end and the handlers are put 
   CHECK(seen == 1);
   const StopSignal again;
   CHECK_FALSE(again.IsAsked());
+  std::signal(signal, SIG_DFL);
+}
+
+TEST_CASE("Where Ctrl-C or SIGTERM ends the process it leaves one line and the code of a stop") {
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  Caught err(stderr), out(stdout);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const EndSignal end("stopped; it starts over");
+    std::raise(signal);
+    ::_exit(1);
+  }
+  const int status = test::EndOf(child, "a process that was told to stop");
+  CHECK(err.Text() == "stopped; it starts over\n");
+  CHECK(out.Text().empty());
+  REQUIRE(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == kStopped);
+  static volatile std::sig_atomic_t seen = 0;
+  seen = 0;
+  std::signal(signal, [](int) { seen = 1; });
+  { const EndSignal end("stopped"); }
+  std::raise(signal);  // as before
+  CHECK(seen == 1);
   std::signal(signal, SIG_DFL);
 }
 

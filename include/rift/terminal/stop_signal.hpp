@@ -1,6 +1,7 @@
 #pragma once
 
 #include <csignal>
+#include <string>
 
 namespace rift::terminal {
 
@@ -14,6 +15,20 @@ class StopSignal {
   StopSignal& operator=(const StopSignal&) = delete;
 
   bool IsAsked() const;
+
+ private:
+  struct sigaction interrupt_ {};
+  struct sigaction terminate_ {};
+};
+
+/// While it lives, Ctrl-C and SIGTERM end the process there and then with `line` on stderr and exit
+/// code kStopped: for long work that writes nothing. At most one lives at a time.
+class EndSignal {
+ public:
+  explicit EndSignal(const std::string& line);
+  ~EndSignal();
+  EndSignal(const EndSignal&) = delete;
+  EndSignal& operator=(const EndSignal&) = delete;
 
  private:
   struct sigaction interrupt_ {};
