@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +9,7 @@
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/quick_gnuplot.hpp"
+#include "support/processes/running_rift.hpp"
 
 namespace rift {
 namespace {
@@ -127,6 +129,20 @@ TEST_CASE(
   const json& mismatch = tight["simulation.motor.mismatch"];
   CHECK(mismatch["value"].get<double>() == Approx(-0.02).margin(0.002));
   CHECK(mismatch["is_from_prior"] == true);
+}
+
+TEST_CASE("A fit that is told to stop says that it starts over, and leaves nothing behind") {
+  Bench bench;
+  WriteText(bench.file, Replaced(kCalibrate, "phases: 2", "phases: 1000"));
+  test::RunningRift running({"sweep", bench.file, "--out", bench.folder / "out"});
+  running.WaitUntil("the fit",
+                    [&] { return running.Err().find("fitting 2") != std::string::npos; });
+  running.Signal(SIGTERM);
+  const ProcessResult stopped = running.Wait();
+  CHECK(stopped.exit_code == 130);
+  CHECK(stopped.out.empty());
+  CHECK_THAT(stopped.err, Catch::EndsWith("stopped; the same command starts over\n"));
+  CHECK(std::filesystem::is_empty(bench.folder / "out"));
 }
 
 TEST_CASE("Flags of a sweep are refused by a fit, which would do nothing with them") {

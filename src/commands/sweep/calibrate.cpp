@@ -14,6 +14,7 @@
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
+#include "rift/terminal/stop_signal.hpp"
 #include "steps.hpp"
 
 namespace rift::commands {
@@ -36,13 +37,13 @@ int Calibrate(const SweepRequest& request, const experiment::Experiment& experim
   sweep::Evaluator evaluator(experiment, request.experiment, FileInputs());
   const sessions::SweepObserver observer =
       ObserverFor(StyleFor(request.quiet, request.json_progress));
+  std::optional<terminal::EndSignal> end;  // a fit on a cluster goes on there
+  if (cluster == nullptr) end.emplace(kStartsOver);
   const std::optional<sweep::CalibrationReport> found = sessions::Fit(
       evaluator, {.out = out, .jobs = request.jobs, .fresh = request.fresh, .cluster = cluster},
       observer, say);
-  if (!found) {
-    SayGoesOn(request, "");
-    return terminal::kStopped;
-  }
+  end.reset();
+  if (!found) return SayStopped(GoesOnText(request, ""));
   lock.RequireInPlace();
   sessions::SaveCalibration(out, evaluator, *found);
   const std::string refusal = report::WhyNotWritten(found->calibration, request.write_robot);

@@ -15,20 +15,21 @@ namespace rift::commands {
 
 namespace fs = std::filesystem;
 
-void SayGoesOn(const SweepRequest& request, const std::string& how) {
-  terminal::Say(fmt::format("stopped; the same command {}goes on{}",
-                            request.fresh ? "without --force (or --fresh) " : "", how));
+std::string GoesOnText(const SweepRequest& request, const std::string& how) {
+  return fmt::format("stopped; the same command {}goes on{}",
+                     request.fresh ? "without --force (or --fresh) " : "", how);
 }
 
-int SayStopped(const SweepRequest& request, const experiment::Experiment& experiment,
-               const fs::path& out) {
+std::string StoppedText(const SweepRequest& request, const experiment::Experiment& experiment,
+                        const fs::path& out) {
   // Logs are compared in seconds and keep no journal.
-  if (experiment.candidate.kind == experiment::CandidateKind::kLogs) {
-    terminal::Say("stopped; nothing was written, and the same command starts over");
-    return terminal::kStopped;
-  }
-  SayGoesOn(request,
-            fmt::format(" where it was (rift sweep --status {})", files::ShellWord(out.string())));
+  if (experiment.candidate.kind == experiment::CandidateKind::kLogs) return kStartsOver;
+  return GoesOnText(request, fmt::format(" where it was (rift sweep --status {})",
+                                         files::ShellWord(out.string())));
+}
+
+int SayStopped(const std::string& text) {
+  terminal::Say(text);
   return terminal::kStopped;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "request.hpp"
 #include "rift/experiment/experiment.hpp"
@@ -25,12 +26,18 @@ std::filesystem::path FolderFor(const SweepRequest& request,
 int Calibrate(const SweepRequest& request, const experiment::Experiment& experiment,
               const sweep::SlurmOptions* cluster);
 
-/// That what was stopped goes on: one that was begun afresh by the command without that flag.
-void SayGoesOn(const SweepRequest& request, const std::string& how);
+/// Said of what keeps no journal and was stopped.
+inline constexpr const char* kStartsOver = "stopped; the same command starts over";
 
-/// How to go on with a sweep that was stopped; returns the exit code.
-int SayStopped(const SweepRequest& request, const experiment::Experiment& experiment,
-               const std::filesystem::path& out);
+/// That what was stopped goes on: one that was begun afresh by the command without that flag.
+std::string GoesOnText(const SweepRequest& request, const std::string& how);
+
+/// How to go on with a sweep that was stopped.
+std::string StoppedText(const SweepRequest& request, const experiment::Experiment& experiment,
+                        const std::filesystem::path& out);
+
+/// Returns the exit code.
+int SayStopped(const std::string& text);
 
 /// What the process ends with when there is nothing to report on: logs that are not there are bad
 /// input (throws std::invalid_argument), a robot that never arrives is a result.

@@ -29,6 +29,7 @@
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/terminal/exit_code.hpp"
 #include "rift/terminal/print.hpp"
+#include "rift/terminal/stop_signal.hpp"
 #include "steps.hpp"
 
 namespace rift::commands {
@@ -78,7 +79,8 @@ int Sweep(const SweepRequest& request) {
   const std::unique_ptr<sessions::LivePage> live = Serve(request, out, evaluator);
   const std::optional<sweep::SweepResult> judged = sessions::RunSweep(
       evaluator, {out, request.jobs, request.fresh, live.get(), engine}, observer);
-  if (!judged) return SayStopped(request, experiment, out);
+  const std::string when_stopped = StoppedText(request, experiment, out);
+  if (!judged) return SayStopped(when_stopped);
   lock.RequireInPlace();
   sessions::SaveResult(out, evaluator, *judged);
   if (judged->all.told == 0) {
@@ -86,14 +88,17 @@ int Sweep(const SweepRequest& request) {
     return EndWithoutGap(request, *judged);
   }
 
+  // The likeness may take as long as all else.
+  std::optional<terminal::EndSignal> end(when_stopped);
   const sessions::SweepFindings findings =
       sessions::ExplainSweep(out, evaluator, *judged, request.suggest.value_or(0), request.jobs);
+  end.reset();
   sessions::SaveReport(out, evaluator, *judged, findings, observer);
   if (live) live->End();
   PrintFindings(request, *judged, findings);
   const std::optional<sessions::FurtherAnswers> answers =
       sessions::Answer(request.further, out, *judged, evaluator, {request.jobs, engine}, observer);
-  if (!answers) return SayStopped(request, experiment, out);
+  if (!answers) return SayStopped(when_stopped);
   PrintAnswers(request, out, *judged, *answers);
   lock.RequireInPlace();
   SayWhere(request, experiment, out);
