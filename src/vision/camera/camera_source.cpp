@@ -14,6 +14,32 @@ bool IsNumber(std::string_view text) {
                                       [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
+/// Whether a parameter of an address is a password by its name: pwd, loginpas, access_token.
+bool NamesSecret(std::string key) {
+  std::transform(key.begin(), key.end(), key.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  for (const char* known : {"pas", "pw", "auth", "token", "secret", "key", "cred", "sess", "sig"}) {
+    if (key.find(known) != key.npos) return true;
+  }
+  return false;
+}
+
+/// Of what follows the host. Some cameras take their parameters in the path.
+std::string WithoutSecrets(std::string text) {
+  constexpr std::string_view kOfKeys =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  for (std::size_t equals = text.find('='); equals != text.npos;
+       equals = text.find('=', equals + 1)) {
+    const std::string before = text.substr(0, equals);
+    const std::size_t key = before.find_last_not_of(kOfKeys) + 1;  // 0 without any
+    if (!NamesSecret(before.substr(key))) continue;
+    const bool is_query = before.find('?') != before.npos;
+    const std::size_t end = text.find_first_of(is_query ? "&;#" : "/?&;#", equals);
+    text.replace(equals + 1, std::min(end, text.size()) - equals - 1, "***");
+  }
+  return text;
+}
+
 }  // namespace
 
 bool NamesPicture(std::string_view name) {
@@ -43,9 +69,11 @@ std::string WithoutPassword(const std::string& name) {
   if (scheme == std::string::npos) return name;
   const std::size_t begin = scheme + 3;
   // A password may hold an @ of its own (RFC 3986 wants %40); a path that has one is none.
-  const std::string host = name.substr(begin, name.find_first_of("/?#", begin) - begin);
+  const std::size_t end = std::min(name.find_first_of("/?#", begin), name.size());
+  const std::string host = name.substr(begin, end - begin);
   const std::size_t at = host.rfind('@');
-  return at == std::string::npos ? name : name.substr(0, begin) + "***" + name.substr(begin + at);
+  return name.substr(0, begin) + (at == std::string::npos ? host : "***" + host.substr(at)) +
+         WithoutSecrets(name.substr(end));
 }
 
 std::unique_ptr<CameraSource> OpenCamera(const std::string& name, const CaptureOptions& options) {

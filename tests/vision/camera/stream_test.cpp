@@ -167,6 +167,21 @@ TEST_CASE("A camera's user and password are in no text") {
                            "a@b/*.jpg", "rtsp://host/a://b@c"}) {
     CHECK(WithoutPassword(name) == name);
   }
+  for (const auto& [name, shown] : std::vector<std::pair<std::string, std::string>>{
+           {"http://host/v.cgi?user=a&pwd=x/y&channel=2",
+            "http://host/v.cgi?user=a&pwd=***&channel=2"},
+           {"http://host?password=x", "http://host?password=***"},
+           {"http://me:x@host/v?PassWord=x;n=1#t", "http://***@host/v?PassWord=***;n=1#t"},
+           {"http://host/v?auth=YWJj=&loginpas=&n", "http://host/v?auth=***&loginpas=***&n"},
+           {"http://host/v?access_token=a=b", "http://host/v?access_token=***"},
+           {"rtsp://host:554/user=a_password=x_channel=1.sdp?real=1",
+            "rtsp://host:554/user=a_password=***?real=1"},
+           {"rtsp://host/user=a&pw=x/2", "rtsp://host/user=a&pw=***/2"}}) {
+    CHECK(WithoutPassword(name) == shown);
+  }
+  for (const char* name : {"http://host/v?channel=2&n=1", "http://host/pass/v", "pwd=x.jpg"}) {
+    CHECK(WithoutPassword(name) == name);
+  }
   const auto with_user = [](std::string url) { return url.insert(7, "me:secret@"); };
   synthetic::ScriptedServer refusing({"HTTP/1.0 403 Forbidden\r\nContent-Length: 0\r\n\r\n", ""});
   MjpegServer no_video(LargeJpeg(), {.content_type = "text/html"});

@@ -93,7 +93,8 @@ enum class SourceKind {
 SourceKind KindOf(std::string_view name);
 
 /// A camera's name as it is said and written: user and password of an address are left out,
-/// `http://***@camera/video`.
+/// `http://***@camera/video`, and of its parameters those that are passwords by their names,
+/// `http://camera/video?pwd=***`.
 std::string WithoutPassword(const std::string& name);
 
 /// Opens a camera. Throws CameraError (busy, wrong format, unplugged: with the name, what was tried
