@@ -10,8 +10,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "rift/vision/camera/capture_options.hpp"
 #include "rift/vision/camera/jpeg.hpp"
@@ -141,7 +142,10 @@ BoardView Undecodable(const std::string& name) {
 /// complain on stderr. Empty: nothing, or it is no JPEG.
 std::string JpegProblem(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+  std::ostringstream read;
+  read << file.rdbuf();  // throws nothing, as an iterator does of a folder
+  const std::string text = std::move(read).str();
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
   const auto size = SizeOfJpeg(bytes);
   if (!size) return "";
   if (double(size->width_px) * size->height_px > 1e6 * kMost_mpixel) {

@@ -9,11 +9,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "exif_time.hpp"
 #include "image_times.hpp"
@@ -36,18 +36,27 @@ std::vector<std::string> Matches(const std::string& pattern) {
   return files;
 }
 
+/// Throws nothing, as an iterator over a stream does of what cannot be read; none then.
+std::string TextOf(std::ifstream& file) {
+  std::ostringstream text;
+  text << file.rdbuf();
+  return std::move(text).str();
+}
+
 std::vector<std::uint8_t> BytesOf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  const std::string text = TextOf(file);
+  return {text.begin(), text.end()};
 }
 
 std::string TextOf(const std::string& path) {
   errno = 0;
-  if (!std::ifstream(path)) {
+  std::ifstream file(path);
+  file.peek();  // a folder can be opened
+  if (!file.is_open() || file.bad()) {
     throw std::invalid_argument(fmt::format("cannot read {}: {}", path, strerror(errno)));
   }
-  const std::vector<std::uint8_t> bytes = BytesOf(path);
-  return {bytes.begin(), bytes.end()};
+  return TextOf(file);
 }
 
 /// Width and height as a PNG states them (ISO 15948 11.2.2), without decoding; 0 for another

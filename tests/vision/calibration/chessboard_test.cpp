@@ -1,6 +1,7 @@
 #include "rift/vision/calibration/chessboard.hpp"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -220,6 +221,8 @@ TEST_CASE("Each file is told with its corners or what is wrong with it, until it
                     "stopped before all pictures were read");
   Frame damaged{.width_px = 400, .height_px = 320, .format = PixelFormat::kJpeg, .bytes = {1, 2}};
   CHECK(FindBoard(damaged, kBoard, "frame").problem == "the picture cannot be decoded");
+  std::filesystem::create_directory(folder / "folder.png");
+  CHECK(FindBoard(folder / "folder.png", kBoard).problem == "the picture cannot be decoded");
 }
 
 TEST_CASE("A board has 3 to 100 inner corners both ways and squares of up to ten metres") {

@@ -122,6 +122,21 @@ TEST_CASE("A name that matches no picture, and a video that is not there, say wh
   CHECK_THROWS_WITH(OpenCamera(folder / "text.mp4", {}), Contains("is it a video?"));
 }
 
+TEST_CASE("A folder by the name of a picture is passed over, and as a list of times refused") {
+  const test::TemporaryFolder folder;
+  WriteGrey(folder / "a1.png", 101);
+  fs::create_directory(folder / "a2.png");
+  const auto source = OpenCamera(folder / "a*.png", {});
+  CHECK(GreysOf(*source) == std::vector<int>{101, -1});
+  CHECK_THROWS_WITH(OpenCamera(folder / "a*.png", {.times = folder / "a2.png"}),
+                    "cannot read " + folder / "a2.png" + ": Is a directory");
+  CHECK_THROWS_WITH(OpenCamera(folder / "a*.png", {.times = folder / "none"}),
+                    "cannot read " + folder / "none" + ": No such file or directory");
+  std::ofstream(folder / "times.txt") << "1\n2.5\n";
+  Frame first;
+  REQUIRE(OpenCamera(folder / "a*.png", {.times = folder / "times.txt"})->Read(first));
+}
+
 TEST_CASE("Hidden files are no pictures of a folder, nor of a pattern") {
   const test::TemporaryFolder folder;
   WriteGrey(folder / "1.png", 101);
