@@ -87,8 +87,8 @@ void RequireHeights(const Log& log, const std::string& name, const ReadOptions& 
 
 void CheckMoves(const Trajectory& trajectory, const std::string& name, bool in_space) {
   if (trajectory.poses.size() < 2) {
-    throw std::invalid_argument(fmt::format("{}: {} poses, and a trajectory needs at least 2", name,
-                                            trajectory.poses.size()));
+    throw std::invalid_argument(fmt::format("{}: {}, and a trajectory needs at least 2", name,
+                                            trajectory.poses.empty() ? "0 poses" : "1 pose"));
   }
   const auto moves = [in_space](const StampedPose& a, const StampedPose& b) {
     return (b.Position() - a.Position()).norm() > 0.0 || (in_space && a.z_m != b.z_m);

@@ -246,7 +246,7 @@ TEST_CASE("A bad log is refused with its row and its rule") {
   CHECK(Refusal(good + "1,2\n") == "log.csv:3: the row has 2 cells where 3 are expected");
   CHECK(Refusal(good + "1,2,3,4\n") == "log.csv:3: the row has 4 cells where 3 are expected");
   CHECK(Refusal(good + "1,2,3,\n") == "log.csv:3: the row has 4 cells where 3 are expected");
-  CHECK(Refusal(good) == "log.csv: 1 poses, and a trajectory needs at least 2");
+  CHECK(Refusal(good) == "log.csv: 1 pose, and a trajectory needs at least 2");
   CHECK(Refusal(good + "1,0,0\n") == "log.csv: the path has zero length: the robot never moved");
   CHECK(Refusal("a,b\n1,2\n").find("log.csv:1: the header 'a,b' belongs to no dialect") == 0);
   CHECK(Refusal("t_s,x_m,y_m,x_m\n") ==

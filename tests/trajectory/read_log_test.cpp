@@ -41,7 +41,7 @@ TEST_CASE("Each step back in time is counted, the last one too, and channels go 
 
 TEST_CASE("A log needs two poses and a way, in the plane or in space") {
   CHECK_THROWS_WITH(ReadLog(kHeader + Row(0, 0), "log"),
-                    "log: 1 poses, and a trajectory needs at least 2");
+                    "log: 1 pose, and a trajectory needs at least 2");
   CHECK_THROWS_WITH(ReadLog(kHeader, "log"), "log: 0 poses, and a trajectory needs at least 2");
   const std::string lift = kHeader + Row(0, 1) + Row(1, 1, "0,0.5,0,0,0,1");
   CHECK_THROWS_WITH(ReadLog(lift, "log"), "log: the path has zero length: the robot never moved");
