@@ -1,10 +1,13 @@
 // Runs with their encoders, as they lie in folders and beside logs.
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "rift/files/files.hpp"
 #include "rift/sessions/gap/odometry.hpp"
+#include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/trajectory/log.hpp"
 #include "support/processes/process.hpp"
 
@@ -188,6 +191,40 @@ TEST_CASE("The tag's place is that of each run's own experiment unless it was sa
   job.tag_ahead_m.reset();
   run.experiment->simulation.mocap.tag_ahead_m = 0.05;
   CHECK(end_error_m({run}, 0) == said);
+}
+
+TEST_CASE("The tag of a simulated run is where the draw of its ensemble had it") {
+  const test::TemporaryFolder folder;
+  const std::string with_draws = std::string(kProgram) +
+                                 "simulation: {mocap: {tag_ahead_m: 0.01}}\n"
+                                 "ensemble: {keys: [simulation.mocap.tag_ahead_m], "
+                                 "draws: [[0.02], [0.03], [0.04], [0.05]]}\n";
+  const auto tag_ahead_m = [](const std::string& run, const std::string& program = "") {
+    return LoadRun(run, program).experiment->simulation.mocap.tag_ahead_m;
+  };
+  const auto write = [&](const std::string& log, const std::string& task, int seed) {
+    test::WriteText(folder / log, Log());
+    test::WriteText(folder / task, with_draws + "seed: " + std::to_string(seed) + "\n");
+  };
+  std::set<double> drawn_m;
+  for (int seed = 1; seed <= 12; ++seed) {
+    write("trajectory.csv", "experiment.yaml", seed);
+    std::filesystem::remove(folder / "truth.csv");
+    CHECK(tag_ahead_m(folder.Path()) == 0.01);  // the robot's own drive
+    test::WriteText(folder / "truth.csv", Log());
+    const experiment::Experiment whole =
+        experiment::LoadExperiment(folder / "experiment.yaml", {}, files::ReadFile);
+    const sweep::SimulatedTrial trial = sweep::SimulatedTrialOf(
+        whole, {}, whole.seed, "e.yaml", {[](const std::string&) { return std::nullopt; }, {}});
+    drawn_m.insert(trial.simulation.mocap.tag_ahead_m);
+    CHECK(tag_ahead_m(folder.Path()) == trial.simulation.mocap.tag_ahead_m);
+    CHECK(tag_ahead_m(folder / "trajectory.csv") == trial.simulation.mocap.tag_ahead_m);
+    CHECK(tag_ahead_m(folder.Path(), folder / "experiment.yaml") == 0.01);  // of all runs
+    write("sim.csv", "sim.experiment.yaml", seed);
+    test::WriteText(folder / "sim.truth.csv", Log());
+    CHECK(tag_ahead_m(folder / "sim.csv") == trial.simulation.mocap.tag_ahead_m);
+  }
+  CHECK(drawn_m.size() > 2);
 }
 
 TEST_CASE("Wheels are calibrated where that is asked for, over the runs with encoders alone") {

@@ -27,9 +27,12 @@ struct RunFiles {
     encoders = !is_folder && fs::exists(beside) ? beside : folder / "encoders.csv";
     const fs::path task = fs::path(trajectory).replace_extension("experiment.yaml");
     experiment = !is_folder && fs::exists(task) ? task : folder / "experiment.yaml";
+    const fs::path true_path = fs::path(trajectory).replace_extension("truth.csv");
+    truth = !is_folder && fs::exists(true_path) ? true_path : folder / "truth.csv";
   }
 
   fs::path trajectory, encoders, experiment;
+  fs::path truth;  ///< of a simulated run alone
 };
 
 /// Repeats of one program under one setting are a cell; other runs only stand side by side.
@@ -68,6 +71,10 @@ LoadedRun LoadRun(const std::string& name, const std::string& program) {
   if (is_told || fs::exists(files.experiment)) {
     loaded.experiment = experiment::LoadExperiment(is_told ? program : files.experiment.string(),
                                                    {}, files::ReadFile);
+    // A simulated run was driven with one draw of the ensemble; the robot itself is none.
+    if (!is_told && fs::exists(files.truth)) {
+      loaded.experiment = experiment::DrawnAt(*loaded.experiment, loaded.experiment->seed);
+    }
     if (!loaded.experiment->program.segments.empty()) {
       loaded.run.program = sweep::IdealPath(experiment::TaskOf(*loaded.experiment));
     } else if (is_told) {
