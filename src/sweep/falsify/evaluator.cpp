@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "experiment_sides.hpp"
 #include "job_status.hpp"
@@ -49,6 +51,15 @@ Recording WithLimits(Recording log, const experiment::Experiment& experiment,
   return log;
 }
 
+/// What is read anew for each trial is noted once.
+Inputs NotingOnce(Inputs inputs) {
+  inputs.note = [note = std::move(inputs.note),
+                 said = std::set<std::string>()](const std::string& line) mutable {
+    if (said.insert(line).second) note(line);
+  };
+  return inputs;
+}
+
 std::string Beside(const std::string& log, const char* name) {
   return std::filesystem::path(log).replace_filename(name).string();
 }
@@ -85,7 +96,7 @@ Evaluator::Evaluator(const experiment::Experiment& experiment, std::string exper
                      Inputs inputs)
     : experiment_(experiment),
       experiment_file_(std::move(experiment_file)),
-      inputs_(std::move(inputs)),
+      inputs_(NotingOnce(std::move(inputs))),
       candidate_logs_(inputs_, CandidateLogs(experiment)),
       reference_logs_(inputs_, ReferenceLogs(experiment)) {
   InFile(experiment_file_, [&] {
@@ -194,6 +205,8 @@ std::vector<odometry::EncoderReading> Evaluator::EncodersBeside(const std::strin
   const std::string path = Beside(log, "encoders.csv");
   const std::optional<std::string> text = inputs_.read(path);
   if (!text) return {};
+  const std::optional<std::string> note = trajectory::csv::NoteOfEnd(*text);
+  if (note) inputs_.note(fmt::format("{}: {}", path, *note));
   return odometry::ReadEncoders(*text, path);
 }
 

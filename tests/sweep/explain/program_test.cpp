@@ -166,6 +166,34 @@ TEST_CASE("A recorded run is judged by the encoders beside its log, from where i
   CHECK_THAT(row().reason, Catch::Contains("objective: odometry needs encoders (encoders.csv"));
 }
 
+TEST_CASE("A row of encoders that was cut short is left out and noted once, however many trials") {
+  experiment::Experiment experiment = Lap(0.2);
+  experiment.objective = experiment::Objective::kOdometry;
+  experiment.candidate.kind = experiment::CandidateKind::kLogs;
+  experiment.candidate.path.text = "run.csv";
+  const trajectory::Trajectory log = test::StraightPath(0.5, 51);
+  const double from_s = log.poses.front().t_s;
+  test::Files files{
+      {"run.csv", trajectory::WriteRift(log)},
+      {"encoders.csv", odometry::EncodersCsv({{from_s, {0, 0}}, {from_s + 1.0, {9, 9}}})}};
+  std::vector<std::string> notes;
+  const auto gap_m = [&] {
+    Inputs inputs = test::InputsOf(files);
+    inputs.note = [&notes](const std::string& line) { notes.push_back(line); };
+    Evaluator evaluator(experiment, "lap.yaml", inputs);
+    const double first_m = evaluator.Evaluate({.trial = "1"}).comparison.gap_m;
+    CHECK(evaluator.Evaluate({.trial = "2"}).comparison.gap_m == first_m);
+    return first_m;
+  };
+  const double whole_m = gap_m();
+  CHECK(notes.empty());
+  files["encoders.csv"] += "9,1";
+  CHECK(gap_m() == whole_m);
+  CHECK(notes ==
+        std::vector<std::string>{
+            "encoders.csv: the last row was cut short while it was written: it is left out"});
+}
+
 TEST_CASE("The cells of a grid over a program tell its repeats apart from a robot that is stuck") {
   experiment::Experiment experiment = Lap(0.25);
   experiment.space.parameters = {
