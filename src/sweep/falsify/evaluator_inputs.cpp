@@ -23,6 +23,8 @@ using experiment::ReferenceKind;
 void Evaluator::LoadLogs() {
   if (experiment_.reference.kind == ReferenceKind::kLogs) {
     LoadLogsOf(experiment_.reference.path, "reference.path", reference_logs_);
+    // Beside recorded candidates a copy's rows are one run, which counts once.
+    if (experiment_.candidate.kind != CandidateKind::kLogs) reference_logs_.NoteCopies();
   }
   if (experiment_.candidate.kind == CandidateKind::kLogs) {
     LoadLogsOf(experiment_.candidate.path, "candidate.path", candidate_logs_);

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
+#include "rift/gap/result.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 #include "rift/trajectory/log.hpp"
@@ -63,6 +66,24 @@ Recording RecordedLogs::Load(const std::string& path) {
     recording.reason = bad_log.what();
   }
   return recording;
+}
+
+void RecordedLogs::NoteCopies() {
+  std::vector<std::string> paths;
+  std::vector<trajectory::Trajectory> logs;
+  for (const auto& [path, recording] : recordings_) {
+    if (recording.status != TrialStatus::kOk) continue;
+    paths.push_back(path);
+    logs.push_back(recording.trajectory);
+  }
+  const std::vector<std::optional<size_t>> copy_of = gap::CopiesAmong(logs);
+  for (size_t i = 0; i < paths.size(); ++i) {
+    if (!copy_of[i]) continue;
+    inputs_.note(
+        fmt::format("{}: it has the positions of {}: a log that was copied is no further "
+                    "drive of the robot",
+                    paths[i], paths[*copy_of[i]]));
+  }
 }
 
 std::string RecordedLogs::HashOf(const std::string& path) const {

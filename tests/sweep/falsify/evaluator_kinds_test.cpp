@@ -255,6 +255,36 @@ TEST_CASE("Copies of a log give no noise floor, and none is known of one nominal
   CHECK(std::isnan(Evaluator(experiment, "e.yaml", InputsOf(files)).NoiseFloor_m({{"a", {}}})));
 }
 
+TEST_CASE("A copied log of the robot beside runs with seeds of their own is noted once") {
+  experiment::Experiment experiment = Simulation();
+  experiment.reference.kind = ReferenceKind::kLogs;
+  experiment.reference.path.text = "{trial}.csv";
+  experiment.reference.trials.names = {"1", "2", "3", "4", "5"};
+  Files files{{"1.csv", LogAside(0.0)}, {"2.csv", LogAside(0.01)}, {"4.csv", LogAside(0.01)}};
+  files["3.csv"] = files["1.csv"];
+  std::vector<std::string> notes;
+  const auto inputs = [&] {
+    Inputs noting = InputsOf(files);
+    noting.note = [&notes](const std::string& line) { notes.push_back(line); };
+    return noting;
+  };
+  Evaluator evaluator(experiment, "e.yaml", inputs());
+  evaluator.LoadLogs();
+  evaluator.LoadLogs();
+  const std::string why = ": a log that was copied is no further drive of the robot";
+  CHECK(notes == std::vector<std::string>{"3.csv: it has the positions of 1.csv" + why,
+                                          "4.csv: it has the positions of 2.csv" + why});
+  notes.clear();
+  // One log for all repeats is no copy, and of recorded candidates the rows are one run.
+  experiment.reference.path.text = "1.csv";
+  Evaluator(experiment, "e.yaml", inputs()).LoadLogs();
+  experiment.reference.path.text = "{trial}.csv";
+  experiment.candidate.kind = CandidateKind::kLogs;
+  experiment.candidate.path.text = "2.csv";
+  Evaluator(experiment, "e.yaml", inputs()).LoadLogs();
+  CHECK(notes.empty());
+}
+
 TEST_CASE("Logs of a range are refused, and others read once, before the first trial") {
   experiment::Experiment experiment = Logs();
   experiment.candidate.kind = CandidateKind::kSimulation;

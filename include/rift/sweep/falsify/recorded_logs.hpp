@@ -53,6 +53,8 @@ class RecordedLogs {
 
   /// A missing or bad log has its status and reason.
   const Recording& At(const std::string& path);
+  /// Notes each log that was read and has the positions of another one, once.
+  void NoteCopies();
   /// Fingerprint of a log that was read; empty for any other.
   std::string HashOf(const std::string& path) const;
   /// `hash  path` a line, sorted by path; 128-bit XXH3 in hexadecimal, as `xxhsum -H2` prints it.
