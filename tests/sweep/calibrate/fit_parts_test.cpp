@@ -199,6 +199,34 @@ TEST_CASE("A simulator predicts by its mean path, beside what the other real tri
   CHECK(MeasurePrediction({trials[3]}, {}, options, 1).reals == 0);
 }
 
+/// Stands for so many rows before it drives, and jitters by 4 mm.
+Trajectory AfterStanding(Trajectory path, int rows) {
+  std::vector<trajectory::StampedPose> standing;
+  for (int i = 0; i < rows; ++i) {
+    standing.push_back(path.poses.front());
+    standing.back().t_s += 0.01 * (i - rows);
+    standing.back().x_m -= i % 2 == 0 ? 0.004 : 0.0;
+  }
+  path.poses.insert(path.poses.begin(), standing.begin(), standing.end());
+  return path;
+}
+
+TEST_CASE("Trimmed runs are averaged after their standstill is left out, however long each is") {
+  gap::LikenessOptions options;
+  options.bootstrap.resamples = 50;
+  std::vector<RepeatedTrial> trials{Lanes("a", 0.00, {0.02, 0.04}), Lanes("a", 0.05, {0.06, 0.08})};
+  for (RepeatedTrial& trial : trials) {
+    trial.real = AfterStanding(trial.real, 20);
+    trial.runs[0] = AfterStanding(trial.runs[0], 100);
+  }
+  gap::GapOptions gap{.trim_standstill = true, .standstill_radius_m = 0.0095};
+  const PathPrediction found = MeasurePrediction(trials, gap, options, 1);
+  CHECK(found.simulated_m == Approx((0.03 + 0.02) / 2.0).margin(0.0005));
+  CHECK(found.other_real_m == Approx(0.05).margin(0.0005));
+  gap.trim_standstill = false;
+  CHECK(MeasurePrediction(trials, gap, options, 1).simulated_m > 0.05);
+}
+
 TEST_CASE("Settings are ranked by how far their last real trial, its runs, and the others stray") {
   gap::LikenessOptions options;
   options.bootstrap.resamples = 200;
