@@ -1,6 +1,7 @@
 #include "rift/sweep/calibrate/ensemble.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "rift/statistics/inference.hpp"
@@ -39,7 +40,7 @@ experiment::Ensemble EnsembleOf(const Calibration& fit, double confidence, int d
   }
   if (open.empty()) return {};
   const Eigen::MatrixXd root = RootOf(fit.correlation(open, open));
-  const double deviations = 2.0 * statistics::NormalQuantile(0.5 + 0.5 * confidence);
+  const double deviations = statistics::NormalQuantile(0.5 + 0.5 * confidence);
   const statistics::CounterRandom random(seed, kDrawStream);
   for (int row = 0; row < draws; ++row) {
     Eigen::VectorXd normal(root.cols());
@@ -50,7 +51,8 @@ experiment::Ensemble EnsembleOf(const Calibration& fit, double confidence, int d
     std::vector<double>& draw = ensemble.draws.emplace_back();
     for (size_t k = 0; k < open.size(); ++k) {
       const CalibratedParameter& one = fit.parameters[static_cast<size_t>(open[k])];
-      const double sd = (one.high - one.low) / deviations;
+      // The interval ends at the range, near a bound to one side alone.
+      const double sd = std::max(one.high - one.value, one.value - one.low) / deviations;
       draw.push_back(Folded(one.value + sd * together[static_cast<Eigen::Index>(k)],
                             one.parameter.min, one.parameter.max));
     }

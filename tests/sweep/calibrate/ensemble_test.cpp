@@ -71,6 +71,27 @@ TEST_CASE("No draw lies beyond the range of its parameter") {
   }
 }
 
+TEST_CASE("Near a bound, where the interval ends, draws scatter as they would without it") {
+  const bool is_low = GENERATE(true, false);
+  Calibration fit = Fit();
+  CalibratedParameter &at = fit.parameters[0], &near = fit.parameters[1];
+  if (is_low) {
+    at.low = at.parameter.min = at.value;
+    near.low = near.parameter.min = near.value - 0.02;
+  } else {
+    at.high = at.parameter.max = at.value;
+    near.high = near.parameter.max = near.value + 0.02;
+  }
+  const experiment::Ensemble ensemble = EnsembleOf(fit, kConfidence, 200, 1);
+  const experiment::Ensemble free = EnsembleOf(Fit(), kConfidence, 200, 1);
+  const double side = is_low ? 1.0 : -1.0;
+  for (size_t i = 0; i < 200; ++i) {
+    CHECK(ensemble.draws[i][0] == Approx(3.0 + side * std::abs(free.draws[i][0] - 3.0)));
+    const double bound = -2.0 - side * 0.02;
+    CHECK(ensemble.draws[i][1] == Approx(bound + side * std::abs(free.draws[i][1] - bound)));
+  }
+}
+
 TEST_CASE("A parameter that logs and prior leave open stays out of the ensemble") {
   Calibration fit = Fit();
   fit.parameters[0].has_effect = false;
