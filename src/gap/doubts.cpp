@@ -285,6 +285,17 @@ Texture TextureOf(const Trajectory& log) {
 
 }  // namespace
 
+bool IsStanding(const Trajectory& path, const GapOptions& options) {
+  const auto is_near = [&](const StampedPose& pose) {
+    const StampedPose& first = path.poses.front();
+    const double off_m = options.IsInSpace()
+                             ? (pose.PositionInSpace() - first.PositionInSpace()).norm()
+                             : (pose.Position() - first.Position()).norm();
+    return off_m <= options.standstill_radius_m;
+  };
+  return path.poses.size() > 1 && std::all_of(path.poses.begin(), path.poses.end(), is_near);
+}
+
 bool LookSwapped(const Trajectory& sim, const Trajectory& real) {
   constexpr double kEven = 1e-3, kUneven = 0.05, kSmooth_m = 1e-4, kNoisy_m = 4e-4;
   if (sim.poses.size() < kFewestRows || real.poses.size() < kFewestRows) return false;

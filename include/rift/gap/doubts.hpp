@@ -16,6 +16,10 @@ namespace rift::gap {
 std::vector<std::string> Doubts(const trajectory::Trajectory& sim,
                                 const trajectory::Trajectory& real, const GapOptions& options = {});
 
+/// Whether a path of at least two poses never leaves options.standstill_radius_m of its first one,
+/// so that all of it is standstill and options.trim_standstill leaves nothing to compare.
+bool IsStanding(const trajectory::Trajectory& path, const GapOptions& options);
+
 /// REAL has even time steps and no noise, SIM uneven ones and noise.
 bool LookSwapped(const trajectory::Trajectory& sim, const trajectory::Trajectory& real);
 

@@ -39,14 +39,7 @@ void SayNotes(const trajectory::Log& log, const std::string& path, const std::st
 /// Of a robot that stood nothing is left to compare.
 void RefuseStanding(const trajectory::Trajectory& log, const std::string& path,
                     const gap::GapOptions& options) {
-  if (!options.trim_standstill) return;
-  const auto is_near = [&](const trajectory::StampedPose& pose) {
-    const double off_m = options.IsInSpace()
-                             ? (pose.PositionInSpace() - log.poses.front().PositionInSpace()).norm()
-                             : (pose.Position() - log.poses.front().Position()).norm();
-    return off_m <= options.standstill_radius_m;
-  };
-  if (!std::all_of(log.poses.begin(), log.poses.end(), is_near)) return;
+  if (!options.trim_standstill || !gap::IsStanding(log, options)) return;
   throw std::invalid_argument(fmt::format(
       "{}: never leaves --standstill-radius, {:g} m, so that all of it is standstill: leave "
       "--trim-standstill out, or name a smaller radius",

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "rift/gap/doubts.hpp"
 #include "rift/gap/goal.hpp"
 #include "rift/sweep/falsify/evidence.hpp"
 #include "rift/sweep/falsify/settings.hpp"
@@ -50,6 +51,14 @@ void Measure(const experiment::Experiment& experiment, const Recording& candidat
   if (!IsFinite(candidate.trajectory)) {
     row.status = TrialStatus::kNan;
     row.reason = fmt::format("{}: a position is not finite", candidate.source);
+    return;
+  }
+  for (const Recording* const one : {&candidate, &reference}) {
+    if (!options.trim_standstill || !gap::IsStanding(one->trajectory, options)) continue;
+    row.status = TrialStatus::kUnreadable;
+    row.reason = fmt::format(
+        "{}: never leaves gap.standstill_radius_m, {:g} m, so that all of it is standstill",
+        one->source, options.standstill_radius_m);
     return;
   }
   try {

@@ -307,6 +307,33 @@ TEST_CASE("Logs of a range are refused, and others read once, before the first t
                     "value of it: write a list of those there are");
 }
 
+TEST_CASE("A log of a robot that stands is a row that says so where standstill is trimmed") {
+  experiment::Experiment experiment = Logs();
+  experiment.reference.trials.names = {"1"};
+  trajectory::Trajectory jitter = test::StraightPath(0.75, 40);
+  for (size_t i = 0; i < jitter.poses.size(); ++i) jitter.poses[i].x_m = i % 2 == 0 ? 0.0 : 0.004;
+  const Files files{{"sim_a.csv", trajectory::WriteRift(jitter)},
+                    {"a_1.csv", LogAside(0.0)},
+                    {"sim_b.csv", LogAside(0.0)},
+                    {"b_1.csv", trajectory::WriteRift(jitter)}};
+  const auto row_of = [&](size_t level) {
+    Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
+    return evaluator.Evaluate({{experiment.space.parameters[0].levels[level]}, "1"});
+  };
+  CHECK(row_of(0).IsOk());
+  experiment.gap.trim_standstill = true;
+  for (const size_t level : {0, 1}) {
+    const TrialRow row = row_of(level);
+    CHECK(row.status == TrialStatus::kUnreadable);
+    CHECK_FALSE(row.Tells());
+    CHECK(row.reason == std::string(level == 0 ? "sim_a.csv" : "b_1.csv") +
+                            ": never leaves gap.standstill_radius_m, 0.01 m, so that all of it is "
+                            "standstill");
+  }
+  experiment.gap.standstill_radius_m = 0.0035;
+  CHECK(row_of(0).IsOk());
+}
+
 TEST_CASE("A trial's key holds the bytes of both logs") {
   Files files{{"a_1.csv", LogAside(0.0)}, {"sim_a.csv", LogAside(0.02)}};
   const experiment::Experiment experiment = Logs();
