@@ -26,10 +26,11 @@ control::PidGains StableGains(const NavigatorOptions& navigator, double yaw_rate
 
 void HoldAgainstPull(const SteeringModel& model, const SteeringPrior& prior,
                      const control::PidGains& largest, NavigatorOptions& wanted) {
-  const double p = std::min(HoldSteering(model, wanted.v_max) / kWantedHold_rad, largest.p);
+  const double beside_integral = HoldSteering(model, wanted.v_max) - SteeringAt(wanted, 0.0);
+  const double p = std::min(beside_integral / kWantedHold_rad, largest.p);
   if (p > wanted.heading.p) wanted.heading = {p, wanted.heading.i, p * largest.d / largest.p};
   const double fast =
-      wanted.heading.p * kWantedHold_rad * model.yaw_rate_rad_s / std::abs(model.pull_rad_s);
+      SteeringAt(wanted, kWantedHold_rad) * model.yaw_rate_rad_s / std::abs(model.pull_rad_s);
   wanted.v_max = std::min(wanted.v_max, std::max(fast, prior.LeastPower()));
   wanted.v_min = std::min(wanted.v_min, wanted.v_max);
   wanted.w_max = std::max(wanted.w_max, 2.0 * HoldSteering(model, wanted.v_max));

@@ -122,6 +122,30 @@ TEST_CASE("A pull is met by more gain, then by less speed, then by a higher limi
   CHECK(wanted.v_max == 0.3);
 }
 
+TEST_CASE("What the integral holds of a pull needs neither gain nor a lower speed") {
+  SteeringModel model = kModel;
+  model.pull_rad_s = -20.0;  // at v 0.3 w 0.24 holds it
+  control::NavigatorOptions wanted = Navigator();
+  wanted.heading.i = 0.2;  // 0.1 at its limit: 0.14 is left
+  HoldAgainstPull(model, {}, {0.3, 0.0, 0.0}, wanted);
+  CHECK(wanted.heading.p == Approx(0.28));
+  CHECK(wanted.v_max == Approx(0.3));
+  CHECK(wanted.w_max == Approx(0.48));
+  // Where less gain is stable the speed is that of both.
+  wanted = Navigator();
+  wanted.heading.i = 0.2;
+  HoldAgainstPull(model, {}, {0.2, 0.0, 0.0}, wanted);
+  CHECK(wanted.heading.p == Approx(0.2));
+  CHECK(wanted.v_max == Approx((0.2 * 0.5 + 0.1) * 25.0 / 20.0));
+  CHECK(HoldError_rad(wanted, HoldSteering(model, wanted.v_max)) == Approx(0.5));
+  // An integral that holds all of it changes neither.
+  wanted = Navigator();
+  wanted.heading.i = 0.6;
+  HoldAgainstPull(model, {}, {0.3, 0.0, 0.0}, wanted);
+  CHECK(wanted.heading.p == 0.1);
+  CHECK(wanted.v_max == 0.3);
+}
+
 TEST_CASE("A circle is tightened by gain, by limit, by speed, and the radius grows last") {
   control::NavigatorOptions wanted = Navigator();
   wanted.heading.p = 0.02;
