@@ -252,10 +252,12 @@ bool Loop::IsOver(const Sensed& sensed) {
                fmt::format("no believable pose for {:.2f} s", PoseAge_s(sensed.now_s)));
   }
   if (sensed.now_s - start_s_ >= options_.timeout_s) {
-    const control::Waypoint& target = controller_->waypoints()[controller_->active()];
-    return End(Outcome::kTimedOut,
-               fmt::format("waypoint '{}' was not reached within trial.timeout_s, {} s{}",
-                           target.name, options_.timeout_s, speeds_));
+    const size_t active = controller_->active();
+    const std::string& name = controller_->waypoints()[active].name;
+    const std::string target =
+        name.empty() ? fmt::format("waypoints[{}]", active) : fmt::format("waypoint '{}'", name);
+    return End(Outcome::kTimedOut, fmt::format("{} was not reached within trial.timeout_s, {} s{}",
+                                               target, options_.timeout_s, speeds_));
   }
   return false;
 }

@@ -68,6 +68,13 @@ TEST_CASE("Of a robot that was not asked a ping does not say that it did not ans
   CHECK_THAT(PingText(ping, options), !Contains("answer within") && Contains("cannot be asked"));
 }
 
+TEST_CASE("A waypoint without a name that was reached is told by its place in the task") {
+  sweep::SimulatedRun run;
+  run.result.visits = {{"turn", 1.25, 0.0}, {"", 2.5, 0.0}, {"", {}, 0.3}};
+  CHECK_THAT(SimulationText({}, run),
+             Contains("\nturn reached at 1.25 s\nwaypoints[2] reached at 2.50 s\nv_max"));
+}
+
 TEST_CASE("A run that nothing held back names v_max, and that of a program does not") {
   experiment::Experiment experiment;
   experiment.control.v_max = 0.3;

@@ -54,6 +54,13 @@ TrialResult Run(Scripted& robot, const TrialOptions& options = Options()) {
                   {}, options);
 }
 
+TEST_CASE("A waypoint without a name that is not reached is told by its place in the task") {
+  Scripted robot;
+  const std::vector<control::Waypoint> task{{}, {.x_m = 5.0}};
+  CHECK_THAT(RunTrial(robot, task, {}, Options()).reason,
+             Catch::StartsWith("waypoints[1] was not reached within trial.timeout_s, 4 s"));
+}
+
 TEST_CASE("A trial ends at its timeout, on the robot's clock, and drives once it has settled") {
   Scripted robot;
   const TrialResult result = Run(robot);
