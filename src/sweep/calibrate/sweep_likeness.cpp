@@ -153,11 +153,11 @@ std::vector<Labelled> Gathering::Drive(int threads) {
   for (size_t i = 0; i < runs.size(); ++i) {
     RepeatedTrial& trial = trials_[planned_[i].trial].trial;
     if (runs[i].result.outcome == trial::Outcome::kReached) {
-      // The same point of the body on both sides.
-      trial.runs.push_back(trajectory::OnFramesOf(
-          trajectory::OffsetAlongHeading(std::move(runs[i].result.trajectory),
-                                         experiment_.reference.tag_offset_m),
-          experiment_.candidate.grid_fps));
+      // The same point of the body on both sides; as in the table, on the frames that saw the tag.
+      trial.runs.push_back(trajectory::OffsetAlongHeading(
+          trajectory::OnFramesOf(std::move(runs[i].result.trajectory),
+                                 experiment_.candidate.grid_fps),
+          experiment_.reference.tag_offset_m));
     } else {
       ++trial.failed_runs;
     }

@@ -220,6 +220,27 @@ TEST_CASE("Each simulated run beside a real one takes a draw of the ensemble of 
   CHECK(all.failed_runs % 10 != 0);  // with one draw for the runs of a trial all ten fail, or none
 }
 
+TEST_CASE("A run beside a real one stands on the frames that its row in the table stands on") {
+  experiment::Experiment plan = Calibration();
+  plan.goal = experiment::Goal::kGrid;
+  plan.likeness.runs = 1;
+  plan.candidate.grid_fps = 30.0;
+  plan.reference.tag_offset_m = 0.2;  // a point whose speed is another than the tag's
+  Files files = SimulatedLogs(plan, 0.0);
+  plan.space.parameters.front().levels = {{"0.15", 0.15}};
+  Evaluator evaluator(plan, "e.yaml", InputsOf(files));
+  double sum_mps = 0.0, runs = 0.0;
+  for (const TrialRequest& request : TrialsAt(plan, {{"0.15", 0.15}})) {
+    const Recording run = evaluator.Candidate(request, evaluator.Reference(request));
+    if (run.status != TrialStatus::kOk) continue;
+    sum_mps += gap::TraitsOf(run.trajectory, plan.likeness).speed_mps;
+    runs += 1.0;
+  }
+  REQUIRE(runs > 0.0);
+  CHECK(MeasureSweepLikeness(evaluator).back().likeness.path.speed_mps.sim ==
+        Approx(sum_mps / runs).epsilon(1e-9));
+}
+
 TEST_CASE("A fit to logs finds their mismatch, holds the rest out, and judges before and after") {
   const experiment::Experiment plan = Calibration(2);
   Files files = SimulatedLogs(plan, 0.1);
