@@ -7,6 +7,8 @@
 #include <limits>
 #include <map>
 
+#include "rift/statistics/sample.hpp"
+
 namespace rift::sweep {
 namespace {
 
@@ -105,8 +107,10 @@ double Silhouette(const std::vector<Features>& points, const std::vector<Feature
 std::vector<Features> BestCentres(const std::vector<Features>& points,
                                   const ClusterOptions& options) {
   std::vector<Features> some;
-  const size_t step = 1 + (points.size() - 1) / static_cast<size_t>(options.most_compared);
-  for (size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
+  const auto most_compared = static_cast<size_t>(options.most_compared);
+  for (const size_t i : statistics::SampleInOrder(points.size(), most_compared)) {
+    some.push_back(points[i]);
+  }
   std::vector<Features> best = Centres(some, 1);
   double best_silhouette = options.least_silhouette;
   const int most = std::min(options.most_clusters, static_cast<int>(some.size()) - 1);
