@@ -364,9 +364,9 @@ TEST_CASE("The paths of the page are those of their rows, references and views")
       if (is_worse) worst = row;
     }
     INFO("view " << data["views"][k]["name"]);
-    // Of more than 30 every second one is drawn.
-    for (size_t i = 1; rows.size() > 30 && i < ids.size(); ++i) ids.erase(i);
-    CHECK(view["lines"] == ids);
+    const json& lines = view["lines"];  // of more than 30 some
+    CHECK(lines.size() == std::min<size_t>(30, rows.size()));
+    CHECK(std::includes(ids.begin(), ids.end(), lines.begin(), lines.end()));
     CHECK(view["drawn_of"] == rows.size());
     CHECK(view["references"] == json(references));
     REQUIRE(worst);

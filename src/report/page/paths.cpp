@@ -7,6 +7,7 @@
 #include "parts.hpp"
 #include "rift/report/figures/setting_grid.hpp"
 #include "rift/statistics/descriptive.hpp"
+#include "rift/statistics/sample.hpp"
 #include "rift/sweep/falsify/evidence.hpp"
 
 namespace rift::report {
@@ -100,8 +101,7 @@ class PathMaker {
       if (result_.rows[row].IsOk()) arrived.push_back(&PathOf(row));
     }
     json paths = {{"references", References(view)}, {"lines", json::array()}};
-    const std::size_t step = 1 + drawable.size() / (kMostLines + 1);
-    for (std::size_t i = 0; i < drawable.size(); i += step) {
+    for (const std::size_t i : statistics::SampleInOrder(drawable.size(), kMostLines)) {
       paths["lines"].push_back(Show(drawable[i]));
     }
     paths["drawn_of"] = drawable.size();
