@@ -225,7 +225,7 @@ void ExplainGate(SteeringCheck& check, const std::string& key, const char* unit,
 bool ExplainRefused(SteeringCheck& check, const Case& run) {
   const TrialResult& result = run.result;
   const auto refused = static_cast<double>(result.poses_refused),
-             seen = refused + static_cast<double>(result.trajectory.poses.size());
+             seen = refused + static_cast<double>(result.poses_believed);
   if (refused <= kMany * seen) return false;
   const control::PoseGateOptions& gate = run.navigator.pose_gate;
   check.is_identified = false;  // of so few poses
@@ -249,8 +249,10 @@ bool ExplainRefused(SteeringCheck& check, const Case& run) {
   return true;
 }
 
-double MeanInterval_s(const trajectory::Trajectory& log) {
-  return (log.poses.back().t_s - log.poses.front().t_s) / static_cast<double>(log.poses.size() - 1);
+/// Of the poses that came in, of which the log may hold a part.
+double MeanInterval_s(const TrialResult& result) {
+  const std::vector<trajectory::StampedPose>& logged = result.trajectory.poses;
+  return (logged.back().t_s - logged.front().t_s) / static_cast<double>(result.poses_believed - 1);
 }
 
 /// True when so many decisions were zero power that the robot could not drive.
@@ -262,7 +264,7 @@ bool ExplainStale(SteeringCheck& check, const Case& run) {
   const double limit_s = run.options.pose_stale_s, age_s = result.arrival_age_s;
   const std::string share =
       stale == all ? fmt::format("all {:.0f}", all) : fmt::format("{:.0f} %", 100.0 * stale / all);
-  const double oldest_s = age_s + 2.0 * MeanInterval_s(result.trajectory);
+  const double oldest_s = age_s + 2.0 * MeanInterval_s(result);
   if (oldest_s < limit_s) {
     check.causes.push_back(fmt::format(
         "{}{} decisions were zero power: poses are {:.2f} s old when they come in, but then none "

@@ -79,9 +79,8 @@ void Recorder::Refused(bool is_move, bool is_turn) {
 
 void Recorder::CameIn(double pose_age_s) {
   double& mean_s = result_.arrival_age_s;
-  ++came_in_;
-  mean_s =
-      came_in_ == 1 ? pose_age_s : mean_s + (pose_age_s - mean_s) / static_cast<double>(came_in_);
+  const auto poses = static_cast<double>(++result_.poses_believed);
+  mean_s = poses == 1.0 ? pose_age_s : mean_s + (pose_age_s - mean_s) / poses;
 }
 
 void Recorder::Decided(double now_s, const control::Decision& decision, size_t active_after) {

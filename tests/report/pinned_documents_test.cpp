@@ -357,6 +357,7 @@ hardware::DriveRun Driven(Numbers& next) {
   result.trajectory = Crooked(0.2, 0.0);
   result.commands = {{1.75, {0.25, -0.5}}, {2.0, {0.75, 0.125}}};
   result.poses_refused = 3;
+  result.poses_believed = result.trajectory.poses.size();
   result.stale_decisions = 5;
   result.limits.decisions = 77;
   result.limits.largest_raw_v = next();

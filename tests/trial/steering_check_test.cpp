@@ -444,6 +444,36 @@ TEST_CASE(
   CHECK(bench.Run().stale_decisions == 0);
 }
 
+TEST_CASE("What is said of refused and stale poses is the same however few rows are logged") {
+  Bench bench;
+  bench.options.timeout_s = 6.0;
+  const bool is_stale = GENERATE(true, false);
+  test::FakeRobotOptions at_start{.world_from_start = control::StartPose(kTask)};
+  if (is_stale) at_start.sensing_delay_s = 0.6;
+  const auto run = [&] {
+    test::FakeRobot robot(at_start);
+    robot.spoil = [&](Sensed& sensed) {
+      const bool jumps = !is_stale && std::llround(50.0 * sensed.now_s) % 3 != 0;
+      if (jumps) sensed.pose->world_from_robot.x_m += 5.0;
+    };
+    return RunTrial(robot, kTask, bench.navigator, bench.options);
+  };
+  const TrialResult whole = run();
+  bench.options.log_period_s = 0.5;
+  const TrialResult thinned = run();
+  REQUIRE(thinned.trajectory.poses.size() > 1);
+  REQUIRE(5 * thinned.trajectory.poses.size() < whole.trajectory.poses.size());
+  CHECK(thinned.poses_believed == whole.poses_believed);
+  const SteeringCheck of_whole = bench.Check(whole), of_thinned = bench.Check(thinned);
+  REQUIRE_FALSE(of_whole.causes.empty());
+  CHECK(of_thinned.causes.front() == of_whole.causes.front());
+  if (!is_stale) return;
+  REQUIRE(of_whole.proposals.size() == 1);
+  REQUIRE(of_thinned.proposals.size() == 1);
+  // The log ends with its last row.
+  CHECK(of_thinned.proposals[0].value == Approx(of_whole.proposals[0].value).epsilon(0.03));
+}
+
 TEST_CASE("Of a gate that is too narrow its key is proposed and no gain") {
   Bench bench;
   const bool is_speed = GENERATE(true, false);

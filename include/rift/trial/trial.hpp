@@ -63,6 +63,7 @@ struct TrialResult {
   double pose_age_s = -1.0;
   /// Mean age of the believed poses as they came in, since their capture; -1: none did.
   double arrival_age_s = -1.0;
+  size_t poses_believed = 0;  ///< that came in, logged or left out by trial.log_period_s
 
   double Duration_s() const { return end_s - start_s; }
 };
@@ -121,7 +122,7 @@ class Recorder {
   double log_period_s_;
   Observer* observer_;
   size_t active_ = 1;
-  size_t ages_ = 0, came_in_ = 0;
+  size_t ages_ = 0;
   TrialResult result_;
 };
 
