@@ -53,7 +53,8 @@ struct CaptureOptions {
     field(
         "times", self.times,
         "file with the times of a pattern of pictures: a line each, seconds, or name and seconds; "
-        "without it the numbers in their names count, at fps a second");
+        "exif: as their EXIF data say; without either the numbers in their names count, at fps a "
+        "second");
   }
 };
 
