@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "rift/control/navigator.hpp"
 #include "rift/gap/likeness.hpp"
 #include "rift/sweep/calibrate/error_structure.hpp"
 #include "rift/trial/loop_delay.hpp"
@@ -157,6 +158,35 @@ TEST_CASE("Simulated logs of powers have begun when their own trial did") {
   };
   // Of logs whose beginning nobody knows the simulated ones count from their first picture as well.
   CHECK(errors(false) > 3.0 * errors(true));
+}
+
+TEST_CASE("A path has traits when its yaw answers the steering, at once as well, and none else") {
+  const TwinAt twin = [](size_t, const std::vector<double>&) { return Turn(); };
+  SimulatedTwins simulator(twin, 1);
+  // A drive whose yaw turns by what is asked at each row until the next one.
+  const auto driven = [](double gain_rad_s) {
+    const SimulatedTrial of = Turn();
+    control::Navigator navigator(of.control, of.task.waypoints);
+    Trajectory path;
+    trajectory::StampedPose pose;
+    constexpr double kRow_s = 0.05;
+    for (int i = 0; i < 90; ++i) {
+      path.poses.push_back(pose);
+      const control::WheelPower power =
+          navigator.Step({pose.t_s, kRow_s, pose.t_s, pose.Planar()}).power;
+      navigator.NoteSent(pose.t_s, power);
+      pose.t_s += kRow_s;
+      pose.x_m += kRow_s * 0.1 * std::cos(pose.yaw_rad);
+      pose.y_m += kRow_s * (0.1 * std::sin(pose.yaw_rad) + (i % 2 == 0 ? 0.02 : -0.02));
+      pose.yaw_rad += kRow_s * gain_rad_s * (power.right - power.left);
+    }
+    return path;
+  };
+  const Traits at_once = simulator.TraitsOf(driven(3.0), 0, {});
+  REQUIRE(at_once);
+  CHECK((*at_once)[kLoopDelay_s] == 0.0);
+  CHECK((*at_once)[kSteeringGain] == Approx(3.0).epsilon(0.02));
+  CHECK_FALSE(simulator.TraitsOf(driven(0.0), 0, {}));  // it does not turn at all
 }
 
 }  // namespace
