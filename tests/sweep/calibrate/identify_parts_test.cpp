@@ -193,6 +193,7 @@ TEST_CASE("The first four parameters are told with their values, and that there 
   // Runs of more than half of the way are detours here.
   CHECK(report.judged.back().before.circled_runs == 2);
   CHECK(report.judged.back().before.failed_runs == 2);
+  CHECK(std::isnan(report.trials[0].gap_before_m));
   REQUIRE(told.size() == 1);
   CHECK(told[0].starts_with("0:"));  // less than a minute
   std::vector<std::string> parts{""};
