@@ -107,15 +107,18 @@ TEST_CASE("The files of a sweep are as documented") {
 
 TEST_CASE("The likeness of a sweep and the features of its classifier are as documented") {
   const test::TemporaryFolder folder;
-  for (const int trial : {1, 2}) {
-    const std::string n = std::to_string(trial);
-    RunInto(folder, "log" + n + ".csv", {"simulate", kTask, "--seed", n});
+  int seed = 0;
+  for (const std::string of_setting : {"0.30", "0.31"}) {
+    for (const std::string trial : {"1", "2"}) {
+      RunInto(folder, "log" + of_setting + "_" + trial + ".csv",
+              {"simulate", kTask, "--seed", std::to_string(++seed)});
+    }
   }
   test::WriteText(folder / "like.yaml", "include: " + kTask + R"(
 name: like
 space: {control.v_max: [0.30, 0.31]}
 start: reference
-reference: {kind: logs, path: "log{trial}.csv", trials: [1, 2]}
+reference: {kind: logs, path: "log{v_max:.2f}_{trial}.csv", trials: [1, 2]}
 likeness: {runs: 3, shuffles: 19, bootstrap: {resamples: 20}, classifier: {permutations: 3}}
 )");
   const std::string out = RunInto(folder, "out", {"sweep", folder / "like.yaml", "--quiet"});

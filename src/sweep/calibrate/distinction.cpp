@@ -2,9 +2,14 @@
 
 #include <cmath>
 #include <map>
+#include <set>
+#include <span>
 #include <string>
+#include <utility>
 
 #include "rift/statistics/descriptive.hpp"
+#include "rift/statistics/hash.hpp"
+#include "rift/sweep/falsify/copy_sets.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -12,16 +17,50 @@ namespace {
 using statistics::Observation;
 using statistics::TwoSampleTest;
 
+/// The same for paths with the same rows.
+std::uint64_t KeyOf(const trajectory::Trajectory& path) {
+  std::vector<double> numbers;
+  for (const trajectory::StampedPose& pose : path.poses) {
+    numbers.insert(numbers.end(), {pose.t_s, pose.x_m, pose.y_m});
+  }
+  return statistics::Hash64(std::as_bytes(std::span<const double>(numbers)));
+}
+
+/// Of each trial, counted from 0: its setting with all that have a path in common with it, as those
+/// have that differ in what no log names. A classifier trained on one of them has seen the others'.
+std::vector<size_t> GroupsOf(const std::vector<RepeatedTrial>& trials) {
+  std::map<std::string, size_t> first_of_setting;
+  std::map<std::uint64_t, size_t> first_with_path;
+  CopySets sets(trials.size());
+  for (size_t i = 0; i < trials.size(); ++i) {
+    const auto join_with_first = [&](const trajectory::Trajectory& path) {
+      sets.Join(i, first_with_path.try_emplace(KeyOf(path), i).first->second);
+    };
+    sets.Join(i, first_of_setting.try_emplace(trials[i].setting, i).first->second);
+    join_with_first(trials[i].real);
+    for (const trajectory::Trajectory& run : trials[i].runs) join_with_first(run);
+  }
+  std::map<size_t, size_t> numbers;
+  std::vector<size_t> groups;
+  for (size_t i = 0; i < trials.size(); ++i) {
+    groups.push_back(numbers.try_emplace(sets.FirstOf(i), numbers.size()).first->second);
+  }
+  return groups;
+}
+
+/// Each path of a side once, however many trials have it: labels of copies cannot be shuffled.
 std::vector<Observation> ObservationsOf(const std::vector<RepeatedTrial>& trials,
                                         const gap::LikenessOptions& options) {
-  std::map<std::string, size_t> numbers;
+  const std::vector<size_t> groups = GroupsOf(trials);
+  std::set<std::pair<bool, std::uint64_t>> seen;
   std::vector<Observation> observations;
-  for (const RepeatedTrial& trial : trials) {
-    const size_t group = numbers.try_emplace(trial.setting, numbers.size()).first->second;
-    observations.push_back({FeaturesOf(trial.real, options), true, group});
-    for (const trajectory::Trajectory& run : trial.runs) {
-      observations.push_back({FeaturesOf(run, options), false, group});
-    }
+  for (size_t i = 0; i < trials.size(); ++i) {
+    const auto add = [&](const trajectory::Trajectory& path, bool is_real) {
+      if (!seen.insert({is_real, KeyOf(path)}).second) return;
+      observations.push_back({FeaturesOf(path, options), is_real, groups[i]});
+    };
+    add(trials[i].real, true);
+    for (const trajectory::Trajectory& run : trials[i].runs) add(run, false);
   }
   return observations;
 }

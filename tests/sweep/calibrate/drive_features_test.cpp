@@ -226,6 +226,48 @@ TEST_CASE("A simulator that is too fast is told by its speed") {
   }
 }
 
+TEST_CASE(
+    "Settings that have a log or a run in common are tried together, and trained on neither") {
+  // Three surfaces of two logs each, under two simulators of which no log knows.
+  const auto distinguish = [](bool names_simulators) {
+    statistics::Random random(12, 1);
+    std::vector<RepeatedTrial> trials;
+    for (const std::string surface : {"a", "b", "c"}) {
+      const std::vector<Trajectory> reals = Drives(2, 1.0, random);
+      for (const std::string simulator : {"1", "2"}) {
+        for (const Trajectory& real : reals) {
+          trials.push_back({.setting = names_simulators ? surface + simulator : surface,
+                            .real = real,
+                            .runs = Drives(1, 1.0, random)});
+        }
+      }
+    }
+    return Distinguish(trials, {.classifier = {.permutations = 9}}, 1);
+  };
+  const Distinction surfaces = distinguish(false), simulators = distinguish(true);
+  REQUIRE(surfaces.all.groups == 3);
+  CHECK(simulators.all.groups == 3);
+  CHECK(simulators.without_timing.groups == 3);
+  CHECK(simulators.all.first == 6);  // each of which stands under both simulators
+  CHECK(simulators.all.second == 12);
+  CHECK(simulators.all.accuracy == surfaces.all.accuracy);
+  CHECK(simulators.all.accuracy_interval.low == surfaces.all.accuracy_interval.low);
+  CHECK(simulators.all.p == surfaces.all.p);
+  CHECK(simulators.without_timing.accuracy == surfaces.without_timing.accuracy);
+
+  // One simulated log beside the logs of two settings.
+  statistics::Random random(13, 1);
+  const std::vector<Trajectory> reals = Drives(5, 1.0, random), runs = Drives(3, 1.0, random);
+  std::vector<RepeatedTrial> trials;
+  for (const size_t i : {0, 1, 2, 3, 4}) {
+    trials.push_back({.setting = std::to_string(i), .real = reals[i], .runs = {runs[i / 2]}});
+  }
+  const Distinction shared = Distinguish(trials, {.classifier = {.permutations = 1}}, 1);
+  CHECK(shared.all.groups == 3);
+  CHECK(shared.all.first == 5);
+  CHECK(shared.all.second == 3);
+}
+
 TEST_CASE("The authors' Webots logs are told from their robot's in settings not seen") {
   RIFT_SKIP_WITHOUT_TRIALS();
   std::vector<RepeatedTrial> trials;

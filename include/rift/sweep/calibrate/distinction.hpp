@@ -25,7 +25,8 @@ struct Distinction {
   std::vector<FeatureSummary> features;      ///< one for each of DriveFeatures()
 };
 
-/// Settings are the groups of statistics::TestTwoSamples, real logs its first sample.
+/// Settings are the groups of statistics::TestTwoSamples, those that share a log or a run together
+/// one; real logs are its first sample.
 Distinction Distinguish(const std::vector<RepeatedTrial>& trials,
                         const gap::LikenessOptions& options, std::uint64_t seed);
 
