@@ -113,6 +113,7 @@ ErrorModel ErrorModel::OfSimulatedLogs(const Eigen::VectorXd& shares, int repeat
       simulator_.LogsAt(logs_, ValuesAt(parameters_, shares), repeat);
   for (size_t i = 0; i < logs_.size(); ++i) {
     logs.push_back({logs_[i].name, logs_[i].setting, std::move(runs[i])});
+    logs.back().drives_grid_fps = logs_[i].drives_grid_fps;
     if (logs_[i].began_s) logs.back().began_s = 0.0;  // a simulated clock begins with the trial
   }
   ErrorModel model(parameters_, std::move(logs), simulator_, options_, shares);

@@ -6,6 +6,7 @@
 #include "model.hpp"
 #include "rift/gap/likeness.hpp"
 #include "rift/sweep/run/for_each.hpp"
+#include "rift/trajectory/frame_grid.hpp"
 #include "rift/trial/loop_delay.hpp"
 
 namespace rift::sweep {
@@ -28,12 +29,12 @@ Traits TraitsOfPath(const Trajectory& path, const SimulatedTrial& twin) {
 }
 
 /// Whole runs of one log that reached the end.
-std::vector<Trajectory> RunsOf(SimulatedTrial twin, int runs) {
+std::vector<Trajectory> RunsOf(SimulatedTrial twin, int runs, double grid_fps) {
   std::vector<Trajectory> paths;
   for (int i = 0; i < runs; ++i, ++twin.seed) {
     SimulatedRun run = Simulate(twin);
     if (run.result.outcome == trial::Outcome::kReached) {
-      paths.push_back(std::move(run.result.trajectory));
+      paths.push_back(trajectory::OnFramesOf(std::move(run.result.trajectory), grid_fps));
     }
   }
   return paths;
@@ -50,7 +51,7 @@ LogPrediction PredictionOf(const CalibrationLog& log, const SimulatedTrial& twin
         Eigen::Vector3d(motions[i].ahead_m, motions[i].left_m, motions[i].turned_rad);
     prediction.frames.push_back(motions[i].frames);
   }
-  prediction.runs = RunsOf(twin, options.runs);
+  prediction.runs = RunsOf(twin, options.runs, log.drives_grid_fps);
   std::vector<Traits> traits;
   for (const Trajectory& run : prediction.runs) traits.push_back(TraitsOfPath(run, twin));
   prediction.mean_traits = MeanTraits(traits);
@@ -73,7 +74,8 @@ std::vector<Trajectory> SimulatedTwins::LogsAt(const std::vector<CalibrationLog>
                                                const std::vector<double>& values, int repeat) {
   std::vector<Trajectory> runs;
   for (size_t i = 0; i < logs.size(); ++i) {
-    runs.push_back(RunWithin(logs[i].longest_m, twin_(i, values), repeat));
+    runs.push_back(trajectory::OnFramesOf(RunWithin(logs[i].longest_m, twin_(i, values), repeat),
+                                          logs[i].drives_grid_fps));
   }
   return runs;
 }

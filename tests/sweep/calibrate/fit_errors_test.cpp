@@ -24,8 +24,11 @@ class Told : public FittedSimulator {
  public:
   explicit Told(std::vector<LogPrediction> predictions) : predictions_(std::move(predictions)) {}
 
-  std::vector<LogPrediction> Predict(const std::vector<CalibrationLog>&, const std::vector<double>&,
+  std::vector<LogPrediction> Predict(const std::vector<CalibrationLog>& logs,
+                                     const std::vector<double>&,
                                      const CalibrationOptions&) override {
+    grids_fps.clear();
+    for (const CalibrationLog& log : logs) grids_fps.push_back(log.drives_grid_fps);
     return predictions_;
   }
   std::vector<Trajectory> LogsAt(const std::vector<CalibrationLog>&, const std::vector<double>&,
@@ -40,6 +43,7 @@ class Told : public FittedSimulator {
   bool HasWholeRunsOnly() const override { return true; }
 
   std::vector<Trajectory> made;
+  std::vector<double> grids_fps;  ///< of the drives of the logs that it was asked of last
   bool has_traits = false;
 
  private:
@@ -138,6 +142,19 @@ TEST_CASE("Simulated logs are told in the scatter of the real ones, each beside 
   const double scatter = TraitsOfLogs(logs, simulator, {}).scatter[kLogSpeed];  // of 0 to 0.52
   CHECK(errors[0].traits[kLogSpeed] == Approx((1.0 - 0.2) / scatter));
   CHECK(errors[3].traits[kLogSpeed] == Approx((1.0 - 1.22) / scatter));
+}
+
+TEST_CASE("What is driven in the place of a simulated log stands on the frames of the real one's") {
+  std::vector<CalibrationLog> logs{Log("a", 0.0), Log("b", 0.5)};
+  logs[1].drives_grid_fps = 30.0;
+  Told simulator(std::vector<LogPrediction>(2));
+  simulator.made = {Lane(0.2), Lane(0.9)};
+  const std::vector<experiment::FreeParameter> parameters{{.key = "p", .max = 1.0}};
+  const CalibrationOptions options;
+  const Eigen::VectorXd shares = Eigen::VectorXd::Constant(1, 0.5);
+  const ErrorModel real(parameters, logs, simulator, options, shares);
+  real.OfSimulatedLogs(shares, 0).RawErrorsAt(shares);
+  CHECK(simulator.grids_fps == std::vector<double>{0.0, 30.0});
 }
 
 TEST_CASE("How far repeats are apart leaves the first tenth of their paths out") {

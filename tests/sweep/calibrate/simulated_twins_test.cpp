@@ -8,6 +8,7 @@
 #include "rift/control/navigator.hpp"
 #include "rift/gap/likeness.hpp"
 #include "rift/sweep/calibrate/error_structure.hpp"
+#include "rift/trajectory/frame_grid.hpp"
 #include "rift/trial/loop_delay.hpp"
 #include "sweep/calibrate/fitted_simulator.hpp"
 #include "sweep/calibrate/model.hpp"
@@ -89,6 +90,52 @@ TEST_CASE("A simulated log that would be longer than its own may be is driven ag
     CHECK(made[log].poses.back().x_m == path.poses.back().x_m);
     CHECK(made[log].poses.back().t_s == path.poses.back().t_s);
   }
+}
+
+std::vector<double> StampsOf_s(const Trajectory& path) {
+  std::vector<double> stamps_s;
+  for (const auto& pose : path.poses) stamps_s.push_back(pose.t_s);
+  return stamps_s;
+}
+
+TEST_CASE("Simulated logs and runs have their stamps on the frames that those of the logs are on") {
+  // A loop that stamps the frames of its camera late.
+  const TwinAt twin = [](size_t log, const std::vector<double>&) {
+    SimulatedTrial one = Turn();
+    one.seed += 100 * log;
+    one.trial.timeout_s = 8.0;
+    one.simulation.mocap.rate_hz = 30.0;
+    one.simulation.mocap.host_period_s = 0.053;
+    return one;
+  };
+  SimulatedTwins simulator(twin, 1);
+  CalibrationOptions options;
+  options.horizon.phases = 0;
+  options.runs = 1;
+  std::vector<CalibrationLog> logs(4);
+  std::vector<SimulatedRun> runs;  // that predict: a log has the seed of the first
+  for (size_t i = 0; i < logs.size(); ++i) {
+    runs.push_back(Simulate(twin(i, {})));
+    logs[i].log = runs[i].result.trajectory;
+    logs[i].drives_grid_fps = i == 0 ? 0.0 : 30.0;
+  }
+  const std::vector<Trajectory> made = simulator.LogsAt(logs, {}, 0);
+  const std::vector<LogPrediction> predicted = simulator.Predict(logs, {}, options);
+  int moved_logs = 0, moved_runs = 0;
+  for (size_t i = 0; i < logs.size(); ++i) {
+    const auto on_frames = [&](const Trajectory& path) {
+      return StampsOf_s(trajectory::OnFramesOf(path, logs[i].drives_grid_fps));
+    };
+    const Trajectory as_stamped = RunWithin(logs[i].longest_m, twin(i, {}), 0);
+    CHECK(StampsOf_s(made[i]) == on_frames(as_stamped));
+    moved_logs += on_frames(as_stamped) != StampsOf_s(as_stamped);
+    if (runs[i].result.outcome != trial::Outcome::kReached) continue;
+    REQUIRE(predicted[i].runs.size() == 1);
+    CHECK(StampsOf_s(predicted[i].runs[0]) == on_frames(logs[i].log));
+    moved_runs += on_frames(logs[i].log) != StampsOf_s(logs[i].log);
+  }
+  CHECK(moved_logs > 0);  // where the grid is found
+  CHECK(moved_runs > 0);
 }
 
 /// Ahead and back by powers, by the clock of the trial, seen exactly by a camera without delay.
