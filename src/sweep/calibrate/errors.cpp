@@ -23,10 +23,13 @@ double LogSpread(const Trajectory& a, const Trajectory& b) {
   return std::log(std::max(1e-4, gap::Gap(a, b, SpreadGap())));
 }
 
+/// One where it is not known how the values scatter: of one alone, and of logs that are alike to
+/// the micrometre that logs are written to, as no two drives are.
 double Scatter(std::vector<double> values) {
+  constexpr double kLeast = 1e-4;  // of a logarithm, in s, in rad/s
   std::erase_if(values, [](double value) { return std::isnan(value); });
   const double deviation = statistics::StandardDeviation(values);
-  return deviation > 0.0 ? deviation : 1.0;
+  return deviation > kLeast ? deviation : 1.0;
 }
 
 double SpreadError(const LogPrediction& a, const LogPrediction& b, double logged, double scatter) {

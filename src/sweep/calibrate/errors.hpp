@@ -20,7 +20,7 @@ class FittedSimulator;
 /// What is known of the logs before anything is simulated.
 struct LoggedTraits {
   std::vector<Traits> of_log;
-  Eigen::Vector4d scatter;         ///< standard deviation of each trait among the logs
+  Eigen::Vector4d scatter;         ///< standard deviation of each trait among the logs; 1: unknown
   std::vector<int> partner;        ///< an earlier log of the same setting; -1: none
   std::vector<double> log_spread;  ///< logarithm of the gap to the partner; NaN without one
   double spread_scatter = 1.0;

@@ -120,6 +120,30 @@ TEST_CASE("A trait that the log or that the runs do not tell is no error") {
   CHECK(errors(true, true)[kLogWeave] == 3.0);
 }
 
+TEST_CASE(
+    "Logs that are alike but for rounding tell no scatter, and their traits outweigh nothing") {
+  Told simulator(std::vector<LogPrediction>(3));
+  simulator.has_traits = true;
+  // What is far less than a drive differs from the next: of sums, of a micrometre in a log.
+  for (const double rounding : {1e-16, 1e-12, 1e-6}) {
+    CAPTURE(rounding);
+    const std::vector<CalibrationLog> logs{Log("a", 0.4), Log("b", 0.4 + rounding),
+                                           Log("c", 0.4 - rounding)};
+    CHECK(TraitsOfLogs(logs, simulator, {}).scatter[kLogSpeed] == 1.0);
+  }
+  // As three drives of a robot that is as even as any do differ.
+  const std::vector<CalibrationLog> even{Log("a", 0.4), Log("b", 0.401), Log("c", 0.399)};
+  CHECK(TraitsOfLogs(even, simulator, {}).scatter[kLogSpeed] == Approx(0.001));
+
+  // Repeats that are copies: each pair a tenth of a millimetre apart.
+  std::vector<CalibrationLog> copies;
+  for (const std::string setting : {"a", "b", "c", "d", "e", "f"}) {
+    copies.push_back(Log(setting, 0.4));
+    copies.push_back(Log(setting, 0.4));
+  }
+  CHECK(TraitsOfLogs(copies, simulator, {}).spread_scatter == 1.0);
+}
+
 TEST_CASE("Simulated logs are told in the scatter of the real ones, each beside its own repeat") {
   const std::vector<CalibrationLog> logs{Log("a", 0.0), Log("b", 0.5), Log("a", 0.04),
                                          Log("b", 0.52)};
