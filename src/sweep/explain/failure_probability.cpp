@@ -36,8 +36,9 @@ FailureProbability EstimateFailureProbability(const SweepResult& result) {
   }
   if (estimate.draws == 0) {
     estimate.sentence =
-        "How often it fails over the whole space is not known: the settings were chosen, not drawn "
-        "at random";
+        fmt::format("How often it fails over the whole space is not known: the settings were {}",
+                    estimate.untold > 0 ? "drawn at random, and none of their trials tells"
+                                        : "chosen, not drawn at random");
     return estimate;
   }
   const statistics::Interval share =

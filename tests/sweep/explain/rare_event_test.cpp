@@ -54,6 +54,29 @@ TEST_CASE("Of each drawn setting the first trial that tells counts") {
       EstimateFailureProbability(result).sentence.ends_with("each at a setting drawn at random)"));
 }
 
+TEST_CASE("Draws of which none tells are not said to be chosen, and chosen settings not drawn") {
+  const auto sentence = [](bool is_drawn) {
+    SweepResult result;
+    result.parameters = {{.key = "x", .min = 0.0, .max = 1.0}};
+    result.rows = {Draw(0.1, TrialStatus::kCrashed, false), Draw(0.2, TrialStatus::kHung, false)};
+    for (TrialRow& row : result.rows) row.is_random_draw = is_drawn;
+    Summarise(result);
+    const FailureProbability found = EstimateFailureProbability(result);
+    CHECK(found.draws == 0);
+    CHECK(found.untold == (is_drawn ? 2 : 0));
+    CHECK(std::isnan(found.share));
+    CHECK(found.low == 0.0);
+    CHECK(found.high == 1.0);
+    return found.sentence;
+  };
+  CHECK(sentence(true) ==
+        "How often it fails over the whole space is not known: the settings were drawn at random, "
+        "and none of their trials tells");
+  CHECK(sentence(false) ==
+        "How often it fails over the whole space is not known: the settings were chosen, not drawn "
+        "at random");
+}
+
 experiment::Experiment Plan() {
   experiment::Experiment plan;
   plan.seed = 5;
