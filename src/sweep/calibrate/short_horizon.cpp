@@ -1,6 +1,7 @@
 #include "rift/sweep/calibrate/short_horizon.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "rift/geometry/pose2.hpp"
@@ -133,8 +134,11 @@ Trajectory Replay(const SimulatedTrial& trial, const Trajectory& log,
                   std::optional<double> began_s) {
   const double from_s = began_s.value_or(log.poses.front().t_s);
   RobotOfLog robot(trial, log, from_s);
+  // The log alone says when it ends.
   trial::TrialOptions options = trial.trial;
   options.timeout_s = std::max(options.timeout_s, log.poses.back().t_s - from_s + 1.0);
+  options.lost_after_s = std::numeric_limits<double>::infinity();
+  options.arena = {};
   trial::RunTrial(robot, trial.task, trial.control, options);
   return robot.Path();
 }

@@ -1,4 +1,5 @@
 // How a log is replayed: on its clock, to its end, whatever the twin's own trial would have met.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
@@ -61,6 +62,36 @@ TEST_CASE("A replay runs on for a tenth of a second after the last pose of the l
     CHECK(after_s() > 0.1 + age_s);
     CHECK(after_s() < 0.1 + age_s + 0.021);
   }
+}
+
+TEST_CASE(
+    "A replay goes on where the log leaves the arena of the twin's own trial, or begins outside") {
+  const Trajectory whole = Replay(Short(), Log());
+  SimulatedTrial leaves = Short(), begins = Short();
+  leaves.trial.arena.x_max_m = 0.1;
+  begins.trial.arena.x_min_m = 0.1;
+  for (const SimulatedTrial& twin : {leaves, begins}) {
+    const Trajectory path = Replay(twin, Log());
+    REQUIRE(path.poses.size() == whole.poses.size());
+    CHECK(path.poses.back().x_m == whole.poses.back().x_m);
+  }
+}
+
+TEST_CASE("A replay goes on behind a gap in the log that is longer than a trial waits for a pose") {
+  const SimulatedTrial twin = Short();
+  Trajectory log = Log();
+  log.poses.resize(log.poses.size() - 3);  // before it arrives
+  for (size_t i = log.poses.size() / 2; i < log.poses.size(); ++i) {
+    log.poses[i].t_s += 2.0 * twin.trial.lost_after_s;
+  }
+  const Trajectory path = Replay(twin, log);
+  CHECK(path.poses.back().t_s > log.poses.back().t_s + 0.1);
+  // It drives again: not the pose at which it stood in the gap.
+  const double began_again_s = log.poses[log.poses.size() / 2].t_s;
+  const auto stood = std::find_if(path.poses.begin(), path.poses.end(),
+                                  [&](const auto& pose) { return pose.t_s >= began_again_s; });
+  REQUIRE(stood != path.poses.end());
+  CHECK(path.poses.back().x_m > stood->x_m + 0.01);
 }
 
 TEST_CASE("A connection that stands late is the log's own to tell, not the twin's to draw") {
