@@ -32,8 +32,8 @@ class FittedSimulator {
   virtual std::vector<LogPrediction> Predict(const std::vector<CalibrationLog>& logs,
                                              const std::vector<double>& values,
                                              const CalibrationOptions& options) = 0;
-  /// A run in the place of each log, with noise of its own for each repeat (from 0), no longer than
-  /// the log allows (see RunWithin).
+  /// A run in the place of each log, with noise of its own for each repeat (from 0), that arrives
+  /// and is no longer than the log allows (see RunWithin).
   virtual std::vector<trajectory::Trajectory> LogsAt(const std::vector<CalibrationLog>& logs,
                                                      const std::vector<double>& values,
                                                      int repeat) = 0;

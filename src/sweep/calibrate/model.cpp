@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <utility>
 
 #include "fitted_simulator.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
@@ -30,13 +31,14 @@ std::uint64_t SeedInPlace(std::uint64_t first, int repeat, int attempt) {
 
 trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin, int repeat) {
   const std::uint64_t first = twin.seed;
-  trajectory::Trajectory run;
+  trial::TrialResult run;
   for (int i = 0; i < kMostTries; ++i) {
     twin.seed = SeedInPlace(first, repeat, i);
-    run = Simulate(twin).result.trajectory;
-    if (LengthByStrides_m(run) <= longest_m) break;
+    run = Simulate(twin).result;
+    const bool has_arrived = run.outcome == trial::Outcome::kReached;
+    if (has_arrived && LengthByStrides_m(run.trajectory) <= longest_m) break;
   }
-  return run;
+  return std::move(run.trajectory);
 }
 
 std::vector<double> ValuesAt(const std::vector<experiment::FreeParameter>& parameters,

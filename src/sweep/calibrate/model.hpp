@@ -20,10 +20,10 @@ constexpr std::uint64_t kSeedsOfLog = 100'000;  ///< between the first seeds of 
 /// takes, up to repeat 39.
 std::uint64_t SeedInPlace(std::uint64_t first, int repeat, int attempt);
 
-constexpr int kMostTries = 10;  ///< of a run in the place of a log, to be no longer than it may
+constexpr int kMostTries = 10;  ///< of a run in the place of a log, to arrive on no detour
 
-/// A run of the twin in the place of a log that is no longer than that by strides: that of the
-/// first try, else of one of the next nine; without any such run the last of them.
+/// A run of the twin in the place of a log that arrives and is no longer than that by strides: that
+/// of the first try, else of one of the next nine; without any such run the last of them.
 trajectory::Trajectory RunWithin(double longest_m, SimulatedTrial twin, int repeat);
 
 /// What is known of the parameters beside the logs: independent normal distributions, in shares of

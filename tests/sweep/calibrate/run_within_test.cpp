@@ -39,6 +39,39 @@ TEST_CASE("A simulated log that makes a detour is driven again, and the last try
   CHECK(LengthWithin_m(again_m, twin) <= again_m);
 }
 
+TEST_CASE("A simulated log that does not arrive is driven again, as no log of a fit is one") {
+  SimulatedTrial twin{.task =
+                          std::vector<control::Waypoint>{{.name = "a", .x_m = 0.0, .y_m = 0.0},
+                                                         {.name = "b", .x_m = 0.4, .y_m = 0.0},
+                                                         {.name = "c", .x_m = 0.4, .y_m = 0.4}}};
+  const auto try_of = [&twin](int repeat, int attempt) {
+    SimulatedTrial one = twin;
+    one.seed = SeedInPlace(twin.seed, repeat, attempt);
+    return Simulate(one).result;
+  };
+  const auto check_is = [](const trajectory::Trajectory& path, const trial::TrialResult& result) {
+    REQUIRE(path.poses.size() == result.trajectory.poses.size());
+    CHECK(path.poses.back().t_s == result.trajectory.poses.back().t_s);
+    CHECK(path.poses.back().x_m == result.trajectory.poses.back().x_m);
+  };
+  constexpr double kAnyLength_m = std::numeric_limits<double>::infinity();
+  twin.trial.timeout_s = 8.0;
+  // A repeat whose first try takes longer than its second.
+  trial::TrialResult slow, fast;
+  const auto is_meant = [&](int repeat) {
+    slow = try_of(repeat, 0), fast = try_of(repeat, 1);
+    return slow.outcome == trial::Outcome::kReached && fast.outcome == trial::Outcome::kReached &&
+           slow.Duration_s() > fast.Duration_s();
+  };
+  int repeat = 0;
+  while (!is_meant(repeat)) REQUIRE(++repeat < 30);
+  check_is(RunWithin(kAnyLength_m, twin, repeat), slow);
+  twin.trial.timeout_s = 0.5 * (slow.Duration_s() + fast.Duration_s());
+  check_is(RunWithin(kAnyLength_m, twin, repeat), fast);
+  twin.trial.timeout_s = 0.5;  // none arrives: the last of ten stands
+  check_is(RunWithin(kAnyLength_m, twin, repeat), try_of(repeat, 9));
+}
+
 TEST_CASE("No run in the place of a log has the seed of another, nor of one that predicts") {
   std::set<std::uint64_t> seeds;
   size_t count = 0;
