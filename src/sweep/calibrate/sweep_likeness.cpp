@@ -95,11 +95,12 @@ void Gathering::AddTrials(const experiment::Theta& theta) {
   for (const TrialRequest& request : TrialsAt(experiment_, theta)) {
     const Recording real = evaluator_.Reference(request);
     if (real.status != TrialStatus::kOk) continue;
-    trials_.push_back({MainLevel(experiment_.space.parameters, theta),
-                       {.setting = SettingKey(experiment_.space.parameters, theta),
-                        .real = real.trajectory,
-                        .waypoints = at.waypoints,
-                        .control = at.control}});
+    trials_.push_back(
+        {MainLevel(experiment_.space.parameters, theta),
+         {.setting = SettingKey(experiment_.space.parameters, theta),
+          .real = real.trajectory,
+          .waypoints = at.waypoints,
+          .control = IsSimulated() ? at.control : ControllerFor(experiment_, request)}});
     if (IsSimulated()) {
       Plan(request, real, trials_.size() - 1);
     } else if (experiment_.candidate.kind == experiment::CandidateKind::kProgram) {

@@ -10,6 +10,7 @@
 #include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/trajectory/log.hpp"
+#include "rift/trial/loop_delay.hpp"
 #include "support/inputs/memory_files.hpp"
 #include "support/inputs/paths.hpp"
 
@@ -202,6 +203,46 @@ experiment::Experiment Calibration(int starts = 1) {
   plan.likeness.shuffles = 19;
   plan.likeness.bootstrap.resamples = 50;
   return plan;
+}
+
+TEST_CASE("Logs answer to the controller that their setting names") {
+  experiment::Experiment plan = Calibration();
+  plan.goal = experiment::Goal::kGrid;
+  plan.candidate.kind = CandidateKind::kLogs;
+  plan.candidate.path.text = plan.reference.path.text = "{p}_{trial}.csv";
+  plan.reference.trials.names = {"1", "2"};
+  plan.space.parameters = {
+      {.key = "control.heading.p", .levels = {{"0.03", 0.03}, {"0.036", 0.036}}}};
+  Files files;
+  std::vector<double> lags_s, gains_rad_s;  // of each level the mean of its two logs
+  for (const experiment::ParameterValue& level : plan.space.parameters[0].levels) {
+    lags_s.push_back(0.0);
+    gains_rad_s.push_back(0.0);
+    experiment::Experiment made = plan;
+    made.control.heading.p = *level.number;
+    for (const std::string trial : {"1", "2"}) {
+      SimulatedTrial run{.task = experiment::TaskOf(made),
+                         .control = made.control,
+                         .trial = made.trial,
+                         .simulation = made.simulation,
+                         .seed = 900 + files.size()};
+      const std::string name = level.text + "_" + trial + ".csv";
+      files[name] = trajectory::WriteRift(Simulate(run).result.trajectory);
+      const trial::LoopDelay delay = trial::EstimateLoopDelay(
+          trajectory::ReadLog(files[name], name).trajectory, made.waypoints, made.control);
+      REQUIRE(delay.lag_s >= 0.0);
+      lags_s.back() += 0.5 * delay.lag_s;
+      gains_rad_s.back() += 0.5 * delay.gain_rad_s;
+    }
+  }
+  Evaluator evaluator(plan, "e.yaml", InputsOf(files));
+  const std::vector<GroupLikeness> rows = MeasureSweepLikeness(evaluator);
+  REQUIRE(rows.size() == 3);
+  for (const size_t i : {0, 1}) {
+    CHECK(rows[i].likeness.loop_delay_s.real == Approx(lags_s[i]));
+    CHECK(rows[i].likeness.loop_delay_s.sim == Approx(lags_s[i]));
+    CHECK(rows[i].likeness.steering_gain_rad_s.real == Approx(gains_rad_s[i]));
+  }
 }
 
 TEST_CASE("Each simulated run beside a real one takes a draw of the ensemble of its own") {
