@@ -39,7 +39,10 @@ vision::WorldFrame WorldFromClicks(const vision::WorldSetting& setting,
   std::vector<vision::WorldPoint> clicked;
   std::optional<vision::Frame> frame;
   while (clicked.size() < points.size()) {
-    if (auto next = capture.Next(kTick_s)) frame = std::move(next);
+    if (auto next = capture.Next(kTick_s)) {
+      setting.session.RequireSize(*next);
+      frame = std::move(next);
+    }
     if (!(frame && capture.IsRecording())) setting.ThrowIfOver();
     if (setting.is_stopped()) throw std::runtime_error("stopped before the world frame was set");
     TrackScene scene{.camera = &camera, .frame = frame ? &*frame : nullptr};

@@ -51,13 +51,17 @@ Frame CameraSession::FirstPicture() {
           name, frame->width_px, frame->height_px, *why));
     }
   }
-  if (frame->width_px == camera_.width_px && frame->height_px == camera_.height_px) {
-    return std::move(*frame);
-  }
-  throw std::invalid_argument(
-      fmt::format("the camera {} gives {}x{} pixels and its calibration is for {}x{}: set the "
-                  "camera to that size, or calibrate anew",
-                  name, frame->width_px, frame->height_px, camera_.width_px, camera_.height_px));
+  RequireSize(*frame);
+  return std::move(*frame);
+}
+
+void CameraSession::RequireSize(const Frame& frame) const {
+  if (frame.width_px == camera_.width_px && frame.height_px == camera_.height_px) return;
+  throw std::invalid_argument(fmt::format(
+      "the camera {} gives {}x{} pixels and its calibration is for {}x{}: set the camera to that "
+      "size, or calibrate anew",
+      WithoutPassword(name_), frame.width_px, frame.height_px, camera_.width_px,
+      camera_.height_px));
 }
 
 Look CameraSession::LookAt(const Frame& frame, int decimate) const {

@@ -21,11 +21,15 @@ constexpr double kTick_s = 0.02;
 constexpr double kRounded_s = 1e-6;  // a difference of times that count from the machine's start
 constexpr double kStill_px = 0.5;    // some times the noise of a corner's mean
 
-/// The next picture; throws when there will be none.
+/// The next picture; throws when there will be none, and for one of another size than the
+/// calibration: seen from straight above, reference tags fit a lens of any size.
 Frame NextFrame(const WorldSetting& setting) {
   for (;;) {
     std::optional<Frame> frame = setting.session.capture().Next(kTick_s);
-    if (frame) return std::move(*frame);
+    if (frame) {
+      setting.session.RequireSize(*frame);
+      return std::move(*frame);
+    }
     setting.ThrowIfOver();
   }
 }

@@ -9,6 +9,7 @@ namespace rift::vision {
 namespace {
 
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
 using test::FloorTag;
 using test::RobotAt;
 using test::SmallCamera;
@@ -203,6 +204,23 @@ TEST_CASE("Reference tags set the world frame, whose scale the robot's tag confi
   Setup unknown(recording);
   marks[0].id = 587;
   CHECK_THROWS_WITH(WorldFromFloorTags(unknown.setting, marks), Contains("tag id 587"));
+}
+
+TEST_CASE(
+    "Pictures of another size than the calibration set no world frame, however well it fits") {
+  SmallRecording recording({.tags = kTags});
+  recording.Add(RobotAt(0.02, 0.01, 0.0));
+  CameraModel larger = Setup::WithoutWorld();
+  larger.width_px *= 2;
+  larger.height_px *= 2;
+  larger.k.topRows(2) *= 2.0;
+  const std::string reason =
+      " gives 640x480 pixels and its calibration is for 1280x960: set the camera to that size, or "
+      "calibrate anew";
+  Setup by_tags(recording, {}, larger);
+  CHECK_THROWS_WITH(WorldFromFloorTags(by_tags.setting, MarksOf(kTags)), EndsWith(reason));
+  Setup by_robot(recording, {}, larger);
+  CHECK_THROWS_WITH(WorldFromRobot(by_robot.setting), EndsWith(reason));
 }
 
 TEST_CASE("A reference tag that is in the picture twice sets no world frame") {

@@ -30,6 +30,9 @@ class CameraSession {
   /// Throws std::runtime_error with the camera's state when none comes, std::invalid_argument when
   /// the picture has another size than the calibration.
   Frame FirstPicture();
+  /// Throws std::invalid_argument for a picture of another size than the calibration: its pixels
+  /// are of other rays.
+  void RequireSize(const Frame& frame) const;
   /// Finds every tag in a picture; see TagDetector for `decimate`.
   Look LookAt(const Frame& frame, int decimate) const;
   /// A recording is read again from its first picture.

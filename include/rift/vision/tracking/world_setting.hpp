@@ -43,7 +43,8 @@ struct FloorMarks {
 FloorMarks ReadFloorMarks(std::string_view text, const std::string& source);
 
 /// What a world frame is set with. What follows throws std::runtime_error when the camera fails or
-/// the user ends it before the frame is set.
+/// the user ends it before the frame is set, std::invalid_argument when its pictures are of another
+/// size than its calibration.
 struct WorldSetting {
   CameraSession& session;
   const SessionOptions& options;
