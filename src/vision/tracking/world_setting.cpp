@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "rift/vision/camera/steady_now.hpp"
 #include "rift/vision/tracking/world_check.hpp"
 #include "rift/vision/tracking/world_frame.hpp"
 #include "rift/yaml/bind.hpp"
@@ -21,9 +22,16 @@ constexpr double kTick_s = 0.02;
 constexpr double kRounded_s = 1e-6;  // a difference of times that count from the machine's start
 constexpr double kStill_px = 0.5;    // some times the noise of a corner's mean
 
-/// The next picture; throws when there will be none, and for one of another size than the
-/// calibration: seen from straight above, reference tags fit a lens of any size.
+std::runtime_error NotSet(const CaptureStatus& status) {
+  return std::runtime_error(
+      fmt::format("camera {}: {}; the world frame was not set",
+                  EnumNames(status.state)[static_cast<std::size_t>(status.state)], status.reason));
+}
+
+/// The next picture; throws when there will be none or none comes for long, and for one of another
+/// size than the calibration: seen from straight above, reference tags fit a lens of any size.
 Frame NextFrame(const WorldSetting& setting) {
+  std::optional<double> frozen_since_s;  // a device that hangs is never over by itself
   for (;;) {
     std::optional<Frame> frame = setting.session.capture().Next(kTick_s);
     if (frame) {
@@ -31,6 +39,13 @@ Frame NextFrame(const WorldSetting& setting) {
       return std::move(*frame);
     }
     setting.ThrowIfOver();
+    const CaptureStatus status = setting.session.capture().Status();
+    const double now_s = SteadyNow_s();
+    if (status.state != CameraState::kFrozen) frozen_since_s.reset();
+    if (status.state == CameraState::kFrozen && !frozen_since_s) frozen_since_s = now_s;
+    if (frozen_since_s && now_s - *frozen_since_s > setting.options.give_up_s) {
+      throw NotSet(status);
+    }
   }
 }
 
@@ -178,10 +193,7 @@ FloorMarks ReadFloorMarks(std::string_view text, const std::string& source) {
 void WorldSetting::ThrowIfOver() const {
   if (is_stopped()) throw std::runtime_error("stopped before the world frame was set");
   const CaptureStatus status = session.capture().Status();
-  if (!IsFinal(status.state)) return;
-  throw std::runtime_error(
-      fmt::format("camera {}: {}; the world frame was not set",
-                  EnumNames(status.state)[static_cast<std::size_t>(status.state)], status.reason));
+  if (IsFinal(status.state)) throw NotSet(status);
 }
 
 WorldFrame WorldFromRobot(const WorldSetting& setting) {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "rift/yaml/node.hpp"
+#include "vision/mjpeg_server.hpp"
 #include "vision/small_recording.hpp"
 
 namespace rift::vision {
@@ -10,6 +11,7 @@ namespace {
 
 using Catch::Matchers::Contains;
 using Catch::Matchers::EndsWith;
+using Catch::Matchers::StartsWith;
 using test::FloorTag;
 using test::RobotAt;
 using test::SmallCamera;
@@ -44,7 +46,10 @@ TEST_CASE("Marks on the floor are read with their names, ids and places") {
 struct Setup {
   explicit Setup(const SmallRecording& recording, TagOptions tag = {},
                  const CameraModel& camera = WithoutWorld())
-      : session(recording.Path(), camera, {.fps = 20.0}, tag),
+      : Setup(recording.Path(), {.fps = 20.0}, tag, camera) {}
+  Setup(const std::string& name, const CaptureOptions& capture, const TagOptions& tag = {},
+        const CameraModel& camera = WithoutWorld())
+      : session(name, camera, capture, tag),
         setting{.session = session,
                 .options = options,
                 .is_stopped = [] { return false; },
@@ -98,6 +103,17 @@ TEST_CASE("A robot that stands still sets the origin below its tag, whenever it 
   Setup stopped(recording);
   stopped.setting.is_stopped = [] { return true; };
   CHECK_THROWS_WITH(WorldFromRobot(stopped.setting), "stopped before the world frame was set");
+}
+
+TEST_CASE("A camera from which no picture comes is given up, and no world frame is waited for") {
+  synthetic::MjpegServer silent(std::vector<std::uint8_t>{}, {.pictures = 0, .then_silent = true});
+  Setup setup(silent.Url(), {.silent_s = 0.02, .open_timeout_s = 0.02});
+  setup.options.give_up_s = 0.02;
+  // Where nothing ends it, a person does after a while.
+  setup.setting.is_stopped = [asked = 0]() mutable { return ++asked > 200; };
+  CHECK_THROWS_WITH(WorldFromRobot(setup.setting),
+                    StartsWith("camera frozen: no first picture within ") &&
+                        EndsWith(" s; the world frame was not set"));
 }
 
 TEST_CASE("A robot that moves while its pose is averaged is refused with how far it moved") {
