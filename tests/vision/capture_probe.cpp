@@ -68,8 +68,9 @@ int main(int argc, char** argv) {
     }
   }
   fmt::print(
-      "rate {:.2f}\nlatency {:.4f}\nframes {}\noff_beat {:.4f}\nshortest_step {:.4f}\nleft\n",
+      "rate {:.2f}\nlatency {:.4f}\nframes {}\noff_beat {:.4f}\nshortest_step {:.4f}\n"
+      "skipped {}\nleft\n",
       status.rate_hz, seen.latency_s / std::max(seen.frames, 1), seen.frames, seen.off_beat,
-      seen.shortest_step);
+      seen.shortest_step, status.skipped);
   return 0;
 }

@@ -4,7 +4,8 @@
 //   RIFT_SHIM_FPS      what it delivers, if not what S_PARM asked for
 //   RIFT_SHIM_FORMATS  "MJPG,YUYV" (default), "H264", ...
 //   RIFT_SHIM_JPEGS    folder of the JPEGs that it cycles through as MJPG
-//   RIFT_SHIM_FAULT    unplug (ENODEV), eio, hang, freeze, black, busy (EBUSY), denied (EACCES)
+//   RIFT_SHIM_FAULT    unplug (ENODEV), eio, hang, freeze, black, busy (EBUSY), denied (EACCES),
+//                      headless (of five JPEGs four come without their begin), torn (all do)
 //   RIFT_SHIM_AFTER    pictures before the fault (default 20)
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -135,10 +136,21 @@ std::size_t PutYuyv(const Device& device, std::uint8_t* out, long frame, bool bl
   return size;
 }
 
+/// What a lost packet leaves of a JPEG.
+std::size_t WithoutBegin(std::uint8_t* out, std::size_t size) {
+  constexpr std::size_t kLost = 512;
+  std::memmove(out, out + kLost, size - kLost);
+  return size - kLost;
+}
+
 std::size_t PutPicture(const Camera& camera, const Device& device, std::uint8_t* out, long frame) {
   if (camera.FaultIs("freeze")) frame = camera.fault_after;
-  if (device.format == V4L2_PIX_FMT_MJPEG) return PutJpeg(camera, out, frame);
-  return PutYuyv(device, out, frame, camera.FaultIs("black"));
+  if (device.format != V4L2_PIX_FMT_MJPEG) {
+    return PutYuyv(device, out, frame, camera.FaultIs("black"));
+  }
+  const std::size_t size = PutJpeg(camera, out, frame);
+  const bool is_headless = camera.FaultIs("headless") && camera.delivered % 5 != 0;
+  return is_headless || camera.FaultIs("torn") ? WithoutBegin(out, size) : size;
 }
 
 int Capabilities(v4l2_capability& out) {

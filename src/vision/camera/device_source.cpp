@@ -188,11 +188,19 @@ class DeviceSource : public CameraSource {
     frame.captured_s = CapturedAt(frame.arrived_s);
     cv::Mat raw;
     if (!capture_.retrieve(raw) || raw.empty()) return false;
-    Fill(frame, raw);
-    return true;
+    if (Fill(frame, raw)) return in_a_row_ = 0, true;
+    ++skipped_;
+    if (++in_a_row_ < kMostInARow) return false;
+    throw CameraError(CameraState::kWrongFormat,
+                      fmt::format("{}: {} bytes are no picture of {}x{} in MJPG, YUYV or GREY",
+                                  path_, frame.bytes.size(), frame.width_px, frame.height_px));
   }
+  SourceNotes Notes() const override { return {.skipped = skipped_}; }
 
  private:
+  // On a bad cable a JPEG comes without its head, now and then.
+  static constexpr int kMostInARow = 5;
+
   // Drivers stamp with CLOCK_MONOTONIC, which is steady_clock here; some with other clocks or 0.
   double CapturedAt(double arrived_s) const {
     const double driver_s = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000.0;
@@ -200,7 +208,8 @@ class DeviceSource : public CameraSource {
     return sane ? driver_s : arrived_s;
   }
 
-  void Fill(Frame& frame, const cv::Mat& raw) const {
+  /// False for bytes that are no picture in a format that is understood.
+  bool Fill(Frame& frame, const cv::Mat& raw) const {
     const std::size_t size = raw.total() * raw.elemSize();
     frame.bytes.assign(raw.data, raw.data + size);
     if (const auto jpeg = SizeOfJpeg(frame.bytes)) {
@@ -208,7 +217,7 @@ class DeviceSource : public CameraSource {
       frame.width_px = jpeg->width_px;
       frame.height_px = jpeg->height_px;
       frame.bytes.resize(JpegLength(frame.bytes));
-      return;
+      return true;
     }
     frame.width_px = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
     frame.height_px = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
@@ -218,17 +227,17 @@ class DeviceSource : public CameraSource {
     for (const auto& [bytes, format] : kinds) {
       if (size != bytes * pixels) continue;
       frame.format = format;
-      return;
+      return true;
     }
-    throw CameraError(CameraState::kWrongFormat,
-                      fmt::format("{}: {} bytes are no picture of {}x{} in MJPG, YUYV or GREY",
-                                  path_, size, frame.width_px, frame.height_px));
+    return false;
   }
 
   std::string path_;
   DeviceProbe probe_;
   std::uint32_t format_;
   cv::VideoCapture capture_;
+  std::uint64_t skipped_ = 0;
+  int in_a_row_ = 0;  ///< of those
 };
 
 }  // namespace

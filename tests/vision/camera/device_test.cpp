@@ -112,6 +112,25 @@ TEST_CASE("Pictures that repeat or that see no light are named while they keep c
   CHECK(black.HasLeft());
 }
 
+TEST_CASE("JPEGs that come without their begin are passed over, unless no others come") {
+  const JpegFolder jpegs(320, 240);
+  const auto probed_with = [&](const std::string& fault) {
+    return Probe({{"JPEGS", jpegs.Path()}, {"FAULT", fault}, {"AFTER", "3"}},
+                 "/dev/video0 - 6 mjpg 60 320 240");
+  };
+  const Probed some = probed_with("headless");
+  INFO(some.text);
+  CHECK(some.Number("skipped") >= 8.0);  // up to four after each picture
+  CHECK_FALSE(some.Names("wrong format"));
+  CHECK(some.HasLeft());
+  const Probed none = probed_with("torn");
+  INFO(none.text);
+  CHECK(none.Number("frames") > 0.0);
+  CHECK(none.Names("wrong format"));
+  CHECK_THAT(none.text, Contains(" bytes are no picture of 320x240 in MJPG, YUYV or GREY"));
+  CHECK(none.HasLeft());
+}
+
 TEST_CASE("A camera without a format that is understood is named with those it has") {
   const Probed probed = Probe({{"FORMATS", "H264,NV12"}}, "/dev/video0 - 1 mjpg 30 640 480");
   CHECK_THAT(probed.text, Contains("state wrong format") && Contains("gives H264, NV12"));
