@@ -102,7 +102,9 @@ std::optional<std::size_t> MultipartReader::EndOf(const Head& head) const {
     const bool is_whole = *head.length <= waiting_.size() - head.begin;
     return is_whole ? std::optional(head.begin + *head.length) : std::nullopt;
   }
-  std::size_t end = waiting_.find("\n" + delimiter_, head.begin);
+  // What was named with dashes is meant with them, or by the letter (RFC 2046) with two more.
+  std::size_t end = std::min(waiting_.find("\n" + delimiter_, head.begin),
+                             waiting_.find("\n--" + delimiter_, head.begin));
   if (end == std::string::npos) return std::nullopt;
   if (end > head.begin && waiting_[end - 1] == '\r') --end;
   return end;

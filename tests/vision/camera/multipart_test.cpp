@@ -40,6 +40,15 @@ TEST_CASE("The boundary is what the type says, in quotes or not, with its dashes
     CHECK(CutOf("--Frame\r\n\r\none\r\n--Frame\r\n", type).parts == Parts{"one"});
     CHECK(CutOf("--frame\r\n\r\none\r\n--frame\r\n", type).parts.empty());
   }
+  // Named with dashes that are part of it, as the standard has it.
+  for (const char* boundary : {"--Frame", "----Frame"}) {
+    const std::string type = "multipart/mixed; boundary=" + std::string(boundary);
+    const std::string line = "--" + std::string(boundary) + "\r\n";
+    INFO(type);
+    CHECK(CutOf(line + "\r\none\r\n" + line + "\r\ntwo\r\n" + line, type).parts ==
+          Parts{"one", "two"});
+    CHECK(CutOf(line + "Content-Length: 3\r\n\r\none\r\n" + line, type).parts == Parts{"one"});
+  }
   CHECK_THROWS_WITH(MultipartReader("multipart/x-mixed-replace", kMost),
                     "the server names no boundary between its pictures: it sends "
                     "'multipart/x-mixed-replace', without boundary=");
