@@ -2,15 +2,14 @@
 
 #include <utility>
 
+#include "trail.hpp"
+
 namespace rift::view {
 namespace {
 
-constexpr double kTrailStep_m = 0.002;
-
 void Follow(const vision::Sighting& sighting, TrackScene& scene) {
   const Eigen::Vector2d place = sighting.map_from_tag.translation().head<2>();
-  std::vector<Eigen::Vector2d>& trail_m = scene.robots.front().trail_m;
-  if (trail_m.empty() || (place - trail_m.back()).norm() > kTrailStep_m) trail_m.push_back(place);
+  ExtendTrail(place, scene.path_m, scene.robots.front());
   scene.plane_z_m = sighting.map_from_tag.translation().z();
   scene.latency_s = sighting.latency_s;
 }

@@ -8,8 +8,6 @@
 namespace rift::view {
 namespace {
 
-constexpr double kApart_m = 0.02;
-
 struct OnPath {
   Eigen::Vector2d p_m;
   Eigen::Vector2d along_m;  ///< the leg on which it lies
@@ -30,15 +28,9 @@ OnPath Nearest(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& pat
 
 }  // namespace
 
-std::vector<LateralLine> LateralLines(const std::vector<Eigen::Vector2d>& trail_m,
-                                      const std::vector<Eigen::Vector2d>& path_m) {
-  std::vector<LateralLine> lines;
-  if (path_m.size() < 2) return lines;
-  for (const Eigen::Vector2d& p : trail_m) {
-    if (!lines.empty() && (p - lines.back().from_m).norm() < kApart_m) continue;
-    lines.push_back({p, Nearest(p, path_m).p_m});
-  }
-  return lines;
+Eigen::Vector2d NearestOnPath(const Eigen::Vector2d& p_m,
+                              const std::vector<Eigen::Vector2d>& path_m) {
+  return Nearest(p_m, path_m).p_m;
 }
 
 double PathOffset_m(const Eigen::Vector2d& p_m, const std::vector<Eigen::Vector2d>& path_m) {

@@ -7,14 +7,9 @@
 
 namespace rift::view {
 
-/// From points of a trail, some centimetres apart, to the nearest point of the path.
-struct LateralLine {
-  Eigen::Vector2d from_m, to_m;
-
-  double Length_m() const { return (to_m - from_m).norm(); }
-};
-std::vector<LateralLine> LateralLines(const std::vector<Eigen::Vector2d>& trail_m,
-                                      const std::vector<Eigen::Vector2d>& path_m);
+/// The nearest point of a path of two points or more.
+Eigen::Vector2d NearestOnPath(const Eigen::Vector2d& p_m,
+                              const std::vector<Eigen::Vector2d>& path_m);
 
 /// How far a point lies off the nearest point of the path, left of its direction positive; NaN for
 /// a path of fewer than two points.

@@ -98,7 +98,7 @@ std::vector<Eigen::Vector2d> InSmallSteps(const std::vector<Eigen::Vector2d>& pa
 void DrawMap(const MapPen& pen, const TrackScene& scene) {
   pen.Line(pen.FromMap(InSmallSteps(scene.path_m)), kBlack, 2);
   if (!scene.robots.empty()) {
-    for (const LateralLine& line : LateralLines(scene.robots.front().trail_m, scene.path_m)) {
+    for (const LateralLine& line : scene.robots.front().beside.lines) {
       pen.Line(pen.FromMap({line.from_m, line.to_m}), kBlue, 2);
     }
   }
@@ -153,15 +153,12 @@ void DrawId(const MapPen& pen, const vision::Sighting& sighting) {
 std::string OffsetLine(const TrackScene& scene) {
   const SceneRobot& robot = scene.robots.front();
   if (scene.path_m.size() < 2) return {};
-  double largest_m = 0.0;
-  for (const LateralLine& line : LateralLines(robot.trail_m, scene.path_m)) {
-    largest_m = std::max(largest_m, line.Length_m());
-  }
   const double offset_m = robot.sighting
                               ? PathOffset_m(robot.sighting->Planar().Position(), scene.path_m)
                               : std::nan("");
+  const double now_m = std::isnan(offset_m) ? 0.0 : std::abs(offset_m);
   return fmt::format("off the path {}   largest {:.1f} mm", OffsetText(offset_m),
-                     1e3 * std::max(largest_m, std::isnan(offset_m) ? 0.0 : std::abs(offset_m)));
+                     1e3 * std::max(robot.beside.largest_m, now_m));
 }
 
 std::vector<std::string> PoseLines(const SceneRobot& robot, const std::string& name) {

@@ -7,12 +7,11 @@
 #include <utility>
 
 #include "rift/vision/tracking/world_frame.hpp"
+#include "trail.hpp"
 
 namespace rift::view {
 namespace {
 
-constexpr double kTrailStep_m = 0.002;
-constexpr std::size_t kTrailLength = 4000;
 constexpr double kLifted_m = 0.15;  // no robot drives that far between pictures
 
 }  // namespace
@@ -45,14 +44,12 @@ std::vector<std::string> TrackView::Prompts(const std::optional<double>& moved_m
 
 void TrackView::Follow(SceneRobot& robot) {
   const Eigen::Vector3d middle = robot.sighting->map_from_tag.translation();
-  std::vector<Eigen::Vector2d>& trail_m = robot.trail_m;
+  const Eigen::Vector2d place = middle.head<2>();
   if (!plane_z_m_) plane_z_m_ = middle.z();
-  const auto is_away_by = [&](double distance_m) {
-    return !trail_m.empty() && (middle.head<2>() - trail_m.back()).norm() > distance_m;
-  };
-  if (is_away_by(kLifted_m)) trail_m.clear();
-  if (trail_m.empty() || is_away_by(kTrailStep_m)) trail_m.push_back(middle.head<2>());
-  if (trail_m.size() > kTrailLength) trail_m.erase(trail_m.begin());
+  const bool is_lifted =
+      !robot.trail_m.empty() && (place - robot.trail_m.back()).norm() > kLifted_m;
+  if (is_lifted) ClearTrail(robot);
+  ExtendTrail(place, content_.path_m, robot);
 }
 
 bool TrackView::Show(const std::optional<vision::Frame>& frame,
@@ -94,7 +91,7 @@ void TrackView::Apply(const TrackInput& input, const std::optional<vision::Sight
   if (input.undo && !recorded_.empty()) recorded_.pop_back();
   if (input.toggle_stop && !recorded_.empty()) recorded_.back().stop = !recorded_.back().stop;
   if (input.clear_trail) {
-    for (SceneRobot& robot : robots_) robot.trail_m.clear();
+    for (SceneRobot& robot : robots_) ClearTrail(robot);
   }
   const bool has_changed = recorded_.size() != before || (input.toggle_stop && !recorded_.empty());
   if (has_changed && content_.save) content_.save(recorded_);

@@ -107,10 +107,13 @@ TEST_CASE("How far the first robot is off its path is told in millimetres") {
   };
   for (const std::string& line : WordsOf(scene)) CHECK(line.find("path") == line.npos);
   scene.path_m = {{-0.2, 0.0}, {0.2, 0.0}};
-  scene.robots[0].trail_m = {{-0.1, -0.0311}, {0.0, 0.0123}};
+  scene.robots[0].beside.largest_m = 0.0311;
   CHECK(has_line("off the path 12.3 mm left   largest 31.1 mm"));
   scene.robots[0].sighting.reset();
   CHECK(has_line("off the path -   largest 31.1 mm"));
+  scene.robots[0].sighting = TagAt(camera, 0, 0.0, 0.0322);
+  CHECK(has_line("off the path 32.2 mm left   largest 32.2 mm"));
+  scene.robots[0].sighting.reset();
   // With several robots each pose has its tag.
   scene.robots.push_back({.tag_id = 7, .sighting = TagAt(camera, 7, 0.1, -0.05)});
   CHECK(has_line("tag 0: not seen"));

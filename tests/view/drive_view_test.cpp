@@ -81,5 +81,22 @@ TEST_CASE("The trail of a drive has a point each two millimetres, and none where
   CHECK(shown.robots.front().trail_m[1] == Eigen::Vector2d(0.0021, 0.1));
 }
 
+TEST_CASE("A drive shows its newest eight metres, and the largest distance of all of it") {
+  const vision::CameraModel camera = test::PaperCamera();
+  std::size_t points = 0;
+  double largest_m = 0.0;
+  DriveView view(camera, control::Task(test::PaperWaypoints()), [&](const TrackScene& scene) {
+    points = scene.robots.front().trail_m.size();
+    largest_m = scene.robots.front().beside.largest_m;
+    return TrackInput{};
+  });
+  view.Show(nullptr, SeenAt(9.0), {}, "", true);
+  const double farthest_m = largest_m;
+  CHECK(farthest_m > 7.0);
+  for (int i = 0; i < 4000; ++i) view.Show(nullptr, SeenAt(0.0025 * (i % 2)), {}, "", true);
+  CHECK(points == 4000);
+  CHECK(largest_m == farthest_m);
+}
+
 }  // namespace
 }  // namespace rift::view

@@ -25,19 +25,15 @@ TEST_CASE("An offset is told in millimetres with its side") {
   CHECK(OffsetText(NAN) == "-");
 }
 
-TEST_CASE("Lines to the path begin two centimetres apart and end at its nearest point") {
+TEST_CASE("The nearest point of a path lies on a leg of it or where two meet") {
   const std::vector<Eigen::Vector2d> path{{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}};
-  const auto lines = LateralLines(
-      {{0.1, 0.05}, {0.119, 0.05}, {0.121, 0.05}, {0.139, 0.05}, {0.5, -0.03}, {1.2, 0.6}}, path);
-  REQUIRE(lines.size() == 4);
-  CHECK((lines[0].from_m - Eigen::Vector2d(0.1, 0.05)).norm() < 1e-12);
-  CHECK((lines[0].to_m - Eigen::Vector2d(0.1, 0.0)).norm() < 1e-12);
-  CHECK(lines[0].Length_m() == Approx(0.05));
-  CHECK(lines[1].from_m.x() == 0.121);
-  CHECK((lines[2].to_m - Eigen::Vector2d(0.5, 0.0)).norm() < 1e-12);
-  CHECK((lines[3].to_m - Eigen::Vector2d(1.0, 0.6)).norm() < 1e-12);
-  CHECK(LateralLines({{0.1, 0.05}}, {{0.0, 0.0}}).empty());
-  CHECK(LateralLines({{0.1, 0.05}}, {{0.0, 0.0}, {1.0, 0.0}}).size() == 1);
+  const auto is_at = [&](const Eigen::Vector2d& p, const Eigen::Vector2d& nearest) {
+    return (NearestOnPath(p, path) - nearest).norm() < 1e-12;
+  };
+  CHECK(is_at({0.1, 0.05}, {0.1, 0.0}));
+  CHECK(is_at({0.5, -0.03}, {0.5, 0.0}));
+  CHECK(is_at({1.2, 0.6}, {1.0, 0.6}));
+  CHECK(is_at({1.2, -0.3}, {1.0, 0.0}));
 }
 
 TEST_CASE("Before a path, beyond it and on a leg without length the distance is to its point") {

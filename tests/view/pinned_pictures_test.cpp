@@ -89,6 +89,8 @@ TrackScene TwoRobots(const vision::CameraModel& camera, const vision::Frame& fra
   TrackScene scene{.camera = &camera, .frame = &frame};
   scene.robots = {{3, TagAt(camera, 3, {0.2, 0.06, 0.4}), {{0.0, 0.01}, {0.1, 0.04}, {0.2, 0.06}}},
                   {11, TagAt(camera, 11, {-0.3, -0.15, -2.0}), {{-0.25, 0.0}, {-0.3, -0.15}}}};
+  scene.robots[0].beside = {
+      {{{0.0, 0.01}, {0.0, 0.0}}, {{0.1, 0.04}, {0.1, 0.0}}, {{0.2, 0.06}, {0.2, 0.0}}}, 0.06};
   scene.robots[1].sighting->tags_of_this_id = 2;
   scene.path_m = {{0.0, 0.0}, {0.4, 0.0}, {0.4, 0.3}};
   scene.waypoints = {{"start", {0.0, 0.0}}, {"corner", {0.4, 0.0}}, {"goal", {0.4, 0.3}}};

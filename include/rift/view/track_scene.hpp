@@ -14,11 +14,23 @@
 
 namespace rift::view {
 
+/// From a point of a trail to the nearest point of a path.
+struct LateralLine {
+  Eigen::Vector2d from_m, to_m;
+};
+
+/// How a trail lies beside a path.
+struct BesidePath {
+  std::vector<LateralLine> lines;  ///< from points of the trail some centimetres apart
+  double largest_m = 0.0;          ///< distance of any of its points, of those left out as well
+};
+
 /// A robot that is looked for.
 struct SceneRobot {
   int tag_id = 0;
   std::optional<vision::Sighting> sighting;  ///< in this picture
   std::vector<Eigen::Vector2d> trail_m;      ///< where its tag was, in the map
+  BesidePath beside;                         ///< its trail beside the path of the scene
 };
 
 /// One moment of a tracking session, to be drawn over the camera's picture.
