@@ -46,6 +46,7 @@ DriveWish DriveView::Show(const vision::Frame* frame,
   if (!placement.empty()) {
     scene_.stand_at = start_;
     scene_.prompts.push_back("put the robot into the outline: " + placement);
+    ClearTrail(scene_.robots.front());  // it is carried, and not driven
   }
   scene_.prompts.emplace_back(is_started
                                   ? "any key in this window, or closing it, stops the robot"

@@ -81,6 +81,25 @@ TEST_CASE("The trail of a drive has a point each two millimetres, and none where
   CHECK(shown.robots.front().trail_m[1] == Eigen::Vector2d(0.0021, 0.1));
 }
 
+TEST_CASE("A robot that is carried to its place leaves no trail, and its drive begins one there") {
+  const vision::CameraModel camera = test::PaperCamera();
+  TrackScene shown;
+  DriveView view(camera, control::Task(test::PaperWaypoints()), [&](const TrackScene& scene) {
+    shown = scene;
+    return TrackInput{};
+  });
+  const auto trail_after = [&](double x_m, const std::string& placement) {
+    view.Show(nullptr, SeenAt(x_m), {}, placement, true);
+    return shown.robots.front().trail_m;
+  };
+  using Places = std::vector<Eigen::Vector2d>;
+  trail_after(2.0, "2 m off");
+  CHECK(trail_after(0.3, "30 cm off") == Places{{0.3, 0.1}});
+  CHECK(shown.robots.front().beside.largest_m < 0.3);
+  CHECK(trail_after(0.31, "") == Places{{0.3, 0.1}, {0.31, 0.1}});
+  CHECK(shown.robots.front().beside.largest_m < 0.3);
+}
+
 TEST_CASE("A drive shows its newest eight metres, and the largest distance of all of it") {
   const vision::CameraModel camera = test::PaperCamera();
   std::size_t points = 0;

@@ -30,7 +30,7 @@ class DriveView {
 
   /// `frame` is none before the first picture. `placement`: how far the robot is from its start, in
   /// words, while it waits for it; the outline of where it has to stand is drawn as well. Empty
-  /// once it drives. `is_started` as in WishOf.
+  /// once it drives, from where its trail begins. `is_started` as in WishOf.
   DriveWish Show(const vision::Frame* frame, const std::optional<vision::Sighting>& sighting,
                  const vision::CaptureStatus& status, const std::string& placement,
                  bool is_started);
