@@ -24,7 +24,7 @@ DriveWish WishOf(const TrackInput& input, bool is_started) {
 
 DriveView::DriveView(const vision::CameraModel& camera, const control::Task& task, ShowScene show)
     : start_(task.Start()),
-      scene_{.camera = &camera, .robots = {SceneRobot{}}},
+      scene_{.camera = &camera, .robots = {SceneRobot{}}, .keys = ""},
       show_(std::move(show)) {
   for (const control::TimedPose& at : task.IdealPath()) {
     scene_.path_m.push_back(at.world_from_robot.Position());

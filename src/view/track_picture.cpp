@@ -218,9 +218,8 @@ TrackPicture DrawTrack(const TrackScene& scene) {
   }
   DrawLines(shown.bgr, WordsOf(scene), true);
   std::vector<std::string> foot = scene.prompts;
-  foot.emplace_back(
-      "click: waypoint   w: waypoint here   s: stop or pass   u: undo   c: clear trail   q: quit");
-  DrawLines(shown.bgr, foot, false);
+  if (!scene.keys.empty()) foot.push_back(scene.keys);
+  if (!foot.empty()) DrawLines(shown.bgr, foot, false);
   return shown;
 }
 

@@ -16,8 +16,8 @@ namespace {
 constexpr double kTick_s = 0.02;
 
 std::string Prompt(const std::vector<vision::FloorMark>& points, std::size_t next) {
-  return fmt::format("click point {} of {}: {} at x {:g} m, y {:g} m (u takes back)", next + 1,
-                     points.size(), points[next].name, points[next].x_m, points[next].y_m);
+  return fmt::format("click point {} of {}: {} at x {:g} m, y {:g} m", next + 1, points.size(),
+                     points[next].name, points[next].x_m, points[next].y_m);
 }
 
 }  // namespace
@@ -45,7 +45,8 @@ vision::WorldFrame WorldFromClicks(const vision::WorldSetting& setting,
     }
     if (!(frame && capture.IsRecording())) setting.ThrowIfOver();
     if (setting.is_stopped()) throw std::runtime_error("stopped before the world frame was set");
-    TrackScene scene{.camera = &camera, .frame = frame ? &*frame : nullptr};
+    TrackScene scene{
+        .camera = &camera, .frame = frame ? &*frame : nullptr, .keys = "u: take back   q: quit"};
     scene.status = capture.Status();
     scene.prompts = {Prompt(points, clicked.size())};
     const TrackInput input = window.Show(scene);

@@ -97,6 +97,19 @@ TEST_CASE("Every robot's tag is outlined with its trail, and one that is not see
   CHECK(red(DrawTrack(trails)) == Approx(2.0 * first_trail).epsilon(0.2));
 }
 
+TEST_CASE("The keys of a window are told at its foot, and nothing is where it has none") {
+  const vision::CameraModel camera = test::PaperCamera();
+  const auto letters = [&](const std::string& keys) {
+    const cv::Mat bgr = DrawTrack({.camera = &camera, .keys = keys}).bgr;
+    cv::Mat found;
+    cv::inRange(bgr.rowRange(bgr.rows - 30, bgr.rows), cv::Scalar::all(120), cv::Scalar::all(255),
+                found);
+    return cv::countNonZero(found);
+  };
+  CHECK(letters("w: waypoint here") > 20);
+  CHECK(letters("") == 0);
+}
+
 TEST_CASE("How far the first robot is off its path is told in millimetres") {
   const vision::CameraModel camera = test::PaperCamera();
   TrackScene scene{.camera = &camera,

@@ -43,6 +43,7 @@ TEST_CASE("The window of a drive says what its keys do, and outlines the start w
   CHECK(view.Show(nullptr, std::nullopt, status, "3.1 cm, 2 deg off", false) == DriveWish::kGoOn);
   CHECK(shown.prompts == Words{"put the robot into the outline: 3.1 cm, 2 deg off",
                                "Enter in the terminal starts; q, Escape or closing gives up"});
+  CHECK(shown.keys.empty());  // those of track would stop the robot
   REQUIRE(shown.stand_at);
   CHECK(*shown.stand_at == task.Start());
   CHECK(shown.status.rate_hz == 30.0);

@@ -45,6 +45,9 @@ struct TrackScene {
   vision::CaptureStatus status;
   double latency_s = 0.0;            ///< from the light to the pose; NaN of a recording
   std::vector<std::string> prompts;  ///< what the user is asked or told, lines at the foot
+  /// What keys and clicks do, a line below the prompts; empty: none.
+  std::string keys =
+      "click: waypoint   w: waypoint here   s: stop or pass   u: undo   c: clear trail   q: quit";
 };
 
 }  // namespace rift::view
