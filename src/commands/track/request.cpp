@@ -155,7 +155,8 @@ void AddTrackingFlags(CLI::App& app, TrackRequest& request) {
       ->check(InRange(0, vision::kLastTagId))
       ->type_name("N,N,...");
   AddFlags(app, job);
-  flags("duration_s", job.duration_s, 0.0, 1e9, "s", "ends after this long");
+  flags("duration_s", job.duration_s, 0.0, 1e9, "s",
+        "ends after this long, of a recording by its own time");
   flags("world", job.world, "first|FILE.yaml",
         "sets the world frame first and keeps it in the calibration: from the robot's first pose, "
         "or from a file with tags: (id, x_m, y_m) to be seen or points: (name, x_m, y_m) to be "

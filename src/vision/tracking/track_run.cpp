@@ -62,6 +62,7 @@ class Tracking {
   std::optional<std::uint64_t> shown_index_;
   double shown_s_ = 0.0;
   bool quit_ = false;
+  bool is_time_over_ = false;  // of a recording
 };
 
 void Tracking::Rebase(Frame& frame) {
@@ -117,8 +118,11 @@ void Tracking::Take(Frame frame) {
         run_.frames, camera.width_px, camera.height_px, frame.width_px, frame.height_px);
     return;
   }
-  if (run_.frames++ == 0) run_.is_recording = parts_.session.capture().IsRecording();
+  if (run_.frames == 0) run_.is_recording = parts_.session.capture().IsRecording();
   Rebase(frame);
+  is_time_over_ = run_.is_recording && parts_.duration_s && frame.captured_s > *parts_.duration_s;
+  if (is_time_over_) return;
+  ++run_.frames;
   const double begin_s = SteadyNow_s();
   const std::vector<TrackResult> results = tracker_.TrackAll(frame);
   run_.costs_s.push_back(SteadyNow_s() - begin_s);
@@ -183,10 +187,11 @@ void Tracking::WatchState() {
   parts_.say(fmt::format("camera {}{}", EnumNames(state)[static_cast<std::size_t>(state)], reason));
 }
 
-/// By the user, or by the time that was asked for.
+/// By the user, or by the time that was asked for: of a recording the time of its pictures, which
+/// come as fast as they are read.
 bool Tracking::IsStopped() const {
-  if (quit_ || parts_.is_stopped()) return true;
-  return parts_.duration_s && SteadyNow_s() - started_s_ > *parts_.duration_s;
+  if (quit_ || is_time_over_ || parts_.is_stopped()) return true;
+  return !run_.is_recording && parts_.duration_s && SteadyNow_s() - started_s_ > *parts_.duration_s;
 }
 
 bool Tracking::IsOver() const {
@@ -211,7 +216,7 @@ void Tracking::Show() {
 
 /// A recording is over in seconds; what it showed is to be looked at.
 void Tracking::HoldLastPicture() {
-  if (!parts_.show || run_.status.state != CameraState::kEnded) return;
+  if (!parts_.show || is_time_over_ || run_.status.state != CameraState::kEnded) return;
   while (!quit_ && !parts_.is_stopped()) {
     quit_ = !parts_.show(frame_, seen_, run_.status, run_.moved_m);
     std::this_thread::sleep_for(std::chrono::duration<double>(kTick_s));

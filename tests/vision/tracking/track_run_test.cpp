@@ -280,6 +280,15 @@ TEST_CASE("A run ends with its time, its user, its window and no sooner") {
     tracked.parts.duration_s = 1000.0;
     CHECK(RunTracking(tracked.parts).frames == 6);
   }
+  SECTION("of a recording by its own time, however fast it is read") {
+    Tracked tracked(recording.Path(), SmallCamera(), {.fps = 1.0});
+    tracked.parts.duration_s = 2.0;
+    const TrackRun run = RunTracking(tracked.parts);
+    CHECK(run.frames == 3);
+    CHECK(run.rows == 3);
+    CHECK(run.last_t_s == 2.0);
+    CHECK_FALSE(run.has_failed);
+  }
   SECTION("stopped") {
     Tracked tracked(recording.Path());
     tracked.parts.is_stopped = [&] { return tracked.rows.size() >= 2; };

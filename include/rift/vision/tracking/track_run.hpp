@@ -28,7 +28,7 @@ struct TrackParts {
                      const std::vector<std::optional<Sighting>>& seen, const CaptureStatus& status,
                      const std::optional<double>& moved_m)>
       show;
-  std::optional<double> duration_s;
+  std::optional<double> duration_s;  ///< none: without end; of a recording by its own time
   std::function<bool()> is_stopped;
   /// One line for the user.
   std::function<void(const std::string&)> say;
