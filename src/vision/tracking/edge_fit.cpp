@@ -263,7 +263,9 @@ ReadBits CompareBits(const CameraModel& camera, const GreyPatch& patch, const Fi
       const double excess = patch.At(pixel->x(), pixel->y()) - threshold;
       const bool right = expected.is_white[row][column] ? excess > 0.0 : excess < 0.0;
       if (!right) ++read.wrong;
-      if (expected.is_bit[row][column]) read.margin += std::abs(excess) / shape.bits;
+      // Beyond the patch there is nothing to read, and NaN would pass for any margin.
+      const bool is_read = expected.is_bit[row][column] && std::isfinite(excess);
+      if (is_read) read.margin += std::abs(excess) / shape.bits;
     }
   }
   return read;

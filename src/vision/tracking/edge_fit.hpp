@@ -34,7 +34,9 @@ std::optional<FittedSquare> FitSquare(const CameraModel& camera, const GreyPatch
 
 /// What the picture says inside a fitted square.
 struct ReadBits {
-  int wrong = 0;        ///< of the cells of the black square; of all where the square is white
+  /// Of the cells of the black square, of all where the square is white; those beyond the patch
+  /// too.
+  int wrong = 0;
   double margin = 0.0;  ///< mean distance of the bits from the threshold, in grey values
 };
 

@@ -74,6 +74,17 @@ TEST_CASE("Cells that are wrong are counted, and the margin is that of the bits"
   }
 }
 
+TEST_CASE("A cell beyond the picture is a wrong one and adds nothing to the margin") {
+  const CameraModel camera = test::SmallCamera();
+  const TagCells cells = CellsOfTag(3, TagFamily::kStandard41h12);
+  GreyPatch patch = Drawn(cells, 40, 200);
+  patch.region.height_px -= kCell_px;  // its lowest row of cells, nine bits
+  patch.pixels.resize(static_cast<std::size_t>(patch.region.width_px) * patch.region.height_px);
+  const ReadBits read = CompareBits(camera, patch, SquareOf(camera, cells.shape, 40, 200), cells);
+  CHECK(read.wrong == 9);
+  CHECK(read.margin == Approx(80.0 * 32.0 / 41.0));
+}
+
 /// A picture of the robot with its tag, without noise.
 struct Shot {
   explicit Shot(double exposure = 1.0, double z_m = 0.03)
