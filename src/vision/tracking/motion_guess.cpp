@@ -94,7 +94,8 @@ std::optional<Sighting> MotionGuess::PoseAt(double t_s, double lost_after_s) con
         share * (last_->map_from_tag.translation() - before_->map_from_tag.translation());
     guess.map_from_tag.linear() =
         Eigen::AngleAxisd(share * turn.angle(), turn.axis()) * last_->map_from_tag.linear();
-    guess.covariance += 2.0 * share * share * last_->covariance;  // of the difference of two poses
+    // Of (1 + share) times the last pose less share times the one before, which are as good.
+    guess.covariance *= std::pow(1.0 + share, 2) + share * share;
   }
   const double moved_m = 0.5 * kAcceleration_mps2 * ahead_s * ahead_s;
   const double turned_rad = 0.5 * kTurn_radps2 * ahead_s * ahead_s;

@@ -78,8 +78,8 @@ TEST_CASE("A pose goes on along its way and about its axis, and its covariance g
                               at->other_reprojection_px, at->latency_s}) {
       CHECK(std::isnan(none));
     }
-    // Half the time between the two was gone on for, and 2 m/s2 and 20 rad/s2 may come on top.
-    const double of_speed = 1e-6 * (1.0 + 2.0 * 0.25);
+    // 1.5 times the last pose less half of the one before, and 2 m/s2 and 20 rad/s2 on top.
+    const double of_speed = 1e-6 * (1.5 * 1.5 + 0.5 * 0.5);
     CHECK(at->covariance(0, 0) == Approx(of_speed + std::pow(2.0 / 2.0 * 0.05 * 0.05, 2)));
     CHECK(at->covariance(1, 1) == Approx(at->covariance(0, 0)));
     CHECK(at->covariance(2, 2) == Approx(of_speed));
