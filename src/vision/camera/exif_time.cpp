@@ -78,20 +78,6 @@ std::optional<int> Digits(std::string_view text) {
   return number;
 }
 
-/// `2026:11:23 12:34:56`
-std::optional<double> SecondsOf(std::string_view text) {
-  using std::chrono::day, std::chrono::month, std::chrono::year;
-  if (text.size() != 19) return std::nullopt;
-  const auto y = Digits(text.substr(0, 4)), m = Digits(text.substr(5, 2)),
-             d = Digits(text.substr(8, 2)), hour = Digits(text.substr(11, 2)),
-             minute = Digits(text.substr(14, 2)), second = Digits(text.substr(17, 2));
-  if (!y || !m || !d || !hour || !minute || !second) return std::nullopt;
-  const std::chrono::year_month_day date{year(*y), month(unsigned(*m)), day(unsigned(*d))};
-  if (!date.ok() || *hour > 23 || *minute > 59 || *second > 60) return std::nullopt;
-  const auto days = static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
-  return 86400.0 * days + 3600.0 * *hour + 60.0 * *minute + *second;
-}
-
 /// "25" is 0.25 s.
 double FractionOf(std::string_view text) {
   double fraction = 0.0, unit = 0.1;
@@ -115,6 +101,19 @@ std::vector<std::uint8_t> HeadOf(const std::string& path) {
 
 }  // namespace
 
+std::optional<double> DateTime_s(std::string_view text) {
+  using std::chrono::day, std::chrono::month, std::chrono::year;
+  if (text.size() != 19) return std::nullopt;
+  const auto y = Digits(text.substr(0, 4)), m = Digits(text.substr(5, 2)),
+             d = Digits(text.substr(8, 2)), hour = Digits(text.substr(11, 2)),
+             minute = Digits(text.substr(14, 2)), second = Digits(text.substr(17, 2));
+  if (!y || !m || !d || !hour || !minute || !second) return std::nullopt;
+  const std::chrono::year_month_day date{year(*y), month(unsigned(*m)), day(unsigned(*d))};
+  if (!date.ok() || *hour > 23 || *minute > 59 || *second > 60) return std::nullopt;
+  const auto days = static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+  return 86400.0 * days + 3600.0 * *hour + 60.0 * *minute + *second;
+}
+
 std::optional<double> ExifTime_s(std::span<const std::uint8_t> jpeg) {
   const Tiff tiff(ExifOfJpeg(jpeg));
   const auto root = tiff.Root();
@@ -122,7 +121,7 @@ std::optional<double> ExifTime_s(std::span<const std::uint8_t> jpeg) {
   const auto at = folder ? tiff.Offset(*folder) : std::nullopt;
   if (!at) return std::nullopt;
   const auto taken = tiff.Find(*at, kDateTimeOriginal);
-  const auto seconds = taken ? SecondsOf(tiff.Text(*taken)) : std::nullopt;
+  const auto seconds = taken ? DateTime_s(tiff.Text(*taken)) : std::nullopt;
   if (!seconds) return std::nullopt;
   const auto fraction = tiff.Find(*at, kSubSecTimeOriginal);
   return *seconds + (fraction ? FractionOf(tiff.Text(*fraction)) : 0.0);

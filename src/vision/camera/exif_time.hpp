@@ -4,9 +4,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rift::vision {
+
+/// Seconds since 1970, of whatever time zone, of `2026:11:23 12:34:56`; nothing for what is no date
+/// and time.
+std::optional<double> DateTime_s(std::string_view text);
 
 /// When a JPEG was taken by its camera's clock, in seconds since 1970 of whatever time zone that
 /// clock has: DateTimeOriginal and, where it is there, SubSecTimeOriginal (Exif 2.32, 4.6.5).

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "exif_time.hpp"
 #include "rift/statistics/descriptive.hpp"
 
 namespace rift::vision {
@@ -41,11 +42,41 @@ std::string_view FractionAt(const std::string& text, std::size_t at) {
 
 constexpr std::size_t kUnixDigits = 10;  // of seconds since 1970, from 2001 to 2286
 
+/// A date and time in a name: where it ends, and its seconds.
+struct DateTime {
+  std::size_t end = 0;
+  double t_s = 0.0;
+};
+
+/// `20261127_101559`, with any sign between, or in one with a fraction of a second behind it.
+std::optional<DateTime> DateTimeAt(const std::string& text, std::size_t at) {
+  constexpr std::size_t kDate = 8, kTime = 6;
+  std::size_t end = EndOfDigits(text, at);
+  const bool is_parted = end - at == kDate && EndOfDigits(text, end + 1) - end == kTime + 1;
+  if (!is_parted && end - at < kDate + kTime) return std::nullopt;
+  const std::size_t time_at = at + kDate + (is_parted ? 1 : 0);
+  if (is_parted) end = time_at + kTime;
+  const std::string_view all = text;
+  // Other long numbers, such as nanoseconds, are dates of other centuries at most.
+  const bool is_of_today = all.substr(at, 2) == "19" || all.substr(at, 2) == "20";
+  const auto whole_s = DateTime_s(fmt::format(
+      "{}:{}:{} {}:{}:{}", all.substr(at, 4), all.substr(at + 4, 2), all.substr(at + 6, 2),
+      all.substr(time_at, 2), all.substr(time_at + 2, 2), all.substr(time_at + 4, 2)));
+  if (!is_of_today || !whole_s) return std::nullopt;
+  const std::string fraction = "0." + text.substr(time_at + kTime, end - time_at - kTime);
+  return DateTime{end, *whole_s + std::strtod(fraction.c_str(), nullptr)};
+}
+
 /// The numbers in the name of a file, the last one first, its folder and ending left out.
 std::vector<double> NumbersIn(const std::string& file) {
   const std::string stem = std::filesystem::path(file).stem().string();
   std::vector<double> numbers;
   for (std::size_t at = 0; at < stem.size();) {
+    if (const auto taken = DateTimeAt(stem, at)) {
+      numbers.push_back(taken->t_s);
+      at = taken->end;
+      continue;
+    }
     std::size_t end = EndOfDigits(stem, at);
     const bool has_fraction = end - at == kUnixDigits && end + 1 < stem.size() &&
                               stem[end] == '.' && IsDigit(stem[end + 1]);

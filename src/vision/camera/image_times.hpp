@@ -11,7 +11,8 @@ bool IsBefore(const std::string& a, const std::string& b);
 
 /// Whether the names of pictures count them: the numbers at one place of their names, counted from
 /// the end, rise throughout (frame012_cam2.jpg: the first). Unix seconds with a fraction, ten
-/// digits and a point before more, are one number.
+/// digits and a point before more, are one number; so are a date and time, 20261127_101559 or in
+/// one, which count in seconds.
 bool AreCounted(const std::vector<std::string>& files);
 
 /// When pictures were taken, seconds after the first, `fps` a second. Where their names count them,

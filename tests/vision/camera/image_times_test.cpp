@@ -161,6 +161,30 @@ TEST_CASE("The numbers that count pictures may stand before others, and may be U
   CHECK_FALSE(AreCounted({"a1_1.png", "a1.png"}));
 }
 
+TEST_CASE("A date and time in the names counts in seconds, over the end of a minute and a day") {
+  const auto are = [](const std::vector<std::string>& files, double fps,
+                      const std::vector<double>& expected_s) {
+    const std::vector<double> times_s = TimesByNames(files, fps);
+    REQUIRE(times_s.size() == expected_s.size());
+    for (std::size_t i = 0; i < times_s.size(); ++i) {
+      INFO(files[i]);
+      CHECK(times_s[i] == Approx(expected_s[i]).margin(1e-5));
+    }
+  };
+  are({"IMG_20261127_101558.jpg", "IMG_20261127_101559.jpg", "IMG_20261127_101600.jpg",
+       "IMG_20261127_101602.jpg"},
+      1.0, {0.0, 1.0, 2.0, 4.0});
+  are({"20261231-235959_cam2.png", "20270101-000001_cam2.png", "20270101-000003_cam2.png"}, 4.0,
+      {0.0, 0.25, 0.5});
+  are({"20261127101559800000.png", "20261127101559900000.png", "20261127101600000000.png",
+       "20261127101600200000.png"},
+      10.0, {0.0, 0.1, 0.2, 0.4});
+  // What is no date, and a number of nanoseconds, are counts.
+  are({"20261327_101558.jpg", "20261327_101559.jpg", "20261327_101600.jpg"}, 1.0, {0.0, 1.0, 42.0});
+  are({"1764238559900000000.png", "1764238560000000000.png", "1764238560100000000.png"}, 10.0,
+      {0.0, 0.1, 0.2});
+}
+
 TEST_CASE("Behind the point of Unix seconds digits are a fraction, however many there are") {
   const std::vector<std::string> in_order{
       "c_1699999999.9.jpg",  "c_1700000000.jpg",   "c_1700000000.05.jpg", "c_1700000000.1.jpg",
