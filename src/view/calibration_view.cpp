@@ -18,7 +18,7 @@ bool IsOpen() { return cv::getWindowProperty(kTitle, cv::WND_PROP_VISIBLE) > 0.0
 vision::LiveInput LiveInputOf(int key) {
   vision::LiveInput input;
   if (key < 0) return input;
-  const int letter = key & 0xFF;
+  const int letter = key & 0xFFFF;  // see TakeKey
   input.take = letter == ' ';
   input.undo = letter == 'u';
   input.toggle = letter == 'a';

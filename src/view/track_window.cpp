@@ -17,7 +17,7 @@ constexpr int kEscape = 27;
 void TakeKey(int key, TrackInput& input) {
   if (key < 0) return;
   input.any_key = true;
-  switch (key & 0xFF) {
+  switch (key & 0xFFFF) {  // a key symbol below Shift, Ctrl and such; Insert is 0xFF63, and c 0x63
     case 'q':
     case kEscape:
       input.quit = true;

@@ -184,11 +184,12 @@ TEST_CASE("Each key of the tracking window has its meaning, and any other is a k
     return input;
   };
   CHECK_FALSE(after(-1).any_key);
-  for (const int key :
-       {int{'q'}, 27, int{'u'}, int{'w'}, int{'s'}, int{'c'}, int{'x'}, 0, 0x100000 + 'q'}) {
+  constexpr int kInsert = 0xFF63, kNumLock = 0x100000;  // beside the key
+  for (const int key : {int{'q'}, 27, int{'u'}, int{'w'}, int{'s'}, int{'c'}, int{'x'}, 0,
+                        kNumLock + 'q', kInsert, kNumLock + kInsert}) {
     const TrackInput input = after(key);
     INFO(key);
-    const int letter = key & 0xFF;
+    const int letter = key >= kNumLock ? key - kNumLock : key;
     CHECK(input.any_key);
     CHECK(input.quit == (letter == 'q' || letter == 27));
     CHECK(input.undo == (letter == 'u'));
@@ -200,10 +201,12 @@ TEST_CASE("Each key of the tracking window has its meaning, and any other is a k
 }
 
 TEST_CASE("Each key of the calibration window has its meaning and no other has one") {
-  for (const int key : {-1, int{' '}, int{'u'}, int{'a'}, int{'q'}, 27, int{'x'}, 0x100000 + 'a'}) {
+  constexpr int kPrint = 0xFF61, kNumLock = 0x100000;
+  for (const int key :
+       {-1, int{' '}, int{'u'}, int{'a'}, int{'q'}, 27, int{'x'}, kNumLock + 'a', kPrint}) {
     const vision::LiveInput input = LiveInputOf(key);
     INFO(key);
-    const int letter = key < 0 ? 0 : key & 0xFF;
+    const int letter = key >= kNumLock ? key - kNumLock : key;
     CHECK(input.take == (letter == ' '));
     CHECK(input.undo == (letter == 'u'));
     CHECK(input.toggle == (letter == 'a'));
