@@ -45,6 +45,9 @@ class VideoSource : public CameraSource {
     if (!capture_.open(name, cv::CAP_FFMPEG)) {
       throw std::invalid_argument(fmt::format("{}: FFmpeg cannot open it: is it a video?", name));
     }
+    // Not turned as a phone was held: a photograph of the board is not either, and the lens is that
+    // of the sensor.
+    capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0.0);
     const double rate_hz = capture_.get(cv::CAP_PROP_FPS);
     period_s_ = 1.0 / (rate_hz > 0.0 && std::isfinite(rate_hz) ? rate_hz : kUnknownRate_hz);
   }
