@@ -81,13 +81,14 @@ std::string PictureHealth::Reason() const {
   return {};
 }
 
-/// Passes over pictures that claim too many pixels or another size than the others: one damaged
-/// byte of a JPEG's head must not end a session.
+/// Passes over pictures that claim too many pixels, none, or another size than the others: one
+/// damaged byte of a JPEG's head must not end a session.
 class SizeGuard {
  public:
   explicit SizeGuard(const CaptureOptions& options) : most_px_(1e6 * options.most_mpixel) {}
 
   bool IsGood(const Frame& frame) {
+    if (frame.width_px < 1 || frame.height_px < 1) return false;
     if (static_cast<double>(frame.width_px) * frame.height_px > most_px_) return false;
     const cv::Size size(frame.width_px, frame.height_px);
     if (size_.empty()) size_ = size;

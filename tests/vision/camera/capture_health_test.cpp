@@ -99,6 +99,23 @@ TEST_CASE("A recording that nobody reads is not silent") {
   CHECK(capture.Status().delivered == 2);
 }
 
+TEST_CASE("A first picture that states no height is passed over, and the next one sets the size") {
+  const auto list = std::make_shared<ListCamera::List>();
+  const double now_s = SteadyNow_s();
+  list->frames = {GreyFrame(100, 100, now_s), GreyFrame(101, 100, now_s + 0.1)};
+  list->frames[0].height_px = 0;
+  CaptureThread capture = Capturing(list, {.silent_s = 60.0});
+  CaptureStatus status;
+  test::WaitUntil("both were read", [&] {
+    status = capture.Status();
+    return status.delivered + status.skipped == 2;
+  });
+  CHECK(status.skipped == 1);
+  const auto frame = capture.Next(20.0);
+  REQUIRE(frame);
+  CHECK((frame->width_px == 8 && frame->height_px == 4));
+}
+
 TEST_CASE("What a source tells of is in the status, and an interruption is a state of its own") {
   const auto list = std::make_shared<ListCamera::List>();
   const double now_s = SteadyNow_s();
