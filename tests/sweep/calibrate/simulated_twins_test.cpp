@@ -215,7 +215,7 @@ TEST_CASE("A path has traits when its yaw answers the steering, at once as well,
     const SimulatedTrial of = Turn();
     control::Navigator navigator(of.control, of.task.waypoints);
     Trajectory path;
-    trajectory::StampedPose pose;
+    trajectory::StampedPose pose{.yaw_rad = 0.0};
     constexpr double kRow_s = 0.05;
     for (int i = 0; i < 90; ++i) {
       path.poses.push_back(pose);
