@@ -48,14 +48,14 @@ struct DateTime {
   double t_s = 0.0;
 };
 
-/// `20261127_101559`, with any sign between, or in one with a fraction of a second behind it.
+/// `20261127_101559`, with any sign between, or in one; more digits are a fraction of a second.
 std::optional<DateTime> DateTimeAt(const std::string& text, std::size_t at) {
   constexpr std::size_t kDate = 8, kTime = 6;
   std::size_t end = EndOfDigits(text, at);
-  const bool is_parted = end - at == kDate && EndOfDigits(text, end + 1) - end == kTime + 1;
+  const bool is_parted = end - at == kDate && EndOfDigits(text, end + 1) - end > kTime;
   if (!is_parted && end - at < kDate + kTime) return std::nullopt;
   const std::size_t time_at = at + kDate + (is_parted ? 1 : 0);
-  if (is_parted) end = time_at + kTime;
+  if (is_parted) end = EndOfDigits(text, time_at);
   const std::string_view all = text;
   // Other long numbers, such as nanoseconds, are dates of other centuries at most.
   const bool is_of_today = all.substr(at, 2) == "19" || all.substr(at, 2) == "20";
@@ -67,12 +67,13 @@ std::optional<DateTime> DateTimeAt(const std::string& text, std::size_t at) {
   return DateTime{end, *whole_s + std::strtod(fraction.c_str(), nullptr)};
 }
 
-/// The numbers in the name of a file, the last one first, its folder and ending left out.
-std::vector<double> NumbersIn(const std::string& file) {
+/// The numbers in the name of a file, the last one first, its folder and ending left out; with
+/// `has_dates` a date and time are one.
+std::vector<double> NumbersIn(const std::string& file, bool has_dates) {
   const std::string stem = std::filesystem::path(file).stem().string();
   std::vector<double> numbers;
   for (std::size_t at = 0; at < stem.size();) {
-    if (const auto taken = DateTimeAt(stem, at)) {
+    if (const auto taken = has_dates ? DateTimeAt(stem, at) : std::nullopt) {
       numbers.push_back(taken->t_s);
       at = taken->end;
       continue;
@@ -100,13 +101,16 @@ std::optional<std::vector<double>> RisingAt(const std::vector<std::vector<double
   return numbers;
 }
 
-/// The last numbers of the names that rise throughout; none where none do.
+/// The last numbers of the names that rise throughout; none where none do. A count behind a date,
+/// 20261127_000061, is no time of the day for long.
 std::optional<std::vector<double>> RisingNumbers(const std::vector<std::string>& files) {
-  std::vector<std::vector<double>> names;
-  for (const std::string& file : files) names.push_back(NumbersIn(file));
-  const std::size_t places = names.empty() ? 0 : names.front().size();
-  for (std::size_t place = 0; place < places; ++place) {
-    if (auto rising = RisingAt(names, place)) return rising;
+  for (const bool has_dates : {true, false}) {
+    std::vector<std::vector<double>> names;
+    for (const std::string& file : files) names.push_back(NumbersIn(file, has_dates));
+    const std::size_t places = names.empty() ? 0 : names.front().size();
+    for (std::size_t place = 0; place < places; ++place) {
+      if (auto rising = RisingAt(names, place)) return rising;
+    }
   }
   return std::nullopt;
 }
