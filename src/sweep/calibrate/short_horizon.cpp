@@ -1,7 +1,6 @@
 #include "rift/sweep/calibrate/short_horizon.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "rift/geometry/pose2.hpp"
@@ -17,6 +16,8 @@ using trajectory::Trajectory;
 constexpr std::uint64_t kOffsetStream = 40;
 /// How long the loop runs on after the last pose of the log has arrived.
 constexpr double kRunOut_s = 0.1;
+/// A log without a pose for longer ends there: its clock was set meanwhile, by years perhaps.
+constexpr double kLongestGap_s = 60.0;
 
 double Latency_s(const simulation::MocapOptions& mocap) {
   return 0.5 * mocap.exposure_s + mocap.processing_s;
@@ -137,7 +138,7 @@ Trajectory Replay(const SimulatedTrial& trial, const Trajectory& log,
   // The log alone says when it ends.
   trial::TrialOptions options = trial.trial;
   options.timeout_s = std::max(options.timeout_s, log.poses.back().t_s - from_s + 1.0);
-  options.lost_after_s = std::numeric_limits<double>::infinity();
+  options.lost_after_s = kLongestGap_s;
   options.arena = {};
   trial::RunTrial(robot, trial.task, trial.control, options);
   return robot.Path();

@@ -94,6 +94,15 @@ TEST_CASE("A replay goes on behind a gap in the log that is longer than a trial 
   CHECK(path.poses.back().x_m > stood->x_m + 0.01);
 }
 
+TEST_CASE("A replay does not wait for years where the clock of the log was set") {
+  Trajectory log = Log();
+  const size_t half = log.poses.size() / 2;
+  for (size_t i = half; i < log.poses.size(); ++i) log.poses[i].t_s += 1.7e9;
+  const Trajectory path = Replay(Short(), log);
+  CHECK(path.poses.back().t_s > log.poses[half - 1].t_s + 60.0);
+  CHECK(path.poses.back().t_s < log.poses[half - 1].t_s + 61.0);
+}
+
 TEST_CASE("A connection that stands late is the log's own to tell, not the twin's to draw") {
   constexpr ShortHorizonOptions kHorizon{.most_frames = 2, .phases = 1, .moved_m = 0.02};
   SimulatedTrial late = Short();
