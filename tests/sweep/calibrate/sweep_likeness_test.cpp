@@ -266,7 +266,9 @@ TEST_CASE("A run beside a real one stands on the frames that its row in the tabl
   plan.goal = experiment::Goal::kGrid;
   plan.likeness.runs = 1;
   plan.candidate.grid_fps = 30.0;
-  plan.reference.tag_offset_m = 0.2;  // a point whose speed is another than the tag's
+  plan.simulation.mocap.rate_hz = 30.0;
+  plan.simulation.mocap.host_period_s = 0.053;  // stamps the frames late, now and then by one more
+  plan.reference.tag_offset_m = 0.2;            // a point whose speed is another than the tag's
   Files files = SimulatedLogs(plan, 0.0);
   plan.space.parameters.front().levels = {{"0.15", 0.15}};
   Evaluator evaluator(plan, "e.yaml", InputsOf(files));
