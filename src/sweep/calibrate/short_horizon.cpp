@@ -95,8 +95,9 @@ std::vector<Pose2> PosesAt(const Trajectory& path, const Trajectory& log) {
   size_t i = 0;
   for (const StampedPose& row : log.poses) {
     while (i + 2 < path.poses.size() && path.poses[i + 1].t_s < row.t_s) ++i;
-    const StampedPose &a = path.poses[i], &b = path.poses[i + 1];
-    const double share = std::clamp((row.t_s - a.t_s) / (b.t_s - a.t_s), 0.0, 1.0);
+    const StampedPose &a = path.poses[i], &b = path.poses[std::min(i + 1, path.poses.size() - 1)];
+    const double span_s = b.t_s - a.t_s;  // none of a robot that had arrived when it began
+    const double share = span_s > 0.0 ? std::clamp((row.t_s - a.t_s) / span_s, 0.0, 1.0) : 0.0;
     poses.push_back({a.x_m + share * (b.x_m - a.x_m), a.y_m + share * (b.y_m - a.y_m),
                      a.yaw_rad + share * geometry::WrapToPi(b.yaw_rad - a.yaw_rad)});
   }

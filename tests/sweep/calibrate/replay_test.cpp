@@ -103,6 +103,25 @@ TEST_CASE("A replay does not wait for years where the clock of the log was set")
   CHECK(path.poses.back().t_s < log.poses[half - 1].t_s + 61.0);
 }
 
+TEST_CASE("A replay that has arrived when it begins stands for all of its log") {
+  SimulatedTrial twin = Short();
+  twin.trial.settle_s = 0.0;
+  twin.simulation.mocap.exposure_s = twin.simulation.mocap.processing_s = 0.0;
+  Trajectory log;
+  for (int i = 0; i < 4; ++i) {
+    log.poses.push_back({.t_s = 0.05 * i, .x_m = 0.25 + 0.001 * i, .yaw_rad = 0.0});
+  }
+  REQUIRE(Replay(twin, log).poses.size() == 1);
+  const std::vector<HorizonError> errors =
+      ShortHorizonErrors(twin, log, {.most_frames = 1, .phases = 1, .moved_m = 0.0});
+  REQUIRE(errors.size() == 3);
+  for (const HorizonError& error : errors) {
+    CHECK(error.ahead_m == Approx(-0.001));
+    CHECK(error.left_m == Approx(0.0).margin(1e-12));
+    CHECK(error.turned_rad == Approx(0.0).margin(1e-12));
+  }
+}
+
 TEST_CASE("A connection that stands late is the log's own to tell, not the twin's to draw") {
   constexpr ShortHorizonOptions kHorizon{.most_frames = 2, .phases = 1, .moved_m = 0.02};
   SimulatedTrial late = Short();
