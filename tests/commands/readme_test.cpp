@@ -1,12 +1,14 @@
 // The recipes of README and docs, as they are printed, in the order they are printed.
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
 
 #include "support/inputs/trials.hpp"
 #include "support/processes/process.hpp"
+#include "support/processes/quick_gnuplot.hpp"
 #include "support/processes/running_rift.hpp"
 #include "support/processes/shell.hpp"
 #include "support/tree.hpp"
@@ -63,6 +65,7 @@ std::string WhyNotRun(const std::string& command) {
            Need{"out/identify/", "drives of a robot"},
            Need{"my_task.yaml", "a file that the reader writes"},
            Need{"--real-columns", "a log in columns of its own: the tests of gap do it"},
+           Need{"--rare-event", "2400 trials: the tests of sweep do it"},
        }) {
     if (command.find(need.part) != command.npos) return need.reason;
   }
@@ -74,6 +77,27 @@ std::string WithoutWindow(std::string command) {
   const std::string flag = " --view";
   const size_t at = command.find(flag);
   return at == command.npos ? command : command.erase(at, flag.size());
+}
+
+/// A command with the budget that a test has, where its experiment is given more: what it does is
+/// the same, how well it knows what it says is not.
+std::string WithinBudget(std::string command) {
+  struct Budget {
+    std::string experiment;
+    const char* flags;
+  };
+  for (const Budget& budget : {
+           Budget{"configs/falsify.yaml", " --budget 20"},
+           Budget{"data/example/failures.yaml", " --budget 20"},
+           Budget{"configs/programs/diff_drive.yaml", " --budget 8 --set falsify.most_repeats=5"},
+           Budget{"data/hidden/calibrate.yaml",
+                  " --set calibrate.judge_runs=2 --set 'calibrate.method={iterations: 1, runs: 0, "
+                  "simulated_logs: 2, horizon: {phases: 1}}'"},
+       }) {
+    const size_t at = command.find(budget.experiment);
+    if (at != command.npos) command.insert(at + budget.experiment.size(), budget.flags);
+  }
+  return command;
 }
 
 /// Documents that are read one after the other, in one folder.
@@ -88,7 +112,7 @@ class Reader {
     int run = 0;
     for (const std::string& command : CommandsOf(document)) {
       if (!WhyNotRun(command).empty()) continue;
-      if (done_.insert(command).second) RunAsPrinted(folder, WithoutWindow(command));
+      if (done_.insert(command).second) Run(command);
       ++run;
     }
     return run;
@@ -97,6 +121,13 @@ class Reader {
   test::TemporaryFolder folder;
 
  private:
+  void Run(const std::string& command) const {
+    std::optional<test::QuickGnuplot> gnuplot;
+    const bool is_drawn = command.find("demo.yaml") != command.npos;  // beside its picture below
+    if (!is_drawn) gnuplot.emplace();
+    RunAsPrinted(folder, WithinBudget(WithoutWindow(command)));
+  }
+
   std::set<std::string> done_;
 };
 
