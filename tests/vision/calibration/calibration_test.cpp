@@ -1,9 +1,10 @@
 #include "rift/vision/calibration/calibration.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "rift/vision/camera/camera_source.hpp"
 #include "support/processes/process.hpp"
 #include "support/tree.hpp"
 #include "vision/synthetic_views.hpp"
@@ -152,11 +153,11 @@ TEST_CASE("The photographs of the paper's camera are not called good and the rea
     WARN("SKIPPED: the photographs are not beside this clone (../shared/calibration)");
     return;
   }
-  std::vector<BoardView> views;
-  for (const std::string& file : ImageFiles(folder.string())) {
-    views.push_back(FindBoard(file, kBoard));
+  std::vector<BoardView> views;  // of eleven those that do not take seconds, one of each kind
+  for (const char* number : {"00", "01", "07", "08", "09", "10"}) {
+    const auto file = folder / fmt::format("calibration_{}.jpg", number);
+    views.push_back(FindBoard(file.string(), kBoard));
   }
-  REQUIRE(views.size() == 11);
   const Calibration found = Calibrate(views, kBoard);
   const std::string reasons = All(found.reasons);
   INFO(reasons << "rms " << found.rms_px << " fisheye " << found.equidistant_px << " bent "
