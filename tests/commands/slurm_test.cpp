@@ -56,7 +56,7 @@ falsify: {until: budget, most_repeats: 1}
 )";
 const std::string kDrive =
     "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.4, y: 0.05, stop: true}]\n"
-    "simulation: {motor: {dead_band: 0.05}}\ntrial: {pace: new_pose}\n";
+    "simulation: {step_s: 0.008, motor: {dead_band: 0.05}}\ntrial: {pace: new_pose}\n";
 const std::string kFit = kDrive + R"(goal: calibrate
 reference: {kind: logs, path: "log{trial}.csv", trials: [1, 2, 3, 4]}
 calibrate:

@@ -13,6 +13,13 @@ set -u
 shopt -s nullglob
 cd "$FAKE_SLURM"
 
+# The first line of a file in $line, empty where there is none; without a process, since the server
+# asks twenty times a second.
+look() {
+  line=
+  { read -r line <"$1"; } 2>/dev/null
+}
+
 set_state() {
   echo "$2" >"new.$1.$BASHPID"
   mv "new.$1.$BASHPID" "queue/$1"
@@ -42,17 +49,19 @@ run_task() {
 
 serve() {
   mkdir -p jobs queue pids
+  local silent
+  exec {silent}<> <(:)  # nobody writes into it: a pause without a process
   while [[ ! -e stop ]]; do
     local running=0 task
-    for task in queue/*; do [[ $(cat "$task" 2>/dev/null) == RUNNING ]] && ((++running)); done
+    for task in queue/*; do look "$task" && [[ $line == RUNNING ]] && ((++running)); done
     for task in queue/*; do
       ((running < 2)) || break
-      [[ $(cat "$task" 2>/dev/null) == PENDING ]] || continue
+      look "$task" && [[ $line == PENDING ]] || continue
       set_state "${task#queue/}" RUNNING
       run_task "${task#queue/}" &
       ((++running))
     done
-    sleep 0.05
+    read -rt 0.05 -u "$silent"
   done
   rm -f requeue
   for task in pids/*; do kill -9 -- "-$(cat "$task")" 2>/dev/null; done
@@ -104,9 +113,10 @@ list() {
   local name= argument task state
   for argument in "$@"; do [[ $argument == --name=* ]] && name=${argument#*=}; done
   for task in queue/*; do
-    state=$(cat "$task" 2>/dev/null) || continue
-    task=${task#queue/}
-    [[ $(cat "jobs/${task%_*}/name") == "$name" ]] || continue
+    look "$task" || continue
+    state=$line task=${task#queue/}
+    look "jobs/${task%_*}/name"
+    [[ $line == "$name" ]] || continue
     case $state in
       PENDING) echo "$task|$state|Resources" ;;
       REQUEUE_HOLD) echo "$task|$state|JobHoldMaxRequeue" ;;
