@@ -78,9 +78,9 @@ TEST_CASE("Whole drives tell a tracker's scatter and a pull, and nothing of what
   options.iterations = 1;
   options.corrections = 0;
   options.horizon.phases = 2;
-  options.features = {.rounds = 2, .draws = 120};
+  options.features = {.rounds = 2, .draws = 60};
   const sweep::Calibration found =
-      test::FindPlanted(test::LoadGridStudy(), planted, 3, 8, options, 2);
+      test::FindPlanted(test::LoadGridStudy(), planted, 3, 6, options, 2);
   for (size_t i = 0; i < 3; ++i) {
     const sweep::CalibratedParameter& one = found.parameters[i];
     INFO(planted[i].key << ": " << one.value << " in [" << one.low << ", " << one.high << "], "
@@ -88,7 +88,7 @@ TEST_CASE("Whole drives tell a tracker's scatter and a pull, and nothing of what
     CHECK(one.low < planted[i].truth);
     CHECK(planted[i].truth < one.high);
     CHECK_FALSE(one.is_from_prior);
-    // Eight drives on uneven ground are hardly like others: what is open is said to be.
+    // Six drives on uneven ground are hardly like others: what is open is said to be.
     const double share = (one.high - one.low) / (planted[i].max - planted[i].min);
     CHECK((i == 2 ? share > 0.4 : share < 0.7));
   }
@@ -108,7 +108,7 @@ TEST_CASE("Threads change no byte of a fit by features") {
   options.iterations = 1;
   options.corrections = 0;
   options.horizon.phases = 1;
-  options.features = {.rounds = 1, .draws = 20};
+  options.features = {.rounds = 1, .draws = 8};
   const sweep::Calibration alone =
       test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 1);
   const sweep::Calibration together =
@@ -120,7 +120,7 @@ TEST_CASE("Threads change no byte of a fit by features") {
   const sweep::Calibration by_motions =
       test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 2);
   CHECK(alone.parameters[0].value != by_motions.parameters[0].value);
-  CHECK(alone.trials_simulated == by_motions.trials_simulated + 3 * (2 + 20 + 2 * 8));
+  CHECK(alone.trials_simulated == by_motions.trials_simulated + 3 * (2 + 8 + 2 * 8));
   options.features = {.rounds = 1, .draws = 5};
   CHECK_THROWS_WITH(test::FindPlanted(test::LoadGridStudy(), planted, 4, 3, options, 2),
                     Catch::Contains("draws is 5, and 1 parameters that act need 6 or more"));
