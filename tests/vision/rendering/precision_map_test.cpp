@@ -78,12 +78,12 @@ TEST_CASE("The predicted precision is that of another renderer's pictures within
   const double tilt_deg = GENERATE(0.0, 35.0);
   const CameraModel camera = HungCamera(0.95, tilt_deg, 700.0);
   const PrecisionMap map =
-      PredictPrecision(camera, {}, LookOfRays(), {.columns = 6, .rows = 4, .views = 9});
+      PredictPrecision(camera, {}, LookOfRays(), {.columns = 6, .rows = 4, .views = 6});
   REQUIRE(map.places.size() == 24);
   const Squares squares = AtPlaces(camera, map, kGoodSide_px);
   INFO("tilt " << tilt_deg << " deg, " << squares.measured << " views: position "
                << squares.PositionRatio() << ", heading " << squares.YawRatio());
-  REQUIRE(squares.measured >= 100);
+  REQUIRE(squares.measured >= 90);
   CHECK(squares.PositionRatio() > 0.8);
   CHECK(squares.PositionRatio() < 1.2);
   CHECK(squares.YawRatio() > 0.8);

@@ -89,7 +89,7 @@ Errors Everywhere(double tilt_deg, double focal_px, int count) {
 TEST_CASE("Poses hold their error wherever the tag has 20 px, and their covariance says it") {
   for (const double focal_px : {550.0, 700.0}) {
     for (const double tilt_deg : {0.0, 20.0, 35.0}) {
-      const Errors errors = Everywhere(tilt_deg, focal_px, 100);
+      const Errors errors = Everywhere(tilt_deg, focal_px, 60);
       const double p50_m = statistics::Quantile(errors.off_m, 0.5);
       const double p95_m = statistics::Quantile(errors.off_m, 0.95);
       const double max_m = statistics::Quantile(errors.off_m, 1.0);

@@ -137,7 +137,7 @@ TEST_CASE("Tags of every family are measured as well as tag36h11 from 20 to 60 p
   for (const double side_px : {20.0, 35.0, 60.0}) {
     std::optional<Errors> standard;  // tag36h11, the first
     for (const TagFamily family : kFamilies) {
-      const Errors errors = RaysOf(family, side_px, 60);
+      const Errors errors = RaysOf(family, side_px, 30);
       if (!standard) standard = errors;
       INFO(NameOf(family) << " of " << side_px << " px: p95 " << 1e3 * errors.Off_m()
                           << " mm, yaw p95 " << errors.Yaw_deg() << " deg, error over sigma "
@@ -255,7 +255,7 @@ TEST_CASE("Pictures without a tag hold no robot, and of tag16h5 a false tag in a
     // Of 36 bits and more not one square in a hundred thousand is taken for a tag: a few pictures
     // show all that many would.
     const int bits = ShapeOf(family).bits;
-    const int shown = bits >= 36 ? 15 : bits >= 25 ? 50 : kPictures;
+    const int shown = bits >= 36 ? 8 : bits >= 20 ? 25 : kPictures;
     int found = 0, sightings = 0;
     for (int i = 0; i < shown; ++i) {
       const Frame& frame = frames[static_cast<std::size_t>(i)];

@@ -105,7 +105,7 @@ TEST_CASE(
 
 TEST_CASE("A 75 px tag is found wherever it is and its corners to a twentieth of a pixel") {
   const CameraModel camera = test::PaperCamera(0.72);
-  const Errors errors = Acquire(camera, test::RandomRobots(camera, 200), PixelFormat::kJpeg);
+  const Errors errors = Acquire(camera, test::RandomRobots(camera, 80), PixelFormat::kJpeg);
   CHECK(errors.side_px / errors.corners == Approx(75.0).margin(5.0));
   CHECK(errors.missed == 0);
   CHECK(errors.flipped == 0);
@@ -116,7 +116,7 @@ TEST_CASE("A 75 px tag is found wherever it is and its corners to a twentieth of
 
 TEST_CASE("A 62 px tag is found wherever it is and its covariance says how well") {
   const CameraModel camera = test::PaperCamera(0.87);
-  const Errors errors = Acquire(camera, test::RandomRobots(camera, 200), PixelFormat::kGrey);
+  const Errors errors = Acquire(camera, test::RandomRobots(camera, 80), PixelFormat::kGrey);
   CHECK(errors.missed == 0);
   CHECK(errors.flipped == 0);
   CHECK(errors.CornerRms_px() < 0.04);
@@ -132,7 +132,7 @@ TEST_CASE("A tag that leans as on the ramp is not flipped") {
   TagOptions options;
   options.ground = Ground::kFree;
   const Errors errors =
-      Acquire(camera, test::RandomRobots(camera, 100, 0.2404), PixelFormat::kGrey, options);
+      Acquire(camera, test::RandomRobots(camera, 50, 0.2404), PixelFormat::kGrey, options);
   CHECK(errors.missed == 0);
   CHECK(errors.flipped == 0);
 }
