@@ -136,7 +136,7 @@ TEST_CASE("An identification on the twin leaves a fit that the next command make
   const test::TemporaryFolder folder;
   // Limits that a loaded machine keeps as well.
   test::WriteText(folder / "task.yaml", "include: " + test::SourceDir() + R"(/configs/twin.yaml
-twin: {fps: 8, still_s: 60, camera: {grain_grey: 0, jpeg_colour: false}}
+twin: {fps: 5, still_s: 60, camera: {grain_grey: 0, jpeg_colour: false}}
 track: {tag: {acquire_decimate: 2, lost_after_s: 5}, capture: {silent_s: 20, same_s: 20, open_timeout_s: 60}}
 trial: {pose_stale_s: 5, lost_after_s: 20}
 hardware:
