@@ -21,7 +21,7 @@ using test::RunRift;
 using test::WriteText;
 
 const std::string kTask = R"(waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.4, y: 0.05, stop: true}]
-simulation: {motor: {dead_band: 0.05}}
+simulation: {step_s: 0.008, motor: {dead_band: 0.05}}
 trial: {pace: new_pose}
 )";
 const std::string kCalibrate = kTask + R"(goal: calibrate
@@ -88,8 +88,9 @@ TEST_CASE("A calibration finds the mismatch and its robot file is used as an inc
   const std::string text = ReadFile(robot);
   CHECK(text.find("interval") != std::string::npos);
   CHECK(text.find("log1.csv") != std::string::npos);
-  WriteText(bench.task, "include: robot.yaml\n" +
-                            Replaced(kTask, "simulation: {motor: {dead_band: 0.05}}\n", ""));
+  WriteText(bench.task,
+            "include: robot.yaml\n" +
+                Replaced(kTask, "simulation: {step_s: 0.008, motor: {dead_band: 0.05}}\n", ""));
   const ProcessResult drive =
       RunRift({"simulate", bench.task, "--out", bench.folder / "again.csv", "--json"});
   INFO(drive.err);
