@@ -49,10 +49,8 @@ TEST_CASE("A small PNG of very many pixels is refused by its header") {
 }
 
 TEST_CASE("A file or a device without an end is refused at the limit") {
-  for (const std::string endless : {"/dev/zero", "/dev/full"}) {
-    CheckRefused(RunRift({"gap", endless, kExample + "robot1.csv"}), endless + ": ");
-    CheckRefused(RunRift({"gap", kExample + "robot1.csv", endless}), endless + ": ");
-  }
+  CheckRefused(RunRift({"gap", "/dev/zero", kExample + "robot1.csv"}), "/dev/zero: ");
+  CheckRefused(RunRift({"gap", kExample + "robot1.csv", "/dev/full"}), "/dev/full: ");
   const test::TemporaryFolder folder;
   const std::string sparse = folder / "sparse.csv";
   WriteText(sparse, "t_s,x_m,y_m,yaw_rad\n");
