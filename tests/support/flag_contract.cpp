@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -123,8 +124,13 @@ class Runs {
     prepare(prepared_);
   }
 
-  std::shared_ptr<Run> Of(const std::string& words) const {
-    auto run = std::make_shared<Run>();
+  /// The same words are run once, in whatever order.
+  std::shared_ptr<Run> Of(const std::string& words) {
+    std::istringstream text(words);
+    const std::multiset<std::string> key{std::istream_iterator<std::string>(text), {}};
+    std::shared_ptr<Run>& run = runs_[key];
+    if (run) return run;
+    run = std::make_shared<Run>();
     fs::copy(prepared_.Path(), run->folder.Path(),
              fs::copy_options::recursive | fs::copy_options::copy_symlinks);
     std::vector<std::string> all = SplitWords(words, run->folder);
@@ -132,17 +138,11 @@ class Runs {
     run->result = RunRift(all);
     return run;
   }
-  /// The same command line is run once.
-  std::shared_ptr<Run> Base(const std::string& words) {
-    std::shared_ptr<Run>& run = bases_[words];
-    if (!run) run = Of(words);
-    return run;
-  }
 
  private:
   std::string command_;
   TemporaryFolder prepared_;
-  std::map<std::string, std::shared_ptr<Run>> bases_;
+  std::map<std::multiset<std::string>, std::shared_ptr<Run>> runs_;
 };
 
 }  // namespace
@@ -176,7 +176,7 @@ void CheckFlags(const std::string& command,
     }
     const bool has_base = row.base != "-";
     const std::string flagged = (has_base ? row.base + " " : "") + row.flag + " " + row.words;
-    const std::shared_ptr<Run> without = has_base ? runs.Base(row.base) : nullptr;
+    const std::shared_ptr<Run> without = has_base ? runs.Of(row.base) : nullptr;
     const std::shared_ptr<Run> with = runs.Of(flagged);
     INFO("rift " << command << " " << flagged << "\n"
                  << row.effect << "\n--- with\n"
