@@ -14,7 +14,8 @@ namespace rift::test {
 class QuickGnuplot {
  public:
   QuickGnuplot() {
-    WriteText(folder_ / "gnuplot", "#!/bin/sh\ncat\nprintf '</svg>IEND'\n");
+    WriteText(folder_ / "end", "</svg>IEND");
+    WriteText(folder_ / "gnuplot", "#!/bin/sh\nexec cat - '" + folder_ / "end" + "'\n");
     std::filesystem::permissions(folder_ / "gnuplot", std::filesystem::perms::owner_all);
   }
 
