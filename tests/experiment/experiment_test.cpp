@@ -74,7 +74,7 @@ void MakeFit(Experiment& experiment) {
 
 TEST_CASE("A resolved experiment loads as the same experiment") {
   std::mt19937_64 random(1);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 120; ++i) {
     Experiment experiment;
     test::RandomFill(experiment, random);
     experiment.name = RandomName(random);

@@ -16,7 +16,7 @@ TEST_CASE("Whatever strikes a drive it ends within a known distance") {
 
 // The study drives for ten hours.
 TEST_CASE("A healthy drive is not stopped") {
-  const HealthyHours healthy = DriveHealthily(0.3, 1000);
+  const HealthyHours healthy = DriveHealthily(0.15, 1000);
   for (const std::string& stop : healthy.stops) UNSCOPED_INFO(stop);
   CHECK(healthy.stops.empty());
 }

@@ -132,9 +132,9 @@ TEST_CASE("Proposals lie within the bounds, are new, and the same when a search 
   for (const Method method : AllMethods()) {
     for (const NamedSpace& space : Spaces()) {
       INFO(NameOf(method) << " in " << space.name);
-      const auto batches = Run(*MakeStrategy(With(method), space.axes, 90, 7), 90, Holed);
+      const auto batches = Run(*MakeStrategy(With(method), space.axes, 64, 7), 64, Holed);
       CheckProposals(space.axes, batches);
-      CheckGoesOn(*MakeStrategy(With(method), space.axes, 90, 7), batches, 90);
+      CheckGoesOn(*MakeStrategy(With(method), space.axes, 64, 7), batches, 64);
     }
   }
 }
