@@ -78,7 +78,7 @@ TEST_CASE("Whole drives tell a tracker's scatter and a pull, and nothing of what
   options.iterations = 1;
   options.corrections = 0;
   options.horizon.phases = 2;
-  options.features = {.rounds = 2, .draws = 60};
+  options.features = {.rounds = 2, .draws = 100};
   const sweep::Calibration found =
       test::FindPlanted(test::LoadGridStudy(), planted, 3, 6, options, 2);
   for (size_t i = 0; i < 3; ++i) {
