@@ -65,7 +65,8 @@ void RandomValue(T& value, const std::optional<yaml::Range>& range, std::mt19937
     for (std::size_t more = random() % 3; more > 0; --more) value[RandomText(random)];
     for (auto& [name, entry] : value) RandomFill(entry, random);
   } else if constexpr (yaml::kIsVector<T>) {
-    value.assign(random() % (random() % 8 == 0 ? 60 : 5), typename T::value_type{});
+    const std::size_t most = random() % 8 == 0 ? 60 : 5;
+    value.assign(random() % most, typename T::value_type{});
     for (auto& item : value) RandomValue(item, range, random);
   } else if constexpr (std::is_same_v<T, std::optional<double>>) {
     value.reset();
