@@ -238,6 +238,17 @@ Trajectory MeanPath(std::span<const Trajectory> paths, const LikenessOptions& op
   return AsPath(MeanShape(ShapesOf(paths, options.points)));
 }
 
+double MeanPathGap_m(const Trajectory& real, std::span<const Trajectory> runs,
+                     const GapOptions& gap, const LikenessOptions& options) {
+  if (runs.empty()) return kNotComputed;
+  if (!gap.trim_standstill) return Gap(MeanPath(runs, options), real, gap);
+  std::vector<Trajectory> trimmed;
+  for (const Trajectory& run : runs) trimmed.push_back(Measured(run, gap));
+  GapOptions of_trimmed = gap;
+  of_trimmed.trim_standstill = false;
+  return MeanPathGap_m(Measured(real, gap), trimmed, of_trimmed, options);
+}
+
 double DominantWavelength_m(std::span<const Trajectory> paths, const LikenessOptions& options) {
   double longest_m = 0.0;
   for (const Trajectory& path : paths) longest_m = std::max(longest_m, path.ArcLength_m());

@@ -30,6 +30,12 @@ double DominantWavelength_m(std::span<const trajectory::Trajectory> paths,
 trajectory::Trajectory MeanPath(std::span<const trajectory::Trajectory> paths,
                                 const LikenessOptions& options);
 
+/// Gap of the mean of some runs to a real path; NaN without a run. With options.trim_standstill
+/// each path is trimmed first, so that the mean is of what is left.
+double MeanPathGap_m(const trajectory::Trajectory& real,
+                     std::span<const trajectory::Trajectory> runs, const GapOptions& gap,
+                     const LikenessOptions& options);
+
 /// Repeats of one setting on both sides.
 struct RepeatedSetting {
   std::vector<trajectory::Trajectory> reals;

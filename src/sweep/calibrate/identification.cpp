@@ -290,23 +290,16 @@ DriveLikeness Identifier::LikenessOf(const std::vector<RepeatedTrial>& trials,
   return MeasureDriveLikeness(group, true, experiment_.gap, experiment_.likeness, generator);
 }
 
-/// How far the mean simulated path is from the real one; NaN without a run.
-double MeanPathGap(const RepeatedTrial& trial, const gap::GapOptions& gap,
-                   const gap::LikenessOptions& options) {
-  const gap::RepeatedSetting setting{.reals = {trial.real}, .sims = {trial.runs}};
-  std::mt19937_64 unused(1);
-  gap::LikenessOptions quick = options;
-  quick.shuffles = 19;
-  return gap::MeasureLikeness({&setting, 1}, gap, quick, unused).mean_path_gap_m;
-}
-
 void Identifier::JudgePaths(CalibrationReport& report) const {
   const std::vector<RepeatedTrial> before = Drive(StartValues()), after = Drive(report.values);
+  const auto mean_path_gap_m = [this](const RepeatedTrial& trial) {
+    return gap::MeanPathGap_m(trial.real, trial.runs, experiment_.gap, experiment_.likeness);
+  };
   std::vector<std::string> levels;
   for (size_t i = 0; i < entries_.size(); ++i) {
     CalibrationTrial trial = entries_[i].trial;
-    trial.gap_before_m = MeanPathGap(before[i], experiment_.gap, experiment_.likeness);
-    trial.gap_after_m = MeanPathGap(after[i], experiment_.gap, experiment_.likeness);
+    trial.gap_before_m = mean_path_gap_m(before[i]);
+    trial.gap_after_m = mean_path_gap_m(after[i]);
     report.trials.push_back(trial);
     if (std::find(levels.begin(), levels.end(), trial.level) == levels.end()) {
       levels.push_back(trial.level);

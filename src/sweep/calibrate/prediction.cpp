@@ -49,28 +49,14 @@ double MeanGap_m(const std::vector<Trajectory>& paths, const Trajectory& to,
   return statistics::Mean(gaps_m);
 }
 
-/// Gap of the mean of a trial's runs. Where standstill is trimmed, it is of each run, before their
-/// mean.
-double MeanPathGap_m(const RepeatedTrial& trial, const gap::GapOptions& gap,
-                     const gap::LikenessOptions& options) {
-  if (!gap.trim_standstill) {
-    return gap::Gap(gap::MeanPath(trial.runs, options), trial.real, gap);
-  }
-  const gap::RepeatedSetting setting{.reals = {trial.real}, .sims = {trial.runs}};
-  gap::LikenessOptions quick = options;
-  quick.shuffles = 19;
-  std::mt19937_64 unused(1);
-  return gap::MeasureLikeness({&setting, 1}, gap, quick, unused).mean_path_gap_m;
-}
-
 Pairs PairsOf(const std::vector<RepeatedTrial>& trials, const std::vector<size_t>& setting,
               const gap::GapOptions& gap, const gap::LikenessOptions& options) {
   Pairs pairs;
   for (const size_t i : setting) {
     const std::vector<Trajectory> others = OthersOf(trials, setting, i);
     if (others.empty() || trials[i].runs.empty()) continue;
-    pairs.Add(
-        {MeanPathGap_m(trials[i], gap, options), MeanGap_m(others, trials[i].real, gap), 1.0});
+    pairs.Add({gap::MeanPathGap_m(trials[i].real, trials[i].runs, gap, options),
+               MeanGap_m(others, trials[i].real, gap), 1.0});
   }
   return pairs;
 }
