@@ -10,25 +10,15 @@
 
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/distinction.hpp"
+#include "support/drive_feature.hpp"
 #include "support/inputs/paths.hpp"
 #include "support/inputs/trials.hpp"
 
 namespace rift::sweep {
 namespace {
 
+using test::Feature;
 using trajectory::Trajectory;
-
-size_t PlaceOf(const std::string& name) {
-  const auto features = DriveFeatures();
-  const auto found = std::find_if(features.begin(), features.end(),
-                                  [&](const DriveFeature& one) { return one.name == name; });
-  REQUIRE(found != features.end());
-  return static_cast<size_t>(found - features.begin());
-}
-
-double Feature(const Trajectory& log, const std::string& name) {
-  return FeaturesOf(log, {})[PlaceOf(name)];
-}
 
 /// A way along x, heading along the path, at 20 Hz: half a second at rest, then 0.3 m/s.
 Trajectory Drive(const std::function<double(double)>& lateral_m, double wait_s = 0.5) {
@@ -213,13 +203,13 @@ TEST_CASE("A simulator that is too fast is told by its speed") {
   CHECK(fast.all.accuracy > 0.9);
   CHECK(fast.all.p == Approx(1.0 / 40.0));
   CHECK(fast.without_timing.features[0].accuracy > 0.9);
-  const auto of_speed =
-      std::find_if(fast.all.features.begin(), fast.all.features.end(),
-                   [](const auto& one) { return one.feature == PlaceOf("cruise_mps"); });
+  const auto of_speed = std::find_if(
+      fast.all.features.begin(), fast.all.features.end(),
+      [](const auto& one) { return one.feature == test::PlaceOfFeature("cruise_mps"); });
   CHECK(of_speed->accuracy > 0.9);
   CHECK(of_speed->accuracy_interval.low > 0.8);
   CHECK(of_speed->weight < 0.0);
-  const FeatureSummary& cruise = fast.features[PlaceOf("cruise_mps")];
+  const FeatureSummary& cruise = fast.features[test::PlaceOfFeature("cruise_mps")];
   CHECK(cruise.mean.Ratio() == Approx(1.1).margin(0.02));
   for (const statistics::FeatureEvidence& evidence : fast.without_timing.features) {
     CHECK_FALSE(DriveFeatures()[evidence.feature].is_timing);

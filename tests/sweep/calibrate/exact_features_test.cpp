@@ -9,22 +9,15 @@
 #include "rift/sweep/calibrate/distinction.hpp"
 #include "rift/sweep/calibrate/drive_features.hpp"
 #include "rift/trajectory/trajectory.hpp"
+#include "support/drive_feature.hpp"
 #include "sweep/calibrate/drive_measures.hpp"
 
 namespace rift::sweep {
 namespace {
 
+using test::Feature;
 using trajectory::StampedPose;
 using trajectory::Trajectory;
-
-double Feature(const Trajectory& log, const std::string& name) {
-  const auto features = DriveFeatures();
-  for (size_t i = 0; i < features.size(); ++i) {
-    if (features[i].name == name) return FeaturesOf(log, {})[i];
-  }
-  FAIL("no feature " << name);
-  return 0.0;
-}
 
 /// Twenty rows at rest, then `rows` rows of 15 mm each, 50 ms apart, along x from (1, 2) on.
 Trajectory Drive(int rows = 60) {

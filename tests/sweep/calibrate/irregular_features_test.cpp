@@ -9,21 +9,14 @@
 #include "rift/statistics/descriptive.hpp"
 #include "rift/sweep/calibrate/drive_features.hpp"
 #include "rift/trajectory/trajectory.hpp"
+#include "support/drive_feature.hpp"
 
 namespace rift::sweep {
 namespace {
 
 using statistics::Median;
+using test::Feature;
 using trajectory::Trajectory;
-
-double Feature(const Trajectory& log, const std::string& name) {
-  const auto features = DriveFeatures();
-  for (size_t i = 0; i < features.size(); ++i) {
-    if (features[i].name == name) return FeaturesOf(log, {})[i];
-  }
-  FAIL("no feature " << name);
-  return 0.0;
-}
 
 double MedianSize(std::vector<double> values) {
   for (double& value : values) value = std::abs(value);
