@@ -255,6 +255,17 @@ TEST_CASE("New suggestions follow those that were driven, and the others make ro
   CHECK(saved[1].parameters[1].key == "control.v_min");
 }
 
+/// Two more drives of a setting that was driven once are suggested: they are further repeats of it.
+void CheckTwoMoreAre(const Suggested& suggested, const experiment::Experiment& experiment,
+                     const experiment::Theta& driven) {
+  sweep::Suggestions suggestions{.settable = {0, 1}};
+  suggestions.list.push_back({.values = driven, .repeats = 2});
+  SaveSuggested(suggested.folder.Path(), experiment, sweep::EmptyResult(experiment), suggestions);
+  const auto saved = ReadSuggested(suggested.folder.Path(), experiment);
+  REQUIRE(saved.size() == 1);
+  CHECK(saved[0].repeats == 3);
+}
+
 TEST_CASE("An edited number is the suggestion that it was, however it is written") {
   const Suggested suggested;
   test::WriteText(suggested.folder / "suggested.yaml",
@@ -263,13 +274,7 @@ TEST_CASE("An edited number is the suggestion that it was, however it is written
                   "repeats: 2, predicted: fails}\n");
   const experiment::Experiment experiment = Search();
   SaveDrive(suggested.Drive(1, 1), 0.0, kReached);
-  sweep::Suggestions suggestions{.settable = {0, 1}};
-  suggestions.list.push_back(
-      {.values = {{"parchment", {}}, experiment::NumberValue(0.16)}, .repeats = 2});
-  SaveSuggested(suggested.folder.Path(), experiment, sweep::EmptyResult(experiment), suggestions);
-  const auto saved = ReadSuggested(suggested.folder.Path(), experiment);
-  REQUIRE(saved.size() == 1);
-  CHECK(saved[0].repeats == 3);
+  CheckTwoMoreAre(suggested, experiment, {{"parchment", {}}, experiment::NumberValue(0.16)});
 }
 
 TEST_CASE("A suggestion is the same in whichever order its keys are written") {
@@ -285,12 +290,7 @@ TEST_CASE("A suggestion is the same in whichever order its keys are written") {
   REQUIRE(taken.size() == 1);
   CHECK(sweep::IsSameSetting(taken[0].values, driven));
   CHECK(taken[0].failures == 1);
-  sweep::Suggestions suggestions{.settable = {0, 1}};
-  suggestions.list.push_back({.values = driven, .repeats = 2});
-  SaveSuggested(suggested.folder.Path(), experiment, sweep::EmptyResult(experiment), suggestions);
-  const auto saved = ReadSuggested(suggested.folder.Path(), experiment);
-  REQUIRE(saved.size() == 1);
-  CHECK(saved[0].repeats == 3);
+  CheckTwoMoreAre(suggested, experiment, driven);
 }
 
 }  // namespace
