@@ -188,6 +188,20 @@ TEST_CASE("The energy of groups that are far apart beats every shuffle that mixe
   CHECK(std::isnan(TestEnergy({{{shape(0), shape(1)}, {shape(2)}}}, 99, generator).p));
 }
 
+TEST_CASE("A shuffle that gives the measured groups again counts in whatever order it drew them") {
+  std::mt19937_64 generator(3);
+  const auto at = [](const std::vector<double>& places_m) {
+    std::vector<Shape> shapes;
+    for (const double y_m : places_m) shapes.push_back({{0.0, y_m}, {1.0, 1.1 * y_m}});
+    return shapes;
+  };
+  // Of the 20 ways to call three of six real two part them, of the 35 of three of seven one does.
+  const ShuffleGroup even{at({0.013, 0.027, 0.031}), at({1.017, 1.029, 1.043})};
+  CHECK(TestEnergy({even}, 20'000, generator).p == Approx(2.0 / 20.0).margin(0.01));
+  const ShuffleGroup odd{at({0.013, 0.027, 0.031}), at({1.017, 1.029, 1.043, 1.071})};
+  CHECK(TestEnergy({odd}, 20'000, generator).p == Approx(1.0 / 35.0).margin(0.005));
+}
+
 TEST_CASE("A result has the mean of its gaps, the floor of its reals and the verdict of both") {
   GapResult result;
   result.options.threshold_m = 0.05;
