@@ -236,6 +236,31 @@ TEST_CASE("What the robot said of predictions is counted by its verdicts, of bot
         "probability");
 }
 
+TEST_CASE(
+    "Settings that the robot drove are judged together, and need more trials the more they are") {
+  sweep::SweepResult result = Settings({{0.05}});
+  result.judged_by = {.share = 0.1, .confidence = 0.95};
+  sweep::Explanation explanation;
+  explanation.suggestions.trusted = 0.5;
+  // Two failures of two are 37 times as likely above the share as at it: enough of one setting
+  // (20), not of ten (200).
+  explanation.robot = {{{}, true, 2, 2}};
+  CHECK_THAT(RobotSentence(result, explanation), Catch::StartsWith("1 of 1 predicted failures"));
+  explanation.robot.resize(10, {{}, true, 0, 0});
+  CHECK_THAT(RobotSentence(result, explanation), Catch::StartsWith("1 of 1 predicted failures"));
+  std::fill(explanation.robot.begin() + 1, explanation.robot.end(),
+            sweep::RobotTrials{{}, true, 3, 0});
+  CHECK_THAT(RobotSentence(result, explanation),
+             Catch::StartsWith("0 of 10 predicted failures confirmed by the robot (falsified), the "
+                               "others: 9 not seen to fail, 1 undecided; 29 drives in all"));
+  // Three failures of three, and of all ten settings, are enough once more.
+  std::fill(explanation.robot.begin(), explanation.robot.end(), sweep::RobotTrials{{}, true, 3, 3});
+  CHECK_THAT(RobotSentence(result, explanation), Catch::StartsWith("10 of 10 predicted failures"));
+  explanation.robot = {{{}, true, 0, 0}};
+  CHECK(sweep::JudgeRobotTrials(explanation.robot, result.judged_by)[0].verdict ==
+        gap::Verdict::kUndecided);
+}
+
 TEST_CASE("A rare event says how many of its runs do not tell, and what they are taken for") {
   sweep::RareEvent event{.probability = 0.3, .low = 0.2, .high = 0.4, .levels = 1};
   event.evaluations = 300;

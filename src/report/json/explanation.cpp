@@ -183,14 +183,14 @@ ordered_json SuggestionsJson(const sweep::SweepResult& result,
 ordered_json RobotJson(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
   const std::vector<experiment::Parameter> parameters = SettableOf(result, explanation.suggestions);
   ordered_json json = ordered_json::array();
-  for (const sweep::RobotTrials& driven : explanation.robot) {
-    const gap::RepeatVerdict verdict =
-        gap::JudgeCounts(driven.failures, driven.trials, result.judged_by);
+  const auto verdicts = sweep::JudgeRobotTrials(explanation.robot, result.judged_by);
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    const sweep::RobotTrials& driven = explanation.robot[i];
     json.push_back({{"set", ThetaJson(parameters, driven.values)},
                     {"predicted_to_fail", driven.is_predicted_to_fail},
                     {"n", driven.trials},
                     {"failures", driven.failures},
-                    {"verdict", yaml::NameOf(verdict.verdict)}});
+                    {"verdict", yaml::NameOf(verdicts[i].verdict)}});
   }
   return json;
 }

@@ -36,11 +36,12 @@ std::string OthersText(const Tally& tally) {
 std::string RobotSentence(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
   Tally fails, holds;
   int trials = 0;
-  for (const sweep::RobotTrials& driven : explanation.robot) {
+  const auto verdicts = sweep::JudgeRobotTrials(explanation.robot, result.judged_by);
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    const sweep::RobotTrials& driven = explanation.robot[i];
     if (driven.trials == 0) continue;
     trials += driven.trials;
-    (driven.is_predicted_to_fail ? fails : holds)
-        .Add(gap::JudgeCounts(driven.failures, driven.trials, result.judged_by));
+    (driven.is_predicted_to_fail ? fails : holds).Add(verdicts[i]);
   }
   if (trials == 0) return "";
   std::string text;

@@ -247,6 +247,18 @@ Theta SettableValues(const SweepResult& result, const std::vector<int>& settable
   return values;
 }
 
+std::vector<gap::RepeatVerdict> JudgeRobotTrials(const std::vector<RobotTrials>& robot,
+                                                 const gap::VerdictOptions& options) {
+  std::vector<gap::RepeatVerdict> verdicts;
+  int driven = 0;
+  for (const RobotTrials& trials : robot) {
+    verdicts.push_back(gap::JudgeCounts(trials.failures, trials.trials, options));
+    driven += trials.trials > 0;
+  }
+  gap::JudgeTogether(verdicts, std::max(driven, 1), options);
+  return verdicts;
+}
+
 Suggestions SuggestExperiments(const SweepResult& result, const SuggestOptions& options,
                                const std::vector<RobotTrials>& robot) {
   Suggestions suggestions{.settable = SettableParameters(result)};

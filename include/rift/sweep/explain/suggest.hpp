@@ -29,6 +29,10 @@ struct RobotTrials {
   int failures = 0;
 };
 
+/// What these trials say of each setting, all that were driven judged together.
+std::vector<gap::RepeatVerdict> JudgeRobotTrials(const std::vector<RobotTrials>& robot,
+                                                 const gap::VerdictOptions& options);
+
 /// Trials on the robot at a setting that a person can set, and what they would decide: whether more
 /// than VerdictOptions::share of the robot's runs fail there.
 struct Suggestion {
