@@ -12,6 +12,7 @@
 #include "rift/report/text/trial_query.hpp"
 #include "rift/sweep/explain/anatomy.hpp"
 #include "rift/sweep/falsify/distinct_rows.hpp"
+#include "rift/sweep/falsify/falsify.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/yaml/enum_name.hpp"
 
@@ -259,15 +260,17 @@ std::string Sentence::Text() const {
 
 Sentence VerdictCounts(const sweep::SweepResult& result) {
   const int settings = std::max(result.judged_settings, static_cast<int>(result.settings.size()));
+  const std::string wrong =
+      result.falsification && sweep::IsChosenByResults(*result.falsification)
+          ? "results chose which were tried, so confirm what is falsified with another seed"
+          : fmt::format("at most {:g} % of the decided ones are wrong on average",
+                        100.0 * (1.0 - result.judged_by.confidence));
   return fmt::format(
       "{} of {} falsified, {} passed, {} not seen to fail, {} undecided (falsified: more than {:g} "
-      "% "
-      "of its runs are shown to fail, passed: fewer; of {} judged together at most {:g} % of the "
-      "decided ones are wrong on average)",
+      "% of its runs are shown to fail, passed: fewer; {} judged together: {})",
       result.Count(gap::Verdict::kFalsified), result.settings.size(),
       result.Count(gap::Verdict::kPassed), result.Count(gap::Verdict::kNotSeenToFail),
-      result.Count(gap::Verdict::kUndecided), 100.0 * result.judged_by.share, settings,
-      100.0 * (1.0 - result.judged_by.confidence));
+      result.Count(gap::Verdict::kUndecided), 100.0 * result.judged_by.share, settings, wrong);
 }
 
 namespace {

@@ -181,6 +181,15 @@ Falsification Judge(const SearchOutcome& outcome, const SweepResult& result,
 
 }  // namespace
 
+bool IsChosenByResults(const Falsification& found) {
+  using search::Method;
+  for (const Method blind :
+       {Method::kRandom, Method::kSobol, Method::kLatinHypercube, Method::kCorners}) {
+    if (found.strategy == EnumNames(blind)[static_cast<size_t>(blind)]) return false;
+  }
+  return true;
+}
+
 std::optional<SweepResult> Falsify(const experiment::Experiment& experiment, const RunTrials& run,
                                    const MayStart& may_start) {
   const std::vector<experiment::Parameter>& parameters = experiment.space.parameters;

@@ -48,6 +48,10 @@ using MayStart = std::function<bool(const std::vector<TrialRequest>&)>;
 std::optional<SearchOutcome> Search(search::Strategy& strategy, const SearchGoal& goal,
                                     const RunTrials& run, const MayStart& may_start);
 
+/// Whether the search went where earlier trials failed. The share of wrong verdicts is shown for
+/// settings that no result chose.
+bool IsChosenByResults(const Falsification& found);
+
 /// Looks for settings that fail, repeats those that do until they are decided (RepeatPlan). The
 /// result depends on the experiment alone. Nothing when it was told to stop. Throws
 /// std::invalid_argument for a space without parameters or candidates that are logs.
