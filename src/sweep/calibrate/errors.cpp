@@ -12,6 +12,10 @@ namespace {
 
 using trajectory::Trajectory;
 
+/// Of a log of which no run arrives, in its scatter: as far off as one log is from the next, so
+/// that not arriving is no way to a smaller loss.
+constexpr double kUntold = 1.0;
+
 /// The published gaps leave the first tenth out; jitter of a standing robot would count as spread.
 gap::GapOptions SpreadGap() {
   gap::GapOptions options;
@@ -36,7 +40,7 @@ double SpreadError(const LogPrediction& a, const LogPrediction& b, double logged
   double sum = 0.0;
   const size_t runs = std::min(a.runs.size(), b.runs.size());
   for (size_t i = 0; i < runs; ++i) sum += LogSpread(a.runs[i], b.runs[i]) - logged;
-  return runs > 0 ? sum / static_cast<double>(runs) / scatter : 0.0;
+  return runs > 0 ? sum / static_cast<double>(runs) / scatter : kUntold;
 }
 
 double Huber(double error, double outlier) {
@@ -121,8 +125,10 @@ std::vector<LogErrors> ErrorsAt(const std::vector<CalibrationLog>& logs, const L
     const Traits &logged = traits.of_log[i], &mean = predictions[i].mean_traits;
     if (logged && mean) {
       one.traits.head<kTraits>() = (*mean - *logged).cwiseQuotient(traits.scatter);
+    } else if (logged && options.runs > 0) {
+      one.traits.head<kTraits>().setConstant(kUntold);
     }
-    if (traits.partner[i] >= 0) {
+    if (traits.partner[i] >= 0 && options.runs > 0) {
       one.traits[kTraits] = SpreadError(predictions[i], predictions[traits.partner[i]],
                                         traits.log_spread[i], traits.spread_scatter);
     }

@@ -98,12 +98,15 @@ TEST_CASE("Repeats with unequally many runs are compared as long as both have on
   };
   CHECK(spread({0.0, 1.0, 7.0}, {0.08}) == Approx(std::log(2.0)));
   CHECK(spread({0.0}, {0.08, 1.0, 7.0}) == Approx(std::log(2.0)));
-  CHECK(spread({}, {0.08}) == 0.0);
+  // No run that arrives is as far off as one log is from the next, and no error of 0.
+  CHECK(spread({}, {0.08}) == 1.0);
+  CHECK(spread({0.0}, {}) == 1.0);
 }
 
-TEST_CASE("A trait that the log or that the runs do not tell is no error") {
+TEST_CASE(
+    "A trait that the log does not tell is no error, one that no run tells is as logs differ") {
   const std::vector<CalibrationLog> logs{Log("a", 0.0), Log("b", 0.04)};
-  const auto errors = [&logs](bool of_logs, bool of_runs) {
+  const auto errors = [&logs](bool of_logs, bool of_runs, int runs = 4) {
     std::vector<LogPrediction> predictions(2);
     if (of_runs) {
       for (LogPrediction& one : predictions) one.mean_traits = Eigen::Vector4d(3.0, 0.1, 3.0, 3.0);
@@ -111,9 +114,14 @@ TEST_CASE("A trait that the log or that the runs do not tell is no error") {
     Told simulator(predictions);
     simulator.has_traits = of_logs;
     const LoggedTraits traits = TraitsOfLogs(logs, simulator, {});
-    return ErrorsAt(logs, traits, simulator, {}, {})[0].traits;
+    CalibrationOptions options;
+    options.runs = runs;
+    return ErrorsAt(logs, traits, simulator, {}, options)[0].traits;
   };
-  CHECK(errors(true, false).isZero(0.0));
+  CHECK(errors(true, false).head<kTraits>().isOnes(0.0));
+  CHECK(errors(true, false)[kTraits] == 0.0);  // no repeat
+  CHECK(errors(true, false, 0).isZero(0.0));   // no runs were asked for
+  CHECK(errors(false, false).isZero(0.0));
   CHECK(errors(false, true).isZero(0.0));
   // In scatters of 0.04 / sqrt(2); those that do not scatter count in their units.
   CHECK(errors(true, true)[kLogSpeed] == Approx(0.1 / 0.04 * std::sqrt(2.0)));
