@@ -1,6 +1,7 @@
 #include "rift/view/video.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <opencv2/videoio.hpp>
 #include <stdexcept>
@@ -17,7 +18,8 @@ namespace fs = std::filesystem;
 class PartFile {
  public:
   explicit PartFile(const fs::path& target)
-      : target_(target), part_(fs::absolute(target).replace_extension(".part.mp4")) {}
+      : target_(target),
+        part_(fs::absolute(target).replace_extension(fmt::format(".{}.part.mp4", ::getpid()))) {}
   ~PartFile() {
     std::error_code ignored;
     fs::remove(part_, ignored);

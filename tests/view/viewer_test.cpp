@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "rift/view/film.hpp"
+#include "support/inputs/trials.hpp"
 #include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/virtual_display.hpp"
@@ -53,14 +54,16 @@ TEST_CASE("A video holds every picture of the film and they change") {
   CHECK(cv::norm(first, picture, cv::NORM_INF) > 100.0);
 }
 
-TEST_CASE("A video replaces an older file of its name") {
+TEST_CASE("A video replaces an older file of its name, and no other") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.mp4";
   test::WriteText(path, "old");
+  test::WriteText(folder / "run.part.mp4", "another's");
   Run run = StraightRun();
   run.truth.poses.resize(3);
   WriteVideo(MakeFilm(run), path, {});
   CHECK(std::filesystem::file_size(path) > 1000);
+  CHECK(test::ReadFile(folder / "run.part.mp4") == "another's");
 }
 
 TEST_CASE("A video that cannot be written is an error and leaves nothing behind") {
