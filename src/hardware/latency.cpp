@@ -101,8 +101,9 @@ std::optional<Lag> BestLag(std::span<const Angle> follower, std::span<const Angl
   if (follower.size() < kLeastSamples) return std::nullopt;
   if (Range(follower) < kLeastTurn_rad || Range(leader) < kLeastTurn_rad) return std::nullopt;
   std::vector<Lag> fits;
-  for (double lag_s = least_s; lag_s <= most_s + 1e-9; lag_s += kLagStep_s) {
-    const std::optional<Lag> fit = FitAt(follower, leader, lag_s);
+  const auto steps = static_cast<int>(std::floor((most_s - least_s) / kLagStep_s + 1e-6));
+  for (int step = 0; step <= steps; ++step) {
+    const std::optional<Lag> fit = FitAt(follower, leader, least_s + step * kLagStep_s);
     if (fit && (side == Side::kAny || fit->scale > 0.0)) fits.push_back(*fit);
   }
   if (fits.empty()) return std::nullopt;
@@ -156,7 +157,8 @@ class Turn {
   bool Run(const control::WheelPower& power, double duration_s) {
     double now_s = Look();
     began_s_ = now_s;
-    for (const double end_s = now_s + duration_s; now_s < end_s - kTick_s; now_s = Look()) {
+    const double end_s = now_s + duration_s;
+    while (now_s < end_s - kTick_s) {
       if (robot_.state() == DriveState::kStopped) return false;
       if (commanded_.empty() || commanded_.back().t_s < now_s) {
         const double before_rad = commanded_.empty() ? 0.0 : commanded_.back().rad;
@@ -166,6 +168,7 @@ class Turn {
       robot_.Command(power);
       last_ = power;
       robot_.Advance(std::min(kTurn_s, end_s - now_s));
+      now_s = Look();
     }
     return true;
   }

@@ -288,7 +288,9 @@ std::optional<Disagreement> MotionCheck::CheckWindow(const Sample& now) {
 std::optional<double> MotionCheck::Lag_s() const {
   double none_m2 = std::numeric_limits<double>::quiet_NaN();
   double best_m2 = std::numeric_limits<double>::infinity(), best_s = 0.0;
-  for (double lag_s = 0.0; lag_s <= kMostLag_s; lag_s += kLagStep_s) {
+  const auto steps = static_cast<int>(kMostLag_s / kLagStep_s + 1e-9);
+  for (int step = 0; step <= steps; ++step) {
+    const double lag_s = step * kLagStep_s;
     double sum_m2 = 0.0;
     int pairs = 0;
     size_t from = 0;

@@ -50,7 +50,8 @@ PingResult Ping(ByteLine& line, Clock& clock, const LineOptions& line_options, P
   std::vector<double> round_trips_s;
   const double start_s = clock.Now_s();
   const double silent_s = start_s + options.duration_s;
-  for (double now_s = start_s; now_s < silent_s + kLastAnswer_s; now_s = clock.Now_s()) {
+  double now_s = start_s;
+  while (now_s < silent_s + kLastAnswer_s) {
     if (now_s < silent_s) {
       link.Put({}, true);
       link.Tick(now_s);
@@ -69,6 +70,7 @@ PingResult Ping(ByteLine& line, Clock& clock, const LineOptions& line_options, P
     }
     if (now_s >= silent_s && !is_answered.empty() && is_answered.back()) break;
     clock.Wait(kTick_s);
+    now_s = clock.Now_s();
   }
   result.sent = is_answered.size();
   result.answered = round_trips_s.size();

@@ -385,9 +385,11 @@ DriveNews RealRobot::TakeNews() { return core_->TakeNews(); }
 
 void RealRobot::Advance(double dt_s) {
   const double end_s = core_->Now_s() + dt_s;
-  for (double now_s = core_->Now_s(); now_s < end_s; now_s = core_->Now_s()) {
+  double now_s = core_->Now_s();
+  while (now_s < end_s) {
     core_->Wait(std::min(kTick_s, end_s - now_s));
     if (core_->HasNewPose()) return;
+    now_s = core_->Now_s();
   }
 }
 

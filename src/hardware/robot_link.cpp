@@ -144,13 +144,15 @@ Protocol FindProtocol(ByteLine& line, Clock& clock, const LineOptions& options,
   AnswerDecoder decoder;
   const double end_s = clock.Now_s() + options.hello_s;
   double next_hello_s = clock.Now_s();
-  for (double now_s = next_hello_s; now_s < end_s; now_s = clock.Now_s()) {
+  double now_s = next_hello_s;
+  while (now_s < end_s) {
     if (now_s >= next_hello_s && line.Unsent() == 0) {
       line.Write(BytesOf(hello));
       next_hello_s = now_s + kHelloPeriod_s;
     }
     if (!decoder.Take(line.Read()).empty()) return Protocol::kFramed;
     clock.Wait(kHelloTick_s);
+    now_s = clock.Now_s();
   }
   return Protocol::kPlain;
 }

@@ -88,9 +88,11 @@ void Link::Enqueue(double at_s, const std::string& line) {
 control::WheelPower Link::Advance(double to_s) {
   const double from_s = now_s_;
   integral_ = {};
-  for (double next_s = NextListening_s(); next_s <= to_s; next_s = NextListening_s()) {
+  double next_s = NextListening_s();
+  while (next_s <= to_s) {
     Hold(next_s);
     Listen(next_s);
+    next_s = NextListening_s();
   }
   Hold(to_s);
   const double duration_s = to_s - from_s;

@@ -112,9 +112,10 @@ void Mocap::Observe(const TruePose& before, const TruePose& after) {
     newest_->captured_s = after.t_s;
     return;
   }
-  for (double t_s = FrameTime_s(next_frame_); t_s <= after.t_s; t_s = FrameTime_s(next_frame_)) {
+  double t_s = FrameTime_s(next_frame_);
+  while (t_s <= after.t_s) {
     TakeFrame(Interpolate(before, after, t_s), speed_mps, next_frame_);
-    ++next_frame_;
+    t_s = FrameTime_s(++next_frame_);
   }
   if (options_.host_period_s) RunHost(after.t_s);
 }

@@ -150,12 +150,17 @@ std::optional<std::vector<Block>> Terrain::BlocksNear(double x_m, double y_m,
   if (surface_.shape != Shape::kBumps || !OnTable(x_m, y_m, reach_m)) return std::nullopt;
   const double pitch_m = surface_.bump_pitch_m, half_m = 0.5 * surface_.bump_size_m;
   if (2.0 * (reach_m + half_m) > kMostBlocks * pitch_m) return std::nullopt;
-  const auto first = [&](double p_m) { return std::ceil((p_m - reach_m - half_m) / pitch_m); };
-  const auto last = [&](double p_m) { return std::floor((p_m + reach_m + half_m) / pitch_m); };
+  const auto first = [&](double p_m) {
+    return std::lround(std::ceil((p_m - reach_m - half_m) / pitch_m));
+  };
+  const auto last = [&](double p_m) {
+    return std::lround(std::floor((p_m + reach_m + half_m) / pitch_m));
+  };
   std::vector<Block> blocks;
-  for (double i = first(x_m); i <= last(x_m); i += 1.0) {
-    for (double j = first(y_m); j <= last(y_m); j += 1.0) {
-      blocks.push_back({i * pitch_m, j * pitch_m, half_m, surface_.bump_height_m});
+  for (long i = first(x_m); i <= last(x_m); ++i) {
+    for (long j = first(y_m); j <= last(y_m); ++j) {
+      blocks.push_back({static_cast<double>(i) * pitch_m, static_cast<double>(j) * pitch_m, half_m,
+                        surface_.bump_height_m});
     }
   }
   return blocks;

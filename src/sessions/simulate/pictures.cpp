@@ -33,8 +33,11 @@ std::vector<Eigen::Vector2d> GroundProfile(const simulation::Terrain& terrain,
   add(path_m.front());
   for (size_t i = 1; i < path_m.size(); ++i) {
     const Eigen::Vector2d way_m = path_m[i] - path_m[i - 1];
-    const double steps = std::ceil(way_m.norm() / kGroundStep_m);  // none where it stands
-    for (double k = 1.0; k <= steps; k += 1.0) add(path_m[i - 1] + k / steps * way_m);
+    const long steps =
+        std::lround(std::ceil(way_m.norm() / kGroundStep_m));  // none where it stands
+    for (long k = 1; k <= steps; ++k) {
+      add(path_m[i - 1] + static_cast<double>(k) / static_cast<double>(steps) * way_m);
+    }
   }
   return profile;
 }

@@ -54,14 +54,15 @@ std::vector<double> EvenYawRates(const DriveMeasures& drive) {
   const std::vector<StampedPose>& poses = drive.log.poses;
   size_t row = drive.first;
   double last_rad = drive.yaw_rad[row];
-  for (double t_s = poses[row].t_s + DriveMeasures::kGrid_s; t_s <= poses.back().t_s;
-       t_s += DriveMeasures::kGrid_s) {
+  double t_s = poses[row].t_s + DriveMeasures::kGrid_s;
+  while (t_s <= poses.back().t_s) {
     while (row + 2 < poses.size() && poses[row + 1].t_s < t_s) ++row;
     const double share = (t_s - poses[row].t_s) / drive.intervals_s[row];
     const double yaw_rad =
         drive.yaw_rad[row] + share * (drive.yaw_rad[row + 1] - drive.yaw_rad[row]);
     rates.push_back((yaw_rad - last_rad) / DriveMeasures::kGrid_s);
     last_rad = yaw_rad;
+    t_s += DriveMeasures::kGrid_s;
   }
   return rates;
 }

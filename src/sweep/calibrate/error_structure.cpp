@@ -74,7 +74,9 @@ void FindFrequency(const std::vector<Wave>& waves, double horizon_s, ErrorStruct
   variance -= n * mean * mean;
   double strongest = 0.0;
   // A horizon averages away what is faster than half a wave within it.
-  for (double f = kLowest_hz; f <= 0.5 / horizon_s; f += kStep_hz) {
+  const auto steps = static_cast<int>(std::floor((0.5 / horizon_s - kLowest_hz) / kStep_hz + 1e-9));
+  for (int step = 0; step <= steps; ++step) {
+    const double f = kLowest_hz + step * kStep_hz;
     double power = 0.0;
     for (const Wave& wave : waves) {
       std::complex<double> sum = 0.0;

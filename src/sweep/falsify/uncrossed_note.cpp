@@ -20,9 +20,11 @@ std::optional<std::string> UncrossedNote(const SimulatedTrial& trial) {
   for (size_t i = 1; i < path.size(); ++i) {
     const Eigen::Vector2d from_m = path[i - 1].world_from_robot.Position();
     const Eigen::Vector2d way_m = path[i].world_from_robot.Position() - from_m;
-    const double steps = std::max(1.0, std::ceil(way_m.norm() / kStep_m));
-    for (double k = 0.0; k <= steps; k += 1.0) {
-      const Eigen::Vector2d off_m = (from_m + k / steps * way_m - centre_m).cwiseAbs();
+    const long steps = std::max(1L, std::lround(std::ceil(way_m.norm() / kStep_m)));
+    for (long k = 0; k <= steps; ++k) {
+      const Eigen::Vector2d off_m =
+          (from_m + static_cast<double>(k) / static_cast<double>(steps) * way_m - centre_m)
+              .cwiseAbs();
       if (off_m.x() <= half_m.x() && off_m.y() <= half_m.y()) return std::nullopt;
     }
   }

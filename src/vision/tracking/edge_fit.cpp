@@ -65,7 +65,9 @@ std::optional<Eigen::Vector2d> SteepestRise(const GreyPatch& patch, const Eigen:
   const auto at = [&](double s) {
     return patch.At(point.x() + s * normal.x(), point.y() + s * normal.y());
   };
-  for (double s = -reach_px; s <= reach_px; s += 0.5) {
+  const auto steps = static_cast<int>(4.0 * reach_px);
+  for (int i = 0; i <= steps; ++i) {
+    const double s = 0.5 * i - reach_px;
     const double rise = at(s + 1.0) - at(s - 1.0);
     if (rise > best) {
       best = rise;
