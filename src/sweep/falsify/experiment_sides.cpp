@@ -166,7 +166,7 @@ std::optional<std::string> WhyOtherDrive(const std::string& file, const std::str
   try {
     driven = experiment::FlatValues(
         experiment::LoadExperiment(file, {}, [&text](const std::string&) { return text; }));
-  } catch (const yaml::Error& unreadable) {
+  } catch (const std::exception& unreadable) {  // broken, or beyond a limit of inputs
     return unreadable.what();
   }
   for (const auto& [key, value] : experiment::FlatValues(asked)) {

@@ -480,7 +480,7 @@ TEST_CASE("A drive that tells nothing is noted with what came of it") {
   experiment::Experiment experiment = Simulation();
   experiment.reference.kind = ReferenceKind::kLogs;
   experiment.reference.path.text = "x.csv";
-  const Files files{{"drive.csv", trajectory::WriteRift(test::StraightPath(0.4, 40))}};
+  Files files{{"drive.csv", trajectory::WriteRift(test::StraightPath(0.4, 40))}};
   std::vector<std::string> notes;
   Evaluator evaluator(experiment, "e.yaml", {InputsOf(files).read, [&](const std::string& line) {
                                                notes.push_back(line);
@@ -497,6 +497,16 @@ TEST_CASE("A drive that tells nothing is noted with what came of it") {
   REQUIRE(notes.size() == 2);
   CHECK_THAT(notes[1], Catch::StartsWith("drive.csv: simulation with seed 3: ") &&
                            Catch::EndsWith(": this drive does not count"));
+
+  // An experiment beside the log that no one can read ends no sweep.
+  files["experiment.yaml"] = std::string(2 * 1024 * 1024, ' ');
+  Evaluator beside(experiment, "e.yaml",
+                   {InputsOf(files).read, [&](const std::string& line) { notes.push_back(line); }});
+  CHECK_FALSE(beside.EvaluateDriven(request, "drive.csv", trial::Outcome::kReached).Tells());
+  REQUIRE(notes.size() == 3);
+  CHECK(notes[2] ==
+        "experiment.yaml: 2097152 bytes of YAML: at most 1048576 are taken; --large-inputs lifts "
+        "this limit: this drive does not count");
 }
 
 TEST_CASE("A setting that breaks a rule, and a start without a yaw, are rows that say so") {
