@@ -3,25 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "experiment_sides.hpp"
-#include "job_status.hpp"
 #include "program_side.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/experiment/task.hpp"
 #include "rift/odometry/program_runs.hpp"
 #include "rift/odometry/readings_during.hpp"
-#include "rift/sweep/falsify/candidate_runs.hpp"
 #include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
-#include "rift/trajectory/csv.hpp"
 #include "rift/yaml/bind.hpp"
 #include "simulated_recording.hpp"
 
@@ -58,10 +53,6 @@ Inputs NotingOnce(Inputs inputs) {
     if (said.insert(line).second) note(line);
   };
   return inputs;
-}
-
-std::string Beside(const std::string& log, const char* name) {
-  return std::filesystem::path(log).replace_filename(name).string();
 }
 
 /// How the logs of one side are read; `key` is its block in the experiment.
@@ -186,30 +177,6 @@ CandidateRun Evaluator::RunOf(const TrialRequest& request, const Recording& refe
   return {std::move(simulated), std::move(encoders)};
 }
 
-std::optional<double> Evaluator::TrialBegan_s(const std::string& log) const {
-  const std::string path = Beside(log, "commands.csv");
-  const std::optional<std::string> text = inputs_.read(path);
-  if (!text) return std::nullopt;
-  trajectory::csv::RowReader rows(*text, path, true, ',');
-  if (rows.Columns().empty()) return std::nullopt;  // of a drive that broke off
-  if (rows.Columns().front() != "t_s") {
-    throw std::invalid_argument(
-        fmt::format("{}: its first column is '{}', and that of commands.csv is t_s", path,
-                    rows.Columns().front()));
-  }
-  if (!rows.Next() || std::isnan(rows.Cells().front())) return std::nullopt;
-  return rows.Cells().front();
-}
-
-std::vector<odometry::EncoderReading> Evaluator::EncodersBeside(const std::string& log) const {
-  const std::string path = Beside(log, "encoders.csv");
-  const std::optional<std::string> text = inputs_.read(path);
-  if (!text) return {};
-  const std::optional<std::string> note = trajectory::csv::NoteOfEnd(*text);
-  if (note) inputs_.note(fmt::format("{}: {}", path, *note));
-  return odometry::ReadEncoders(*text, path);
-}
-
 void Evaluator::NameSides(TrialRow& row) const {
   const std::uint64_t asked = row.seed.value_or(experiment_.seed);
   const auto known = used_.find(asked);
@@ -315,66 +282,6 @@ TrialRow Evaluator::Evaluate(const TrialRequest& asked) {
         .status = TrialStatus::kInvalid, .reason = broken_rule.what(), .source = "experiment"};
     return CompareTrial(experiment_, request, none, reference);
   }
-}
-
-namespace {
-
-/// In a process that is given up when its program hangs, as the trials of the sweep were.
-Recording ProgramReference(Evaluator& evaluator, const TrialRequest& request) {
-  const auto work = [&evaluator](const std::string& job) {
-    return EncodeRecording(evaluator.Reference(DecodeRequest(job)));
-  };
-  const JobResult result = RunApart(work, request, evaluator.experiment().run);
-  if (result.end == JobEnd::kDone) return DecodeRecording(result.bytes);
-  const TrialRow ended = EndedRow(request, result);
-  return {.status = ended.status,
-          .reason = ended.reason,
-          .source = fmt::format("program with seed {}", request.seed.value_or(0))};
-}
-
-}  // namespace
-
-TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string& path,
-                                   trial::Outcome outcome) {
-  if (experiment_.objective == experiment::Objective::kOdometry) {
-    throw std::invalid_argument(fmt::format(
-        "{}: objective is odometry, and suggested drives are judged by the gap of their poses",
-        experiment_file_));
-  }
-  const std::string saved = Beside(path, "experiment.yaml");
-  if (const std::optional<std::string> text = inputs_.read(saved)) {
-    const auto other = WhyOtherDrive(saved, *text, ExperimentFor(experiment_, asked));
-    if (other) {
-      inputs_.note(*other + ": this drive does not count");
-      TrialRow row = RowFor(asked);
-      row.status = TrialStatus::kInvalid;
-      row.reason = *other;
-      return row;
-    }
-  }
-  const bool is_reference = experiment_.reference.kind == ReferenceKind::kLogs;
-  LogOptions of_drive;
-  of_drive.read.format = trajectory::Format::kRift;
-  of_drive.format_key = "the format of rift drive";
-  if (is_reference) of_drive.tag_offset_m = experiment_.reference.tag_offset_m;
-  RecordedLogs logs(inputs_, of_drive);
-  Recording driven = logs.At(path);
-  if (driven.status == TrialStatus::kOk && outcome != trial::Outcome::kReached) {
-    driven.status = StatusOf(outcome);
-    driven.reason = "the robot did not reach the end";
-  }
-  TrialRequest request = asked;
-  if (request.seed) request.seed = SeedWithReference(*request.seed);
-  const Recording reference = is_reference         ? driven
-                              : reference_program_ ? ProgramReference(*this, request)
-                                                   : Reference(request);
-  const TrialRow row = CompareTrial(experiment_, request,
-                                    is_reference ? Candidate(request, driven) : driven, reference);
-  if (!row.Tells()) {
-    inputs_.note(fmt::format("{}{}: this drive does not count",
-                             row.reason.starts_with(path) ? "" : path + ": ", row.reason));
-  }
-  return row;
 }
 
 double Evaluator::NoiseFloor_m(const experiment::Theta& theta, const std::function<bool()>& go_on) {

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 #include "program_side.hpp"
@@ -13,12 +15,21 @@
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
+#include "rift/trajectory/csv.hpp"
 #include "rift/yaml/node.hpp"
 
 namespace rift::sweep {
 
 using experiment::CandidateKind;
 using experiment::ReferenceKind;
+
+namespace {
+
+std::string Beside(const std::string& log, const char* name) {
+  return std::filesystem::path(log).replace_filename(name).string();
+}
+
+}  // namespace
 
 void Evaluator::LoadLogs() {
   if (experiment_.reference.kind == ReferenceKind::kLogs) {
@@ -49,6 +60,30 @@ void Evaluator::LoadLogsOf(const experiment::PathTemplate& path, const char* key
   for (const TrialRequest& request : GridTrials(parameters, experiment_.reference.trials.names)) {
     logs.At(Filled(path, request));
   }
+}
+
+std::optional<double> Evaluator::TrialBegan_s(const std::string& log) const {
+  const std::string path = Beside(log, "commands.csv");
+  const std::optional<std::string> text = inputs_.read(path);
+  if (!text) return std::nullopt;
+  trajectory::csv::RowReader rows(*text, path, true, ',');
+  if (rows.Columns().empty()) return std::nullopt;  // of a drive that broke off
+  if (rows.Columns().front() != "t_s") {
+    throw std::invalid_argument(
+        fmt::format("{}: its first column is '{}', and that of commands.csv is t_s", path,
+                    rows.Columns().front()));
+  }
+  if (!rows.Next() || std::isnan(rows.Cells().front())) return std::nullopt;
+  return rows.Cells().front();
+}
+
+std::vector<odometry::EncoderReading> Evaluator::EncodersBeside(const std::string& log) const {
+  const std::string path = Beside(log, "encoders.csv");
+  const std::optional<std::string> text = inputs_.read(path);
+  if (!text) return {};
+  const std::optional<std::string> note = trajectory::csv::NoteOfEnd(*text);
+  if (note) inputs_.note(fmt::format("{}: {}", path, *note));
+  return odometry::ReadEncoders(*text, path);
 }
 
 std::string Evaluator::KeyOf(const TrialRequest& request) {
