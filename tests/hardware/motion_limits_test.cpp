@@ -74,7 +74,7 @@ TEST_CASE("The speed of the wheels is that of the last tenth of a second") {
 }
 
 TEST_CASE("Poses of which nothing was told of the wheels are forgotten after four seconds") {
-  for (const auto& [since_s, is_forgotten] : {std::pair{6.0, true}, {4.5, false}}) {
+  for (const auto& [since_s, is_forgotten] : {std::pair{5.1, true}, {4.8, false}}) {
     MotionCheck check({}, kTrack_m);
     check.SetLatency(0.0);
     std::optional<Disagreement> found;
@@ -210,6 +210,67 @@ TEST_CASE("On a circle to either side, forward and backward, the pose follows th
       CHECK(found.reason == kNone);
     }
   }
+}
+
+TEST_CASE("Between two readings each wheel rolls evenly, and before the first it stood") {
+  // 0.2 s apart, in which either wheel rolls by 16 and 24 mm; poses each 0.03 s.
+  test::OnBothSides("left", "right", [](const test::Side& side) {
+    EvidenceOptions options;
+    options.agree_m = 1e-3;
+    options.agree_share = 0.0;
+    MotionCheck check(options, kTrack_m);
+    check.SetLatency(0.0);
+    const double w_rad_s = (side.IsFirst() ? -0.04 : 0.04) / kTrack_m;
+    const auto pose = [&](double since_s) {
+      const double yaw_rad = w_rad_s * since_s, radius_m = 0.1 / w_rad_s;
+      return Pose2{radius_m * std::sin(yaw_rad), radius_m * (1.0 - std::cos(yaw_rad)), yaw_rad};
+    };
+    int readings = 0;
+    for (int i = 0; i < 100; ++i) {
+      const double t_s = 0.03 * i - 0.3;
+      check.SeePose({t_s, pose(std::max(0.0, t_s)), 0.0, 0.0, 0.0});
+      while (0.2 * readings <= t_s) {
+        const auto [left, right] = side.Of<std::pair<double, double>>(0.024, 0.016);
+        check.SeeWheels({0.2 * readings, left * readings, right * readings}, true);
+        ++readings;
+      }
+      const auto found = check.Check();
+      INFO(t_s << ": " << (found ? found->text : ""));
+      CHECK_FALSE(found);
+    }
+  });
+}
+
+TEST_CASE("A robot told to drive on one picture is stopped once both have lasted too long") {
+  const auto found = [](double told_s, double repeats_s, double pose_s) {
+    EvidenceOptions options;
+    options.repeats_s = 0.375;
+    options.max_latency_s = 0.125;
+    MotionCheck check(options, kTrack_m);
+    check.SeeCommand(true, told_s - 5.0);
+    check.SeeCommand(false, told_s - 4.0);
+    check.SeeCommand(true, told_s);
+    check.SeeCommand(true, told_s + 0.25);  // it is told so all the time
+    check.SeePose({pose_s, {}, 0.0, 0.0, 0.0}, repeats_s);
+    return check.Check();
+  };
+  // 0.375 s + 0.125 s from the later of the two.
+  for (const auto& [told_s, repeats_s] : {std::pair{10.0, 9.0}, {8.5, 10.0}}) {
+    CHECK_FALSE(found(told_s, repeats_s, 10.5));
+    const auto stopped = found(told_s, repeats_s, 10.5625);
+    REQUIRE(stopped);
+    CHECK(stopped->reason == StopReason::kPictureRepeats);
+    CHECK_THAT(stopped->text, Catch::StartsWith("the camera has shown the same picture for 0.562"));
+  }
+  // Of a picture that is new, or a robot that is told to stand, nothing is held against it.
+  MotionCheck check({}, kTrack_m);
+  check.SeeCommand(true, 1.0);
+  check.SeePose({2.0, {}, 0.0, 0.0, 0.0}, 1.0);
+  check.SeePose({2.1, {}, 0.0, 0.0, 0.0});
+  CHECK_FALSE(check.Check());
+  check.SeeCommand(false, 2.2);
+  check.SeePose({9.0, {}, 0.0, 0.0, 0.0}, 2.1);
+  CHECK_FALSE(check.Check());
 }
 
 TEST_CASE("A pose that turns to and fro behind the wheels is stopped beyond the budgeted latency") {
