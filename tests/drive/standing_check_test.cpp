@@ -27,7 +27,7 @@ TEST_CASE("A tag that rests above the floor is said once, before a drive") {
   const vision::CameraModel camera = CameraAbove();
   const vision::TagOptions tag;
   StandingCheck check(camera, tag);
-  for (int i = 0; i < 9; ++i) check.Add(SeenAt(300.0 + 0.1 * i, false));
+  for (int i = 0; i < 9; ++i) check.Add(SeenAt(300.0 + 0.12 * i, false));
   CHECK_FALSE(check.Take());
   check.Add(SeenAt(300.0, false));
   const auto warning = check.Take();
