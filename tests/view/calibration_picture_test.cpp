@@ -73,6 +73,10 @@ TEST_CASE("A bar is as long as its coverage, yellow until it is enough") {
   const cv::Mat enough = DrawCalibrating(shot.scene);
   CHECK(Around(enough, kGreen, bars).width == Approx(96).margin(1.0));
   CHECK(Around(enough, kYellow, bars).empty());
+  shot.scene.coverage = {.x = 0.75};  // as much as is asked for
+  const cv::Mat just = DrawCalibrating(shot.scene);
+  CHECK(Around(just, kGreen, bars).width == Approx(90).margin(1.0));
+  CHECK(Around(just, kYellow, bars).empty());
 }
 
 TEST_CASE("Long advice is wrapped beside the bars and does not run under them") {

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "support/inputs/paper_camera.hpp"
+#include "view/camera_picture.hpp"
 #include "view/track_picture.hpp"
 
 namespace rift::view {
@@ -131,6 +132,35 @@ TEST_CASE("How far the first robot is off its path is told in millimetres") {
   scene.robots.push_back({.tag_id = 7, .sighting = TagAt(camera, 7, 0.1, -0.05)});
   CHECK(has_line("tag 0: not seen"));
   CHECK(has_line("tag 7: x +0.1000 m   y -0.0500 m   yaw   +0.0 deg"));
+}
+
+TEST_CASE("What is nearer to the camera than five centimetres, or behind it, is not drawn") {
+  const vision::CameraModel camera = test::PaperCamera();
+  const TrackScene empty{.camera = &camera};
+  for (const double ahead_m : {0.053, 0.047, -0.3}) {
+    const Eigen::Vector3d place =
+        vision::MapFromCamera(camera) * Eigen::Vector3d(0.0, 0.0, ahead_m);
+    TrackScene scene = empty;
+    scene.plane_z_m = place.z();
+    scene.waypoints = {{"here", place.head<2>()}};
+    const bool is_drawn = cv::norm(DrawTrack(scene).bgr, DrawTrack(empty).bgr, cv::NORM_INF) > 0.0;
+    INFO(ahead_m);
+    CHECK(is_drawn == (ahead_m > 0.05));
+  }
+}
+
+TEST_CASE("Without a picture there is room for words, which stay in it however many they are") {
+  CHECK(ShownPicture(nullptr, 0, 0).size() == cv::Size(320, 240));
+  CHECK(ShownPicture(nullptr, 321, 241).size() == cv::Size(321, 241));
+  cv::Mat picture = ShownPicture(nullptr, 0, 0);
+  DrawLines(picture, std::vector<std::string>(30, std::string(200, 'x')), true);
+  CHECK(picture.size() == cv::Size(320, 240));
+  cv::Mat bright(240, 320, CV_8UC3, cv::Scalar::all(255));
+  DrawLines(bright, {"some words"}, false);
+  CHECK(bright.at<cv::Vec3b>(240 - 28 - 1, 4) == cv::Vec3b::all(255));
+  CHECK(bright.at<cv::Vec3b>(240 - 28, 4) != cv::Vec3b::all(255));
+  CHECK(bright.at<cv::Vec3b>(239, 4) != cv::Vec3b::all(255));
+  CHECK(bright.at<cv::Vec3b>(239, 319) == cv::Vec3b::all(255));
 }
 
 }  // namespace

@@ -64,6 +64,20 @@ TEST_CASE("A robot of unknown height stands on the ground") {
   run.height_at = [](double x_m, double) { return 0.5 * x_m; };
   for (auto& pose : run.truth.poses) pose.z_m = NAN;
   CHECK(SceneAt(run, 2.0).z_m == Approx(0.2 + run.body.wheel_radius_m));
+  run.height_at = [](double, double) { return -HUGE_VAL; };  // where there is no ground
+  CHECK(SceneAt(run, 2.0).z_m == run.body.wheel_radius_m);
+  run.height_at = {};
+  CHECK(SceneAt(run, 2.0).z_m == run.body.wheel_radius_m);
+}
+
+TEST_CASE("Between two poses of one time there is no speed, and the first is shown") {
+  Run run;
+  run.truth.poses = {{.t_s = 4.0, .x_m = 1.0, .y_m = 2.0, .z_m = 0.0, .yaw_rad = 0.5},
+                     {.t_s = 4.0, .x_m = 3.0, .y_m = 5.0, .z_m = 0.0, .yaw_rad = 1.5}};
+  const Scene scene = SceneAt(run, 0.0);
+  CHECK(std::isnan(scene.speed_mps));
+  CHECK((scene.world_from_robot.x_m == 1.0 && scene.world_from_robot.y_m == 2.0));
+  CHECK(scene.world_from_robot.yaw_rad == 0.5);
 }
 
 TEST_CASE("The ground is sampled around path and waypoints with a margin") {
@@ -81,8 +95,11 @@ TEST_CASE("The ground is sampled around path and waypoints with a margin") {
 TEST_CASE("A wide world is sampled coarsely rather than without end") {
   Run run = StraightRun();
   run.waypoints.push_back({"far", {900.0, -900.0}});
-  const Ground ground = MakeFilm(run).fixed.ground;
+  ViewOptions options;
+  options.margin_m = 0.25;
+  const Ground ground = MakeFilm(run, options).fixed.ground;
   CHECK(ground.columns * ground.rows < 2'000'000);
+  CHECK(ground.cell_m == Approx((900.0 + 2.0 * (0.25 + run.body.chassis_radius_m)) / 1200.0));
 }
 
 TEST_CASE("A single pose makes a film of one picture") {
@@ -97,6 +114,13 @@ TEST_CASE("What cannot be filmed is refused in one line") {
   Run run = StraightRun();
   run.truth.poses.back().t_s = 1e6;
   CHECK_THROWS_WITH(MakeFilm(run), Contains("at most 100000") && Contains("lower fps"));
+  ViewOptions fast;
+  fast.fps = 240;
+  run.truth.poses = {run.truth.poses.front(), run.truth.poses.back()};
+  run.truth.poses.back().t_s = run.truth.poses.front().t_s + 100'000 / 240.0;
+  CHECK(MakeFilm(run, fast).scenes.size() == 100'000);
+  run.truth.poses.back().t_s += 1 / 240.0;
+  CHECK_THROWS_WITH(MakeFilm(run, fast), Contains("has 100001 pictures, but at most 100000"));
   run.truth.poses.back().yaw_rad = NAN;
   CHECK_THROWS_WITH(MakeFilm(run), Contains("yaw"));
   run.truth.poses.clear();

@@ -179,5 +179,84 @@ TEST_CASE("Unknown values and names beyond ASCII are drawn all the same") {
   CHECK(shot.picture.size() == cv::Size(1280, 720));
 }
 
+TEST_CASE("The scale is the longest round length below a quarter of the view") {
+  struct Case {
+    double view_m, scale_m;
+  };
+  for (const Case& one :
+       {Case{0.79, 0.1}, {0.82, 0.2}, {1.96, 0.2}, {2.04, 0.5}, {3.92, 0.5}, {4.08, 1.0}}) {
+    INFO(one.view_m << " m");
+    Run run = StraightRun();
+    run.truth.poses.resize(1);
+    run.logged = {};
+    ViewOptions options;
+    options.ground_cell_m = one.view_m / 400.0;
+    const double margin_m = options.margin_m + run.body.chassis_radius_m;
+    // Lower than wide, and nothing near its upper edge.
+    run.waypoints = {{"", {0.0, 0.0}}, {"", {one.view_m - 2.0 * margin_m, -0.4 * one.view_m}}};
+    const Film film = MakeFilm(run, options);
+    const Painter painter(film.fixed, {1280, 720});
+    const Layout& layout = painter.layout();
+    REQUIRE(layout.top.width / layout.px_per_m == Approx(one.view_m).epsilon(0.01));
+    const cv::Rect row(layout.top.x + layout.top.width / 2, layout.top.y + 14, layout.top.width / 2,
+                       1);
+    const cv::Mat picture = painter.Paint(film.scenes[0]);
+    const int right = layout.top.br().x - 12;
+    int length_px = 0;
+    while (length_px < row.width && picture.at<cv::Vec3b>(row.y, right - 1 - length_px)[1] < 100) {
+      ++length_px;
+    }
+    CHECK(length_px == Approx(one.scale_m * layout.px_per_m).margin(2.0));
+  }
+}
+
+TEST_CASE("Words that are too long for the column of text end within it") {
+  const std::string longest(100, 'W');
+  Run run = StraightRun();
+  run.waypoints[1].name = "end";
+  const Film film = MakeFilm(run);
+  Film wordy = film;
+  wordy.fixed.title = wordy.fixed.waypoints[1].name = longest;
+  const Painter painter(film.fixed, {1280, 720}), of_wordy(wordy.fixed, {1280, 720});
+  const cv::Rect panel = painter.layout().panel;
+  REQUIRE(film.scenes[30].target == 1);
+  const cv::Mat plain = painter.Paint(film.scenes[30])(panel);
+  const cv::Mat full = of_wordy.Paint(film.scenes[30], {longest})(panel);
+  cv::Mat differs;
+  cv::extractChannel(plain != full, differs, 1);
+  std::vector<cv::Point> changed;
+  cv::findNonZero(differs, changed);
+  const cv::Rect around = cv::boundingRect(changed);
+  // Eighteen pixels are free at its left and 16 at its right, and a letter has less than 20.
+  CHECK(around.x == Approx(18).margin(3.0));
+  CHECK(around.br().x <= panel.width - 16);
+  // The title, the waypoint and the foot each reach to the end of their room.
+  int rows_at_end = 0;
+  for (int top = 0; top < panel.height; top += 20) {
+    const cv::Rect end(panel.width - 16 - 30, top, 30, 20);
+    rows_at_end += cv::countNonZero(differs(end)) > 0;
+  }
+  CHECK(rows_at_end >= 3);
+}
+
+TEST_CASE("The place that the robot drives to has a ring and its name, be it the first") {
+  const Shot shot(StraightRun());
+  const Layout& layout = shot.painter.layout();
+  Scene scene = shot.film.scenes[30];
+  scene.target = -1;
+  const cv::Mat none = shot.painter.Paint(scene);
+  for (const int target : {0, 1}) {
+    INFO(target);
+    scene.target = target;
+    const cv::Mat picture = shot.painter.Paint(scene);
+    const cv::Point2d at = layout.TopPixel(shot.film.fixed.waypoints[target].p_in_world_m);
+    // A ring of 11 px is dark above its middle.
+    const cv::Point above(cvRound(at.x), cvRound(at.y) - 11);
+    CHECK(picture.at<cv::Vec3b>(above)[1] < 120);
+    CHECK(none.at<cv::Vec3b>(above)[1] > 150);
+    CHECK(cv::norm(picture(layout.panel), none(layout.panel), cv::NORM_INF) > 50.0);
+  }
+}
+
 }  // namespace
 }  // namespace rift::view

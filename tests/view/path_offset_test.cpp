@@ -41,6 +41,9 @@ TEST_CASE("Before a path, beyond it and on a leg without length the distance is 
   CHECK(PathOffset_m({-0.3, -0.4}, path) == Approx(0.5));
   CHECK(PathOffset_m({0.3, 2.4}, path) == Approx(-0.5));
   CHECK(PathOffset_m({-0.1, 1.0}, path) == Approx(0.1));
+  // Beyond the tip of a hairpin both legs end: the side is that of the first.
+  CHECK(PathOffset_m({1.05, 0.01}, {{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.1}}) ==
+        Approx(std::hypot(0.05, 0.01)));
   CHECK(OffsetText(0.0) == "0.0 mm left");
   CHECK(OffsetText(INFINITY) == "-");
 }
