@@ -245,6 +245,11 @@ TEST_CASE("A camera matrix that no lens has is refused, since its poses would be
     return "accepted";
   };
   CHECK(refusal("[96, 0, 0, 0, 96000, 720, 0, 0, 1]") == "accepted");
+  CHECK(refusal("[96000, 0, 960, 0, 96, 0, 0, 0, 1]") == "accepted");
+  // Of which no size is known, or but one side, it may have any.
+  for (const char* side : {"image_width: 960", "image_height: 720", "x: 1"}) {
+    CHECK_NOTHROW(ReadWith("[4.2, 0, 2000, 0, 4.2, 2000, 0, 0, 1]", "[0, 0, 0, 0]", side));
+  }
   CHECK(refusal("[4.2, 0, 477, 0, 4.2, 365, 0, 0, 1]") ==
         "cam.yaml:1:16: key 'camera_matrix' is a list of 9: the focal length 4.2 px must be 0.1 to "
         "100 times the longer side of the picture, 960 px: give it in pixels, its millimetres "
@@ -295,6 +300,44 @@ TEST_CASE("Reference tags of every family's ids are read back") {
   REQUIRE(read.world->marks.size() == 1);
   CHECK(read.world->marks[0].tag_id == 2114);
   CHECK(read.world->marks[0].p_in_world.z() == 0.125);
+}
+
+/// A camera whose only reference tag lies and was seen there.
+struct MarkOf {
+  double x_m = 0.25, y_m = -0.5, z_m = 0.125, u_px = 10.0, v_px = 20.0;
+
+  CameraModel Camera() const {
+    CameraModel camera = SomeCamera();
+    camera.world->marks = {{7, {x_m, y_m, z_m}, {u_px, v_px}}};
+    return camera;
+  }
+};
+
+TEST_CASE("The places and the error of a world frame go up to their limits on either side") {
+  struct Limit {
+    double MarkOf::*number;
+    double most;
+  };
+  for (const Limit& limit : {Limit{&MarkOf::x_m, 1e3},
+                             {&MarkOf::y_m, 1e3},
+                             {&MarkOf::z_m, 1e3},
+                             {&MarkOf::u_px, 1e6},
+                             {&MarkOf::v_px, 1e6}}) {
+    for (const double sign : {-1.0, 1.0}) {
+      MarkOf mark;
+      mark.*limit.number = sign * limit.most;
+      CHECK_NOTHROW(ReadCamera(WriteCamera(mark.Camera()), "cam.yaml"));
+      mark.*limit.number = sign * (limit.most + 1.0);
+      CHECK_THROWS_AS(ReadCamera(WriteCamera(mark.Camera()), "cam.yaml"), yaml::Error);
+    }
+  }
+  CameraModel camera = SomeCamera();
+  for (const auto& [residual_m, is_taken] :
+       {std::pair{0.0, true}, {1e3, true}, {1001.0, false}, {-0.1, false}}) {
+    camera.world->residual_m = residual_m;
+    if (is_taken) CHECK_NOTHROW(ReadCamera(WriteCamera(camera), "cam.yaml"));
+    if (!is_taken) CHECK_THROWS_AS(ReadCamera(WriteCamera(camera), "cam.yaml"), yaml::Error);
+  }
 }
 
 }  // namespace

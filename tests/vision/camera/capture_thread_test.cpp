@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <memory>
@@ -45,11 +46,18 @@ class Script {
   }
   Move Next() {
     std::unique_lock lock(mutex_);
+    ++asked_;
     changed_.wait(lock, [&] { return is_over_ || !moves_.empty(); });
     if (is_over_) return {nullptr, CameraState::kEnded};
     Move move = std::move(moves_.front());
     moves_.pop_front();
     return move;
+  }
+
+  /// How often the capture came for a move: what it was given before it has dealt with.
+  int Asked() {
+    const std::lock_guard lock(mutex_);
+    return asked_;
   }
 
   bool is_recording = false;
@@ -60,6 +68,7 @@ class Script {
   std::condition_variable changed_;
   std::deque<Move> moves_;
   bool is_over_ = false;
+  int asked_ = 0;
 };
 
 class ScriptedCamera final : public CameraSource {
@@ -137,6 +146,11 @@ TEST_CASE("The rate of pictures is that of the last second") {
   CHECK(session.After(3).rate_hz == 0.0);
   session.script.Give(103, begin_s + 5.5);
   CHECK(session.After(4).rate_hz == Approx(4.0));
+  // A second ago is within it.
+  Session even;
+  const double whole_s = std::ceil(begin_s);
+  for (const double after_s : {0.0, 0.5, 1.0}) even.script.Give(100, whole_s + after_s);
+  CHECK(even.After(3).rate_hz == Approx(2.0));
 }
 
 TEST_CASE("A recording is given picture by picture and ends after its last one") {
@@ -183,6 +197,11 @@ TEST_CASE("A picture without light is black, judged as often as pictures are loo
   CHECK_THAT(black.reason, Contains("the picture is black"));
   session.script.Give(200, begin_s + 0.45);
   CHECK(session.After(4).state == CameraState::kRunning);
+  Session quarter({.black_level = 40.0, .look_s = 0.25});
+  const double whole_s = std::ceil(begin_s);
+  quarter.script.Give(41, whole_s);
+  quarter.script.Give(38, whole_s + 0.25);  // just when it is time
+  CHECK(quarter.After(2).state == CameraState::kBlack);
 }
 
 TEST_CASE("Pictures of another size are passed over, until the camera means it") {
@@ -202,14 +221,18 @@ TEST_CASE("Pictures of another size are passed over, until the camera means it")
   CHECK(frame.bytes[0] == 139);
 }
 
-TEST_CASE("A picture of more pixels than are put up with is passed over") {
-  Session session({.most_mpixel = 100e-6});  // 100 pixels
+TEST_CASE("A picture of more pixels than are put up with is passed over, and one of none") {
+  Session session({.most_mpixel = 96e-6});  // 96 pixels
   const double begin_s = SteadyNow_s();
   session.script.Give(100, begin_s, 13);  // 104 of them
+  session.script.Give(100, begin_s, 0);
   session.script.Give(101, begin_s + 0.1, 12);
   const CaptureStatus status = session.After(1);
-  CHECK(status.skipped == 1);
+  CHECK(status.skipped == 2);
   CHECK(session.Next().bytes[0] == 101);
+  Session narrow;
+  narrow.script.Give(102, begin_s, 1);
+  CHECK(narrow.Next().width_px == 1);
 }
 
 TEST_CASE("An error of the camera is its state, and the first one stays") {
@@ -232,8 +255,15 @@ TEST_CASE("A device that is gone is unplugged while its driver still hangs, and 
   CHECK(status.reason == "the device is gone");
   session.script.is_present = true;
   session.script.Give(101, SteadyNow_s());  // too late
+  while (session.script.Asked() < 3) std::this_thread::yield();
   status = session.capture->Status();
   CHECK(status.state == CameraState::kUnplugged);
+  CHECK(status.delivered == 1);
+  session.script.Do({{}, CameraState::kWrongFormat});  // and so is another end
+  CHECK_FALSE(session.capture->Next(kLong_s));
+  status = session.capture->Status();
+  CHECK(status.state == CameraState::kUnplugged);
+  CHECK(status.reason == "the device is gone");
 }
 
 TEST_CASE("What goes wrong beside the camera reaches who asks for pictures") {

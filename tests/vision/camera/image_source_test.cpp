@@ -191,5 +191,32 @@ TEST_CASE("A picture is not turned as its EXIF data say, since its lens was not"
   CHECK(GreysOf(*source) == std::vector<int>{101, 101});
 }
 
+/// Whether a folder's only picture is taken.
+bool IsTaken(const test::TemporaryFolder& folder, const CaptureOptions& options) {
+  Frame frame;
+  return OpenCamera(folder.Path().string(), options)->Read(frame);
+}
+
+TEST_CASE(
+    "A picture of as many bytes or pixels as are put up with is taken, of one more it is not") {
+  const test::TemporaryFolder padded;
+  WriteGrey(padded / "a.png", 101);
+  std::ofstream(padded / "a.png", std::ios::binary | std::ios::app) << std::string(12'200, '\0');
+  fs::resize_file(padded / "a.png", 12'000);  // what stands behind a PNG's end is passed over
+  CHECK(IsTaken(padded, {.most_mbyte = 0.012}));
+  fs::resize_file(padded / "a.png", 12'001);
+  CHECK_FALSE(IsTaken(padded, {.most_mbyte = 0.012}));
+  // The lowest byte of a side, the one before it, and the one before that.
+  for (const auto& [width_px, height_px] :
+       {std::pair{200, 100}, {300, 80}, {80, 300}, {65'540, 1}}) {
+    INFO(width_px << " x " << height_px);
+    const test::TemporaryFolder folder;
+    WriteGrey(folder / "a.png", 101, width_px, height_px);
+    const int pixels = width_px * height_px;
+    CHECK(IsTaken(folder, {.most_mpixel = 1e-6 * pixels}));
+    CHECK_FALSE(IsTaken(folder, {.most_mpixel = 1e-6 * (pixels - 1)}));
+  }
+}
+
 }  // namespace
 }  // namespace rift::vision

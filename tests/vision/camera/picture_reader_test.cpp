@@ -69,6 +69,10 @@ TEST_CASE("A grey picture that is written in colour is grey in every channel, wh
     cv::merge(std::vector<cv::Mat>(3, grey), expected);
     INFO(size.width << " x " << size.height);
     CHECK(cv::norm(read, expected, cv::NORM_INF) < 5.0);
+    std::vector<cv::Mat> channels;
+    cv::split(read, channels);
+    CHECK(cv::norm(channels[0], channels[1], cv::NORM_INF) == 0.0);
+    CHECK(cv::norm(channels[2], channels[1], cv::NORM_INF) == 0.0);
   }
 }
 
@@ -156,6 +160,9 @@ TEST_CASE("A raw picture is grey and coloured as its format says") {
   const Frame frame = Colours(PixelFormat::kBgr);
   const auto patch = reader.Read(frame);
   REQUIRE(patch);
+  Frame cut = frame;
+  cut.bytes.pop_back();
+  CHECK_FALSE(reader.Read(cut));
   const cv::Mat grey = SmallGreyOf(frame), bgr = BgrOf(frame);
   const std::array<double, 4> weights{0.114 * 255, 0.587 * 255, 0.299 * 255, 90};  // ITU-R BT.601
   for (int i = 0; i < 8; ++i) {
