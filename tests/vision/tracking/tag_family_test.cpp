@@ -340,6 +340,28 @@ TEST_CASE("Of tag16h5 no bit is corrected unless asked for, and a family bounds 
   CHECK_NOTHROW(options.Check());
   options.id = 30;
   CHECK_THROWS_WITH(options.Check(), "tag id 30: the family tag16h5 has the ids 0 to 29");
+  CHECK_THROWS_WITH(RequireTagId(-1, TagFamily::k16h5), Catch::Contains("tag id -1"));
+}
+
+TEST_CASE("Tags of few bits are believed with a margin alone, those of 36 without one") {
+  for (const TagFamily family : kFamilies) {
+    INFO(NameOf(family));
+    const TagCells cells = CellsOfTag(5, family);
+    const int side_px = 8 * (cells.shape.cells + 2);  // a cell of white around what is printed
+    cv::Mat1b picture(side_px, side_px, std::uint8_t{200});
+    for (int row = 0; row < cells.shape.cells; ++row) {
+      for (int column = 0; column < cells.shape.cells; ++column) {
+        const int grey = cells.is_white[row][column] ? 200 : 40;
+        picture(cv::Rect(8 * (column + 1), 8 * (row + 1), 8, 8)).setTo(grey);
+      }
+    }
+    Frame frame{.width_px = side_px, .height_px = side_px};
+    frame.bytes.assign(picture.datastart, picture.dataend);
+    TagOptions options = OptionsOf(family, 0.05);
+    REQUIRE(FindTags(frame, 1, options).size() == 1);
+    options.min_margin = 1000.0;
+    CHECK(FindTags(frame, 1, options).size() == (cells.shape.bits < 36 ? 0U : 1U));
+  }
 }
 
 }  // namespace

@@ -252,5 +252,47 @@ TEST_CASE("A world frame that came with another lens is told by its own referenc
   CHECK_FALSE(WhyNotOfThisLens(camera));
 }
 
+TEST_CASE("Places are taken up to the limit of their mean, and up to twice that of one of them") {
+  const CameraModel camera = test::PaperCamera();
+  std::vector<WorldPoint> points = SixTags(camera);
+  points[3].p_in_world.x() += 0.012;
+  const std::vector<double> off_m = LeaveOneOut_m(camera, points);
+  const double worst_m = *std::max_element(off_m.begin(), off_m.end());
+  REQUIRE(WorldFromPoints(camera, points, "").residual_m < 0.45 * worst_m);
+  CHECK_NOTHROW(CheckPoints(camera, points, 0.5 * worst_m));
+  CHECK_THROWS_WITH(CheckPoints(camera, points, 0.499 * worst_m), Contains("for one twice that"));
+
+  // Four at each place, off by as much to every side, so that none stands out.
+  points.clear();
+  for (const Eigen::Vector2d& place :
+       {Eigen::Vector2d(-0.5, -0.25), {0.5, -0.2}, {0.55, 0.3}, {-0.45, 0.35}}) {
+    for (const Eigen::Vector2d& off :
+         {Eigen::Vector2d(0.004, 0.0), {-0.004, 0.0}, {0.0, 0.004}, {0.0, -0.004}}) {
+      points.push_back(Exact(camera, {place + off})[0]);
+      points.back().p_in_world.head<2>() = place;
+    }
+  }
+  const double mean_m = WorldFromPoints(camera, points, "").residual_m;
+  const std::vector<double> each_m = LeaveOneOut_m(camera, points);
+  REQUIRE(*std::max_element(each_m.begin(), each_m.end()) < 1.9 * mean_m);
+  CHECK_NOTHROW(CheckPoints(camera, points, mean_m));
+  CHECK_THROWS_WITH(CheckPoints(camera, points, std::nextafter(mean_m, 0.0)),
+                    Contains("mm RMS (limit"));
+}
+
+TEST_CASE("Which of five places are wrong takes more to tell, of six more than one is") {
+  const CameraModel camera = test::PaperCamera();
+  for (const std::size_t count : {5U, 6U}) {
+    std::vector<WorldPoint> points = SixTags(camera);
+    points.resize(count);
+    points[0].p_in_world.x() += 0.15;
+    points[1].p_in_world.y() -= 0.12;
+    points[4].p_in_world.x() -= 0.1;
+    CHECK_THROWS_WITH(CheckPoints(camera, points, kLimit_m),
+                      Contains(count == 5 ? "which one is wrong takes more tags to tell"
+                                          : "more than one is wrong"));
+  }
+}
+
 }  // namespace
 }  // namespace rift::vision

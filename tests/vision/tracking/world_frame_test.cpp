@@ -162,6 +162,8 @@ TEST_CASE("Points that make no frame are refused with what to do") {
     for (WorldPoint& point : mirrored) point.p_in_world[side.IsFirst() ? 0 : 1] *= -1.0;
     CHECK_THROWS_WITH(WorldFromPoints(camera, mirrored, ""), Contains("from below the floor"));
   });
+  const std::vector<WorldPoint> one_place(4, points[0]);
+  CHECK_THROWS_WITH(WorldFromPoints(camera, one_place, ""), Contains("these lie on a line"));
   points.pop_back();
   CHECK_THROWS_WITH(WorldFromPoints(camera, points, ""),
                     Contains("needs 4 points that are seen, there are 3"));
