@@ -252,7 +252,9 @@ TEST_CASE("Heads without an end hold no more than the budget") {
 }
 
 TEST_CASE("A stream that breaks off is asked for again and goes on") {
-  const std::string once = std::string(kOk) + Part(SmallJpeg()) + Part(SmallJpeg());
+  const std::string huge = "\r\n--b\r\nContent-Length: 99999999999\r\n\r\n";
+  const std::string once = std::string(kOk) + Part(SmallJpeg()) + huge +
+                           Part("this is no picture") + huge + Part(SmallJpeg());
   synthetic::ScriptedServer server({once, once}, 1);
   CaptureThread capture = Capturing(server.Url());
   WaitForState(capture, CameraState::kReconnecting);
@@ -260,6 +262,7 @@ TEST_CASE("A stream that breaks off is asked for again and goes on") {
   server.Allow();  // before, the state would pass unseen where the test is slow
   test::WaitUntil("it went on", [&] { return capture.Status().delivered == 4; });
   CHECK(capture.Status().reconnects == 1);
+  CHECK(capture.Status().skipped == 6);  // three each time
 }
 
 }  // namespace

@@ -366,5 +366,14 @@ TEST_CASE("The covariance of a pose is in the axes of the map, however the camer
         1e-9);
 }
 
+TEST_CASE("A cell as grey as the threshold is neither black nor white") {
+  const CameraModel camera = test::SmallCamera();
+  const TagCells cells = CellsOfTag(3);
+  const ReadBits read =
+      CompareBits(camera, Drawn(cells, 0, 0), SquareOf(camera, cells.shape, 0, 0), cells);
+  CHECK(read.wrong == 8 * 8);
+  CHECK(read.margin == 0.0);
+}
+
 }  // namespace
 }  // namespace rift::vision

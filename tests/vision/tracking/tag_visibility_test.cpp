@@ -134,6 +134,8 @@ TEST_CASE("A tag that is on the floor in more than a tenth of the pictures is no
   }
   CHECK(said_rarely == 1);  // 10 of 11
   CHECK(said_often == 0);   // 10 of 12
+  for (int i = 11; i < 18; ++i) CHECK_FALSE(often.Add(SeenAt(0.2, false)));
+  CHECK(often.Add(SeenAt(0.2, false)));  // 18 of 20
 }
 
 TEST_CASE("No floor, no word of it: free ground, no world frame, a height that nobody can set") {
@@ -167,6 +169,41 @@ TEST_CASE("No floor, no word of it: free ground, no world frame, a height that n
   camera.world.reset();
   OffFloorCheck no_world(camera, flat);
   for (int i = 0; i < 20; ++i) CHECK_FALSE(no_world.Add(SeenAt(0.2, false)));
+}
+
+TEST_CASE("The height of a tag off the floor is the median of those that are in the world") {
+  const CameraModel camera = Above(0.0);
+  const TagOptions tag{.size_m = 0.05, .height_m = 0.03};
+  OffFloorCheck check(camera, tag);
+  Sighting elsewhere = SeenAt(0.03, true);
+  elsewhere.in_world = false;
+  for (int i = 0; i < 5; ++i) CHECK_FALSE(check.Add(elsewhere));
+  // One outlier, at 1.5 m, takes the mean of ten to 0.249 m.
+  std::optional<std::string> said;
+  for (int i = 0; i < 10; ++i) said = check.Add(SeenAt(i == 3 ? 1.5 : 0.11, false));
+  REQUIRE(said);
+  CHECK_THAT(*said, Contains("in 10 of 10 pictures (z 0.110 m"));
+}
+
+TEST_CASE(
+    "A height is proposed up to two metres, and nothing of a camera below the tag or its floor") {
+  const auto said_at = [](double camera_m, double z_m, double height_m) {
+    CameraModel camera = Above(0.0);
+    camera.world->world_from_camera.translation().z() = camera_m;
+    const TagOptions tag{.size_m = 0.05, .height_m = height_m};
+    OffFloorCheck check(camera, tag);
+    std::optional<std::string> said;
+    for (int i = 0; i < 10; ++i) said = check.Add(SeenAt(z_m, false));
+    return said.value_or("");
+  };
+  CHECK_THAT(said_at(3.0, 2.0, 0.03), Contains("--tag-height 2.000"));
+  CHECK_THAT(said_at(3.0, 2.001, 0.03), Contains("is its side") && !Contains("--tag-height"));
+  CHECK_THAT(said_at(3.0, 0.0, 0.03), Contains("--tag-height 0.000"));
+  // Between the tag's floor and where it is seen, on either side.
+  CHECK_THAT(said_at(0.1, 0.2, 0.03),
+             Contains("puts the camera at z 0.100 m, below the tag at 0.200"));
+  CHECK_THAT(said_at(0.1, 0.03, 0.2),
+             Contains("puts the camera at z 0.100 m, below the tag at 0.200"));
 }
 
 }  // namespace

@@ -445,5 +445,28 @@ TEST_CASE("Reference tags too small for the checks are looked for once in every 
   CHECK(tracked.said.empty());
 }
 
+TEST_CASE("Reference tags are checked as soon as so much time has passed, in every such picture") {
+  CameraModel camera = SmallCamera();
+  const Eigen::Vector3d p_in_camera =
+      camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
+  camera.world->marks = {{5, {0.2, 0.1, 0.0}, PixelsFromPoints(camera, {p_in_camera})[0]}};
+  SmallRecording still({.tags = {FloorTag(5, 0.2, 0.1)}}),
+      moved({.tags = {FloorTag(5, 0.19, 0.1)}});
+  still.Add(RobotAt(-0.1, 0.0, 0.0));
+  moved.Add(RobotAt(-0.1, 0.0, 0.0));
+  for (const SmallRecording* next : {&moved, &still}) {  // in the middle one it is moved
+    std::ifstream file(next->Path() + "/0000.jpg", std::ios::binary);
+    still.Write({std::istreambuf_iterator<char>(file), {}});
+  }
+  for (const auto& [every_s, is_seen] : {std::pair{0.25, true}, {0.26, false}}) {
+    Tracked tracked(still.Path(), camera, {.fps = 4.0});
+    tracked.options.check_every_s = every_s;
+    tracked.options.check_decimate = 1;
+    const TrackRun run = RunTracking(tracked.parts);
+    REQUIRE(run.moved_m);
+    CHECK((*run.moved_m > 0.009) == is_seen);
+  }
+}
+
 }  // namespace
 }  // namespace rift::vision

@@ -205,6 +205,14 @@ TEST_CASE("Reference tags set the world frame, whose scale the robot's tag confi
   Setup in_centimetres(recording);
   CHECK_THROWS_WITH(WorldFromFloorTags(in_centimetres.setting, MarksOf(kTags, 100.0)),
                     Contains("the places are centimetres"));
+  // From ten times on the factor is what is said, before that what does not fit. For its height the
+  // tag looks a twentieth larger.
+  Setup by_twelve(recording), by_nine(recording);
+  by_twelve.options.world_limit_m = by_nine.options.world_limit_m = 1e-5;
+  CHECK_THROWS_WITH(WorldFromFloorTags(by_twelve.setting, MarksOf(kTags, 12.0)),
+                    Contains("is the tag's size right"));
+  CHECK_THROWS_WITH(WorldFromFloorTags(by_nine.setting, MarksOf(kTags, 9.3)),
+                    Contains("do not fit what the camera sees"));
   Setup in_inches(recording);
   in_inches.options.world_limit_m = 1.0;
   CHECK_THROWS_WITH(WorldFromFloorTags(in_inches.setting, MarksOf(kTags, 39.37)),
