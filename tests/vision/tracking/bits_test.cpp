@@ -5,6 +5,7 @@
 #include "rift/vision/camera/picture_reader.hpp"
 #include "vision/small_recording.hpp"
 #include "vision/tracking/edge_fit.hpp"
+#include "vision/tracking/motion_guess.hpp"
 #include "vision/tracking/tag_meter.hpp"
 
 namespace rift::vision {
@@ -189,6 +190,29 @@ TEST_CASE("A tag above the floor is left free, unless the picture is too bright 
   seen = dimmer.Measure({.max_fit_px = 5.0});
   REQUIRE(seen.sighting);
   CHECK_FALSE(seen.sighting->is_on_floor);
+}
+
+TEST_CASE("On the floor is what is off it by twice a lens error, or by a share of the tag's side") {
+  const Shot high(1.0, 0.036);  // 6 mm above where the tag should be
+  const auto measure = [&](const TagOptions& options) { return *high.Measure(options).sighting; };
+  for (const bool by_share : {false, true}) {
+    for (const double of_limit : {0.96, 1.04}) {
+      TagOptions options{.lens_sigma_px = 0.01, .max_fit_px = 5.0};
+      for (int round = 0; round < 12; ++round) {  // the error is weighed where the tag is held
+        TagOptions held = options, free = options;
+        held.off_floor_share = 10.0;
+        free.ground = Ground::kFree;
+        const Sighting on_floor = measure(held);
+        REQUIRE(on_floor.is_on_floor);
+        const double off_px = std::sqrt(std::pow(on_floor.reprojection_px, 2) -
+                                        std::pow(measure(free).reprojection_px, 2));
+        REQUIRE(off_px > 0.1);
+        if (!by_share) options.lens_sigma_px = 0.5 * of_limit * off_px;
+        options.off_floor_share = by_share ? of_limit * off_px / Side_px(on_floor.corners) : 0.0;
+      }
+      CHECK(measure(options).is_on_floor == (of_limit > 1.0));
+    }
+  }
 }
 
 TEST_CASE("A lens that throws corners far out of the picture gives no square, and takes no room") {

@@ -432,5 +432,24 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("A tag that is found and cannot be measured, and a rival alone, are named as that") {
+  const CameraModel camera = test::SmallCamera();
+  const SyntheticCameraOptions look{.noise_grey = 1.0};
+  const auto robot = test::RobotAt(-0.1, 0.0, 0.0);
+  Film alone(camera, look), beside(camera, look, {.tags = {test::FloorTag(0, 0.2, 0.1)}});
+  const Frame first = alone.Next(robot);
+  CHECK(TagTracker(camera, {.max_fit_px = 1e-6}).Track(first).miss == Miss::kNoEdges);
+  CHECK(TagTracker(camera, {.min_margin = 1e3}).Track(first).miss == Miss::kDoubtfulBits);
+  TagTracker tracker(camera, {.recheck_every = 1});
+  REQUIRE(tracker.Track(first).sighting);
+  beside.Next({});
+  REQUIRE(tracker.Track(beside.Next(robot)).sighting);
+  const TrackResult hidden = tracker.Track(beside.Next({}));
+  CHECK_FALSE(hidden.sighting);
+  CHECK(hidden.miss == Miss::kRival);
+  REQUIRE(hidden.predicted);
+  CHECK(hidden.predicted->Planar().x_m == Approx(-0.1).margin(1e-3));
+}
+
 }  // namespace
 }  // namespace rift::vision
