@@ -108,6 +108,11 @@ TEST_CASE("The noncentral F is a mixture of central ones, nearly so where it is 
       const double f = share * (3.0 + lambda) / 3.0;
       CHECK(NoncentralFCdf(3.0, 20.0, lambda, f) ==
             Approx(NoncentralF(3.0, 20.0, lambda, f)).margin(2e-3));
+      // From there on it is the central F that has its first two moments.
+      const double scale = (3.0 + lambda) / 3.0,
+                   df = (3.0 + lambda) * (3.0 + lambda) / (3.0 + 2.0 * lambda);
+      CHECK(NoncentralFCdf(3.0, 20.0, lambda, f) ==
+            Approx(1.0 - FUpperTail(df, 20.0, f / scale)).epsilon(1e-9));
     }
   }
 }
