@@ -225,6 +225,7 @@ TEST_CASE("A simulator whose radio is slower turns after the robot, by what its 
   CHECK(lag_s(0.15, 0.05) == Approx(0.1).margin(0.03));
   CHECK(lag_s(0.05, 0.15) == Approx(-0.1).margin(0.03));
   CHECK(lag_s(0.05, 0.05) == Approx(0.0).margin(0.011));
+  CHECK(lag_s(0.45, 0.05) == Approx(0.3));  // later than is looked at: the end
 }
 
 TEST_CASE("A mismatch of the motors to either side turns the simulator to that side") {
