@@ -116,6 +116,14 @@ TEST_CASE("Patches of a narrow range have names that differ") {
   CHECK(names.size() == 24);
   CHECK(cells[0].x == "0.99 to 0.99083");
   CHECK(cells[23].x == "1.0092 to 1.01");
+  // As many digits as the end needs that is further from 0.
+  const auto first_name = [&result](double min, double max) {
+    result.parameters[0].min = min;
+    result.parameters[0].max = max;
+    return MapFailures(result, {0, 1}).cells[0].x;
+  };
+  CHECK(first_name(80.0, 100.0) == "80 to 80.83");
+  CHECK(first_name(-100.0, -80.0) == "-100 to -99.17");
 }
 
 TEST_CASE("A range that is even in its logarithm is cut so, and settings are as near as by it") {
