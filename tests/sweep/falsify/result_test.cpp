@@ -59,6 +59,14 @@ TEST_CASE("A value of a range is shortened for people, and one of a list stands 
   CHECK(ShortText(far, experiment::NumberValue(1e6 + 4.25)) == "1000004.25");
   const experiment::Parameter below{.key = "a", .min = -120.0, .max = -119.0};
   CHECK(ShortText(below, experiment::NumberValue(-119.123456)) == "-119.123");
+  // The end that is further from 0 has three digits in front of the point, the other has two.
+  const experiment::Parameter left{.key = "a", .min = -100.4, .max = -99.4},
+      right{.key = "a", .min = 99.4, .max = 100.4};
+  CHECK(ShortText(left, experiment::NumberValue(-99.712345)) == "-99.7123");
+  CHECK(ShortText(right, experiment::NumberValue(99.712345)) == "99.7123");
+  // No double has more than 17 digits that tell.
+  const experiment::Parameter narrow{.key = "a", .min = 1.0, .max = 1.0 + 0x1p-48};
+  CHECK(ShortText(narrow, experiment::NumberValue(1.0 + 0x5p-51)) == "1.0000000000000022");
   CHECK(ShortText(kNumbers, {"0.123456", 0.123456}) == "0.123456");
   CHECK(ShortText(kWords, {"ice", {}}) == "ice");
 }
@@ -169,6 +177,7 @@ TEST_CASE("As many settings are judged together as were planned, and never fewer
   CHECK(result.Count(gap::Verdict::kUndecided) == 0);
   CHECK(result.Count(gap::Verdict::kNotSeenToFail) == 1);
   CHECK(result.Count(gap::Verdict::kFalsified) == 1);
+  CHECK(result.anova.size() == 1);  // however often it is summarised
 }
 
 TEST_CASE("The variance is analysed for each list of several values, by the losses that count") {
