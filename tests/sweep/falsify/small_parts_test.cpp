@@ -162,6 +162,10 @@ TEST_CASE("A heightfield that the task crosses nowhere is told with where it lie
     hills.image_x_m = x_m;
     CHECK_FALSE(UncrossedNote(trial));
   }
+  hills.image_width_m = 0.0025;  // on a way that is looked at every 2 mm
+  hills.image_x_m = 0.07;
+  CHECK_FALSE(UncrossedNote(trial));
+  hills.image_width_m = 0.01;
   hills.image_x_m = 0.3;
   hills.image_y_m = 0.17;
   CHECK_FALSE(UncrossedNote(trial));
