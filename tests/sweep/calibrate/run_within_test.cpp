@@ -87,6 +87,11 @@ TEST_CASE("No run in the place of a log has the seed of another, nor of one that
     }
   }
   CHECK(seeds.size() == count);
+  // Four repeats between the seeds of two logs, the next ones beyond those of 2000 logs.
+  CHECK(SeedInPlace(7, 0, 0) == 20'007);
+  CHECK(SeedInPlace(7, 3, 0) == 80'007);
+  CHECK(SeedInPlace(7, 4, 0) == 200'020'007);
+  CHECK(SeedInPlace(7, 10, 2) == 400'062'007);
 }
 
 }  // namespace
