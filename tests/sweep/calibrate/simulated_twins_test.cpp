@@ -3,13 +3,16 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
+#include <random>
 #include <vector>
 
 #include "rift/control/navigator.hpp"
 #include "rift/gap/likeness.hpp"
 #include "rift/sweep/calibrate/error_structure.hpp"
+#include "rift/sweep/calibrate/likeness.hpp"
 #include "rift/trajectory/frame_grid.hpp"
 #include "rift/trial/loop_delay.hpp"
+#include "sweep/calibrate/feature_model.hpp"
 #include "sweep/calibrate/fitted_simulator.hpp"
 #include "sweep/calibrate/model.hpp"
 
@@ -234,6 +237,26 @@ TEST_CASE("A path has traits when its yaw answers the steering, at once as well,
   CHECK((*at_once)[kLoopDelay_s] == 0.0);
   CHECK((*at_once)[kSteeringGain] == Approx(3.0).epsilon(0.02));
   CHECK_FALSE(simulator.TraitsOf(driven(0.0), 0, {}));  // it does not turn at all
+  // At once is a delay in the features of a fit and in a likeness as well.
+  const SimulatedTrial of = Turn();
+  const Eigen::VectorXd row = FeatureRow(driven(3.0), of);
+  const Eigen::Index lag = row.size() - 5;  // then gain, bias and the sides of two waypoints
+  CHECK(row[lag] == 0.0);
+  CHECK(row[lag + 1] == Approx(3.0).epsilon(0.02));
+  CHECK(std::isnan(FeatureRow(driven(0.0), of)[lag]));
+  const RepeatedTrial trial{.setting = "a",
+                            .real = driven(3.0),
+                            .runs = {driven(0.0)},
+                            .waypoints = of.task.waypoints,
+                            .control = of.control};
+  gap::LikenessOptions options;
+  options.bootstrap.resamples = 20;
+  options.shuffles = 19;
+  options.classifier.permutations = 0;
+  std::mt19937_64 generator(1);
+  const DriveLikeness likeness = MeasureDriveLikeness({trial}, true, {}, options, generator);
+  CHECK(likeness.loop_delay_s.real == 0.0);
+  CHECK(std::isnan(likeness.loop_delay_s.sim));
 }
 
 }  // namespace
