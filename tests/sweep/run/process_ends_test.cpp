@@ -108,6 +108,7 @@ TEST_CASE("A worker that aborts with its memory full, or says so, ran out of it"
   SKIP_UNDER_SANITIZER();
   CHECK(Aborted(62, "", 64).end == JobEnd::kOutOfMemory);
   CHECK(Aborted(30, "", 64).end == JobEnd::kCrashed);
+  CHECK(Aborted(106, "", 128).end == JobEnd::kCrashed);  // full is from nine tenths on
   const JobResult said = Aborted(0, "terminate called: what(): std::bad_alloc\n", 1024);
   CHECK(said.end == JobEnd::kOutOfMemory);
   CHECK(said.bytes == "wanted more than 1024 MB of memory");
