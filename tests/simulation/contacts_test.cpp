@@ -122,6 +122,32 @@ TEST_CASE("A wide wheel counts the highest ground under its width") {
   CHECK(depth_m(0.004, 0.0) == Approx(0.0008).epsilon(0.02));
 }
 
+TEST_CASE("A wide wheel sees as far to its left as to its right, whichever way it rolls") {
+  TerrainOptions options;
+  SurfaceOptions& surface = options.surfaces["ground"];
+  surface.shape = Shape::kHeightfield;
+  surface.image = "ridge.png";
+  surface.image_width_m = 0.02;
+  surface.image_height_m = 0.002;
+  // A ridge 0.01 m to one side, up to which the ground climbs from the middle.
+  struct Case {
+    std::vector<double> samples;
+    Vector3d axle;
+  };
+  for (const Case& one : {Case{{1, 1, 1, 0, 0, 0, 0, 0, 0}, Vector3d::UnitY()},
+                          Case{{0, 0, 0, 0, 0, 0, 1, 1, 1}, Vector3d::UnitY()},
+                          Case{{1, 0, 0, 1, 0, 0, 1, 0, 0}, Vector3d::UnitX()},
+                          Case{{0, 0, 1, 0, 0, 1, 0, 0, 1}, Vector3d::UnitX()}}) {
+    const Terrain terrain(options, std::make_shared<HeightImage>(HeightImage{3, 3, one.samples}));
+    for (const double sign : {1.0, -1.0}) {
+      const auto contact =
+          WheelContactPoint(terrain, {0.0, 0.0, kRadius_m}, sign * one.axle, kRadius_m, 0.008);
+      REQUIRE(contact);
+      CHECK(contact->depth_m == Approx(0.0008).epsilon(0.02));  // 0.4 of the way up
+    }
+  }
+}
+
 TEST_CASE("A wheel whose middle lies on the ground is pushed upwards by all of its radius") {
   const Terrain terrain = Slanted();
   const Vector3d ground(0.1, -0.2, terrain.HeightAt(0.1, -0.2));
@@ -264,6 +290,44 @@ TEST_CASE("The rim of the chassis runs into the side of a block at the chassis' 
 }
 
 TEST_CASE(
+    "The rim of the chassis stands on a block by its lower side, round by half a millimetre") {
+  TerrainOptions options;
+  options.surface = "bump";
+  const Terrain terrain(options);
+  BodyOptions body;
+  body.rim_clearance_m = 0.002;
+  const auto contacts_at = [&](double x_m, double lower_side_m, double margin_m) {
+    WorldState state;
+    state.position_m = {x_m, 0.0, body.wheel_radius_m - 0.002 + lower_side_m};
+    std::vector<GroundContact> contacts;
+    AddRimContacts({body, terrain, state, {}, margin_m}, contacts);
+    return contacts;
+  };
+  // Its foremost point over the middle of a block.
+  const double over_m = 0.06 - body.chassis_radius_m;
+  CHECK(contacts_at(over_m, 0.004 + 1e-6, 0.0).empty());
+  const auto on_top = contacts_at(over_m, 0.004 - 1e-5, 0.0);
+  REQUIRE_FALSE(on_top.empty());
+  for (const GroundContact& contact : on_top) {
+    CHECK(contact.at.depth_m == Approx(1e-5).epsilon(1e-6));
+    CHECK((contact.at.normal - Vector3d::UnitZ()).norm() < 1e-9);
+  }
+  // The middle of its round edge 0.3 mm above the block's and 0.4 mm before it: half a millimetre.
+  const double before_m = 0.05 - 0.0004 - (body.chassis_radius_m - 0.0005);
+  CHECK(contacts_at(before_m - 1e-6, 0.004 + 0.0003 - 0.0005, 0.0).empty());
+  const auto at_edge = contacts_at(before_m + 1e-5, 0.004 + 0.0003 - 0.0005, 0.0);
+  REQUIRE(at_edge.size() == 1);
+  CHECK(at_edge[0].at.depth_m == Approx(0.0005 - std::hypot(0.00039, 0.0003)).epsilon(1e-5));
+  CHECK(at_edge[0].at.normal.x() == Approx(-0.39 / std::hypot(0.39, 0.3)).epsilon(1e-5));
+  // It is known before it touches, by the margin.
+  const double off_m = 0.05 - body.chassis_radius_m - 1e-4;
+  CHECK(contacts_at(off_m, 0.002, 0.9e-4).empty());
+  const auto ahead = contacts_at(off_m, 0.002, 1.1e-4);
+  REQUIRE(ahead.size() == 1);
+  CHECK(ahead[0].at.depth_m == Approx(-1e-4).epsilon(1e-6));
+}
+
+TEST_CASE(
     "A motion ends where the robot tips by 60 degrees, sinks by 12 mm or falls by half a metre") {
   TerrainOptions options;
   options.table_half_size_m = 1.0;
@@ -281,12 +345,13 @@ TEST_CASE(
   CHECK(fault({0.1, 0.2, -0.0121}, 0.0) == "sank through the floor at (0.100, 0.200) m");
   CHECK(fault({1.1, 0.0, -0.49}, 0.0).empty());
   CHECK(fault({1.1, 0.0, -0.51}, 0.0) == "fell off the table at (1.100, 0.000) m");
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 5; ++k) {
     WorldState state;
     if (k == 0) state.position_m.y() = std::nan("");
     if (k == 1) state.velocity_mps.z() = INFINITY;
     if (k == 2) state.world_from_robot(1, 1) = std::nan("");
     if (k == 3) state.wheel_rate_rad_s[1] = std::nan("");
+    if (k == 4) state.wheel_rate_rad_s[0] = -INFINITY;
     CHECK(FaultOf(state, terrain).value() == "the simulated motion is no longer finite");
   }
 }
