@@ -49,6 +49,17 @@ TEST_CASE("A coloured PNG with transparency counts by its luminance") {
   CHECK(image.samples[3] == Approx(0.86).margin(0.02));  // luminance of sRGB green
 }
 
+TEST_CASE("A picture may be 65536 pixels wide or high and no more") {
+  const std::vector<png_byte> pixels(65537, 51);
+  const auto decode = [&](int columns, int rows) {
+    return DecodeHeightImage(Encode(columns, rows, PNG_FORMAT_GRAY, pixels.data()));
+  };
+  CHECK(decode(65536, 1).samples.back() == Approx(0.2));
+  CHECK(decode(1, 65536).rows == 65536);
+  CHECK_THROWS_WITH(decode(65537, 1), Catch::StartsWith("not a PNG height image: "));
+  CHECK_THROWS_WITH(decode(1, 65537), Catch::StartsWith("not a PNG height image: "));
+}
+
 TEST_CASE("Bytes that are no PNG or end too early are refused") {
   CHECK_THROWS_AS(DecodeHeightImage("hello, this is no picture"), std::runtime_error);
   CHECK_THROWS_AS(DecodeHeightImage(""), std::runtime_error);
