@@ -147,6 +147,30 @@ TEST_CASE("A tag that sits off the axle leans sideways with the robot") {
   CHECK((seen->roll_rad == 0.3 && seen->pitch_rad == 0.0));
 }
 
+TEST_CASE("Where a host is in its first turn tells nothing of where the camera is in its frame") {
+  MocapOptions options = Quiet();
+  options.rate_hz = 20.0;
+  options.exposure_s = options.processing_s = 0.0;
+  options.host_period_s = 0.05;
+  options.host_period_spread_s = options.host_jitter_s = options.host_wander_s = 0.0;
+  options.host_late_share = 0.0;
+  double waited_s = 0.0;
+  constexpr int kRuns = 300;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    Mocap mocap(options, seed);
+    mocap.Observe({.t_s = 0.0}, {.t_s = 0.2, .x_m = 0.2});  // 1 m/s: x is the time
+    const auto first = mocap.Newest(0.101);
+    REQUIRE(first);
+    const double age_s = first->captured_s - first->world_from_robot.x_m;
+    CHECK(age_s > 0.05 - 1e-9);
+    CHECK(age_s < 0.1);
+    waited_s += age_s - 0.05;
+  }
+  // A frame waits for a turn that ends after it: of two even shares the mean of max(0, a - b) is
+  // 1/6.
+  CHECK(waited_s / kRuns == Approx(0.05 / 6.0).margin(0.0025));
+}
+
 TEST_CASE("A robot stands below a centimetre a second: only then its scatter is the run's") {
   MocapOptions options = Quiet();
   options.rate_hz = 50.0;
