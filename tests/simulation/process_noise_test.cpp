@@ -1,6 +1,7 @@
 // What no robot does twice: the ground's unevenness, and a pull to one side that differs from run
 // to run.
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -60,6 +61,25 @@ TEST_CASE("Uneven ground turns the robot as a random walk over its way") {
   CHECK(near_rad == Approx(expected_rad).epsilon(0.15));
   CHECK(spread_rad(0.2, 3.0) == Approx(std::sqrt(3.0) * near_rad).epsilon(0.25));
   CHECK(spread_rad(0.1, 2.0) == Approx(near_rad).epsilon(0.25));  // the way counts, not the time
+}
+
+TEST_CASE("The ground's unevenness changes along the way and never jumps") {
+  SimulationOptions options = Steady();
+  options.terrain.surfaces["ground"].unevenness = 0.2;
+  SimulatedRobot robot(options, {}, 4);
+  robot.Command({0.02, 0.02});  // 50 steps from grain to grain
+  robot.Advance(0.4);
+  double last_rad_s = robot.State().spin_rad_s.z(), least = last_rad_s, most = least, jump = 0.0;
+  for (int i = 0; i < 1500; ++i) {
+    robot.Advance(0.004);
+    const double rate_rad_s = robot.State().spin_rad_s.z();
+    jump = std::max(jump, std::abs(rate_rad_s - last_rad_s));
+    least = std::min(least, rate_rad_s);
+    most = std::max(most, rate_rad_s);
+    last_rad_s = rate_rad_s;
+  }
+  CHECK(most - least > 0.05);  // 0.3 rad/s for a difference of one: of 0.2 and more
+  CHECK(jump < 0.06 * (most - least));
 }
 
 TEST_CASE("What a session on a surface has of its own stands beside what the robot has") {
