@@ -450,6 +450,56 @@ TEST_CASE("A run is done without progress, when flat, when narrow, or far behind
   CHECK(generations == 20 + 80 / 8);
 }
 
+TEST_CASE("A run is narrow below 1e-7 of an axis, and flat below 1e-13 of its losses") {
+  const Space space({{"a", AxisKind::kContinuous, 0.0, 1.0}});
+  // One generation of a slope, and the spread that Hansen's equations leave of the first.
+  const auto spread_after = [&](double sigma, bool& is_done) {
+    statistics::Random random(8, 1);
+    CmaEs search(space, Unit({0.5}), sigma, ScalarCma::kPopulation);
+    std::vector<double> drawn, losses;
+    for (const Eigen::VectorXd& unit : search.Sample(random)) {
+      drawn.push_back(unit[0]);
+      losses.push_back(1e7 * (unit[0] - 0.5));
+    }
+    search.Learn(losses);
+    is_done = search.IsDone(kInfinity);
+    std::sort(drawn.begin(), drawn.end());
+    ScalarCma by_hand(0.5, sigma);
+    by_hand.Learn(drawn);
+    return by_hand.sigma * std::sqrt(by_hand.covariance);
+  };
+  bool is_done = false;
+  const double grows = spread_after(1e-7, is_done) / 1e-7;
+  for (const double share : {0.96, 1.04}) {
+    CHECK(spread_after(share * 1e-7 / grows, is_done) == Approx(share * 1e-7).epsilon(1e-4));
+    CHECK(is_done == (share < 1.0));
+    CmaEs search(space, Unit({0.5}), 0.1, ScalarCma::kPopulation);
+    statistics::Random random(8, 1);
+    search.Sample(random);
+    search.Learn({1000.0, 1000.0, 1000.0, 1000.0, 1000.0, 1000.0 + share * 1e-10});
+    CHECK(search.IsDone(1000.0) == (share < 1.0));
+  }
+}
+
+TEST_CASE("A loss counts as better from a part in 1e12 on") {
+  const Space space({{"w", AxisKind::kCategorical, 0, 3}});
+  const auto generations = [&](double better) {
+    statistics::Random random(8, 1);
+    CmaEs search(space, Unit({0.5}), 0.1, 8);
+    int count = 0;
+    do {
+      search.Sample(random);
+      const double best = count == 0 ? -1000.0 : -1000.0 * (1.0 + better);
+      search.Learn(std::vector<double>{0.0, 0.0, 0.0, best, 0.0, 0.0, 0.0, 0.0});
+      ++count;
+    } while (count < 100 && !search.IsDone(kInfinity));
+    return count;
+  };
+  // 20 generations and 80 evaluations, after the last that was better: the first or the second.
+  CHECK(generations(0.96e-12) == 1 + 20 + 80 / 8);
+  CHECK(generations(1.04e-12) == 2 + 20 + 80 / 8);
+}
+
 std::vector<Evaluation> Told(Strategy& strategy, int most, const auto& loss) {
   std::vector<Evaluation> batch;
   for (const Point& point : strategy.Ask(most)) batch.push_back({point, loss(point)});
@@ -543,6 +593,17 @@ TEST_CASE("A reflection of two points through the best is where it must be") {
   }
 }
 
+TEST_CASE("A population within a millionth of every axis is used up, and draws anywhere again") {
+  for (const double share : {0.95, 1.05}) {
+    Known known({{"a", AxisKind::kContinuous, 0.0, 1.0}});
+    for (int i = 0; i < 20; ++i) known.archive.Add({{0.5 + share * 1e-6 * i / 19.0}, 1.0 * i});
+    ControlledRandomSearch search(known, 3);
+    int far = 0;
+    for (const Point& p : search.Ask(10)) far += std::abs(p[0] - 0.5) > 1e-5;
+    CHECK(far == (share < 1.0 ? 10 : 0));
+  }
+}
+
 TEST_CASE("Before there are three members a vertex controlled random search draws anywhere") {
   Known known({{"a", AxisKind::kContinuous, 0.0, 1.0}});
   ControlledRandomSearch search(known, 3);
@@ -605,6 +666,25 @@ TEST_CASE(
     search.Tell(std::vector<Evaluation>{{points[0], 5.0 + std::pow(points[0][0] - 0.5, 2)}});
   }
   CHECK(starts[0] == 0.5);
+}
+
+TEST_CASE("The next local run begins at the best point a tenth of an axis from the runs before") {
+  Known known({{"x", AxisKind::kContinuous, 0.0, 10.0}});
+  known.archive.Add({{5.0}, 0.0});
+  known.archive.Add({{5.95}, 1.0});
+  known.archive.Add({{6.05}, 2.0});
+  known.archive.Add({{8.0}, 3.0});
+  LocalModel search(known, 3);
+  std::vector<double> asked;
+  bool is_next = false;
+  for (int i = 0; i < 200 && !is_next; ++i) {
+    const Point point = search.Ask(1).front();
+    asked.push_back(point[0]);
+    is_next = point[0] == 5.95 || point[0] == 6.05 || point[0] == 8.0;
+    search.Tell(std::vector<Evaluation>{{point, 5.0 + std::pow(point[0] - 5.0, 2)}});
+  }
+  CHECK(asked.front() == 5.0);
+  CHECK(asked.back() == 6.05);
 }
 
 TEST_CASE("What was evaluated before is answered from the archive, and batches are cut") {
