@@ -269,5 +269,44 @@ TEST_CASE("A window is as long as is asked, of four sightings or more, in which 
   CHECK(windows(late, 2.0) == -7);
 }
 
+TEST_CASE("Wheels that explain every pose leave a micrometre and a microradian of noise, no less") {
+  // A millimetre for each five counts, in windows that begin and end in the midst of rolling.
+  const std::vector<RunLog> runs{Straight(128, 5, 5)};
+  const OdometryCalibration found = CalibrateOdometry(runs, {}, {.window_s = 2.0});
+  CHECK(found.noise_m == 1e-6);
+  CHECK(found.noise_yaw_rad == 1e-6);
+  CHECK(found.wheel_radius_m.value == Approx(2e-4 * 358.3 / (2.0 * geometry::kPi)));
+  CHECK(found.right_over_left.value == Approx(1.0).epsilon(1e-6));
+}
+
+TEST_CASE("A value is told to a standard error of five per cent, a tag to half a centimetre") {
+  // More and more noise: the error is the half width of the interval over Student's t.
+  const auto sigma = [](const Estimate& estimate, double t) {
+    return std::log(estimate.interval.high / estimate.value) / t;
+  };
+  int told = 0, not_told = 0, tag_told = 0, tag_not_told = 0;
+  for (const double noise : {22.0, 24.0, 30.0, 48.0, 51.0, 60.0}) {
+    const OdometryCalibration found =
+        CalibrateOdometry(Squares({}, 1, 3, {0.0015 * noise, 0.02 * noise}), {});
+    const double t = statistics::StudentQuantile(static_cast<double>(found.windows - 6), 0.975);
+    for (const Estimate& estimate : {found.wheel_radius_m, found.right_over_left, found.track_m}) {
+      CHECK(estimate.is_told == (sigma(estimate, t) < 0.05));
+      told += sigma(estimate, t) > 0.045 && sigma(estimate, t) < 0.05;
+      not_told += sigma(estimate, t) > 0.05 && sigma(estimate, t) < 0.1;
+    }
+    const double tag_m = (found.tag_ahead_m.interval.high - found.tag_ahead_m.value) / t;
+    CHECK(found.tag_ahead_m.is_told == (tag_m < 0.005));
+    tag_told += tag_m > 0.0045 && tag_m < 0.005;
+    tag_not_told += tag_m > 0.005 && tag_m < 0.01;
+    UNSCOPED_INFO(noise << " " << sigma(found.wheel_radius_m, t) << " "
+                        << sigma(found.right_over_left, t) << " " << sigma(found.track_m, t) << " "
+                        << tag_m);
+  }
+  CHECK(told > 0);
+  CHECK(not_told > 0);
+  CHECK(tag_told > 0);
+  CHECK(tag_not_told > 0);
+}
+
 }  // namespace
 }  // namespace rift::odometry

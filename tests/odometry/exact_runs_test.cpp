@@ -150,6 +150,45 @@ TEST_CASE("Slip is taken over as many parts of the way as are asked for") {
   CHECK(late.slip_right == Approx(0.25));
 }
 
+TEST_CASE("Between two readings the odometry is on the straight line between their places") {
+  OdometryOptions micrometres = Millimetres();
+  micrometres.counts_per_wheel_turn *= 1000.0;
+  for (const int side : {1, -1}) {  // left, right
+    // It stands, and then drives a quarter of a circle of 0.2 m from one reading to the next.
+    RunLog run{.name = "r"};
+    for (int i = 0; i < 30; ++i) {
+      run.encoders.push_back({0.1 * i, {0, 0}});
+      run.camera.poses.push_back({.t_s = 0.1 * i, .x_m = 0.0, .y_m = 0.0, .yaw_rad = 0.0});
+    }
+    const auto inner = std::llround(150'000.0 * geometry::kPi / 2.0),
+               outer = std::llround(250'000.0 * geometry::kPi / 2.0);
+    run.encoders.push_back({3.9, {side > 0 ? inner : outer, side > 0 ? outer : inner}});
+    for (const double share : {0.125, 0.5, 0.75, 1.0}) {
+      run.camera.poses.push_back({.t_s = 2.9 + share,
+                                  .x_m = 0.2 * share,
+                                  .y_m = side * 0.2 * share,
+                                  .yaw_rad = side * share * geometry::kPi / 2.0});
+    }
+    CHECK(MeasureRun(run, std::nullopt, micrometres, {}).odometry_gap_m < 1e-5);
+    // Seen half a centimetre off in between, and where it was at the end.
+    run.camera.poses[31].y_m += 0.005;
+    const RunMeasures off = MeasureRun(run, std::nullopt, micrometres, {});
+    CHECK(off.odometry_gap_m == Approx(0.005).margin(1e-5));
+    CHECK(off.drift_per_m < 1e-3);
+  }
+}
+
+TEST_CASE("A wheel that rolled a millimetre or less has no slip") {
+  OdometryOptions fine = Millimetres();
+  fine.counts_per_wheel_turn *= 20.0;  // 0.05 mm a count
+  for (const auto& [left, right] : {std::pair{19, 21}, {-19, -21}}) {
+    const RunLog run = Run({{0, 0}, {left, right}}, {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}});
+    const RunMeasures measures = MeasureRun(run, std::nullopt, fine, {});
+    CHECK(std::isnan(measures.slip_left));
+    CHECK(measures.slip_right == Approx(1.0));
+  }
+}
+
 TEST_CASE("A tag ahead of the axle moves every place that the camera saw back by as much") {
   // The robot turns on the spot: its tag goes round, its axle stays.
   std::vector<std::pair<int, int>> counts;
@@ -253,6 +292,10 @@ TEST_CASE("Each run is measured with its own wheels and tag, in whatever order")
   CHECK_FALSE(AreOfOneRobot(std::vector{own, larger}));
   CHECK_FALSE(AreOfOneRobot(std::vector{own, ahead}));
   CHECK_FALSE(AreOfOneRobot(std::vector{own, wide}));
+  ProgramRun right = own;  // the left wheel is the same: 2 / (1 + 3) of twice the mean
+  right.wheels.drive.wheel_radius_m *= 2.0;
+  right.wheels.right_over_left = 3.0;
+  CHECK_FALSE(AreOfOneRobot(std::vector{own, right}));
 }
 
 /// A turn on the spot by this angle in 40 steps, seen to end at (x, y) in the world's frame; the
@@ -287,6 +330,17 @@ TEST_CASE("UMBmark is the odometry's end seen from the camera's, in the frame of
   CHECK_FALSE(UmbmarkOf(std::vector{runs[2]}, Millimetres()));
   const std::vector<RunLog> far{Turn(6.0, 0.3, 0.0), Turn(-6.0, 0.0, 0.1)};
   CHECK(UmbmarkOf(far, Millimetres())->largest_m == Approx(0.3).margin(1e-6));
+}
+
+TEST_CASE("A run that did not move is none of a UMBmark, whatever its wheels turned") {
+  std::vector<ProgramRun> runs;
+  for (const double turned_rad : {6.0, -6.0, 6.0}) {
+    const RunLog log = Turn(turned_rad, 0.0, 0.0);
+    runs.push_back({log, log.camera, Millimetres()});
+  }
+  CHECK(MeasureRuns(runs, false, {}).umbmark.value().ccw_runs == 2);
+  for (trajectory::StampedPose& pose : runs[2].log.camera.poses) pose.yaw_rad = 0.1;
+  CHECK(MeasureRuns(runs, false, {}).umbmark.value().ccw_runs == 1);
 }
 
 TEST_CASE("A tag ahead of the axle is found with its distance, and left out of a UMBmark") {

@@ -108,6 +108,11 @@ TEST_CASE("The distance from a program is taken at equal arc length, standing le
   CHECK(half.largest_deviation_m == Approx(1.5).epsilon(0.02));
 }
 
+TEST_CASE("A program that leads a centimetre or less from its start has no way") {
+  CHECK(std::isnan(MeasureRun(Drive({}), Line(0.0099), {}, {}).deviation_m));
+  CHECK_FALSE(std::isnan(MeasureRun(Drive({}), Line(0.0101), {}, {}).deviation_m));
+}
+
 TEST_CASE("A robot that stays where it is did not move and has no numbers") {
   const RunMeasures stuck =
       MeasureRun(Drive({.left_grip = 0.01, .right_grip = 0.01}), Line(1.5), {}, {});
