@@ -222,6 +222,43 @@ TEST_CASE("A robot that stands on its way is told when noise makes 5 % of its ar
   CHECK(Doubts(WithStop(133, 200, 0.001)).empty());
 }
 
+TEST_CASE("A stop is told from a second on, and from 5 % of the arc length on") {
+  // The noise of n rows to and fro is 2 n of it, its last step to the next place included, beside
+  // 132 steps of 15 mm.
+  const auto doubts = [](int rows, double share) {
+    return Doubts(WithStop(60, rows, 1.98 * share / (1.0 - share) / (2.0 * rows))).size();
+  };
+  CHECK(doubts(100, 0.0515) == 1);
+  CHECK(doubts(100, 0.0485) == 0);
+  CHECK(doubts(20, 0.07) == 1);  // and a twentieth of a second to the next place: 1.05 s
+  CHECK(doubts(18, 0.07) == 0);
+}
+
+/// 1.8 m along x in steps of 15 mm and 0.05 s; half way it stands for 1.2 s, its positions to and
+/// fro by `noise_m`, and then is `jump_m` further.
+std::vector<std::string> DoubtsOfStop(double noise_m, double jump_m) {
+  Trajectory log;
+  double x_m = 0.0;
+  const auto add = [&](double off_m) {
+    const double t_s = 0.05 * static_cast<double>(log.poses.size());
+    log.poses.push_back({.t_s = t_s, .x_m = x_m + off_m, .y_m = 0.0});
+  };
+  for (int i = 0; i < 60; ++i, x_m += 0.015) add(0.0);
+  x_m -= 0.015;
+  for (int i = 0; i < 23; ++i) add(i % 2 == 0 ? -noise_m : noise_m);
+  x_m += jump_m;
+  for (int i = 0; i < 60; ++i, x_m += 0.015) add(0.0);
+  return Doubts(log);
+}
+
+TEST_CASE("A stop is a stride below a fifth of the median speed, of noise within a centimetre") {
+  // 1.2 s at a fifth of 0.3 m/s are 72 mm.
+  CHECK(DoubtsOfStop(0.004, 0.070).size() == 1);
+  CHECK(DoubtsOfStop(0.004, 0.074).empty());
+  CHECK(DoubtsOfStop(0.0095, 0.015).size() == 1);
+  CHECK(DoubtsOfStop(0.0105, 0.015).empty());
+}
+
 TEST_CASE("A robot that is slow all the way does not stand on it") {
   Trajectory slow;
   for (int i = 0; i < 4000; ++i) {
