@@ -305,8 +305,36 @@ TEST_CASE("Sides look swapped when the real one is even and smooth and the simul
   CHECK_FALSE(LookSwapped(Texture(0.2, 0.4e-3 / 8.0 * 0.95), computed));
   CHECK(LookSwapped(recorded, Texture(0.0, 0.1e-3 / 8.0 * 0.95)));
   CHECK_FALSE(LookSwapped(recorded, Texture(0.0, 0.1e-3 / 8.0 * 1.05)));
-  CHECK(LookSwapped(Texture(0.06, 0.001), computed));
-  CHECK_FALSE(LookSwapped(Texture(0.04, 0.001), computed));
+  CHECK(LookSwapped(Texture(0.0505, 0.001), computed));
+  CHECK_FALSE(LookSwapped(Texture(0.0495, 0.001), computed));
+  CHECK(LookSwapped(recorded, Texture(0.00095, 0.0)));
+  CHECK_FALSE(LookSwapped(recorded, Texture(0.00105, 0.0)));
+}
+
+TEST_CASE("A log stands whose every place is within the radius of its first, heights in space") {
+  const auto log = [](double x_m, double y_m, double z_m) {
+    Trajectory path;
+    path.poses = {{.t_s = 0.0, .x_m = 1.0, .y_m = 2.0, .z_m = 3.0},
+                  {.t_s = 1.0, .x_m = 1.0 + x_m, .y_m = 2.0 + y_m, .z_m = 3.0 + z_m},
+                  {.t_s = 2.0, .x_m = 1.0, .y_m = 2.0, .z_m = 3.0}};
+    return path;
+  };
+  GapOptions plane, space;
+  plane.standstill_radius_m = space.standstill_radius_m = 0.04;
+  space.dimension = Dimension::kXyz;
+  for (const GapOptions& options : {plane, space}) {
+    CHECK(IsStanding(log(0.0, 0.0, 0.0), options));
+    CHECK(IsStanding(log(0.023, -0.032, 0.0), options));
+    CHECK_FALSE(IsStanding(log(0.025, -0.032, 0.0), options));
+    CHECK_FALSE(IsStanding(log(0.0, 0.041, 0.0), options));
+    CHECK(IsStanding(log(0.0, 0.0, 0.039), options));
+    CHECK(IsStanding(log(0.0, 0.0, -0.041), options) == !options.IsInSpace());
+  }
+  Trajectory last_moves = log(0.0, 0.0, 0.0), one = last_moves;
+  last_moves.poses.back().x_m += 0.05;
+  CHECK_FALSE(IsStanding(last_moves, plane));
+  one.poses.resize(1);
+  CHECK_FALSE(IsStanding(one, plane));
 }
 
 TEST_CASE("A path that was driven the other way is told, and one that comes back is not") {

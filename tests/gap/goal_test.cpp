@@ -64,5 +64,22 @@ TEST_CASE(
         Approx(0.0).margin(1e-12));
 }
 
+TEST_CASE("The direction in which a path ends is that of its last three centimetres") {
+  // Along x and then to the left, in steps of half a millimetre.
+  const auto corner = [](double aside_m) {
+    trajectory::Trajectory path = test::StraightPath(0.4, 801);
+    for (int i = 1; i <= static_cast<int>(std::lround(2000.0 * aside_m)); ++i) {
+      path.poses.push_back({.t_s = 100.0 + i, .x_m = 0.4, .y_m = 0.0005 * i});
+    }
+    return path;
+  };
+  const auto gap_m = [&](double aside_m) {
+    return WayGap_m(corner(aside_m), corner(aside_m + 0.04), {{0.4, aside_m + 0.04}, 0.05}, {});
+  };
+  CHECK(gap_m(0.0305) == Approx(0.0).margin(1e-9));
+  // 28.5 mm to the left and 9.5 mm along x are 30 mm: it goes on by 0.3 ahead of 0.95 to the left.
+  CHECK(gap_m(0.0285) > 0.01);
+}
+
 }  // namespace
 }  // namespace rift::gap
