@@ -274,6 +274,31 @@ TEST_CASE("Opposite wheel rates turn the robot in place") {
   CHECK(world.State().position_m.head<2>().norm() < 1e-4);
 }
 
+TEST_CASE("Opposite torques turn the robot by its inertia about the middle of its axle") {
+  BodyOptions body;
+  body.caster_mu = 0.0;
+  body.wheel_mass_kg = 0.02;
+  body.wheel_width_m = 0.02;
+  body.com_ahead_m = -0.015;
+  TerrainOptions options;
+  options.surfaces["ground"].slip = 0.0;
+  const double torque_nm = 5e-4, time_s = 0.2, half_m = 0.5 * body.track_m;
+  const double r = body.wheel_radius_m, R = body.chassis_radius_m;
+  // An upright cylinder beside the axle, and two that lie on it and roll.
+  const double inertia_kg_m2 =
+      body.chassis_mass_kg * (0.5 * R * R + body.com_ahead_m * body.com_ahead_m) +
+      2.0 * body.wheel_mass_kg *
+          (half_m * half_m + (3.0 * r * r + body.wheel_width_m * body.wheel_width_m) / 12.0 +
+           0.5 * half_m * half_m);
+  for (const double side : {1.0, -1.0}) {
+    OdeWorld world(body, Terrain(options), {}, 0.001);
+    const auto drive = [&](double sign) { return WheelDrive{sign * 1000.0, 0.0, torque_nm}; };
+    Run(world, time_s, 0.001, {drive(-side), drive(side)});
+    CHECK(world.State().spin_rad_s.z() ==
+          Approx(side * 2.0 * torque_nm * half_m / r * time_s / inertia_kg_m2).epsilon(0.01));
+  }
+}
+
 /// Wheel rates of a weave that never slips, mean of the exact ones over the step.
 std::array<double, 2> WeaveRates(double t_s) {
   const double rise = t_s < 0.5 ? 0.5 * (1.0 - std::cos(2.0 * M_PI * t_s)) : 1.0;
