@@ -195,6 +195,16 @@ TEST_CASE("Two sweeps cannot work in one folder and Ctrl-C stops one that goes o
         std::string::npos);
 }
 
+TEST_CASE("What a sweep found is with its reader before the trials of a further question") {
+  const Sweep sweep(kSearch);
+  test::RunningRift running(sweep.Command("out", {"--rare-event", "--jobs", "1"}));
+  running.WaitUntil("its findings",
+                    [&] { return running.Out().find("\nsettings: ") != std::string::npos; });
+  CHECK_FALSE(fs::exists(sweep.folder / "out/rare_event.json"));
+  running.Signal(SIGINT);
+  CHECK(running.Wait().exit_code == 130);
+}
+
 TEST_CASE("A worker that stands still or crashes costs its trial and the sweep ends") {
   constexpr int kTrials = 6 * 30;
   const Sweep sweep(kGrid);

@@ -96,6 +96,7 @@ int Sweep(const SweepRequest& request) {
   sessions::SaveReport(out, evaluator, *judged, findings, observer);
   if (live) live->End();
   PrintFindings(request, *judged, findings);
+  terminal::FlushResults();  // the trials of further questions take long
   const std::optional<sessions::FurtherAnswers> answers =
       sessions::Answer(request.further, out, *judged, evaluator, {request.jobs, engine}, observer);
   if (!answers) return SayStopped(when_stopped);
