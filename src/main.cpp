@@ -32,6 +32,7 @@ namespace {
 }  // namespace
 
 /// The program rift: what needs a camera, a window or a video is left to rift-camera.
+// NOLINTNEXTLINE(bugprone-exception-escape): RunCommandLine tells what is thrown.
 int main(int argc, char** argv) {
   const auto camera_program = [argv](const auto&) -> int { RunCameraProgram(argv); };
   return rift::commands::RunCommandLine(

@@ -200,7 +200,7 @@ Scene SceneAt(const Run& run, double t_s) {
   scene.speed_mps = Speed_mps(run, a, b);
   scene.power = {PowerAt(run, "power_left", at_s), PowerAt(run, "power_right", at_s)};
   scene.target = TargetAt(run, at_s);
-  scene.trail_points = static_cast<size_t>(RowAt(Trail(run), at_s) + 1);
+  scene.trail_points = static_cast<size_t>(RowAt(Trail(run), at_s)) + 1;
   return scene;
 }
 

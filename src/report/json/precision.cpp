@@ -28,7 +28,8 @@ std::string Laid(const PrecisionMap& map, const std::string& title, int decimals
   for (int row = 0; row < map.rows; ++row) {
     text += "  ";
     for (int column = 0; column < map.columns; ++column) {
-      const double number = value(map.places[static_cast<std::size_t>(row * map.columns + column)]);
+      const int place = row * map.columns + column;
+      const double number = value(map.places[static_cast<std::size_t>(place)]);
       text += std::isfinite(number) ? fmt::format("{:8.{}f}", number, decimals)
                                     : fmt::format("{:>8}", "-");
     }
