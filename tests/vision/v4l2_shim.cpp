@@ -7,6 +7,7 @@
 //   RIFT_SHIM_FAULT    unplug (ENODEV), eio, hang, freeze, black, busy (EBUSY), denied (EACCES),
 //                      headless (of five JPEGs four come without their begin), torn (all do)
 //   RIFT_SHIM_AFTER    pictures before the fault (default 20)
+//   RIFT_SHIM_STAMPS   seconds by which it stamps pictures late (default 0)
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <linux/videodev2.h>
@@ -72,6 +73,7 @@ struct Camera {
   std::map<int, Device> openings;
   std::string fault = Env("RIFT_SHIM_FAULT", "");
   long fault_after = std::atol(Env("RIFT_SHIM_AFTER", "20").c_str());
+  double stamps_late_s = std::atof(Env("RIFT_SHIM_STAMPS", "0").c_str());
   std::vector<std::uint32_t> formats;
   std::vector<std::vector<std::uint8_t>> jpegs;
   long delivered = 0;
@@ -244,8 +246,9 @@ int Dequeue(Camera& camera, Device& device, v4l2_buffer& buffer) {
   buffer.m.offset = static_cast<std::uint32_t>(index * device.BufferSize());
   buffer.flags = V4L2_BUF_FLAG_MAPPED | V4L2_BUF_FLAG_DONE | V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
   buffer.sequence = static_cast<std::uint32_t>(frame);
-  buffer.timestamp.tv_sec = static_cast<time_t>(light_s);
-  buffer.timestamp.tv_usec = static_cast<suseconds_t>((light_s - std::floor(light_s)) * 1e6);
+  const double stamp_s = light_s + camera.stamps_late_s;
+  buffer.timestamp.tv_sec = static_cast<time_t>(std::floor(stamp_s));
+  buffer.timestamp.tv_usec = static_cast<suseconds_t>((stamp_s - std::floor(stamp_s)) * 1e6);
   ++camera.delivered;
   return 0;
 }

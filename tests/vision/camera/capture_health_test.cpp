@@ -1,3 +1,4 @@
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <mutex>
 #include <thread>
@@ -20,8 +21,10 @@ class ListCamera final : public CameraSource {
     bool is_recording = false;
     std::mutex mutex;
     SourceNotes notes;
+    std::atomic<bool> is_closed = false;
   };
   explicit ListCamera(std::shared_ptr<List> list) : list_(std::move(list)) {}
+  ~ListCamera() override { list_->is_closed = true; }
 
   bool Read(Frame& frame) override {
     if (next_ == list_->frames.size()) {
@@ -195,6 +198,20 @@ TEST_CASE("Five pictures in a row that cannot be decoded are a wrong format, fou
   // Looked at every 20 ms, of which there are few among so many.
   const CaptureThread seldom = Capturing(pictures("gbbbbbbb"), {.silent_s = 60.0, .look_s = 0.02});
   test::WaitUntil("all were read", [&] { return seldom.Status().delivered == 8; });
+}
+
+TEST_CASE("A camera is closed when its capture ends, and not before") {
+  for (const bool is_recording : {false, true}) {  // one waits for pictures, one for its reader
+    const auto list = std::make_shared<ListCamera::List>();
+    list->is_recording = is_recording;
+    list->frames = {GreyFrame(100, 100, SteadyNow_s())};
+    {
+      const CaptureThread capture = Capturing(list, {});
+      test::WaitUntil("a picture waits", [&] { return capture.Status().delivered == 1; });
+      CHECK_FALSE(list->is_closed);
+    }
+    test::WaitUntil("it is closed", [&] { return list->is_closed.load(); });
+  }
 }
 
 }  // namespace

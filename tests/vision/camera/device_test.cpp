@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <regex>
+#include <tuple>
 
 #include "rift/vision/camera/camera_source.hpp"
 #include "support/processes/process.hpp"
@@ -77,6 +78,20 @@ TEST_CASE("A V4L2 camera runs at the rate asked for in MJPG and in YUYV") {
   CHECK(probed.Number("shortest_step") == Approx(1.0).margin(0.01));
   CHECK(probed.Number("latency") > 0.011);
   CHECK(probed.HasLeft());
+}
+
+TEST_CASE("A picture is as old as its driver says, unless that is not yet or over a second ago") {
+  const JpegFolder jpegs(320, 240);
+  // By how much the driver's clock is late, and what the age is then; a busy machine adds to it.
+  for (const auto& [late_s, least_s, most_s] :
+       {std::tuple{-0.5, 0.511, 0.999}, {-1.1, 0.0, 0.0}, {1e6, 0.0, 0.0}}) {
+    const Probed probed = Probe({{"JPEGS", jpegs.Path()}, {"STAMPS", fmt::format("{}", late_s)}},
+                                "/dev/video0 - 2 mjpg 60 320 240");
+    INFO(late_s << "\n" << probed.text);
+    CHECK(probed.Number("latency") >= least_s);
+    CHECK(probed.Number("latency") <= most_s);
+    CHECK(probed.HasLeft());
+  }
 }
 
 TEST_CASE("A fault of a V4L2 camera is named and nothing hangs") {

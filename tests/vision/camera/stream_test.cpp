@@ -265,5 +265,20 @@ TEST_CASE("A stream that breaks off is asked for again and goes on") {
   CHECK(capture.Status().skipped == 6);  // three each time
 }
 
+TEST_CASE("A part of as many bytes as are put up with is read, of one more it is passed over") {
+  const std::string jpeg = SmallJpeg();
+  synthetic::ScriptedServer server({std::string(kOk) + Part(jpeg + "x") + Part(jpeg)});
+  CaptureThread capture =
+      Capturing(server.Url(), {.most_mbyte = 1e-6 * (static_cast<double>(jpeg.size()) + 0.5)});
+  CaptureStatus status;
+  test::WaitUntil("both were read", [&] {
+    status = capture.Status();
+    return status.delivered + status.skipped >= 2;
+  });
+  CHECK(status.delivered == 1);
+  CHECK(status.skipped == 1);
+  CHECK(capture.Next(0.0)->bytes.size() == jpeg.size());
+}
+
 }  // namespace
 }  // namespace rift::vision

@@ -340,6 +340,12 @@ TEST_CASE("A recording in which no picture can be read has failed with its reaso
   CHECK_THAT(run.reason, Contains("none of 1 pictures can be decoded"));
   REQUIRE(tracked.said.size() == 1);
   CHECK(tracked.said[0] == "camera wrong format: " + run.reason);
+  // Who stops it then has ended it himself.
+  Tracked stopped(recording.Path());
+  stopped.parts.is_stopped = [&] { return !stopped.said.empty(); };
+  const TrackRun ended = RunTracking(stopped.parts);
+  CHECK(ended.state == CameraState::kWrongFormat);
+  CHECK_FALSE(ended.has_failed);
 }
 
 TEST_CASE("A camera that changes the size of its pictures has failed, and the run is whole") {
@@ -382,6 +388,15 @@ TEST_CASE("A session asks for the size of its calibration and holds the pictures
   sizeless.FirstPicture();
   CHECK((sizeless.camera().width_px == 640 && sizeless.camera().height_px == 480));
 
+  for (const auto& [width_px, height_px] : {std::pair{640, 0}, {0, 480}}) {  // one side is none
+    camera.width_px = width_px;
+    camera.height_px = height_px;
+    CameraSession half(recording.Path(), camera, {}, {});
+    half.FirstPicture();
+    CHECK((half.camera().width_px == 640 && half.camera().height_px == 480));
+  }
+
+  camera.width_px = camera.height_px = 0;
   camera.k(0, 2) = 641.0;
   CameraSession of_another(recording.Path(), camera, {}, {});
   CHECK_THROWS_WITH(of_another.FirstPicture(),

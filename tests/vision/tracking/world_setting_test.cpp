@@ -1,6 +1,7 @@
 #include "rift/vision/tracking/world_setting.hpp"
 
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "rift/yaml/node.hpp"
 #include "vision/mjpeg_server.hpp"
@@ -274,6 +275,33 @@ TEST_CASE("Tags that a recording's first picture lacks are named, and an unseen 
   Setup silent(alone);
   silent.setting.say = {};
   CHECK_NOTHROW(WorldFromFloorTags(silent.setting, MarksOf(kTags)));
+}
+
+TEST_CASE("Reference tags are waited for before a live camera, until patience ends") {
+  const auto jpeg_of = [](const std::vector<PlacedTag>& tags) {
+    SmallRecording recording({.tags = tags});
+    recording.Add({});
+    std::ifstream file(recording.Path() + "/0000.jpg", std::ios::binary);
+    return std::vector<std::uint8_t>{std::istreambuf_iterator<char>(file), {}};
+  };
+  const auto set = [](const std::vector<std::uint8_t>& jpeg, double patience_s) -> std::string {
+    synthetic::MjpegServer server(jpeg, {.pictures = 1, .then_silent = true});
+    Setup setup(server.Url(), {});
+    setup.options.world_patience_s = patience_s;
+    // A person stops it soon after its only picture has come.
+    setup.setting.is_stopped = [&, asked = 0]() mutable {
+      return setup.session.capture().Status().delivered > 0 && ++asked > 2;
+    };
+    try {
+      return WorldFromFloorTags(setup.setting, MarksOf(kTags)).origin;
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  };
+  const auto three = jpeg_of({kTags[0], kTags[2], kTags[3]});
+  CHECK(set(three, 1e6) == "stopped before the world frame was set");
+  CHECK(set(three, 0.0) == "a world frame needs 4 reference tags, 3 of 4 are seen (not 2)");
+  CHECK(set(jpeg_of(kTags), 1e6) == "4 reference tags");
 }
 
 }  // namespace
