@@ -62,8 +62,8 @@ TEST_CASE("While nobody agreed the distance from the start is shown as it change
   Person person;
   StartGate gate({}, kStart, false, person.AtTerminal());
   gate.MayStart(0.0, kFar);
-  gate.MayStart(0.01, kNear);  // too soon to be read
-  gate.MayStart(0.2, kNear);
+  gate.MayStart(0.095, kNear);  // too soon to be read
+  gate.MayStart(0.105, kNear);
   gate.MayStart(0.4, std::nullopt);
   REQUIRE(person.shown.size() == 3);
   CHECK(person.shown[0] == "put the robot at the start: 12.0 cm, 0 deg off; Enter");

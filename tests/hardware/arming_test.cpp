@@ -140,6 +140,20 @@ TEST_CASE("A power that the guard would refuse is told before anything moves") {
   CHECK(is_told(task, by_controller));
   task.hardware.guard.max_power = 0.56;
   CHECK_FALSE(is_told(task, by_controller));
+  task.control.v_max = 0.25;
+  task.hardware.guard.max_power = 0.5;  // what it can ask for is allowed
+  CHECK_FALSE(is_told(task,
+                      "the controller (control.v_max + control.w_max) can ask for the power 0.5, "
+                      "and the limit (hardware.guard.max_power) is 0.5"));
+  // No controller asks for more than full power.
+  task.control.v_max = 0.9;
+  task.control.w_max = 0.7;
+  const std::string by_full_power =
+      "the controller (control.v_max + control.w_max) can ask for the power 1, and the limit "
+      "(hardware.guard.max_power) is 0.95";
+  task.hardware.guard.max_power = 0.95;
+  CHECK(is_told(task, by_full_power));
+  task.hardware.guard.max_power = 0.56;
   control::ProgramOptions program;
   program.power = 0.6;
   program.segments = {{.turn_deg = -90.0}, {.straight_m = 0.2, .power = 0.2}};

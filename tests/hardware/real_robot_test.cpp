@@ -593,7 +593,7 @@ TEST_CASE("News are what was recorded since the last news, poses once they are s
   // Without answers a pose is given up 2.5 s after its picture; the guard has stopped by then.
   bench.from_robot_is_cut = true;
   const size_t before = poses.size();
-  DriveOn(robot, {}, 2.3, bench);
+  DriveOn(robot, {}, 2.48, bench);
   take();
   CHECK(poses.size() <= before + 5);
   DriveOn(robot, {}, 1.0, bench);

@@ -123,7 +123,7 @@ TEST_CASE("A picture may be ahead of encoders that are read rarely by their spac
 TEST_CASE(
     "A picture that turns less than 0.4 or more than 2.5 times as far as the wheels is refused") {
   for (const auto& [scale, is_taken] :
-       {std::pair{0.35, false}, {0.45, true}, {2.3, true}, {2.7, false}}) {
+       {std::pair{0.38, false}, {0.42, true}, {2.4, true}, {2.6, false}}) {
     Bench bench;
     bench.bend = [scale = scale](trial::PoseMeasurement& pose) {
       pose.world_from_robot.yaw_rad *= scale;

@@ -166,6 +166,7 @@ TEST_CASE("Runs of one program are a cell, and runs of two are not, whichever di
   CHECK_FALSE(has_cell(a, spun));
   CHECK_FALSE(has_cell(a, none));
   CHECK_FALSE(has_cell(none, a));
+  CHECK_FALSE(has_cell(none, none));
 }
 
 TEST_CASE("The tag's place is that of each run's own experiment unless it was said") {
