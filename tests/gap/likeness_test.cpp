@@ -63,6 +63,15 @@ TEST_CASE("The dominant wavelength is that of the strongest weave") {
   CHECK(DominantWavelength_m(std::span(&twice, 1), {}) == Approx(0.2).epsilon(0.06));
 }
 
+TEST_CASE("A weave of two micrometres and less is rounding and has no wavelength") {
+  const auto wavelength_m = [](double amplitude_m) {
+    const Trajectory path = Weaving(amplitude_m, 0.25, 0.3, 0.0);
+    return DominantWavelength_m(std::span(&path, 1), {});
+  };
+  CHECK(std::isnan(wavelength_m(1.9e-6)));
+  CHECK(wavelength_m(2.6e-6) == Approx(0.25).epsilon(0.06));  // a line and a grid take a part
+}
+
 TEST_CASE("A simulator drawn as the robot is like it and the test does not object") {
   std::mt19937_64 generator(7);
   std::vector<RepeatedSetting> settings;

@@ -1,6 +1,7 @@
 #include "rift/geometry/pose2.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
 
 namespace rift::geometry {
@@ -43,6 +44,17 @@ TEST_CASE("Wrapping an angle keeps its direction and lands within half a turn") 
     CHECK(std::abs(wrapped_rad) <= kPi);
     CHECK(std::cos(wrapped_rad) == Approx(std::cos(angle_rad)).margin(1e-12));
     CHECK(std::sin(wrapped_rad) == Approx(std::sin(angle_rad)).margin(1e-12));
+  }
+}
+
+TEST_CASE("Forward is where the yaw looks, and a pose is finite in all of its numbers") {
+  CHECK(Pose2{5.0, 6.0, kPi / 6.0}.Forward().x() == Approx(std::sqrt(0.75)));
+  CHECK(Pose2{5.0, 6.0, kPi / 6.0}.Forward().y() == Approx(0.5));
+  CHECK(Pose2{1.0, 2.0, 3.0}.IsFinite());
+  for (const double wrong : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    CHECK_FALSE(Pose2{wrong, 2.0, 3.0}.IsFinite());
+    CHECK_FALSE(Pose2{1.0, wrong, 3.0}.IsFinite());
+    CHECK_FALSE(Pose2{1.0, 2.0, wrong}.IsFinite());
   }
 }
 

@@ -219,6 +219,9 @@ TEST_CASE("A table tells its lines, and columns without names are numbers from 1
   CHECK(table.Line() == 3);
   CHECK(table.Cell(0) == "2");
   CHECK_FALSE(table.Next());
+  // Of as many commas as semicolons or tabs the commas part the cells, and then the semicolons.
+  CHECK(TextTable("a,b;c\td\n", name).Columns() == std::vector<std::string>{"a", "b;c\td"});
+  CHECK(TextTable("b;c\td\n", name).Columns() == std::vector<std::string>{"b", "c\td"});
   // A comment of another number of words names no columns.
   TextTable other("# made by a robot\n0 1\n2 3\n", name);
   CHECK(other.Columns() == std::vector<std::string>{"1", "2"});

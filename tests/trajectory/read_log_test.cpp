@@ -194,6 +194,25 @@ TEST_CASE("A robot stands as long as it is within the radius, turned the short w
   CHECK(StandingPose(log, 0.005).x_m == Approx(1.002));
 }
 
+TEST_CASE("A robot turned away from the median of its first five rows by a tenth of a radian") {
+  const auto yaw_rad = [](const std::vector<double>& first_rad, double then_rad) {
+    Trajectory log;
+    const auto add = [&](double at_rad) {
+      log.poses.push_back({.t_s = static_cast<double>(log.poses.size()), .yaw_rad = at_rad});
+    };
+    for (const double one_rad : first_rad) add(one_rad);
+    for (int i = 0; i < 20; ++i) add(then_rad);
+    return StandingPose(log).yaw_rad;
+  };
+  for (const double side : {1.0, -1.0}) {
+    const std::vector<double> five(5, 0.2);
+    CHECK(yaw_rad(five, 0.2 + side * 0.095) == Approx(0.2 + side * 0.095));  // of most rows
+    CHECK(yaw_rad(five, 0.2 + side * 0.105) == Approx(0.2));
+    CHECK(yaw_rad({0.2, 0.2, 0.2}, 0.2 + side) == Approx(0.2));  // of the first five most stand
+    CHECK(yaw_rad({0.2, 0.2}, 0.2 + side) == Approx(0.2 + side));
+  }
+}
+
 TEST_CASE(
     "Angles of unknown unit are forgotten with the height, and look like degrees beyond a turn") {
   const auto log = [](const std::string& angles) {

@@ -1,4 +1,5 @@
 // When a trial ends and when its robot is told to stand, just inside and just outside of each rule.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -165,9 +166,10 @@ TEST_CASE("A clock may run twenty times slower than asked, and then is a fault")
    private:
     double share_;
   };
-  Slow slow(1.0 / 16.0);
+  // Turns are held to be a tenth of a second at most: 810 of them may pass in 20 times 4 s and one.
+  Slow slow(1.0 / 25.0);  // 800
   CHECK(Run(slow).outcome == Outcome::kTimedOut);
-  Slow slower(1.0 / 32.0);
+  Slow slower(1.0 / 25.5);  // 816
   const TrialResult result = Run(slower);
   CHECK(result.outcome == Outcome::kFault);
   CHECK(result.reason == "the robot's clock stands still or runs backwards");
@@ -186,6 +188,47 @@ TEST_CASE("Turns that new pictures end early are no clock that stands still") {
   const TrialResult result = Run(robot, options);
   CHECK(result.outcome == Outcome::kTimedOut);
   CHECK(result.Duration_s() == 4.0);
+}
+
+TEST_CASE("A refused pose is counted by the limit of the gate that it broke, or by none") {
+  /// One pose, at 5 s, is elsewhere, or of another time.
+  class Jumping : public Scripted {
+   public:
+    explicit Jumping(const PoseMeasurement& jump) : jump_(jump) { at = {1.0, 2.0, 3.1}; }
+    Sensed Sense() override {
+      return now_s == 5.0 ? Sensed{.now_s = now_s, .pose = jump_} : Scripted::Sense();
+    }
+
+   private:
+    PoseMeasurement jump_;
+  };
+  using Counts = std::array<size_t, 3>;
+  const auto refused = [](double move_m, double turned_rad, double captured_s = 5.0,
+                          double min_interval_s = 0.01) {
+    control::NavigatorOptions navigator;
+    navigator.pose_gate.max_speed_mps = 1.0;
+    navigator.pose_gate.max_yaw_rate_rad_s = 2.0;
+    navigator.pose_gate.min_interval_s = min_interval_s;
+    Jumping robot({.captured_s = captured_s,
+                   .world_from_robot = {1.0 + 0.6 * move_m, 2.0 - 0.8 * move_m,
+                                        geometry::WrapToPi(3.1 + turned_rad)}});
+    const TrialResult result =
+        RunTrial(robot, std::vector<control::Waypoint>{{.name = "s"}, {.name = "far", .x_m = 5.0}},
+                 navigator, Options());
+    return Counts{result.poses_refused, result.refused_moves, result.refused_turns};
+  };
+  // An eighth of a second after the pose before: 0.125 m and 0.25 rad, across half a turn.
+  CHECK(refused(0.124, 0.249) == Counts{0, 0, 0});
+  CHECK(refused(0.126, 0.0) == Counts{1, 1, 0});
+  CHECK(refused(0.0, 0.251) == Counts{1, 0, 1});
+  CHECK(refused(0.0, -0.251) == Counts{1, 0, 1});
+  CHECK(refused(0.126, 0.251) == Counts{1, 1, 1});
+  // Poses nearer in time than the least interval are held to that.
+  CHECK(refused(0.249, 0.499, 5.0, 0.25) == Counts{0, 0, 0});
+  CHECK(refused(0.251, 0.501, 5.0, 0.25) == Counts{1, 1, 1});
+  CHECK(refused(0.251, 0.499, 5.0, 0.25) == Counts{1, 1, 0});
+  CHECK(refused(9.0, 1.0, 4.75) == Counts{1, 0, 0});
+  CHECK(refused(std::nan(""), 0.0) == Counts{1, 0, 0});
 }
 
 TEST_CASE("Options that would never end a trial, or contradict each other, are refused") {

@@ -37,6 +37,14 @@ TEST_CASE("The way of a run is measured by strides of a fifth of a second, to it
   CHECK(Length_m(kTask) == Approx(1.1));
 }
 
+TEST_CASE("A way to and fro is seen where each way takes a stride") {
+  TrialResult run;
+  for (int i = 0; i <= 32; ++i) {  // a quarter of a second out, and as much back
+    run.trajectory.poses.push_back({.t_s = 0.125 * i, .x_m = 0.01 * (2 - std::abs(i % 4 - 2))});
+  }
+  CHECK(Way_m(run.trajectory) == Approx(16 * 0.02));
+}
+
 TEST_CASE("What is left of a task is the way to the target and from there on") {
   // Half of the second leg is left, then the third.
   const TrialResult run =
