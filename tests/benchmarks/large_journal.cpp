@@ -14,6 +14,7 @@
 #include "rift/commands/arguments/arguments.hpp"
 #include "rift/sessions/sweep/journal.hpp"
 #include "rift/statistics/random.hpp"
+#include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"

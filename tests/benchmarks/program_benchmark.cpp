@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "rift/files/files.hpp"
+#include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "support/inputs/paths.hpp"
 #include "support/tree.hpp"

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "rift/sweep/falsify/compare_trial.hpp"
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
