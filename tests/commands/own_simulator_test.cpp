@@ -450,6 +450,9 @@ TEST_CASE("A robot in an engine of others is falsified and replayed, with the sa
   std::string experiment = ReadFile(programs + "rapier_robot.yaml");
   const std::string run = "[node, ";
   experiment.insert(experiment.find(run) + run.size(), "--liftoff-only, ");
+  const std::string budget = "budget: 40";
+  REQUIRE(experiment.find(budget) != std::string::npos);
+  experiment.replace(experiment.find(budget), budget.size(), "budget: 16");
   const std::string config = folder / "rapier_robot.yaml";
   WriteText(config, experiment);
   const std::string one = Sweep(folder, "one", config, "1");
