@@ -575,7 +575,10 @@ TEST_CASE("Twenty random kills of tasks leave the bytes of a sweep as they are",
 
 TEST_CASE("With real daemons of Slurm: random failures of a node leave the bytes as they are",
           "[.][long]") {
-  if (RealSlurm::WhyNot()) return;
+  if (const auto reason = RealSlurm::WhyNot()) {
+    WARN("SKIPPED: " + *reason);
+    return;
+  }
   RealSlurm slurm;
   CheckUnderFire(slurm, 20);
 }
