@@ -550,7 +550,7 @@ TEST_CASE("With real daemons of Slurm: the bytes of a local run, whatever fails 
 /// Kills running tasks again and again until the sweep is done, or was hit often enough.
 void CheckUnderFire(test::Cluster& slurm, int kills) {
   std::mt19937_64 generator(23);
-  const LocalRun local(1000);
+  const LocalRun local(2000);  // longer than twenty kills on a machine twice as fast
   const HitSweep sweep(local);
   RunningRift running(sweep.Words());
   int hits = 0;
