@@ -1,4 +1,5 @@
 #include "simulation/contacts.hpp"
+#include "simulation/heightfield_options.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -19,12 +20,7 @@ Terrain Named(const std::string& surface) {
 
 /// A heightfield of 2 x 2 m about the origin that climbs by 0.05 towards +x and by 0.1 towards +y.
 Terrain Slanted() {
-  TerrainOptions options;
-  SurfaceOptions& surface = options.surfaces["ground"];
-  surface.shape = Shape::kHeightfield;
-  surface.image = "slanted.png";
-  surface.image_width_m = 2.0;
-  surface.image_height_m = 0.3;
+  const TerrainOptions options = HeightfieldOptions(2.0, 0.3);
   const auto image =
       std::make_shared<HeightImage>(HeightImage{2, 2, {2.0 / 3.0, 1.0, 0.0, 1.0 / 3.0}});
   return Terrain(options, image);
@@ -100,13 +96,7 @@ TEST_CASE("A wheel that hangs over the edge of a table rests on its corner") {
 }
 
 TEST_CASE("A wide wheel counts the highest ground under its width") {
-  TerrainOptions options;
-  options.surface = "ground";
-  SurfaceOptions& surface = options.surfaces["ground"];
-  surface.shape = Shape::kHeightfield;
-  surface.image = "ridge.png";
-  surface.image_width_m = 0.02;
-  surface.image_height_m = 0.002;
+  const TerrainOptions options = HeightfieldOptions(0.02, 0.002);
   // A ridge along x at y = 0.01, up to which the ground climbs from y = 0.
   const auto image = std::make_shared<HeightImage>(
       HeightImage{3, 3, {1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}});
@@ -123,12 +113,7 @@ TEST_CASE("A wide wheel counts the highest ground under its width") {
 }
 
 TEST_CASE("A wide wheel sees as far to its left as to its right, whichever way it rolls") {
-  TerrainOptions options;
-  SurfaceOptions& surface = options.surfaces["ground"];
-  surface.shape = Shape::kHeightfield;
-  surface.image = "ridge.png";
-  surface.image_width_m = 0.02;
-  surface.image_height_m = 0.002;
+  const TerrainOptions options = HeightfieldOptions(0.02, 0.002);
   // A ridge 0.01 m to one side, up to which the ground climbs from the middle.
   struct Case {
     std::vector<double> samples;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "simulation/contacts.hpp"
+#include "simulation/heightfield_options.hpp"
 
 namespace rift::simulation {
 namespace {
@@ -119,15 +120,7 @@ TEST_CASE("A patch has the grip of its own and the last one counts") {
   CHECK_THROWS_WITH(wet.Check(), "y_min_m is 0.25, but it must lie below y_max_m, 0.25");
 }
 
-TerrainOptions Heightfield() {
-  TerrainOptions options;
-  SurfaceOptions& surface = options.surfaces["ground"];
-  surface.shape = Shape::kHeightfield;
-  surface.image = "slope.png";
-  surface.image_width_m = 2.0;
-  surface.image_height_m = 0.1;
-  return options;
-}
+TerrainOptions Heightfield() { return HeightfieldOptions(2.0, 0.1); }
 
 TEST_CASE("A heightfield is linear between its pixels with its first row at large y") {
   const auto image = std::make_shared<HeightImage>(HeightImage{3,

@@ -8,20 +8,12 @@
 #include "rift/trial/steering_check.hpp"
 #include "rift/trial/steering_loop.hpp"
 #include "support/inputs/fake_robot.hpp"
+#include "trial/steering_bench.hpp"
 
 namespace rift::trial {
 namespace {
 
 using std::numbers::pi;
-
-constexpr double kSpeed_mps = 75.4 * 0.016;
-constexpr double kYawRate_rad_s = 2.0 * kSpeed_mps / 0.083;
-const SteeringPrior kPrior{{kSpeed_mps, kYawRate_rad_s, 0.0, 0.0}, 0.1};
-
-const std::vector<control::Waypoint> kTask{
-    {.name = "start", .x_m = 0.0, .y_m = 0.0, .heading_deg = 20.0},
-    {.name = "a", .x_m = 0.4, .y_m = 0.05, .stop = true},
-    {.name = "b", .x_m = 0.5, .y_m = 0.3, .stop = true}};
 
 /// A run that arrived, taken for one that did not.
 TrialResult LateRun() {

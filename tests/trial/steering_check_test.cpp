@@ -14,22 +14,13 @@
 #include "rift/geometry/pose2.hpp"
 #include "support/inputs/fake_robot.hpp"
 #include "support/pinned.hpp"
+#include "trial/steering_bench.hpp"
 
 namespace rift::trial {
 namespace {
 
 using control::NavigatorOptions;
 using std::numbers::pi;
-
-// The fake robot's: 75.4 rad/s on wheels of 16 mm, 83 mm apart.
-constexpr double kSpeed_mps = 75.4 * 0.016;
-constexpr double kYawRate_rad_s = 2.0 * kSpeed_mps / 0.083;
-const SteeringPrior kPrior{{kSpeed_mps, kYawRate_rad_s, 0.0, 0.0}, 0.1};
-
-const std::vector<control::Waypoint> kTask{
-    {.name = "start", .x_m = 0.0, .y_m = 0.0, .heading_deg = 20.0},
-    {.name = "a", .x_m = 0.4, .y_m = 0.05, .stop = true},
-    {.name = "b", .x_m = 0.5, .y_m = 0.3, .stop = true}};
 
 struct Bench {
   test::FakeRobotOptions robot;

@@ -6,16 +6,11 @@
 
 #include "rift/sweep/explain/effects.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "sweep/explain/effect_rows.hpp"
 #include "sweep/explain/expansion.hpp"
 
 namespace rift::sweep {
 namespace {
-
-TrialRow Row(experiment::Theta theta, double gap_m) {
-  TrialRow row{.theta = std::move(theta)};
-  row.comparison.gap_m = gap_m;
-  return row;
-}
 
 /// One list of three words; four trials each at these means, +-0.01 and +-0.02 about them.
 SweepResult OneWay(double a_m, double b_m, double c_m) {

@@ -6,15 +6,10 @@
 #include <utility>
 
 #include "rift/sweep/explain/effects.hpp"
+#include "sweep/explain/effect_rows.hpp"
 
 namespace rift::sweep {
 namespace {
-
-TrialRow Row(experiment::Theta theta, double gap_m) {
-  TrialRow row{.theta = std::move(theta)};
-  row.comparison.gap_m = gap_m;
-  return row;
-}
 
 TEST_CASE("What goes with parameters that cannot be told apart is said from a tenth on") {
   // a and b are always changed together, and c by itself; of the variance a and b have that share.

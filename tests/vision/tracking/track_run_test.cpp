@@ -23,6 +23,17 @@ struct Row {
   Sighting sighting;
 };
 
+/// The camera with reference tag 5 where it sees it, or so far off to the right.
+CameraModel MarkedCamera(double off_px = 0.0) {
+  CameraModel camera = SmallCamera();
+  const Eigen::Vector3d p_in_camera =
+      camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
+  const Eigen::Vector2d seen_px =
+      PixelsFromPoints(camera, {p_in_camera})[0] + Eigen::Vector2d(off_px, 0.0);
+  camera.world->marks = {{5, {0.2, 0.1, 0.0}, seen_px}};
+  return camera;
+}
+
 /// A run over a recording, with its log and what was said.
 struct Tracked {
   explicit Tracked(const std::string& path, const CameraModel& camera = SmallCamera(),
@@ -206,13 +217,8 @@ TEST_CASE("A tag that was asked for and shows unfit to be measured, or in a mirr
 }
 
 TEST_CASE("Reference tags that lie elsewhere are said once, with the largest distance") {
-  CameraModel camera = SmallCamera();
-  const auto run_with = [&](double off_px, double limit_m) {
-    const Eigen::Vector3d p_in_camera =
-        camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
-    const Eigen::Vector2d seen_px =
-        PixelsFromPoints(camera, {p_in_camera})[0] + Eigen::Vector2d(off_px, 0.0);
-    camera.world->marks = {{5, {0.2, 0.1, 0.0}, seen_px}};
+  const auto run_with = [](double off_px, double limit_m) {
+    const CameraModel camera = MarkedCamera(off_px);
     SmallRecording recording({.tags = {FloorTag(5, 0.2, 0.1)}});
     recording.Add(RobotAt(-0.1, 0.0, 0.0), 3);
     Tracked tracked(recording.Path(), camera);
@@ -232,10 +238,7 @@ TEST_CASE("Reference tags that lie elsewhere are said once, with the largest dis
 }
 
 TEST_CASE("A camera that is moved after the last check is said when the run ends") {
-  CameraModel camera = SmallCamera();
-  const Eigen::Vector3d p_in_camera =
-      camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
-  camera.world->marks = {{5, {0.2, 0.1, 0.0}, PixelsFromPoints(camera, {p_in_camera})[0]}};
+  const CameraModel camera = MarkedCamera();
   SmallRecording still({.tags = {FloorTag(5, 0.2, 0.1)}}),
       moved({.tags = {FloorTag(5, 0.19, 0.1)}});
   still.Add(RobotAt(-0.1, 0.0, 0.0), 3);
@@ -422,10 +425,7 @@ TEST_CASE("A session asks for the size of its calibration and holds the pictures
 }
 
 TEST_CASE("The most that a camera was moved and that tags were seen are told when both are over") {
-  CameraModel camera = SmallCamera();
-  const Eigen::Vector3d p_in_camera =
-      camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
-  camera.world->marks = {{5, {0.2, 0.1, 0.0}, PixelsFromPoints(camera, {p_in_camera})[0]}};
+  const CameraModel camera = MarkedCamera();
   SmallRecording moved({.tags = {FloorTag(5, 0.19, 0.1), FloorTag(0, 0.1, -0.15)}}),
       still({.tags = {FloorTag(5, 0.2, 0.1)}});
   moved.Add(RobotAt(-0.1, 0.0, 0.0));
@@ -446,10 +446,7 @@ TEST_CASE("The most that a camera was moved and that tags were seen are told whe
 }
 
 TEST_CASE("Reference tags too small for the checks are looked for once in every pixel") {
-  CameraModel camera = SmallCamera();
-  const Eigen::Vector3d p_in_camera =
-      camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
-  camera.world->marks = {{5, {0.2, 0.1, 0.0}, PixelsFromPoints(camera, {p_in_camera})[0]}};
+  const CameraModel camera = MarkedCamera();
   SmallRecording recording({.tags = {FloorTag(5, 0.2, 0.1, 0.018)}});  // 18 px
   recording.Add(RobotAt(-0.1, 0.0, 0.0), 2);
   Tracked tracked(recording.Path(), camera);
@@ -461,10 +458,7 @@ TEST_CASE("Reference tags too small for the checks are looked for once in every 
 }
 
 TEST_CASE("Reference tags are checked as soon as so much time has passed, in every such picture") {
-  CameraModel camera = SmallCamera();
-  const Eigen::Vector3d p_in_camera =
-      camera.world->world_from_camera.inverse() * Eigen::Vector3d(0.2, 0.1, 0.0);
-  camera.world->marks = {{5, {0.2, 0.1, 0.0}, PixelsFromPoints(camera, {p_in_camera})[0]}};
+  const CameraModel camera = MarkedCamera();
   SmallRecording still({.tags = {FloorTag(5, 0.2, 0.1)}}),
       moved({.tags = {FloorTag(5, 0.19, 0.1)}});
   still.Add(RobotAt(-0.1, 0.0, 0.0));
