@@ -32,19 +32,28 @@ bool IsJpeg(std::span<const std::uint8_t> bytes) {
   return bytes.size() > 4 && bytes[0] == kMark && bytes[1] == kStart;
 }
 
-// Segments have a length each up to the scan, so that thumbnails inside them are jumped over.
+/// Visits the segments up to the scan, whose lengths tell where the next one is, so that thumbnails
+/// inside them are jumped over. Markers are found as libjpeg's next_marker finds them, so that it
+/// sees no other frame header: what stands between segments is skipped, and TEM and RST have no
+/// length (ITU T.81 B.1.1.3).
 template <class Visit>
 std::size_t WalkSegments(std::span<const std::uint8_t> bytes, Visit&& visit) {
+  constexpr std::uint8_t kTemporary = 0x01, kRestart = 0xD0, kLastRestart = 0xD7;
   std::size_t at = 2;
-  while (at + 4 <= bytes.size() && bytes[at] == kMark) {
+  while (at + 4 <= bytes.size()) {
     const std::uint8_t marker = bytes[at + 1];
-    if (marker == kMark) {  // a fill byte
+    const bool is_restart = marker >= kRestart && marker <= kLastRestart;
+    if (bytes[at] != kMark || marker == 0 || marker == kMark) {
       ++at;
-      continue;
+    } else if (marker == kTemporary || is_restart) {
+      at += 2;
+    } else if (marker == kStart || marker == kEnd) {
+      break;
+    } else {
+      visit(marker, at);
+      at += 2 + static_cast<std::size_t>(Number(bytes, at + 2));
+      if (marker == kScan) break;
     }
-    visit(marker, at);
-    at += 2 + static_cast<std::size_t>(Number(bytes, at + 2));
-    if (marker == kScan) break;
   }
   return at;
 }
@@ -63,6 +72,13 @@ void NoteDamage(j_common_ptr info, int level) {
   if (level < 0 && info->err->msg_code != JWRN_EXTRANEOUS_DATA) {
     reinterpret_cast<Errors*>(info->err)->damaged = true;
   }
+}
+
+/// A progressive picture has some ten scans. Each costs a pass over the whole picture, and a few
+/// bytes of a file.
+void EscapeFromScans(j_common_ptr info) {
+  constexpr int kMostScans = 100;
+  if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number > kMostScans) Escape(info);
 }
 
 }  // namespace
@@ -104,6 +120,7 @@ std::size_t JpegLength(std::span<const std::uint8_t> bytes) {
 struct JpegReader::State {
   jpeg_decompress_struct info{};
   Errors errors{};
+  jpeg_progress_mgr progress{};
   std::vector<std::uint8_t> rows;
 
   bool ReadHeader(const std::vector<std::uint8_t>& bytes, int width_px, int height_px);
@@ -154,6 +171,8 @@ JpegReader::JpegReader() : state_(std::make_unique<State>()) {
   state_->errors.manager.error_exit = Escape;
   state_->errors.manager.emit_message = NoteDamage;
   jpeg_create_decompress(&state_->info);
+  state_->progress.progress_monitor = EscapeFromScans;
+  state_->info.progress = &state_->progress;
 }
 
 JpegReader::~JpegReader() { jpeg_destroy_decompress(&state_->info); }
@@ -182,15 +201,18 @@ std::optional<GreyPatch> JpegReader::Read(const std::vector<std::uint8_t>& bytes
 cv::Mat DecodeJpeg(std::span<const std::uint8_t> bytes, bool colour, int eighths) {
   const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), tjDestroy);
   int width = 0, height = 0, subsampling = 0, colours = 0;
-  if (tjDecompressHeader3(decoder.get(), bytes.data(), bytes.size(), &width, &height, &subsampling,
-                          &colours) != 0) {
+  const std::optional<JpegSize> checked = SizeOfJpeg(bytes);  // by those who ask for the picture
+  if (!checked ||
+      tjDecompressHeader3(decoder.get(), bytes.data(), bytes.size(), &width, &height, &subsampling,
+                          &colours) != 0 ||
+      width != checked->width_px || height != checked->height_px) {
     return {};
   }
   const tjscalingfactor factor{eighths, 8};
   cv::Mat picture(TJSCALED(height, factor), TJSCALED(width, factor), colour ? CV_8UC3 : CV_8UC1);
-  const int failed =
-      tjDecompress2(decoder.get(), bytes.data(), bytes.size(), picture.data, picture.cols,
-                    static_cast<int>(picture.step), picture.rows, colour ? TJPF_BGR : TJPF_GRAY, 0);
+  const int failed = tjDecompress2(decoder.get(), bytes.data(), bytes.size(), picture.data,
+                                   picture.cols, static_cast<int>(picture.step), picture.rows,
+                                   colour ? TJPF_BGR : TJPF_GRAY, TJFLAG_LIMITSCANS);
   const bool is_usable = failed == 0 || tjGetErrorCode(decoder.get()) == TJERR_WARNING;
   return is_usable ? picture : cv::Mat();
 }

@@ -50,7 +50,6 @@ TEST_CASE(
   CHECK(SizeOfJpeg(kStart + Bytes{0xFF, 0xFF} + FrameHeader(0xC0))->width_px == 0x0123);
   CHECK(SizeOfJpeg(kStart + Segment(0xE1, kStart + other) + FrameHeader(0xC2))->width_px == 0x0123);
   CHECK(SizeOfJpeg(kStart + FrameHeader(0xC0) + scan + other)->width_px == 0x0123);
-  CHECK_FALSE(SizeOfJpeg(kStart + Bytes{0} + FrameHeader(0xC0)));
   CHECK_FALSE(SizeOfJpeg(Bytes{0xFF, 0xD9} + FrameHeader(0xC0)));
   CHECK_FALSE(SizeOfJpeg(Bytes{0xFE, 0xD8} + FrameHeader(0xC0)));
   const Bytes whole = kStart + FrameHeader(0xC0);
@@ -59,6 +58,54 @@ TEST_CASE(
     const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
     CHECK(SizeOfJpeg(cut).has_value() == (length >= 11));  // its width ends there
   }
+}
+
+TEST_CASE("A frame header is found where libjpeg finds it, so that no other size is decoded") {
+  const Bytes header = FrameHeader(0xC2);
+  const auto is_found = [&](const Bytes& before) {
+    const auto size = SizeOfJpeg(kStart + before + header);
+    return size && size->width_px == 0x0123 && size->height_px == 0x0245;
+  };
+  CHECK(is_found({0}));                       // stray bytes
+  CHECK(is_found({7, 0xFF, 0x00, 9}));        // and those that look like a marker
+  CHECK(is_found({0xFF, 0x01}));              // TEM has no length
+  CHECK(is_found({0xFF, 0xD0, 0xFF, 0xD7}));  // RST0 to RST7 neither
+  CHECK(is_found({0xFF, 0xE0, 0, 0}));        // a length that does not count itself
+  CHECK_FALSE(is_found(kEnd));
+  CHECK_FALSE(is_found(kStart));
+  // By the old rule TEM's "length" leads over the frame header into a comment with another.
+  const Bytes hidden = Segment(0xC2, {8, 0, 48, 0, 64, 1, 1, 0x11, 0}),
+              shown = Segment(0xC0, {8, 0, 24, 0, 32, 1, 1, 0x11, 0});
+  const std::size_t jump = 2 + 2 + 0xFFC2 - 4 - hidden.size() - 4;  // into the comment
+  const Bytes picture =
+      kStart + Bytes{0xFF, 0x01} + hidden + Segment(0xFE, Bytes(jump, 0) + shown + Bytes(20, 0));
+  CHECK(SizeOfJpeg(picture)->width_px == 64);
+  CHECK(SizeOfJpeg(picture)->height_px == 48);
+}
+
+/// A grey progressive picture of 64 x 48 px with so many scans, all but the first without content.
+Bytes OfScans(int scans) {
+  const Bytes dc{0x00, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+  const Bytes ac{0x10, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xE0};
+  const Bytes blocks(6, 0);  // 48 of them, a bit each
+  Bytes picture = kStart + Segment(0xC2, {8, 0, 48, 0, 64, 1, 1, 0x11, 0}) +
+                  Segment(0xDB, Bytes{0} + Bytes(64, 1)) + Segment(0xC4, dc + ac) +
+                  Segment(0xDA, {1, 1, 0, 0, 0, 0}) + blocks;
+  for (int i = 1; i < scans; ++i) picture = picture + Segment(0xDA, {1, 1, 0, 1, 63, 0}) + blocks;
+  return picture + kEnd;
+}
+
+TEST_CASE("A picture of more scans than any camera makes is damaged, since each costs time") {
+  JpegReader reader;
+  const auto is_read = [&](int scans) {
+    return reader.Read(OfScans(scans), 64, 48, {0, 0, 64, 48}).has_value();
+  };
+  CHECK(is_read(10));
+  CHECK(is_read(100));
+  CHECK_FALSE(is_read(101));
+  CHECK(is_read(1));  // the reader goes on
+  CHECK_FALSE(DecodeJpeg(OfScans(500), false, 8).empty());
+  CHECK(DecodeJpeg(OfScans(501), false, 8).empty());
 }
 
 TEST_CASE("A picture ends at its end marker after the scan, whatever a driver leaves behind it") {

@@ -19,8 +19,8 @@ struct JpegSize {
   int height_px = 0;
 };
 
-/// The size that a JPEG's frame header states (ITU T.81 B.2.2), without decoding; nothing when
-/// these bytes are no JPEG.
+/// The size that a JPEG's frame header states (ITU T.81 B.2.2), without decoding, of the header
+/// that libjpeg decodes by; nothing when these bytes are no JPEG.
 std::optional<JpegSize> SizeOfJpeg(std::span<const std::uint8_t> bytes);
 
 /// As CaptureOptions::times: when the pictures' EXIF data say that they were taken.
@@ -42,7 +42,7 @@ class JpegReader {
   JpegReader& operator=(const JpegReader&) = delete;
 
   /// The luma of the region, which lies inside a picture of the given size. None when the data are
-  /// damaged as far as they were read, or are a picture of another size.
+  /// damaged as far as they were read, are a picture of another size, or have more than 100 scans.
   std::optional<GreyPatch> Read(const std::vector<std::uint8_t>& bytes, int width_px, int height_px,
                                 const Region& region);
 
@@ -52,7 +52,8 @@ class JpegReader {
 };
 
 /// The whole picture, in blue, green, red or in grey, at `eighths` / 8 of its size (1, 2, 4 or 8).
-/// Empty when it cannot be decoded; damaged data are grey where they are. Prints nothing, which
+/// Empty when it cannot be decoded, is of another size than SizeOfJpeg says, or has more than 500
+/// scans (libjpeg-turbo's own limit); damaged data are grey where they are. Prints nothing, which
 /// OpenCV's reader does for every damaged picture.
 cv::Mat DecodeJpeg(std::span<const std::uint8_t> bytes, bool colour, int eighths);
 
