@@ -32,10 +32,10 @@ rift_room(search ROOMS statistics
   PRIVATE_LIBRARIES Boost::headers Eigen3::Eigen fmt::fmt PkgConfig::NLOPT)
 rift_room(simulation ROOMS geometry limits statistics trial
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES PkgConfig::ODE PNG::PNG)
-rift_room(vision/camera ROOMS statistics yaml
+rift_room(vision/camera ROOMS files statistics yaml
   LIBRARIES Eigen3::Eigen opencv_core opencv_imgproc opencv_calib3d
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs opencv_videoio CURL::libcurl PkgConfig::JPEG)
-rift_room(vision/calibration ROOMS statistics vision/camera
+rift_room(vision/calibration ROOMS limits statistics vision/camera
   PRIVATE_LIBRARIES fmt::fmt opencv_imgcodecs)
 rift_room(vision/tracking ROOMS geometry statistics vision/camera yaml
   PRIVATE_LIBRARIES fmt::fmt PkgConfig::APRILTAG)

@@ -2,20 +2,19 @@
 
 #include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "rift/limits/limits.hpp"
 #include "rift/vision/camera/capture_options.hpp"
 #include "rift/vision/camera/jpeg.hpp"
+#include "rift/vision/camera/picture_file.hpp"
 #include "rift/vision/camera/picture_reader.hpp"
 
 namespace rift::vision {
@@ -23,8 +22,6 @@ namespace rift::vision {
 namespace {
 
 constexpr int kColour = 90;  // saturation of 255 that no grey cast of a lamp reaches
-
-const double kMost_mpixel = CaptureOptions{}.most_mpixel;
 
 // Tried in turn: what one width misses the next may find. A board whose squares are too small at
 // these is too far away to calibrate with, and a whole 1080p picture takes ten times as long.
@@ -138,25 +135,11 @@ BoardView Undecodable(const std::string& name) {
   return Unusable(name, "the picture cannot be decoded");
 }
 
-/// What is wrong with a JPEG before OpenCV reads it: that would decode any size, and have libjpeg
-/// complain on stderr. Empty: nothing, or it is no JPEG.
-std::string JpegProblem(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream read;
-  read << file.rdbuf();  // throws nothing, as an iterator does of a folder
-  const std::string text = std::move(read).str();
-  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+/// OpenCV decodes a damaged JPEG with grey blocks, and has libjpeg complain on stderr.
+bool IsDamagedJpeg(const std::vector<std::uint8_t>& bytes) {
   const auto size = SizeOfJpeg(bytes);
-  if (!size) return "";
-  if (double(size->width_px) * size->height_px > 1e6 * kMost_mpixel) {
-    return fmt::format("{} x {} pixels, and at most {:g} million are read: make it smaller",
-                       size->width_px, size->height_px, kMost_mpixel);
-  }
-  const bool is_whole =
-      JpegReader()
-          .Read(bytes, size->width_px, size->height_px, {0, 0, size->width_px, size->height_px})
-          .has_value();
-  return is_whole ? "" : "its JPEG is damaged: copy it again, or leave it out";
+  return size && !JpegReader().Read(bytes, size->width_px, size->height_px,
+                                    {0, 0, size->width_px, size->height_px});
 }
 
 }  // namespace
@@ -184,11 +167,13 @@ BoardView FindBoard(const Frame& frame, const Board& board, const std::string& n
 
 BoardView FindBoard(const std::string& path, const Board& board) {
   const std::string name = std::filesystem::path(path).filename().string();
-  const std::string problem = JpegProblem(path);
-  if (!problem.empty()) return Unusable(name, problem);
-  // As the sensor has it: a lens does not turn with the camera, as EXIF data tell, and what is
-  // tracked is not turned either.
-  const cv::Mat picture = cv::imread(path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  const PictureFile file =
+      ReadPictureFile(path, limits::Most(limits::Amount::kFileBytes), CaptureOptions{}.most_mpixel);
+  if (!file.problem.empty()) return Unusable(name, file.problem);
+  if (IsDamagedJpeg(file.bytes)) {
+    return Unusable(name, "its JPEG is damaged: copy it again, or leave it out");
+  }
+  const cv::Mat picture = DecodePicture(file.bytes, true);
   return picture.empty() ? Undecodable(name) : FindIn(picture, board, name, BoardSearch::kThorough);
 }
 

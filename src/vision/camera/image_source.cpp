@@ -2,22 +2,15 @@
 #include <glob.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <charconv>
-#include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <map>
-#include <opencv2/imgcodecs.hpp>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "exif_time.hpp"
 #include "image_times.hpp"
+#include "rift/files/files.hpp"
 #include "rift/vision/camera/jpeg.hpp"
+#include "rift/vision/camera/picture_file.hpp"
 #include "rift/vision/camera/steady_now.hpp"
 #include "sources.hpp"
 
@@ -36,46 +29,10 @@ std::vector<std::string> Matches(const std::string& pattern) {
   return files;
 }
 
-/// Throws nothing, as an iterator over a stream does of what cannot be read; none then.
-std::string TextOf(std::ifstream& file) {
-  std::ostringstream text;
-  text << file.rdbuf();
-  return std::move(text).str();
-}
-
-std::vector<std::uint8_t> BytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text = TextOf(file);
-  return {text.begin(), text.end()};
-}
-
-std::string TextOf(const std::string& path) {
-  errno = 0;
-  std::ifstream file(path);
-  file.peek();  // a folder can be opened
-  if (!file.is_open() || file.bad()) {
-    throw std::invalid_argument(fmt::format("cannot read {}: {}", path, strerror(errno)));
-  }
-  return TextOf(file);
-}
-
-/// Width and height as a PNG states them (ISO 15948 11.2.2), without decoding; 0 for another
-/// format.
-double PngPixels(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::array<std::uint8_t, 4> kSignature{0x89, 'P', 'N', 'G'};
-  if (bytes.size() < 24 || !std::equal(kSignature.begin(), kSignature.end(), bytes.begin())) {
-    return 0.0;
-  }
-  const auto number = [&](std::size_t at) {
-    return 16777216.0 * bytes[at] + 65536.0 * bytes[at + 1] + 256.0 * bytes[at + 2] + bytes[at + 3];
-  };
-  return number(16) * number(20);
-}
-
 std::vector<double> TimesOf(const std::vector<std::string>& files, const CaptureOptions& options) {
   if (options.times.empty()) return TimesByNames(files, options.fps);
   if (options.times == kTimesFromExif) return TimesFromExif(files);
-  return TimesFromText(TextOf(options.times), options.times, files);
+  return TimesFromText(files::ReadFile(options.times), options.times, files);
 }
 
 class ImageSource : public CameraSource {
@@ -108,11 +65,9 @@ class ImageSource : public CameraSource {
  private:
   /// False for a file over the budget or that is no picture.
   bool Fill(const std::string& path, Frame& frame) const {
-    std::error_code unreadable;
-    if (static_cast<double>(fs::file_size(path, unreadable)) > 1e6 * options_.most_mbyte) {
-      return false;
-    }
-    frame.bytes = BytesOf(path);
+    PictureFile file = ReadPictureFile(path, 1e6 * options_.most_mbyte, options_.most_mpixel);
+    if (!file.problem.empty()) return false;
+    frame.bytes = std::move(file.bytes);
     frame.arrived_s = SteadyNow_s();
     if (const auto size = SizeOfJpeg(frame.bytes)) {
       frame.format = PixelFormat::kJpeg;
@@ -120,10 +75,7 @@ class ImageSource : public CameraSource {
       frame.height_px = size->height_px;
       return true;
     }
-    if (frame.bytes.empty() || PngPixels(frame.bytes) > 1e6 * options_.most_mpixel) return false;
-    // Not turned as its EXIF data say: a JPEG is not either, and the lens is that of the sensor.
-    const cv::Mat picture =
-        cv::imdecode(frame.bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+    const cv::Mat picture = DecodePicture(frame.bytes, false);
     if (picture.empty()) return false;
     frame.format = PixelFormat::kGrey;
     frame.width_px = picture.cols;

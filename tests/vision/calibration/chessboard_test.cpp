@@ -212,7 +212,9 @@ TEST_CASE("Each file is told with its corners or what is wrong with it, until it
   const std::string too_large =
       "huge.jpg: 6352 x 6308 pixels, and at most 40 million are read: make it smaller";
   CHECK(said == std::vector<std::string>{
-                    "board.png: 35 corners", "text.png: the picture cannot be decoded",
+                    "board.png: 35 corners",
+                    "text.png: the picture cannot be decoded: it is no JPEG, PNG, BMP, TIFF, PGM "
+                    "or PPM",
                     "board.jpg: 35 corners",
                     "half.jpg: its JPEG is damaged: copy it again, or leave it out", too_large});
   CHECK(views[2].corners.size() == 35);
@@ -222,7 +224,7 @@ TEST_CASE("Each file is told with its corners or what is wrong with it, until it
   Frame damaged{.width_px = 400, .height_px = 320, .format = PixelFormat::kJpeg, .bytes = {1, 2}};
   CHECK(FindBoard(damaged, kBoard, "frame").problem == "the picture cannot be decoded");
   std::filesystem::create_directory(folder / "folder.png");
-  CHECK(FindBoard(folder / "folder.png", kBoard).problem == "the picture cannot be decoded");
+  CHECK(FindBoard(folder / "folder.png", kBoard).problem == "it is no file");
 }
 
 TEST_CASE("A board has 3 to 100 inner corners both ways and squares of up to ten metres") {

@@ -132,6 +132,8 @@ TEST_CASE("A folder by the name of a picture is passed over, and as a list of ti
                     "cannot read " + folder / "a2.png" + ": Is a directory");
   CHECK_THROWS_WITH(OpenCamera(folder / "a*.png", {.times = folder / "none"}),
                     "cannot read " + folder / "none" + ": No such file or directory");
+  CHECK_THROWS_WITH(OpenCamera(folder / "a*.png", {.times = "/dev/zero"}),
+                    Contains("/dev/zero") && Contains("at most 268435456 are taken"));
   std::ofstream(folder / "times.txt") << "1\n2.5\n";
   Frame first;
   REQUIRE(OpenCamera(folder / "a*.png", {.times = folder / "times.txt"})->Read(first));
