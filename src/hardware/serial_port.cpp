@@ -99,6 +99,11 @@ void SerialPort::Claim() {
   if (::isatty(descriptor_) == 0) {
     throw std::runtime_error(fmt::format("{} is no serial port", path_));
   }
+  // One digit away from the twin's /dev/pts/N, and without echo and Ctrl-C once it is configured.
+  if (pid_t session = 0; ::ioctl(descriptor_, TIOCGSID, &session) == 0) {
+    throw std::invalid_argument(
+        fmt::format("{} is the terminal that rift was started from, and no robot", path_));
+  }
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 || ::ioctl(descriptor_, TIOCEXCL) != 0) {
     throw std::runtime_error(WhyNotOpened(path_, errno));
   }

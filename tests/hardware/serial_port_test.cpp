@@ -3,7 +3,11 @@
 #include <asm/termbits.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cerrno>
 #include <numeric>
@@ -66,6 +70,39 @@ TEST_CASE("A port that cannot be had is refused with what to do") {
   const SerialPort first(terminal.path(), 9600, 0.1);
   CHECK_THROWS_WITH(SerialPort(terminal.path(), 9600, 0.1),
                     Catch::Contains("in use by another program"));
+}
+
+/// What a process with this as its terminal is told when it opens it, in the test's own child.
+std::string ToldOfOwn(const std::string& terminal) {
+  std::array<int, 2> ends{};
+  REQUIRE(::pipe(ends.data()) == 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::setsid();
+    const int own = ::open(terminal.c_str(), O_RDWR);
+    std::string told = ::ioctl(own, TIOCSCTTY, 0) == 0 ? "nothing" : "no terminal of its own";
+    try {
+      const SerialPort port(terminal, 9600, 0.1);
+    } catch (const std::invalid_argument& error) {
+      told = error.what();
+    }
+    termios2 line{};
+    if (::ioctl(own, TCGETS2, &line) != 0 || (line.c_lflag & ECHO) == 0) told += ", without echo";
+    if (::write(ends[1], told.data(), told.size()) < 0) ::_exit(1);
+    ::_exit(0);
+  }
+  ::close(ends[1]);
+  std::array<char, 512> told{};
+  const ssize_t length = ::read(ends[0], told.data(), told.size());
+  ::close(ends[0]);
+  ::waitpid(child, nullptr, 0);
+  return {told.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0))};
+}
+
+TEST_CASE("The terminal that rift was started from is no port, and keeps its echo") {
+  const PseudoTerminal terminal;
+  CHECK(ToldOfOwn(terminal.path()) ==
+        terminal.path() + " is the terminal that rift was started from, and no robot");
 }
 
 TEST_CASE("A port closed at the other end is gone for reading and writing") {

@@ -48,8 +48,8 @@ class SteadyClock : public Clock {
 class SerialPort : public ByteLine {
  public:
   /// Throws std::runtime_error when there is no such port, it may not be opened (and which group
-  /// may), another program has it, or it is no serial port; std::invalid_argument for a baud rate
-  /// that the device refuses.
+  /// may), another program has it, or it is no serial port; std::invalid_argument for the terminal
+  /// that this process was started from, and for a baud rate that the device refuses.
   SerialPort(const std::string& path, int baud, double write_timeout_s);
   ~SerialPort() override;
   SerialPort(const SerialPort&) = delete;
