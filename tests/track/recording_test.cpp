@@ -325,6 +325,22 @@ TEST_CASE("A log that is there is replaced only on request, and with its run fil
   CHECK_THAT(test::ReadFile(folder / "log.csv"), Catch::Matchers::StartsWith("t_s,"));
 }
 
+TEST_CASE("A camera that is not there costs nobody the log of before, nor its run file") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "log.csv", "hours of work\n");
+  test::WriteText(folder / "log.run.json", "of these hours\n");
+  for (const auto& [camera, exit_code] :
+       {std::pair{folder / "typo.mp4", 2}, {"http://127.0.0.1:9/video", 3}}) {
+    INFO(camera);
+    const ProcessResult result = RunRift({"track", "--camera", camera, "--calibration", kCamera,
+                                          "--out", folder / "log.csv", "--force"});
+    CHECK(result.exit_code == exit_code);
+    CHECK((exit_code == 2) == (result.err.find("is left as it was") == std::string::npos));
+    CHECK(test::ReadFile(folder / "log.csv") == "hours of work\n");
+    CHECK(test::ReadFile(folder / "log.run.json") == "of these hours\n");
+  }
+}
+
 TEST_CASE("Several robots go into one log, a row each, and one of them is compared at a time") {
   const test::TemporaryFolder folder;
   // A reference tag stands in for a second robot.

@@ -46,6 +46,10 @@ int Report(const TrackRequest& request, const vision::TrackRun& run,
            const vision::TagOptions& tag) {
   if (request.IsPiped()) return EndOf(run);
   terminal::PrintText(report::TrackText(run, run.rows));
+  if (run.frames == 0 && fs::exists(request.out)) {
+    terminal::Say(fmt::format("no picture came: {} is left as it was", request.out));
+    return EndOf(run);
+  }
   const std::string log = run.rows > 0 ? "log: " + request.out : "no log: the tag was never seen";
   terminal::Say(fmt::format("{}; run: {}", log, sessions::RunFileOf(request.out).string()));
   for (const std::string& line : report::UnseenLines(run.instead, tag.family, "--id ")) {

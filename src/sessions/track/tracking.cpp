@@ -49,11 +49,26 @@ void SayWhatToExpect(const TrackingJob& job, const Say& say, const vision::Camer
   if (small) say("warning: " + *small);
 }
 
-/// An old log beside the run file of a new one would be taken for its own.
-void RemoveOld(const fs::path& log) {
-  fs::remove(log);
-  fs::remove(RunFileOf(log));
-}
+/// The log and run file that `--force` replaces. They go together, since an old log beside the run
+/// file of a new one would be taken for its own, and not before there is a picture: a camera that
+/// is not there costs nobody the log of before.
+class OldLog {
+ public:
+  explicit OldLog(const TrackingJob& job) : log_(job.log) {
+    is_there_ = job.force && !job.IsPiped() && fs::exists(log_);
+  }
+
+  bool IsThere() const { return is_there_; }
+  void Remove() {
+    if (!std::exchange(is_there_, false)) return;
+    fs::remove(log_);
+    fs::remove(RunFileOf(log_));
+  }
+
+ private:
+  fs::path log_;
+  bool is_there_;
+};
 
 std::vector<int> FurtherIds(const TrackingJob& job) {
   if (job.ids.empty()) return {};
@@ -98,8 +113,8 @@ void Track(
   if (!job.world.empty()) SetAndSaveWorld(job, listener, session);
   if (job.log.empty()) return;
   SayWhatToExpect(job, listener.say, session);
-  if (job.force && !job.IsPiped()) RemoveOld(job.log);
   session.Restart();  // what was read so far of a recording belongs to its log as well
+  OldLog old(job);
   TrackLog log(job.log, listener.print);
   std::vector<int> tag_ids = FurtherIds(job);
   tag_ids.insert(tag_ids.begin(), session.tag().id);
@@ -107,14 +122,19 @@ void Track(
   vision::TrackParts parts{.session = session,
                            .options = job.session,
                            .further_ids = FurtherIds(job),
-                           .log = [&log](double t_s, const auto& s) { return log.Add(t_s, s); },
+                           .log =
+                               [&](double t_s, const auto& sighting) {
+                                 old.Remove();
+                                 return log.Add(t_s, sighting);
+                               },
                            .duration_s = job.duration_s,
                            .is_stopped = listener.is_stopped,
                            .say = listener.say};
   if (view) parts.show = [&view](const auto&... moment) { return view->Show(moment...); };
   const vision::TrackRun run = RunTracking(parts);
   log.Close();
-  if (!job.IsPiped()) WriteRunFile(job, session.camera(), options, run);
+  if (run.frames > 0) old.Remove();
+  if (!job.IsPiped() && !old.IsThere()) WriteRunFile(job, session.camera(), options, run);
   report(run, options.tag);
 }
 
