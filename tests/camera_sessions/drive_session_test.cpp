@@ -279,6 +279,17 @@ TEST_CASE("A scene command that fails says how, by its code or its signal") {
   CHECK(SceneCommand({"printf", "{\"port\": \"/dev/a\"}"}).address()->port == "/dev/a");
 }
 
+TEST_CASE("A scene command that prints on is read on, and a line without an end is refused") {
+  const test::TemporaryFolder folder;
+  const SceneCommand scene({"sh", "-c",
+                            "echo '{\"port\": \"/dev/a\"}'; head -c 300000 /dev/zero; "
+                            "touch \"$0\"; exec sleep 100",
+                            folder / "printed"});
+  test::WaitUntil("all was printed", [&] { return std::filesystem::exists(folder / "printed"); });
+  CHECK_THROWS_WITH(SceneCommand({"sh", "-c", "exec cat /dev/zero"}),
+                    "--before-each: a line of more than 65536 bytes was printed");
+}
+
 TEST_CASE("The input of a scene command is empty, so that no key is taken from the person") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "keys", "a key\n");

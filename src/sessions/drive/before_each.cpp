@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -33,8 +34,9 @@ constexpr std::chrono::seconds kPatience{10};
   ::_exit(kNotFound);
 }
 
-/// The next line; none at the end of the output.
+/// The next line; none at the end of the output. Throws std::runtime_error for one without an end.
 std::optional<std::string> ReadLine(int descriptor) {
+  constexpr std::size_t kMostBytes = 65536;
   std::string line;
   char c = 0;
   while (true) {
@@ -43,6 +45,22 @@ std::optional<std::string> ReadLine(int descriptor) {
     if (got <= 0) return line.empty() ? std::nullopt : std::optional(line);
     if (c == '\n') return line;
     line += c;
+    if (line.size() > kMostBytes) {
+      throw std::runtime_error(
+          fmt::format("--before-each: a line of more than {} bytes was printed", kMostBytes));
+    }
+  }
+}
+
+/// Until the output ends, or at most so long after it is asked to stop.
+void ThrowAway(const std::stop_token& is_over, int descriptor) {
+  constexpr int kLook_ms = 50;
+  std::array<char, 65536> bytes;
+  while (!is_over.stop_requested()) {
+    pollfd output{descriptor, POLLIN, 0};
+    if (::poll(&output, 1, kLook_ms) <= 0) continue;
+    const ssize_t got = ::read(descriptor, bytes.data(), bytes.size());
+    if (got == 0 || (got < 0 && errno != EINTR)) return;
   }
 }
 
@@ -110,6 +128,7 @@ SceneCommand::SceneCommand(const std::vector<std::string>& words) : name_(words.
     while (const auto line = ReadLine(output_)) {
       if (!line->starts_with('{')) continue;
       address_ = AddressOf(*line);
+      rest_ = std::jthread(ThrowAway, output_);
       return;
     }
   } catch (...) {
@@ -130,6 +149,7 @@ void SceneCommand::End() {
     ::kill(-pid_, SIGKILL);
     WaitFor(pid_);
   }
+  rest_ = {};  // before its output is closed
   ::close(output_);
   pid_ = -1;
 }

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "rift/sessions/drive/setup.hpp"
@@ -16,12 +17,14 @@ DriveAddress AddressOf(const std::string& json);
 
 /// A program that prepares a scene before a trial: it resets things and ends, or, as the twin, it
 /// prints one line of JSON (`{"port": ..., "camera": ..., "calibration": ...}`, each may be left
-/// out) and is left running until this is destroyed. It is no child of a shell, gets no keys and no
-/// Ctrl-C, and ends with this process even when that is killed.
+/// out) and is left running until this is destroyed; what it prints then is thrown away, so that it
+/// never waits for a reader. It is no child of a shell, gets no keys and no Ctrl-C, and ends with
+/// this process even when that is killed.
 class SceneCommand {
  public:
-  /// Waits for its line or its end. Throws std::runtime_error when it cannot be run or ends with
-  /// anything but 0. To be called by the main thread, whose end is what it ends with.
+  /// Waits for its line or its end. Throws std::runtime_error when it cannot be run, ends with
+  /// anything but 0 or prints a line of more than 64 KiB. To be called by the main thread, whose
+  /// end is what it ends with.
   explicit SceneCommand(const std::vector<std::string>& words);
   /// SIGTERM, and SIGKILL when it has not ended 10 s later.
   ~SceneCommand();
@@ -36,6 +39,7 @@ class SceneCommand {
   std::string name_;
   pid_t pid_ = -1;
   int output_ = -1;
+  std::jthread rest_;  ///< reads what is printed after the line
   std::optional<DriveAddress> address_;
 };
 
