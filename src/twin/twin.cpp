@@ -117,7 +117,7 @@ TwinRun RunTwin(const TwinSetup& setup, const std::function<void(const TwinAddre
   while (!is_stopped() && !end.IsOver(robot.Now_s())) {
     const double now_s = pacer.Simulated_s(vision::SteadyNow_s());
     epoch_s = pacer.ClockOf_s(0.0);
-    robot.Receive(robot.Now_s(), line.Read());
+    if (robot.CanReceive()) robot.Receive(robot.Now_s(), line.Read());
     robot.Advance(now_s, [&](const simulation::TruePose& pose, const control::WheelPower& power) {
       path.Add(pose);
       end.Observe(pose.t_s, power);

@@ -24,6 +24,7 @@ class ByteChannel {
   void Put(double at_s, std::span<const std::uint8_t> bytes);
   /// What has arrived by then and was not taken before.
   std::vector<std::uint8_t> Take(double now_s);
+  std::size_t OnTheWay() const { return on_the_way_.size(); }
 
  private:
   struct Byte {
@@ -53,6 +54,9 @@ class TwinRobot {
 
   /// The host wrote these bytes at `at_s`.
   void Receive(double at_s, std::span<const std::uint8_t> bytes) { to_robot_.Put(at_s, bytes); }
+  /// Whether the radio has room for more, as its flow control would tell the host: 4 KiB are on the
+  /// way at most, and then what was put in last.
+  bool CanReceive() const { return to_robot_.OnTheWay() < 4096; }
   /// Runs up to `to_s`.
   void Advance(double to_s, const Observer& observer);
   /// What has reached the host by then.

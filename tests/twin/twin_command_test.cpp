@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -169,6 +170,23 @@ bool IsSeenToDriveAndStop() {
                          LastMotion_s(ReadRun(twin, "truth.csv"));
   CHECK(stood_s > last_word_s + 0.25);
   return true;
+}
+
+TEST_CASE("A port that is written to without end makes its writer wait, as a radio does") {
+  const test::TwinProcess twin;
+  const int port = ::open(twin.Get("port").c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  REQUIRE(port >= 0);
+  const std::vector<char> bytes(4096, 'x');
+  hardware::SteadyClock clock;
+  std::size_t taken = 0;
+  for (const double until_s = clock.Now_s() + 0.5; clock.Now_s() < until_s;) {
+    const ssize_t written = ::write(port, bytes.data(), bytes.size());
+    if (written > 0) taken += static_cast<std::size_t>(written);
+    clock.Wait(0.001);
+  }
+  ::close(port);
+  CHECK(taken > 4096);    // what is on the way
+  CHECK(taken < 65'536);  // with the system's own buffers
 }
 
 TEST_CASE("The twin is seen to drive as it is told and to stop after the last command") {

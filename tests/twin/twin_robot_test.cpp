@@ -69,6 +69,16 @@ TEST_CASE("A frame without a zero before it does not move the twin") {
   CHECK(robot.Truth().x_m == Approx(0.0).margin(1e-4));
 }
 
+TEST_CASE("The twin's radio takes no more while 4 KiB are on their way") {
+  TwinRobot robot(Options(), 5.0, {}, 1);
+  robot.Receive(0.0, std::vector<std::uint8_t>(4095, 'x'));
+  CHECK(robot.CanReceive());
+  robot.Receive(0.0, Text("x"));
+  CHECK_FALSE(robot.CanReceive());
+  robot.Advance(0.1, [](const auto&, const auto&) {});  // some 77 of them have arrived
+  CHECK(robot.CanReceive());
+}
+
 TEST_CASE("The twin answers with its encoders and its battery") {
   TwinRobot robot(Options(), 4.9, {}, 1);
   LastPowered_s(robot, 0.8, 2.0, FramedHost);
