@@ -87,6 +87,7 @@ int MeasureOdometry(const GapRequest& request) {
     runs.push_back(sessions::LoadRun(name, request.odometry.program));
     inputs.insert(inputs.end(), runs.back().files.begin(), runs.back().files.end());
   }
+  if (!request.odometry.program.empty()) inputs.emplace_back(request.odometry.program);
   if (!request.json.empty() && request.json != "-") outputs.emplace_back(request.json);
   CheckOutputs(inputs, {.files = outputs, .force = request.force});
   sessions::OdometryJob job = request.odometry;

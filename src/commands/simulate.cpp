@@ -1,5 +1,7 @@
 #include "simulate.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -93,6 +95,16 @@ int SaveProgram(const SimulateRequest& request, const ReplayedRow& row,
   return replay.has_arrived ? terminal::kDone : terminal::kNotReached;
 }
 
+/// A run that ended before it moved, a fault mostly, has no path; that is no reason to end without
+/// its verdict.
+void Draw(const std::string& name, const sessions::Simulated& made) {
+  if (made.run.truth.poses.size() < 2) {
+    terminal::Say(fmt::format("note: {} is not drawn: the run ended at its first pose", name));
+  } else {
+    report::WriteFigure(name, sessions::FigureOf(made));
+  }
+}
+
 int Save(const SimulateRequest& request, const RunToSave& run,
          const std::function<void(const sessions::Simulated&)>& show) {
   const auto& [out, made] = run;
@@ -101,7 +113,7 @@ int Save(const SimulateRequest& request, const RunToSave& run,
   if (!request.IsStdout()) sessions::SaveRun(files, made, check);
   const trial::TrialResult& result = made.run.result;
   request.copies.Write(result.trajectory);
-  if (!request.figure.empty()) report::WriteFigure(request.figure, sessions::FigureOf(made));
+  if (!request.figure.empty()) Draw(request.figure, made);
   if (show) show(made);
   if (request.IsStdout()) {
     terminal::PrintData(trajectory::WriteRift(result.trajectory));

@@ -23,6 +23,8 @@ experiment::Experiment LoadFor(const SimulateRequest& request, std::vector<fs::p
   };
   experiment::Experiment experiment =
       experiment::LoadExperiment(request.experiment, overrides, read);
+  const simulation::SurfaceOptions& ground = experiment.simulation.terrain.Chosen();
+  if (!ground.image.empty()) inputs.emplace_back(ground.image);
   RequireTask(experiment, request.experiment);
   if (!request.start.empty()) sessions::PutStart(request.start, experiment);
   if (!request.any_waypoints) RequireReachableWaypoints(experiment, request.experiment);

@@ -147,6 +147,9 @@ TEST_CASE("What cannot be held together is refused with what to do") {
     refused({"gap", lap, "--odometry", flag, "0.05"}, flag + " is for the gap of two logs");
   }
   refused({"gap", lap, "--program", kEncoders, "--exit-code"}, "--exit-code is for the gap");
+  const std::string program = folder / "program.yaml";
+  test::WriteText(program, test::ReadFile(lap + "/experiment.yaml"));
+  refused({"gap", lap, "--program", program, "--json", program, "--force"}, "is an input");
   refused({"gap", lap, "--calibrate-odometry", "--window", "1000"}, "smaller window_s");
   test::WriteText(folder / "bare/trajectory.csv", test::ReadFile(lap + "/trajectory.csv"));
   refused({"gap", folder / "bare", "--odometry"}, "neither encoders");

@@ -242,6 +242,60 @@ TEST_CASE("rift simulate overwrites no input and no other output and no sweep") 
   refused({"--out", folder / "swept"}, "holds a sweep");
 }
 
+TEST_CASE("rift simulate replaces no drive of the robot, whatever is asked for") {
+  const test::TemporaryFolder folder;
+  const std::string drive = folder / "drive";
+  REQUIRE(RunRift({"simulate", kTask, "--out", drive}).exit_code == 0);
+  fs::remove(folder / "drive/truth.csv");
+  test::WriteText(folder / "drive/stages.csv", "t_s\n");  // what only a drive writes
+  test::WriteText(folder / "drive/trajectory.csv", "hours of work\n");
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--out", drive},
+                                               {"--out", drive, "--force"},
+                                               {"--out", drive, "--seed", "9", "--force"},
+                                               {"--out", drive + "/trajectory.csv", "--force"},
+                                               {"--out", drive, "--twin", "--force"}}) {
+    std::vector<std::string> words{"simulate", kTask};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProcessResult result = RunRift(words);
+    INFO(result.err);
+    CHECK(result.exit_code == 2);
+    CHECK_THAT(result.err, Catch::Contains("is a drive of the robot"));
+    CHECK(test::ReadFile(folder / "drive/trajectory.csv") == "hours of work\n");
+  }
+  // Its folder may hold other files.
+  CHECK(RunRift({"simulate", kTask, "--out", folder / "drive/simulated.csv"}).exit_code == 0);
+}
+
+TEST_CASE("A picture of a heightfield is an input, which no figure replaces") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "h.png", "hills");
+  test::WriteText(folder / "e.yaml",
+                  "waypoints: [{x: 0, y: 0}, {x: 0.2, y: 0}]\nsimulation:\n  terrain:\n    "
+                  "surface: hill\n    surfaces:\n      hill: {shape: heightfield, image: h.png}\n");
+  const ProcessResult result = RunRift({"simulate", folder / "e.yaml", "--out", folder / "out",
+                                        "--figure", folder / "h.png", "--force"});
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.err, Catch::Contains("h.png is an input or another output"));
+  CHECK(test::ReadFile(folder / "h.png") == "hills");
+}
+
+TEST_CASE("A run that ends at its first pose keeps its verdict and has no figure") {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> words{"simulate",     kTask,      "--out",
+                                 folder / "out", "--figure", folder / "run.svg"};
+  for (const char* value :
+       {"body.contact_stiffness_n_per_m=1e7", "body.contact_damping_ns_per_m=0.1", "step_s=0.05",
+        "body.chassis_mass_kg=0.01", "body.gravity_mps2=30", "body.wheel_mass_kg=0.0001",
+        "terrain.surface=bump", "terrain.surfaces.bump.bump_height_m=0.1"}) {
+    words.insert(words.end(), {"--set", std::string("simulation.") + value});
+  }
+  const ProcessResult result = RunRift(words);
+  CHECK(result.exit_code == 1);
+  CHECK_THAT(result.out, Catch::Contains("fault"));
+  CHECK_THAT(result.err, Catch::Contains("run.svg is not drawn"));
+  CHECK_FALSE(fs::exists(folder / "run.svg"));
+}
+
 TEST_CASE("A picture of a heightfield is found from the file that names it") {
   const test::TemporaryFolder folder;
   // 2 x 2 grey pixels.

@@ -27,6 +27,16 @@ bool IsSaved(const experiment::Experiment& experiment, const fs::path& path) {
 
 }  // namespace
 
+void RefuseDriveFolder(const fs::path& out) {
+  const bool is_file = out.extension() == ".csv";
+  const fs::path folder = is_file ? out.parent_path() : out;
+  if (!fs::exists(folder / "stages.csv") || (is_file && !fs::exists(out))) return;
+  throw std::invalid_argument(
+      fmt::format("{} is a drive of the robot, which nothing replaces since it cannot be made "
+                  "again: name another folder",
+                  out.string()));
+}
+
 void PutStart(const std::string& text, experiment::Experiment& experiment) {
   constexpr std::array<const char*, 3> kKeys{"x", "y", "heading"};
   std::vector<std::string> words;
@@ -99,6 +109,7 @@ void CheckRunNames(const fs::path& out, const experiment::Experiment& experiment
   const fs::path folder = out.extension() == ".csv" ? fs::path() : out;
   std::vector<fs::path> taken = inputs;
   if (out != "-") {
+    RefuseDriveFolder(out);
     const RunFiles run(out);
     const bool is_repeat = IsSaved(experiment, run.experiment);
     std::vector<fs::path> written{run.trajectory, run.truth, run.commands, run.encoders,

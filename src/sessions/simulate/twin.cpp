@@ -4,6 +4,7 @@
 #include "rift/files/files.hpp"
 #include "rift/files/outputs.hpp"
 #include "rift/report/json/fields.hpp"
+#include "rift/sessions/simulate/run.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift/vision/camera/camera_file.hpp"
@@ -45,6 +46,7 @@ void SaveRun(const PreparedTwin& prepared, const twin::TwinRun& run) {
 }  // namespace
 
 void CheckTwinNames(const fs::path& folder, const std::vector<fs::path>& inputs, bool force) {
+  RefuseDriveFolder(folder);
   files::Outputs outputs{.folder = folder, .force = force};
   for (const char* name :
        {"experiment.yaml", "camera.yaml", "truth.csv", "trajectory.csv", "summary.json"}) {

@@ -38,6 +38,10 @@ struct RunFiles {
   std::filesystem::path trajectory, truth, commands, encoders, experiment, summary;
 };
 
+/// Throws std::invalid_argument for a folder, or a log in one, that holds a drive of the robot (its
+/// stages.csv, which nothing else writes): a run that looks the same would take its place for good.
+void RefuseDriveFolder(const std::filesystem::path& out);
+
 /// Throws std::invalid_argument when a file of the run in `out` ("-": none), or one of `others`, is
 /// an input or another output, or is there and not to be replaced. The run of this very experiment
 /// may be: made again it comes out the same.
