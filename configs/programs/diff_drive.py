@@ -36,7 +36,8 @@ if __name__ == "__main__" and "--serve" in sys.argv:  # persistent: a line in, a
     for line in sys.stdin:
         trial = json.loads(line)
         text, arrived = log(**trial["theta"], seed=trial["seed"])
-        print(json.dumps({"status": "ok" if arrived else "timed_out", "log": text}), flush=True)
+        status = "ok" if arrived else "timed_out"
+        print(json.dumps({"id": trial["id"], "status": status, "log": text}), flush=True)
 elif __name__ == "__main__":
     parser = argparse.ArgumentParser()
     for flag, kind in (("mu", float), ("mismatch", float), ("seed", int), ("out", str)):

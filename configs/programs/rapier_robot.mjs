@@ -68,5 +68,5 @@ function drive({friction, incline, seed}) {
 
 for await (const line of createInterface({input: process.stdin})) {
   const trial = JSON.parse(line);
-  console.log(JSON.stringify(drive({...trial.theta, seed: trial.seed})));
+  console.log(JSON.stringify({id: trial.id, ...drive({...trial.theta, seed: trial.seed})}));
 }

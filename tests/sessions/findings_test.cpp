@@ -27,6 +27,7 @@ struct Swept {
       : experiment(swept), evaluator(experiment, "sweep.yaml", FileInputs()) {
     result = *RunSweep(evaluator, {.out = folder.Path()}, ObserverOf(told));
   }
+  std::optional<WorstPaths> Worst() { return WorstPair(result, evaluator, ObserverOf(told).say); }
 
   test::TemporaryFolder folder;
   experiment::Experiment experiment;
@@ -118,7 +119,7 @@ TEST_CASE(
   const test::QuickGnuplot quick;
   const test::TemporaryFolder logs;
   Swept swept(LogsIn(logs));
-  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, nullptr);
   REQUIRE(evidence.references.size() == 4);
   CHECK(evidence.reference_of_row == std::vector<int>{0, 1, 2, 3});
   CHECK_THAT(evidence.gap_flags, Contains("--skip-start 0.1"));
@@ -127,10 +128,10 @@ TEST_CASE(
   CHECK(evidence.references[3].path_m.back().y() == Approx(0.09));
   REQUIRE(evidence.references[3].times_s.size() == evidence.references[3].path_m.size());
   CHECK(evidence.references[3].times_s.back() == Approx(4.0));
-  const auto worst = WorstPair(swept.result, swept.evaluator);
+  const auto worst = swept.Worst();
   REQUIRE(worst);
   CHECK(swept.result.rows[3].comparison.gap_m > swept.result.rows[2].comparison.gap_m);
-  CHECK(worst->real == "robot, trial 2");
+  CHECK(worst->pair.real == "robot, trial 2");
   const fs::path out = swept.folder.Path();
   const SweepFindings findings = ExplainSweep(out, swept.evaluator, swept.result, 0, 1);
   REQUIRE_FALSE(findings.likeness.empty());
@@ -187,7 +188,7 @@ TEST_CASE("A page draws the references of a hundred rows and of no more") {
   Swept swept(LoadText("candidate: {kind: logs, path: \"" + (logs / "{trial}_sim.csv") +
                        "\"}\nreference: {kind: logs, trials: 102, path: \"" +
                        (logs / "{trial}_real.csv") + "\"}\ngap: {samples: 50}\n"));
-  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, nullptr);
   CHECK(evidence.references.size() == 100);
   CHECK(evidence.reference_of_row[99] == 99);
   CHECK(evidence.reference_of_row[100] == -1);
@@ -199,7 +200,7 @@ TEST_CASE("Equal references are kept once, and a row without a log has none") {
   test::WriteText(logs / "sand2_real.csv", files::ReadFile(logs / "ice1_real.csv"));
   fs::remove(logs / "ice2_real.csv");
   Swept swept(experiment);
-  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, nullptr);
   CHECK(evidence.references.size() == 2);
   CHECK(evidence.reference_of_row == std::vector<int>{0, -1, 1, 0});
 }
@@ -207,7 +208,7 @@ TEST_CASE("Equal references are kept once, and a row without a log has none") {
 TEST_CASE(
     "The path of a task is the reference of all its repeats, without times, with its waypoints") {
   Swept swept(SmallGrid());
-  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, nullptr);
   REQUIRE(evidence.references.size() == 1);
   CHECK(evidence.references[0].name == "waypoint path");
   CHECK(evidence.references[0].times_s.empty());
@@ -223,8 +224,13 @@ TEST_CASE("A reference that has to be run is the worst trial's, and only where i
   Swept swept(LoadText(kShortWay +
                        "gap: {threshold_m: 0.01}\nreference: {kind: nominal, trials: 2}\n"
                        "space: {mismatch: [0, 0.1]}\n"));
-  CHECK(EvidenceFor(swept.result, swept.evaluator, false).references.empty());
-  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, true);
+  CHECK(EvidenceFor(swept.result, swept.evaluator, nullptr).references.empty());
+  const auto paths = swept.Worst();
+  REQUIRE(paths);
+  CHECK(paths->pair.real == "undisturbed run");
+  CHECK(paths->pair.sim == "simulator");
+  const report::PageEvidence evidence =
+      EvidenceFor(swept.result, swept.evaluator, &paths->reference);
   REQUIRE(evidence.references.size() == 1);
   CHECK(evidence.references[0].name == "undisturbed run");
   CHECK_FALSE(evidence.references[0].times_s.empty());
@@ -232,17 +238,13 @@ TEST_CASE("A reference that has to be run is the worst trial's, and only where i
   for (int row = 0; row < 4; ++row) {
     CHECK(evidence.reference_of_row[row] == (row == worst ? 0 : -1));
   }
-  const auto pair = WorstPair(swept.result, swept.evaluator);
-  REQUIRE(pair);
-  CHECK(pair->real == "undisturbed run");
-  CHECK(pair->sim == "simulator");
 }
 
 TEST_CASE("The path that a program should drive is called so, and has no times") {
   Swept driven(
       LoadText("program: {segments: [{straight_m: 0.1}]}\ngap: {threshold_m: 0.01}\n"
                "reference: {kind: path, trials: 1}\nspace: {mismatch: [0]}\n"));
-  const report::PageEvidence path = EvidenceFor(driven.result, driven.evaluator, false);
+  const report::PageEvidence path = EvidenceFor(driven.result, driven.evaluator, nullptr);
   REQUIRE(path.references.size() == 1);
   CHECK(path.references[0].name == "program path");
   CHECK(path.references[0].times_s.empty());
@@ -260,14 +262,79 @@ TEST_CASE("A sweep is explained beside a setting whose program no robot can driv
   REQUIRE(findings.programs.size() == 2);
   CHECK(findings.programs[0].lost.size() == 1);
   CHECK(findings.programs[1].runs.size() == 1);
-  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, false);
+  const report::PageEvidence evidence = EvidenceFor(swept.result, swept.evaluator, nullptr);
   CHECK(evidence.references.size() == 1);
   CHECK(evidence.reference_of_row == std::vector<int>{-1, 0});
 }
 
 TEST_CASE("Without a gap there is no worst pair") {
   Swept swept(SmallGrid({"trial.timeout_s=0.5"}));
-  CHECK_FALSE(WorstPair(swept.result, swept.evaluator));
+  CHECK_FALSE(swept.Worst());
+  CHECK(swept.told.Text().find("worst") == std::string::npos);
+}
+
+TEST_CASE("A worst trial that does not come out again costs its picture alone, and is said") {
+  const test::QuickGnuplot quick;
+  const test::TemporaryFolder programs;
+  const std::string sim = programs / "sim";
+  const auto write_program = [&](const std::string& lines) {
+    test::WriteText(sim, "#!/bin/sh\n" + lines + "\n");
+    fs::permissions(sim, fs::perms::owner_all);
+  };
+  write_program("printf 't_s,x_m,y_m\\n0,0,0\\n1,0.1,0\\n2,0.25,%s\\n' \"$2\" > \"$1\"");
+  const auto side = [&](const std::string& end) {
+    return "{kind: program, run: [" + sim + ", \"{out}\", \"" + end + "\"]}\n";
+  };
+  const std::string limits = "run: {timeout_s: 1, retries: 0}\n";
+  Swept swept(LoadText(kShortWay + "candidate: " + side("{mu}") + "reference: {kind: path}\n" +
+                       limits + "space: {mu: [0.02, 0.1]}\n"));
+  Swept simulated(
+      LoadText(kShortWay + "reference: " + side("0.02") + limits + "space: {mismatch: [0.1]}\n"));
+  REQUIRE(swept.Worst());
+  REQUIRE(simulated.Worst());
+  const std::string note = "note: row 2, the worst, is not drawn against its reference: ";
+  struct Case {
+    std::string lines, why;
+  };
+  for (const Case& end : {Case{"echo no licence >&2; exit 1",
+                               "program with seed 1: ended with exit code 1: no licence"},
+                          Case{"exec sleep 1000", "had not ended after 1 s (run.timeout_s)"},
+                          Case{"", "cannot run " + sim}}) {
+    INFO(end.lines);
+    end.lines.empty() ? static_cast<void>(fs::remove(sim)) : write_program(end.lines);
+    swept.told.lines.clear();
+    const fs::path out = swept.folder.Path();
+    fs::remove(out / "report.html");
+    SaveReport(out, swept.evaluator, swept.result, {}, ObserverOf(swept.told));
+    CHECK_THAT(swept.told.Text(), Contains(note) && Contains(end.why));
+    CHECK(fs::exists(out / "report.html"));
+  }
+  CHECK_FALSE(simulated.Worst());
+  CHECK_THAT(simulated.told.Text(), Contains("cannot run " + sim));
+}
+
+TEST_CASE("Programs of a grid that are not on this machine cost their measures and no report") {
+  const test::QuickGnuplot quick;
+  const test::TemporaryFolder programs;
+  const std::string sim = programs / "sim";
+  test::WriteText(sim, "#!/bin/sh\nprintf 't_s,x_m,y_m\\n0,0,0\\n1,0.05,0\\n2,0.1,0.01\\n' > $1\n");
+  fs::permissions(sim, fs::perms::owner_all);
+  Swept swept(
+      LoadText("program: {segments: [{straight_m: 0.1}]}\nreference: {kind: path}\n"
+               "candidate: {kind: program, run: [" +
+               sim +
+               ", \"{out}\"]}\n"
+               "space: {mu: [1]}\n"));
+  fs::remove(sim);
+  const fs::path out = swept.folder.Path();
+  const SweepFindings findings = ExplainSweep(out, swept.evaluator, swept.result, 0, 1);
+  CHECK(findings.programs.empty());
+  REQUIRE(findings.notes.size() == 1);
+  CHECK_THAT(findings.notes[0], Catch::StartsWith("note: programs.json is left out: ") &&
+                                    Contains("cannot run " + sim));
+  SaveReport(out, swept.evaluator, swept.result, findings, ObserverOf(swept.told));
+  CHECK_THAT(swept.told.Text(), Contains("note: programs.json is left out"));
+  CHECK(fs::exists(out / "report.html"));
 }
 
 TEST_CASE("The page of a sweep that runs begins before a trial, grows with them, and goes") {

@@ -135,7 +135,32 @@ TEST_CASE("Logs are compared here, and a program has to be where it is run") {
       "candidate: {kind: program, run: [no_such_program_anywhere]}\nreference: {kind: path}\n"
       "space: {a: [1, 2]}\n");
   CHECK_THROWS_WITH(ClusterFor({}, program, "task.yaml"), Contains("no_such_program_anywhere"));
-  CHECK_NOTHROW(ClusterFor({.engine = "slurm"}, program, "task.yaml"));
+  CHECK_NOTHROW(ClusterFor({.engine = "slurm", .shards = 2}, program, "task.yaml"));
+}
+
+TEST_CASE(
+    "A program of a cluster has to be here where trials or nominal runs are, with the reason") {
+  const auto refusal = [](const std::string& sides, const std::vector<std::string>& overrides,
+                          std::optional<int> shards) -> std::string {
+    const experiment::Experiment program =
+        LoadText(kShortWay + sides + "space: {a: [1, 2]}\n", overrides);
+    try {
+      ClusterFor({.engine = "slurm", .shards = shards}, program, "task.yaml");
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string run =
+      "candidate: {kind: program, run: [no_such_program_anywhere]}\nreference: ";
+  const std::string missing =
+      "task.yaml: candidate.run: there is no program 'no_such_program_anywhere' in PATH: ";
+  CHECK_THAT(refusal(run + "{kind: path}\n", {}, {}),
+             Catch::StartsWith(missing) && Contains("say --shards N"));
+  CHECK(refusal(run + "{kind: path}\n", {}, 2).empty());
+  CHECK(refusal(run + "{kind: path}\n", {"goal=falsify"}, {}).empty());
+  CHECK_THAT(refusal(run + "{kind: nominal}\n", {"goal=falsify"}, 2),
+             Catch::StartsWith(missing) && Contains("the nominal runs come first"));
 }
 
 TEST_CASE("Further trials need a simulator, a space, and a row or the worst") {

@@ -35,14 +35,42 @@ std::optional<sweep::SlurmOptions> ClusterOf(const EngineRequest& request) {
   return options;
 }
 
+/// Why programs of an experiment have to be on this machine as well as on the nodes; nullptr where
+/// they have not.
+const char* WhyNeededHere(const experiment::Experiment& experiment,
+                          const sweep::SlurmOptions& cluster) {
+  if (experiment.goal == experiment::Goal::kCalibrate) return nullptr;
+  if (experiment.candidate.kind == experiment::CandidateKind::kProgram &&
+      experiment.reference.kind == experiment::ReferenceKind::kNominal) {
+    return "with --engine it has to be here as well, where the nominal runs come first";
+  }
+  if (experiment.goal == experiment::Goal::kGrid && cluster.shards == 0) {
+    return "where it is on the nodes of the cluster alone, say --shards N: without it a few trials "
+           "are run here, to tell how many shards the others need";
+  }
+  return nullptr;
+}
+
+void RequireProgramsHere(const experiment::Experiment& experiment, const std::string& file,
+                         const char* why) {
+  try {
+    sweep::RequirePrograms(experiment, file);
+  } catch (const std::invalid_argument& missing) {
+    throw std::invalid_argument(fmt::format("{}; {}", missing.what(), why));
+  }
+}
+
 }  // namespace
 
 std::optional<sweep::SlurmOptions> ClusterFor(const EngineRequest& request,
                                               const experiment::Experiment& experiment,
                                               const std::string& file) {
   const std::optional<sweep::SlurmOptions> cluster = ClusterOf(request);
-  // A cluster's nodes have programs of their own.
-  if (!cluster) sweep::RequirePrograms(experiment, file);
+  if (!cluster) {
+    sweep::RequirePrograms(experiment, file);
+  } else if (const char* why = WhyNeededHere(experiment, *cluster)) {
+    RequireProgramsHere(experiment, file, why);
+  }
   if (cluster && experiment.candidate.kind == experiment::CandidateKind::kLogs) {
     throw std::invalid_argument(fmt::format(
         "{}: candidate.kind is logs, which are compared here in seconds: leave --engine out",

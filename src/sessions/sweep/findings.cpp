@@ -12,6 +12,7 @@
 #include "rift/report/page/page.hpp"
 #include "rift/sessions/sweep/folder.hpp"
 #include "rift/sweep/falsify/evidence.hpp"
+#include "rift/sweep/run/machine_trouble.hpp"
 #include "robot_logs.hpp"
 
 namespace rift::sessions {
@@ -33,11 +34,14 @@ std::vector<Eigen::Vector2f> PathOf(const report::ComparedPair& worst) {
 /// The figures, then the page with them.
 void SavePage(const fs::path& folder, sweep::Evaluator& evaluator, const sweep::SweepResult& result,
               const SweepFindings& findings, const SweepObserver& observer) {
-  const std::optional<report::ComparedPair> worst = WorstPair(result, evaluator);
-  const report::SweepFigureSet set = report::SweepFigures(result, worst);
-  report::PageEvidence evidence = EvidenceFor(result, evaluator, true);
+  const std::optional<WorstPaths> worst = WorstPair(result, evaluator, observer.say);
+  std::optional<report::ComparedPair> pair;
+  if (worst) pair = worst->pair;
+  const report::SweepFigureSet set = report::SweepFigures(result, pair);
+  report::PageEvidence evidence =
+      EvidenceFor(result, evaluator, worst ? &worst->reference : nullptr);
   evidence.programs = findings.programs;
-  if (worst) evidence.worst_path_m = PathOf(*worst);
+  if (pair) evidence.worst_path_m = PathOf(*pair);
   RemoveFigures(folder);
   for (const report::Figure& figure : set.figures) {
     report::WriteFigureFiles(folder / "figures", figure);
@@ -62,14 +66,25 @@ SweepFindings ExplainSweep(const fs::path& folder, sweep::Evaluator& evaluator,
   if (suggest > 0) {
     SaveSuggested(folder, evaluator.experiment(), result, findings.explanation.suggestions);
   }
-  findings.likeness = sweep::MeasureSweepLikeness(evaluator, jobs);
-  findings.programs = sweep::MeasurePrograms(evaluator);
+  // Runs for the report alone are left out where this machine cannot make them, as where a program
+  // is on the nodes of a cluster only: the trials are done.
+  const auto try_to = [&](const char* what, auto& rows, auto&& measure) {
+    try {
+      rows = measure();
+    } catch (const sweep::MachineTrouble& trouble) {
+      findings.notes.push_back(fmt::format("note: {} is left out: {}", what, trouble.what()));
+    }
+  };
+  try_to("likeness.json", findings.likeness,
+         [&] { return sweep::MeasureSweepLikeness(evaluator, jobs); });
+  try_to("programs.json", findings.programs, [&] { return sweep::MeasurePrograms(evaluator); });
   return findings;
 }
 
 void SaveReport(const fs::path& folder, sweep::Evaluator& evaluator,
                 const sweep::SweepResult& result, const SweepFindings& findings,
                 const SweepObserver& observer) {
+  for (const std::string& note : findings.notes) observer.say(note);
   files::WriteFile(folder / "explanation.json",
                    report::ExplanationJson(result, findings.explanation));
   SavePage(folder, evaluator, result, findings, observer);

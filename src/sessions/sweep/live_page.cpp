@@ -24,7 +24,7 @@ constexpr int kLastLook_ms = 6000;  ///< the page asks for itself every 3 s
 
 /// The page of the trials so far, without figures.
 std::string RunningReport(const sweep::SweepResult& result, sweep::Evaluator& evaluator) {
-  report::PageEvidence evidence = EvidenceFor(result, evaluator, false);
+  report::PageEvidence evidence = EvidenceFor(result, evaluator, nullptr);
   evidence.running =
       fmt::format("{} trials so far, {} of them failed", result.rows.size(), result.all.failures);
   return report::RenderPage(result, sweep::Explain(result), evidence);

@@ -5,30 +5,44 @@
 #include <cstdint>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "rift/report/text/gap_flags.hpp"
+#include "rift/sweep/falsify/candidate_runs.hpp"
 #include "rift/sweep/falsify/evidence.hpp"
+#include "rift/sweep/run/machine_trouble.hpp"
 #include "rift/yaml/node.hpp"
 
 namespace rift::sessions {
 namespace {
 
-sweep::Recording Finished(sweep::Recording recording) {
-  if (recording.status != sweep::TrialStatus::kOk) {
-    throw std::runtime_error(fmt::format("a row that had a gap has none now: {}: {}",
-                                         recording.source, recording.reason));
+struct Sides {
+  sweep::Recording candidate, reference;
+};
+
+/// A program runs in a process that is given up when it hangs, as in the trials of the sweep.
+Sides RunAgain(const sweep::TrialRequest& request, sweep::Evaluator& evaluator) {
+  const experiment::Experiment& experiment = evaluator.experiment();
+  if (experiment.candidate.kind == experiment::CandidateKind::kProgram ||
+      experiment.reference.kind == experiment::ReferenceKind::kProgram) {
+    sweep::ProgramTrial trial = sweep::RunProgramTrial(evaluator, request);
+    return {std::move(trial.candidate), std::move(trial.reference)};
   }
-  return recording;
+  Sides sides{.reference = evaluator.Reference(request)};
+  sides.candidate = evaluator.Candidate(request, sides.reference);
+  return sides;
 }
 
-/// The simulated and the reference path of a row, computed again.
-report::ComparedPair PathsOf(const sweep::SweepResult& result, const sweep::TrialRow& row,
-                             const std::string& name, sweep::Evaluator& evaluator) {
-  const sweep::TrialRequest request = sweep::RequestOf(row);
-  const sweep::Recording reference = Finished(evaluator.Reference(request));
-  const sweep::Recording candidate = Finished(evaluator.Candidate(request, reference));
-  return report::ComparePair("simulator", candidate.trajectory, name, reference.trajectory,
-                             result.gap);
+/// Throws std::invalid_argument where one of the sides has no path now.
+WorstPaths PathsOf(Sides sides, const std::string& reference_name, const gap::GapOptions& gap) {
+  for (const sweep::Recording* side : {&sides.reference, &sides.candidate}) {
+    if (side->status == sweep::TrialStatus::kOk) continue;
+    throw std::invalid_argument(
+        fmt::format("{}{}{}", side->source, side->source.empty() ? "" : ": ", side->reason));
+  }
+  return {report::ComparePair("simulator", sides.candidate.trajectory, reference_name,
+                              sides.reference.trajectory, gap),
+          std::move(sides.reference)};
 }
 
 std::string PathName(const experiment::Experiment& experiment) {
@@ -65,6 +79,12 @@ class References {
       return false;
     }
     if (reference.status != sweep::TrialStatus::kOk) return false;
+    Add(index, reference);
+    return true;
+  }
+
+  void Add(int index, const sweep::Recording& reference) {
+    const sweep::TrialRow& row = result_.rows[index];
     const auto [found, is_new] = known_.try_emplace(sweep::Fingerprint(reference.trajectory),
                                                     static_cast<int>(evidence_.references.size()));
     if (is_new) {
@@ -76,7 +96,6 @@ class References {
       }
     }
     evidence_.reference_of_row[index] = found->second;
-    return true;
   }
 
  private:
@@ -87,15 +106,15 @@ class References {
 };
 
 /// What the paths are drawn against. The path of a task is that of all repeats; of logs each is
-/// read already; a reference that has to be computed is the worst trial's alone.
-void TakeReferences(const sweep::SweepResult& result, sweep::Evaluator& evaluator, bool may_compute,
-                    report::PageEvidence& evidence) {
+/// read already; a reference that has to be run is the worst trial's alone.
+void TakeReferences(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
+                    const sweep::Recording* worst_reference, report::PageEvidence& evidence) {
   constexpr size_t kMostReferences = 100;
   if (evaluator.experiment().objective == experiment::Objective::kOdometry) return;
   References references(result, evaluator, evidence);
   if (result.reference_kind != "logs" && result.reference_kind != "path") {
-    if (!may_compute) return;
-    if (const std::optional<int> worst = sweep::WorstRow(result)) references.Take(*worst);
+    const std::optional<int> worst = sweep::WorstRow(result);
+    if (worst && worst_reference != nullptr) references.Add(*worst, *worst_reference);
     return;
   }
   for (const sweep::SettingResult& setting : result.settings) {
@@ -113,18 +132,32 @@ void TakeReferences(const sweep::SweepResult& result, sweep::Evaluator& evaluato
 
 }  // namespace
 
-std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
-                                              sweep::Evaluator& evaluator) {
+std::optional<WorstPaths> WorstPair(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
+                                    const std::function<void(const std::string&)>& say) {
   const std::optional<int> worst = sweep::WorstRow(result);
   if (!worst) return std::nullopt;
   const sweep::TrialRow& row = result.rows[*worst];
-  return PathsOf(result, row, ReferenceName(result, row, evaluator.experiment()), evaluator);
+  const auto leave_out = [&](const std::string& why) {
+    say(fmt::format(
+        "note: row {}, the worst, is not drawn against its reference: run again for that, it gave "
+        "no path: {}",
+        *worst + 1, why));
+    return std::nullopt;
+  };
+  try {
+    return PathsOf(RunAgain(sweep::RequestOf(row), evaluator),
+                   ReferenceName(result, row, evaluator.experiment()), result.gap);
+  } catch (const std::invalid_argument& no_path) {
+    return leave_out(no_path.what() + std::string("; the same command tries it once more"));
+  } catch (const sweep::MachineTrouble& no_program) {
+    return leave_out(no_program.what());
+  }
 }
 
 report::PageEvidence EvidenceFor(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
-                                 bool may_compute) {
+                                 const sweep::Recording* worst_reference) {
   report::PageEvidence evidence;
-  TakeReferences(result, evaluator, may_compute, evidence);
+  TakeReferences(result, evaluator, worst_reference, evidence);
   evidence.gap_flags = report::GapFlags(evaluator.experiment());
   for (const control::Waypoint& waypoint : evaluator.experiment().waypoints) {
     evidence.waypoints.push_back({waypoint.name, waypoint.Position()});

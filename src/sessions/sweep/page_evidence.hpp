@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -9,14 +10,22 @@
 
 namespace rift::sessions {
 
-/// The worst trial and what it was held against, computed again; nothing when no trial has a gap.
-/// Throws std::runtime_error when it does not come out any more.
-std::optional<report::ComparedPair> WorstPair(const sweep::SweepResult& result,
-                                              sweep::Evaluator& evaluator);
+/// The worst trial against what it was held against.
+struct WorstPaths {
+  report::ComparedPair pair;
+  sweep::Recording reference;
+};
+
+/// The worst trial computed again, a program within the limits of its trials. Nothing when no trial
+/// has a gap, and where it does not come out any more, as of a program that fails now and then:
+/// `say` is told why.
+std::optional<WorstPaths> WorstPair(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
+                                    const std::function<void(const std::string&)>& say);
 
 /// What a page is made of beside the result, the figures left out: references of the paths and
-/// waypoints. With `may_compute` also the reference of the worst trial where it has to be run.
+/// waypoints. A reference that has to be run is that of the worst trial alone, where it is at hand;
+/// else nullptr.
 report::PageEvidence EvidenceFor(const sweep::SweepResult& result, sweep::Evaluator& evaluator,
-                                 bool may_compute);
+                                 const sweep::Recording* worst_reference);
 
 }  // namespace rift::sessions

@@ -44,6 +44,7 @@ ProgramTrial RunProgramTrial(Evaluator& evaluator, const TrialRequest& request) 
     ByteWriter write;
     write(EncodeFindings(CompareTrial(evaluator.experiment(), asked, candidate, reference)));
     write(EncodeRecording(candidate));
+    write(EncodeRecording(reference));
     return write.Take();
   };
   const JobResult result = RunApart(work, request, evaluator.experiment().run);
@@ -51,14 +52,17 @@ ProgramTrial RunProgramTrial(Evaluator& evaluator, const TrialRequest& request) 
   if (result.end != JobEnd::kDone) {
     evaluator.NameSides(trial.row);
     trial.candidate = {.status = trial.row.status, .reason = trial.row.reason};
+    trial.reference = trial.candidate;
     return trial;
   }
   ByteReader read(result.bytes);
-  std::string findings, recording;
+  std::string findings, candidate, reference;
   read(findings);
-  read(recording);
+  read(candidate);
+  read(reference);
   DecodeFindings(findings, trial.row);
-  trial.candidate = DecodeRecording(recording);
+  trial.candidate = DecodeRecording(candidate);
+  trial.reference = DecodeRecording(reference);
   return trial;
 }
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "experiment_sides.hpp"
 #include "job_status.hpp"
@@ -13,6 +15,8 @@
 #include "rift/sweep/falsify/evaluator.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/trial_runner.hpp"
+#include "rift/sweep/run/byte_codec.hpp"
+#include "rift/sweep/run/machine_trouble.hpp"
 #include "simulated_recording.hpp"
 
 namespace rift::sweep {
@@ -21,17 +25,43 @@ using experiment::ReferenceKind;
 
 namespace {
 
-/// In a process that is given up when its program hangs, as the trials of the sweep were.
-Recording ProgramReference(Evaluator& evaluator, const TrialRequest& request) {
-  const auto work = [&evaluator](const std::string& job) {
-    return EncodeRecording(evaluator.Reference(DecodeRequest(job)));
+/// What a drive is held against, and the trial that this is of: another seed may take the place of
+/// the one that was asked for.
+struct OtherSide {
+  TrialRequest request;
+  Recording recording;
+};
+
+/// In a process that is given up when a program hangs, as the trials of the sweep were. Where this
+/// machine cannot run it the drive counts for nothing, and the sweep is done.
+OtherSide RunOtherSideApart(const std::function<OtherSide(TrialRequest)>& run,
+                            const TrialRequest& request, const RunOptions& options) {
+  const auto work = [&run](const std::string& job) {
+    const OtherSide other = run(DecodeRequest(job));
+    ByteWriter write;
+    write(EncodeRequest(other.request));
+    write(EncodeRecording(other.recording));
+    return write.Take();
   };
-  const JobResult result = RunApart(work, request, evaluator.experiment().run);
-  if (result.end == JobEnd::kDone) return DecodeRecording(result.bytes);
-  const TrialRow ended = EndedRow(request, result);
-  return {.status = ended.status,
-          .reason = ended.reason,
-          .source = fmt::format("program with seed {}", request.seed.value_or(0))};
+  OtherSide other{request,
+                  {.source = fmt::format("program with seed {}", request.seed.value_or(0))}};
+  try {
+    const JobResult result = RunApart(work, request, options);
+    if (result.end == JobEnd::kDone) {
+      ByteReader read(result.bytes);
+      std::string asked, recording;
+      read(asked);
+      read(recording);
+      return {DecodeRequest(asked), DecodeRecording(recording)};
+    }
+    const TrialRow ended = EndedRow(request, result);
+    other.recording.status = ended.status;
+    other.recording.reason = ended.reason;
+  } catch (const MachineTrouble& trouble) {
+    other.recording.status = TrialStatus::kFault;
+    other.recording.reason = trouble.what();
+  }
+  return other;
 }
 
 }  // namespace
@@ -66,13 +96,16 @@ TrialRow Evaluator::EvaluateDriven(const TrialRequest& asked, const std::string&
     driven.status = StatusOf(outcome);
     driven.reason = "the robot did not reach the end";
   }
-  TrialRequest request = asked;
-  if (request.seed) request.seed = SeedWithReference(*request.seed);
-  const Recording reference = is_reference         ? driven
-                              : reference_program_ ? ProgramReference(*this, request)
-                                                   : Reference(request);
-  const TrialRow row = CompareTrial(experiment_, request,
-                                    is_reference ? Candidate(request, driven) : driven, reference);
+  const auto run = [&](TrialRequest request) -> OtherSide {
+    if (request.seed) request.seed = SeedWithReference(*request.seed);
+    Recording recording = is_reference ? Candidate(request, driven) : Reference(request);
+    return {std::move(request), std::move(recording)};
+  };
+  const bool runs_program = candidate_program_ || reference_program_;
+  const auto [request, other] =
+      runs_program ? RunOtherSideApart(run, asked, experiment_.run) : run(asked);
+  const TrialRow row = CompareTrial(experiment_, request, is_reference ? other : driven,
+                                    is_reference ? driven : other);
   if (!row.Tells()) {
     inputs_.note(fmt::format("{}{}: this drive does not count",
                              row.reason.starts_with(path) ? "" : path + ": ", row.reason));

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string_view>
 
+#include "program_answer.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/experiment/program_parameters.hpp"
 #include "rift/files/process_end.hpp"
@@ -19,7 +20,6 @@
 #include "rift/sweep/falsify/program_files.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/run/machine_trouble.hpp"
-#include "rift/trajectory/csv.hpp"
 #include "simulated_recording.hpp"
 
 namespace rift::sweep {
@@ -30,9 +30,7 @@ using nlohmann::ordered_json;
 
 constexpr const char* kLogName = "trajectory.csv";
 constexpr const char* kThetaName = "theta.json";
-/// What a persistent program may say of a trial.
-constexpr std::array<std::string_view, 6> kAnswers{"ok",         "timed_out", "fell",
-                                                   "left_arena", "lost",      "fault"};
+constexpr char kFirstOfTrial = '{';  ///< of the JSON that a persistent program reads
 
 std::string Joined(const std::string& text, const std::string& words) {
   return words.empty() ? text : text + ": " + words;
@@ -50,6 +48,11 @@ ordered_json TrialJson(const experiment::Experiment& experiment,
           {"seed", request.seed.value_or(experiment.seed)},
           {"trial", request.trial},
           {"out", (fs::path(folder) / kLogName).string()}};
+}
+
+std::string HostName() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "this machine";
 }
 
 /// A code that says two things of a run says none.
@@ -221,10 +224,10 @@ Recording ProgramSide::RunSpawned(const TrialRequest& request) {
   return recording;
 }
 
-/// A program that breaks the protocol is ended: nobody knows what it would answer next.
-Recording ProgramSide::RunPersistent(const TrialRequest& request) {
-  Recording recording;
+ExternalProgram& ProgramSide::ProgramFor(const TrialRequest& request) {
   if (program_ && program_->Owner() != ::getpid()) static_cast<void>(program_.release());
+  // A line that came after the answer to the trial before would be taken for that to this one.
+  if (program_ && !program_->UnreadAtNextLine(kFirstOfTrial, -1).empty()) program_.reset();
   if (!program_) {
     const std::string folder = ExternalProgram::MakeFolder();
     program_ = std::make_unique<ExternalProgram>(StartOf(request, folder), folder);
@@ -232,41 +235,47 @@ Recording ProgramSide::RunPersistent(const TrialRequest& request) {
   program_->ForgetWords();
   std::error_code none;
   fs::remove(fs::path(program_->Folder()) / kLogName, none);
+  return *program_;
+}
+
+/// A program that breaks the protocol is ended: nobody knows what it would answer next.
+Recording ProgramSide::RunPersistent(const TrialRequest& request) {
+  ExternalProgram& program = ProgramFor(request);
+  ordered_json trial = TrialJson(experiment_, parameters_, request, program.Folder());
+  const std::string id = TrialId(trial);
+  trial["id"] = id;
   std::optional<std::string> line;
-  if (program_->SendLine(TrialJson(experiment_, parameters_, request, program_->Folder()).dump())) {
-    line = program_->ReceiveLine();
-  }
-  if (!line) {
-    const ExternalProgram::Exit exit = program_->Wait();
-    TakeExit(exit, program_->LastWords(), recording);
-    recording.reason = Joined("ended in the middle of a trial", recording.reason);
-    if (recording.status != TrialStatus::kOutOfMemory) recording.status = TrialStatus::kCrashed;
-    RefuseFullDisk(program_->Folder(), recording);
-    program_.reset();
-    return recording;
-  }
+  if (program.SendLine(trial.dump())) line = program.ReceiveLine();
+  if (!line) return EndedInTrial();
   const ordered_json answer = ordered_json::parse(*line, nullptr, false);
-  const bool is_answer =
-      answer.is_object() && answer.contains("status") && answer["status"].is_string();
-  const std::string word = is_answer ? answer["status"].get<std::string>() : "";
-  const auto said = std::find(kAnswers.begin(), kAnswers.end(), word);
-  if (said == kAnswers.end()) {
+  Recording recording;
+  constexpr int kMost_ms = 200;  // what comes later is of no trial
+  recording.reason = BreachIn(answer, *line, id, program.UnreadAtNextLine(kFirstOfTrial, kMost_ms));
+  if (!recording.reason.empty()) {
     recording.status = TrialStatus::kFault;
-    recording.reason =
-        is_answer ? fmt::format("answered with the status '{}', and it must be one of {}",
-                                trajectory::csv::Shown(word), fmt::join(kAnswers, ", "))
-                  : fmt::format(
-                        "answered '{}', and a line of JSON with a status is expected, such as "
-                        "{{\"status\": \"ok\"}}",
-                        trajectory::csv::Shown(*line));
     program_.reset();
     return recording;
   }
-  const auto names = EnumNames(TrialStatus{});
-  const auto found = std::find(names.begin(), names.end(), word);
-  recording.status = static_cast<TrialStatus>(found - names.begin());
+  TakeAnswer(answer, recording);
+  RefuseFullDisk(program.Folder(), recording);
+  return recording;
+}
+
+Recording ProgramSide::EndedInTrial() {
+  const std::unique_ptr<ExternalProgram> ended = std::move(program_);
+  Recording recording;
+  const ExternalProgram::Exit exit = ended->Wait();
+  TakeExit(exit, ended->LastWords(), recording);
+  recording.reason = Joined("ended in the middle of a trial", recording.reason);
+  if (recording.status != TrialStatus::kOutOfMemory) recording.status = TrialStatus::kCrashed;
+  RefuseFullDisk(ended->Folder(), recording);
+  return recording;
+}
+
+void ProgramSide::TakeAnswer(const ordered_json& answer, Recording& recording) const {
+  recording.status = StatusIn(answer);
   if (answer.contains("reason") && answer["reason"].is_string()) {
-    recording.reason = answer["reason"].get<std::string>();
+    recording.reason = ShortWords(answer["reason"].get<std::string>());
   }
   if (recording.status != TrialStatus::kOk && recording.reason.empty()) {
     recording.reason = Joined("the program says so", program_->LastWords());
@@ -276,13 +285,17 @@ Recording ProgramSide::RunPersistent(const TrialRequest& request) {
   } else {
     ReadLogFile(program_->Folder(), recording);
   }
-  RefuseFullDisk(program_->Folder(), recording);
-  return recording;
 }
 
 void ProgramSide::TakeExit(const ExternalProgram::Exit& exit, const std::string& words,
                            Recording& recording) const {
   if (exit.signal == 0 && exit.code == 0) return;
+  if (ExternalProgram::WasNeverStarted(exit, words)) {
+    throw MachineTrouble(
+        fmt::format("{}.run: {}, on {}: it is no result of a trial; install it there, or mend the "
+                    "name or PATH, and run the same command again",
+                    options_.key, words, HostName()));
+  }
   const experiment::ExitCodes& codes = options_.exit_codes;
   recording.status = exit.signal != 0                ? TrialStatus::kCrashed
                      : exit.code == codes.timed_out  ? TrialStatus::kTimedOut

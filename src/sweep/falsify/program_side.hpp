@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -39,9 +40,15 @@ class ProgramSide {
   Recording RunOnce(const TrialRequest& request);
   Recording RunSpawned(const TrialRequest& request);
   Recording RunPersistent(const TrialRequest& request);
+  /// A process of the persistent program that has nothing left of an earlier trial.
+  ExternalProgram& ProgramFor(const TrialRequest& request);
+  /// Of the persistent program, which did not answer.
+  Recording EndedInTrial();
+  void TakeAnswer(const nlohmann::ordered_json& answer, Recording& recording) const;
   ProgramStart StartOf(const TrialRequest& request, const std::string& folder) const;
   void ReadLog(const std::string& text, Recording& recording) const;
   void ReadLogFile(const std::string& folder, Recording& recording) const;
+  /// Throws MachineTrouble when the program was never started.
   void TakeExit(const ExternalProgram::Exit& exit, const std::string& words,
                 Recording& recording) const;
   double DistanceLeft_m(const trajectory::Trajectory& path) const;

@@ -3,7 +3,9 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/sockios.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/signalfd.h>
@@ -14,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -28,6 +31,8 @@ namespace rift::sweep {
 namespace {
 
 constexpr const char* kErrors = "stderr.txt";
+constexpr const char* kCannotRun = "cannot run ";
+constexpr int kNotStarted = 127;
 
 [[noreturn]] void CannotStart(int error) {
   throw MachineTrouble(fmt::format("cannot start a program: {}", strerror(error)));
@@ -123,9 +128,9 @@ void WriteInto(const std::string& folder, const std::string& name, const std::st
   arguments.push_back(nullptr);
   SetLimits(start.memory_mb);
   if (is_there) ::execvp(arguments[0], arguments.data());
-  const std::string reason = fmt::format("cannot run {}: {}\n", arguments[0], strerror(errno));
+  const std::string reason = fmt::format("{}{}: {}\n", kCannotRun, arguments[0], strerror(errno));
   static_cast<void>(Write(2, reason));
-  ::_exit(127);
+  ::_exit(kNotStarted);
 }
 
 /// Empty for a process that has gone.
@@ -165,6 +170,19 @@ void KillDescendants() {
     while (::waitpid(-1, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
+}
+
+/// The last bytes of a file, `most` of them; empty where it cannot be read. What a program writes
+/// has no bound, and what it puts in the place of the file may be anything.
+std::string EndOf(const std::string& path, off_t most) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return "";
+  std::string text(static_cast<size_t>(most), '\0');
+  const off_t begin = std::max<off_t>(0, ::lseek(file, 0, SEEK_END) - most);
+  const ssize_t n = ::pread(file, text.data(), text.size(), begin);
+  ::close(file);
+  text.resize(n > 0 ? static_cast<size_t>(n) : 0);
+  return text;
 }
 
 /// Serves until the caller closes its end: tells it of the program's end.
@@ -208,6 +226,17 @@ void KillDescendants() {
 }
 
 }  // namespace
+
+std::string ShortWords(std::string text) {
+  constexpr size_t kLongest = 200;
+  text.resize(std::min(text.size(), text.find('\n')));
+  if (text.size() <= kLongest) return text;
+  size_t end = kLongest;
+  const auto continues = [&] { return (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80; };
+  while (end > kLongest - 3 && continues()) --end;
+  text.resize(end);
+  return text;
+}
 
 std::string ExternalProgram::MakeFolder() {
   std::error_code error;
@@ -267,9 +296,13 @@ ExternalProgram::Exit ExternalProgram::Wait() {
   return {WEXITSTATUS(status), 0};
 }
 
+bool ExternalProgram::WasNeverStarted(const Exit& exit, const std::string& last_words) {
+  return exit.code == kNotStarted && last_words.starts_with(kCannotRun);
+}
+
 bool ExternalProgram::SendLine(const std::string& line) {
   const std::string bytes = line + '\n';
-  for (size_t sent = 0; sent < bytes.size();) {
+  for (size_t sent = std::exchange(has_begun_line_, false) ? 1 : 0; sent < bytes.size();) {
     const ssize_t n = ::send(to_program_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
@@ -302,16 +335,41 @@ std::optional<std::string> ExternalProgram::ReceiveLine() {
   }
 }
 
+void ExternalProgram::TakeArrived() {
+  std::array<char, 65536> bytes;
+  ssize_t n = 0;
+  do {
+    n = ::recv(from_program_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  } while (n < 0 && errno == EINTR);
+  if (n > 0) arrived_.append(bytes.data(), static_cast<size_t>(n));
+}
+
+const std::string& ExternalProgram::UnreadAtNextLine(char first, int most_ms) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kQuickLooks = 100;  // some 50 us: most programs read on at once
+  if (!has_begun_line_) has_begun_line_ = ::send(to_program_, &first, 1, MSG_NOSIGNAL) == 1;
+  const Clock::time_point end = Clock::now() + std::chrono::milliseconds(most_ms);
+  for (int look = 0; most_ms < 0 || Clock::now() < end; ++look) {
+    int on_its_way = 0;  // bytes, and what they cost
+    const bool is_taken = ::ioctl(to_program_, SIOCOUTQ, &on_its_way) != 0 || on_its_way == 0;
+    TakeArrived();
+    if (is_taken || !arrived_.empty()) break;
+    pollfd ended{control_, POLLIN, 0};
+    if (::poll(&ended, 1, look < kQuickLooks ? 0 : 1) > 0) break;
+  }
+  return arrived_;
+}
+
 std::string ExternalProgram::LastWords() const {
-  constexpr size_t kLongest = 200;
-  std::string last = files::ReadIfThere(std::filesystem::path(folder_) / kErrors).value_or("");
+  constexpr off_t kRead = 65536;
+  std::string last = EndOf((std::filesystem::path(folder_) / kErrors).string(), kRead);
   last.resize(last.find_last_not_of(" \t\r\n") + 1);
   last.erase(0, last.rfind('\n') + 1);
   // Its name is drawn at random, and the same trial gives the same row.
   for (size_t at = last.find(folder_); at != last.npos; at = last.find(folder_, at)) {
     last.replace(at, folder_.size(), "{folder}");
   }
-  return last.substr(0, kLongest);
+  return ShortWords(std::move(last));
 }
 
 void ExternalProgram::ForgetWords() {

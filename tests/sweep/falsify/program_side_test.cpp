@@ -14,6 +14,7 @@
 #include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/small_disk.hpp"
+#include "support/until.hpp"
 #include "sweep/falsify/program_side.hpp"
 
 namespace rift::sweep {
@@ -255,6 +256,10 @@ TEST_CASE("A persistent program answers each trial with a status, a reason and p
   CHECK(fell.status == TrialStatus::kFell);
   CHECK(fell.reason == "on its side");
   CHECK(fell.left_m == Approx(0.6));
+  const std::string long_word(3000, 'z');
+  CHECK(answer("{\"status\": \"fell\", \"reason\": \"" + long_word + "\"}").reason ==
+        long_word.substr(0, 200));
+  CHECK(answer("{\"status\": \"fell\", \"reason\": \"one\\\\ntwo\"}").reason == "one");
   CHECK(answer("{\"status\": \"timed_out\"}").status == TrialStatus::kTimedOut);
   CHECK(answer("{\"status\": \"left_arena\"}").status == TrialStatus::kLeftArena);
   CHECK(answer("{\"status\": \"lost\"}").status == TrialStatus::kLost);
@@ -303,6 +308,80 @@ TEST_CASE("The log and the words of a trial are no part of the next one of a per
   CHECK(program->Run(request).status == TrialStatus::kOk);
   CHECK(program->Run(request).reason == "ended well and wrote no trajectory to {out}");
   CHECK(program->Run(request).reason == "the program says so");
+}
+
+/// Its answer is `ok` with a log that ends at as many metres as mu says, or what `on_line` makes of
+/// that: $A, with $ID of the request.
+struct Echo : Persistent {
+  explicit Echo(const std::string& on_line)
+      : Persistent(
+            "MU=${LINE#*\\\"mu\\\":}; MU=${MU%%,*}; ID=${LINE#*\\\"id\\\":\\\"}; ID=${ID%%\\\"*}\n"
+            "A='{\"status\": \"ok\", \"log\": \"t_s,x_m,y_m\\n0,0,0\\n1,'$MU',0\\n\"}'\n" +
+            on_line),
+        program(CandidateProgram(experiment, {}, kFiles)) {}
+  Recording At(double mu) const {
+    return program->Run({.theta = {{"", mu}, {"ice", {}}}, .trial = "1", .seed = 7});
+  }
+  double EndOf(double mu) const {
+    const Recording run = At(mu);
+    INFO(run.reason);
+    REQUIRE(run.status == TrialStatus::kOk);
+    return run.trajectory.poses.back().x_m;
+  }
+  std::unique_ptr<ProgramSide> program;
+};
+
+TEST_CASE("A second line to a trial is a fault of it and never the answer to the next one") {
+  const Echo echo(
+      "printf '%s\\n' \"$A\"; [ $MU != 0.5 ] || { sleep 0.02; printf '%s\\n' \"$A\"; }");
+  CHECK(echo.EndOf(0.25) == 0.25);
+  const Recording twice = echo.At(0.5);
+  CHECK(twice.status == TrialStatus::kFault);
+  CHECK(twice.trajectory.poses.empty());
+  CHECK_THAT(twice.reason,
+             Catch::StartsWith("wrote '{\"status\": \"ok\"") &&
+                 Contains("' to stdout after its answer: answer each trial with one line"));
+  CHECK(echo.EndOf(0.75) == 0.75);
+}
+
+TEST_CASE("A line that comes between two trials ends its process, and the next trial has its own") {
+  const Echo echo(
+      "printf '%s\\n' \"$A\"; while [ ! -e \"$HERE/taken\" ]; do sleep 0.01; done\n"
+      "printf '%s\\n' \"$A\"; echo x >> \"$HERE/late\"");
+  CHECK(echo.EndOf(0.25) == 0.25);
+  test::WriteText(echo / "taken", "");
+  test::WaitUntil("its late line", [&] { return fs::exists(echo / "late"); });
+  fs::remove(echo / "taken");
+  CHECK(echo.EndOf(0.75) == 0.75);
+}
+
+TEST_CASE("An answer that names another trial by its id is a fault") {
+  const Echo echo(
+      "FIRST=${FIRST:-$ID}; echo $ID >> \"$HERE/ids\"\n"
+      "echo '{\"id\": \"'$FIRST'\", \"status\": \"timed_out\"}'");
+  CHECK(echo.At(0.25).status == TrialStatus::kTimedOut);
+  CHECK(echo.At(0.25).status == TrialStatus::kTimedOut);  // the same trial
+  const Recording other = echo.At(0.5);
+  CHECK(other.status == TrialStatus::kFault);
+  CHECK_THAT(other.reason,
+             Catch::StartsWith("answered with the id \"" + echo.Read("ids").substr(0, 32)) &&
+                 Contains("and that of its trial is \""));
+  CHECK(echo.At(0.5).status == TrialStatus::kTimedOut);  // the first of a new process
+  CHECK(Persistent("echo '{\"id\": 3, \"status\": \"fell\"}'").Run().status == TrialStatus::kFault);
+}
+
+TEST_CASE("A program that this machine cannot start is no result of a trial") {
+  Shell shell("");
+  shell.experiment.candidate.run.words = {"no-such-program-of-rift"};
+  const std::string says =
+      "candidate.run: cannot run no-such-program-of-rift: No such file or directory, on ";
+  for (const bool persistent : {false, true}) {
+    shell.experiment.candidate.persistent = persistent;
+    CHECK_THROWS_AS(shell.Run(), MachineTrouble);
+    CHECK_THROWS_WITH(shell.Run(), Catch::StartsWith(says));
+  }
+  CHECK(Shell("exit 127").Run().status == TrialStatus::kFault);  // of what it starts
+  CHECK(Shell("no-such-program-of-rift").Run().status == TrialStatus::kFault);
 }
 
 TEST_CASE("What a program lacks is said when it is made") {
@@ -521,6 +600,25 @@ TEST_CASE("A drive of the robot is held against a program that is given up when 
         TrialStatus::kHung);
   REQUIRE(notes.size() == 1);
   CHECK_THAT(notes[0], Catch::StartsWith(drive + ": program with seed 3: "));
+}
+
+TEST_CASE("A drive is judged by a program as candidate within its limits, if it is there at all") {
+  Shell shell("sleep 3");
+  shell.experiment.run.timeout_s = 0.2;
+  const std::string drive = shell / "good.csv";
+  const auto drive_at = [&](experiment::ReferenceKind kind) {
+    shell.experiment.reference.kind = kind;
+    shell.experiment.reference.path.text = drive;
+    Evaluator evaluator(shell.experiment, "e.yaml", kFiles);
+    return evaluator.EvaluateDriven({.theta = {{"0.5", 0.5}, {"ice", {}}}, .trial = "1", .seed = 3},
+                                    drive, trial::Outcome::kReached);
+  };
+  CHECK(drive_at(experiment::ReferenceKind::kNominal).status == TrialStatus::kHung);
+  CHECK(drive_at(experiment::ReferenceKind::kLogs).status == TrialStatus::kHung);
+  shell.experiment.candidate.run.words = {"no-such-program-of-rift"};
+  const TrialRow row = drive_at(experiment::ReferenceKind::kNominal);
+  CHECK(row.status == TrialStatus::kFault);
+  CHECK_THAT(row.reason, Contains("cannot run no-such-program-of-rift"));
 }
 
 TEST_CASE("A nominal run that no seed mends, or that never arrives, is told once and at once") {

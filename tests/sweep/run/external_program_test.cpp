@@ -138,6 +138,42 @@ TEST_CASE("Last words are the last line that is one, to 200 bytes, until they ar
   CHECK(shell.program.LastWords() == "second");
 }
 
+TEST_CASE("Last words are found behind more than a reader of files takes, and in no pipe") {
+  CHECK(WordsOf("truncate -s 300M stderr.txt; printf '\\nend\\n' >&2") == "end");
+  CHECK(WordsOf("rm stderr.txt; mkfifo stderr.txt").empty());
+}
+
+TEST_CASE("What a row keeps of words is their first line, cut between two characters") {
+  CHECK(ShortWords("one\ntwo") == "one");
+  CHECK(ShortWords("").empty());
+  CHECK(ShortWords(std::string(200, 'a')).size() == 200);
+  CHECK(ShortWords(std::string(201, 'a')).size() == 200);
+  const std::string before(198, 'a');
+  CHECK(ShortWords(before + "\u00e9" + "b") == before + "\u00e9");
+  CHECK(ShortWords(before + "\u20ac" + "b") == before);
+  CHECK(ShortWords(std::string(300, '\x80')).size() == 197);  // no text at all
+}
+
+TEST_CASE("What a program writes before it reads its next line is seen, however late") {
+  Shell shell(
+      "read -r LINE; echo $LINE; sleep 0.1; echo late; read -r LINE; echo \"$LINE\"; read -r LINE; "
+      "exec sleep 1000",
+      true);
+  CHECK(shell.program.UnreadAtNextLine('o', -1).empty());
+  CHECK(shell.program.SendLine("one"));
+  CHECK(shell.program.ReceiveLine() == "one");
+  CHECK(shell.program.UnreadAtNextLine('t', 0).empty());
+  CHECK(shell.program.UnreadAtNextLine('t', -1) == "late\n");
+  CHECK(shell.program.ReceiveLine() == "late");
+  CHECK(shell.program.SendLine("two"));
+  CHECK(shell.program.ReceiveLine() == "two");
+  CHECK(shell.program.SendLine("three"));
+  CHECK(shell.program.UnreadAtNextLine('f', 20).empty());  // it reads no more
+  Shell ended("exit 0", true);
+  ended.program.Wait();
+  CHECK(ended.program.UnreadAtNextLine('o', -1).empty());
+}
+
 TEST_CASE("Lines go to a program and come back one by one, and none after its end") {
   Shell shell(
       "while read -r LINE; do [ \"$LINE\" != end ] || exit 3; "
@@ -159,8 +195,12 @@ TEST_CASE(
     "A program that is not there ends with 127 and the reason, and one without a name throws") {
   ExternalProgram program({.arguments = {"no-such-program-of-rift"}},
                           ExternalProgram::MakeFolder());
-  CHECK(program.Wait().code == 127);
+  const ExternalProgram::Exit exit = program.Wait();
+  CHECK(exit.code == 127);
   CHECK(program.LastWords() == "cannot run no-such-program-of-rift: No such file or directory");
+  CHECK(ExternalProgram::WasNeverStarted(exit, program.LastWords()));
+  CHECK_FALSE(ExternalProgram::WasNeverStarted(exit, "sh: 1: sim: not found"));
+  CHECK_FALSE(ExternalProgram::WasNeverStarted({.code = 1}, program.LastWords()));
   CHECK_THROWS_WITH(ExternalProgram({}, ExternalProgram::MakeFolder()), "a program has no name");
 }
 

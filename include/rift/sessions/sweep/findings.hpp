@@ -17,6 +17,7 @@ struct SweepFindings {
   sweep::Explanation explanation;
   std::vector<sweep::GroupLikeness> likeness;  ///< of sweeps whose reference is logs
   std::vector<sweep::ProgramCell> programs;    ///< of a grid over a program
+  std::vector<std::string> notes;              ///< what of this could not be had, and why
 };
 
 /// Explains a sweep, the drives of the robot that are saved in its folder included. Where up to
@@ -27,7 +28,7 @@ SweepFindings ExplainSweep(const std::filesystem::path& folder, sweep::Evaluator
 
 /// Writes DIR/explanation.json, programs.json and likeness.json, the figures (SVG and PNG, in
 /// DIR/figures) and DIR/report.html. `evaluator` brings the paths of the worst trial again. Figures
-/// that make no sense for this space are named to the observer.
+/// that make no sense for this space are named to the observer, and so is what could not be had.
 void SaveReport(const std::filesystem::path& folder, sweep::Evaluator& evaluator,
                 const sweep::SweepResult& result, const SweepFindings& findings,
                 const SweepObserver& observer);

@@ -26,14 +26,14 @@ class CandidateRuns {
   WorkerPool pool_;
 };
 
-/// A trial of a program with the run that it judged.
+/// A trial of a program with the run that it judged, and what that was held against.
 struct ProgramTrial {
   TrialRow row;
-  Recording candidate;  ///< without a path where its process was given up
+  Recording candidate, reference;  ///< without a path where its process was given up
 };
 
 /// One trial, its program run once, in a worker process as it is in a sweep: what hangs or crashes
-/// there is such a row here.
+/// there is such a row here. Throws MachineTrouble as WorkerPool does.
 ProgramTrial RunProgramTrial(Evaluator& evaluator, const TrialRequest& request);
 
 /// A recording as bytes for another process.

@@ -19,6 +19,10 @@ struct ProgramStart {
   bool talks = false;
 };
 
+/// What a row keeps of what a program says of itself: the first line of it, at most 200 bytes, no
+/// character of UTF-8 in pieces.
+std::string ShortWords(std::string text);
+
 /// A running program with all processes that it starts, in a temporary folder of its own, which is
 /// its working directory.
 ///
@@ -44,13 +48,21 @@ class ExternalProgram {
   };
   /// Waits for the program itself. Throws MachineTrouble when there was no process for it.
   Exit Wait();
+  /// True of an end, with LastWords(), of one that was never started: it is not there, or cannot be
+  /// executed, on this machine.
+  static bool WasNeverStarted(const Exit& exit, const std::string& last_words);
 
   /// Sends a line to one that talks; false when it does not listen.
   bool SendLine(const std::string& line);
   /// The next line of one that talks; nothing when it has closed its stdout.
   std::optional<std::string> ReceiveLine();
+  /// Begins the next line to it with that byte, as the line must, and waits until it takes that, in
+  /// ms; negative: for ever. What it has written by then that nobody has received, or the beginning
+  /// of it; empty: nothing. Who reads the next line has written all about the one before.
+  const std::string& UnreadAtNextLine(char first, int most_ms);
 
-  /// The last line that it wrote to stderr, at most 200 bytes, the folder in it as {folder}.
+  /// The last line that it wrote to stderr, of whose end 64 kB are read, as ShortWords, the folder
+  /// in it as {folder}.
   std::string LastWords() const;
   /// Forgets what it wrote to stderr until now.
   void ForgetWords();
@@ -60,6 +72,8 @@ class ExternalProgram {
   pid_t Owner() const { return owner_; }
 
  private:
+  void TakeArrived();
+
   std::string folder_;
   pid_t owner_ = -1;
   pid_t keeper_ = -1;
@@ -67,6 +81,7 @@ class ExternalProgram {
   int to_program_ = -1;
   int from_program_ = -1;
   std::string arrived_;
+  bool has_begun_line_ = false;
 };
 
 }  // namespace rift::sweep
