@@ -2,6 +2,7 @@
 // and with a real slurmctld and two slurmd where they are installed.
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -349,6 +350,41 @@ TEST_CASE("What no cluster can do is refused before anything is submitted") {
   CHECK(slurm.Submitted().empty());
 }
 
+TEST_CASE("A program may be on the nodes alone, and a node without it gives no row") {
+  const FakeSlurm slurm;
+  const Sweep sweep(
+      "waypoints: [{x: 0, y: 0, heading: 0}, {x: 1, y: 0, stop: true}]\ngap: {threshold_m: 0.3}\n"
+      "candidate: {kind: program, run: [mysim, \"{out}\", \"{mu}\"]}\n"
+      "reference: {kind: path, trials: 1}\nspace: {mu: [0.1, 0.2, 0.4]}\n");
+  fs::create_directories(sweep.folder / "bin");
+  const std::string mysim = sweep.folder / "bin/mysim";
+  WriteText(mysim,
+            "#!/bin/sh\nprintf 't_s,x_m,y_m\\n0,0,0\\n1,0.5,0\\n2,1,%s\\n' \"$2\" > \"$1\"\n");
+  fs::permissions(mysim, fs::perms::owner_all);
+  const auto run = [&](const std::vector<std::string>& more) {
+    return RunRift(sweep.OnCluster(more));
+  };
+  const ProcessResult unsized = run({});
+  CHECK(unsized.exit_code == 2);
+  CHECK(unsized.err.find("say --shards N") != std::string::npos);
+  CHECK(slurm.Submitted().empty());
+  const ProcessResult without = run({"--shards", "1"});
+  CHECK(without.exit_code == 3);
+  INFO(without.err);
+  CHECK(without.err.find("candidate.run: cannot run mysim: No such file or directory, on ") !=
+        std::string::npos);
+  WriteText(sweep.engine, "poll_s: 0.1\nprologue: [\"export PATH='" + (sweep.folder / "bin") +
+                              "':$PATH TMPDIR='" + (sweep.folder / "tmp") + "'\"]\n");
+  const ProcessResult there = run({"--shards", "2"});
+  INFO(there.err);
+  CHECK(there.exit_code == 0);
+  CHECK(there.err.find("row 3, the worst, is not drawn against its reference") !=
+        std::string::npos);
+  const test::Environment path("PATH", sweep.folder / "bin:" + std::getenv("PATH"));
+  REQUIRE(RunRift(sweep.Local()).exit_code == 0);
+  CHECK(sweep.Read("cluster/table.csv") == sweep.Read("local/table.csv"));
+}
+
 TEST_CASE("A cluster without Slurm's commands is said so") {
   const test::TemporaryFolder nothing;
   const test::Environment path("PATH", nothing.Path().string());
@@ -448,11 +484,15 @@ void CheckDamaged(test::Cluster& slurm, const LocalRun& local) {
   sweep.SubmitAndDie();
   test::WaitUntil("the queue is empty", [&] { return slurm.Queued() == 0; });
   std::vector<fs::path> journals;
-  for (const auto& entry : fs::directory_iterator(sweep.folder / "cluster/shards")) {
-    journals.push_back(entry.path());
+  std::ifstream names(sweep.folder / "cluster/slurm/1/shards");
+  for (std::string name; names >> name;) {
+    journals.push_back(sweep.folder / ("cluster/shards/" + name + ".sqlite"));
+    REQUIRE(fs::exists(journals.back()));
   }
   REQUIRE(journals.size() == 4);
   WriteText(journals[0], "no journal at all");
+  fs::remove(journals[2]);
+  WriteText(sweep.folder / "cluster/slurm/1/2.shard", "no shard at all");
   std::string bytes = ReadFile(journals[1]);  // in the middle of a row
   const size_t at = bytes.rfind("simulation with seed");
   REQUIRE(at != std::string::npos);
@@ -461,6 +501,7 @@ void CheckDamaged(test::Cluster& slurm, const LocalRun& local) {
   const ProcessResult result = RunRift(sweep.Words());
   CHECK(result.err.find("its shard is run again") != std::string::npos);
   CHECK(result.err.find("1 of its rows were damaged") != std::string::npos);
+  CHECK(result.err.find("2.shard is not there or not what was submitted") != std::string::npos);
   sweep.CheckEnd(result);
 }
 

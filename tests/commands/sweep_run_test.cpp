@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 
 #include "rift/sweep/run/journal_summary.hpp"
 #include "support/inputs/trials.hpp"
+#include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/quick_gnuplot.hpp"
 #include "support/processes/running_rift.hpp"
@@ -274,6 +276,23 @@ TEST_CASE("A sweep whose folder is removed, moved or replaced while it runs is e
           std::string::npos);
     CHECK_FALSE(fs::exists(out / "table.csv"));
   }
+}
+
+TEST_CASE("A sweep of a cluster starts over where Slurm does not answer, which is said") {
+  const Sweep sweep(kGrid);
+  REQUIRE(RunRift(sweep.Command("out")).exit_code == 0);
+  const std::string table = sweep.Table("out"), bin = sweep.folder / "bin";
+  WriteText(sweep.folder / "out/slurm/1/shards", "deadbeef\n");
+  WriteText(bin + "/squeue", "#!/bin/sh\necho 'squeue: fatal: no configuration' >&2\nexit 1\n");
+  fs::permissions(bin + "/squeue", fs::perms::owner_all);
+  const test::Environment path("PATH", bin + ":" + std::getenv("PATH"));
+  const ProcessResult result = RunRift(sweep.Command("out", {"--fresh"}));
+  INFO(result.err);
+  CHECK(result.exit_code == 0);
+  CHECK(result.err.find("may still be in the queue") != std::string::npos);
+  CHECK(result.err.find("squeue: fatal: no configuration") != std::string::npos);
+  CHECK_FALSE(fs::exists(sweep.folder / "out/slurm"));
+  CHECK(sweep.Table("out") == table);
 }
 
 TEST_CASE("A damaged row of a journal is told, run again, and the table stays as it was") {

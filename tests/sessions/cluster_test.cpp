@@ -23,7 +23,10 @@ struct OnCluster {
   }
   SweepObserver Observer() {
     SweepObserver observer = ObserverOf(told);
-    observer.watch_for_stop = [this] { return [this] { return nodes.Compute(); }; };
+    // Asked also while a command of Slurm runs: the nodes begin when their shards are told.
+    observer.watch_for_stop = [this] {
+      return [this] { return counts.empty() || nodes.Compute(); };
+    };
     observer.shards = [this](const sweep::ShardCounts& seen) { counts.push_back(seen); };
     return observer;
   }

@@ -54,7 +54,7 @@ std::optional<sweep::CalibrationReport> Fit(sweep::Evaluator& evaluator, const F
                                             const SweepObserver& observer, const sweep::Say& say) {
   if (request.fresh) {
     RemoveFindings(request.out);
-    sweep::SlurmShards::Forget(request.out);
+    sweep::SlurmShards::Forget(request.out, say);
     sweep::Journal::Remove(request.out / kJournalName);
   }
   if (request.cluster != nullptr) return FitOnCluster(evaluator, request, observer, say);

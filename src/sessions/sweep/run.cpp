@@ -13,7 +13,6 @@
 #include "rift/files/network_file_system.hpp"
 #include "rift/sessions/sweep/journal.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
-#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sessions {
 
@@ -87,9 +86,8 @@ void ForgetOtherLimits(Journal& journal, const sweep::RunOptions& now,
   journal.SetNote("limits", limits);
   if (before == limits) return;
   int count = 0;
-  for (const sweep::TrialStatus status : {sweep::TrialStatus::kHung, sweep::TrialStatus::kCrashed,
-                                          sweep::TrialStatus::kOutOfMemory}) {
-    count += journal.Forget(std::string(yaml::NameOf(status)));
+  for (const std::string_view status : sweep::kGivenUp) {
+    count += journal.Forget(std::string(status));
   }
   if (count == 0) return;
   observer.say(fmt::format(
@@ -146,7 +144,7 @@ std::optional<sweep::SweepResult> RunComputed(sweep::Evaluator& evaluator,
                                               const Watchers& watchers, const GoOn& go_on) {
   const std::filesystem::path file = request.out / kJournalName;
   if (request.fresh) {
-    sweep::SlurmShards::Forget(request.out);
+    sweep::SlurmShards::Forget(request.out, observer.say);
     Journal::Remove(file);
   }
   NoteFileSystem(request.out, observer);
@@ -158,6 +156,7 @@ std::optional<sweep::SweepResult> RunComputed(sweep::Evaluator& evaluator,
     journal.SetNote("state", state);
     journal.Close();
   };
+  ForgetOtherLimits(journal, evaluator.experiment().run, file, observer);
   std::optional<Cluster> cluster;
   if (request.cluster != nullptr) {
     cluster.emplace(evaluator, facts, *request.cluster, observer, go_on);
@@ -168,7 +167,6 @@ std::optional<sweep::SweepResult> RunComputed(sweep::Evaluator& evaluator,
   } else {
     NoteOpenShards(request.out, observer);
   }
-  ForgetOtherLimits(journal, evaluator.experiment().run, file, observer);
   Stopwatch watch(journal);
   sweep::TrialRunner runner(
       [&](const sweep::TrialRequest& trial) { return evaluator.Evaluate(trial); },

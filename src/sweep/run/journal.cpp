@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -42,6 +43,10 @@ std::string Differences(const Facts& then, const Facts& now) {
   return more == 0 ? text : fmt::format("{}; and {} more", text, more);
 }
 
+bool IsGivenUp(const std::string& status) {
+  return std::find(kGivenUp.begin(), kGivenUp.end(), status) != kGivenUp.end();
+}
+
 bool HasSharedMemory(const fs::path& file, JournalLog log) {
   if (log != JournalLog::kAsTheFolderAllows) return log == JournalLog::kWriteAhead;
   return files::NetworkFileSystemOf(file.parent_path()).empty();
@@ -69,6 +74,9 @@ struct Journal::Store {
       : file(path), database(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
     database.setBusyTimeout(2000);
     Check();
+    // Before anything is written: a database of somebody else stays as it is.
+    const bool is_new = Count(database, "SELECT COUNT(*) FROM sqlite_master") == 0;
+    if (!is_new) RequireOurTables(database, file);
     // NORMAL: a commit survives the process, and after a loss of power the journal is whole but
     // may lack the last commits.
     // Rows of 1.4 kB: each would fill a page of 4 kB by itself.
@@ -78,8 +86,7 @@ struct Journal::Store {
     } else {
       database.exec("PRAGMA journal_mode=DELETE; PRAGMA synchronous=FULL;");
     }
-    MakeTables(database);
-    RequireOurTables(database, file);
+    if (is_new) MakeTables(database);
   }
 
   /// Removes what is damaged.
@@ -242,7 +249,7 @@ std::optional<std::string> Journal::Note(const std::string& name) {
   });
 }
 
-Journal::Merged Journal::Merge(const fs::path& other) {
+Journal::Merged Journal::Merge(const fs::path& other, Limits limits) {
   Merged merged;
   std::error_code not_there;
   if (!fs::is_regular_file(other, not_there)) throw UselessJournal(other.string() + " is no file");
@@ -256,8 +263,14 @@ Journal::Merged Journal::Merge(const fs::path& other) {
     const int all = Count(database, "SELECT COUNT(*) FROM trial");
     SQLite::Statement rows(database, "SELECT key, status, gap_m, falsified, row FROM sound_trial");
     while (rows.executeStep()) {
-      Add(rows.getColumn(0).getString(), EntryOf(rows));
+      const std::string key = rows.getColumn(0).getString();
+      const JournalEntry entry = EntryOf(rows);
       ++merged.trials;
+      const bool is_given_up = IsGivenUp(entry.status);
+      if (is_given_up && Has(key)) continue;
+      const bool is_left_out = is_given_up && limits == Limits::kOther;
+      merged.given_up += is_left_out;
+      if (!is_left_out) Add(key, entry);
     }
     merged.damaged = all - merged.trials;
     SQLite::Statement elapsed(database, "SELECT value FROM sound_note WHERE name = 'elapsed_s'");

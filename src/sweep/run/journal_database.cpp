@@ -95,7 +95,11 @@ std::string OnOneLine(std::string text) {
 
 }  // namespace
 
-void MakeTables(SQLite::Database& database) { database.exec(kSchema); }
+void MakeTables(SQLite::Database& database) {
+  SQLite::Transaction transaction(database);
+  database.exec(kSchema);
+  transaction.commit();
+}
 
 void RequireOurTables(SQLite::Database& database, const fs::path& file) {
   SQLite::Database ours(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);

@@ -12,7 +12,7 @@
 
 namespace rift::sweep {
 
-/// Makes the tables of a journal where they are not there yet.
+/// Makes the tables of a journal in an empty database: all or, when it is killed, none.
 void MakeTables(SQLite::Database& database);
 
 /// Throws std::invalid_argument for tables other than those that this version makes.

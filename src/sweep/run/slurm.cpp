@@ -1,15 +1,19 @@
 #include "rift/sweep/run/slurm.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <optional>
 #include <sstream>
 #include <string_view>
 
+#include "rift/sweep/run/byte_codec.hpp"
 #include "rift/sweep/run/external_program.hpp"
+#include "worker.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -30,15 +34,68 @@ std::string EndOf(const ExternalProgram::Exit& exit) {
                           : fmt::format("ended with exit code {}", exit.code);
 }
 
-/// What a command of Slurm prints. Throws as the header says.
-std::string Answer(const std::vector<std::string>& arguments) {
+/// How a command ended, and what it printed.
+struct Ended {
+  ExternalProgram::Exit exit;
+  std::string out, words;
+};
+
+template <class Bytes, Is<Ended> T>
+void Members(Bytes& bytes, T& ended) {
+  bytes(ended.exit);
+  bytes(ended.out);
+  bytes(ended.words);
+}
+
+Ended RunToItsEnd(const std::vector<std::string>& arguments) {
   ExternalProgram program({.arguments = arguments, .talks = true}, ExternalProgram::MakeFolder());
-  std::string out;
-  while (const std::optional<std::string> line = program.ReceiveLine()) out += *line + '\n';
-  const ExternalProgram::Exit exit = program.Wait();
+  Ended ended;
+  while (const std::optional<std::string> line = program.ReceiveLine()) ended.out += *line + '\n';
+  ended.exit = program.Wait();
+  ended.words = program.LastWords();
+  return ended;
+}
+
+/// In a process of its own, with which the command is killed where it takes too long.
+Ended Run(const std::vector<std::string>& arguments, const SlurmPatience& patience) {
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+  constexpr int kTick_ms = 50;
+  const auto work = [&arguments](const std::string&) {
+    ByteWriter write;
+    write(RunToItsEnd(arguments));
+    return write.Take();
+  };
+  Worker worker(work, {});
+  worker.Send("");
+  Clock::time_point since = Clock::now();
+  double limit_s = patience.limit_s;
+  for (bool is_stopped = false; Seconds(Clock::now() - since).count() < limit_s;) {
+    if (!is_stopped && !patience.go_on()) {
+      is_stopped = true;
+      since = Clock::now();
+      limit_s = std::min(limit_s, SlurmPatience::kAtStop_s);
+    }
+    pollfd waiting{worker.Descriptor(), POLLIN, 0};
+    ::poll(&waiting, 1, kTick_ms);
+    const bool is_alive = worker.Receive();
+    if (const std::optional<JobResult> result = worker.NextResult()) {
+      if (result->end != JobEnd::kDone) throw std::runtime_error(result->bytes);
+      Ended ended;
+      ByteReader read(result->bytes);
+      read(ended);
+      return ended;
+    }
+    if (!is_alive) throw SlurmBusy(fmt::format("{}: {}", arguments[0], worker.Reap().reason));
+  }
+  throw SlurmBusy(fmt::format("{} did not answer within {:g} s", arguments[0], limit_s));
+}
+
+/// What a command of Slurm prints. Throws as the header says.
+std::string Answer(const std::vector<std::string>& arguments, const SlurmPatience& patience) {
+  const auto [exit, out, words] = Run(arguments, patience);
   if (exit.code == 0 && exit.signal == 0) return out;
-  const std::string words = program.LastWords();
-  if (exit.code == 127 && words.starts_with("cannot run")) {
+  if (ExternalProgram::WasNeverStarted(exit, words)) {
     throw std::runtime_error(fmt::format(
         "{}: --engine slurm needs Slurm's commands in PATH; without them use --engine local",
         words));
@@ -77,7 +134,8 @@ std::string IndexRanges(const std::vector<int>& indices) {
   return text;
 }
 
-std::string SubmitArray(const SlurmArray& array, const SlurmOptions& options) {
+std::string SubmitArray(const SlurmArray& array, const SlurmOptions& options,
+                        const SlurmPatience& patience) {
   // A job would inherit the limits under which ExternalProgram runs sbatch.
   std::vector<std::string> arguments{"sbatch",
                                      "--parsable",
@@ -96,15 +154,16 @@ std::string SubmitArray(const SlurmArray& array, const SlurmOptions& options) {
   if (!options.time_limit.empty()) arguments.push_back("--time=" + options.time_limit);
   arguments.insert(arguments.end(), options.arguments.begin(), options.arguments.end());
   arguments.push_back(array.script.string());
-  const std::string answer = Answer(arguments);  // "123\n" or "123;cluster\n"
+  const std::string answer = Answer(arguments, patience);  // "123\n" or "123;cluster\n"
   std::string id = answer.substr(0, answer.find_first_not_of("0123456789"));
   if (id.empty()) throw std::runtime_error("sbatch told no job id, but: " + answer);
   return id;
 }
 
-std::map<int, SlurmTask> QueuedTasks(const std::string& name) {
+std::map<int, SlurmTask> QueuedTasks(const std::string& name, const SlurmPatience& patience) {
   std::istringstream lines(
-      Answer({"squeue", "--me", "--noheader", "--array", "--name=" + name, "--format=%i|%T|%r"}));
+      Answer({"squeue", "--me", "--noheader", "--array", "--name=" + name, "--format=%i|%T|%r"},
+             patience));
   std::map<int, SlurmTask> tasks;
   for (std::string line; std::getline(lines, line);) {
     const size_t task = line.find('_'), state = line.find('|'), reason = line.rfind('|');
@@ -117,24 +176,24 @@ std::map<int, SlurmTask> QueuedTasks(const std::string& name) {
   return tasks;
 }
 
-void CancelArrays(const std::string& name) {
-  std::map<int, SlurmTask> tasks = QueuedTasks(name);
+void CancelArrays(const std::string& name, const SlurmPatience& patience) {
+  std::map<int, SlurmTask> tasks = QueuedTasks(name, patience);
   std::vector<std::string> arguments{"scancel"};
   for (const auto& [index, task] : tasks) arguments.push_back(task.job);
   std::sort(arguments.begin() + 1, arguments.end());
   arguments.erase(std::unique(arguments.begin() + 1, arguments.end()), arguments.end());
-  if (arguments.size() > 1) Answer(arguments);
+  if (arguments.size() > 1) Answer(arguments, patience);
 }
 
-void CancelTask(const SlurmTask& task, int index) {
-  Answer({"scancel", fmt::format("{}_{}", task.job, index)});
+void CancelTask(const SlurmTask& task, int index, const SlurmPatience& patience) {
+  Answer({"scancel", fmt::format("{}_{}", task.job, index)}, patience);
 }
 
-int MaxArraySize() {
+int MaxArraySize(const SlurmPatience& patience) {
   constexpr int kDefault = 1001;  // slurm.conf(5)
   std::istringstream lines;
   try {
-    lines.str(Answer({"scontrol", "show", "config"}));
+    lines.str(Answer({"scontrol", "show", "config"}, patience));
   } catch (const SlurmBusy&) {
     return kDefault;
   }

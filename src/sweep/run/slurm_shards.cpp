@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -18,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kIndex = "shards";  // a name a line; there while the array is not over
+constexpr const char* kExperiment = "experiment.yaml";  // resolved
 // A file that another machine has renamed may be seen some time after its job has left the queue.
 constexpr int kMostAbsent = 3;
 
@@ -76,7 +78,47 @@ void CleanUp(const fs::path& out, const fs::path& folder, const std::vector<std:
     fs::remove(ShardJournal(out, names[i]), ignored);
     fs::remove(UnfinishedShardJournal(out, names[i]), ignored);
   }
-  fs::remove(folder / "experiment.yaml", ignored);
+  fs::remove(folder / kExperiment, ignored);
+}
+
+/// What Slurm says to it helps nobody: the jobs end by themselves, and the next run takes them in.
+void CancelOrSay(const std::string& job_name, const SlurmShards::Say& say) {
+  constexpr double kLimit_s = 10.0;  // somebody waits for the end of the command
+  try {
+    CancelArrays(job_name, {.limit_s = kLimit_s});
+  } catch (const std::runtime_error& error) {
+    say(
+        fmt::format("note: jobs named {0} may still be in the queue, where scancel --name={0} ends "
+                    "them: {1}",
+                    job_name, error.what()));
+  }
+}
+
+/// Under which limits an array was submitted: they stand in its experiment.
+Limits LimitsOf(const fs::path& folder, const std::string& experiment_now) {
+  try {
+    const bool is_same = files::ReadIfThere(folder / kExperiment) == experiment_now;
+    return is_same ? Limits::kOfNow : Limits::kOther;
+  } catch (const std::exception&) {
+    return Limits::kOther;  // nobody can say
+  }
+}
+
+/// Why a task would refuse its shard, which is named by its content; empty: it would not.
+std::string WhyUseless(const fs::path& folder, size_t task, const std::string& name) {
+  const fs::path file = ShardFile(folder, task), experiment = folder / kExperiment;
+  const auto is_other = [](const fs::path& path) {
+    return path.string() + " is not there or not what was submitted";
+  };
+  try {
+    const std::string bytes = files::ReadIfThere(file).value_or("");
+    if (ShardName(bytes) != name) return is_other(file);
+    const std::string text = files::ReadIfThere(experiment).value_or("");
+    const bool is_same = statistics::Hash128Text(text) == DecodeShard(bytes, file).experiment;
+    return is_same ? "" : is_other(experiment);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
 }
 
 fs::path OwnProgram() { return fs::read_symlink("/proc/self/exe"); }
@@ -96,13 +138,14 @@ bool SlurmShards::Resume() {
   for (const auto& [number, folder] : Arrays(out_)) {
     const std::vector<std::string> names = OpenShards(folder);
     if (names.empty()) continue;
-    Group group{.folder = folder, .job_name = JobName(folder)};
+    Group group{
+        .folder = folder, .job_name = JobName(folder), .limits = LimitsOf(folder, experiment_)};
     files::WriteFile(folder / "array.sh",
                      Script(folder));  // the cluster's habits may be others now
     for (const std::string& name : names) {
       // Whoever submitted it is gone: not in the queue at the first look means not there.
       group.tasks.push_back({.name = name, .absent = kMostAbsent - 1});
-      TakeIn(UnfinishedShardJournal(out_, name));
+      TakeIn(UnfinishedShardJournal(out_, name), group.limits);
     }
     groups.push_back(std::move(group));
   }
@@ -111,8 +154,8 @@ bool SlurmShards::Resume() {
 
 bool SlurmShards::Run(const std::vector<Shard>& shards) {
   if (shards.empty()) return true;
-  const auto size =
-      static_cast<size_t>(options_.max_array_size > 0 ? options_.max_array_size : MaxArraySize());
+  const auto size = static_cast<size_t>(options_.max_array_size > 0 ? options_.max_array_size
+                                                                    : MaxArraySize(Patience()));
   const std::vector<std::pair<int, fs::path>> before = Arrays(out_);
   int number = before.empty() ? 0 : before.back().first;
   std::vector<Group> groups;
@@ -128,13 +171,13 @@ bool SlurmShards::Run(const std::vector<Shard>& shards) {
 SlurmShards::Group SlurmShards::Write(int number, const std::vector<Shard>& shards) const {
   const fs::path folder = out_ / "slurm" / std::to_string(number);
   Group group{.folder = folder, .job_name = JobName(folder)};
-  files::WriteFile(folder / "experiment.yaml", experiment_);
+  files::WriteFile(folder / kExperiment, experiment_);
   files::WriteFile(folder / "array.sh", Script(folder));
   std::string index;
   for (size_t i = 0; i < shards.size(); ++i) {
     const std::string encoded = EncodeShard(shards[i]);
     files::WriteFile(ShardFile(folder, i), encoded);
-    group.tasks.push_back({.name = ShardName(encoded)});
+    group.tasks.push_back({.name = ShardName(encoded), .may_be_useless = false});
     index += group.tasks.back().name + '\n';
   }
   files::WriteFile(folder / kIndex, index);
@@ -149,10 +192,10 @@ std::string SlurmShards::Script(const fs::path& folder) const {
       "[ -z \"${SLURM_TMPDIR:-}\" ] || export TMPDIR=\"$SLURM_TMPDIR\"\n";
   for (const std::string& line : options_.prologue) script += line + '\n';
   const std::string program = options_.program.empty() ? OwnProgram().string() : options_.program;
-  script += fmt::format("exec {} sweep {} --out {} --shard {}/\"$SLURM_ARRAY_TASK_ID\".shard",
-                        files::ShellQuoted(program),
-                        files::ShellQuoted((folder / "experiment.yaml").string()),
-                        files::ShellQuoted(out_.string()), files::ShellQuoted(folder.string()));
+  script +=
+      fmt::format("exec {} sweep {} --out {} --shard {}/\"$SLURM_ARRAY_TASK_ID\".shard",
+                  files::ShellQuoted(program), files::ShellQuoted((folder / kExperiment).string()),
+                  files::ShellQuoted(out_.string()), files::ShellQuoted(folder.string()));
   // What is too large has been refused by whoever submits.
   return script + fmt::format(" --jobs {} --copy-every {:g} --large-inputs\n",
                               options_.cpus_per_task, options_.copy_every_s);
@@ -177,7 +220,9 @@ bool SlurmShards::Drive(std::vector<Group> groups) {
         files::RemoveAll(out_ / "shards");
         return true;
       }
-      for (Group& group : groups) Submit(group);
+      if (watch_.go_on()) {
+        for (Group& group : groups) Submit(group);
+      }
       if (!Wait(options_.poll_s)) {
         Cancel(groups);
         return false;
@@ -201,7 +246,7 @@ ShardCounts SlurmShards::Look(std::vector<Group>& groups) {
 void SlurmShards::LookAt(Group& group, ShardCounts& counts) {
   std::optional<std::map<int, SlurmTask>> queue;
   try {
-    queue = QueuedTasks(group.job_name);
+    queue = QueuedTasks(group.job_name, Patience());
     group.is_known = queue_was_read_ = true;
   } catch (const SlurmBusy& busy) {
     Complain(busy.what());
@@ -237,7 +282,7 @@ void SlurmShards::GiveUp(Group& group, size_t index, const SlurmTask& queued) {
       "note: shard {} of {} lost its node so often that Slurm holds it ({}); it is submitted anew",
       index, group.folder.string(), queued.reason));
   try {
-    CancelTask(queued, static_cast<int>(index));
+    CancelTask(queued, static_cast<int>(index), Patience());
     group.tasks[index].absent = kMostAbsent;
   } catch (const SlurmBusy& busy) {
     Complain(busy.what());
@@ -246,20 +291,26 @@ void SlurmShards::GiveUp(Group& group, size_t index, const SlurmTask& queued) {
 
 void SlurmShards::TakeIn(Group& group) {
   for (Task& task : group.tasks) {
-    if (!task.is_done) task.is_done = TakeIn(ShardJournal(out_, task.name));
+    if (!task.is_done) task.is_done = TakeIn(ShardJournal(out_, task.name), group.limits);
   }
 }
 
 /// What is damaged or missing in the journal of a shard is run here by whoever asked for the rows.
-bool SlurmShards::TakeIn(const fs::path& journal) {
+bool SlurmShards::TakeIn(const fs::path& journal, Limits limits) {
   std::error_code not_there;
   if (!fs::exists(journal, not_there)) return false;
   try {
-    const Journal::Merged merged = journal_.Merge(journal);
+    const Journal::Merged merged = journal_.Merge(journal, limits);
     if (merged.damaged > 0) {
       watch_.say(fmt::format(
           "note: {}: {} of its rows were damaged and are left out; what is missing is run again",
           journal.string(), merged.damaged));
+    }
+    if (merged.given_up > 0) {
+      watch_.say(fmt::format(
+          "note: {}: {} of its trials hung, crashed or ran out of memory, perhaps under other "
+          "limits (run), and are left out; what is missing is run again",
+          journal.string(), merged.given_up));
     }
     return true;
   } catch (const UselessJournal& error) {
@@ -269,8 +320,25 @@ bool SlurmShards::TakeIn(const fs::path& journal) {
   }
 }
 
+/// Its task would end at once, however often it is submitted. What is missing then is run again by
+/// whoever asked for the rows.
+void SlurmShards::DropUseless(Group& group) {
+  std::set<std::string> told;
+  for (size_t i = 0; i < group.tasks.size(); ++i) {
+    Task& task = group.tasks[i];
+    if (task.is_done || task.absent < kMostAbsent || !task.may_be_useless) continue;
+    const std::string reason = WhyUseless(group.folder, i, task.name);
+    if (reason.empty()) continue;
+    task.is_done = true;
+    if (told.insert(reason).second) {
+      watch_.say(fmt::format("note: {}; what is missing is run again", reason));
+    }
+  }
+}
+
 void SlurmShards::Submit(Group& group) {
   if (!group.is_known || Clock::now() < not_before_) return;
+  DropUseless(group);
   SlurmArray array{.name = group.job_name,
                    .tasks = {},
                    .script = group.folder / "array.sh",
@@ -291,7 +359,7 @@ void SlurmShards::Submit(Group& group) {
   }
   if (array.tasks.empty()) return;
   try {
-    const std::string job = SubmitArray(array, options_);
+    const std::string job = SubmitArray(array, options_, Patience());
     const std::string before = files::ReadIfThere(group.folder / "jobs").value_or("");
     files::WriteFile(group.folder / "jobs",
                      before + fmt::format("{} {}\n", job, IndexRanges(array.tasks)));
@@ -299,6 +367,7 @@ void SlurmShards::Submit(Group& group) {
       Task& task = group.tasks[static_cast<size_t>(i)];
       ++task.tries;
       task.absent = 0;
+      task.may_be_useless = true;
     }
     back_off_s_ = 0.0;
     complaint_.clear();
@@ -323,20 +392,12 @@ bool SlurmShards::Wait(double duration_s) const {
   return watch_.go_on();
 }
 
-/// What Slurm says to it helps nobody: the jobs end by themselves, and the next run takes them in.
 void SlurmShards::Cancel(const std::vector<Group>& groups) const {
-  for (const Group& group : groups) {
-    try {
-      CancelArrays(group.job_name);
-    } catch (const std::runtime_error& error) {
-      watch_.say(fmt::format("note: jobs named {} may still be in the queue: {}", group.job_name,
-                             error.what()));
-    }
-  }
+  for (const Group& group : groups) CancelOrSay(group.job_name, watch_.say);
 }
 
 void SlurmShards::Complain(const std::string& reason) {
-  if (reason == complaint_) return;
+  if (reason == complaint_ || !watch_.go_on()) return;
   complaint_ = reason;
   watch_.say(fmt::format("note: {}; trying again", reason));
 }
@@ -347,9 +408,9 @@ bool SlurmShards::AreOpen(const fs::path& out) {
                      [](const auto& array) { return !OpenShards(array.second).empty(); });
 }
 
-void SlurmShards::Forget(const fs::path& out) {
+void SlurmShards::Forget(const fs::path& out, const Say& say) {
   for (const auto& [number, folder] : Arrays(out)) {
-    if (!OpenShards(folder).empty()) CancelArrays(JobName(folder));
+    if (!OpenShards(folder).empty()) CancelOrSay(JobName(folder), say);
   }
   // Tasks that are being cancelled still write there.
   for (const char* name : {"slurm", "shards"}) {
@@ -360,16 +421,17 @@ void SlurmShards::Forget(const fs::path& out) {
   }
 }
 
-std::optional<ShardCounts> ReadShardCounts(const fs::path& out) {
+std::optional<ShardCounts> ReadShardCounts(const fs::path& out, double limit_s) {
   ShardCounts counts;
+  bool slurm_answers = true;  // whoever waits does not wait for each array
   for (const auto& [number, folder] : Arrays(out)) {
     const std::vector<std::string> names = OpenShards(folder);
     if (names.empty()) continue;
     std::map<int, SlurmTask> queue;
     try {
-      queue = QueuedTasks(JobName(folder));
+      if (slurm_answers) queue = QueuedTasks(JobName(folder), {.limit_s = limit_s});
     } catch (const std::runtime_error&) {
-      queue = {};  // unknown
+      slurm_answers = false;
     }
     for (size_t i = 0; i < names.size(); ++i) {
       ++counts.total;

@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <SQLiteCpp/SQLiteCpp.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <csignal>
@@ -14,7 +16,9 @@
 #include <map>
 #include <stdexcept>
 
+#include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/run/journal_summary.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/child_end.hpp"
 #include "support/processes/process.hpp"
@@ -150,6 +154,25 @@ TEST_CASE("A damaged journal is refused and left alone") {
   for (size_t i = 4096; i < bytes.size(); i += 512) bytes[i] = '\x7f';
   test::WriteText(file, bytes);
   CHECK(Refusal([&] { Journal(file, kFacts); }).find("it is damaged") != std::string::npos);
+}
+
+TEST_CASE("A database of somebody else is refused and left alone, to the last byte") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  SQLite::Database(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+      .exec("CREATE TABLE photo(name); INSERT INTO photo VALUES ('x')");
+  const std::string bytes = test::ReadFile(file);
+  CHECK_THAT(Refusal([&] { Journal(file, kFacts); }),
+             Catch::StartsWith(file + ": its tables are not those of this version of rift"));
+  CHECK(test::ReadFile(file) == bytes);
+}
+
+TEST_CASE("The statuses of trials that were given up are those of workers that did not end well") {
+  using Status = TrialStatus;
+  REQUIRE(kGivenUp.size() == 3);
+  CHECK(kGivenUp[0] == yaml::NameOf(Status::kHung));
+  CHECK(kGivenUp[1] == yaml::NameOf(Status::kCrashed));
+  CHECK(kGivenUp[2] == yaml::NameOf(Status::kOutOfMemory));
 }
 
 TEST_CASE("A journal that cannot be made says so") {

@@ -120,6 +120,29 @@ TEST_CASE("Journals of shards merge into one with the rows of all, whichever com
   CHECK(ReadJournal(folder / "all").trials_by_status.at("ok") == 15);
 }
 
+TEST_CASE("A trial that was given up takes no row's place, and none under other limits") {
+  const test::TemporaryFolder folder;
+  const auto row = [](const std::string& status) {
+    return JournalEntry{status, 0.01, false, status};
+  };
+  Journal journal(folder / "all", kFacts), shard(folder / "shard", kFacts);
+  journal.Add("came out here", row("ok"));
+  shard.Add("came out here", row("hung"));
+  journal.Add("came out there", row("out_of_memory"));
+  shard.Add("came out there", row("fell"));
+  shard.Add("nowhere", row("crashed"));
+  shard.Close();
+  const Journal::Merged other = journal.Merge(folder / "shard", Limits::kOther);
+  CHECK(other.trials == 3);
+  CHECK(other.given_up == 1);
+  CHECK(other.damaged == 0);
+  CHECK_FALSE(journal.Has("nowhere"));
+  CHECK(journal.Merge(folder / "shard").given_up == 0);
+  CHECK(journal.Find("nowhere") == "crashed");
+  CHECK(journal.Find("came out here") == "ok");
+  CHECK(journal.Find("came out there") == "fell");
+}
+
 TEST_CASE("A journal of a shard that is no journal, or another's, or damaged, is not taken over") {
   const test::TemporaryFolder folder;
   Journal journal(folder / "all", kFacts);

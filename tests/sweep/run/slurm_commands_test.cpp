@@ -1,16 +1,20 @@
 // What the commands of Slurm are given and how their answers are read, with stand-ins for them.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
 
+#include "rift/statistics/hash.hpp"
 #include "rift/sweep/run/slurm.hpp"
 #include "rift/sweep/run/slurm_options.hpp"
 #include "rift/sweep/run/slurm_shards.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
+#include "support/until.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -182,7 +186,22 @@ TEST_CASE("Without Slurm's commands the message says which engine works") {
                                         Catch::Contains("without them use --engine local"));
 }
 
-Shard ShardOf(const std::string& request) { return {.facts = "f", .requests = {request}}; }
+TEST_CASE("A command of Slurm that does not answer in time is killed, and may be asked again") {
+  const Stand stand;
+  stand.Does("squeue", "echo $$ > \"$D/new\"\nmv \"$D/new\" \"$D/pid\"\nexec sleep 1000\n");
+  CHECK_THROWS_WITH(QueuedTasks("rift-a", {.limit_s = 0.1}), "squeue did not answer within 0.1 s");
+  CHECK_THROWS_AS(QueuedTasks("rift-a", {.go_on = [&] { return !fs::exists(stand / "pid"); }}),
+                  SlurmBusy);
+  const pid_t pid = std::stoi(test::ReadFile(stand / "pid"));
+  test::WaitUntil("its end", [&] { return ::kill(pid, 0) != 0; });
+  stand.Does("squeue", "");
+  CHECK(QueuedTasks("rift-a", {.limit_s = 30.0}).empty());
+}
+
+/// Of an experiment whose text is empty.
+Shard ShardOf(const std::string& request) {
+  return {.facts = "f", .experiment = statistics::Hash128Text(""), .requests = {request}};
+}
 
 /// A cluster that has finished what it is given, where a journal lies ready in `ready`.
 class Cluster : public Stand {
@@ -196,9 +215,10 @@ class Cluster : public Stand {
          "  [ ! -f \"$D/ready/$NAME\" ] || cp \"$D/ready/$NAME\" \"$O/$NAME.sqlite\"\n"
          "done < \"$F/shards\"\n");
   }
-  void Finishes(const Shard& shard, const std::string& key) const {
+  void Finishes(const Shard& shard, const std::string& key,
+                const std::string& status = "ok") const {
     Journal journal(*this / ("ready/" + ShardName(EncodeShard(shard))), kFacts);
-    journal.Add(key, {"ok", 0.01, false, "row of " + key});
+    journal.Add(key, {status, 0.01, false, "row of " + key});
     journal.Close();
   }
   fs::path Out() const { return *this / "out"; }
@@ -293,10 +313,13 @@ TEST_CASE("A shard that leaves no journal is run three times, and told with its 
   CHECK(cluster.Arguments("scancel") == "41\n");
   CHECK(journal.Find("a"));
   CHECK(SlurmShards::AreOpen(cluster.Out()));
-  SlurmShards::Forget(cluster.Out());
+  std::vector<std::string> said;
+  const auto say = [&](const std::string& line) { said.push_back(line); };
+  SlurmShards::Forget(cluster.Out(), say);
   CHECK(cluster.Arguments("scancel") == "41\n");
   CHECK_FALSE(fs::exists(cluster.Out() / "slurm"));
   CHECK_FALSE(fs::exists(cluster.Out() / "shards"));
+  CHECK(said.empty());
 }
 
 TEST_CASE("Whoever is told to stop cancels the jobs, and the next takes in what they left") {
@@ -498,6 +521,110 @@ TEST_CASE("An array has the number behind the largest, and no job of it is left 
   CHECK(slurm.Run({shard}));
   CHECK(fs::exists(cluster.Out() / "slurm/11/jobs"));
   CHECK(cluster.Arguments("scancel") == "41\n");
+}
+
+/// Arrays of a sweep that was stopped before any was submitted.
+void WriteArrays(const Cluster& cluster, Journal& journal, const std::vector<Shard>& shards,
+                 const SlurmOptions& options) {
+  SlurmShards::Watch watch;
+  watch.go_on = [] { return false; };
+  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
+  cluster.Arguments("sbatch");
+  CHECK_FALSE(slurm.Run(shards));
+  CHECK(cluster.Arguments("sbatch").empty());
+}
+
+TEST_CASE("Whoever is told to stop does not wait for a queue that does not answer") {
+  const Cluster cluster;
+  Journal journal = cluster.NewJournal();
+  cluster.Does("squeue", "[ -e \"$D/asked\" ] || { : > \"$D/asked\"; exec sleep 1000; }\n");
+  cluster.Answers("squeue", "41_0|RUNNING|None\n");
+  std::vector<std::string> said;
+  SlurmShards::Watch watch;
+  watch.say = [&](const std::string& line) { said.push_back(line); };
+  watch.go_on = [&] { return !fs::exists(cluster / "asked"); };
+  const SlurmOptions options = Quick();
+  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
+  CHECK_FALSE(slurm.Run({ShardOf("a")}));
+  CHECK(cluster.Arguments("sbatch").empty());
+  CHECK(cluster.Arguments("scancel") == "41\n");
+  CHECK(said.empty());
+}
+
+TEST_CASE("Shards are counted without a queue that does not answer, which is asked once") {
+  const Cluster cluster;
+  Journal journal = cluster.NewJournal();
+  WriteArrays(cluster, journal, {ShardOf("a"), ShardOf("b")}, Quick(1));
+  cluster.Arguments("squeue");
+  cluster.Does("squeue", "exec sleep 1000\n");
+  CHECK(*ReadShardCounts(cluster.Out(), 0.3) == ShardCounts{.total = 2});
+  const std::string asked = cluster.Arguments("squeue");
+  CHECK(std::count(asked.begin(), asked.end(), '\n') <= 5);  // arguments
+}
+
+TEST_CASE("A shard whose files are damaged or gone is not submitted, and its rows are missing") {
+  const Cluster cluster;
+  Journal journal = cluster.NewJournal();
+  const SlurmOptions options = Quick();
+  std::vector<Shard> shards;
+  for (const char* key : {"a", "b", "c", "d"}) {
+    shards.push_back(ShardOf(key));
+    cluster.Finishes(shards.back(), key);
+  }
+  WriteArrays(cluster, journal, shards, options);
+  const std::string array = (cluster.Out() / "slurm/1/").string();
+  test::WriteText(array + "0.shard", "damaged");
+  fs::remove(array + "2.shard");
+  std::vector<std::string> said;
+  SlurmShards::Watch watch;
+  watch.say = [&](const std::string& line) { said.push_back(line); };
+  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
+  const std::string end = " is not there or not what was submitted; what is missing is run again";
+  SECTION("its own") {
+    CHECK(slurm.Resume());
+    CHECK(test::ReadFile(array + "jobs") == "41 1,3\n");
+    CHECK(said == std::vector<std::string>{"note: " + array + "0.shard" + end,
+                                           "note: " + array + "2.shard" + end});
+    CHECK_FALSE(journal.Has("a"));
+    CHECK(journal.Has("b"));
+  }
+  SECTION("the experiment of all") {
+    test::WriteText(array + "experiment.yaml", "name: x\n");
+    CHECK(slurm.Resume());
+    CHECK(cluster.Arguments("sbatch").empty());
+    REQUIRE(said.size() == 3);
+    CHECK(said[1] == "note: " + array + "experiment.yaml" + end);
+  }
+  SECTION("while it is run") {
+    fs::remove_all(cluster.Out() / "slurm");
+    const Shard other = ShardOf("e");
+    cluster.Does("sbatch", "for A; do S=$A; done\necho x > \"${S%/*}/0.shard\"\n");
+    CHECK(slurm.Run({other}));
+    CHECK(said == std::vector<std::string>{"note: " + array + "0.shard" + end});
+    CHECK(test::ReadFile(array + "jobs") == "41 0\n");
+  }
+  CHECK_FALSE(SlurmShards::AreOpen(cluster.Out()));
+}
+
+TEST_CASE("What hung in an array of an experiment with other limits is left out, and told") {
+  const Cluster cluster;
+  Journal journal = cluster.NewJournal();
+  const SlurmOptions options = Quick();
+  const std::vector<Shard> shards{ShardOf("a"), ShardOf("b")};
+  cluster.Finishes(shards[0], "a", "hung");
+  cluster.Finishes(shards[1], "b");
+  for (const bool is_same : {false, true}) {
+    WriteArrays(cluster, journal, shards, options);
+    std::vector<std::string> said;
+    SlurmShards::Watch watch;
+    watch.say = [&](const std::string& line) { said.push_back(line); };
+    SlurmShards slurm(cluster.Out(), options, is_same ? "" : "run: x\n", journal, watch);
+    CHECK(slurm.Resume());
+    CHECK(journal.Has("a") == is_same);
+    CHECK(journal.Has("b"));
+    CHECK(said.size() == (is_same ? 0 : 1));
+    if (!is_same) CHECK_THAT(said.at(0), Catch::Contains(": 1 of its trials hung, crashed or ran"));
+  }
 }
 
 TEST_CASE("A complaint is told again once a submission came between") {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace rift::sweep {
 
@@ -23,6 +25,14 @@ struct JournalEntry {
   bool falsified = false;
   std::string bytes;
 };
+
+/// Statuses of trials whose process was given up (kHung, kCrashed and kOutOfMemory of TrialStatus).
+/// They tell of the machine and of RunOptions, and not of the experiment: run again, such a trial
+/// may end otherwise. Every other row of a key is the same wherever it is computed.
+inline constexpr std::array<std::string_view, 3> kGivenUp{"hung", "crashed", "out_of_memory"};
+
+/// RunOptions under which the rows of a journal were computed: those of now, or perhaps others.
+enum class Limits { kOfNow, kOther };
 
 /// A journal of a shard that cannot be taken over.
 class UselessJournal : public std::runtime_error {
@@ -72,12 +82,15 @@ class Journal {
   std::optional<std::string> Note(const std::string& name);
   /// What was taken over from another journal.
   struct Merged {
-    int trials = 0;   ///< sound ones, those that were there already included
-    int damaged = 0;  ///< rows that did not fit their hash and were left out
+    int trials = 0;    ///< sound ones, those that were there already included
+    int damaged = 0;   ///< rows that did not fit their hash and were left out
+    int given_up = 0;  ///< of `trials`, those left out since they were given up under other limits
   };
-  /// Takes over the trials of the journal of a shard, and its note of the time it took. Throws
-  /// UselessJournal when it is none, is damaged as a whole, or was made from other facts.
-  Merged Merge(const std::filesystem::path& other);
+  /// Takes over the trials of the journal of a shard, and its note of the time it took. A trial
+  /// that was given up (kGivenUp) never takes the place of a row that is there, and is left out
+  /// where the shard had other limits. Throws UselessJournal when it is none, is damaged as a
+  /// whole, or was made from other facts.
+  Merged Merge(const std::filesystem::path& other, Limits limits = Limits::kOfNow);
   /// Commits, and writes a journal with the same trials to a file that is not there yet.
   void CopyTo(const std::filesystem::path& file);
   /// Commits and leaves one plain file without a log beside it.

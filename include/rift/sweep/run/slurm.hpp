@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -37,22 +38,33 @@ struct SlurmTask {
   bool IsWaiting() const { return state == "PENDING" || state == "REQUEUE_HOLD"; }
 };
 
+/// How long a command of Slurm is waited for: of a controller that is overloaded, or a file system
+/// that does not answer, there may be no end.
+struct SlurmPatience {
+  double limit_s = 60.0;
+  /// False: it is waited for kAtStop_s at most, so that one that is about to answer still does.
+  std::function<bool()> go_on = [] { return true; };
+
+  static constexpr double kAtStop_s = 1.0;
+};
+
 /// "0-4,7" of {0, 1, 2, 3, 4, 7}.
 std::string IndexRanges(const std::vector<int>& indices);
 
 /// The commands of Slurm, started by argument lists, never through a shell. All throw SlurmBusy
-/// when Slurm cannot answer now, and std::runtime_error, with its last line, when it refuses or is
-/// not installed.
+/// when Slurm cannot answer now, or not in time (the command is killed then), and
+/// std::runtime_error, with its last line, when it refuses or is not installed.
 ///
 /// The id of the new job.
-std::string SubmitArray(const SlurmArray& array, const SlurmOptions& options);
+std::string SubmitArray(const SlurmArray& array, const SlurmOptions& options,
+                        const SlurmPatience& patience = {});
 /// The tasks of this user's jobs of that name which have not ended, by their index.
-std::map<int, SlurmTask> QueuedTasks(const std::string& name);
+std::map<int, SlurmTask> QueuedTasks(const std::string& name, const SlurmPatience& patience = {});
 /// Cancels this user's jobs of that name; none is no error.
-void CancelArrays(const std::string& name);
+void CancelArrays(const std::string& name, const SlurmPatience& patience = {});
 /// Cancels one task of an array.
-void CancelTask(const SlurmTask& task, int index);
+void CancelTask(const SlurmTask& task, int index, const SlurmPatience& patience = {});
 /// MaxArraySize of the cluster, below which indices are; the default of Slurm where it is busy.
-int MaxArraySize();
+int MaxArraySize(const SlurmPatience& patience = {});
 
 }  // namespace rift::sweep

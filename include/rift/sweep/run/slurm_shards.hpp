@@ -32,16 +32,18 @@ struct ShardCounts {
 ///   OUT/shards/         journals of shards, whole files that jobs put there
 ///
 /// These files are all that is known of what was submitted, so that a coordinator that was killed
-/// goes on where it was. A shard that leaves the queue without its journal is submitted again.
+/// goes on where it was. A shard that leaves the queue without its journal is submitted again; one
+/// whose files are not those that were submitted is given up, and its trials are missing.
 class SlurmShards {
  public:
+  using Say = std::function<void(const std::string&)>;
   struct Watch {
     /// At every look at the queue.
     std::function<void(const ShardCounts&)> seen = [](const ShardCounts&) {};
-    /// Asked at least every 0.1 s; false cancels the jobs.
+    /// Asked at least every 0.1 s, also while a command of Slurm runs; false cancels the jobs.
     std::function<bool()> go_on = [] { return true; };
     /// A line for people: a refusal of Slurm, a damaged journal.
-    std::function<void(const std::string&)> say = [](const std::string&) {};
+    Say say = [](const std::string&) {};
   };
 
   /// `out` is the folder of the sweep, which nobody else works in; `experiment` its resolved text.
@@ -59,8 +61,10 @@ class SlurmShards {
 
   /// True where arrays of a sweep are not over.
   static bool AreOpen(const std::filesystem::path& out);
-  /// Cancels the jobs of a sweep and removes what is left of them.
-  static void Forget(const std::filesystem::path& out);
+  /// Cancels the jobs of a sweep and removes what is left of them. Where Slurm does not answer, as
+  /// on a machine that has none, that is said, and what is left is removed all the same: a task
+  /// without its folder ends.
+  static void Forget(const std::filesystem::path& out, const Say& say);
 
   static constexpr int kMostTries = 3;
 
@@ -70,8 +74,9 @@ class SlurmShards {
   struct Task {
     std::string name;  ///< of the shard
     bool is_done = false;
-    int tries = 0;   ///< submissions by this process
-    int absent = 0;  ///< looks in a row at a queue without it
+    int tries = 0;               ///< submissions by this process
+    int absent = 0;              ///< looks in a row at a queue without it
+    bool may_be_useless = true;  ///< its files may not be any more what was written
   };
   /// One array.
   struct Group {
@@ -79,6 +84,7 @@ class SlurmShards {
     std::string job_name;
     std::vector<Task> tasks;
     bool is_known = false;  ///< the queue has been looked at since it was submitted
+    Limits limits = Limits::kOfNow;
   };
 
   Group Write(int number, const std::vector<Shard>& shards) const;
@@ -88,11 +94,13 @@ class SlurmShards {
   void LookAt(Group& group, ShardCounts& counts);
   void GiveUp(Group& group, size_t index, const SlurmTask& queued);
   void TakeIn(Group& group);
-  bool TakeIn(const std::filesystem::path& journal);
+  bool TakeIn(const std::filesystem::path& journal, Limits limits);
   void Submit(Group& group);
+  void DropUseless(Group& group);
   bool Wait(double duration_s) const;
   void Cancel(const std::vector<Group>& groups) const;
   void Complain(const std::string& reason);
+  SlurmPatience Patience() const { return {.go_on = watch_.go_on}; }
 
   std::filesystem::path out_;
   const SlurmOptions& options_;
@@ -107,7 +115,7 @@ class SlurmShards {
 };
 
 /// How far the shards are of a sweep that was given to Slurm and is not over; nothing for others.
-/// Where Slurm does not answer only what is done is counted.
-std::optional<ShardCounts> ReadShardCounts(const std::filesystem::path& out);
+/// Where Slurm does not answer in that time only what is done is counted.
+std::optional<ShardCounts> ReadShardCounts(const std::filesystem::path& out, double limit_s = 10.0);
 
 }  // namespace rift::sweep
