@@ -16,10 +16,11 @@ struct Limit {
 };
 
 // In the order of Amount; docs/limits.md says what each costs.
-constexpr std::array<Limit, 7> kLimits{{{256.0 * 1024 * 1024, "bytes"},
+constexpr std::array<Limit, 8> kLimits{{{256.0 * 1024 * 1024, "bytes"},
                                         {1.0 * 1024 * 1024, "bytes of YAML"},
                                         {4096.0 * 4096.0, "pixels"},
                                         {2e6, "rows"},
+                                        {10'000, "columns"},
                                         {1e6, "samples"},
                                         {10'000, "waypoints"},
                                         {1e6, "trials of a grid"}}};

@@ -4,11 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <system_error>
+#include <unordered_set>
+
+#include "rift/limits/limits.hpp"
 
 namespace rift::trajectory::csv {
 namespace {
@@ -44,6 +48,36 @@ std::string TakeQuoted(std::string_view& line) {
   return cell;
 }
 
+/// Takes the next cell off the line; false when it was the last.
+bool TakeCell(std::string_view& line, char separator, std::string& cell) {
+  line = Trim(line, separator);
+  cell = line.starts_with('"') ? TakeQuoted(line) : "";
+  const size_t end = CellEnd(line, separator);
+  cell += Trim(line.substr(0, end), separator);
+  const bool is_last = end == line.size();
+  line.remove_prefix(is_last ? end : end + 1);
+  return !is_last;
+}
+
+size_t CellsOf(std::string_view line) {
+  size_t cells = 1;
+  std::string cell;
+  while (TakeCell(line, ',', cell)) ++cells;
+  return cells;
+}
+
+/// By whichever separator the line has most of; a run of blanks is one.
+size_t MostCellsOf(std::string_view line) {
+  std::array<size_t, 4> found{};
+  char before = ' ';
+  for (const char c : line) {
+    const size_t kind = std::string_view(",;\t ").find(c);
+    if (kind != std::string_view::npos) found[kind] += c != ' ' || before != ' ';
+    before = c;
+  }
+  return 1 + *std::max_element(found.begin(), found.end());
+}
+
 /// A number may begin with a plus, which std::from_chars does not know.
 std::string_view WithoutPlus(std::string_view cell) {
   const bool plus = cell.size() > 1 && cell[0] == '+' && cell[1] != '-' && cell[1] != '+';
@@ -65,7 +99,7 @@ std::string_view WithoutTornRow(std::string_view text) {
   const size_t header = text.find_first_not_of("\r\n");
   const std::string_view columns = text.substr(header, text.find('\n', header) - header);
   const auto cells = static_cast<size_t>(std::count(last.begin(), last.end(), ',')) + 1;
-  const bool lacks_cells = cells < SplitHeader(columns).size();
+  const bool lacks_cells = cells < CellsOf(columns);
   const bool is_torn =
       lacks_cells || std::string_view("+-.eE").find(last.back()) != std::string_view::npos;
   return is_torn ? text.substr(0, text.size() - last.size()) : text;
@@ -78,12 +112,24 @@ std::optional<std::string> NoteOfEnd(std::string_view text) {
              : "the last row has no line end: its last number may be cut";
 }
 
+void RequireTaken(std::string_view text, const std::string& name) {
+  using limits::Amount;
+  const auto lines = static_cast<double>(std::count(text.begin(), text.end(), '\n') + 1);
+  limits::Require(Amount::kRows, lines, name);
+  for (int number = 1; !text.empty(); ++number) {
+    const std::string_view line = TakeLine(text);
+    if (static_cast<double>(line.size()) < limits::Most(Amount::kColumns)) continue;  // fewer cells
+    limits::Require(Amount::kColumns, static_cast<double>(MostCellsOf(line)),
+                    fmt::format("{}:{}", name, number));
+  }
+}
+
 void RefuseRepeatedColumns(const std::vector<std::string>& columns, const std::string& where) {
-  for (auto column = columns.begin(); column != columns.end(); ++column) {
-    if (column->empty() || std::find(columns.begin(), column, *column) == column) continue;
-    throw std::invalid_argument(
-        fmt::format("{}: the header has two columns '{}': rename or remove one of them", where,
-                    Shown(*column)));
+  std::unordered_set<std::string_view> seen;
+  for (const std::string& column : columns) {
+    if (column.empty() || seen.insert(column).second) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: the header has two columns '{}': rename or remove one of them", where, Shown(column)));
   }
 }
 
@@ -115,16 +161,9 @@ std::string Shown(std::string_view text, size_t most) {
 }
 
 std::vector<std::string> SplitHeader(std::string_view line, char separator) {
-  std::vector<std::string> cells;
-  while (true) {
-    line = Trim(line, separator);
-    std::string quoted;
-    if (line.starts_with('"')) quoted = TakeQuoted(line);
-    const size_t end = CellEnd(line, separator);
-    cells.push_back(quoted + std::string(Trim(line.substr(0, end), separator)));
-    if (end == line.size()) return cells;
-    line.remove_prefix(end + 1);
-  }
+  std::vector<std::string> cells(1);
+  while (TakeCell(line, separator, cells.back())) cells.emplace_back();
+  return cells;
 }
 
 std::optional<double> NumberOf(std::string_view cell) {
@@ -141,6 +180,7 @@ std::optional<double> NumberOf(std::string_view cell) {
 RowReader::RowReader(std::string_view text, const std::string& name, bool has_header,
                      char separator)
     : rest_(WithoutMark(text)), name_(name), has_header_(has_header), separator_(separator) {
+  RequireTaken(rest_, name_);
   if (has_header_) ReadHeader();
 }
 

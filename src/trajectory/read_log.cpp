@@ -138,6 +138,7 @@ Log ReadLog(std::string_view text, const std::string& name, Format format) {
 Log ReadLog(std::string_view text, const std::string& name, const ReadOptions& options) {
   CheckColumns(options);
   RefuseNoText(text, name);
+  csv::RequireTaken(text, name);
   const bool has_own_columns = !options.columns.empty() || !options.units.empty();
   Log log;
   LogRows rows;

@@ -79,7 +79,29 @@ TEST_CASE("A log of more rows than the limit is refused before it is read") {
   std::string text = "t_s,x_m,y_m,yaw_rad\n";
   for (int i = 0; i < 2'000'001; ++i) text += "1,2,3,4\n";
   WriteText(log, text);
-  CheckRefused(RunRift({"gap", log, log}), "long.csv: 2000003 rows: at most 2000000");
+  const std::string says = "long.csv: 2000003 rows: at most 2000000";
+  CheckRefused(RunRift({"gap", log, log}), says);
+  CheckRefused(RunRift({"gap", log, log, "--sim-columns", "t=t_s,x=x_m,y=y_m"}), says);
+}
+
+TEST_CASE("A log or an encoder log of very many columns is refused by its header") {
+  const test::TemporaryFolder folder;
+  WriteText(folder / "trajectory.csv", "t_s,x_m,y_m" + std::string(1'000'000, ',') + "\n0,0,0\n");
+  CheckRefused(RunRift({"gap", folder / "trajectory.csv", kExample + "robot1.csv"}),
+               "trajectory.csv:1: 1000003 columns: at most 10000");
+  WriteText(folder / "trajectory.csv", "t_s,x_m,y_m\n0,0,0\n1,1,0\n");
+  WriteText(folder / "encoders.csv", "t_s,left,right" + std::string(1'000'000, ',') + "\n0,0,0\n");
+  CheckRefused(RunRift({"gap", folder.Path(), "--odometry"}),
+               "encoders.csv:1: 1000003 columns: at most 10000");
+}
+
+TEST_CASE("A camera file of more than the limit of YAML is refused") {
+  const test::TemporaryFolder folder;
+  WriteText(folder / "camera.yaml", "#" + std::string(1 << 20, 'x') + "\n");
+  CheckRefused(
+      RunRift({"track", "--camera", test::SourceDir() + "/data/camera/frames/*.jpg", "--fps", "15",
+               "--calibration", folder / "camera.yaml", "--out", folder / "log.csv"}),
+      "camera.yaml: 1048578 bytes of YAML: at most 1048576");
 }
 
 TEST_CASE("Experiments of very many waypoints or trials are refused at once") {

@@ -106,6 +106,16 @@ TEST_CASE("A file that is no encoder log is refused with its place") {
   refused("t_s,left,right\n0,1,1\n1,1e30,2\n", "e.csv:3: a count beyond");
 }
 
+TEST_CASE("An encoder log of more rows or columns than the limit is refused before it is read") {
+  std::string rows = "t_s,left,right\n";
+  for (int i = 0; i < 2'000'000; ++i) rows += "0,0,0\n";
+  CHECK_THROWS_WITH(ReadEncoders(rows, "e.csv"),
+                    Catch::StartsWith("e.csv: 2000002 rows: at most 2000000 are taken"));
+  const std::string columns = "t_s,left,right" + std::string(9'998, ',') + "\n0,0,0\n1,1,1\n";
+  CHECK_THROWS_WITH(ReadEncoders(columns, "e.csv"),
+                    Catch::StartsWith("e.csv:1: 10001 columns: at most 10000 are taken"));
+}
+
 TEST_CASE("Counts between two readings lie between them and there are none outside") {
   const std::vector<EncoderReading> readings{{1.0, {10, -10}}, {3.0, {20, -30}}};
   CHECK(*CountsAt(readings, 1.0) == std::pair(10.0, -10.0));

@@ -107,6 +107,39 @@ TEST_CASE("Cells are what stands between separators, quotes closed or not, witho
   CHECK(SplitHeader("a;b", ';') == Cells{"a", "b"});
 }
 
+TEST_CASE("A log has ten thousand columns at most, in whatever dialect and separator") {
+  const auto read = [](int columns, const std::string& separator, const ReadOptions& options) {
+    std::string header = "t_s" + separator + "x_m" + separator + "y_m";
+    std::string rows[] = {"0" + separator + "0" + separator + "0",
+                          "1" + separator + "1" + separator + "1"};
+    for (int i = 3; i < columns; ++i) {
+      header += separator + "c" + std::to_string(i);
+      for (std::string& row : rows) row += separator + "7";
+    }
+    return ReadLog("\n" + header + "\n" + rows[0] + "\n" + rows[1] + "\n", "wide.csv", options);
+  };
+  const ReadOptions own{.columns = "t=t_s,x=x_m,y=y_m"};
+  CHECK(read(10'000, ",", {}).trajectory.channels.size() == 9'997);
+  for (const char* separator : {",", ";", "\t", " "}) {
+    CHECK(read(10'000, separator, own).trajectory.poses.size() == 2);
+    CHECK_THROWS_WITH(read(10'001, separator, own),
+                      Catch::StartsWith("wide.csv:2: 10001 columns: at most 10000 are taken"));
+  }
+  CHECK_THROWS_WITH(read(10'001, ",", {}),
+                    Catch::StartsWith("wide.csv:2: 10001 columns: at most 10000 are taken"));
+  const std::string blanks = "t_s,x_m,y_m\n0,0," + std::string(20'000, ' ') + "0\n1,1,1\n";
+  CHECK(ReadLog(blanks, "wide.csv", ReadOptions{}).trajectory.poses.size() == 2);
+}
+
+TEST_CASE("Two columns of one name are found among many") {
+  std::vector<std::string> columns{"", ""};  // columns without a name may be several
+  for (int i = 0; i < 1'000; ++i) columns.push_back("c" + std::to_string(i));
+  CHECK_NOTHROW(csv::RefuseRepeatedColumns(columns, "a.csv:1"));
+  columns.push_back("c999");
+  CHECK_THROWS_WITH(csv::RefuseRepeatedColumns(columns, "a.csv:1"),
+                    Catch::StartsWith("a.csv:1: the header has two columns 'c999'"));
+}
+
 TEST_CASE("A number is finite, may have a plus and an exponent, and an empty cell is none") {
   using csv::NumberOf;
   CHECK(NumberOf("1.5") == 1.5);

@@ -9,7 +9,8 @@ enum class Amount {
   kFileBytes,   ///< of one file that is read whole
   kYamlBytes,   ///< of one YAML file
   kPixels,      ///< of the picture of a heightfield
-  kRows,        ///< of one log
+  kRows,        ///< of one log, or another table of text
+  kColumns,     ///< of one row of it
   kSamples,     ///< gap.samples
   kWaypoints,   ///< of one task
   kGridTrials,  ///< of a grid: its settings times their repeats

@@ -26,6 +26,10 @@ std::string Shown(std::string_view text, size_t most = 60);
 /// for any run of blanks and tabs.
 std::vector<std::string> SplitHeader(std::string_view line, char separator = ',');
 
+/// Throws std::invalid_argument `name: ...` or `name:line: ...` for a table of more rows or columns
+/// than are taken (limits::Require), before memory for its cells is.
+void RequireTaken(std::string_view text, const std::string& name);
+
 /// The number of a cell; NaN of an empty one, nothing of one that is no finite number.
 std::optional<double> NumberOf(std::string_view cell);
 
@@ -47,7 +51,7 @@ std::optional<std::string> NoteOfEnd(std::string_view text);
 /// std::invalid_argument `name:line: ...`.
 class RowReader {
  public:
-  /// `text` and `name` must outlive the reader.
+  /// `text` and `name` must outlive the reader. Throws what RequireTaken does.
   RowReader(std::string_view text, const std::string& name, bool has_header, char separator);
 
   /// Header cells; empty for a table without header.
