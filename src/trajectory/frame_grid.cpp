@@ -20,6 +20,9 @@ constexpr int kPhases = 16;
 /// Periods, over the nominal one, of grids that must explain less.
 constexpr std::array<double, 2> kOtherPeriods{0.9, 1.1};
 constexpr double kLongest_s = 100.0;
+/// Rows times grids that are tried of one rate, 2 s of a laptop: in 100 s a row for each frame of a
+/// camera of 60 frames a second.
+constexpr double kMostWork = 2e7;
 constexpr size_t kFewestMoving = 12;
 constexpr double kMoving = 0.5;  // of the median speed
 /// Scatter of what finding the tag takes, as a share of the period; no more is known of it.
@@ -185,11 +188,16 @@ Assignment Solver::Solve() {
   return Traced(costs, origins);
 }
 
-/// Over periods so close that the last row moves by an eighth of a frame from one to the next, and
-/// all phases.
-Assignment BestOf(const Rows& rows, double nominal_s) {
+/// So many periods, in a range of them, that the last row moves by an eighth of a frame from one to
+/// the next.
+int PeriodsFor(const Rows& rows, double nominal_s) {
   const double range_s = 2.0 * kPeriodRange * rows.t_s.back();
-  const int periods = 3 + 2 * static_cast<int>(std::ceil(range_s / (nominal_s / 4.0)));
+  return 3 + 2 * static_cast<int>(std::ceil(range_s / (nominal_s / 4.0)));
+}
+
+/// Over these periods and all phases.
+Assignment BestOf(const Rows& rows, double nominal_s) {
+  const int periods = PeriodsFor(rows, nominal_s);
   Assignment best;
   for (int i = 0; i < periods; ++i) {
     const double share = 2.0 * i / (periods - 1.0) - 1.0;
@@ -235,8 +243,8 @@ std::string FrameGrid::Text() const {
   }
   if (std::isnan(roughness_after)) {
     return fmt::format(
-        "no frame grid is looked for in fewer than {} rows in motion or in more "
-        "than {:g} s: the stamps stay",
+        "no frame grid is looked for in fewer than {} rows in motion, in more than {:g} s, or in "
+        "so many rows and frames that it takes minutes: the stamps stay",
         kFewestMoving, kLongest_s);
   }
   if (!is_best) {
@@ -262,6 +270,8 @@ OnFrames PutOnFrames(Trajectory log, double fps) {
   if (result.trajectory.poses.size() < kFewestMoving) return result;
   const Rows rows = RowsOf(result.trajectory);
   if (!(rows.speed_mps > 0.0) || rows.t_s.back() > kLongest_s) return result;
+  const double grids = 1.0 * kPhases * PeriodsFor(rows, 1.0 / fps);
+  if (static_cast<double>(rows.t_s.size()) * grids > kMostWork) return result;
   FrameGrid& grid = result.grid;
   grid.roughness_before = RoughnessOf(rows.t_s, rows);
   const Assignment best = BestOf(rows, 1.0 / fps);

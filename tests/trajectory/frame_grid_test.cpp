@@ -100,8 +100,8 @@ TEST_CASE("What was done to the stamps, or why nothing was, is told in one line"
             .Text() ==
         "stamps put back on frames 33.30 ms apart: speeds from row to row are 3.0 times smoother");
   CHECK(FrameGrid{}.Text() ==
-        "no frame grid is looked for in fewer than 12 rows in motion or in "
-        "more than 100 s: the stamps stay");
+        "no frame grid is looked for in fewer than 12 rows in motion, in more than 100 s, or in so "
+        "many rows and frames that it takes minutes: the stamps stay");
   CHECK(FrameGrid{.is_best = false, .roughness_before = 0.6, .roughness_after = 0.2}.Text() ==
         "no frame grid of this rate: one of a rate 10 % off explains the log better: the stamps "
         "stay");
@@ -234,6 +234,14 @@ TEST_CASE("A grid is looked for in twelve steps in motion, and within a hundred 
     log.poses.back().t_s = log.poses.front().t_s + duration_s;
     CHECK(std::isnan(PutOnFrames(log, 30.0).grid.roughness_before) != is_looked_for);
   }
+}
+
+TEST_CASE("No grid is looked for where rows and frames are so many that it takes minutes") {
+  Trajectory log;
+  for (int i = 0; i < 4000; ++i) log.poses.push_back({.t_s = 0.023 * i, .x_m = 0.007 * i});
+  const FrameGrid grid = PutOnFrames(log, 1000.0).grid;
+  CHECK(std::isnan(grid.roughness_before));
+  CHECK(grid.Text().find("so many rows and frames that it takes minutes") != std::string::npos);
 }
 
 }  // namespace

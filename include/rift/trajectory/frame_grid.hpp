@@ -32,8 +32,8 @@ struct FrameGrid {
 ///
 /// Nothing is changed unless the speeds become smoother by `kLeastSmoother`, since a grid that is
 /// not there makes them rougher, and unless grids of rates 10 % off explain less; nor for fewer
-/// than 12 rows in motion or more than 100 s. Throws std::invalid_argument unless fps lies in [1,
-/// 1000].
+/// than 12 rows in motion, more than 100 s, or more rows and frames than seconds suffice for (6000
+/// of each in 100 s do). Throws std::invalid_argument unless fps lies in [1, 1000].
 struct OnFrames {
   Trajectory trajectory;
   FrameGrid grid;
