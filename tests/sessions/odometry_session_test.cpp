@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,17 @@ TEST_CASE("Runs with the positions of one before them are left out, and that is 
   CHECK(runs[0].run.log.name == "a");
   CHECK(runs[1].run.log.name == "b");
   CHECK(runs[2].run.log.name == "d");
+}
+
+TEST_CASE("A run that cannot be looked up is refused as an input that cannot be read") {
+  const test::TemporaryFolder folder;
+  fs::create_symlink("loop", folder / "loop");
+  CHECK_THROWS_AS(LoadRun(folder / "loop", ""), std::invalid_argument);
+  CHECK_THROWS_AS(LoadRun(std::string(5000, 'x'), ""), std::invalid_argument);
+  test::WriteText(folder / "trajectory.csv", Log());
+  test::WriteText(folder / "encoders.csv", Encoders(1000));
+  fs::create_symlink("experiment.yaml", folder / "experiment.yaml");
+  CHECK_THROWS_WITH(LoadRun(folder.Path(), ""), Contains("experiment.yaml"));
 }
 
 TEST_CASE("A folder of a run is read from the three files in it") {

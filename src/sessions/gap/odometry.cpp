@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "rift/files/files.hpp"
@@ -16,19 +17,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A name that cannot be looked up, as a link to itself, is there: who reads it says why it cannot.
+bool IsThere(const fs::path& path) {
+  std::error_code none;
+  return fs::status(path, none).type() != fs::file_type::not_found;
+}
+
 /// The files of a run: those of its folder, or those beside a log.
 struct RunFiles {
   explicit RunFiles(const fs::path& run) {
-    const bool is_folder = fs::is_directory(run);
+    std::error_code none;
+    const bool is_folder = fs::is_directory(run, none);
     const fs::path folder = is_folder ? run : run.parent_path();
     trajectory = is_folder ? run / "trajectory.csv" : run;
     // `rift simulate --out sim.csv` writes sim.encoders.csv beside it.
     const fs::path beside = fs::path(trajectory).replace_extension("encoders.csv");
-    encoders = !is_folder && fs::exists(beside) ? beside : folder / "encoders.csv";
+    encoders = !is_folder && IsThere(beside) ? beside : folder / "encoders.csv";
     const fs::path task = fs::path(trajectory).replace_extension("experiment.yaml");
-    experiment = !is_folder && fs::exists(task) ? task : folder / "experiment.yaml";
+    experiment = !is_folder && IsThere(task) ? task : folder / "experiment.yaml";
     const fs::path true_path = fs::path(trajectory).replace_extension("truth.csv");
-    truth = !is_folder && fs::exists(true_path) ? true_path : folder / "truth.csv";
+    truth = !is_folder && IsThere(true_path) ? true_path : folder / "truth.csv";
   }
 
   fs::path trajectory, encoders, experiment;
@@ -68,11 +76,11 @@ LoadedRun LoadRun(const std::string& name, const std::string& program) {
     loaded.run.log.encoders = odometry::ReadEncoders(*encoders, files.encoders.string());
   }
   const bool is_told = !program.empty();
-  if (is_told || fs::exists(files.experiment)) {
+  if (is_told || IsThere(files.experiment)) {
     loaded.experiment = experiment::LoadExperiment(is_told ? program : files.experiment.string(),
                                                    {}, files::ReadFile);
     // A simulated run was driven with one draw of the ensemble; the robot itself is none.
-    if (!is_told && fs::exists(files.truth)) {
+    if (!is_told && IsThere(files.truth)) {
       loaded.experiment = experiment::DrawnAt(*loaded.experiment, loaded.experiment->seed);
     }
     if (!loaded.experiment->program.segments.empty()) {
