@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "rift/yaml/describe.hpp"
@@ -84,8 +85,9 @@ void RequireSimulatorAndLogs(const Experiment& experiment, const std::string& pa
 void CheckHoldout(const Experiment& experiment, const std::string& path) {
   const std::vector<std::string>& trials = experiment.reference.trials.names;
   const std::vector<std::string>& held = experiment.calibrate.holdout.names;
+  const std::set<std::string_view> known(trials.begin(), trials.end());
   for (const std::string& name : held) {
-    if (std::find(trials.begin(), trials.end(), name) != trials.end()) continue;
+    if (known.contains(name)) continue;
     throw yaml::Error(
         fmt::format("{}: calibrate.holdout names trial {}, and reference.trials has {}", path, name,
                     fmt::join(trials, ", ")));
@@ -118,7 +120,7 @@ void CheckIsNamedOnce(const FreeParameter& free, const std::vector<FreeParameter
 /// Names that the arguments of a program have for something else.
 constexpr std::array<std::string_view, 5> kNamesOfTrial{"seed", "trial", "out", "theta", "folder"};
 
-void CheckNameOfProgram(const FreeParameter& free, const std::vector<std::string>& others) {
+void CheckNameOfProgram(const FreeParameter& free, const std::set<std::string>& others) {
   const auto refuse = [&free](const std::string& why) {
     throw yaml::Error(fmt::format("{}: calibrate.fit: {} {}", free.origin, free.key, why));
   };
@@ -127,7 +129,7 @@ void CheckNameOfProgram(const FreeParameter& free, const std::vector<std::string
     refuse(fmt::format("is what a program's trial calls something else ({}): take another name",
                        fmt::join(kNamesOfTrial, ", ")));
   }
-  if (std::find(others.begin(), others.end(), name) != others.end()) {
+  if (others.contains(name)) {
     refuse(fmt::format("shares its name '{}' with another parameter of the program", name));
   }
 }
@@ -161,13 +163,13 @@ void CheckMethodOfProgram(const Experiment& experiment, const std::string& path)
 /// A program's parameters are names of its own; a fit starts at what is known of them.
 void ResolveProgram(Experiment& experiment, const std::string& path) {
   CheckMethodOfProgram(experiment, path);
-  std::vector<std::string> names;
-  for (const Parameter& parameter : experiment.space.parameters) names.push_back(parameter.Name());
+  std::set<std::string> names;
+  for (const Parameter& parameter : experiment.space.parameters) names.insert(parameter.Name());
   std::vector<FreeParameter> resolved;
   for (const FreeParameter& written : experiment.calibrate.fit.list) {
     for (FreeParameter& free : Expand(written, experiment.space)) {
       CheckNameOfProgram(free, names);
-      names.push_back(Parameter{.key = free.key}.Name());
+      names.insert(Parameter{.key = free.key}.Name());
       free.start = free.prior_sd > 0.0 ? free.prior_mean : 0.5 * (free.min + free.max);
       resolved.push_back(free);
     }

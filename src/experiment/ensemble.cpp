@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
+#include <set>
 #include <stdexcept>
+#include <string_view>
 
 #include "ensemble_keys.hpp"
 #include "rift/experiment/parameter.hpp"
 #include "rift/statistics/random.hpp"
 #include "rift/yaml/bind.hpp"
+#include "setting_check.hpp"
 
 namespace rift::experiment {
 namespace {
@@ -21,31 +24,30 @@ void LeaveOut(Ensemble& ensemble, size_t column) {
   for (std::vector<double>& draw : ensemble.draws) draw.erase(draw.begin() + at);
 }
 
-bool IsInSpace(const Experiment& experiment, const std::string& key) {
-  const std::vector<Parameter>& parameters = experiment.space.parameters;
-  return std::any_of(parameters.begin(), parameters.end(),
-                     [&](const Parameter& parameter) { return parameter.key == key; });
+std::set<std::string_view> KeysOf(const Space& space) {
+  std::set<std::string_view> keys;
+  for (const Parameter& parameter : space.parameters) keys.insert(parameter.key);
+  return keys;
 }
 
-Experiment At(const Experiment& experiment, const std::vector<double>& draw,
-              const yaml::Origin& origin) {
+/// What a draw sets: a key of the space keeps the value of the space.
+std::vector<yaml::KeyValue> ValuesOf(const Ensemble& ensemble, const std::vector<double>& draw,
+                                     const std::set<std::string_view>& in_space,
+                                     const yaml::Origin& origin) {
   std::vector<yaml::KeyValue> values;
   for (size_t i = 0; i < draw.size(); ++i) {
-    const std::string& key = experiment.ensemble.keys[i];
-    if (IsInSpace(experiment, key)) continue;
-    values.push_back(ValueOfKey(key, NumberValue(draw[i]), origin));
+    const std::string& key = ensemble.keys[i];
+    if (!in_space.contains(key)) values.push_back(ValueOfKey(key, NumberValue(draw[i]), origin));
   }
-  Experiment at = experiment;
-  yaml::SetValues(at, values);
-  at.ensemble = {};
-  return at;
+  return values;
 }
 
 }  // namespace
 
 void Ensemble::Check() const {
+  std::set<std::string_view> seen;
   for (const std::string& key : keys) {
-    if (std::count(keys.begin(), keys.end(), key) > 1) {
+    if (!seen.insert(key).second) {
       throw std::invalid_argument(fmt::format("keys: {} stands there twice", key));
     }
   }
@@ -63,27 +65,36 @@ void ResolveEnsemble(Experiment& experiment, const yaml::Node& tree) {
   if (experiment.ensemble.IsEmpty()) return;
   const yaml::Node::Entry* block = tree.Find("ensemble");
   const yaml::Origin origin = block->value.Find("draws")->value.origin;
-  const std::vector<yaml::FlatEntry> written = yaml::Flatten(tree);
+  const std::vector<yaml::FlatEntry> entries = yaml::Flatten(tree);
+  std::map<std::string_view, const yaml::Node*> written;
+  for (const yaml::FlatEntry& entry : entries) written[entry.key] = entry.value;
   for (size_t i = experiment.ensemble.keys.size(); i-- > 0;) {
     const std::string key = experiment.ensemble.keys[i];
     if (!key.starts_with("simulation.") && !key.starts_with("trial.")) {
       throw yaml::Error(fmt::format("{}: ensemble.keys: {} is no key of simulation or trial",
                                     origin.Text(), key));
     }
-    const auto own = std::find_if(written.begin(), written.end(),
-                                  [&](const yaml::FlatEntry& entry) { return entry.key == key; });
-    if (own != written.end() && own->value->origin.source != origin.source) {
+    const auto own = written.find(key);
+    if (own != written.end() && own->second->origin.source != origin.source) {
       LeaveOut(experiment.ensemble, i);
     }
   }
   if (experiment.ensemble.IsEmpty()) experiment.ensemble = {};
-  for (const std::vector<double>& draw : experiment.ensemble.draws) At(experiment, draw, origin);
+  SettingCheck check(experiment);
+  const std::set<std::string_view> in_space = KeysOf(experiment.space);
+  for (const std::vector<double>& draw : experiment.ensemble.draws) {
+    check.Try(ValuesOf(experiment.ensemble, draw, in_space, origin));
+  }
 }
 
 Experiment DrawnAt(const Experiment& experiment, std::uint64_t seed) {
   if (experiment.ensemble.IsEmpty()) return experiment;
   const std::vector<std::vector<double>>& draws = experiment.ensemble.draws;
-  return At(experiment, draws[statistics::SeedOfStream(seed, kEnsembleStream) % draws.size()], {});
+  const size_t taken = statistics::SeedOfStream(seed, kEnsembleStream) % draws.size();
+  Experiment at = experiment;
+  at.ensemble = {};
+  yaml::SetValues(at, ValuesOf(experiment.ensemble, draws[taken], KeysOf(at.space), {}));
+  return at;
 }
 
 }  // namespace rift::experiment

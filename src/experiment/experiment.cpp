@@ -16,7 +16,9 @@
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/describe.hpp"
 #include "rift/yaml/node.hpp"
+#include "rift/yaml/utf8.hpp"
 #include "rift/yaml/write.hpp"
+#include "setting_check.hpp"
 
 namespace rift::experiment {
 namespace {
@@ -116,50 +118,45 @@ void RequireOneLineNames(const Experiment& experiment, const std::string& path) 
   }
 }
 
-/// Values to try a parameter with: its levels, or the ends of its range.
-std::vector<ParameterValue> ValuesToTry(const Parameter& parameter) {
-  if (!parameter.IsContinuous()) return parameter.levels;
-  return {NumberValue(parameter.min), NumberValue(parameter.max)};
+bool IsUtf8(std::string_view text) {
+  size_t at = 0;
+  while (at < text.size()) {
+    const size_t length = yaml::Utf8Length(text, at);
+    if (length == 0) return false;
+    at += length;
+  }
+  return true;
 }
 
-/// A rule between keys, such as v_min <= v_max, is broken for good only when no other values of
-/// the other parameters keep it: their first, their last and those of the experiment are tried.
-void TryValue(const Experiment& experiment, size_t parameter, const ParameterValue& value) {
-  const std::vector<Parameter>& parameters = experiment.space.parameters;
-  Experiment alone = experiment;
-  alone.space.parameters = {parameters[parameter]};
-  std::vector<Theta> around(2);
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    const std::vector<ParameterValue> others = ValuesToTry(parameters[i]);
-    around[0].push_back(i == parameter ? value : others.front());
-    around[1].push_back(i == parameter ? value : others.back());
-  }
-  for (const Theta& theta : around) {
-    try {
-      ExperimentAt(experiment, theta);
-      return;
-    } catch (const yaml::Error&) {  // the last try tells
-    }
-  }
-  ExperimentAt(alone, {value});
+/// A saved experiment is YAML, which is UTF-8. Its text is, but a folder may be called otherwise.
+void RequireUtf8Name(const std::string& path, std::string_view key, const std::string& name) {
+  if (IsUtf8(name)) return;
+  throw yaml::Error(
+      fmt::format("{}: {} is '{}', and that name is not UTF-8, which a saved run needs: rename the "
+                  "folder or the file",
+                  path, key, name));
 }
 
-/// A setting of a small grid that breaks a rule is refused at once. Of a large one, and of ranges,
-/// every value is tried once; a setting that still breaks a rule becomes a row that says so.
-void TrySpace(const Experiment& experiment) {
-  constexpr double kMostTried = 2000;
-  const std::vector<Parameter>& parameters = experiment.space.parameters;
-  double settings = 1.0;
-  for (const Parameter& parameter : parameters) {
-    settings *= parameter.IsContinuous() ? HUGE_VAL : static_cast<double>(parameter.levels.size());
+void RequireUtf8Names(const Experiment& experiment, const std::string& path) {
+  const auto require = [&path](std::string_view key, const std::string& name) {
+    RequireUtf8Name(path, key, name);
+  };
+  require("name", experiment.name);
+  require("candidate.path", experiment.candidate.path.text);
+  require("reference.path", experiment.reference.path.text);
+  for (const std::string& word : experiment.candidate.run.words) require("candidate.run", word);
+  for (const std::string& word : experiment.reference.run.words) require("reference.run", word);
+  for (const auto& [name, surface] : experiment.simulation.terrain.surfaces) {
+    require(fmt::format("simulation.terrain.surfaces.{}.image", name), surface.image);
   }
-  if (experiment.goal != Goal::kFalsify && settings <= kMostTried) {
-    for (const Theta& theta : GridPoints(parameters)) ExperimentAt(experiment, theta);
-    return;
-  }
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    for (const ParameterValue& value : ValuesToTry(parameters[i])) {
-      TryValue(experiment, i, value);
+}
+
+/// The same of the pictures that a space varies.
+void RequireUtf8Images(const Space& space, const std::string& path) {
+  for (const Parameter& parameter : space.parameters) {
+    if (!IsImage(parameter.key)) continue;
+    for (const ParameterValue& level : parameter.levels) {
+      RequireUtf8Name(path, "space." + parameter.key, level.text);
     }
   }
 }
@@ -201,13 +198,8 @@ void ResolveSpace(Experiment& experiment) {
 
 Experiment ExperimentAt(const Experiment& experiment, const std::vector<ParameterValue>& theta) {
   if (experiment.candidate.kind == CandidateKind::kProgram) return experiment;  // names of its own
-  std::vector<yaml::KeyValue> values;
-  for (size_t i = 0; i < theta.size(); ++i) {
-    const Parameter& parameter = experiment.space.parameters[i];
-    values.push_back(ValueOfKey(parameter.key, theta[i], {parameter.origin}));
-  }
   Experiment at = experiment;
-  yaml::SetValues(at, values);
+  yaml::SetValues(at, ValuesAt(experiment.space.parameters, theta));
   return at;
 }
 
@@ -325,9 +317,11 @@ Experiment LoadExperiment(const std::string& path, const std::vector<std::string
   RequireOneLineNames(experiment, path);
   MakeAbsolute(experiment.candidate.path);
   MakeAbsolute(experiment.reference.path);
+  RequireUtf8Names(experiment, path);
   if (experiment.candidate.kind == CandidateKind::kSimulation) {
     ResolveSpace(experiment);
     ResolveImages(tree, experiment.space);
+    RequireUtf8Images(experiment.space, path);
   }
   if (experiment.candidate.kind == CandidateKind::kProgram) CheckProgramSpace(experiment);
   if (experiment.candidate.kind != CandidateKind::kProgram) RefuseNominal(experiment);

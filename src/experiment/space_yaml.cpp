@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
+#include <string_view>
 
 #include "rift/yaml/node.hpp"
 #include "rift/yaml/scalar.hpp"
@@ -193,14 +195,15 @@ void CheckIsNoColumn(const Node& node, const std::string& name) {
 
 /// Columns and path templates know a parameter by its last name.
 void CheckNames(const Node& node, const std::vector<experiment::Parameter>& parameters) {
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    for (size_t j = 0; j < i; ++j) {
-      if (parameters[i].Name() != parameters[j].Name()) continue;
+  std::map<std::string, const experiment::Parameter*> first_with;
+  for (const experiment::Parameter& parameter : parameters) {
+    const auto [first, is_new] = first_with.emplace(parameter.Name(), &parameter);
+    if (!is_new) {
       Fail(node, "space",
-           fmt::format("{} and {} have the same last name '{}'", parameters[j].key,
-                       parameters[i].key, parameters[i].Name()));
+           fmt::format("{} and {} have the same last name '{}'", first->second->key, parameter.key,
+                       parameter.Name()));
     }
-    CheckIsNoColumn(node, parameters[i].Name());
+    CheckIsNoColumn(node, parameter.Name());
   }
 }
 
@@ -255,9 +258,10 @@ experiment::TrialList Hook<experiment::TrialList>::FromNode(const Node& node) {
   if (!node.IsList() || node.items.empty()) {
     throw std::invalid_argument("must be a list of trials, or how many there are");
   }
+  std::set<std::string_view> seen;
   for (const Node& item : node.items) {
     if (!item.IsScalar()) throw std::invalid_argument("every trial must be a number or a name");
-    if (std::find(trials.names.begin(), trials.names.end(), item.text) != trials.names.end()) {
+    if (!seen.insert(item.text).second) {
       throw std::invalid_argument(fmt::format("trial {} stands there twice", item.text));
     }
     trials.names.push_back(item.text);

@@ -112,6 +112,12 @@ Node ParseOverride(std::string_view assignment) {
     throw Error(
         fmt::format("--set '{}': must be key=value, as in --set gap.samples=500", assignment));
   }
+  if (SplitPath(key).front() == "include") {
+    throw Error(fmt::format(
+        "--set '{}': include stands in a file, not in --set: write a file with include: "
+        "[a.yaml, b.yaml] and give that",
+        assignment));
+  }
   const Origin origin{"--set " + key, 0, 0};
   Node value = Parse(assignment.substr(equals + 1), origin.source);
   SetOrigin(value, origin);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
+#include "block_limit.hpp"
 #include "rift/yaml/bind.hpp"
 
 namespace rift::yaml {
@@ -46,6 +48,20 @@ void Collect(const Node& map, const std::string& path,
       out.push_back({std::move(key), entry.origin, &entry.value});
     }
   }
+}
+
+constexpr std::size_t kNoPlace = static_cast<std::size_t>(-1);
+
+/// Where the keys of one map stand in another, in one walk over both.
+std::vector<std::size_t> PlacesIn(const Node& base, const Node& over) {
+  std::vector<std::size_t> places(over.entries.size(), kNoPlace);
+  std::unordered_map<std::string_view, std::size_t> in_over;
+  for (std::size_t i = 0; i < places.size(); ++i) in_over.emplace(over.entries[i].key, i);
+  for (std::size_t i = 0; i < base.entries.size(); ++i) {
+    const auto found = in_over.find(base.entries[i].key);
+    if (found != in_over.end()) places[found->second] = i;
+  }
+  return places;
 }
 
 }  // namespace
@@ -123,21 +139,31 @@ std::string Join(std::string_view path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
+void RequireFewKeys(std::size_t keys, const Origin& origin) {
+  if (keys <= kMostKeys) return;
+  throw Error(fmt::format("{}: more than {} keys in one block", origin.Text(), kMostKeys));
+}
+
 void Merge(Node& base, const Node& over) {
   if (!base.IsMap() || !over.IsMap()) {
     base = over;
     return;
   }
-  for (const Node::Entry& entry : over.entries) {
-    Node::Entry* mine = base.Find(entry.key);
-    if (mine == nullptr) {
+  const std::vector<std::size_t> places = PlacesIn(base, over);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Node::Entry& entry = over.entries[i];
+    if (places[i] == kNoPlace) {
       base.entries.push_back(entry);
-    } else if (mine->value.IsMap() && entry.value.IsMap()) {
-      Merge(mine->value, entry.value);
+      continue;
+    }
+    Node::Entry& mine = base.entries[places[i]];
+    if (mine.value.IsMap() && entry.value.IsMap()) {
+      Merge(mine.value, entry.value);
     } else {
-      *mine = entry;
+      mine = entry;
     }
   }
+  RequireFewKeys(base.entries.size(), base.origin);
 }
 
 bool IsAxis(const Node& node) {

@@ -10,6 +10,8 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
+#include "block_limit.hpp"
+#include "rift/limits/limits.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/load.hpp"
 #include "rift/yaml/node.hpp"
@@ -18,15 +20,10 @@
 namespace rift::yaml {
 namespace {
 
-/// Keys are found by walking the map, which is right for blocks that people write.
-constexpr std::size_t kMostKeys = 10'000;
-
 /// The map of these keys and values, keys with dots opened. `path` is that of the map.
 void FillMap(Node& map, const std::vector<Node>& keys, std::vector<Node> values,
              const std::string& path) {
-  if (keys.size() > kMostKeys) {
-    throw Error(fmt::format("{}: more than {} keys in one block", map.origin.Text(), kMostKeys));
-  }
+  RequireFewKeys(keys.size(), map.origin);
   std::map<std::string_view, const Origin*> seen;
   for (const Node& key : keys) {
     const auto [first, is_new] = seen.emplace(key.text, &key.origin);
@@ -149,6 +146,10 @@ void TreeBuilder::OnScalar(const YAML::Mark& mark, const std::string& tag, YAML:
   node.quoted = tag == "!";
   node.origin = At(mark);
   if (node.quoted) CheckClosed(text_, static_cast<std::size_t>(mark.pos), node.origin);
+  if (value.find('\0') != value.npos) {
+    throw Error(node.origin.Text() +
+                ": the text holds \\0, where names of files and messages end: leave it out");
+  }
   Deliver(std::move(node));
 }
 
@@ -231,6 +232,7 @@ std::string QuoteHint(std::string_view text, int line) {
 }  // namespace
 
 Node Parse(std::string_view text, const std::string& source) {
+  limits::Require(limits::Amount::kYamlBytes, static_cast<double>(text.size()), source);
   if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) {
     text.remove_prefix(kByteOrderMark.size());
   }

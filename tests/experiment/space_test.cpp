@@ -1,5 +1,6 @@
 // The space and the fit of an experiment as YAML: what they may be, and what is refused where.
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -236,6 +237,31 @@ TEST_CASE("A value that its key may not have is refused at once, in a grid and i
   const std::string between = "space: {v_min: [0.15, 0.45], v_max: [0.3, 0.5]}\n";
   CHECK_NOTHROW(Load("goal: falsify\n" + between));
   CHECK_THROWS(Load("goal: grid\n" + between));
+}
+
+TEST_CASE("Tens of thousands of values, draws and trials are tried within seconds") {
+  std::string values = "0.1", draws = "[0.1]", trials = "first";
+  for (int i = 1; i < 30'000; ++i) {
+    values += ", " + std::to_string(0.1 + 1e-6 * i);
+    draws += ", [" + std::to_string(0.1 + 1e-6 * i) + "]";
+    trials += ", t" + std::to_string(i);
+  }
+  const auto begun = std::chrono::steady_clock::now();
+  const Experiment loaded = Load("goal: falsify\nspace: {control.v_min: [" + values +
+                                 "]}\nensemble: {keys: [simulation.link.delay_s], draws: [" +
+                                 draws + "]}\nreference: {trials: [" + trials + "]}\n");
+  CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(10));
+  CHECK(loaded.space.parameters.at(0).levels.size() == 30'000);
+  CHECK(loaded.ensemble.draws.size() == 30'000);
+  CHECK(loaded.reference.trials.names.size() == 30'000);
+}
+
+TEST_CASE("A value is tried beside the experiment's own ones, not beside one tried before it") {
+  // v_max may not be below cruise_speed: 0.25 is right beside the own 0.2 alone.
+  const std::string own = "control: {v_min: 0.1, cruise_speed: 0.2, v_max: 0.4}\ngoal: falsify\n";
+  CHECK_NOTHROW(Load(own + "space: {cruise_speed: [0.35, 0.4], v_max: [0.25, 0.5]}\n"));
+  CHECK_THROWS_WITH(Load(own + "space: {cruise_speed: [0.35, 0.4], v_max: [0.15, 0.5]}\n"),
+                    Contains("cruise_speed"));
 }
 
 /// Logs that a fit is made to; the fit itself behind it.

@@ -6,11 +6,14 @@
 #include <string>
 
 #include "rift/experiment/experiment.hpp"
+#include "rift/yaml/node.hpp"
 
 namespace rift::experiment {
 namespace {
 
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+using Catch::Matchers::StartsWith;
 
 Experiment Load(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return LoadExperiment("task.yaml", overrides, [&](const std::string&) { return text; });
@@ -276,6 +279,31 @@ TEST_CASE("Pictures that a space varies lie beside the file that names them") {
                  {"space.surfaces.hill.image=[d.png]"}) == Paths{here + "/d.png"});
   CHECK(pictures("candidate: {kind: program, run: [x]}\nspace: {image: [a.png]}\n", {}) ==
         Paths{"a.png"});
+}
+
+TEST_CASE("A name that is not UTF-8 and would be saved is refused with its key when it is loaded") {
+  const auto message = [](const std::string& text, const std::string& file) {
+    try {
+      LoadExperiment(file, {}, [&](const std::string&) { return text; });
+    } catch (const yaml::Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string latin = "/data/caf\xE9/task.yaml", what = "rename the folder or the file";
+  const std::string reference = message("reference: {kind: logs, path: real.csv}\n", latin);
+  CHECK_THAT(reference,
+             StartsWith(latin + ": reference.path is '/data/caf\xE9/real.csv', and that "));
+  CHECK_THAT(reference, EndsWith(what));
+  CHECK_THAT(message("candidate: {kind: logs, path: a.csv}\n", latin), Contains("candidate.path"));
+  const std::string hills = "simulation: {terrain: {surfaces: {hill: {shape: heightfield, image: ";
+  CHECK_THAT(message(hills + "a.png}}}}\n", latin), Contains("surfaces.hill.image is '/data/caf"));
+  CHECK_THAT(message(hills + "/a.png}}}}\nspace: {surfaces.hill.image: [/a.png, b.png]}\n", latin),
+             Contains("surfaces.hill.image is '/data/caf\xE9/b.png'"));
+  CHECK_THAT(message("", "caf\xE9.yaml"), Contains("name is 'caf\xE9', and that name is not"));
+  CHECK(message("waypoints: [{x: 0, y: 0}, {x: 1, y: 0}]\n", latin).empty());
+  CHECK(
+      message("reference: {kind: logs, path: real.csv}\n", "/data/caf\xC3\xA9/task.yaml").empty());
 }
 
 TEST_CASE("More than may be taken is refused before anything is computed") {

@@ -89,6 +89,31 @@ TEST_CASE("A block takes ten thousand keys") {
   CHECK_THROWS_WITH(block(10'001), "f:1:1: more than 10000 keys in one block");
 }
 
+TEST_CASE("A block takes ten thousand keys with those that included files add to it") {
+  const auto load = [](int keys) {
+    const auto block = [](const std::string& name, int count) {
+      std::string text = "run:\n";
+      for (int i = 0; i < count; ++i) text += "  " + name + std::to_string(i) + ": 1\n";
+      return text;
+    };
+    return Load("main.yaml", [&](const std::string& path) {
+      if (path == "a.yaml") return block("a", 6000);
+      if (path == "b.yaml") return block("b", 3999) + "  a5: 1\n";  // it is there already
+      return "include: [a.yaml, b.yaml]\n" + block("c", keys);
+    });
+  };
+  CHECK(load(1).Find("run")->value.entries.size() == 10'000);
+  CHECK_THROWS_WITH(load(2), "a.yaml:2:3: more than 10000 keys in one block");
+}
+
+TEST_CASE("One text of YAML has a mebibyte at most, wherever it comes from") {
+  const std::string most = "#" + std::string((1 << 20) - 1, 'x');
+  CHECK(Parse(most, "camera.yaml").IsNull());
+  CHECK_THROWS_WITH(Parse(most + "x", "camera.yaml"),
+                    "camera.yaml: 1048577 bytes of YAML: at most 1048576 are taken; --large-inputs "
+                    "lifts this limit");
+}
+
 TEST_CASE("An experiment is of 256 files at most") {
   const auto load = [](int included) {
     std::string main = "include: [";

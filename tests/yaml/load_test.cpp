@@ -122,6 +122,16 @@ TEST_CASE("An override that is no assignment is refused") {
         "--set a.b:1:1: end of sequence flow not found; text that starts with { or [ needs quotes");
 }
 
+TEST_CASE("An include is refused of an override, which knows no file beside it") {
+  for (const char* include : {"include=other.yaml", "include.a=1"}) {
+    CHECK(ErrorOf([&] { ParseOverride(include); }) ==
+          "--set '" + std::string(include) +
+              "': include stands in a file, not in --set: write a file with include: [a.yaml, "
+              "b.yaml] and give that");
+  }
+  CHECK(ParseOverride("run.include=1").Find("run") != nullptr);
+}
+
 TEST_CASE("Every way to write an axis of the space means the same") {
   const std::vector<Node> ways{
       Parse("space: {control.v_min: [0.1, 0.2]}", "f"),

@@ -110,6 +110,15 @@ TEST_CASE("Bytes that are no YAML text are refused with their place") {
   CHECK(ParseError("a:\n\tb: 1\n") == "f.yaml:2:1: a tab indents this line; YAML wants spaces");
 }
 
+TEST_CASE("A text that holds a zero byte, where names end, is refused with its place") {
+  const std::string rule =
+      ": the text holds \\0, where names of files and messages end: leave it out";
+  CHECK(ParseError("name: \"a\\0b\"\n") == "f.yaml:1:7" + rule);
+  CHECK(ParseError("\"a\\x00\": 1\n") == "f.yaml:1:1" + rule);
+  CHECK(ParseError("a: [\"\\u0000\"]\n") == "f.yaml:1:5" + rule);
+  CHECK(Parse("a: \"\\x01\"\nb: '\\0'\n", "f").Find("b")->value.text == "\\0");
+}
+
 TEST_CASE("A tab between values is no indentation") {
   const Node root = Parse("a:\t1\nb: 2\t# tab\n", "f.yaml");
   CHECK(root.Find("a")->value.text == "1");
