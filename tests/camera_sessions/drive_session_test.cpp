@@ -21,6 +21,7 @@
 #include "sessions/drive/start_gate.hpp"
 #include "support/inputs/paper_task.hpp"
 #include "support/processes/process.hpp"
+#include "support/until.hpp"
 
 namespace rift::sessions {
 namespace {
