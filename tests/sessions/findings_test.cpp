@@ -40,7 +40,7 @@ TEST_CASE("The report of a sweep is its explanation, its figures as SVG and PNG,
   const test::QuickGnuplot quick;
   Swept swept(SmallGrid());
   const fs::path out = swept.folder.Path();
-  for (const char* name : {"fig1_old.svg", "fig1_old.png", "fig1_old.txt", "mine.svg"}) {
+  for (const char* name : {"fig01_old.svg", "fig01_old.png", "fig01_old.txt", "mine.svg"}) {
     fs::create_directories(out / "figures");
     test::WriteText(out / "figures" / name, "x");
   }
@@ -53,9 +53,9 @@ TEST_CASE("The report of a sweep is its explanation, its figures as SVG and PNG,
   CHECK(nlohmann::json::parse(files::ReadFile(out / "explanation.json")).is_object());
   CHECK_FALSE(fs::exists(out / "likeness.json"));
   CHECK_FALSE(fs::exists(out / "programs.json"));
-  CHECK_FALSE(fs::exists(out / "figures/fig1_old.svg"));
-  CHECK_FALSE(fs::exists(out / "figures/fig1_old.png"));
-  CHECK(fs::exists(out / "figures/fig1_old.txt"));
+  CHECK_FALSE(fs::exists(out / "figures/fig01_old.svg"));
+  CHECK_FALSE(fs::exists(out / "figures/fig01_old.png"));
+  CHECK(fs::exists(out / "figures/fig01_old.txt"));
   CHECK(fs::exists(out / "figures/mine.svg"));
   int svg = 0, png = 0;
   for (const auto& entry : fs::directory_iterator(out / "figures")) {

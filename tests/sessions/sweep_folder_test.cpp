@@ -14,10 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kReport{"report.html", "explanation.json", "likeness.json",
-                                       "programs.json", "figures/fig.svg"};
+                                       "programs.json", "figures/fig07_gap.svg"};
 const std::vector<std::string> kFound{"table.csv",        "summary.json", "inputs.txt",
                                       "calibration.json", "shrunk.json",  "shrunk/table.csv",
-                                      "rare_event.json"};
+                                      "rare_event.json",  "live.html"};
 const std::vector<std::string> kKept{"experiment.yaml", "journal.sqlite", "suggested.yaml",
                                      "suggested/1_1/trajectory.csv"};
 
@@ -55,9 +55,11 @@ TEST_CASE("An earlier report is removed without the answers to further questions
 TEST_CASE("Figures of somebody else stay when those of a sweep go") {
   const test::TemporaryFolder folder;
   Fill(folder.Path());
-  const std::vector<std::string> ours{"fig.svg", "fig08_gap_by_trial.png", "gap_over_v_min.svg",
+  const std::vector<std::string> ours{"fig07_.svg", "fig08_gap_by_trial.png", "gap_over_v_min.svg",
                                       "calibration.png"};
-  const std::vector<std::string> others{"mine.svg", "fig08.txt", "gap.png", "calibration.csv"};
+  const std::vector<std::string> others{"mine.svg",     "fig08.txt",   "gap.png",
+                                        "fig_mine.svg", "fig1.png",    "fig2_setup.svg",
+                                        "fig12b.svg",   "figures.png", "calibration.csv"};
   for (const auto* names : {&ours, &others}) {
     for (const std::string& name : *names) test::WriteText(folder / ("figures/" + name), "x");
   }
@@ -74,17 +76,23 @@ TEST_CASE("Figures of somebody else stay when those of a sweep go") {
 
 TEST_CASE("Files with a sweep's names are others' where no experiment and no journal is") {
   const test::TemporaryFolder folder;
-  CHECK_FALSE(HoldsOthersFiles(folder.Path()));
-  test::WriteText(folder / "notes.txt", "x");
-  CHECK_FALSE(HoldsOthersFiles(folder.Path()));
-  for (const std::string name :
-       {"table.csv", "summary.json", "inputs.txt", "report.html", "calibration.json"}) {
+  CHECK(OthersFile(folder.Path()).empty());
+  fs::create_directories(folder / "figures");
+  for (const char* name : {"notes.txt", "figures/fig1_setup.png", "figures/fig_mine.svg"}) {
+    test::WriteText(folder / name, "x");
+  }
+  CHECK(OthersFile(folder.Path()).empty());
+  std::vector<std::string> names = kReport;
+  names.insert(names.end(), {"table.csv", "summary.json", "inputs.txt", "calibration.json",
+                             "shrunk", "shrunk.json", "rare_event.json", "live.html",
+                             "figures/calibration.png", "figures/gap_over_v_min.svg"});
+  for (const std::string& name : names) {
     INFO(name);
     test::WriteText(folder / name, "x");
-    CHECK(HoldsOthersFiles(folder.Path()));
+    CHECK(OthersFile(folder.Path()) == folder / name);
     for (const std::string own : {"experiment.yaml", "journal.sqlite"}) {
       test::WriteText(folder / own, "x");
-      CHECK_FALSE(HoldsOthersFiles(folder.Path()));
+      CHECK(OthersFile(folder.Path()).empty());
       fs::remove(folder / own);
     }
     fs::remove(folder / name);

@@ -29,11 +29,14 @@ std::optional<std::string> Run(const experiment::Experiment& experiment, const s
   return report::TableCsv(*result);
 }
 
-TEST_CASE("A sweep tells its observer every trial and how it ended") {
+TEST_CASE("A sweep tells its observer every trial and how it ended, and removes a live page") {
   const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "out");
+  test::WriteText(folder / "out/live.html", "left by one that was killed: Running");
   SweepTold told;
   const auto table = Run(Grid(), folder / "out", told);
   REQUIRE(table);
+  CHECK_FALSE(std::filesystem::exists(folder / "out/live.html"));
   CHECK(told.size.most == 20);
   CHECK(told.trials == 20);
   CHECK(told.from_journal == 0);

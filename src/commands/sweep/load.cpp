@@ -62,14 +62,15 @@ std::filesystem::path FolderFor(const SweepRequest& request,
                                 const experiment::Experiment& experiment) {
   const std::filesystem::path out = OutputOf(request.out, experiment.name);
   RefuseRunFolder(out);
+  const std::filesystem::path others = request.fresh ? "" : sessions::OthersFile(out);
   Refuse({{!request.fresh && sessions::HoldsOtherExperiment(out, experiment),
            fmt::format("{} holds another experiment ({}): name another folder with --out, or give "
                        "--force to replace it",
                        out.string(), (out / "experiment.yaml").string())},
-          {!request.fresh && sessions::HoldsOthersFiles(out),
-           out.string() + " holds files that a sweep would replace and did not write (table.csv, "
-                          "summary.json, report.html ...): name another folder with --out, or give "
-                          "--force to replace them"}});
+          {!others.empty(),
+           fmt::format("{} is there, which a sweep would replace and did not write: name another "
+                       "folder than {} with --out, or give --force to replace all such files",
+                       others.string(), out.string())}});
   return out;
 }
 

@@ -9,13 +9,13 @@
 #include "page_server.hpp"
 #include "rift/files/files.hpp"
 #include "rift/report/page/page.hpp"
+#include "rift/sessions/sweep/folder.hpp"
 #include "rift/sweep/explain/explanation.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 
 namespace rift::sessions {
 namespace {
 
-constexpr const char* kName = "live.html";
 constexpr std::chrono::milliseconds kLeastPause{2500};
 constexpr int kDrawingShare = 10;  ///< at most a tenth of the time goes into pages
 /// Above that many trials a page that is drawn again and again would hold up the sweep.
@@ -33,7 +33,7 @@ std::string RunningReport(const sweep::SweepResult& result, sweep::Evaluator& ev
 }  // namespace
 
 LivePage::LivePage(const std::filesystem::path& folder, sweep::Evaluator& evaluator)
-    : file_(folder / kName),
+    : file_(folder / kLivePageName),
       evaluator_(evaluator),
       server_(std::make_unique<PageServer>(
           std::vector<std::filesystem::path>{file_, folder / "report.html"})) {

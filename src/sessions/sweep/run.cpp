@@ -11,6 +11,7 @@
 #include "doubt_notes.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/network_file_system.hpp"
+#include "rift/sessions/sweep/folder.hpp"
 #include "rift/sessions/sweep/journal.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
 
@@ -221,6 +222,8 @@ std::optional<sweep::SweepResult> RunLogs(sweep::Evaluator& evaluator, const Wat
 std::optional<sweep::SweepResult> RunSweep(sweep::Evaluator& evaluator,
                                            const SweepRunRequest& request,
                                            const SweepObserver& observer) {
+  // One that was killed leaves its page, which would say for ever that it runs.
+  if (request.live == nullptr) std::filesystem::remove(request.out / kLivePageName);
   const GoOn go_on = observer.watch_for_stop();
   const experiment::Experiment& experiment = evaluator.experiment();
   const std::unique_ptr<TrialProgress> progress = observer.begin(SizeOf(experiment));

@@ -7,6 +7,9 @@
 
 namespace rift::sessions {
 
+/// The page of a sweep while it runs (LivePage).
+inline constexpr const char* kLivePageName = "live.html";
+
 /// The experiment that a sweep saved in its folder. Throws as experiment::LoadExperiment does.
 experiment::Experiment SavedExperiment(const std::filesystem::path& folder);
 
@@ -16,9 +19,10 @@ experiment::Experiment SavedExperiment(const std::filesystem::path& folder);
 bool HoldsOtherExperiment(const std::filesystem::path& folder,
                           const experiment::Experiment& experiment);
 
-/// True for a folder without an experiment or a journal that holds files of the names that a sweep
-/// or a fit would write, such as table.csv: they are somebody else's.
-bool HoldsOthersFiles(const std::filesystem::path& folder);
+/// In a folder without an experiment or a journal the first file of a name that a sweep or a fit
+/// writes or removes, such as table.csv or figures/fig08_gap_by_trial.svg: it is somebody else's.
+/// Empty where there is none.
+std::filesystem::path OthersFile(const std::filesystem::path& folder);
 
 /// Figures of an earlier sweep or fit, and their folder where nothing else is in it.
 void RemoveFigures(const std::filesystem::path& folder);
