@@ -134,7 +134,7 @@ TEST_CASE("A folder whose files are damaged is not compared, and the message say
   refused("after/table.csv: row 12 is cut short");
 }
 
-TEST_CASE("The page of a comparison opens offline and is not overwritten") {
+TEST_CASE("The page of a comparison opens offline, is not overwritten and replaces no input") {
   const Logs logs;
   const std::string a = logs.Swept("a", 0.08), b = logs.Swept("b", 0.05);
   const std::string page = logs.folder / "change.html";
@@ -147,6 +147,13 @@ TEST_CASE("The page of a comparison opens offline and is not overwritten") {
   CHECK(refused.exit_code == 2);
   CHECK(ReadFile(page) == html);
   CHECK(RunRift({"sweep", "--compare", a, b, "--page", page, "--force"}).exit_code == 0);
+  for (const std::string& input :
+       {a + "/table.csv", a + "/experiment.yaml", b + "/summary.json", b + "/./journal.sqlite"}) {
+    if (input.ends_with("sqlite")) WriteText(input, "a sweep of logs has none");
+    const std::string bytes = ReadFile(input);
+    CHECK(RunRift({"sweep", "--compare", a, b, "--page", input, "--force"}).exit_code == 2);
+    CHECK(ReadFile(input) == bytes);
+  }
   const test::BrowserVisit visit = test::Visit(html);
   if (!visit.available) {
     WARN("SKIPPED: there is no chromium on this machine");

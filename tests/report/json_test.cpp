@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/synthetic_sweep.hpp"
+#include "rift/report/figures/setting_grid.hpp"
 #include "rift/report/json/fields.hpp"
 #include "rift/report/json/json.hpp"
 
@@ -10,6 +11,25 @@ namespace {
 
 using Catch::Matchers::Contains;
 using nlohmann::json;
+
+TEST_CASE("Combinations whose values hold commas are all in the summary and in the map") {
+  using synthetic::Word;
+  sweep::SweepResult result;
+  result.parameters = {{"m", {Word("x")}},
+                       {"a", {Word("oil"), Word("oil, wet")}},
+                       {"b", {Word("dry"), Word("wet, dry")}}};
+  for (const auto& a : result.parameters[1].levels) {
+    for (const auto& b : result.parameters[2].levels) {
+      result.rows.push_back(synthetic::Row({Word("x"), a, b}, "1", 0.05));
+    }
+  }
+  sweep::Summarise(result);
+  CHECK(json::parse(SummaryJson(result))["by"]["[a, b]"].size() == 4);
+  const SettingGrid grid = LayOut(result);
+  REQUIRE(grid.cells.size() == 1);
+  REQUIRE(grid.cells[0].size() == 4);
+  for (const sweep::SettingResult* setting : grid.cells[0]) CHECK(setting != nullptr);
+}
 
 TEST_CASE("A row of table.csv is read back as it was written, quotes and line breaks included") {
   sweep::SweepResult result = synthetic::Grid();
@@ -46,7 +66,19 @@ TEST_CASE("A damaged table.csv is refused with what is wrong and what to do") {
   check(",ok,", ",ox,", "status of row 1 is 'ox'");
   check(",missing,", ",,", "status of row 2 is ''");
   check("false,ok", "fal,ok", "falsified of row 1 is 'fal'");
+  check("false,ok", ",ok", "falsified of row 1 is ''");  // it would count as one that holds
+  check(",,missing", ",false,missing", "falsified of row 2 is 'false'");
+  const std::string gap_m = TableRows(table)[0].at("gap_m");
+  for (const std::string other : {"", "nan", "inf", "-7"}) {
+    check("," + gap_m + ",", "," + other + ",", "gap_m of row 1 is '" + other + "'");
+  }
+  check(",0.75,", ",nan,", "u of row 1 is 'nan'");
   check(",1\n", ",x\n", "id of row 1 is 'x'");
+  check(",1\n", ",01\n", "id of row 1 is '01'");
+  const size_t first = table.find('\n') + 1, second = table.find('\n', first) + 1;
+  const std::string row = table.substr(first, second - first);
+  check(row, "", "id of row 1 is '2'");
+  check(row, row + row, "id of row 2 is '1'");
   check(",1\n", "1\n", "row 1 has 22 cells, and the header 23");
   for (size_t length = 0; length < table.size(); ++length) {
     if (length > 0 && table[length - 1] == '\n') continue;  // a row less is none that is damaged
@@ -68,9 +100,10 @@ TEST_CASE("A table without the column of a parameter is not that of its experime
   TableRow row = TableRowOf(TableCsv(synthetic::Grid()), "1", "table.csv");
   experiment::Experiment experiment;
   experiment.space.parameters = synthetic::Grid().parameters;
-  CHECK_NOTHROW(RequestOf(experiment, row));
+  CHECK_NOTHROW(RequestOf(experiment, row, "a/table.csv"));
   row.erase("v_max");
-  CHECK_THROWS_WITH(RequestOf(experiment, row), Contains("table.csv has no column v_max"));
+  CHECK_THROWS_WITH(RequestOf(experiment, row, "a/table.csv"),
+                    Catch::StartsWith("a/table.csv has no column v_max"));
 }
 
 TEST_CASE("A setting has the same keys in every JSON document of a sweep") {

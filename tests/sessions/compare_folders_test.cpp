@@ -143,8 +143,8 @@ TEST_CASE("Sweeps of another way or another space are not compared") {
   struct Change {
     std::string from, to, key;
   };
-  const Change change = GENERATE(
-      values<Change>({{"0.25", "0.26", "waypoints"}, {"parchment", "cardboard", "space"}}));
+  const Change change = GENERATE(values<Change>(
+      {{"0.25", "0.26", "waypoints"}, {"parchment", "parchment, cardboard", "space"}}));
   SaveRows(folder / "b", gaps_m);
   std::string saved = files::ReadFile(folder / "b/experiment.yaml");
   const size_t at = saved.find(change.from);
@@ -168,6 +168,33 @@ TEST_CASE("A folder without one of the three files is no finished sweep, and the
                           ": it is not the folder of a finished sweep: there is no " + name);
     CHECK_THROWS_WITH(CompareFolders(folder / "b", folder / "a"), Contains(folder / "b"));
   }
+}
+
+TEST_CASE("A table that does not go with the space and the summary beside it is refused") {
+  const test::TemporaryFolder folder;
+  SaveRows(folder / "a", {0.004, 0.006, 0.020, 0.030});
+  struct Damage {
+    std::string file, from, to, says;
+  };
+  const auto whole = [&](const char* name) { return files::ReadFile(folder / "a/" + name); };
+  const std::string table = whole("table.csv");
+  const size_t last = table.rfind('\n', table.size() - 2) + 1;
+  const Damage damage = GENERATE_REF(values<Damage>(
+      {{"table.csv", table.substr(last), "", "b/table.csv has 3 rows, and summary.json tells of 4"},
+       {"table.csv", "\nparchment", "\npaper", "b/table.csv has the surface 'paper'"},
+       {"summary.json", "\"parchment\"", "\"paper\"", "summary.json no verdict on it"},
+       {"summary.json", "\"verdict\": \"", "\"verdict\": \"X\\n", "b/summary.json: it is damaged"},
+       {"summary.json", "\"not_ok\": 0", "\"not_ok\": 1", "tells of 5"}}));
+  INFO(damage.says);
+  SaveRows(folder / "b", {0.004, 0.006, 0.020, 0.030});
+  std::string text = whole(damage.file.c_str());
+  const size_t at = damage.file == "summary.json" && damage.from == "\"parchment\""
+                        ? text.rfind(damage.from)
+                        : text.find(damage.from);
+  REQUIRE(at != text.npos);
+  test::WriteText(folder / ("b/" + damage.file), text.replace(at, damage.from.size(), damage.to));
+  CHECK_THROWS_WITH(CompareFolders(folder / "a", folder / "b"),
+                    Contains(damage.says) && Contains("give the command of the sweep again"));
 }
 
 TEST_CASE("A damaged table or summary is named by its path") {

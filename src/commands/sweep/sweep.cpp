@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "progress.hpp"
 #include "rift/commands/arguments/arguments.hpp"
@@ -128,7 +129,14 @@ void PrintStatus(const SweepRequest& request) {
 /// With --compare: a table, or JSON, and a page where one is asked for.
 void Compare(const SweepRequest& request) {
   if (!request.page.empty()) {
-    CheckOutputs({}, {.files = {request.page}, .force = request.fresh});
+    std::vector<fs::path> inputs;
+    for (const fs::path folder : request.compare) {
+      for (const char* name : {"experiment.yaml", "table.csv", "summary.json"}) {
+        inputs.push_back(folder / name);
+      }
+      inputs.push_back(folder / sessions::kJournalName);  // the trials that all of it is made from
+    }
+    CheckOutputs(inputs, {.files = {request.page}, .force = request.fresh});
   }
   const sweep::SweepChange change =
       sessions::CompareFolders(request.compare.at(0), request.compare.at(1));

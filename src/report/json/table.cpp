@@ -59,12 +59,18 @@ constexpr std::array<std::string_view, 12> kNumberColumns{"gap_m",
                                                           "way_gap_m",
                                                           "left_m"};
 
-/// True when all of the cell is the number, as it is written here.
+/// The number where all of the cell is one, as it is written here.
 template <class Number>
-bool Reads(const std::string& cell) {
+std::optional<Number> NumberIn(const std::string& cell) {
   Number number{};
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
-  return error == std::errc() && end == cell.data() + cell.size();
+  if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
+  return number;
+}
+
+bool IsGap(const std::string& cell) {
+  const std::optional<double> gap_m = NumberIn<double>(cell);
+  return gap_m && std::isfinite(*gap_m) && *gap_m >= 0.0;
 }
 
 /// The rows of a table.csv, one after the other. A table is read back as it was written or not at
@@ -133,17 +139,20 @@ class TableReader {
       if (is_right) return;
       Refuse(fmt::format("{} of row {} is '{}'", column, row_, row.at(std::string(column))));
     };
-    require("id", Reads<std::uint64_t>(row.at("id")));
+    require("id", row.at("id") == fmt::format("{}", row_));  // none cut out, doubled or exchanged
     const auto statuses = EnumNames(sweep::TrialStatus{});
     require("status",
             std::find(statuses.begin(), statuses.end(), row.at("status")) != statuses.end());
-    const std::string& falsified = row.at("falsified");
-    require("falsified", falsified.empty() || falsified == "true" || falsified == "false");
+    const bool is_ok = row.at("status") == yaml::NameOf(sweep::TrialStatus::kOk);
+    require("falsified",
+            row.at("falsified") == "true" || row.at("falsified") == (is_ok ? "false" : ""));
     for (const std::string_view column : kNumberColumns) {
       const std::string& cell = row.at(std::string(column));
-      require(column, cell.empty() || Reads<double>(cell));
+      const std::optional<double> number = NumberIn<double>(cell);
+      require(column, number ? !std::isnan(*number) : cell.empty());
     }
-    require("seed", row.at("seed").empty() || Reads<std::uint64_t>(row.at("seed")));
+    require("gap_m", IsGap(row.at("gap_m")) || (!is_ok && row.at("gap_m").empty()));
+    require("seed", row.at("seed").empty() || NumberIn<std::uint64_t>(row.at("seed")));
   }
 
   [[noreturn]] void Refuse(const std::string& what) const {
@@ -208,7 +217,8 @@ std::string WorstIdOf(const std::string& table_csv, const std::string& name) {
   return ids[*worst];
 }
 
-sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row) {
+sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row,
+                              const std::string& name) {
   sweep::TrialRequest request{.trial = row.at("trial")};
   std::uint64_t seed = 0;
   const std::string& text = row.at("seed");
@@ -218,9 +228,9 @@ sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const Ta
     const auto cell = row.find(parameter.Name());
     if (cell == row.end()) {
       throw std::invalid_argument(fmt::format(
-          "table.csv has no column {}, and experiment.yaml beside it a parameter of that name: "
+          "{} has no column {}, and experiment.yaml beside it a parameter of that name: "
           "they are of two sweeps; give the command of the sweep again, which writes both anew",
-          parameter.Name()));
+          name, parameter.Name()));
     }
     request.theta.push_back(experiment::ParseValue(parameter, cell->second));
   }

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -17,6 +19,7 @@
 #include "rift/report/figures/gnuplot_text.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/sessions/sweep/folder.hpp"
+#include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 
 namespace rift::sessions {
@@ -37,27 +40,43 @@ bool BeginsWithOne(const std::string& key, const std::string_view (&beginnings)[
                      [&](std::string_view beginning) { return key.starts_with(beginning); });
 }
 
+/// Throws for what is wrong with a table.
+using Refuse = std::function<void(const std::string& what)>;
+
 struct Loaded {
   experiment::Experiment experiment;
   sweep::TabledSweep sweep;
 };
 
-/// Verdicts by the setting as summary.json writes it.
-std::map<std::string, std::string> Verdicts(const fs::path& folder) {
+/// What is read of a summary.json.
+struct Summary {
+  std::map<std::string, std::string> verdicts;  ///< by the setting as it is written there
+  bool has_all_settings = true;                 ///< else those with the largest gaps
+  size_t trials = 0;
+};
+
+Summary ReadSummary(const fs::path& folder) {
   const fs::path file = folder / "summary.json";
-  std::map<std::string, std::string> verdicts;
+  const auto names = EnumNames(gap::Verdict{});
+  Summary summary;
+  bool is_whole = true;
   try {
-    const ordered_json summary = ordered_json::parse(files::ReadFile(file));
-    for (const ordered_json& setting : summary.at("settings")) {
-      verdicts[setting.at("theta").dump()] = setting.at("verdict");
+    const ordered_json json = ordered_json::parse(files::ReadFile(file));
+    summary.trials = json.at("n").get<size_t>() + json.at("not_ok").get<size_t>();
+    summary.has_all_settings = !json.contains("settings_omitted");
+    for (const ordered_json& setting : json.at("settings")) {
+      const std::string verdict = setting.at("verdict");
+      is_whole = is_whole && std::find(names.begin(), names.end(), verdict) != names.end();
+      summary.verdicts[setting.at("theta").dump()] = verdict;
     }
   } catch (const ordered_json::exception&) {
-    throw std::invalid_argument(
-        fmt::format("{}: it is damaged, or of another version of rift: give the command of the "
-                    "sweep again, which writes it anew",
-                    file.string()));
+    is_whole = false;
   }
-  return verdicts;
+  if (is_whole) return summary;
+  throw std::invalid_argument(
+      fmt::format("{}: it is damaged, or of another version of rift: give the command of the "
+                  "sweep again, which writes it anew",
+                  file.string()));
 }
 
 std::vector<report::TableRow> Rows(const fs::path& folder) {
@@ -66,6 +85,22 @@ std::vector<report::TableRow> Rows(const fs::path& folder) {
     return report::TableRows(table);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}/{}", folder.string(), error.what()));
+  }
+}
+
+/// A value of the list, or any number where there is a range.
+bool IsIn(const experiment::Parameter& parameter, const experiment::ParameterValue& value) {
+  if (parameter.IsContinuous()) return value.number && std::isfinite(*value.number);
+  return std::any_of(parameter.levels.begin(), parameter.levels.end(),
+                     [&](const auto& level) { return experiment::SameValue(level, value); });
+}
+
+void RequireInSpace(const std::vector<experiment::Parameter>& parameters,
+                    const experiment::Theta& theta, const Refuse& refuse) {
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    if (IsIn(parameters[i], theta[i])) continue;
+    refuse(fmt::format("has the {} '{}', which space in experiment.yaml does not have",
+                       parameters[i].Name(), theta[i].text));
   }
 }
 
@@ -78,9 +113,21 @@ Loaded Load(const fs::path& folder) {
   }
   Loaded loaded{SavedExperiment(folder), {.folder = folder.string()}};
   const std::vector<experiment::Parameter>& parameters = loaded.experiment.space.parameters;
-  const std::map<std::string, std::string> verdicts = Verdicts(folder);
-  for (const report::TableRow& row : Rows(folder)) {
-    const experiment::Theta theta = report::RequestOf(loaded.experiment, row).theta;
+  const std::string table = (folder / "table.csv").string();
+  const Refuse refuse = [&table](const std::string& what) {
+    throw std::invalid_argument(
+        fmt::format("{} {}: they are of two sweeps, or damaged; give the command of the sweep "
+                    "again, which writes both anew",
+                    table, what));
+  };
+  const Summary summary = ReadSummary(folder);
+  const std::vector<report::TableRow> rows = Rows(folder);
+  if (rows.size() != summary.trials) {
+    refuse(fmt::format("has {} rows, and summary.json tells of {}", rows.size(), summary.trials));
+  }
+  for (const report::TableRow& row : rows) {
+    const experiment::Theta theta = report::RequestOf(loaded.experiment, row, table).theta;
+    RequireInSpace(parameters, theta, refuse);
     const bool is_ok = row.at("status") == "ok", falsified = row.at("falsified") == "true";
     const std::string key = sweep::SettingKey(parameters, theta);
     loaded.sweep.trials.push_back(
@@ -91,8 +138,13 @@ Loaded Load(const fs::path& folder) {
          .falsified = falsified,
          .gap_m = is_ok ? std::strtod(row.at("gap_m").c_str(), nullptr) : sweep::kNotKnown,
          .theta = theta});
-    const auto verdict = verdicts.find(report::ThetaJson(parameters, theta).dump());
-    if (verdict != verdicts.end()) loaded.sweep.verdicts[key] = verdict->second;
+    const auto verdict = summary.verdicts.find(report::ThetaJson(parameters, theta).dump());
+    if (verdict != summary.verdicts.end()) {
+      loaded.sweep.verdicts[key] = verdict->second;
+    } else if (summary.has_all_settings) {
+      refuse(fmt::format("has the setting {}, and summary.json no verdict on it",
+                         sweep::SettingText(parameters, theta)));
+    }
   }
   return loaded;
 }

@@ -25,8 +25,10 @@ std::string Evidence(const report::TableRow& row) {
   return text;
 }
 
+std::filesystem::path TableOf(const std::filesystem::path& folder) { return folder / "table.csv"; }
+
 report::TableRow RowOf(const std::filesystem::path& folder, const std::string& id) {
-  const std::filesystem::path table = folder / "table.csv";
+  const std::filesystem::path table = TableOf(folder);
   return report::TableRowOf(files::ReadFile(table), id, table.string());
 }
 
@@ -61,7 +63,7 @@ std::optional<ProgramReplay> ReplayProgramRow(const std::filesystem::path& folde
   if (experiment.candidate.kind != experiment::CandidateKind::kProgram) return std::nullopt;
   sweep::Evaluator evaluator(experiment, file, inputs);
   evaluator.LoadLogs();
-  const sweep::TrialRequest request = report::RequestOf(experiment, row);
+  const sweep::TrialRequest request = report::RequestOf(experiment, row, TableOf(folder).string());
   sweep::ProgramTrial again = sweep::RunProgramTrial(evaluator, request);
   ProgramReplay replay{.experiment = experiment};
   replay.verdict = Verify(experiment, std::move(again.row), row, id);
@@ -82,7 +84,7 @@ Replay ReplayRow(const std::filesystem::path& folder, const std::string& id,
   }
   sweep::Evaluator evaluator(experiment, file, inputs);
   evaluator.LoadLogs();
-  const sweep::TrialRequest request = report::RequestOf(experiment, row);
+  const sweep::TrialRequest request = report::RequestOf(experiment, row, TableOf(folder).string());
   Replay replay{.experiment = sweep::ExperimentFor(experiment, request)};
   replay.experiment.seed = *request.seed;
   replay.trial = evaluator.TrialFor(request, evaluator.Reference(request));

@@ -97,6 +97,11 @@ TEST_CASE("Without words the first parameter stands alone, and one parameter has
   CHECK(MainLevel({}, {}).empty());
   CHECK(CombinationLabel({{"a", {}}, {"b", {}}, {"c", {}}}, {2, 0}) == "[c, a]");
   CHECK(CombinationLabel({{"a", {}}}, {}) == "[]");
+  // Values that hold a comma are quoted: labels that differ are of combinations that differ.
+  CHECK(CombinationLabel({{"oil", {}}, {"wet, dry", {}}}, {0, 1}) == "[oil, \"wet, dry\"]");
+  CHECK(CombinationLabel({{"oil, wet", {}}, {"dry", {}}}, {0, 1}) == "[\"oil, wet\", dry]");
+  CHECK(CombinationLabel({{"3\"", {}}, {"a", {}}}, {0, 1}) == "[\"3\"\"\", a]");
+  CHECK(CombinationLabel({{"oil, wet", {}}, {"dry", {}}}, {0}) == "oil, wet");
 }
 
 /// Settings x = 1 and x = 2, 3 and 4 trials of unequal gaps.

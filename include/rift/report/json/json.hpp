@@ -129,8 +129,10 @@ TableRow TableRowOf(const std::string& table_csv, const std::string& id, const s
 /// naming the table, when it takes none.
 std::string WorstIdOf(const std::string& table_csv, const std::string& name);
 
-/// The trial of a row of an experiment's table; std::invalid_argument where a parameter is missing.
-sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row);
+/// The trial of a row of an experiment's table. Throws std::invalid_argument, naming the table,
+/// where a parameter is missing.
+sweep::TrialRequest RequestOf(const experiment::Experiment& experiment, const TableRow& row,
+                              const std::string& name);
 
 /// A setting as an object whose keys are the parameters' columns in table.csv:
 /// {"surface": "ground", "v_min": 0.15}.

@@ -185,7 +185,8 @@ std::string ShortText(const experiment::Parameter& parameter,
 std::string SettingText(const std::vector<experiment::Parameter>& parameters,
                         const experiment::Theta& theta);
 
-/// "0.15" for one parameter, "[0.15, 0.30]" for several.
+/// "0.15" for one parameter, "[0.15, 0.30]" for several, of which those with a comma or a quote are
+/// quoted as in CSV: two combinations have two labels.
 std::string CombinationLabel(const experiment::Theta& theta, const std::vector<int>& parameters);
 
 /// The value of the main factor; empty in a space without parameters.
