@@ -143,6 +143,9 @@ FailingRegion MapFailures(const SweepResult& result, std::array<int, 2> paramete
   const experiment::Parameter& px = result.parameters[parameters[0]];
   const experiment::Parameter& py = result.parameters[parameters[1]];
   const Side x(px), y(py);
+  if (static_cast<size_t>(x.Patches()) * static_cast<size_t>(y.Patches()) > kMostRegionCells) {
+    return region;
+  }
   region.is_smoothed = px.IsContinuous() || py.IsContinuous();
   const std::vector<Dot> dots = DotsOf(result, x, parameters[0], y, parameters[1]);
   for (int j = 0; j < y.Patches(); ++j) {

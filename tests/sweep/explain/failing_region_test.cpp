@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+#include <string>
+#include <utility>
 
 namespace rift::sweep {
 namespace {
@@ -54,6 +56,24 @@ TEST_CASE("Over two lists each pair of values is a cell with the share of its ow
       CHECK(cell.share == Approx(shares[i]));
     }
   }
+}
+
+TEST_CASE("Lists whose pairs of values are more than a map can show give no cells") {
+  const auto cells_of = [](int columns, int lines) {
+    SweepResult result;
+    for (const auto& [key, count] : {std::pair{"p", columns}, std::pair{"q", lines}}) {
+      result.parameters.push_back({.key = key});
+      for (int i = 0; i < count; ++i) {
+        result.parameters.back().levels.push_back({std::to_string(i), i});
+      }
+    }
+    result.rows.push_back(
+        Row({result.parameters[0].levels[0], result.parameters[1].levels[0]}, true));
+    return MapFailures(result, {0, 1}).cells.size();
+  };
+  CHECK(cells_of(40, 40) == 1600);
+  CHECK(cells_of(1601, 1) == 0);
+  CHECK(cells_of(70000, 70000) == 0);  // their number does not fit into 32 bits
 }
 
 TEST_CASE("A range is cut into 24 patches that count the twelve nearest settings") {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct RegionCell {
   int trials = 0;                    ///< counted for it
 };
 
+/// More of them nobody reads, and two lists of thousands of values each would fill the memory.
+constexpr std::size_t kMostRegionCells = 1600;
+
 struct FailingRegion {
   int x_parameter = -1;  ///< -1: there are no two parameters to show
   int y_parameter = -1;
@@ -31,7 +35,8 @@ std::array<int, 2> MostInfluential(const SweepResult& result, const Effects& eff
 /// The failing region over two parameters, all others being what the trials had. Lists of values
 /// give a cell for each pair; a range is cut into patches (even in the logarithm, where it is) that
 /// count the 12 settings nearest to them (of a list only those of the patch's own value), and all
-/// that are as near as the twelfth. Of more than 4000 trials a sample is looked at.
+/// that are as near as the twelfth. Of more than 4000 trials a sample is looked at. No cells where
+/// there would be more than kMostRegionCells.
 FailingRegion MapFailures(const SweepResult& result, std::array<int, 2> parameters);
 
 }  // namespace rift::sweep
