@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "rift/terminal/exit_code.hpp"
+#include "text.hpp"
 
 namespace rift::terminal {
 namespace {
@@ -45,7 +46,7 @@ StopSignal::~StopSignal() { PutBack(interrupt_, terminate_); }
 bool StopSignal::IsAsked() const { return asked != 0; }
 
 EndSignal::EndSignal(const std::string& line) {
-  last_line = line + '\n';
+  last_line = TerminalText(line, LineBreaks::kEscaped) + '\n';
   Handle(End, interrupt_, terminate_);
 }
 

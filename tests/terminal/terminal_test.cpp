@@ -190,12 +190,12 @@ TEST_CASE("Where Ctrl-C or SIGTERM ends the process it leaves one line and the c
   Caught err(stderr), out(stdout);
   const pid_t child = ::fork();
   if (child == 0) {
-    const EndSignal end("stopped; it starts over");
+    const EndSignal end("stopped; \x1b]0;it\nstarts over");
     std::raise(signal);
     ::_exit(1);
   }
   const int status = test::EndOf(child, "a process that was told to stop");
-  CHECK(err.Text() == "stopped; it starts over\n");
+  CHECK(err.Text() == "stopped; \\x1b]0;it\\x0astarts over\n");
   CHECK(out.Text().empty());
   REQUIRE(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == kStopped);
