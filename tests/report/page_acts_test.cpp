@@ -60,8 +60,8 @@ constexpr const char* kFilter = R"(
       document.querySelectorAll('#chart-0 [fill^="rgb"]').length].join('|')), 300);)";
 
 constexpr const char* kFollowLinks = R"(
-    const seen = [], links = ['result=failed', 'surface=parchment&result=failed', 'row=3%2C5%2C8',
-      'surface=ground', 'result=fell', 'v_min=0.25&surface=parchment&delay_s=0.02'];
+    const seen = [], links = ['.result=failed', 'surface=parchment&.result=failed',
+      '.row=3%2C5%2C8', 'surface=ground', '.result=fell', 'v_min=0.25&surface=parchment&delay_s=0.02'];
     const next = () => {
       if (seen.length === links.length) { probe(seen.join('|')); return; }
       location.hash = '#trials?' + links[seen.length];
@@ -69,6 +69,34 @@ constexpr const char* kFollowLinks = R"(
         seen.push([...document.querySelectorAll('#trials tbody tr')].length);
         next();
       }, 50);
+    };
+    next();)";
+
+/// Parameters called as columns of the page, with values that its links know.
+std::string PageOfRows() {
+  sweep::SweepResult result = synthetic::Grid({"failed", "a\tb", "rock"});
+  result.parameters[0].key = "result";
+  result.parameters[1].key = "row";
+  return RenderPage(result);
+}
+
+constexpr const char* kFollowOwnNames = R"(
+    const seen = [], rows = () => document.querySelectorAll('#trials tbody tr').length;
+    const choice = document.getElementById('view');
+    for (const name of ['failed', 'a\tb', '0.15']) {
+      showView(page.views.findIndex(view => view.name.endsWith(' ' + name)));
+      seen.push(rows());
+    }
+    showView(0);
+    const links = ['result=failed', '.result=failed', 'result=failed&.result=failed',
+      'row=0.15', '.row=3', 'row=0.15&.row=3%2C5'];
+    const next = () => {
+      if (links.length === 0) {
+        probe(seen.join('|') + '|' + document.querySelector('#filter span').textContent);
+        return;
+      }
+      location.hash = '#trials?' + links.shift();
+      setTimeout(() => { seen.push(rows()); next(); }, 50);
     };
     next();)";
 
@@ -160,6 +188,7 @@ const std::vector<Act>& Acts() {
   static const std::vector<Act> kActs{
       {PageWithPaths(), kFilter},
       {RenderPage(synthetic::Uneven()), kFollowLinks},
+      {PageOfRows(), kFollowOwnNames},
       {PageWithPaths(), kPointAtRow},
       {PageWithSpeeds(), kMoveCursor},
       {PageWithPaths(), kFollowPath},
@@ -209,6 +238,11 @@ TEST_CASE("What a reader does with the page shows what it says") {
     }
     CHECK(SeenAfter(kFollowLinks) ==
           fmt::format("{}|{}|3|{}|1|3", failed, on_parchment, on_ground));
+  }
+  SECTION("Parameters called row or result are not taken for the page's own columns") {
+    // Eight trials of each result and twelve of each row; rows 3 and 4 are of row 0.15, 5 is not.
+    CHECK(SeenAfter(kFollowOwnNames) ==
+          "8|8|12|8|8|0|12|1|1|1 of the 24 trials on this page have row 0.15 and row 3, 5.");
   }
   SECTION("The pointer and the focus on a row light its path and say what it is") {
     const std::string row = "Row 5: ice, v_min 0.20, v_max 0.30, trial 1: gap 0.0260 m.";

@@ -62,6 +62,13 @@ TEST_CASE("The page opens without an error, asks the network for nothing and dra
   CHECK_THAT(Chart(grid.dom, 0), Contains(">sand_fine<"));
 }
 
+TEST_CASE("A page in a folder whose name is no UTF-8 draws every chart") {
+  const BrowserVisit visit = Visit(RenderPage(synthetic::Grid()), "o\xff");
+  SKIP_WITHOUT_BROWSER(visit);
+  CHECK(visit.console == "");
+  CHECK_THAT(visit.dom, Contains("data-drawn=\"4\"") && Contains("rift simulate --replay DIR 1"));
+}
+
 /// Everything in which a page is no pleasure to read: elements that reach beyond the window, small
 /// letters, labels of a chart over each other, charts without marks, unit or sentence.
 constexpr const char* kReading = R"(

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "report/page/parts.hpp"
 #include "report/synthetic_sweep.hpp"
@@ -120,6 +121,31 @@ TEST_CASE("Names in maps and charts are cut to 32 letters, and links keep them w
   CHECK(bars[1]["label"] == cut);
 }
 
+TEST_CASE("Values and parameters whose cut names are alike have places of their own") {
+  const std::string begin(20, 'x'), end(20, 'y');
+  const Levels levels{synthetic::Word(begin + "A" + end), synthetic::Word(begin + "B" + end),
+                      synthetic::Word(begin + "C" + end)};
+  sweep::SweepResult result;
+  result.parameters = {{"a", levels}};
+  for (const auto& level : levels) result.rows.push_back(synthetic::Row({level}, "1", 0.05));
+  sweep::Summarise(result);
+  std::set<std::string> columns, labels;
+  const json cells = FailureMap(result, {}, {}).spec["data"][0]["values"];
+  for (const json& cell : cells) columns.insert(cell["column"]);
+  CHECK(columns.size() == 3);
+  sweep::Explanation explanation;
+  for (const auto& level : levels) {
+    explanation.effects.parameters.push_back({.name = level.text});
+    explanation.effects.parameters.back().share = 0.5;
+  }
+  const json bars = WhyCharts(explanation).at(0).spec["data"][0]["values"];
+  for (const json& bar : bars) {
+    labels.insert(bar["label"]);
+    CHECK(bar["tip"]["what"].get<std::string>().size() == 41);
+  }
+  CHECK(labels.size() == 3);
+}
+
 TEST_CASE("A plane shows up to fifteen hundred trials, and of more a sample in their order") {
   for (const auto& [trials, dots] :
        {std::pair{1499, 1499}, {1500, 1500}, {1501, 1500}, {3002, 1500}}) {
@@ -136,7 +162,7 @@ TEST_CASE("A plane shows up to fifteen hundred trials, and of more a sample in t
     const size_t row = shown[7]["row"];
     CHECK(shown[7]["x"] == *result.rows[row - 1].theta[0].number);
     CHECK(shown[7]["y"] == *result.rows[row - 1].theta[1].number);
-    CHECK(shown[7]["query"] == fmt::format("row={}", row));
+    CHECK(shown[7]["query"] == fmt::format(".row={}", row));
     CHECK(chart.spec["data"][0]["values"][0]["value"] == 12.5);
     CHECK(chart.spec["data"][0]["values"][0]["x2"] == 0.3);
     CHECK(chart.spec["height"] == 230);

@@ -41,6 +41,12 @@ std::string Decoded(const std::string& text) {
   return plain;
 }
 
+/// A parameter's own, which holds no dot; of the page's own columns the title after one.
+std::string NameInLinks(const json& column) {
+  if (column.contains("name")) return column["name"];
+  return "." + column["title"].get<std::string>();
+}
+
 /// What page.js shows for a link: the rows whose cells are the values of the query.
 std::vector<size_t> LinkedRows(const json& table, const std::string& query) {
   std::vector<size_t> rows;
@@ -51,7 +57,7 @@ std::vector<size_t> LinkedRows(const json& table, const std::string& query) {
     const std::string name = Decoded(query.substr(begin, equals - begin));
     const std::string value = Decoded(query.substr(equals + 1, end - equals - 1));
     std::set<std::string> values{value};
-    if (name == "row") {
+    if (name == ".row") {
       values.clear();
       for (size_t at = 0; at <= value.size();) {
         const size_t comma = std::min(value.find(',', at), value.size());
@@ -60,11 +66,11 @@ std::vector<size_t> LinkedRows(const json& table, const std::string& query) {
       }
     }
     size_t column = 0;
-    while (table["columns"][column].value("name", table["columns"][column]["title"]) != name) {
+    while (NameInLinks(table["columns"][column]) != name) {
       ++column;
     }
     std::erase_if(rows, [&](size_t row) {
-      if (name == "result" && value == "failed") return table["marks"][row] != "fail";
+      if (name == ".result" && value == "failed") return table["marks"][row] != "fail";
       const json& cell = table["rows"][row][column];
       return values.count(cell.is_string() ? cell.get<std::string>() : cell.dump()) == 0;
     });

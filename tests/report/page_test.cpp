@@ -191,7 +191,7 @@ TEST_CASE("The filter offers each value of a parameter and each setting, with it
     return json{{"outcome", "there is no view " + query}};
   };
   CHECK(view("")["outcome"] == "fail");
-  CHECK_THAT(view("surface=rock")["headline"].dump(), Contains("[\"8\",\"result=failed\"]"));
+  CHECK_THAT(view("surface=rock")["headline"].dump(), Contains("[\"8\",\".result=failed\"]"));
   CHECK(view("surface=ice")["outcome"] == "pass");
   CHECK(view("surface=rock&v_min=0.15&v_max=0.30")["name"] ==
         "setting rock, v_min 0.15, v_max 0.30");

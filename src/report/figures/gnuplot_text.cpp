@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace rift::report {
 namespace {
@@ -39,6 +41,12 @@ std::string PlainText(std::string_view text) {
   for (char& c : plain) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
   }
+  // No character of XML 1.0 (section 2.2), so none of an SVG file: U+FFFD instead.
+  for (const std::string_view forbidden : {"\uFFFE", "\uFFFF"}) {
+    for (std::size_t at = plain.find(forbidden); at != plain.npos; at = plain.find(forbidden, at)) {
+      plain.replace(at, forbidden.size(), "\uFFFD");
+    }
+  }
   return plain;
 }
 
@@ -69,6 +77,36 @@ std::string Shortened(std::string_view text, std::size_t limit) {
   const std::size_t head = limit / 2, tail = limit - head - 1;
   return plain.substr(0, LetterStart(plain, head)) + "…" +
          plain.substr(LetterStart(plain, letters - tail));
+}
+
+std::vector<std::string> ShortenedApart(const std::vector<std::string>& texts, std::size_t limit) {
+  const std::size_t letters_before = limit / 4;  // that stay of what texts of one label share
+  std::map<std::string, std::set<std::string>> texts_of;
+  for (const std::string& text : texts) texts_of[Shortened(text, limit)].insert(text);
+  std::map<std::string, std::string> label_of;
+  std::set<std::string> taken;
+  for (const auto& [label, alike] : texts_of) {
+    if (alike.size() > 1) continue;
+    label_of[*alike.begin()] = label;
+    taken.insert(label);
+  }
+  for (const auto& [label, alike] : texts_of) {
+    if (alike.size() == 1) continue;
+    const std::string &first = *alike.begin(), &last = *alike.rbegin();  // in the order of bytes
+    const auto part = std::mismatch(first.begin(), first.end(), last.begin(), last.end());
+    const std::size_t common = LetterCount(std::string_view(first.begin(), part.first));
+    const std::size_t skipped = common - std::min(common, letters_before);
+    for (const std::string& text : alike) {
+      const std::string rest = text.substr(LetterStart(text, skipped));
+      const std::string cut = Shortened(skipped > 0 ? "…" + rest : rest, limit);
+      std::string name = cut;
+      for (int n = 2; !taken.insert(name).second; ++n) name = fmt::format("{} ({})", cut, n);
+      label_of[text] = name;
+    }
+  }
+  std::vector<std::string> labels;
+  for (const std::string& text : texts) labels.push_back(label_of.at(text));
+  return labels;
 }
 
 std::size_t LetterCount(std::string_view text) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "rift/sweep/falsify/result.hpp"
 #include "sweep_plots.hpp"
@@ -13,6 +14,9 @@ namespace {
 
 constexpr int kMostSeries = 12;
 
+/// Of a figure's file name; with what is before and behind it below the 255 of file systems.
+constexpr std::size_t kMostFilePartBytes = 80;
+
 // Parameter names become parts of file names.
 std::string FilePart(const std::string& name) {
   std::string part;
@@ -21,6 +25,7 @@ std::string FilePart(const std::string& name) {
     if (word) part += c;
     if (!word && !part.empty() && part.back() != '_') part += '_';
   }
+  part.resize(std::min(part.size(), kMostFilePartBytes));
   while (!part.empty() && part.back() == '_') part.pop_back();
   return part.empty() ? "parameter" : part;
 }
@@ -87,10 +92,11 @@ class FigureMaker {
   }
 
   void ByOtherFactors() {
-    const std::string name = "fig13_failures_by_" + FilePart(grid_.others_name);
-    if (grid_.others_name.empty()) {
-      return Omit("fig13_failures_by_other_parameters", "there is one parameter only");
-    }
+    const bool is_nameable =
+        !grid_.others_name.empty() && grid_.others_name.size() <= kMostFilePartBytes;
+    const std::string name =
+        "fig13_failures_by_" + (is_nameable ? FilePart(grid_.others_name) : "other_parameters");
+    if (grid_.others_name.empty()) return Omit(name, "there is one parameter only");
     const std::string reason = WhyNoBars(grid_.others, !no_grid_.empty());
     if (!reason.empty()) return Omit(name, reason);
     Keep(FailuresByLevelFigure(name, grid_.others_name, grid_.others, options_));
@@ -108,7 +114,15 @@ class FigureMaker {
   SweepFigureSet Take() { return std::move(set_); }
 
  private:
-  void Keep(Figure figure) { set_.figures.push_back(std::move(figure)); }
+  /// Names of parameters that differ in other letters alone make one name of a file: the next of
+  /// them are numbered.
+  void Keep(Figure figure) {
+    const std::string name = figure.name;
+    for (int n = 2; !names_.insert(figure.name).second; ++n) {
+      figure.name = fmt::format("{}_{}", name, n);
+    }
+    set_.figures.push_back(std::move(figure));
+  }
   void Omit(const std::string& name, const std::string& reason) {
     set_.omitted.push_back({name, reason});
   }
@@ -125,6 +139,7 @@ class FigureMaker {
   std::string no_grid_;
   bool main_is_continuous_ = false;
   SweepFigureSet set_;
+  std::set<std::string> names_;  ///< of the figures kept
 };
 
 SweepFigureSet NothingToDraw(const std::string& reason) {

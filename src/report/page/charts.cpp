@@ -146,29 +146,37 @@ PageChart HeatMap(const sweep::SweepResult& result, const sweep::FailingRegion& 
   const bool is_line = region.y_parameter < 0;
   const std::string x = NameOf(result, region.x_parameter);
   const std::string y = is_line ? "" : NameOf(result, region.y_parameter);
-  json values = json::array();
+  std::vector<std::string> columns, lines;
   for (const sweep::RegionCell& cell : region.cells) {
+    columns.push_back(cell.x);
+    lines.push_back(cell.y);
+  }
+  columns = ShortenedApart(columns, kMostLabelLetters);
+  lines = ShortenedApart(lines, kMostLabelLetters);
+  json values = json::array();
+  for (std::size_t i = 0; i < region.cells.size(); ++i) {
+    const sweep::RegionCell& cell = region.cells[i];
     json tip = {{experiment::LabelOf(x), cell.x}};
     std::string query = TrialsWhere(x, cell.x);
     if (!is_line) {
       tip[experiment::LabelOf(y)] = cell.y;
       query = Both(query, TrialsWhere(y, cell.y));
     }
-    values.push_back({{"line", Shortened(cell.y, 32)},
-                      {"column", Shortened(cell.x, 32)},
+    values.push_back({{"line", lines[i]},
+                      {"column", columns[i]},
                       {"value", Value(std::round(1000.0 * cell.share) / 10.0)},
                       {"trials", cell.trials},
                       {"query", region.is_smoothed ? "" : query},
                       {"tip", tip}});
   }
   PageChart chart{"", "", Template("heat.json")};
-  const std::size_t lines =
+  const std::size_t line_count =
       is_line ? 1 : std::max<std::size_t>(1, result.parameters[region.y_parameter].levels.size());
-  chart.spec["height"] = std::clamp<std::size_t>(64 * lines, 80, 240);
+  chart.spec["height"] = std::clamp<std::size_t>(64 * line_count, 80, 240);
   if (!is_line && result.parameters[region.y_parameter].IsContinuous()) chart.spec["height"] = 230;
   SetSignal(chart.spec, "middle", 60.0);
-  const std::size_t columns = result.parameters[region.x_parameter].levels.size();
-  if (columns > 0 && columns <= 6) {
+  const std::size_t column_count = result.parameters[region.x_parameter].levels.size();
+  if (column_count > 0 && column_count <= 6) {
     chart.spec["axes"][0].update({{"labelAngle", 0}, {"labelAlign", "center"}});
   }
   SetSignal(chart.spec, "digits", ".0f");

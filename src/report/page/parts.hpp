@@ -39,6 +39,9 @@ struct PageChart {
   nlohmann::json fields = nlohmann::json::array();
 };
 
+/// Of a value or a parameter at a chart's axis; the tip of its marks has the whole.
+inline constexpr std::size_t kMostLabelLetters = 32;
+
 /// The Vega specification of that name, without data.
 nlohmann::json Template(std::string_view name);
 /// Sets a signal that a specification has.

@@ -16,7 +16,7 @@ constexpr std::size_t kMostTerms = 12;
 
 json Bar(const std::string& label, double value, double low, double high, std::string_view colour,
          json tip) {
-  return {{"label", Shortened(label, 32)},
+  return {{"label", label},
           {"value", Value(value)},
           {"low", Value(low)},
           {"high", Value(high)},
@@ -28,6 +28,10 @@ json Bar(const std::string& label, double value, double low, double high, std::s
 PageChart Bars(std::string title, std::string sentence, const std::string& x_title, json values) {
   PageChart chart{std::move(title), std::move(sentence), Template("bars.json")};
   chart.spec["height"] = 28 * std::max<std::size_t>(values.size(), 1);
+  std::vector<std::string> labels;
+  for (const json& value : values) labels.push_back(value["label"]);
+  labels = ShortenedApart(labels, kMostLabelLetters);
+  for (std::size_t i = 0; i < labels.size(); ++i) values[i]["label"] = labels[i];
   SetSignal(chart.spec, "x_title", x_title);
   chart.spec["data"][0]["values"] = std::move(values);
   return chart;

@@ -60,8 +60,8 @@ std::string ChangeText(const sweep::SweepChange& change) {
                   change.is_over_settings ? "settings" : "trials");
   if (change.keys.empty()) text += "no key differs: the same experiment twice\n";
   for (size_t i = 0; i < std::min(kMostKeys, change.keys.size()); ++i) {
-    text += fmt::format("{}: {} -> {}\n", change.keys[i].key, Shortened(change.keys[i].before, 50),
-                        Shortened(change.keys[i].after, 50));
+    const auto values = ShortenedApart({change.keys[i].before, change.keys[i].after}, 50);
+    text += fmt::format("{}: {} -> {}\n", change.keys[i].key, values[0], values[1]);
   }
   if (change.keys.size() > kMostKeys) {
     text += fmt::format("and {} more keys that differ\n", change.keys.size() - kMostKeys);

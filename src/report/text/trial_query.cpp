@@ -4,18 +4,19 @@
 
 #include <algorithm>
 
-#include "rift/report/figures/gnuplot_text.hpp"
-
 namespace rift::report {
 
 namespace {
+
+// The page's own columns: no parameter's name holds a dot.
+constexpr std::string_view kRow = ".row", kResult = ".result";
 
 /// Bytes as a browser's URLSearchParams reads them.
 std::string QueryText(const std::string& text) {
   static constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
   std::string query;
-  for (const char c : PlainText(text)) {
+  for (const char c : text) {
     if (kPlain.find(c) != kPlain.npos) {
       query += c;
     } else {
@@ -27,7 +28,7 @@ std::string QueryText(const std::string& text) {
 
 }  // namespace
 
-std::string FailingTrials() { return "result=failed"; }
+std::string FailingTrials() { return fmt::format("{}=failed", kResult); }
 
 std::string TrialsWhere(const std::string& parameter, const std::string& value) {
   return QueryText(parameter) + "=" + QueryText(value);
@@ -45,7 +46,7 @@ std::string TrialsNumbered(const std::vector<int>& rows) {
   constexpr std::size_t kMost = 100;
   std::vector<int> numbers;
   for (std::size_t i = 0; i < std::min(kMost, rows.size()); ++i) numbers.push_back(rows[i] + 1);
-  return fmt::format("row={}", fmt::join(numbers, "%2C"));
+  return fmt::format("{}={}", kRow, fmt::join(numbers, "%2C"));
 }
 
 std::string Both(const std::string& a, const std::string& b) {

@@ -19,9 +19,23 @@ TEST_CASE("A text of more letters than its limit keeps its begin and its end, le
   CHECK(LetterCount("") == 0);
 }
 
+TEST_CASE("Labels that are alike when cut are cut where they differ, or else numbered") {
+  using Texts = std::vector<std::string>;
+  CHECK(ShortenedApart({"abcdefghi", "ab", "abcdefghi"}, 7) == Texts{"abc…ghi", "ab", "abc…ghi"});
+  const std::string path = "floors_2026/run_", file = "_monday/heightfield.png";
+  CHECK(ShortenedApart({path + "A" + file, "flat", path + "B" + file}, 32) ==
+        Texts{"…026/run_A_monda…heightfield.png", "flat", "…026/run_B_monda…heightfield.png"});
+  const std::string begin(40, 'a'), end(40, 'z');
+  const Texts ends = ShortenedApart({begin + "ä" + end, begin + "ö" + end}, 16);
+  CHECK(ends == Texts{"…aaaäzzz…zzzzzzz", "…aaaözzz…zzzzzzz"});
+  CHECK(ShortenedApart({"a\tb", "a b"}, 32) == Texts{"a b", "a b (2)"});
+}
+
 TEST_CASE("Control characters are blanks and bytes that are no text are replaced") {
   CHECK(PlainText("a\x1f\tb\x7f~ c") == "a  b ~ c");
   CHECK(PlainText("x\xffy") == "x\xEF\xBF\xBDy");
+  CHECK(PlainText("a\uFFFE\uFFFFb") == "a\uFFFD\uFFFDb");  // which no SVG file may hold
+  CHECK(PlainText("a\uFFFD\U0001FFFEb") == "a\uFFFD\U0001FFFEb");
   CHECK(Quoted("it's 5 %") == "'it''s 5 %'");
   CHECK(TicLabel({"5 %", "it's"}) == "'5 %%'.\"\\n\".'it''s'");
 }

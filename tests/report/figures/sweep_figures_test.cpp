@@ -173,6 +173,26 @@ TEST_CASE("Parameters' names are file names of letters, digits and dashes") {
   }
 }
 
+TEST_CASE("Names of files have an end, however many and long the names of parameters are") {
+  sweep::SweepResult result = synthetic::Grid();
+  result.parameters[0].key = "terrain." + std::string(300, 's');
+  result.parameters[1].key = "control." + std::string(79, 'v');
+  const std::vector<std::string> names = Names(SweepFigures(result));
+  REQUIRE(names.size() == 6);
+  CHECK(names[3] == "fig11_gap_by_" + std::string(80, 's'));
+  CHECK(names[4] == "fig12_failures_by_" + std::string(80, 's'));
+  CHECK(names[5] == "fig13_failures_by_other_parameters");
+}
+
+TEST_CASE("Parameters whose names are one name of a file have a figure each") {
+  sweep::SweepResult result = synthetic::Continuous(5);
+  result.parameters[0].key = "摩擦";
+  result.parameters[1].key = "质量";
+  CHECK(Names(SweepFigures(result)) == std::vector<std::string>{"fig08_gap_by_trial",
+                                                                "gap_over_parameter",
+                                                                "gap_over_parameter_2"});
+}
+
 TEST_CASE("Continuous axes give scatter plots instead of bars") {
   const SweepFigureSet set = SweepFigures(synthetic::Continuous(200));
   CHECK(Names(set) ==

@@ -1,5 +1,7 @@
 #include "support/processes/browser.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -46,12 +48,15 @@ std::string Requested(const fs::path& net_log) {
 
 }  // namespace
 
-BrowserVisit Visit(const std::string& html) {
+BrowserVisit Visit(const std::string& html, const std::string& folder_name) {
   BrowserVisit visit;
   visit.available = std::system("command -v chromium >/dev/null 2>&1") == 0;
   if (!visit.available) return visit;
   const TemporaryFolder folder;
-  WriteText(folder.Path() / "page.html", html);
+  fs::create_directory(folder.Path() / folder_name);
+  WriteText(folder.Path() / folder_name / "page.html", html);
+  std::string folder_in_url;
+  for (const unsigned char byte : folder_name) folder_in_url += fmt::format("%{:02X}", byte);
   const std::string at = folder.Path().string();
   const std::string command =
       "timeout " + std::to_string(kGiveUp.count()) +
@@ -61,7 +66,7 @@ BrowserVisit Visit(const std::string& html) {
       at + "/profile --log-net-log=" + at +
       "/net.json --enable-logging=stderr --v=0 --window-size=1280,900 --virtual-time-budget=20000 "
       "--dump-dom file://" +
-      at + "/page.html >" + at + "/dom.html 2>" + at + "/stderr.txt";
+      at + "/" + folder_in_url + "/page.html >" + at + "/dom.html 2>" + at + "/stderr.txt";
   if (std::system(command.c_str()) != 0) {
     throw std::runtime_error("chromium failed: " + Read(folder.Path() / "stderr.txt"));
   }

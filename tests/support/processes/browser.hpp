@@ -12,7 +12,7 @@ struct BrowserVisit {
   std::string requests;    ///< addresses asked for, other than the page itself and data:
 };
 
-/// Opens a page in a fresh profile, without a window.
-BrowserVisit Visit(const std::string& html);
+/// Opens a page in a fresh profile, without a window; in a folder of that name, of any bytes.
+BrowserVisit Visit(const std::string& html, const std::string& folder_name = "page");
 
 }  // namespace rift::test

@@ -7,7 +7,7 @@
 
 namespace rift::report {
 
-/// Invalid UTF-8 replaced, control characters turned into blanks.
+/// Invalid UTF-8 and what XML forbids replaced, control characters turned into blanks.
 std::string PlainText(std::string_view text);
 
 /// A gnuplot string that means exactly this text: single quotes know no escapes, no backquotes.
@@ -18,6 +18,11 @@ std::string TicLabel(const std::vector<std::string>& lines);
 
 /// Cut in the middle when it has more than `limit` letters.
 std::string Shortened(std::string_view text, std::size_t limit);
+
+/// The same for the labels of one axis, in which texts that differ stay apart: of those that are
+/// alike when cut in the middle the begin they share is cut, and what is alike still is numbered,
+/// " (2)".
+std::vector<std::string> ShortenedApart(const std::vector<std::string>& texts, std::size_t limit);
 
 /// Letters, not bytes.
 std::size_t LetterCount(std::string_view text);

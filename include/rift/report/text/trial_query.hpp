@@ -7,7 +7,9 @@
 
 namespace rift::report {
 
-/// Queries for the trials table.
+/// Queries for the trials table: a parameter by its name, a column of the page's own by its title
+/// after a dot, which no parameter's name holds.
+
 /// Those above the threshold and those that did not arrive, where that counts as a failure.
 std::string FailingTrials();
 std::string TrialsWhere(const std::string& parameter, const std::string& value);

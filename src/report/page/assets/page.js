@@ -112,8 +112,16 @@ function compare(a, b) {
   return String(a).localeCompare(String(b), undefined, { numeric: true });
 }
 
-// A page opened from a disk knows its folder, which is that of the sweep.
-const folder = location.protocol === 'file:' ? decodeURIComponent(location.pathname.replace(/\/[^/]*$/, '')) : 'DIR';
+// A page opened from a disk knows its folder, which is that of the sweep, unless its name is no UTF-8.
+function ownFolder() {
+  if (location.protocol !== 'file:') return 'DIR';
+  try {
+    return decodeURIComponent(location.pathname.replace(/\/[^/]*$/, ''));
+  } catch {
+    return 'DIR';
+  }
+}
+const folder = ownFolder();
 const quoted = /^[\w./-]+$/.test(folder) ? folder : "'" + folder.replaceAll("'", "'\\''") + "'";
 
 // A row of the sweep is driven again by its number; recorded logs are named.
@@ -155,7 +163,7 @@ function sortedOrder(data, column, descending) {
   });
 }
 
-// ---- from a number to its rows: #trials?surface=ground&row=3,5 ----
+// ---- from a number to its rows: #trials?surface=ground&.row=3,5 ----
 
 const everything = () => true;
 const shown = { linked: everything, trials: everything, settings: everything };
@@ -163,10 +171,11 @@ const shown = { linked: everything, trials: everything, settings: everything };
 function matcher(data, query) {
   const wanted = [];
   for (const [name, text] of query) {
-    const i = data.columns.findIndex(column => (column.name ?? column.title) === name);
+    // A parameter's name holds no dot: what begins with one is a column of the page's own.
+    const i = data.columns.findIndex(column => (column.name ?? '.' + column.title) === name);
     if (i < 0) return null;
-    const values = new Set(name === 'row' ? text.split(',') : [text]);
-    const isFailed = name === 'result' && text === 'failed';  // whatever it failed by
+    const values = new Set(name === '.row' ? text.split(',') : [text]);
+    const isFailed = name === '.result' && text === 'failed';  // whatever it failed by
     wanted.push(index => isFailed ? data.marks[index] === 'fail' : values.has(String(data.rows[index][i])));
   }
   return index => wanted.every(holds => holds(index));
@@ -182,7 +191,8 @@ function followHash() {
   const count = data.rows.filter((_, i) => holds(i) && shown.trials(i)).length;
   const bar = document.getElementById('filter');
   bar.hidden = query.length === 0;
-  const words = query.map(([name, value]) => `${name} ${value.replaceAll(',', ', ')}`).join(' and ');
+  const words = query.map(([name, value]) =>
+    name === '.row' ? `row ${value.replaceAll(',', ', ')}` : `${name.replace(/^\./, '')} ${value}`).join(' and ');
   bar.querySelector('span').textContent = `${count} of the ${data.rows.length} trials on this page have ${words}.` +
     (data.complete ? '' : ' table.csv has all trials.');
   refill.trials();

@@ -127,7 +127,7 @@ function drawPaths(k) {
     drawing.addEventListener('mouseleave', () => lightRows([]));
     drawing.addEventListener('click', event => {
       const row = event.target.dataset?.row;
-      if (row) location.hash = '#trials?row=' + row;
+      if (row) location.hash = '#trials?.row=' + row;
     });
   }
   // On a path the cursor is at its nearest point.
