@@ -31,7 +31,6 @@ using nlohmann::json;
 constexpr int kHistogramBins = 30;
 constexpr double kMostBins = 1000;  ///< the last one of them holds all larger gaps
 constexpr std::size_t kMostDots = 1500;
-constexpr std::size_t kMostCells = 1600;
 
 /// Bins of one width from 0; where there is a threshold it is the edge of two, so that no colour is
 /// half wrong. A bin holds (from, to]: a gap equal to the threshold does not falsify.
@@ -239,7 +238,7 @@ PageChart FailureMap(const sweep::SweepResult& result, const sweep::FailingRegio
   const bool is_line = region.x_parameter < 0 && result.parameters.size() == 1 &&
                        !result.parameters.front().IsContinuous();
   if (is_line) region = OneLine(result);
-  if (region.cells.empty() || region.cells.size() > kMostCells) return {};
+  if (region.cells.empty() || region.cells.size() > sweep::kMostRegionCells) return {};
   const auto is_range = [&](int parameter) {
     return parameter >= 0 && result.parameters[parameter].IsContinuous();
   };
