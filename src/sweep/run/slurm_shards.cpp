@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 
 #include "rift/files/files.hpp"
-#include "rift/files/shell_word.hpp"
-#include "rift/statistics/hash.hpp"
 #include "rift/sweep/run/slurm.hpp"
 
 namespace rift::sweep {
@@ -18,68 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kIndex = "shards";  // a name a line; there while the array is not over
-constexpr const char* kExperiment = "experiment.yaml";  // resolved
 // A file that another machine has renamed may be seen some time after its job has left the queue.
 constexpr int kMostAbsent = 3;
-
-fs::path ShardFile(const fs::path& folder, size_t task) {
-  return folder / fmt::format("{}.shard", task);
-}
-
-fs::path LogFile(const fs::path& folder, size_t task) {
-  return folder / fmt::format("{}.log", task);
-}
-
-/// No other sweep of this user has jobs of that name.
-std::string JobName(const fs::path& folder) {
-  return "rift-" + statistics::Hash128Text(fs::weakly_canonical(folder).string()).substr(0, 16);
-}
-
-std::vector<std::string> Lines(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-/// The folders of arrays, by number.
-std::vector<std::pair<int, fs::path>> Arrays(const fs::path& out) {
-  std::vector<std::pair<int, fs::path>> arrays;
-  std::error_code not_there;
-  for (const auto& entry : fs::directory_iterator(out / "slurm", not_there)) {
-    const std::string name = entry.path().filename().string();
-    const bool is_number = name.find_first_not_of("0123456789") == name.npos && name.size() < 9;
-    if (is_number && entry.is_directory()) arrays.emplace_back(std::stoi(name), entry.path());
-  }
-  std::sort(arrays.begin(), arrays.end());
-  return arrays;
-}
-
-/// The shards of an array that is not over.
-std::vector<std::string> OpenShards(const fs::path& folder) {
-  return Lines(files::ReadIfThere(folder / kIndex).value_or(""));
-}
-
-std::string LastLine(const fs::path& log) {
-  const std::vector<std::string> lines = Lines(files::ReadIfThere(log).value_or(""));
-  const auto last = std::find_if(lines.rbegin(), lines.rend(),
-                                 [](const std::string& line) { return !line.empty(); });
-  return last == lines.rend() ? "nothing" : *last;
-}
-
-/// What only its jobs need; script, ids and what they had to say stay.
-void CleanUp(const fs::path& out, const fs::path& folder, const std::vector<std::string>& names) {
-  std::error_code ignored;
-  fs::remove(folder / kIndex, ignored);
-  for (size_t i = 0; i < names.size(); ++i) {
-    fs::remove(ShardFile(folder, i), ignored);
-    if (fs::is_empty(LogFile(folder, i), ignored)) fs::remove(LogFile(folder, i), ignored);
-    fs::remove(ShardJournal(out, names[i]), ignored);
-    fs::remove(UnfinishedShardJournal(out, names[i]), ignored);
-  }
-  fs::remove(folder / kExperiment, ignored);
-}
 
 /// What Slurm says to it helps nobody: the jobs end by themselves, and the next run takes them in.
 void CancelOrSay(const std::string& job_name, const SlurmShards::Say& say) {
@@ -94,35 +31,6 @@ void CancelOrSay(const std::string& job_name, const SlurmShards::Say& say) {
   }
 }
 
-/// Under which limits an array was submitted: they stand in its experiment.
-Limits LimitsOf(const fs::path& folder, const std::string& experiment_now) {
-  try {
-    const bool is_same = files::ReadIfThere(folder / kExperiment) == experiment_now;
-    return is_same ? Limits::kOfNow : Limits::kOther;
-  } catch (const std::exception&) {
-    return Limits::kOther;  // nobody can say
-  }
-}
-
-/// Why a task would refuse its shard, which is named by its content; empty: it would not.
-std::string WhyUseless(const fs::path& folder, size_t task, const std::string& name) {
-  const fs::path file = ShardFile(folder, task), experiment = folder / kExperiment;
-  const auto is_other = [](const fs::path& path) {
-    return path.string() + " is not there or not what was submitted";
-  };
-  try {
-    const std::string bytes = files::ReadIfThere(file).value_or("");
-    if (ShardName(bytes) != name) return is_other(file);
-    const std::string text = files::ReadIfThere(experiment).value_or("");
-    const bool is_same = statistics::Hash128Text(text) == DecodeShard(bytes, file).experiment;
-    return is_same ? "" : is_other(experiment);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-}
-
-fs::path OwnProgram() { return fs::read_symlink("/proc/self/exe"); }
-
 }  // namespace
 
 SlurmShards::SlurmShards(const fs::path& out, const SlurmOptions& options, std::string experiment,
@@ -135,14 +43,13 @@ SlurmShards::SlurmShards(const fs::path& out, const SlurmOptions& options, std::
 
 bool SlurmShards::Resume() {
   std::vector<Group> groups;
-  for (const auto& [number, folder] : Arrays(out_)) {
-    const std::vector<std::string> names = OpenShards(folder);
-    if (names.empty()) continue;
-    Group group{
-        .folder = folder, .job_name = JobName(folder), .limits = LimitsOf(folder, experiment_)};
-    files::WriteFile(folder / "array.sh",
-                     Script(folder));  // the cluster's habits may be others now
-    for (const std::string& name : names) {
+  for (const JobArray& array : JobArray::OpenOf(out_)) {
+    // The limits that it was submitted under stand in its experiment.
+    Group group{.array = array,
+                .job_name = array.JobName(),
+                .limits = array.IsOf(experiment_) ? Limits::kOfNow : Limits::kOther};
+    array.WriteScript(out_, options_);
+    for (const std::string& name : array.OpenShards()) {
       // Whoever submitted it is gone: not in the queue at the first look means not there.
       group.tasks.push_back({.name = name, .absent = kMostAbsent - 1});
       TakeIn(UnfinishedShardJournal(out_, name), group.limits);
@@ -156,49 +63,24 @@ bool SlurmShards::Run(const std::vector<Shard>& shards) {
   if (shards.empty()) return true;
   const auto size = static_cast<size_t>(options_.max_array_size > 0 ? options_.max_array_size
                                                                     : MaxArraySize(Patience()));
-  const std::vector<std::pair<int, fs::path>> before = Arrays(out_);
-  int number = before.empty() ? 0 : before.back().first;
   std::vector<Group> groups;
   for (size_t begin = 0; begin < shards.size(); begin += size) {
     const auto first = shards.begin() + static_cast<std::ptrdiff_t>(begin);
     const size_t count = std::min(size, shards.size() - begin);
-    groups.push_back(Write(++number, {first, first + static_cast<std::ptrdiff_t>(count)}));
+    groups.push_back(Write({first, first + static_cast<std::ptrdiff_t>(count)}));
   }
   return Drive(std::move(groups));
 }
 
-/// The index comes last: what was not written whole is no array.
-SlurmShards::Group SlurmShards::Write(int number, const std::vector<Shard>& shards) const {
-  const fs::path folder = out_ / "slurm" / std::to_string(number);
-  Group group{.folder = folder, .job_name = JobName(folder)};
-  files::WriteFile(folder / kExperiment, experiment_);
-  files::WriteFile(folder / "array.sh", Script(folder));
-  std::string index;
-  for (size_t i = 0; i < shards.size(); ++i) {
-    const std::string encoded = EncodeShard(shards[i]);
-    files::WriteFile(ShardFile(folder, i), encoded);
-    group.tasks.push_back({.name = ShardName(encoded), .may_be_useless = false});
-    index += group.tasks.back().name + '\n';
+SlurmShards::Group SlurmShards::Write(const std::vector<Shard>& shards) const {
+  JobArray array = JobArray::Next(out_);
+  array.WriteScript(out_, options_);
+  Group group{.array = array, .job_name = array.JobName(), .is_known = true};
+  for (const std::string& name : array.Write(experiment_, shards)) {
+    // Nobody has submitted it.
+    group.tasks.push_back({.name = name, .absent = kMostAbsent, .may_be_useless = false});
   }
-  files::WriteFile(folder / kIndex, index);
-  group.is_known = true;
-  for (Task& task : group.tasks) task.absent = kMostAbsent;  // nobody has submitted it
   return group;
-}
-
-std::string SlurmShards::Script(const fs::path& folder) const {
-  std::string script =
-      "#!/bin/bash\n# A task of the job array of a sweep: one shard.\n"
-      "[ -z \"${SLURM_TMPDIR:-}\" ] || export TMPDIR=\"$SLURM_TMPDIR\"\n";
-  for (const std::string& line : options_.prologue) script += line + '\n';
-  const std::string program = options_.program.empty() ? OwnProgram().string() : options_.program;
-  script +=
-      fmt::format("exec {} sweep {} --out {} --shard {}/\"$SLURM_ARRAY_TASK_ID\".shard",
-                  files::ShellQuoted(program), files::ShellQuoted((folder / kExperiment).string()),
-                  files::ShellQuoted(out_.string()), files::ShellQuoted(folder.string()));
-  // What is too large has been refused by whoever submits.
-  return script + fmt::format(" --jobs {} --copy-every {:g} --large-inputs\n",
-                              options_.cpus_per_task, options_.copy_every_s);
 }
 
 bool SlurmShards::Drive(std::vector<Group> groups) {
@@ -213,7 +95,7 @@ bool SlurmShards::Drive(std::vector<Group> groups) {
         std::vector<std::string> names;
         for (const Task& task : group.tasks) names.push_back(task.name);
         Cancel({group});  // a shard that is run twice may still be
-        CleanUp(out_, group.folder, names);
+        group.array.CleanUp(out_, names);
         return true;
       });
       if (groups.empty()) {
@@ -280,7 +162,7 @@ void SlurmShards::LookAt(Group& group, ShardCounts& counts) {
 void SlurmShards::GiveUp(Group& group, size_t index, const SlurmTask& queued) {
   watch_.say(fmt::format(
       "note: shard {} of {} lost its node so often that Slurm holds it ({}); it is submitted anew",
-      index, group.folder.string(), queued.reason));
+      index, group.array.Folder().string(), queued.reason));
   try {
     CancelTask(queued, static_cast<int>(index), Patience());
     group.tasks[index].absent = kMostAbsent;
@@ -327,7 +209,7 @@ void SlurmShards::DropUseless(Group& group) {
   for (size_t i = 0; i < group.tasks.size(); ++i) {
     Task& task = group.tasks[i];
     if (task.is_done || task.absent < kMostAbsent || !task.may_be_useless) continue;
-    const std::string reason = WhyUseless(group.folder, i, task.name);
+    const std::string reason = group.array.WhyUseless(i, task.name);
     if (reason.empty()) continue;
     task.is_done = true;
     if (told.insert(reason).second) {
@@ -341,8 +223,8 @@ void SlurmShards::Submit(Group& group) {
   DropUseless(group);
   SlurmArray array{.name = group.job_name,
                    .tasks = {},
-                   .script = group.folder / "array.sh",
-                   .logs = group.folder,
+                   .script = group.array.Script(),
+                   .logs = group.array.Folder(),
                    .folder = fs::current_path()};
   for (size_t i = 0; i < group.tasks.size(); ++i) {
     const Task& task = group.tasks[i];
@@ -350,8 +232,8 @@ void SlurmShards::Submit(Group& group) {
     if (task.tries >= kMostTries) {
       throw std::runtime_error(fmt::format(
           "shard {} of {} was run {} times and left no journal; the last line of {}: {}", i,
-          group.folder.string(), task.tries, LogFile(group.folder, i).string(),
-          LastLine(LogFile(group.folder, i))));
+          group.array.Folder().string(), task.tries, group.array.LogFile(i).string(),
+          group.array.LastLine(i)));
     }
     if (static_cast<int>(array.tasks.size()) < most_at_once_) {
       array.tasks.push_back(static_cast<int>(i));
@@ -360,9 +242,7 @@ void SlurmShards::Submit(Group& group) {
   if (array.tasks.empty()) return;
   try {
     const std::string job = SubmitArray(array, options_, Patience());
-    const std::string before = files::ReadIfThere(group.folder / "jobs").value_or("");
-    files::WriteFile(group.folder / "jobs",
-                     before + fmt::format("{} {}\n", job, IndexRanges(array.tasks)));
+    group.array.NoteJob(job, IndexRanges(array.tasks));
     for (const int i : array.tasks) {
       Task& task = group.tasks[static_cast<size_t>(i)];
       ++task.tries;
@@ -402,16 +282,10 @@ void SlurmShards::Complain(const std::string& reason) {
   watch_.say(fmt::format("note: {}; trying again", reason));
 }
 
-bool SlurmShards::AreOpen(const fs::path& out) {
-  const auto arrays = Arrays(out);
-  return std::any_of(arrays.begin(), arrays.end(),
-                     [](const auto& array) { return !OpenShards(array.second).empty(); });
-}
+bool SlurmShards::AreOpen(const fs::path& out) { return !JobArray::OpenOf(out).empty(); }
 
 void SlurmShards::Forget(const fs::path& out, const Say& say) {
-  for (const auto& [number, folder] : Arrays(out)) {
-    if (!OpenShards(folder).empty()) CancelOrSay(JobName(folder), say);
-  }
+  for (const JobArray& array : JobArray::OpenOf(out)) CancelOrSay(array.JobName(), say);
   // Tasks that are being cancelled still write there.
   for (const char* name : {"slurm", "shards"}) {
     const std::error_code error = files::RemoveAll(out / name);
@@ -424,12 +298,11 @@ void SlurmShards::Forget(const fs::path& out, const Say& say) {
 std::optional<ShardCounts> ReadShardCounts(const fs::path& out, double limit_s) {
   ShardCounts counts;
   bool slurm_answers = true;  // whoever waits does not wait for each array
-  for (const auto& [number, folder] : Arrays(out)) {
-    const std::vector<std::string> names = OpenShards(folder);
-    if (names.empty()) continue;
+  for (const JobArray& array : JobArray::OpenOf(out)) {
+    const std::vector<std::string> names = array.OpenShards();
     std::map<int, SlurmTask> queue;
     try {
-      if (slurm_answers) queue = QueuedTasks(JobName(folder), {.limit_s = limit_s});
+      if (slurm_answers) queue = QueuedTasks(array.JobName(), {.limit_s = limit_s});
     } catch (const std::runtime_error&) {
       slurm_answers = false;
     }

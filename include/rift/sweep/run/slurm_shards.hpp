@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "rift/sweep/run/job_array.hpp"
 #include "rift/sweep/run/journal.hpp"
 #include "rift/sweep/run/shard.hpp"
 #include "rift/sweep/run/slurm.hpp"
@@ -78,17 +79,16 @@ class SlurmShards {
     int absent = 0;              ///< looks in a row at a queue without it
     bool may_be_useless = true;  ///< its files may not be any more what was written
   };
-  /// One array.
+  /// An array and its tasks.
   struct Group {
-    std::filesystem::path folder;
+    JobArray array;
     std::string job_name;
     std::vector<Task> tasks;
     bool is_known = false;  ///< the queue has been looked at since it was submitted
     Limits limits = Limits::kOfNow;
   };
 
-  Group Write(int number, const std::vector<Shard>& shards) const;
-  std::string Script(const std::filesystem::path& folder) const;
+  Group Write(const std::vector<Shard>& shards) const;
   bool Drive(std::vector<Group> groups);
   ShardCounts Look(std::vector<Group>& groups);
   void LookAt(Group& group, ShardCounts& counts);
