@@ -118,19 +118,9 @@ void RequireOneLineNames(const Experiment& experiment, const std::string& path) 
   }
 }
 
-bool IsUtf8(std::string_view text) {
-  size_t at = 0;
-  while (at < text.size()) {
-    const size_t length = yaml::Utf8Length(text, at);
-    if (length == 0) return false;
-    at += length;
-  }
-  return true;
-}
-
 /// A saved experiment is YAML, which is UTF-8. Its text is, but a folder may be called otherwise.
 void RequireUtf8Name(const std::string& path, std::string_view key, const std::string& name) {
-  if (IsUtf8(name)) return;
+  if (yaml::IsUtf8(name)) return;
   throw yaml::Error(
       fmt::format("{}: {} is '{}', and that name is not UTF-8, which a saved run needs: rename the "
                   "folder or the file",

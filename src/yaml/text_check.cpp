@@ -40,6 +40,15 @@ std::size_t Utf8Length(std::string_view text, std::size_t at) {
   return overlong || surrogate || point > 0x10FFFF ? 0 : length;
 }
 
+bool IsUtf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = Utf8Length(text, at);
+    if (length == 0) return false;
+    at += length;
+  }
+  return true;
+}
+
 void CheckText(std::string_view text, const std::string& source) {
   Origin here{source, 1, 1};
   std::size_t line_begin = 0;
