@@ -63,8 +63,8 @@ rift_room(report/text ROOMS experiment files gap geometry odometry report/figure
     sweep/falsify yaml
   LIBRARIES fmt::fmt)
 rift_room(report/json ROOMS control experiment gap geometry hardware odometry report/text statistics sweep/calibrate
-    sweep/explain sweep/falsify sweep/run trial vision/calibration vision/rendering vision/tracking
-    yaml
+    sweep/explain sweep/falsify sweep/run trajectory trial vision/calibration vision/rendering
+    vision/tracking yaml
   LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
 rift_room(report/page ROOMS experiment files odometry report/figures report/text statistics sweep/explain
     sweep/falsify

@@ -112,6 +112,13 @@ std::optional<std::string> NoteOfEnd(std::string_view text) {
              : "the last row has no line end: its last number may be cut";
 }
 
+std::string Cell(std::string_view text, std::string_view special) {
+  std::string cell(text);
+  if (text.find_first_of(special) == text.npos) return cell;
+  for (size_t at = 0; (at = cell.find('"', at)) != cell.npos; at += 2) cell.insert(at, 1, '"');
+  return '"' + cell + '"';
+}
+
 void RequireTaken(std::string_view text, const std::string& name) {
   using limits::Amount;
   const auto lines = static_cast<double>(std::count(text.begin(), text.end(), '\n') + 1);

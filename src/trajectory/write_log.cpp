@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "not_logged.hpp"
+#include "rift/trajectory/csv.hpp"
 #include "rift/trajectory/log.hpp"
 #include "rift_columns.hpp"
 
@@ -23,13 +24,8 @@ void AppendNumber(std::string& text, double value) {
   text.append(buffer, end);
 }
 
-/// In double quotes where a comma, a quote, a blank or a CR would not survive reading.
-std::string HeaderCell(const std::string& name) {
-  if (name.find_first_of(", \t\r\"") == name.npos) return name;
-  std::string cell = "\"";
-  for (const char c : name) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return cell + '"';
-}
+/// Blanks at its ends would not survive reading either.
+std::string HeaderCell(const std::string& name) { return csv::Cell(name, ", \t\r\""); }
 
 /// Another log's column may have the name of a column of poses; it gets one of its own.
 std::string ChannelColumn(std::string name, std::set<std::string>& taken) {

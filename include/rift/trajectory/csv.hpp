@@ -26,6 +26,10 @@ std::string Shown(std::string_view text, size_t most = 60);
 /// for any run of blanks and tabs.
 std::vector<std::string> SplitHeader(std::string_view line, char separator = ',');
 
+/// The text as a cell: where it holds one of `special`, in double quotes, its own ones doubled
+/// (RFC 4180).
+std::string Cell(std::string_view text, std::string_view special = ",\"\r\n");
+
 /// Throws std::invalid_argument `name: ...` or `name:line: ...` for a table of more rows or columns
 /// than are taken (limits::Require), before memory for its cells is.
 void RequireTaken(std::string_view text, const std::string& name);

@@ -14,36 +14,30 @@
 
 #include "rift/sweep/explain/worst_trial.hpp"
 #include "rift/sweep/falsify/settings.hpp"
+#include "rift/trajectory/csv.hpp"
 #include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {
 namespace {
 
-/// RFC 4180: quoted when it must be.
-std::string CsvCell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == text.npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
+using trajectory::csv::Cell;
 
 std::string NumberCell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
 std::string RowCsv(const sweep::TrialRow& row, size_t id) {
   std::string text;
-  for (const experiment::ParameterValue& value : row.theta) text += CsvCell(value.text) + ',';
+  for (const experiment::ParameterValue& value : row.theta) text += Cell(value.text) + ',';
   const std::string falsified = row.IsOk() || row.falsified ? fmt::format("{}", row.falsified) : "";
-  text += fmt::format("{},{},{},{}", CsvCell(row.trial), NumberCell(row.comparison.gap_m),
-                      falsified, yaml::NameOf(row.status));
+  text += fmt::format("{},{},{},{}", Cell(row.trial), NumberCell(row.comparison.gap_m), falsified,
+                      yaml::NameOf(row.status));
   const gap::Comparison& c = row.comparison;
   for (const double value : {c.gap_u, c.exact_gap_m, c.mean_error_m, c.rms_error_m,
                              c.start_offset_m, c.start_aligned_gap_m, c.shape_gap_m, c.length_ratio,
                              c.end_error_m, row.way_gap_m, row.left_m}) {
     text += ',' + NumberCell(value);
   }
-  return text + ',' + CsvCell(row.reason) + ',' + CsvCell(row.candidate) + ',' +
-         CsvCell(row.reference) + ',' + (row.seed ? fmt::format("{}", *row.seed) : "") +
-         fmt::format(",{}\n", id);
+  return text + ',' + Cell(row.reason) + ',' + Cell(row.candidate) + ',' + Cell(row.reference) +
+         ',' + (row.seed ? fmt::format("{}", *row.seed) : "") + fmt::format(",{}\n", id);
 }
 
 constexpr std::array<std::string_view, 12> kNumberColumns{"gap_m",
@@ -173,7 +167,7 @@ class TableReader {
 std::string TableCsv(const sweep::SweepResult& result) {
   std::string text;
   for (const experiment::Parameter& parameter : result.parameters)
-    text += CsvCell(parameter.Name()) + ',';
+    text += Cell(parameter.Name()) + ',';
   text += fmt::format("{}\n", fmt::join(experiment::kFixedColumns, ","));
   size_t id = 0;
   for (const sweep::TrialRow& row : result.rows) text += RowCsv(row, ++id);

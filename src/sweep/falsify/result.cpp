@@ -15,6 +15,7 @@
 #include "rift/sweep/falsify/distinct_rows.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/verdict.hpp"
+#include "rift/trajectory/csv.hpp"
 
 namespace rift::sweep {
 
@@ -57,24 +58,11 @@ std::string SettingText(const std::vector<experiment::Parameter>& parameters,
   return text.empty() ? "the only setting" : text;
 }
 
-namespace {
-
-/// Quoted as in a CSV file (RFC 4180) where it holds what parts values, so that different
-/// combinations have different labels.
-std::string InCombination(const std::string& value) {
-  if (value.find_first_of(",\"") == value.npos) return value;
-  std::string quoted = "\"";
-  for (const char c : value) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
-}  // namespace
-
 std::string CombinationLabel(const experiment::Theta& theta, const std::vector<int>& parameters) {
   if (parameters.size() == 1) return theta[parameters.front()].text;
   std::string label;
   for (const int i : parameters)
-    label += (label.empty() ? "" : ", ") + InCombination(theta[i].text);
+    label += (label.empty() ? "" : ", ") + trajectory::csv::Cell(theta[i].text);
   return "[" + label + "]";
 }
 

@@ -10,6 +10,7 @@
 #include "rift/statistics/hash.hpp"
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/trajectory/csv.hpp"
 #include "rift/yaml/bind.hpp"
 #include "rift/yaml/enum_name.hpp"
 
@@ -57,10 +58,7 @@ experiment::ParameterValue ValueAt(const experiment::Parameter& parameter, doubl
 /// Text that would leave open where the value ends is quoted.
 std::string ValueKey(const experiment::ParameterValue& value) {
   if (value.number) return experiment::NumberValue(*value.number).text;
-  if (value.text.find_first_of(" =\"") == std::string::npos) return value.text;
-  std::string quoted = "\"";
-  for (const char c : value.text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
+  return trajectory::csv::Cell(value.text, " =\"");
 }
 
 }  // namespace
