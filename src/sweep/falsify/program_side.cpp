@@ -231,6 +231,7 @@ ExternalProgram& ProgramSide::ProgramFor(const TrialRequest& request) {
   if (!program_) {
     const std::string folder = ExternalProgram::MakeFolder();
     program_ = std::make_unique<ExternalProgram>(StartOf(request, folder), folder);
+    return *program_;  // which may already have said that it cannot be run
   }
   program_->ForgetWords();
   std::error_code none;
