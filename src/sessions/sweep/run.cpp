@@ -105,16 +105,19 @@ void NoteOpenShards(const std::filesystem::path& out, const SweepObserver& obser
       (out / "slurm").string()));
 }
 
-/// What readers of the folder find from now on.
-void Begin(Journal& journal, sweep::Evaluator& evaluator, const std::filesystem::path& out) {
+/// What readers of the folder find from now on. False when it was told to stop.
+bool Begin(Journal& journal, sweep::Evaluator& evaluator, const std::filesystem::path& out,
+           const GoOn& go_on) {
   const experiment::Experiment& experiment = evaluator.experiment();
   files::WriteFile(out / "experiment.yaml", experiment::WriteExperiment(experiment));
-  evaluator.LoadLogs();  // now, since workers are copies of what is there when they start
+  // Now, since workers are copies of what is there when they start.
+  if (!evaluator.LoadLogs(go_on)) return false;
   journal.SetNote("name", experiment.name);
   const SweepSize size = SizeOf(experiment);
   journal.SetNote(size.is_settings ? "most_settings" : "most_trials", std::to_string(size.most));
   journal.SetNote("state", "running");
   journal.Commit();
+  return true;
 }
 
 /// Everybody who is told of the trials while they run.
@@ -152,11 +155,14 @@ std::optional<sweep::SweepResult> RunComputed(sweep::Evaluator& evaluator,
   const sweep::Facts facts = FactsOf(evaluator.experiment());
   Journal journal(file, facts);
   NoteDamage(journal, file, observer);
-  Begin(journal, evaluator, request.out);
   const auto end = [&journal](const char* state) {
     journal.SetNote("state", state);
     journal.Close();
   };
+  if (!Begin(journal, evaluator, request.out, go_on)) {
+    end("stopped");
+    return std::nullopt;
+  }
   ForgetOtherLimits(journal, evaluator.experiment().run, file, observer);
   std::optional<Cluster> cluster;
   if (request.cluster != nullptr) {

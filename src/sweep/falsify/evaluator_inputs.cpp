@@ -31,19 +31,20 @@ std::string Beside(const std::string& log, const char* name) {
 
 }  // namespace
 
-void Evaluator::LoadLogs() {
+bool Evaluator::LoadLogs(const std::function<bool()>& go_on) {
   if (experiment_.reference.kind == ReferenceKind::kLogs) {
-    LoadLogsOf(experiment_.reference.path, "reference.path", reference_logs_);
+    if (!LoadLogsOf(experiment_.reference.path, "reference.path", go_on, reference_logs_)) {
+      return false;
+    }
     // Beside recorded candidates a copy's rows are one run, which counts once.
     if (experiment_.candidate.kind != CandidateKind::kLogs) reference_logs_.NoteCopies();
   }
-  if (experiment_.candidate.kind == CandidateKind::kLogs) {
-    LoadLogsOf(experiment_.candidate.path, "candidate.path", candidate_logs_);
-  }
+  return experiment_.candidate.kind != CandidateKind::kLogs ||
+         LoadLogsOf(experiment_.candidate.path, "candidate.path", go_on, candidate_logs_);
 }
 
-void Evaluator::LoadLogsOf(const experiment::PathTemplate& path, const char* key,
-                           RecordedLogs& logs) const {
+bool Evaluator::LoadLogsOf(const experiment::PathTemplate& path, const char* key,
+                           const std::function<bool()>& go_on, RecordedLogs& logs) const {
   const std::vector<std::string> names = experiment::TemplateNames(path.text);
   // Of the other parameters one value will do: the path is the same for all.
   std::vector<experiment::Parameter> parameters = experiment_.space.parameters;
@@ -58,8 +59,10 @@ void Evaluator::LoadLogsOf(const experiment::PathTemplate& path, const char* key
     if (!is_named) parameter.levels = {{"0", 0.0}};
   }
   for (const TrialRequest& request : GridTrials(parameters, experiment_.reference.trials.names)) {
+    if (!go_on()) return false;
     logs.At(Filled(path, request));
   }
+  return true;
 }
 
 std::optional<double> Evaluator::TrialBegan_s(const std::string& log) const {

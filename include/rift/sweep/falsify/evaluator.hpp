@@ -85,8 +85,9 @@ class Evaluator {
   double NoiseFloor_m(
       const experiment::Theta& theta, const std::function<bool()>& go_on = [] { return true; });
 
-  /// Reads every log that some setting names, so that worker processes find them loaded.
-  void LoadLogs();
+  /// Reads every log that some setting names, so that worker processes find them loaded. False when
+  /// `go_on`, asked before each log, says no.
+  bool LoadLogs(const std::function<bool()>& go_on = [] { return true; });
   /// Everything that a trial depends on beside the experiment itself, as one line: the journal's
   /// key.
   std::string KeyOf(const TrialRequest& request);
@@ -104,7 +105,8 @@ class Evaluator {
   std::vector<odometry::EncoderReading> EncodersBeside(const std::string& log) const;
   std::string Filled(const experiment::PathTemplate& path, const TrialRequest& request) const;
   void CheckTask() const;
-  void LoadLogsOf(const experiment::PathTemplate& path, const char* key, RecordedLogs& logs) const;
+  bool LoadLogsOf(const experiment::PathTemplate& path, const char* key,
+                  const std::function<bool()>& go_on, RecordedLogs& logs) const;
   /// Of the heightfields that a trial at this setting is driven on.
   std::set<std::string> PicturesOf(const TrialRequest& request) const;
   const std::string& PictureHash(const std::string& path);
