@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
+#include <list>
 #include <regex>
 #include <thread>
 
@@ -127,6 +128,20 @@ TEST_CASE("A page server waits for the last page, whatever of the others was jus
   CHECK_THAT(first, Contains("it runs"));
   CHECK_THAT(last, Contains("it is over"));
   CHECK(server.WaitForLast(0));
+}
+
+TEST_CASE("Clients that ask nothing keep nobody waiting, and are left alone after a while") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "report", "it is over");
+  const sessions::PageServer server({folder / "report"});
+  const Address at = LiveAddress("live: " + server.Url());
+  std::list<test::SilentClient> silent;
+  for (int i = 0; i < 10; ++i) silent.emplace_back(at.port);
+  CHECK_THAT(test::AskServer(at.port, "GET " + at.path), Contains("it is over"));
+  CHECK(silent.back().IsConnected());
+  for (int i = 0; i < 20; ++i) silent.emplace_back(at.port);  // more than are answered at once
+  CHECK_THAT(test::AskServer(at.port, "GET " + at.path), Contains("it is over"));
+  test::WaitUntil("the end of the silence", [&] { return !silent.back().IsConnected(); });
 }
 
 TEST_CASE("A calibration has no page that grows") {

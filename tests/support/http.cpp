@@ -12,16 +12,24 @@
 
 namespace rift::test {
 
-std::string AskServer(int port, const std::string& request_line) {
-  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  const timeval longest{.tv_sec = kGiveUp.count(), .tv_usec = 0};
-  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &longest, sizeof longest);
+namespace {
+
+bool Connect(int socket, int port) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return ::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+}
+
+}  // namespace
+
+std::string AskServer(int port, const std::string& request_line) {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  const timeval longest{.tv_sec = kGiveUp.count(), .tv_usec = 0};
+  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &longest, sizeof longest);
   std::string answer;
-  if (::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
+  if (Connect(socket, port)) {
     const std::string request = request_line + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
     REQUIRE(::write(socket, request.data(), request.size()) ==
             static_cast<ssize_t>(request.size()));
@@ -35,6 +43,17 @@ std::string AskServer(int port, const std::string& request_line) {
   }
   ::close(socket);
   return answer;
+}
+
+SilentClient::SilentClient(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  REQUIRE(Connect(socket_, port));
+}
+
+SilentClient::~SilentClient() { ::close(socket_); }
+
+bool SilentClient::IsConnected() const {
+  char byte = 0;
+  return ::recv(socket_, &byte, 1, MSG_DONTWAIT) < 0 && errno == EAGAIN;
 }
 
 }  // namespace rift::test

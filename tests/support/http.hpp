@@ -9,4 +9,19 @@ namespace rift::test {
 /// end.
 std::string AskServer(int port, const std::string& request_line);
 
+/// A client of the server at `port` of this machine that asks nothing.
+class SilentClient {
+ public:
+  explicit SilentClient(int port);
+  SilentClient(const SilentClient&) = delete;
+  SilentClient& operator=(const SilentClient&) = delete;
+  ~SilentClient();
+
+  /// False once the server has ended the connection.
+  bool IsConnected() const;
+
+ private:
+  int socket_;
+};
+
 }  // namespace rift::test

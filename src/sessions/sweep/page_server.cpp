@@ -13,6 +13,8 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <random>
 #include <stdexcept>
@@ -22,6 +24,7 @@
 // After <utility>, which Boost.Asio 1.74 does not include where it needs it.
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 
@@ -49,19 +52,8 @@ double Now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// A client that says nothing, or takes nothing, may not keep the next one waiting for longer.
+/// A client that says nothing, or takes nothing, is left alone after that.
 constexpr std::chrono::seconds kMostRequest{2}, kMostResponse{10};
-
-/// What `start` begins on the connection, or its time limit; only asynchronous calls have one.
-beast::error_code Await(asio::io_context& context, beast::tcp_stream& connection,
-                        std::chrono::seconds limit, const auto& start) {
-  beast::error_code result;
-  connection.expires_after(limit);
-  start([&result](beast::error_code failed, size_t) { result = failed; });
-  context.restart();
-  context.run();
-  return result;
-}
 
 struct Page {
   std::string text;
@@ -77,43 +69,114 @@ std::optional<Page> PageOf(const std::vector<std::filesystem::path>& files) {
   return std::nullopt;
 }
 
-void Answer(asio::io_context& context, tcp::socket socket, const std::string& path,
-            const std::vector<std::filesystem::path>& files, int requests) {
-  beast::tcp_stream connection(std::move(socket));
-  beast::flat_buffer buffer;
-  http::request<http::empty_body> request;
-  const auto read = [&](auto done) { http::async_read(connection, buffer, request, done); };
-  if (Await(context, connection, kMostRequest, read)) return;
-  const bool is_asked = request.method() == http::verb::get && request.target() == path;
-  const std::optional<Page> page = is_asked ? PageOf(files) : std::nullopt;
-  http::response<http::string_body> response{page ? http::status::ok : http::status::not_found,
-                                             request.version()};
-  response.set(http::field::content_type, "text/html; charset=utf-8");
-  response.set(http::field::cache_control, "no-store");
-  if (page) response.body() = page->text;
-  response.keep_alive(false);
-  response.prepare_payload();
-  const auto write = [&](auto done) { http::async_write(connection, response, done); };
-  if (Await(context, connection, kMostResponse, write)) return;
-  beast::error_code ignored;
-  connection.socket().shutdown(tcp::socket::shutdown_both, ignored);
-  const bool is_told = !page || ::write(requests, &page->mark, 1) == 1 || errno == EAGAIN;
-  if (!is_told) ::_exit(0);  // nobody is there any more
-}
+struct Served {
+  std::string path;
+  std::vector<std::filesystem::path> files;  ///< the first that is there
+  int requests = -1;                         ///< where each answer is told
+};
 
-[[noreturn]] void Serve(tcp::acceptor& acceptor, const std::string& path,
-                        const std::vector<std::filesystem::path>& files, int requests) {
+/// One request and its answer. It lives as long as something is awaited.
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(tcp::socket socket, const Served& served, std::function<void()> on_end)
+      : stream_(std::move(socket)), served_(served), on_end_(std::move(on_end)) {}
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection() { on_end_(); }
+
+  void Start() {
+    stream_.expires_after(kMostRequest);
+    http::async_read(stream_, buffer_, request_,
+                     [self = shared_from_this()](beast::error_code failed, size_t) {
+                       if (!failed) self->Answer();
+                     });
+  }
+
+ private:
+  void Answer() {
+    const bool is_asked = request_.method() == http::verb::get && request_.target() == served_.path;
+    std::optional<Page> page;
+    try {
+      if (is_asked) page = PageOf(served_.files);
+    } catch (const std::exception&) {
+      return;  // a page that cannot be read now is there the next time
+    }
+    response_.result(page ? http::status::ok : http::status::not_found);
+    response_.version(request_.version());
+    response_.set(http::field::content_type, "text/html; charset=utf-8");
+    response_.set(http::field::cache_control, "no-store");
+    if (page) {
+      mark_ = page->mark;
+      response_.body() = std::move(page->text);
+    }
+    response_.keep_alive(false);
+    response_.prepare_payload();
+    stream_.expires_after(kMostResponse);
+    http::async_write(stream_, response_,
+                      [self = shared_from_this()](beast::error_code failed, size_t) {
+                        if (!failed) self->End();
+                      });
+  }
+
+  void End() {
+    beast::error_code ignored;
+    stream_.socket().shutdown(tcp::socket::shutdown_both, ignored);
+    const bool is_told = !mark_ || ::write(served_.requests, &*mark_, 1) == 1 || errno == EAGAIN;
+    if (!is_told) ::_exit(0);  // nobody is there any more
+  }
+
+  beast::tcp_stream stream_;
+  const Served& served_;
+  std::function<void()> on_end_;
+  beast::flat_buffer buffer_;
+  http::request<http::empty_body> request_;
+  http::response<http::string_body> response_;
+  std::optional<char> mark_;  ///< of the page that is sent
+};
+
+/// Answers up to kMostAtOnce clients at a time; the others wait to be accepted.
+class Acceptor {
+ public:
+  Acceptor(tcp::acceptor& acceptor, const Served& served)
+      : acceptor_(acceptor), served_(served), pause_(acceptor.get_executor()) {}
+
+  void Accept() {
+    acceptor_.async_accept([this](beast::error_code failed, tcp::socket socket) {
+      if (failed) return Pause();  // no descriptor is left
+      ++open_;
+      if (open_ < kMostAtOnce) Accept();
+      const auto on_end = [this] {
+        if (open_-- == kMostAtOnce) Accept();
+      };
+      std::make_shared<Connection>(std::move(socket), served_, on_end)->Start();
+    });
+  }
+
+ private:
+  static constexpr int kMostAtOnce = 16;  // each may hold a page of some MB
+
+  void Pause() {
+    pause_.expires_after(std::chrono::milliseconds(100));
+    pause_.async_wait([this](beast::error_code) { Accept(); });
+  }
+
+  tcp::acceptor& acceptor_;
+  const Served& served_;
+  asio::steady_timer pause_;
+  int open_ = 0;
+};
+
+[[noreturn]] void Serve(asio::io_context& context, tcp::acceptor& acceptor, const Served& served) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the sweep, which ends this process as well
   std::signal(SIGPIPE, SIG_IGN);
-  asio::io_context context;
+  context.notify_fork(asio::io_context::fork_child);
+  Acceptor accepting(acceptor, served);
+  accepting.Accept();
   while (true) {
-    beast::error_code failed;
-    tcp::socket socket = acceptor.accept(context, failed);
-    if (failed) continue;
     try {
-      Answer(context, std::move(socket), path, files, requests);
-    } catch (const std::exception&) {  // a page that cannot be read now is there the next time
+      context.run();
+    } catch (const std::exception&) {  // of one connection: the others go on
     }
   }
 }
@@ -138,7 +201,7 @@ PageServer::PageServer(const std::vector<std::filesystem::path>& files) {
   process_ = ::fork();
   if (process_ == 0) {
     ::close(pipe[0]);
-    Serve(acceptor, path, files, pipe[1]);
+    Serve(context, acceptor, {.path = path, .files = files, .requests = pipe[1]});
   }
   ::close(pipe[1]);
   requests_ = pipe[0];

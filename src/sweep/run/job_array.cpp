@@ -94,10 +94,9 @@ void JobArray::WriteScript(const fs::path& out, const SlurmOptions& options) con
   for (const std::string& line : options.prologue) script += line + '\n';
   const std::string program =
       options.program.empty() ? fs::read_symlink("/proc/self/exe").string() : options.program;
-  script += fmt::format(
-      "exec {} sweep {} --out {} --shard {}/\"$SLURM_ARRAY_TASK_ID\".shard",
-      files::ShellQuoted(program), files::ShellQuoted(Experiment().string()),
-      files::ShellQuoted(out.string()), files::ShellQuoted(folder_.string()));
+  script += fmt::format("exec {} sweep {} --out {} --shard {}/\"$SLURM_ARRAY_TASK_ID\".shard",
+                        files::ShellQuoted(program), files::ShellQuoted(Experiment().string()),
+                        files::ShellQuoted(out.string()), files::ShellQuoted(folder_.string()));
   // What is too large has been refused by whoever submits.
   script += fmt::format(" --jobs {} --copy-every {:g} --large-inputs\n", options.cpus_per_task,
                         options.copy_every_s);
