@@ -307,6 +307,26 @@ TEST_CASE("Logs of a range are refused, and others read once, before the first t
                     "value of it: write a list of those there are");
 }
 
+TEST_CASE("Whoever reads logs is asked before each of them whether to go on") {
+  const experiment::Experiment experiment = Logs();
+  int read = 0;
+  const Inputs inputs{[&](const std::string&) -> std::optional<std::string> {
+                        ++read;
+                        return LogAside(0.0);
+                      },
+                      [](const std::string&) {}};
+  const auto stops_after = [&](int most) {
+    read = 0;
+    return !Evaluator(experiment, "e.yaml", inputs).LoadLogs([&] { return read < most; });
+  };
+  CHECK_FALSE(stops_after(1000));
+  CHECK(read == 8);  // six of the reference, two of the candidate
+  for (const int most : {0, 2, 6, 7}) {
+    CHECK(stops_after(most));
+    CHECK(read == most);
+  }
+}
+
 TEST_CASE("A log of a robot that stands is a row that says so where standstill is trimmed") {
   experiment::Experiment experiment = Logs();
   experiment.reference.trials.names = {"1"};
