@@ -113,7 +113,7 @@ void WriteInto(const std::string& folder, const std::string& name, const std::st
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD}) {
     std::signal(signal, SIG_DFL);
   }
-  const bool is_there = ::chdir(folder.c_str()) == 0;
+  const int no_folder = ::chdir(folder.c_str()) == 0 ? 0 : errno;
   const int errors = ::open(kErrors, O_WRONLY | O_CREAT | O_APPEND, 0600);
   const int nothing = ::open("/dev/null", O_RDWR);
   ::dup2(start.talks ? in : nothing, 0);
@@ -126,9 +126,11 @@ void WriteInto(const std::string& folder, const std::string& name, const std::st
     arguments.push_back(const_cast<char*>(argument.c_str()));
   }
   arguments.push_back(nullptr);
+  std::string reason = fmt::format("{}{}: ", kCannotRun, arguments[0]);
+  reason.reserve(reason.size() + 256);  // under the limits there may be no memory
   SetLimits(start.memory_mb);
-  if (is_there) ::execvp(arguments[0], arguments.data());
-  const std::string reason = fmt::format("{}{}: {}\n", kCannotRun, arguments[0], strerror(errno));
+  if (no_folder == 0) ::execvp(arguments[0], arguments.data());
+  reason.append(strerror(no_folder != 0 ? no_folder : errno)).append("\n");
   static_cast<void>(Write(2, reason));
   ::_exit(kNotStarted);
 }
