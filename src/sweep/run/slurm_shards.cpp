@@ -43,13 +43,15 @@ SlurmShards::SlurmShards(const fs::path& out, const SlurmOptions& options, std::
 
 bool SlurmShards::Resume() {
   std::vector<Group> groups;
-  for (const JobArray& array : JobArray::OpenOf(out_)) {
+  for (const JobArray& array : JobArray::Of(out_)) {
+    const std::vector<std::string> names = array.OpenShards();
+    if (names.empty()) continue;
     // The limits that it was submitted under stand in its experiment.
     Group group{.array = array,
                 .job_name = array.JobName(),
                 .limits = array.IsOf(experiment_) ? Limits::kOfNow : Limits::kOther};
     array.WriteScript(out_, options_);
-    for (const std::string& name : array.OpenShards()) {
+    for (const std::string& name : names) {
       // Whoever submitted it is gone: not in the queue at the first look means not there.
       group.tasks.push_back({.name = name, .absent = kMostAbsent - 1});
       TakeIn(UnfinishedShardJournal(out_, name), group.limits);
@@ -298,8 +300,9 @@ void SlurmShards::Forget(const fs::path& out, const Say& say) {
 std::optional<ShardCounts> ReadShardCounts(const fs::path& out, double limit_s) {
   ShardCounts counts;
   bool slurm_answers = true;  // whoever waits does not wait for each array
-  for (const JobArray& array : JobArray::OpenOf(out)) {
+  for (const JobArray& array : JobArray::Of(out)) {
     const std::vector<std::string> names = array.OpenShards();
+    if (names.empty()) continue;
     std::map<int, SlurmTask> queue;
     try {
       if (slurm_answers) queue = QueuedTasks(array.JobName(), {.limit_s = limit_s});

@@ -36,7 +36,8 @@ class JobArray {
 
   /// Writes what the tasks read, `experiment` resolved, and opens it. The names of the shards.
   std::vector<std::string> Write(const std::string& experiment, const std::vector<Shard>& shards);
-  /// The script again: the cluster's habits may be others now. `out` is absolute.
+  /// The script, before it is opened, and again where the cluster's habits may be others now. `out`
+  /// is absolute.
   void WriteScript(const std::filesystem::path& out, const SlurmOptions& options) const;
   /// A line to the file of what was submitted: the job's id and its tasks.
   void NoteJob(const std::string& job, const std::string& tasks) const;
