@@ -16,7 +16,6 @@ import argparse
 import concurrent.futures
 import contextlib
 import dataclasses
-import fcntl
 import hashlib
 import json
 import os
@@ -27,6 +26,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -286,18 +286,15 @@ def program(tree, test):
     return str(tree / "build" / "tests" / f"rift_{test}_test")
 
 
-def baseline(tree, tests):
-    """Of each test program, its parts in the order they are run: (filter of Catch2, seconds)."""
-    parts = {}
-    log = tree.parent / f"{tree.name}.baseline.log"
-    for test in tests:
-        log.write_bytes(b"")
-        if run([program(tree, test), "--durations", "yes"], tree / "build", 1800, log) != 0:
-            sys.exit(f"the tests of {test} fail without a fault: {log}")
-        names = subprocess.run([program(tree, test), "--list-test-names-only"], check=False,
-                               capture_output=True, text=True).stdout.splitlines()
-        parts[test] = parts_of(log.read_text(errors="replace"), [n for n in names if n])
-    return parts
+def baseline(tree, test):
+    """The parts of a test program in the order they are run: (filter of Catch2, seconds)."""
+    log = tree.parent / f"{tree.name}.{test}.log"
+    log.write_bytes(b"")
+    if run([program(tree, test), "--durations", "yes"], tree / "build", 1800, log) != 0:
+        sys.exit(f"the tests of {test} fail without a fault: {log}")
+    names = subprocess.run([program(tree, test), "--list-test-names-only"], check=False,
+                           capture_output=True, text=True).stdout.splitlines()
+    return parts_of(log.read_text(errors="replace"), [n for n in names if n])
 
 
 def parts_of(durations, names):
@@ -348,21 +345,49 @@ def try_fault(tree, fault, tests, parts):
         path.write_text(good, encoding="utf-8")
 
 
-@contextlib.contextmanager
-def held(lock):
-    """The lock file of a machine whose cores are shared, for one round."""
-    if not lock:
-        yield
-        return
-    with open(lock, "a") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
+class Run:
+    """The faults of one call, handed out one by one, and their outcomes."""
+
+    def __init__(self, journal, faults, count, end_s):
+        self.outcomes = [json.loads(l) for l in journal.read_text().splitlines()] if journal.exists() else []
+        asked = {f.key for f in faults}
+        done = {o["key"] for o in self.outcomes}
+        self.left = count - sum(o["key"] in asked and counts(o) for o in self.outcomes)
+        self.queue = iter([f for f in faults if f.key not in done])
+        self.end_s = end_s
+        self.lock = threading.Lock()
+        self.file = open(journal, "a", encoding="utf-8")
+
+    def next(self):
+        """The next fault; none when enough are tried or under way."""
+        with self.lock:
+            if self.left <= 0 or time.monotonic() > self.end_s:
+                return None
+            self.left -= 1
+            return next(self.queue, None)
+
+    def note(self, outcome):
+        with self.lock:
+            self.left += not counts(outcome)
+            self.outcomes.append(outcome)
+            self.file.write(json.dumps(outcome) + "\n")
+            self.file.flush()
+            print(f"{outcome['status']:<17}{outcome['path']}:{outcome['line']} {outcome['operator']}",
+                  flush=True)
+
+    def work(self, tree, programs, parts):
+        while (fault := self.next()) is not None:
+            self.note(try_fault(tree, fault, tests_of(fault.room, programs), parts))
+
+
+def counts(outcome):
+    return outcome["status"] != "does not compile"
 
 
 def table(outcomes):
     rooms = {}
     for one in outcomes:
-        if one["status"] != "does not compile":
+        if counts(one):
             rooms.setdefault(one["room"], []).append(one["status"] == "found")
     lines = [f"{'room':<12} found  of"]
     for room, found in sorted(rooms.items()):
@@ -382,7 +407,6 @@ def arguments():
                         help="most test programs that are run for a fault, the nearest first")
     parser.add_argument("--jobs", type=int, default=2, help="faults at a time, each in its own copy")
     parser.add_argument("--resume", action="store_true", help="go on with outcomes.jsonl")
-    parser.add_argument("--lock", help="a file to hold locked (flock) during each round")
     parser.add_argument("--minutes", type=float, help="stop after so long; --resume goes on")
     parser.add_argument("--list", action="store_true", help="print the faults and plant none")
     return parser.parse_args()
@@ -405,34 +429,20 @@ def main():
         sys.exit(f"{journal} exists: --resume goes on with it")
     tests = list(dict.fromkeys(t for f in order for t in tests_of(f.room, args.programs)))
     trees = [folder / f"tree{i}" for i in range(args.jobs)]
-    with held(args.lock):
-        for tree in trees:
-            prepare(tree, tests, args.jobs)
-        kept = folder / "baseline.json"
-        parts = json.loads(kept.read_text()) if args.resume and kept.exists() else {}
-        parts.update(baseline(trees[0], [t for t in tests if t not in parts]))
-        kept.write_text(json.dumps(parts, indent=1) + "\n")
-    outcomes = [json.loads(l) for l in journal.read_text().splitlines()] if journal.exists() else []
-    asked = {f.key for f in order}
-    done = {o["key"] for o in outcomes}
-    counted = sum(o["key"] in asked and o["status"] != "does not compile" for o in outcomes)
-    queue = iter([f for f in order if f.key not in done])
+    for tree in trees:
+        prepare(tree, tests, args.jobs)
+    kept = folder / "baseline.json"
+    parts = json.loads(kept.read_text()) if args.resume and kept.exists() else {}
+    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+        untimed = [t for t in tests if t not in parts]
+        parts.update(zip(untimed, pool.map(lambda t: baseline(trees[0], t), untimed)))
+    kept.write_text(json.dumps(parts, indent=1) + "\n")
     end_s = time.monotonic() + 60 * args.minutes if args.minutes else float("inf")
-    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool, open(journal, "a") as file:
-        while counted < args.count and time.monotonic() < end_s:
-            batch = [f for f, _ in zip(queue, range(min(args.jobs, args.count - counted)))]
-            if not batch:
-                break
-            with held(args.lock):
-                for outcome in pool.map(
-                        lambda p: try_fault(*p, tests_of(p[1].room, args.programs), parts),
-                        zip(trees, batch)):
-                    outcomes.append(outcome)
-                    counted += outcome["status"] != "does not compile"
-                    file.write(json.dumps(outcome) + "\n")
-                    file.flush()
-                    print(f"{outcome['status']:<17}{outcome['path']}:{outcome['line']} "
-                          f"{outcome['operator']}", flush=True)
+    tried = Run(journal, order, args.count, end_s)
+    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+        for worker in [pool.submit(tried.work, tree, args.programs, parts) for tree in trees]:
+            worker.result()
+    outcomes = tried.outcomes
     for one in outcomes:
         if one["status"] == "survived":
             print(f"\n{one['path']}:{one['line']}: {one['operator']}\n- {one['old']}\n+ {one['new']}")
