@@ -1,6 +1,6 @@
 // The space and the fit of an experiment as YAML: what they may be, and what is refused where.
 #include <catch2/catch.hpp>
-#include <chrono>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -239,18 +239,26 @@ TEST_CASE("A value that its key may not have is refused at once, in a grid and i
   CHECK_THROWS(Load("goal: grid\n" + between));
 }
 
-TEST_CASE("Tens of thousands of values, draws and trials are tried within seconds") {
+/// An experiment with as many values of a parameter, draws and trials.
+std::string Wide(int count) {
   std::string values = "0.1", draws = "[0.1]", trials = "first";
-  for (int i = 1; i < 30'000; ++i) {
+  for (int i = 1; i < count; ++i) {
     values += ", " + std::to_string(0.1 + 1e-6 * i);
     draws += ", [" + std::to_string(0.1 + 1e-6 * i) + "]";
     trials += ", t" + std::to_string(i);
   }
-  const auto begun = std::chrono::steady_clock::now();
-  const Experiment loaded = Load("goal: falsify\nspace: {control.v_min: [" + values +
-                                 "]}\nensemble: {keys: [simulation.link.delay_s], draws: [" +
-                                 draws + "]}\nreference: {trials: [" + trials + "]}\n");
-  CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(10));
+  return "goal: falsify\nspace: {control.v_min: [" + values +
+         "]}\nensemble: {keys: [simulation.link.delay_s], draws: [" + draws +
+         "]}\nreference: {trials: [" + trials + "]}\n";
+}
+
+TEST_CASE("Ten times the values, draws and trials take no hundred times the time to be tried") {
+  const std::string few = Wide(3'000), many = Wide(30'000);
+  const std::clock_t begun = std::clock();
+  Load(few);
+  const std::clock_t between = std::clock();
+  const Experiment loaded = Load(many);
+  CHECK(std::clock() - between < 40 * (between - begun));
   CHECK(loaded.space.parameters.at(0).levels.size() == 30'000);
   CHECK(loaded.ensemble.draws.size() == 30'000);
   CHECK(loaded.reference.trials.names.size() == 30'000);
