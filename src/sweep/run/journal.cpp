@@ -21,7 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Names at most a few of the facts that differ.
+/// Names at most a few of the facts that differ, in one line: those of a damaged file may hold
+/// anything.
 std::string Differences(const Facts& then, const Facts& now) {
   constexpr size_t kMostNamed = 5;
   std::vector<std::string> differing;
@@ -39,7 +40,9 @@ std::string Differences(const Facts& then, const Facts& now) {
   }
   const size_t more = differing.size() > kMostNamed ? differing.size() - kMostNamed : 0;
   differing.resize(differing.size() - more);
-  const std::string text = fmt::format("{}", fmt::join(differing, "; "));
+  std::string text = fmt::format("{}", fmt::join(differing, "; "));
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
   return more == 0 ? text : fmt::format("{}; and {} more", text, more);
 }
 

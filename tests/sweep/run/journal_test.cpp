@@ -137,6 +137,19 @@ TEST_CASE("A journal of another experiment is refused with the keys that differ"
   CHECK_NOTHROW(Journal(file, kFacts));
 }
 
+TEST_CASE("What differs is told in one line, whatever a damaged journal holds") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  Journal(file, {{"gap.\nthreshold_m",
+                  "0.0\x7f\x1f"
+                  "6"},
+                 {"seed", "1"}})
+      .Close();
+  const std::string refusal = Refusal([&] { Journal(file, kFacts); });
+  CHECK(refusal.find("gap.?threshold_m was 0.0??6 and is not set; ") != std::string::npos);
+  CHECK(refusal.find('\n') == std::string::npos);
+}
+
 TEST_CASE("A damaged journal is refused and left alone") {
   const test::TemporaryFolder folder;
   const std::string file = folder / "journal.sqlite";
