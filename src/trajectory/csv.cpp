@@ -157,6 +157,11 @@ bool IsBlankLine(std::string_view line) { return line.find_first_not_of(" \t") =
 
 bool IsComment(std::string_view line) { return Trim(line).starts_with('#'); }
 
+bool IsNoText(char c) {
+  return static_cast<unsigned char>(c) < 0x20 &&
+         std::string_view("\t\n\r\v\f\a\x1b").find(c) == std::string_view::npos;
+}
+
 std::string Shown(std::string_view text, size_t most) {
   std::string shown;
   for (const char c : text.substr(0, most)) {

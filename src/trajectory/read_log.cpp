@@ -110,11 +110,7 @@ void RefuseNoText(std::string_view text, const std::string& name) {
   }
   // Further down anything may be left by a writer that was killed; a terminal's colours are text.
   const std::string_view start = text.substr(0, text.find('\n'));
-  const auto is_control = [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 &&
-           std::string_view("\t\r\v\f\a\x1b").find(c) == std::string_view::npos;
-  };
-  if (std::any_of(start.begin(), start.end(), is_control)) {
+  if (std::any_of(start.begin(), start.end(), csv::IsNoText)) {
     throw std::invalid_argument(name +
                                 ": is not text: a log is a table of numbers in text, such as CSV");
   }

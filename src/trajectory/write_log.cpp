@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
@@ -24,8 +26,16 @@ void AppendNumber(std::string& text, double value) {
   text.append(buffer, end);
 }
 
-/// Blanks at its ends would not survive reading either.
-std::string HeaderCell(const std::string& name) { return csv::Cell(name, ", \t\r\""); }
+/// Blanks at its ends would not survive reading either, and a first line that is no text is
+/// refused.
+std::string HeaderCell(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    text += csv::IsNoText(c) ? fmt::format("\\x{:02x}", static_cast<unsigned char>(c))
+                             : std::string(1, c);
+  }
+  return csv::Cell(text, ", \t\r\"");
+}
 
 /// Another log's column may have the name of a column of poses; it gets one of its own.
 std::string ChannelColumn(std::string name, std::set<std::string>& taken) {

@@ -144,6 +144,16 @@ TEST_CASE("A column whose name ends with a CR keeps it in a copy") {
   CHECK(ReadLog(WriteRift(log.trajectory), "log.csv").trajectory.channels[0].name == "a\r");
 }
 
+TEST_CASE("A column whose name holds what no text does is written with it spelled out") {
+  const Log log = ReadLog(
+      "\nt_s,x_m,y_m,yaw_rad,a\x01"
+      "b\n0,0,0,0,7\n1,1,0,0,8\n",
+      "log");
+  const std::string written = WriteRift(log.trajectory);
+  CHECK(written.find(",a\\x01b\n") != std::string::npos);
+  CHECK(WriteRift(ReadLog(written, "log").trajectory) == written);
+}
+
 TEST_CASE("Cells that repeat the ones above them are read right after any kind of row") {
   const Log log = ReadLog(
       "t_s,x_m,y_m,z_m\n0,1.5,2,0.25\n1,1.5,3,0.25\n2,+7,4,\n3,1.5,5,0.25\r\n\n4,1.50,5,0.25",

@@ -19,6 +19,9 @@ bool IsBlankLine(std::string_view line);
 /// Whether the first of a line that is no blank is #.
 bool IsComment(std::string_view line);
 
+/// A control character other than blanks, line ends, the bell and what colours a terminal.
+bool IsNoText(char c);
+
 /// At most so many bytes of it for a message, those that no terminal shows written as \xNN.
 std::string Shown(std::string_view text, size_t most = 60);
 
