@@ -43,6 +43,7 @@ class PngReader {
     if (!png_ || !info_ || setjmp(png_jmpbuf(png_))) return false;
     png_set_read_fn(png_, &bytes_, TakeBytes);
     png_set_user_limits(png_, kMaxSide, kMaxSide);
+    SkipMetadata();
     png_read_info(png_, info_);
     png_set_expand_16(png_);
     png_set_strip_alpha(png_);
@@ -65,6 +66,12 @@ class PngReader {
   const std::string& Error() const { return error_; }
 
  private:
+  /// libpng asks for as much memory as such a chunk says that it is long, up to 2 GB.
+  void SkipMetadata() {
+    constexpr png_byte kNames[] = "sPLT\0iCCP\0tEXt\0zTXt\0iTXt\0eXIf\0hIST\0pCAL\0sCAL";
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, kNames, sizeof(kNames) / 5);
+  }
+
   std::string error_ = "no memory for libpng";
   png_structp png_;
   png_infop info_;
