@@ -49,12 +49,6 @@ double Turned_deg(const Pose2& a, const Pose2& b) {
 
 bool ComeTogether(double before_s, double now_s) { return now_s - before_s < kTogether_s; }
 
-/// Forward and turning part of a motion of the wheels, both in metres at a wheel.
-struct Step {
-  double forward_m = 0.0;
-  double turn_m = 0.0;
-};
-
 Step Rolled(const WheelTravel& from, const WheelTravel& to) {
   const double left_m = to.left_m - from.left_m, right_m = to.right_m - from.right_m;
   return {0.5 * (left_m + right_m), 0.5 * (right_m - left_m)};
@@ -70,7 +64,15 @@ Step Seen(const Pose2& from, const Pose2& to, double track_m) {
 
 }  // namespace
 
+void MotionCheck::SetLatency(double latency_s) {
+  latency_s_ = latency_s;
+  is_latency_known_ = true;
+  backlog_.LearnPeriod();
+}
+
 void MotionCheck::Restart() {
+  if (!backlog_.KnowsPeriod()) backlog_.LearnPeriod();
+  backlog_.Restart();
   wheels_.clear();
   waiting_.clear();
   samples_.clear();
@@ -102,6 +104,7 @@ void MotionCheck::SeePose(const trial::PoseMeasurement& pose,
   const bool is_blind = repeats_since_s && turning_since_s_;
   driven_blind_s_ =
       is_blind ? pose.captured_s - std::max(*repeats_since_s, *turning_since_s_) : 0.0;
+  backlog_.SeePicture(pose.captured_s);
   Sample sample{pose.captured_s - latency_s_, pose.world_from_robot, {}, repeats_since_s};
   if (sample.repeats_since_s) *sample.repeats_since_s -= latency_s_;
   waiting_.push_back(sample);
@@ -141,7 +144,9 @@ std::optional<Disagreement> MotionCheck::CheckSample(const Sample& now) {
   if (auto found = CheckRepeats(now)) return found;
   if (auto found = CheckPoseStands(now)) return found;
   if (auto found = CheckWheelsStand(now)) return found;
-  if (samples_.empty() || !is_measured_) return std::nullopt;
+  if (samples_.empty()) return std::nullopt;
+  if (auto found = CheckBacklog(samples_.back(), now)) return found;
+  if (!is_measured_) return std::nullopt;
   if (auto found = CheckOrder(samples_.back(), now)) return found;
   if (auto found = CheckWindow(now)) return found;
   return CheckLag(now);
@@ -259,6 +264,15 @@ std::optional<Disagreement> MotionCheck::CheckOrder(const Sample& before, const 
       fmt::format("the pose ran against the wheels again and again within {:.1f} s: the camera's "
                   "pictures come out of order",
                   kDisorder_s)};
+}
+
+std::optional<Disagreement> MotionCheck::CheckBacklog(const Sample& before, const Sample& now) {
+  const std::optional<std::string> found =
+      backlog_.Check({now.t_s - before.t_s, Rolled(before.wheels, now.wheels),
+                      Seen(before.pose, now.pose, track_m_)},
+                     is_measured_, is_latency_known_);
+  if (!found) return std::nullopt;
+  return Disagreement{StopReason::kPoseLags, *found};
 }
 
 std::optional<Disagreement> MotionCheck::CheckWindow(const Sample& now) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "backlog_check.hpp"
 #include "rift/hardware/drive_guard.hpp"
 #include "rift/hardware/options.hpp"
 #include "rift/trial/robot.hpp"
@@ -29,13 +30,10 @@ class MotionCheck {
  public:
   /// `track_m`: distance between the wheels.
   MotionCheck(const EvidenceOptions& options, double track_m)
-      : options_(options), track_m_(track_m) {}
+      : options_(options), track_m_(track_m), backlog_(options) {}
 
-  /// How much older poses are than their stamps say.
-  void SetLatency(double latency_s) {
-    latency_s_ = latency_s;
-    is_latency_known_ = true;
-  }
+  /// How much older poses are than their stamps say, and than those of the last seconds were.
+  void SetLatency(double latency_s);
   /// Forgets all it has seen.
   void Restart();
   /// Times must rise. `is_measured`: by encoders; else it is what the commands ask for.
@@ -68,12 +66,14 @@ class MotionCheck {
   std::optional<Disagreement> CheckWheelsStand(const Sample& now);
   double Forward_m(const Sample& before, const Sample& now) const;
   std::optional<Disagreement> CheckOrder(const Sample& before, const Sample& now);
+  std::optional<Disagreement> CheckBacklog(const Sample& before, const Sample& now);
   std::optional<Disagreement> CheckWindow(const Sample& now);
   std::optional<Disagreement> CheckLag(const Sample& now);
   std::optional<double> Lag_s() const;
 
   EvidenceOptions options_;
   double track_m_;
+  BacklogCheck backlog_;
   double latency_s_ = 0.0;
   bool is_latency_known_ = false;
   bool is_measured_ = true;

@@ -111,6 +111,7 @@ struct EvidenceOptions {
   double pushed_deg = 15.0;
   double agree_m = 0.05;
   double agree_share = 0.4;
+  double slip_share = 0.2;
   double max_latency_s = 0.25;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
@@ -137,6 +138,10 @@ struct EvidenceOptions {
           "how far pose and wheels may part within 0.4 s, whatever the wheels did");
     field("agree_share", self.agree_share, 0.0, 10.0,
           "and for each metre that the wheels rolled (slip)");
+    field("slip_share", self.slip_share, 0.0, 10.0,
+          "how far the pose may fall behind for each metre that the wheels roll, over up to 4 s; "
+          "what they roll in max_latency_s comes on top. Where pictures are missing as well, they "
+          "are taken to be held back, and only max_latency_s counts");
     field(
         "max_latency_s", self.max_latency_s, 0.02, 2.0,
         "budget: from the light to a picture's time stamp, and how far a pose may lag the wheels");
