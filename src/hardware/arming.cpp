@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -26,6 +27,7 @@ OperatorKeys::OperatorKeys() {
   if (::isatty(STDIN_FILENO) == 0 || ::tcgetattr(STDIN_FILENO, &settings) != 0) return;
   saved_ = std::make_unique<Saved>(Saved{settings});
   settings.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // signals stay: Ctrl-C must work
+  settings.c_iflag &= ~static_cast<tcflag_t>(IXON);           // Ctrl-S and Ctrl-Q are keys as well
   settings.c_cc[VMIN] = 0;
   settings.c_cc[VTIME] = 0;
   ::tcsetattr(STDIN_FILENO, TCSANOW, &settings);
@@ -38,9 +40,12 @@ OperatorKeys::~OperatorKeys() {
 std::optional<char> OperatorKeys::Pressed() {
   if (!saved_) return std::nullopt;
   pollfd wanted{STDIN_FILENO, POLLIN, 0};
+  if (::poll(&wanted, 1, 0) <= 0) return std::nullopt;
   char key = 0;
-  if (::poll(&wanted, 1, 0) <= 0 || ::read(STDIN_FILENO, &key, 1) != 1) return std::nullopt;
-  return key;
+  const ssize_t got = (wanted.revents & POLLIN) != 0 ? ::read(STDIN_FILENO, &key, 1) : 0;
+  if (got == 1) return key;
+  is_gone_ = got == 0 || (errno != EINTR && errno != EAGAIN);
+  return std::nullopt;
 }
 
 Operator::Operator(bool says_yes) {
@@ -68,6 +73,10 @@ std::optional<std::pair<StopReason, std::string>> Operator::Stop() {
   if (const auto signal = signals_.Seen()) return std::pair(StopReason::kSignal, *signal + " came");
   if (window_closed_) return std::pair(StopReason::kOperator, std::string("the window was closed"));
   while (const std::optional<char> key = keys_.Pressed()) TakeKey(*key);
+  if (keys_.IsGone()) {
+    return std::pair(StopReason::kOperator,
+                     std::string("the terminal went away, and no key could stop the robot"));
+  }
   if (key_stops_) return std::pair(StopReason::kOperator, std::string("a key was pressed"));
   return std::nullopt;
 }

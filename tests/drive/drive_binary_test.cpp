@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
@@ -8,6 +11,7 @@
 #include "rift/control/waypoint.hpp"
 #include "rift/files/files.hpp"
 #include "rift/trajectory/log.hpp"
+#include "support/http.hpp"
 #include "support/inputs/paper_waypoints.hpp"
 #include "support/processes/broken_streams.hpp"
 #include "support/processes/environment.hpp"
@@ -120,6 +124,23 @@ TEST_CASE("Ctrl-C in the countdown ends the drive before anything moves") {
   CHECK_THAT(result.out, Catch::Contains("stopped before the start: SIGINT came"));
   CHECK(scene.floor.Pose() == start);
   CHECK_FALSE(std::filesystem::exists(scene.folder.Path() / "run/trajectory.csv"));
+}
+
+TEST_CASE("Ctrl-C while the camera opens ends the drive at once") {
+  Scene scene;
+  const test::SilentServer camera;
+  std::vector<std::string> arguments = scene.Arguments();
+  *(std::find(arguments.begin(), arguments.end(), "--camera") + 1) =
+      fmt::format("http://127.0.0.1:{}/video", camera.Port());
+  arguments.insert(arguments.end(), {"--set", "track.capture.open_timeout_s=600"});
+  test::RunningRift rift(arguments);
+  rift.WaitUntil("the camera is asked", [&] { return camera.HasClient(); });
+  rift.Signal(SIGINT);
+  const test::ProcessResult result = rift.Wait();
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 1);
+  CHECK_THAT(result.out, Catch::Contains("stopped before the start: SIGINT came"));
+  CHECK_FALSE(std::filesystem::exists(scene.folder.Path() / "run"));
 }
 
 TEST_CASE("A camera that repeats its last picture stops the robot whatever else changes in it") {

@@ -29,6 +29,8 @@ class Keyboard {
 
   /// For somebody who reads at the same time.
   void Press(char key) { terminal_.Write({static_cast<std::uint8_t>(key)}); }
+  /// The terminal goes away.
+  void HangUp() { terminal_.Close(); }
   /// Returns when the key can be read: the system hands it over in its own time.
   void Type(char key) {
     Press(key);

@@ -79,5 +79,31 @@ TEST_CASE("With a yes nothing is asked and a key or a signal or the window stops
         "the window was closed");
 }
 
+TEST_CASE("The keys that hold and release a terminal's output stop a robot as any other") {
+  for (const char key : {'\x13', '\x11'}) {
+    Keyboard keyboard;
+    Operator person(true);
+    CHECK_FALSE(person.Stopper()());
+    keyboard.Type(key);
+    CHECK(person.Stopper()().value().second == "a key was pressed");
+  }
+}
+
+TEST_CASE("A terminal that goes away stops the robot, whoever said yes") {
+  for (const bool says_yes : {true, false}) {
+    Keyboard keyboard;
+    Operator person(says_yes);
+    Listening listening;
+    person.MayArm(listening.say);
+    CHECK_FALSE(person.Stopper()());
+    keyboard.HangUp();
+    const auto stop = person.Stopper()();
+    REQUIRE(stop);
+    CHECK(stop->first == StopReason::kOperator);
+    CHECK(stop->second == "the terminal went away, and no key could stop the robot");
+    CHECK_FALSE(person.MayArm(listening.say) != says_yes);
+  }
+}
+
 }  // namespace
 }  // namespace rift::hardware

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -50,6 +51,24 @@ SilentClient::SilentClient(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)
 }
 
 SilentClient::~SilentClient() { ::close(socket_); }
+
+SilentServer::SilentServer() : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  REQUIRE(::listen(socket_, 8) == 0);
+}
+
+SilentServer::~SilentServer() { ::close(socket_); }
+
+int SilentServer::Port() const {
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  REQUIRE(::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size) == 0);
+  return ntohs(address.sin_port);
+}
+
+bool SilentServer::HasClient() const {
+  pollfd wanted{socket_, POLLIN, 0};
+  return ::poll(&wanted, 1, 0) == 1;
+}
 
 bool SilentClient::IsConnected() const {
   char byte = 0;

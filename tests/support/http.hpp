@@ -24,4 +24,20 @@ class SilentClient {
   int socket_;
 };
 
+/// A server of this machine that takes connections and says nothing.
+class SilentServer {
+ public:
+  SilentServer();
+  SilentServer(const SilentServer&) = delete;
+  SilentServer& operator=(const SilentServer&) = delete;
+  ~SilentServer();
+
+  int Port() const;
+  /// Somebody has connected.
+  bool HasClient() const;
+
+ private:
+  int socket_;
+};
+
 }  // namespace rift::test

@@ -32,10 +32,13 @@ class OperatorKeys {
   bool IsTerminal() const { return saved_ != nullptr; }
   /// A key pressed since the last call, without waiting.
   std::optional<char> Pressed();
+  /// The terminal was closed, as far as the last Pressed() saw: no key comes any more.
+  bool IsGone() const { return is_gone_; }
 
  private:
   struct Saved;
   std::unique_ptr<Saved> saved_;
+  bool is_gone_ = false;
 };
 
 /// Whoever starts and stops a drive: keys of the terminal, signals, the closed window. While it

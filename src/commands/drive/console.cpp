@@ -21,7 +21,7 @@ char Ask(const std::string& question, std::string_view keys, bool says_yes) {
     throw std::invalid_argument(
         "stdin is no terminal, so nobody can answer: give --yes to answer Enter to everything");
   }
-  while (!signals.Seen()) {
+  while (!signals.Seen() && !pressed.IsGone()) {
     const std::optional<char> key = pressed.Pressed();
     if (!key) {
       std::this_thread::sleep_for(kPoll);

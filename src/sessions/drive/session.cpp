@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -45,10 +46,31 @@ vision::CameraModel ReadCameraWithWorld(const std::string& calibration) {
       calibration));
 }
 
+/// Thrown while the camera opens.
+struct StopAsked {
+  hardware::DriveStop stop;
+};
+
+hardware::DriveRun StoppedBeforeTheStart(const hardware::DriveStop& stop) {
+  hardware::DriveRun run;
+  run.evidence.stop = stop;
+  run.trial.reason = "stopped before the start: " + stop.text;
+  return run;
+}
+
+/// Throws StopAsked when `stopper` says so before a picture comes.
+vision::Frame FirstPicture(vision::CameraSession& session, const hardware::Stopper& stopper) {
+  std::optional<std::pair<hardware::StopReason, std::string>> stop;
+  std::optional<vision::Frame> first =
+      session.FirstPicture([&] { return !(stop = stopper()).has_value(); });
+  if (!first) throw StopAsked{{stop->first, stop->second, 0.0}};
+  return std::move(*first);
+}
+
 /// Holds the first picture against what a drive needs, and tells the operator what is amiss.
 void CheckFirstPicture(const DriveSetup& setup, const Console& console,
-                       vision::CameraSession& session) {
-  const vision::Frame first = session.FirstPicture();
+                       vision::CameraSession& session, const hardware::Stopper& stopper) {
+  const vision::Frame first = FirstPicture(session, stopper);
   if (session.capture().IsRecording()) {
     throw std::invalid_argument(fmt::format(
         "{} is a recording, and a robot is driven by what is seen now: name a device such as "
@@ -131,7 +153,7 @@ class DriveSession::Drivers {
  public:
   /// `setup` and `console` must outlive it.
   Drivers(const DriveSetup& setup, const Console& console, const experiment::Experiment& experiment,
-          const vision::CameraModel& camera)
+          const vision::CameraModel& camera, const hardware::Stopper& stopper)
       : setup_(setup),
         console_(console),
         port_(setup.address.port, experiment.hardware.line.baud,
@@ -139,7 +161,7 @@ class DriveSession::Drivers {
         session_(setup.address.camera, camera, experiment.track.capture,
                  experiment::TagOn(experiment)),
         standing_(session_.camera(), session_.tag()) {
-    CheckFirstPicture(setup, console, session_);
+    CheckFirstPicture(setup, console, session_, stopper);
     const auto tracker = std::make_shared<vision::TagTracker>(session_.MakeTracker());
     poses_ = std::make_unique<hardware::CameraPoses>(
         session_.TakeCapture(),
@@ -316,8 +338,14 @@ hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
   // The next setting may be on a ramp, where the tag is not held to the floor.
   if (drivers_ && drivers_->ground() != experiment::TagOn(experiment).ground) Close();
   if (!drivers_) {
-    drivers_ = std::make_unique<Drivers>(setup_, console_, experiment,
-                                         ReadCameraWithWorld(setup_.address.calibration));
+    try {
+      drivers_ = std::make_unique<Drivers>(setup_, console_, experiment,
+                                           ReadCameraWithWorld(setup_.address.calibration),
+                                           person.Stopper());
+    } catch (const StopAsked& asked) {
+      stop_was_asked_ = true;
+      return StoppedBeforeTheStart(asked.stop);
+    }
   }
   begun.Write(experiment, drivers_->camera());
   if (setup_.dry_run) console_.say("dry run: nothing moves, the robot is sent zeros alone");

@@ -31,10 +31,11 @@ CameraSession::CameraSession(std::string name, CameraModel camera, CaptureOption
       tag_(tag),
       capture_(OpenCapture(name_, options_)) {}
 
-Frame CameraSession::FirstPicture() {
+std::optional<Frame> CameraSession::FirstPicture(const std::function<bool()>& go_on) {
   const std::string name = WithoutPassword(name_);
   std::optional<Frame> frame;
   while (!(frame = capture_->Next(kPictureWait_s))) {
+    if (!go_on()) return std::nullopt;
     const CaptureStatus status = capture_->Status();
     if (!IsFinal(status.state) && status.state != CameraState::kFrozen) continue;
     throw std::runtime_error(fmt::format(
@@ -52,7 +53,7 @@ Frame CameraSession::FirstPicture() {
     }
   }
   RequireSize(*frame);
-  return std::move(*frame);
+  return frame;
 }
 
 void CameraSession::RequireSize(const Frame& frame) const {

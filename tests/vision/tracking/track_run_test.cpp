@@ -7,6 +7,7 @@
 
 #include "rift/vision/camera/jpeg.hpp"
 #include "rift/vision/camera/steady_now.hpp"
+#include "support/http.hpp"
 #include "vision/small_recording.hpp"
 
 namespace rift::vision {
@@ -377,13 +378,13 @@ TEST_CASE("A session asks for the size of its calibration and holds the pictures
   CameraModel camera = SmallCamera();
   CameraSession session(recording.Path(), camera, {.width_px = 1, .height_px = 2}, {});
   CHECK((session.options().width_px == 640 && session.options().height_px == 480));
-  const Frame first = session.FirstPicture();
+  const Frame first = session.FirstPicture().value();
   CHECK(first.index == 0);
   CHECK(session.LookAt(first, 1).robot_tags == 1);
   CHECK_FALSE(session.LookAt(first, 1).moved_m);
-  CHECK(session.FirstPicture().index == 1);
+  CHECK(session.FirstPicture()->index == 1);
   session.Restart();
-  CHECK(session.FirstPicture().index == 0);
+  CHECK(session.FirstPicture()->index == 0);
 
   camera.width_px = camera.height_px = 0;
   CameraSession sizeless(recording.Path(), camera, {.width_px = 1, .height_px = 2}, {});
@@ -422,6 +423,15 @@ TEST_CASE("A session asks for the size of its calibration and holds the pictures
   CHECK_THROWS_WITH(
       failing.FirstPicture(),
       Contains("the camera " + none.Path() + " is wrong format: ") && Contains("can be decoded"));
+}
+
+TEST_CASE("Waiting for the first picture ends when somebody says so") {
+  const test::SilentServer server;
+  CameraSession waiting(fmt::format("http://127.0.0.1:{}/video", server.Port()), SmallCamera(),
+                        {.open_timeout_s = 600.0}, {});
+  int asked = 0;
+  CHECK_FALSE(waiting.FirstPicture([&asked] { return ++asked < 3; }));
+  CHECK(asked == 3);
 }
 
 TEST_CASE("The most that a camera was moved and that tags were seen are told when both are over") {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,8 +29,9 @@ class CameraSession {
 
   /// Waits for the first picture. A calibration without a size is taken to be for this picture's.
   /// Throws std::runtime_error with the camera's state when none comes, std::invalid_argument when
-  /// the picture has another size than the calibration.
-  Frame FirstPicture();
+  /// the picture has another size than the calibration. None when `go_on`, asked ten times a
+  /// second, says no.
+  std::optional<Frame> FirstPicture(const std::function<bool()>& go_on = [] { return true; });
   /// Throws std::invalid_argument for a picture of another size than the calibration: its pixels
   /// are of other rays.
   void RequireSize(const Frame& frame) const;
