@@ -80,8 +80,10 @@ std::optional<std::string> BacklogCheck::Check(const Motion& motion, bool is_mea
   const bool is_behind = most.behind_m - unsure_m > allowed_m;
   if (is_behind && most.missing_s > most_s) {
     return fmt::format(
-        "the pose fell {:.3f} m behind the wheels within {:.1f} s, in which {:.2f} s of pictures did "
-        "not come, and the limit is {:.2f} s: something between camera and rift holds pictures back",
+        "the pose fell {:.3f} m behind the wheels within {:.1f} s, in which {:.2f} s of pictures "
+        "did "
+        "not come, and the limit is {:.2f} s: something between camera and rift holds pictures "
+        "back",
         most.behind_m, most.elapsed_s, most.missing_s, most_s);
   }
   if (is_measured && is_forward && most.behind_m - options_.slip_share * most.way_m > allowed_m) {

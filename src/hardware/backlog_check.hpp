@@ -9,10 +9,10 @@
 
 namespace rift::hardware {
 
-/// Finds pictures that come later and later. A link that carries fewer pictures than the camera takes
-/// and keeps the rest delivers each one fresh by its stamp, and the motion that they show falls
-/// behind the wheels little by little. That looks like slip; but then fewer pictures come than
-/// before, which slip does not do.
+/// Finds pictures that come later and later. A link that carries fewer pictures than the camera
+/// takes and keeps the rest delivers each one fresh by its stamp, and the motion that they show
+/// falls behind the wheels little by little. That looks like slip; but then fewer pictures come
+/// than before, which slip does not do.
 class BacklogCheck {
  public:
   explicit BacklogCheck(const EvidenceOptions& options) : options_(options) {}

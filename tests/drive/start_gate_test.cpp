@@ -117,6 +117,17 @@ TEST_CASE("A robot that is covered during the countdown has all of it again") {
   CHECK(gate.MayStart(7.1, kNear));
 }
 
+TEST_CASE("A countdown that begins again shows its first second again") {
+  Person person{.has_agreed = true};
+  StartGate gate({}, kStart, false, person.AtTerminal());
+  gate.MayStart(0.0, kNear);
+  CHECK(person.shown.back() == "3 ...");
+  gate.MayStart(0.1, std::nullopt);
+  CHECK(person.shown.back() != "3 ...");
+  gate.MayStart(0.2, kNear);
+  CHECK(person.shown.back() == "3 ...");
+}
+
 TEST_CASE("A robot that is not seen for ten seconds has to be agreed to anew, or ends the drive") {
   Person person{.has_agreed = true};
   StartGate gate({.countdown_s = 0.0}, kStart, false, person.AtTerminal());

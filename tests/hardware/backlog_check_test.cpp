@@ -53,11 +53,10 @@ Stop StopHeld(const Backlog& drive) {
   for (int i = 0; kPeriod_s * i < drive.end_s; ++i) {
     const double taken_s = kPeriod_s * i;
     const bool is_held = taken_s > drive.from_s;
-    double came_s = is_held && !drive.fills_up ? drive.from_s + (taken_s - drive.from_s) / drive.rate
-                                               : taken_s;
-    const double shown_s = is_held && drive.fills_up
-                               ? drive.from_s + (taken_s - drive.from_s) * drive.rate
-                               : taken_s;
+    double came_s =
+        is_held && !drive.fills_up ? drive.from_s + (taken_s - drive.from_s) / drive.rate : taken_s;
+    const double shown_s =
+        is_held && drive.fills_up ? drive.from_s + (taken_s - drive.from_s) * drive.rate : taken_s;
     if (is_held) dropped += drive.dropped;
     if (dropped >= 1.0) {
       dropped -= 1.0;
@@ -99,8 +98,7 @@ TEST_CASE("Pictures that a slow link holds back stop a drive before they are hal
 TEST_CASE("Pictures of a robot that turns on the spot are held back no longer") {
   test::OnBothSides("left", "right", [](const test::Side& side) {
     for (const double rate : {0.9, 0.67, 0.5}) {
-      const Stop stop =
-          StopHeld({.speed_mps = 0.0, .turn_rad_s = Sign(side) * 3.0, .rate = rate});
+      const Stop stop = StopHeld({.speed_mps = 0.0, .turn_rad_s = Sign(side) * 3.0, .rate = rate});
       INFO(rate << " " << stop.text);
       CHECK(stop.reason == StopReason::kPoseLags);
       CHECK(stop.age_s < 0.45);

@@ -110,6 +110,9 @@ TEST_CASE("A port closed at the other end is gone for reading and writing") {
   SerialPort port(terminal.path(), 9600, 0.1);
   terminal.Close();
   CHECK_THROWS_AS(port.Read(), LineGone);
+  CHECK_THROWS_WITH(port.Read(), Catch::Contains(terminal.path() + " went away: ") &&
+                                     (Catch::Contains("the other end was closed") ||
+                                      Catch::Contains("Input/output error")));
   const std::vector<std::uint8_t> bytes{1, 2, 3};
   CHECK_THROWS_AS(port.Write(bytes), LineGone);
 }

@@ -412,6 +412,21 @@ TEST_CASE("Drives and pings are told field by field as they were approved") {
   CHECK(DifferenceFromPinned("report/drive.txt", text) == "");
 }
 
+TEST_CASE("Misses of one tag are of the pictures, and of several of all looks for them") {
+  vision::TrackRun run;
+  run.frames = 10;
+  run.misses = {0, 3, 0, 5};
+  const auto text = [&run](int states_of_first) {
+    run.states = {states_of_first, 0, 0, 8};
+    return TrackText(run, 1);
+  };
+  CHECK(text(12).find("10 pictures, a tag of several missed 8 of 20 times (3 ") !=
+        std::string::npos);
+  CHECK(text(3).find("10 pictures, a tag of several missed 8 of 11 times (3 ") !=
+        std::string::npos);
+  CHECK(text(2).find("10 pictures, 8 without the tag (3 ") != std::string::npos);
+}
+
 TEST_CASE("Tracking, precision and a sweep's status are told as they were approved") {
   vision::TrackRun run;
   run.state = vision::CameraState::kEnded;

@@ -126,6 +126,19 @@ TEST_CASE("Slip is drawn for each wheel in per cent, without what is not known o
   CHECK(programs.Signal(4, "y_title") == "slip, right wheel (%)");
 }
 
+TEST_CASE("What does not move, or is not known, hides no slip behind it") {
+  Programs programs;
+  programs.cells[0].measures.moved = 0;
+  programs.cells[0].measures.slip = {{0.25, 0.4, 0.4}};
+  programs.cells[1].measures.slip = {{0.25, NAN, 0.1}, {0.75, 0.2, NAN}, {0.9, 0.3, 0.3}};
+  const json left = programs.Values(3), right = programs.Values(4);
+  REQUIRE(left.size() == 2);
+  CHECK(left[0]["x"] == 0.75);
+  CHECK(left[0]["y"].get<double>() == Approx(20.0));
+  REQUIRE(right.size() == 2);
+  CHECK(right[1]["x"] == 0.9);
+}
+
 TEST_CASE("Of a run that only turns no way is told, and what odometry and camera say is") {
   odometry::OdometryResult result;
   result.runs = {{"spin",

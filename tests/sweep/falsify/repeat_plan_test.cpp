@@ -41,6 +41,7 @@ int MoreOf(const Rows& rows, const FalsifyOptions& options, int settings = 1) {
 TEST_CASE("One setting is falsified by one failure where one in ten may fail") {
   // The evidence needed is log(1 / 0.05); failures alone each weigh at most log(1 / 0.1).
   CHECK(TrialsToFalsify({}, 1) == 2);
+  CHECK(TrialsToFalsify({.share = 0.01, .confidence = 0.9}, 1) == 1);
   CHECK(TrialsToFalsify({}, 10) > TrialsToFalsify({}, 1));
   CHECK(TrialsToFalsify({.share = 0.5}, 1) > TrialsToFalsify({.share = 0.1}, 1));
   CHECK(TrialsToFalsify({.confidence = 0.999}, 1) > TrialsToFalsify({.confidence = 0.9}, 1));

@@ -167,6 +167,27 @@ TEST_CASE("Who does what is said next covers everything, and then nothing is sai
   CHECK(NextViewFor(views, kBoard, 1.01).text != "");
 }
 
+TEST_CASE("Where the board goes next is a corner, an edge or the middle of the picture") {
+  std::vector<ViewResult> views;
+  std::set<std::string> kinds;
+  for (int i = 0; i < 40; ++i) {
+    const NextView next = NextViewFor(views, kBoard, 1.01);
+    const bool is_beside = std::abs(next.place.x - 0.5) > 0.2,
+               is_above = std::abs(next.place.y - 0.5) > 0.2;
+    const std::string kind = is_beside && is_above   ? "corner of"
+                             : is_beside || is_above ? "edge of"
+                                                     : "in the middle of";
+    INFO(next.text);
+    for (const char* other : {"corner of", "edge of", "in the middle of"}) {
+      CHECK((next.text.find(other + std::string(" the picture")) != std::string::npos) ==
+            (other == kind));
+    }
+    kinds.insert(kind);
+    views.push_back(Used(Held(next.place)));
+  }
+  CHECK(kinds.size() >= 2);
+}
+
 TEST_CASE("Views that were not used do not keep the next one from being asked for") {
   std::vector<ViewResult> views;
   for (const double end : {0.0, 1.0}) {

@@ -162,6 +162,12 @@ TEST_CASE("A view is taken, taken back and refused by key") {
         std::vector<std::string>{"frame000001"});
 }
 
+TEST_CASE("Sixty views are enough, whoever takes them") {
+  const std::vector<Frame> pictures(62, Picture({-0.06, 0.0, 0.45}));
+  const auto take = [](int) { return LiveInput{.take = true}; };
+  CHECK(Gather(pictures, take).views.size() == 60);
+}
+
 TEST_CASE("Why no view is taken is said where there is no window") {
   const Gathered gathered = Gather({WithoutBoard(), WithoutBoard()});
   CHECK(gathered.views.empty());
