@@ -69,10 +69,14 @@ void TerrainOptions::Check() const { Chosen(); }
 const SurfaceOptions& TerrainOptions::Chosen() const {
   const auto found = surfaces.find(surface);
   if (found != surfaces.end()) return found->second;
-  std::string known;
-  for (const auto& [name, options] : surfaces) known += (known.empty() ? "" : ", ") + name;
-  throw std::invalid_argument(
-      fmt::format("surface is '{}', but it must be one of: {}", surface, known));
+  throw std::invalid_argument(fmt::format("surface is '{}', but it must be one of: {}", surface,
+                                          fmt::join(Choices(), ", ")));
+}
+
+std::vector<std::string> TerrainOptions::Choices() const {
+  std::vector<std::string> names;
+  for (const auto& [name, options] : surfaces) names.push_back(name);
+  return names;
 }
 
 Terrain::Terrain(const TerrainOptions& options, std::shared_ptr<const HeightImage> image)

@@ -11,10 +11,48 @@ namespace rift::yaml {
 
 namespace {
 
-void CollectSources(const Node& node, std::set<std::string>& sources) {
-  sources.insert(node.origin.source);
-  for (const Node& item : node.items) CollectSources(item, sources);
-  for (const Node::Entry& entry : node.entries) CollectSources(entry.value, sources);
+void CollectOrigins(const Node& node, std::vector<const Origin*>& origins) {
+  origins.push_back(&node.origin);
+  for (const Node& item : node.items) CollectOrigins(item, origins);
+  for (const Node::Entry& entry : node.entries) CollectOrigins(entry.value, origins);
+}
+
+const Node::Entry* FindPath(const Node& block, std::string_view path) {
+  const Node* node = &block;
+  const Node::Entry* entry = nullptr;
+  for (const std::string& part : SplitPath(path)) {
+    entry = node->Find(part);
+    if (entry == nullptr) return nullptr;
+    node = &entry->value;
+  }
+  return entry;
+}
+
+/// Where the keys of the block are written that the rule names, in its order.
+std::vector<const Origin*> OriginsNamed(std::string_view rule, const Node& block) {
+  constexpr std::string_view kLetters =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.";
+  std::vector<const Origin*> origins;
+  std::size_t begin = rule.find_first_of(kLetters);
+  while (begin != rule.npos) {
+    const std::size_t end = std::min(rule.find_first_not_of(kLetters, begin), rule.size());
+    std::string_view word = rule.substr(begin, end - begin);
+    while (word.ends_with('.')) word.remove_suffix(1);
+    const Node::Entry* entry = FindPath(block, word);
+    if (entry != nullptr) origins.push_back(&entry->origin);
+    begin = rule.find_first_of(kLetters, end);
+  }
+  return origins;
+}
+
+/// The first of those written last: a block keeps the origin of its first writer.
+const Origin& Latest(const std::vector<const Origin*>& origins, const Origin& of_block) {
+  const auto lateness = [&](const Origin* origin) {
+    if (origin->source.starts_with("--set ")) return 2;
+    return origin->source.empty() || origin->source == of_block.source ? 0 : 1;
+  };
+  return **std::max_element(origins.begin(), origins.end(),
+                            [&](auto* a, auto* b) { return lateness(a) < lateness(b); });
 }
 
 std::string Prefix(const Node& node, std::string_view key) {
@@ -62,13 +100,19 @@ void RequireKey(const Node& block, std::string_view path, std::string_view key) 
       fmt::format("{}key '{}' is missing: must be given", Prefix(block, ""), Join(path, key)));
 }
 
-void FailRule(const Node& block, std::string_view path, const std::invalid_argument& broken) {
+void FailRule(const Node& block, std::string_view path, const std::invalid_argument& broken,
+              const std::string& proposal) {
+  std::vector<const Origin*> origins = OriginsNamed(broken.what(), block);
+  if (origins.empty()) CollectOrigins(block, origins);
+  Node at_fault;
+  at_fault.origin = Latest(origins, block.origin);
   std::set<std::string> others;
-  CollectSources(block, others);
-  others.erase(block.origin.source);
+  for (const Origin* origin : origins) others.insert(origin->source);
+  others.erase(at_fault.origin.source);
   others.erase("");
   throw Error(fmt::format(
-      "{}{}{}", Prefix(block, path), broken.what(),
+      "{}{}{}{}", Prefix(at_fault, path), broken.what(),
+      proposal.empty() ? "" : fmt::format("; did you mean '{}'?", proposal),
       others.empty() ? "" : fmt::format(" (values also from {})", fmt::join(others, ", "))));
 }
 

@@ -117,6 +117,34 @@ TEST_CASE("Paths of a file are relative to it and paths of an override to the sh
   CHECK(experiment.reference.path.text == "/y.csv");
 }
 
+TEST_CASE("A rule that is broken points at the file or override that broke it") {
+  const std::map<std::string, std::string> texts{
+      {"/own.yaml", "include: base.yaml\nsimulation:\n  terrain:\n    surface: bunp\n"},
+      {"/slow.yaml", "include: base.yaml\n"},
+      {"/base.yaml",
+       "simulation:\n  terrain:\n    surface: ground\n    patches: []\n"
+       "control: {v_min: 0.1, v_max: 0.2}\n"}};
+  const auto error = [&](const std::string& path, const std::vector<std::string>& overrides) {
+    try {
+      LoadExperiment(path, overrides, [&](const std::string& file) { return texts.at(file); });
+    } catch (const yaml::Error& refused) {
+      return std::string(refused.what());
+    }
+    return std::string();
+  };
+  CHECK(error("/own.yaml", {}) ==
+        "/own.yaml:4:5: key 'simulation.terrain': surface is 'bunp', but it must be one of: bump, "
+        "cardboard, downhill, ground, parchment, uphill, wet_parchment; did you mean 'bump'?");
+  CHECK_THAT(error("/slow.yaml", {"simulation.terrain.surface=bunp"}),
+             Catch::StartsWith("--set simulation.terrain.surface: key 'simulation.terrain': ") &&
+                 Catch::EndsWith("; did you mean 'bump'?"));
+  CHECK(error("/slow.yaml", {"control.v_min=0.5"}) ==
+        "--set control.v_min: key 'control': v_min is 0.5, and it must not exceed v_max, which is "
+        "0.2 (values also from /base.yaml)");
+  CHECK_THAT(error("/slow.yaml", {"control.v_max=0.05"}),
+             Catch::StartsWith("--set control.v_max: key 'control': v_min is 0.1"));
+}
+
 TEST_CASE("Nested and dotted and overridden axes are one thing") {
   const std::string dotted = "space: {control.v_min: [0.15, 0.20]}\n";
   const std::string nested = "space:\n  control:\n    v_min: [0.15, 0.20]\n";

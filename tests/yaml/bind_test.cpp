@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "rift/yaml/bind.hpp"
@@ -212,15 +213,65 @@ TEST_CASE("A required key that is missing is named") {
         "f.yaml:3:5: key 'waypoints[1].y_m' is missing: must be given");
 }
 
-TEST_CASE("A rule between fields is placed at its block and at the other sources") {
+TEST_CASE("A rule between fields is placed at the key it names that was written last") {
   CHECK(BindError("title: x\ncontrol:\n  v_min: 0.5\n") ==
         "f.yaml:3:3: key 'control': v_min must be at most v_max");
   Node root = Parse("control: {v_max: 0.5}\n", "f.yaml");
   Merge(root, ParseOverride("control.v_min=0.6"));
   Robot robot;
   CHECK(ErrorOf([&] { Bind(root, robot); }) ==
-        "f.yaml:1:10: key 'control': v_min must be at most v_max "
-        "(values also from --set control.v_min)");
+        "--set control.v_min: key 'control': v_min must be at most v_max "
+        "(values also from f.yaml)");
+  const auto error = [](const std::string& base, const std::string& own) {
+    Node whole = Parse(base, "base.yaml");
+    Merge(whole, Parse(own, "own.yaml"));
+    Robot bound;
+    return ErrorOf([&] { Bind(whole, bound); });
+  };
+  CHECK(error("control: {v_max: 0.2}\n", "title: x\ncontrol:\n  v_min: 0.3\n") ==
+        "own.yaml:3:3: key 'control': v_min must be at most v_max (values also from base.yaml)");
+  CHECK(error("control: {v_min: 0.2}\n", "control: {v_max: 0.1}\n") ==
+        "own.yaml:1:11: key 'control': v_min must be at most v_max (values also from base.yaml)");
+  CHECK(error("control: {v_min: 0.2, v_max: 0.1}\n", "title: x\n") ==
+        "base.yaml:1:11: key 'control': v_min must be at most v_max");
+}
+
+struct Table {
+  std::string food = "bread";
+  int seats = 4;
+  std::vector<std::string> dishes{"bread", "soup"};
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("food", self.food, "what is on it");
+    field("seats", self.seats, 1, 10, "chairs");
+    field("dishes", self.dishes, "what there is");
+  }
+  void Check() const {
+    if (seats == 7) throw std::invalid_argument("Seven are too many.");
+    if (std::find(dishes.begin(), dishes.end(), food) != dishes.end()) return;
+    throw std::invalid_argument("food is no dish");
+  }
+  std::string Choice() const { return food; }
+  std::vector<std::string> Choices() const { return dishes; }
+};
+
+TEST_CASE(
+    "A choice that is none gets the nearest one proposed, and a rule without keys the block") {
+  const auto error = [](const std::string& own, const std::string& set) {
+    Node whole = Parse("dishes: [bread, soup]\nseats: 3\n", "base.yaml");
+    Merge(whole, Parse(own, "own.yaml"));
+    if (!set.empty()) Merge(whole, ParseOverride(set));
+    Table table;
+    return ErrorOf([&] { Bind(whole, table); });
+  };
+  CHECK(error("food: soap", "") == "own.yaml:1:1: food is no dish; did you mean 'soup'?");
+  CHECK(error("food: x", "food=bred") == "--set food: food is no dish; did you mean 'bread'?");
+  CHECK(error("food: potatoes", "") == "own.yaml:1:1: food is no dish");
+  CHECK(error("food: soup\nseats: 7", "") ==
+        "own.yaml:2:8: Seven are too many. (values also from base.yaml)");
+  CHECK(error("food: soup", "seats=7") ==
+        "--set seats: Seven are too many. (values also from base.yaml, own.yaml)");
 }
 
 TEST_CASE("A value read by hand is checked by its own rules") {

@@ -159,6 +159,9 @@ struct TerrainOptions {
   void Check() const;
 
   const SurfaceOptions& Chosen() const;
+  /// The name that has to be one of Choices(), the names of `surfaces`; for proposals.
+  std::string Choice() const { return surface; }
+  std::vector<std::string> Choices() const;
 };
 
 /// A decoded image: samples[row * columns + column] in [0, 1], row 0 at the top, hence at large y.

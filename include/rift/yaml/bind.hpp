@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <concepts>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -59,10 +60,28 @@ void RequireList(const Node& node, const Place& place);
 /// Throws Error when a key that must be written is not.
 void RequireKey(const Node& block, std::string_view path, std::string_view key);
 
-/// Throws Error for a rule between fields: where the block stands, its key, and the other places
-/// that values of it came from.
+/// Throws Error for a rule between fields: where the key stands that the rule names, of several the
+/// one written last (--set over files over the block's first file); the block where it names none.
+/// With the block's key, what is proposed, and the other sources of these values.
 [[noreturn]] void FailRule(const Node& block, std::string_view path,
-                           const std::invalid_argument& broken);
+                           const std::invalid_argument& broken, const std::string& proposal = "");
+
+/// A block with a name, Choice(), that has to be one of Choices(), which the file may extend.
+template <class S>
+concept Choosing = requires(const S& block) {
+  { block.Choice() } -> std::convertible_to<std::string>;
+  { block.Choices() } -> std::convertible_to<std::vector<std::string>>;
+};
+
+/// The choice nearest to one that is none; empty for one of them, and where none is near.
+template <class S>
+std::string Proposal(const S& block) {
+  if constexpr (Choosing<S>) {
+    const std::string nearest = Nearest(block.Choice(), block.Choices());
+    return nearest == block.Choice() ? "" : nearest;
+  }
+  return "";
+}
 
 /// Runs the block's own rules, if it has any. `node` is where the block was written.
 template <class S>
@@ -71,7 +90,7 @@ void CheckRules(const S& block, const Node& node, std::string_view path) {
     try {
       block.Check();
     } catch (const std::invalid_argument& broken) {
-      FailRule(node, path, broken);
+      FailRule(node, path, broken, Proposal(block));
     }
   }
 }
