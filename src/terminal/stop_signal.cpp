@@ -1,6 +1,10 @@
 #include "rift/terminal/stop_signal.hpp"
 
+#include <time.h>
 #include <unistd.h>
+
+#include <atomic>
+#include <cstdint>
 
 #include "rift/terminal/exit_code.hpp"
 #include "text.hpp"
@@ -8,13 +12,35 @@
 namespace rift::terminal {
 namespace {
 
-volatile std::sig_atomic_t asked = 0;  // all that a handler may touch
+/// When the first signal came, on the monotonic clock; 0: none has. Two threads may be in handlers.
+std::atomic<std::int64_t> asked_ns{0};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);  // else no handler may touch it
 
-void Ask(int) { asked = 1; }
+enum class Arrival { kFirst, kSame, kLater };
+
+/// `timeout` signals a process and then its group: what comes within a second is the same signal.
+Arrival NoteSignal() {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  struct timespec now {};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  const std::int64_t now_ns = now.tv_sec * kSecond_ns + now.tv_nsec;
+  std::int64_t first_ns = 0;
+  if (asked_ns.compare_exchange_strong(first_ns, now_ns)) return Arrival::kFirst;
+  return now_ns - first_ns < kSecond_ns ? Arrival::kSame : Arrival::kLater;
+}
+
+void Ask(int signal) {
+  if (NoteSignal() != Arrival::kLater) return;
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);  // delivered when this handler returns
+}
 
 std::string last_line;  // as it is written: nothing but write and _exit is allowed in a handler
 
 void End(int) {
+  const Arrival arrival = NoteSignal();
+  if (arrival == Arrival::kSame) return;  // the first one is writing
+  if (arrival == Arrival::kLater) ::_exit(kStopped);
   const ssize_t written = ::write(2, last_line.data(), last_line.size());
   static_cast<void>(written);  // nobody is left to be told
   ::_exit(kStopped);
@@ -24,7 +50,7 @@ void End(int) {
 void Handle(void (*handler)(int), struct sigaction& interrupt, struct sigaction& terminate) {
   struct sigaction action {};
   action.sa_handler = handler;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  asked_ns = 0;
   ::sigaction(SIGINT, &action, &interrupt);
   ::sigaction(SIGTERM, &action, &terminate);
 }
@@ -36,14 +62,11 @@ void PutBack(const struct sigaction& interrupt, const struct sigaction& terminat
 
 }  // namespace
 
-StopSignal::StopSignal() {
-  asked = 0;
-  Handle(Ask, interrupt_, terminate_);
-}
+StopSignal::StopSignal() { Handle(Ask, interrupt_, terminate_); }
 
 StopSignal::~StopSignal() { PutBack(interrupt_, terminate_); }
 
-bool StopSignal::IsAsked() const { return asked != 0; }
+bool StopSignal::IsAsked() const { return asked_ns != 0; }
 
 EndSignal::EndSignal(const std::string& line) {
   last_line = TerminalText(line, LineBreaks::kEscaped) + '\n';

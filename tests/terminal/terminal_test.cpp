@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <stdexcept>
 
@@ -173,9 +174,8 @@ TEST_CASE("The first Ctrl-C or SIGTERM asks for an end and the handlers are put 
     CHECK_FALSE(stop.IsAsked());
     std::raise(signal);
     CHECK(stop.IsAsked());
-    struct sigaction now {};
-    ::sigaction(signal, nullptr, &now);
-    CHECK(now.sa_handler == SIG_DFL);  // a second one ends the process
+    std::raise(signal);  // the same one, as `timeout` sends two
+    CHECK(stop.IsAsked());
   }
   CHECK(seen == 0);
   std::raise(signal);
@@ -183,6 +183,28 @@ TEST_CASE("The first Ctrl-C or SIGTERM asks for an end and the handlers are put 
   const StopSignal again;
   CHECK_FALSE(again.IsAsked());
   std::signal(signal, SIG_DFL);
+}
+
+TEST_CASE("A Ctrl-C or SIGTERM a second after the first ends the process, one at once does not") {
+  const int first = GENERATE(SIGINT, SIGTERM), later = GENERATE(SIGINT, SIGTERM);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const StopSignal stop;
+    std::raise(first);
+    std::raise(later);
+    std::raise(first);
+    const bool asked = stop.IsAsked();
+    struct timespec left {
+      1, 50'000'000
+    };
+    while (::nanosleep(&left, &left) != 0) {
+    }
+    if (asked) std::raise(later);
+    ::_exit(1);
+  }
+  const int status = test::EndOf(child, "a process that was told to stop thrice");
+  REQUIRE(WIFSIGNALED(status));
+  CHECK(WTERMSIG(status) == later);
 }
 
 TEST_CASE("Where Ctrl-C or SIGTERM ends the process it leaves one line and the code of a stop") {

@@ -5,8 +5,8 @@
 
 namespace rift::terminal {
 
-/// While it lives, Ctrl-C and SIGTERM ask for a clean stop instead of ending the process; a second
-/// one ends it.
+/// While it lives, Ctrl-C and SIGTERM ask for a clean stop instead of ending the process; one that
+/// comes a second later or more ends it. Sooner it is the same one, as `timeout` sends two.
 class StopSignal {
  public:
   StopSignal();
