@@ -303,15 +303,19 @@ TEST_CASE("Documents of large sweeps keep ten thousand settings and a thousand r
   sweep::SweepResult result;
   result.settings.resize(10'002);
   for (size_t i = 0; i < result.settings.size(); ++i) {
-    result.settings[i].mean_gap_m = 1e-6 * static_cast<double>((i * 7919) % 10'002);
+    result.settings[i].mean_loss_m = 1e-6 * static_cast<double>((i * 7919) % 10'002);
+    result.settings[i].verdict.repeats = 1;
   }
-  result.settings[5].mean_gap_m = gap::kNotComputed;
+  result.settings[5].mean_loss_m = gap::kNotComputed;
+  result.settings[7].verdict.above = 1;
   result.doubts = {{.first = {.text = "stands"}, .trials = 3, .row = 4}};
   const json summary = json::parse(SummaryJson(result));
   CHECK(summary["settings_omitted"] == 2);
   CHECK(summary["settings"].size() == 10'000);
-  CHECK(summary["settings"][0]["mean_gap_m"].get<double>() == Approx(0.010001));
-  CHECK(summary["settings"].back()["mean_gap_m"].get<double>() == Approx(1e-6));
+  CHECK(summary["settings"][0]["failures"] == 1);
+  CHECK(summary["settings"][1]["mean_loss_m"].is_null());
+  CHECK(summary["settings"][2]["mean_loss_m"].get<double>() == Approx(0.010001));
+  CHECK(summary["settings"].back()["mean_loss_m"].get<double>() == Approx(2e-6));
   CHECK(summary["doubts"][0]["row"] == 5);
   CHECK(summary["doubts"][0]["trials"] == 3);
   CHECK(summary["doubts"][0]["text"] == "stands");

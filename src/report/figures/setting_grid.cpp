@@ -86,16 +86,4 @@ int NotMeasured(const sweep::SweepResult& result, const sweep::SettingResult& se
   return static_cast<int>(setting.rows.size() - GapsOf(result, setting).size());
 }
 
-std::vector<const sweep::SettingResult*> WorstSettings(const sweep::SweepResult& result) {
-  std::vector<const sweep::SettingResult*> settings;
-  for (const sweep::SettingResult& setting : result.settings) settings.push_back(&setting);
-  const auto rank = [](const sweep::SettingResult* setting) {
-    return std::isfinite(setting->mean_gap_m) ? setting->mean_gap_m
-                                              : std::numeric_limits<double>::infinity();
-  };
-  std::stable_sort(settings.begin(), settings.end(),
-                   [&](const auto* a, const auto* b) { return rank(a) > rank(b); });
-  return settings;
-}
-
 }  // namespace rift::report

@@ -69,17 +69,13 @@ ordered_json FalsificationJson(const sweep::SweepResult& result,
   return json;
 }
 
-/// Of a large sweep only the settings with the largest mean gaps: the file is to be read whole.
+/// Of a large sweep only the worst settings: the file is to be read whole.
 void AddSettings(const sweep::SweepResult& result, ordered_json& json) {
   constexpr size_t kMostSettings = 10'000;
   std::vector<const sweep::SettingResult*> settings;
   for (const sweep::SettingResult& setting : result.settings) settings.push_back(&setting);
   if (settings.size() > kMostSettings) {
-    const auto is_worse = [](const auto* a, const auto* b) {
-      const auto rank = [](double gap_m) { return std::isnan(gap_m) ? -1.0 : gap_m; };
-      return rank(a->mean_gap_m) > rank(b->mean_gap_m);
-    };
-    std::stable_sort(settings.begin(), settings.end(), is_worse);
+    settings = sweep::WorstSettings(result);
     json["settings_omitted"] = settings.size() - kMostSettings;
     settings.resize(kMostSettings);
   }

@@ -113,7 +113,9 @@ PageTable SettingsTable(const sweep::SweepResult& result, const ReportOptions& o
     table["marks"].push_back(MarkOf(verdict.verdict));
   }
   return {std::move(table), Note(settings.size(), all, "settings, the worst first") +
-                                " \"share\" is the interval for the share of such runs that fail."};
+                                " The worse, the larger is the share of its runs that fail, and "
+                                "among equals the mean loss. \"share\" is the interval for the "
+                                "share of such runs that fail."};
 }
 
 PageTable TrialsTable(const sweep::SweepResult& result, const std::string& gap_flags,

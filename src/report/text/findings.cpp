@@ -87,6 +87,25 @@ void SayMostAndLeast(const sweep::SweepResult& result, Finding* finding) {
   finding->sentences.push_back(sentence.Say("."));
 }
 
+void SayWorstSetting(const sweep::SweepResult& result, Finding* finding) {
+  const std::vector<const sweep::SettingResult*> settings = sweep::WorstSettings(result);
+  const auto worst = std::find_if(settings.begin(), settings.end(),
+                                  [](const auto* setting) { return setting->verdict.repeats > 0; });
+  if (worst == settings.end()) return;
+  const sweep::SettingResult& setting = **worst;
+  const auto with_gap = static_cast<int>(GapsOf(result, setting).size());
+  std::string mean = "none has a gap";
+  if (with_gap > 0) mean = "the mean gap is " + Metres(setting.mean_gap_m);
+  if (with_gap > 0 && with_gap < static_cast<int>(setting.rows.size())) {
+    mean += fmt::format(", over the {} with a gap", with_gap);
+  }
+  Sentence sentence("The worst setting is ");
+  sentence.Link(SettingLabel(result, setting.theta), TrialsOf(result, setting.theta))
+      .Say(fmt::format(": {} of {} failed, {}.", setting.verdict.above,
+                       Count(setting.verdict.repeats, "trial"), mean));
+  finding->sentences.push_back(sentence);
+}
+
 void SayKinds(const sweep::Explanation& explanation, Finding* finding) {
   constexpr std::size_t kMostKinds = 3;
   const std::vector<sweep::FailureCluster>& clusters = explanation.clusters;
@@ -118,20 +137,7 @@ Finding Where(const sweep::SweepResult& result, const sweep::Explanation& explan
                          SettingLabel(result, row.theta), row.trial, row.comparison.gap_u));
     finding.sentences.push_back(largest);
   }
-  for (const sweep::SettingResult* setting : WorstSettings(result)) {
-    if (!std::isfinite(setting->mean_gap_m)) continue;
-    const auto with_gap = std::count_if(setting->rows.begin(), setting->rows.end(),
-                                        [&](int i) { return result.rows[i].IsOk(); });
-    const std::string trials = Count(setting->verdict.repeats, "trial");
-    Sentence sentence("The worst setting on average is ");
-    sentence.Link(SettingLabel(result, setting->theta), TrialsOf(result, setting->theta))
-        .Say(with_gap < setting->verdict.repeats
-                 ? fmt::format(", {} over the {} of {} that have a gap.",
-                               Metres(setting->mean_gap_m), with_gap, trials)
-                 : fmt::format(", {} over {}.", Metres(setting->mean_gap_m), trials));
-    finding.sentences.push_back(sentence);
-    break;
-  }
+  SayWorstSetting(result, &finding);
   SayKinds(explanation, &finding);
   return finding;
 }

@@ -181,15 +181,8 @@ namespace {
 /// The settings of which the largest share of runs failed, worst first.
 std::string WorstSettingsText(const sweep::SweepResult& result) {
   constexpr size_t kMostNamed = 3;
-  const auto share = [](const sweep::SettingResult* setting) {
-    return static_cast<double>(setting->verdict.above) / setting->verdict.repeats;
-  };
-  std::vector<const sweep::SettingResult*> failing;
-  for (const sweep::SettingResult& setting : result.settings) {
-    if (setting.verdict.above > 0) failing.push_back(&setting);
-  }
-  std::stable_sort(failing.begin(), failing.end(),
-                   [&](const auto* a, const auto* b) { return share(a) > share(b); });
+  std::vector<const sweep::SettingResult*> failing = sweep::WorstSettings(result);
+  std::erase_if(failing, [](const auto* setting) { return setting->verdict.above == 0; });
   if (failing.empty()) return "nowhere: no run failed";
   std::string text;
   for (size_t i = 0; i < std::min(kMostNamed, failing.size()); ++i) {

@@ -234,6 +234,21 @@ void Summarise(SweepResult& result) {
   result.doubts = DoubtsOf(result);
 }
 
+std::vector<const SettingResult*> WorstSettings(const SweepResult& result) {
+  std::vector<const SettingResult*> settings;
+  for (const SettingResult& setting : result.settings) settings.push_back(&setting);
+  const auto rank = [](const SettingResult* setting) {
+    const gap::RepeatVerdict& verdict = setting->verdict;
+    const double share = static_cast<double>(verdict.above) / std::max(1, verdict.repeats);
+    const bool is_known = std::isfinite(setting->mean_loss_m);
+    return std::pair(share,
+                     is_known ? setting->mean_loss_m : std::numeric_limits<double>::infinity());
+  };
+  std::stable_sort(settings.begin(), settings.end(),
+                   [&](const auto* a, const auto* b) { return rank(a) > rank(b); });
+  return settings;
+}
+
 std::optional<int> WorstRow(const SweepResult& result) {
   std::optional<int> worst;
   for (std::size_t i = 0; i < result.rows.size(); ++i) {

@@ -61,6 +61,31 @@ TEST_CASE("A trial without a gap is counted and never averaged") {
   CHECK(result.settings[0].verdict.repeats == 1);
 }
 
+TEST_CASE("The worst settings are those that fail most often, then those that cost most") {
+  SweepResult result = TwoSurfaces();
+  result.rows[0].status = TrialStatus::kTimedOut;  // on ground, far from the goal
+  result.rows[0].comparison = {};
+  result.rows[0].falsified = true;
+  result.rows[0].left_m = 0.5;
+  result.rows[2].status = result.rows[3].status = TrialStatus::kMissing;  // of ground, v_min 0.20
+  for (const int row : {6, 7}) {                                          // of ice, v_min 0.20
+    result.rows[row].comparison.gap_m = 0.055 + 0.001 * row;
+    result.rows[row].falsified = false;
+  }
+  const auto order = [&] {
+    Summarise(result);
+    std::vector<long> places;
+    for (const SettingResult* setting : WorstSettings(result)) {
+      places.push_back(setting - result.settings.data());
+    }
+    return places;
+  };
+  // Both of ice at 0.15 fail, one of ground; of ground at 0.20 nothing is known.
+  CHECK(order() == std::vector<long>{2, 0, 1, 3});
+  result.rows[5].falsified = false;
+  CHECK(order() == std::vector<long>{0, 2, 1, 3});  // one of two each: what stopped costs more
+}
+
 TEST_CASE("The categorical parameter stands alone and the others are combined") {
   const SweepResult result = TwoSurfaces();
   std::vector<experiment::Parameter> parameters = result.parameters;

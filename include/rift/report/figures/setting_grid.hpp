@@ -33,7 +33,4 @@ std::vector<double> GapsOf(const sweep::SweepResult& result, const sweep::Settin
 /// Its trials without a gap.
 int NotMeasured(const sweep::SweepResult& result, const sweep::SettingResult& setting);
 
-/// Settings by falling mean gap; those without any gap come first, since nothing is known of them.
-std::vector<const sweep::SettingResult*> WorstSettings(const sweep::SweepResult& result);
-
 }  // namespace rift::report

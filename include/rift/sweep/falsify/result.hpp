@@ -206,6 +206,11 @@ void Summarise(SweepResult& result);
 /// Error rate of the F test that SmallestDetectable plans for.
 inline constexpr double kSignificance = 0.05;
 
+/// The worst setting first: by the share of its trials that fail, of those that tell, and among
+/// equal shares by the mean loss. One of which no trial tells stands below those that fail and
+/// above those that do not.
+std::vector<const SettingResult*> WorstSettings(const SweepResult& result);
+
 /// Index of the row with the largest gap; empty when no trial has one.
 std::optional<int> WorstRow(const SweepResult& result);
 
