@@ -77,14 +77,19 @@ TEST_CASE("A camera is calibrated from a folder of pictures and from a recording
 
 TEST_CASE("A picture without a board is refused with its name and no file") {
   const test::TemporaryFolder out;
-  const ProcessResult result =
-      RunRift({"track", "--calibrate", "--board", "5x4", "--square", "0.03", "--images",
-               test::SourceDir() + "/data/camera/frames/000.jpg", "--out", out / "cam.yaml"});
-  INFO(result.out << result.err);
-  CHECK(result.exit_code == 1);
-  CHECK_THAT(result.out, Contains("verdict: refuse") && Contains("000.jpg is left out"));
-  CHECK_THAT(result.err, Contains("is not written"));
-  CHECK_FALSE(fs::exists(out / "cam.yaml"));
+  for (int run = 0; run < 2; ++run) {  // its picture is in the way of no second run
+    const ProcessResult result =
+        RunRift({"track", "--calibrate", "--board", "5x4", "--square", "0.03", "--images",
+                 test::SourceDir() + "/data/camera/frames/000.jpg", "--out", out / "cam.yaml"});
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 1);
+    CHECK_THAT(result.out, Contains("verdict: refuse") &&
+                               Contains("000.jpg is left out: no chessboard of 5 x 4"));
+    CHECK_THAT(result.err, Contains("is not written"));
+    CHECK_FALSE(fs::exists(out / "cam.yaml"));
+    CHECK_FALSE(fs::exists(out / "cam.png"));
+    CHECK(fs::exists(out / "cam.refused.png"));
+  }
 }
 
 TEST_CASE("A calibration replaces none of its photographs, with force neither") {

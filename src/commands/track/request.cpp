@@ -183,6 +183,13 @@ fs::path PictureOf(const TrackRequest& request) {
                                  : fs::path(request.picture);
 }
 
+fs::path RefusedPictureOf(const TrackRequest& request) {
+  const fs::path picture = PictureOf(request);
+  fs::path refused = picture;
+  refused.replace_extension(".refused");
+  return refused += picture.extension();
+}
+
 void TrackRequest::Check() const {
   CheckCopies(*this);
   if (IsPrinting()) {

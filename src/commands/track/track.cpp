@@ -134,7 +134,7 @@ int CalibrateAndSave(const TrackRequest& request) {
                                                       report::CalibrationComment(calibration)));
     terminal::Say(fmt::format("calibration: {}", request.out));
   }
-  const fs::path picture = PictureOf(request);
+  const fs::path picture = is_refused ? RefusedPictureOf(request) : PictureOf(request);
   vision::DrawCalibration(calibration, picture);
   terminal::Say(fmt::format("picture: {}", picture.string()));
   if (!is_refused) return terminal::kDone;

@@ -178,8 +178,12 @@ void IgnoreCopies(Calibration& calibration, double same_px) {
 /// Views with corners and of the size that most have.
 void Admit(Calibration& calibration) {
   std::map<std::pair<int, int>, int> sizes;
-  for (const ViewResult& result : calibration.views) {
-    if (!result.view.corners.empty()) ++sizes[{result.view.width_px, result.view.height_px}];
+  for (ViewResult& result : calibration.views) {
+    if (result.view.corners.empty()) {
+      result.dropped = result.view.problem;
+    } else {
+      ++sizes[{result.view.width_px, result.view.height_px}];
+    }
   }
   if (sizes.empty()) return;
   const auto most = std::max_element(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) {
@@ -187,9 +191,7 @@ void Admit(Calibration& calibration) {
                     })->first;
   for (ViewResult& result : calibration.views) {
     const BoardView& view = result.view;
-    if (view.corners.empty()) {
-      result.dropped = view.problem;
-    } else if (std::pair(view.width_px, view.height_px) != most) {
+    if (!view.corners.empty() && std::pair(view.width_px, view.height_px) != most) {
       result.dropped = fmt::format("it is {}x{}, the others {}x{}", view.width_px, view.height_px,
                                    most.first, most.second);
     }

@@ -57,6 +57,16 @@ TEST_CASE("A view far off the others is dropped and named") {
   CHECK(found.rms_px < 0.2);
 }
 
+TEST_CASE("A picture without a board says why, where no other has one either") {
+  const BoardView black{.name = "a", .problem = "the picture is black"};
+  for (const int with_board : {0, 1}) {
+    std::vector<BoardView> views = Views(WideCamera(), kBoard, with_board, 2);
+    views.push_back(black);
+    CHECK_THAT(All(Calibrate(views, kBoard).reasons),
+               Contains("a is left out: the picture is black\n"));
+  }
+}
+
 TEST_CASE("One to three views are refused with what to do next, and drawn all the same") {
   const int count = GENERATE(0, 1, 2, 3);
   const Calibration found = Calibrate(Views(WideCamera(), kBoard, count, 2), kBoard);
