@@ -249,8 +249,12 @@ PageChart FailureMap(const sweep::SweepResult& result, const sweep::FailingRegio
   if (!is_line) chart.title += " and " + NameOf(result, region.y_parameter);
   chart.sentence =
       region.is_smoothed
-          ? "Share of failing runs in per cent, the mean of the 12 settings nearest to each patch, "
-            "the other parameters being what those settings had."
+          ? fmt::format(
+                "Share of failing runs in per cent, {} nearest to each patch, the other "
+                "parameters being what {} had.",
+                region.nearest == 1 ? "of the setting"
+                                    : fmt::format("the mean of the {} settings", region.nearest),
+                region.nearest == 1 ? "that setting" : "those settings")
           : "Share of runs that fail in per cent, over all values of the other parameters; crosses "
             "were not tried.";
   chart.fields = {"value", "trials"};

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kPatches = 24;          ///< of a range
 constexpr size_t kMostTrials = 4000;  ///< that are looked at
-constexpr size_t kNearest = 12;
+constexpr size_t kMostNearest = 12;
 constexpr double kSamePlace = 1e-9;  ///< of the side of the plane
 
 /// An axis as places 0..1, with the names of its patches.
@@ -76,14 +76,20 @@ struct Dot {
   int trials = 0, failing = 0;
 };
 
-/// Leaves those nearest to the place, and all that are as near as the last of them.
-void LeaveNearest(double x, double y, std::vector<Dot>& dots) {
-  if (dots.size() <= kNearest) return;
+/// So many that a patch is no mean of all there are: a third of those of each value of a list.
+int CountNearest(size_t settings, int values) {
+  const size_t third = settings / (3 * static_cast<size_t>(values));
+  return static_cast<int>(std::clamp<size_t>(third, 1, kMostNearest));
+}
+
+/// Leaves so many nearest to the place, and all that are as near as the last of them.
+void LeaveNearest(double x, double y, int nearest, std::vector<Dot>& dots) {
+  if (dots.size() <= static_cast<size_t>(nearest)) return;
   const auto distance = [x, y](const Dot& dot) { return std::hypot(dot.x - x, dot.y - y); };
-  const auto nearest_end = dots.begin() + kNearest;
+  const auto nearest_end = dots.begin() + nearest;
   std::partial_sort(dots.begin(), nearest_end, dots.end(),
                     [&](const Dot& a, const Dot& b) { return distance(a) < distance(b); });
-  const double reach = distance(dots[kNearest - 1]) + kSamePlace;
+  const double reach = distance(dots[nearest - 1]) + kSamePlace;
   std::erase_if(dots, [&](const Dot& dot) { return distance(dot) > reach; });
 }
 
@@ -148,6 +154,11 @@ FailingRegion MapFailures(const SweepResult& result, std::array<int, 2> paramete
   }
   region.is_smoothed = px.IsContinuous() || py.IsContinuous();
   const std::vector<Dot> dots = DotsOf(result, x, parameters[0], y, parameters[1]);
+  if (region.is_smoothed) {
+    const int values =
+        (px.IsContinuous() ? 1 : x.Patches()) * (py.IsContinuous() ? 1 : y.Patches());
+    region.nearest = CountNearest(dots.size(), values);
+  }
   for (int j = 0; j < y.Patches(); ++j) {
     for (int i = 0; i < x.Patches(); ++i) {
       RegionCell cell{.x = x.Name(i), .y = y.Name(j)};
@@ -157,7 +168,7 @@ FailingRegion MapFailures(const SweepResult& result, std::array<int, 2> paramete
       std::copy_if(dots.begin(), dots.end(), std::back_inserter(near), [&](const Dot& dot) {
         return x.Reaches(dot.x, x.Middle(i)) && y.Reaches(dot.y, y.Middle(j));
       });
-      if (region.is_smoothed) LeaveNearest(x.Middle(i), y.Middle(j), near);
+      if (region.is_smoothed) LeaveNearest(x.Middle(i), y.Middle(j), region.nearest, near);
       Count(near, region.is_smoothed, cell);
       region.cells.push_back(std::move(cell));
     }

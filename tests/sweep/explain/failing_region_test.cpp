@@ -105,9 +105,29 @@ TEST_CASE("A range is cut into 24 patches that count the twelve nearest settings
   CHECK(region.cells[11].share < 0.5);
   result.rows.resize(5);
   const FailingRegion few = MapFailures(result, {0, 1});
-  for (int i = 0; i < 24; ++i) {
-    CHECK(few.cells[i].trials == 3);
-    CHECK(few.cells[24 + i].trials == 2);  // on rock, where the third is missing
+  CHECK(few.nearest == 1);
+  for (int i = 0; i < 48; ++i) {
+    CHECK(few.cells[i].trials == (i % 24 == 0 ? 2 : 1));  // two are as near to the first patch
+  }
+}
+
+TEST_CASE("Of few settings a patch counts a third at least one, so that not all are alike") {
+  const auto map_of = [](int settings) {
+    SweepResult result;
+    result.parameters = {kRange, {.key = "other", .min = 0.0, .max = 1.0}};
+    for (int i = 0; i < settings; ++i) {
+      const double value = 10.0 + 24.0 * (i + 0.5) / settings;
+      result.rows.push_back(Row({{std::to_string(value), value}, {"0.5", 0.5}}, value > 22.0));
+    }
+    return MapFailures(result, {0, 1});
+  };
+  for (const auto& [settings, nearest] :
+       {std::pair{2, 1}, {5, 1}, {6, 2}, {8, 2}, {12, 4}, {35, 11}, {36, 12}, {90, 12}}) {
+    INFO(settings);
+    const FailingRegion region = map_of(settings);
+    CHECK(region.nearest == nearest);
+    CHECK(region.cells.front().share == 0.0);
+    CHECK(region.cells.back().share == 1.0);
   }
 }
 
@@ -215,10 +235,11 @@ TEST_CASE("Repeats of one setting near a range are one place, whatever came out 
   add(22.0, 100, 30);
   for (int i = 0; i < 12; ++i) add(10.0 + 0.1 * i, 1, 0);
   const FailingRegion region = MapFailures(result, {0, 1});
-  CHECK(region.cells[0].trials == 12);
+  CHECK(region.nearest == 2);
+  CHECK(region.cells[0].trials == 3);  // two are as near as the second
   CHECK(region.cells[0].share == 0.0);
-  CHECK(region.cells[12].trials == 111);  // with the eleven nearest of the others
-  CHECK(region.cells[12].share == Approx(0.3 / 12));
+  CHECK(region.cells[12].trials == 101);  // with the nearest of the others
+  CHECK(region.cells[12].share == Approx(0.3 / 2));
 }
 
 TEST_CASE("Settings that are as near as the twelfth count, on both sides") {
@@ -229,6 +250,10 @@ TEST_CASE("Settings that are as near as the twelfth count, on both sides") {
       const double value = 22.5 + i * (1.0 + k);
       result.rows.push_back(Row({{std::to_string(value), value}, kSurface.levels[0]}, i > 0));
     }
+  }
+  for (int i = 0; i < 60; ++i) {  // of another value, so that a third of each half is twelve
+    result.rows.push_back(
+        Row({{std::to_string(11 + i), 11.0 + 0.3 * i}, kSurface.levels[1]}, true));
   }
   // Six pairs are twelve; one that stands in the middle makes the sixth pair the twelfth and
   // thirteenth.

@@ -27,6 +27,7 @@ struct FailingRegion {
   int y_parameter = -1;
   std::vector<RegionCell> cells;
   bool is_smoothed = false;  ///< shares are of the nearest settings, wherever they are
+  int nearest = 0;           ///< so many, where they are smoothed
 };
 
 /// The two parameters that matter most, by their shares.
@@ -34,9 +35,10 @@ std::array<int, 2> MostInfluential(const SweepResult& result, const Effects& eff
 
 /// The failing region over two parameters, all others being what the trials had. Lists of values
 /// give a cell for each pair; a range is cut into patches (even in the logarithm, where it is) that
-/// count the 12 settings nearest to them (of a list only those of the patch's own value), and all
-/// that are as near as the twelfth. Of more than 4000 trials a sample is looked at. No cells where
-/// there would be more than kMostRegionCells.
+/// count the settings nearest to them: 12, or of fewer than 36 (on each value of a list) a third,
+/// of a list only those of the patch's own value, and all that are as near as the last of them. Of
+/// more than 4000 trials a sample is looked at. No cells where there would be more than
+/// kMostRegionCells.
 FailingRegion MapFailures(const SweepResult& result, std::array<int, 2> parameters);
 
 }  // namespace rift::sweep
