@@ -28,6 +28,7 @@ TicLabels Categories(const std::vector<std::vector<std::string>>& labels, int wi
   TicLabels tics;
   tics.rotated = letter_px * static_cast<double>((longest + 1) * labels.size()) > width_px - 70;
   std::string places;
+  std::vector<std::size_t> letters;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::vector<std::string> lines = labels[i];
     if (labels.size() > kMostSlanted) {
@@ -35,12 +36,17 @@ TicLabels Categories(const std::vector<std::vector<std::string>>& labels, int wi
     } else if (tics.rotated && lines.size() > 1) {
       lines = {fmt::format("{}", fmt::join(lines, ", "))};
     }
+    letters.push_back(LetterCount(lines.front()));
     places += fmt::format("{}{} {}", i == 0 ? "" : ", ", TicLabel(lines), i);
   }
   const char* rotation = !tics.rotated                  ? ""
                          : labels.size() > kMostSlanted ? "rotate by 90 right "
                                                         : "rotate by 40 right ";
   tics.command = fmt::format("set xtics {}({})\n", rotation, places);
+  if (tics.rotated && labels.size() <= kMostSlanted) {
+    tics.command += SlantedMargin(
+        letters, {.first = 0.6, .width_px = width_px, .left_px = 55.0, .right_px = 15.0});
+  }
   return tics;
 }
 

@@ -109,6 +109,22 @@ std::vector<std::string> ShortenedApart(const std::vector<std::string>& texts, s
   return labels;
 }
 
+std::string SlantedMargin(const std::vector<std::size_t>& letters, const TicRow& row) {
+  constexpr double kLetter_px = 5.4;  // along the axis: 7 px times the cosine of 40 degrees
+  const double most_px = 0.5 * row.width_px;
+  double margin_px = row.left_px;
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    const double place = (static_cast<double>(i) + row.first) / static_cast<double>(letters.size());
+    // What stands left of the tic: the margin, and that share of the plot that it leaves.
+    const double label_px = kLetter_px * static_cast<double>(letters[i] + 1);
+    const double needed_px =
+        (label_px - place * (row.width_px - row.right_px)) / std::max(0.1, 1.0 - place);
+    margin_px = std::max(margin_px, std::min(needed_px, most_px));
+  }
+  if (margin_px <= row.left_px) return "";
+  return fmt::format("set lmargin at screen {:.4f}\n", margin_px / row.width_px);
+}
+
 std::size_t LetterCount(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), StartsLetter));
 }

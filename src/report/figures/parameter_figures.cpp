@@ -16,6 +16,7 @@ constexpr int kCellWidth_px = 56;
 
 struct Cells {
   DataBlock filled{"cells"}, on_dark{"on_dark"}, on_light{"on_light"};
+  DataBlock missing_on_dark{"missing_on_dark"}, missing_on_light{"missing_on_light"};
   std::string holes;
   double low_m = HUGE_VAL, high_m = -HUGE_VAL;
 };
@@ -31,7 +32,8 @@ void Range(const SettingGrid& grid, Cells* cells) {
   if (!(cells->high_m > cells->low_m)) cells->high_m = cells->low_m + 1e-6;
 }
 
-void AddCell(const sweep::SettingResult* setting, double x, double y, Cells* cells) {
+void AddCell(const sweep::SweepResult& result, const sweep::SettingResult* setting, double x,
+             double y, Cells* cells) {
   if (setting == nullptr || !std::isfinite(setting->mean_gap_m)) {
     cells->holes += fmt::format(
         "set object rectangle center {0},{1} size 1,1 behind fc rgb '#E6E6E6' fs solid noborder\n"
@@ -41,13 +43,38 @@ void AddCell(const sweep::SettingResult* setting, double x, double y, Cells* cel
   }
   cells->filled.Add({x, y, setting->mean_gap_m});
   const double share = (setting->mean_gap_m - cells->low_m) / (cells->high_m - cells->low_m);
-  (share < 0.6 ? cells->on_dark : cells->on_light).Add({x, y, setting->mean_gap_m});
+  const bool is_dark = share < 0.6;
+  (is_dark ? cells->on_dark : cells->on_light).Add({x, y, setting->mean_gap_m});
+  if (NotMeasured(result, *setting) == 0) return;
+  (is_dark ? cells->missing_on_dark : cells->missing_on_light).Add({x + 0.42, y - 0.32});
 }
 
 std::string Numbers(const DataBlock& block, std::string_view colour) {
   return fmt::format(
       "{} using 1:2:(sprintf('%.3f', $3)) with labels center textcolor rgb '{}' notitle",
       block.Name(), colour);
+}
+
+std::vector<std::size_t> LettersOf(const std::vector<sweep::LevelSummary>& levels) {
+  std::vector<std::size_t> letters;
+  for (const auto& level : levels) {
+    letters.push_back(std::min(LetterCount(level.level), kLongestLabel));
+  }
+  return letters;
+}
+
+/// Crosses in the cells that some trial of has no gap; the height of their entry in the legend.
+int AddMissing(const Cells& cells, std::string* data, PlotCommand* plot) {
+  constexpr std::string_view kCross = "with points pt 2 ps 0.5 lw 1.4 lc rgb";
+  if (cells.missing_on_dark.IsEmpty() && cells.missing_on_light.IsEmpty()) return 0;
+  for (const auto& [block, colour] : {std::pair{&cells.missing_on_dark, "#FFFFFF"},
+                                      std::pair{&cells.missing_on_light, "#000000"}}) {
+    if (block->IsEmpty()) continue;
+    *data += block->Text();
+    plot->Add(fmt::format("{} using 1:2 {} '{}' notitle", block->Name(), kCross, colour));
+  }
+  plot->Add(fmt::format("keyentry {} '#000000' title 'trials without a gap'", kCross));
+  return 20;
 }
 
 std::string Tics(std::string_view axis, const std::vector<sweep::LevelSummary>& levels,
@@ -128,12 +155,13 @@ std::string BinnedEntries(const sweep::SweepResult& result, int parameter, std::
 
 }  // namespace
 
-Figure HeatMapFigure(const SettingGrid& grid, const ReportOptions& options) {
+Figure HeatMapFigure(const sweep::SweepResult& result, const SettingGrid& grid,
+                     const ReportOptions& options) {
   Cells cells;
   Range(grid, &cells);
   for (std::size_t i = 0; i < grid.mains.size(); ++i) {
     for (std::size_t j = 0; j < grid.others.size(); ++j) {
-      AddCell(grid.cells[i][j], static_cast<double>(j), static_cast<double>(i), &cells);
+      AddCell(result, grid.cells[i][j], static_cast<double>(j), static_cast<double>(i), &cells);
     }
   }
   std::size_t longest = 1;
@@ -144,6 +172,14 @@ Figure HeatMapFigure(const SettingGrid& grid, const ReportOptions& options) {
       std::clamp(190 + kCellWidth_px * columns, options.width_px, 3 * options.width_px);
   const bool numbers = (width_px - 190) / columns >= 40;
   const bool slanted = 7.0 * static_cast<double>(longest + 1) > (width_px - 190.0) / columns;
+  const std::string margin =
+      slanted ? SlantedMargin(LettersOf(grid.others),
+                              {.first = 0.5,
+                               .width_px = width_px,
+                               .left_px = 45.0 + 7.0 * static_cast<double>(
+                                                           std::ranges::max(LettersOf(grid.mains))),
+                               .right_px = 100.0})
+              : "";
   PlotCommand plot;
   // An image would have to be a whole grid of two by two cells at least, and be blurred in an SVG.
   plot.Add(cells.filled.Name() +
@@ -155,19 +191,21 @@ Figure HeatMapFigure(const SettingGrid& grid, const ReportOptions& options) {
     data += block->Text();
     plot.Add(Numbers(*block, colour));
   }
+  const int legend_px = AddMissing(cells, &data, &plot);
   Figure figure{"fig10_gap_heat_map",
                 fmt::format("Mean Sim-to-Real gap by {} and {}", grid.main_name, grid.others_name),
                 width_px,
-                110 + kCellHeight_px * rows +
+                110 + legend_px + kCellHeight_px * rows +
                     (slanted ? static_cast<int>(5 * std::min(longest, kLongestLabel)) : 0)};
   figure.plot = fmt::format(
-      "{}{}{}set cbrange [{:.9g}:{:.9g}]\nset cblabel 'mean gap (m)' offset 2,0\n"
+      "{}{}{}{}set cbrange [{:.9g}:{:.9g}]\nset cblabel 'mean gap (m)' offset 2,0\n"
       "set rmargin 14\nset format cb '%.3f'\n"
       "unset grid\nset border 0\nset xlabel {}\nset ylabel {}\n{}{}"
       "set xrange [-0.5:{}]\nset yrange [{}:-0.5]\n{}",
-      data, cells.holes, ViridisPalette(), cells.low_m, cells.high_m, Quoted(grid.others_name),
-      Quoted(grid.main_name), Tics("x", grid.others, slanted ? "rotate by 40 right " : ""),
-      Tics("y", grid.mains, ""), columns - 0.5, rows - 0.5, plot.Text());
+      data, cells.holes, ViridisPalette(), margin, cells.low_m, cells.high_m,
+      Quoted(grid.others_name), Quoted(grid.main_name),
+      Tics("x", grid.others, slanted ? "rotate by 40 right " : ""), Tics("y", grid.mains, ""),
+      columns - 0.5, rows - 0.5, plot.Text());
   return figure;
 }
 

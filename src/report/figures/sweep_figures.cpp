@@ -76,7 +76,7 @@ class FigureMaker {
     if (grid_.CellCount() > options_.max_cells) {
       return Omit(name, fmt::format("{} cells are too many to read", grid_.CellCount()));
     }
-    Keep(HeatMapFigure(grid_, options_));
+    Keep(HeatMapFigure(result_, grid_, options_));
   }
 
   void ByMainFactor() {

@@ -16,8 +16,10 @@ Figure GapBySettingFigure(const sweep::SweepResult& result, const SettingGrid& g
 /// Figure 8: the gap of every trial, one line a setting.
 Figure GapByTrialFigure(const sweep::SweepResult& result, const ReportOptions& options);
 
-/// Figure 10: mean gap as a heat map, the number in each cell.
-Figure HeatMapFigure(const SettingGrid& grid, const ReportOptions& options);
+/// Figure 10: mean gap as a heat map, the number in each cell, and a cross where some of its trials
+/// have no gap.
+Figure HeatMapFigure(const sweep::SweepResult& result, const SettingGrid& grid,
+                     const ReportOptions& options);
 
 /// Figure 11: mean gap by level with its standard deviation.
 Figure MeanByLevelFigure(std::string name, const std::string& factor,

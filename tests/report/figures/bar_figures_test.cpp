@@ -174,12 +174,12 @@ struct Map {
 
 Figure MapOf(size_t columns, size_t rows, size_t letters) {
   const Map map(std::vector(rows, std::vector<double>(columns, 0.05)), letters);
-  return HeatMapFigure(map.grid, {});
+  return HeatMapFigure({}, map.grid, {});
 }
 
 TEST_CASE("A heat map's cells have the colours of its range and numbers that can be read on them") {
   const Map map({{0.02, 0.0795, 0.0805}, {NAN, 0.0, 0.12}});
-  const std::string plot = HeatMapFigure(map.grid, {}).plot;
+  const std::string plot = HeatMapFigure({}, map.grid, {}).plot;
   CHECK_THAT(plot, Contains("$cells << EOD\n0 0 0.02 \n1 0 0.0795 \n2 0 0.0805 \n2 1 0.12 \nEOD"));
   // White numbers below six tenths of the range, black ones above.
   CHECK_THAT(plot, Contains("$on_dark << EOD\n0 0 0.02 \n1 0 0.0795 \nEOD") &&
@@ -197,6 +197,35 @@ TEST_CASE("A heat map's cells have the colours of its range and numbers that can
   CHECK_THAT(MapOf(2, 1, 1).plot, Contains("set cbrange [0.05:0.050001]\n"));
 }
 
+TEST_CASE("A cell of a heat map that some trial of has no gap has a cross that can be seen on it") {
+  Map map({{0.02, 0.03}, {NAN, 0.12}});
+  sweep::SweepResult result;
+  result.rows.resize(2);
+  result.rows[1].status = sweep::TrialStatus::kTimedOut;
+  result.rows[0].comparison.gap_m = 0.02;
+  const Figure without = HeatMapFigure(result, map.grid, {});
+  CHECK_THAT(without.plot, !Contains("missing"));
+  map.settings[0][0].rows = map.settings[1][0].rows = map.settings[1][1].rows = {0, 1};
+  map.settings[0][1].rows = {0};
+  const Figure with = HeatMapFigure(result, map.grid, {});
+  CHECK_THAT(with.plot,
+             Contains("$missing_on_dark << EOD\n0.42 -0.32 \nEOD") &&
+                 Contains("$missing_on_light << EOD\n1.42 0.68 \nEOD") &&
+                 Contains("keyentry with points pt 2 ps 0.5 lw 1.4 lc rgb '#000000' title "
+                          "'trials without a gap'"));
+  CHECK(with.height_px == without.height_px + 20);
+}
+
+TEST_CASE("Slanted labels of bars and of a heat map have room at the left") {
+  const auto failures = [](size_t letters) {
+    return FailuresByLevelFigure("name", "surface", Levels(6, letters), kWide).plot;
+  };
+  CHECK_THAT(failures(10), Contains("rotate by 40 right") && !Contains("lmargin"));
+  CHECK_THAT(failures(30), Contains("set lmargin at screen 0."));
+  CHECK_THAT(MapOf(4, 1, 34).plot, Contains("rotate by 40 right") && Contains("lmargin at screen"));
+  CHECK_THAT(MapOf(4, 1, 2).plot, !Contains("lmargin"));
+}
+
 /// What gnuplot paints in full colour, in the order of the cells.
 struct Painted {
   std::string colour;
@@ -205,7 +234,7 @@ struct Painted {
 using Rows = std::vector<std::vector<double>>;
 std::vector<Painted> CellsOf(const Rows& means_m) {
   const Map map(means_m);
-  const std::string svg = Render(HeatMapFigure(map.grid, {}), FigureFormat::kSvg);
+  const std::string svg = Render(HeatMapFigure({}, map.grid, {}), FigureFormat::kSvg);
   const std::regex polygon(R"(<polygon fill = 'rgb\(([^)]*)\)' points = '([0-9.]+),)");
   std::vector<Painted> cells;
   for (std::sregex_iterator found(svg.begin(), svg.end(), polygon), end; found != end; ++found) {

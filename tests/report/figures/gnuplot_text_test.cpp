@@ -71,6 +71,21 @@ TEST_CASE("Up to eight series have colours of their own, more take even steps of
   CHECK(palette.find(", 8 '#FDE725')\n") != palette.npos);
 }
 
+TEST_CASE(
+    "The left margin widens as far as a slanted label reaches, to half of the figure at most") {
+  const auto margin = [](size_t labels, size_t letters, double first) {
+    return SlantedMargin(std::vector<size_t>(labels, letters),
+                         {.first = first, .width_px = 490, .left_px = 55.0, .right_px = 15.0});
+  };
+  CHECK(margin(4, 17, 0.6).empty());
+  // 5.4 px a letter, 31 of them, of which 0.15 of the plot (475 px less the margin) take some.
+  CHECK(margin(4, 30, 0.6) == "set lmargin at screen 0.2309\n");
+  CHECK(margin(4, 30, 0.5) == "set lmargin at screen 0.2520\n");
+  CHECK(margin(20, 80, 0.6) == "set lmargin at screen 0.5000\n");
+  CHECK(SlantedMargin({30, 1, 1, 1}, {0.6, 490, 55.0, 15.0}) == margin(4, 30, 0.6));
+  CHECK(SlantedMargin({1, 1, 1, 30}, {0.6, 490, 55.0, 15.0}).empty());
+}
+
 TEST_CASE("Rows of a data block are numbers of seven digits, and what is none is NaN") {
   DataBlock block("name");
   CHECK(block.IsEmpty());

@@ -24,6 +24,17 @@ std::string Shortened(std::string_view text, std::size_t limit);
 /// " (2)".
 std::vector<std::string> ShortenedApart(const std::vector<std::string>& texts, std::size_t limit);
 
+/// Where the tics of an axis of categories stand: evenly between the sides of the plot.
+struct TicRow {
+  double first = 0.5;  ///< distance of the first one from the left side, in distances of two tics
+  int width_px = 0;    ///< of the figure
+  double left_px = 0.0, right_px = 0.0;  ///< margins that the rest of the figure needs
+};
+
+/// The command that widens the left margin for labels of so many letters that are slanted by 40
+/// degrees and end at their tics; empty where they fit without it.
+std::string SlantedMargin(const std::vector<std::size_t>& letters, const TicRow& row);
+
 /// Letters, not bytes.
 std::size_t LetterCount(std::string_view text);
 
