@@ -2,7 +2,13 @@
 //   npm install @dimforge/rapier3d-deterministic-compat      (in this folder, or any above it)
 // Two driven wheels, a caster without friction, a plane inclined along x; it steers to a goal.
 import {createInterface} from 'node:readline';
-import RAPIER from '@dimforge/rapier3d-deterministic-compat';
+
+const PACKAGE = '@dimforge/rapier3d-deterministic-compat';
+const RAPIER = await import(PACKAGE).then(module => module.default, error => {
+  if (error.code !== 'ERR_MODULE_NOT_FOUND') throw error;
+  console.error(`Error: no package ${PACKAGE}: npm install ${PACKAGE} beside rapier_robot.mjs`);
+  process.exit(1);
+});
 
 await RAPIER.init();
 const STEP_S = 0.005, RADIUS_M = 0.033, TRACK_M = 0.16, GOAL = {x: 0.9, y: 0.4};

@@ -138,6 +138,32 @@ TEST_CASE("Last words are the last line that is one, to 200 bytes, until they ar
   CHECK(shell.program.LastWords() == "second");
 }
 
+TEST_CASE("Of what Node ends with the error is the last words, and of others the last line") {
+  const auto words = [](const std::string& text) {
+    return WordsOf("cat >&2 <<'END'\n" + text + "\nEND");
+  };
+  const std::string node = "\n\nNode.js v20.20.2\n", stack = "\n    at f (/x/NodeError.js:1:2)";
+  const std::string source = "/x/a.mjs:1\nthrow new Error('source')\n^\n\n";
+  CHECK(words(source + "Error: no wheel" + stack + node) == "Error: no wheel");
+  CHECK(words(source + "Error [ERR_MODULE_NOT_FOUND]: Cannot find package 'x'" + stack +
+              " {\n  code: 'ERR_MODULE_NOT_FOUND'\n}" + node) ==
+        "Error [ERR_MODULE_NOT_FOUND]: Cannot find package 'x'");
+  CHECK(words("/x/a.mjs:1\nthrow 'flat'\n^\nflat\n(Use `node --trace-uncaught ...` to show where "
+              "the exception was thrown)" +
+              node) == "flat");
+  CHECK(words("Exception in thread \"main\" java.lang.IllegalStateException: flat" + stack) ==
+        "Exception in thread \"main\" java.lang.IllegalStateException: flat");
+  // Others end with their reason, whatever they wrote before it.
+  CHECK(words("ValueError: seen\nstd::bad_alloc") == "std::bad_alloc");
+  CHECK(words("error: 0.1\nat the goal") == "at the goal");
+  CHECK(words("  at f\n}") == "}");
+  CHECK(words("Error: long ago" + [&] {
+          std::string many;
+          for (int i = 0; i < 70; ++i) many += stack;
+          return many;
+        }()) == "    at f (/x/NodeError.js:1:2)");
+}
+
 TEST_CASE("Last words are found behind more than a reader of files takes, and in no pipe") {
   CHECK(WordsOf("truncate -s 300M stderr.txt; printf '\\nend\\n' >&2") == "end");
   CHECK(WordsOf("rm stderr.txt; mkfifo stderr.txt").empty());

@@ -62,7 +62,7 @@ class ExternalProgram {
   const std::string& UnreadAtNextLine(char first, int most_ms);
 
   /// The last line that it wrote to stderr, of whose end 64 kB are read, as ShortWords, the folder
-  /// in it as {folder}.
+  /// in it as {folder}. Where Node has ended it with a stack and its version, the error above them.
   std::string LastWords() const;
   /// Forgets what it wrote to stderr until now.
   void ForgetWords();
