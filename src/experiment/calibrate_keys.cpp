@@ -10,6 +10,7 @@
 
 #include "rift/yaml/describe.hpp"
 #include "rift/yaml/node.hpp"
+#include "setting_check.hpp"
 
 namespace rift::experiment {
 namespace {
@@ -208,11 +209,7 @@ void ResolveCalibrate(Experiment& experiment, const std::string& path) {
     }
   }
   experiment.calibrate.fit.list = resolved;
-  for (const bool at_max : {false, true}) {  // a range that leaves what a key may be is refused now
-    std::vector<double> ends;
-    for (const FreeParameter& free : resolved) ends.push_back(at_max ? free.max : free.min);
-    CalibratedAt(experiment, ends);
-  }
+  TryFit(experiment);
 }
 
 }  // namespace rift::experiment

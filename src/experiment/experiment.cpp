@@ -294,6 +294,17 @@ Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>&
   return at;
 }
 
+bool KeepsRules(const Experiment& experiment, const std::vector<double>& values,
+                const std::vector<Theta>& settings) {
+  try {
+    const Experiment at = CalibratedAt(experiment, values);
+    for (const Theta& theta : settings) ExperimentAt(at, theta);
+  } catch (const yaml::Error&) {  // which rule is nobody's matter here
+    return false;
+  }
+  return true;
+}
+
 Experiment LoadExperiment(const std::string& path, const std::vector<std::string>& overrides,
                           const yaml::FileReader& read) {
   yaml::Node tree = yaml::Load(path, read);

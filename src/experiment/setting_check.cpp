@@ -1,5 +1,7 @@
 #include "setting_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -21,8 +23,9 @@ std::vector<ParameterValue> ValuesToTry(const Parameter& parameter) {
 /// the other parameters keep it: those of the experiment, their first and their last are tried.
 class ValueCheck {
  public:
-  explicit ValueCheck(const Experiment& experiment)
-      : parameters_(experiment.space.parameters), check_(experiment) {
+  /// `parameters` must outlive the check.
+  ValueCheck(const Experiment& experiment, const std::vector<Parameter>& parameters)
+      : parameters_(parameters), check_(experiment) {
     for (const Parameter& parameter : parameters_) {
       const std::vector<ParameterValue> values = ValuesToTry(parameter);
       first_.push_back(values.front());
@@ -62,11 +65,21 @@ SettingCheck::SettingCheck(const Experiment& experiment)
     : tried_(experiment), keys_(yaml::ListKeys(experiment)), binder_(keys_) {}
 
 void SettingCheck::Try(const std::vector<yaml::KeyValue>& values) {
-  for (const std::string& key : std::exchange(changed_, {})) Set(own_.at(key), false);
+  SetBack();
   for (const yaml::KeyValue& value : values) KeepOwn(value.key);
   for (const bool check_rules : {false, true}) {
     for (const yaml::KeyValue& value : values) Set(value, check_rules);
   }
+}
+
+void SettingCheck::TryAlone(const yaml::KeyValue& value) {
+  SetBack();
+  KeepOwn(value.key);
+  Set(value, false);
+}
+
+void SettingCheck::SetBack() {
+  for (const std::string& key : std::exchange(changed_, {})) Set(own_.at(key), false);
 }
 
 /// A key that is unknown is left to Set, which says so.
@@ -105,9 +118,33 @@ void TrySpace(const Experiment& experiment) {
     for (const Theta& theta : GridPoints(parameters)) check.Try(ValuesAt(parameters, theta));
     return;
   }
-  ValueCheck check(experiment);
+  ValueCheck check(experiment, parameters);
   for (size_t i = 0; i < parameters.size(); ++i) {
     for (const ParameterValue& value : ValuesToTry(parameters[i])) check.Try(i, value);
+  }
+}
+
+void TryFit(const Experiment& experiment) {
+  constexpr double kInside = 0.38196601125;  // of a range; no whole number of a range of those
+  std::vector<Parameter> parameters;
+  for (const FreeParameter& free : experiment.calibrate.fit.list) {
+    parameters.push_back(
+        {.key = free.key, .min = free.min, .max = free.max, .origin = free.origin});
+  }
+  ValueCheck ends(experiment, parameters);
+  SettingCheck inside(experiment);
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& one = parameters[i];
+    for (const ParameterValue& value : ValuesToTry(one)) ends.Try(i, value);
+    const double fraction = one.min + kInside * (one.max - one.min);
+    try {
+      inside.TryAlone(ValueOfKey(one.key, NumberValue(fraction), {one.origin}));
+    } catch (const yaml::Error&) {
+      throw yaml::Error(fmt::format(
+          "{}: calibrate.fit: {} is a whole number, and only a key that may have a fraction can be "
+          "fitted: leave it out, or compare its values in a sweep (goal: grid)",
+          one.origin, one.key));
+    }
   }
 }
 

@@ -17,8 +17,11 @@ class SettingCheck {
 
   /// Throws Error where yaml::SetValues of the experiment would. Values of an earlier try are gone.
   void Try(const std::vector<yaml::KeyValue>& values);
+  /// The same of a value alone, against the range of its key and none of the rules between keys.
+  void TryAlone(const yaml::KeyValue& value);
 
  private:
+  void SetBack();
   void KeepOwn(const std::string& key);
   void Set(const yaml::KeyValue& value, bool check_rules);
 
@@ -35,5 +38,9 @@ std::vector<yaml::KeyValue> ValuesAt(const std::vector<Parameter>& parameters, c
 /// Throws Error for a setting of a small grid that breaks a rule. Of a large one, and of ranges,
 /// every value is tried once; a setting that still breaks a rule becomes a row that says so.
 void TrySpace(const Experiment& experiment);
+
+/// Throws Error for a fitted parameter that has no fractions, and for an end of its range that
+/// breaks a rule whatever the others are.
+void TryFit(const Experiment& experiment);
 
 }  // namespace rift::experiment

@@ -415,6 +415,30 @@ TEST_CASE("What cannot be fitted is refused with its place and the reason") {
       Contains("is a parameter of space as well"));
 }
 
+TEST_CASE("A fit takes ranges of two keys of which only some pairs keep the rule between them") {
+  const std::string friction = "motor.friction_torque_nm", breakaway = "motor.breakaway_torque_nm";
+  const auto load = [&](const std::string& of_friction, const std::string& of_breakaway) {
+    return LoadFit(
+        "{" + friction + ": " + of_friction + ", " + breakaway + ": " + of_breakaway + "}",
+        {"simulation." + friction + "=0.003", "simulation." + breakaway + "=0.004"});
+  };
+  CHECK_NOTHROW(load("{min: 0.001, max: 0.006}", "{min: 0.001, max: 0.006}"));
+  CHECK_NOTHROW(load("{min: 0.002, max: 0.0035}", "{min: 0.0025, max: 0.006}"));
+  // No friction of the range goes with the least of this one.
+  CHECK_THROWS_WITH(load("{min: 0.002, max: 0.006}", "{min: 0.001, max: 0.006}"),
+                    Contains("breakaway_torque_nm"));
+  const Experiment fit = load("{min: 0.001, max: 0.006}", "{min: 0.001, max: 0.006}");
+  CHECK(KeepsRules(fit, {0.003, 0.004}));
+  CHECK_FALSE(KeepsRules(fit, {0.004, 0.003}));
+}
+
+TEST_CASE("A whole number is not fitted") {
+  CHECK_THROWS_WITH(LoadFit("{link.uart_bytes: {min: 10, max: 60}}"),
+                    Contains("task.yaml:4:") &&
+                        Contains("calibrate.fit: simulation.link.uart_bytes is a whole number, and "
+                                 "only a key that may have a fraction can be fitted"));
+}
+
 TEST_CASE("A key is fitted once, however it is named") {
   const std::string range = ": {min: 0.1, max: 1.2}";
   for (const std::string other : {"surfaces.ground.mu", "simulation.terrain.surfaces.ground.mu"}) {

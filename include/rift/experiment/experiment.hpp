@@ -113,6 +113,10 @@ Experiment DrawnAt(const Experiment& experiment, std::uint64_t seed);
 /// rule.
 Experiment CalibratedAt(const Experiment& experiment, const std::vector<double>& values);
 
+/// Whether the free parameters break no rule at these values, at each of these settings.
+bool KeepsRules(const Experiment& experiment, const std::vector<double>& values,
+                const std::vector<Theta>& settings = {});
+
 /// Every key of an experiment with type, default and meaning, a paragraph each.
 std::string DescribeKeys();
 

@@ -121,7 +121,10 @@ std::string RobotYaml(const experiment::Experiment& experiment,
   }
   experiment::Experiment at = experiment::CalibratedAt(experiment, report.values);
   at.ensemble = sweep::EnsembleOf(report.calibration, experiment.calibrate.method.confidence,
-                                  experiment.calibrate.draws, experiment.seed);
+                                  experiment.calibrate.draws, experiment.seed,
+                                  [&](const std::vector<double>& values) {
+                                    return experiment::KeepsRules(experiment, values);
+                                  });
   const Node tree = yaml::ToNode(at), standard = yaml::ToNode(experiment::Experiment{});
   Node robot = Node::Map();
   for (const char* block : {"trial", "simulation"}) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "domain.hpp"
 #include "feature_fit.hpp"
 #include "fitted_simulator.hpp"
 #include "intervals.hpp"
@@ -19,6 +20,15 @@ constexpr double kConverged = 5e-3;  // of the range, for the largest change of 
 constexpr double kFirstDamping = 1e-2;
 constexpr double kLargestDamping = 1e6;
 
+Eigen::VectorXd SharesOfStart(const std::vector<experiment::FreeParameter>& parameters) {
+  Eigen::VectorXd shares(static_cast<Eigen::Index>(parameters.size()));
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const experiment::FreeParameter& p = parameters[i];
+    shares[static_cast<Eigen::Index>(i)] = (p.start - p.min) / (p.max - p.min);
+  }
+  return shares;
+}
+
 /// First down to the least errors, then on to where the errors are those of logs that the simulator
 /// makes itself. Whole runs alone descend by their motions before their traits have a say: a path
 /// and its mirror image weave alike.
@@ -26,19 +36,19 @@ class Fit {
  public:
   Fit(const std::vector<experiment::FreeParameter>& parameters,
       const std::vector<CalibrationLog>& logs, FittedSimulator& simulator,
-      const CalibrationOptions& options)
+      const CalibrationOptions& options, const Domain& domain)
       : parameters_(parameters),
         options_(options),
         has_whole_runs_only_(simulator.HasWholeRunsOnly()),
-        shares_(StartOf(parameters)),
+        domain_(domain),
+        shares_(domain.Nearest(SharesOfStart(parameters))),
         prior_(PriorOf(parameters)),
-        model_(parameters, logs, simulator, options_, shares_),
+        model_(parameters, logs, simulator, options_, shares_, domain),
         step_(std::max(options.step, options.first_step)) {}
 
   Calibration Run(std::mt19937_64& generator, const CalibrationStep& on_step);
 
  private:
-  static Eigen::VectorXd StartOf(const std::vector<experiment::FreeParameter>& parameters);
   using Part = CalibrationProgress::Part;
   void Descend(Calibration& result, const CalibrationStep& on_step, Part part);
   void DescendByMotions(Calibration& result, const CalibrationStep& on_step);
@@ -48,12 +58,13 @@ class Fit {
   Eigen::VectorXd StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
                           double damping) const;
   Eigen::VectorXd Moved(const Eigen::VectorXd& by) const {
-    return (shares_ + by).cwiseMax(0.0).cwiseMin(1.0);
+    return domain_.Nearest((shares_ + by).cwiseMax(0.0).cwiseMin(1.0));
   }
 
   const std::vector<experiment::FreeParameter>& parameters_;
   CalibrationOptions options_;  ///< the model's as well
   bool has_whole_runs_only_;
+  const Domain& domain_;
   Eigen::VectorXd shares_;
   Prior prior_;
   ErrorModel model_;
@@ -68,15 +79,6 @@ class Fit {
 void Append(Linearised& logs, const Linearised& more) {
   logs.hessians.insert(logs.hessians.end(), more.hessians.begin(), more.hessians.end());
   logs.gradients.insert(logs.gradients.end(), more.gradients.begin(), more.gradients.end());
-}
-
-Eigen::VectorXd Fit::StartOf(const std::vector<experiment::FreeParameter>& parameters) {
-  Eigen::VectorXd shares(static_cast<Eigen::Index>(parameters.size()));
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    const experiment::FreeParameter& p = parameters[i];
-    shares[static_cast<Eigen::Index>(i)] = (p.start - p.min) / (p.max - p.min);
-  }
-  return shares;
 }
 
 Eigen::VectorXd Fit::StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
@@ -212,19 +214,25 @@ void Check(const std::vector<experiment::FreeParameter>& parameters,
 Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, FittedSimulator& simulator,
                       const CalibrationOptions& options, std::mt19937_64& generator,
-                      const CalibrationStep& on_step) {
+                      const CalibrationStep& on_step, const IsAllowed& is_allowed) {
   Check(parameters, logs);
-  return Fit(parameters, logs, simulator, options).Run(generator, on_step);
+  Domain::Contained contained;
+  if (is_allowed) {
+    contained = [&](const Eigen::VectorXd& at) { return is_allowed(ValuesAt(parameters, at)); };
+  }
+  const Domain domain(contained, SharesOfStart(parameters));
+  return Fit(parameters, logs, simulator, options, domain).Run(generator, on_step);
 }
 
 Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                       const CalibrationOptions& options, std::mt19937_64& generator, int threads,
-                      const CalibrationStep& on_step) {
+                      const CalibrationStep& on_step, const IsAllowed& is_allowed) {
   SimulatedTwins simulator(twin, threads);
-  Calibration found = Calibrate(parameters, logs, simulator, options, generator, on_step);
+  Calibration found =
+      Calibrate(parameters, logs, simulator, options, generator, on_step, is_allowed);
   if (options.features.rounds > 0) {
-    FitFeatures(logs, twin, options, generator(), threads, on_step, found);
+    FitFeatures(logs, twin, options, generator(), threads, on_step, found, is_allowed);
   }
   return found;
 }

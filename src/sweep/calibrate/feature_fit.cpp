@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "domain.hpp"
 #include "feature_model.hpp"
 #include "model.hpp"
 #include "rift/statistics/descriptive.hpp"
@@ -29,7 +30,8 @@ constexpr double kFirstScatter = 0.15, kLeastScatter = 0.02;
 constexpr double kReach = 2.0;
 /// 1 / sd^2 of an even spread over a range about its end.
 constexpr double kUntold = 3.0;
-constexpr double kTriedStep = 0.1;  // of a range, for whether a parameter changes anything
+/// Of a range, for whether a parameter changes anything.
+constexpr double kTriedStep = 0.1, kLeastTriedStep = 1e-3;
 constexpr int kMostSteps = 200;
 constexpr double kConverged = 1e-6;
 constexpr double kRounding = 1e-9;
@@ -56,6 +58,12 @@ class Region {
   }
   Eigen::VectorXd SharesAt(const Eigen::VectorXd& z) const {
     return (centre_ + scatter_.cwiseProduct(z)).cwiseMax(0.0).cwiseMin(1.0);
+  }
+  /// z, or the nearest one to it whose shares are in the domain.
+  Eigen::VectorXd Within(const Domain& domain, const Eigen::VectorXd& z) const {
+    const Eigen::VectorXd shares = SharesAt(z);
+    if (domain.Contains(shares)) return z;
+    return (domain.Nearest(shares) - centre_).cwiseQuotient(scatter_);
   }
   Eigen::VectorXd Least(const FeatureModel& model) const;
   /// Covariance of the shares about z (sandwich: White 1982), of what scatters the estimate.
@@ -177,6 +185,13 @@ void Active::Tell(const Eigen::VectorXd& most_likely, const Eigen::VectorXd& mea
   }
 }
 
+/// Of the parameters that change anything, the others staying where they are.
+Domain DomainOf(const Active& active, const IsAllowed& is_allowed) {
+  if (!is_allowed) return Domain();
+  return Domain([&](const Eigen::VectorXd& shares) { return is_allowed(active.Values(shares)); },
+                active.Found());
+}
+
 /// Of each parameter, where its range cuts the posterior off: near a bound the most likely value
 /// hangs on chance far more than the mean does.
 Eigen::VectorXd MeansWithinRanges(const Eigen::VectorXd& most_likely,
@@ -196,10 +211,24 @@ bool IsSame(const trajectory::Trajectory& a, const trajectory::Trajectory& b) {
                     });
 }
 
+/// A value of the parameter to the other side, or nearer, that is allowed; else its own.
+double OtherSide(std::vector<double> values, size_t k, const CalibratedParameter& one,
+                 const IsAllowed& is_allowed) {
+  const double width = one.parameter.max - one.parameter.min;
+  for (double step = kTriedStep; step > kLeastTriedStep; step *= 0.5) {
+    for (const double moved : {one.value - step * width, one.value + step * width}) {
+      values[k] = moved;
+      const bool is_in_range = moved >= one.parameter.min && moved <= one.parameter.max;
+      if (is_in_range && is_allowed(values)) return moved;
+    }
+  }
+  return one.value;
+}
+
 /// Logs x parameters: whether it changes a drive of the log. Motions do not see all that whole
 /// drives do, such as the tracker's scatter.
 FeatureModel::Acts FindEffects(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
-                               Calibration& found) {
+                               const IsAllowed& is_allowed, Calibration& found) {
   std::vector<double> values;
   for (const CalibratedParameter& one : found.parameters) values.push_back(one.value);
   FeatureModel::Acts acts(static_cast<Index>(logs.size()), static_cast<Index>(values.size()));
@@ -211,6 +240,7 @@ FeatureModel::Acts FindEffects(const std::vector<CalibrationLog>& logs, const Tw
       const bool is_low = one.value < one.parameter.min + 0.5 * width;
       std::vector<double> moved = values;
       moved[k] += (is_low ? kTriedStep : -kTriedStep) * width;
+      if (is_allowed && !is_allowed(moved)) moved[k] = OtherSide(values, k, one, is_allowed);
       const bool acts_here =
           !IsSame(run.result.trajectory, Simulate(twin(i, moved)).result.trajectory);
       acts(static_cast<Index>(i), static_cast<Index>(k)) = acts_here;
@@ -261,13 +291,15 @@ double NoiseOfDifference(const FeatureModel& model, const std::vector<FeatureRow
 
 void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                  const CalibrationOptions& options, std::uint64_t seed, int threads,
-                 const CalibrationStep& on_step, Calibration& found) {
-  const FeatureModel::Acts all_acts = FindEffects(logs, twin, found);
+                 const CalibrationStep& on_step, Calibration& found, const IsAllowed& is_allowed) {
+  const FeatureModel::Acts all_acts = FindEffects(logs, twin, is_allowed, found);
   const Active active(found);
   const FeatureModel::Acts acts = all_acts(Eigen::all, active.Places());
   const Prior& prior = active.PriorOfThem();
   Eigen::VectorXd shares = active.Found();
   if (shares.size() == 0) return;
+  const Domain domain = DomainOf(active, is_allowed);
+  const Eigen::VectorXd start = domain.Nearest(active.Start());
   CheckDraws(options.features, shares.size());
   std::vector<std::string> group_of_log;
   for (const CalibrationLog& log : logs) group_of_log.push_back(log.group);
@@ -281,18 +313,19 @@ void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
   for (int round = 0; round < options.features.rounds; ++round) {
     const Region region(shares, scatter, prior);
     const bool is_last = round + 1 == options.features.rounds;
-    const Eigen::MatrixXd draws =
+    Eigen::MatrixXd draws =
         region.Drawn(is_last ? std::max(options.features.draws, options.features.last_draws)
                              : options.features.draws,
                      random);
     std::vector<std::vector<double>> values;
     for (Index i = 0; i < draws.rows(); ++i) {
+      draws.row(i) = region.Within(domain, draws.row(i)).transpose();
       values.push_back(active.Values(region.SharesAt(draws.row(i))));
     }
     const FeatureModel model(group_of_log, real, draws, acts, drive(values, round, kPair),
                              options.features.failures, kPair);
     const auto features = static_cast<double>(model.FeatureCount());
-    const Eigen::VectorXd z = region.Least(model);
+    const Eigen::VectorXd z = region.Within(domain, region.Least(model));
     shares = region.SharesAt(z);
     const Eigen::MatrixXd covariance = region.CovarianceAt(model, z);
     scatter = (kReach * covariance.diagonal().cwiseSqrt()).cwiseMin(scatter);
@@ -307,16 +340,15 @@ void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
     }
     if (!is_last) continue;
     const Eigen::VectorXd most_likely = shares;
-    shares = MeansWithinRanges(most_likely, covariance);
+    shares = domain.Nearest(MeansWithinRanges(most_likely, covariance));
     active.Tell(most_likely, shares, covariance, options, found);
     // With the same noise on both sides.
     const auto drive_often = [&](const Eigen::VectorXd& at) {
       const std::vector<std::vector<double>> repeated(kJudgeRuns, active.Values(at));
       return drive(repeated, options.features.rounds, 1);
     };
-    const std::vector<FeatureRows> before = drive_often(active.Start()),
-                                   after = drive_often(shares);
-    found.loss_before = (model.LossOf(before) + prior.LossAt(active.Start())) / features;
+    const std::vector<FeatureRows> before = drive_often(start), after = drive_often(shares);
+    found.loss_before = (model.LossOf(before) + prior.LossAt(start)) / features;
     found.loss_after = (model.LossOf(after) + prior.LossAt(shares)) / features;
     found.loss_noise = NoiseOfDifference(model, before, after) / features;
   }

@@ -116,6 +116,6 @@ bool HasPath(const Recording& run);
 Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, FittedSimulator& simulator,
                       const CalibrationOptions& options, std::mt19937_64& generator,
-                      const CalibrationStep& on_step);
+                      const CalibrationStep& on_step, const IsAllowed& is_allowed = {});
 
 }  // namespace rift::sweep

@@ -403,7 +403,15 @@ Calibration Identifier::Fit(const std::vector<const Entry*>& fitted, int start) 
     say_(ProgressText(progress, parameters));
   };
   if (!IsProgram()) {
-    return Calibrate(parameters, logs, TwinsOf(fitted, seed), method, generator, jobs_, on_step);
+    std::vector<experiment::Theta> settings;
+    for (const Entry& entry : entries_) {
+      if (settings.empty() || settings.back() != entry.theta) settings.push_back(entry.theta);
+    }
+    const auto is_allowed = [&](const std::vector<double>& values) {
+      return experiment::KeepsRules(experiment_, values, settings);
+    };
+    return Calibrate(parameters, logs, TwinsOf(fitted, seed), method, generator, jobs_, on_step,
+                     is_allowed);
   }
   std::vector<TrialRequest> requests;
   for (const Entry* entry : fitted) requests.push_back(RequestOf(*entry, seed));

@@ -13,6 +13,7 @@ namespace {
 // Whole runs of a delayed bang-bang loop are chaotic: over a small step the scatter of their traits
 // is many times their slope.
 constexpr double kStepOfRuns = 0.2;
+constexpr double kLeastStep = 1e-3;  // where the domain leaves no room for a longer one
 // Of the seeds of a log its own runs are the first ones, and those that judge the ones from 50,000
 // on.
 constexpr std::uint64_t kSeedsOfTry = 1'000;
@@ -102,11 +103,13 @@ Eigen::VectorXd StepWithin(const Eigen::VectorXd& at, const Eigen::VectorXd& low
 
 ErrorModel::ErrorModel(const std::vector<experiment::FreeParameter>& parameters,
                        std::vector<CalibrationLog> logs, FittedSimulator& simulator,
-                       const CalibrationOptions& options, const Eigen::VectorXd& start)
+                       const CalibrationOptions& options, const Eigen::VectorXd& start,
+                       Domain domain)
     : parameters_(parameters),
       logs_(std::move(logs)),
       simulator_(simulator),
       options_(options),
+      domain_(std::move(domain)),
       traits_(TraitsOfLogs(logs_, simulator, ValuesAt(parameters, start))) {}
 
 ErrorModel ErrorModel::OfSimulatedLogs(const Eigen::VectorXd& shares, int repeat) const {
@@ -118,7 +121,7 @@ ErrorModel ErrorModel::OfSimulatedLogs(const Eigen::VectorXd& shares, int repeat
     logs.back().drives_grid_fps = logs_[i].drives_grid_fps;
     if (logs_[i].began_s) logs.back().began_s = 0.0;  // a simulated clock begins with the trial
   }
-  ErrorModel model(parameters_, std::move(logs), simulator_, options_, shares);
+  ErrorModel model(parameters_, std::move(logs), simulator_, options_, shares, domain_);
   model.traits_.scatter = traits_.scatter;
   model.traits_.spread_scatter = traits_.spread_scatter;
   return model;
@@ -150,16 +153,21 @@ Blocks ErrorModel::WeightedAt(const Eigen::VectorXd& shares, const Eigen::Matrix
   return WeightedBlocks(Errors(shares, options), scale);
 }
 
-/// Of every error of each log, by central differences, one-sided at a bound.
+/// Of every error of each log, by central differences, one-sided at a bound and at the end of the
+/// domain, over shorter steps where it is narrow; none where nothing can be moved.
 Blocks ErrorModel::Slope(const Eigen::VectorXd& shares, const std::vector<LogErrors>& raw,
                          const Eigen::MatrixXd& scale, Eigen::Index parameter, double step,
                          const CalibrationOptions& options) {
   Eigen::VectorXd below = shares, above = shares;
-  below[parameter] = std::max(0.0, shares[parameter] - step);
-  above[parameter] = std::min(1.0, shares[parameter] + step);
+  for (; below == above && step >= kLeastStep; step *= 0.5) {
+    below[parameter] = std::max(0.0, shares[parameter] - step);
+    above[parameter] = std::min(1.0, shares[parameter] + step);
+    if (!domain_.Contains(below)) below = shares;
+    if (!domain_.Contains(above)) above = shares;
+  }
   std::vector<LogErrors> slopes = Errors(above, options);
   const std::vector<LogErrors> at_below = Errors(below, options);
-  const double way = above[parameter] - below[parameter];
+  const double way = below == above ? 1.0 : above[parameter] - below[parameter];
   Blocks weighted;
   for (size_t i = 0; i < slopes.size(); ++i) {
     if (!simulator_.HasWholeRunsOnly()) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "domain.hpp"
 #include "errors.hpp"
 #include "rift/sweep/calibrate/calibration.hpp"
 
@@ -76,7 +77,8 @@ class ErrorModel {
   /// `parameters`, `simulator` and `options` must outlive the model.
   ErrorModel(const std::vector<experiment::FreeParameter>& parameters,
              std::vector<CalibrationLog> logs, FittedSimulator& simulator,
-             const CalibrationOptions& options, const Eigen::VectorXd& start);
+             const CalibrationOptions& options, const Eigen::VectorXd& start,
+             Domain domain = Domain());
 
   /// Logs that the simulator made, held against what it predicts for them as the real ones are:
   /// traits are told in the scatter of the real logs.
@@ -84,8 +86,8 @@ class ErrorModel {
 
   std::vector<LogErrors> RawErrorsAt(const Eigen::VectorXd& shares);
   Blocks ErrorsAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale);
-  /// Slopes over `step` to either side, of a run's traits over a wide one; `raw`:
-  /// RawErrorsAt(shares).
+  /// Slopes over `step` to either side, to one alone where the other is not in the domain, of a
+  /// run's traits over a wide one; `raw`: RawErrorsAt(shares).
   Linearised LinearisedAt(const Eigen::VectorXd& shares, const std::vector<LogErrors>& raw,
                           const Eigen::MatrixXd& scale, double step);
 
@@ -105,6 +107,7 @@ class ErrorModel {
   std::vector<CalibrationLog> logs_;
   FittedSimulator& simulator_;
   const CalibrationOptions& options_;
+  Domain domain_;
   LoggedTraits traits_;
   size_t trials_simulated_ = 0;
 };

@@ -126,5 +126,35 @@ TEST_CASE("Draws of parameters that do not go together tell nothing of each othe
   CHECK(squares == Approx(1.0).margin(0.06));  // nor by how far they are off
 }
 
+TEST_CASE("A draw of values that are not allowed is drawn again, and the others stay") {
+  Calibration fit = Fit();
+  fit.parameters[1].has_effect = false;  // asked about with its fitted value
+  const auto is_allowed = [](const std::vector<double>& values) {
+    CHECK(values[1] == -2.0);
+    return values[0] >= 6.0 * values[2] - 0.1;
+  };
+  const experiment::Ensemble any = EnsembleOf(fit, kConfidence, 200, 1),
+                             allowed = EnsembleOf(fit, kConfidence, 200, 1, is_allowed);
+  REQUIRE(allowed.draws.size() == 200);
+  size_t kept = 0;
+  for (size_t i = 0; i < 200; ++i) {
+    const std::vector<double>& draw = allowed.draws[i];
+    CHECK(draw[0] >= 6.0 * draw[1] - 0.1);
+    const bool is_kept = any.draws[i][0] >= 6.0 * any.draws[i][1] - 0.1;
+    kept += is_kept;
+    CHECK((draw == any.draws[i]) == is_kept);
+  }
+  CHECK((kept > 80 && kept < 140));
+  CHECK(EnsembleOf(fit, kConfidence, 200, 1, is_allowed).draws == allowed.draws);
+}
+
+TEST_CASE("Where no draw is allowed the fitted values stand in the ensemble") {
+  const auto is_allowed = [](const std::vector<double>&) { return false; };
+  const experiment::Ensemble ensemble = EnsembleOf(Fit(), kConfidence, 2, 1, is_allowed);
+  for (const std::vector<double>& draw : ensemble.draws) {
+    CHECK(draw == std::vector<double>{3.0, -2.0, 0.5});
+  }
+}
+
 }  // namespace
 }  // namespace rift::sweep

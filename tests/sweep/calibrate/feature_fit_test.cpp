@@ -355,5 +355,24 @@ TEST_CASE("A value is the prior's where the prior is more than half of what is k
   CHECK((shares[1] > 0.1 && shares[1] < 0.5));
 }
 
+TEST_CASE("Features are driven at no values that are not allowed, and the estimate is none") {
+  // The logs' noise is 0.001 and their mismatch 0.03, which together are beyond.
+  const auto is_allowed = [](const std::vector<double>& values) {
+    return values[0] + 50.0 * values[2] <= 0.05;
+  };
+  const TwinAt twin = [&](size_t log, const std::vector<double>& values) {
+    CHECK(is_allowed(values));
+    return Twin(log, values);
+  };
+  Calibration found = Before();
+  FitFeatures(Logs(), twin, Options(2, 24), kSeed, 1, {}, found, is_allowed);
+  std::vector<double> values;
+  for (const CalibratedParameter& one : found.parameters) values.push_back(one.value);
+  CHECK(is_allowed(values));
+  CHECK(found.parameters[0].has_effect);
+  CHECK(found.parameters[2].has_effect);
+  CHECK_FALSE(found.parameters[1].has_effect);
+}
+
 }  // namespace
 }  // namespace rift::sweep

@@ -323,5 +323,63 @@ TEST_CASE("A step that takes the value further from its prior than the logs ask 
   CHECK(fitted.told[0].values[0] == Approx(0.3 + 0.6 / 11.0).margin(1e-3));
 }
 
+TEST_CASE("A fit asks for nothing beyond what is allowed, and ends where that does") {
+  constexpr double kLimit = 0.6;
+  const IsAllowed is_allowed = [](const std::vector<double>& values) {
+    return values[0] <= kLimit;
+  };
+  for (const double start : {0.1, 0.6, 0.9}) {  // within, at the end, beyond
+    INFO(start);
+    OneLaw simulator(Itself);
+    std::mt19937_64 generator(3);
+    const experiment::FreeParameter parameter{.key = "a", .start = start};
+    CalibrationOptions options = Options();
+    options.corrections = 1;
+    const Calibration fit =
+        Calibrate({parameter}, TwoLogs(0.8), simulator, options, generator, {}, is_allowed);
+    for (const auto& [value, runs] : simulator.asked) CHECK(value <= kLimit);
+    CHECK(fit.parameters[0].value == Approx(kLimit).margin(2e-2));
+    CHECK(fit.parameters[0].value <= kLimit);
+    CHECK(fit.parameters[0].has_effect);
+    CHECK(fit.has_converged);
+  }
+}
+
+TEST_CASE("Two values bound by a rule end where it does, though both alone would go beyond") {
+  // The first log tells the sum of both, the second one their difference.
+  struct SumAndDifference : public OneLaw {
+    SumAndDifference() : OneLaw(Itself) {}
+    std::vector<LogPrediction> Predict(const std::vector<CalibrationLog>& logs,
+                                       const std::vector<double>& values,
+                                       const CalibrationOptions&) override {
+      if (values[0] > values[1]) ++broken;
+      std::vector<LogPrediction> predictions(logs.size());
+      for (size_t i = 0; i < logs.size(); ++i) {
+        const double told = i == 0 ? values[0] + values[1] : values[0] - values[1];
+        const auto rows = static_cast<Eigen::Index>(logs[i].log.poses.size());
+        predictions[i].motions = Eigen::VectorXd::Zero(3 * rows);
+        for (Eigen::Index row = 0; row < rows; ++row) {
+          predictions[i].motions[3 * row] = told - logs[i].log.poses[static_cast<size_t>(row)].x_m;
+        }
+        predictions[i].frames.assign(static_cast<size_t>(rows), 1);
+      }
+      return predictions;
+    }
+    int broken = 0;
+  } simulator;
+  std::vector<CalibrationLog> logs = TwoLogs(1.1);  // 0.7 and 0.4: the first is to be at most
+  for (auto& pose : logs[1].log.poses) pose.x_m -= 0.8;
+  std::mt19937_64 generator(3);
+  const std::vector<experiment::FreeParameter> parameters{{.key = "a", .start = 0.2},
+                                                          {.key = "b", .start = 0.2}};
+  const Calibration fit =
+      Calibrate(parameters, logs, simulator, Options(), generator, {},
+                [](const std::vector<double>& values) { return values[0] <= values[1]; });
+  CHECK(simulator.broken == 0);
+  CHECK(fit.parameters[0].value <= fit.parameters[1].value);
+  CHECK(fit.parameters[0].value == Approx(0.55).margin(0.15));
+  CHECK(fit.parameters[1].value == Approx(0.55).margin(0.15));
+}
+
 }  // namespace
 }  // namespace rift::sweep

@@ -291,5 +291,29 @@ TEST_CASE("Runs for the likeness of a sweep set out as the real ones, seen at th
   }
 }
 
+TEST_CASE("Two keys bound by a rule are fitted without a look at values that break it") {
+  experiment::Experiment plan = Plan();
+  plan.goal = experiment::Goal::kCalibrate;
+  plan.simulation.motor.model = simulation::MotorModel::kDc;
+  constexpr double kTorque_nm = 0.0008;  // of both: the start is at the end of what is allowed
+  plan.simulation.motor.friction_torque_nm = kTorque_nm;
+  plan.simulation.motor.breakaway_torque_nm = kTorque_nm;
+  plan.calibrate.judge_runs = 1;
+  plan.calibrate.fit.list = {
+      {.key = "simulation.motor.friction_torque_nm", .max = 0.0015, .start = kTorque_nm},
+      {.key = "simulation.motor.breakaway_torque_nm",
+       .min = 0.0005,
+       .max = 0.0015,
+       .start = kTorque_nm}};
+  plan.calibrate.starts = 2;
+  plan.calibrate.method.features = {.rounds = 1, .draws = 12};
+  const test::Files files = Logs(plan);
+  Evaluator evaluator(plan, "e.yaml", test::InputsOf(files));
+  const CalibrationReport report = Identify(evaluator, 1, [](const std::string&) {});
+  REQUIRE(report.values.size() == 2);
+  CHECK(report.values[0] <= report.values[1]);
+  CHECK(experiment::KeepsRules(plan, report.values));
+}
+
 }  // namespace
 }  // namespace rift::sweep

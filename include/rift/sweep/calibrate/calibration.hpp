@@ -33,6 +33,9 @@ struct CalibrationLog {
 /// stood, and its seed is that log's own.
 using TwinAt = std::function<SimulatedTrial(size_t log, const std::vector<double>& values)>;
 
+/// Whether values of the free parameters break no rule between keys.
+using IsAllowed = std::function<bool(const std::vector<double>& values)>;
+
 /// How far a fit is.
 struct CalibrationProgress {
   enum class Part { kMotions, kDescent, kCorrection, kFeatures };
@@ -94,10 +97,12 @@ std::vector<StartAgreement> AgreementOf(const std::vector<Calibration>& fits);
 /// of the corrections together, whichever is wider. With options.features.rounds the estimate then
 /// goes on to where whole drives have the features of the logs. Throws std::invalid_argument for no
 /// logs, no parameters or a start out of range. `threads` evaluate logs at once and change no
-/// result.
+/// result. The fit asks for no twin at values that are not allowed: its steps and draws end before
+/// them, as at a bound, and it starts where they are next to the start.
 Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                       const CalibrationOptions& options, std::mt19937_64& generator,
-                      int threads = 1, const CalibrationStep& on_step = {});
+                      int threads = 1, const CalibrationStep& on_step = {},
+                      const IsAllowed& is_allowed = {});
 
 }  // namespace rift::sweep
