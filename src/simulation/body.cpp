@@ -82,22 +82,38 @@ std::optional<std::string> TippingWarning(const BodyOptions& body) {
       body.com_ahead_m, body.caster_ahead_m);
 }
 
+/// Of a robot that is tilted because its contacts give way unevenly under its weight.
+std::string SinkingWarning(const BodyOptions& body, double pitch_deg) {
+  return fmt::format(
+      "the simulated robot stands tilted by {:.1f} deg, nose {}: its wheels sink into the floor by "
+      "{:.4f} m and its caster by {:.4f} m under its weight of {:.4g} N; "
+      "simulation.body.contact_stiffness_n_per_m is {:g}: raise it, or check the masses",
+      std::abs(pitch_deg), pitch_deg > 0.0 ? "down" : "up",
+      body.WeightOnWheel_n() / body.contact_stiffness_n_per_m,
+      body.WeightOnCaster_n() / body.contact_stiffness_n_per_m, body.Weight_n(),
+      body.contact_stiffness_n_per_m);
+}
+
 }  // namespace
 
 std::optional<std::string> TiltWarning(const BodyOptions& body) {
   if (auto warning = TippingWarning(body)) return warning;
   constexpr double kLevel_deg = 0.5;  // a caster ball 0.3 mm off on the 3pi+
-  const double pitch_deg =
-      geometry::DegFromRad(StanceOn(body, Eigen::Vector3d(0.0, 0.0, -body.gravity_mps2)).pitch_rad);
+  const double pitch_rad = StanceOn(body, Eigen::Vector3d(0.0, 0.0, -body.gravity_mps2)).pitch_rad;
+  const double pitch_deg = geometry::DegFromRad(pitch_rad);
   if (std::abs(pitch_deg) <= kLevel_deg) return std::nullopt;
+  const double caster_gap_m = body.wheel_radius_m - body.caster_radius_m - body.caster_below_m;
+  const double drop_m = body.caster_ahead_m * std::sin(pitch_rad);
+  // What is more to that side: the ball off the floor, or the sinking that is the rest.
+  const double side = std::copysign(1.0, drop_m);
+  if (side * (drop_m - caster_gap_m) > side * caster_gap_m) return SinkingWarning(body, pitch_deg);
   return fmt::format(
       "the simulated robot stands tilted by {:.1f} deg, nose {}: its caster's ball is {:.4f} m {} "
       "the floor when the robot is level; simulation.body.caster_below_m is {:g}, and {:.4g} "
       "(wheel_radius_m - caster_radius_m) would make it level",
-      std::abs(pitch_deg), pitch_deg > 0.0 ? "down" : "up",
-      std::abs(body.wheel_radius_m - body.caster_radius_m - body.caster_below_m),
-      body.wheel_radius_m - body.caster_radius_m > body.caster_below_m ? "above" : "below",
-      body.caster_below_m, body.wheel_radius_m - body.caster_radius_m);
+      std::abs(pitch_deg), pitch_deg > 0.0 ? "down" : "up", std::abs(caster_gap_m),
+      caster_gap_m > 0.0 ? "above" : "below", body.caster_below_m,
+      body.wheel_radius_m - body.caster_radius_m);
 }
 
 }  // namespace rift::simulation

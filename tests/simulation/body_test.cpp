@@ -157,5 +157,22 @@ TEST_CASE("A robot whose weight is not between axle and caster is told that it t
              Contains("mass is -0.008 m ahead of the axle") && Contains("and its caster 0.0404 m"));
 }
 
+TEST_CASE("A robot that leans because it sinks in is told of its contacts, not of its caster") {
+  BodyOptions body;
+  body.chassis_mass_kg = 10.0;
+  body.caster_below_m = body.wheel_radius_m - body.caster_radius_m;  // level but for the sinking
+  CHECK_THAT(TiltWarning(body).value_or(""), Contains("contact_stiffness_n_per_m is 25000") &&
+                                                 Contains("sink into the floor by") &&
+                                                 !Contains("caster_below_m"));
+  body.contact_stiffness_n_per_m = 1e6;
+  CHECK_FALSE(TiltWarning(body));
+  // A ball that hangs a little low or high is not what tilts it.
+  body.contact_stiffness_n_per_m = 25000.0;
+  for (const double gap_m : {-0.0003, 0.0003}) {
+    body.caster_below_m = body.wheel_radius_m - body.caster_radius_m - gap_m;
+    CHECK_THAT(TiltWarning(body).value_or(""), Contains("contact_stiffness_n_per_m is 25000"));
+  }
+}
+
 }  // namespace
 }  // namespace rift::simulation
