@@ -38,7 +38,7 @@ RunToSave SimulateFile(const SimulateRequest& request) {
   SayTaskNotes(experiment, request.experiment);
   WarnOfTilt(experiment);
   if (const auto note = sweep::UncrossedNote(trial)) terminal::Say(*note);
-  SayFullLine(experiment);
+  SaySimulatorNotes(experiment);
   return {out, {experiment, trial, sweep::Simulate(trial)}};
 }
 

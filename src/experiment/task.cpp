@@ -122,6 +122,27 @@ std::optional<std::string> FullLineNote(const Experiment& experiment) {
       period_s, 1.0 / period_s, baud, baud / kBitsPerLine, kBitsPerLine / baud);
 }
 
+std::optional<std::string> IdleHostNote(const Experiment& experiment) {
+  if (experiment.simulation.mocap.host_period_s) return std::nullopt;
+  const simulation::TerrainOptions& terrain = experiment.simulation.terrain;
+  std::vector<std::string> driven{terrain.surface};
+  for (const Parameter& parameter : experiment.space.parameters) {
+    if (parameter.key == "simulation.mocap.host_period_s") return std::nullopt;
+    if (parameter.key != "simulation.terrain.surface") continue;
+    driven.clear();
+    for (const ParameterValue& level : parameter.levels) driven.push_back(level.text);
+  }
+  for (const std::string& name : driven) {
+    const auto surface = terrain.surfaces.find(name);
+    if (surface == terrain.surfaces.end() || !surface->second.host_period_s) continue;
+    return fmt::format(
+        "note: simulation.terrain.surfaces.{}.host_period_s is {:g}, and does nothing while "
+        "simulation.mocap.host_period_s is none: set that too",
+        name, *surface->second.host_period_s);
+  }
+  return std::nullopt;
+}
+
 geometry::Pose2 AxleAtStart(const Experiment& experiment) {
   return TaskOf(experiment).Start() *
          geometry::Pose2{-experiment.simulation.mocap.tag_ahead_m, 0.0, 0.0};

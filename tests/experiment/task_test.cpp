@@ -122,6 +122,27 @@ TEST_CASE("A trial that ends before its first power is told") {
                                  "trial.timeout_s, 20 s: the power is zero until the trial ends"});
 }
 
+TEST_CASE("A surface's own host is told where the camera has none") {
+  Experiment experiment;
+  CHECK_FALSE(IdleHostNote(experiment));
+  experiment.simulation.terrain.surfaces["downhill"].host_period_s = 0.051;
+  CHECK_FALSE(IdleHostNote(experiment));  // on the ground it is not asked for
+  experiment.simulation.terrain.surface = "downhill";
+  CHECK(IdleHostNote(experiment) ==
+        "note: simulation.terrain.surfaces.downhill.host_period_s is 0.051, and does nothing while "
+        "simulation.mocap.host_period_s is none: set that too");
+  experiment.simulation.mocap.host_period_s = 0.06;
+  CHECK_FALSE(IdleHostNote(experiment));
+  experiment.simulation.mocap.host_period_s.reset();
+  experiment.space.parameters = {
+      {.key = "simulation.terrain.surface", .levels = {{"ground", {}}, {"bump", {}}}}};
+  CHECK_FALSE(IdleHostNote(experiment));
+  experiment.space.parameters[0].levels.push_back({"downhill", {}});
+  CHECK(IdleHostNote(experiment));
+  experiment.space.parameters.push_back({.key = "simulation.mocap.host_period_s"});
+  CHECK_FALSE(IdleHostNote(experiment));
+}
+
 TEST_CASE("A program starts at the one waypoint there may be, turned by its heading") {
   Experiment experiment;
   experiment.program.segments = {{.straight_m = 1.0, .power = 0.3}};

@@ -29,8 +29,13 @@ std::vector<std::string> TaskNotes(const Experiment& experiment, const std::stri
 /// that each waits longer for its turn than the one before. Nothing for a line that takes them.
 std::optional<std::string> FullLineNote(const Experiment& experiment);
 
+/// A line about a host_period_s of a surface to drive on, which changes nothing while
+/// simulation.mocap.host_period_s is none. Nothing where it counts.
+std::optional<std::string> IdleHostNote(const Experiment& experiment);
+
 /// world_from_robot, of the middle of the axle, of a simulated robot that is put down as a real one
 /// is: its tag (simulation.mocap.tag_ahead_m) on the start of the task, which has a first waypoint.
+/// Of level ground: on a slope SimulatedRobot keeps the tag there, and not the axle.
 geometry::Pose2 AxleAtStart(const Experiment& experiment);
 
 /// The experiment's tag. Where its surface is bumps, a ramp or a heightfield the tag is not held to

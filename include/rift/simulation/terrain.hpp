@@ -66,7 +66,8 @@ struct SurfaceOptions {
         "scatter of the way a wheel makes for each way its rim turns, over some millimetres, as a "
         "share: dust, fibres, a tyre that is not round; it turns the robot at random");
     field("host_period_s", self.host_period_s, 0.005, 2.0,
-          "mocap.host_period_s in the session on this surface; none: that of mocap");
+          "mocap.host_period_s in the session on this surface; none: that of mocap; nothing where "
+          "mocap has none");
     field("tracker_noise", self.tracker_noise, 0.0, 20.0,
           "scatter of the measured pose in the session on this surface, as a multiple of that of "
           "mocap: light, distance from the camera");

@@ -47,8 +47,9 @@ void SayTaskNotes(const experiment::Experiment& experiment, const std::string& f
   for (const std::string& note : experiment::TaskNotes(experiment, file)) terminal::Say(note);
 }
 
-void SayFullLine(const experiment::Experiment& experiment) {
+void SaySimulatorNotes(const experiment::Experiment& experiment) {
   if (const auto note = experiment::FullLineNote(experiment)) terminal::Say(*note);
+  if (const auto note = experiment::IdleHostNote(experiment)) terminal::Say(*note);
 }
 
 void WarnOfTilt(const experiment::Experiment& experiment) {

@@ -30,6 +30,7 @@ void NotePlan(const experiment::Experiment& loaded, const std::string& file,
     const auto warning = simulation::TiltWarning(loaded.simulation.body);
     if (warning) say("warning: " + *warning);
     if (const auto line = experiment::FullLineNote(loaded)) say(*line);
+    if (const auto host = experiment::IdleHostNote(loaded)) say(*host);
   }
   if (loaded.goal != experiment::Goal::kFalsify) return;
   const int needed = sweep::TrialsToFalsify(loaded.falsify, loaded.search.budget);

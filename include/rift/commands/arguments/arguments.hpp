@@ -39,8 +39,9 @@ experiment::Experiment ReadExperiment(const std::filesystem::path& file,
 
 /// Says what of the task does nothing (experiment::TaskNotes).
 void SayTaskNotes(const experiment::Experiment& experiment, const std::string& file);
-/// Says it where the simulated serial line cannot take the commands (experiment::FullLineNote).
-void SayFullLine(const experiment::Experiment& experiment);
+/// Says what the simulated line cannot take and what of the host does nothing (FullLineNote,
+/// IdleHostNote).
+void SaySimulatorNotes(const experiment::Experiment& experiment);
 
 /// Says once that the simulated robot does not stand level, and what would make it.
 void WarnOfTilt(const experiment::Experiment& experiment);
