@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <system_error>
 #include <unordered_set>
+#include <utility>
 
 #include "rift/limits/limits.hpp"
 
@@ -207,6 +208,11 @@ void RowReader::ReadHeader() {
   }
 }
 
+void RowReader::Advise(std::vector<size_t> columns, std::string what) {
+  advised_columns_ = std::move(columns);
+  advice_ = std::move(what);
+}
+
 bool RowReader::Next() {
   while (!rest_.empty()) {
     ++line_number_;
@@ -258,8 +264,11 @@ double RowReader::Number(std::string_view cell, size_t column) const {
 void RowReader::Refuse(std::string_view cell, size_t column) const {
   const std::string where =
       column < columns_.size() ? columns_[column] : fmt::format("{}", column + 1);
-  throw std::invalid_argument(fmt::format("{}:{}: column {} is '{}': a finite number is expected",
-                                          name_, line_number_, Shown(where), Shown(cell)));
+  const bool is_advised =
+      std::find(advised_columns_.begin(), advised_columns_.end(), column) != advised_columns_.end();
+  throw std::invalid_argument(fmt::format("{}:{}: column {} is '{}': a finite number is expected{}",
+                                          name_, line_number_, Shown(where), Shown(cell),
+                                          is_advised ? advice_ : ""));
 }
 
 }  // namespace rift::trajectory::csv

@@ -84,10 +84,8 @@ class ColumnMap {
 
   const std::vector<size_t>& Channels() const { return channels_; }
 
-  /// rift track marks what it has not measured for certain: 0 is tracked, all else is predicted,
-  /// ambiguous or lost.
-  bool IsTracked(const csv::RowReader& row) const {
-    return !state_ || !(row.Cells()[*state_] != 0.0);
+  bool IsTrackedIn(const csv::RowReader& row) const {
+    return !state_ || IsTracked(row.Cells()[*state_]);
   }
 
   StampedPose PoseOf(const csv::RowReader& row) const {
@@ -115,29 +113,18 @@ class ColumnMap {
   std::optional<size_t> state_;
 };
 
-/// A log of several robots has their rows among each other.
-void RequireOneRobot(const Trajectory& trajectory, const std::string& name) {
-  for (const Channel& channel : trajectory.channels) {
-    if (channel.name != "tag_id") continue;
-    std::vector<double> tags = channel.values;
-    std::erase_if(tags, [](double tag) { return std::isnan(tag); });  // not logged
-    if (tags.empty()) continue;
-    const auto [least, greatest] = std::minmax_element(tags.begin(), tags.end());
-    if (*least == *greatest) continue;
-    throw std::invalid_argument(
-        fmt::format("{}: it holds several robots, tags {:g} to {:g}: keep the rows of one tag_id",
-                    name, *least, *greatest));
-  }
-}
-
 void ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& names,
-                 const std::string& name, LogRows& rows) {
+                 const std::string& name, const std::string& columns_flag, LogRows& rows) {
   const ColumnMap columns(row.Columns(), names, name, row.Line());
+  row.Advise(columns.Channels(),
+             fmt::format("; where the columns to be read are named, others may hold text: "
+                         "{}'t={},x={},y={}'",
+                         columns_flag, names[0], names[1], names[2]));
   for (const size_t column : columns.Channels()) {
     rows.trajectory.channels.push_back({row.Columns()[column], {}});
   }
   while (row.Next()) {
-    if (!columns.IsTracked(row)) {
+    if (!columns.IsTrackedIn(row)) {
       ++rows.untracked;
       continue;
     }
@@ -146,7 +133,9 @@ void ReadColumns(csv::RowReader row, const std::array<std::string_view, 9>& name
       rows.trajectory.channels[i].values.push_back(row.Cells()[columns.Channels()[i]]);
     }
   }
-  RequireOneRobot(rows.trajectory, name);
+  for (const Channel& channel : rows.trajectory.channels) {
+    if (channel.name == "tag_id") RequireOneRobot(channel.values, name);
+  }
 }
 
 StampedPose TumPose(const csv::RowReader& row, const std::string& name) {
@@ -186,11 +175,11 @@ std::string_view NameOf(Format format) {
 }
 
 /// Nothing where the text has no columns, as that of another kind of file.
-std::string GuessOf(std::string_view text, const std::string& name) {
+ColumnGuess GuessOf(std::string_view text, const std::string& name) {
   try {
     return GuessColumns(text, name, "");
   } catch (const std::invalid_argument&) {
-    return "";
+    return {};
   }
 }
 
@@ -215,6 +204,18 @@ void ForgetAngles(Log& log) {
 
 }  // namespace
 
+bool IsTracked(double track_state) { return track_state == 0.0; }
+
+void RequireOneRobot(std::vector<double> tags, const std::string& name) {
+  std::erase_if(tags, [](double tag) { return std::isnan(tag); });  // not logged
+  if (tags.empty()) return;
+  const auto [least, greatest] = std::minmax_element(tags.begin(), tags.end());
+  if (*least == *greatest) return;
+  throw std::invalid_argument(
+      fmt::format("{}: it holds several robots, tags {:g} to {:g}: keep the rows of one tag_id",
+                  name, *least, *greatest));
+}
+
 void AddPose(LogRows& rows, const StampedPose& pose, const std::string& name, int line) {
   CheckMagnitudes(pose, name, line);
   if (std::isnan(pose.yaw_rad) && !rows.first_line_without_yaw) rows.first_line_without_yaw = line;
@@ -231,12 +232,12 @@ Format FormatFromHeader(std::string_view text, const std::string& name,
   if (Has(header, "t_s") && Has(header, "x_m") && Has(header, "y_m")) return Format::kRift;
   if (Has(header, "t") && Has(header, "x") && Has(header, "y")) return Format::kAuto;
   if (LooksLikeTum(line, rest)) return Format::kTum;
-  const std::string guess = GuessOf(text, name);
+  const auto [guess, unclear] = GuessOf(text, name);
   throw std::invalid_argument(fmt::format(
       "{}:{}: the header '{}' belongs to no dialect: it needs t_s,x_m,y_m (rift), t,x,y (tracker, "
-      "webots) or eight columns without header (tum); {} {}'{}'",
+      "webots) or eight columns without header (tum); {} {}'{}'{}",
       name, number, csv::Shown(line), guess.empty() ? "name its columns:" : "is it this?",
-      columns_flag, guess.empty() ? "t=...,x=...,y=...,yaw=...:deg" : guess));
+      columns_flag, guess.empty() ? "t=...,x=...,y=...,yaw=...:deg" : guess, unclear));
 }
 
 void RequireFormat(std::string_view text, const std::string& name, Format format) {
@@ -255,14 +256,15 @@ void RequireFormat(std::string_view text, const std::string& name, Format format
       NameOf(format)));
 }
 
-LogRows ReadRows(std::string_view text, const std::string& name, Format format) {
+LogRows ReadRows(std::string_view text, const std::string& name, Format format,
+                 const std::string& columns_flag) {
   LogRows rows;
   rows.trajectory.poses.reserve(std::count(text.begin(), text.end(), '\n') + 1);
   if (format == Format::kTum) {
     ReadTum(csv::RowReader(text, name, false, ' '), name, rows);
   } else {
     ReadColumns(csv::RowReader(text, name, true, ','),
-                format == Format::kRift ? kRiftColumns : kAuthorsColumns, name, rows);
+                format == Format::kRift ? kRiftColumns : kAuthorsColumns, name, columns_flag, rows);
   }
   return rows;
 }

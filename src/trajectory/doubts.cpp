@@ -121,7 +121,8 @@ std::vector<double> SpeedsOf(const Trajectory& trajectory, bool in_space) {
   return speeds;
 }
 
-void DoubtUnits(const Trajectory& trajectory, bool in_space, std::vector<std::string>& doubts) {
+void DoubtUnits(const Trajectory& trajectory, bool in_space, const UnitAdvice& advice,
+                std::vector<std::string>& doubts) {
   const auto& poses = trajectory.poses;
   constexpr double kShortest_m = 0.003, kSlowest_step_s = 2.0, kFastest_step_s = 1e-4;
   const std::vector<double> speeds_m_s = SpeedsOf(trajectory, in_space);
@@ -130,9 +131,8 @@ void DoubtUnits(const Trajectory& trajectory, bool in_space, std::vector<std::st
   const double step_s = steps_s.empty() ? 0.1 : statistics::Median(steps_s);
   if (step_s > kSlowest_step_s) {
     doubts.push_back(fmt::format(
-        "its poses are {:.3g} s apart: are its times in ms, us or ns? name the unit, as in --units "
-        "ms",
-        step_s));
+        "its poses are {:.3g} s apart: are its times in ms, us or ns? name the unit, as in {}",
+        step_s, advice.time));
   } else if (step_s < kFastest_step_s) {
     doubts.push_back(fmt::format(
         "its poses are {:.3g} s apart: are its times in another unit than they are read in?",
@@ -142,8 +142,8 @@ void DoubtUnits(const Trajectory& trajectory, bool in_space, std::vector<std::st
   if (speed_m_s > kFastest_m_s && step_s >= kFastest_step_s) {
     doubts.push_back(
         fmt::format("it moves at {:.4g} m/s, and no robot here drives faster than {:g}: are its "
-                    "positions in mm or cm? name the unit, as in --units mm",
-                    speed_m_s, kFastest_m_s));
+                    "positions in mm or cm? name the unit, as in {}",
+                    speed_m_s, kFastest_m_s, advice.length));
   }
   double extent_m = 0.0;
   for (const StampedPose& pose : poses) {
@@ -279,9 +279,10 @@ double TravelAgreement(const Trajectory& trajectory) {
   return Agreement(pieces, [](const Piece& piece) { return piece; });
 }
 
-std::vector<std::string> Doubts(const Trajectory& trajectory, bool in_space) {
+std::vector<std::string> Doubts(const Trajectory& trajectory, bool in_space,
+                                const UnitAdvice& advice) {
   std::vector<std::string> doubts;
-  DoubtUnits(trajectory, in_space, doubts);
+  DoubtUnits(trajectory, in_space, advice, doubts);
   if (!in_space) DoubtYaw(trajectory, doubts);
   DoubtRepeats(trajectory, in_space, doubts);
   DoubtStanding(trajectory, in_space, doubts);

@@ -1,111 +1,32 @@
-// What the columns of an unknown log may be. A guess is only ever offered, never used unasked.
+// What the columns of an unknown log may be: offered, or, where units alone are given, used and
+// told.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <charconv>
 #include <cmath>
+#include <map>
 
+#include "column_names.hpp"
 #include "columns.hpp"
 #include "plausibility.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/statistics/descriptive.hpp"
+#include "rift/trajectory/csv.hpp"
 
 namespace rift::trajectory {
 namespace {
 
-/// "pose.pose.position.x" and "posePositionX [mm]" in lower-case words.
-std::vector<std::string> WordsOf(const std::string& name) {
-  std::vector<std::string> words(1);
-  for (size_t i = 0; i < name.size(); ++i) {
-    const auto c = static_cast<unsigned char>(name[i]);
-    const bool is_hump = std::isupper(c) && i > 0 && std::islower(name[i - 1] & 0xff);
-    if ((!std::isalnum(c) || is_hump) && !words.back().empty()) words.emplace_back();
-    if (std::isalnum(c)) words.back() += static_cast<char>(std::tolower(c));
-  }
-  if (words.back().empty()) words.pop_back();
-  return words;
+/// `nan`, `inf`: what a program writes where it has no number.
+bool IsNoNumber(std::string_view cell) {
+  if (cell.starts_with('+')) cell.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc{} && end == cell.data() + cell.size() && !std::isfinite(value);
 }
 
-bool IsOneOf(const std::string& word, std::initializer_list<std::string_view> words) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-/// A column by its name.
-struct NamedColumn {
-  std::string name;
-  std::string quantity;  ///< empty: none
-  std::string unit;      ///< where its name ends in one
-  int rank = 0;          ///< of several that may be one quantity the lowest is taken
-};
-
-std::string QuantityOf(const std::vector<std::string>& words) {
-  const auto has = [&](std::initializer_list<std::string_view> any) {
-    return std::any_of(words.begin(), words.end(),
-                       [&](const std::string& word) { return IsOneOf(word, any); });
-  };
-  const std::string& last = words.back();
-  if (has({"vel", "velocity", "speed", "twist", "linear", "angular", "acc", "accel", "cmd", "rate",
-           "v", "covariance", "target", "desired", "goal", "ref", "setpoint", "error",
-           "waypoint"})) {
-    return "";
-  }
-  const bool is_rotation =
-      has({"orientation", "rotation", "quaternion", "quat", "rot", "q"}) || last.starts_with('q');
-  const std::string axis = last.size() == 2 && last[0] == 'q' ? last.substr(1) : last;
-  if (is_rotation && IsOneOf(axis, {"x", "y", "z", "w"})) return "q" + axis;
-  if (IsOneOf(last,
-              {"yaw", "theta", "heading", "psi", "phi", "angle", "orientation", "th", "rz"})) {
-    return "yaw";
-  }
-  if (IsOneOf(last, {"roll", "pitch"})) return last;
-  if (IsOneOf(last, {"t", "time", "timestamp", "stamp", "sec", "secs", "seconds", "elapsed",
-                     "clock", "millis", "micros", "nanos"})) {
-    return "t";
-  }
-  if (IsOneOf(last, {"nanosec", "nsec", "nsecs", "nanoseconds"})) return "nanosec";
-  if (IsOneOf(last, {"x", "posx", "px", "tx", "xpos", "east", "easting"})) return "x";
-  if (IsOneOf(last, {"y", "posy", "py", "ty", "ypos", "north", "northing"})) return "y";
-  if (IsOneOf(last, {"z", "posz", "pz", "tz", "zpos", "height", "up"})) return "z";
-  return "";
-}
-
-/// No length is without a unit ("q_x []"), nor in radians.
-bool FitsUnit(const NamedColumn& column) {
-  const std::string& quantity = column.quantity;
-  if (IsOneOf(quantity, {"x", "y", "z", "t"}) && column.name.ends_with("[]")) return false;
-  if (column.unit.empty() || quantity.empty() || quantity.starts_with('q')) return true;
-  return quantity == "nanosec" || UnitFor(quantity, column.unit).has_value();
-}
-
-NamedColumn Named(const std::string& name) {
-  NamedColumn column{.name = name};
-  std::vector<std::string> words = WordsOf(name);
-  if (words.empty()) return column;
-  if (words.size() > 1) {
-    for (const std::string_view quantity : {"t", "x", "yaw"}) {
-      if (words.back() == "m" || words.back() == "s" || UnitFor(quantity, words.back())) {
-        column.unit = words.back();
-      }
-    }
-    if (IsOneOf(words.back(), {"degrees", "degree"})) column.unit = "deg";
-    if (IsOneOf(words.back(), {"radians", "radian"})) column.unit = "rad";
-    const bool is_unit_alone = !column.unit.empty();
-    if (is_unit_alone) words.pop_back();
-  }
-  column.quantity = QuantityOf(words);
-  if (!FitsUnit(column)) column.quantity.clear();
-  if (words.back() == "millis") column.unit = "ms";
-  if (words.back() == "micros") column.unit = "us";
-  if (words.back() == "nanos") column.unit = "ns";
-  const bool is_pose = std::any_of(words.begin(), words.end(), [](const std::string& word) {
-    return IsOneOf(word, {"pose", "position", "pos", "translation", "orientation", "p", "q"});
-  });
-  column.rank = static_cast<int>(words.size()) + (is_pose ? -10 : 0);
-  if (!column.unit.empty() && column.quantity == "nanosec") column.unit.clear();
-  return column;
-}
-
-/// The numbers of a log by columns; those of a column that holds other things are left out.
+/// The numbers of a log by columns, NaN where a cell is empty; those of a column that holds other
+/// things, or nothing, are left out.
 struct Numbers {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;
@@ -123,13 +44,16 @@ Numbers ReadNumbers(std::string_view text, const std::string& name) {
   std::vector<bool> is_number(numbers.names.size(), true);
   for (size_t row = 0; row < kMostRows && table.Next(); ++row) {
     for (size_t i = 0; i < is_number.size(); ++i) {
-      const std::optional<double> value = table.Number(i);
+      std::optional<double> value = table.Number(i);
+      if (IsNoNumber(table.Cell(i))) value = StampedPose::kNotLogged;
       if (value) numbers.columns[i].push_back(*value);
       is_number[i] = is_number[i] && value;
     }
   }
+  const auto is_finite = [](double value) { return std::isfinite(value); };
   for (size_t i = 0; i < is_number.size(); ++i) {
-    if (!is_number[i]) numbers.columns[i].clear();
+    std::vector<double>& column = numbers.columns[i];
+    if (!is_number[i] || std::none_of(column.begin(), column.end(), is_finite)) column.clear();
   }
   return numbers;
 }
@@ -149,7 +73,8 @@ bool Rises(const std::vector<double>& values) {
          values.back() > values.front();
 }
 
-bool Varies(const std::vector<double>& values) {
+bool Varies(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
   return std::any_of(values.begin(), values.end(),
                      [&](double value) { return value != values.front(); });
 }
@@ -180,41 +105,94 @@ std::string LengthUnit(const std::vector<double>& x, const std::vector<double>& 
 
 using Guess = std::map<std::string, std::string>;
 
-Guess ByNames(const Numbers& numbers, std::map<std::string, std::string>& units) {
-  std::map<std::string, NamedColumn> best;
+/// Columns that are named alike, the first of them the one to take.
+using Alike = std::vector<std::string>;
+
+/// "; x may be x_ref or x_meas": to be appended to a message.
+std::string Unclear(const std::map<std::string, Alike>& may_be) {
+  constexpr size_t kMost = 6;
+  std::string text;
+  for (const char* quantity : {"x", "y"}) {
+    const auto found = may_be.find(quantity);
+    if (found == may_be.end() || found->second.empty()) continue;
+    Alike names = found->second;
+    if (names.size() > kMost) names.resize(kMost);
+    for (std::string& name : names) name = csv::Shown(name);
+    text += fmt::format("{} {} may be {}", text.empty() ? ";" : ",", quantity,
+                        fmt::join(names, " or "));
+  }
+  return text;
+}
+
+/// Columns of numbers in whose name x or y stands anywhere, where no name tells the position.
+std::string PositionsNamed(const Numbers& numbers) {
+  std::map<std::string, Alike> may_be;
   for (size_t i = 0; i < numbers.names.size(); ++i) {
-    const NamedColumn column = Named(numbers.names[i]);
+    const std::vector<std::string> words = WordsOf(numbers.names[i]);
+    if (words.empty() || numbers.columns[i].empty() || IsRate(words) || IsRotation(words)) continue;
+    if (std::any_of(words.begin(), words.end(), IsX)) may_be["x"].push_back(numbers.names[i]);
+    if (std::any_of(words.begin(), words.end(), IsY)) may_be["y"].push_back(numbers.names[i]);
+  }
+  return Unclear(may_be);
+}
+
+/// What of a pose the names tell, and which columns may be the position as well as each other.
+struct ToldByNames {
+  Guess guess;
+  std::string unclear;
+};
+
+ToldByNames ByNames(const Numbers& numbers, std::map<std::string, std::string>& units) {
+  std::map<std::string, NamedColumn> best;
+  std::map<std::string, Alike> alike;
+  for (size_t i = 0; i < numbers.names.size(); ++i) {
+    const NamedColumn column = NamedColumnOf(numbers.names[i]);
     if (column.quantity.empty() || numbers.columns[i].empty()) continue;
     if (column.quantity == "t" && !Rises(numbers.columns[i])) continue;
     const auto [found, is_new] = best.try_emplace(column.quantity, column);
-    if (!is_new && column.rank < found->second.rank) found->second = column;
+    Alike& names = alike[column.quantity];
+    if (column.rank < found->second.rank) {
+      found->second = column;
+      names.clear();
+    }
+    if (column.rank == found->second.rank) names.push_back(column.name);
   }
   if (best.contains("qz") && best.contains("qw"))
     best.erase("yaw");
   else
     for (const char* part : {"qx", "qy", "qz", "qw"}) best.erase(part);
-  Guess guess;
+  ToldByNames told;
   for (const auto& [quantity, column] : best) {
-    guess[quantity] = column.name;
+    told.guess[quantity] = column.name;
     units[quantity] = column.unit;
   }
-  return guess;
+  // Of several times, heights or angles the first is taken.
+  std::erase_if(alike, [](const auto& entry) { return entry.second.size() < 2; });
+  told.unclear = Unclear(alike);
+  return told;
 }
 
-/// By ranges alone: time is the first column that rises, x and y the next two that vary.
+/// What has no name but its place in the row.
+bool IsNameless(const std::string& name) {
+  return name.find_first_not_of("0123456789") == name.npos;
+}
+
+/// Of columns without names, by ranges alone: time is the first one that rises, x and y the next
+/// two that vary. A name that says something else is believed.
 void ByRanges(const Numbers& numbers, Guess& guess) {
-  const auto is_taken = [&](const std::string& name) {
-    return std::any_of(guess.begin(), guess.end(),
-                       [&](const auto& entry) { return entry.second == name; });
+  const auto may_be = [&](size_t i) {
+    const bool is_taken = std::any_of(guess.begin(), guess.end(), [&](const auto& entry) {
+      return entry.second == numbers.names[i];
+    });
+    return !is_taken && IsNameless(numbers.names[i]) && !numbers.columns[i].empty();
   };
   for (size_t i = 0; i < numbers.names.size() && !guess.contains("t"); ++i) {
-    const bool may_be = !numbers.columns[i].empty() && Rises(numbers.columns[i]);
-    if (may_be && !is_taken(numbers.names[i])) guess["t"] = numbers.names[i];
+    if (may_be(i) && Rises(numbers.columns[i])) guess["t"] = numbers.names[i];
   }
   if (guess.contains("x") != guess.contains("y")) return;
   for (size_t i = 0; i < numbers.names.size() && !guess.contains("y"); ++i) {
-    if (numbers.columns[i].empty() || !Varies(numbers.columns[i])) continue;
-    if (!is_taken(numbers.names[i])) guess[guess.contains("x") ? "y" : "x"] = numbers.names[i];
+    if (!may_be(i) || !Varies(numbers.columns[i])) continue;
+    guess[guess.contains("x") ? "y" : "x"] = numbers.names[i];
   }
 }
 
@@ -253,8 +231,7 @@ void YawByTravel(const Numbers& numbers, const Trajectory& path, Guess& guess,
     const std::string& name = numbers.names[i];
     const bool is_taken = std::any_of(guess.begin(), guess.end(),
                                       [&](const auto& entry) { return entry.second == name; });
-    const bool is_number = name.find_first_not_of("0123456789") == name.npos;
-    if (is_taken || !is_number) continue;  // a name that says something else is believed
+    if (is_taken || !IsNameless(name)) continue;
     if (numbers.columns[i].empty() || !Varies(numbers.columns[i])) continue;
     for (const std::string unit : {"", "deg"}) {
       const double agreement = AgreementOf(numbers.columns[i], path, unit.empty() ? 1.0 : 0.017453);
@@ -266,11 +243,15 @@ void YawByTravel(const Numbers& numbers, const Trajectory& path, Guess& guess,
   }
 }
 
-std::string Written(const Guess& guess, const std::map<std::string, std::string>& units,
-                    const std::vector<std::string>& header) {
-  // A comma ends a source: a name with one is given by its number, as one that is empty.
+std::string Written(const Guess& guess, const std::map<std::string, std::string>& unit_of,
+                    const Units& units, const std::vector<std::string>& header) {
+  const bool is_nameless = std::all_of(guess.begin(), guess.end(),
+                                       [](const auto& entry) { return IsNameless(entry.second); });
+  // A comma ends a source: a name with one is given by its number, as one that is empty. So are
+  // columns that all have numbers for names, which may be the first row of a log without a header.
   const auto source = [&](const std::string& name) {
-    if (!name.empty() && name.find(',') == name.npos) return name;
+    const bool is_name = !is_nameless && !name.empty() && name.find(',') == name.npos;
+    if (is_name) return name;
     return fmt::format("{}", std::find(header.begin(), header.end(), name) - header.begin() + 1);
   };
   std::string text;
@@ -278,10 +259,11 @@ std::string Written(const Guess& guess, const std::map<std::string, std::string>
     const auto found = guess.find(std::string(quantity));
     if (found == guess.end()) continue;
     text += fmt::format("{}{}={}", text.empty() ? "" : ",", quantity, source(found->second));
-    const auto unit = units.find(found->first);
-    const bool is_standard =
-        unit == units.end() || unit->second.empty() || IsOneOf(unit->second, {"m", "s", "rad"});
-    if (!is_standard) text += ":" + unit->second;
+    const auto unit = unit_of.find(found->first);
+    const bool has_unit = unit != unit_of.end() && !unit->second.empty();
+    if (has_unit && UnitFor(quantity, unit->second) != StandardUnit(quantity, units)) {
+      text += ":" + unit->second;
+    }
     if (quantity == "t" && guess.contains("nanosec")) {
       text += fmt::format("+{}:ns", source(guess.at("nanosec")));
     }
@@ -291,20 +273,21 @@ std::string Written(const Guess& guess, const std::map<std::string, std::string>
 
 }  // namespace
 
-std::string GuessColumns(std::string_view text, const std::string& name, const std::string& units) {
+ColumnGuess GuessColumns(std::string_view text, const std::string& name, const std::string& units) {
   const Numbers numbers = ReadNumbers(text, name);
   std::map<std::string, std::string> unit_of;
-  Guess guess = ByNames(numbers, unit_of);
+  auto [guess, unclear] = ByNames(numbers, unit_of);
+  if (!unclear.empty()) return {"", unclear};
   ByRanges(numbers, guess);
   for (const char* needed : {"t", "x", "y"}) {
-    if (!guess.contains(needed)) return "";
+    if (!guess.contains(needed)) return {"", *needed == 't' ? "" : PositionsNamed(numbers)};
   }
   const Units given = ParseUnits(units);
   const Trajectory path = PathOf(numbers, guess);
   if (!guess.contains("yaw") && !guess.contains("qz")) YawByTravel(numbers, path, guess, unit_of);
   const std::vector<double>& t = *numbers.Of(guess["t"]);
-  if (unit_of["t"].empty() && !given.time_s && !guess.contains("nanosec"))
-    unit_of["t"] = TimeUnit(t);
+  if (unit_of["t"].empty() && guess.contains("nanosec")) unit_of["t"] = "s";
+  if (unit_of["t"].empty() && !given.time_s) unit_of["t"] = TimeUnit(t);
   const double time_unit_s =
       unit_of["t"].empty() ? given.time_s.value_or(1.0) : UnitFor("t", unit_of["t"]).value_or(1.0);
   for (const char* length : {"x", "y", "z"}) {
@@ -317,7 +300,7 @@ std::string GuessColumns(std::string_view text, const std::string& name, const s
       if (unit_of[angle].empty()) unit_of[angle] = unit_of["yaw"];
     }
   }
-  return Written(guess, unit_of, numbers.names);
+  return {Written(guess, unit_of, given, numbers.names), ""};
 }
 
 }  // namespace rift::trajectory

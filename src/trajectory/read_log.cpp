@@ -85,10 +85,13 @@ void RequireHeights(const Log& log, const std::string& name, const ReadOptions& 
   }
 }
 
-void CheckMoves(const Trajectory& trajectory, const std::string& name, bool in_space) {
+/// `notes`: what has become of the rows that are no poses.
+void CheckMoves(const Trajectory& trajectory, const std::string& name, bool in_space,
+                const std::vector<std::string>& notes) {
   if (trajectory.poses.size() < 2) {
-    throw std::invalid_argument(fmt::format("{}: {}, and a trajectory needs at least 2", name,
-                                            trajectory.poses.empty() ? "0 poses" : "1 pose"));
+    throw std::invalid_argument(fmt::format("{}: {}, and a trajectory needs at least 2{}{}", name,
+                                            trajectory.poses.empty() ? "0 poses" : "1 pose",
+                                            notes.empty() ? "" : ": ", fmt::join(notes, "; ")));
   }
   const auto moves = [in_space](const StampedPose& a, const StampedPose& b) {
     return (b.Position() - a.Position()).norm() > 0.0 || (in_space && a.z_m != b.z_m);
@@ -125,6 +128,13 @@ void NoteLeftOut(size_t rows, std::string_view why, Log& log) {
   log.notes.push_back(fmt::format("{} left out: {}", number, why));
 }
 
+/// Units alone do not change those that a header names.
+UnitAdvice AdviceOf(const ReadOptions& options, bool has_named_units) {
+  if (!has_named_units) return {options.OwnUnitsFlag() + "mm", options.OwnUnitsFlag() + "ms"};
+  return {options.OwnColumnsFlag() + "'t=...,x=...:mm,y=...:mm'",
+          options.OwnColumnsFlag() + "'t=...:ms,x=...,y=...'"};
+}
+
 }  // namespace
 
 Log ReadLog(std::string_view text, const std::string& name, Format format) {
@@ -141,6 +151,9 @@ Log ReadLog(std::string_view text, const std::string& name, const ReadOptions& o
   if (has_own_columns) {
     log.format = Format::kRift;
     rows = ReadColumns(text, name, options);
+    if (!rows.guessed.empty()) {
+      log.notes.push_back(fmt::format("read as {}'{}'", options.OwnColumnsFlag(), rows.guessed));
+    }
   } else {
     if (options.format != Format::kAuto) RequireFormat(text, name, options.format);
     log.format = options.format == Format::kAuto
@@ -150,7 +163,7 @@ Log ReadLog(std::string_view text, const std::string& name, const ReadOptions& o
       if (const auto note = csv::NoteOfEnd(text)) log.notes.push_back(*note);
       text = csv::WithoutTornRow(text);
     }
-    rows = ReadRows(text, name, log.format);
+    rows = ReadRows(text, name, log.format, options.columns_flag);
   }
   log.trajectory = std::move(rows.trajectory);
   NoteLeftOut(rows.untracked, "track_state is predicted, ambiguous or lost", log);
@@ -162,8 +175,10 @@ Log ReadLog(std::string_view text, const std::string& name, const ReadOptions& o
     log.line_without_yaw = rows.first_line_without_yaw;
   }
   if (options.in_space) RequireHeights(log, name, options);
-  CheckMoves(log.trajectory, name, options.in_space);
-  log.doubts = Doubts(log.trajectory, options.in_space);
+  CheckMoves(log.trajectory, name, options.in_space, log.notes);
+  const bool has_named_units =
+      !rows.guessed.empty() || (!has_own_columns && log.format == Format::kRift);
+  log.doubts = Doubts(log.trajectory, options.in_space, AdviceOf(options, has_named_units));
   return log;
 }
 

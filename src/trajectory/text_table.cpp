@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <stdexcept>
 
 #include "columns.hpp"
@@ -13,8 +14,29 @@ bool IsBlankOrComment(std::string_view line) {
   return csv::IsBlankLine(line) || csv::IsComment(line);
 }
 
+/// `-0,25` where commas do not separate cells.
+bool HasDecimalComma(std::string_view cell) {
+  const size_t comma = cell.find(',');
+  if (comma == 0 || comma + 1 >= cell.size()) return false;
+  const bool is_between_digits = std::isdigit(static_cast<unsigned char>(cell[comma - 1])) != 0 &&
+                                 std::isdigit(static_cast<unsigned char>(cell[comma + 1])) != 0;
+  std::string with_point(cell);
+  with_point[comma] = '.';
+  return is_between_digits && cell.find('.') == cell.npos && csv::NumberOf(with_point).has_value();
+}
+
+/// Between semicolons each cell with a comma is a number, and there is one.
+bool ArePartedBySemicolons(std::string_view line) {
+  if (line.find(';') == line.npos || line.find(',') == line.npos) return false;
+  const std::vector<std::string> cells = csv::SplitHeader(line, ';');
+  return std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
+    return cell.find(',') == cell.npos || HasDecimalComma(cell);
+  });
+}
+
 /// What stands between the cells of a line.
 char SeparatorOf(std::string_view line) {
+  if (ArePartedBySemicolons(line)) return ';';
   char most = ' ';
   std::ptrdiff_t count = 0;
   for (const char separator : {',', ';', '\t'}) {
@@ -47,6 +69,18 @@ bool AreNumbers(const std::vector<std::string>& cells, char separator) {
   });
 }
 
+/// Those of these columns, of which one at least is not empty.
+bool AreNumbersIn(const std::vector<size_t>& columns, const std::vector<std::string>& cells,
+                  char separator) {
+  std::vector<std::string> chosen;
+  for (const size_t column : columns) {
+    if (column >= cells.size()) return false;
+    chosen.push_back(cells[column]);
+  }
+  const auto is_empty = [](const std::string& cell) { return cell.empty(); };
+  return !std::all_of(chosen.begin(), chosen.end(), is_empty) && AreNumbers(chosen, separator);
+}
+
 }  // namespace
 
 bool TextTable::NextLine(std::string_view& line) {
@@ -58,7 +92,8 @@ bool TextTable::NextLine(std::string_view& line) {
   return false;
 }
 
-TextTable::TextTable(std::string_view text, const std::string& name)
+TextTable::TextTable(std::string_view text, const std::string& name,
+                     const std::vector<size_t>& number_columns)
     : rest_(csv::WithoutMark(text)), name_(name) {
   std::string_view line;
   std::vector<std::string> comment;
@@ -74,7 +109,8 @@ TextTable::TextTable(std::string_view text, const std::string& name)
     separator_ = SeparatorOf(line);
     if (separator_ == '\t' && !ArePartedByTabs(line, rest_)) separator_ = ' ';
     columns_ = csv::SplitHeader(line, separator_);
-    if (AreNumbers(columns_, separator_)) {
+    first_line_ = line_number_;
+    if (AreNumbers(columns_, separator_) || AreNumbersIn(number_columns, columns_, separator_)) {
       const bool is_named = comment.size() == columns_.size();
       for (size_t i = 0; i < columns_.size(); ++i) {
         columns_[i] = is_named ? comment[i] : fmt::format("{}", i + 1);
@@ -82,7 +118,7 @@ TextTable::TextTable(std::string_view text, const std::string& name)
       rest_ = before;  // it is a row
       line_number_ = line_before;
     }
-    csv::RefuseRepeatedColumns(columns_, fmt::format("{}:{}", name_, std::max(1, line_number_)));
+    csv::RefuseRepeatedColumns(columns_, fmt::format("{}:{}", name_, first_line_));
     return;
   }
 }

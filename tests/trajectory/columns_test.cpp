@@ -79,17 +79,102 @@ TEST_CASE("Units of a kind hold for every quantity of it that names none") {
   CHECK(log.poses[0].yaw_rad == Approx(1.5707963268));
 }
 
-TEST_CASE("Columns are added, and a minus turns the sign of them all") {
+TEST_CASE("Columns are added, each with its own sign") {
   const Trajectory log =
       Read("sec,nano,x,y\n1,500000000,1,2\n2,250000000,3,5\n", "t=sec+nano:ns,x=-x,y=-y+x");
   CHECK(log.poses[0].t_s == Approx(1.5));
   CHECK(log.poses[1].t_s == Approx(2.25));
   CHECK(log.poses[0].x_m == -1.0);
-  CHECK(log.poses[1].y_m == -8.0);  // -(5 + 3)
+  CHECK(log.poses[1].y_m == -2.0);  // -5 + 3
+  CHECK(Read("t,off,ex,y\n0,1,0.25,0\n1,1,0.5,0\n", "t=t,x=off+-ex,y=y").poses[1].x_m == 0.5);
+  CHECK(Read("t,off,ex,y\n0,1,25,0\n1,1,50,0\n", "t=t,x=off + -ex:cm,y=-y").poses[1].x_m == 0.5);
+  CHECK_THROWS_WITH(Read("t,off,ex,y\n0,1,1,0\n1,1,2,0\n", "t=t,x=off-ex,y=y"),
+                    Contains("x is to be 'off-ex', and there is no such column (a difference is "
+                             "written A+-B): there are t, off, ex, y"));
   // A column whose name is the whole source comes first.
   const Trajectory named = Read("t,-x,a+b\n1,7,8\n2,9,10\n", "t=t,x=-x,y=a+b");
   CHECK(named.poses[0].x_m == 7.0);
   CHECK(named.poses[0].y_m == 8.0);
+}
+
+TEST_CASE("One column under two signs, units, numbers or orders is one column") {
+  const auto refused = [](const std::string& columns, const std::string& says) {
+    INFO(columns);
+    CHECK_THROWS_WITH(Read("time,py,a,b\n0,1,2,3\n1,4,5,7\n", columns),
+                      "log.csv:1: columns: " + says);
+  };
+  refused("t=time,x=py,y=-py", "x and y are both column 'py'");
+  refused("t=time,x=py,y=2", "x and y are both column 'py'");
+  refused("t=time,x=py:mm,y=py", "x and y are both column 'py'");
+  refused("t=time:ms,x=a,y=time", "t and y are both column 'time'");
+  refused("t=time,x=a+b,y=-b+-a", "x and y are both column 'a+b'");
+  // A frame turned by an eighth of a turn is one of sums.
+  CHECK(Read("time,a,b\n0,2,3\n1,5,7\n", "t=time,x=a+b,y=a+-b").poses[1].y_m == -2.0);
+}
+
+TEST_CASE("Without a header the first line is a row, also beside a column of text") {
+  const std::string text = "0,3,2,idle\n1,4,5,go\n2,6,5,go\n";
+  for (const std::string columns : {"t=1,x=2,y=3", "t=1,x=2,y=3:m", "t=1,x=2,y=-3"}) {
+    INFO(columns);
+    const Trajectory log = Read(text, columns);
+    REQUIRE(log.poses.size() == 3);
+    CHECK(log.poses[0].x_m == 3.0);
+    CHECK(std::abs(log.poses[0].y_m) == 2.0);
+  }
+  CHECK(Read("0,0,0,idle\n1,4,5,go\n", "t=1,x=2,y=3").poses.size() == 2);  // a number twice
+  CHECK(Read("# made by hand\n\n0;0,5;0,9;a\n1;1,5;0,8;b\n", "t=1,x=2,y=3").poses[0].y_m == 0.9);
+  // A header whose names are asked for is one, and so is one of words.
+  CHECK(Read("time,2,3,state\n0,7,8,idle\n1,9,8,go\n", "t=time,x=3,y=2").poses[0].x_m == 8.0);
+  CHECK(Read("t,a,b,state\n0,7,8,idle\n1,9,8,go\n", "t=1,x=2,y=3").poses.size() == 2);
+  CHECK_THROWS_WITH(Read("\n0,5,6\n1,7,8\n", "t=1,x=3,y=4"),
+                    Catch::StartsWith("log.csv:2: columns: y is to be '4'"));
+  CHECK_THROWS_WITH(Read("0,5,6\n1,7,8\n", "t=1,x=3,y=4"), Catch::StartsWith("log.csv:1: "));
+}
+
+TEST_CASE("Semicolons part numbers with decimal commas, however many of these there are") {
+  const Trajectory log = Read("0,05;1,2;-3,4e-1\n0,10;1,3;-3,5\n", "t=1,x=2,y=3");
+  REQUIRE(log.poses.size() == 2);
+  CHECK(log.poses[0].t_s == 0.05);
+  CHECK(log.poses[0].y_m == -0.34);
+  CHECK(Read("0,05;1,2;3,4;idle\n0,10;1,3;3,5;go\n", "t=1,x=2,y=3").poses[0].x_m == 1.2);
+  // Words between commas are no such numbers.
+  CHECK(Read("t,x,y;m,a\n0,1,2.5,3\n1,2,3.5,3\n", "t=t,x=x,y=y;m").poses[1].y_m == 3.5);
+  CHECK(Read("t;x;y\n0;1;2\n1;2;3\n", "t=t,x=x,y=y").poses[1].y_m == 3.0);
+}
+
+TEST_CASE("Rows that tracking has not measured are left out of a log in columns of its own") {
+  const std::string text =
+      "t_s,x_m,y_m,track_state,note\n0,0,0,0,a\n1,9,9,1,b\n2,1,0,0,c\n3,8,8,,d\n4,2,0,0,e\n";
+  const Log log = ReadLog(text, "log.csv", ReadOptions{.columns = "t=t_s,x=x_m,y=-y_m"});
+  CHECK(log.trajectory.poses.size() == 3);
+  CHECK(log.notes == std::vector<std::string>{
+                         "2 rows are left out: track_state is predicted, ambiguous or lost"});
+  // Text is of another program's tracking.
+  const std::string words = "t,x,y,track_state\n0,0,0,OK\n1,1,0,LOST\n";
+  CHECK(Read(words, "t=t,x=x,y=y").poses.size() == 2);
+  CHECK_THROWS_WITH(Read("t,x,y,track_state\n0,0,0,2\n1,1,0,2\n", "t=t,x=x,y=y"),
+                    "log.csv: 0 poses, and a trajectory needs at least 2: 2 rows are left out: "
+                    "track_state is predicted, ambiguous or lost");
+}
+
+TEST_CASE("A log of several robots is refused in columns of its own too") {
+  const std::string text = "t,x,y,tag_id\n0,0,0,3\n1,5,5,7\n2,1,0,3\n";
+  const std::string says = "log.csv: it holds several robots, tags 3 to 7: keep the rows of one";
+  CHECK_THROWS_WITH(Read(text, "t=t,x=x,y=y"), Catch::StartsWith(says));
+  CHECK_THROWS_WITH(Read(text, "", "mm"), Catch::StartsWith(says));
+  CHECK(Read("t,x,y,tag_id\n0,0,0,3\n1,5,5,\n2,1,0,3\n", "t=t,x=x,y=y").poses.size() == 3);
+}
+
+TEST_CASE("A row whose quaternion lacks a part has no angles, whichever part it is") {
+  for (const char* row : {",0,0,1", "0,,0,1", "0,0,,1", "0,0,0,"}) {
+    INFO(row);
+    const Log log =
+        ReadLog("t,x,y,a,b,c,d\n0,0,0,0,0,0,1\n1,1,0," + std::string(row) + "\n2,2,0,0,0,0,1\n",
+                "log.csv", ReadOptions{.columns = "t=t,x=x,y=y,qx=a,qy=b,qz=c,qw=d"});
+    CHECK(std::isnan(log.trajectory.poses[1].yaw_rad));
+    CHECK(log.trajectory.poses[2].yaw_rad == 0.0);
+    CHECK(log.line_without_yaw == 3);
+  }
 }
 
 TEST_CASE("A column is named by its number from 1 where no name is so") {
@@ -238,6 +323,16 @@ TEST_CASE("Units without columns are of columns that are guessed, or none are fo
                     Contains("units are given, and no columns are found for time, x and y"));
 }
 
+TEST_CASE("Columns that were guessed are told, and those that may be a place where none is taken") {
+  const Log log = ReadLog("time,x,y,yaw\n0,10,20,1\n1,30,40,1\n2,50,60,1\n", "log.csv",
+                          ReadOptions{.units = "cm", .columns_flag = "--real-columns "});
+  CHECK(log.notes == std::vector<std::string>{"read as --real-columns 't=time,x=x,y=y,yaw=yaw'"});
+  CHECK_THROWS_WITH(
+      Read("time,x_ref,y_ref,x_meas,y_meas\n0,1,2,3,4\n1,2,3,4,5\n2,3,5,5,7\n", "", "mm"),
+      "log.csv: units are given, and no columns are found for time, x and y: name them with "
+      "--columns t=...,x=...,y=...; x may be x_ref or x_meas, y may be y_ref or y_meas");
+}
+
 TEST_CASE("Words of a column's name tell its quantity and what is none of the pose") {
   // A log of a straight way with one column more; what that is guessed to be.
   const auto guessed = [](const std::string& column, double from, double step) {
@@ -246,7 +341,7 @@ TEST_CASE("Words of a column's name tell its quantity and what is none of the po
       text += std::to_string(0.1 * i) + "," + std::to_string(0.03 * i) + "," +
               std::to_string(0.001 * i * i) + "," + std::to_string(from + step * i) + "\n";
     }
-    const std::string guess = GuessColumns(text, "log", "");
+    const std::string guess = GuessColumns(text, "log", "").columns;
     const size_t at = guess.find("=" + column);
     return at == guess.npos ? ""
                             : guess.substr(guess.rfind(',', at) + 1, at - guess.rfind(',', at) - 1);

@@ -31,7 +31,7 @@ std::string GuessFor(const std::string& header,
                      const std::string& units = "") {
   std::string text = header + "\n";
   for (const Moment& moment : Circle()) text += row(moment) + "\n";
-  return GuessColumns(text, "log.csv", units);
+  return GuessColumns(text, "log.csv", units).columns;
 }
 
 /// Time, x, y and yaw in units of that many to a second, a metre and a radian.
@@ -108,6 +108,58 @@ TEST_CASE("A pose is preferred to what is named like it, and a quaternion to a y
   CHECK(guess ==
         "t=header.stamp.sec+header.stamp.nanosec:ns,x=pose.position.x,y=pose.position.y,"
         "qx=pose.orientation.x,qy=pose.orientation.y,qz=pose.orientation.z,qw=pose.orientation.w");
+}
+
+/// What a message says where no columns are found.
+std::string UnclearIn(const std::string& header, const std::string& row_format = "{},{},{},{},{}") {
+  std::string text = header + "\n";
+  for (const Moment& m : Circle()) {
+    text += fmt::format(fmt::runtime(row_format), m.t_s, m.x_m, m.y_m, m.x_m, m.y_m) + "\n";
+  }
+  const ColumnGuess guess = GuessColumns(text, "log.csv", "");
+  CHECK(guess.columns.empty());
+  return guess.unclear;
+}
+
+TEST_CASE("Columns whose names say something else than a place are not taken for one") {
+  CHECK(UnclearIn("time,enc_l,enc_r,a,b") == "");
+  CHECK(UnclearIn("time,x_ref,y_ref,x_meas,y_meas") ==
+        "; x may be x_ref or x_meas, y may be y_ref or y_meas");
+  CHECK(UnclearIn("time,vel_x,vel_y,q_x,q_y") == "");
+  // A time that no name tells is none either.
+  CHECK(UnclearIn("frames,x,y,a,b") == "");
+}
+
+TEST_CASE("Of two places that are named alike none is taken, and both are named") {
+  CHECK(UnclearIn("time,gps.x,gps.y,odom.x,odom.y") ==
+        "; x may be gps.x or odom.x, y may be gps.y or odom.y");
+  CHECK(GuessFor("time,x,y,odom.x,odom.y", [](const Moment& m) {
+          return fmt::format("{},{},{},{},{}", m.t_s, m.x_m, m.y_m, m.x_m, m.y_m);
+        }) == "t=time,x=x,y=y");
+}
+
+TEST_CASE("A cell without a finite number is an empty one to a guess") {
+  for (const char* word : {"nan", "NaN", "inf", "-inf", "+inf", ""}) {
+    INFO(word);
+    const std::string guess = GuessFor("time,pos_x,pos_y,1,2", [&](const Moment& m) {
+      const bool is_lost = m.t_s > 1.0 && m.t_s < 1.2;
+      return is_lost ? fmt::format("{},{},{},{},{}", m.t_s, word, word, m.t_s, m.x_m)
+                     : fmt::format("{},{},{},{},{}", m.t_s, m.x_m, m.y_m, m.t_s, m.x_m);
+    });
+    CHECK(guess == "t=time,x=pos_x,y=pos_y");
+  }
+  // A column that holds nothing else is no place.
+  CHECK(GuessFor("time,x,y,pose.x,pose.y", [](const Moment& m) {
+          return fmt::format("{},{},{},nan,nan", m.t_s, m.x_m, m.y_m);
+        }) == "t=time,x=x,y=y");
+}
+
+TEST_CASE("A unit in a name comes before those that are given, whatever it is") {
+  const auto row = [](const Moment& m) { return fmt::format("{},{},{}", m.t_s, m.x_m, m.y_m); };
+  CHECK(GuessFor("time (s),X (m),Y (m)", row, "mm,ms") == "t=time (s):s,x=X (m):m,y=Y (m):m");
+  CHECK(GuessFor("time (s),X (cm),Y (cm)", row, "mm") == "t=time (s),x=X (cm):cm,y=Y (cm):cm");
+  CHECK(GuessFor("time,X (mm),Y", row, "mm") == "t=time,x=X (mm),y=Y");
+  CHECK(GuessFor("secs,x,y", row, "ms") == "t=secs:s,x=x,y=y");
 }
 
 TEST_CASE("Nothing is offered where time or position cannot be told") {

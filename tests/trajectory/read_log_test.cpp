@@ -80,6 +80,58 @@ TEST_CASE("A row that tracking has not measured is left out and counted") {
         std::vector<std::string>{"1 row is " + why});
 }
 
+TEST_CASE("What has become of the rows stands beside the refusal of a log with too few") {
+  CHECK_THROWS_WITH(ReadLog("t_s,x_m,y_m,track_state\n0,0,0,2\n1,1,0,3\n", "log"),
+                    "log: 0 poses, and a trajectory needs at least 2: 2 rows are left out: "
+                    "track_state is predicted, ambiguous or lost");
+  CHECK_THROWS_WITH(ReadLog("t_s,x_m,y_m\n1,0,0\n1,1,0\n", "log"),
+                    "log: 1 pose, and a trajectory needs at least 2: 1 rows share the time of "
+                    "another: the last is kept");
+}
+
+TEST_CASE("A dialect's log with a column of text is refused with the flag that reads past it") {
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      ReadLog(text, "log", ReadOptions{.columns_flag = "--sim-columns "});
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(refusal("t_s,x_m,y_m,state\n0,0,0,idle\n1,1,0,go\n") ==
+        "log:2: column state is 'idle': a finite number is expected; where the columns to be read "
+        "are named, others may hold text: --sim-columns 't=t_s,x=x_m,y=y_m'");
+  CHECK_THAT(refusal("t,x,y,state\n0,0,0,idle\n1,1,0,go\n"),
+             Contains("--sim-columns 't=t,x=x,y=y'"));
+  CHECK(refusal("t_s,x_m,y_m,state\n0,0,zero,1\n1,1,0,1\n") ==
+        "log:2: column y_m is 'zero': a finite number is expected");
+}
+
+TEST_CASE("A doubt about units offers what changes them in a log of that header") {
+  const auto doubt = [](const std::string& header, const ReadOptions& options) {
+    std::string text = header + "\n";
+    for (int i = 0; i < 40; ++i) {
+      text += std::to_string(0.1 * i) + "," + std::to_string(30 * i) + "," + std::to_string(i * i) +
+              "\n";
+    }
+    const Log log = ReadLog(text, "log", options);
+    REQUIRE(log.doubts.size() == 1);
+    return log.doubts[0];
+  };
+  const std::string as_in = "name the unit, as in ";
+  const std::string of_columns = as_in + "--sim-columns 't=...,x=...:mm,y=...:mm'";
+  const ReadOptions bare{.columns_flag = "--sim-columns "};
+  CHECK_THAT(doubt("t_s,x_m,y_m", bare), Catch::EndsWith(of_columns));
+  CHECK_THAT(doubt("t,x,y", bare), Catch::EndsWith(as_in + "--sim-units mm"));
+  CHECK_THAT(doubt("t,x,y", {}), Catch::EndsWith(as_in + "--units mm"));
+  ReadOptions named{.columns = "t=t,x=x,y=y", .own_columns_flag = "--sim-columns "};
+  CHECK_THAT(doubt("t,x,y", named), Catch::EndsWith(as_in + "--sim-units mm"));
+  CHECK_THAT(doubt("t (s),X (m),Y (m)", {.units = "s", .columns_flag = "--sim-columns "}),
+             Catch::EndsWith(of_columns));
+  named = {.columns = "t=t,x=x,y=y", .columns_flag = "--set candidate.columns="};
+  CHECK_THAT(doubt("t,x,y", named), Catch::EndsWith(as_in + "--set candidate.units=mm"));
+}
+
 TEST_CASE("Files of other kinds are refused with what they are") {
   const auto says = [](const std::string& text, const std::string& what) {
     CHECK_THROWS_WITH(ReadLog(text, "log"), Contains("log: ") && Contains(what));

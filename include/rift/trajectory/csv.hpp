@@ -64,6 +64,9 @@ class RowReader {
   /// Header cells; empty for a table without header.
   const std::vector<std::string>& Columns() const { return columns_; }
 
+  /// Appends `what` to the refusal of a cell in one of these columns (from 0).
+  void Advise(std::vector<size_t> columns, std::string what);
+
   /// Goes on to the next row; false after the last. Every row has as many cells as the header, or
   /// as the first row has.
   bool Next();
@@ -85,6 +88,8 @@ class RowReader {
   const char separator_;
   std::vector<std::string> columns_;
   std::vector<double> cells_;
+  std::vector<size_t> advised_columns_;
+  std::string advice_;
   int line_number_ = 0;
 };
 

@@ -51,12 +51,19 @@ struct Log {
 /// cells in optional columns (not logged).
 Log ReadLog(std::string_view text, const std::string& name, Format format = Format::kAuto);
 
+/// How a person names the unit of a log, for the doubts that ask for one.
+struct UnitAdvice {
+  std::string length = "--units mm";
+  std::string time = "--units ms";
+};
+
 /// What no robot on wheels logs, each with the mistake that makes a log look so: speeds above 10
 /// m/s, a path of a few millimetres, poses seconds apart, rows that are each there twice, a robot
 /// that lies on its side, a yaw that has nothing to do with the direction of travel (degrees for
 /// radians, a mirrored axis, swapped axes, a wrong column).
 /// In space (ReadOptions::in_space) neither tilt nor yaw is doubted, and distances hold z.
-std::vector<std::string> Doubts(const Trajectory& trajectory, bool in_space = false);
+std::vector<std::string> Doubts(const Trajectory& trajectory, bool in_space = false,
+                                const UnitAdvice& advice = {});
 
 /// The rift dialect; doubles in the shortest form that reads back to the same bits, values that
 /// are not logged as empty cells.
