@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <stdexcept>
@@ -70,9 +71,28 @@ MovingRange FindMoving(std::span<const trajectory::StampedPose> poses, double ra
 }
 
 template <int N>
-double StandingLength_m(std::span<const trajectory::StampedPose> poses, double radius_m) {
+bool StaysWithin(std::span<const trajectory::StampedPose> poses, double radius_m) {
+  return std::all_of(poses.begin(), poses.end(), [&](const trajectory::StampedPose& pose) {
+    return Distance_m<N>(pose, poses.front()) <= radius_m;
+  });
+}
+
+template <int N>
+double MovingLength_m(std::span<const trajectory::StampedPose> poses, double radius_m) {
+  if (StaysWithin<N>(poses, radius_m)) return 0.0;
   const MovingRange moving = FindMoving<N>(poses, radius_m);
-  return Length_m<N>(poses.first(moving.first + 1)) + Length_m<N>(poses.subspan(moving.last));
+  return Distance_m<N>(poses[moving.first], poses.front()) +
+         Length_m<N>(poses.subspan(moving.first, moving.last - moving.first + 1)) +
+         Distance_m<N>(poses.back(), poses[moving.last]);
+}
+
+template <int N>
+double StandingShare(std::span<const trajectory::StampedPose> poses, double radius_m) {
+  if (StaysWithin<N>(poses, radius_m)) return 1.0;
+  const MovingRange moving = FindMoving<N>(poses, radius_m);
+  const double standing_m =
+      Length_m<N>(poses.first(moving.first + 1)) + Length_m<N>(poses.subspan(moving.last));
+  return standing_m / Length_m<N>(poses);
 }
 
 template <int N>
@@ -192,7 +212,9 @@ PoseIn<N> AligningMotion(const ArcPathIn<N>& sim, const ArcPathIn<N>& real, Alig
 }
 
 template MovingRange FindMoving<2>(std::span<const trajectory::StampedPose>, double);
-template double StandingLength_m<2>(std::span<const trajectory::StampedPose>, double);
+template bool StaysWithin<2>(std::span<const trajectory::StampedPose>, double);
+template double MovingLength_m<2>(std::span<const trajectory::StampedPose>, double);
+template double StandingShare<2>(std::span<const trajectory::StampedPose>, double);
 template ArcPathIn<2> MakeArcPathIn<2>(const trajectory::Trajectory&, const GapOptions&);
 template PointsIn<2> PointsAt<2>(const ArcPathIn<2>&, const std::vector<double>&);
 template PointsIn<2> Resample<2>(const ArcPathIn<2>&, int);
@@ -200,7 +222,9 @@ template PoseIn<2> StartMotion<2>(const ArcPathIn<2>&, const ArcPathIn<2>&);
 template PoseIn<2> BestRigidMotion<2>(const ArcPathIn<2>&, const ArcPathIn<2>&, int);
 template PoseIn<2> AligningMotion<2>(const ArcPathIn<2>&, const ArcPathIn<2>&, Align, int);
 template MovingRange FindMoving<3>(std::span<const trajectory::StampedPose>, double);
-template double StandingLength_m<3>(std::span<const trajectory::StampedPose>, double);
+template bool StaysWithin<3>(std::span<const trajectory::StampedPose>, double);
+template double MovingLength_m<3>(std::span<const trajectory::StampedPose>, double);
+template double StandingShare<3>(std::span<const trajectory::StampedPose>, double);
 template ArcPathIn<3> MakeArcPathIn<3>(const trajectory::Trajectory&, const GapOptions&);
 template PointsIn<3> PointsAt<3>(const ArcPathIn<3>&, const std::vector<double>&);
 template PointsIn<3> Resample<3>(const ArcPathIn<3>&, int);

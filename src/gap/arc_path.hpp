@@ -53,9 +53,19 @@ struct MovingRange {
 template <int N>
 MovingRange FindMoving(std::span<const trajectory::StampedPose> poses, double radius_m);
 
-/// Arc length that was logged outside that range: jitter of a standing robot.
+/// Whether the poses, at least one, never leave that radius of the first: the robot stood.
 template <int N>
-double StandingLength_m(std::span<const trajectory::StampedPose> poses, double radius_m);
+bool StaysWithin(std::span<const trajectory::StampedPose> poses, double radius_m);
+
+/// Arc length without jitter: what was logged outside that range counts with how far it led. 0 of a
+/// robot that stood.
+template <int N>
+double MovingLength_m(std::span<const trajectory::StampedPose> poses, double radius_m);
+
+/// Of the arc length, which is above zero, what was logged outside that range, jitter of a standing
+/// robot; 1 where it stood throughout.
+template <int N>
+double StandingShare(std::span<const trajectory::StampedPose> poses, double radius_m);
 
 /// A polyline over normalised arc length u (paper, section 3.1): vertex i stands at
 /// u[i] = s_i / s_total, and the path is linear in u between vertices.

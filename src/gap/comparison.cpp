@@ -129,14 +129,6 @@ void MeasureGaps(const Paths<N>& paths, const GapOptions& options, Comparison& r
     result.real_from_sim = {kNotComputed, kNotComputed, kNotComputed};
 }
 
-/// Of the whole log, whether the path was trimmed or not.
-template <int N>
-double StandstillShare(const trajectory::Trajectory& log, const ArcPathIn<N>& path,
-                       const GapOptions& options) {
-  const double standing_m = StandingLength_m<N>(log.poses, options.standstill_radius_m);
-  return standing_m / (path.length_m + (options.trim_standstill ? standing_m : 0.0));
-}
-
 template <int N>
 void MeasureEnds(const Paths<N>& paths, Comparison& result) {
   result.sim_length_m = paths.sim.length_m;
@@ -227,8 +219,9 @@ Comparison CompareIn(const trajectory::Trajectory& sim, const trajectory::Trajec
   MeasureEnds(paths, result);
   MeasureShape(paths, result);
   result.equal_time_m = EqualTime_m(paths.sim, paths.real);
-  result.sim_standstill_share = StandstillShare(sim, paths.sim, options);
-  result.real_standstill_share = StandstillShare(real, paths.real, options);
+  // Of the whole logs, whether the paths were trimmed or not.
+  result.sim_standstill_share = StandingShare<N>(sim.poses, options.standstill_radius_m);
+  result.real_standstill_share = StandingShare<N>(real.poses, options.standstill_radius_m);
   return result;
 }
 
@@ -260,6 +253,11 @@ ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::T
 std::vector<double> TimesAlong_s(const trajectory::Trajectory& path, const GapOptions& options) {
   options.Check();
   return options.IsInSpace() ? TimesIn_s<3>(path, options) : TimesIn_s<2>(path, options);
+}
+
+double MovingLength_m(const trajectory::Trajectory& path, const GapOptions& options) {
+  return options.IsInSpace() ? MovingLength_m<3>(path.poses, options.standstill_radius_m)
+                             : MovingLength_m<2>(path.poses, options.standstill_radius_m);
 }
 
 Comparison Compare(const trajectory::Trajectory& sim, const trajectory::Trajectory& real,

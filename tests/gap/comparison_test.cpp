@@ -285,6 +285,40 @@ TEST_CASE("Jitter of a standing robot is counted and can be trimmed") {
   CHECK(trimmed.gap_m < 0.2 * counted.gap_m);
 }
 
+TEST_CASE("All of the arc length of a robot that never leaves its place is standstill") {
+  Trajectory stands;
+  for (int i = 0; i < 60; ++i) {
+    stands.poses.push_back({.t_s = 0.05 * i, .x_m = i % 2 == 0 ? 0.003 : -0.003, .y_m = 0.0});
+  }
+  GapOptions options;
+  for (const bool trims : {false, true}) {
+    options.trim_standstill = trims;
+    const Comparison result = Compare(StraightPath(1.0, 50), stands, options);
+    CHECK(result.real_standstill_share == 1.0);
+    CHECK(result.sim_standstill_share == Approx(0.0).margin(1e-9));
+    CHECK(Compare(stands, StraightPath(1.0, 50), options).sim_standstill_share == 1.0);
+  }
+  options.standstill_radius_m = 0.005;  // from its first pose it goes 6 mm to the other side
+  CHECK(Compare(stands, stands, options).real_standstill_share == 0.0);
+}
+
+TEST_CASE("The length of a way holds what was driven near its ends, and no jitter there") {
+  Trajectory path = StraightPath(1.0, 201);
+  const double length_m = path.ArcLength_m();
+  CHECK(MovingLength_m(path, {}) == Approx(length_m));
+  Trajectory waits;
+  for (int i = 0; i < 400; ++i) {
+    waits.poses.push_back({.t_s = 0.05 * i - 20.0,
+                           .x_m = path.poses[0].x_m,
+                           .y_m = path.poses[0].y_m + (i % 2 == 0 ? 0.0 : 0.001)});
+  }
+  waits.poses.insert(waits.poses.end(), path.poses.begin(), path.poses.end());
+  CHECK(waits.ArcLength_m() > 1.39);
+  CHECK(MovingLength_m(waits, {}) == Approx(length_m).epsilon(1e-3));
+  waits.poses.resize(400);
+  CHECK(MovingLength_m(waits, {}) == 0.0);
+}
+
 TEST_CASE("Hausdorff and Frechet tell a detour back and forth apart") {
   // Forward, back and forward again along one line: every point is on the other path, but no
   // walk along both stays close.

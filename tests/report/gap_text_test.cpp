@@ -46,6 +46,25 @@ TEST_CASE(
   CHECK_THAT(GapText(result), Contains("standing still makes 5.0 % of the real arc length"));
 }
 
+TEST_CASE("Standing still is told of the side that stood, and of both where both did") {
+  const auto text = [](double sim_share, double real_share) {
+    gap::GapResult result = Trials(1);
+    gap::Comparison& comparison = result.trials[0].comparison;
+    comparison.sim_length_m = comparison.real_length_m = 2.0;
+    comparison.sim_standstill_share = sim_share;
+    comparison.real_standstill_share = real_share;
+    return GapText(result);
+  };
+  const std::string end = " arc length; --trim-standstill takes it out\n";
+  const std::string of_sim = "standing still makes 25.2 % of the simulated" + end,
+                    of_real = "standing still makes 30.0 % of the real" + end;
+  CHECK_THAT(text(0.252, 0.0), Contains(of_sim) && !Contains("real arc length"));
+  CHECK_THAT(text(0.0, 0.3), Contains(of_real) && !Contains("simulated arc length"));
+  CHECK_THAT(text(0.252, 0.3), Contains(of_sim + of_real));
+  CHECK_THAT(text(0.0, 1.0), Contains("standing still makes 100.0 % of the real arc length; it "
+                                      "never leaves --standstill-radius, 0.01 m\n"));
+}
+
 TEST_CASE("Yaw errors are the mean and the largest of the trials that tell their yaw") {
   gap::GapResult result = Trials(3);
   CHECK_THAT(GapText(result), !Contains("yaw error"));

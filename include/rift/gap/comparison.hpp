@@ -47,7 +47,8 @@ struct Comparison {
   double shape_gap_m = kNotComputed;          ///< gap left after the best rigid motion
   geometry::Pose2 real_from_sim;              ///< that motion; NaN in space: BestMotionInSpace()
 
-  double sim_standstill_share = kNotComputed;  ///< of the arc length, logged while standing
+  /// Of the arc length, logged while standing; 1 of a robot that never left its place.
+  double sim_standstill_share = kNotComputed;
   double real_standstill_share = kNotComputed;
 
   /// Largest distance of a vertex to the closest point of the other path. A path of more than 500
@@ -88,6 +89,10 @@ ErrorProfile ProfileAlong(const trajectory::Trajectory& sim, const trajectory::T
 /// When a path passes the samples, in s since its first pose, after trimming; where it stands, the
 /// end of the stop. Throws as Compare does.
 std::vector<double> TimesAlong_s(const trajectory::Trajectory& path, const GapOptions& options);
+
+/// Arc length of a path of at least one pose without the jitter of a standing robot: within
+/// options.standstill_radius_m of both ends only how far it led counts; 0 where it never leaves.
+double MovingLength_m(const trajectory::Trajectory& path, const GapOptions& options);
 
 /// The rigid motion in space that brings `sim` closest to `real`, after which the shape gap is left
 /// (dimension xyz).

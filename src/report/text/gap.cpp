@@ -95,14 +95,26 @@ std::string YawText(const gap::GapResult& result) {
 
 /// Of a robot that drives off and arrives without standing the first and the last way within the
 /// radius is logged as standing too.
-std::string StandstillText(const gap::GapResult& result) {
-  const double share = MeanOf(result, &Comparison::real_standstill_share);
-  const double standing_m = share * MeanOf(result, &Comparison::real_length_m);
+std::string StandstillOf(const gap::GapResult& result, const char* side,
+                         double Comparison::*share_of, double Comparison::*length_of_m) {
+  const double share = MeanOf(result, share_of);
+  const double standing_m = share * MeanOf(result, length_of_m);
   const bool may_have_moved = standing_m <= 2.0 * result.options.standstill_radius_m;
-  if (result.options.trim_standstill || share < 0.01 || may_have_moved) return "";
-  return fmt::format(
-      "standing still makes {:.1f} % of the real arc length; --trim-standstill takes it out\n",
-      100.0 * share);
+  if (!(share >= 0.01) || may_have_moved) return "";
+  const std::string what_to_do = share < 1.0
+                                     ? "--trim-standstill takes it out"
+                                     : fmt::format("it never leaves --standstill-radius, {:g} m",
+                                                   result.options.standstill_radius_m);
+  return fmt::format("standing still makes {:.1f} % of the {} arc length; {}\n", 100.0 * share,
+                     side, what_to_do);
+}
+
+std::string StandstillText(const gap::GapResult& result) {
+  if (result.options.trim_standstill) return "";
+  return StandstillOf(result, "simulated", &Comparison::sim_standstill_share,
+                      &Comparison::sim_length_m) +
+         StandstillOf(result, "real", &Comparison::real_standstill_share,
+                      &Comparison::real_length_m);
 }
 
 std::string VerdictText(const gap::GapResult& result) {
