@@ -48,12 +48,13 @@ void DoubtScale(const PointsIn<N>& sim, const PointsIn<N>& real, std::vector<std
   struct Factor {
     double factor;
     const char* units;
+    const char* of_larger;
   };
-  constexpr std::array<Factor, 5> kFactors{{{1000.0, "mm for m"},
-                                            {100.0, "cm for m"},
-                                            {39.37, "inches for m"},
-                                            {10.0, "mm for cm"},
-                                            {3.281, "feet for m"}}};
+  constexpr std::array<Factor, 5> kFactors{{{1000.0, "mm for m", "mm"},
+                                            {100.0, "cm for m", "cm"},
+                                            {39.37, "inches for m", "in"},
+                                            {10.0, "mm for cm", "mm"},
+                                            {3.281, "feet for m", "ft"}}};
   constexpr double kSameFactor = 0.15, kSameShape = 0.1;
   const double sim_m = Extent_m<N>(sim), real_m = Extent_m<N>(real);
   if (!(sim_m > 0.0) || !(real_m > 0.0)) return;
@@ -63,10 +64,13 @@ void DoubtScale(const PointsIn<N>& sim, const PointsIn<N>& real, std::vector<std
     const double to_sim = sim_m > real_m ? factor.factor : 1.0 / factor.factor;
     const double rest_m = MeanDistance_m<N>(sim, real, Matrix<N>::Identity() * to_sim);
     if (rest_m > kSameShape * sim_m) continue;
+    const bool is_sim = sim_m > real_m;
     doubts.push_back(fmt::format(
-        "the path of {} is {:.4g} times as large as that of {}: {}? name the unit, as in --units "
-        "mm",
-        sim_m > real_m ? "SIM" : "REAL", ratio, sim_m > real_m ? "REAL" : "SIM", factor.units));
+        "the path of {0} is {1:.4g} times as large as that of {2}: {3}? name the unit, as in "
+        "--{4}-units {5}, or, where the header names one, --{4}-columns "
+        "'t=...,x=...:{5},y=...:{5}'",
+        is_sim ? "SIM" : "REAL", ratio, is_sim ? "REAL" : "SIM", factor.units,
+        is_sim ? "sim" : "real", factor.of_larger));
     return;
   }
 }
@@ -254,11 +258,16 @@ void DoubtClocks(const Trajectory& sim, const Trajectory& real, const GapOptions
       sim_s, real_s));
 }
 
+/// On whatever clocks, whose stamps are rounded.
 template <int N>
 bool AreSame(const Trajectory& sim, const Trajectory& real) {
+  const double sim_s = sim.poses.front().t_s, real_s = real.poses.front().t_s;
+  const double rounding_s = 1e-7 + 1e-15 * std::max(std::abs(sim_s), std::abs(real_s));
   return std::equal(sim.poses.begin(), sim.poses.end(), real.poses.begin(), real.poses.end(),
-                    [](const StampedPose& a, const StampedPose& b) {
-                      return PositionOf<N>(a) == PositionOf<N>(b) && a.t_s == b.t_s;
+                    [&](const StampedPose& a, const StampedPose& b) {
+                      const double apart_s = (a.t_s - sim_s) - (b.t_s - real_s);
+                      return PositionOf<N>(a) == PositionOf<N>(b) &&
+                             std::abs(apart_s) <= rounding_s;
                     });
 }
 
@@ -286,14 +295,9 @@ Texture TextureOf(const Trajectory& log) {
 }  // namespace
 
 bool IsStanding(const Trajectory& path, const GapOptions& options) {
-  const auto is_near = [&](const StampedPose& pose) {
-    const StampedPose& first = path.poses.front();
-    const double off_m = options.IsInSpace()
-                             ? (pose.PositionInSpace() - first.PositionInSpace()).norm()
-                             : (pose.Position() - first.Position()).norm();
-    return off_m <= options.standstill_radius_m;
-  };
-  return path.poses.size() > 1 && std::all_of(path.poses.begin(), path.poses.end(), is_near);
+  const double radius_m = options.standstill_radius_m;
+  return path.poses.size() > 1 && (options.IsInSpace() ? StaysWithin<3>(path.poses, radius_m)
+                                                       : StaysWithin<2>(path.poses, radius_m));
 }
 
 bool LookSwapped(const Trajectory& sim, const Trajectory& real) {

@@ -110,20 +110,26 @@ std::vector<std::optional<size_t>> CopiesAmong(std::span<const trajectory::Traje
   return copy_of;
 }
 
+std::vector<trajectory::Trajectory> Distinct(std::span<const trajectory::Trajectory> reals) {
+  const std::vector<std::optional<size_t>> copy_of = CopiesAmong(reals);
+  std::vector<trajectory::Trajectory> distinct;
+  for (size_t i = 0; i < reals.size(); ++i) {
+    if (!copy_of[i]) distinct.push_back(reals[i]);
+  }
+  return distinct;
+}
+
 void Judge(GapResult& result) {
   const std::vector<std::optional<size_t>> copy_of = CopiesAmong(result.reals);
   std::vector<double> gaps_m;
-  std::vector<trajectory::Trajectory> distinct;
   double sum_m = 0.0;
   for (size_t i = 0; i < result.trials.size(); ++i) {
     const double gap_m = result.trials[i].comparison.gap_m;
     sum_m += gap_m;
-    if (copy_of[i]) continue;
-    gaps_m.push_back(gap_m);
-    distinct.push_back(result.reals[i]);
+    if (!copy_of[i]) gaps_m.push_back(gap_m);
   }
   result.mean_gap_m = sum_m / static_cast<double>(result.trials.size());
-  result.noise_floor_m = NoiseFloor_m(distinct, result.options);
+  result.noise_floor_m = NoiseFloor_m(Distinct(result.reals), result.options);
   result.verdict = JudgeRepeats(gaps_m, result.options.threshold_m, result.judged_by);
 }
 

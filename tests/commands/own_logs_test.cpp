@@ -91,19 +91,20 @@ std::vector<Mistake> Mistakes() {
          l.flags = {"--real-columns", "t=t_s,x=x_m,y=y_m,yaw=yaw_rad:deg"};
        },
        "radians read as degrees"},
-      {"millimetres", OfReal([](Row& r) { r.x *= 1000, r.y *= 1000; }), "--units mm"},
+      {"millimetres", OfReal([](Row& r) { r.x *= 1000, r.y *= 1000; }),
+       "--real-columns 't=...,x=...:mm,y=...:mm'"},
       {"centimetres", OfReal([](Row& r) { r.x *= 100, r.y *= 100; }), "positions in mm or cm"},
       {"inches", OfReal([](Row& r) { r.x /= 0.0254, r.y /= 0.0254; }), "inches for m"},
       {"metres read as millimetres",
        [](Logs& l) {
-         l.flags = {"--real-units", "mm"};
+         l.flags = {"--real-columns", "t=t_s,x=x_m,y=y_m,yaw=yaw_rad", "--real-units", "mm"};
        },
        "the whole path lies within 0.00"},
       {"milliseconds", OfReal([](Row& r) { r.t *= 1000; }), "are its times in ms"},
       {"microseconds", OfReal([](Row& r) { r.t *= 1e6; }), "are its times in ms, us"},
       {"seconds read as milliseconds",
        [](Logs& l) {
-         l.flags = {"--real-units", "ms"};
+         l.flags = {"--real-columns", "t=t_s,x=x_m,y=y_m,yaw=yaw_rad", "--real-units", "ms"};
        },
        "are its times in another unit"},
       {"swapped, by name", [](Logs& l) { l.sim_name = "robot3.csv", l.real_name = "gazebo.csv"; },

@@ -83,8 +83,8 @@ TEST_CASE("A sweep warns once of a program that writes millimetres, and keeps it
   const ProcessResult run = bench.Sweep("a, b");
   INFO(run.err);
   CHECK(Count(run.err, "warning: ") == 2);
-  CHECK(Count(run.err, "are its positions in mm or cm? name the unit, as in candidate.units: mm") ==
-        1);
+  CHECK(Count(run.err,
+              "are its positions in mm or cm? name the unit, as in --set candidate.units=mm") == 1);
   CHECK(Count(run.err, "mm for m?") == 1);
   const json doubts = bench.Doubts();
   REQUIRE(doubts.size() == 2);

@@ -57,14 +57,26 @@ TEST_CASE("The same log twice is told, and one that differs in a time or a place
   CHECK(Doubt(Bend(), longer) == "");
 }
 
+TEST_CASE("The same log on another clock is the same") {
+  const std::string same = "SIM and REAL are the same log: name the robot's own";
+  for (const double shift_s : {1.0, -3.3, 1.7e9}) {
+    INFO(shift_s);
+    const Trajectory shifted =
+        Changed(Bend(), [&](StampedPose& pose) { pose.t_s = pose.t_s + shift_s; });
+    CHECK(Doubt(Bend(), shifted) == same);
+    CHECK(Doubt(shifted, Bend()) == same);
+  }
+}
+
 TEST_CASE("A path in another unit is told with its factor and the side that is to be mended") {
   struct Unit {
     double factor;
     const char* name;
+    std::string unit;
   };
-  for (const Unit& unit :
-       {Unit{1000.0, "mm for m"}, Unit{100.0, "cm for m"}, Unit{39.37, "inches for m"},
-        Unit{10.0, "mm for cm"}, Unit{3.281, "feet for m"}}) {
+  for (const Unit& unit : {Unit{1000.0, "mm for m", "mm"}, Unit{100.0, "cm for m", "cm"},
+                           Unit{39.37, "inches for m", "in"}, Unit{10.0, "mm for cm", "mm"},
+                           Unit{3.281, "feet for m", "ft"}}) {
     INFO(unit.name);
     const Trajectory large = Changed(Beside(Bend()), [&](StampedPose& pose) {
       pose.x_m *= unit.factor;
@@ -74,6 +86,8 @@ TEST_CASE("A path in another unit is told with its factor and the side that is t
     CHECK(of_real.starts_with("the path of REAL is "));
     CHECK(of_real.find(std::string("times as large as that of SIM: ") + unit.name) !=
           std::string::npos);
+    CHECK(of_real.find("--real-units " + unit.unit + ", or") != std::string::npos);
+    CHECK(of_sim.find("--sim-units " + unit.unit + ", or") != std::string::npos);
     CHECK(of_sim.starts_with("the path of SIM is "));
     CHECK(of_sim.find(std::string("times as large as that of REAL: ") + unit.name) !=
           std::string::npos);
@@ -121,8 +135,12 @@ Trajectory Ray(double angle_rad, double length_m = 1.0) {
 
 TEST_CASE("A unit explains a size within 15 percent of its factor and a shape within a tenth") {
   const auto is_told = [](double angle_rad, double length_m) {
-    const bool of_real = Doubt(Ray(0.1), Ray(0.1 + angle_rad, length_m)).ends_with("--units mm");
-    CHECK(Doubt(Ray(0.1 + angle_rad, length_m), Ray(0.1)).ends_with("--units mm") == of_real);
+    const auto tells = [](const std::string& doubt, const std::string& side) {
+      return doubt.ends_with("name the unit, as in --" + side + "-units mm, or, where the header " +
+                             "names one, --" + side + "-columns 't=...,x=...:mm,y=...:mm'");
+    };
+    const bool of_real = tells(Doubt(Ray(0.1), Ray(0.1 + angle_rad, length_m)), "real");
+    CHECK(tells(Doubt(Ray(0.1 + angle_rad, length_m), Ray(0.1)), "sim") == of_real);
     return of_real;
   };
   CHECK(is_told(0.0, 1140.0));

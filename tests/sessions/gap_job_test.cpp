@@ -87,6 +87,39 @@ TEST_CASE("Columns of both sides are those of a side that says nothing of its ow
   }
 }
 
+TEST_CASE("What is told of one log offers the flags of its side, whatever was said of both") {
+  for (const Side& side : BothSides()) {
+    const std::string units = side.flag.substr(0, side.flag.find("columns")) + "units ";
+    LogSides sides;
+    for (const std::string columns : {"", "t=a,x=b,y=c"}) {
+      sides.columns = columns;
+      CHECK((sides.*side.read)(false).OwnColumnsFlag() == side.flag);
+      CHECK((sides.*side.read)(false).OwnUnitsFlag() == units);
+    }
+  }
+}
+
+TEST_CASE("Columns and units of both sides that hold for neither are refused") {
+  GapJob job{.sim = "a.csv", .reals = {"b.csv"}};
+  job.sides.units = "mm";
+  job.sides.sim_format = Format::kRift;
+  CHECK_NOTHROW(job.Check());
+  job.sides.real_format = Format::kRift;
+  CHECK_THROWS_WITH(job.Check(),
+                    "--units 'mm' is of each side without a format or units of its own, and both "
+                    "have one: leave it out");
+  job.sides = {};
+  job.sides.columns = job.sides.sim_columns = "t=a,x=b,y=c";
+  CHECK_NOTHROW(job.Check());
+  job.sides.units = "mm";
+  job.sides.real_columns = "t=a,x=d,y=e";
+  CHECK_THROWS_WITH(job.Check(), Catch::StartsWith("--columns 't=a,x=b,y=c' is of each side"));
+  job.sides.columns.clear();
+  CHECK_NOTHROW(job.Check());  // the units are those of both
+  job.sides.sim_units = job.sides.real_units = "cm";
+  CHECK_THROWS_WITH(job.Check(), Catch::StartsWith("--units 'mm' is of each side"));
+}
+
 TEST_CASE("Logs of a comparison in space are read in space, on both sides") {
   GapJob job;
   CHECK_FALSE(job.SimLogs().in_space);

@@ -207,6 +207,26 @@ TEST_CASE("What was mended in a log of either side is a note with its path and w
   }
 }
 
+TEST_CASE("Columns that were guessed are a note with the flag of their side") {
+  const test::TemporaryFolder folder;
+  std::string text = Log(0.0, 0.0, 0.01);
+  text.replace(0, text.find('\n'), "time,x,y,z,roll,pitch,yaw,target_x,target_y");
+  test::WriteText(folder / "own.csv", Log(0.0, 0.0));
+  test::WriteText(folder / "other.csv", text);
+  GapJob job{.sim = folder / "own.csv", .reals = {folder / "other.csv"}};
+  job.sides.real_units = "m";
+  const std::string columns = "t=time,x=x,y=y,yaw=yaw'";
+  const std::string said =
+      "note: " + (folder / "other.csv") + ": read as --real-columns '" + columns;
+  CHECK(TellOf(job) == std::vector<std::string>{said});
+  job.sides = {.units = "mm"};  // of both, each of which is read in columns of its own
+  const std::vector<std::string> lines = TellOf(job);
+  REQUIRE(lines.size() >= 2);
+  CHECK(lines[0] == "note: " + (folder / "own.csv") +
+                        ": read as --sim-columns 't=t_s,x=x_m:m,y=y_m:m,yaw=yaw_rad'");
+  CHECK_THAT(TextOf(lines), Contains(said));
+}
+
 TEST_CASE("What makes a single log doubtful is a warning with its path") {
   const test::TemporaryFolder folder;
   test::WriteText(folder / "own.csv", Log(0.0, 0.0));

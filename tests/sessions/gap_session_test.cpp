@@ -102,8 +102,31 @@ TEST_CASE("A robot that stands throughout is refused where standstill is trimmed
   CHECK_THROWS_WITH(Measure(job, told), refusal);
   std::swap(job.sim, job.reals.front());
   CHECK_THROWS_WITH(Measure(job, told), refusal);
+  std::swap(job.sim, job.reals.front());
+  test::WriteText(folder / "beside.csv", Log(0.04));
+  job.reals.front() = folder / "beside.csv";
+  job.sim_repeats = {folder / "stands.csv"};
+  CHECK_THROWS_WITH(Measure(job, told), refusal);
   job.options.standstill_radius_m = 0.0004;
   CHECK_NOTHROW(Measure(job, told));
+}
+
+TEST_CASE("A real log that was copied counts once in the likeness too") {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.csv", "copy.csv"}) test::WriteText(folder / name, Log(0.03));
+  test::WriteText(folder / "b.csv", Log(0.05));
+  test::WriteText(folder / "sim.csv", Log(0.0));
+  test::WriteText(folder / "sim2.csv", Log(0.01));
+  Told told;
+  GapJob job{.sim = folder / "sim.csv",
+             .reals = {folder / "a.csv", folder / "b.csv"},
+             .sim_repeats = {folder / "sim2.csv"}};
+  const gap::GapResult alone = Measure(job, told);
+  job.reals.push_back(folder / "copy.csv");
+  const gap::GapResult with_copy = Measure(job, told);
+  CHECK(with_copy.likeness->reals == 2);
+  CHECK(with_copy.likeness->spread_m.real == alone.likeness->spread_m.real);
+  CHECK(with_copy.likeness->mean_gap_m == alone.likeness->mean_gap_m);
 }
 
 TEST_CASE("A log that is named twice is refused under whatever name") {

@@ -87,6 +87,9 @@ struct GapResult {
 /// to 10 um, as of a log that was written anew: a log that was copied is no repeat of its own.
 std::vector<std::optional<size_t>> CopiesAmong(std::span<const trajectory::Trajectory> reals);
 
+/// Those of the real trajectories that are no copies.
+std::vector<trajectory::Trajectory> Distinct(std::span<const trajectory::Trajectory> reals);
+
 /// Fills in the mean from the trials, and the noise floor and the verdict from those of them that
 /// are no copies.
 void Judge(GapResult& result);

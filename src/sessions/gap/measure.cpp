@@ -118,12 +118,14 @@ void SayCopiesOfRuns(const GapJob& job, const gap::GapResult& result,
   }
 }
 
-/// Every simulated run is held against every real one: nothing says that they belong together.
+/// Every simulated run is held against every real one that is no copy: nothing says that they
+/// belong together.
 gap::Likeness MeasureRepeats(const GapJob& job, const gap::GapResult& result, const Say& say) {
-  gap::RepeatedSetting setting{.reals = result.reals, .sims = {{result.sim}}};
+  gap::RepeatedSetting setting{.reals = gap::Distinct(result.reals), .sims = {{result.sim}}};
   for (const std::string& path : job.sim_repeats) {
     trajectory::Log sim = trajectory::ReadLog(files::ReadFile(path), path, job.SimLogs());
     SayNotes(sim, path, "--sim-format", say);
+    RefuseStanding(sim.trajectory, path, job.options);
     setting.sims.front().push_back(std::move(sim.trajectory));
   }
   SayCopiesOfRuns(job, result, setting.sims.front(), say);
@@ -131,17 +133,39 @@ gap::Likeness MeasureRepeats(const GapJob& job, const gap::GapResult& result, co
   return gap::MeasureLikeness({&setting, 1}, job.options, job.likeness, generator);
 }
 
-/// What holds for both sides is not meant for the one that has a format.
+/// What holds for both sides is not meant for the one that has a format. `side`: `--sim` or
+/// `--real`.
 trajectory::ReadOptions LogsOf(const LogSides& sides, Format format, const std::string& own_columns,
-                               const std::string& own_units, const char* flag, bool in_space) {
+                               const std::string& own_units, const std::string& side,
+                               bool in_space) {
   const bool is_dialect = format != Format::kAuto;
   const auto either = [&](const std::string& own, const std::string& both) {
     return own.empty() && !is_dialect ? both : own;
   };
   const bool is_of_both = own_columns.empty() && own_units.empty() && !is_dialect &&
                           !(sides.columns.empty() && sides.units.empty());
-  return {format, either(own_columns, sides.columns), either(own_units, sides.units),
-          is_of_both ? "--columns " : flag, in_space};
+  return {format,
+          either(own_columns, sides.columns),
+          either(own_units, sides.units),
+          is_of_both ? "--columns " : side + "-columns ",
+          in_space,
+          side + "-columns "};
+}
+
+/// What is said of both sides is to hold for one of them at least.
+void RefuseUnused(const LogSides& sides) {
+  const auto refuse = [&](const std::string& kind, const std::string& both, const std::string& sim,
+                          const std::string& real) {
+    const bool is_of_sim = sim.empty() && sides.sim_format == Format::kAuto;
+    const bool is_of_real = real.empty() && sides.real_format == Format::kAuto;
+    if (both.empty() || is_of_sim || is_of_real) return;
+    throw std::invalid_argument(fmt::format(
+        "--{0} '{1}' is of each side without a format or {0} of its own, and both have one: leave "
+        "it out",
+        kind, both));
+  };
+  refuse("columns", sides.columns, sides.sim_columns, sides.real_columns);
+  refuse("units", sides.units, sides.sim_units, sides.real_units);
 }
 
 /// What is measured in the plane alone.
@@ -164,11 +188,11 @@ void CheckDimension(const GapJob& job) {
 }  // namespace
 
 trajectory::ReadOptions LogSides::Sim(bool in_space) const {
-  return LogsOf(*this, sim_format, sim_columns, sim_units, "--sim-columns ", in_space);
+  return LogsOf(*this, sim_format, sim_columns, sim_units, "--sim", in_space);
 }
 
 trajectory::ReadOptions LogSides::Real(bool in_space) const {
-  return LogsOf(*this, real_format, real_columns, real_units, "--real-columns ", in_space);
+  return LogsOf(*this, real_format, real_columns, real_units, "--real", in_space);
 }
 
 void GapJob::Check() const {
@@ -176,6 +200,7 @@ void GapJob::Check() const {
   RefuseTwins(reals);
   trajectory::CheckColumns(SimLogs());
   trajectory::CheckColumns(RealLogs());
+  RefuseUnused(sides);
   std::vector<std::string> sims = sim_repeats;
   sims.insert(sims.begin(), sim);
   RefuseTwins(sims);

@@ -12,11 +12,17 @@ namespace {
 
 using experiment::ReferenceKind;
 
-/// The flags of rift gap are keys of an experiment.
-std::string InKeys(std::string text, const std::string& keys) {
-  const std::string flag = "--units ";
-  for (size_t at = text.find(flag); at != text.npos; at = text.find(flag, at)) {
-    text.replace(at, flag.size(), keys + ": ");
+void ReplaceAll(std::string& text, const std::string& what, const std::string& by) {
+  for (size_t at = text.find(what); at != text.npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
+}
+
+/// The flags of rift gap for each side are keys of an experiment.
+std::string InKeys(std::string text) {
+  for (const std::string kind : {"units", "columns"}) {
+    ReplaceAll(text, "--sim-" + kind + " ", "--set candidate." + kind + "=");
+    ReplaceAll(text, "--real-" + kind + " ", "--set reference." + kind + "=");
   }
   return text;
 }
@@ -39,17 +45,17 @@ std::vector<TrialDoubt> DoubtsOf(const experiment::Experiment& experiment,
                                  const Recording& candidate, const Recording& reference) {
   std::vector<TrialDoubt> doubts;
   for (const std::string& doubt : candidate.doubts) {
-    doubts.push_back({DoubtAbout::kCandidate, InKeys(doubt, "candidate.units")});
+    doubts.push_back({DoubtAbout::kCandidate, doubt});
   }
   for (const std::string& doubt : reference.doubts) {
-    doubts.push_back({DoubtAbout::kReference, InKeys(doubt, "reference.units")});
+    doubts.push_back({DoubtAbout::kReference, doubt});
   }
   const bool is_of_others = experiment.reference.kind == ReferenceKind::kLogs ||
                             experiment.reference.kind == ReferenceKind::kProgram;
   if (!is_of_others) return doubts;
   for (const std::string& doubt :
        gap::Doubts(candidate.trajectory, reference.trajectory, experiment.gap)) {
-    doubts.push_back({DoubtAbout::kPair, InKeys(doubt, "candidate.units or reference.units")});
+    doubts.push_back({DoubtAbout::kPair, InKeys(doubt)});
   }
   return doubts;
 }

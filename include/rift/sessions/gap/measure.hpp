@@ -51,7 +51,7 @@ struct GapJob {
   std::uint64_t seed = 1;  ///< of the likeness
 
   /// Throws std::invalid_argument, before a log is read, for what cannot be measured in space, a
-  /// log that is named twice, and columns or units that break a rule.
+  /// log that is named twice, and columns or units that break a rule or hold for neither side.
   void Check() const;
   trajectory::ReadOptions SimLogs() const { return sides.Sim(options.IsInSpace()); }
   trajectory::ReadOptions RealLogs() const { return sides.Real(options.IsInSpace()); }
