@@ -315,31 +315,4 @@ OdometryOptions OdometryCalibration::Applied(OdometryOptions options) const {
   return options;
 }
 
-Pose2 OdometryStart(const RunLog& run) { return trajectory::StandingPose(run.camera); }
-
-std::optional<Umbmark> UmbmarkOf(std::span<const RunLog> runs, const OdometryOptions& options,
-                                 double tag_ahead_m) {
-  const Pose2 tag_from_axle{-tag_ahead_m, 0.0, 0.0};
-  Umbmark found;
-  for (const RunLog& run : runs) {
-    const trajectory::Trajectory path =
-        OdometryPath(ReadingsDuring(run.camera, run.encoders), options, {});
-    double turned_rad = 0.0;
-    for (std::size_t i = 1; i < path.poses.size(); ++i) {
-      turned_rad += geometry::WrapToPi(path.poses[i].yaw_rad - path.poses[i - 1].yaw_rad);
-    }
-    if (std::abs(turned_rad) < geometry::kPi) continue;
-    const Pose2 start_from_end = geometry::Inverse(OdometryStart(run) * tag_from_axle) *
-                                 (run.camera.poses.back().Planar() * tag_from_axle);
-    const Eigen::Vector2d error_m = path.poses.back().Position() - start_from_end.Position();
-    (turned_rad > 0.0 ? found.ccw_m : found.cw_m) += error_m;
-    ++(turned_rad > 0.0 ? found.ccw_runs : found.cw_runs);
-  }
-  if (found.ccw_runs == 0 || found.cw_runs == 0) return std::nullopt;
-  found.ccw_m /= static_cast<double>(found.ccw_runs);
-  found.cw_m /= static_cast<double>(found.cw_runs);
-  found.largest_m = std::max(found.ccw_m.norm(), found.cw_m.norm());
-  return found;
-}
-
 }  // namespace rift::odometry

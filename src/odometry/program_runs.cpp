@@ -76,7 +76,7 @@ std::vector<Moment> MomentsOf(const RunLog& run, const OdometryOptions& odometry
   std::vector<Moment> moments;
   for (const trajectory::StampedPose& pose : run.camera.poses) {
     const auto counts = CountsAt(run.encoders, pose.t_s);
-    if (!counts || !std::isfinite(pose.yaw_rad)) continue;
+    if (!counts) continue;
     moments.push_back({pose.t_s, pose.Planar() * tag_from_robot,
                        LeftMetresPerCount(odometry) * counts->first,
                        RightMetresPerCount(odometry) * counts->second});
@@ -138,15 +138,24 @@ void MeasureSlip(const std::vector<Moment>& moments, double track_m, int bins,
   }
 }
 
+Trajectory AsPath(const std::vector<Moment>& moments) {
+  Trajectory path;
+  for (const Moment& moment : moments) {
+    const Pose2& at = moment.world_from_robot;
+    path.poses.push_back({.t_s = moment.t_s, .x_m = at.x_m, .y_m = at.y_m, .yaw_rad = at.yaw_rad});
+  }
+  return path;
+}
+
 void MeasureOdometry(const RunLog& run, const OdometryOptions& odometry, const RunOptions& options,
                      bool has_way, RunMeasures& measures) {
-  const std::vector<Moment> moments = MomentsOf(run, odometry, options.tag_ahead_m);
-  // It begins at the first moment that both saw, at the pose that the camera's standing poses give.
-  const Pose2 stood = OdometryStart(run) * Pose2{-options.tag_ahead_m, 0.0, 0.0};
-  const Trajectory path = OdometryPath(ReadingsDuring(run.camera, run.encoders), odometry, stood);
+  const std::vector<Moment> moments =
+      MomentsOf({run.name, WithYaw(run), run.encoders}, odometry, options.tag_ahead_m);
+  const Pose2 start = OdometryStart(run) * Pose2{-options.tag_ahead_m, 0.0, 0.0};
+  const Trajectory path = OdometryPath(ReadingsDuring(WithYaw(run), run.encoders), odometry, start);
   measures.odometry_gap_m = 0.0;
   std::size_t at = 0;
-  Pose2 odometry_end = stood;
+  Pose2 odometry_end = start;
   for (const Moment& moment : moments) {
     while (at + 1 < path.poses.size() && path.poses[at + 1].t_s <= moment.t_s) ++at;
     Pose2 here = path.poses[at].Planar();
@@ -162,9 +171,9 @@ void MeasureOdometry(const RunLog& run, const OdometryOptions& odometry, const R
         measures.odometry_gap_m, (here.Position() - moment.world_from_robot.Position()).norm());
   }
   const Pose2& camera_end = moments.back().world_from_robot;
-  if (has_way) {
-    measures.drift_per_m =
-        (odometry_end.Position() - camera_end.Position()).norm() / measures.length_m;
+  const double length_m = gap::MovingLength_m(AsPath(moments), AlongMoving());
+  if (has_way && length_m > 0.0) {
+    measures.drift_per_m = (odometry_end.Position() - camera_end.Position()).norm() / length_m;
   }
   measures.yaw_drift_rad = geometry::WrapToPi(odometry_end.yaw_rad - camera_end.yaw_rad);
   MeasureSlip(moments, odometry.drive.track_m, options.slip_bins, measures);
@@ -174,7 +183,6 @@ void MeasureDeviation(const Trajectory& axle, const Trajectory& ideal, RunMeasur
   const gap::Comparison compared = gap::Compare(axle, ideal, AlongMoving());
   measures.deviation_m = compared.mean_error_m;
   measures.largest_deviation_m = compared.gap_m;
-  measures.length_m = compared.sim_length_m;
 }
 
 template <class Number>
@@ -205,8 +213,10 @@ RunMeasures MeasureRun(const RunLog& run, const std::optional<Trajectory>& progr
     return measures;
   }
   Trajectory axle = run.camera;
-  if (options.tag_ahead_m != 0.0) axle = trajectory::OffsetAlongHeading(axle, -options.tag_ahead_m);
-  measures.length_m = axle.ArcLength_m();
+  if (options.tag_ahead_m != 0.0) {
+    axle = trajectory::OffsetAlongHeading(WithYaw(run), -options.tag_ahead_m);
+  }
+  measures.length_m = gap::MovingLength_m(axle, AlongMoving());
   const bool has_way = !program || HasWay(*program);
   if (program) {
     const Trajectory ideal = OfAxle(*program, options.tag_ahead_m);

@@ -49,11 +49,10 @@ namespace {
 /// after one another that are turned away, since one alone is the tracker's.
 size_t StandingRows(const std::vector<double>& turn_rad) {
   constexpr size_t kFirst = 5;  // of which some may jump
-  constexpr double kTurned_rad = 0.1;
   if (turn_rad.size() <= kFirst) return turn_rad.size();
   const double stands_rad = statistics::Median({turn_rad.begin(), turn_rad.begin() + kFirst});
   const auto is_turned = [&](size_t row) {
-    return std::abs(geometry::WrapToPi(turn_rad[row] - stands_rad)) > kTurned_rad;
+    return std::abs(geometry::WrapToPi(turn_rad[row] - stands_rad)) > kStandingTurn_rad;
   };
   for (size_t row = kFirst; row + 1 < turn_rad.size(); ++row) {
     if (is_turned(row) && is_turned(row + 1)) return row;

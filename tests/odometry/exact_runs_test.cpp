@@ -1,4 +1,5 @@
 // Runs made by hand, of which every number is known.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -129,6 +130,89 @@ TEST_CASE("Drift is the distance of both ends over the camera's way, and a turn 
   CHECK(measures.slip_right == Approx(0.2));
   CHECK(MeasureRun(Ahead(1.0, 0.1), std::nullopt, Millimetres(), {}).yaw_drift_rad == Approx(-0.1));
   CHECK(MeasureRun(Ahead(1.0, -0.1), std::nullopt, Millimetres(), {}).yaw_drift_rad == Approx(0.1));
+}
+
+/// The readings from that moment on, or until then.
+RunLog ReadFrom(RunLog run, double from_s) {
+  std::erase_if(run.encoders, [&](const EncoderReading& one) { return one.t_s < from_s; });
+  return run;
+}
+RunLog ReadUntil(RunLog run, double to_s) {
+  std::erase_if(run.encoders, [&](const EncoderReading& one) { return one.t_s > to_s; });
+  return run;
+}
+
+TEST_CASE("Odometry whose readings begin on the way begins where the camera saw the robot then") {
+  // It stands for three seconds, and a tenth of a second later it is a centimetre on.
+  const RunLog run = Ahead(1.0, 0.0, 100);
+  for (const double from_s : {2.0, 3.15, 5.0, 8.0, 8.04}) {
+    INFO(from_s);
+    RunLog late = ReadFrom(run, from_s);
+    const auto [left, right] = *CountsAt(run.encoders, from_s);
+    late.encoders.insert(late.encoders.begin(),
+                         {from_s - 1e-6, {std::llround(left), std::llround(right)}});
+    const RunMeasures measures = MeasureRun(late, std::nullopt, Millimetres(), {});
+    CHECK(measures.odometry_gap_m < 6e-4);  // half a count
+    CHECK(measures.length_m == Approx(1.0));
+  }
+  RunLog short_of = Ahead(0.8, 0.0, 100);  // the wheels roll a metre, the robot goes 0.8 m
+  const RunMeasures half = MeasureRun(ReadFrom(short_of, 8.0), std::nullopt, Millimetres(), {});
+  CHECK(half.odometry_gap_m == Approx(0.1));
+  CHECK(half.drift_per_m == Approx(0.1 / 0.4));  // of the way that both logged
+  CHECK(half.length_m == Approx(0.8));
+  // Readings that end early tell nothing of what came later.
+  const RunMeasures first = MeasureRun(ReadUntil(short_of, 8.0), std::nullopt, Millimetres(), {});
+  CHECK(first.odometry_gap_m == Approx(0.1));
+  CHECK(first.drift_per_m == Approx(0.1 / 0.4));
+}
+
+TEST_CASE("One row that jumps is no robot that has left its place") {
+  RunLog run = Ahead(1.0);
+  run.camera.poses[10].x_m = 0.5;
+  const RunLog late = ReadFrom(run, 1.0);
+  CHECK(OdometryStart(late).x_m == Approx(0.0).margin(1e-12));
+  run.camera.poses[11].x_m = 0.5;  // two are
+  CHECK(OdometryStart(ReadFrom(run, 1.0)).x_m == Approx(0.5));
+  // A robot that turned where it stood has left it too.
+  RunLog turned = Ahead(1.0);
+  for (std::size_t i = 8; i < turned.camera.poses.size(); ++i) {
+    turned.camera.poses[i].yaw_rad = 1.0;
+  }
+  CHECK(OdometryStart(ReadFrom(turned, 1.0)).yaw_rad == Approx(1.0));
+  CHECK(OdometryStart(turned).yaw_rad == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("A row without a yaw is left out of odometry, and a log without any is refused") {
+  RunLog run = Ahead(0.8);
+  const RunMeasures all = MeasureRun(run, std::nullopt, Millimetres(), {});
+  for (const std::size_t row : {0U, 5U, 33U, 40U}) {
+    INFO(row);
+    RunLog lacking = run;
+    lacking.camera.poses[row].yaw_rad = std::nan("");
+    for (const double tag_ahead_m : {0.0, 0.03}) {
+      const RunMeasures some =
+          MeasureRun(lacking, std::nullopt, Millimetres(), {.tag_ahead_m = tag_ahead_m});
+      CHECK(some.odometry_gap_m == Approx(all.odometry_gap_m).margin(0.0021));
+    }
+  }
+  for (trajectory::StampedPose& pose : run.camera.poses) pose.yaw_rad = std::nan("");
+  CHECK_THROWS_WITH(MeasureRun(run, std::nullopt, Millimetres(), {}),
+                    "r: no row has a yaw, and odometry goes from the heading of the robot: log "
+                    "yaw_rad");
+}
+
+TEST_CASE("The length of a run and its drift are the same with a program and without one") {
+  RunLog run = Ahead(0.8, 0.0, 100);
+  for (std::size_t i = 0; i < 30; ++i) run.camera.poses[i].x_m = i % 2 == 0 ? 0.0 : 0.004;
+  Trajectory program;
+  for (int i = 0; i <= 10; ++i) {
+    program.poses.push_back({.t_s = 1.0 * i, .x_m = 0.1 * i, .yaw_rad = 0.0});
+  }
+  const RunMeasures without = MeasureRun(run, std::nullopt, Millimetres(), {});
+  const RunMeasures with = MeasureRun(run, program, Millimetres(), {});
+  CHECK(without.length_m == Approx(0.8).epsilon(0.01));  // 0.91 with the jitter
+  CHECK(with.length_m == without.length_m);
+  CHECK(with.drift_per_m == without.drift_per_m);
 }
 
 TEST_CASE("Slip is taken over as many parts of the way as are asked for") {
@@ -330,6 +414,32 @@ TEST_CASE("UMBmark is the odometry's end seen from the camera's, in the frame of
   CHECK_FALSE(UmbmarkOf(std::vector{runs[2]}, Millimetres()));
   const std::vector<RunLog> far{Turn(6.0, 0.3, 0.0), Turn(-6.0, 0.0, 0.1)};
   CHECK(UmbmarkOf(far, Millimetres())->largest_m == Approx(0.3).margin(1e-6));
+}
+
+TEST_CASE("A UMBmark is of the time that camera and wheels share, and of rows with a yaw") {
+  // Round by an arc of a decimetre in radius, which the wheels tell as it is.
+  const auto round = [](int side) {
+    RunLog run{.name = "r"};
+    for (int i = 0; i <= 400; ++i) {
+      const int steps = std::clamp(i - 50, 0, 300);
+      const double yaw_rad = side * 0.02 * steps, t_s = 0.1 * i;
+      const int inner = steps, outer = 3 * steps;  // mm, 0.1 m apart: 2 mm ahead and 0.02 rad
+      run.encoders.push_back({t_s, {side > 0 ? inner : outer, side > 0 ? outer : inner}});
+      run.camera.poses.push_back({.t_s = t_s,
+                                  .x_m = 0.1 * std::sin(0.02 * steps),
+                                  .y_m = side * 0.1 * (1.0 - std::cos(0.02 * steps)),
+                                  .yaw_rad = geometry::WrapToPi(yaw_rad)});
+    }
+    return run;
+  };
+  const std::vector<RunLog> whole{round(1), round(-1)};
+  CHECK(UmbmarkOf(whole, Millimetres())->largest_m < 1e-4);
+  std::vector<RunLog> part = whole;
+  for (RunLog& run : part) run = ReadUntil(ReadFrom(std::move(run), 10.03), 30.07);
+  CHECK(UmbmarkOf(part, Millimetres())->largest_m < 2e-3);  // counts are rounded at both ends
+  part = whole;
+  for (RunLog& run : part) run.camera.poses.back().yaw_rad = std::nan("");
+  CHECK(UmbmarkOf(part, Millimetres())->largest_m < 1e-4);
 }
 
 TEST_CASE("A run that did not move is none of a UMBmark, whatever its wheels turned") {

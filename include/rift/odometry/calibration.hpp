@@ -17,7 +17,7 @@ namespace rift::odometry {
 /// A run as the camera and the wheels saw it, on one clock.
 struct RunLog {
   std::string name;
-  trajectory::Trajectory camera;  ///< with yaw
+  trajectory::Trajectory camera;  ///< rows without a yaw count in no odometry
   std::vector<EncoderReading> encoders;
 };
 
@@ -71,7 +71,16 @@ struct Umbmark {
 std::optional<Umbmark> UmbmarkOf(std::span<const RunLog> runs, const OdometryOptions& options,
                                  double tag_ahead_m = 0.0);
 
-/// The place and heading in which the odometry of a run begins: where the camera saw it stand.
+/// The rows of the camera that have a yaw, without channels. Throws std::invalid_argument
+/// `name: ...` for none.
+trajectory::Trajectory WithYaw(const RunLog& run);
+
+/// The place and heading in which the odometry of a run begins: where the camera saw it stand, or,
+/// when it had left by the first reading, where the camera saw it then. Of rows with a yaw; throws
+/// as WithYaw.
 geometry::Pose2 OdometryStart(const RunLog& run);
+
+/// Where the camera saw it at the last moment that camera and wheels share.
+geometry::Pose2 OdometryEnd(const RunLog& run);
 
 }  // namespace rift::odometry

@@ -43,12 +43,13 @@ struct Slip {
 /// encoders, or when the robot did not move.
 struct RunMeasures {
   bool did_move = true;
-  double length_m = 0.0;  ///< of the camera's path
+  double length_m = 0.0;  ///< of the camera's path, without the jitter of a standing robot
   /// Mean, and largest, distance between camera and program at equal normalised arc length.
   double deviation_m = trajectory::StampedPose::kNotLogged;
   double largest_deviation_m = trajectory::StampedPose::kNotLogged;
   double end_error_m = trajectory::StampedPose::kNotLogged;  ///< from the program's end
-  /// Distance between odometry and camera: at the end, over the length; the largest at equal time.
+  /// Distance between odometry and camera: at the end, over the length of what both logged; the
+  /// largest at equal time.
   double drift_per_m = trajectory::StampedPose::kNotLogged;
   double odometry_gap_m = trajectory::StampedPose::kNotLogged;
   /// Turn of the odometry beyond that of the camera.
@@ -62,8 +63,8 @@ struct RunMeasures {
 /// start of the program.
 trajectory::Trajectory OfAxle(trajectory::Trajectory program, double tag_ahead_m);
 
-/// Throws std::invalid_argument for a run whose camera path lacks the yaw where encoders are given,
-/// or does not share a moment with them.
+/// Throws std::invalid_argument for a run of which no row has a yaw where encoders or a tag ahead
+/// of the axle are given, or fewer than two rows share their time with the encoders.
 RunMeasures MeasureRun(const RunLog& run, const std::optional<trajectory::Trajectory>& program,
                        const OdometryOptions& odometry, const RunOptions& options);
 

@@ -55,8 +55,11 @@ double ArcLength_m(std::span<const StampedPose> poses);
 /// Throws std::invalid_argument when the offset is not zero and the yaw is not known.
 Trajectory OffsetAlongHeading(Trajectory trajectory, double offset_m);
 
+/// A robot that is seen further than this from where it stood, or turned by more, has left.
+inline constexpr double kStandingRadius_m = 0.01, kStandingTurn_rad = 0.1;
+
 /// Where the robot stood before it drove: the median over the first rows within `radius_m` of the
 /// first one, since a tracker's first poses jump. Throws std::invalid_argument without a yaw.
-geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m = 0.01);
+geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m = kStandingRadius_m);
 
 }  // namespace rift::trajectory

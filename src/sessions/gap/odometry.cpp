@@ -70,6 +70,10 @@ LoadedRun LoadRun(const std::string& name, const std::string& program) {
   };
   for (const std::string& note : log.notes) tell("note", files.trajectory, note);
   for (const std::string& doubt : log.doubts) tell("warning", files.trajectory, doubt);
+  if (log.line_without_yaw) {
+    tell("note", files.trajectory,
+         fmt::format("line {} has no yaw: odometry leaves such rows out", *log.line_without_yaw));
+  }
   if (const auto encoders = files::ReadIfThere(files.encoders)) {
     const auto note = trajectory::csv::NoteOfEnd(*encoders);
     if (note) tell("note", files.encoders, *note);
