@@ -102,11 +102,11 @@ TEST_CASE("A robot that stands throughout is refused where standstill is trimmed
   CHECK_THROWS_WITH(Measure(job, told), refusal);
   std::swap(job.sim, job.reals.front());
   CHECK_THROWS_WITH(Measure(job, told), refusal);
-  std::swap(job.sim, job.reals.front());
+  GapJob repeats = job;
   test::WriteText(folder / "beside.csv", Log(0.04));
-  job.reals.front() = folder / "beside.csv";
-  job.sim_repeats = {folder / "stands.csv"};
-  CHECK_THROWS_WITH(Measure(job, told), refusal);
+  repeats.sim = folder / "beside.csv";
+  repeats.sim_repeats = {folder / "stands.csv"};
+  CHECK_THROWS_WITH(Measure(repeats, told), refusal);
   job.options.standstill_radius_m = 0.0004;
   CHECK_NOTHROW(Measure(job, told));
 }
