@@ -45,8 +45,9 @@ SettingGrid LayOut(const sweep::SweepResult& result) {
     }
     grid.others = sweep::SummariseBy(result, split.others);
   }
-  const auto continuous = [](const experiment::Parameter& p) { return p.IsContinuous(); };
-  if (std::any_of(result.parameters.begin(), result.parameters.end(), continuous)) return grid;
+  if (!std::all_of(result.parameters.begin(), result.parameters.end(), sweep::HasLevels)) {
+    return grid;
+  }
   grid.cells.assign(grid.mains.size(), {});
   for (auto& row : grid.cells) row.assign(grid.others.size(), nullptr);
   const auto main_place = PlaceOf(grid.mains), other_place = PlaceOf(grid.others);

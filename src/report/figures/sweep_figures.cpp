@@ -32,10 +32,13 @@ std::string FilePart(const std::string& name) {
 
 std::string WhyNoGrid(const sweep::SweepResult& result) {
   for (const experiment::Parameter& parameter : result.parameters) {
-    if (parameter.IsContinuous()) {
+    if (sweep::HasLevels(parameter)) continue;
+    if (!parameter.is_integer) {
       return fmt::format("{} is continuous, so no two settings share a value of it",
                          parameter.Name());
     }
+    return fmt::format("{} has more than {} whole numbers: see the figure over it",
+                       parameter.Name(), sweep::kMostWholeLevels);
   }
   return "";
 }
@@ -46,7 +49,7 @@ class FigureMaker {
       : result_(result), options_(options), grid_(LayOut(result)) {
     split_ = sweep::SplitFactors(result.parameters);
     no_grid_ = WhyNoGrid(result);
-    main_is_continuous_ = result.parameters[split_.main_factor].IsContinuous();
+    main_is_range_ = !sweep::HasLevels(result.parameters[split_.main_factor]);
   }
 
   void BySetting() {
@@ -82,7 +85,7 @@ class FigureMaker {
   void ByMainFactor() {
     const std::string mean = "fig11_gap_by_" + FilePart(grid_.main_name);
     const std::string failures = "fig12_failures_by_" + FilePart(grid_.main_name);
-    const std::string reason = WhyNoBars(grid_.mains, main_is_continuous_);
+    const std::string reason = WhyNoBars(grid_.mains, main_is_range_);
     if (!reason.empty()) {
       Omit(mean, reason);
       return Omit(failures, reason);
@@ -126,8 +129,8 @@ class FigureMaker {
   void Omit(const std::string& name, const std::string& reason) {
     set_.omitted.push_back({name, reason});
   }
-  std::string WhyNoBars(const std::vector<sweep::LevelSummary>& levels, bool continuous) const {
-    if (continuous) return no_grid_;
+  std::string WhyNoBars(const std::vector<sweep::LevelSummary>& levels, bool is_range) const {
+    if (is_range) return no_grid_;
     if (static_cast<int>(levels.size()) <= options_.max_bars) return "";
     return fmt::format("{} bars are too many to read", levels.size());
   }
@@ -137,7 +140,7 @@ class FigureMaker {
   SettingGrid grid_;
   sweep::FactorSplit split_;
   std::string no_grid_;
-  bool main_is_continuous_ = false;
+  bool main_is_range_ = false;
   SweepFigureSet set_;
   std::set<std::string> names_;  ///< of the figures kept
 };

@@ -136,14 +136,15 @@ std::string SummaryJson(const sweep::SweepResult& result) {
   }
   ordered_json by = ordered_json::object(), anova = ordered_json::object();
   for (size_t i = 0; i < result.parameters.size(); ++i) {
-    if (result.parameters[i].IsContinuous()) continue;  // every setting would be its own level
+    if (!sweep::HasLevels(result.parameters[i])) continue;  // each setting would be its own level
     by[result.parameters[i].Name()] = LevelsJson(sweep::SummariseBy(result, {static_cast<int>(i)}));
   }
   for (const sweep::Anova& of_one : result.anova) anova[of_one.parameter] = AnovaJson(of_one);
   if (!result.parameters.empty()) {
     const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
-    const bool has_range = std::any_of(split.others.begin(), split.others.end(),
-                                       [&](int i) { return result.parameters[i].IsContinuous(); });
+    const bool has_range = std::any_of(split.others.begin(), split.others.end(), [&](int i) {
+      return !sweep::HasLevels(result.parameters[i]);
+    });
     if (split.others.size() > 1 && !has_range) {
       by[split.others_name] = LevelsJson(sweep::SummariseBy(result, split.others));
     }

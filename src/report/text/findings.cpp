@@ -65,7 +65,7 @@ void SayMostAndLeast(const sweep::SweepResult& result, Finding* finding) {
   int furthest = main;
   std::vector<sweep::LevelSummary> levels;
   for (const int factor : factors) {
-    if (result.parameters[factor].IsContinuous()) continue;
+    if (!sweep::HasLevels(result.parameters[factor])) continue;
     std::vector<sweep::LevelSummary> own = sweep::SummariseBy(result, {factor});
     std::erase_if(own, [](const auto& level) { return level.told == 0; });
     constexpr double kMore = 1.0 + 1e-9;  // than rounding

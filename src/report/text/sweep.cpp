@@ -105,7 +105,7 @@ std::string FalsificationText(const sweep::SweepResult& result, const sweep::Fal
 /// The table of a parameter, unless every setting has a value of its own.
 std::string LevelTables(const sweep::SweepResult& result) {
   const sweep::FactorSplit split = sweep::SplitFactors(result.parameters);
-  const auto is_range = [&](int i) { return result.parameters[i].IsContinuous(); };
+  const auto is_range = [&](int i) { return !sweep::HasLevels(result.parameters[i]); };
   std::string text;
   if (!is_range(split.main_factor)) {
     text += LevelTable(result.parameters[split.main_factor].Name(),

@@ -129,7 +129,7 @@ std::string WhereOf(const SweepResult& result, const std::vector<int>& rows) {
   constexpr double kMostly = 0.6, kLift = 1.25;
   std::string text;
   for (size_t p = 0; p < result.parameters.size(); ++p) {
-    if (result.parameters[p].IsContinuous()) continue;  // repeats of a draw would share its value
+    if (!HasLevels(result.parameters[p])) continue;  // repeats of a draw would share its value
     std::map<experiment::ParameterValue, int> here, everywhere;
     for (const int row : rows) ++here[result.rows[row].theta[p]];
     for (const TrialRow& row : result.rows) ++everywhere[row.theta[p]];

@@ -37,6 +37,24 @@ FactorSplit SplitFactors(const std::vector<experiment::Parameter>& parameters) {
   return split;
 }
 
+bool HasLevels(const experiment::Parameter& parameter) {
+  if (!parameter.IsContinuous()) return true;
+  return parameter.is_integer &&
+         std::floor(parameter.max) - std::ceil(parameter.min) < kMostWholeLevels;
+}
+
+std::string PercentDigits(double share) {
+  constexpr double kNoise = 1e-5;  // of a per cent: one run of millions is more
+  const double percent = 100.0 * share;
+  const double to_end = std::min(percent, 100.0 - percent);
+  const bool is_near_end = to_end >= kNoise && to_end < 1.0;
+  const int digits =
+      is_near_end ? std::max(2, static_cast<int>(std::ceil(-std::log10(to_end)))) : 0;
+  return fmt::format("{:.{}f}", percent, digits);
+}
+
+std::string PercentText(double share) { return PercentDigits(share) + " %"; }
+
 std::string ShortText(const experiment::Parameter& parameter,
                       const experiment::ParameterValue& value) {
   const bool is_drawn = parameter.IsContinuous() && value.number;
@@ -111,6 +129,23 @@ Groups GroupBy(const SweepResult& result, const std::vector<int>& parameters) {
     groups.rows[found->second].push_back(static_cast<int>(row));
   }
   return groups;
+}
+
+/// That of their first rows; of a range of whole numbers, which a search visits in any order,
+/// theirs.
+std::vector<size_t> OrderOf(const Groups& groups, const SweepResult& result,
+                            const std::vector<int>& parameters) {
+  std::vector<size_t> order(groups.labels.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  if (parameters.size() != 1) return order;
+  const experiment::Parameter& parameter = result.parameters[parameters.front()];
+  if (!parameter.IsContinuous() || !HasLevels(parameter)) return order;
+  const auto number = [&](size_t group) {
+    return result.rows[groups.rows[group].front()].theta[parameters.front()].number.value_or(0.0);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return number(a) < number(b); });
+  return order;
 }
 
 std::vector<double> GapsOf(const SweepResult& result, const std::vector<int>& rows) {
@@ -212,7 +247,7 @@ std::vector<LevelSummary> SummariseBy(const SweepResult& result,
                                       const std::vector<int>& parameters) {
   const Groups groups = GroupBy(result, parameters);
   std::vector<LevelSummary> summaries;
-  for (size_t i = 0; i < groups.labels.size(); ++i) {
+  for (const size_t i : OrderOf(groups, result, parameters)) {
     summaries.push_back(SummariseRows(result, groups.labels[i], groups.rows[i]));
   }
   return summaries;

@@ -203,6 +203,31 @@ TEST_CASE("Continuous axes give scatter plots instead of bars") {
   CheckAllRender(set);
 }
 
+TEST_CASE("A range of few whole numbers gives bars in their order, one of many says how many") {
+  sweep::SweepResult result;
+  result.parameters = {{.key = "n", .min = 1.0, .max = 3.0, .is_integer = true},
+                       {.key = "k", .levels = {synthetic::Numeric("5"), synthetic::Numeric("6")}}};
+  for (const char* n : {"3", "1", "2"}) {
+    for (const auto& k : result.parameters[1].levels) {
+      result.rows.push_back(synthetic::Row({synthetic::Numeric(n), k}, "1", 0.05));
+    }
+  }
+  sweep::Summarise(result);
+  const SweepFigureSet set = SweepFigures(result);
+  CHECK(Names(set) == std::vector<std::string>{"fig07_gap_by_setting", "fig08_gap_by_trial",
+                                               "fig10_gap_heat_map", "fig11_gap_by_n",
+                                               "fig12_failures_by_n", "fig13_failures_by_k",
+                                               "gap_over_n"});
+  const std::vector<sweep::LevelSummary> levels = sweep::SummariseBy(result, {0});
+  REQUIRE(levels.size() == 3);
+  CHECK((levels[0].level == "1" && levels[1].level == "2" && levels[2].level == "3"));
+  CheckAllRender(set);
+  result.parameters[0].max = 13.0;
+  const SweepFigureSet many = SweepFigures(result);
+  CHECK(ReasonFor(many, "fig10") == "n has more than 12 whole numbers: see the figure over it");
+  CHECK(Names(many) == std::vector<std::string>{"fig08_gap_by_trial", "gap_over_n"});
+}
+
 TEST_CASE("A scatter plot of very many trials shows their range") {
   const SweepFigureSet set = SweepFigures(synthetic::Continuous(6000));
   const Figure& figure = Named(set, "gap_over_friction");

@@ -99,5 +99,29 @@ TEST_CASE("The categorical parameter stands alone and the others are combined") 
   CHECK(CombinationLabel({{"a", {}}, {"0.30", 0.3}}, {1}) == "0.30");
 }
 
+TEST_CASE("Lists have levels and so have ranges of up to twelve whole numbers") {
+  CHECK(HasLevels(Axis("v_min", {"0.15"}, true)));
+  const auto range = [](double min, double max, bool is_integer) {
+    return experiment::Parameter{.key = "n", .min = min, .max = max, .is_integer = is_integer};
+  };
+  CHECK(HasLevels(range(1, 12, true)));
+  CHECK(HasLevels(range(-11, 0, true)));
+  CHECK_FALSE(HasLevels(range(0, 12, true)));
+  CHECK_FALSE(HasLevels(range(1, 3, false)));
+}
+
+TEST_CASE("A share that is near none or all is never told as none or all") {
+  CHECK(PercentText(0.0) == "0 %");
+  CHECK(PercentText(1.0) == "100 %");
+  CHECK(PercentText(0.634) == "63 %");
+  CHECK(PercentText(0.01) == "1 %");
+  CHECK(PercentText(0.0033) == "0.33 %");
+  CHECK(PercentText(0.99) == "99 %");
+  CHECK(PercentText(299.0 / 300.0) == "99.67 %");
+  CHECK(PercentText(1e-6) == "0.0001 %");
+  CHECK(PercentText(1.0 - 4e-6) == "99.9996 %");
+  CHECK(PercentText(1.0 - 1e-12) == "100 %");  // rounding errors are no runs
+}
+
 }  // namespace
 }  // namespace rift::sweep

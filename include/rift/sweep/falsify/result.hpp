@@ -176,6 +176,17 @@ struct FactorSplit {
 /// Throws std::invalid_argument for a space without parameters.
 FactorSplit SplitFactors(const std::vector<experiment::Parameter>& parameters);
 
+/// Of a range: more whole numbers are told as a continuous range is.
+inline constexpr int kMostWholeLevels = 12;
+
+/// A list, or a range of few whole numbers: settings share its values, each of which can be told.
+bool HasLevels(const experiment::Parameter& parameter);
+
+/// "63", and near 0 and 100 with two digits or more, since rare is not never: "0.33", "99.67".
+std::string PercentDigits(double share);
+/// The same with its unit: "63 %".
+std::string PercentText(double share);
+
 /// The value for people: one drawn from a range has 17 digits, which nobody reads; table.csv has
 /// them.
 std::string ShortText(const experiment::Parameter& parameter,
