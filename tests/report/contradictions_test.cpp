@@ -64,15 +64,15 @@ void CheckHeadline(const SweepResult& result, const Said& said) {
 void CheckEffects(const SweepResult& result, const sweep::Explanation& explanation,
                   const Said& said) {
   const std::regex seen(
-      R"(^(\S+): (\d+) % of the loss's variance goes with it \((\d+) to (\d+) %)");
-  int last = 100;
+      R"(^(\S+): ([\d.]+) % of the loss's variance goes with it \(([\d.]+) to ([\d.]+) %)");
+  double last = 100.0;
   for (const std::smatch& match : said.All(seen)) {
     const std::string name = match[1];
-    const int share = std::stoi(match[2]);
+    const double share = std::stod(match[2]);
     CHECK(share <= last);  // the largest first
     last = share;
-    CHECK(std::stoi(match[3]) <= share);
-    CHECK(share <= std::stoi(match[4]));
+    CHECK(std::stod(match[3]) <= share);
+    CHECK(share <= std::stod(match[4]));
     CHECK_FALSE(said.Has(name + ": no effect seen"));
     CHECK_FALSE(said.Has(name + " is inert"));
     CHECK_FALSE(said.Has(name + " matters"));

@@ -89,7 +89,7 @@ TEST_CASE(
   CHECK_THAT(cut, Contains("s6           0.0160 ") && Contains("s40          0.0155 "));
 }
 
-TEST_CASE("A share below one per cent is told with its digits, and none and one without") {
+TEST_CASE("A share within one per cent of none or all is told with its digits") {
   const auto headline = [](int failures, size_t all) {
     std::vector<double> gaps_m(all, 0.05);
     std::fill_n(gaps_m.begin(), failures, 0.07);
@@ -97,6 +97,8 @@ TEST_CASE("A share below one per cent is told with its digits, and none and one 
   };
   CHECK_THAT(headline(1, 200),
              Contains("It fails: 1 of 200 measured trials exceed 0.06 m (0.50 %)"));
+  CHECK_THAT(headline(299, 300), Contains("299 of 300 measured trials exceed 0.06 m (99.67 %)"));
+  CHECK_THAT(headline(99, 100), Contains("99 of 100 measured trials exceed 0.06 m (99 %)"));
   CHECK_THAT(headline(1, 100), Contains("1 of 100 measured trials exceed 0.06 m (1 %)"));
   CHECK_THAT(headline(1, 1), Contains("1 of 1 measured trial exceed 0.06 m (100 %)"));
   CHECK_THAT(headline(0, 1), Contains("none of 1 measured trial exceeds"));

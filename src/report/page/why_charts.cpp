@@ -38,7 +38,7 @@ PageChart Bars(std::string title, std::string sentence, const std::string& x_tit
 }
 
 json Percent(const std::string& label, double share, double low, double high) {
-  const std::string interval = fmt::format("{:.0f} to {:.0f} %", 100.0 * low, 100.0 * high);
+  const std::string interval = sweep::PercentDigits(low) + " to " + sweep::PercentText(high);
   return Bar(label, 100.0 * share, 100.0 * low, 100.0 * high, kPassColour,
              {{"what", label},
               {"share", fmt::format("{:.1f} %", 100.0 * share)},

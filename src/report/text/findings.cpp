@@ -20,11 +20,6 @@ namespace rift::report {
 namespace {
 
 std::string Metres(double value_m) { return fmt::format("{:.4f} m", value_m); }
-/// Rare is not never: shares below a per cent keep their digits.
-std::string Percent(double share) {
-  const double percent = 100.0 * share;
-  return fmt::format("{:.{}f} %", percent, percent > 0.0 && percent < 1.0 ? 2 : 0);
-}
 
 std::string Count(long n, std::string_view noun) {
   return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
@@ -347,7 +342,7 @@ Headline Summary(const sweep::SweepResult& result) {
   sentence.Say("It fails: ")
       .Link(std::to_string(all.failures), FailingTrials())
       .Say(fmt::format(" of {} {} ({}){}.", Count(all.told, "measured trial"), HowTheyFail(result),
-                       Percent(FailureShare(all)), mean))
+                       sweep::PercentText(FailureShare(all)), mean))
       .Say(DistinctText(result));
   return {Outcome::kFails, sentence};
 }

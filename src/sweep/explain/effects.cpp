@@ -93,24 +93,22 @@ Share Together(const Model& model, int a, int b) {
   }));
 }
 
-std::string Percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
-
 std::string SentenceOf(const ParameterEffect& effect) {
   if (std::isnan(effect.share)) {
     return fmt::format("{}: its effect cannot be told from that of the others", effect.name);
   }
   const std::string interval =
-      fmt::format("{:.0f} to {}", 100.0 * effect.share_low, Percent(effect.share_high));
+      fmt::format("{} to {} %", PercentDigits(effect.share_low), PercentDigits(effect.share_high));
   if (!effect.IsSeen()) {
     return fmt::format("{}: no effect seen; at most {} of the loss's variance goes with it",
-                       effect.name, Percent(effect.share_high));
+                       effect.name, PercentText(effect.share_high));
   }
   std::string text =
       fmt::format("{}: {} of the loss's variance goes with it ({} with 95 % confidence)",
-                  effect.name, Percent(effect.share), interval);
+                  effect.name, PercentText(effect.share), interval);
   if (effect.together.empty()) return text;
   return text + fmt::format(", {} with it alone and the rest together with {}",
-                            Percent(std::min(effect.alone, effect.share)),
+                            PercentText(std::min(effect.alone, effect.share)),
                             fmt::join(effect.together, ", "));
 }
 
@@ -144,7 +142,7 @@ std::string SharedText(const Effects& effects, double beyond_chance) {
   if (shared < kWorthSaying) return "";
   return fmt::format(
       "; {} goes with parameters that were changed together and cannot be told apart between them",
-      Percent(shared));
+      PercentText(shared));
 }
 
 std::string NoteOn(const Effects& effects, int most_of_setting, double beyond_chance) {
@@ -155,8 +153,8 @@ std::string NoteOn(const Effects& effects, int most_of_setting, double beyond_ch
   return fmt::format(
       "from a model of degree {} through {} trials{}, which explains {} of the variance and "
       "predicts {} of that of a trial left out{}{}",
-      effects.degree, effects.trials, first, Percent(std::max(0.0, effects.explained)),
-      Percent(std::max(0.0, effects.predicted)),
+      effects.degree, effects.trials, first, PercentText(std::max(0.0, effects.explained)),
+      PercentText(std::max(0.0, effects.predicted)),
       effects.predicted < kTrustedPrediction
           ? "; with so little, the shares say what it saw and not what is"
           : "",
