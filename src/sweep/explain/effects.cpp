@@ -55,11 +55,14 @@ Share ShareOf(const Model& model, const Regression::Fit& larger, const Regressio
   const double f = gain / share.df / model.mse;
   share.p = statistics::FUpperTail(share.df, model.residual_df, f);
   share.value = std::clamp((gain - share.df * model.mse) / (total + model.mse), 0.0, 1.0);
+  // Of a larger effect the total is larger too: what the columns do not explain stays as it is. Of
+  // one factor alone the share is lambda / (lambda + trials - 1).
+  const double rest = total - gain + share.df * model.mse;
   const auto share_at = [&](double tail, double f_there) {
     const double lambda = LargestNoncentrality([&](double l) {
       return statistics::NoncentralFCdf(share.df, model.residual_df, l, f_there) > tail;
     });
-    return std::min(1.0, lambda * model.mse / total);
+    return lambda * model.mse / (lambda * model.mse + rest);
   };
   share.low = std::min(share.value, share_at(0.975, f));
   // Means that lie closer together than chance lays them are luck, and bound nothing: without the 1

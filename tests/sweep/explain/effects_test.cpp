@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "rift/sweep/explain/failing_region.hpp"
 #include "rift/sweep/falsify/result.hpp"
@@ -149,6 +150,33 @@ TEST_CASE("The interval of a share holds the truth about as often as it says") {
     held += Of(found, 0).share_low <= truth && truth <= Of(found, 0).share_high;
   }
   CHECK(held >= 89);
+}
+
+/// Share of the sweeps whose interval for the effect of a, planted at `truth`, holds it, and the
+/// mean width of that interval. Means of a: -d, 0, d; noise 1.
+std::pair<double, double> CoverageAt(double truth) {
+  constexpr int kSweeps = 400;
+  const double d = std::sqrt(1.5 * truth / (1.0 - truth));
+  double held = 0.0, width = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSweeps; ++seed) {
+    const Effects found =
+        MeasureEffects(Table(8, 1.0, 9000 + seed, [&](int a, int) { return d * (a - 1); }));
+    const ParameterEffect& a = Of(found, 0);
+    held += a.share_low <= truth && truth <= a.share_high;
+    width += a.share_high - a.share_low;
+  }
+  return {held / kSweeps, width / kSweeps};
+}
+
+TEST_CASE("The interval of a strong effect holds it, and is no wider than it has to be") {
+  const auto [half_held, half_width] = CoverageAt(0.5);
+  CAPTURE(half_held, half_width);
+  CHECK(half_held >= 0.93);
+  CHECK(half_width < 0.4);
+  const auto [most_held, most_width] = CoverageAt(0.9);
+  CAPTURE(most_held, most_width);
+  CHECK(most_held >= 0.93);
+  CHECK(most_width < 0.12);
 }
 
 TEST_CASE("Words and ranges are measured alike") {

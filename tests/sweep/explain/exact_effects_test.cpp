@@ -48,9 +48,10 @@ TEST_CASE("Of one list the effect is the one-way analysis of variance") {
   CHECK(word.together.empty());
   CHECK(word.p < 1e-6);
   CHECK(f == Approx(120.0));
-  // At a noncentrality of 65.967 a noncentral F(2, 9) lies below 120 with 97.5 %, by its series.
-  CHECK(word.share_low == Approx(65.96719904 * mse / (between + within)).epsilon(1e-5));
-  CHECK(word.share_high == 1.0);  // 517 are more than there is
+  // At noncentralities of 65.967 and 517.19 a noncentral F(2, 9) lies below 120 with 97.5 and
+  // 2.5 %, by its series; with twelve trials they are shares of lambda / (lambda + 11).
+  CHECK(word.share_low == Approx(65.96719904 / (65.96719904 + 11.0)).epsilon(1e-5));
+  CHECK(word.share_high == Approx(517.1923294 / (517.1923294 + 11.0)).epsilon(1e-5));
   CHECK(word.IsSeen());
   CHECK(found.Of(0) == &found.parameters[0]);
   CHECK(found.Of(1) == nullptr);
@@ -298,7 +299,7 @@ TEST_CASE("Means closer together than chance lays them bound an effect no better
   CHECK(equal.Of(0)->share == 0.0);
   CHECK(equal.Of(0)->share_low == 0.0);
   // At a noncentrality of 9.848738 a noncentral F(2, 117) lies below 1 with 2.5 %, by its series.
-  CHECK(equal.Of(0)->share_high == Approx(9.848738 / 117.0).epsilon(1e-5));
+  CHECK(equal.Of(0)->share_high == Approx(9.848738 / (9.848738 + 119.0)).epsilon(1e-5));
 }
 
 TEST_CASE("Repeats that a search spent on one setting do not outweigh the others") {

@@ -17,7 +17,9 @@ struct ParameterEffect {
   /// Sudret 2008, less up to columns / trials of it). What two parameters do together counts in
   /// both, what the trials cannot tell apart in neither. 0 to 1; NaN where it cannot be estimated.
   double share = gap::kNotComputed;
-  /// 95 % interval, noncentral F (Steiger 2004); its upper end is that of an F of 1 or more.
+  /// 95 % interval, noncentral F (Steiger 2004): a noncentrality lambda is a share of lambda over
+  /// lambda and all that the parameter does not explain, of which the trials tell with one degree
+  /// of freedom less than there are of them. Its upper end is that of an F of 1 or more.
   double share_low = gap::kNotComputed;
   double share_high = gap::kNotComputed;
   double alone = gap::kNotComputed;   ///< of it by the parameter itself
