@@ -105,7 +105,7 @@ TEST_CASE("A shrunk row is told as it was approved") {
   text += ShrunkText(result, found, "out/shrunk") + ReplayCommand("out/sweep", 4) + "\n";
   for (const bool is_reached : {false, true}) {
     for (const int levels : {1, 3}) {
-      const sweep::RareEvent event{.probability = 0.00123,
+      const sweep::RareEvent event{.probability = is_reached ? 0.00123 : gap::kNotComputed,
                                    .low = 0.0004,
                                    .high = 0.0031,
                                    .coefficient_of_variation = 0.31,

@@ -275,9 +275,10 @@ TEST_CASE("A rare event says how many of its runs do not tell, and what they are
                                                 "them do not tell and are taken to hold)"));
   event.is_reached = false;
   CHECK_THAT(RareEventSentence(event),
-             EndsWith("about 0.4 at most (12 of 300 runs do not tell and are taken to hold)"));
+             EndsWith("with a probability of 0.4 at most, with 95 % confidence (12 of 300 runs do "
+                      "not tell and are taken to hold)"));
   event.untold = 0;
-  CHECK_THAT(RareEventSentence(event), EndsWith("about 0.4 at most"));
+  CHECK_THAT(RareEventSentence(event), EndsWith(" of 0.4 at most, with 95 % confidence"));
 }
 
 TEST_CASE("Changes between two sweeps say how many are copies") {

@@ -274,7 +274,7 @@ std::string RareEventSentence(const sweep::RareEvent& event) {
   if (!event.is_reached) {
     return fmt::format(
         "no failure was reached in {} levels: a run at a setting drawn at random fails with a "
-        "probability of about {:.2g} at most{}",
+        "probability of {:.3g} at most, with 95 % confidence{}",
         event.levels, event.high,
         event.untold > 0
             ? fmt::format(" ({} of {} runs {})", event.untold, event.evaluations, kUntold)

@@ -111,10 +111,17 @@ class Replica {
   int Evaluations() const { return evaluations_; }
   int Untold() const { return untold_; }
   bool IsReached() const { return is_reached_; }
+  /// Of the first level: its draws are independent of each other.
+  int ToldDraws() const { return told_draws_; }
+  int FailedDraws() const { return failed_draws_; }
 
  private:
   void Begin(std::vector<Sample> draws) {
-    for (Sample& draw : draws) chains_.push_back({std::move(draw)});
+    told_draws_ = static_cast<int>(draws.size()) - untold_;
+    for (Sample& draw : draws) {
+      failed_draws_ += draw.robustness <= 0.0;
+      chains_.push_back({std::move(draw)});
+    }
   }
 
   /// A step of each chain that is not at its length, and what is asked for the next one.
@@ -222,6 +229,8 @@ class Replica {
   int levels_ = 0;
   int evaluations_ = 0;
   int untold_ = 0;
+  int told_draws_ = 0;
+  int failed_draws_ = 0;
   bool is_reached_ = false;
   bool is_done_ = false;
 };
@@ -273,6 +282,17 @@ void MeasureScatter(const std::vector<double>& estimates, RareEvent& event) {
   event.high = std::min(1.0, event.probability * std::exp(reach));
 }
 
+/// The levels that were passed may have led past a region that nothing announces, so that what they
+/// leave bounds nothing by itself: the draws do, which are independent (one-sided Clopper-Pearson).
+double HighOfDraws(const std::vector<Replica>& replicas) {
+  int told = 0, failed = 0;
+  for (const Replica& replica : replicas) {
+    told += replica.ToldDraws();
+    failed += replica.FailedDraws();
+  }
+  return statistics::ClopperPearson(failed, told, 2.0 * kConfidence - 1.0).high;
+}
+
 RareEvent Conclude(const std::vector<Replica>& replicas) {
   RareEvent event;
   std::vector<double> estimates, bounds;
@@ -285,7 +305,7 @@ RareEvent Conclude(const std::vector<Replica>& replicas) {
     event.is_reached = event.is_reached || replica.IsReached();
   }
   if (!event.is_reached) {
-    event.probability = event.high = statistics::Mean(bounds);
+    event.high = std::max(statistics::Mean(bounds), HighOfDraws(replicas));
     return event;
   }
   event.probability = statistics::Mean(estimates);

@@ -356,6 +356,7 @@ TEST_CASE("What never fails is bounded and what fails often needs one level") {
   CHECK_FALSE(never.is_reached);
   CHECK(never.low == 0.0);
   CHECK(never.high < 1e-2);
+  CHECK(std::isnan(never.probability));
   const auto below = [](double share) {
     return EstimateRareEvent(1, OfEach([=](std::span<const double> x) { return x[0] - share; }), 1,
                              {.replicas = 8, .samples_per_level = 300});

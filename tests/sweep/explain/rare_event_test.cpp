@@ -242,7 +242,7 @@ TEST_CASE("Fewer levels, or a smaller share of each, reach as far as their produ
   CHECK_FALSE(bound.is_reached);
   CHECK(bound.levels == 2);
   CHECK(bound.high == Approx(0.01).epsilon(0.05));
-  CHECK(bound.probability == bound.high);
+  CHECK(std::isnan(bound.probability));
   CHECK(bound.low == 0.0);
   const RareEvent half = EstimateRareEvent(1, [](const auto& points) { return Each(points, 1e-9); },
                                            3, {.level_share = 0.5, .most_levels = 3});
@@ -250,6 +250,64 @@ TEST_CASE("Fewer levels, or a smaller share of each, reach as far as their produ
 }
 
 TEST_CASE("A loss at the threshold is a failure, one without a value is none, no axis is refused") {
+TEST_CASE("What no draw announces lies below the bound, though all levels lead past it") {
+  int missed = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const RareEvent event = EstimateRareEvent(
+        1,
+        [](const auto& points) {
+          std::vector<double> values;
+          for (const std::vector<double>& point : points) {
+            values.push_back(point[0] > 0.3 && point[0] < 0.3002 ? -0.1 : 0.05 + point[0]);
+          }
+          return values;
+        },
+        seed);
+    if (event.is_reached) continue;
+    ++missed;
+    CHECK(std::isnan(event.probability));
+    CHECK(event.low == 0.0);
+    // None of 8 x 300 draws fails: 1 - 0.05^(1 / 2400).
+    CHECK(event.high == Approx(1.0 - std::pow(0.05, 1.0 / 2400.0)));
+  }
+  CHECK(missed >= 4);  // 7.4 expected
+}
+
+TEST_CASE("Draws that do not tell bound nothing") {
+  // Of every 20 draws five tell, and hold.
+  const RareEvent event =
+      EstimateRareEvent(1,
+                        [](const auto& points) {
+                          std::vector<double> values;
+                          for (size_t i = 0; i < points.size(); ++i) {
+                            values.push_back(i % 20 < 5 ? 1.0 + points[i][0] : NAN);
+                          }
+                          return values;
+                        },
+                        1, {.replicas = 4, .samples_per_level = 20});
+  CHECK_FALSE(event.is_reached);
+  CHECK(event.high >= Approx(1.0 - std::pow(0.05, 1.0 / 20.0)));
+}
+
+TEST_CASE("A run of a rare event fails where it is falsified: not at the threshold, at the goal") {
+  const auto of = [](const TrialRow& end) {
+    return EstimateRareEvent(Plan(),
+                             [&](const std::vector<TrialRequest>& requests) {
+                               std::vector<TrialRow> rows(requests.size(), end);
+                               return rows;
+                             },
+                             {.replicas = 4, .samples_per_level = 20, .most_levels = 2});
+  };
+  TrialRow at_threshold;
+  at_threshold.comparison.gap_m = Plan().gap.threshold_m;
+  CHECK_FALSE(of(at_threshold).is_reached);
+  TrialRow at_goal{.status = TrialStatus::kTimedOut, .falsified = true, .left_m = 0.0};
+  CHECK(of(at_goal).probability == 1.0);
+  at_goal.falsified = false;  // does not count: falsify.count
+  CHECK_FALSE(of(at_goal).is_reached);
+  CHECK(of(at_goal).untold == of(at_goal).evaluations);
+}
+
   const auto of = [](double value) {
     return EstimateRareEvent(
         1, [=](const auto& points) { return std::vector<double>(points.size(), value); }, 1,

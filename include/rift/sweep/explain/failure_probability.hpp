@@ -49,8 +49,10 @@ struct RareEventOptions {
 
 /// A small failure probability.
 struct RareEvent {
-  double probability = gap::kNotComputed;  ///< an upper bound when not reached
+  double probability = gap::kNotComputed;  ///< NaN when not reached
   double low = 0.0;                        ///< 95 % interval, from the scatter of the replicas
+  /// When not reached, what the probability is below with 95 % confidence: the larger of what the
+  /// levels leave and the one-sided bound of Clopper and Pearson for the independent draws.
   double high = 1.0;
   double coefficient_of_variation = gap::kNotComputed;
   int levels = 0;  ///< of the replica with the most
