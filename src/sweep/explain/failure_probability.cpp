@@ -342,6 +342,15 @@ double CoordinateOf(const search::Axis& axis, double x) {
   return std::min(axis.max, axis.min + std::floor(x * (axis.max - axis.min + 1.0)));
 }
 
+/// At or below zero where it fails: a gap at the threshold does not exceed it, an end at the goal
+/// that counts as a failure is one.
+double RobustnessOf_m(const TrialRow& row, double threshold_m) {
+  const double robustness_m = Robustness_m({&row, 1}, threshold_m);
+  if (!row.Tells()) return robustness_m;
+  return row.falsified ? std::min(robustness_m, 0.0)
+                       : std::max(robustness_m, std::numeric_limits<double>::min());
+}
+
 experiment::Theta ThetaAtUnit(const std::vector<experiment::Parameter>& parameters,
                               const std::vector<search::Axis>& axes, std::span<const double> unit) {
   search::Point point;
@@ -365,7 +374,7 @@ RareEvent EstimateRareEvent(const experiment::Experiment& experiment, const RunA
     }
     std::vector<double> values_m;
     for (const TrialRow& row : run(std::move(trials))) {
-      values_m.push_back(Robustness_m({&row, 1}, experiment.gap.threshold_m));
+      values_m.push_back(RobustnessOf_m(row, experiment.gap.threshold_m));
     }
     return values_m;
   };
