@@ -10,6 +10,7 @@
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
 #include "rift/sessions/simulate/pictures.hpp"
+#include "rift/sessions/sweep/folder.hpp"
 #include "rift/sessions/sweep/replay.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
 #include "rift/sweep/falsify/uncrossed_note.hpp"
@@ -51,7 +52,10 @@ struct ReplayedRow {
       files.push_back(folder / name);
     }
     const std::string table = files.front().string();
-    if (id == "worst") id = report::WorstIdOf(files::ReadFile(table), table);
+    if (id == "worst") {
+      const std::string text = files::ReadFile(table);
+      id = report::WorstIdOf(text, table, sessions::SavedExperiment(folder).gap.threshold_m);
+    }
     out = request.out.empty() ? folder / "replay" / id : fs::path(request.out);
   }
 

@@ -5,6 +5,7 @@
 #include "rift/report/figures/setting_grid.hpp"
 #include "rift/report/json/fields.hpp"
 #include "rift/report/json/json.hpp"
+#include "rift/sweep/explain/worst_trial.hpp"
 
 namespace rift::report {
 namespace {
@@ -59,7 +60,7 @@ TEST_CASE("A damaged table.csv is refused with what is wrong and what to do") {
     const std::string refused = "table.csv: " + says + ": no sweep writes that; give the command";
     CHECK_THROWS_WITH(TableRows(damaged), Contains(refused));
     CHECK_THROWS_WITH(TableRowOf(damaged, "24", name), Contains(refused));
-    CHECK_THROWS_WITH(WorstIdOf(damaged, name), Contains(refused));
+    CHECK_THROWS_WITH(WorstIdOf(damaged, name, 0.06), Contains(refused));
   };
   check("gap_m", "gab_m", "its header does not name the column gap_m once");
   check(",status", ",trial", "its header does not name the column trial once");
@@ -84,6 +85,58 @@ TEST_CASE("A damaged table.csv is refused with what is wrong and what to do") {
     if (length > 0 && table[length - 1] == '\n') continue;  // a row less is none that is damaged
     CHECK_THROWS_WITH(TableRows(table.substr(0, length)), Contains("is cut short"));
   }
+}
+
+TEST_CASE("The worst row of a table.csv is that of the sweep which wrote it") {
+  sweep::SweepResult result;
+  result.parameters = {{"case", {}}};
+  const auto add = [&](double gap_m, double way_gap_m) {
+    result.rows.push_back(synthetic::Row({synthetic::Word("x")}, "1", gap_m));
+    result.rows.back().way_gap_m = way_gap_m;
+    result.rows.back().falsified = result.rows.back().CountedGap_m() > result.gap.threshold_m;
+  };
+  add(0.26, 0.01);  // stops short of the goal, which is no failure
+  add(0.07, 0.069);
+  add(0.201, 0.2);
+  const auto worst = [&] {
+    const std::string id = WorstIdOf(TableCsv(result), "table.csv", result.gap.threshold_m);
+    CHECK(id == std::to_string(*sweep::WorstTrialOf(result) + 1));
+    return id;
+  };
+  CHECK(worst() == "3");
+  for (const double left_m : {0.13, 0.15, gap::kNotComputed}) {
+    add(0.0, 0.0);
+    sweep::TrialRow& lost = result.rows.back();
+    lost.comparison = {};
+    lost.status = sweep::TrialStatus::kTimedOut;
+    lost.falsified = true;
+    lost.way_gap_m = gap::kNotComputed;
+    lost.left_m = left_m;
+    CHECK(worst() == (left_m == 0.15 ? "5" : left_m == 0.13 ? "3" : "5"));
+  }
+  result.gap.threshold_m = 0.3;
+  for (sweep::TrialRow& row : result.rows) row.falsified = !row.IsOk();
+  CHECK(worst() == "6");  // how far it had to go is not known: twice the threshold
+}
+
+TEST_CASE("Values of a range of few whole numbers have a summary each, in their order") {
+  sweep::SweepResult result;
+  result.parameters = {{.key = "n", .min = 1.0, .max = 12.0, .is_integer = true},
+                       {.key = "k", .levels = {synthetic::Word("a")}}};
+  for (const char* n : {"10", "2", "1", "10"}) {
+    result.rows.push_back(synthetic::Row({synthetic::Numeric(n), synthetic::Word("a")}, "1", 0.05));
+  }
+  sweep::Summarise(result);
+  using Ordered = nlohmann::ordered_json;
+  const auto by = [&] { return Ordered::parse(SummaryJson(result))["by"]; };
+  REQUIRE(by().contains("n"));
+  std::vector<std::string> values;
+  const Ordered by_n = by()["n"];
+  for (const auto& [value, level] : by_n.items()) values.push_back(value);
+  CHECK(values == std::vector<std::string>{"1", "2", "10"});
+  CHECK(by_n["10"]["n"] == 2);
+  result.parameters[0].max = 13.0;
+  CHECK_FALSE(by().contains("n"));
 }
 
 TEST_CASE("A number of a damaged table.csv is never read in part") {

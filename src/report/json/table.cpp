@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -195,16 +194,36 @@ TableRow TableRowOf(const std::string& table_csv, const std::string& id, const s
       fmt::format("{} has no row with id {}: its ids are 1 to {}", name, id, read.RowsRead()));
 }
 
-std::string WorstIdOf(const std::string& table_csv, const std::string& name) {
+namespace {
+
+/// NaN of an empty cell.
+double CellNumber(const TableRow& row, const char* column) {
+  return NumberIn<double>(row.at(column)).value_or(gap::kNotComputed);
+}
+
+/// As far as it decides how bad it is.
+sweep::TrialRow FailureRow(const TableRow& row) {
+  sweep::TrialRow trial;
+  const auto names = EnumNames(trial.status);
+  trial.status = static_cast<sweep::TrialStatus>(
+      std::find(names.begin(), names.end(), row.at("status")) - names.begin());
+  trial.falsified = row.at("falsified") == "true";
+  trial.comparison.gap_m = CellNumber(row, "gap_m");
+  trial.way_gap_m = CellNumber(row, "way_gap_m");
+  trial.left_m = CellNumber(row, "left_m");
+  return trial;
+}
+
+}  // namespace
+
+std::string WorstIdOf(const std::string& table_csv, const std::string& name, double threshold_m) {
   TableReader read(table_csv, name);
   std::vector<std::string> ids;
   std::vector<sweep::TrialFailure> trials;
   while (!read.IsAtEnd()) {
     const TableRow row = read.Next();
     ids.push_back(row.at("id"));
-    trials.push_back({.falsified = row.at("falsified") == "true"});
-    if (row.at("status") != "ok") continue;
-    trials.back().gap_m = std::strtod(row.at("gap_m").c_str(), nullptr);
+    trials.push_back(sweep::FailureOf(FailureRow(row), threshold_m));
   }
   const std::optional<size_t> worst = sweep::WorstTrial(trials);
   if (!worst) throw std::invalid_argument(name + " has no row with a gap: name a row's id");

@@ -1,27 +1,36 @@
 #include "rift/sweep/explain/worst_trial.hpp"
 
-#include <algorithm>
-
 namespace rift::sweep {
+
+namespace {
+
+bool IsWorse(const TrialFailure& a, const TrialFailure& b) {
+  if (a.falsified != b.falsified) return a.falsified;
+  return a.falsified ? a.loss_m > b.loss_m : *a.gap_m > *b.gap_m;
+}
+
+}  // namespace
+
+TrialFailure FailureOf(const TrialRow& row, double threshold_m) {
+  TrialFailure trial{.falsified = row.falsified};
+  if (row.IsOk()) trial.gap_m = row.comparison.gap_m;
+  if (row.falsified) trial.loss_m = Loss_m(row, threshold_m);
+  return trial;
+}
 
 std::optional<std::size_t> WorstTrial(const std::vector<TrialFailure>& trials) {
   std::optional<std::size_t> worst;
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    if (!trials[i].gap_m) continue;
-    if (!worst || *trials[i].gap_m > *trials[*worst].gap_m) worst = i;
+    if (!trials[i].falsified && !trials[i].gap_m) continue;
+    if (!worst || IsWorse(trials[i], trials[*worst])) worst = i;
   }
-  if (worst && trials[*worst].falsified) return worst;
-  const auto failed = std::find_if(trials.begin(), trials.end(),
-                                   [](const TrialFailure& trial) { return trial.falsified; });
-  if (failed == trials.end()) return worst;
-  return static_cast<std::size_t>(failed - trials.begin());
+  return worst;
 }
 
 std::optional<std::size_t> WorstTrialOf(const SweepResult& result) {
   std::vector<TrialFailure> trials;
   for (const TrialRow& row : result.rows) {
-    trials.push_back({.falsified = row.falsified});
-    if (row.IsOk()) trials.back().gap_m = row.comparison.gap_m;
+    trials.push_back(FailureOf(row, result.gap.threshold_m));
   }
   return WorstTrial(trials);
 }

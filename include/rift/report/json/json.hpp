@@ -125,9 +125,9 @@ std::vector<TableRow> TableRows(const std::string& table_csv);
 /// when there is none.
 TableRow TableRowOf(const std::string& table_csv, const std::string& id, const std::string& name);
 
-/// The id of the row that sweep::WorstTrial() of a table takes. Throws std::invalid_argument,
-/// naming the table, when it takes none.
-std::string WorstIdOf(const std::string& table_csv, const std::string& name);
+/// The id of the row that sweep::WorstTrial() of a table takes; `threshold_m` is that of its sweep.
+/// Throws std::invalid_argument, naming the table, when it takes none.
+std::string WorstIdOf(const std::string& table_csv, const std::string& name, double threshold_m);
 
 /// The trial of a row of an experiment's table. Throws std::invalid_argument, naming the table,
 /// where a parameter is missing.

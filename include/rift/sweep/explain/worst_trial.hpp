@@ -12,10 +12,14 @@ namespace rift::sweep {
 struct TrialFailure {
   std::optional<double> gap_m;  ///< nothing where it has none
   bool falsified = false;
+  double loss_m = gap::kNotComputed;  ///< Loss_m, of one that fails
 };
 
-/// Index of the trial with the largest gap; where that does not fail, of the first that fails.
-/// Nothing when no trial has a gap or fails. The one meaning of "worst" on the command line.
+TrialFailure FailureOf(const TrialRow& row, double threshold_m);
+
+/// Index of the failing trial with the largest loss; where none fails, of that with the largest
+/// gap; of equal ones the first. Nothing when no trial has a gap or fails. The one meaning of
+/// "worst" on the command line.
 std::optional<std::size_t> WorstTrial(const std::vector<TrialFailure>& trials);
 /// The same of the rows of a sweep.
 std::optional<std::size_t> WorstTrialOf(const SweepResult& result);
