@@ -180,8 +180,9 @@ TEST_CASE("Parameters that can explain little are named together, a start that i
   explanation.anatomy.start_m = {0.0123, 0.004, 0.0206, 9};
   const auto because = [&] { return Said(Findings(Settings({{0.05}}), explanation)[1]); };
   const std::string start =
-      "Start placement matters: 0.0123 m of the mean gap (0.0040 to 0.0206) go when the first "
-      "points are laid together.";
+      "Start placement matters: 0.0123 m of the mean gap over the settings (0.0040 to 0.0206) go "
+      "when the first points are laid together.";
+  explanation.anatomy.is_over_settings = true;
   CHECK(because() ==
         std::vector<std::string>{
             "seen is told.", "wide is told.",

@@ -79,8 +79,8 @@ TEST_CASE("A gap of nothing is made of nothing, and no share of it goes") {
   }
   sweep::Summarise(result);
   CHECK(Answer(result, "What is the gap made of?") ==
-        "Mean gap 0.0000 m; with the first points laid together 0.0000 m; 0.0000 m is shape, left "
-        "after the best rigid motion.");
+        "Mean gap over the settings 0.0000 m; with the first points laid together 0.0000 m; 0.0000 "
+        "m is shape, left after the best rigid motion.");
 }
 
 TEST_CASE("Most and least are said of values that fail unequally often alone") {

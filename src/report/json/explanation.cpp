@@ -82,7 +82,8 @@ ordered_json AnatomyJson(const sweep::Anatomy& anatomy) {
     parts.push_back(
         {{"name", part.name}, {"size_m", EstimateJson(part.size_m)}, {"removed_by", part.remedy}});
   }
-  return {{"gap_m", EstimateJson(anatomy.gap_m)},
+  return {{"means_over", anatomy.is_over_settings ? "settings" : "trials"},
+          {"gap_m", EstimateJson(anatomy.gap_m)},
           {"start_m", EstimateJson(anatomy.start_m)},
           {"start_matters", sweep::IsClear(anatomy.start_m) && anatomy.start_m.mean > 0.0},
           {"frame_m", EstimateJson(anatomy.frame_m)},

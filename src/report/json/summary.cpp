@@ -94,8 +94,10 @@ ordered_json AttributionJson(const sweep::SweepResult& result) {
     aligned_m += row.comparison.start_aligned_gap_m / result.all.n;
     shape_m += row.comparison.shape_gap_m / result.all.n;
   }
-  return {
-      {"start_offset_m", start_m}, {"start_aligned_gap_m", aligned_m}, {"shape_gap_m", shape_m}};
+  return {{"means_over", "trials"},
+          {"start_offset_m", start_m},
+          {"start_aligned_gap_m", aligned_m},
+          {"shape_gap_m", shape_m}};
 }
 
 }  // namespace

@@ -49,13 +49,17 @@ void SayInert(const sweep::Explanation& explanation, bool is_inert, Finding* fin
   }
 }
 
+std::string OverWhat(const sweep::Anatomy& anatomy) {
+  return anatomy.is_over_settings ? "over the settings" : "over the trials";
+}
+
 void SayStart(const sweep::Explanation& explanation, Finding* finding) {
   const sweep::Estimate& start = explanation.anatomy.start_m;
   if (!sweep::IsClear(start) || start.mean <= 0.0) return;
   finding->sentences.push_back(fmt::format(
-      "Start placement matters: {:.4f} m of the mean gap ({}) go when the first points are laid "
+      "Start placement matters: {:.4f} m of the mean gap {} ({}) go when the first points are laid "
       "together.",
-      start.mean, Between(start.low, start.high, 1.0, 4)));
+      start.mean, OverWhat(explanation.anatomy), Between(start.low, start.high, 1.0, 4)));
 }
 
 std::string IntervalText(const sweep::Estimate& estimate) {
@@ -107,19 +111,6 @@ void SayParts(const sweep::Explanation& explanation, Finding* finding) {
   }
 }
 
-template <class Field>
-double MeanOverTrials(const sweep::SweepResult& result, Field field) {
-  double sum = 0.0;
-  long n = 0;
-  for (const sweep::TrialRow& row : result.rows) {
-    const double value = row.comparison.*field;
-    if (!row.IsOk() || !std::isfinite(value)) continue;
-    sum += value;
-    ++n;
-  }
-  return n == 0 ? NAN : sum / static_cast<double>(n);
-}
-
 }  // namespace
 
 std::string Capital(std::string text) {
@@ -140,11 +131,12 @@ Finding Because(const sweep::Explanation& explanation) {
   return finding;
 }
 
-Finding MadeOf(const sweep::SweepResult& result, const sweep::Explanation& explanation) {
+Finding MadeOf(const sweep::Explanation& explanation) {
   Finding finding{"What is the gap made of?", {}};
-  const double gap_m = MeanOverTrials(result, &gap::Comparison::gap_m);
-  const double aligned_m = MeanOverTrials(result, &gap::Comparison::start_aligned_gap_m);
-  const double shape_m = MeanOverTrials(result, &gap::Comparison::shape_gap_m);
+  const sweep::Anatomy& anatomy = explanation.anatomy;
+  const double gap_m = anatomy.gap_m.mean;
+  const double aligned_m = gap_m - anatomy.start_m.mean;
+  const double shape_m = anatomy.shape_m.mean;
   if (!std::isfinite(aligned_m) || !std::isfinite(shape_m)) {
     finding.sentences.push_back(Sentence("Not known: no trial has a gap."));
     return finding;
@@ -152,10 +144,10 @@ Finding MadeOf(const sweep::SweepResult& result, const sweep::Explanation& expla
   const std::string change =
       gap_m > 0.0 ? fmt::format(" ({:+.0f} %)", 100.0 * (aligned_m - gap_m) / gap_m) : "";
   finding.sentences.push_back(
-      fmt::format("Mean gap {:.4f} m; with the first points laid together {:.4f} m{}; "
+      fmt::format("Mean gap {} {:.4f} m; with the first points laid together {:.4f} m{}; "
                   "{:.4f} m is shape, left after "
                   "the best rigid motion.",
-                  gap_m, aligned_m, change, shape_m));
+                  OverWhat(anatomy), gap_m, aligned_m, change, shape_m));
   SayParts(explanation, &finding);
   return finding;
 }

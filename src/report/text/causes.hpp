@@ -11,6 +11,6 @@ std::string Capital(std::string text);
 Finding Because(const sweep::Explanation& explanation);
 
 /// Start, frame, shape, and what a better simulator could remove.
-Finding MadeOf(const sweep::SweepResult& result, const sweep::Explanation& explanation);
+Finding MadeOf(const sweep::Explanation& explanation);
 
 }  // namespace rift::report

@@ -353,7 +353,7 @@ std::vector<Finding> Findings(const sweep::SweepResult& result,
           Because(explanation),
           HowSure(result, explanation),
           Next(result, explanation),
-          MadeOf(result, explanation),
+          MadeOf(explanation),
           BesideNoise(result),
           Missing(result)};
 }

@@ -34,9 +34,16 @@ std::vector<SettingResult> CountedSettings(const SweepResult& result) {
 class Averages {
  public:
   explicit Averages(const SweepResult& result)
-      : result_(result), settings_(CountedSettings(result)) {}
+      : result_(result), settings_(CountedSettings(result)) {
+    const auto with_gap = std::count_if(settings_.begin(), settings_.end(), [&](const auto& one) {
+      return std::isfinite(MeanGap_m(one));
+    });
+    is_over_settings_ = with_gap >= 3;
+  }
 
   /// Repeats of a setting share its candidate, so it is settings that are independent.
+  bool IsOverSettings() const { return is_over_settings_; }
+
   Estimate Over(const OfTrial& of_trial) const {
     std::vector<double> means, all;
     for (const SettingResult& setting : settings_) {
@@ -45,7 +52,7 @@ class Averages {
       means.push_back(statistics::Mean(values));
       all.insert(all.end(), values.begin(), values.end());
     }
-    return EstimateOf(means.size() >= 3 ? means : all);
+    return EstimateOf(is_over_settings_ ? means : all);
   }
 
   Estimate OverSettings(const std::function<double(const SettingResult&)>& of_setting) const {
@@ -75,6 +82,7 @@ class Averages {
 
   const SweepResult& result_;
   std::vector<SettingResult> settings_;
+  bool is_over_settings_ = false;
 };
 
 std::vector<GapPart> PartsOf(const SweepResult& result, const Anatomy& anatomy) {
@@ -100,6 +108,7 @@ Anatomy Dissect(const SweepResult& result) {
     return averages.Over([&](const TrialRow& row) { return of_paths(row.comparison); });
   };
   Anatomy anatomy;
+  anatomy.is_over_settings = averages.IsOverSettings();
   anatomy.gap_m = over([](const Comparison& c) { return c.gap_m; });
   anatomy.start_m = over([](const Comparison& c) { return c.gap_m - c.start_aligned_gap_m; });
   anatomy.frame_m = over([](const Comparison& c) { return c.start_aligned_gap_m - c.shape_gap_m; });

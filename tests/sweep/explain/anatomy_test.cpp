@@ -34,6 +34,7 @@ SweepResult Three() {
 TEST_CASE("From three settings on the gap is the mean over settings with its interval") {
   const Anatomy anatomy = Dissect(Three());
   // Means 0.03, 0.06, 0.09: mean 0.06, sd 0.03; Student's 97.5 % quantile with two degrees.
+  CHECK(anatomy.is_over_settings);
   CHECK(anatomy.gap_m.n == 3);
   CHECK(anatomy.gap_m.mean == Approx(0.06));
   CHECK(anatomy.gap_m.low == Approx(0.06 - 4.30265273 * 0.03 / std::sqrt(3.0)));
@@ -44,6 +45,7 @@ TEST_CASE("Below three settings the gap is the mean over trials") {
   SweepResult result = Three();
   std::erase_if(result.rows, [](const TrialRow& row) { return row.theta[0].text == "c"; });
   Summarise(result);
+  CHECK_FALSE(Dissect(result).is_over_settings);
   CHECK(Dissect(result).gap_m.n == 3);
   CHECK(Dissect(result).gap_m.mean == Approx(0.05));
 }

@@ -7,7 +7,7 @@
 
 namespace rift::sweep {
 
-/// A mean with its 95 % interval (Student) over the settings, or over the trials below 3 settings.
+/// A mean with its 95 % interval (Student).
 struct Estimate {
   double mean = gap::kNotComputed;
   double low = gap::kNotComputed;
@@ -24,6 +24,7 @@ struct GapPart {
 
 /// What the gaps of a whole table are made of. start + frame + shape = gap.
 struct Anatomy {
+  bool is_over_settings = false;  ///< from three settings with a gap on; else over the trials
   Estimate gap_m;
   Estimate start_m;      ///< goes when the first points are laid together
   Estimate frame_m;      ///< goes beyond that with the best rigid motion: heading, camera frame
