@@ -12,6 +12,7 @@
 #include "plain_numbers.hpp"
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::report {
 namespace {
@@ -129,17 +130,23 @@ TEST_CASE("Every number of summary.json follows from the rows of its sweep") {
 TEST_CASE("In short: runs off the path, runs that do not arrive and lost logs are counted apart") {
   const sweep::SweepResult result = WithOneRunTwice();
   long off = 0, ended = 0, lost = 0;
+  std::map<sweep::TrialStatus, long> kinds;
   for (const auto& row : result.rows) {
     off += IsOk(row) && row.falsified ? 1 : 0;
     ended += !IsOk(row) && row.falsified ? 1 : 0;
     lost += !IsOk(row) && !row.falsified ? 1 : 0;
+    if (!IsOk(row) && !row.falsified) ++kinds[row.status];
   }
   REQUIRE((off > 0 && ended > 0 && lost > 0));
   const std::string text = BriefText(result, sweep::Explain(result));
   INFO(text);
-  CHECK(text.find(fmt::format("0 of 12 settings; {} of {} runs leave the path by more than 0.045 "
-                              "m, and {} do not arrive; {} more tell nothing\n",
-                              off, CountTold(All(result)), ended, lost)) != text.npos);
+  std::string how;
+  for (const auto& [status, n] : kinds) {
+    how += fmt::format("{}{} {}", how.empty() ? "" : ", ", n, yaml::NameOf(status));
+  }
+  CHECK(text.find(fmt::format("0 of 12 settings; {} of {} runs exceed 0.045 m, and {} fail by not "
+                              "arriving; {} more tell nothing ({})\n",
+                              off, CountTold(All(result)), ended, lost, how)) != text.npos);
 }
 
 TEST_CASE("What explanation.json says of rows, parts and cells follows from the rows") {

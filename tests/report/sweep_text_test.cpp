@@ -194,8 +194,41 @@ TEST_CASE("Parameters that can explain little are named together, a start that i
   CHECK(because().size() == 4);
 }
 
+TEST_CASE("What the gap is made of adds up, and says of which mean it is") {
+  // Trials unevenly over the settings: their mean gap is 0.0433 m, that of the settings 0.05 m.
+  sweep::SweepResult result = Settings({{0.03, 0.031, 0.032, 0.027}, {0.05}, {0.07}});
+  const auto said = [&] { return Said(Findings(result, sweep::Explain(result))[4]); };
+  CHECK_THAT(said()[0], StartsWith("Mean gap over the settings 0.0500 m; with the first points "
+                                   "laid together 0.0400 m (-20 %); 0.0250 m is shape"));
+  CHECK_THAT(said()[1], StartsWith("Start placement: +0.0100 m"));
+  result.rows.pop_back();
+  sweep::Summarise(result);
+  CHECK_THAT(said()[0], StartsWith("Mean gap over the trials 0.0340 m; with the first points laid "
+                                   "together 0.0272 m (-20 %); 0.0170 m is shape"));
+}
+
+TEST_CASE("In short: runs that tell nothing are counted by their end beside those that fail") {
+  sweep::SweepResult result = Settings({{0.02, 0.07, 0.03, 0.04}, {0.04, 0.05}});
+  const auto fails = [&] {
+    return BriefText(result, {}).substr(0, BriefText(result, {}).find('\n'));
+  };
+  CHECK(fails() ==
+        "what fails: 0 of 2 settings; 1 of 6 runs exceed 0.06 m, and 0 fail by not arriving");
+  for (const size_t i : {size_t{0}, size_t{2}, size_t{3}}) {
+    result.rows[i].status = i == 3 ? sweep::TrialStatus::kCrashed : sweep::TrialStatus::kTimedOut;
+    result.rows[i].comparison = {};
+  }
+  result.rows[0].falsified = true;
+  sweep::Summarise(result);
+  CHECK(fails() ==
+        "what fails: 0 of 2 settings; 1 of 4 runs exceed 0.06 m, and 1 fail by not arriving; 2 "
+        "more tell nothing (1 timed_out, 1 crashed)");
+}
+
 TEST_CASE("Trials that only stop short of the goal are counted, one or more") {
   sweep::Explanation explanation;
+  explanation.anatomy.gap_m = explanation.anatomy.shape_m = {0.05, 0.04, 0.06, 4};
+  explanation.anatomy.start_m = {0.0, -0.01, 0.01, 4};
   explanation.anatomy.goal_m = {0.0021, 0.001, 0.0032, 4};
   explanation.anatomy.noise_m = {0.03, 0.02, 0.04, 4};
   explanation.anatomy.removable_m = {-0.002, -0.01, 0.006, 4};

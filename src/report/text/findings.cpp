@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "causes.hpp"
 #include "rift/report/figures/figures.hpp"
@@ -228,18 +229,10 @@ Finding Missing(const sweep::SweepResult& result) {
                                             Count(static_cast<long>(result.rows.size()), "trial")));
     return finding;
   }
-  std::string kinds;
-  const auto names = EnumNames(sweep::TrialStatus{});
-  for (std::size_t kind = 1; kind < names.size(); ++kind) {
-    const auto status = static_cast<sweep::TrialStatus>(kind);
-    const long n = std::count_if(result.rows.begin(), result.rows.end(),
-                                 [status](const auto& row) { return row.status == status; });
-    if (n == 0) continue;
-    kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", n, names[kind]);
-  }
   finding.sentences.push_back(
       fmt::format("Without a gap: {} of {} ({}). They are in no mean on this page.",
-                  result.all.not_ok, Count(static_cast<long>(result.rows.size()), "trial"), kinds));
+                  result.all.not_ok, Count(static_cast<long>(result.rows.size()), "trial"),
+                  StatusCounts(result, [](const auto& row) { return !row.IsOk(); })));
   const long fewer =
       std::count_if(result.settings.begin(), result.settings.end(), [&](const auto& setting) {
         return setting.verdict.repeats > 0 && NotMeasured(result, setting) > 0;
@@ -256,6 +249,19 @@ Finding Missing(const sweep::SweepResult& result) {
 std::string Sentence::Text() const {
   std::string text;
   for (const Piece& piece : pieces_) text += piece.text;
+  return text;
+}
+
+std::string StatusCounts(const sweep::SweepResult& result,
+                         const std::function<bool(const sweep::TrialRow&)>& is_counted) {
+  std::map<sweep::TrialStatus, long> counts;
+  for (const sweep::TrialRow& row : result.rows) {
+    if (is_counted(row)) ++counts[row.status];
+  }
+  std::string text;
+  for (const auto& [status, n] : counts) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, yaml::NameOf(status));
+  }
   return text;
 }
 

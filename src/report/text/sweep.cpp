@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 
 #include "rift/files/shell_word.hpp"
@@ -65,21 +64,16 @@ std::string NotOkText(const sweep::SweepResult& result) {
   constexpr int kMostShown = 3;
   std::string text;
   int shown = 0;
-  std::map<sweep::TrialStatus, int> more;
   for (size_t i = 0; i < result.rows.size(); ++i) {
     const sweep::TrialRow& row = result.rows[i];
     if (row.IsOk()) continue;
-    if (++shown > kMostShown) {
-      ++more[row.status];
-      continue;
-    }
+    if (++shown > kMostShown) continue;
     text += fmt::format("without gap: row {}: {}\n", i + 1, row.reason);
   }
   if (shown <= kMostShown) return text;
-  std::string kinds;
-  for (const auto& [status, count] : more) {
-    kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", count, yaml::NameOf(status));
-  }
+  int passed = 0;
+  const std::string kinds =
+      StatusCounts(result, [&](const auto& row) { return !row.IsOk() && ++passed > kMostShown; });
   return text + fmt::format("without gap: {} more: {}\n", shown - kMostShown, kinds);
 }
 
@@ -212,12 +206,15 @@ std::string BriefText(const sweep::SweepResult& result, const sweep::Explanation
       return row.falsified && row.IsOk() == is_ok;
     });
   };
-  std::string fails = fmt::format(
-      "{} of {} settings; {} of {} runs leave the path by more than {:g} m, and {} do not arrive",
-      result.Count(gap::Verdict::kFalsified), result.settings.size(), failing(true),
-      result.all.told, result.gap.threshold_m, failing(false));
+  std::string fails =
+      fmt::format("{} of {} settings; {} of {} runs exceed {:g} m, and {} fail by not arriving",
+                  result.Count(gap::Verdict::kFalsified), result.settings.size(), failing(true),
+                  result.all.told, result.gap.threshold_m, failing(false));
   const long lost = static_cast<long>(result.rows.size()) - result.all.told;
-  if (lost > 0) fails += fmt::format("; {} more tell nothing", lost);
+  if (lost > 0) {
+    fails += fmt::format("; {} more tell nothing ({})", lost,
+                         StatusCounts(result, [](const auto& row) { return !row.Tells(); }));
+  }
   std::string text;
   for (const auto& [label, answer] :
        {std::pair<const char*, std::string>{"what fails:", fails},

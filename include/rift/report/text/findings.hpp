@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,6 +56,10 @@ struct Headline {
 std::string RobotSentence(const sweep::SweepResult& result, const sweep::Explanation& explanation);
 
 Headline Summary(const sweep::SweepResult& result);
+
+/// How many trials of those counted ended how: "3 timed_out, 1 crashed".
+std::string StatusCounts(const sweep::SweepResult& result,
+                         const std::function<bool(const sweep::TrialRow&)>& is_counted);
 
 /// How many settings are falsified, passed, not seen to fail, undecided, and by which rule.
 Sentence VerdictCounts(const sweep::SweepResult& result);
