@@ -192,12 +192,17 @@ double Gain(const Suggestion& suggestion) {
   return (suggestion.wrong_now - suggestion.wrong_after) / suggestion.repeats;
 }
 
-/// The best by gain, predicted failures for at least half of the places.
+void SortByGain(std::vector<Suggestion>& suggestions) {
+  std::stable_sort(suggestions.begin(), suggestions.end(),
+                   [](const Suggestion& a, const Suggestion& b) {
+                     if (Gain(a) != Gain(b)) return Gain(a) > Gain(b);
+                     return a.mean_loss_m > b.mean_loss_m;
+                   });
+}
+
+/// The best by gain, predicted failures for at least half of the places; the best first.
 std::vector<Suggestion> Choose(std::vector<Suggestion> all, int most) {
-  std::stable_sort(all.begin(), all.end(), [](const Suggestion& a, const Suggestion& b) {
-    if (Gain(a) != Gain(b)) return Gain(a) > Gain(b);
-    return a.mean_loss_m > b.mean_loss_m;
-  });
+  SortByGain(all);
   std::vector<Suggestion> chosen, others;
   int reserved = (most + 1) / 2;
   for (Suggestion& one : all) {
@@ -206,6 +211,7 @@ std::vector<Suggestion> Choose(std::vector<Suggestion> all, int most) {
   }
   std::move(others.begin(), others.end(), std::back_inserter(chosen));
   if (static_cast<int>(chosen.size()) > most) chosen.resize(static_cast<size_t>(most));
+  SortByGain(chosen);
   return chosen;
 }
 

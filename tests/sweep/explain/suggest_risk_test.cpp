@@ -69,7 +69,7 @@ TEST_CASE("Of a simulator half a belief is kept until the robot has borne one ou
   const Suggestions suggestions = All(result);
   CHECK(suggestions.trusted == 0.5);
   REQUIRE(suggestions.list.size() == 2);
-  const Suggestion &ice = suggestions.list[0], &rock = suggestions.list[1];
+  const Suggestion &rock = suggestions.list[0], &ice = suggestions.list[1];  // the best first
   CHECK(ice.values[0].text == "ice");
   CHECK(ice.fails_now == Approx(0.749955003599712));
   CHECK(ice.wrong_now == Approx(0.250044996400288));
@@ -110,9 +110,9 @@ TEST_CASE("Half of the places, rounded up, are for predicted failures, whatever 
     return names;
   };
   CHECK(chosen(1) == "far ");
-  CHECK(chosen(2) == "far passes ");
-  CHECK(chosen(3) == "far near passes ");
-  CHECK(chosen(4) == "far near passes second ");
+  CHECK(chosen(2) == "passes far ");
+  CHECK(chosen(3) == "passes far near ");
+  CHECK(chosen(4) == "passes second far near ");
   CHECK(chosen(9) == chosen(4));
 }
 
