@@ -133,9 +133,12 @@ TEST_CASE(
   CHECK(swept.result.rows[3].comparison.gap_m > swept.result.rows[2].comparison.gap_m);
   CHECK(worst->pair.real == "robot, trial 2");
   const fs::path out = swept.folder.Path();
-  const SweepFindings findings = ExplainSweep(out, swept.evaluator, swept.result, 0, 1);
+  const SweepFindings findings = ExplainSweep(out, swept.evaluator, swept.result, 3, 1);
+  CHECK_FALSE(fs::exists(out / "suggested.yaml"));
   REQUIRE_FALSE(findings.likeness.empty());
   SaveReport(out, swept.evaluator, swept.result, findings, ObserverOf(swept.told));
+  CHECK_THAT(swept.told.Text(), Contains("note: suggested.yaml is not written: candidate.kind is "
+                                         "logs"));
   CHECK(fs::exists(out / "likeness.json"));
   CHECK_THAT(files::ReadFile(out / "report.html"), Contains("robot, trial 2"));
 }

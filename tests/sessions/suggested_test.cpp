@@ -226,7 +226,7 @@ TEST_CASE("No drive of a sweep over logs is taken, nor a suggestion of it writte
       "trials: [1]}\nspace: {a: [x, y]}\n");
   CHECK(suggested.Take(logs).empty());
   const std::string before = files::ReadFile(suggested.folder / "suggested.yaml");
-  SaveSuggested(suggested.folder.Path(), logs, sweep::EmptyResult(logs), {});
+  CHECK_FALSE(SaveSuggested(suggested.folder.Path(), logs, sweep::EmptyResult(logs), {}));
   CHECK(files::ReadFile(suggested.folder / "suggested.yaml") == before);
 }
 

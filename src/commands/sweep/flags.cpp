@@ -26,7 +26,8 @@ void AddSweepFlags(CLI::App& app, SweepRequest& request) {
   AddFlags(app, request.engine);
   flags("suggest", request.suggest, 1, 1000, "N",
         "suggest up to N experiments on the robot, print what each would decide and write them to "
-        "DIR/suggested.yaml, which rift drive --suggested DIR drives");
+        "DIR/suggested.yaml, which rift drive --suggested DIR drives (of recorded logs they are "
+        "printed alone: no drive sets what names a log)");
   AddFlags(app, request.further);
   AddKeysFlag(app);
   flags("brief", request.brief, "print five lines: what fails, where, why, how sure, what next");

@@ -64,7 +64,13 @@ SweepFindings ExplainSweep(const fs::path& folder, sweep::Evaluator& evaluator,
   options.robot = TakeRobotLogs(folder, evaluator);
   SweepFindings findings{.explanation = sweep::Explain(result, options)};
   if (suggest > 0) {
-    SaveSuggested(folder, evaluator.experiment(), result, findings.explanation.suggestions);
+    const bool is_saved =
+        SaveSuggested(folder, evaluator.experiment(), result, findings.explanation.suggestions);
+    if (!is_saved) {
+      findings.notes.push_back(
+          "note: suggested.yaml is not written: candidate.kind is logs, and no drive sets the "
+          "parameters of recorded logs");
+    }
   }
   // Runs for the report alone are left out where this machine cannot make them, as where a program
   // is on the nodes of a cluster only: the trials are done.

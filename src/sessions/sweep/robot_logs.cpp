@@ -78,9 +78,9 @@ std::vector<sweep::RobotTrials> TakeRobotLogs(const fs::path& folder, sweep::Eva
   return all;
 }
 
-void SaveSuggested(const fs::path& folder, const experiment::Experiment& experiment,
+bool SaveSuggested(const fs::path& folder, const experiment::Experiment& experiment,
                    const sweep::SweepResult& result, const sweep::Suggestions& suggestions) {
-  if (experiment.candidate.kind == experiment::CandidateKind::kLogs) return;
+  if (experiment.candidate.kind == experiment::CandidateKind::kLogs) return false;
   std::vector<SuggestedExperiment> all = ReadSuggested(folder, experiment);
   while (!all.empty() && CountDrives(folder, all.back().number) == 0) all.pop_back();
   for (const sweep::Suggestion& suggestion : suggestions.list) {
@@ -100,6 +100,7 @@ void SaveSuggested(const fs::path& folder, const experiment::Experiment& experim
     all.push_back(std::move(next));
   }
   files::WriteFile(SuggestedFile(folder), WriteSuggested(all));
+  return true;
 }
 
 }  // namespace rift::sessions

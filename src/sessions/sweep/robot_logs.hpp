@@ -16,9 +16,9 @@ std::vector<sweep::RobotTrials> TakeRobotLogs(const std::filesystem::path& sweep
                                               sweep::Evaluator& evaluator);
 
 /// Writes suggested.yaml: the experiments that have drives keep their numbers, new ones follow. A
-/// suggestion for a setting that was driven asks for further trials of it. Not for sweeps over
-/// recorded logs: their parameters are no keys of an experiment.
-void SaveSuggested(const std::filesystem::path& sweep, const experiment::Experiment& experiment,
+/// suggestion for a setting that was driven asks for further trials of it. False, and nothing is
+/// written, for sweeps over recorded logs: their parameters are no keys of an experiment.
+bool SaveSuggested(const std::filesystem::path& sweep, const experiment::Experiment& experiment,
                    const sweep::SweepResult& result, const sweep::Suggestions& suggestions);
 
 }  // namespace rift::sessions
