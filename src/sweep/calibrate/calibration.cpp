@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "domain.hpp"
 #include "feature_fit.hpp"
 #include "fitted_simulator.hpp"
 #include "intervals.hpp"

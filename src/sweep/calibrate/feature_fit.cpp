@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "domain.hpp"
 #include "feature_model.hpp"
 #include "model.hpp"
 #include "rift/statistics/descriptive.hpp"

@@ -2,13 +2,31 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
-#include "domain.hpp"
 #include "errors.hpp"
 #include "rift/sweep/calibrate/calibration.hpp"
 
 namespace rift::sweep {
+
+/// Where a fit may go, in shares of the ranges: in [0, 1], and no rule between keys is broken.
+class Domain {
+ public:
+  using Contained = std::function<bool(const Eigen::VectorXd& shares)>;
+
+  /// Without a question to ask all of [0, 1]. `start` stands for the middle of a domain so small
+  /// that chance does not meet it.
+  explicit Domain(Contained contained = {}, const Eigen::VectorXd& start = {});
+
+  bool Contains(const Eigen::VectorXd& shares) const { return !contained_ || contained_(shares); }
+  /// The shares themselves, or where the way to them from the middle of the domain leaves it.
+  Eigen::VectorXd Nearest(const Eigen::VectorXd& shares) const;
+
+ private:
+  Contained contained_;
+  Eigen::VectorXd middle_;
+};
 
 /// Values as shares of their ranges, which makes steps and damping mean the same for each.
 std::vector<double> ValuesAt(const std::vector<experiment::FreeParameter>& parameters,
