@@ -185,6 +185,7 @@ fs::path PictureOf(const TrackRequest& request) {
 
 fs::path RefusedPictureOf(const TrackRequest& request) {
   const fs::path picture = PictureOf(request);
+  if (!request.picture.empty()) return picture;
   fs::path refused = picture;
   refused.replace_extension(".refused");
   return refused += picture.extension();

@@ -38,8 +38,8 @@ struct TrackRequest {
 
 /// Where the picture of a calibration goes.
 std::filesystem::path PictureOf(const TrackRequest& request);
-/// Where that of a refused one goes, `cam.refused.png`: a name of its own, so that it is in the way
-/// of no later calibration.
+/// Where that of a refused one goes, `cam.refused.png` unless it was named: in the way of no later
+/// calibration.
 std::filesystem::path RefusedPictureOf(const TrackRequest& request);
 
 }  // namespace rift::commands
