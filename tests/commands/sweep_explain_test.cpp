@@ -136,7 +136,7 @@ space: {trial.timeout_s: [20, 0.5], mismatch: [0.0, 0.1]}
   CHECK(shrunk["changes"][0]["parameter"] == "timeout_s");
   CHECK_THAT(result.out, Contains("own values (timed_out; "));
   const ProcessResult replay = RunRift({"simulate", "--replay", sweep.out, "worst"});
-  CHECK_THAT(replay.err, Contains("row 3: status timed_out, no gap, to the last bit"));
+  CHECK_THAT(replay.err, Contains("row 4: status timed_out, no gap, to the last bit"));
 }
 
 TEST_CASE("A row that does not fail cannot be shrunk and neither can one that is not there") {

@@ -58,6 +58,7 @@ void Prepare(const test::TemporaryFolder& folder) {
        "trial,gap_m,falsified,status,u,exact_gap_m,mean_error_m,rms_error_m,start_offset_m,"
        "start_aligned_gap_m,shape_gap_m,length_ratio,end_error_m,way_gap_m,left_m,reason,"
        "candidate,reference,seed,id\n1,,,fell,,,,,,,,,,,,,,,,1\n"},
+      {"swept/experiment.yaml", "name: swept\n"},
       {"damaged/table.csv", "id,gap_m,status\n1,,fell\n"},
       {"empty.csv", ""},
       {"odd.csv", "a,b\n"},
@@ -483,7 +484,7 @@ TEST_CASE("A brief sweep answers five questions in five lines, from the run's ow
     REQUIRE(std::getline(lines, line));
     CHECK(line.starts_with(label));
   }
-  CHECK_THAT(sweep.out, Contains("of 36 runs leave the path by more than 0.06 m") &&
+  CHECK_THAT(sweep.out, Contains("of 36 runs exceed 0.06 m, and ") &&
                             Contains("processing_s 0.25, v_min 0.2 (6 of 6 failed)"));
 }
 
