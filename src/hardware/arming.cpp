@@ -151,10 +151,7 @@ double PrintStoppingDistance(const DriveParts& parts, const DriveTask& task,
   return distance_m;
 }
 
-/// Thrown out of a wait before the start.
-struct StopAsked {
-  DriveStop stop;
-};
+std::string BeforeStart(const DriveStop& stop) { return "stopped before the start: " + stop.text; }
 
 /// Asks whoever may stop a drive each time something waits: a hello and a ping take seconds.
 class AskingClock : public Clock {
@@ -182,7 +179,7 @@ bool WaitUntil(RealRobot& robot, const std::function<bool()>& is_so) {
     if (stop.reason == StopReason::kOperator || stop.reason == StopReason::kSignal) {
       return false;
     }
-    throw std::runtime_error(fmt::format("stopped before the start: {}", stop.text));
+    throw std::runtime_error(BeforeStart(stop));
   }
   return true;
 }
@@ -330,6 +327,13 @@ PingResult MeasureLink(ByteLine& line, Clock& clock, const HardwareOptions& opti
   return Ping(line, clock, options.line, protocol, options.ping);
 }
 
+DriveRun StoppedBeforeStart(const DriveStop& stop, bool dry_run) {
+  DriveRun run{.dry_run = dry_run};
+  run.evidence.stop = stop;
+  run.trial.reason = BeforeStart(stop);
+  return run;
+}
+
 DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
   control::CheckWaypoints(task.task.waypoints);
   DriveRun run{.dry_run = parts.dry_run};
@@ -337,9 +341,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
     AskingClock clock(parts);
     run.ping = MeasureLink(parts.line, clock, task.hardware);
   } catch (const StopAsked& asked) {
-    run.evidence.stop = asked.stop;
-    run.trial.reason = "stopped before the start: " + asked.stop.text;
-    return run;
+    return StoppedBeforeStart(asked.stop, parts.dry_run);
   }
   parts.say(fmt::format("the robot speaks {}",
                         EnumNames(run.ping.protocol)[static_cast<std::size_t>(run.ping.protocol)]));
@@ -362,7 +364,7 @@ DriveRun Drive(const DriveParts& parts, const DriveTask& task) {
     Forward forward(robot, parts.observer);
     run.trial = trial::RunTrial(robot, task.task, task.control, task.trial, &forward);
   } else {
-    run.trial.reason = "stopped before the start: " + robot.Record().stop->text;
+    run.trial.reason = BeforeStart(*robot.Record().stop);
   }
   robot.ConfirmStop(kConfirm_s);
   run.evidence = robot.Record();

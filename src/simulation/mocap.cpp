@@ -60,6 +60,14 @@ double Speed_mps(const TruePose& before, const TruePose& after) {
   return std::hypot(after.x_m - before.x_m, after.y_m - before.y_m) / span_s;
 }
 
+Eigen::Vector3d TagInWorld(const TruePose& pose, const MocapOptions& options) {
+  const Eigen::Vector3d tag_in_robot(options.tag_ahead_m, 0.0, options.tag_above_m);
+  return Eigen::Vector3d(pose.x_m, pose.y_m, pose.z_m) +
+         Eigen::AngleAxisd(pose.yaw_rad, Eigen::Vector3d::UnitZ()) *
+             (Eigen::AngleAxisd(pose.pitch_rad, Eigen::Vector3d::UnitY()) *
+              (Eigen::AngleAxisd(pose.roll_rad, Eigen::Vector3d::UnitX()) * tag_in_robot));
+}
+
 constexpr double kShortestPeriod_s = 0.005;
 
 MocapOptions OfThisRun(MocapOptions options, std::uint64_t seed) {
@@ -74,14 +82,6 @@ MocapOptions OfThisRun(MocapOptions options, std::uint64_t seed) {
 }
 
 }  // namespace
-
-Eigen::Vector3d TagInWorld(const TruePose& robot, const MocapOptions& options) {
-  const Eigen::Vector3d tag_in_robot(options.tag_ahead_m, 0.0, options.tag_above_m);
-  return Eigen::Vector3d(robot.x_m, robot.y_m, robot.z_m) +
-         Eigen::AngleAxisd(robot.yaw_rad, Eigen::Vector3d::UnitZ()) *
-             (Eigen::AngleAxisd(robot.pitch_rad, Eigen::Vector3d::UnitY()) *
-              (Eigen::AngleAxisd(robot.roll_rad, Eigen::Vector3d::UnitX()) * tag_in_robot));
-}
 
 Mocap::Mocap(const MocapOptions& options, std::uint64_t seed)
     : options_(OfThisRun(options, seed)),

@@ -110,6 +110,14 @@ struct DriveRun {
   double stopping_distance_m = 0.0;
 };
 
+/// Thrown by what waits before a start and is told to stop.
+struct StopAsked {
+  DriveStop stop;
+};
+
+/// A drive that ended so, of which nothing was measured.
+DriveRun StoppedBeforeStart(const DriveStop& stop, bool dry_run);
+
 /// Hello, ping, stopping distance, the first pose, the operator's yes, the trial, the stop.
 /// Throws std::runtime_error when the drive cannot begin (link over its budget, robot not seen,
 /// camera or port gone); std::invalid_argument for waypoints that are no task.

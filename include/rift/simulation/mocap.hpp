@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -113,9 +112,6 @@ struct MocapOptions {
           "tag centre above the axle's middle in m (identify)");
   }
 };
-
-/// Centre of the tag in the world frame, in m.
-Eigen::Vector3d TagInWorld(const TruePose& robot, const MocapOptions& options);
 
 /// An overhead camera that measures the tag's pose. What it sees arrives later than it was seen;
 /// frame k has its own random values, so nothing depends on how often anyone looks. With a host's

@@ -13,8 +13,7 @@ namespace rift::simulation {
 /// same bytes. Instances share nothing.
 class SimulatedRobot : public trial::Robot {
  public:
-  /// At rest at `start` (middle of the axle, world frame), motors off, clock at 0. On a slope a tag
-  /// above the axle (MocapOptions) is not above its place on level ground. `image` is the
+  /// At rest at `start` (middle of the axle, world frame), motors off, clock at 0. `image` is the
   /// heightfield of the chosen surface, if that is one (DecodeHeightImage makes it).
   /// Throws std::invalid_argument when a value of the options breaks its rule.
   SimulatedRobot(const SimulationOptions& options, const geometry::Pose2& start, std::uint64_t seed,

@@ -46,24 +46,12 @@ vision::CameraModel ReadCameraWithWorld(const std::string& calibration) {
       calibration));
 }
 
-/// Thrown while the camera opens.
-struct StopAsked {
-  hardware::DriveStop stop;
-};
-
-hardware::DriveRun StoppedBeforeTheStart(const hardware::DriveStop& stop) {
-  hardware::DriveRun run;
-  run.evidence.stop = stop;
-  run.trial.reason = "stopped before the start: " + stop.text;
-  return run;
-}
-
-/// Throws StopAsked when `stopper` says so before a picture comes.
+/// Throws hardware::StopAsked when `stopper` says so before a picture comes.
 vision::Frame FirstPicture(vision::CameraSession& session, const hardware::Stopper& stopper) {
   std::optional<std::pair<hardware::StopReason, std::string>> stop;
   std::optional<vision::Frame> first =
       session.FirstPicture([&] { return !(stop = stopper()).has_value(); });
-  if (!first) throw StopAsked{{stop->first, stop->second, 0.0}};
+  if (!first) throw hardware::StopAsked{{stop->first, stop->second, 0.0}};
   return std::move(*first);
 }
 
@@ -342,9 +330,9 @@ hardware::DriveRun DriveSession::DriveInto(const std::filesystem::path& folder,
       drivers_ = std::make_unique<Drivers>(setup_, console_, experiment,
                                            ReadCameraWithWorld(setup_.address.calibration),
                                            person.Stopper());
-    } catch (const StopAsked& asked) {
+    } catch (const hardware::StopAsked& asked) {
       stop_was_asked_ = true;
-      return StoppedBeforeTheStart(asked.stop);
+      return hardware::StoppedBeforeStart(asked.stop, setup_.dry_run);
     }
   }
   begun.Write(experiment, drivers_->camera());
