@@ -9,9 +9,7 @@
 namespace rift::hardware {
 namespace {
 
-constexpr double kKept_s = 4.0;
-constexpr double kRolls_m = 0.0005;  // from picture to picture
-constexpr double kStands = 0.7;      // of the way unseen: the pose stands, which others judge
+constexpr double kStands = 0.7;  // of the way unseen: the pose stands, which others judge
 // Commands tell a robot's way no better: its battery, its load.
 constexpr double kCommandsOff = 0.2;
 

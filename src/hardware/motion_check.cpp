@@ -14,11 +14,9 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kKept_s = 4.0;         // of wheels and samples
 constexpr double kWindow_s = 0.4;       // over which displacements are compared
 constexpr double kStep_m = 0.003;       // less is jitter
 constexpr double kBackStep_m = 0.0025;  // against the wheels; less is jitter
-constexpr double kRolls_m = 0.0005;     // of the wheels from picture to picture
 constexpr double kTogether_s = 0.01;    // pictures that come in one piece of the stream
 constexpr double kBackward = 0.5;       // of what the wheels rolled: the pose ran back
 constexpr double kDisorder_s = 0.7;     // in which kBackwardSteps of them are no accident
