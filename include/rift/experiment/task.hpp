@@ -34,8 +34,7 @@ std::optional<std::string> FullLineNote(const Experiment& experiment);
 std::optional<std::string> IdleHostNote(const Experiment& experiment);
 
 /// world_from_robot, of the middle of the axle, of a simulated robot that is put down as a real one
-/// is: its tag (simulation.mocap.tag_ahead_m) on the start of the task, which has a first
-/// waypoint.
+/// is: its tag (simulation.mocap.tag_ahead_m) on the start of the task, which has a first waypoint.
 geometry::Pose2 AxleAtStart(const Experiment& experiment);
 
 /// The experiment's tag. Where its surface is bumps, a ramp or a heightfield the tag is not held to
