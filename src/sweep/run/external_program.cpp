@@ -24,6 +24,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "last_error.hpp"
 #include "rift/files/files.hpp"
 #include "rift/sweep/run/machine_trouble.hpp"
 
@@ -227,33 +228,6 @@ std::string EndOf(const std::string& path, off_t most) {
   ::_exit(0);
 }
 
-/// What Node writes below an error: blank lines, its stack, the end of its properties, its version.
-bool IsBelowError(std::string_view line) {
-  const size_t begin = line.find_first_not_of(" \t\r");
-  if (begin == line.npos) return true;
-  const std::string_view words = line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
-  return words == "}" || (begin > 0 && words.starts_with("at ")) ||
-         words.starts_with("Node.js v") || words.starts_with("(Use `node ");
-}
-
-/// The last line; where that is one of those below an error, the error above, or what is nearest.
-std::string ReasonIn(std::string text) {
-  constexpr int kMostLines = 64;
-  text.resize(text.find_last_not_of(" \t\r\n") + 1);
-  std::string nearest;
-  std::string_view rest = text;
-  for (int i = 0; i < kMostLines && !rest.empty(); ++i) {
-    const size_t begin = rest.rfind('\n') + 1;
-    const std::string_view line = rest.substr(begin);
-    rest = rest.substr(0, begin == 0 ? 0 : begin - 1);
-    if (IsBelowError(line)) continue;
-    if (nearest.empty()) nearest = line;
-    const bool is_error = line.find("Error") != line.npos || line.find("error:") != line.npos;
-    if (i == 0 || is_error) return std::string(line);
-  }
-  return nearest.empty() ? text.substr(text.rfind('\n') + 1) : nearest;
-}
-
 }  // namespace
 
 std::string ShortWords(std::string text) {
@@ -391,7 +365,7 @@ const std::string& ExternalProgram::UnreadAtNextLine(char first, int most_ms) {
 
 std::string ExternalProgram::LastWords() const {
   constexpr off_t kRead = 65536;
-  std::string last = ReasonIn(EndOf((std::filesystem::path(folder_) / kErrors).string(), kRead));
+  std::string last = ErrorIn(EndOf((std::filesystem::path(folder_) / kErrors).string(), kRead));
   // Its name is drawn at random, and the same trial gives the same row.
   for (size_t at = last.find(folder_); at != last.npos; at = last.find(folder_, at)) {
     last.replace(at, folder_.size(), "{folder}");
