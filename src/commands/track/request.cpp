@@ -184,11 +184,8 @@ fs::path PictureOf(const TrackRequest& request) {
 }
 
 fs::path RefusedPictureOf(const TrackRequest& request) {
-  const fs::path picture = PictureOf(request);
-  if (!request.picture.empty()) return picture;
-  fs::path refused = picture;
-  refused.replace_extension(".refused");
-  return refused += picture.extension();
+  return request.picture.empty() ? fs::path(request.out).replace_extension(".refused.png")
+                                 : PictureOf(request);
 }
 
 void TrackRequest::Check() const {

@@ -66,6 +66,13 @@ bool IsGap(const std::string& cell) {
   return gap_m && std::isfinite(*gap_m) && *gap_m >= 0.0;
 }
 
+std::optional<sweep::TrialStatus> StatusNamed(const std::string& name) {
+  const auto names = EnumNames(sweep::TrialStatus{});
+  const auto* const found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<sweep::TrialStatus>(found - names.begin());
+}
+
 /// The rows of a table.csv, one after the other. A table is read back as it was written or not at
 /// all: a cell that was overwritten must not become a zero.
 class TableReader {
@@ -133,10 +140,9 @@ class TableReader {
       Refuse(fmt::format("{} of row {} is '{}'", column, row_, row.at(std::string(column))));
     };
     require("id", row.at("id") == fmt::format("{}", row_));  // none cut out, doubled or exchanged
-    const auto statuses = EnumNames(sweep::TrialStatus{});
-    require("status",
-            std::find(statuses.begin(), statuses.end(), row.at("status")) != statuses.end());
-    const bool is_ok = row.at("status") == yaml::NameOf(sweep::TrialStatus::kOk);
+    const std::optional<sweep::TrialStatus> status = StatusNamed(row.at("status"));
+    require("status", status.has_value());
+    const bool is_ok = status == sweep::TrialStatus::kOk;
     require("falsified",
             row.at("falsified") == "true" || row.at("falsified") == (is_ok ? "false" : ""));
     for (const std::string_view column : kNumberColumns) {
@@ -204,9 +210,7 @@ double CellNumber(const TableRow& row, const char* column) {
 /// As far as it decides how bad it is.
 sweep::TrialRow FailureRow(const TableRow& row) {
   sweep::TrialRow trial;
-  const auto names = EnumNames(trial.status);
-  trial.status = static_cast<sweep::TrialStatus>(
-      std::find(names.begin(), names.end(), row.at("status")) - names.begin());
+  trial.status = StatusNamed(row.at("status")).value();
   trial.falsified = row.at("falsified") == "true";
   trial.comparison.gap_m = CellNumber(row, "gap_m");
   trial.way_gap_m = CellNumber(row, "way_gap_m");

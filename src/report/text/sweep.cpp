@@ -63,18 +63,18 @@ std::string WorstText(const sweep::SweepResult& result) {
 std::string NotOkText(const sweep::SweepResult& result) {
   constexpr int kMostShown = 3;
   std::string text;
-  int shown = 0;
+  int without_gap = 0;
+  const sweep::TrialRow* last_shown = nullptr;
   for (size_t i = 0; i < result.rows.size(); ++i) {
     const sweep::TrialRow& row = result.rows[i];
-    if (row.IsOk()) continue;
-    if (++shown > kMostShown) continue;
+    if (row.IsOk() || ++without_gap > kMostShown) continue;
     text += fmt::format("without gap: row {}: {}\n", i + 1, row.reason);
+    last_shown = &row;
   }
-  if (shown <= kMostShown) return text;
-  int passed = 0;
+  if (without_gap <= kMostShown) return text;
   const std::string kinds =
-      StatusCounts(result, [&](const auto& row) { return !row.IsOk() && ++passed > kMostShown; });
-  return text + fmt::format("without gap: {} more: {}\n", shown - kMostShown, kinds);
+      StatusCounts(result, [&](const auto& row) { return !row.IsOk() && &row > last_shown; });
+  return text + fmt::format("without gap: {} more: {}\n", without_gap - kMostShown, kinds);
 }
 
 std::string FalsificationText(const sweep::SweepResult& result, const sweep::Falsification& found) {
