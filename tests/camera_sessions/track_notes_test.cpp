@@ -9,6 +9,7 @@
 #include "rift/files/files.hpp"
 #include "rift/sessions/track/tracking.hpp"
 #include "rift/vision/camera/camera_file.hpp"
+#include "support/http.hpp"
 #include "support/processes/process.hpp"
 #include "support/tree.hpp"
 
@@ -102,6 +103,36 @@ TEST_CASE("Points that make no frame are refused before anybody is asked to clic
       "  - {name: c, x_m: 2, y_m: 0}\n";
   refuses(three, "needs 4 points that are seen, there are 3");
   refuses(three + "  - {name: d, x_m: 3, y_m: 0}\n", "these lie on a line");
+}
+
+TEST_CASE("A stop is heard while a calibration without a size waits for the first picture") {
+  const Recorded recorded;
+  const test::SilentServer server;
+  std::string sizeless = recorded.whole;
+  for (const std::string line : {"image_width: 960\n", "image_height: 720\n"}) {
+    sizeless.erase(sizeless.find(line), line.size());
+  }
+  TrackingJob job;
+  job.camera = fmt::format("http://127.0.0.1:{}/video", server.Port());
+  job.calibration = recorded.folder / "cam.yaml";
+  test::WriteText(job.calibration, sizeless);
+  job.options = job.OptionsFor({});
+  job.options.capture.open_timeout_s = 600.0;
+  job.log = recorded.folder / "log.csv";
+  int asked = 0;
+  std::string said;
+  vision::TrackRun run{.frames = 7};
+  Track(job, ReadInputs(job),
+        {.is_stopped = [&asked] { return ++asked >= 3; },
+         .say = [&](const std::string& line) { said += line; },
+         .print = [](std::string_view) {}},
+        [&](const vision::TrackRun& stopped, const auto&) { run = stopped; });
+  CHECK(asked == 3);
+  CHECK(run.frames == 0);
+  CHECK_FALSE(run.has_failed);
+  CHECK(said.empty());
+  CHECK_FALSE(fs::exists(job.log));
+  CHECK_THAT(files::ReadFile(RunFileOf(job.log)), Contains("\"pictures\": 0"));
 }
 
 TEST_CASE("The run file of a network camera names it without its user and password") {

@@ -25,11 +25,15 @@ namespace fs = std::filesystem;
 using Say = std::function<void(const std::string&)>;
 
 /// Files of other programs may lack the picture's size; then the first picture has to be trusted.
-void TakeSize(const TrackingJob& job, const Say& say, vision::CameraSession& session) {
-  if (session.camera().width_px > 0 && session.camera().height_px > 0) return;
-  session.FirstPicture();
-  say(fmt::format("note: {} does not say for which size it was made; {}x{} is taken as given",
+/// False when it was told to stop before that came.
+bool TakeSize(const TrackingJob& job, const TrackingListener& listener,
+              vision::CameraSession& session) {
+  if (session.camera().width_px > 0 && session.camera().height_px > 0) return true;
+  if (!session.FirstPicture([&] { return !listener.is_stopped(); })) return false;
+  listener.say(
+      fmt::format("note: {} does not say for which size it was made; {}x{} is taken as given",
                   job.calibration, session.camera().width_px, session.camera().height_px));
+  return true;
 }
 
 /// What is wrong with the poses to come, while it can still be changed.
@@ -109,12 +113,17 @@ void Track(
   vision::CameraSession session(job.camera, inputs.camera, options.capture, options.tag);
   options.capture = session.options();
   for (const int id : job.ids) vision::RequireTagId(id, options.tag.family);
-  TakeSize(job, listener.say, session);
+  const bool has_size = TakeSize(job, listener, session);
   if (!job.world.empty()) SetAndSaveWorld(job, listener, session);
   if (job.log.empty()) return;
+  OldLog old(job);
+  if (!has_size) {
+    const vision::TrackRun none{.status = session.capture().Status()};
+    if (!job.IsPiped() && !old.IsThere()) WriteRunFile(job, session.camera(), options, none);
+    return report(none, options.tag);
+  }
   SayWhatToExpect(job, listener.say, session);
   session.Restart();  // what was read so far of a recording belongs to its log as well
-  OldLog old(job);
   TrackLog log(job.log, listener.print);
   std::vector<int> tag_ids = FurtherIds(job);
   tag_ids.insert(tag_ids.begin(), session.tag().id);
