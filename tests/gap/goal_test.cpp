@@ -81,5 +81,25 @@ TEST_CASE("The direction in which a path ends is that of its last three centimet
   CHECK(gap_m(0.0285) > 0.01);
 }
 
+TEST_CASE("A run that stops at the very radius goes on, and three centimetres back are enough") {
+  const trajectory::Trajectory whole = test::StraightPath(1.0, 9);
+  const trajectory::Trajectory shorter = test::StraightPath(0.75, 7);
+  const auto gap_m = [&](double radius_m) {
+    return WayGap_m(shorter, whole, {{1.0, 0.0}, radius_m}, {});
+  };
+  CHECK(gap_m(0.25) == Approx(0.0).margin(1e-12));
+  CHECK(gap_m(std::nextafter(0.25, 0.0)) == Approx(0.25));
+  // To the left by half a metre and then along x by exactly 0.03 m: it goes on along x alone.
+  trajectory::Trajectory hook;
+  hook.poses = {{.t_s = 0.0, .x_m = -0.03, .y_m = -0.5},
+                {.t_s = 1.0, .x_m = -0.03},
+                {.t_s = 2.0, .x_m = 0.0}};
+  trajectory::Trajectory longer = hook;
+  longer.poses.push_back({.t_s = 3.0, .x_m = 0.04});
+  const Goal goal{{0.04, 0.0}, 0.05};
+  CHECK(WayGap_m(hook, whole, goal, {}) == Approx(Gap(longer, whole, {})));
+  CHECK(WayGap_m(hook, longer, goal, {}) == Approx(0.0).margin(1e-12));
+}
+
 }  // namespace
 }  // namespace rift::gap
