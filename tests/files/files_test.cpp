@@ -152,7 +152,8 @@ TEST_CASE("A file that grows is missed where it was removed, moved or replaced")
     test::WriteText(folder / "new", "x");
     fs::rename(folder / "new", folder / "log");
   }
-  CHECK_THROWS_WITH(file.RequireInPlace(), Contains("was removed or moved"));
+  CHECK_THROWS_WITH(file.RequireInPlace(),
+                    folder / "log" + " was removed or moved while it was being written");
 }
 
 TEST_CASE("A folder is held by one at a time and free again afterwards") {
@@ -263,7 +264,11 @@ TEST_CASE("A held folder is missed where it was removed, moved or replaced") {
     fs::rename(held, folder / "other");
     fs::create_directory(held);
   }
-  CHECK_THROWS_WITH(lock.RequireInPlace(), Contains("was removed, moved or replaced"));
+  CHECK_THROWS_WITH(
+      lock.RequireInPlace(),
+      "folder " + held.string() +
+          " was removed, moved or replaced while it was being worked in: what was written may be "
+          "lost; run the same command again");
 }
 
 TEST_CASE("File systems of other machines have their names, and local ones none") {
@@ -296,12 +301,15 @@ TEST_CASE("The end of a process is told by its code or its signal, with its last
 TEST_CASE("A word for a shell is quoted where the shell needs it and never elsewhere") {
   CHECK(ShellWord("run/a-b_c.csv") == "run/a-b_c.csv");
   CHECK(ShellWord("") == "''");
-  for (const char special : std::string(" \t\n'\"\\$&;()<>|*?[]#`!{}~^")) {
+  for (const char special : std::string(" \t\n\r\v\f'\"\\$&;()<>|*?[]#`!{}~^")) {
     const std::string word = std::string("a") + special;
     CHECK(ShellWord(word) != word);
     CHECK(ShellWord(word) == ShellQuoted(word));
   }
   CHECK(ShellQuoted("it's") == "'it'\\''s'");
+  for (const char plain : std::string("a0Z_-.,:/=+%@")) {
+    CHECK(ShellWord(std::string(1, plain)) == std::string(1, plain));
+  }
 }
 
 }  // namespace

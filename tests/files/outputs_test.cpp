@@ -72,5 +72,48 @@ TEST_CASE("A folder of outputs is no file, no name of one and not stdout") {
   }
 }
 
+TEST_CASE("What is wrong with an output is told in one whole line") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "in.csv", "x");
+  fs::create_directory(folder / "sub");
+  const auto check = [&](const fs::path& file, const fs::path& made = {}) {
+    CheckOutputs({folder / "in.csv"}, {{file}, made, false});
+  };
+  CHECK_THROWS_WITH(check("-"), "- is stdout, and a file is needed here: name a file");
+  CHECK_THROWS_WITH(check(folder / "sub"), folder / "sub" + " is a folder: name a file");
+  CHECK_THROWS_WITH(check(folder / "in.csv"),
+                    folder / "in.csv" + " is an input or another output: name another file");
+  CHECK_THROWS_WITH(check(folder / "none/a.csv"),
+                    folder / "none/a.csv" + ": there is no folder " + folder / "none" +
+                        ": mend the name, or make the folder with mkdir -p");
+  test::WriteText(folder / "old.csv", "x");
+  CHECK_THROWS_WITH(check(folder / "old.csv"),
+                    folder / "old.csv" +
+                        " is there already: name another file or folder, or give --force to "
+                        "replace it");
+  CHECK_THROWS_WITH(RequireFolderName(folder / "old.csv", "a sweep"),
+                    "--out " + folder / "old.csv" +
+                        " is a file, and a sweep is a folder of files: name a folder");
+  CHECK_THROWS_WITH(RequireFolderName(folder / "new.csv", "a run"),
+                    "--out " + folder / "new.csv" +
+                        " is the name of a file, and a run is a folder of files: name a folder");
+}
+
+TEST_CASE("A folder whose name begins as that of the one that is made is another") {
+  const test::TemporaryFolder folder;
+  // No folder is made: where it has to be there.
+  CHECK_THROWS_AS(CheckOutputs({}, {{folder / "run/a.csv"}, {}}), std::invalid_argument);
+  CHECK_THROWS_AS(CheckOutputs({}, {{folder / "run1/a.csv"}, folder / "run"}),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(CheckOutputs({}, {{folder / "run/a.csv"}, folder / "run1"}),
+                  std::invalid_argument);
+  CHECK_NOTHROW(CheckOutputs({}, {{folder / "x/../run/a.csv"}, folder / "run/."}));
+  // Where the process is there is a folder always.
+  CHECK_NOTHROW(CheckOutputs({}, {{"a_file_that_is_not_there.csv"}, {}}));
+  // Each output counts as taken for the ones after it.
+  CHECK_THROWS_WITH(CheckOutputs({}, {{folder / "a", folder / "b", folder / "a"}, {}}),
+                    folder / "a" + " is an input or another output: name another file");
+}
+
 }  // namespace
 }  // namespace rift::files
