@@ -206,5 +206,41 @@ TEST_CASE(
              Contains("puts the camera at z 0.100 m, below the tag at 0.200"));
 }
 
+TEST_CASE("What is said of a small tag and of one off the floor is a whole line each") {
+  const CameraModel camera = Above(0.0);
+  const auto with_side = [&](double side_px) {
+    return SmallTagWarning(camera, {.size_m = side_px * 2.0 / 600.0, .height_m = 0.03})
+        .value_or("");
+  };
+  CHECK(with_side(18.0) ==
+        "the tag of 0.06 m has 18 px in the middle of the picture, good are 20: poses will be "
+        "coarse; lower the camera, take more pixels, or print the tag 1.2 times as large");
+  CHECK(with_side(15.0) ==
+        "the tag of 0.05 m has 15 px in the middle of the picture, it takes 16: it will not be "
+        "found; lower the camera, take more pixels, or print the tag 1.5 times as large");
+  CHECK_THAT(with_side(16.1), Contains("good are 20: poses will be coarse"));
+  const auto said = [](double camera_m, double z_m) {
+    CameraModel hung = Above(0.0);
+    hung.world->world_from_camera.translation().z() = camera_m;
+    const TagOptions tag{.size_m = 0.05, .height_m = 0.03};
+    OffFloorCheck check(hung, tag);
+    check.Add(SeenAt(0.03, true));
+    std::optional<std::string> text;
+    for (int i = 0; i < 10; ++i) text = check.Add(SeenAt(z_m, false));
+    return text.value_or("");
+  };
+  CHECK(said(2.03, 0.11) ==
+        "the tag is not on the floor in 10 of 11 pictures (z 0.110 m, track.tag.height_m 0.03): is "
+        "its side 0.0521 m (--set track.tag.size_m=0.0521), its height 0.110 m (--tag-height "
+        "0.110), or was the camera moved since its world frame was set?");
+  CHECK(said(2.03, -0.37) ==
+        "the tag is not on the floor in 10 of 11 pictures (z -0.370 m, track.tag.height_m 0.03): "
+        "is its side 0.0417 m (--set track.tag.size_m=0.0417), or was the camera moved since its "
+        "world frame was set?");
+  CHECK(said(0.1, 0.25) ==
+        "the world frame puts the camera at z 0.100 m, below the tag at 0.250 m: set the frame "
+        "again (--world), z is up");
+}
+
 }  // namespace
 }  // namespace rift::vision

@@ -235,7 +235,10 @@ TEST_CASE("Reference tags that lie elsewhere are said once, with the largest dis
   CHECK(run_with(5.0, 0.0060).empty());  // 4.9 mm
   const std::vector<std::string> said = run_with(10.0, 0.005);
   REQUIRE(said.size() == 1);
-  CHECK_THAT(said[0], Contains("the camera was moved: the reference tags lie 9.8 mm off"));
+  CHECK_THAT(
+      said[0],
+      Contains(
+          "the camera was moved: the reference tags lie 9.8 mm off; set the world frame again"));
 }
 
 TEST_CASE("A camera that is moved after the last check is said when the run ends") {

@@ -1,5 +1,7 @@
 #include "rift/vision/tracking/world_check.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -292,6 +294,36 @@ TEST_CASE("Which of five places are wrong takes more to tell, of six more than o
                       Contains(count == 5 ? "which one is wrong takes more tags to tell"
                                           : "more than one is wrong"));
   }
+}
+
+TEST_CASE("Why places do not fit is a whole line with how far off they are") {
+  const CameraModel camera = test::PaperCamera();
+  const std::string head = "the places of the points do not fit what the camera sees, ";
+  std::vector<WorldPoint> points = SixTags(camera);
+  std::swap(points[1].p_in_world, points[5].p_in_world);
+  const auto rms_mm = [&] { return 1e3 * WorldFromPoints(camera, points, "").residual_m; };
+  CHECK_THROWS_WITH(CheckPoints(camera, points, kLimit_m),
+                    fmt::format("{}{:.1f} mm RMS (limit 5 mm): tag 2 and tag 6 are swapped: with "
+                                "their places exchanged all fit",
+                                head, rms_mm()));
+  points = SixTags(camera);
+  points[3].p_in_world.x() += 0.012;
+  const double worst_mm = 1e3 * LeaveOneOut_m(camera, points)[3];
+  REQUIRE(rms_mm() < 5.0);
+  CHECK(worst_mm == Approx(12.0).margin(1.0));
+  CHECK_THROWS_WITH(
+      CheckPoints(camera, points, kLimit_m),
+      fmt::format("{0}{1:.1f} mm RMS, and one {2:.1f} mm off where the others put it (limit 5 mm, "
+                  "for one twice that): tag 4 is wrong: the others put it {2:.1f} mm away; measure "
+                  "it again",
+                  head, rms_mm(), worst_mm));
+  points = SixTags(camera);
+  for (WorldPoint& point : points) point.p_in_world.x() *= 1.1;
+  CHECK_THROWS_WITH(
+      CheckPoints(camera, points, kLimit_m),
+      fmt::format("{}{:.1f} mm RMS (limit 5 mm): more than one is wrong, or the scale "
+                  "differs in x and y: measure them again",
+                  head, rms_mm()));
 }
 
 }  // namespace

@@ -154,19 +154,26 @@ TEST_CASE("Points that make no frame are refused with what to do") {
   test::OnBothSides("x", "y", [&](const test::Side& side) {
     std::vector<WorldPoint> thin = points;
     for (WorldPoint& point : thin) point.p_in_world[side.IsFirst() ? 0 : 1] *= 0.03;
-    CHECK_THROWS_WITH(WorldFromPoints(camera, thin, ""), Contains("these lie on a line"));
+    CHECK_THROWS_WITH(
+        WorldFromPoints(camera, thin, ""),
+        "a world frame needs points in both directions of the floor, these lie on a line");
     for (WorldPoint& point : thin) point.p_in_world[side.IsFirst() ? 0 : 1] *= 2.5;
     for (WorldPoint& point : thin) point.pixel = PixelOf(camera, point.p_in_world);
     CHECK_NOTHROW(WorldFromPoints(camera, thin, ""));
     std::vector<WorldPoint> mirrored = points;
     for (WorldPoint& point : mirrored) point.p_in_world[side.IsFirst() ? 0 : 1] *= -1.0;
-    CHECK_THROWS_WITH(WorldFromPoints(camera, mirrored, ""), Contains("from below the floor"));
+    CHECK_THROWS_WITH(
+        WorldFromPoints(camera, mirrored, ""),
+        "these points could only be seen so from below the floor: give them with x right and y up, "
+        "as on a map (counter-clockwise positive), each at its own point");
   });
   const std::vector<WorldPoint> one_place(4, points[0]);
-  CHECK_THROWS_WITH(WorldFromPoints(camera, one_place, ""), Contains("these lie on a line"));
+  CHECK_THROWS_WITH(
+      WorldFromPoints(camera, one_place, ""),
+      "a world frame needs points in both directions of the floor, these lie on a line");
   points.pop_back();
   CHECK_THROWS_WITH(WorldFromPoints(camera, points, ""),
-                    Contains("needs 4 points that are seen, there are 3"));
+                    "a world frame needs 4 points that are seen, there are 3");
 }
 
 TEST_CASE("Reference tags that are seen set the frame and are kept with where they were seen") {

@@ -304,5 +304,13 @@ TEST_CASE("Reference tags are waited for before a live camera, until patience en
   CHECK(set(jpeg_of(kTags), 1e6) == "4 reference tags");
 }
 
+TEST_CASE("A camera that never gives a picture ends the wait for the first one with its reason") {
+  synthetic::MjpegServer silent(std::vector<std::uint8_t>{}, {.pictures = 0, .then_silent = true});
+  CameraSession session(silent.Url(), SmallCamera(), {.silent_s = 0.02, .open_timeout_s = 0.02},
+                        {});
+  CHECK_THROWS_WITH(session.FirstPicture(), StartsWith("the camera " + silent.Url() +
+                                                       " is frozen: no first picture within 0."));
+}
+
 }  // namespace
 }  // namespace rift::vision
