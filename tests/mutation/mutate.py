@@ -33,6 +33,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # The test programs that are run for a fault in a room, the nearest first; the first to fail ends it.
 TESTS = {
+    "limits": ["limits", "trajectory", "commands"],
     "statistics": ["statistics", "gap", "sweep", "report"],
     "files": ["files", "trajectory", "sweep", "commands"],
     "geometry": ["geometry", "gap", "simulation"],

@@ -5,7 +5,9 @@
 //   RIFT_SHIM_FORMATS  "MJPG,YUYV" (default), "H264", ...
 //   RIFT_SHIM_JPEGS    folder of the JPEGs that it cycles through as MJPG
 //   RIFT_SHIM_FAULT    unplug (ENODEV), eio, hang, freeze, black, busy (EBUSY), denied (EACCES),
-//                      headless (of five JPEGs four come without their begin), torn (all do)
+//                      headless (of five JPEGs four come without their begin), torn (all do),
+//                      taken (open() answers EBUSY), metadata (the device of the camera that gives
+//                      none but metadata), screen (an output, told in the older way)
 //   RIFT_SHIM_AFTER    pictures before the fault (default 20)
 //   RIFT_SHIM_STAMPS   seconds by which it stamps pictures late (default 0)
 #include <dlfcn.h>
@@ -155,11 +157,16 @@ std::size_t PutPicture(const Camera& camera, const Device& device, std::uint8_t*
   return is_headless || camera.FaultIs("torn") ? WithoutBegin(out, size) : size;
 }
 
-int Capabilities(v4l2_capability& out) {
+int Capabilities(const Camera& camera, v4l2_capability& out) {
   std::memcpy(out.driver, "shim", 5);
   std::memcpy(out.card, "Shim camera", 12);
   out.capabilities = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING | V4L2_CAP_DEVICE_CAPS;
   out.device_caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
+  if (camera.fault == "metadata") out.device_caps = V4L2_CAP_META_CAPTURE | V4L2_CAP_STREAMING;
+  if (camera.fault == "screen") {
+    // Without the flag device_caps has no meaning.
+    out.capabilities = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_STREAMING;
+  }
   return 0;
 }
 
@@ -268,7 +275,7 @@ int Answer(Camera& camera, int descriptor, Device& device, unsigned long request
   if (camera.FaultIs("unplug")) return Error(ENODEV);
   switch (request) {
     case VIDIOC_QUERYCAP:
-      return Capabilities(As<v4l2_capability>(argument));
+      return Capabilities(camera, As<v4l2_capability>(argument));
     case VIDIOC_ENUM_FMT:
       return Describe(camera, As<v4l2_fmtdesc>(argument));
     case VIDIOC_G_FMT:
@@ -318,6 +325,7 @@ int Open(const char* real_name, const char* path, int flags, mode_t mode) {
   Camera& camera = TheCamera();
   const std::lock_guard lock(camera.mutex);
   if (camera.fault == "denied") return Error(EACCES);
+  if (camera.fault == "taken") return Error(EBUSY);
   const int descriptor = memfd_create("shim camera", MFD_CLOEXEC);
   camera.openings[descriptor] = {};
   return descriptor;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -151,19 +152,69 @@ TEST_CASE("A camera without a format that is understood is named with those it h
   CHECK_THAT(probed.text, Contains("state wrong format") && Contains("gives H264, NV12"));
 }
 
-TEST_CASE("A device that is not there is named with what to do") {
+/// What is said of a device that is not opened: "STATE: reason".
+std::string Refusal(const std::string& path) {
   try {
-    OpenCamera("/dev/video93", {});
-    FAIL("it was opened");
+    OpenCamera(path, {});
   } catch (const CameraError& error) {
-    CHECK(error.state == CameraState::kUnplugged);
-    CHECK_THAT(error.what(), Contains("/dev/video93") && Contains("ls /dev/video*"));
+    return std::string(EnumNames(error.state)[static_cast<std::size_t>(error.state)]) + ": " +
+           error.what();
   }
+  return "opened";
 }
 
-TEST_CASE("A device that may not be opened names the group") {
-  const Probed probed = Probe({{"FAULT", "denied"}}, "/dev/video0 - 1 mjpg 30 640 480");
-  CHECK_THAT(probed.text, Contains("group 'video'"));
+TEST_CASE("A device that is none, or not there, is named with what to do") {
+  CHECK(Refusal("/dev/video93") ==
+        "unplugged: /dev/video93: No such file or directory: is the camera plugged in? `ls "
+        "/dev/video*` shows those there are");
+  CHECK(Refusal("93") == Refusal("/dev/video93"));
+  CHECK(Refusal("/dev/null") == "wrong format: /dev/null: not a V4L2 device");
+  const int before = ::dup(1);  // a device that is refused is closed again
+  ::close(before);
+  for (int i = 0; i < 3; ++i) Refusal("/dev/null");
+  const int after = ::dup(1);
+  ::close(after);
+  CHECK(after == before);
+}
+
+TEST_CASE("What keeps a device from being a camera is said with its state in a whole line") {
+  struct Fault {
+    std::string name, says;
+  };
+  const std::string no_pictures =
+      "wrong format: /dev/video0: gives no pictures (many cameras have a second device for "
+      "metadata: try the one before)";
+  const std::string busy = "busy: /dev/video0: another program uses it: close that one";
+  for (const Fault& fault :
+       {Fault{"metadata", no_pictures}, Fault{"screen", no_pictures}, Fault{"busy", busy},
+        Fault{"taken", busy},
+        Fault{"denied",
+              "wrong format: /dev/video0: Permission denied: add your user to the group "
+              "'video'"}}) {
+    const Probed probed = Probe({{"FAULT", fault.name}}, "/dev/video0 - 1 mjpg 30 640 480");
+    INFO(fault.name << "\n" << probed.text);
+    CHECK_THAT(probed.text, Contains("state " + fault.says + "\n"));
+    CHECK(probed.HasLeft());
+  }
+  // Names of formats have four letters: of three none is left.
+  const Probed none = Probe({{"FORMATS", "XXX"}}, "/dev/video0 - 1 mjpg 30 640 480");
+  CHECK_THAT(none.text, Contains("state wrong format: /dev/video0: gives no pixel format, but rift "
+                                 "reads MJPG, YUYV and GREY\n"));
+}
+
+TEST_CASE("Of the formats that a device has the wished one is taken, else one that is understood") {
+  const JpegFolder jpegs(320, 240);
+  struct Offer {
+    std::string formats, wish, first;
+  };
+  for (const Offer& offer :
+       {Offer{"H264,YUYV", "mjpg", "yuyv"}, Offer{"NV12,MJPG", "yuyv", "jpeg"}}) {
+    const Probed probed = Probe({{"JPEGS", jpegs.Path()}, {"FORMATS", offer.formats}},
+                                "/dev/video0 - 1 " + offer.wish + " 60 320 240");
+    INFO(offer.formats << " for " << offer.wish << "\n" << probed.text);
+    CHECK_THAT(probed.text, Contains("first " + offer.first + " 320 240\n"));
+    CHECK(probed.HasLeft());
+  }
 }
 
 }  // namespace

@@ -141,9 +141,13 @@ TEST_CASE("What a server answers is said in words and ends the session at once")
   };
   const std::vector<Answer> answers{
       {"400 Bad Request", "it refuses the request (http 400)", CameraState::kRefused},
-      {"401 Unauthorized", "user and password", CameraState::kRefused},
+      {"401 Unauthorized",
+       "it wants a user and password: http://USER:PASSWORD@host/path (http 401)",
+       CameraState::kRefused},
       {"403 Forbidden", "it refuses this user (http 403)", CameraState::kRefused},
-      {"404 Not Found", "nothing at this path", CameraState::kRefused},
+      {"404 Not Found",
+       "it has nothing at this path: look up the stream's address in its manual (http 404)",
+       CameraState::kRefused},
       {"408 Request Timeout", "it refuses the request (http 408)", CameraState::kUnplugged},
       {"429 Too Many", "it refuses the request (http 429)", CameraState::kUnplugged},
       {"499 Closed", "it refuses the request (http 499)", CameraState::kRefused},
@@ -227,6 +231,20 @@ TEST_CASE("What is no address, and what answers without http, is refused with th
   CaptureThread capture = Capturing(server.Url());
   WaitForState(capture, CameraState::kUnplugged);
   CHECK_THAT(capture.Status().reason, Contains("what answers there does not speak http"));
+}
+
+TEST_CASE("A stream that falls silent is asked again and says what came that was no picture") {
+  const std::string huge = "\r\n--b\r\nContent-Length: 18446744073709551610\r\n\r\n";
+  synthetic::ScriptedServer server({std::string(kOk) + Part(SmallJpeg()) + Part("no picture") +
+                                    Part("nor this") + huge + Part("nor that")});
+  CaptureThread capture = Capturing(server.Url(), {.most_mbyte = 2.5});
+  WaitForState(capture, CameraState::kReconnecting);
+  const CaptureStatus status = capture.Status();
+  CHECK(status.delivered == 1);
+  CHECK(status.skipped == 4);
+  CHECK(status.reason == server.Url() +
+                             ": nothing came for 5 s, after 4 parts that are no picture or larger "
+                             "than track.capture.most_mbyte, 2.5");
 }
 
 TEST_CASE("Damaged parts and odd heads are passed over and counted") {

@@ -1,11 +1,18 @@
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/videoio.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "rift/vision/camera/camera_source.hpp"
+#include "rift/vision/camera/steady_now.hpp"
+#include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
+#include "support/until.hpp"
 
 namespace rift::vision {
 namespace {
@@ -82,6 +89,86 @@ TEST_CASE("A video is read picture by picture at the times of its file, until it
     CHECK(error.state == CameraState::kEnded);
     CHECK(error.what() == folder / "run.avi" + ": the last picture was read");
   }
+}
+
+/// Six pictures at 12 a second in the container that the name ends with.
+void WriteCoded(const std::string& path, const char* code) {
+  cv::VideoWriter writer(path, cv::CAP_FFMPEG,
+                         cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]), 12.0,
+                         {64, 48});
+  REQUIRE(writer.isOpened());
+  for (int i = 0; i < 6; ++i) {
+    writer.write(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(40 + 20 * i)));
+  }
+}
+
+TEST_CASE("A video whose file holds no times is read at its rate") {
+  const test::TemporaryFolder folder;
+  WriteCoded(folder / "run.h264", "H264");
+  const auto source = OpenCamera(folder / "run.h264", {});
+  std::vector<double> times_s;
+  for (Frame frame; times_s.size() < 6; times_s.push_back(frame.captured_s)) {
+    REQUIRE(source->Read(frame));
+  }
+  for (int i = 1; i < 6; ++i) CHECK(times_s[i] - times_s[0] == Approx(i / 12.0).margin(1e-6));
+}
+
+constexpr const char* kOptions = "OPENCV_FFMPEG_CAPTURE_OPTIONS";
+
+TEST_CASE("A network stream that ends is said and asked again, with times of this machine") {
+  const test::Environment unset(kOptions, std::nullopt);
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "run.mkv", url = "file://" + path;
+  WriteCoded(path, "mp4v");
+  const double before_s = SteadyNow_s();
+  const auto source = OpenCamera(url, {.reconnect_s = 600.0});
+  CHECK(std::getenv(kOptions) == std::string("rtsp_transport;tcp|fflags;nobuffer"));
+  CHECK_FALSE(source->IsRecording());
+  Frame frame;
+  REQUIRE(source->Read(frame));
+  CHECK((frame.width_px == 64 && frame.height_px == 48));
+  CHECK(frame.format == PixelFormat::kBgr);
+  CHECK(frame.captured_s == frame.arrived_s);
+  CHECK((before_s < frame.captured_s && frame.captured_s <= SteadyNow_s()));
+  for (int pictures = 1; source->Read(frame); ++pictures) REQUIRE(pictures < 6);
+  CHECK(source->Notes().interruption == url + ": the stream ended");
+  CHECK(source->Notes().reconnects == 0);
+  test::WaitUntil("the stream is open again", [&] { return source->Read(frame); });
+  CHECK(source->Notes().interruption.empty());
+  CHECK(source->Notes().reconnects == 1);
+  std::filesystem::remove(path);
+  test::WaitUntil("the stream is asked for a third time", [&] {
+    source->Read(frame);
+    return source->Notes().reconnects == 2;
+  });
+  CHECK(source->Notes().interruption ==
+        url +
+            ": FFmpeg cannot open it: is the camera on, and are address, user and password "
+            "right? (OPENCV_FFMPEG_LOGLEVEL=16 shows what FFmpeg says)");
+}
+
+TEST_CASE("A network stream that never came, or is away for too long, is over") {
+  const test::Environment own(kOptions, "fflags;discardcorrupt");
+  const auto end_of = [](const auto& deed) -> std::string {
+    try {
+      deed();
+    } catch (const CameraError& error) {
+      CHECK(error.state == CameraState::kUnplugged);
+      return error.what();
+    }
+    return "it goes on";
+  };
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "run.mkv", url = "file://" + path;
+  CHECK_THAT(end_of([&] { OpenCamera(url, {}); }),
+             Catch::StartsWith(url + ": FFmpeg cannot open it: is the camera on"));
+  WriteCoded(path, "mp4v");
+  const auto source = OpenCamera(url, {.reconnect_s = 0.0});
+  Frame frame;
+  CHECK(end_of([&] {
+          while (source->Read(frame)) continue;
+        }) == url + ": the stream ended; it did not come back within 0 s");
+  CHECK(std::getenv(kOptions) == std::string("fflags;discardcorrupt"));
 }
 
 }  // namespace

@@ -65,8 +65,9 @@ TEST_CASE("A printed chessboard is found with its corners and the squares that w
 
 TEST_CASE("What no sheet holds is refused with its size") {
   using Catch::Matchers::Contains;
-  CHECK_THROWS_WITH(ChessboardSheet({13, 9, 0.05}), Contains("700 x 500 mm"));
-  CHECK_THROWS_WITH(TagSheet(0, 0.5), Contains("does not go on A3"));
+  CHECK_THROWS_WITH(ChessboardSheet({13, 9, 0.05}),
+                    "a chessboard of 700 x 500 mm does not go on A3");
+  CHECK_THROWS_WITH(TagSheet(0, 0.5), "a tag with its border of 625 x 625 mm does not go on A3");
   CHECK_THROWS_WITH(TagSheet(900, 0.05), Contains("0 to 586"));
 }
 
