@@ -231,10 +231,12 @@ TEST_CASE("A board has 3 to 100 inner corners both ways and squares of up to ten
   for (const Board& good : {Board{3, 3, 10.0}, Board{100, 100, 0.001}}) CHECK_NOTHROW(good.Check());
   for (const auto& [columns, rows] : {std::pair{2, 9}, {9, 2}, {101, 9}, {9, 101}}) {
     CHECK_THROWS_WITH((Board{columns, rows, 0.025}.Check()),
-                      Contains("a board of " + std::to_string(columns) + " x " +
-                               std::to_string(rows) + " inner corners: there must be 3 to 100"));
+                      "a board of " + std::to_string(columns) + " x " + std::to_string(rows) +
+                          " inner corners: there must be 3 to 100 both ways (squares less one)");
   }
-  CHECK_THROWS_WITH((Board{9, 6, 10.1}.Check()), Contains("squares of 10.1 m"));
+  CHECK_THROWS_WITH((Board{9, 6, 10.1}.Check()),
+                    "squares of 10.1 m: the side of one square in metres is needed, above 0 and up "
+                    "to 10 (25 mm are 0.025)");
   CHECK_THROWS_WITH((Board{9, 6, 0.0}.Check()), Contains("above 0"));
   CHECK_THROWS_WITH((Board{9, 6, -1.0}.Check()), Contains("squares of -1 m"));
   CHECK_THROWS((Board{9, 6, std::nan("")}.Check()));

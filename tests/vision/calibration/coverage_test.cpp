@@ -143,6 +143,15 @@ TEST_CASE("A tilted board is drawn short across its diagonal and as large as it 
   CHECK(ratio(across) / ratio(along) == Approx(shortened));
 }
 
+TEST_CASE("A board is drawn tilted from a skew of three tenths on, by as much whatever the skew") {
+  const auto drawn = [](double skew) {
+    return OutlineAt({0.5, 0.5, 0.25, skew}, kBoard, kWidth_px, kHeight_px);
+  };
+  CHECK((drawn(0.29) == drawn(0.0)));
+  CHECK((drawn(0.31) == drawn(0.6)));
+  CHECK((drawn(0.31) != drawn(0.0)));
+}
+
 TEST_CASE("Who does what is said next covers everything, and then nothing is said") {
   std::vector<ViewResult> views;
   std::vector<std::string> texts;

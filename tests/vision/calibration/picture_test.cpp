@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "rift/vision/calibration/calibration.hpp"
 #include "support/pinned_picture.hpp"
@@ -65,6 +66,19 @@ TEST_CASE("A picture that cannot be written is refused with its name and what it
     CHECK_THROWS_WITH(DrawCalibration({}, folder / name),
                       Contains(name) && Contains("it must end in .png or .jpg"));
   }
+}
+
+TEST_CASE("A picture says whether the error on the floor is known") {
+  Calibration calibration;
+  calibration.rms_px = 0.42;
+  const test::TemporaryFolder folder;
+  DrawCalibration(calibration, folder / "drawn.png");
+  const cv::Rect words(0, 40, 760, 24);
+  const cv::Mat drawn = cv::imread(folder / "drawn.png")(words);
+  cv::Mat expected(drawn.size(), drawn.type(), drawn.at<cv::Vec3b>(0, 0));
+  cv::putText(expected, "plumb_bob lens, 0.42 px RMS, error on the floor not known", {20, 15},
+              cv::FONT_HERSHEY_SIMPLEX, 0.45, {40, 36, 32}, 1, cv::LINE_AA);
+  CHECK(cv::norm(drawn, expected, cv::NORM_INF) == 0.0);
 }
 
 }  // namespace
