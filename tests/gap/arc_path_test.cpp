@@ -129,9 +129,8 @@ TEST_CASE("In space the start alone is moved without a turn, and no planar motio
 
 TEST_CASE("A motion that is not of the dimension is refused with the one that is") {
   const Trajectory path = Along({0.0, 1.0});
-  CHECK_THROWS_WITH(
-      ProfileAlong(path, path, {.dimension = Dimension::kXyz, .align = Align::kSe2}),
-      "align is se2, a motion in the plane, and dimension is xyz: use se3");
+  CHECK_THROWS_WITH(ProfileAlong(path, path, {.dimension = Dimension::kXyz, .align = Align::kSe2}),
+                    "align is se2, a motion in the plane, and dimension is xyz: use se3");
   CHECK_THROWS_WITH(
       TimesAlong_s(path, {.align = Align::kSe3}),
       "align is se3, a motion in space, and dimension is xy: use se2, or dimension xyz");

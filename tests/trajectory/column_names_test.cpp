@@ -125,8 +125,7 @@ TEST_CASE("A name of fewer words comes first, and one of a pose before ten more"
   CHECK(rank("x") == 1);
   CHECK(rank("robot.x") == 2);
   CHECK(rank("robot.x_mm") == 2);  // the unit is no word
-  for (const char* pose :
-       {"pose", "position", "pos", "translation", "orientation", "p", "q"}) {
+  for (const char* pose : {"pose", "position", "pos", "translation", "orientation", "p", "q"}) {
     INFO(pose);
     CHECK(rank(std::string(pose) + ".x") == -8);
   }

@@ -58,10 +58,11 @@ TEST_CASE("A header of no dialect is told with what each one needs and how colum
 }
 
 TEST_CASE("A pose without a height is told with its time and what would give it one") {
-  CHECK(Refusal("t_s,x_m,y_m\n0.5,0,0\n1,1,0\n",
-                {.columns_flag = "--sim-columns ", .in_space = true}) ==
-        "a.csv: the pose at 0.5 s has no height z, and a gap in space (dimension xyz) needs it: log "
-        "z_m, or name its column: --sim-columns t=...,x=...,y=...,z=..., or leave dimension at xy");
+  CHECK(
+      Refusal("t_s,x_m,y_m\n0.5,0,0\n1,1,0\n",
+              {.columns_flag = "--sim-columns ", .in_space = true}) ==
+      "a.csv: the pose at 0.5 s has no height z, and a gap in space (dimension xyz) needs it: log "
+      "z_m, or name its column: --sim-columns t=...,x=...,y=...,z=..., or leave dimension at xy");
   CHECK(Refusal("t,x,y,z\n0.5,0,0,1\n1,1,0,1\n", {.in_space = true}) ==
         "a.csv: the pose at 0.5 s has no height z, and a gap in space (dimension xyz) needs it: "
         "name its format, tracker or webots, since its header does not tell which way z points, "

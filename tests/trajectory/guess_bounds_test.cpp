@@ -153,5 +153,37 @@ TEST_CASE("An angle of 7.8 may be radians beyond a turn, one of 7.9 is in degree
   CHECK(unit_of(-7.9) == "yaw=yaw:deg");
 }
 
+TEST_CASE("An angle is in degrees where these agree with the way better by more than 0.2") {
+  // Along x: twice the angle's cosine in radians, and nearly one in degrees.
+  const auto unit_of = [](double angle) {
+    const std::string guess = GuessWith({"t", "x", "y", "yaw"}, {Clock, X, [](int) { return 0.5; },
+                                                                 [angle](int) { return angle; }});
+    return guess.substr(guess.rfind("yaw="));
+  };
+  for (const double sign : {1.0, -1.0}) {
+    CHECK(unit_of(sign * 0.318) == "yaw=yaw");  // cos 0.636 = 0.804
+    CHECK(unit_of(sign * 0.326) == "yaw=yaw:deg");
+  }
+}
+
+TEST_CASE("A column without a name is a yaw where it agrees with the way to 0.85") {
+  // A circle in steps of 0.06 rad, of which two make a piece, its yaw off by so much. The first row
+  // stands where a header would.
+  const auto guess = [](double off_rad, double unit) {
+    const auto turn = [](int i) { return 0.06 * (i + 1); };
+    return GuessWith(
+        {"0.05", "0.0", "-0.4", fmt::format("{}", unit * off_rad)},
+        {[](int i) { return 0.1 + Clock(i); }, [&](int i) { return 0.4 * std::sin(turn(i)); },
+         [&](int i) { return -0.4 * std::cos(turn(i)); },
+         [&](int i) { return unit * (turn(i) + off_rad); }});
+  };
+  for (const double sign : {1.0, -1.0}) {
+    CHECK(guess(sign * 0.26, 1.0) == "t=1,x=2,y=3,yaw=4");  // cos 0.52 = 0.868
+    CHECK(guess(sign * 0.29, 1.0) == "t=1,x=2,y=3");        // cos 0.58 = 0.836
+    CHECK(guess(sign * 0.26, 57.29577951) == "t=1,x=2,y=3,yaw=4:deg");
+    CHECK(guess(sign * 0.29, 57.29577951) == "t=1,x=2,y=3");
+  }
+}
+
 }  // namespace
 }  // namespace rift::trajectory

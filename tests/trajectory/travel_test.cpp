@@ -94,5 +94,37 @@ TEST_CASE("A robot that jitters by less than five centimetres has no direction o
               "webots log?"});
 }
 
+TEST_CASE("A robot stands within a centimetre of its first row, unless another radius is given") {
+  // At 0, 9.9 mm and 10.1 mm: of two rows the mean, of one itself.
+  Trajectory log;
+  for (const double y_m : {0.0, 0.0099, 0.0101, 0.0}) {
+    log.poses.push_back({.t_s = 0.1 * static_cast<double>(log.poses.size()),
+                         .x_m = 1.0,
+                         .y_m = 2.0 - y_m,
+                         .yaw_rad = 0.5});
+  }
+  CHECK(StandingPose(log).y_m == Approx(2.0 - 0.0099 / 2.0));
+  CHECK(StandingPose(log, 0.0098).y_m == 2.0);
+  CHECK(StandingPose(log, 0.0102).y_m == Approx(2.0 - 0.0099 / 2.0));  // the median of four
+  CHECK(StandingPose(log).x_m == 1.0);
+  CHECK(StandingPose(log).yaw_rad == Approx(0.5));
+  log.poses[3].yaw_rad = StampedPose::kNotLogged;
+  CHECK_THROWS_WITH(StandingPose(log),
+                    "the pose of the standing robot needs the yaw, which is not known");
+  CHECK_THROWS_WITH(OffsetAlongHeading(log, -0.01),
+                    "a tag offset shifts the path along the yaw, and the yaw is not known");
+}
+
+TEST_CASE("A point behind the tag is taken against its heading") {
+  Trajectory log = Along(3, 0.1, 0.25);
+  const Trajectory behind = OffsetAlongHeading(log, -0.04);
+  for (size_t i = 0; i < 3; ++i) {
+    CHECK(behind.poses[i].x_m == Approx(log.poses[i].x_m - 0.04 * std::cos(0.25)));
+    CHECK(behind.poses[i].y_m == Approx(-0.04 * std::sin(0.25)));
+    CHECK(behind.poses[i].yaw_rad == 0.25);
+    CHECK(behind.poses[i].t_s == log.poses[i].t_s);
+  }
+}
+
 }  // namespace
 }  // namespace rift::trajectory
