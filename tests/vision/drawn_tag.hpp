@@ -17,8 +17,8 @@ inline vision::Frame DrawnTag(const vision::TagCells& cells, int black = 40, int
   for (int y = 0; y < frame.height_px; ++y) {
     for (int x = 0; x < frame.width_px; ++x) {
       const int row = (y - cell_px) / cell_px, column = (x - left_px) / cell_px;
-      const bool is_inside = y >= cell_px && row < cells.shape.cells && x >= left_px &&
-                             column < cells.shape.cells;
+      const bool is_inside =
+          y >= cell_px && row < cells.shape.cells && x >= left_px && column < cells.shape.cells;
       const bool is_white = !is_inside || cells.is_white[row][column];
       frame.bytes.push_back(static_cast<std::uint8_t>(is_white ? white : black));
     }

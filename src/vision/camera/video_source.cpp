@@ -66,9 +66,12 @@ class VideoSource : public CameraSource {
   }
 
  private:
-  // Phones record at varying rates, so the file's own time counts where it moves on.
+  // From the first picture's: JPEGs one after the other, as of a saved stream, begin at -7.7e12 s
+  // by FFmpeg. Phones record at varying rates, so the file's own time counts where it moves on.
   double FileTime_s() {
-    const double file_s = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000.0;
+    const double at_s = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000.0;
+    if (read_ == 0) first_s_ = at_s;
+    const double file_s = at_s - first_s_;
     const bool moves_on = read_++ == 0 || file_s > last_s_;
     last_s_ = moves_on ? file_s : last_s_ + period_s_;
     return last_s_;
@@ -77,7 +80,8 @@ class VideoSource : public CameraSource {
   std::string name_;
   double opened_s_;
   double period_s_ = 0.0;
-  double last_s_ = 0.0;
+  double first_s_ = 0.0;  // of the file's own times
+  double last_s_ = 0.0;   // since then
   int read_ = 0;
   cv::VideoCapture capture_;
 };

@@ -7,10 +7,9 @@ namespace rift::vision {
 namespace {
 
 TEST_CASE("Every parameter that names a secret is hidden, in whatever letters, and no other") {
-  for (const char* key :
-       {"pass", "PAS", "pwd", "pw", "auth", "authorization", "token", "access_token", "secret",
-        "client-secret", "key", "apikey", "cred", "credentials", "sess", "session_id", "sig",
-        "signature", "x0_Sig-9"}) {
+  for (const char* key : {"pass", "PAS", "pwd", "pw", "auth", "authorization", "token",
+                          "access_token", "secret", "client-secret", "key", "apikey", "cred",
+                          "credentials", "sess", "session_id", "sig", "signature", "x0_Sig-9"}) {
     INFO(key);
     CHECK(WithoutPassword("http://cam/v?a=1&" + std::string(key) + "=se&b=2") ==
           "http://cam/v?a=1&" + std::string(key) + "=***&b=2");

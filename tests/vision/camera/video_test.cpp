@@ -113,6 +113,22 @@ TEST_CASE("A video whose file holds no times is read at its rate") {
   for (int i = 1; i < 6; ++i) CHECK(times_s[i] - times_s[0] == Approx(i / 12.0).margin(1e-6));
 }
 
+TEST_CASE("JPEGs one after the other, as of a saved stream, begin at zero and keep one pace") {
+  const test::TemporaryFolder folder;
+  WriteCoded(folder / "run.mjpeg", "MJPG");
+  const double opened_s = SteadyNow_s();
+  const auto source = OpenCamera(folder / "run.mjpeg", {});
+  Frame frame;
+  REQUIRE(source->Read(frame));
+  CHECK(frame.captured_s >= opened_s);
+  CHECK(frame.captured_s <= SteadyNow_s());
+  const double first_s = frame.captured_s;
+  for (int i = 1; i < 6; ++i) {
+    REQUIRE(source->Read(frame));
+    CHECK(frame.captured_s - first_s == Approx(i / 25.0).margin(2e-3));  // FFmpeg's rate of such
+  }
+}
+
 constexpr const char* kOptions = "OPENCV_FFMPEG_CAPTURE_OPTIONS";
 
 TEST_CASE("A network stream that ends is said and asked again, with times of this machine") {

@@ -21,10 +21,8 @@ TEST_CASE("A detector finds the corners where the square is, in its place of the
     CHECK(found[0].id == 7);
     CHECK(found[0].hamming == 0);
     CHECK(found[0].decision_margin > 50.0);
-    const TagCorners corners{{{left, top + side},
-                              {left + side, top + side},
-                              {left + side, top},
-                              {left, top}}};
+    const TagCorners corners{
+        {{left, top + side}, {left + side, top + side}, {left + side, top}, {left, top}}};
     for (int i = 0; i < 4; ++i) {
       INFO(i << ": " << found[0].corners[i].transpose());
       CHECK((found[0].corners[i] - Eigen::Vector2d(x_px, y_px) - corners[i]).norm() < 0.3);
@@ -55,7 +53,7 @@ TEST_CASE("As many wrong bits are corrected as are asked for") {
 }
 
 TEST_CASE("A picture too small for its tiles holds no tag") {
-  for (const auto& [width_px, height_px] : 
+  for (const auto& [width_px, height_px] :
        {std::pair{15, 40}, {40, 15}, {7, 300}, {300, 7}, {1, 1}, {0, 0}}) {
     GreyPatch patch{{0, 0, width_px, height_px}, {}};
     patch.pixels.assign(static_cast<std::size_t>(width_px) * height_px, 100);

@@ -28,10 +28,9 @@ TEST_CASE("From 245 grey values of white on a picture is too bright to tell a ta
     const auto square = FitSquare(camera, patch, corners, ShapeOf(TagFamily::k36h11), 30.0,
                                   {options.edge_sigma_px, options.shared_sigma_px, 8});
     REQUIRE(square);
-    const auto seen =
-        TagMeter(camera, options)
-            .Measure(patch, corners, CellsOfTag(0), TrackMode::kRegion, std::nullopt)
-            .sighting;
+    const auto seen = TagMeter(camera, options)
+                          .Measure(patch, corners, CellsOfTag(0), TrackMode::kRegion, std::nullopt)
+                          .sighting;
     REQUIRE(seen);
     INFO("white " << square->white_grey);
     CHECK(seen->is_on_floor == (square->white_grey > 245.0));

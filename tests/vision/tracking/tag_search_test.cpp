@@ -79,10 +79,8 @@ TEST_CASE("Around a tag as much is read as is asked for, and what is printed aro
     SyntheticCameraOptions look{.tag_family = family, .noise_grey = 1.0};
     look.tag_size_m = size_m;
     SyntheticCamera camera(model, look);
-    TagTracker tracker(model, {.family = family,
-                               .size_m = size_m,
-                               .acquire_decimate = 1,
-                               .region_margin = 0.2});
+    TagTracker tracker(
+        model, {.family = family, .size_m = size_m, .acquire_decimate = 1, .region_margin = 0.2});
     for (int i = 0; i < 3; ++i) {
       const TrackResult still =
           tracker.Track(Shot(camera, test::RobotAt(0.01, 0.02, 0.0), 0.03 * i));

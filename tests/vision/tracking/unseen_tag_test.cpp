@@ -35,15 +35,14 @@ Frame InMirror(Frame frame) {
 }
 
 TEST_CASE("A tag of any family is told with its id, unless it was asked for") {
-  for (const TagFamily family : {TagFamily::k36h11, TagFamily::k25h9, TagFamily::k16h5,
-                                 TagFamily::kStandard41h12}) {
+  for (const TagFamily family :
+       {TagFamily::k36h11, TagFamily::k25h9, TagFamily::k16h5, TagFamily::kStandard41h12}) {
     INFO(NameOf(family));
     const Frame frame = DrawnTag(CellsOfTag(3, family));
     CHECK(Told(frame, {.family = family, .id = 4}) == std::string(NameOf(family)) + " 3 ");
     CHECK(Told(frame, {.family = family, .id = 3}) == "unmeasured ");
     CHECK(Told(frame, {.family = family, .id = 4}, {5, 3}) == "unmeasured ");
-    CHECK(Told(frame, {.family = family, .id = 4}, {5, 6}) ==
-          std::string(NameOf(family)) + " 3 ");
+    CHECK(Told(frame, {.family = family, .id = 4}, {5, 6}) == std::string(NameOf(family)) + " 3 ");
   }
 }
 
