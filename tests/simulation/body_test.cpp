@@ -174,5 +174,70 @@ TEST_CASE("A robot that leans because it sinks in is told of its contacts, not o
   }
 }
 
+TEST_CASE("Beyond axle and caster all of the chassis is on one of them") {
+  BodyOptions body;
+  body.chassis_mass_kg = 0.2;
+  body.wheel_mass_kg = 0.01;
+  body.gravity_mps2 = 10.0;
+  for (const double caster_m : {-0.04, 0.04}) {
+    body.caster_ahead_m = caster_m;
+    body.com_ahead_m = 0.25 * caster_m;
+    CHECK(body.WeightOnCaster_n() == Approx(0.5));
+    body.com_ahead_m = 1.5 * caster_m;
+    CHECK(body.WeightOnWheel_n() == Approx(0.1));
+    CHECK(body.WeightOnCaster_n() == Approx(2.0));
+    body.com_ahead_m = -0.5 * caster_m;
+    CHECK(body.WeightOnWheel_n() == Approx(1.1));
+    CHECK(body.WeightOnCaster_n() == Approx(0.0).margin(1e-12));
+  }
+}
+
+TEST_CASE("A wheel that sinks too deep is told with its depth") {
+  BodyOptions body;
+  body.chassis_mass_kg = 0.25;
+  body.wheel_mass_kg = 0.125;
+  body.gravity_mps2 = 8.0;
+  body.com_ahead_m = 0.0;
+  body.contact_stiffness_n_per_m = 1000.0;  // 2 N on each wheel
+  CHECK_THROWS_WITH(body.Check(),
+                    "contact_stiffness_n_per_m is 1000, so that a wheel sinks in by 0.002 m, but "
+                    "it must be at most a tenth of its radius");
+}
+
+TEST_CASE("Each warning of a tilt has its numbers and the end that is down") {
+  BodyOptions body;
+  body.chassis_mass_kg = 10.0;
+  body.caster_below_m = body.wheel_radius_m - body.caster_radius_m;
+  const auto sinking = [](const std::string& end) {
+    return "the simulated robot stands tilted by 1.1 deg, nose " + end +
+           ": its wheels sink into the floor by 0.0016 m and its caster by 0.0008 m under its "
+           "weight of 98.16 N; simulation.body.contact_stiffness_n_per_m is 25000: raise it, or "
+           "check the masses";
+  };
+  // The wheels carry two fifths each and sink deeper than the caster.
+  CHECK(TiltWarning(body) == sinking("down"));
+  body.caster_ahead_m = 0.0404;
+  body.com_ahead_m = 0.008;
+  CHECK(TiltWarning(body) == sinking("up"));
+  body = {};
+  for (const double side : {-1.0, 1.0}) {
+    body.caster_ahead_m = side * 0.04;
+    body.com_ahead_m = side * 0.05;
+    CHECK(TiltWarning(body).value_or("") ==
+          std::string("the simulated robot does not stand on its wheels and its caster but tips "
+                      "over its caster: its centre of mass is ") +
+              (side < 0.0 ? "-" : "") + "0.05 m ahead of the axle (simulation.body.com_ahead_m) " +
+              "and its caster " + (side < 0.0 ? "-" : "") +
+              "0.04 m (caster_ahead_m, negative: behind); a robot that stands has the first "
+              "between 0 and the second");
+  }
+  body = {};
+  body.caster_below_m = 0.0069;  // 2.75 mm too high, 40.4 mm behind
+  CHECK(TiltWarning(body).value_or("") ==
+        "the simulated robot stands tilted by 3.9 deg, nose up: its caster's ball is 0.0028 m "
+        "above the floor when the robot is level; simulation.body.caster_below_m is 0.0069, and "
+        "0.00965 (wheel_radius_m - caster_radius_m) would make it level");
+}
+
 }  // namespace
 }  // namespace rift::simulation

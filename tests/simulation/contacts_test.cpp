@@ -341,5 +341,53 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("The caster's ball touches a block by its own radius, as far behind as it hangs") {
+  TerrainOptions options;
+  options.surface = "bump";  // blocks of 0.02 m, 0.06 m apart, 0.004 m high
+  options.surfaces["bump"].caster_factor = 2.5;
+  const Terrain terrain(options);
+  BodyOptions body;
+  body.caster_mu = 0.1;
+  body.caster_ahead_m = -0.05;
+  body.caster_below_m = 0.003;
+  body.caster_radius_m = 0.007;
+  WorldState state;
+  state.world_from_robot = Eigen::AngleAxisd(M_PI / 2.0, Vector3d::UnitZ()).toRotationMatrix();
+  // Behind a robot that looks along y, over the middle of a block.
+  for (const double sunk_m : {1e-5, -1e-6}) {
+    state.position_m = {0.06, 0.17, 0.004 + 0.007 + 0.003 - sunk_m};
+    std::vector<GroundContact> contacts;
+    AddCasterContacts({body, terrain, state, {}, 0.0}, contacts);
+    REQUIRE(contacts.size() == (sunk_m > 0.0 ? 1u : 0u));
+    if (contacts.empty()) continue;
+    CHECK(contacts[0].at.depth_m == Approx(1e-5).epsilon(1e-6));
+    CHECK((contacts[0].at.point - Vector3d(0.06, 0.12, 0.004 - 1e-5)).norm() < 1e-12);
+    CHECK(contacts[0].mu == Approx(0.25));
+    CHECK(contacts[0].usual_load_n == Approx(body.WeightOnCaster_n()));
+  }
+}
+
+TEST_CASE("A wheel on a block has the grip of the place where it touches") {
+  TerrainOptions options;
+  options.surface = "bump";
+  options.patches = {{0.05, 0.07, -0.01, 0.01, 0.35, 0.0, 0.0}};  // the block at x = 0.06
+  const Terrain terrain(options);
+  const BodyOptions body;
+  WorldState state;
+  state.wheel_rate_rad_s = {-10.0, 20.0};
+  for (const auto& [x_m, mu] : {std::pair{0.06, 0.35}, {0.12, 0.85}}) {
+    for (const int side : {0, 1}) {
+      std::vector<GroundContact> contacts;
+      const ContactScene scene{body, terrain, state, {0.05, -0.02}, 0.0};
+      AddWheelContacts(scene, side, {x_m, 0.0, 0.004 + kRadius_m - 1e-5}, contacts);
+      REQUIRE(contacts.size() == 1);
+      CHECK(contacts[0].mu == mu);
+      CHECK(contacts[0].creep_along_mps ==
+            Approx(mu == 0.35 ? 0.0 : (side == 0 ? 0.0016 : 0.0032)));
+      CHECK(contacts[0].uneven_mps == Approx(side == 0 ? -0.008 : -0.0064));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rift::simulation

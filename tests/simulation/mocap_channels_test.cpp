@@ -192,5 +192,78 @@ TEST_CASE("A robot stands below a centimetre a second: only then its scatter is 
   CHECK(scatter_m(0.009) == Approx(scatter_m(0.0)));
 }
 
+/// Times between the poses of a host, whose camera is much faster than it is.
+std::vector<double> HostTurns_s(const MocapOptions& options, std::uint64_t seed, int steps) {
+  Mocap mocap(options, seed);
+  std::vector<double> turns_s;
+  double last_s = 0.0;
+  for (int i = 1; i <= steps; ++i) {
+    mocap.Observe({.t_s = 0.004 * (i - 1)}, {.t_s = 0.004 * i});
+    const auto newest = mocap.Newest(0.004 * i);
+    if (!newest || newest->captured_s == last_s) continue;
+    if (last_s > 0.0) turns_s.push_back(newest->captured_s - last_s);
+    last_s = newest->captured_s;
+  }
+  return turns_s;
+}
+
+MocapOptions HostOf50ms() {
+  MocapOptions options = Quiet();
+  options.rate_hz = 100.0;
+  options.host_period_s = 0.05;
+  options.host_period_spread_s = options.host_jitter_s = options.host_wander_s = 0.0;
+  return options;
+}
+
+TEST_CASE("Whether a turn of a host is late tells nothing of its jitter") {
+  MocapOptions options = HostOf50ms();
+  options.host_jitter_s = 0.001;
+  options.host_late_share = 0.2;
+  options.host_late_s = 0.02;
+  double late_s = 0.0, other_s = 0.0, squares = 0.0;
+  int late = 0, others = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const double turn_s : HostTurns_s(options, seed, 2500)) {
+      const bool is_late = turn_s > 0.06;
+      (is_late ? late_s : other_s) += turn_s;
+      ++(is_late ? late : others);
+      squares += std::pow(turn_s - (is_late ? 0.07 : 0.05), 2);
+    }
+  }
+  REQUIRE(late > 300);
+  CHECK(late_s / late == Approx(0.07).margin(0.0002));
+  CHECK(other_s / others == Approx(0.05).margin(0.0001));
+  CHECK(std::sqrt(squares / (late + others)) == Approx(0.001).epsilon(0.1));
+}
+
+TEST_CASE("The period that a run draws tells nothing of its share of late turns") {
+  MocapOptions options = HostOf50ms();
+  options.host_period_spread_s = 0.003;
+  options.host_late_share = 0.1;
+  options.host_late_s = 0.05;
+  constexpr int kRuns = 150;
+  std::array<std::vector<double>, 2> drawn;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    const std::vector<double> turns_s = HostTurns_s(options, seed, 2000);
+    double late = 0.0, least_s = 1.0;
+    for (const double turn_s : turns_s) {
+      late += turn_s > 0.08;
+      least_s = std::min(least_s, turn_s);
+    }
+    drawn[0].push_back(least_s);
+    drawn[1].push_back(late / static_cast<double>(turns_s.size()));
+  }
+  std::array<double, 2> mean{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (const double one : drawn[k]) mean[k] += one / kRuns;
+  }
+  double both = 0.0, first = 0.0, second = 0.0;
+  for (std::size_t i = 0; i < kRuns; ++i) {
+    const double a = drawn[0][i] - mean[0], b = drawn[1][i] - mean[1];
+    both += a * b, first += a * a, second += b * b;
+  }
+  CHECK(std::abs(both / std::sqrt(first * second)) < 0.25);
+}
+
 }  // namespace
 }  // namespace rift::simulation

@@ -229,5 +229,45 @@ TEST_CASE("A wheel is at rest below a millionth of a radian a second") {
                     "0.001");
 }
 
+TEST_CASE("The power at which the dead band ends turns the wheel, forwards and backwards") {
+  MotorOptions options;
+  options.dead_band = 0.125;
+  options.no_load_rad_s = 80.0;
+  Motor motor(options, Side::kLeft);
+  for (const double sign : {1.0, -1.0}) {
+    CHECK(motor.Drive(StepPower::Constant(sign * 0.125), 0.0, 0.0, 0.004).target_rad_s ==
+          Approx(sign * 10.0));
+    CHECK(motor.Drive(StepPower::Constant(sign * 0.12499), 0.0, 0.0, 0.004).target_rad_s == 0.0);
+  }
+}
+
+TEST_CASE("Wheels that differ in speed push equally at standstill") {
+  MotorOptions options;
+  options.mismatch = 0.2;
+  options.no_load_rad_s = 50.0;
+  options.stall_torque_nm = 0.04;
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    const WheelDrive drive = Motor(options, side).Drive(StepPower::Constant(0.5), 1e-5, 0.0, 0.004);
+    CHECK(drive.target_rad_s == Approx(side == Side::kLeft ? 27.5 : 22.5));
+    CHECK(Torque(drive, 0.0) == Approx(0.02));
+  }
+}
+
+TEST_CASE("A lagging motor starts at once beyond its dead band, and a servo does not lag") {
+  MotorOptions options;
+  options.dead_band = 0.1;
+  options.lag_s = 0.05;
+  options.no_load_rad_s = 100.0;
+  // Mean of 1 - exp(-t / 0.05) over the first 0.005 s, of half the speed.
+  const double mean = 1.0 - (1.0 - std::exp(-0.1)) / 0.1;
+  const auto first_rad_s = [&] {
+    Motor motor(options, Side::kRight);
+    return motor.Drive(StepPower::Constant(-0.5), 0.0, 0.0, 0.005).target_rad_s;
+  };
+  CHECK(first_rad_s() == Approx(-50.0 * mean));
+  options.model = MotorModel::kServo;
+  CHECK(first_rad_s() == Approx(-50.0));
+}
+
 }  // namespace
 }  // namespace rift::simulation

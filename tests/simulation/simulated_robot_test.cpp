@@ -379,5 +379,26 @@ TEST_CASE("Encoders are reported unless they are not, in counts of their own or 
         std::lround(std::floor(geared_rad[1] * 12.0 * 75.81 / (2.0 * geometry::kPi))));
 }
 
+TEST_CASE("A brushed motor whose power comes within a long step starts when it comes") {
+  test::OnBothSides("left", "right", [](const test::Side& side) {
+    SimulationOptions options = Ideal();
+    options.motor.model = MotorModel::kDc;
+    options.motor.friction_torque_nm = 0.001;
+    options.motor.breakaway_torque_nm = 0.003;
+    options.link.delay_s = 0.03;
+    const auto rolled_rad = [&](double step_s) {
+      options.step_s = step_s;
+      SimulatedRobot robot(options, {}, 1);
+      robot.Command(side.Of<control::WheelPower>(0.4, 0.0));
+      robot.Advance(0.2);
+      return robot.State().wheel_angle_rad[side.IsFirst() ? 0 : 1];
+    };
+    const double fine_rad = rolled_rad(0.0005);
+    CHECK(fine_rad > 1.0);
+    // A step that stands still until its end is a tenth of the way behind.
+    CHECK(rolled_rad(0.04) == Approx(fine_rad).epsilon(0.05));
+  });
+}
+
 }  // namespace
 }  // namespace rift::simulation
