@@ -308,5 +308,64 @@ TEST_CASE("A value is told to a standard error of five per cent, a tag to half a
   CHECK(tag_not_told > 0);
 }
 
+TEST_CASE(
+    "A tag that sits aside and is turned hides neither wheels, track nor how far ahead it is") {
+  const Planted planted{0.0157, 0.985, 0.0803};
+  for (const double side : {1.0, -1.0}) {
+    INFO(side);
+    std::vector<RunLog> runs = Squares(planted, 2, 7, {0.0002, 0.002});
+    for (RunLog& run : runs) {
+      for (trajectory::StampedPose& pose : run.camera.poses) {
+        const geometry::Pose2 tag =
+            pose.Planar() * geometry::Pose2{-0.015, side * 0.012, side * 0.2};
+        pose.x_m = tag.x_m;
+        pose.y_m = tag.y_m;
+        pose.yaw_rad = tag.yaw_rad;
+      }
+    }
+    const OdometryCalibration found = CalibrateOdometry(runs, {});
+    CHECK(found.wheel_radius_m.value == Approx(0.0157).epsilon(1e-3));
+    CHECK(found.right_over_left.value == Approx(0.985).epsilon(1e-3));
+    CHECK(found.track_m.value == Approx(0.0803).epsilon(3e-3));
+    CHECK(found.tag_ahead_m.value == Approx(-0.015).margin(1e-3));
+    CHECK(found.noise_m < 1e-3);
+    CHECK(found.noise_yaw_rad < 5e-3);
+  }
+}
+
+TEST_CASE("What straight runs do not tell stays near where the calibration starts") {
+  OdometryOptions start;
+  start.drive.track_m = 0.1;
+  std::vector<RunLog> runs;
+  for (int i = 0; i < 2; ++i) {
+    RunLog run{.name = "line"};
+    for (int k = 0; k <= 300; ++k) {
+      const double t_s = 0.1 * k;
+      run.encoders.push_back({t_s, {20 * k, 20 * k}});
+      // A millimetre and a hundredth of a radian to either side in turns.
+      const double off = k % 2 == i ? 1.0 : -1.0;
+      run.camera.poses.push_back({.t_s = t_s,
+                                  .x_m = 20e-3 * 0.3 * k / 10.0 + 1e-3 * off,
+                                  .y_m = 1e-3 * (k % 3 - 1),
+                                  .yaw_rad = 0.01 * off});
+    }
+    runs.push_back(std::move(run));
+  }
+  const OdometryCalibration found = CalibrateOdometry(runs, start);
+  CHECK(found.wheel_radius_m.value ==
+        Approx(3e-5 * start.counts_per_wheel_turn / (2.0 * geometry::kPi)).epsilon(5e-3));
+  CHECK(found.right_over_left.value == Approx(1.0).margin(0.02));
+  CHECK(found.track_m.value == Approx(0.1).epsilon(0.3));
+  CHECK(std::abs(found.tag_ahead_m.value) < 0.02);
+}
+
+TEST_CASE("Too few windows are told with their number, their length and what to do") {
+  std::mt19937_64 generator(4);
+  const std::vector<RunLog> runs{DriveSquare({}, 90.0, {}, generator)};
+  CHECK_THROWS_WITH(CalibrateOdometry(runs, {}, {.window_s = 1000.0}),
+                    "1 window(s) of 1000 s in which the wheels turned under the camera, and 8 are "
+                    "needed: give longer runs, or a smaller window_s");
+}
+
 }  // namespace
 }  // namespace rift::odometry

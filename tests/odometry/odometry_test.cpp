@@ -125,5 +125,67 @@ TEST_CASE("Counts between two readings lie between them and there are none outsi
   CHECK_FALSE(CountsAt(readings, 3.01));
 }
 
+TEST_CASE("What is wrong with an encoder log is one line with its numbers") {
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      ReadEncoders(text, "e.csv");
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK(message("t_s,left\n0,1\n1,2\n") ==
+        "e.csv: has no column 'right': the columns of encoders.csv are t_s, left, right and "
+        "battery_v");
+  CHECK(message("t_s,left,right\n0,1,1\n") == "e.csv: has 1 reading(s), and two are needed");
+  CHECK(message("t_s,left,right\n") == "e.csv: has 0 reading(s), and two are needed");
+  CHECK(message("t_s,left,right\n0,1,1\n1,2,2\n0.5,3,3\n") ==
+        "e.csv:4: t_s is 0.5, and the row before has 1: times must rise");
+  CHECK(message("t_s,left,right\n0,1,1\n1,2,2\n2,3,\n") ==
+        "e.csv:4: t_s, left and right must be there");
+  CHECK(message("t_s,left,right\n,1,1\n1,2,2\n") == "e.csv:2: t_s, left and right must be there");
+  CHECK(message("t_s,left,right\n0,1,-1e16\n1,2,2\n") == "e.csv:2: a count beyond 9e+15");
+  CHECK(message("t_s,left,right\n0,9e15,-9e15\n1,2,2\n") == "accepted");
+}
+
+TEST_CASE("A count that was logged with a fraction is the nearest whole one, on both sides of 0") {
+  const auto read = ReadEncoders("t_s,left,right\n0,2.4,-2.4\n1,2.6,-2.6\n", "e.csv");
+  CHECK(read[0].counts == control::EncoderCounts{2, -2});
+  CHECK(read[1].counts == control::EncoderCounts{3, -3});
+}
+
+TEST_CASE("Counts between readings are of the two readings around that moment, of each wheel") {
+  const std::vector<EncoderReading> readings{
+      {1.0, {10, -10}}, {3.0, {20, -30}}, {3.5, {120, 70}}, {7.5, {200, 30}}};
+  CHECK(*CountsAt(readings, 2.0) == std::pair(15.0, -20.0));
+  CHECK(*CountsAt(readings, 3.125) == std::pair(45.0, -5.0));
+  CHECK(*CountsAt(readings, 3.5) == std::pair(120.0, 70.0));
+  CHECK(*CountsAt(readings, 6.5) == std::pair(180.0, 40.0));
+  CHECK(*CountsAt(readings, 7.5) == std::pair(200.0, 30.0));
+  CHECK_FALSE(CountsAt({}, 1.0));
+}
+
+TEST_CASE("A robot turns by the difference of its wheels over the track, in steps of any size") {
+  OdometryOptions options;
+  options.counts_per_wheel_turn = 2.0 * geometry::kPi * 20.0;  // a millimetre a count
+  options.drive.wheel_radius_m = 0.02;
+  options.drive.track_m = 0.2;
+  CHECK(YawPerCount_rad(options) == Approx(0.005));
+  for (const int steps : {1, 7, 200}) {
+    INFO(steps);
+    Odometry odometry(options, {0.5, -1.0, 0.3});
+    odometry.Update({1000, 2000});
+    geometry::Pose2 end;
+    for (int i = 1; i <= steps; ++i) {
+      end = odometry.Update({1000 + 100 * i / steps, 2000 + 300 * i / steps});
+    }
+    // An arc of a radian about a point 0.2 m to the left.
+    CHECK(end.yaw_rad == Approx(1.3));
+    const double margin_m = steps == 1 ? 1e-9 : 1e-3;
+    CHECK(end.x_m == Approx(0.5 + 0.2 * (std::sin(1.3) - std::sin(0.3))).margin(margin_m));
+    CHECK(end.y_m == Approx(-1.0 + 0.2 * (std::cos(0.3) - std::cos(1.3))).margin(margin_m));
+  }
+}
+
 }  // namespace
 }  // namespace rift::odometry

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "rift/geometry/pose2.hpp"
+#include "rift/odometry/calibration.hpp"
 #include "rift/odometry/readings_during.hpp"
 
 namespace rift::odometry {
@@ -335,6 +337,62 @@ TEST_CASE("Encoders of another time than the camera are refused") {
   RunLog run = Drive({});
   for (EncoderReading& reading : run.encoders) reading.t_s += 100.0;
   CHECK_THROWS_WITH(MeasureRun(run, std::nullopt, {}, {}), Catch::Contains("on one clock"));
+}
+
+TEST_CASE("Odometry begins and ends on the line between the rows around its readings") {
+  // Along +y with a heading that passes from 179 degrees over 180 to 179 on the other side.
+  RunLog run{.name = "r"};
+  for (int i = 0; i <= 40; ++i) {
+    const int k = std::max(0, i - 10);
+    run.camera.poses.push_back({.t_s = 1.0 * i,
+                                .x_m = 0.5 - 0.1 * k,
+                                .y_m = -0.25 + 0.2 * k,
+                                .yaw_rad = geometry::WrapToPi(3.0 + 0.04 * k)});
+  }
+  for (int i = 0; i <= 3; ++i) run.encoders.push_back({13.25 + 6.25 * i, {100 * i, 120 * i}});
+  const geometry::Pose2 start = OdometryStart(run), end = OdometryEnd(run);
+  CHECK(start.x_m == Approx(0.5 - 0.325));
+  CHECK(start.y_m == Approx(-0.25 + 0.65));
+  CHECK(geometry::WrapToPi(start.yaw_rad - 3.13) == Approx(0.0).margin(1e-9));
+  CHECK(end.x_m == Approx(0.5 - 2.2));
+  CHECK(end.y_m == Approx(-0.25 + 4.4));
+  CHECK(geometry::WrapToPi(end.yaw_rad - 3.88) == Approx(0.0).margin(1e-9));
+  run.encoders.front().t_s = 13.75;  // between 3.12 and 3.16, which is -3.123
+  CHECK(geometry::WrapToPi(OdometryStart(run).yaw_rad - 3.15) == Approx(0.0).margin(1e-9));
+  run.encoders.front().t_s = 14.0;
+  CHECK(OdometryStart(run).x_m == Approx(0.1));
+  run.encoders.back().t_s = 99.0;  // the camera's last row
+  CHECK(OdometryEnd(run).y_m == Approx(-0.25 + 6.0));
+  run.encoders.clear();
+  CHECK(OdometryStart(run).x_m == Approx(0.5));
+  CHECK(OdometryEnd(run).x_m == Approx(-2.5));
+}
+
+TEST_CASE("A run whose clocks share one moment is told with its name and that number") {
+  RunLog run = Drive({});
+  run.name = "left_3";
+  const double shift_s = run.camera.poses.back().t_s - run.encoders.front().t_s;
+  for (EncoderReading& reading : run.encoders) reading.t_s += shift_s;
+  CHECK_THROWS_WITH(MeasureRun(run, std::nullopt, {}, {}),
+                    "left_3: the poses with a yaw and the encoder readings share 1 moment(s): they "
+                    "must be of one run and on one clock");
+}
+
+TEST_CASE("A turn of the odometry beyond the camera's has its sign, also across half a turn") {
+  for (const double side : {1.0, -1.0}) {
+    RunLog run{.name = "r"};
+    for (int i = 0; i <= 40; ++i) {
+      const double turned_rad = side * 0.09 * std::max(0, i - 10);  // 2.7 in all
+      run.encoders.push_back({0.1 * i,
+                              {-std::llround(side * 21 * std::max(0, i - 10)),
+                               std::llround(side * 21 * std::max(0, i - 10))}});
+      run.camera.poses.push_back(
+          {.t_s = 0.1 * i, .yaw_rad = geometry::WrapToPi(side * 2.0 + turned_rad)});
+    }
+    const double rolled_rad = side * 2.0 * 630.0 * YawPerCount_rad({});
+    CHECK(MeasureRun(run, std::nullopt, {}, {}).yaw_drift_rad ==
+          Approx(rolled_rad - side * 2.7).margin(1e-9));
+  }
 }
 
 }  // namespace
