@@ -115,5 +115,24 @@ TEST_CASE("An ensemble that cannot be drawn from is refused with its place") {
             .find("stands there twice") != std::string::npos);
 }
 
+TEST_CASE(
+    "A draw of which a key is set elsewhere keeps the values of the others, whichever it is") {
+  const std::string robot = R"(ensemble:
+  keys: [simulation.link.delay_s, simulation.motor.mismatch, trial.settle_s]
+  draws: [[0.08, 0.01, 1.5], [0.12, 0.03, 1.75]]
+)";
+  const auto left = [&](const std::vector<std::string>& overrides) {
+    return LoadTexts({{"robot.yaml", robot}}, overrides).ensemble;
+  };
+  using Draws = std::vector<std::vector<double>>;
+  CHECK(left({}).draws == Draws{{0.08, 0.01, 1.5}, {0.12, 0.03, 1.75}});
+  CHECK(left({"simulation.link.delay_s=0.1"}).draws == Draws{{0.01, 1.5}, {0.03, 1.75}});
+  CHECK(left({"simulation.motor.mismatch=0"}).draws == Draws{{0.08, 1.5}, {0.12, 1.75}});
+  CHECK(left({"trial.settle_s=1"}).draws == Draws{{0.08, 0.01}, {0.12, 0.03}});
+  CHECK(left({"trial.settle_s=1", "simulation.link.delay_s=0.1"}).keys ==
+        std::vector<std::string>{"simulation.motor.mismatch"});
+  CHECK(left({"trial.timeout_s=60"}).keys.size() == 3);
+}
+
 }  // namespace
 }  // namespace rift::experiment

@@ -338,5 +338,50 @@ TEST_CASE("More than may be taken is refused before anything is computed") {
   CHECK_NOTHROW(grid(250'001, "falsify"));
 }
 
+TEST_CASE("What a task asks too much of is one line with its numbers") {
+  Experiment experiment;
+  // At a power of 0.25 the 3pi+ drives a quarter of 75.4 rad/s times 0.016 m.
+  experiment.program.segments = {{.straight_m = 0.25 * 75.4 * 0.016 * 4.0, .power = 0.25},
+                                 {.hold_s = 6.25}};
+  experiment.program.rest_s = 2.0;
+  experiment.trial.settle_s = 1.5;
+  experiment.trial.timeout_s = 13.5;
+  CHECK_THROWS_WITH(TaskOf(experiment),
+                    "the program takes 13.8 s with settling and rest, and trial.timeout_s is 13.5: "
+                    "raise it");
+  experiment.waypoints.resize(3);
+  CHECK_THROWS_WITH(TaskOf(experiment),
+                    "3 waypoints beside a program: it starts at the first and makes its own ends, "
+                    "leave the others out");
+  Experiment far = Way(0.5, -300.0);
+  far.trial.timeout_s = 20.0;
+  far.trial.arena = {-2.0, 2.0, -2.0, 2.0};
+  CHECK_THROWS_WITH(RequireReachableWaypoints(far, "a.yaml"),
+                    "a.yaml: waypoints[1] (end) at x 0.5 m, y -300 m lies outside trial.arena, "
+                    "where a run ends: move it, widen the arena, or give --any-waypoints");
+  far.trial.arena = {-1000.0, 1000.0, -1000.0, 1000.0};
+  far.waypoints[1].x_m = 400.0;
+  CHECK_THROWS_WITH(
+      RequireReachableWaypoints(far, "a.yaml"),
+      "a.yaml: its waypoints are 500 m apart in all, as far as 400 m out, and no 3pi+ "
+      "drives that in trial.timeout_s, 20 s: waypoints are metres, so divide "
+      "millimetres by 1000, or give --any-waypoints");
+}
+
+TEST_CASE("Only a flat floor and blocks hold a tag to them") {
+  Experiment experiment;
+  experiment.track.tag.ground = vision::Ground::kFlat;
+  auto& surfaces = experiment.simulation.terrain.surfaces;
+  surfaces["hill"].shape = simulation::Shape::kHeightfield;
+  for (const auto& [name, ground] : {std::pair{"downhill", vision::Ground::kFree},
+                                     {"hill", vision::Ground::kFree},
+                                     {"cardboard", vision::Ground::kFlat},
+                                     {"bump", vision::Ground::kBumps}}) {
+    INFO(name);
+    experiment.simulation.terrain.surface = name;
+    CHECK(TagOn(experiment).ground == ground);
+  }
+}
+
 }  // namespace
 }  // namespace rift::experiment
