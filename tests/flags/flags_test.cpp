@@ -1,10 +1,15 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "rift/flags/flags.hpp"
 #include "rift/flags/manual.hpp"
 #include "rift/flags/usage.hpp"
+#include "rift/yaml/flag_name.hpp"
 
 namespace rift::flags {
 namespace {
@@ -185,6 +190,139 @@ TEST_CASE("Words that ask for no manual give none") {
                                                 {"help", "--man", "drive", "more"}}) {
     CHECK(Manual(words, program.app).empty());
   }
+}
+
+TEST_CASE("A flag is its key with dashes, without the unit that its help names") {
+  const auto named = [](const char* key) {
+    const yaml::FlagName name(key);
+    return name.flag + " " + name.unit;
+  };
+  CHECK(named("window_size_m") == "--window-size m");
+  CHECK(named("period_s") == "--period s");
+  CHECK(named("turn_rad") == "--turn rad");
+  CHECK(named("cap_angle_deg") == "--cap-angle deg");
+  CHECK(named("rate_hz") == "--rate hz");
+  CHECK(named("speed_mps") == "--speed-mps ");
+  CHECK(named("samples") == "--samples ");
+}
+
+/// Values that a file has no need of, and types of which the help has names of its own.
+struct Extra {
+  std::optional<double> limit_m;
+  std::optional<int> rounds;
+  double square_mm = 25.0;
+  std::string word = "none";
+  std::vector<std::string> many;
+
+  template <class Self, class Visitor>
+  static void Fields(Self& self, Visitor&& field) {
+    field("limit_m", self.limit_m, 0.5, 2.0, "METRES", "how far at most");
+    field("rounds", self.rounds, 2, 7, "N", "how often");
+    field("square_mm", self.square_mm, 1.0, 50.0, "mm", "of a board");
+    field("word", self.word, "WORD", "what is said");
+    field("many", self.many, "FILE", "what is read");
+  }
+};
+
+/// A subcommand with them, and what was wrong; nothing where nothing was.
+struct ExtraProgram {
+  CLI::App app{"measures gaps", "rift"};
+  Extra extra;
+  unsigned repeats = 1;
+  double gain = 1.0;
+  std::vector<std::string> some;
+
+  ExtraProgram() {
+    CLI::App* run = app.add_subcommand("run", "runs it");
+    AddFlags(*run, extra);
+    run->add_option("--repeats", repeats, ".5 \\ 'a'");
+    run->add_option("--gain", gain, "'quoted'\n.dot");
+    run->add_option("--some", some, "a few")->expected(2, 3)->type_name("FILE.csv|DIR");
+    app.require_subcommand(1);
+  }
+  std::string Parse(std::vector<std::string> words) {
+    words.insert(words.begin(), "run");
+    std::reverse(words.begin(), words.end());
+    try {
+      app.parse(words);
+      return "";
+    } catch (const CLI::ParseError& error) {
+      return UsageError(app, error);
+    }
+  }
+};
+
+TEST_CASE("A value that may be left out has a range too, and is not there unless it is given") {
+  const auto said = [](const std::vector<std::string>& words) {
+    return ExtraProgram().Parse(words);
+  };
+  ExtraProgram none, all;
+  CHECK(none.Parse({}).empty());
+  CHECK_FALSE(none.extra.limit_m);
+  CHECK_FALSE(none.extra.rounds);
+  CHECK(none.extra.square_mm == 25.0);
+  CHECK(none.extra.word == "none");
+  CHECK(all.Parse({"--limit", "0.5", "--rounds", "7", "--square-mm", "50", "--word", "a b",
+                   "--many", "x", "y"})
+            .empty());
+  CHECK(all.extra.limit_m == 0.5);
+  CHECK(all.extra.rounds == 7);
+  CHECK(all.extra.square_mm == 50.0);
+  CHECK(all.extra.word == "a b");
+  CHECK(all.extra.many == std::vector<std::string>{"x", "y"});
+  CHECK(said({"--limit", "2", "--rounds", "2"}).empty());
+  CHECK(said({"--limit", "0.49"}) == "--limit: '0.49' must be a number in [0.5, 2]");
+  CHECK(said({"--limit", "2.01"}) == "--limit: '2.01' must be a number in [0.5, 2]");
+  CHECK(said({"--rounds", "1"}) == "--rounds: '1' must be a whole number in [2, 7]");
+  CHECK(said({"--rounds", "8"}) == "--rounds: '8' must be a whole number in [2, 7]");
+  CHECK(said({"--square-mm", "51"}) == "--square-mm: '51' must be a number in [1, 50]");
+  const std::string help = all.app.get_subcommand("run")->help();
+  CHECK_THAT(help, Contains("--limit METRES") && Contains("--rounds N") && Contains("WORD"));
+}
+
+TEST_CASE("What a value must be is told by the type of its flag, and how many there may be") {
+  const auto said = [](const std::vector<std::string>& words) {
+    return ExtraProgram().Parse(words);
+  };
+  const std::string help = "; rift run --help lists what it takes";
+  CHECK(said({"--repeats"}) == "--repeats needs its value, a whole number" + help);
+  CHECK(said({"--gain"}) == "--gain needs its value, a number" + help);
+  CHECK(said({"--word"}) == "--word needs its value, WORD" + help);
+  CHECK(said({"--repeats", "x"}) == "--repeats: 'x' must be a whole number");
+  CHECK(said({"--gain", "x"}) == "--gain: 'x' must be a number");
+  CHECK(said({"--some", "a"}) == "--some takes 2 values, FILE.csv|DIR, and 1 is given" + help);
+  CHECK(said({"--some", "a", "b", "--some", "c", "d"}) ==
+        "--some takes 3 values, FILE.csv|DIR, and 4 are given" + help);
+  CHECK(said({"--some", "a", "b"}).empty());
+}
+
+TEST_CASE("Of wrong uses the first that is given is told, and excluded flags are") {
+  CHECK_NOTHROW(Refuse({}));
+  CHECK_NOTHROW(Refuse({{false, "a"}, {false, "b"}}));
+  CHECK_THROWS_WITH(Refuse({{false, "a"}, {true, "b"}, {true, "c"}}), "b");
+  CHECK_THROWS_AS(Refuse({{true, "a"}}), std::invalid_argument);
+  const auto said = [](const std::vector<std::string>& words) {
+    ExtraProgram program;
+    Exclude(*program.app.get_subcommand("run"), "--word", {"--gain", "--repeats"});
+    return program.Parse(words);
+  };
+  CHECK(said({"--gain", "2", "--repeats", "2"}).empty());
+  CHECK(said({"--word", "a"}).empty());
+  for (const char* other : {"--gain", "--repeats"}) {
+    CHECK_THAT(said({"--word", "a", other, "2"}), Contains("--word") && Contains(other));
+  }
+}
+
+TEST_CASE("A page takes backslashes and lines that begin with a dot or a quote as text") {
+  const ExtraProgram program;
+  const std::string page = Manual({"help", "--man", "run"}, program.app);
+  CHECK_THAT(page, Contains("\\fB\\-\\-repeats UINT\\fR\n\\&.5 \\e 'a'\n"));
+  CHECK_THAT(page, Contains("\\fB\\-\\-gain FLOAT\\fR\n\\&'quoted'\n\\&.dot\n"));
+  CHECK_THAT(page, Contains("\\fB\\-\\-some FILE.csv|DIR"));
+  const std::string zsh = Manual({"help", "--zsh"}, program.app);
+  CHECK_THAT(zsh, Contains(":FILE.csv|DIR:_files'"));
+  const std::string bash = Manual({"help", "--bash"}, program.app);
+  CHECK(bash.find("'run --some'") == std::string::npos);
 }
 
 }  // namespace
