@@ -83,10 +83,11 @@ TEST_CASE("What is no fit is told in whole lines with what to do") {
   CHECK(message("{\"surfaces.{floor}.mu\": {min: 0.1, max: 1}}") ==
         "task.yaml:4:19: calibrate.fit: surfaces.{floor}.mu asks for a parameter 'floor' of space, "
         "which has surface, v_min");
-  CHECK(message("{link.uart_bytes: {min: 10, max: 60}}") ==
-        "task.yaml:4:19: calibrate.fit: simulation.link.uart_bytes is a whole number, and only a "
-        "key that may have a fraction can be fitted: leave it out, or compare its values in a sweep "
-        "(goal: grid)");
+  CHECK(
+      message("{link.uart_bytes: {min: 10, max: 60}}") ==
+      "task.yaml:4:19: calibrate.fit: simulation.link.uart_bytes is a whole number, and only a "
+      "key that may have a fraction can be fitted: leave it out, or compare its values in a sweep "
+      "(goal: grid)");
   CHECK(message("{motor.no_load_rad_s: {min: 10, max: 100}}") ==
         "task.yaml:4:19: calibrate.fit: simulation.motor.no_load_rad_s is empty, and only a number "
         "can be fitted; give it a value to start from");
@@ -123,6 +124,21 @@ TEST_CASE("An axis that is wrong is told with its line and column, in whole line
         "control.v_min has the value");
   CHECK_THAT(Message("space:\n  control.v_min: [0.1]\n  control.v_max: [0.3, 7]\n"),
              Catch::StartsWith("task.yaml:3:3: key 'control.v_max' is 7: must be in [0, 1]"));
+}
+
+TEST_CASE("A grid of a program needs lists as any other, and a setting leaves its experiment") {
+  const std::string program =
+      "candidate: {kind: program, run: [sh]}\nreference: {kind: nominal}\n"
+      "control: {v_min: 0.125}\n";
+  CHECK(Message("goal: grid\n" + program + "space:\n  mu: {min: 0.1, max: 0.5}\n") ==
+        "task.yaml:6:3: space.mu is a range, and a grid needs the values to visit: write a list, "
+        "or set goal: falsify");
+  CHECK(Message("goal: falsify\n" + program + "space:\n  mu: {min: 0.1, max: 0.5}\n") ==
+        "accepted");
+  const Experiment experiment = Load("goal: grid\n" + program + "space: {v_min: [0.15, 0.2]}\n");
+  CHECK(ExperimentAt(experiment, {{"0.2", 0.2}}).control.v_min == 0.125);
+  const Experiment own = Load("space: {v_min: [0.15, 0.2]}\n");
+  CHECK(ExperimentAt(own, {{"0.2", 0.2}}).control.v_min == 0.2);
 }
 
 }  // namespace

@@ -265,5 +265,27 @@ TEST_CASE("The period that a run draws tells nothing of its share of late turns"
   CHECK(std::abs(both / std::sqrt(first * second)) < 0.25);
 }
 
+TEST_CASE("A camera without a rate has new noise at each look, and the stamp of that moment") {
+  MocapOptions options = Quiet();
+  options.rate_hz = 0.0;
+  options.stamp_jitter_s = 0.01;
+  options.noise_along_m = 0.002;
+  Mocap mocap(options, 3);
+  double squares = 0.0, last_m = 0.0;
+  int same = 0;
+  for (int i = 1; i <= 400; ++i) {
+    mocap.Observe({.t_s = 0.1 * (i - 1)}, {.t_s = 0.1 * i});
+    const auto seen = mocap.Newest(0.1 * i);
+    REQUIRE(seen);
+    CHECK(seen->captured_s == 0.1 * i);
+    const double along_m = seen->world_from_robot.x_m;
+    squares += along_m * along_m / 400.0;
+    same += along_m == last_m;
+    last_m = along_m;
+  }
+  CHECK(same == 0);
+  CHECK(std::sqrt(squares) == Approx(0.002).epsilon(0.15));
+}
+
 }  // namespace
 }  // namespace rift::simulation

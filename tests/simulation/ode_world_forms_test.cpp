@@ -153,8 +153,8 @@ TEST_CASE("A robot that tips does so by the inertia of its cylinder about a line
 TEST_CASE("Held on a slope a robot creeps by a millionth of a metre a second for each newton") {
   const BodyOptions body;
   const double angle_rad = 0.3;
-  const double pull_n = (body.chassis_mass_kg + 2.0 * body.wheel_mass_kg) * kGravity *
-                        std::sin(angle_rad);
+  const double pull_n =
+      (body.chassis_mass_kg + 2.0 * body.wheel_mass_kg) * kGravity * std::sin(angle_rad);
   const Shape shape = GENERATE(Shape::kRampDown, Shape::kRampUp);
   const double yaw_rad = GENERATE(0.0, M_PI / 2.0);  // along and across
   const double down = shape == Shape::kRampDown ? 1.0 : -1.0;
@@ -238,9 +238,9 @@ TEST_CASE("A wheel drive of which any number is none stops the world, and on eit
   const double none = std::numeric_limits<double>::quiet_NaN();
   const double endless = std::numeric_limits<double>::infinity();
   const WheelDrive good{1.0, 0.5, endless, 0.001};
-  const std::vector<WheelDrive> wrong{{none, 0.5, 1.0, 0.0},    {endless, 0.5, 1.0, 0.0},
-                                      {1.0, none, 1.0, 0.0},    {1.0, endless, 1.0, 0.0},
-                                      {1.0, 0.5, none, 0.0},    {1.0, 0.5, 1.0, none},
+  const std::vector<WheelDrive> wrong{{none, 0.5, 1.0, 0.0},   {endless, 0.5, 1.0, 0.0},
+                                      {1.0, none, 1.0, 0.0},   {1.0, endless, 1.0, 0.0},
+                                      {1.0, 0.5, none, 0.0},   {1.0, 0.5, 1.0, none},
                                       {1.0, 0.5, 1.0, endless}};
   for (std::size_t i = 0; i < wrong.size(); ++i) {
     for (const bool is_left : {true, false}) {
@@ -263,8 +263,8 @@ TEST_CASE("A wheel drive of which any number is none stops the world, and on eit
 Terrain Picture(int direction, double angle_rad, double mu) {
   TerrainOptions options = HeightfieldOptions(2.0, 2.0 * std::tan(angle_rad));
   options.surfaces["ground"].mu = mu;
-  const std::vector<std::vector<double>> samples{{0, 1, 0, 1}, {1, 0, 1, 0}, {1, 1, 0, 0},
-                                                 {0, 0, 1, 1}};
+  const std::vector<std::vector<double>> samples{
+      {0, 1, 0, 1}, {1, 0, 1, 0}, {1, 1, 0, 0}, {0, 0, 1, 1}};
   return Terrain(options, std::make_shared<HeightImage>(
                               HeightImage{2, 2, samples[static_cast<std::size_t>(direction)]}));
 }
@@ -313,6 +313,60 @@ TEST_CASE("Locked wheels brake by mu on flat pictures and blocks without height 
       INFO(mu << " " << moved.transpose());
       CHECK(moved.norm() == Approx(0.09 / (2.0 * mu * kGravity)).epsilon(0.05));
       CHECK(std::atan2(moved.y(), moved.x()) == Approx(0.4).margin(0.02));
+    }
+  }
+}
+
+TEST_CASE("At equal rates a larger wheel turns the robot to the other side") {
+  BodyOptions body;
+  for (const double ratio : {1.04, 0.97}) {
+    body.right_over_left = ratio;
+    OdeWorld world(body, Terrain(Ground({.mu = 2.0})), {}, 0.002);
+    for (int i = 1; i <= 100; ++i) world.Step({Servo(0.1 * i), Servo(0.1 * i)});
+    Run(world, 400, {Servo(10.0), Servo(10.0)});
+    const double left_m = 2.0 * 0.016 / (1.0 + ratio), right_m = ratio * left_m;
+    const double rate_rad_s = 10.0 * (right_m - left_m) / body.track_m;
+    CHECK(world.State().spin_rad_s.z() == Approx(rate_rad_s).epsilon(0.02));
+    CHECK(Yaw(world.State()) == Approx(0.9 * rate_rad_s).epsilon(0.02));
+    CHECK(world.State().velocity_mps.norm() == Approx(0.16).epsilon(0.005));
+  }
+}
+
+TEST_CASE("Across a steep ramp a high robot tips downhill, whichever side it turns there") {
+  BodyOptions body;
+  body.com_above_m = 0.15;
+  for (const Shape shape : {Shape::kRampDown, Shape::kRampUp}) {
+    const double down = shape == Shape::kRampDown ? 1.0 : -1.0;
+    for (const double yaw_rad : {M_PI / 2.0, -M_PI / 2.0}) {
+      OdeWorld world(body, Terrain(Ground(Ramp(shape, 0.5, 2.0))), {down * 1.5, 0.0, yaw_rad},
+                     0.002);
+      Run(world, 1500, {Servo(0.0), Servo(0.0)});
+      REQUIRE(world.Fall());
+      CHECK(world.Fall()->starts_with("tipped over at ("));
+      CHECK(down * world.State().world_from_robot(0, 2) > 0.8);
+      CHECK(std::abs(world.State().world_from_robot(1, 2)) < 0.3);
+    }
+  }
+}
+
+TEST_CASE(
+    "A robot put down with a wheel beyond the edge of a table is somewhere, without a fault") {
+  TerrainOptions options;
+  options.table_half_size_m = 0.3;
+  const Terrain terrain(options);
+  for (const double off_m : {0.27, 0.299}) {
+    for (const double side : {1.0, -1.0}) {
+      for (const bool is_along_x : {true, false}) {
+        INFO(off_m << " " << side << " " << is_along_x);
+        const geometry::Pose2 start = is_along_x ? geometry::Pose2{0.0, side * off_m, 0.0}
+                                                 : geometry::Pose2{side * off_m, 0.0, M_PI / 2.0};
+        OdeWorld world(BodyOptions{}, terrain, start, 0.004);
+        CHECK_FALSE(world.Fault());
+        CHECK(world.State().position_m.allFinite());
+        CHECK((world.State().position_m.head<2>() - start.Position()).norm() < 0.1);
+        Run(world, 50, {Servo(0.0), Servo(0.0)});
+        CHECK_FALSE(world.Fault());
+      }
     }
   }
 }

@@ -19,9 +19,8 @@ std::string Written(const std::string& text) {
 }
 
 TEST_CASE("Words that some reader takes for a truth value or for nothing are quoted in any case") {
-  for (const std::string word :
-       {"true", "false", "yes", "no", "on", "off", "null", "True", "FALSE", "Yes", "NO", "oN",
-        "OFF", "Null", "NULL"}) {
+  for (const std::string word : {"true", "false", "yes", "no", "on", "off", "null", "True", "FALSE",
+                                 "Yes", "NO", "oN", "OFF", "Null", "NULL"}) {
     CHECK(Written(word) == '"' + word + '"');
   }
   for (const std::string word : {"trues", "o", "nul", "y", "n", "offs", "none", "tru"}) {
@@ -44,9 +43,9 @@ TEST_CASE("A text is plain by its first, its inner and its last character") {
        {"a_b-c.d/e+f=g(h)i@j%k*l m", "_a", "/a", "./a", "../a", "\xC3\xA9t\xC3\xA9", "Z", "a-"}) {
     CHECK(Written(plain) == plain);
   }
-  for (const std::string quoted : {"-a", ".a", "..", "+a", "=a", "(a)", "@a", "%a", "*a", "a,b",
-                                   "a;b", "a:b", "a#b", "a[b", "a]b", "a{b", "a}b", "a!b", "a&b",
-                                   "a|b", "a>b", "a'b", "a?b", "a`b", "a~b", "a ", "~"}) {
+  for (const std::string quoted : {"-a",  ".a",  "..",  "+a",  "=a",  "(a)", "@a",  "%a",  "*a",
+                                   "a,b", "a;b", "a:b", "a#b", "a[b", "a]b", "a{b", "a}b", "a!b",
+                                   "a&b", "a|b", "a>b", "a'b", "a?b", "a`b", "a~b", "a ",  "~"}) {
     CHECK(Written(quoted) == '"' + quoted + '"');
   }
 }
@@ -164,8 +163,7 @@ TEST_CASE("Every part of an override is placed at it") {
 TEST_CASE("What is written over replaces values and lists, and joins maps") {
   Node base = Parse("a: {x: 1, y: {p: 1}}\nb: [1, 2]\nc: 3\nd: {q: 1}\n", "base");
   Merge(base, Parse("a: {y: {r: 2}, x: 5}\nb: [9]\nc: {s: 1}\nd: 4\ne: 6\n", "over"));
-  CHECK(Emit(base) ==
-        "a:\n  x: 5\n  y:\n    p: 1\n    r: 2\nb: [9]\nc:\n  s: 1\nd: 4\ne: 6\n");
+  CHECK(Emit(base) == "a:\n  x: 5\n  y:\n    p: 1\n    r: 2\nb: [9]\nc:\n  s: 1\nd: 4\ne: 6\n");
   CHECK(base.Find("a")->value.Find("x")->origin.source == "over");
   CHECK(base.Find("a")->origin.source == "base");
   CHECK(base.Find("d")->origin.source == "over");
