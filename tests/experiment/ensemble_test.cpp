@@ -43,6 +43,7 @@ TEST_CASE("A run takes the values of one draw together, the same for the same se
     const simulation::SimulationOptions drawn = DrawnAt(experiment, seed).simulation;
     CHECK(drawn.motor.mismatch == Approx(0.5 * drawn.link.delay_s - 0.03 + 0.0).margin(1e-12));
     CHECK(drawn.link.delay_s == DrawnAt(experiment, seed).simulation.link.delay_s);
+    CHECK(DrawnAt(experiment, seed).ensemble.IsEmpty());
     ++taken[drawn.link.delay_s];
   }
   REQUIRE(taken.size() == 3);

@@ -169,5 +169,10 @@ TEST_CASE("What is written over replaces values and lists, and joins maps") {
   CHECK(base.Find("d")->origin.source == "over");
 }
 
+TEST_CASE("Keys with dots are opened in the maps within a map too") {
+  CHECK(Emit(ExpandDottedKeys(Parse("x: {\"a.b\": 1, y: {\"c.d\": 2}}\n", "f"))) ==
+        "x:\n  a:\n    b: 1\n  y:\n    c:\n      d: 2\n");
+}
+
 }  // namespace
 }  // namespace rift::yaml::test
