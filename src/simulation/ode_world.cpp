@@ -238,10 +238,11 @@ Plane OdeWorld::Bodies::PlaneUnder(const geometry::Pose2& robot) const {
 
 /// Yaw is that of the forward axis seen from above, whatever the slope.
 void OdeWorld::Bodies::PlaceOn(const Plane& plane, double yaw_rad) {
-  const Vector3d level(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
+  Vector3d ahead(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
+  ahead.z() = -plane.normal.dot(ahead) / plane.normal.z();
   Matrix3d world_from_plane;
   world_from_plane.col(2) = plane.normal;
-  world_from_plane.col(1) = plane.normal.cross(level).normalized();
+  world_from_plane.col(1) = plane.normal.cross(ahead).normalized();
   world_from_plane.col(0) = world_from_plane.col(1).cross(plane.normal);
   const Stance stance =
       StanceOn(body, world_from_plane.transpose() * Vector3d(0.0, 0.0, -body.gravity_mps2));

@@ -178,9 +178,7 @@ TEST_CASE("A robot on a ramp starts over the place and in the heading that are a
       INFO(down << " " << yaw_rad);
       CHECK(state.position_m.x() == Approx(down * 1.1));
       CHECK(state.position_m.y() == Approx(-0.3));
-      // Along and across the slope to the last digits.
-      const bool is_straight = std::abs(std::sin(2.0 * yaw_rad)) < 1e-9;
-      CHECK(std::abs(Yaw(state) - yaw_rad) < (is_straight ? 2e-3 : 0.07));
+      CHECK(std::abs(Yaw(state) - yaw_rad) < 2e-3);
       // Its own upward axis is the plane's normal, but for what caster and wheels sink in.
       const Vector3d normal(down * std::sin(0.35), 0.0, std::cos(0.35));
       CHECK(state.world_from_robot.col(2).dot(normal) > 0.99999);
