@@ -219,6 +219,21 @@ TEST_CASE("A picture of before the last one stops the drive, and the same one on
                "a picture was taken 0.001 s before the one that came before it", 10.0);
 }
 
+TEST_CASE("Whether the robot stopped by itself is told by its count alone") {
+  DriveGuard guard = Armed();
+  guard.HearRobot(7, 4.0, 10.0);
+  guard.HearRobot(8, 4.0, 10.03125);
+  CheckStopped(guard, StopReason::kRobotStopped,
+               "the robot stopped by itself: it heard no command for too long, or was restarted",
+               10.03125);
+  OnBothSides("left", "right", [](const Side& side) {
+    DriveGuard disarmed(Options());
+    disarmed.Command(side.Of<WheelPower>(0.0, -0.25), 10.5);
+    CheckStopped(disarmed, StopReason::kNotArmed,
+                 "a power was commanded before the drive was armed", 10.5);
+  });
+}
+
 TEST_CASE("A battery at its limit drives and a lower one does not") {
   DriveGuard guard = Armed();
   guard.HearRobot(7, 3.5, 10.0);
