@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "hardware/backlog_check.hpp"
 #include "motion.hpp"
 #include "support/mirror.hpp"
 
@@ -143,6 +144,140 @@ TEST_CASE("Where only commands tell of the wheels, held pictures are found by th
   CHECK(held.age_s < 0.9);
   CHECK(StopHeld({.slip = 0.3, .is_measured = false}).reason == kNone);
   CHECK(StopHeld({.dropped = 0.33, .slip = 0.2, .is_measured = false}).reason == kNone);
+}
+
+/// Motions of one kind, each of `elapsed_s`, of which the pose shows `short_m` less than rolled.
+struct Kind {
+  double rolled_m = 0.05;
+  double short_m = 0.03;
+  double elapsed_s = 0.1;
+  bool is_measured = true;
+  bool is_latency_known = true;
+};
+
+BacklogCheck::Motion MotionOf(const Kind& kind, bool is_turn, double sign) {
+  BacklogCheck::Motion motion{.elapsed_s = kind.elapsed_s};
+  const auto part = is_turn ? &Step::turn_m : &Step::forward_m;
+  motion.rolled.*part = sign * kind.rolled_m;
+  motion.seen.*part = sign * (kind.rolled_m - kind.short_m);
+  return motion;
+}
+
+/// Camera pictures each `period_s`, if any: the period that is known then.
+BacklogCheck After(const std::optional<double>& period_s, int pictures = 20) {
+  BacklogCheck check(EvidenceOptions{});
+  for (int i = 0; period_s && i < pictures; ++i) check.SeePicture(*period_s * i);
+  check.LearnPeriod();
+  return check;
+}
+
+struct FoundAt {
+  int motions = 0;  ///< 0: never
+  std::string text;
+};
+
+FoundAt FoundWith(BacklogCheck check, const Kind& kind, bool is_turn, double sign) {
+  for (int i = 1; i <= 40; ++i) {
+    const auto found =
+        check.Check(MotionOf(kind, is_turn, sign), kind.is_measured, kind.is_latency_known);
+    if (found) return {i, *found};
+  }
+  return {};
+}
+
+TEST_CASE("Held pictures are found when way and missing pictures are both beyond the latency") {
+  // 0.5 m/s: the pose may be 6 mm and 0.25 s x 0.5 m/s behind, 0.131 m; nearly half of the pictures
+  // miss.
+  for (const bool is_turn : {false, true}) {
+    for (const double sign : {1.0, -1.0}) {
+      INFO(is_turn << " " << sign);
+      const auto motions = [&](const Kind& kind) {
+        return FoundWith(After(0.052), kind, is_turn, sign).motions;
+      };
+      CHECK(motions({}) == 6);                           // 0.18 m, and 0.288 s of pictures
+      CHECK(motions({.short_m = 0.02}) == 7);            // 0.14 m
+      CHECK(motions({.short_m = 0.0345}) == 6);          // 0.69 of the way
+      CHECK(motions({.short_m = 0.0355}) == 0);          // 0.71: the pose stands
+      CHECK(motions({.is_latency_known = false}) == 9);  // 0.006 m + 0.5 s x 0.5 m/s = 0.256 m
+      CHECK(motions({.is_measured = false}) == 7);       // less 0.2 of the way: 0.14 m
+      // At 1 m/s, 0.256 m, and no picture misses: the slip's share alone.
+      CHECK(motions({.elapsed_s = 0.05}) == (is_turn ? 0 : 13));
+    }
+  }
+  CHECK(FoundWith(After(0.052), {}, false, -1.0).text ==
+        "the pose fell 0.180 m behind the wheels within 0.6 s, in which 0.29 s of pictures did not "
+        "come, and the limit is 0.25 s: something between camera and rift holds pictures back");
+}
+
+TEST_CASE("Without missing pictures only the forward way beyond the slip's share is too much") {
+  for (const double sign : {1.0, -1.0}) {
+    const auto found = [&](const Kind& kind, bool is_turn = false) {
+      return FoundWith(After({}), kind, is_turn, sign);
+    };
+    // 0.03 m less 0.2 x 0.05 m each.
+    CHECK(found({}).motions == 7);
+    CHECK(found({}).text ==
+          "the pose fell 0.210 m behind the wheels within 0.7 s, in which they rolled 0.350 m: "
+          "pictures that come later and later, or wheels that slip");
+    CHECK(found({.short_m = 0.0334}).motions == 6);
+    CHECK(found({.short_m = 0.01}).motions == 0);
+    CHECK(found({.is_latency_known = false}).motions == 13);
+    CHECK(found({.is_measured = false}).motions == 0);
+    CHECK(found({}, true).motions == 0);
+  }
+}
+
+TEST_CASE("Motions count for four seconds, and those to the other side not at all") {
+  // Half a second each, of which eight are kept: 0.128 m and 0.132 m.
+  CHECK(FoundWith(After(0.052), {.rolled_m = 0.25, .short_m = 0.016, .elapsed_s = 0.5}, false, 1.0)
+            .motions == 0);
+  CHECK(FoundWith(After(0.052), {.rolled_m = 0.25, .short_m = 0.0165, .elapsed_s = 0.5}, false, 1.0)
+            .motions == 8);
+  BacklogCheck check = After(0.052);
+  for (int i = 0; i < 5; ++i) CHECK_FALSE(check.Check(MotionOf({}, false, 1.0), true, true));
+  for (int i = 0; i < 5; ++i) CHECK_FALSE(check.Check(MotionOf({}, false, -1.0), true, true));
+  CHECK(check.Check(MotionOf({}, false, -1.0), true, true));
+  check.Restart();
+  CHECK(check.KnowsPeriod());
+  for (int i = 0; i < 5; ++i) CHECK_FALSE(check.Check(MotionOf({}, false, -1.0), true, true));
+  CHECK(check.Check(MotionOf({}, false, -1.0), true, true));
+}
+
+TEST_CASE("A rest adds to the time that passed and not to that in which the wheels rolled") {
+  BacklogCheck check = After(0.052);
+  for (int i = 0; i < 4; ++i) CHECK_FALSE(check.Check(MotionOf({}, false, 1.0), true, true));
+  // 0.12 m: 0.131 m are allowed at the speed of the four.
+  for (int i = 0; i < 4; ++i) {
+    const Kind rest{.rolled_m = 0.0004, .short_m = 0.0004};
+    CHECK_FALSE(check.Check(MotionOf(rest, false, 1.0), true, true));
+  }
+  const auto found = check.Check(MotionOf({}, false, 1.0), true, true);
+  REQUIRE(found);
+  CHECK(*found ==
+        "the pose fell 0.152 m behind the wheels within 0.9 s, in which 0.43 s of pictures did not "
+        "come, and the limit is 0.25 s: something between camera and rift holds pictures back");
+}
+
+TEST_CASE("A camera's period is the mean of ten spacings or more of the last four seconds") {
+  CHECK_FALSE(After(0.05, 10).KnowsPeriod());
+  CHECK(After(0.05, 11).KnowsPeriod());
+  CHECK_FALSE(After(0.41, 40).KnowsPeriod());
+  CHECK(After(0.39, 40).KnowsPeriod());
+  // 20 pictures each 0.04 s, but for one spacing: the mean with it is 0.044 s, else 0.04 s.
+  const auto missing_s = [](double longest_s) {
+    BacklogCheck check(EvidenceOptions{});
+    double t_s = 0.0;
+    for (int i = 0; i < 20; ++i) check.SeePicture(t_s += i == 7 ? longest_s : 0.04);
+    check.LearnPeriod();
+    const std::string text = FoundWith(check, {}, false, 1.0).text;
+    const std::string before = "in which ";
+    const size_t at = text.find(before);
+    REQUIRE(at != std::string::npos);
+    return std::stod(text.substr(at + before.size()));
+  };
+  // Of five motions, 0.5 s.
+  CHECK(missing_s(0.125) == Approx(0.30));
+  CHECK(missing_s(0.118) == Approx(0.28));
 }
 
 }  // namespace

@@ -266,6 +266,14 @@ TEST_CASE("A drive with hardly a turn, or whose turns are not the wheels', tells
     const std::vector<Angle> turns = swing(share * least_rad, 0.0, 0.01);
     CHECK(LagOverDrive(swing(share * least_rad, 0.1, 0.033), turns).has_value() == (share > 1.0));
   }
+  // Both must turn so far: of the same turn the camera may show less than the wheels, or more.
+  const auto of = [&](double seen, double turned) {
+    return LagOverDrive(swing(seen * least_rad, 0.1, 0.033), swing(turned * least_rad, 0.0, 0.01));
+  };
+  CHECK_FALSE(of(0.95, 1.3));
+  CHECK_FALSE(of(1.3, 0.95));
+  CHECK(of(1.1, 1.5));
+  CHECK(of(1.5, 1.1));
   // The camera sees the turn, and another one on top of it.
   const std::vector<Angle> wheels = swing(0.6, 0.0, 0.01);
   // What is left of a fit is up to a quarter of all that it sees turn: 0.24 and 0.27 of it here.

@@ -298,6 +298,47 @@ TEST_CASE("A pose that turns to and fro behind the wheels is stopped beyond the 
   }
 }
 
+TEST_CASE("What wheels and pose contradict each other in is told with its numbers") {
+  // 0.32 m/s of the left wheel alone from 1 s on: 0.012 m + 0.1 s x 0.32 m/s.
+  Motion rolls{.times_s = Every(kFine_s)};
+  rolls.wheels_m = [](double t_s) { return std::pair(Rolled_m(t_s, 0.32), 0.0); };
+  CHECK(StopOf(rolls).text ==
+        "the wheels turned by 0.045 m and the pose stands: an old picture, wheels that slip, or a "
+        "robot that is held");
+
+  Motion pushed{.times_s = Every(kFine_s)};
+  pushed.pose = [](double t_s) {
+    return t_s < 1.0 ? Pose2{} : Pose2{0.03, -0.04, geometry::RadFromDeg(-12.0)};
+  };
+  CHECK(StopOf(pushed).text ==
+        "the pose moved by 0.050 m and 12 deg and the wheels stand: another tag, or a robot that "
+        "is pushed or carried");
+
+  // 5 mm at 0.04 m/s take longer than the 0.1 s.
+  Motion repeats{.times_s = Every(0.02)};
+  repeats.wheels_m = [](double t_s) { return std::pair(0.0, -Rolled_m(t_s, 0.04)); };
+  repeats.repeats_since_s = [](double t_s) {
+    return t_s < 0.99 ? std::optional<double>() : std::optional(1.0);
+  };
+  CHECK(StopOf(repeats).text ==
+        "the camera has shown the same picture for 0.140 s, in which the wheels rolled 0.006 m");
+}
+
+TEST_CASE("A drive on one picture is forgotten when what was seen is") {
+  MotionCheck check({}, kTrack_m);
+  check.SeeCommand(true, 1.0);
+  check.SeePose({2.0, {}, 0.0, 0.0, 0.0}, 1.0);
+  check.Restart();
+  CHECK_FALSE(check.Check());
+  check.SeePose({2.1, {}, 0.0, 0.0, 0.0}, 1.0);
+  const auto found = check.Check();
+  REQUIRE(found);
+  CHECK(
+      found->text ==
+      "the camera has shown the same picture for 1.100 s, in which the robot was told to drive: a "
+      "frozen camera, or a robot that does not move");
+}
+
 TEST_CASE("A lag that was found once before a restart counts for nothing after it") {
   // To and fro in place, by turns of 0.12 s with a rest behind each, seen 0.06 s late where 0.04 s
   // are budgeted; looked for every 0.2 s.

@@ -60,6 +60,9 @@ TEST_CASE(
   CHECK(WithSteps(0.125, times_s, {30}, 0.0234).text ==
         "the pose ran 0.023 m against the wheels from one picture to the next: the camera's "
         "pictures come out of order");
+  CHECK(WithSteps(-0.125, times_s, {30, 38, 47}, 0.0049).text ==
+        "the pose ran against the wheels again and again within 0.7 s: the camera's pictures come "
+        "out of order");
 }
 
 TEST_CASE("Of pictures that come together one may be 5 mm back while the robot drives") {
