@@ -95,6 +95,49 @@ TEST_CASE("A link without an answer breaks the budget and a plain robot is not m
   CHECK(Ping(deaf, deaf, {}, Protocol::kPlain, {}).sent == 0);
 }
 
+TEST_CASE("The last commands of a ping may be answered within half a second, and no later") {
+  // Command and answer take 0.027 s on the line, and the radio twice its delay.
+  for (const auto& [delay_s, is_in_time] : {std::pair{0.225, true}, {0.29, false}}) {
+    Bench bench;
+    bench.line_delay_s = delay_s;
+    const PingResult result = Ping(bench, bench, {}, Protocol::kFramed, {.duration_s = 1.0});
+    INFO(delay_s << ": " << result.answered << " of " << result.sent);
+    CHECK((result.answered == result.sent) == is_in_time);
+    CHECK(result.answered + 6 >= result.sent);
+    CHECK(result.max_s == Approx(2 * delay_s + (11 + 15) * 10.0 / 9600.0).margin(0.02));
+    if (!is_in_time) CHECK(result.longest_burst == result.sent - result.answered);
+  }
+}
+
+TEST_CASE("What breaks the budget of a link is told in whole, the worst of each") {
+  const PingResult result{.protocol = Protocol::kFramed,
+                          .sent = 400,
+                          .answered = 350,
+                          .loss = 0.125,
+                          .longest_burst = 7,
+                          .p50_s = 0.03,
+                          .p95_s = 0.11,
+                          .p99_s = 0.2346,
+                          .max_s = 0.4};
+  const std::vector<std::string> broken =
+      BrokenBudget(result, {.max_p99_s = 0.1234, .max_loss = 0.0376, .max_burst = 2});
+  REQUIRE(broken.size() == 3);
+  CHECK(broken[0] ==
+        "99 % of the round trips take up to 0.235 s, and the budget is 0.123 s: bring the robot "
+        "nearer, ask for a shorter BLE connection interval, or raise the baud rate");
+  CHECK(broken[1] ==
+        "12.5 % of the commands are lost, and the budget is 3.8 %: lower hardware.line.line_share, "
+        "or keep other radios away");
+  CHECK(broken[2] ==
+        "7 commands in a row were lost, and the budget is 2: the robot would stop by itself; look "
+        "for what interrupts the radio");
+  const PingResult silent{.protocol = Protocol::kFramed, .sent = 61};
+  REQUIRE(BrokenBudget(silent, {}).size() == 1);
+  CHECK(BrokenBudget(silent, {})[0] ==
+        "none of 61 commands was answered: is the robot on, paired, and running rift's listener at "
+        "this baud rate?");
+}
+
 TEST_CASE("The hello finds frames on a listener of ours and plain where nothing is said") {
   Bench ours;
   CHECK(FindProtocol(ours, ours, {}) == Protocol::kFramed);

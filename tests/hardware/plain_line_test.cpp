@@ -1,4 +1,6 @@
 // Robots that do not answer, with commands in a format of their own.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -95,6 +97,68 @@ TEST_CASE("A format that cannot command both wheels is refused with the rule it 
   CHECK_THAT(refusal("{left:.2f} {right:.2f}\n", {1.0}), Catch::Contains("two different numbers"));
   CHECK_THAT(refusal("{left:.2f} {right:.2f}\n", {1.0, 1.0}),
              Catch::Contains("two different numbers"));
+}
+
+/// Why a format is refused.
+std::string RuleOf(const std::string& format, std::vector<double> range) {
+  const PlainOptions plain{.format = format, .range = std::move(range)};
+  try {
+    plain.Check();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST_CASE("Powers that a format writes alike are told with the wheel and both of them") {
+  const std::string apart =
+      ": powers 0.05 apart must be told apart: write more decimals, or a wider range";
+  // One digit: 0.5, 1, and 1.5 is not to become 2.
+  CHECK(RuleOf("{left:.1g} {right:.3f}\n", {-10.0, 10.0}) ==
+        "format is \"{left:.1g} {right:.3f}\\n\", but it writes 1 for the left wheel at power 0.1 "
+        "and at 0.15" +
+            apart);
+  CHECK(RuleOf("{left:.3f} {right:.1g}\r\n", {10.0, -10.0}) ==
+        "format is \"{left:.3f} {right:.1g}\\r\\n\", but it writes -1 for the right wheel at "
+        "power 0.1 and at 0.15" +
+            apart);
+  // Two digits from 1000 down to 0, but none between 1000 and 1050.
+  CHECK(RuleOf("{left:.2g} {right:.2g}\n", {2000.0, 0.0}) ==
+        "format is \"{left:.2g} {right:.2g}\\n\", but it writes 1000 for the left wheel at power 0 "
+        "and at -0.05" +
+            apart);
+  CHECK(RuleOf("{left:d} {right:.2f}\n", {-19.0, 19.0}) ==
+        "format is \"{left:d} {right:.2f}\\n\", but it writes 0 for the left wheel at power 0 and "
+        "at 0.05" +
+            apart);
+}
+
+TEST_CASE("A zero that a format cannot write is told with the wheel and the middle of the range") {
+  const std::string rule =
+      " wheel at zero power, and the middle of the range is 127.5: write more decimals, or choose "
+      "a range whose middle it can write";
+  CHECK(RuleOf("{left:.0f} {right:.1f}\n", {0.0, 255.0}) ==
+        "format is \"{left:.0f} {right:.1f}\\n\", but it writes 128 for the left" + rule);
+  CHECK(RuleOf("{left:.1f} {right:.0f}\n", {0.0, 255.0}) ==
+        "format is \"{left:.1f} {right:.0f}\\n\", but it writes 128 for the right" + rule);
+}
+
+TEST_CASE("A line that does not say which wheel is meant is refused, and so is one of no number") {
+  // Both wheels stand at 1: 11 and 1 for the left wheel, 1 and 11 for the right one.
+  CHECK(RuleOf("{left:.0f}{right:.0f}\n", {-9.0, 11.0}) ==
+        "format is \"{left:.0f}{right:.0f}\\n\", but left and right cannot be told apart");
+  CHECK(RuleOf("{left:.0f},{right:.0f}\n", {-39.0, 41.0}) == "taken");
+  for (const char* type : {"x", "X", "o", "b", "B", "a", "A", "c", "s", "p"}) {
+    const std::string format = fmt::format("{{left:{}}} {{right:.2f}}\n", type);
+    INFO(format);
+    CHECK(RuleOf(format, {-100.0, 100.0}) ==
+          fmt::format("format is \"{{left:{}}} {{right:.2f}}\\n\", but a power must be a decimal "
+                      "number: write {{left:.2f}} or {{left:d}}",
+                      type));
+  }
+  CHECK(RuleOf("{left:.2f} {right:.2f}\n", {1.0, 2.0, 3.0}) ==
+        "range must be two different numbers, full power backward and forward, such as [-255, "
+        "255]");
 }
 
 /// A robot of another make, on the bench: its lines are taken for what they mean.

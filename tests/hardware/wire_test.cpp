@@ -1,5 +1,7 @@
 #include "rift/hardware/wire.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -88,6 +90,29 @@ TEST_CASE("Every command comes out of its frame as it went in") {
       REQUIRE(decoded->sequence == frame.sequence);
     }
   }
+}
+
+TEST_CASE("Frames and answers are these bytes: numbers from their low byte on, then the CRC") {
+  const auto hex = [](const auto& bytes) {
+    std::string text;
+    for (const std::uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
+    return text;
+  };
+  // Worked out by struct.pack of Python.
+  CHECK(hex(Encode(CommandFrame{7, {300, -200}})) == "a5072c0138ffd3fec7008f");
+  CHECK(hex(Encode(Answer{9, 3, -2, 66051, 5021, 255})) == "5a0903feffffff030201009d13ff7a");
+  CHECK(AnswerLine(Answer{{}, 4, -2, 66051, 5021, 6}) == "rift1 -2 66051 5021*60\n");
+}
+
+TEST_CASE("Powers are rounded to the nearest thousandth, and one beyond full is told by its side") {
+  CHECK(MilliOf({0.1234, -0.5678}) == MilliPower{123, -568});
+  CHECK(MilliOf({-0.0006, 0.0004}) == MilliPower{-1, 0});
+  CHECK_THROWS_WITH(MilliOf({1.25, -0.5}), "the left power is 1.25, but it must lie in [-1, 1]");
+  CHECK_THROWS_WITH(MilliOf({0.5, -1.5}), "the right power is -1.5, but it must lie in [-1, 1]");
+  CHECK_THROWS_WITH(PlainLine({-1.125, 0.0}),
+                    "the left power is -1.125, but it must lie in [-1, 1]");
+  CHECK_THROWS_WITH(PlainLine({0.25, 1.0625}),
+                    "the right power is 1.0625, but it must lie in [-1, 1]");
 }
 
 TEST_CASE("CRC-8 gives the check value of its catalogue entry") {
