@@ -50,5 +50,29 @@ TEST_CASE("A robot that is carried to its start, or stands on the floor, is not 
   CHECK_FALSE(standing.Take());
 }
 
+TEST_CASE("A tag rests while the middle of its four corners moves by a pixel at most") {
+  const vision::CameraModel camera = CameraAbove();
+  const vision::TagOptions tag;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    for (const bool is_x : {true, false}) {
+      for (const double sign : {1.0, -1.0}) {
+        const auto is_said = [&](double by_px) {
+          StandingCheck check(camera, tag);
+          for (int i = 0; i < 10; ++i) {
+            vision::Sighting sighting = SeenAt(300.0, false);
+            if (i >= 5)
+              (is_x ? sighting.corners[corner].x() : sighting.corners[corner].y()) += sign * by_px;
+            check.Add(sighting);
+          }
+          return check.Take().has_value();
+        };
+        INFO(corner << " " << is_x << " " << sign);
+        CHECK(is_said(3.9));
+        CHECK_FALSE(is_said(4.1));
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rift::sessions

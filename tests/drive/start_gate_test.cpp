@@ -1,6 +1,7 @@
 #include "sessions/drive/start_gate.hpp"
 
 #include <catch2/catch.hpp>
+#include <string>
 #include <vector>
 
 namespace rift::sessions {
@@ -167,6 +168,74 @@ TEST_CASE("With any start a robot that is far off is warned of once") {
   CHECK(gate.MayStart(0.6, kFar));
   REQUIRE(person.told.size() == 2);
   CHECK_THAT(person.told[0], Catch::StartsWith("warning: the robot stands 0.120 m"));
+}
+
+TEST_CASE("A countdown shows each of its seconds and ends exactly when they are over") {
+  constexpr double kMoment_s = 1.0 / 1024.0;
+  Person person{.has_agreed = true};
+  StartGate gate({.countdown_s = 2.5}, kStart, false, person.AtTerminal());
+  for (const double t_s : {100.0, 100.25, 100.5, 101.0, 101.5, 102.0, 102.5 - kMoment_s}) {
+    CHECK_FALSE(gate.MayStart(t_s, kNear));
+  }
+  CHECK(person.told == std::vector<std::string>{"starts in 2.5 s; any key or Ctrl-C cancels"});
+  CHECK(person.shown == std::vector<std::string>{"3 ...", "2 ...", "1 ..."});
+  CHECK(gate.MayStart(102.5, kNear));
+  CHECK(person.shown.back() == "the robot drives: any key or Ctrl-C stops it");
+}
+
+TEST_CASE("A robot may stand as far off and turned as is allowed, to each side, and no farther") {
+  const hardware::StartOptions options{.within_m = 0.25, .within_deg = 12.0, .countdown_s = 0.0};
+  const geometry::Pose2 start{0.5, -1.5, 0.25};
+  const auto may_start = [&](double x_m, double y_m, double turn_deg) {
+    Person person{.has_agreed = true};
+    StartGate gate(options, start, false, person.AtTerminal());
+    const geometry::Pose2 seen{start.x_m + x_m, start.y_m + y_m,
+                               start.yaw_rad + geometry::RadFromDeg(turn_deg)};
+    const bool may = gate.MayStart(0.0, seen);
+    CHECK(person.has_agreed == may);
+    return may;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    CHECK(may_start(sign * 0.25, 0.0, 0.0));
+    CHECK_FALSE(may_start(sign * 0.2501, 0.0, 0.0));
+    CHECK(may_start(0.0, sign * 0.25, 0.0));
+    CHECK_FALSE(may_start(0.0, sign * 0.2501, 0.0));
+    CHECK(may_start(0.15 * sign, -0.1999 * sign, 0.0));
+    CHECK_FALSE(may_start(0.15 * sign, -0.2001 * sign, 0.0));
+    CHECK(may_start(0.0, 0.0, sign * 11.99));
+    CHECK_FALSE(may_start(0.0, 0.0, sign * 12.01));
+    CHECK_FALSE(may_start(sign * 0.3, 0.0, sign * 5.0));
+    CHECK_FALSE(may_start(sign * 0.1, 0.0, sign * 13.0));
+  }
+}
+
+TEST_CASE("What is wrong with a start is told with both distances, both limits and the place") {
+  Person person{.has_agreed = true};
+  StartGate gate({.within_m = 0.07, .within_deg = 6.5}, {0.4, -1.2, geometry::RadFromDeg(-30.0)},
+                 false, person.AtTerminal());
+  gate.MayStart(0.0, geometry::Pose2{0.7, -0.8, geometry::RadFromDeg(-47.3)});
+  CHECK(
+      person.told ==
+      std::vector<std::string>{
+          "not started: the robot stands 0.500 m and 17.3 deg off its start, and 0.07 m and 6.5 "
+          "deg are allowed (hardware.start): put it on x 0.400 m, y -1.200 m, heading -30 deg, or "
+          "give --any-start; then Enter"});
+}
+
+TEST_CASE("A robot that is not seen is told so at once, and refused after more than ten seconds") {
+  Person person{.has_agreed = true};
+  StartGate gate({.countdown_s = 0.0}, kStart, false, person.AtTerminal());
+  gate.MayStart(20.0, std::nullopt);
+  CHECK(person.shown == std::vector<std::string>{"put the robot at the start: it is not seen"});
+  gate.MayStart(30.0, std::nullopt);
+  CHECK(person.has_agreed);
+  CHECK(person.told.empty());
+  gate.MayStart(30.0625, std::nullopt);
+  CHECK_FALSE(person.has_agreed);
+  CHECK(person.told ==
+        std::vector<std::string>{
+            "not started: the robot has not been seen for 10 s: see to it that its tag is in the "
+            "picture, flat and well lit; then Enter"});
 }
 
 }  // namespace
