@@ -166,6 +166,50 @@ TEST_CASE("A person says what becomes of a drive that did not reach the end") {
   CHECK(is_quit == (expected == SeriesEnd::kQuit));
 }
 
+TEST_CASE("A series says which drives are to come, asks of those begun, and counts those left") {
+  const test::TemporaryFolder folder;
+  const std::string out = folder.Path().string();
+  fs::create_directories(folder.Path() / "1");
+  fs::create_directories(folder.Path() / "2.unfinished");
+  fs::create_directories(folder.Path() / "4.unfinished");
+  fs::create_directories(folder.Path() / "3");
+  test::WriteText(folder / "4.unfinished/trajectory.csv", "t_s\n");
+  Answering person{'s'};
+  CHECK(DriveAll({folder.Path(), PlanRepeats(TwoFloors(), 4, folder.Path())}, person.AtConsole(),
+                 [] {}) == SeriesEnd::kLeft);
+  CHECK(person.told ==
+        std::vector<std::string>{
+            "4 drives into " + out + ", 2 of them done", "drive 2 of 4: trial 2",
+            "drive 4 of 4: trial 4",
+            "2 of 4 drives did not reach the end; the same command asks about them again"});
+  CHECK(person.asked ==
+        std::vector<std::string>{
+            "trial 2 was begun and did not reach the end: Enter: again, s: skip, q: quit",
+            "trial 4 was begun and did not reach the end: Enter: again, k: keep it as it is, s: "
+            "skip, q: quit"});
+}
+
+TEST_CASE("A drive that is begun again is set aside beside its earlier tries") {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"1.unfinished", "1.unfinished1", "1.unfinished3"}) {
+    fs::create_directories(folder.Path() / name);
+    test::WriteText(folder.Path() / name / "mine", name);
+  }
+  Answering person{'a'};
+  // It has no robot to drive.
+  CHECK_THROWS_WITH(
+      DriveAll({folder.Path(), PlanRepeats(TwoFloors(), 1, folder.Path())}, person.AtConsole(),
+               [] {}),
+      "--port, --camera, --calibration are missing, and --before-each told none: name them, or let "
+      "its program print port, camera and calibration as one line of JSON");
+  REQUIRE_FALSE(person.told.empty());
+  CHECK(person.told[0] == "1 drive into " + folder.Path().string() + ", 0 of them done");
+  CHECK(files::ReadFile(folder / "1.unfinished2/mine") == "1.unfinished");
+  CHECK(files::ReadFile(folder / "1.unfinished1/mine") == "1.unfinished1");
+  CHECK(files::ReadFile(folder / "1.unfinished3/mine") == "1.unfinished3");
+  CHECK_FALSE(fs::exists(folder / "1"));
+}
+
 TEST_CASE("A drive without a log cannot be kept, and is left as it is") {
   const test::TemporaryFolder folder;
   fs::create_directories(folder.Path() / "1.unfinished");
@@ -194,8 +238,11 @@ TEST_CASE("The drives of one experiment are not mixed with those of another") {
   };
   CHECK(drive() == SeriesEnd::kDone);
   CHECK(drive() == SeriesEnd::kDone);
+  const std::string before = experiment::NumberValue(experiment.control.v_max).text;
   experiment.control.v_max = 0.45;
-  CHECK_THROWS_WITH(drive(), Catch::Contains("is the table of other drives: control.v_max was"));
+  CHECK_THROWS_WITH(drive(), (folder / "sweep.yaml") +
+                                 " is the table of other drives: control.v_max was " + before +
+                                 " and is 0.45 now; choose another --out");
 }
 
 TEST_CASE("Drives of another program, or of other wheels that a program is made for, are others") {
