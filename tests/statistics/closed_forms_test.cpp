@@ -304,5 +304,37 @@ TEST_CASE(
   CHECK(random.HeavyTailed(7, 0, 5.0) == Approx(t / std::sqrt(5.0 / 3.0)));
 }
 
+TEST_CASE("A logistic regression leaves constants out that no machine has, of either sign") {
+  // Their mean is rounded, so that they seem to scatter by some 1e-17.
+  Eigen::MatrixXd features(7, 4);
+  Eigen::VectorXd is_first(7);
+  for (Eigen::Index i = 0; i < 7; ++i) {
+    features.row(i) << 0.7, -1.1, 0.0, static_cast<double>(i % 3);
+    is_first[i] = i < 2 ? 1.0 : 0.0;
+  }
+  const LogisticModel model = FitLogistic(features, is_first, 0.1);
+  for (const int constant : {0, 1, 2}) {
+    INFO(constant);
+    CHECK(model.inverse[constant] == 0.0);
+    CHECK(model.weights[constant] == 0.0);
+  }
+  CHECK(model.inverse[3] > 0.5);
+  // One that scatters by a millionth of its value is told.
+  features.col(1) *= -1e5;
+  features(0, 1) += 0.1;
+  CHECK(FitLogistic(features, is_first, 0.1).inverse[1] > 1.0);
+}
+
+TEST_CASE("An analysis of variance needs no more than one value beyond its groups") {
+  // Means 1.5 and 5, grand mean 8/3; F with 1 and 1 degrees is the square of Cauchy's t.
+  const AnalysisOfVariance result = AnalyseVariance({{1.0, 2.0}, {5.0}});
+  CHECK(result.df_between == 1.0);
+  CHECK(result.df_within == 1.0);
+  CHECK(result.f == Approx(49.0 / 3.0));
+  CHECK(result.p == Approx(2.0 / M_PI * std::atan(std::sqrt(3.0) / 7.0)));
+  CHECK(result.eta_squared == Approx(49.0 / 52.0));
+  CHECK(result.omega_squared == Approx((49.0 - 3.0) / (52.0 + 3.0)));
+}
+
 }  // namespace
 }  // namespace rift::statistics
