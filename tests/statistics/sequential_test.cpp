@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -200,10 +201,16 @@ TEST_CASE("Evidence does not overflow however many trials agree") {
 }
 
 TEST_CASE("Evidence refuses counts and bounds that cannot be") {
-  CHECK_THROWS_WITH(EvidenceOnShare(3, 2, 0.1), Catch::Contains("between 0 and the trials"));
-  CHECK_THROWS_WITH(EvidenceOnShare(0, 2, 0.0), Catch::Contains("bound"));
-  CHECK_THROWS_WITH(AnytimeInterval(-1, 2, 0.9), Catch::Contains("between 0 and the trials"));
-  CHECK_THROWS_WITH(AnytimeInterval(1, 2, 1.0), Catch::Contains("confidence"));
+  const std::string counts = "a share: successes must lie between 0 and the trials";
+  for (const int wrong : {-1, 3}) {
+    CHECK_THROWS_WITH(EvidenceOnShare(wrong, 2, 0.1), counts);
+    CHECK_THROWS_WITH(AnytimeInterval(wrong, 2, 0.9), counts);
+  }
+  for (const double wrong : {-0.1, 0.0, 1.0, 1.1, std::nan("")}) {
+    CHECK_THROWS_WITH(EvidenceOnShare(0, 2, wrong), "a share: the bound must lie between 0 and 1");
+    CHECK_THROWS_WITH(AnytimeInterval(1, 2, wrong),
+                      "a share: the confidence must lie between 0 and 1");
+  }
 }
 
 TEST_CASE("Discoveries among many hypotheses need more evidence and less once there are several") {
