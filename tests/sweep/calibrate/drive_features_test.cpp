@@ -4,9 +4,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/calibrate/distinction.hpp"
@@ -278,6 +280,35 @@ TEST_CASE("The authors' Webots logs are told from their robot's in settings not 
   CHECK(told.all.accuracy >= 0.95);
   CHECK(told.without_timing.accuracy >= 0.95);
   CHECK(told.all.p == Approx(0.05));
+}
+
+TEST_CASE("Features are told with the lengths, times and frames that they are made with") {
+  const std::map<std::string_view, std::string_view> meanings{
+      {"interval_near_33ms", "share of these within 5 ms of one frame of a 30 fps camera"},
+      {"interval_near_67ms", "share within 5 ms of two frames"},
+      {"interval_bimodality", "Sarle's coefficient: 0.33 normal, 0.56 even, 1 two values"},
+      {"step_grid",
+       "mean cosine of the way from row to row in frames of 1/30 s at cruising speed: 1 on a grid, "
+       "0 without one"},
+      {"start_turn_rad", "turn to the left until 50 mm from the start"},
+      {"speed_after_stop", "lowest speed within 0.6 s after a waypoint, over cruise"},
+      {"slow_after_stop_s", "time below 0.6 of cruise within 0.8 s after a waypoint"},
+      {"yaw_rate_sd_rad_s", "standard deviation of the yaw rate over 50 ms"},
+      {"yaw_rate_correlation_100ms", "autocorrelation of the yaw rate 100 ms apart"},
+      {"yaw_rate_correlation_200ms", "200 ms apart"},
+      {"yaw_rate_correlation_400ms", "400 ms apart"},
+      {"yaw_rate_correlation_800ms", "800 ms apart"},
+      {"reversals_per_s", "changes of side of a yaw rate above 0.2 rad/s"},
+      {"side_m", "mean distance left of that line"},
+      {"length_ratio", "length by strides of 20 mm over the distance from start to end"}};
+  size_t told = 0;
+  for (const DriveFeature& feature : DriveFeatures()) {
+    const auto found = meanings.find(feature.name);
+    if (found == meanings.end()) continue;
+    ++told;
+    CHECK(feature.meaning == found->second);
+  }
+  CHECK(told == meanings.size());
 }
 
 }  // namespace
