@@ -202,5 +202,13 @@ TEST_CASE("How far repeats are apart leaves the first tenth of their paths out")
         Approx(std::log(1e-4)));
 }
 
+TEST_CASE("How far repeats are apart counts what they do behind the first tenth of their paths") {
+  CalibrationLog second = Log("a", 0.03);
+  second.log.poses[3].y_m += 0.005;  // at 0.15 of the way
+  Told simulator(std::vector<LogPrediction>(2));
+  CHECK(TraitsOfLogs({Log("a", 0.0), second}, simulator, {}).log_spread[1] ==
+        Approx(std::log(0.035)).margin(0.02));  // and not log 0.03
+}
+
 }  // namespace
 }  // namespace rift::sweep
