@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
+#include <string>
+#include <vector>
 
 namespace rift::sweep {
 namespace {
@@ -74,6 +76,29 @@ TEST_CASE("A log with the rows of another one is named with it") {
   REQUIRE(both.size() == 2);
   CHECK_THAT(both[0], StartsWith("c.csv: it comes no nearer than"));
   CHECK_THAT(both[1], StartsWith("b.csv: it has the rows of a.csv"));
+}
+
+TEST_CASE("A waypoint is missed from twice the reach radius on, to any side, and told whole") {
+  for (const double side : {-1.0, 1.0}) {
+    const trajectory::Trajectory within =
+                                     LogOf({{0.0, 0.0}, {0.3 + 0.099 * side, 0.1}, {0.6, 0.1}}),
+                                 beyond =
+                                     LogOf({{0.0, 0.0}, {0.3 + 0.101 * side, 0.1}, {0.6, 0.1}}),
+                                 above = LogOf({{0.0, 0.0}, {0.3, 0.1}, {0.6, 0.1 + 0.101 * side}});
+    CHECK(DoubtsOfLogs({Of("a", within)}).empty());
+    CHECK(DoubtsOfLogs({Of("a", beyond)}).size() == 1);
+    CHECK(DoubtsOfLogs({Of("a", above)}).size() == 1);
+  }
+  const trajectory::Trajectory log = LogOf({{0.0, 0.0}, {0.42, 0.26}, {0.6, 0.1}});
+  LogOfTask one = Of("a.csv", log);
+  one.reach_radius_m = 0.07;
+  CHECK(DoubtsOfLogs({one, one}) ==
+        std::vector<std::string>{
+            "a.csv (and 1 more log): it comes no nearer than 0.200 m to the waypoint at x 0.3 m, y "
+            "0.1 m, which counts as reached within 0.07 m (control.reach_radius_m): a log of "
+            "another task, in another frame or cut short, and the fit drives this task",
+            "a.csv: it has the rows of a.csv: one drive that counts as two makes the intervals too "
+            "narrow"});
 }
 
 }  // namespace
