@@ -77,7 +77,9 @@ TEST_CASE("The space overrides what can be set and in which steps") {
   }
   result.parameters[2].settable = false;
   CHECK(SuggestExperiments(result).list.empty());
-  CHECK_THAT(SuggestExperiments(result).note, Contains("settable: true"));
+  CHECK(SuggestExperiments(result).note ==
+        "no parameter can be set on the robot (surface, v_min, mismatch): mark one that can in "
+        "space, with settable: true");
 }
 
 TEST_CASE("Trials that take too little from the risk are not suggested") {
