@@ -93,6 +93,8 @@ TEST_CASE(
   CHECK(MoreOf(Untold(3), every) == 0);
   CHECK(MoreOf(With(Trials(1, 0), Untold(3)), every) > 0);
   CHECK(MoreOf(With(Trials(1, 0), Untold(4)), every) == 0);
+  CHECK(MoreOf(Untold(1), {.repeat = Repeat::kDoubtful}) == 1);
+  CHECK(MoreOf(Untold(1), {.repeat = Repeat::kNone}) == 0);
 }
 
 TEST_CASE("A setting that passes gets trials until it is decided, and none from then on") {
@@ -156,6 +158,9 @@ TEST_CASE("A failing setting without chance is falsified by two trials and has a
   CHECK(passes.share_high == 0.0);
   CHECK(passes.evidence.above == -std::numeric_limits<double>::infinity());
   CHECK(passes.evidence.below == std::numeric_limits<double>::infinity());
+  for (TrialRow& row : same) row.seed = 4;  // the same trial twice says nothing of others
+  CHECK(CountFailures(same, {}).verdict == gap::Verdict::kNotSeenToFail);
+  CHECK(CountFailures(same, {}).repeats == 1);
   same.resize(1);
   CHECK(CountFailures(same, {}).verdict == gap::Verdict::kNotSeenToFail);
   CHECK(CountFailures({}, {}).verdict == gap::Verdict::kUndecided);
