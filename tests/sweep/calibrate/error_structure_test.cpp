@@ -62,6 +62,19 @@ TEST_CASE("Errors about half a turn have the structure that they have about none
   CHECK(std::abs(none.lag_s) > 0.05);
 }
 
+TEST_CASE("A simulator that turns later than the log lags, an earlier one leads, up to 0.3 s") {
+  const auto lag_s = [](double of_log_s, double of_twin_s) {
+    const trajectory::Trajectory log = Simulate(Along(0.0, of_log_s)).result.trajectory;
+    const auto twin = [&](size_t, const std::vector<double>&) { return Along(0.0, of_twin_s); };
+    return StructureOfErrors({{.name = "1", .log = log}}, twin, {},
+                             {.most_frames = 3, .phases = 1, .moved_m = 0.05})
+        .lag_s;
+  };
+  CHECK(lag_s(0.15, 0.05) == Approx(-0.12).margin(0.07));
+  CHECK(lag_s(0.05, 0.31) == Approx(0.26).margin(0.045));
+  CHECK(std::abs(lag_s(0.05, 0.55)) < 0.3 + 1e-9);
+}
+
 /// Never steers: it is the log that turns.
 SimulatedTrial Straight() {
   SimulatedTrial trial = Along(0.0, 0.05);
