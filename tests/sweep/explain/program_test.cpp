@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "rift/odometry/odometry.hpp"
@@ -121,7 +122,9 @@ TEST_CASE("Odometry as the objective needs encoders, and logs of its own") {
   Evaluator evaluator(experiment, "lap.yaml", kNoFiles);
   const TrialRow row = evaluator.Evaluate(TrialsAt(experiment, {}).front());
   CHECK(row.status == TrialStatus::kUnreadable);
-  CHECK_THAT(row.reason, Catch::Contains("needs encoders"));
+  CHECK(row.reason ==
+        "simulation with seed " + std::to_string(*row.seed) +
+            ", its encoders: objective: odometry needs encoders (encoders.csv beside the log)");
   experiment.reference.kind = experiment::ReferenceKind::kLogs;
   experiment.reference.path.text = "{trial}.csv";
   CHECK_THROWS_WITH(Evaluator(experiment, "lap.yaml", kNoFiles), Catch::Contains("candidate.path"));

@@ -420,7 +420,8 @@ TEST_CASE("A drive of the robot is a row with how it ended, against the referenc
         TrialStatus::kMissing);
   experiment.objective = Objective::kOdometry;
   CHECK_THROWS_WITH(evaluator.EvaluateDriven(request, "drive.csv", trial::Outcome::kReached),
-                    Contains("objective is odometry, and suggested drives"));
+                    "e.yaml: objective is odometry, and suggested drives are judged by the gap of "
+                    "their poses");
 }
 
 TEST_CASE("Where references are logs, a drive takes their place beside a simulated run") {
