@@ -131,6 +131,8 @@ TEST_CASE("A test of one sample or of one setting is not a number, and ragged ro
   CHECK(std::isnan(TestTwoSamples(observations, {}, {}, 1).p));
   observations[1].features.pop_back();
   CHECK_THROWS_AS(TestTwoSamples(observations, {}, {}, 1), std::invalid_argument);
+  CHECK_THROWS_WITH(TestTwoSamples(observations, {}, {}, 1),
+                    "two samples: observation 1 has 3 features, and the first has 4");
 }
 
 TEST_CASE("The same seed gives the same test") {
