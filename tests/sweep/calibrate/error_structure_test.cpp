@@ -70,6 +70,7 @@ TEST_CASE("A simulator that turns later than the log lags, an earlier one leads,
                              {.most_frames = 3, .phases = 1, .moved_m = 0.05})
         .lag_s;
   };
+  CHECK(lag_s(0.05, 0.15) == Approx(0.12).margin(0.07));
   CHECK(lag_s(0.15, 0.05) == Approx(-0.12).margin(0.07));
   CHECK(lag_s(0.05, 0.31) == Approx(0.26).margin(0.045));
   CHECK(std::abs(lag_s(0.05, 0.55)) < 0.3 + 1e-9);
