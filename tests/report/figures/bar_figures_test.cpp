@@ -37,7 +37,9 @@ TEST_CASE("Labels of bars lie flat while they fit, slant up to twenty and stand 
     CHECK(figure->height_px == 326 + 50);  // 4.2 px x (6 + 6)
   }
   CHECK_THAT(upright.plot, Contains("set xtics rotate by 90 right ('aaaaaa' 0, 'aaaaaa' 1,"));
-  CHECK(upright.height_px == 326 + 39);  // 6.5 px x 6
+  CHECK(upright.height_px == 326 + 39);                   // 6.5 px x 6
+  CHECK_THAT(mean(2, 29).plot, Contains("set xtics ("));  // 7 px x 30 x 2
+  CHECK_THAT(mean(2, 30).plot, Contains("set xtics rotate by 40 right ("));
   // A label has at most 34 letters.
   CHECK(mean(21, 34).height_px == 326 + 221);
   CHECK(mean(21, 35).height_px == 326 + 221);
@@ -277,9 +279,47 @@ TEST_CASE("A heat map is as large as its cells need, and slants names that do no
   CHECK(size(MapOf(10, 1, 40)) == std::pair(750, 140 + 170));
   CHECK_THAT(MapOf(10, 1, 7).plot, Contains("set xtics scale 0 ("));
   CHECK_THAT(MapOf(10, 1, 8).plot, Contains("set xtics rotate by 40 right scale 0 ("));
+  CHECK_THAT(MapOf(5, 1, 7).plot, Contains("set xtics scale 0 ("));  // 58 px
+  CHECK_THAT(MapOf(5, 1, 8).plot, Contains("set xtics rotate by 40 right scale 0 ("));
   // A number needs 40 px, of the 1250 beside the labels.
   CHECK_THAT(MapOf(31, 1, 1).plot, Contains("sprintf"));
   CHECK_THAT(MapOf(32, 1, 1).plot, !Contains("sprintf"));
+}
+
+TEST_CASE("The margin of slanted labels is their length less the way to their tic") {
+  const auto margin = [](const Figure& figure) {
+    const size_t begin = figure.plot.find("set lmargin");
+    if (begin == figure.plot.npos) return std::string("none");
+    return figure.plot.substr(begin, figure.plot.find('\n', begin) - begin);
+  };
+  const auto failures = [&](size_t letters) {
+    return margin(FailuresByLevelFigure("name", "surface", Levels(6, letters), kWide));
+  };
+  // "..., of 7" adds six letters and the gap before the axis one, of 5.4 px each. The first tic of
+  // six is at a tenth of the 475 px left of the right margin: (199.8 - 47.5) / 0.9 px of 490.
+  CHECK(failures(30) == "set lmargin at screen 0.3454");
+  CHECK(failures(11) == "set lmargin at screen 0.1127");
+  CHECK(failures(10) == "none");  // 49.2 of 55 px
+  // In a heat map it is at an eighth of the 380 px of four columns, and names of two letters take
+  // 45 + 14 px.
+  CHECK(margin(MapOf(4, 1, 34)) == "set lmargin at screen 0.3369");
+  CHECK(margin(MapOf(4, 1, 18)) == "set lmargin at screen 0.1312");
+  CHECK(margin(MapOf(4, 1, 17)) == "none");
+}
+
+TEST_CASE("Bars of settings end at a threshold that no trial reaches and grow with their number") {
+  sweep::SweepResult result =
+      synthetic::Grid({"ice", "mud", "rock", "sand", "felt", "cork", "tile"});
+  result.gap.threshold_m = 0.31;
+  const Figure figure = GapBySettingFigure(result, LayOut(result), {});
+  CHECK(figure.width_px == 90 + 16 * 28);
+  CHECK(figure.height_px == 360);
+  CHECK(figure.title == "Sim-to-Real gap by surface and v_min, v_max");
+  CHECK_THAT(figure.plot, Contains("set ylabel 'mean gap (m)'\nset xrange [-0.6:6.6]\n"
+                                   "set yrange [0:0.4]\n"));
+  // 0.154 m is the largest gap of a trial.
+  result.gap.threshold_m = 0.06;
+  CHECK_THAT(GapBySettingFigure(result, LayOut(result), {}).plot, Contains("set yrange [0:0.2]\n"));
 }
 
 }  // namespace

@@ -63,5 +63,68 @@ TEST_CASE("The paths of a fit keep their scale between a low and a high picture"
   }
 }
 
+/// The label that is read at the y axis.
+std::string StepOf(const Figure& figure) {
+  const size_t begin = figure.plot.find("set ytics ") + 10;
+  return figure.plot.substr(begin, figure.plot.find('\n', begin) - begin);
+}
+
+TEST_CASE("The labels of a fit's paths are one, two or five times a power of ten apart") {
+  // 400 px across: 16 px are 0.016 m of 0.4 m, 0.02 m of 0.5 m, 0.0204 m of 0.51 m and so on.
+  for (const auto& [width_m, step] : {std::pair{0.25, "0.01"},
+                                      {0.26, "0.02"},
+                                      {0.4, "0.02"},
+                                      {0.5, "0.02"},
+                                      {0.51, "0.05"},
+                                      {1.25, "0.05"},
+                                      {1.26, "0.1"},
+                                      {40.0, "2"}}) {
+    INFO(width_m);
+    CHECK(StepOf(CalibrationPathFigure({.name = "a", .real = To(width_m, 0.2 * width_m)})) == step);
+  }
+}
+
+TEST_CASE("The paths of a fit are as high as they are wide, and those of no length a millimetre") {
+  CHECK(CalibrationPathFigure({.name = "a", .real = To(1.0, 1.2)}).height_px == 600);
+  const Figure still = CalibrationPathFigure({.name = "a", .real = To(0.0, 0.0)});
+  CHECK(still.height_px == 520);
+  CHECK(StepOf(still) == "5e-05");  // 16 of 400 px
+}
+
+TEST_CASE("Paths to the left and to the right of the start, or downwards, have the same picture") {
+  for (const double x_m : {-1.0, 1.0}) {
+    for (const double y_m : {-0.4, 0.4}) {
+      const Figure figure = CalibrationPathFigure({.name = "a", .real = To(x_m, y_m)});
+      INFO(x_m << " " << y_m);
+      CHECK(figure.height_px == 280);
+      CHECK(StepOf(figure) == "0.05");
+    }
+  }
+}
+
+TEST_CASE("The paths of a fit are named by their level, if it has one, and by what was held out") {
+  sweep::CalibrationReport report;
+  report.trials = {{"", "2", "real/a.csv", false, 0.04, 0.03},
+                   {"ice", "3", "real/b.csv", false, 0.05, 0.02},
+                   {"ice", "4", "real/c.csv", true, 0.05, 0.02}};
+  report.shown_real = To(1.0, 0.2);
+  using Catch::Matchers::Contains;
+  for (const auto& [shown, name] : {std::pair{size_t{0}, "robot, trial 2'"},
+                                    {size_t{1}, "robot, ice, trial 3'"},
+                                    {size_t{2}, "robot, ice, trial 4 (held out)'"}}) {
+    report.shown = shown;
+    const auto figure = CalibrationFigure("fit", report);
+    REQUIRE(figure);
+    CHECK_THAT(figure->plot, Contains(name));
+  }
+  report.shown_real = {};
+  CHECK_THAT(CalibrationFigure("fit", report)->plot, !Contains("robot"));
+  // A gap on one side of the fit alone is none to draw.
+  for (sweep::CalibrationTrial& trial : report.trials) trial.gap_after_m = NAN;
+  CHECK_FALSE(CalibrationFigure("fit", report));
+  report.trials[1] = {"ice", "3", "real/b.csv", false, NAN, 0.02};
+  CHECK_FALSE(CalibrationFigure("fit", report));
+}
+
 }  // namespace
 }  // namespace rift::report

@@ -93,5 +93,18 @@ TEST_CASE("A stack holds every figure at its own height") {
   CHECK_THAT(svg, Contains("upper") && Contains("lower"));
 }
 
+TEST_CASE("A complaint of several lines is told in one, without blanks at its end") {
+  std::string message;
+  try {
+    Render(Plot("plot nosuchvariable\n"), FigureFormat::kSvg);
+  } catch (const std::runtime_error& error) {
+    message = error.what();
+  }
+  CHECK_THAT(message, Catch::Matchers::StartsWith("figure figure: gnuplot ") && !Contains("\n") &&
+                          !Contains("  "));
+  REQUIRE_FALSE(message.empty());
+  CHECK(message.back() != ' ');
+}
+
 }  // namespace
 }  // namespace rift::report

@@ -195,5 +195,63 @@ TEST_CASE("Of several pairs the one with the largest gap is marked, and each has
 
 TEST_CASE("No pair is refused") { CHECK_THROWS_AS(OverlayFigure({}), std::invalid_argument); }
 
+TEST_CASE("A place that a robot drives to again is a waypoint again") {
+  trajectory::Trajectory path;
+  for (const double x_m : {0.5, 0.5, 1.0, 1.0, 0.5}) {
+    path.poses.push_back({.x_m = 0.0, .y_m = 0.0, .target_x_m = x_m, .target_y_m = 0.25});
+  }
+  path.poses.push_back({.x_m = 0.0, .y_m = 0.0, .target_x_m = 0.5, .target_y_m = -0.25});
+  path.poses.push_back({.x_m = 0.0, .y_m = 0.0, .target_x_m = 0.5, .target_y_m = NAN});
+  using Points = std::vector<Eigen::Vector2d>;
+  CHECK(LoggedWaypoints(path) == Points{{0.5, 0.25}, {1.0, 0.25}, {0.5, 0.25}, {0.5, -0.25}});
+}
+
+TEST_CASE("Waypoints are those of the real log, or where it has none of the simulated one") {
+  trajectory::Trajectory sim = synthetic::Path(0.0), real = synthetic::Path(0.1);
+  for (auto& pose : sim.poses) pose.target_x_m = 3.0;
+  CHECK(ComparePair("a", sim, "b", real, {}).waypoints_m.front().x() == 0.5);
+  for (auto& pose : real.poses) pose.target_x_m = NAN;
+  CHECK(ComparePair("a", sim, "b", real, {}).waypoints_m.front().x() == 3.0);
+  CHECK_FALSE(ComparePair("a", sim, "b", real, {}).is_in_space);
+  for (auto* path : {&sim, &real}) {
+    for (auto& pose : path->poses) pose.z_m = 0.0;
+  }
+  const ComparedPair pair = ComparePair("a", sim, "b", real, {.dimension = gap::Dimension::kXyz});
+  CHECK(pair.is_in_space);
+  CHECK((pair.sim == "a" && pair.real == "b"));
+}
+
+/// Of five points, 0.25 of the way apart.
+ComparedPair FivePoints(const std::vector<double>& errors_m) {
+  ComparedPair pair{.sim = "sim", .real = "real"};
+  for (size_t i = 0; i < 5; ++i) {
+    pair.profile.u.push_back(0.25 * static_cast<double>(i));
+    pair.profile.error_m.push_back(errors_m[i]);
+    pair.profile.sim_m.emplace_back(0.0, 0.0);
+    pair.profile.real_m.emplace_back(0.0, 0.0);
+  }
+  return pair;
+}
+
+TEST_CASE("The distribution of errors is of the samples from the share left out on, in order") {
+  const ComparedPair pair = FivePoints({0.09, 0.08, 0.01, 0.05, 0.02});
+  const auto rows = [&](double skip_start) {
+    const std::string plot = ErrorCdfFigure({pair}, {.skip_start = skip_start}).plot;
+    const std::string head = "$cdf_0 << EOD\n";
+    const size_t begin = plot.find(head) + head.size();
+    return plot.substr(begin, plot.find("EOD", begin) - begin);
+  };
+  CHECK(rows(0.0) == "0.01 20 \n0.02 40 \n0.05 60 \n0.08 80 \n0.09 100 \n");
+  CHECK(rows(0.25) == "0.01 25 \n0.02 50 \n0.05 75 \n0.08 100 \n");
+  CHECK(rows(0.26) == "0.01 33.33333 \n0.02 66.66667 \n0.05 100 \n");
+}
+
+TEST_CASE("Paths of robots that stand at one place are drawn in a millimetre around it") {
+  const Figure figure = OverlayFigure({FivePoints({0.0, 0.0, 0.0, 0.0, 0.0})});
+  CHECK_THAT(figure.plot, Contains("set xrange [-0.000185:0.000185]\n"
+                                   "set yrange [-0.000185:0.000185]\n"));
+  CHECK(figure.height_px == 510);
+}
+
 }  // namespace
 }  // namespace rift::report

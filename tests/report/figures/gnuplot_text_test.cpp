@@ -99,5 +99,14 @@ TEST_CASE("Rows of a data block are numbers of seven digits, and what is none is
         "0.06 with lines lw 1.2 dt 2 lc rgb '#000000' title 'threshold 0.06 m'");
 }
 
+TEST_CASE("Near the end of an axis a label takes ten times what it lacks and no more") {
+  // The last of twenty tics is at 0.98 of 475 px: 465.5 px. 88 letters of 5.4 px have 480.6.
+  std::vector<size_t> letters(20, 1);
+  letters.back() = 88;
+  CHECK(SlantedMargin(letters, {0.6, 490, 55.0, 15.0}) == "set lmargin at screen 0.3082\n");
+  letters.back() = 86;
+  CHECK(SlantedMargin(letters, {0.6, 490, 55.0, 15.0}).empty());
+}
+
 }  // namespace
 }  // namespace rift::report

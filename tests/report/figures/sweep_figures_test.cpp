@@ -253,5 +253,67 @@ TEST_CASE("The worst row is the largest gap among those that have one") {
   CHECK(WorstRow(result) == std::nullopt);
 }
 
+TEST_CASE("A list of values beside a range has its own bars, and what needs both has none") {
+  sweep::SweepResult result;
+  result.parameters = {{"friction", {}, 0.2, 0.8},
+                       {"terrain.surface", {synthetic::Word("ice"), synthetic::Word("rock")}}};
+  for (int i = 0; i < 8; ++i) {
+    result.rows.push_back(synthetic::Row({synthetic::Numeric(std::to_string(0.25 + 0.06 * i)),
+                                          result.parameters[1].levels[static_cast<size_t>(i % 2)]},
+                                         "1", 0.03 + 0.005 * i));
+  }
+  sweep::Summarise(result);
+  const SweepFigureSet set = SweepFigures(result);
+  CHECK(Names(set) == std::vector<std::string>{"fig08_gap_by_trial", "fig11_gap_by_surface",
+                                               "fig12_failures_by_surface", "gap_over_friction"});
+  const std::string reason = "friction is continuous, so no two settings share a value of it";
+  for (const char* name : {"fig07", "fig10", "fig13"}) CHECK(ReasonFor(set, name) == reason);
+}
+
+/// One parameter of so many values beside one of so many others, a trial for each pair.
+sweep::SweepResult Values(int mains, int others) {
+  sweep::SweepResult result;
+  result.parameters = {{"a", {}}, {"b", {}}};
+  if (others == 0) result.parameters.pop_back();
+  for (int i = 0; i < mains; ++i) {
+    result.parameters[0].levels.push_back(synthetic::Word("w" + std::to_string(i)));
+  }
+  for (int k = 0; k < others; ++k) {
+    result.parameters[1].levels.push_back(synthetic::Numeric(std::to_string(k)));
+  }
+  for (const auto& a : result.parameters[0].levels) {
+    for (int k = 0; k < std::max(others, 1); ++k) {
+      experiment::Theta theta{a};
+      if (others > 0) theta.push_back(result.parameters[1].levels[static_cast<size_t>(k)]);
+      result.rows.push_back(synthetic::Row(theta, "1", 0.05));
+    }
+  }
+  sweep::Summarise(result);
+  return result;
+}
+
+TEST_CASE("Without other options bars go up to 120, cells to 1600 and dots to 5000") {
+  CHECK(ReasonFor(SweepFigures(Values(120, 0)), "fig11") == "drawn");
+  CHECK(ReasonFor(SweepFigures(Values(121, 0)), "fig11") == "121 bars are too many to read");
+  CHECK(ReasonFor(SweepFigures(Values(40, 40)), "fig10") == "drawn");
+  CHECK(ReasonFor(SweepFigures(Values(41, 40)), "fig10") == "1640 cells are too many to read");
+  const auto over = [](int trials) {
+    return Named(SweepFigures(synthetic::Continuous(trials)), "gap_over_friction").plot;
+  };
+  CHECK_THAT(over(5000), !Contains("'median'"));
+  CHECK_THAT(over(5001), Contains("'median'"));
+}
+
+TEST_CASE("Three parameters of one file name are numbered from the second on") {
+  sweep::SweepResult result = synthetic::Continuous(4);
+  result.parameters.push_back({"c", {}, 0.0, 1.0});
+  for (auto& row : result.rows) row.theta.push_back(synthetic::Numeric("0.5"));
+  for (size_t i = 0; i < 3; ++i) result.parameters[i].key = std::string(i + 1, '?');
+  sweep::Summarise(result);
+  CHECK(Names(SweepFigures(result)) ==
+        std::vector<std::string>{"fig08_gap_by_trial", "gap_over_parameter", "gap_over_parameter_2",
+                                 "gap_over_parameter_3"});
+}
+
 }  // namespace
 }  // namespace rift::report
