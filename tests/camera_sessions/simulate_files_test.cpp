@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "rift/files/files.hpp"
 #include "rift/report/json/json.hpp"
@@ -250,6 +251,41 @@ TEST_CASE(
   CHECK(film.scenes.back().world_from_robot.x_m ==
         Approx(made.run.truth.poses.back().x_m).margin(1e-9));
   CHECK(film.fixed.body.wheel_radius_m == view::ShapeOf(experiment.simulation.body).wheel_radius_m);
+}
+
+/// x of the ground in the figure of a run.
+std::vector<double> GroundOf(const Simulated& made) {
+  const std::string plot = FigureOf(made).plot;
+  const std::string head = "$ground << EOD\n";
+  REQUIRE(plot.find(head) != plot.npos);
+  std::istringstream rows(plot.substr(plot.find(head) + head.size()));
+  std::vector<double> x_m;
+  for (std::string line; std::getline(rows, line) && line != "EOD";) {
+    x_m.push_back(std::stod(line));
+  }
+  return x_m;
+}
+
+TEST_CASE("The ground below a run goes on ten centimetres beyond its ends, each 2 mm or less") {
+  Simulated made = MakeRun(ShortTask());
+  made.run.result.trajectory.poses.clear();
+  for (const bool is_forward : {true, false}) {
+    const double from_m = is_forward ? 0.15 : 0.211, to_m = is_forward ? 0.211 : 0.15;
+    const double yaw_rad = is_forward ? 0.0 : geometry::kPi;
+    made.run.truth.poses = {
+        {.t_s = 0.0, .x_m = from_m, .y_m = 0.2, .z_m = 0.016, .yaw_rad = yaw_rad},
+        {.t_s = 1.0, .x_m = from_m, .y_m = 0.2, .z_m = 0.016, .yaw_rad = yaw_rad},
+        {.t_s = 2.0, .x_m = to_m, .y_m = 0.2, .z_m = 0.016, .yaw_rad = yaw_rad}};
+    const std::vector<double> x_m = GroundOf(made);
+    INFO(is_forward);
+    CHECK(x_m.front() == Approx(is_forward ? 0.05 : 0.311));
+    CHECK(x_m.back() == Approx(is_forward ? 0.311 : 0.05));
+    for (size_t i = 1; i < x_m.size(); ++i) {
+      const double step_m = (x_m[i] - x_m[i - 1]) * (is_forward ? 1.0 : -1.0);
+      CHECK(step_m > 0.0018);
+      CHECK(step_m < 0.002001);
+    }
+  }
 }
 
 }  // namespace

@@ -160,5 +160,83 @@ TEST_CASE("A simulated trial without a path is refused") {
   CHECK_THROWS_AS(SimulationFigure({}), std::invalid_argument);
 }
 
+/// The lines that begin so.
+std::vector<std::string> LinesOf(const std::string& plot, const std::string& begin) {
+  std::vector<std::string> lines;
+  for (size_t at = plot.find(begin); at != plot.npos; at = plot.find(begin, at + 1)) {
+    lines.push_back(plot.substr(at, plot.find('\n', at) - at));
+  }
+  return lines;
+}
+
+/// Along x without heights, powers, waypoints and log.
+SimulatedTrial Bare(const std::vector<double>& x_m, double step_s) {
+  SimulatedTrial trial;
+  trial.name = "bare";
+  for (size_t i = 0; i < x_m.size(); ++i) {
+    trial.truth.poses.push_back({.t_s = 4.0 + step_s * static_cast<double>(i),
+                                 .x_m = x_m[i],
+                                 .y_m = 0.0,
+                                 .z_m = NAN,
+                                 .yaw_rad = 0.0});
+  }
+  return trial;
+}
+
+TEST_CASE("Speed is told in the middle of a window of 0.06 s, of what was driven in it") {
+  // x = t^2 at every 32nd of a second: over two steps the speed is that of their middle.
+  std::vector<double> x_m;
+  for (int i = 0; i <= 5; ++i) x_m.push_back(i * i / 1024.0);
+  const std::string plot = SimulationFigure(Bare(x_m, 1.0 / 32.0)).plot;
+  CHECK_THAT(plot, Contains("$speed << EOD\n0.015625 0.03125 \n0.03125 0.0625 \n0.0625 0.125 \n"
+                            "0.09375 0.1875 \n0.125 0.25 \nEOD\n"));
+  CHECK_THAT(plot, Contains("set xlabel 'time since the start (s)'\nset ylabel 'speed (m/s)'\n"
+                            "set xrange [0:0.15625]\nset yrange [0:*]\n"));
+}
+
+TEST_CASE("Poses nearly as far apart as the window of speeds are taken two by two") {
+  const std::string plot = SimulationFigure(Bare({0.0, 0.1, 0.2, 0.3}, 0.0575)).plot;
+  CHECK_THAT(plot, Contains("\n0.0575 1.73913 \n0.115 1.73913 \n"));
+}
+
+TEST_CASE("Names of waypoints are cut to sixteen letters") {
+  SimulatedTrial trial = Downhill();
+  trial.waypoints = {{std::string(16, 'a'), {0.0, 0.0}}, {std::string(17, 'b'), {0.5, 0.0}}};
+  const std::string plot = SimulationFigure(trial).plot;
+  CHECK_THAT(plot, Contains("set label '" + std::string(16, 'a') + "' at 0,0 center") &&
+                       Contains("set label 'bbbbbbbb…bbbbbbb' at 0.5,0 center"));
+}
+
+TEST_CASE("A robot that stands is drawn on twenty centimetres, one that drives to its margins") {
+  const Figure still = SimulationFigure(Bare({0.0, 0.0}, 1.0));
+  CHECK(LinesOf(still.plot, "set xrange")[0] == "set xrange [-0.1:0.1]");
+  CHECK(LinesOf(still.plot, "set yrange")[0] == "set yrange [-0.07:0.07]");
+  // 400 px for 0.2 m, 0.7 times as high, and 95 px around; 192 px of speeds.
+  CHECK(still.height_px == 280 + 95 + 192);
+  SimulatedTrial aside = Bare({0.0, 0.0}, 1.0);
+  aside.truth.poses[1].y_m = 0.1;
+  CHECK(SimulationFigure(aside).height_px == 480 + 95 + 192);
+  // 0.3 of its 10.14 m.
+  SimulatedTrial wide = Bare({0.0, 10.0}, 1.0);
+  CHECK(LinesOf(SimulationFigure(wide).plot, "set yrange")[0] == "set yrange [-1.521:1.521]");
+  wide.truth.poses[1].y_m = 4.0;
+  CHECK(SimulationFigure(wide).height_px == 258 + 192);
+  for (auto& pose : wide.truth.poses) pose.z_m = 0.0;
+  CHECK(SimulationFigure(wide).height_px == 258 + 110 + 192);  // a side view of 98 px at least
+  SimulatedTrial tall = Bare({0.0, 0.0}, 1.0);
+  tall.truth.poses[1].y_m = 3.0;
+  CHECK(SimulationFigure(tall).height_px == 700 + 192);
+}
+
+TEST_CASE("Of the ground no more is drawn than what lies between the ends of the picture") {
+  SimulatedTrial trial = Downhill();
+  for (auto& pose : trial.truth.poses) pose.z_m = 0.02;
+  trial.ground_xz_m = {{-0.08, -3.0}, {-0.06, 0.0}, {0.56, 0.01}, {0.58, 5.0}};
+  const std::string plot = SimulationFigure(trial).plot;
+  CHECK_THAT(plot, Contains("$ground << EOD\n-0.06 0 \n0.56 0.01 \nEOD\n"));
+  CHECK_THAT(plot, Contains("$ground using 1:2:(-0.02) with filledcurves"));
+  CHECK(LinesOf(plot, "set yrange")[1] == "set yrange [-0.02:0.08]");
+}
+
 }  // namespace
 }  // namespace rift::report
