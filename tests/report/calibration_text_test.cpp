@@ -59,5 +59,17 @@ TEST_CASE("The flag of a parameter says when the prior and not the logs tell it"
   CHECK(FlagOf(parameter) == "from the prior, not the logs");
 }
 
+TEST_CASE("The table of a fit is as wide as its words where the keys are short") {
+  sweep::CalibrationReport report{.calibration = FitOf(0.25, 0.125, 0.5)};
+  report.calibration.parameters[0].parameter.key = "mu";
+  report.calibration.parameters[0].parameter.start = 0.75;
+  report.calibration.correlation.setIdentity(1, 1);
+  const std::string text = CalibrationText(report);
+  INFO(text);
+  CHECK(text.find("\nparameter      start      value  interval                flag\n"
+                  "mu              0.75       0.25  [0.125, 0.5]            ") !=
+        std::string::npos);
+}
+
 }  // namespace
 }  // namespace rift::report

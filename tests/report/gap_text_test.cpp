@@ -90,5 +90,20 @@ TEST_CASE("What would be left of the gap without its start and without any motio
   CHECK_THAT(GapText(result), Contains("the real trials are 0.0123 m apart from each other\n"));
 }
 
+TEST_CASE("The table of a gap is as wide as its words where the logs' names are short") {
+  gap::GapResult result = Trials(1);
+  gap::Comparison& c = result.trials[0].comparison;
+  c.gap_m = 0.0512;
+  c.gap_u = 0.25;
+  c.length_ratio = 1.03;
+  const std::string text = GapText(result);
+  INFO(text);
+  CHECK_THAT(text, Contains("\n\nreal   gap_m    at_u  exact_m  mean_m   rms_m  median_m   p95_m  "
+                            "start_m   end_m  length  hausdorff_m  frechet_m   dtw_m  "
+                            "equal_time_m\na     0.0512   0.250        -"));
+  result.trials[0].path = "robot";
+  CHECK_THAT(GapText(result), Contains("\n\nreal    gap_m ") && Contains("\nrobot  0.0512 "));
+}
+
 }  // namespace
 }  // namespace rift::report

@@ -78,5 +78,28 @@ TEST_CASE("References and shards are counted apart in text and JSON") {
         "shards on the cluster: 4 of 9 done, 3 running, 2 pending (Resources)\n");
 }
 
+TEST_CASE("Progress in JSON counts trials, and of a search settings beside them") {
+  ProgressCounts counts{.most = 30,
+                        .is_settings = false,
+                        .steps = 4,
+                        .done = 17,
+                        .from_journal = 5,
+                        .falsified = 2,
+                        .failed = 3,
+                        .trials_per_s = 1.25};
+  CHECK(json::parse(ProgressJson("running", counts)) ==
+        json::parse(R"({"state": "running", "done": 17, "from_journal": 5, "trials_per_s": 1.25,
+                        "left_s": null, "largest_gap_m": null, "falsified": 2, "failed": 3,
+                        "total": 30})"));
+  counts.is_settings = true;
+  counts.left_s = 7.5;
+  counts.largest_gap_m = 0.0625;
+  CHECK(json::parse(ProgressJson("done", counts)) ==
+        json::parse(R"({"state": "done", "done": 17, "from_journal": 5, "trials_per_s": 1.25,
+                        "left_s": 7.5, "largest_gap_m": 0.0625, "falsified": 2, "failed": 3,
+                        "most_settings": 30, "settings": 4})"));
+  CHECK(ProgressJson("done", counts).find('\n') == std::string::npos);
+}
+
 }  // namespace
 }  // namespace rift::report
