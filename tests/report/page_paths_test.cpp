@@ -82,5 +82,19 @@ TEST_CASE("A run's path says whether it fails, against what, and where its gap i
   CHECK(rows["8"]["reference"] == -1);
 }
 
+TEST_CASE("A band leaves out a twentieth of the runs on either side of it") {
+  Runs runs;
+  for (size_t i = 0; i < 8; ++i) {
+    for (Eigen::Vector2f& point : runs.result.rows[i].evidence.path_m) {
+      point.y() = 0.012F * static_cast<float>(i);
+    }
+  }
+  const json band = runs.Paths()["views"][0]["band"];
+  // In units of 0.2 mm: 95 % of 0 to 84 mm are 79.8 mm, 5 % are 4.2 mm.
+  CHECK(band[1] == 399);
+  CHECK(band[9].get<long>() == 21 - 399);
+  CHECK(runs.Paths()["views"][0]["band_of"] == 8);
+}
+
 }  // namespace
 }  // namespace rift::report
