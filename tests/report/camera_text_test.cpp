@@ -122,5 +122,50 @@ TEST_CASE("A camera's calibration is told with its errors, its coverage and what
   CHECK(CalibrationText(c) == "verdict: refuse\n");
 }
 
+TEST_CASE("Waypoints are written to the tenth of a millimetre, and a heading to that of a degree") {
+  const std::vector<control::Waypoint> waypoints{
+      {.name = "start", .x_m = 0.12344, .y_m = -0.5, .heading_deg = 12.34},
+      {.name = "wp1", .x_m = -0.25006, .y_m = 1.0, .stop = false}};
+  CHECK(WaypointsYaml(waypoints) ==
+        "waypoints:\n"
+        "  - name: start\n"
+        "    x: 0.1234\n"
+        "    y: -0.5000\n"
+        "    heading: 12.3\n"
+        "    stop: true\n"
+        "  - name: wp1\n"
+        "    x: -0.2501\n"
+        "    y: 1.0000\n"
+        "    stop: false\n");
+}
+
+TEST_CASE(
+    "Rows have a rate where two or more span a time, and a camera its troubles where it had some") {
+  vision::TrackRun run;
+  run.frames = 9;
+  run.states = {9, 0, 0, 0};
+  run.first_t_s = 1.5;
+  run.last_t_s = 2.0;
+  const std::string end = "; 9 pictures, the tag in every one, 0 dropped\n";
+  CHECK(TrackText(run, 1) == "1 rows" + end);
+  CHECK(TrackText(run, 2) == "2 rows in 0.5 s, 2.0 a second" + end);
+  CHECK(TrackText(run, 9) == "9 rows in 0.5 s, 16.0 a second" + end);
+  run.last_t_s = 1.5;
+  CHECK(TrackText(run, 9) == "9 rows" + end);
+  const std::string over = " damaged, too large or odd-sized pictures passed over, ";
+  run.status.skipped = 1;
+  CHECK(TrackText(run, 1) == "1 rows" + end + "1" + over + "0 reconnections\n");
+  run.status.skipped = 0;
+  run.status.reconnects = 1;
+  CHECK(TrackText(run, 1) == "1 rows" + end + "0" + over + "1 reconnections\n");
+  run.status.reconnects = 0;
+  run.states = {8, 0, 1, 0};
+  run.most_tags_of_this_id = 2;
+  CHECK(TrackText(run, 1) ==
+        "1 rows" + end +
+            "1 rows are ambiguous (track_state 2): another tag of this id may be the robot's\n"
+            "2 tags of this id were in the picture: take the others away\n");
+}
+
 }  // namespace
 }  // namespace rift::report

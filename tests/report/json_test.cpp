@@ -5,6 +5,7 @@
 #include "rift/report/figures/setting_grid.hpp"
 #include "rift/report/json/fields.hpp"
 #include "rift/report/json/json.hpp"
+#include "rift/report/text/text.hpp"
 #include "rift/sweep/explain/worst_trial.hpp"
 
 namespace rift::report {
@@ -153,7 +154,14 @@ TEST_CASE("A table without the column of a parameter is not that of its experime
   TableRow row = TableRowOf(TableCsv(synthetic::Grid()), "1", "table.csv");
   experiment::Experiment experiment;
   experiment.space.parameters = synthetic::Grid().parameters;
-  CHECK_NOTHROW(RequestOf(experiment, row, "a/table.csv"));
+  row["seed"] = "18446744073709551615";
+  row["trial"] = "7 b";
+  const sweep::TrialRequest request = RequestOf(experiment, row, "a/table.csv");
+  CHECK(request.seed == 18446744073709551615U);
+  CHECK(request.trial == "7 b");
+  CHECK(request.theta == synthetic::Grid().rows[0].theta);
+  row["seed"].clear();
+  CHECK(RequestOf(experiment, row, "a/table.csv").seed == 0U);
   row.erase("v_max");
   CHECK_THROWS_WITH(RequestOf(experiment, row, "a/table.csv"),
                     Catch::StartsWith("a/table.csv has no column v_max"));
@@ -175,6 +183,57 @@ TEST_CASE("A setting has the same keys in every JSON document of a sweep") {
 TEST_CASE("A number that was not computed is null in JSON") {
   CHECK(NumberOrNull(std::nan("")).is_null());
   CHECK(NumberOrNull(0.25) == 0.25);
+}
+
+TEST_CASE("A combination that holds a range has no summary of its own, nor a table") {
+  using synthetic::Numeric;
+  using synthetic::Word;
+  sweep::SweepResult result;
+  result.parameters = {{"surface", {Word("ice"), Word("mud")}},
+                       {"v", {Numeric("0.1"), Numeric("0.2")}},
+                       {"friction", {}, 0.2, 0.8}};
+  for (int i = 0; i < 4; ++i) {
+    result.rows.push_back(synthetic::Row({result.parameters[0].levels[static_cast<size_t>(i % 2)],
+                                          result.parameters[1].levels[static_cast<size_t>(i / 2)],
+                                          Numeric(std::to_string(0.3 + 0.1 * i))},
+                                         "1", 0.05));
+  }
+  sweep::Summarise(result);
+  const json summary = json::parse(SummaryJson(result));
+  CHECK(summary["by"].size() == 2);
+  CHECK(summary["by"].contains("surface"));
+  CHECK(summary["by"].contains("v"));
+  const std::string head = "  mean_gap_m  failures  trials  without_gap\n";
+  CHECK_THAT(SweepText(result), Contains("\nsurface" + head) && !Contains("[v, friction]"));
+  result.parameters[2] = {"friction", {}};
+  for (const auto& row : result.rows) result.parameters[2].levels.push_back(row.theta[2]);
+  CHECK(json::parse(SummaryJson(result))["by"].contains("[v, friction]"));
+  CHECK_THAT(SweepText(result), Contains("\n[v, friction]"));
+}
+
+TEST_CASE("Without a gap nothing is said of what makes it, and of no parameter nothing is split") {
+  sweep::SweepResult result = synthetic::Grid();
+  CHECK(json::parse(SummaryJson(result)).contains("attribution"));
+  for (auto& row : result.rows) synthetic::LoseGap(&row, "gone");
+  sweep::Summarise(result);
+  CHECK_FALSE(json::parse(SummaryJson(result)).contains("attribution"));
+  result.parameters.clear();
+  for (auto& row : result.rows) row.theta.clear();
+  sweep::Summarise(result);
+  CHECK(json::parse(SummaryJson(result))["by"].empty());
+}
+
+TEST_CASE("A gap at its threshold does not falsify a trial, one above it does") {
+  gap::GapResult result;
+  result.options.threshold_m = 0.25;
+  result.trials.resize(3);
+  result.trials[0].comparison.gap_m = 0.25;
+  result.trials[1].comparison.gap_m = 0.250001;
+  result.trials[2].comparison.gap_m = 0.125;
+  const json trials = json::parse(GapJson(result))["trials"];
+  CHECK(trials[0]["falsified"] == false);
+  CHECK(trials[1]["falsified"] == true);
+  CHECK(trials[2]["falsified"] == false);
 }
 
 }  // namespace

@@ -157,5 +157,43 @@ TEST_CASE("Of a run that only turns no way is told, and what odometry and camera
   CHECK(text.find("distance from it") == std::string::npos);
 }
 
+TEST_CASE("Of a program over one parameter each table has one line, below the values in order") {
+  Programs programs;
+  programs.result.parameters.pop_back();
+  programs.cells.resize(3);
+  for (size_t i = 0; i < 3; ++i) {
+    programs.cells[i].theta = {synthetic::Word(std::string(i + 1, static_cast<char>('a' + i)))};
+    programs.cells[i].measures.slip_left = 0.01 * static_cast<double>(i + 1);
+    programs.cells[i].measures.slip_right = -0.02;
+  }
+  programs.cells[1].measures.moved = 0;
+  const std::string text = ProgramText(programs.result.parameters, programs.cells);
+  INFO(text);
+  CHECK(text.find("\nmean distance from the programmed path (m)\n"
+                  "          a            bb     ccc\n"
+                  "all  0.0100  did not move  0.0500\n") != std::string::npos);
+  CHECK(text.find("\nspread of the repeats (m)\n"
+                  "          a            bb     ccc\n"
+                  "all  0.0050  did not move  0.0070\n") != std::string::npos);
+  CHECK(text.find("\ndrift of the odometry (% of the way)\n"
+                  "       a            bb  ccc\n"
+                  "all  3.0  did not move  5.0\n") != std::string::npos);
+  CHECK(text.find("\nslip of the left wheel (%)\n"
+                  "       a            bb  ccc\n"
+                  "all  1.0  did not move  3.0\n") != std::string::npos);
+  CHECK(text.find("\nslip of the right wheel (%)\n"
+                  "        a            bb   ccc\n"
+                  "all  -2.0  did not move  -2.0\n") != std::string::npos);
+  programs.cells[0].measures = {};
+  programs.cells[2].measures.spread_m = NAN;
+  const std::string bare = ProgramText(programs.result.parameters, programs.cells);
+  INFO(bare);
+  CHECK(bare.find("\nspread of the repeats (m)\n"
+                  "          a            bb  ccc\n"
+                  "all  no run  did not move    -\n") != std::string::npos);
+  CHECK(ProgramText({}, programs.cells).empty());
+  CHECK(ProgramText(programs.result.parameters, {}).empty());
+}
+
 }  // namespace
 }  // namespace rift::report
