@@ -368,5 +368,16 @@ TEST_CASE("The page of a sweep that runs begins before a trial, grows with them,
   CHECK_FALSE(fs::exists(file));
 }
 
+TEST_CASE("A page of more than twenty thousand trials is not drawn while the sweep runs") {
+  const test::TemporaryFolder folder;
+  Swept swept(SmallGrid());
+  LivePage page(folder.Path(), swept.evaluator);
+  sweep::TrialRow row = swept.result.rows[0];
+  row.evidence = {};
+  for (int i = 0; i < 20'001; ++i) page.Seen(row);
+  page.Tick();
+  CHECK_THAT(files::ReadFile(folder / "live.html"), Contains("The first trials are running."));
+}
+
 }  // namespace
 }  // namespace rift::sessions
