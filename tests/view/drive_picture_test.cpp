@@ -163,5 +163,37 @@ TEST_CASE("Without a picture there is room for words, which stay in it however m
   CHECK(bright.at<cv::Vec3b>(239, 319) == cv::Vec3b::all(255));
 }
 
+TEST_CASE("What is drawn over a picture has the colours that its legend tells") {
+  const vision::CameraModel camera = test::PaperCamera();
+  const auto count = [&](const TrackScene& scene, const cv::Scalar& colour) {
+    cv::Mat found;
+    cv::inRange(DrawTrack(scene).bgr, colour, colour, found);
+    return cv::countNonZero(found);
+  };
+  const cv::Scalar green(40, 220, 40), red(40, 40, 235), black(0, 0, 0), yellow(0, 225, 255),
+      blue(235, 110, 30), white(255, 255, 255), panel(32, 28, 26);
+  const TrackScene empty{.camera = &camera};
+  for (const cv::Scalar& colour : {green, red, black, yellow, blue})
+    CHECK(count(empty, colour) == 0);
+  CHECK(count(empty, panel) > 100'000);
+  TrackScene path = empty;
+  path.path_m = {{-0.3, 0.0}, {0.3, 0.0}};
+  CHECK(count(path, black) > 50);
+  TrackScene waypoint = empty;
+  waypoint.waypoints = {{"a", {0.1, 0.1}}};
+  CHECK(count(waypoint, yellow) > 50);
+  TrackScene tag = empty;
+  tag.robots = {{.tag_id = 0, .sighting = TagAt(camera, 0, 0.0, 0.0)}};
+  CHECK(count(tag, green) > 50);
+  CHECK(count(tag, red) > 20);
+  TrackScene beside = empty;
+  beside.robots = {SceneRobot{}};
+  beside.robots[0].beside.lines = {{{0.0, 0.1}, {0.0, -0.1}}};
+  CHECK(count(beside, blue) > 50);
+  TrackScene place = empty;
+  place.stand_at = geometry::Pose2{0.1, 0.0, 0.0};
+  CHECK(count(place, white) > count(empty, white) + 50);
+}
+
 }  // namespace
 }  // namespace rift::view

@@ -233,5 +233,17 @@ TEST_CASE("The outline of a robot is its simulation's, member by member") {
   CHECK((shape.wheel_radius_m == 0.03 && shape.wheel_width_m == 0.04 && shape.track_m == 0.05));
 }
 
+TEST_CASE("From the first row of a log on its powers and its waypoint are known") {
+  Run run = StraightRun();
+  const Scene scene = SceneAt(run, 0.0);
+  CHECK(scene.power.left == 0.2);
+  CHECK(scene.power.right == 0.18);
+  CHECK(scene.target == 1);
+  for (auto& pose : run.logged.poses) pose.t_s += 0.01;
+  const Scene before = SceneAt(run, 0.0);
+  CHECK(std::isnan(before.power.left));
+  CHECK(before.target == -1);
+}
+
 }  // namespace
 }  // namespace rift::view

@@ -258,5 +258,79 @@ TEST_CASE("The place that the robot drives to has a ring and its name, be it the
   }
 }
 
+TEST_CASE(
+    "The side view is of the ground below both wheels, from the outside of one to the other") {
+  // Half of a track of 83 mm and of a wheel of 6.8 mm are 44.9 mm.
+  for (const double side : {1.0, -1.0}) {
+    for (const auto& [from_m, to_m, is_below] :
+         {std::tuple{0.041, 0.044, true}, {0.048, 0.051, false}, {0.0, 0.003, true}}) {
+      Run run = StraightRun();
+      run.height_at = [side = side, from_m = from_m, to_m = to_m](double, double y_m) {
+        return side * y_m >= from_m && side * y_m <= to_m ? 0.03 : 0.0;
+      };
+      const Shot shot(run, 0);
+      const auto pixel = [&](double z_m) {
+        return shot.picture.at<cv::Vec3b>(cv::Point(shot.painter.layout().SidePixel(0.3, z_m)));
+      };
+      INFO(side << " " << from_m);
+      CHECK((pixel(0.015) == pixel(-0.01)) == is_below);
+    }
+  }
+}
+
+TEST_CASE("Ground is pale where it is low, sandy where it is high and grey where there is none") {
+  Run run = StraightRun();
+  run.patches = {{"", 0.12, 0.2, -0.1, 0.1}};
+  run.height_at = [](double x_m, double y_m) -> double {
+    if (x_m > 0.34 && y_m > 0.06) return -HUGE_VAL;
+    return x_m > 0.25 ? 0.04 : 0.0;
+  };
+  const Shot shot(run, 0);
+  const Layout& layout = shot.painter.layout();
+  const auto top = [&](double x_m, double y_m) {
+    return shot.picture.at<cv::Vec3b>(cv::Point(layout.TopPixel({x_m, y_m})));
+  };
+  CHECK(top(0.1, 0.09) == cv::Vec3b(236, 240, 240));
+  CHECK(top(0.3, -0.09) == cv::Vec3b(172, 206, 226));
+  CHECK(top(0.39, 0.1) == cv::Vec3b(120, 116, 112));
+  // A quarter of (240, 190, 130) over the low ground, within a frame of its own colour.
+  const cv::Vec3b patch = top(0.16, 0.05);
+  CHECK(patch[0] == 237);
+  CHECK(std::abs(patch[1] - 227.5) <= 0.5);
+  CHECK(std::abs(patch[2] - 212.5) <= 0.5);
+  const cv::Point corner(layout.TopPixel({0.12, 0.1}));
+  const cv::Rect around(corner.x - 3, corner.y - 3, 7, 7);
+  CHECK(cv::countNonZero(Pixels(shot.picture, around, cv::Scalar(170, 120, 60))) > 4);
+  CHECK(shot.picture.at<cv::Vec3b>(cv::Point(layout.SidePixel(0.1, -0.01))) ==
+        cv::Vec3b(188, 208, 220));
+  CHECK(shot.picture.at<cv::Vec3b>(layout.panel.br() - cv::Point(3, 3)) ==
+        cv::Vec3b(238, 235, 232));
+  CHECK(shot.picture.at<cv::Vec3b>(cv::Point(2, 2)) == cv::Vec3b(250, 250, 250));
+  CHECK(shot.picture.at<cv::Vec3b>(layout.top.tl()) == cv::Vec3b(140, 134, 128));
+  // The robot's outline, its nose, the waypoints and the ink around them.
+  for (const cv::Scalar& colour : {cv::Scalar(60, 160, 40), cv::Scalar(40, 40, 215),
+                                   cv::Scalar(0, 215, 255), cv::Scalar(40, 36, 32)}) {
+    CHECK(cv::countNonZero(Pixels(shot.picture, layout.top, colour)) > 15);
+  }
+}
+
+TEST_CASE("Letters that the font does not have are question marks, one for each") {
+  const auto titled = [](const std::string& title) {
+    Run run = StraightRun();
+    run.title = title;
+    const Shot shot(run, 0);
+    return cv::Mat(shot.picture(shot.painter.layout().panel).clone());
+  };
+  const cv::Mat marked = titled("a?b ~c?");
+  for (const std::string title : {"a\x7f"
+                                  "b ~c\x1f",
+                                  "a\xC3\xA4"
+                                  "b ~c\xE2\x82\xAC"}) {
+    CHECK(cv::norm(marked, titled(title), cv::NORM_INF) == 0.0);
+  }
+  CHECK(cv::norm(marked, titled("a?b?~c?"), cv::NORM_INF) > 0.0);
+  CHECK(cv::norm(marked, titled("a?b ?c?"), cv::NORM_INF) > 0.0);
+}
+
 }  // namespace
 }  // namespace rift::view
