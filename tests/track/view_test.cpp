@@ -73,6 +73,29 @@ TEST_CASE("Waypoints clicked in the window drive the simulator as they are") {
   CHECK(std::filesystem::exists(folder / "sim/trajectory.csv"));
 }
 
+TEST_CASE("Who leaves the window in which points are clicked sets no world frame") {
+  const test::VirtualDisplay server;
+  if (!test::CanUseWindows(server)) return;
+  const test::TemporaryFolder folder;
+  const Environment display("DISPLAY", server.Name());
+  const std::string calibration = test::ReadFile(kData + "/camera.yaml");
+  test::WriteText(folder / "camera.yaml", calibration);
+  test::WriteText(folder / "world.yaml",
+                  "points: [{name: a, x_m: 0, y_m: 0}, {name: b, x_m: 1, y_m: 0}, {name: c, x_m: "
+                  "1, y_m: 1}, {name: d, x_m: 0, y_m: 1}]\n");
+  test::RunningRift rift({"track", "--camera", kData + "/frames/*.jpg", "--calibration",
+                          folder / "camera.yaml", "--out", folder / "log.csv", "--world",
+                          folder / "world.yaml"});
+  const std::string window = test::WindowOf("rift track: world frame");
+  test::WaitForPicture(rift, window);
+  REQUIRE(Succeeds(window + "windowfocus --sync %1 key q"));
+  const ProcessResult result = rift.Wait();
+  CHECK(result.exit_code == 3);
+  CHECK_THAT(result.err, Catch::EndsWith("rift: ended before the world frame was set\n"));
+  CHECK(test::ReadFile(folder / "camera.yaml") == calibration);
+  CHECK_FALSE(std::filesystem::exists(folder / "log.csv"));
+}
+
 TEST_CASE("Points of the floor clicked in the window set the world frame") {
   const test::VirtualDisplay server;
   if (!test::CanUseWindows(server)) return;
