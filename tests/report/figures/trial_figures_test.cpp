@@ -136,6 +136,12 @@ TEST_CASE("More trials than can be told apart are fifty bins of their quantiles"
     CHECK(bins[i][3] == Approx(0.02 + 0.0012 * (from + 0.95)).margin(2e-5));
     CHECK(bins[i][4] == Approx(0.02 + 0.0012 * (from + 1.0)).margin(2e-5));
   }
+  // A hundred trials a bin: 5 % are 4.95 steps of 0.012 mm behind its first one.
+  for (size_t i = 0; i < bins.size(); ++i) {
+    const double first = 100.0 * static_cast<double>(i) + 0.5;
+    CHECK(bins[i][1] == Approx(0.02 + 0.06 * (first + 4.95) / 5000.0).margin(5e-8).epsilon(0.0));
+    CHECK(bins[i][3] == Approx(0.02 + 0.06 * (first + 94.05) / 5000.0).margin(5e-8).epsilon(0.0));
+  }
   // Two per cent of the range stay free on either side.
   CHECK_THAT(plot, Contains("set xrange [0.188:0.812]\nset yrange [0:0.1]\n") &&
                        Contains("$bins using 1:2:4 with filledcurves") &&
@@ -180,6 +186,32 @@ TEST_CASE("A value at the end of its range is in the last bin and a trial withou
   CHECK(Rows(plot, "missing") == std::vector<std::vector<double>>{{0.795, 0.0}});
   CHECK(Rows(plot, "pass").size() == 38);
   CHECK(Rows(plot, "fail").size() == 21);
+}
+
+TEST_CASE("A value that is no number has no place on a scatter plot, a high threshold ends it") {
+  sweep::SweepResult result = synthetic::Continuous(6);
+  result.rows[2].theta[0] = synthetic::Word("default");
+  result.gap.threshold_m = 0.3;
+  for (auto& row : result.rows) row.falsified = false;
+  const Figure figure = GapOverParameterFigure("name", result, 0, {});
+  CHECK(Rows(figure.plot, "pass").size() == 5);
+  CHECK_THAT(figure.plot, !Contains("NaN") && Contains("set xlabel 'friction'\n"
+                                                       "set ylabel 'gap (m)'\n"
+                                                       "set xrange [0.188:0.812]\n"
+                                                       "set yrange [0:0.4]\n"));
+  CHECK(figure.title == "Sim-to-Real gap over friction");
+  ReportOptions options;
+  options.max_points = 5;
+  CHECK(Rows(GapOverParameterFigure("name", result, 0, options).plot, "bins").size() == 5);
+}
+
+TEST_CASE("Names of trials are cut to twenty letters in the legend") {
+  sweep::SweepResult result = Trials({"a"}, {{0.01, 0.02}});
+  result.rows[0].trial = std::string(20, 'x');
+  result.rows[1].trial = std::string(21, 'y');
+  const std::string plot = GapByTrialFigure(result, {}).plot;
+  CHECK_THAT(plot, Contains("title 'trial xxxxxxxxxxxxxxxxxxxx'") &&
+                       Contains("title 'trial yyyyyyyyyy…yyyyyyyyy'"));
 }
 
 }  // namespace
