@@ -60,7 +60,8 @@ TEST_CASE("What gnuplot complains about reaches the caller with the name of the 
 }
 
 TEST_CASE("A script that draws nothing is no image") {
-  CHECK_THROWS_WITH(Render(Plot("x = 1\n"), FigureFormat::kPng), Contains("no whole png"));
+  CHECK_THROWS_WITH(Render(Plot("x = 1\n"), FigureFormat::kPng),
+                    "figure figure: gnuplot wrote 0 bytes that are no whole png");
 }
 
 TEST_CASE("A missing gnuplot is named with the package that holds it") {
