@@ -58,10 +58,8 @@ TEST_CASE("Of a robot that speaks plain it is told in whole what is assumed and 
   task.hardware.line.protocol = Protocol::kPlain;
   task.hardware.guard.pose_stale_s = 0.2;
   task.hardware.evidence.max_latency_s = 0.3;
-  task.hardware.stopping = {.full_power_speed_mps = 2.0,
-                            .braking_mps2 = 2.5,
-                            .robot_watchdog_s = 0.4,
-                            .delay_s = 0.07};
+  task.hardware.stopping = {
+      .full_power_speed_mps = 2.0, .braking_mps2 = 2.5, .robot_watchdog_s = 0.4, .delay_s = 0.07};
   const std::string plain =
       "the robot is spoken to in plain lines: its link cannot be measured, a stop cannot be "
       "acknowledged, and without rift's listener the last command holds for ever if the link "

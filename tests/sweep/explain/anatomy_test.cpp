@@ -57,6 +57,13 @@ TEST_CASE("A setting without a value of a trial does not count as one") {
   const Anatomy anatomy = Dissect(result);  // two settings: their five trials
   CHECK(anatomy.gap_m.n == 5);
   CHECK(anatomy.gap_m.mean == Approx(0.39 / 5.0));
+  // One that ended without a gap, before others of its setting, hides none of them.
+  result = Three();
+  result.rows[3].status = TrialStatus::kTimedOut;
+  result.rows[3].falsified = true;
+  Summarise(result);
+  CHECK(Dissect(result).gap_m.n == 3);
+  CHECK(Dissect(result).gap_m.mean == Approx((0.03 + 0.06 + 0.105) / 3.0));
   result = Three();
   result.rows[3].comparison.shape_gap_m = kNan;
   Summarise(result);

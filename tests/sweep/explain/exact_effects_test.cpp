@@ -415,6 +415,16 @@ TEST_CASE("Settings that all drove the same runs tell that no parameter did anyt
   CHECK(note().empty());
   result.rows[1].status = TrialStatus::kOk;
   CHECK(note() == same);
+  // Beside a range a list is told with it.
+  const std::vector<experiment::Parameter> range = result.parameters;
+  result.parameters.push_back({.key = "b", .levels = {{"x", {}}, {"y", {}}}});
+  result.rows.push_back(result.rows[1]);
+  for (TrialRow& row : result.rows) row.theta.push_back({"x", {}});
+  result.rows[2].theta[1] = {"y", {}};
+  CHECK(note() == same);
+  result.parameters = range;
+  result.rows.pop_back();
+  for (TrialRow& row : result.rows) row.theta.pop_back();
   result.parameters[0].levels = {{"0.1", 0.1}, {"0.9", 0.9}};  // said where lists are looked at
   CHECK(note().empty());
 }

@@ -224,5 +224,21 @@ TEST_CASE("A sweep without parameters suggests its only setting") {
   CHECK(suggestions.list[0].sentence.starts_with("3 trials of the only setting: 1 of 2 "));
 }
 
+TEST_CASE("The robot's settings are judged together with those that were driven, and no others") {
+  const auto judged = [](std::vector<RobotTrials> robot) {
+    for (int i = 0; i < 4; ++i) robot.push_back({.is_predicted_to_fail = true});  // not driven
+    return JudgeRobotTrials(robot, {});
+  };
+  // Two failures of two speak 22 to 1 against one failure in ten: one setting needs 20, two 40.
+  const std::vector<gap::RepeatVerdict> alone = judged({{{}, true, 2, 2}});
+  REQUIRE(alone.size() == 5);
+  CHECK(alone[0].settings == 1);
+  CHECK(alone[0].verdict == gap::Verdict::kFalsified);
+  CHECK(alone[4].verdict == gap::Verdict::kUndecided);
+  const std::vector<gap::RepeatVerdict> beside = judged({{{}, true, 2, 2}, {{}, true, 1, 0}});
+  CHECK(beside[0].settings == 2);
+  CHECK(beside[0].verdict == gap::Verdict::kUndecided);
+}
+
 }  // namespace
 }  // namespace rift::sweep

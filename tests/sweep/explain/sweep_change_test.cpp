@@ -265,5 +265,17 @@ TEST_CASE("A setting without a pair takes no part in the mean change over settin
   CHECK(with.all.gap_change_95_m.high == Approx(without.all.gap_change_95_m.high));
 }
 
+TEST_CASE("Settings of one pair each are compared over settings") {
+  const TabledSweep before{.folder = "b",
+                           .trials = {Trial("a", "1", 0.08, true), Trial("b", "1", 0.02, false)}};
+  const TabledSweep after{.folder = "a",
+                          .trials = {Trial("a", "1", 0.05, false), Trial("b", "1", 0.03, false)}};
+  const SweepChange change = CompareSweeps(before, after, {});
+  CHECK(change.is_over_settings);
+  CHECK(change.all.pairs == 2);
+  CHECK(change.all.gap_change_m == Approx(-0.01));
+  CHECK(change.all.gap_change_95_m.high == Approx(-0.01 + 12.706204736174698 * 0.02));
+}
+
 }  // namespace
 }  // namespace rift::sweep

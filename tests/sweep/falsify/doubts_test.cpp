@@ -73,6 +73,10 @@ TEST_CASE("A sweep is doubted once for each kind, as its first row has it, with 
   CHECK(doubts[1].row == 3);
   CHECK(DoubtText(result, doubts[0]) == "a.csv (and 2 more trials): 9 rows");
   CHECK(DoubtText(result, doubts[1]) == "a.csv: other");
+  SweepResult last = Of("logs", "path");
+  last.rows = {Row({}), Row({about_sim("6 rows")})};
+  REQUIRE(DoubtsOf(last).size() == 1);
+  CHECK(DoubtsOf(last)[0].row == 1);
   // Trials without a gap are not those that a run is counted among.
   for (const size_t i : {0, 2, 4}) result.rows[i].status = TrialStatus::kFell;
   CHECK(DoubtsOf(result).size() == 3);

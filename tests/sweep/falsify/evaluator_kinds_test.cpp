@@ -274,6 +274,11 @@ TEST_CASE("A copied log of the robot beside runs with seeds of their own is note
   const std::string why = ": a log that was copied is no further drive of the robot";
   CHECK(notes == std::vector<std::string>{"3.csv: it has the positions of 1.csv" + why,
                                           "4.csv: it has the positions of 2.csv" + why});
+  // One that is not there, before all others, is none of them and hides none.
+  experiment.reference.trials.names.insert(experiment.reference.trials.names.begin(), "0");
+  notes.clear();
+  Evaluator(experiment, "e.yaml", inputs()).LoadLogs();
+  CHECK(notes.size() == 2);
   notes.clear();
   // One log for all repeats is no copy, and of recorded candidates the rows are one run.
   experiment.reference.path.text = "1.csv";
@@ -397,6 +402,11 @@ TEST_CASE("A heightfield's picture is part of a trial's key at the settings that
   CHECK(key("ground").find("picture") == std::string::npos);
   experiment.simulation.terrain.surface = "hills";
   CHECK_THAT(key("ground"), Contains(" picture="));
+  // Recorded runs drive on none, whatever their experiment has.
+  experiment.candidate.kind = CandidateKind::kLogs;
+  experiment.candidate.path.text = "{surface}.csv";
+  experiment.reference.kind = ReferenceKind::kPath;
+  CHECK(key("hills").find("picture") == std::string::npos);
 }
 
 TEST_CASE("A drive of the robot is a row with how it ended, against the reference of its trial") {

@@ -67,6 +67,8 @@ TEST_CASE("A value of a range is shortened for people, and one of a list stands 
   // No double has more than 17 digits that tell.
   const experiment::Parameter narrow{.key = "a", .min = 1.0, .max = 1.0 + 0x1p-48};
   CHECK(ShortText(narrow, experiment::NumberValue(1.0 + 0x5p-51)) == "1.0000000000000022");
+  const experiment::Parameter point{.key = "a", .min = 0.25, .max = 0.25};
+  CHECK(ShortText(point, experiment::NumberValue(0.25)) == "0.25");
   CHECK(ShortText(kNumbers, {"0.123456", 0.123456}) == "0.123456");
   CHECK(ShortText(kWords, {"ice", {}}) == "ice");
 }
