@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rift/flags/flags.hpp"
@@ -15,6 +16,17 @@ namespace rift::flags {
 namespace {
 
 using Catch::Matchers::Contains;
+
+/// The error line; empty when the words were taken.
+std::string ErrorOf(CLI::App& app, std::vector<std::string> words) {
+  std::reverse(words.begin(), words.end());
+  try {
+    app.parse(words);
+    return "";
+  } catch (const CLI::ParseError& error) {
+    return UsageError(app, error);
+  }
+}
 
 enum class Kind { kOne, kTwo };
 constexpr std::array<std::string_view, 2> EnumNames(Kind) { return {"one", "two"}; }
@@ -57,16 +69,7 @@ struct Program {
     app.require_subcommand(1);
     RefuseEmptyValues(*drive, {{"--compare"}, {"--images"}});
   }
-  /// The error line; empty when it was taken.
-  std::string Parse(std::vector<std::string> words) {
-    std::reverse(words.begin(), words.end());
-    try {
-      app.parse(words);
-      return "";
-    } catch (const CLI::ParseError& error) {
-      return UsageError(app, error);
-    }
-  }
+  std::string Parse(std::vector<std::string> words) { return ErrorOf(app, std::move(words)); }
 };
 
 std::string Said(const std::vector<std::string>& words) { return Program().Parse(words); }
@@ -242,13 +245,7 @@ struct ExtraProgram {
   }
   std::string Parse(std::vector<std::string> words) {
     words.insert(words.begin(), "run");
-    std::reverse(words.begin(), words.end());
-    try {
-      app.parse(words);
-      return "";
-    } catch (const CLI::ParseError& error) {
-      return UsageError(app, error);
-    }
+    return ErrorOf(app, std::move(words));
   }
 };
 

@@ -9,18 +9,11 @@
 #include <vector>
 
 #include "bench.hpp"
+#include "paper_drive.hpp"
 #include "rift/hardware/arming.hpp"
-#include "support/inputs/paper_waypoints.hpp"
 
 namespace rift::hardware {
 namespace {
-
-DriveTask PaperTask() {
-  DriveTask task;
-  task.task = test::PaperWaypoints();
-  task.trial.pace = trial::Pace::kNewPose;
-  return task;
-}
 
 struct Told {
   std::vector<std::string> lines;

@@ -7,17 +7,11 @@
 #include <cmath>
 
 #include "bench.hpp"
+#include "paper_drive.hpp"
 #include "support/inputs/paper_waypoints.hpp"
 
 namespace rift::hardware {
 namespace {
-
-DriveTask PaperTask() {
-  DriveTask task;
-  task.task = test::PaperWaypoints();
-  task.trial.pace = trial::Pace::kNewPose;
-  return task;
-}
 
 struct Operator {
   std::vector<std::string> told;
