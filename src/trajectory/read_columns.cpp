@@ -195,9 +195,9 @@ class PoseReader {
 };
 
 /// The cells of a column that rift track writes, where a log has it. Text is somebody else's.
-class NamedColumn {
+class OptionalColumn {
  public:
-  NamedColumn(const TextTable& table, std::string_view name)
+  OptionalColumn(const TextTable& table, std::string_view name)
       : column_(std::find(table.Columns().begin(), table.Columns().end(), name) -
                 table.Columns().begin()),
         is_there_(column_ < table.Columns().size()) {}
@@ -230,7 +230,7 @@ LogRows ReadColumns(std::string_view text, const std::string& name, const ReadOp
   TextTable table(text, name, NumberedColumns(sources));
   const Units units = ParseUnits(options.units);
   const PoseReader reader(table, sources, units, name);
-  const NamedColumn state(table, "track_state"), tag(table, "tag_id");
+  const OptionalColumn state(table, "track_state"), tag(table, "tag_id");
   std::vector<double> tags;
   while (table.Next()) {
     const std::optional<double> state_of_row = state.NumberIn(table);
