@@ -214,12 +214,14 @@ bool IsSame(const trajectory::Trajectory& a, const trajectory::Trajectory& b) {
 double OtherSide(std::vector<double> values, size_t k, const CalibratedParameter& one,
                  const IsAllowed& is_allowed) {
   const double width = one.parameter.max - one.parameter.min;
-  for (double step = kTriedStep; step > kLeastTriedStep; step *= 0.5) {
+  double step = kTriedStep;
+  while (step > kLeastTriedStep) {
     for (const double moved : {one.value - step * width, one.value + step * width}) {
       values[k] = moved;
       const bool is_in_range = moved >= one.parameter.min && moved <= one.parameter.max;
       if (is_in_range && is_allowed(values)) return moved;
     }
+    step *= 0.5;
   }
   return one.value;
 }
