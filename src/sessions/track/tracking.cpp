@@ -117,11 +117,11 @@ void Track(
   if (!job.world.empty()) SetAndSaveWorld(job, listener, session);
   if (job.log.empty()) return;
   OldLog old(job);
-  if (!has_size) {
-    const vision::TrackRun none{.status = session.capture().Status()};
-    if (!job.IsPiped() && !old.IsThere()) WriteRunFile(job, session.camera(), options, none);
-    return report(none, options.tag);
-  }
+  const auto end = [&](const vision::TrackRun& run) {
+    if (!job.IsPiped() && !old.IsThere()) WriteRunFile(job, session.camera(), options, run);
+    report(run, options.tag);
+  };
+  if (!has_size) return end({.status = session.capture().Status()});
   SayWhatToExpect(job, listener.say, session);
   session.Restart();  // what was read so far of a recording belongs to its log as well
   TrackLog log(job.log, listener.print);
@@ -143,8 +143,7 @@ void Track(
   const vision::TrackRun run = RunTracking(parts);
   log.Close();
   if (run.frames > 0) old.Remove();
-  if (!job.IsPiped() && !old.IsThere()) WriteRunFile(job, session.camera(), options, run);
-  report(run, options.tag);
+  end(run);
 }
 
 }  // namespace rift::sessions
