@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "commands/short_task.hpp"
 #include "rift/sweep/run/journal_summary.hpp"
 #include "support/inputs/trials.hpp"
 #include "support/processes/environment.hpp"
@@ -26,15 +27,6 @@ using test::ReadFile;
 using test::RunRift;
 using test::WriteText;
 
-// A short task, so that a trial takes milliseconds.
-const std::string kTask = R"(waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]
-gap: {threshold_m: 0.01}
-reference: {kind: nominal, trials: 2}
-)";
-const std::string kGrid = kTask + R"(space:
-  surface: [ground, parchment]
-  v_min: [0.14, 0.16, 0.18]
-)";
 const std::string kSearch = kTask + R"(goal: falsify
 space:
   surface: [ground, parchment]
