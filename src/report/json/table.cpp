@@ -66,13 +66,6 @@ bool IsGap(const std::string& cell) {
   return gap_m && std::isfinite(*gap_m) && *gap_m >= 0.0;
 }
 
-std::optional<sweep::TrialStatus> StatusNamed(const std::string& name) {
-  const auto names = EnumNames(sweep::TrialStatus{});
-  const auto* const found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<sweep::TrialStatus>(found - names.begin());
-}
-
 /// The rows of a table.csv, one after the other. A table is read back as it was written or not at
 /// all: a cell that was overwritten must not become a zero.
 class TableReader {
@@ -140,7 +133,8 @@ class TableReader {
       Refuse(fmt::format("{} of row {} is '{}'", column, row_, row.at(std::string(column))));
     };
     require("id", row.at("id") == fmt::format("{}", row_));  // none cut out, doubled or exchanged
-    const std::optional<sweep::TrialStatus> status = StatusNamed(row.at("status"));
+    const std::optional<sweep::TrialStatus> status =
+        yaml::ValueNamed<sweep::TrialStatus>(row.at("status"));
     require("status", status.has_value());
     const bool is_ok = status == sweep::TrialStatus::kOk;
     require("falsified",
@@ -210,7 +204,7 @@ double CellNumber(const TableRow& row, const char* column) {
 /// As far as it decides how bad it is.
 sweep::TrialRow FailureRow(const TableRow& row) {
   sweep::TrialRow trial;
-  trial.status = StatusNamed(row.at("status")).value();
+  trial.status = yaml::ValueNamed<sweep::TrialStatus>(row.at("status")).value();
   trial.falsified = row.at("falsified") == "true";
   trial.comparison.gap_m = CellNumber(row, "gap_m");
   trial.way_gap_m = CellNumber(row, "way_gap_m");

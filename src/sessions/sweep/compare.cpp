@@ -21,6 +21,7 @@
 #include "rift/sessions/sweep/folder.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sessions {
 namespace {
@@ -57,7 +58,6 @@ struct Summary {
 
 Summary ReadSummary(const fs::path& folder) {
   const fs::path file = folder / "summary.json";
-  const auto names = EnumNames(gap::Verdict{});
   Summary summary;
   bool is_whole = true;
   try {
@@ -66,7 +66,7 @@ Summary ReadSummary(const fs::path& folder) {
     summary.has_all_settings = !json.contains("settings_omitted");
     for (const ordered_json& setting : json.at("settings")) {
       const std::string verdict = setting.at("verdict");
-      is_whole = is_whole && std::find(names.begin(), names.end(), verdict) != names.end();
+      is_whole = is_whole && yaml::ValueNamed<gap::Verdict>(verdict);
       summary.verdicts[setting.at("theta").dump()] = verdict;
     }
   } catch (const ordered_json::exception&) {

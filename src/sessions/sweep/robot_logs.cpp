@@ -8,6 +8,7 @@
 
 #include "rift/files/files.hpp"
 #include "rift/sweep/falsify/settings.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sessions {
 namespace {
@@ -28,9 +29,7 @@ trial::Outcome OutcomeOf(const fs::path& drive) {
       summary.is_object() && summary.contains("outcome") && summary["outcome"].is_string()
           ? summary["outcome"].get<std::string>()
           : "";
-  const auto names = EnumNames(trial::Outcome{});
-  const auto found = std::find(names.begin(), names.end(), outcome);
-  if (found != names.end()) return static_cast<trial::Outcome>(found - names.begin());
+  if (const auto known = yaml::ValueNamed<trial::Outcome>(outcome)) return *known;
   throw std::invalid_argument(fmt::format(
       "{}: outcome is '{}': a drive that was not ended properly cannot be judged; move {} away",
       file.string(), outcome, drive.string()));

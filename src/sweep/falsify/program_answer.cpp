@@ -9,6 +9,7 @@
 
 #include "rift/statistics/hash.hpp"
 #include "rift/trajectory/csv.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -53,9 +54,7 @@ std::string BreachIn(const ordered_json& answer, const std::string& line, const 
 }
 
 TrialStatus StatusIn(const ordered_json& answer) {
-  const auto names = EnumNames(TrialStatus{});
-  const auto found = std::find(names.begin(), names.end(), answer["status"].get<std::string>());
-  return static_cast<TrialStatus>(found - names.begin());
+  return yaml::ValueNamed<TrialStatus>(answer["status"].get<std::string>()).value();
 }
 
 }  // namespace rift::sweep
