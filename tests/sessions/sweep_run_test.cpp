@@ -49,6 +49,22 @@ TEST_CASE("A grid says its trials and a search its settings, to who watches and 
   CHECK_FALSE(ReadStatus(folder / "grid").shards);
 }
 
+TEST_CASE("A grid that is repeated until it is decided says its settings") {
+  const test::TemporaryFolder folder;
+  SweepTold repeated;
+  REQUIRE(SweepInto(
+      folder / "grid",
+      LoadText(kShortWay + "reference: {kind: path, trials: 3}\nspace: {surface: [ground, "
+                           "parchment], control.v_min: [0.15, 0.2]}\n"
+                           "falsify: {repeat: every, most_repeats: 5}\n"),
+      repeated));
+  CHECK(repeated.size.most == 4);
+  CHECK(repeated.size.is_settings);
+  CHECK(repeated.trials >= 12);
+  CHECK(repeated.trials <= 20);
+  CHECK(ReadStatus(folder / "grid").summary.notes.at("most_settings") == "4");
+}
+
 TEST_CASE("A search without time left tries its first settings and no others") {
   const test::TemporaryFolder folder;
   SweepTold told, more;

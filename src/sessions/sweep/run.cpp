@@ -23,11 +23,12 @@ using sweep::Journal;
 
 SweepSize SizeOf(const experiment::Experiment& experiment) {
   if (experiment.goal != experiment::Goal::kGrid) return {experiment.search.budget, true};
-  double trials = static_cast<double>(experiment.reference.trials.names.size());
+  const bool is_repeated = sweep::IsRepeatedGrid(experiment);
+  double steps = is_repeated ? 1.0 : static_cast<double>(experiment.reference.trials.names.size());
   for (const experiment::Parameter& parameter : experiment.space.parameters) {
-    trials *= static_cast<double>(parameter.levels.size());
+    steps *= static_cast<double>(parameter.levels.size());
   }
-  return {static_cast<int>(trials), false};
+  return {static_cast<int>(steps), is_repeated};
 }
 
 /// Wall-clock time of a sweep over all its runs, so that one that goes on keeps to its limit.

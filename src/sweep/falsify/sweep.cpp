@@ -37,12 +37,16 @@ std::vector<ReplacedReference> UsedIn(const std::vector<TrialRow>& rows,
 
 }  // namespace
 
+bool IsRepeatedGrid(const experiment::Experiment& experiment) {
+  return experiment.goal == experiment::Goal::kGrid &&
+         experiment.falsify.repeat == Repeat::kEvery && FirstSeed(experiment).has_value();
+}
+
 std::optional<SweepResult> SweepGrid(const experiment::Experiment& experiment,
                                      const RunTrials& run) {
   const std::vector<experiment::Theta> settings =
       experiment::GridPoints(experiment.space.parameters);
-  const bool is_repeated =
-      experiment.falsify.repeat == Repeat::kEvery && FirstSeed(experiment).has_value();
+  const bool is_repeated = IsRepeatedGrid(experiment);
   RepeatPlan plan(experiment.falsify, static_cast<int>(settings.size()),
                   experiment.gap.threshold_m);
   const int first = static_cast<int>(experiment.reference.trials.names.size());

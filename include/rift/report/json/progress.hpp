@@ -11,7 +11,7 @@ namespace rift::report {
 /// How far the trials of a sweep are.
 struct ProgressCounts {
   int most = 0;              ///< settings of a search, else trials
-  bool is_settings = false;  ///< a search
+  bool is_settings = false;  ///< a search or a repeated grid
   int steps = 0;             ///< of `most`
   int done = 0;              ///< trials
   int from_journal = 0;

@@ -12,7 +12,8 @@ namespace rift::sessions {
 /// What a sweep will have done when it ends.
 struct SweepSize {
   int most = 0;
-  /// A search: `most` settings at most, each of them with as many trials as it turns out to need.
+  /// `most` settings at most, each of them with as many trials as it turns out to need: a search,
+  /// or a grid that is repeated until it is decided.
   bool is_settings = false;
 };
 

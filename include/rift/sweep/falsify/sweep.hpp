@@ -8,8 +8,12 @@
 
 namespace rift::sweep {
 
-/// Runs every trial of every setting; with falsify.repeat: every further simulated ones until all
-/// settings are decided. Nothing when it was told to stop.
+/// True if a grid's settings get further trials until they are decided: falsify.repeat is `every`
+/// and its trials are simulated.
+bool IsRepeatedGrid(const experiment::Experiment& experiment);
+
+/// Runs every trial of every setting; of a repeated grid further ones until all settings are
+/// decided. Nothing when it was told to stop.
 std::optional<SweepResult> SweepGrid(const experiment::Experiment& experiment,
                                      const RunTrials& run);
 
