@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """The tasks of search_study by Optuna (python3-optuna): TPE and CMA-ES.
 
-  search_peers.py BUILD/benchmarks/search_study [--seeds N] [--budgets 100,500] [--only TASK,...]
+  search_peers.py BUILD/benchmarks/search_study [--seeds N] [--budget 2000] [--only TASK,...]
+                  [--with tpe,optuna-cma]
 
-Losses come from `search_study --serve`; seeds and output are those of search_study.
+Losses come from `search_study --serve`; seeds and lines are those of `search_study --each`, for
+search_table.py. Neither sampler knows its budget: the first evaluations of a long run are a short one.
 """
 import argparse
 import subprocess
@@ -51,26 +53,24 @@ def run(study_program, task, seed, budget, sampler_name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--seeds", type=int, default=50)
     parser.add_argument("--first-seed", type=int, default=1)
-    parser.add_argument("--budgets", default="100,500")
-    parser.add_argument("--only", default="rastrigin,rosenbrock,ellipsoid,peaks,deceiving,flat")
+    parser.add_argument("--budget", type=int, default=2000)
+    parser.add_argument("--only",
+                        default="rastrigin,rosenbrock,ellipsoid,peaks,deceiving,flat,robot")
     parser.add_argument("--with", dest="samplers", default="tpe,optuna-cma")
     arguments = parser.parse_args()
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     for task in arguments.only.split(","):
-        for budget in map(int, arguments.budgets.split(",")):
-            for sampler in arguments.samplers.split(","):
-                runs = [run(arguments.program, task, arguments.first_seed + i, budget, sampler)
-                        for i in range(arguments.seeds)]
-                reached = [r for r in runs if r["reached"]]
-                spent = sum(r["reached"] or r["n"] for r in runs)
-                ert = spent / len(reached) if reached else float("inf")
-                best = sorted(r["best"] for r in runs)[len(runs) // 2]
-                print(f"{task:<11} {sampler:<10} {budget:>6} {len(reached):>4}/{len(runs):<4}"
-                      f" {ert:>9.0f} {best:>11.4g}", flush=True)
+        for sampler in arguments.samplers.split(","):
+            for seed in range(arguments.first_seed, arguments.first_seed + arguments.seeds):
+                seen = run(arguments.program, task, seed, arguments.budget, sampler)
+                print(f"{task} {sampler} {arguments.budget} seed {seed}"
+                      f" reached {seen['reached'] or '-'} of {seen['n']} best {seen['best']:.6g}",
+                      flush=True)
 
 
 if __name__ == "__main__":
