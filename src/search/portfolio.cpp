@@ -10,7 +10,7 @@ namespace {
 /// the budget. One in eight is a corner, where simulators often fail first; many of them tell the
 /// models little of what lies between.
 constexpr int kDesignLeast = 8;
-constexpr int kDesignPerAxis = 4;
+constexpr int kDesignPerAxis = 2;
 constexpr double kDesignShare = 0.25;
 constexpr double kCornerShare = 0.125;
 /// Share of all points that lie anywhere while the learners gain, those of the design counted, and
