@@ -64,6 +64,8 @@ TEST_CASE("A shard comes back from its bytes, and its name is that of its conten
   const std::string bytes = EncodeShard(shard);
   const Shard back = DecodeShard(bytes, "file");
   CHECK(back.facts == "f");
+  CHECK(back.experiment == "e");
+  CHECK(back.keys == "k");
   CHECK(back.paths == 2);
   CHECK(back.kind == ShardKind::kShrink);
   CHECK(back.requests == shard.requests);
@@ -78,7 +80,11 @@ TEST_CASE("Bytes that are no shard are refused with the name of their file") {
     CHECK_THROWS_WITH(DecodeShard(bytes.substr(0, length), "3.shard"),
                       Catch::Contains("3.shard is no shard"));
   }
-  CHECK_THROWS_WITH(DecodeShard(bytes + "x", "3.shard"), Catch::Contains("behind its end"));
+  const std::string no_shard = "3.shard is no shard of a sweep that this version of rift wrote: ";
+  CHECK_THROWS_WITH(DecodeShard(bytes + "x", "3.shard"), no_shard + "there is more behind its end");
+  std::string of_another = bytes;
+  of_another[of_another.find("rift shard ") + 11] = '9';
+  CHECK_THROWS_WITH(DecodeShard(of_another, "3.shard"), no_shard + "its layout is another");
   CHECK_THROWS_WITH(DecodeShard("", "3.shard"), Catch::Contains("3.shard is no shard"));
 }
 
@@ -87,6 +93,26 @@ TEST_CASE("Keys in another order give another hash") {
   for (const char* key : {"a", "b"}) one.Add(key);
   for (const char* key : {"b", "a"}) other.Add(key);
   CHECK(one.Text() != other.Text());
+}
+
+TEST_CASE("A hash of keys holds all of them, and where each of them ends") {
+  const auto hash_of = [](const std::vector<std::string>& keys) {
+    KeysHash hash;
+    for (const std::string& key : keys) hash.Add(key);
+    return hash.Text();
+  };
+  CHECK(hash_of({}).empty());
+  CHECK(hash_of({"a", "b"}) == hash_of({"a", "b"}));
+  CHECK(hash_of({"a", "b"}) != hash_of({"c", "b"}));
+  CHECK(hash_of({"a", "b"}) != hash_of({"a", "c"}));
+  CHECK(hash_of({"a", "b"}) != hash_of({"b"}));
+  CHECK(hash_of({"a", "b"}) != hash_of({"a"}));
+  CHECK(hash_of({"ab", "c"}) != hash_of({"a", "bc"}));
+}
+
+TEST_CASE("The journal of a shard stands elsewhere until it is done") {
+  CHECK(ShardJournal("out", "n") == fs::path("out/shards/n.sqlite"));
+  CHECK(UnfinishedShardJournal("out", "n") == fs::path("out/shards/n.part"));
 }
 
 TEST_CASE("A published file takes the place of an older one whole, and leaves nothing beside it") {

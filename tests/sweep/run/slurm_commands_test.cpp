@@ -11,7 +11,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "rift/statistics/hash.hpp"
 #include "rift/sweep/run/slurm.hpp"
 #include "rift/sweep/run/slurm_options.hpp"
 #include "rift/sweep/run/slurm_shards.hpp"
@@ -19,57 +18,12 @@
 #include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
 #include "support/until.hpp"
+#include "sweep/run/stand_in_cluster.hpp"
 
 namespace rift::sweep {
 namespace {
 
 namespace fs = std::filesystem;
-
-const Facts kFacts{{"seed", "1"}};
-
-/// Commands that write down their arguments and give the answers they are told.
-class Stand {
- public:
-  Stand() {
-    for (const char* name : {"sbatch", "squeue", "scancel", "scontrol"}) {
-      test::WriteText(bin_ / name, "#!/bin/sh\nD='" + folder_.Path().string() +
-                                       "'; N=${0##*/}\n"
-                                       "printf '%s\\n' \"$@\" >> \"$D/$N.args\"\n"
-                                       "[ ! -f \"$D/$N.also\" ] || . \"$D/$N.also\"\n"
-                                       "[ ! -f \"$D/$N.err\" ] || cat \"$D/$N.err\" >&2\n"
-                                       "[ ! -f \"$D/$N.out\" ] || cat \"$D/$N.out\"\n"
-                                       "[ ! -f \"$D/$N.code\" ] || exit $(cat \"$D/$N.code\")\n");
-      fs::permissions(bin_ / name, fs::perms::owner_all);
-    }
-  }
-
-  void Answers(const std::string& name, const std::string& out) const {
-    test::WriteText(folder_ / (name + ".out"), out);
-  }
-  void Fails(const std::string& name, const std::string& words,
-             const std::string& code = "1") const {
-    test::WriteText(folder_ / (name + ".err"), words);
-    test::WriteText(folder_ / (name + ".code"), code);
-  }
-  /// Lines of a shell in the middle of a command; $D is this folder.
-  void Does(const std::string& name, const std::string& lines) const {
-    test::WriteText(folder_ / (name + ".also"), lines);
-  }
-  /// A line for each argument since the last call.
-  std::string Arguments(const std::string& name) const {
-    const fs::path file = folder_ / (name + ".args");
-    if (!fs::exists(file)) return "";
-    const std::string text = test::ReadFile(file);
-    fs::remove(file);
-    return text;
-  }
-  std::string operator/(const std::string& name) const { return folder_ / name; }
-
- private:
-  test::TemporaryFolder folder_;
-  fs::path bin_ = folder_.Path() / "bin";
-  test::Environment path_{"PATH", bin_.string() + ":" + std::getenv("PATH")};
-};
 
 const SlurmArray kArray{.name = "rift-a",
                         .tasks = {0, 1, 2, 5},
@@ -194,53 +148,15 @@ TEST_CASE("A command of Slurm that does not answer in time is killed, and may be
   const Stand stand;
   stand.Does("squeue", "echo $$ > \"$D/new\"\nmv \"$D/new\" \"$D/pid\"\nexec sleep 1000\n");
   CHECK_THROWS_WITH(QueuedTasks("rift-a", {.limit_s = 0.1}), "squeue did not answer within 0.1 s");
-  CHECK_THROWS_AS(QueuedTasks("rift-a", {.go_on = [&] { return !fs::exists(stand / "pid"); }}),
-                  SlurmBusy);
+  const auto is_there = [&] { return fs::exists(stand / "pid"); };
+  CHECK_THROWS_MATCHES(QueuedTasks("rift-a", {.go_on = [&] { return !is_there(); }}), SlurmBusy,
+                       Catch::Message("squeue did not answer within 1 s"));
+  CHECK_THROWS_MATCHES(QueuedTasks("rift-a", {.limit_s = 0.2, .go_on = [] { return false; }}),
+                       SlurmBusy, Catch::Message("squeue did not answer within 0.2 s"));
   const pid_t pid = std::stoi(test::ReadFile(stand / "pid"));
   test::WaitUntil("its end", [&] { return ::kill(pid, 0) != 0; });
   stand.Does("squeue", "");
   CHECK(QueuedTasks("rift-a", {.limit_s = 30.0}).empty());
-}
-
-/// Of an experiment whose text is empty.
-Shard ShardOf(const std::string& request) {
-  return {.facts = "f", .experiment = statistics::Hash128Text(""), .requests = {request}};
-}
-
-/// A cluster that has finished what it is given, where a journal lies ready in `ready`.
-class Cluster : public Stand {
- public:
-  Cluster() {
-    fs::create_directories(*this / "ready");
-    Answers("sbatch", "41\n");
-    Does("sbatch",
-         "for A; do S=$A; done\nF=${S%/*}\nI=0\nO=${F%/slurm/*}/shards\n"
-         "while read -r NAME; do\n"
-         "  [ ! -f \"$D/ready/$NAME\" ] || cp \"$D/ready/$NAME\" \"$O/$NAME.sqlite\"\n"
-         "done < \"$F/shards\"\n");
-  }
-  void Finishes(const Shard& shard, const std::string& key,
-                const std::string& status = "ok") const {
-    Journal journal(*this / ("ready/" + ShardName(EncodeShard(shard))), kFacts);
-    journal.Add(key, {status, 0.01, false, "row of " + key});
-    journal.Close();
-  }
-  fs::path Out() const { return *this / "out"; }
-  Journal NewJournal() const {
-    fs::create_directories(Out());
-    return Journal(Out() / "journal.sqlite", kFacts);
-  }
-};
-
-SlurmOptions Quick(int most = 1000) {
-  SlurmOptions options;
-  options.poll_s = 0.001;
-  options.max_array_size = most;
-  options.cpus_per_task = 2;
-  options.copy_every_s = 4.5;
-  options.program = "/bin/my rift";
-  options.prologue = {"module load x"};
-  return options;
 }
 
 TEST_CASE("The rows of all shards are in the journal, and what only their jobs need is gone") {
@@ -357,7 +273,8 @@ TEST_CASE("Whoever is told to stop cancels the jobs, and the next takes in what 
   cluster.Finishes(shard, "a");
   cluster.Arguments("sbatch");
   {
-    Journal part(UnfinishedShardJournal(cluster.Out(), ShardName(EncodeShard(shard))), kFacts);
+    Journal part(UnfinishedShardJournal(cluster.Out(), ShardName(EncodeShard(shard))),
+                 kFactsOfShards);
     part.Add("of a part", {"ok", 0.01, false, "its row"});
     part.Close();
   }
@@ -525,17 +442,6 @@ TEST_CASE("An array has the number behind the largest, and no job of it is left 
   CHECK(slurm.Run({shard}));
   CHECK(fs::exists(cluster.Out() / "slurm/11/jobs"));
   CHECK(cluster.Arguments("scancel") == "41\n");
-}
-
-/// Arrays of a sweep that was stopped before any was submitted.
-void WriteArrays(const Cluster& cluster, Journal& journal, const std::vector<Shard>& shards,
-                 const SlurmOptions& options) {
-  SlurmShards::Watch watch;
-  watch.go_on = [] { return false; };
-  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
-  cluster.Arguments("sbatch");
-  CHECK_FALSE(slurm.Run(shards));
-  CHECK(cluster.Arguments("sbatch").empty());
 }
 
 TEST_CASE("Whoever is told to stop does not wait for a queue that does not answer") {
