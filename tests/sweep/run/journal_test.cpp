@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 
@@ -22,6 +23,7 @@
 #include "support/inputs/trials.hpp"
 #include "support/processes/child_end.hpp"
 #include "support/processes/process.hpp"
+#include "support/until.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -325,6 +327,73 @@ TEST_CASE("A merge takes over every value of a row, and how long the other took"
   CHECK(summary.trials_by_status.at("fell") == 1);
   CHECK(summary.largest_key == "ok");
   CHECK(*summary.largest_gap_m == 0.07);
+}
+
+TEST_CASE("What is added is committed once the last commit was long ago, by whoever ticks") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  Journal journal(file, kFacts);
+  journal.Tick();  // nothing is open
+  journal.Add("a", Entry(0.05));
+  CHECK(ReadJournal(file).trials_by_status.empty());
+  test::WaitUntil("it is committed", [&] {
+    journal.Tick();
+    return ReadJournal(file).trials_by_status.contains("ok");
+  });
+}
+
+TEST_CASE("A journal that is not closed keeps what was added, too") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  {
+    Journal journal(file, kFacts);
+    journal.Add("a", Entry(0.05));
+    journal.SetNote("total", "3");
+    CHECK(fs::exists(file + "-wal"));  // as a local folder allows
+  }
+  Journal journal(file, kFacts);
+  CHECK(journal.Has("a"));
+  CHECK(journal.Note("total") == "3");
+}
+
+TEST_CASE("A closed journal is one file, which a reader that cannot write beside it can read") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  {
+    Journal journal(file, kFacts);
+    journal.Add("a", Entry(0.05));
+    journal.Close();
+  }
+  CHECK(std::distance(fs::directory_iterator(folder.Path()), {}) == 1);
+  // Bytes 18 and 19 of an SQLite file: 1 of the old journal, 2 of a write-ahead log.
+  const std::string bytes = test::ReadFile(file);
+  CHECK(bytes[18] == 1);
+  CHECK(bytes[19] == 1);
+}
+
+TEST_CASE("A journal is removed with all that stands beside it, or it is said what is not") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) test::WriteText(file + suffix, "x");
+  test::WriteText(file + "-other", "x");
+  Journal::Remove(file);
+  CHECK(std::distance(fs::directory_iterator(folder.Path()), {}) == 1);
+  CHECK_NOTHROW(Journal::Remove(file));
+  fs::create_directories(file + "-wal/full");
+  CHECK_THROWS_WITH(Journal::Remove(file), "cannot remove " + file + "-wal: Directory not empty");
+}
+
+TEST_CASE("A journal that is not to be taken over is told with its file and why") {
+  const test::TemporaryFolder folder;
+  Journal journal(folder / "all", kFacts);
+  Journal(folder / "other", {{"seed", "2"}}).Close();
+  CHECK_THROWS_WITH(journal.Merge(folder / "other"),
+                    (folder / "other") + " is the journal of another experiment");
+  CHECK_THROWS_WITH(journal.Merge(folder / "gone"), (folder / "gone") + " is no file");
+  CHECK_THROWS_WITH(Journal(folder / "other", {{"seed", "3"}}),
+                    (folder / "other") +
+                        " is the journal of another experiment: seed was 2 and is 3; choose "
+                        "another folder with --out, or start over with --fresh");
 }
 
 }  // namespace
