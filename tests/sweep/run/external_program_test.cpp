@@ -8,7 +8,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "rift/sweep/run/machine_trouble.hpp"
 #include "support/processes/environment.hpp"
@@ -228,6 +231,87 @@ TEST_CASE(
   CHECK_FALSE(ExternalProgram::WasNeverStarted(exit, "sh: 1: sim: not found"));
   CHECK_FALSE(ExternalProgram::WasNeverStarted({.code = 1}, program.LastWords()));
   CHECK_THROWS_WITH(ExternalProgram({}, ExternalProgram::MakeFolder()), "a program has no name");
+}
+
+TEST_CASE("A folder for a program is new and empty, where TMPDIR says, or it is said why not") {
+  const test::TemporaryFolder folder;
+  {
+    const test::Environment here("TMPDIR", folder.Path().string());
+    const fs::path one = ExternalProgram::MakeFolder(), other = ExternalProgram::MakeFolder();
+    CHECK(one.parent_path() == folder.Path());
+    CHECK(one.filename().string().starts_with("rift-"));
+    CHECK(fs::is_empty(one));
+    CHECK(one != other);
+    CHECK((fs::status(one).permissions() & fs::perms::mask) == fs::perms::owner_all);
+  }
+  const test::Environment nobody("TMPDIR", "/proc");  // is there, and takes no folder
+  CHECK_THROWS_WITH(ExternalProgram::MakeFolder(),
+                    "cannot make a temporary folder in /proc: No such file or directory; set "
+                    "TMPDIR to a folder that can be written");
+}
+
+TEST_CASE("Who keeps a program bears the signals that end others, and the program's own end") {
+  const ExternalProgram::Exit exit =
+      Shell("for S in INT TERM HUP PIPE; do kill -$S $PPID; done; exit 5").program.Wait();
+  CHECK(exit.code == 5);
+  CHECK(exit.signal == 0);
+}
+
+TEST_CASE("Whatever a program leaves running ends with it, in sessions of their own, too") {
+  std::string folder;
+  std::vector<pid_t> left;
+  {
+    Shell shell(
+        "(setsid sleep 1000 & echo $! >> pids); sleep 1000 & echo $! >> pids; "
+        "nohup setsid sh -c 'trap \"\" TERM HUP INT; sleep 1000 & echo $! >> pids; wait' > "
+        "/dev/null & echo $! >> pids; while [ $(wc -l < pids) -lt 4 ]; do sleep 0.01; done");
+    shell.program.Wait();
+    std::ifstream pids(fs::path(shell.program.Folder()) / "pids");
+    for (pid_t pid = 0; pids >> pid;) left.push_back(pid);
+    REQUIRE(left.size() == 4);
+    for (const pid_t pid : left) CHECK(::kill(pid, 0) == 0);
+  }
+  for (const pid_t pid : left) CHECK(::kill(pid, 0) != 0);
+}
+
+TEST_CASE("The end of a program that talks is seen though a child of it holds its output open") {
+  Shell shell("echo one; sleep 1000 & exit 9", true);
+  CHECK(shell.program.ReceiveLine() == "one");
+  CHECK_FALSE(shell.program.ReceiveLine());
+  CHECK(shell.program.Wait().code == 9);
+}
+
+TEST_CASE("What goes on for 64 MiB without an end is taken for a line") {
+  Shell shell("head -c 67108865 /dev/zero; exit 0", true);
+  const std::optional<std::string> line = shell.program.ReceiveLine();
+  REQUIRE(line);
+  CHECK(line->size() == 67'108'865);
+  CHECK_FALSE(shell.program.ReceiveLine());
+}
+
+TEST_CASE("A program that is gone leaves no file open here, and those of its folder are private") {
+  const auto open_files = [] { return std::distance(fs::directory_iterator("/proc/self/fd"), {}); };
+  const auto before = open_files();
+  for (const bool talks : {true, false}) {
+    Shell shell("stat -c %a told.txt stderr.txt | tr '\\n' ' ' >&2", talks);
+    CHECK(open_files() == before + (talks ? 3 : 1));
+    shell.program.Wait();
+    CHECK(shell.program.LastWords() == "600 600");
+  }
+  CHECK(open_files() == before);
+}
+
+TEST_CASE("Of an error above a stack the nearest line that names one is told, within 64 lines") {
+  std::string stack;
+  for (int i = 0; i < 60; ++i) stack += "\n    at f (/x/a.js:1:2)";
+  const auto words = [](const std::string& text) {
+    return WordsOf("cat >&2 <<'END'\n" + text + "\nEND");
+  };
+  CHECK(words("TypeError: near" + stack) == "TypeError: near");
+  CHECK(words("sim error: no wheel\nsecond line" + stack) == "sim error: no wheel");
+  CHECK(words("first line\nsecond line" + stack) == "second line");
+  CHECK(words("RangeError: far\nTypeError: near\nsecond line" + stack) == "TypeError: near");
+  CHECK(words("RangeError: far\nlast line") == "last line");
 }
 
 }  // namespace

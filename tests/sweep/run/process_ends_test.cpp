@@ -7,6 +7,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <new>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -44,7 +47,7 @@ TEST_CASE("A job that ends its worker with a code, or is killed for ever, is a c
   const JobResult ended =
       ResultOf([](const std::string&) -> std::string { ::_exit(7); }, {.retries = 0});
   CHECK(ended.end == JobEnd::kCrashed);
-  CHECK(ended.bytes.find('7') != std::string::npos);
+  CHECK(ended.bytes == "ended with exit code 7");
   const test::TemporaryFolder folder;
   const std::string kills = folder / "kills";
   const JobResult killed = ResultOf(
@@ -55,7 +58,7 @@ TEST_CASE("A job that ends its worker with a code, or is killed for ever, is a c
       },
       {.retries = 0});
   CHECK(killed.end == JobEnd::kCrashed);
-  CHECK(killed.bytes.starts_with("ended by signal 9"));
+  CHECK(killed.bytes == "ended by signal 9 (Killed)");
   CHECK(test::ReadFile(kills) == "xxxxx");
 }
 
@@ -167,6 +170,82 @@ TEST_CASE("A pool has a worker at least, and a batch without jobs is done") {
   CHECK(pool.Run({0, {}, {}, [] { return true; }}));
   CHECK(CoresToUse() >= 1);
   CHECK(ResultOf([](const std::string&) { return std::string(); }).bytes.empty());
+}
+
+TEST_CASE("Five kills from outside are the first failure of a job, and each further one the next") {
+  const test::TemporaryFolder folder;
+  const std::string kills = folder / "kills";
+  const JobResult killed = ResultOf(
+      [&](const std::string&) -> std::string {
+        std::ofstream(kills, std::ios::app) << 'x';
+        ::kill(::getpid(), SIGKILL);
+        return "";
+      },
+      {.retries = 1});
+  CHECK(killed.bytes == "ended by signal 9 (Killed), twice");
+  CHECK(test::ReadFile(kills) == "xxxxxx");
+}
+
+TEST_CASE("A signal of the job itself that is no kill is a failure at once") {
+  SKIP_UNDER_SANITIZER();
+  const test::TemporaryFolder folder;
+  const std::string runs = folder / "runs";
+  const JobResult ended = ResultOf(
+      [&](const std::string&) -> std::string {
+        std::ofstream(runs, std::ios::app) << 'x';
+        ::kill(::getpid(), SIGTERM);
+        return "";
+      },
+      {.retries = 0});
+  CHECK(ended.bytes == "ended by signal 15 (Terminated)");
+  CHECK(test::ReadFile(runs) == "x");
+}
+
+TEST_CASE("A job that hangs is given up after its time, and tried once where no more is allowed") {
+  const test::TemporaryFolder folder;
+  const std::string runs = folder / "runs";
+  const JobResult hung = ResultOf(
+      [&](const std::string&) -> std::string {
+        std::ofstream(runs, std::ios::app) << 'x';
+        ::sleep(1000);
+        return "";
+      },
+      {.timeout_s = 0.25, .retries = 0});
+  CHECK(hung.end == JobEnd::kHung);
+  CHECK(hung.bytes == "had not ended after 0.25 s (run.timeout_s)");
+  CHECK(test::ReadFile(runs) == "x");
+}
+
+TEST_CASE("What a worker prints is kept from the output of the sweep, as are its errors") {
+  SKIP_UNDER_SANITIZER();
+  const auto words = [](int descriptor) {
+    return ResultOf(
+               [=](const std::string&) -> std::string {
+                 [[maybe_unused]] const auto n = ::write(descriptor, "printed\n", 8);
+                 std::abort();
+               },
+               {.retries = 0})
+        .bytes;
+  };
+  CHECK(words(1) == "ended by signal 6 (Aborted): printed");
+  CHECK(words(2) == "ended by signal 6 (Aborted): printed");
+}
+
+TEST_CASE("A job that runs out of memory as an exception costs its worker, and says the limit") {
+  const test::TemporaryFolder folder;
+  const std::string runs = folder / "runs";
+  const JobResult full = ResultOf(
+      [&](const std::string&) -> std::string {
+        std::ofstream(runs, std::ios::app) << ::getpid() << '\n';
+        throw std::bad_alloc();
+      },
+      {.memory_mb = 77, .retries = 2});
+  CHECK(full.end == JobEnd::kOutOfMemory);
+  CHECK(full.bytes == "wanted more than 77 MB of memory, 3 times");
+  std::istringstream lines(test::ReadFile(runs));
+  std::set<std::string> workers;
+  for (std::string line; std::getline(lines, line);) workers.insert(line);
+  CHECK(workers.size() == 3);
 }
 
 TEST_CASE("Values come back from their bytes, and too few bytes, or none of a kind, are refused") {

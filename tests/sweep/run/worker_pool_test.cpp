@@ -3,11 +3,14 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/types.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -267,6 +270,90 @@ TEST_CASE("The cores to use are those that this process may run on") {
   REQUIRE(::sched_setaffinity(0, sizeof one, &one) == 0);
   CHECK(CoresToUse() == 1);
   ::sched_setaffinity(0, sizeof before, &before);
+}
+
+TEST_CASE("A worker that is killed between two batches is replaced in the next") {
+  WorkerPool pool([](const std::string& job) { return job + " " + std::to_string(::getpid()); }, 1,
+                  {.retries = 0});
+  const std::string first = RunAll(pool, 1).at(0).bytes;
+  const pid_t worker = std::stoi(first.substr(2));
+  REQUIRE(::kill(worker, SIGKILL) == 0);
+  siginfo_t ended{};  // and left for the pool to reap
+  REQUIRE(::waitid(P_PID, static_cast<id_t>(worker), &ended, WEXITED | WNOWAIT) == 0);
+  const JobResult second = RunAll(pool, 1).at(0);
+  CHECK(second.end == JobEnd::kDone);
+  CHECK(second.bytes.starts_with("0 "));
+  CHECK(second.bytes != first);
+}
+
+long OpenFiles() { return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}); }
+
+TEST_CASE("A pool that is gone leaves no process, not even a dead one, and no open file") {
+  const long before = OpenFiles();
+  std::set<pid_t> workers;
+  {
+    WorkerPool pool(
+        [](const std::string& job) {
+          if (job == "5") ::_exit(7);
+          return std::to_string(::getpid());
+        },
+        2, {.retries = 0});
+    for (const auto& [index, result] : RunAll(pool, 20)) {
+      if (index != 5) workers.insert(std::stoi(result.bytes));
+    }
+    CHECK(workers.size() >= 2);
+    CHECK(OpenFiles() > before);
+  }
+  CHECK(OpenFiles() == before);
+  for (const pid_t worker : workers) {
+    const bool is_there = ::kill(worker, 0) == 0 || errno != ESRCH;
+    CHECK_FALSE(is_there);
+  }
+}
+
+TEST_CASE("The time of a job begins when the one before it has ended") {
+  WorkerPool pool(
+      [](const std::string& job) {
+        ::usleep(400'000);
+        return job;
+      },
+      1, {.timeout_s = 1.2, .retries = 0});  // for 1.6 s of jobs
+  for (const auto& [index, result] : RunAll(pool, 4)) {
+    CHECK(result.end == JobEnd::kDone);
+    CHECK(result.bytes == std::to_string(index));
+  }
+}
+
+TEST_CASE("Where no process can be made a batch ends with the reason, and a later one is run") {
+  SKIP_UNDER_SANITIZER();
+  WorkerPool pool([](const std::string& job) { return job; }, 1, {});
+  rlimit before{};
+  REQUIRE(::getrlimit(RLIMIT_NOFILE, &before) == 0);
+  const rlimit none{3, before.rlim_max};
+  std::string told = "nothing";
+  ::setrlimit(RLIMIT_NOFILE, &none);
+  try {
+    pool.Run({1, [](int) { return std::string("0"); }, [](int, const JobResult&) {},
+              [] { return true; }});
+  } catch (const MachineTrouble& trouble) {
+    told = trouble.what();
+  }
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  CHECK(told == "cannot start a worker process: Too many open files");
+  CHECK(RunAll(pool, 2).at(1).bytes == "1");
+}
+
+TEST_CASE("A job of nothing, and one of as much as a socket holds, come to the worker whole") {
+  WorkerPool pool(
+      [](const std::string& job) {
+        return std::to_string(job.size()) + (job.empty() ? "" : job.substr(job.size() - 1));
+      },
+      1, {});
+  std::map<int, std::string> answers;
+  pool.Run({2, [](int i) { return i == 0 ? std::string() : std::string(60'000, 'x') + "y"; },
+            [&](int i, const JobResult& result) { answers[i] = result.bytes; },
+            [] { return true; }});
+  CHECK(answers == std::map<int, std::string>{{0, "0"}, {1, "60001y"}});
 }
 
 }  // namespace
