@@ -152,5 +152,46 @@ TEST_CASE("Rows that count are the distinct ones with a loss") {
   CHECK(RowsThatCount(result) == std::vector<int>{1, 3, 5});
 }
 
+TEST_CASE("Any trial that parts two settings parts them, the first as the last, whoever is worse") {
+  // Two settings of two trials; of one of these the gap is another, on the same path.
+  for (const int parting : {0, 1}) {
+    for (const double other_m : {0.03, 0.05}) {
+      Rows rows;
+      for (const int setting : {0, 1}) {
+        for (const int trial : {0, 1}) {
+          const bool is_other = setting == 1 && trial == parting;
+          rows.push_back(At(Ok(is_other ? other_m : 0.04, static_cast<std::uint64_t>(7 + trial)),
+                            {setting}, std::to_string(trial), static_cast<std::uint64_t>(trial)));
+        }
+      }
+      CAPTURE(parting, other_m);
+      CHECK(Distinct(rows) == std::vector<int>{0, 1, 2, 3});
+      rows[static_cast<size_t>(2 + parting)].comparison.gap_m = 0.04;
+      CHECK(Distinct(rows) == std::vector<int>{0, 1});
+      // Another path with the same gap does, too.
+      rows[static_cast<size_t>(2 + parting)].evidence.fingerprint = 9;
+      CHECK(Distinct(rows) == std::vector<int>{0, 1, 2, 3});
+    }
+  }
+}
+
+TEST_CASE("Settings are told apart by the trials that both of them have") {
+  const TrialRow one = At(Ok(0.05, 7), {1}, "1", 1), more = At(Ok(0.04, 8), {1}, "2", 2),
+                 alone = At(Ok(0.05, 7), {2}, "1", 1);
+  CHECK(Distinct({one, more, alone}) == std::vector<int>{0, 1});
+  CHECK(Distinct({alone, one, more}) == std::vector<int>{0, 2});
+  CHECK(Distinct({one, alone, more}) == std::vector<int>{0, 2});
+}
+
+TEST_CASE("A whole sweep leaves out repeats that are the same unless chance may bring them again") {
+  SweepResult result;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    result.rows.push_back(At(Ok(0.05, 7), {1}, std::to_string(seed), seed));
+  }
+  CHECK(RowsThatCount(result) == std::vector<int>{0});
+  result.chance_repeats_runs = true;
+  CHECK(RowsThatCount(result) == std::vector<int>{0, 1, 2});
+}
+
 }  // namespace
 }  // namespace rift::sweep

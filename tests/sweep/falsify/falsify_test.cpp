@@ -3,6 +3,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "rift/statistics/random.hpp"
 #include "rift/sweep/falsify/settings.hpp"
@@ -295,6 +298,59 @@ TEST_CASE("Another seed of the experiment is another search") {
     return Falsify(plan, RunHere(Simulated, {}), [](const auto&) { return true; })->rows[0].theta;
   };
   CHECK(first(1) != first(2));
+}
+
+TEST_CASE("The worst setting is the first of those that are equally bad") {
+  experiment::Experiment plan =
+      Plan(Budget(6, search::Method::kRandom), {.until = Until::kBudget, .repeat = Repeat::kNone});
+  const SweepResult result = *Falsify(plan,
+                                      RunHere(
+                                          [](const TrialRequest& request) {
+                                            TrialRow row = RowFor(request);
+                                            row.comparison.gap_m = 0.02;
+                                            return row;
+                                          },
+                                          {}),
+                                      [](const auto&) { return true; });
+  CHECK(result.falsification->worst_setting == 0);
+  CHECK(result.falsification->evaluations == 6);
+}
+
+TEST_CASE("What is falsified later is the worst where it costs more, and what is not is none") {
+  // The trials of a search in turn: how far apart, and whether they fail.
+  const std::vector<std::pair<double, bool>> trials{{0.09, false}, {0.07, true},  {0.10, false},
+                                                    {0.08, true},  {0.075, true}, {0.20, false}};
+  experiment::Experiment plan =
+      Plan(Budget(6, search::Method::kRandom), {.until = Until::kBudget, .repeat = Repeat::kNone});
+  plan.reference.trials.names = {"1", "2", "3", "4", "5", "6"};
+  int run = 0;
+  const SweepResult result = *Falsify(plan,
+                                      RunHere(
+                                          [&](const TrialRequest& request) {
+                                            const auto& [gap_m, fails] =
+                                                trials[static_cast<size_t>(run++ / 6)];
+                                            TrialRow row = RowFor(request);
+                                            row.comparison.gap_m = gap_m;
+                                            row.falsified = fails;
+                                            return row;
+                                          },
+                                          {}),
+                                      [](const auto&) { return true; });
+  CHECK(result.falsification->verdict == gap::Verdict::kFalsified);
+  CHECK(result.falsification->first_evaluation == 2);
+  CHECK(result.falsification->worst_setting == 3);
+}
+
+TEST_CASE("Four strategies choose points blindly, the others by what they were told") {
+  using search::Method;
+  constexpr auto kNames = EnumNames(Method{});
+  for (size_t i = 0; i < kNames.size(); ++i) {
+    const auto method = static_cast<Method>(i);
+    const bool is_blind = method == Method::kRandom || method == Method::kSobol ||
+                          method == Method::kLatinHypercube || method == Method::kCorners;
+    CAPTURE(kNames[i]);
+    CHECK(IsChosenByResults({.strategy = std::string(kNames[i])}) == !is_blind);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "rift/sweep/falsify/falsify.hpp"
 #include "rift/sweep/falsify/verdict.hpp"
@@ -352,6 +355,78 @@ TEST_CASE("The worst setting of a search is the worst falsified one, else the wo
   }
   CHECK(low.falsification->first_evaluation == first);
   CHECK(gap_of(low, *low.falsification->worst_setting) == largest_failing_m);
+}
+
+// Numbers of trials below: the evidence of a mixture of five alternatives against what so many
+// settings and decisions need (statistics::EvidenceOnShare, NeededEvidence), in Python.
+
+TEST_CASE("As many trials falsify the first of so many settings as by hand") {
+  for (const auto& [settings, trials] :
+       {std::pair{1, 2}, {2, 3}, {10, 4}, {100, 5}, {500, 5}, {5000, 7}}) {
+    CAPTURE(settings);
+    CHECK(TrialsToFalsify({}, settings) == trials);
+  }
+  const gap::VerdictOptions half{.share = 0.5, .confidence = 0.99};
+  CHECK(TrialsToFalsify(half, 1) == 9);
+  CHECK(TrialsToFalsify(half, 10) == 13);
+  CHECK(TrialsToFalsify(half, 500) == 19);
+}
+
+FalsifyOptions Every(double share, double confidence, int most_repeats = 100) {
+  FalsifyOptions options{.repeat = Repeat::kEvery, .most_repeats = most_repeats};
+  options.share = share;
+  options.confidence = confidence;
+  return options;
+}
+
+TEST_CASE("A setting gets the trials that could decide it, from what it has had so far") {
+  struct Case {
+    int failing, passing, settings, more, more_of_three_in_ten;
+  };
+  for (const Case& one : {Case{1, 0, 1, 1, 2},
+                          {1, 3, 1, 3, 6},
+                          {1, 0, 20, 3, 5},
+                          {2, 6, 20, 5, 12},
+                          {2, 0, 500, 3, 7},
+                          {1, 4, 500, 7, 15},
+                          {0, 1, 1, 3, 5},
+                          {0, 5, 20, 7, 13},
+                          {3, 10, 20, 6, 15}}) {
+    CAPTURE(one.failing, one.passing, one.settings);
+    const Rows rows = Trials(one.failing, one.passing);
+    CHECK(MoreOf(rows, Every(0.1, 0.95), one.settings) == one.more);
+    CHECK(MoreOf(rows, Every(0.3, 0.9), one.settings) == one.more_of_three_in_ten);
+    // One trial less than it needs is not allowed, and so none is worth it.
+    const int all = one.failing + one.passing + one.more;
+    CHECK(MoreOf(rows, Every(0.1, 0.95, all), one.settings) == one.more);
+    CHECK(MoreOf(rows, Every(0.1, 0.95, all - 1), one.settings) == 0);
+  }
+}
+
+TEST_CASE("Each setting that is decided makes the next need less, of its own kind alone") {
+  // Of 20: so many falsified ones before, then what an open one still needs.
+  for (const auto& [before, more] : {std::pair{0, 4}, {4, 4}, {5, 3}, {7, 3}}) {
+    CAPTURE(before);
+    RepeatPlan plan(Every(0.1, 0.95), 20, 0.06);
+    for (int i = 0; i < before; ++i) plan.Add({Trials(9, 0)});
+    CHECK(plan.More({Trials(1, 2)}).front() == more);
+  }
+  // And passed ones, where half of the runs may fail.
+  for (const auto& [before, more] : {std::pair{0, 9}, {1, 8}, {2, 7}, {4, 7}, {5, 6}, {8, 6}}) {
+    CAPTURE(before);
+    RepeatPlan plan(Every(0.5, 0.95), 20, 0.06);
+    for (int i = 0; i < before; ++i) plan.Add({Trials(0, 80)});
+    CHECK(plan.More({Trials(0, 2)}).front() == more);
+    CHECK_FALSE(plan.HasFalsified());
+  }
+}
+
+TEST_CASE("The settings of a batch have their own numbers of trials, in their order") {
+  RepeatPlan plan(Every(0.1, 0.95), 20, 0.06);
+  const Rows far = Trials(0, 5), fails = Trials(1, 2), sure = Trials(9, 0), lost = Untold(3);
+  CHECK(plan.More({far, fails, lost, fails}) == std::vector<int>{7, 4, 0, 4});
+  CHECK(plan.More({sure, fails}).front() == 0);
+  CHECK(plan.More({}).empty());
 }
 
 }  // namespace

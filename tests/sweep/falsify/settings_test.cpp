@@ -240,5 +240,55 @@ TEST_CASE("An empty result has the head of its experiment") {
   CHECK(result.rows.empty());
 }
 
+TEST_CASE("The tag of a simulated robot is where its setting and its draw have it") {
+  experiment::Experiment plan = Plan();
+  plan.simulation.mocap.tag_ahead_m = 0.03;
+  CHECK(TagAhead_m(plan, {.theta = kTheta}) == 0.03);
+  plan.space.parameters = {{.key = "simulation.mocap.tag_ahead_m", .min = -0.1, .max = 0.1}};
+  CHECK(TagAhead_m(plan, {.theta = {{"-0.07", -0.07}}}) == -0.07);
+  plan.space.parameters.clear();
+  plan.ensemble = {{"simulation.mocap.tag_ahead_m"}, {{0.01}, {0.02}}};
+  std::set<double> of_seeds;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    of_seeds.insert(TagAhead_m(plan, {.seed = seed}));
+    experiment::Experiment own = plan;
+    own.seed = seed;  // of a trial without a seed
+    CHECK(TagAhead_m(own, {}) == TagAhead_m(plan, {.seed = seed}));
+  }
+  CHECK(of_seeds == std::set<double>{0.01, 0.02});
+  for (const CandidateKind kind : {CandidateKind::kLogs, CandidateKind::kProgram}) {
+    plan.candidate.kind = kind;
+    CHECK(TagAhead_m(plan, {.seed = 1}) == 0.0);
+  }
+}
+
+TEST_CASE("Settings are the same where each value is, however its number is written") {
+  CHECK(IsSameSetting({{"0.20", 0.2}, {"ice", {}}}, {{"0.2", 0.2}, {"ice", {}}}));
+  CHECK_FALSE(IsSameSetting({{"0.2", 0.2}, {"ice", {}}}, {{"0.2", 0.2}, {"rock", {}}}));
+  CHECK_FALSE(IsSameSetting({{"0.2", 0.2}, {"ice", {}}}, {{"0.3", 0.3}, {"ice", {}}}));
+  CHECK_FALSE(IsSameSetting({{"0.2", 0.2}}, {{"0.2", 0.2}, {"ice", {}}}));
+  CHECK_FALSE(IsSameSetting({{"0.2", 0.2}, {"ice", {}}}, {{"0.2", 0.2}}));
+  CHECK(IsSameSetting({}, {}));
+}
+
+TEST_CASE("The levels of numbers are ranked by their values, and words stay in their order") {
+  const std::vector<experiment::Parameter> space{
+      {.key = "numbers", .levels = {{"10", 10.0}, {"9", 9.0}, {"-2", -2.0}, {"0.5", 0.5}}},
+      {.key = "words", .levels = {{"z", {}}, {"a", {}}, {"7", 7.0}}}};
+  const auto at = [&](double number, double word) {
+    const experiment::Theta theta = ThetaAt(space, {number, word});
+    return theta[0].text + " " + theta[1].text;
+  };
+  CHECK(at(0.0, 0.0) == "-2 z");
+  CHECK(at(1.0, 1.0) == "0.5 a");
+  CHECK(at(2.0, 2.0) == "9 7");
+  CHECK(at(3.0, 0.0) == "10 z");
+  const std::vector<search::Axis> axes = AxesOf(space);
+  CHECK(axes[0].kind == search::AxisKind::kInteger);
+  CHECK(axes[0].max == 3.0);
+  CHECK(axes[1].kind == search::AxisKind::kCategorical);
+  CHECK(axes[1].max == 2.0);
+}
+
 }  // namespace
 }  // namespace rift::sweep

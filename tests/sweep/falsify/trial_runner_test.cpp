@@ -7,6 +7,7 @@
 #include <cmath>
 #include <csignal>
 #include <limits>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -15,6 +16,7 @@
 #include "rift/sweep/falsify/falsify.hpp"
 #include "rift/sweep/falsify/settings.hpp"
 #include "rift/sweep/falsify/sweep.hpp"
+#include "rift/sweep/run/journal_summary.hpp"
 #include "support/inputs/paths.hpp"
 #include "support/processes/process.hpp"
 #include "support/sanitizer.hpp"
@@ -304,6 +306,63 @@ TEST_CASE("A journal tells people how a trial ended, its gap and whether it fail
   CHECK(rows.getColumn(2).getDouble() == 0.1);
   CHECK(rows.getColumn(3).getInt() == 1);
   CHECK_FALSE(rows.executeStep());
+}
+
+TEST_CASE("What was run stands in the journal for others as soon as a batch ends or is stopped") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  Journal journal(file, {{"version", "1"}});
+  std::vector<TrialRequest> requests;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    requests.push_back({.theta = {{"fine", {}}}, .trial = "1", .seed = seed});
+  }
+  const auto committed = [&] {
+    const std::map<std::string, int> rows = ReadJournal(file).trials_by_status;
+    return rows.contains("timed_out") ? rows.at("timed_out") : 0;
+  };
+  const Evaluate full = [](const TrialRequest&) { return FullRow(); };
+  TrialRunner runner(full, KeyOf, &journal, 1, {}, {});
+  REQUIRE(runner.Run({requests[0], requests[1]}));
+  CHECK(committed() == 2);
+  int seen = 0;
+  Watch watch;
+  watch.seen = [&](const TrialRow&, bool) { ++seen; };
+  watch.go_on = [&] { return seen == 0; };
+  TrialRunner stopped(full, KeyOf, &journal, 1, {}, watch);
+  CHECK_FALSE(stopped.Run({requests[2], requests[3], requests[4], requests[5]}));
+  CHECK(seen >= 1);
+  CHECK(committed() == 2 + seen);
+}
+
+TEST_CASE("Rows stand in the order of their requests, known and new ones mixed") {
+  const test::TemporaryFolder folder;
+  Journal journal(folder / "journal.sqlite", {{"version", "1"}});
+  const Evaluate evaluate = [](const TrialRequest& request) {
+    TrialRow row = RowFor(request);
+    row.comparison.gap_m = 0.01 * static_cast<double>(*request.seed);
+    return row;
+  };
+  std::vector<TrialRequest> requests;
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    requests.push_back({.theta = {{"fine", {}}}, .trial = "1", .seed = seed});
+  }
+  std::vector<std::pair<std::uint64_t, bool>> seen;
+  Watch watch;
+  watch.seen = [&](const TrialRow& row, bool from_journal) {
+    seen.emplace_back(*row.seed, from_journal);
+  };
+  TrialRunner runner(evaluate, KeyOf, &journal, 1, {}, watch);
+  REQUIRE(runner.Run({requests[1], requests[3]}));
+  const auto rows = runner.Run({requests[4], requests[3], requests[0], requests[1], requests[2]});
+  REQUIRE(rows);
+  const std::vector<std::uint64_t> order{4, 3, 0, 1, 2};
+  for (size_t i = 0; i < order.size(); ++i) {
+    CHECK((*rows)[i].seed == order[i]);
+    CHECK((*rows)[i].comparison.gap_m == 0.01 * static_cast<double>(order[i]));
+  }
+  CHECK(seen ==
+        std::vector<std::pair<std::uint64_t, bool>>{
+            {1, false}, {3, false}, {3, true}, {1, true}, {4, false}, {0, false}, {2, false}});
 }
 
 }  // namespace
