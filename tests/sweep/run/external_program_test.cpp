@@ -2,6 +2,7 @@
 #include "rift/sweep/run/external_program.hpp"
 
 #include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -16,6 +17,7 @@
 #include "rift/sweep/run/machine_trouble.hpp"
 #include "support/processes/environment.hpp"
 #include "support/processes/process.hpp"
+#include "support/sanitizer.hpp"
 #include "support/until.hpp"
 
 namespace rift::sweep {
@@ -312,6 +314,42 @@ TEST_CASE("Of an error above a stack the nearest line that names one is told, wi
   CHECK(words("first line\nsecond line" + stack) == "second line");
   CHECK(words("RangeError: far\nTypeError: near\nsecond line" + stack) == "TypeError: near");
   CHECK(words("RangeError: far\nlast line") == "last line");
+}
+
+TEST_CASE("A long line comes to a program whole") {
+  Shell shell("head -n 1 | wc -c", true);
+  CHECK(shell.program.SendLine(std::string(1'000'000, 'a')));
+  CHECK(shell.program.ReceiveLine() == "1000001");
+}
+
+TEST_CASE("A program that cannot be started for want of files leaves none open, and no folder") {
+  SKIP_UNDER_SANITIZER();
+  // No number below the next is free, so that the limit alone says how many more there may be.
+  std::vector<int> filled;
+  const auto open_files = [] { return std::distance(fs::directory_iterator("/proc/self/fd"), {}); };
+  do {
+    filled.push_back(::dup(0));
+  } while (filled.back() + 1 < open_files() - 1);
+  rlimit before{};
+  REQUIRE(::getrlimit(RLIMIT_NOFILE, &before) == 0);
+  for (const int more : {1, 3, 5}) {  // for none, one or two of its three pairs of sockets
+    const std::string folder = ExternalProgram::MakeFolder();
+    const auto open_before = open_files();
+    const rlimit few{static_cast<rlim_t>(filled.back() + 1 + more), before.rlim_max};
+    std::string told = "nothing";
+    ::setrlimit(RLIMIT_NOFILE, &few);
+    try {
+      ExternalProgram({.arguments = {"true"}, .talks = true}, folder);
+    } catch (const MachineTrouble& trouble) {
+      told = trouble.what();
+    }
+    ::setrlimit(RLIMIT_NOFILE, &before);
+    CAPTURE(more);
+    CHECK(told == "cannot start a program: Too many open files");
+    CHECK(open_files() == open_before);
+    CHECK_FALSE(fs::exists(folder));
+  }
+  for (const int one : filled) ::close(one);
 }
 
 }  // namespace

@@ -396,5 +396,15 @@ TEST_CASE("A journal that is not to be taken over is told with its file and why"
                         "another folder with --out, or start over with --fresh");
 }
 
+TEST_CASE("A journal that another program is writing says so, and is not waited for for ever") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "journal.sqlite";
+  Journal journal(file, kFacts);
+  SQLite::Database other(file, SQLite::OPEN_READWRITE);
+  other.exec("BEGIN IMMEDIATE");
+  CHECK_THROWS_WITH(journal.Add("a", Entry(0.05)),
+                    file + ": another program is writing it (database is locked)");
+}
+
 }  // namespace
 }  // namespace rift::sweep

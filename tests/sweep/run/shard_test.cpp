@@ -122,7 +122,11 @@ TEST_CASE("A published file takes the place of an older one whole, and leaves no
   PublishFile(folder / "new", folder / "shards/a.sqlite");
   CHECK(test::ReadFile(folder / "shards/a.sqlite") == "new bytes");
   CHECK(std::distance(fs::directory_iterator(folder / "shards"), {}) == 1);
-  CHECK_THROWS_AS(PublishFile(folder / "new", folder / "gone/a.sqlite"), std::runtime_error);
+  CHECK_THROWS_WITH(PublishFile(folder / "new", folder / "gone/a.sqlite"),
+                    "cannot write " + (folder / "gone/a.sqlite") + ": No such file or directory");
+  CHECK_THROWS_WITH(PublishFile(folder / "none", folder / "shards/a.sqlite"),
+                    "cannot write " + (folder / "shards/a.sqlite") + ": No such file or directory");
+  CHECK(test::ReadFile(folder / "shards/a.sqlite") == "new bytes");
   CHECK_FALSE(fs::exists(folder / "gone"));
   // What cannot take the place of its target leaves nothing beside it.
   fs::create_directories(folder / "taken/b.sqlite/full");
