@@ -32,8 +32,7 @@ TEST_CASE("Arrays stand by their number, and open are those with shards") {
   for (const char* name : {"10", "9", "2", "123456789", "12345678", "1b", "-1"}) {
     fs::create_directories(out / (std::string("slurm/") + name));
   }
-  CHECK(NamesOf(JobArray::Of(out.Path())) ==
-        std::vector<std::string>{"2", "9", "10", "12345678"});
+  CHECK(NamesOf(JobArray::Of(out.Path())) == std::vector<std::string>{"2", "9", "10", "12345678"});
   CHECK(JobArray::OpenOf(out.Path()).empty());
   CHECK(JobArray::Next(out.Path()).Folder() == out.Path() / "slurm/12345679");
   JobArray(out / "slurm/9").Write("name: x\n", {ShardWith("a")});
@@ -119,7 +118,8 @@ TEST_CASE("What was submitted is noted line by line") {
   CHECK(test::ReadFile(out / "jobs") == "12 0-3,7\n13 2\n");
 }
 
-TEST_CASE("An array that is over keeps its script, its jobs and words, and no shard of it is left") {
+TEST_CASE(
+    "An array that is over keeps its script, its jobs and words, and no shard of it is left") {
   const test::TemporaryFolder out;
   JobArray array(out / "slurm/1");
   const std::vector<std::string> names =
@@ -157,8 +157,8 @@ TEST_CASE("The script of an array runs the file that was started here where no o
   array.WriteScript(out.Path() / "to here", options);
   const std::string script = test::ReadFile(array.Script());
   const std::string program = fs::read_symlink("/proc/self/exe").string();
-  CHECK_THAT(script, Catch::Contains("\nmodule load gcc\nulimit -c 0\nexec '" + program +
-                                     "' sweep '"));
+  CHECK_THAT(script,
+             Catch::Contains("\nmodule load gcc\nulimit -c 0\nexec '" + program + "' sweep '"));
   CHECK_THAT(script, Catch::Contains("' --out '" + (out / "to here") + "' --shard '"));
   CHECK_THAT(script, Catch::EndsWith("'/\"$SLURM_ARRAY_TASK_ID\".shard --jobs 7 --copy-every 90 "
                                      "--large-inputs\n"));

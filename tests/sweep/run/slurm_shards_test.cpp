@@ -30,6 +30,11 @@ SlurmShards::Watch Keeping(std::vector<std::string>& said) {
   return watch;
 }
 
+/// The absolute name of what is given by its way from the working directory.
+std::string SeenFromHere(const fs::path& path) {
+  return (fs::current_path() / fs::relative(path)).string();
+}
+
 TEST_CASE("An array that Slurm may have taken without an answer is not submitted twice") {
   const Cluster cluster;
   Journal journal = cluster.NewJournal();
@@ -105,7 +110,8 @@ TEST_CASE("A task that cannot be cancelled now is submitted anew once it is, and
   CHECK(seen[3] == ShardCounts{.total = 1, .done = 1});
 }
 
-TEST_CASE("The journal of a shard of another experiment is told, removed, and the shard run again") {
+TEST_CASE(
+    "The journal of a shard of another experiment is told, removed, and the shard run again") {
   const Cluster cluster;
   Journal journal = cluster.NewJournal();
   const Shard shard = ShardOf("a");
@@ -136,8 +142,9 @@ TEST_CASE("A shard without a journal and without a word is told with nothing as 
   SlurmShards slurm(cluster.Out(), options, "", journal, {});
   const std::string array = (cluster.Out() / "slurm/1").string();
   CHECK_THROWS_WITH(slurm.Run({ShardOf("a")}),
-                    "shard 0 of " + array + " was run 3 times and left no journal; the last line of " +
-                        array + "/0.log: nothing");
+                    "shard 0 of " + array +
+                        " was run 3 times and left no journal; the last line of " + array +
+                        "/0.log: nothing");
 }
 
 TEST_CASE("Each array of a sweep is cleaned up when all of its own shards are done") {
@@ -211,6 +218,24 @@ TEST_CASE("Whoever was stopped leaves the queue alone from then on and complains
   CHECK(cluster.Arguments("sbatch").empty());
   CHECK(said.empty());
   CHECK(SlurmShards::AreOpen(cluster.Out()));  // the same command goes on with it
+}
+
+TEST_CASE("Tasks start where the sweep was started, under names that hold from there") {
+  const Cluster cluster;
+  Journal journal = cluster.NewJournal();
+  cluster.Finishes(ShardOf("a"), "a");
+  const SlurmOptions options = Quick();
+  SlurmShards slurm(fs::relative(cluster.Out()), options, "", journal, {});
+  CHECK(slurm.Run({ShardOf("a")}));
+  const std::string array = (cluster.Out() / "slurm/1").string();
+  CHECK(cluster.Arguments("sbatch") ==
+        "--parsable\n--propagate=NONE\n--job-name=" + JobArray(array).JobName() +
+            "\n--chdir=" + fs::current_path().string() + "\n--output=" + SeenFromHere(array) +
+            "/%a.log\n--open-mode=append\n--requeue\n--cpus-per-task=2\n--array=0\n" +
+            SeenFromHere(array) + "/array.sh\n");
+  CHECK_THAT(test::ReadFile(array + "/array.sh"),
+             Catch::Contains(" --out '" + SeenFromHere(cluster.Out()) + "' --shard '" +
+                             SeenFromHere(array) + "'/"));
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ inline SlurmOptions Quick(int most = 1000) {
 
 /// Arrays of a sweep that was stopped before any was submitted.
 inline void WriteArrays(const Cluster& cluster, Journal& journal, const std::vector<Shard>& shards,
-                 const SlurmOptions& options) {
+                        const SlurmOptions& options) {
   SlurmShards::Watch watch;
   watch.go_on = [] { return false; };
   SlurmShards slurm(cluster.Out(), options, "", journal, watch);
