@@ -20,6 +20,7 @@
 #include "support/inputs/paths.hpp"
 #include "support/processes/process.hpp"
 #include "support/sanitizer.hpp"
+#include "sweep/falsify/job_status.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -363,6 +364,49 @@ TEST_CASE("Rows stand in the order of their requests, known and new ones mixed")
   CHECK(seen ==
         std::vector<std::pair<std::uint64_t, bool>>{
             {1, false}, {3, false}, {3, true}, {1, true}, {4, false}, {0, false}, {2, false}});
+}
+
+TEST_CASE("Whoever watches names the sides of rows that could not name them, and of no others") {
+  const Evaluate evaluate = [](const TrialRequest& request) {
+    if (*request.seed == 1) throw std::runtime_error("no wheel");
+    return FullRow();
+  };
+  Watch watch;
+  watch.name_sides = [](TrialRow& row) {
+    row.candidate = "program of trial " + row.trial;
+    row.reference = "its log";
+  };
+  TrialRunner runner(evaluate, KeyOf, nullptr, 1, {}, watch);
+  const auto rows = runner.Run({{.theta = {{"fine", {}}}, .trial = "1", .seed = 0},
+                                {.theta = {{"fine", {}}}, .trial = "2", .seed = 1}});
+  REQUIRE(rows);
+  CHECK((*rows)[0].candidate == "c");
+  CHECK((*rows)[0].reference == "r");
+  CHECK((*rows)[1].candidate == "program of trial 2");
+  CHECK((*rows)[1].reference == "its log");
+  CHECK((*rows)[1].reason == "no wheel");
+}
+
+TEST_CASE("A trial that is run apart ends in a process of its own, as it ends") {
+  const TrialRequest request{.theta = {{"fine", {}}}, .trial = "4", .seed = 9};
+  const JobResult done = RunApart(
+      [](const std::string& job) {
+        const TrialRequest asked = DecodeRequest(job);
+        return asked.theta[0].text + asked.trial + std::to_string(*asked.seed) + " " +
+               std::to_string(::getpid());
+      },
+      request, {});
+  CHECK(done.end == JobEnd::kDone);
+  CHECK(done.bytes.starts_with("fine49 "));
+  CHECK(done.bytes != "fine49 " + std::to_string(::getpid()));
+  const JobResult hung = RunApart(
+      [](const std::string&) -> std::string {
+        ::sleep(1000);
+        return "";
+      },
+      request, {.timeout_s = 0.1, .retries = 1});
+  CHECK(hung.end == JobEnd::kHung);
+  CHECK(hung.bytes == "had not ended after 0.1 s (run.timeout_s), twice");
 }
 
 }  // namespace
