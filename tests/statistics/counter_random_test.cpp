@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
 
 namespace rift::statistics {
 namespace {
@@ -41,6 +42,13 @@ TEST_CASE("The values of a seed are the same on every platform and in every vers
   const CounterRandom random(7, 1);
   CHECK(random.Uniform(0, 0) == 0.63214900071788227);
   CHECK(random.Uniform(123, 4) == 0.16710453897637106);
+  // SplitMix64 of both by hand, and the first of std::mt19937_64 by the same seed_seq.
+  CHECK(SeedOfStream(7, 1) == 14368253667642571156U);
+  CHECK(SeedOfStream(1, 7) == 12866790076561457778U);
+  CHECK(Random(7, 1).Uniform() == 0.15299213195691569);
+  CHECK(Random((std::uint64_t{7} << 32) + 3, (std::uint64_t{5} << 32) + 2).Uniform() ==
+        0.40602787750996522);
+  CHECK(Random(7, 1).Below(1'000'000) == 152'992);
 }
 
 }  // namespace

@@ -100,9 +100,14 @@ TEST_CASE("Clopper-Pearson intervals cover the share at least as often as they p
 }
 
 TEST_CASE("Counts that cannot be are refused") {
-  CHECK_THROWS_AS(ClopperPearson(3, 2, 0.95), std::invalid_argument);
-  CHECK_THROWS_AS(ClopperPearson(-1, 2, 0.95), std::invalid_argument);
-  CHECK_THROWS_AS(ClopperPearson(1, 2, 1.0), std::invalid_argument);
+  for (const int wrong : {-1, 3}) {
+    CHECK_THROWS_WITH(ClopperPearson(wrong, 2, 0.95),
+                      "Clopper-Pearson: successes must lie between 0 and the trials");
+  }
+  for (const double wrong : {0.0, 1.0, double{NAN}}) {
+    CHECK_THROWS_WITH(ClopperPearson(1, 2, wrong),
+                      "Clopper-Pearson: the confidence must lie between 0 and 1");
+  }
 }
 
 TEST_CASE("The interval of a mean is Student's and covers it as often as it promises") {

@@ -233,5 +233,20 @@ TEST_CASE("An accuracy is the mean of both samples' shares, however many each ha
   CHECK(test.accuracy == Approx(0.5 * (1.0 + 3.0 / 4.0)));
 }
 
+TEST_CASE("What is tried by a classifier that saw one sample alone is guessed") {
+  // In the second group there is one sample alone: it is told by the first, and not the first.
+  for (const bool is_first : {true, false}) {
+    const std::vector<Observation> observations{
+        {.features = {1.0}, .is_first = is_first, .group = 0},
+        {.features = {0.0}, .is_first = !is_first, .group = 0},
+        {.features = {0.0}, .is_first = !is_first, .group = 1},
+        {.features = {0.0}, .is_first = !is_first, .group = 1}};
+    const TwoSampleTest test = TestTwoSamples(observations, {.permutations = 0}, {}, 1);
+    CHECK(test.accuracy == Approx(0.5 * (0.5 + 2.5 / 3.0)));
+    CHECK(test.first == (is_first ? 1 : 3));
+    CHECK(test.second == (is_first ? 3 : 1));
+  }
+}
+
 }  // namespace
 }  // namespace rift::statistics
