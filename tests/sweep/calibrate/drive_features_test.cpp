@@ -260,6 +260,28 @@ TEST_CASE(
   CHECK(shared.all.second == 3);
 }
 
+TEST_CASE("A path counts once on its side, and differs by its times, by its x or by its y") {
+  const Trajectory path = Drive(Weaving);
+  const auto changed = [&path](const std::function<void(trajectory::StampedPose&)>& change) {
+    Trajectory other = path;
+    for (auto& pose : other.poses) change(pose);
+    return other;
+  };
+  std::vector<RepeatedTrial> trials;
+  for (const std::string setting : {"a", "b"}) {
+    trials.push_back({.setting = setting, .real = path, .runs = {path, path}});
+  }
+  trials[1].real = changed([](auto& pose) { pose.t_s += 1.0; });
+  trials[1].runs = {changed([](auto& pose) { pose.x_m *= 1.1; }),
+                    changed([](auto& pose) { pose.y_m = -pose.y_m; }),
+                    changed([](auto& pose) { pose.t_s *= 1.1; }),
+                    changed([](auto& pose) { pose.y_m = -pose.y_m; })};
+  const Distinction found = Distinguish(trials, {.classifier = {.permutations = 1}}, 1);
+  CHECK(found.all.first == 2);
+  CHECK(found.all.second == 4);  // one of the first trial, three of the second
+  CHECK(found.all.groups == 2);
+}
+
 TEST_CASE("The authors' Webots logs are told from their robot's in settings not seen") {
   RIFT_SKIP_WITHOUT_TRIALS();
   std::vector<RepeatedTrial> trials;

@@ -156,5 +156,15 @@ TEST_CASE("Where no draw is allowed the fitted values stand in the ensemble") {
   }
 }
 
+TEST_CASE("A parameter whose range has no width is drawn at its place") {
+  Calibration fit = Fit();
+  fit.parameters[1].parameter.min = fit.parameters[1].parameter.max = -2.0;
+  const experiment::Ensemble ensemble = EnsembleOf(fit, kConfidence, 5, 1);
+  for (const std::vector<double>& draw : ensemble.draws) {
+    CHECK(draw[1] == -2.0);
+    CHECK(draw[0] != 3.0);
+  }
+}
+
 }  // namespace
 }  // namespace rift::sweep

@@ -365,13 +365,44 @@ TEST_CASE("Features are driven at no values that are not allowed, and the estima
     return Twin(log, values);
   };
   Calibration found = Before();
-  FitFeatures(Logs(), twin, Options(2, 24), kSeed, 1, {}, found, is_allowed);
+  found.parameters[0].parameter.start = 0.09;  // beyond as well
+  FitFeatures(
+      Logs(), twin, Options(2, 24), kSeed, 1,
+      [&](const CalibrationProgress& one) { CHECK(is_allowed(one.values)); }, found, is_allowed);
   std::vector<double> values;
   for (const CalibratedParameter& one : found.parameters) values.push_back(one.value);
   CHECK(is_allowed(values));
   CHECK(found.parameters[0].has_effect);
   CHECK(found.parameters[2].has_effect);
   CHECK_FALSE(found.parameters[1].has_effect);
+}
+
+TEST_CASE("Whether a parameter acts is tried to its other side, or nearer, where that is allowed") {
+  // From `value` of [1, 3] a tenth of the range to the middle, else to both sides, ever nearer.
+  const auto tried = [](double value, double least, double most) {
+    double asked = 0.0;
+    const TwinAt twin = [&asked](size_t log, const std::vector<double>& values) {
+      asked = values[0];
+      return Twin(log, {0.0, 0.0, 0.001});
+    };
+    Calibration found = Before();
+    found.parameters = {found.parameters[1]};
+    found.parameters[0].parameter.min = 1.0;
+    found.parameters[0].parameter.max = 3.0;
+    found.parameters[0].value = value;
+    std::vector<CalibrationLog> logs = Logs();
+    logs.resize(1);
+    FitFeatures(logs, twin, Options(1, 12), kSeed, 1, {}, found,
+                [=](const std::vector<double>& at) { return at[0] >= least && at[0] <= most; });
+    return asked;
+  };
+  CHECK(tried(1.5, 0.0, 9.0) == Approx(1.7));
+  CHECK(tried(1.5, 0.0, 1.6) == Approx(1.3));
+  CHECK(tried(1.1, 0.0, 1.25) == Approx(1.0));  // 0.9 is none
+  CHECK(tried(2.9, 2.75, 9.0) == Approx(2.8));  // 3.1 is none
+  CHECK(tried(2.9, 2.85, 9.0) == Approx(3.0));
+  CHECK(tried(2.5, 2.46, 2.53) == Approx(2.475));
+  CHECK(tried(2.5, 2.5, 2.5) == 2.5);
 }
 
 }  // namespace

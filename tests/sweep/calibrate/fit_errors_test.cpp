@@ -143,6 +143,11 @@ TEST_CASE(
   const std::vector<CalibrationLog> even{Log("a", 0.4), Log("b", 0.401), Log("c", 0.399)};
   CHECK(TraitsOfLogs(even, simulator, {}).scatter[kLogSpeed] == Approx(0.001));
 
+  for (const double off : {7e-5, 1.5e-4}) {
+    const std::vector<CalibrationLog> near{Log("a", 0.4), Log("b", 0.4 + off), Log("c", 0.4 - off)};
+    CHECK(TraitsOfLogs(near, simulator, {}).scatter[kLogSpeed] == Approx(off > 1e-4 ? off : 1.0));
+  }
+
   // Repeats that are copies: each pair a tenth of a millimetre apart.
   std::vector<CalibrationLog> copies;
   for (const std::string setting : {"a", "b", "c", "d", "e", "f"}) {

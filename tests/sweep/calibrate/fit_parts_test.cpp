@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/sweep/calibrate/likeness.hpp"
@@ -334,6 +335,47 @@ TEST_CASE("Loop delay, its share and the steering gain are medians of each side 
   CHECK(likeness.loop_r2.real == Approx(statistics::Median(r2[1])));
   CHECK(likeness.steering_gain_rad_s.sim == Approx(statistics::Median(gains[0])));
   CHECK(likeness.steering_gain_rad_s.real == Approx(statistics::Median(gains[1])));
+}
+
+TEST_CASE("Settings are ranked beside their own way, along x or along y") {
+  gap::LikenessOptions options;
+  options.bootstrap.resamples = 50;
+  std::vector<RepeatedTrial> trials;
+  const auto add = [&](const char* setting, bool is_along_y, double real_m, double run_m,
+                       double other_m) {
+    trials.push_back(Lanes(setting, real_m, {run_m}));
+    RepeatedTrial& trial = trials.back();
+    trial.other_reals = {Lane(other_m)};
+    if (!is_along_y) return;
+    for (Trajectory* path : {&trial.real, &trial.runs[0], &trial.other_reals[0]}) {
+      for (auto& pose : path->poses) std::swap(pose.x_m, pose.y_m);
+    }
+    trial.waypoints[1] = {.name = "e", .y_m = 1.0};
+  };
+  add("a", false, 0.01, 0.08, 0.02);
+  add("b", true, 0.02, 0.07, 0.03);
+  add("c", false, 0.03, 0.06, 0.04);
+  add("d", true, 0.04, 0.05, 0.05);
+  const RankAgreement ranks = MeasureRanks(trials, {}, options, 1);
+  CHECK(ranks.settings == 4);
+  CHECK(ranks.simulated == Approx(-1.0));
+  CHECK(ranks.real == Approx(1.0));
+}
+
+TEST_CASE("A drive stood at the median of its first five rows, in x and in y") {
+  Trajectory log;
+  const double x_mm[] = {1, 2, 3, 4, 5}, y_mm[] = {9, 1, 5, 7, 3};
+  for (int i = 0; i < 30; ++i) {
+    const bool rests = i < 5;
+    log.poses.push_back({.t_s = 0.05 * i,
+                         .x_m = rests ? 1e-3 * x_mm[i] : 0.02 * i,
+                         .y_m = rests ? 1e-3 * y_mm[i] : 0.01 * i});
+  }
+  const gap::LikenessOptions options;
+  const DriveMeasures measures(log, options);
+  CHECK(measures.rest_m.x() == Approx(0.003));
+  CHECK(measures.rest_m.y() == Approx(0.005));
+  CHECK(measures.first == 5);
 }
 
 }  // namespace

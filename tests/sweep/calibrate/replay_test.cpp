@@ -41,6 +41,7 @@ TEST_CASE("Stamps of a replay are as old as those of the host whose log it is") 
   CHECK(age_s(0.06, 0.0) == 0.0);                   // a reading is the pose at that moment
   CHECK(age_s(0.04, 20.0) == Approx(0.05 + 0.04));  // waits for each frame
   CHECK(age_s(0.06, 20.0) == Approx(0.05 + 2 * 0.06 - 0.025));  // two turns less half a frame
+  CHECK(age_s(0.05, 20.0) == Approx(0.05 + 2 * 0.05 - 0.025));  // as fast as the camera
   CHECK(age_s(0.06, 20.0, 0.08) == Approx(0.05 + 2 * 0.08 - 0.025));
 }
 

@@ -144,7 +144,9 @@ TEST_CASE("A setting of a grid that no trial can be made at is no part of the li
       }
     }
     Evaluator evaluator(experiment, "e.yaml", InputsOf(files));
-    return MeasureSweepLikeness(evaluator).back().likeness.runs;
+    const DriveLikeness likeness = MeasureSweepLikeness(evaluator).back().likeness;
+    CHECK(likeness.path.reals == static_cast<size_t>(likeness.runs));  // one run beside each
+    return likeness.runs;
   };
   const experiment::Theta v_min{{"0.15", 0.15}, {"0.45", 0.45}}, v_max{{"0.3", 0.3}, {"0.5", 0.5}};
   // 0.45 beside 0.3 is refused: three of the four settings are left, two trials of each.

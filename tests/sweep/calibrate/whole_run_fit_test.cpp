@@ -47,6 +47,11 @@ TEST_CASE("A whole run is beside its log in place and time at each share of the 
   const std::vector<LogPrediction> predictions = twins.Predict(logs, {}, options);
   REQUIRE(predictions.size() == 1);
   CHECK(predictions[0].runs.size() == 2);
+  REQUIRE(predictions[0].mean_traits);
+  CHECK((*predictions[0].mean_traits)[kLogWeave] == Approx(std::log(1e-6)));  // none at all
+  CHECK((*predictions[0].mean_traits)[kLogSpeed] == Approx(std::log(std::hypot(1.2, 0.4) / 4.0)));
+  CHECK((*predictions[0].mean_traits)[kLoopDelay_s] == 0.0);
+  CHECK((*predictions[0].mean_traits)[kSteeringGain] == 0.0);
   const Eigen::VectorXd& errors = predictions[0].motions;
   REQUIRE(errors.size() == 3 * 16);
   for (int k = 0; k < 16; ++k) {
@@ -85,7 +90,7 @@ TEST_CASE("A log that no run gives a path for is beside a robot that stays, doub
   twins.Predict(logs, {}, options);
   REQUIRE_FALSE(said.empty());
   for (size_t i = 0; i < said.size(); ++i) {
-    CHECK(said[i].find("run_2.csv and REAL 2.csv: ") != said[i].npos);
+    CHECK(said[i].starts_with("warning: SIM run_2.csv and REAL 2.csv: "));
     CHECK(std::count(said.begin(), said.end(), said[i]) == 1);
   }
   REQUIRE(predictions.size() == 2);
