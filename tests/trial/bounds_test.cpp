@@ -148,6 +148,45 @@ TEST_CASE("A pose from a period ahead of the clock is believed, and none from fu
   CHECK(result.refused_moves == 0);
 }
 
+TEST_CASE("A robot outside the arena is told with its place") {
+  Scripted robot;
+  robot.at = {0.25, -0.5, 0.0};
+  TrialOptions options = Options();
+  options.arena.x_max_m = 0.25;
+  CHECK(Run(robot, options).outcome == Outcome::kTimedOut);
+  options.arena.y_min_m = -0.25;
+  Scripted outside;
+  outside.at = robot.at;
+  const TrialResult result = Run(outside, options);
+  CHECK(result.outcome == Outcome::kLeftArena);
+  CHECK(result.reason == "the robot is at x 0.250 m, y -0.500 m, outside the arena");
+  CHECK(result.end_s == 4.0);
+  CHECK(outside.drives.empty());
+}
+
+TEST_CASE("Decided once for each picture, a robot keeps its power until the next one") {
+  /// Pictures every half second.
+  class Filmed : public Scripted {
+   public:
+    Sensed Sense() override {
+      age_s = now_s - 0.5 * std::floor(2.0 * now_s);
+      return Scripted::Sense();
+    }
+  };
+  TrialOptions options = Options();
+  options.pace = Pace::kNewPose;
+  Filmed robot;
+  const TrialResult result = Run(robot, options);
+  CHECK(result.limits.decisions == 7);  // at 4.5, 5.0 ... 7.5 s
+  CHECK(result.trajectory.poses.size() == 8);
+  REQUIRE(robot.drives.size() == 32);
+  for (size_t i = 0; i < 32; ++i) CHECK(robot.drives[i] == (i >= 4));
+  CHECK(result.pose_age_s == 0.0);
+  options.pace = Pace::kEveryPeriod;
+  Filmed often;
+  CHECK(Run(often, options).limits.decisions == 30);  // from 4.25 s on
+}
+
 TEST_CASE("Ages are those of the poses that were decided on, and of those that came in") {
   Scripted robot;
   robot.age_s = 0.25;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rift/geometry/pose2.hpp"
+#include "rift/trial/steering_check.hpp"
 
 namespace rift::trial {
 namespace {
@@ -83,6 +84,82 @@ TEST_CASE("A run of less than two centimetres tells nothing but the age of its p
   CHECK(Of(run).model.pose_age_s == 0.0);
   run.pose_age_s = run.arrival_age_s = -1.0;
   CHECK(Of(run).model.pose_age_s == 0.0);
+}
+
+TEST_CASE("A pull that a circle alone tells may be another gain, and that is said") {
+  for (const double side : {1.0, -1.0}) {
+    const double w = 0.08 * side;
+    // 1.8 times the turn that 25 rad/s make of w: 8 rad/s for each unit of v.
+    const TrialResult run = Circle(w, 1.8 * 25.0 * 4.0 * w, 0.5);
+    const control::Task task = std::vector<control::Waypoint>{{.name = "a"}, {.x_m = 1.0}};
+    const SteeringCheck check = CheckSteering(
+        [&] {
+          TrialResult decided = run;
+          decided.limits.decisions = 80;
+          return decided;
+        }(),
+        task, {}, {}, kPrior);
+    REQUIRE_FALSE(check.causes.empty());
+    CHECK_THAT(check.causes[0],
+               Catch::StartsWith(
+                   std::string("it pulls to the ") + (side > 0.0 ? "left" : "right") +
+                   " by 2.4 rad/s at v 0.3 without steering (a motor or wheel that differs from "
+                   "the other, or drags; or it answers to w otherwise than the robot's file says): "
+                   "driving straight takes w 0.096, and control.heading.p 0.045 asks for that "
+                   "only at a heading error of 12"));
+  }
+}
+
+/// Ten seconds at v 0.3 and a steering that changes every 0.35 s, which the robot answers 0.1 s
+/// later by `gain` for each unit of w, and `bias_rad_s` beside it.
+TrialResult Weaving(double gain, double bias_rad_s) {
+  const double steering[] = {0.1, -0.05, 0.15, 0.0, -0.12, 0.05, 0.2, -0.15};
+  const auto steering_at = [&](double t_s) {
+    return t_s < 0.0 ? 0.0 : steering[static_cast<size_t>(t_s / 0.35) % 8];
+  };
+  TrialResult result;
+  result.outcome = Outcome::kTimedOut;
+  for (int i = 0; 0.35 * i < 10.0; ++i) {
+    const double w = steering[i % 8];
+    result.commands.push_back({0.35 * i, {0.3 - w, 0.3 + w}});
+  }
+  double yaw_rad = 3.0;  // it passes half a turn
+  constexpr double kStep_s = 1e-3;
+  for (int i = 0; i <= 10'000; ++i) {
+    if (i % 50 == 0) {
+      const double t_s = kStep_s * i;
+      result.trajectory.poses.push_back(
+          {.t_s = t_s, .x_m = 0.15 * t_s, .yaw_rad = geometry::WrapToPi(yaw_rad)});
+    }
+    yaw_rad += kStep_s * (gain * steering_at(kStep_s * (i + 0.5) - 0.1) + bias_rad_s);
+  }
+  return result;
+}
+
+TEST_CASE("Gain, pull and delay of a weaving run are those it was made with, to either side") {
+  for (const double side : {1.0, -1.0}) {
+    const IdentifiedSteering found = Of(Weaving(10.0, side * 0.6));
+    INFO(side);
+    CHECK(found.is_identified);
+    CHECK(found.is_pull_told);
+    CHECK_FALSE(found.is_reversed);
+    CHECK(found.model.yaw_rate_rad_s == Approx(10.0).epsilon(0.03));
+    CHECK(found.model.pull_rad_s == Approx(side * 2.0).epsilon(0.05));
+    CHECK(found.model.command_delay_s == Approx(0.1).margin(0.01));
+    CHECK(found.model.speed_mps == Approx(0.5).epsilon(0.03));
+    CHECK(found.r2 > 0.98);
+  }
+}
+
+TEST_CASE("Steering is told to be reversed of a run that turned away by a quarter and was late") {
+  TrialResult run = Weaving(-10.0, 0.0);
+  CHECK(IdentifySteering(run, kPrior, 0.26).is_reversed);
+  CHECK_FALSE(IdentifySteering(run, kPrior, 0.24).is_reversed);
+  run.outcome = Outcome::kLeftArena;
+  CHECK(IdentifySteering(run, kPrior, 0.26).is_reversed);
+  run.outcome = Outcome::kReached;
+  CHECK_FALSE(IdentifySteering(run, kPrior, 0.26).is_reversed);
+  CHECK_FALSE(IdentifySteering(Weaving(10.0, 0.0), kPrior, 0.26).is_reversed);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "rift/trial/steering_check.hpp"
 #include "rift/trial/steering_loop.hpp"
 #include "support/inputs/fake_robot.hpp"
+#include "trial/progress.hpp"
 #include "trial/steering_bench.hpp"
 
 namespace rift::trial {
@@ -151,6 +152,90 @@ TEST_CASE("A longer time is not proposed for a run that was in time without it")
     });
     CHECK(check.proposals.size() == (was_s < 7.0 ? 3 : 2));
     CHECK(check.proposals[1].key == (was_s < 7.0 ? "trial.timeout_s" : "b"));
+  }
+}
+
+TEST_CASE("Of the delay of the loop there counts what control.latency does not make up for") {
+  const TrialResult run = LateRun();
+  const double delay_s = Check(run).delay_s;
+  REQUIRE(delay_s > 0.2);
+  control::NavigatorOptions navigator;
+  navigator.latency.delay_s = 0.1;
+  CHECK(Check(run, navigator).delay_s == Approx(delay_s - 0.1));
+  navigator.latency.delay_s = 1.0;
+  CHECK(Check(run, navigator).delay_s == 0.0);
+}
+
+TEST_CASE("A least steering that swings the heading too far is lowered to a swing of 15 degrees") {
+  const TrialResult run = LateRun();
+  const SteeringCheck good = Check(run);
+  control::NavigatorOptions navigator;
+  navigator.w_min = 60.0 * pi / 180.0 / (good.model.yaw_rate_rad_s * good.delay_s);
+  navigator.w_max = 1.0;
+  navigator.reach_radius_m = 0.5;  // the path swings by far less
+  const SteeringCheck check = Check(run, navigator);
+  REQUIRE_FALSE(check.proposals.empty());
+  CHECK(check.proposals[0].key == "control.w_min");
+  CHECK(check.proposals[0].was == navigator.w_min);
+  CHECK(check.proposals[0].value == Approx(0.25 * navigator.w_min).epsilon(0.05));  // two digits
+}
+
+TEST_CASE("A run that did not circle is astray from twice the length of its task on") {
+  const TrialResult run = LateRun();
+  const auto is_astray = [&](double share) {
+    control::Task task = kTask;
+    task.waypoints = {{.name = "a"}, {.name = "b", .x_m = 0.5 * share * Way_m(run.trajectory)}};
+    return Says(CheckSteering(run, task, {}, {}, kPrior), "a waypoint counts as reached within");
+  };
+  REQUIRE(Check(run).circle_m > control::NavigatorOptions{}.reach_radius_m);
+  CHECK(is_astray(0.99));
+  CHECK_FALSE(is_astray(1.01));
+}
+
+/// One of the wheels is slower than the other.
+class Pulling : public test::FakeRobot {
+ public:
+  Pulling(const test::FakeRobotOptions& options, double left_share, double right_share)
+      : FakeRobot(options), left_share_(left_share), right_share_(right_share) {}
+  void Command(const control::WheelPower& power) override {
+    FakeRobot::Command({left_share_ * power.left, right_share_ * power.right});
+  }
+
+ private:
+  double left_share_, right_share_;
+};
+
+TEST_CASE("A pull is told from a heading error of 45 degrees on, with its side, and by its limit") {
+  for (const bool is_left : {true, false}) {
+    control::Task task = kTask;
+    for (control::Waypoint& waypoint : task.waypoints) {
+      if (!is_left) continue;
+      waypoint.y_m = -waypoint.y_m;
+      if (waypoint.heading_deg) waypoint.heading_deg = -*waypoint.heading_deg;
+    }
+    test::FakeRobotOptions options{
+        .command_delay_s = 0.1, .sensing_delay_s = 0.07, .frame_period_s = 0.05};
+    options.world_from_start = control::StartPose(task.waypoints);
+    Pulling robot(options, is_left ? 0.6 : 1.0, is_left ? 1.0 : 0.6);
+    const TrialResult run = RunTrial(robot, task, {}, {});
+    REQUIRE(run.outcome == Outcome::kTimedOut);
+    const auto check = [&](const control::NavigatorOptions& navigator) {
+      return CheckSteering(run, task, navigator, {}, kPrior);
+    };
+    const SteeringModel model = check({}).model;
+    REQUIRE((model.pull_rad_s > 0.0) == is_left);
+    control::NavigatorOptions navigator;
+    const double hold_w = std::abs(model.pull_rad_s) * navigator.v_max / model.yaw_rate_rad_s;
+    const std::string words = is_left ? "it pulls to the left by " : "it pulls to the right by ";
+    navigator.heading = {hold_w / (44.5 * pi / 180.0), 0.0, 0.0};
+    CHECK_FALSE(Says(check(navigator), words));
+    navigator.heading.p = hold_w / (45.5 * pi / 180.0);
+    CHECK(Says(check(navigator), words));
+    CHECK(Says(check(navigator), "asks for that only at a heading error of 4"));
+    navigator.heading.p = hold_w / (20.0 * pi / 180.0);
+    navigator.w_max = 0.03;
+    REQUIRE(hold_w > 0.03);
+    CHECK(Says(check(navigator), ", and control.w_max allows 0.03"));
   }
 }
 

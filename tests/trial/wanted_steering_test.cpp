@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace rift::trial {
 namespace {
@@ -175,6 +176,19 @@ TEST_CASE("A circle is tightened by gain, by limit, by speed, and the radius gro
   TightenCircle(kModel, {.dead_band = 0.08 / 1.2}, {half, 0.0, 0.0}, wanted);
   CHECK(wanted.v_min == Approx(0.08));
   CHECK(wanted.reach_radius_m == Approx(1.2 * 0.08 / (25.0 * 0.06) / 0.8));
+}
+
+TEST_CASE("The distance loop asks for no more speed than the circle turns with, and stays if so") {
+  // w 0.12 turns by 3 rad/s: 0.8 x 3 over 1.2 m/s.
+  for (const auto& [was, wanted_p] : {std::pair(2.5, 2.0), {2.1, 2.0}, {1.9, 1.9}}) {
+    control::NavigatorOptions wanted = Navigator();
+    wanted.heading.p = 0.12 / (M_PI / 2.0);
+    wanted.distance.p = was;
+    TightenCircle(kModel, {}, {1.0, 0.0, 0.0}, wanted);
+    INFO(was);
+    CHECK(wanted.distance.p == Approx(wanted_p));
+    CHECK(wanted.reach_radius_m == Approx(0.05));
+  }
 }
 
 TEST_CASE("The time a task needs is twice its legs and its turns, and the time to settle") {
