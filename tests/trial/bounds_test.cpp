@@ -164,15 +164,16 @@ TEST_CASE("A robot outside the arena is told with its place") {
   CHECK(outside.drives.empty());
 }
 
+/// Pictures every half second.
+class Filmed : public Scripted {
+ public:
+  Sensed Sense() override {
+    age_s = now_s - 0.5 * std::floor(2.0 * now_s);
+    return Scripted::Sense();
+  }
+};
+
 TEST_CASE("Decided once for each picture, a robot keeps its power until the next one") {
-  /// Pictures every half second.
-  class Filmed : public Scripted {
-   public:
-    Sensed Sense() override {
-      age_s = now_s - 0.5 * std::floor(2.0 * now_s);
-      return Scripted::Sense();
-    }
-  };
   TrialOptions options = Options();
   options.pace = Pace::kNewPose;
   Filmed robot;
@@ -185,6 +186,66 @@ TEST_CASE("Decided once for each picture, a robot keeps its power until the next
   options.pace = Pace::kEveryPeriod;
   Filmed often;
   CHECK(Run(often, options).limits.decisions == 30);  // from 4.25 s on
+}
+
+/// The steering that is sent, to a waypoint 45 degrees to the left (1) or to the right (-1).
+std::vector<double> SteeringOf(Scripted& robot, double side,
+                               const control::NavigatorOptions& navigator,
+                               const TrialOptions& options) {
+  std::vector<double> w;
+  const std::vector<control::Waypoint> task{{.name = "s"}, {.x_m = 5.0, .y_m = 5.0 * side}};
+  for (const SentCommand& sent : RunTrial(robot, task, navigator, options).commands) {
+    w.push_back(0.5 * (sent.power.right - sent.power.left));
+  }
+  return w;
+}
+
+TEST_CASE("The first decision counts for one period, each other for the time since the last") {
+  control::NavigatorOptions navigator;
+  navigator.heading = {0.0, 0.1, 0.0};
+  navigator.w_min = 0.0;
+  navigator.dt_max_s = 1.0;
+  navigator.integral_limit = 100.0;
+  TrialOptions options = Options();
+  for (const double side : {1.0, -1.0}) {
+    const double rate = 0.1 * side * std::atan(1.0);  // of w, in each second
+    options.pace = Pace::kEveryPeriod;
+    Scripted often;
+    const std::vector<double> each_period = SteeringOf(often, side, navigator, options);
+    REQUIRE(each_period.size() == 32);
+    CHECK(each_period[2] == Approx(rate * 0.125));
+    CHECK(each_period[3] == Approx(rate * 0.25));
+    CHECK(each_period[31] == Approx(rate * 30 * 0.125));
+    options.pace = Pace::kNewPose;
+    Filmed seldom;
+    const std::vector<double> each_picture = SteeringOf(seldom, side, navigator, options);
+    REQUIRE(each_picture.size() == 32);
+    CHECK(each_picture[4] == Approx(rate * 0.125));
+    CHECK(each_picture[7] == Approx(rate * 0.125));
+    CHECK(each_picture[8] == Approx(rate * 0.625));
+    CHECK(each_picture[12] == Approx(rate * 1.125));
+  }
+}
+
+TEST_CASE(
+    "What was sent and is not seen yet is counted where the delay of the loop is made up for") {
+  control::NavigatorOptions navigator;
+  navigator.heading = {0.1, 0.0, 0.0};
+  navigator.w_min = 0.0;
+  for (const double side : {1.0, -1.0}) {
+    const double asked = 0.1 * side * std::atan(1.0);
+    for (const double delay_s : {0.0, 0.3}) {
+      navigator.latency.delay_s = delay_s;
+      Scripted robot;
+      const std::vector<double> w = SteeringOf(robot, side, navigator, Options());
+      CHECK(w[1] == 0.0);
+      CHECK(w[2] == Approx(asked));
+      // 29 rad/s for each unit of w: a period turns it by a third of the error.
+      if (delay_s > 0.0) CHECK(w[3] / asked < 0.75);
+      if (delay_s > 0.0) CHECK(w[3] / asked > 0.55);
+      if (delay_s == 0.0) CHECK(w[3] == Approx(asked));
+    }
+  }
 }
 
 TEST_CASE("Ages are those of the poses that were decided on, and of those that came in") {

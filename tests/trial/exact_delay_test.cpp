@@ -140,5 +140,17 @@ TEST_CASE("Lags must step, logs must have rows and a yaw, and commands must be t
   CHECK(refusal({}) == "the loop delay needs commands, and none was sent");
 }
 
+TEST_CASE("By default lags up to 0.6 s are tried every 10 ms, from 20 mm on") {
+  const LoopDelayOptions options;
+  CHECK(options.max_lag_s == 0.6);
+  CHECK(options.lag_step_s == 0.01);
+  CHECK(options.moved_m == 0.02);
+  const Made made = Answering(0.1, 5.0, 0.0);
+  const LoopDelay found = EstimateCommandDelay(made.log, made.sent);
+  REQUIRE(found.lags_s.size() == 61);
+  CHECK(found.lags_s[1] == 0.01);
+  CHECK(found.lags_s[60] == Approx(0.6));
+}
+
 }  // namespace
 }  // namespace rift::trial

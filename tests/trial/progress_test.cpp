@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 #include "rift/control/navigator.hpp"
 
@@ -69,6 +70,11 @@ TEST_CASE("A run nears its end by the slower of its whole and of its last third"
       RunOf(31, 1, [](double t_s) { return StampedPose{.x_m = 0.03 * std::max(0.0, t_s - 2.0)}; });
   CHECK(ProgressOf(late, kTask).nearing_mps == Approx(0.01));
   CHECK(ProgressOf(late, kTask).IsNearing());
+  for (const auto& [speed_mps, is_nearing] : {std::pair(0.0055, true), {0.0045, false}}) {
+    const TrialResult even =
+        RunOf(31, 1, [v = speed_mps](double t_s) { return StampedPose{.x_m = v * t_s}; });
+    CHECK(ProgressOf(even, kTask).IsNearing() == is_nearing);
+  }
 }
 
 TEST_CASE("A robot stands that neither moves by two centimetres nor turns by a fifth of a radian") {

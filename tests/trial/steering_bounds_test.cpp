@@ -84,6 +84,13 @@ TEST_CASE("A steering is told to hardly settle below thirty degrees, and unstabl
   CHECK(Says(with_margin(29.5), "the steering hardly settles"));
   CHECK(Says(with_margin(0.5), "the steering hardly settles"));
   CHECK(Says(with_margin(-0.5), "the steering is unstable"));
+  // d times the yaw rate of w, 1.45, is more than 1.
+  control::NavigatorOptions navigator;
+  navigator.heading = {0.045, 0.0, 0.05};
+  const SteeringCheck never = Check(run, navigator);
+  CHECK(Says(never, "the steering is unstable: control.heading.p 0.045 and d 0.05 with "));
+  CHECK(Says(never, " of w never fall below a gain of 1 (d times that is 1 or more), at "));
+  CHECK(Says(never, "stable below 0 ms"));
 }
 
 TEST_CASE("The least steering is too coarse from a swing of 45 degrees or of half the radius on") {

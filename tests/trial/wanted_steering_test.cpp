@@ -191,6 +191,58 @@ TEST_CASE("The distance loop asks for no more speed than the circle turns with, 
   }
 }
 
+TEST_CASE("A strong pull to either side takes the least speed down with the largest one") {
+  for (const double side : {1.0, -1.0}) {
+    SteeringModel model = kModel;
+    model.pull_rad_s = 40.0 * side;
+    control::NavigatorOptions wanted = Navigator();
+    wanted.heading.i = 0.01;
+    HoldAgainstPull(model, {}, {0.3, 0.0, 0.0}, wanted);
+    const double v = 0.3 * 0.5 * 25.0 / 40.0 + 0.005 * 25.0 / 40.0;
+    CHECK(wanted.v_max == Approx(v));
+    CHECK(wanted.v_min == Approx(v));
+    CHECK(wanted.heading.i == 0.01);
+    CHECK(wanted.w_max == Approx(0.31));  // twice what holds it, 0.155
+  }
+}
+
+TEST_CASE("A circle is tightened against a pull to either side") {
+  for (const double side : {1.0, -1.0}) {
+    SteeringModel model = kModel;
+    model.pull_rad_s = 10.0 * side;
+    control::NavigatorOptions wanted = Navigator();
+    wanted.heading = {0.02, 0.01, 0.0};
+    wanted.integral_limit = 0.0;
+    wanted.distance.p = 3.0;
+    TightenCircle(model, {}, {1.0, 0.0, 0.2}, wanted);
+    // At v 0.1 3 rad/s for the circle and 1 against the pull are w 0.16.
+    CHECK(wanted.heading.p == Approx(0.16 / (M_PI / 2.0)));
+    CHECK(wanted.heading.i == 0.01);
+    CHECK(wanted.heading.d == Approx(0.2 * wanted.heading.p));
+    CHECK(wanted.w_max == 0.2);
+    CHECK(wanted.v_min == 0.1);
+    CHECK(wanted.distance.p == Approx(0.8 * 3.0 / 1.2));
+    CHECK(wanted.reach_radius_m == Approx(0.05));
+    // What pulls harder than anything turns is left as it is.
+    model.pull_rad_s = 300.0 * side;
+    wanted = Navigator();
+    TightenCircle(model, {.dead_band = 0.1}, {0.1, 0.0, 0.0}, wanted);
+    CHECK(wanted.distance.p == 0.5);
+    CHECK(wanted.reach_radius_m == 0.05);
+  }
+}
+
+TEST_CASE("No steering is wanted beyond what the wheels have left beside the least speed") {
+  control::NavigatorOptions wanted = Navigator();
+  wanted.v_min = wanted.v_max = 0.9;
+  wanted.w_max = 0.05;
+  TightenCircle(kModel, {}, {1.0, 0.0, 0.0}, wanted);
+  CHECK(wanted.heading.p == Approx(0.9 * 1.2 / 0.04 / 25.0 / (M_PI / 2.0)));
+  CHECK(wanted.w_max == Approx(0.1));
+  CHECK(wanted.v_min == Approx(0.04 * 25.0 * 0.1 / 1.2));
+  CHECK(wanted.reach_radius_m == Approx(0.05));
+}
+
 TEST_CASE("The time a task needs is twice its legs and its turns, and the time to settle") {
   control::Task task;
   task.waypoints = {{"a", 0.0, 0.0}, {"b", 3.0, 0.0}, {"c", 3.0, 4.0}};
