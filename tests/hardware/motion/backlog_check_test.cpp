@@ -28,7 +28,8 @@ struct Backlog {
   double starts_s = 2.0;
   double end_s = 12.0;
   bool is_measured = true;
-  bool fills_up = false;  ///< each period a picture, what is shown repeated with other noise
+  bool is_latency_known = true;  ///< was measured then
+  bool fills_up = false;         ///< each period a picture, what is shown repeated with other noise
 };
 
 struct Stop {
@@ -64,7 +65,7 @@ Stop StopHeld(const Backlog& drive) {
       continue;
     }
     if (!is_known && came_s > kKnown_s) {
-      check.SetLatency(0.0);
+      if (drive.is_latency_known) check.SetLatency(0.0);
       check.Restart();
       is_known = true;
     }
@@ -144,6 +145,14 @@ TEST_CASE("Where only commands tell of the wheels, held pictures are found by th
   CHECK(held.age_s < 0.9);
   CHECK(StopHeld({.slip = 0.3, .is_measured = false}).reason == kNone);
   CHECK(StopHeld({.dropped = 0.33, .slip = 0.2, .is_measured = false}).reason == kNone);
+}
+
+TEST_CASE("Where no latency was measured, the period is that of the pictures before the start") {
+  const Stop held = StopHeld({.rate = 0.5, .is_latency_known = false});
+  INFO(held.text);
+  CHECK(held.reason == StopReason::kPoseLags);
+  CHECK(held.text.find("of pictures did not come, and the limit is 0.25 s") != std::string::npos);
+  CHECK(held.age_s < 0.9);
 }
 
 /// Motions of one kind, each of `elapsed_s`, of which the pose shows `short_m` less than rolled.

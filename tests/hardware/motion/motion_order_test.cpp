@@ -47,6 +47,9 @@ TEST_CASE(
     CHECK(reason(0.125, {30, 40}, 0.0049) == kNone);
     CHECK(reason(0.125, {30, 38, 47}, 0.0049) == StopReason::kPoseDisorder);
     CHECK(reason(0.125, {30, 38, 48}, 0.0049) == kNone);
+    // Of wheels that roll less, 3.75 mm counts twice.
+    CHECK(reason(0.05, {30, 40}, 0.0037) == kNone);
+    CHECK(reason(0.05, {30, 40}, 0.0038) == StopReason::kPoseDisorder);
     // Less than half of what the wheels rolled, or than 2.5 mm, is jitter.
     CHECK(reason(0.125, {30, 34, 38, 42}, 0.0024) == kNone);
     CHECK(reason(0.125, {30, 34, 38}, 0.0026) == StopReason::kPoseDisorder);
