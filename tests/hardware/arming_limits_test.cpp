@@ -136,6 +136,54 @@ TEST_CASE("A stop that nothing confirms is waited for a second, and zeros go on 
   CHECK(bench.listener->Motors().IsZero());
 }
 
+TEST_CASE("A stop may be confirmed within a second of it, and later it counts no more") {
+  for (const auto& [silent_s, is_confirmed] : {std::pair{0.6, true}, {1.1, false}}) {
+    Bench bench;
+    DriveTask task = PaperTask();
+    task.hardware.turn.enabled = false;
+    std::optional<double> stopped_s;
+    const double begun_s = bench.Now_s();
+    const Stopper stopper =
+        [&, silent_s = silent_s]() -> std::optional<std::pair<StopReason, std::string>> {
+      if (bench.Now_s() < begun_s + 5.0) return std::nullopt;
+      if (!stopped_s) stopped_s = bench.Now_s();
+      bench.from_robot_is_cut = bench.Now_s() < *stopped_s + silent_s;
+      return std::pair(StopReason::kSignal, "SIGTERM came");
+    };
+    const DriveRun run = Drive({.line = bench,
+                                .poses = bench,
+                                .clock = bench,
+                                .stoppers = {stopper},
+                                .say = [](const std::string&) {},
+                                .may_arm = [] { return true; },
+                                .threads = false},
+                               task);
+    CHECK(run.has_begun);
+    CHECK(run.evidence.stop_acknowledged == is_confirmed);
+  }
+}
+
+TEST_CASE("A camera that is later in the drive than in the turn is as late as both say together") {
+  Bench bench;
+  bench.camera_late_s = 0.06;
+  const DriveRun run = Drive({.line = bench,
+                              .poses = bench,
+                              .clock = bench,
+                              .stoppers = {},
+                              .say =
+                                  [&](const std::string& line) {
+                                    if (line.starts_with("loop delay")) bench.camera_late_s = 0.16;
+                                  },
+                              .may_arm = [] { return true; },
+                              .threads = false},
+                             PaperTask());
+  INFO(run.trial.reason);
+  REQUIRE(run.latency);
+  CHECK(*run.latency->delay.camera_s == Approx(0.06).margin(0.02));
+  REQUIRE(run.camera_latency_s);
+  CHECK(*run.camera_latency_s == Approx(0.16).margin(0.03));
+}
+
 TEST_CASE("A camera that is too late is told by how much, beside its budget") {
   Bench bench;
   bench.camera_late_s = 0.32;

@@ -1,8 +1,10 @@
 // Times that the robot's side of a drive counts by, on both sides of each.
 
 #include <catch2/catch.hpp>
+#include <ctime>
 
 #include "bench.hpp"
+#include "hardware/suspend_watch.hpp"
 #include "rift/hardware/real_robot.hpp"
 
 namespace rift::hardware {
@@ -107,6 +109,55 @@ TEST_CASE("A robot that cannot be armed says why, and a power before that ends t
   REQUIRE(unseen.Record().stop);
   CHECK(unseen.Record().stop->text == "a power was commanded before the drive was armed");
   CHECK(bench.obeyed == std::set<std::pair<int, int>>{{0, 0}});
+}
+
+TEST_CASE("A robot that is let go is sent zeros for 0.3 s, or until it has confirmed its stop") {
+  for (const bool is_confirmed : {false, true}) {
+    Bench bench;
+    double begun_s = 0.0;
+    size_t zeros_before = 0;
+    {
+      RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+      Settle(robot, bench);
+      robot.Arm();
+      DriveOn(robot, {0.2, 0.2}, 0.3, bench);
+      if (is_confirmed) {
+        robot.Stop();
+        robot.ConfirmStop(5.0);
+        REQUIRE(robot.Record().stop_acknowledged == true);
+      }
+      bench.from_robot_is_cut = true;
+      begun_s = bench.Now_s();
+      zeros_before = bench.zeros_heard;
+    }
+    CHECK(bench.Now_s() - begun_s == Approx(is_confirmed ? 0.0 : 0.3).margin(0.0015));
+    if (!is_confirmed) CHECK(bench.zeros_heard >= zeros_before + 3);
+    CHECK(bench.listener->Motors().IsZero());
+  }
+}
+
+TEST_CASE("A machine may be suspended for as long as its limit each time, and no longer") {
+  double suspended_s = 1000.0;
+  const Stopper stopper = SuspendStopper(0.25, [&suspended_s] { return suspended_s; });
+  CHECK_FALSE(stopper());
+  for (int i = 0; i < 4; ++i) {
+    suspended_s += 0.25;
+    CHECK_FALSE(stopper());
+  }
+  suspended_s += 12.375;
+  const auto stop = stopper();
+  REQUIRE(stop);
+  CHECK(stop->first == StopReason::kHostStalled);
+  CHECK(stop->second == "the machine was suspended for 12.4 s");
+  CHECK_FALSE(stopper());  // it has been told
+  // Since it was started, by the clock that goes on meanwhile.
+  const auto now_s = [](clockid_t clock) {
+    timespec now{};
+    ::clock_gettime(clock, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  };
+  const double all_s = now_s(CLOCK_BOOTTIME), awake_s = now_s(CLOCK_MONOTONIC);
+  CHECK(Suspended_s() == Approx(all_s - awake_s).margin(0.05));
 }
 
 TEST_CASE("The voltage of a battery is told with two digits beside its limit") {
