@@ -246,6 +246,8 @@ TEST_CASE("The lag over a drive is told up to a second to either side, and not a
     };
     REQUIRE(over(0.97));
     CHECK(*over(0.97) == Approx(sign * 0.97).margin(0.003));
+    CHECK(over(0.9925));  // 5 ms before the end of the search
+    CHECK_FALSE(over(0.9965));
     CHECK_FALSE(over(0.9985));
   }
 }

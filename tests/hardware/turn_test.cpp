@@ -190,6 +190,37 @@ TEST_CASE("A person who stops the turn gets no complaint, whatever the picture s
   }
 }
 
+TEST_CASE("A turn takes its pulses, half a second and a little more after each, and 0.7 s") {
+  Bench bench;
+  HardwareOptions hardware;
+  hardware.turn.enough_deg = 1.0;
+  const auto turn_s = [&] {
+    RealRobot robot(bench, bench, bench, {hardware, Protocol::kFramed, false});
+    for (int i = 0; i < 50; ++i) robot.Advance(0.02);
+    robot.Arm();
+    const double begun_s = bench.Now_s();
+    try {
+      MeasureLatency(robot, hardware.odometry, hardware.turn, kOneWay_s);
+    } catch (const std::runtime_error&) {  // it is not seen to turn
+    }
+    return bench.Now_s() - begun_s;
+  };
+  // The second rest is longer by 0.05 s.
+  CHECK(turn_s() == Approx(0.02 + 2 * (0.06 + 0.5) + 0.05 + 0.7).margin(0.02));
+  bench.slip_left = bench.slip_right = 0.0;
+  hardware = Lenient();
+  // Twice 0.05, 0.15, 0.05 and 0.2 s, and once 0.05 s.
+  CHECK(turn_s() == Approx(0.02 + 14 * (0.06 + 0.5) + 0.95 + 0.7).margin(0.05));
+}
+
+TEST_CASE("A picture that is far ahead of the wheels is told to be by all that is looked for") {
+  Bench bench;
+  bench.bend = [](trial::PoseMeasurement& pose) { pose.captured_s -= 0.15; };
+  HardwareOptions hardware = Lenient();
+  hardware.guard.pose_stale_s = 1.0;
+  CHECK(NumberAfter("the picture shows the turn ", Refusal(bench, hardware)) == 100.0);
+}
+
 /// A slow turn to one side and back, `count` times read.
 std::vector<Angle> Turn(size_t count, double every_s, double rad) {
   std::vector<Angle> angles;
