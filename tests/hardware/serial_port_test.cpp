@@ -17,6 +17,7 @@
 #include <cerrno>
 #include <functional>
 #include <numeric>
+#include <thread>
 
 #include "pseudo_terminal.hpp"
 #include "support/until.hpp"
@@ -234,6 +235,38 @@ TEST_CASE("A port closed at the other end is gone for reading and writing") {
                                       Catch::Contains("Input/output error")));
   const std::vector<std::uint8_t> bytes{1, 2, 3};
   CHECK_THROWS_AS(port.Write(bytes), LineGone);
+}
+
+TEST_CASE("A write larger than the port holds goes on as it is read, byte for byte") {
+  PseudoTerminal terminal;
+  const auto patience_s = static_cast<double>(test::kGiveUp.count()) / 10.0;
+  SerialPort port(terminal.path(), 9600, patience_s);
+  std::vector<std::uint8_t> much(200'000);
+  for (size_t i = 0; i < much.size(); ++i) much[i] = static_cast<std::uint8_t>(i % 251);
+  std::vector<std::uint8_t> got;
+  std::thread reader([&] {
+    while (got.size() < much.size()) {
+      const auto more = terminal.Read(static_cast<int>(1000.0 * patience_s));
+      if (more.empty()) return;
+      got.insert(got.end(), more.begin(), more.end());
+    }
+  });
+  CHECK(port.Write(much));
+  reader.join();
+  CHECK(got == much);
+}
+
+TEST_CASE("A write that waits for its reader ends when that goes away") {
+  PseudoTerminal terminal;
+  SerialPort port(terminal.path(), 9600, static_cast<double>(test::kGiveUp.count()) / 10.0);
+  const std::vector<std::uint8_t> much(1'000'000, 'x');
+  std::thread reader([&] {
+    terminal.Read(static_cast<int>(1000 * test::kGiveUp.count()));
+    terminal.Close();
+  });
+  CHECK_THROWS_WITH(port.Write(much),
+                    Catch::StartsWith("the serial port " + terminal.path() + " went away: "));
+  reader.join();
 }
 
 TEST_CASE("A write to a port that nobody reads gives up") {
